@@ -261,6 +261,8 @@ static int check_prepared(const struct server_params *params, const struct plant
     struct log *log = log_create(LOG_WARN);
     struct scene *scene = loaded_open_scene(log, params, plant);
     int status = scene ? 0 : 1;
+    for (size_t i = 0; scene && i < scene->asset_count; i++)
+        status |= scene->assets[i].missing != NULL; /* logged */
     if (scene) {
         size_t count;
         struct far_sensor *far = far_sensors(scene, &count);

@@ -5,6 +5,7 @@
 #include <errno.h>
 #include <fcntl.h>
 #include <stdatomic.h>
+#include <stdlib.h>
 #include <string.h>
 #include <sys/mman.h>
 #include <sys/stat.h>
@@ -53,6 +54,39 @@ struct asset *asset_open(struct log *log, const char *path)
     return asset;
 }
 
+struct asset *asset_stand_in(void)
+{
+    static const float positions_m[3][3] = { { 0, 0, 0 }, { 1e-6f, 0, 0 }, { 0, 1e-6f, 0 } };
+    static const float up[3][3] = { { 0, 0, 1 }, { 0, 0, 1 }, { 0, 0, 1 } };
+    static const uint32_t indices[3] = { 0, 1, 2 }, none = ASSET_NO_TEXTURE;
+    const struct asset_primitive primitive = { .index_count = 3 };
+    const struct asset_material plain = { .alpha_cutoff = 0.5f,
+                                          .base_color_texture = none,
+                                          .metallic_roughness_texture = none,
+                                          .normal_texture = none,
+                                          .occlusion_texture = none,
+                                          .emissive_texture = none };
+    const struct asset_parts parts = { .positions_m = positions_m,
+                                       .normals = up,
+                                       .indices = indices,
+                                       .primitives = &primitive,
+                                       .materials = &plain,
+                                       .vertex_count = 3,
+                                       .index_count = 3,
+                                       .primitive_count = 1,
+                                       .material_count = 1 };
+    struct asset *asset = mem_new(sizeof(*asset));
+    char why[200];
+    *asset = (struct asset){ .path = mem_strdup(""), .refs = 1 };
+    asset->made = asset_build(&parts, &asset->bytes);
+    if (!asset->made || !asset_view_init(&asset->view, asset->made, asset->bytes, why)) {
+        asset_unref(&asset);
+        return NULL;
+    }
+    asset->closed = mem_array(asset->view.header->level_count, sizeof(*asset->closed));
+    return asset;
+}
+
 struct asset *asset_ref(struct asset *asset)
 {
     atomic_fetch_add_explicit(&asset->refs, 1, memory_order_relaxed);
@@ -66,7 +100,9 @@ void asset_unref(struct asset **asset_ptr)
     if (!asset || atomic_fetch_sub_explicit(&asset->refs, 1, memory_order_acq_rel) != 1)
         return;
     asset_forget_closed(asset);
-    munmap(asset->map, asset->bytes);
+    if (asset->map)
+        munmap(asset->map, asset->bytes);
+    free(asset->made); /* as asset_build says */
     mem_free(asset->path);
     mem_free(asset);
 }

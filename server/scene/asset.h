@@ -9,7 +9,8 @@
 struct asset {
     char *path;
     struct asset_view view;
-    void *map;
+    void *map; /* NULL: it was made here */
+    void *made;
     size_t bytes;
     _Atomic int refs;
     struct closed *_Atomic *closed; /* by level; NULL: nobody asked yet */
@@ -17,6 +18,8 @@ struct asset {
 
 /* NULL on failure, logged with path and reason. */
 struct asset *asset_open(struct log *log, const char *path);
+/* What stands in for one that could not be prepared: a triangle that is too small to be seen, and no sensor. */
+struct asset *asset_stand_in(void);
 struct asset *asset_ref(struct asset *asset);
 void asset_unref(struct asset **asset); /* &NULL is fine; leaves NULL */
 void asset_forget_closed(struct asset *asset); /* nobody may use them any more */

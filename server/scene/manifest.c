@@ -44,9 +44,11 @@ static bool read_entry(struct log *log, struct manifest *manifest, size_t index,
         return false;
     }
     const char *surface = json_string_value(json_object_get(item, "surface"));
+    const char *missing = json_string_value(json_object_get(item, "missing"));
     manifest->entries[index] = (struct manifest_entry){ .id = mem_strdup(id),
                                                         .file = mem_strdup(file),
                                                         .surface = file_name_good(surface) ? mem_strdup(surface) : NULL,
+                                                        .missing = missing ? mem_strdup(missing) : NULL,
                                                         .recipe = strtoull(recipe, NULL, 16) };
     manifest->count = index + 1;
     return true;
@@ -82,6 +84,7 @@ void manifest_finish(struct manifest *manifest)
         mem_free(manifest->entries[i].id);
         mem_free(manifest->entries[i].file);
         mem_free(manifest->entries[i].surface);
+        mem_free(manifest->entries[i].missing);
     }
     mem_free(manifest->entries);
     mem_free(manifest->path);

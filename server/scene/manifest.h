@@ -13,6 +13,7 @@ struct manifest {
     struct manifest_entry {
         char *id, *file; /* file: a name in the same folder */
         char *surface;   /* likewise, surface_store.h; NULL: none was kept */
+        char *missing;   /* why it could not be prepared, and has no file; NULL: it has */
         uint64_t recipe; /* plant/recipe.h */
     } *entries;
     size_t count;

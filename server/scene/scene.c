@@ -131,6 +131,17 @@ static struct asset *open_file(struct log *log, const struct scene *scene, int i
     return asset_open(log, path);
 }
 
+/* Not drawn, not measured, no part of the plant's box: what is left is that it is known, and why it is not there. */
+static bool create_missing(struct log *log, const struct scene *scene, struct scene_asset *asset, const struct manifest_entry *entry)
+{
+    log_warn(log, "asset %s is missing: %s; mend it and run plantcast-prep %s", asset->plant->id, entry->missing, scene->plant->path);
+    asset->missing = mem_strdup(entry->missing);
+    asset->file = asset_stand_in();
+    if (asset->file)
+        place(asset);
+    return asset->file != NULL;
+}
+
 static bool create_asset(struct log *log, struct scene *scene, int index, const struct manifest *manifest, uint64_t *hashes,
                          const char *folder)
 {
@@ -143,6 +154,8 @@ static bool create_asset(struct log *log, struct scene *scene, int index, const 
         log_err(log, "asset %s: is not in %s; run plantcast-prep %s", asset->plant->id, manifest->path, scene->plant->path);
         return false;
     }
+    if (entry->missing)
+        return create_missing(log, scene, asset, entry);
     if (!recipe_fits(log, scene->plant, hashes, index, entry))
         return false;
     char *path = mem_printf("%s/%s", folder, entry->file);
@@ -168,6 +181,17 @@ done:
 
 /* --- all of them ------------------------------------------------------------------------------------------------------------ */
 
+/* Whoever looks for a missing asset sees the plant. False: nothing else is there. */
+static bool bound_missing(struct scene *scene)
+{
+    for (size_t i = 0; i < scene->asset_count; i++)
+        if (scene->assets[i].missing) {
+            memcpy(scene->assets[i].bounds_min_m, scene->bounds_min_m, sizeof(scene->bounds_min_m));
+            memcpy(scene->assets[i].bounds_max_m, scene->bounds_max_m, sizeof(scene->bounds_max_m));
+        }
+    return scene->bounds_min_m[0] <= scene->bounds_max_m[0];
+}
+
 struct scene *scene_create(struct log *log, const struct plant *plant, const char *prepared_folder)
 {
     struct manifest manifest;
@@ -185,11 +209,17 @@ struct scene *scene_create(struct log *log, const struct plant *plant, const cha
             good = false;
             continue;
         }
+        if (scene->assets[i].missing)
+            continue;
         grow_box(scene->bounds_min_m, scene->bounds_max_m, scene->assets[i].bounds_min_m);
         grow_box(scene->bounds_min_m, scene->bounds_max_m, scene->assets[i].bounds_max_m);
     }
     manifest_finish(&manifest);
     mem_free(hashes);
+    if (good && !bound_missing(scene)) {
+        log_err(log, "%s: every asset is missing; run plantcast-prep %s", prepared_folder, plant->path);
+        good = false;
+    }
     if (good)
         coincident_find(scene);
     else
@@ -205,6 +235,7 @@ void scene_destroy(struct scene **scene_ptr)
     for (size_t i = 0; i < scene->asset_count; i++) {
         asset_unref(&scene->assets[i].file);
         mem_free(scene->assets[i].sensors);
+        mem_free(scene->assets[i].missing);
     }
     mem_free(scene->assets);
     mem_free(scene);

@@ -24,6 +24,7 @@ struct scene_asset {
     double bounds_min_m[3], bounds_max_m[3]; /* plant frame, axis-aligned */
     struct scene_sensor *sensors; /* of every group, in the order of the tag list */
     size_t sensor_count;
+    char *missing;               /* why it could not be prepared: it has no sensors, and nothing of it is seen; NULL: it is there */
     int front;                   /* where faces of two assets coincide, the greater one is seen: scene/coincident.h */
 };
 
@@ -35,7 +36,8 @@ struct scene {
 };
 
 /* Opens the prepared files of the plant (folder: as plant_prepared_folder). Refuses files that do not fit the plant as it is
-   written now, naming asset and reason. NULL on failure, everything wrong is logged. plant must outlive it. */
+   written now, naming asset and reason. An asset of which plantcast-prep says why it could not be prepared is missing, with a warning, and
+   the others are there. NULL on failure, everything wrong is logged. plant must outlive it. */
 struct scene *scene_create(struct log *log, const struct plant *plant, const char *prepared_folder);
 void scene_destroy(struct scene **scene);
 /* Where a client starts: the plant file's view, else the whole plant from a raised corner. */

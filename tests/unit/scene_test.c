@@ -269,6 +269,38 @@ static void what_was_not_prepared_is_refused(void **state)
     assert_refused(f, "m.glb, or its nodes");
 }
 
+/* plantcast-prep says why one could not be prepared: the others are there. */
+static void a_missing_asset_does_not_keep_the_others_away(void **state)
+{
+    struct fixture *f = *state;
+    uint64_t model;
+    struct text text = { 0 };
+    assert_true(plant_model_hash(f->plant->assets[0].model, &model));
+    text_add(&text, "{\"format\": 2, \"assets\": [");
+    for (size_t i = 0; i < f->plant->asset_count; i++)
+        text_add(&text, "{\"id\": \"%s\", \"file\": \"%s\", \"recipe\": \"%016" PRIx64 "\"%s}%s", f->plant->assets[i].id,
+                 i == 1 ? "0.asset" : "1.asset", i == 1 ? 0 : plant_recipe(&f->plant->assets[i], model),
+                 i == 1 ? ", \"missing\": \"no node's name matches 'B'\"" : "", i + 1 < f->plant->asset_count ? "," : "]}");
+    write_manifest(f, text.at);
+    text_finish(&text);
+    struct scene *scene = scene_create(f->log, f->plant, f->prepared);
+    assert_non_null(scene);
+    assert_null(scene->assets[0].missing);
+    assert_string_equal(scene->assets[1].missing, "no node's name matches 'B'");
+    assert_int_equal(scene->assets[1].sensor_count, 0);
+    assert_true(scene->assets[0].sensor_count > 0);
+    for (int axis = 0; axis < 3; axis++) { /* B stood at (10, 20, 30): the plant's box does not know of it */
+        assert_true(scene->bounds_max_m[axis] < 9);
+        assert_true(scene->assets[1].bounds_max_m[axis] == scene->bounds_max_m[axis]);
+    }
+    scene_destroy(&scene);
+    write_manifest(f, "{\"format\": 2, \"assets\": [{\"id\": \"A\", \"file\": \"0\", \"recipe\": \"0\", \"missing\": \"a\"},"
+                      "{\"id\": \"B\", \"file\": \"0\", \"recipe\": \"0\", \"missing\": \"b\"},"
+                      "{\"id\": \"C\", \"file\": \"0\", \"recipe\": \"0\", \"missing\": \"c\"}]}");
+    assert_refused(f, "every asset is missing");
+    write_good_manifest(f);
+}
+
 static void home_is_the_view_of_the_plant(void **state)
 {
     struct fixture *f = *state;
@@ -301,6 +333,7 @@ int main(void)
         cmocka_unit_test_setup_teardown(broken_files_are_refused, set_up, tear_down),
         cmocka_unit_test_setup_teardown(broken_manifests_are_refused, set_up, tear_down),
         cmocka_unit_test_setup_teardown(what_was_not_prepared_is_refused, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(a_missing_asset_does_not_keep_the_others_away, set_up, tear_down),
         cmocka_unit_test_setup_teardown(home_is_the_view_of_the_plant, set_up, tear_down),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

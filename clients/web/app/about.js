@@ -24,7 +24,7 @@ export class About {
             return;
         const { min, max } = asset.bounds;
         const facts = [
-            ['assets.description', asset.description], ['assets.area', asset.area],
+            ['assets.missing', asset.missing], ['assets.description', asset.description], ['assets.area', asset.area],
             ['assets.size', say('distance.metres', { metres: metres(max.map((m, i) => m - min[i]), ' × ') })],
             ['assets.place', metres(max.map((m, i) => (m + min[i]) / 2), ' · ')],
             ['assets.sensors.name', asset.tags.length],

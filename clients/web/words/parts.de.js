@@ -111,6 +111,7 @@ ghosts(other): {count} durchsichtig
 [assets]
 description: Beschreibung
 area: Bereich
+missing: Fehlt
 size: Größe
 place: Mitte bei
 sensors.name: Sensoren

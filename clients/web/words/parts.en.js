@@ -111,6 +111,7 @@ ghosts(other): {count} see-through
 [assets]
 description: Description
 area: Area
+missing: Missing
 size: Size
 place: Middle at
 sensors.name: Sensors

@@ -110,6 +110,7 @@ ghosts(other): {count}개 반투명
 [assets]
 description: 설명
 area: 구역
+missing: 누락
 size: 크기
 place: 중심
 sensors.name: 센서

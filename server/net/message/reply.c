@@ -238,6 +238,8 @@ static json_t *assets(const struct scene *scene, bool open)
                                   box(a->bounds_min_m, a->bounds_max_m));
         if (a->plant->property_count > 0 && !open)
             json_object_set_new(asset, "properties", properties(a->plant));
+        if (a->missing && !open)
+            json_object_set_new(asset, "missing", string(a->missing));
         json_array_append_new(list, asset);
     }
     return list;
