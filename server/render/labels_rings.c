@@ -7,10 +7,11 @@
 #include "render/labels_impl.h"
 
 static const double CLOSE = 26, STILL_CLOSE = 34; /* units between rings that share a call-out; that did in the picture before */
-static const double FARTHER = 1.25; /* those distances grow by, until there are no more than MOST_GROUPS */
+static const double FARTHER = 1.25;               /* both grow by, until there are no more labels of rings than: */
+enum { MOST_GROUPS = 24 };
 static const double FARTHEST = 170;               /* units, unless there is no other label to join */
 /* Where else a label may be, from the middle of its rings; steps in units. */
-enum { MOST_GROUPS = 24, STEP_X = 24, STEP_Y = 15, STEPS = 60, SIDE = 2 * STEPS + 1, OFFSETS = SIDE * SIDE, NOWHERE = -2, FORCED = 1000000 };
+enum { STEP_X = 24, STEP_Y = 15, STEPS = 60, SIDE = 2 * STEPS + 1, OFFSETS = SIDE * SIDE, NOWHERE = -2, FORCED = 1000000 };
 
 struct offset {
     int x, y, squared, index;
