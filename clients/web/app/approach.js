@@ -7,7 +7,7 @@ import { askPick } from '../core/requests.js';
 import { length, subtract } from '../core/vector.js';
 
 const ANSWER_MS = 700, TRIES = 3; // another question may have come between
-const MOST_SEEN_THROUGH = 4, MOST_GHOSTS = 8;
+const SEARCH_MS = 1500, MOST_SEEN_THROUGH = 4, MOST_GHOSTS = 8;
 const AROUND = [[-0.12, 0], [0.12, 0], [0, -0.12], [0, 0.12], [-0.2, -0.2], [0.2, -0.2], [-0.2, 0.2], [0.2, 0.2]], BEFORE = 0.9;
 const NEAR_M = 0.05; // what is hit there is the sensor's own surface
 
@@ -57,17 +57,18 @@ export class Approach {
         const cameras = approaches(this.session.camera, tag.position, asset.bounds);
         fly(cameras[0]);
         const behind = []; // other equipment, not only what it stands on itself
+        const latest = performance.now() + SEARCH_MS; // on a slow network what was found until then will do
         let best = null, least = Infinity;
         for (const camera of cameras) {
-            const found = await this.look(camera, tag), covered = found?.seen ? await this.coverAround(camera, asset) : Infinity;
+            const found = await this.look(camera, tag), covered = found?.seen ? await this.coverAround(camera, asset, least) : Infinity;
             if (isOvertaken() || !found)
                 return;
             if (covered < least)
                 [best, least] = [camera, covered];
-            if (covered === 0)
-                break;
             if (!found.seen && found.asset !== asset.id)
                 behind.push(camera);
+            if (covered === 0 || (performance.now() > latest && (best || behind.length > 0)))
+                break;
         }
         if (best) {
             if (best !== cameras[0])
@@ -111,11 +112,13 @@ export class Approach {
         return { seen: isThere || (sensor === tag.name && !occluded), asset };
     }
 
-    // At how many places around the middle other equipment stands before it.
-    async coverAround(camera, { id }) {
+    // At how many places around the middle other equipment stands before it; counted no further than `most`.
+    async coverAround(camera, { id }, most) {
         const far = length(subtract(camera.target, camera.eye));
         let count = 0;
         for (const place of AROUND) {
+            if (count >= most)
+                break;
             const { asset = null, position } = await this.ask(camera, place) ?? {};
             count += asset !== null && asset !== id && length(subtract(position, camera.eye)) < BEFORE * far;
         }
