@@ -18,6 +18,7 @@
 #include "history/recorder.h"
 #include "history/series_text.h"
 #include "plant/units.h"
+#include "proving/proofs.h"
 #include "tests/support/plant_case.h"
 #include "tests/support/temp.h"
 #include "value/decode.h"
@@ -197,6 +198,8 @@ static void readings_are_not_adopted_in_another_unit(void **state)
     store_snapshot(is, 2, 2, snapshot);
     assert_int_equal(snapshot->readings[0].quality, QUALITY_BAD_WAITING);
     assert_true(snapshot->readings[1].value == 70);
+    assert_true(proof_fingerprint(c->plant, 0) != proof_fingerprint(other.plant, 0)); /* what was proven is another value now */
+    assert_true(proof_fingerprint(c->plant, 1) == proof_fingerprint(other.plant, 1));
     snapshot_destroy(&snapshot);
     store_destroy(&was);
     store_destroy(&is);
