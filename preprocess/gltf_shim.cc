@@ -51,11 +51,35 @@ bool file_unwritten(std::string *, const std::string &, const std::vector<unsign
     return false;
 }
 
+bool file_unmeasured(size_t *, std::string *, const std::string &, void *)
+{
+    return false;
+}
+
+/* tinygltf 2.9 wants it too. */
+template <typename Callbacks> auto set_measure(Callbacks *files, int) -> decltype(files->GetFileSizeInBytes = file_unmeasured, void())
+{
+    files->GetFileSizeInBytes = file_unmeasured;
+}
+
+template <typename Callbacks> void set_measure(Callbacks *, long) {}
+
+tinygltf::FsCallbacks no_files()
+{
+    tinygltf::FsCallbacks files = {};
+    files.FileExists = file_absent;
+    files.ExpandFilePath = file_expand;
+    files.ReadWholeFile = file_unread;
+    files.WriteWholeFile = file_unwritten;
+    set_measure(&files, 0);
+    return files;
+}
+
 void parse(gltf::work *w)
 {
     tinygltf::TinyGLTF loader;
     std::string error, warning;
-    loader.SetFsCallbacks({ file_absent, file_expand, file_unread, file_unwritten, nullptr });
+    loader.SetFsCallbacks(no_files());
     if (w->document->json_bytes > std::numeric_limits<unsigned>::max())
         refuse("%zu bytes of JSON are too much", w->document->json_bytes);
     bool good =

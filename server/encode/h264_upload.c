@@ -14,12 +14,24 @@ struct h264_upload {
     bool device;          /* and pictures of its own memory only */
 };
 
+/* What it takes, up to AV_PIX_FMT_NONE. NULL: anything. */
+static const enum AVPixelFormat *formats_of(const AVCodec *codec)
+{
+#if LIBAVCODEC_VERSION_INT >= AV_VERSION_INT(61, 13, 100)
+    const void *formats = NULL;
+    return avcodec_get_supported_config(NULL, codec, AV_CODEC_CONFIG_PIX_FORMAT, 0, &formats, NULL) < 0 ? NULL : formats;
+#else
+    return codec->pix_fmts;
+#endif
+}
+
 static bool takes(const AVCodec *codec, enum AVPixelFormat format)
 {
-    for (const enum AVPixelFormat *at = codec->pix_fmts; at && *at != AV_PIX_FMT_NONE; at++)
+    const enum AVPixelFormat *formats = formats_of(codec);
+    for (const enum AVPixelFormat *at = formats; at && *at != AV_PIX_FMT_NONE; at++)
         if (*at == format)
             return true;
-    return !codec->pix_fmts;
+    return !formats;
 }
 
 /* The kind of device whose pictures are the only ones that the encoder takes. */
@@ -71,7 +83,7 @@ int h264_upload_create(AVCodecContext *context, struct h264_upload **out)
         return 0;
     }
     upload->device = !takes(context->codec, AV_PIX_FMT_NV12);
-    context->pix_fmt = upload->device ? context->codec->pix_fmts[0] : AV_PIX_FMT_NV12;
+    context->pix_fmt = upload->device ? formats_of(context->codec)[0] : AV_PIX_FMT_NV12;
     int status = make_interleaved(context, upload);
     return status < 0 || !upload->device ? status : open_device(context);
 }
