@@ -51,7 +51,7 @@ static void print_usage(FILE *out)
           "  --trust-local    with --tokens: who is on this machine needs none, and is an engineer\n"
           "  --behind-proxy   a proxy on this machine speaks for others, and says for whom in X-Forwarded-For; takes --host\n"
           "  --host NAME      a name by which browsers ask for this server, beside its own; up to 16 times\n"
-          "  --origin URL     a page of another host that may connect, such as https://portal.example; up to 16 times\n"
+          "  --origin URL     a page of another host that may connect, and show ours in a frame: https://portal.example; up to 16 times\n"
           "  --limit NAME=N   how much clients may have, again and again:\n",
           out);
     quotas_print(out);

@@ -47,6 +47,27 @@ void text_add_quoted(struct text *text, const char *cell)
     text_add(text, "\"");
 }
 
+/* A sign alone, as of something without a unit, is none. */
+bool text_is_formula(const char *cell)
+{
+    return *cell && strchr("=+-@\t\r", *cell) && cell[1];
+}
+
+void text_add_cell(struct text *text, const char *cell, const char *special)
+{
+    char *safe = text_is_formula(cell) ? mem_printf("'%s", cell) : NULL;
+    if (strpbrk(cell, special))
+        text_add_quoted(text, safe ? safe : cell);
+    else
+        text_add(text, "%s", safe ? safe : cell);
+    mem_free(safe);
+}
+
+const char *text_cell_read(const char *cell)
+{
+    return *cell == '\'' && text_is_formula(cell + 1) ? cell + 1 : cell;
+}
+
 void text_finish(struct text *text)
 {
     mem_free(text->at);

@@ -9,6 +9,7 @@
 #include <sys/stat.h>
 
 #include "base/mem.h"
+#include "base/text.h"
 #include "history/history.h"
 #include "history/month.h"
 #include "history/recorder.h"
@@ -129,7 +130,7 @@ static bool take_quality(struct import *import, uint32_t *quality)
 static bool take_unit(struct import *import, int tag, double *value)
 {
     const struct plant_tag *of = &import->params->plant->tags[tag];
-    const char *unit = csv_text(&import->csv, import->unit), *to = of->unit ? of->unit : "";
+    const char *unit = text_cell_read(csv_text(&import->csv, import->unit)), *to = of->unit ? of->unit : "";
     struct unit_change change = of->change;
     if (*unit && units_compare(unit, to, &change) > UNITS_CONVERT) {
         csv_error(&import->csv, import->unit, "'%.60s' cannot be converted to '%.60s', in which %s is recorded", unit, to, of->name);
@@ -157,7 +158,7 @@ static bool take_cell(struct import *import, take_sample *take, void *arg, int t
 
 static bool take_long(struct import *import, take_sample *take, void *arg)
 {
-    const char *name = csv_text(&import->csv, import->tag);
+    const char *name = text_cell_read(csv_text(&import->csv, import->tag));
     int tag = plant_find_tag(import->params->plant, name);
     uint32_t quality;
     int64_t t_us;

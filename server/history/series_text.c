@@ -67,25 +67,19 @@ void series_text_json(struct text *out, const char *tag, const char *unit, const
     text_add(out, "]}");
 }
 
-static void add_cell(struct text *out, const char *text)
-{
-    if (strpbrk(text, ",;\t\"\r\n "))
-        text_add_quoted(out, text);
-    else
-        text_add(out, "%s", text);
-}
+static const char SPECIAL[] = ",;\t\"\r\n "; /* what makes a cell of CSV a quoted one */
 
 static void begin_row(struct text *out, const char *tag, int64_t t_us)
 {
     char when[WHEN_BYTES];
     when_print(t_us, when);
-    add_cell(out, tag);
+    text_add_cell(out, tag, SPECIAL);
     text_add(out, ",%s,", when);
 }
 
 static void end_row(struct text *out, const char *unit)
 {
-    add_cell(out, unit);
+    text_add_cell(out, unit, SPECIAL);
     text_add(out, "\r\n");
 }
 

@@ -7,6 +7,7 @@
 #include <string.h>
 #include <strings.h>
 
+#include "base/text.h"
 #include "net/message/names.h"
 
 /* How the field is computed: each set of these costs the server a field of its own, and takes somebody who knows. */
@@ -121,6 +122,16 @@ bool access_origin(const struct access_params *params, const char *origin, const
         if (!strcasecmp(params->origins[i], origin))
             return true;
     return name && !strcasecmp(name + 3, host) && (!secure || !strncasecmp(origin, "https://", 8));
+}
+
+char *access_content_policy(const struct access_params *params)
+{
+    struct text text = { 0 };
+    text_add(&text, "default-src 'self'; connect-src 'self'; img-src 'self' data: blob:; worker-src 'self' blob:; object-src 'none'; "
+                    "base-uri 'none'; form-action 'none'; frame-ancestors 'self'");
+    for (int i = 0; i < params->origin_count; i++)
+        text_add(&text, " %s", params->origins[i]);
+    return text.at;
 }
 
 /* --- lists in headers ---------------------------------------------------------------------------------------------------------- */

@@ -39,6 +39,8 @@ bool access_name_is_local(const char *name); /* localhost, 127.x, ::1 */
 bool access_name_is_address(const char *name);
 /* Whether a page of `origin` may use who asks `host`: the same host by the same kind of line, or one of those named. "": no browser. */
 bool access_origin(const struct access_params *params, const char *origin, const char *host, bool secure);
+/* What a page of ours may load, and who may show it in a frame: it, and those named; mem_free. */
+char *access_content_policy(const struct access_params *params);
 /* Finds a name in a header's list with commas; *rest (may be NULL) is what follows `prefix` in the word that begins with it. */
 bool access_list_has(const char *list, const char *word);
 bool access_list_rest(const char *list, const char *prefix, char *out, size_t size);

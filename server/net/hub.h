@@ -39,6 +39,7 @@ struct hub {
     int connection_count;
     struct tokens *tokens;   /* NULL: there are none */
     struct logins *logins;
+    char *content_policy;    /* Content-Security-Policy of every answer */
     struct tls *tls;         /* NULL: there is none */
     struct admission admission;
     bool local_only;         /* bound to a loopback address, and no proxy is in front */

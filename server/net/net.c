@@ -308,6 +308,7 @@ static bool open_context(struct net *net)
         .gid = -1,
         .uid = -1,
         .options = LWS_SERVER_OPTION_FAIL_UPON_UNABLE_TO_BIND | LWS_SERVER_OPTION_DISABLE_OS_CA_CERTS |
+                   LWS_SERVER_OPTION_VALIDATE_UTF8 |
                    (strchr(hub->params.address, ':') ? 0 : LWS_SERVER_OPTION_DISABLE_IPV6),
         .timeout_secs = (unsigned)hub->quotas->at[QUOTA_PATIENCE_S],
         .keepalive_timeout = 30,
@@ -340,6 +341,7 @@ static bool open_access(struct net *net)
     struct hub *hub = &net->hub;
     const struct access_params *access = &hub->params.access;
     visitor_learn_name(hub);
+    hub->content_policy = access_content_policy(access);
     hub->local_only = access_name_is_local(hub->params.address) && !access->behind_proxy;
     if (access->tokens_path && !(hub->world.tokens = hub->tokens = tokens_create(hub->params.log, access->tokens_path)))
         return false;
@@ -442,6 +444,7 @@ void net_destroy(struct net **net_ptr)
     atomic_store(&lws_log_to, NULL);
     tls_destroy(&net->hub.tls);
     tokens_destroy(&net->hub.tokens);
+    mem_free(net->hub.content_policy);
     peers_destroy(&net->hub.peers);
     logins_destroy(&net->hub.logins);
     mem_free(net->hub.by_client);

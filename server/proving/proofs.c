@@ -56,7 +56,7 @@ uint64_t proof_fingerprint(const struct plant *plant, int index)
 
 static void add_text(struct text *out, const char *text)
 {
-    text_add(out, ",\"");
+    text_add(out, text_is_formula(text) ? ",\"'" : ",\"");
     for (; *text; text++)
         text_add(out, *text == '"' ? "\"\"" : "%c", (unsigned char)*text < 32 ? ' ' : *text);
     text_add(out, "\"");
@@ -109,7 +109,7 @@ static int64_t time_of(const char *text)
 static void read_row(struct proofs *proofs, const struct csv *csv)
 {
     enum { TIME, NAME, RESULT, VALUE, UNIT, EXPECTED, TOLERANCE, BY, REMARK, FINGERPRINT };
-    int tag = plant_find_tag(proofs->plant, csv_text(csv, NAME));
+    int tag = plant_find_tag(proofs->plant, text_cell_read(csv_text(csv, NAME)));
     const char *fingerprint = csv_text(csv, FINGERPRINT), *result = csv_text(csv, RESULT);
     bool passed = !strcmp(result, proof_names[PROOF_PASSED]);
     if (strlen(fingerprint) != 16 || (!passed && strcmp(result, proof_names[PROOF_FAILED]) != 0)) /* cut off as it was written */
@@ -126,8 +126,8 @@ static void read_row(struct proofs *proofs, const struct csv *csv)
                              .value = number_of(csv, VALUE),
                              .expected = number_of(csv, EXPECTED),
                              .tolerance = number_of(csv, TOLERANCE) };
-    snprintf(proof->who, sizeof(proof->who), "%s", csv_text(csv, BY));
-    snprintf(proof->remark, sizeof(proof->remark), "%s", csv_text(csv, REMARK));
+    snprintf(proof->who, sizeof(proof->who), "%s", text_cell_read(csv_text(csv, BY)));
+    snprintf(proof->remark, sizeof(proof->remark), "%s", text_cell_read(csv_text(csv, REMARK)));
 }
 
 static void mark_unproven(struct proofs *proofs)

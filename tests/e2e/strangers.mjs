@@ -5,9 +5,10 @@ import { spawnSync } from 'node:child_process';
 import { appendFileSync, readFileSync, writeFileSync } from 'node:fs';
 import http from 'node:http';
 import https from 'node:https';
+import { connect as connectTls } from 'node:tls';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
-import { PlainClient } from './support/plain_client.mjs';
+import { encodeFrame, PlainClient } from './support/plain_client.mjs';
 import { missing, runProgram, TinyPlant } from './support/tiny_plant.mjs';
 
 const absent = missing();
@@ -139,6 +140,46 @@ test('anyone who looks on is told of no reading, tag or person, and follows nobo
     assert.equal((await picture()).status, 200);
     stranger.close();
     engineer.close();
+});
+
+test('over TLS: no CBC, HSTS, connections home only, and frames of pages that were named', { skip }, async () => {
+    await serve(...tls, '--tokens', tokensFile, '--origin', 'https://portal.example');
+    const { headers } = await ask('/', {}, true), policy = headers['content-security-policy'];
+    assert.match(headers['strict-transport-security'], /^max-age=31536000/);
+    assert.match(policy, /connect-src 'self';/);
+    assert.match(policy, /frame-ancestors 'self' https:\/\/portal\.example$/);
+    const handshake = (ciphers) => new Promise((done) => {
+        const how = { port: plant.port, host: '127.0.0.1', rejectUnauthorized: false, maxVersion: 'TLSv1.2', ciphers };
+        const socket = connectTls(how, () => {
+            done(socket.getCipher().name);
+            socket.destroy();
+        });
+        socket.on('error', () => done(null));
+    });
+    assert.equal(await handshake('ECDHE-ECDSA-AES128-GCM-SHA256'), 'ECDHE-ECDSA-AES128-GCM-SHA256');
+    assert.equal(await handshake('ECDHE-ECDSA-CHACHA20-POLY1305'), 'ECDHE-ECDSA-CHACHA20-POLY1305');
+    for (const cipher of ['ECDHE-ECDSA-AES128-SHA', 'ECDHE-ECDSA-AES256-SHA384', 'ECDHE-ECDSA-AES128-SHA256'])
+        assert.equal(await handshake(cipher), null, cipher);
+});
+
+test('text that is not UTF-8 is closed with 1007, and what people write is no formula in a file', { skip }, async () => {
+    await serve();
+    assert.equal((await ask('/')).headers['strict-transport-security'], undefined);
+    for (const bytes of [[0x7b, 0xff, 0x7d], [0xc0, 0xaf], [0xed, 0xa0, 0x80], [0x7b, 0xe2, 0x82]]) {
+        const client = await PlainClient.open(plant.port);
+        client.write(encodeFrame(1, Buffer.from(bytes)));
+        assert.equal((await client.until('a close', (c) => c.closed)).code, 1007, String(bytes));
+    }
+    const client = await PlainClient.open(plant.port);
+    await client.hello();
+    const two = Buffer.from('{"type":"ping","t":7,"x":"\u20ac"}'), half = two.indexOf(0x82); // cut within a character
+    client.write(Buffer.concat([encodeFrame(1, two.subarray(0, half), { fin: false }), encodeFrame(0, two.subarray(half))]));
+    assert.equal((await client.text('pong')).t, 7);
+    client.say({ type: 'prove', seq: 1, tag: 'TI-1', expected: 1, tolerance: 1, fail: true, remark: '=HYPERLINK("http://x")' });
+    await client.text('proved');
+    client.close();
+    const answer = await fetch(`http://127.0.0.1:${plant.port}/api/v1/proofs`);
+    assert.match(await answer.text(), /,"'=HYPERLINK\(""http/);
 });
 
 test('every token that is let in, or is not, is a line in the log; ten wrong ones slow an address', { skip }, async () => {

@@ -8,6 +8,7 @@
 
 #include <cmocka.h>
 
+#include "base/mem.h"
 #include "net/message/names.h"
 #include "tests/support/small_scene.h"
 
@@ -141,6 +142,20 @@ static void pages_of_other_hosts_may_not(void **state)
     assert_false(access_origin(&params, "plant.example", "plant.example", false));
 }
 
+static void frames_of_pages_that_were_named(void **state)
+{
+    (void)state;
+    struct access_params params = { .origins = { "https://portal.example", "http://wall.example:81" } };
+    char *own = access_content_policy(&params);
+    params.origin_count = 2;
+    char *more = access_content_policy(&params);
+    assert_non_null(strstr(own, "connect-src 'self';"));
+    assert_string_equal(strstr(own, "frame-ancestors"), "frame-ancestors 'self'");
+    assert_string_equal(strstr(more, "frame-ancestors"), "frame-ancestors 'self' https://portal.example http://wall.example:81");
+    mem_free(own);
+    mem_free(more);
+}
+
 static void lists_in_headers(void **state)
 {
     (void)state;
@@ -178,6 +193,7 @@ int main(void)
         cmocka_unit_test(where_a_daemon_may_listen),
         cmocka_unit_test(hosts_are_names_without_ports),
         cmocka_unit_test(pages_of_other_hosts_may_not),
+        cmocka_unit_test(frames_of_pages_that_were_named),
         cmocka_unit_test(lists_in_headers),
         cmocka_unit_test(tokens_in_queries_are_known_by_name),
     };

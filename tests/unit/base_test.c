@@ -35,6 +35,24 @@ static void text_grows(void **state)
     assert_int_equal(text.length, 0);
 }
 
+/* What somebody wrote is no program for whoever opens the file. */
+static void cells_are_no_formulas(void **state)
+{
+    (void)state;
+    static const char *const cells[][2] = { { "=1+1", "'=1+1" }, { "@SUM(A1)", "'@SUM(A1)" }, { "+cmd|x", "'+cmd|x" }, { "-2", "'-2" },
+                                            { "-", "-" }, { "", "" }, { "TI-1", "TI-1" }, { "'quoted", "'quoted" },
+                                            { "=\"a\",b", "\"'=\"\"a\"\",b\"" }, { "\t=1", "'\t=1" } };
+    for (size_t i = 0; i < sizeof(cells) / sizeof(cells[0]); i++) {
+        struct text text = { 0 };
+        text_add(&text, "%s", "");
+        text_add_cell(&text, cells[i][0], ",\"");
+        assert_string_equal(text.at, cells[i][1]);
+        if (text.at[0] != '"')
+            assert_string_equal(text_cell_read(text.at), cells[i][0]);
+        text_finish(&text);
+    }
+}
+
 static void files_are_read_whole_and_replaced_at_once(void **state)
 {
     (void)state;
@@ -229,6 +247,7 @@ int main(void)
     cmocka_set_message_output(CM_OUTPUT_TAP);
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(text_grows),
+        cmocka_unit_test(cells_are_no_formulas),
         cmocka_unit_test(files_are_read_whole_and_replaced_at_once),
         cmocka_unit_test(memory_is_zeroed_and_checked),
         cmocka_unit_test(findings_come_in_the_order_of_the_text),

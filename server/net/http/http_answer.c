@@ -7,10 +7,9 @@
 #include "net/visitor.h"
 
 enum { SMALL_BYTES = 64 * 1024 }; /* as many connections as there may be have room for these */
+enum { HEAD_BYTES = 8192 };       /* with as many origins as may be named, of 256 characters */
 
 static const char *const security[][2] = {
-    { "content-security-policy:", "default-src 'self'; connect-src 'self' ws: wss:; img-src 'self' data: blob:; worker-src 'self' blob:; "
-                                  "object-src 'none'; base-uri 'none'; form-action 'none'; frame-ancestors 'self'" },
     { "x-content-type-options:", "nosniff" },
     { "referrer-policy:", "no-referrer" },
     { "cross-origin-resource-policy:", "same-origin" },
@@ -35,13 +34,18 @@ static bool add_first(struct request *request, int status, const char *type, uns
 
 bool request_write_head(struct request *request, int status, const char *type, const char *extra_name, const char *extra)
 {
-    unsigned char buffer[LWS_PRE + 2048], *start = buffer + LWS_PRE, *p = start, *end = buffer + sizeof(buffer) - 1;
+    unsigned char buffer[LWS_PRE + HEAD_BYTES], *start = buffer + LWS_PRE, *p = start, *end = buffer + sizeof(buffer) - 1;
     struct lws *wsi = request->wsi;
+    const struct hub *hub = hub_of(wsi);
     if (!add_first(request, status, type, &p, end))
         return false;
     for (size_t i = 0; i < sizeof(security) / sizeof(security[0]); i++)
         if (!add_header(wsi, security[i][0], security[i][1], &p, end))
             return false;
+    if (!add_header(wsi, "content-security-policy:", hub->content_policy, &p, end))
+        return false;
+    if (hub->tls && !add_header(wsi, "strict-transport-security:", "max-age=31536000", &p, end))
+        return false;
     if (extra_name && !add_header(wsi, extra_name, extra, &p, end))
         return false;
     return lws_finalize_write_http_header(wsi, start, &p, end) == 0;

@@ -179,13 +179,7 @@ struct listing {
     struct text csv;
 };
 
-static void add_csv_text(struct text *out, const char *text)
-{
-    if (strpbrk(text, ",\"\n\r"))
-        text_add_quoted(out, text);
-    else
-        text_add(out, "%s", text);
-}
+static const char SPECIAL[] = ",\"\n\r"; /* what makes a cell of CSV a quoted one */
 
 static void add_csv_number(struct text *out, double value)
 {
@@ -198,16 +192,16 @@ static void add_csv_alarm(struct listing *listing, const struct alarm *alarm)
     struct text *out = &listing->csv;
     char when[WHEN_BYTES] = "";
     when_print(alarm->raised_utc_ns / 1000, when);
-    add_csv_text(out, alarm->name);
+    text_add_cell(out, alarm->name, SPECIAL);
     text_add(out, ",%s,%s,%d,%s,", alarm_kind_name(alarm->kind), alarm_word_name(alarm_word_of(alarm)), alarm->priority, when);
     add_csv_number(out, alarm->value);
     text_add(out, ",");
     add_csv_number(out, alarm->limit);
     when_print(alarm->until.utc_ns / 1000, when);
     text_add(out, ",%d,%s,", alarm->held, alarm->until.utc_ns ? when : "");
-    add_csv_text(out, alarm->who);
+    text_add_cell(out, alarm->who, SPECIAL);
     text_add(out, ",");
-    add_csv_text(out, alarm->reason);
+    text_add_cell(out, alarm->reason, SPECIAL);
     text_add(out, "\n");
 }
 
@@ -281,15 +275,15 @@ static void add_journal_csv(struct text *out, const struct journal_row *row)
     char when[WHEN_BYTES];
     when_print(row->t_us, when);
     text_add(out, "%lld,%s,", (long long)row->id, when);
-    add_csv_text(out, row->tag);
+    text_add_cell(out, row->tag, SPECIAL);
     text_add(out, ",%s,%s,%s,%s,%d,", row->kind, row->event, row->before, row->after, row->priority);
     add_csv_number(out, row->limit);
     text_add(out, ",");
     add_csv_number(out, row->value);
     text_add(out, ",");
-    add_csv_text(out, row->who);
+    text_add_cell(out, row->who, SPECIAL);
     text_add(out, ",");
-    add_csv_text(out, row->reason);
+    text_add_cell(out, row->reason, SPECIAL);
     text_add(out, "\n");
 }
 

@@ -124,17 +124,28 @@ bool may_name(const json_t *o, const char *name, const struct name *names, int *
     return false;
 }
 
+bool has_controls(const char *text)
+{
+    static const char *const overrides[] = { "\u202a", "\u202b", "\u202c", "\u202d", "\u202e", "\u2066", "\u2067", "\u2068", "\u2069" };
+    for (const unsigned char *c = (const unsigned char *)text; *c; c++)
+        if (*c < 32 || *c == 127 || (*c == 0xc2 && c[1] >= 0x80 && c[1] < 0xa0)) /* the last: those of ISO 6429 */
+            return true;
+    for (size_t i = 0; i < sizeof(overrides) / sizeof(overrides[0]); i++)
+        if (strstr(text, overrides[i]))
+            return true;
+    return false;
+}
+
 bool need_words(const json_t *o, const char *name, bool needed, char *out, size_t size, struct message_error *error)
 {
     const json_t *value = json_object_get(o, name);
     const char *text = json_string_value(value);
     bool good = text ? json_string_length(value) < size && strlen(text) == json_string_length(value) : !value;
-    for (const char *c = text; good && c && *c; c++)
-        good = (unsigned char)*c >= 32 && *c != 127;
-    good = good && (!needed || (text && text[strspn(text, " ")]));
+    good = good && !(text && has_controls(text)) && (!needed || (text && text[strspn(text, " ")]));
     if (good)
         snprintf(out, size, "%s", text ? text : "");
     else
-        message_fail(error, "bad_field", "%s: a text of %s%zu bytes expected", name, needed ? "1 to " : "at most ", size - 1);
+        message_fail(error, "bad_field", "%s: a text of %s%zu bytes, without control characters, expected", name,
+                     needed ? "1 to " : "at most ", size - 1);
     return good;
 }

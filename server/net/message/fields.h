@@ -14,7 +14,9 @@ bool may_vector(const json_t *o, const char *name, double out[3], bool *given, s
 bool may_name(const json_t *o, const char *name, const struct name *names, int *out, bool *given, struct message_error *error);
 /* A text of 1 to size - 1 printable ASCII characters. */
 bool may_text(const json_t *o, const char *name, char *out, size_t size, bool *given, struct message_error *error);
-/* People's own words: any characters but control ones, less than size bytes; needed: one that is not a blank at least. */
+/* Characters that control what stands where on a line, or what is shown at all: controls, and overrides of the direction of writing. */
+bool has_controls(const char *text);
+/* People's own words: any characters but those, less than size bytes; needed: one that is not a blank at least. */
 bool need_words(const json_t *o, const char *name, bool needed, char *out, size_t size, struct message_error *error);
 /* What a client wrote, cut and with control characters replaced: fit for a log line or an answer. */
 const char *quoted(const char *text, char out[48]);

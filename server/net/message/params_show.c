@@ -86,11 +86,13 @@ static bool take_name(const json_t *value, enum baseline_wish wish, struct param
 {
     const char *name = json_string_value(value);
     out->baseline = wish;
-    if (name && name[0] && strlen(name) < sizeof(out->baseline_name) && !(wish == BASELINE_SET && !strcmp(name, NOW))) {
+    if (name && name[0] && strlen(name) < sizeof(out->baseline_name) && !has_controls(name) &&
+        !(wish == BASELINE_SET && !strcmp(name, NOW))) {
         strcpy(out->baseline_name, name);
         return true;
     }
-    message_fail(error, "bad_field", "baseline: a name of 1 to %zu bytes, other than 'now', expected", sizeof(out->baseline_name) - 1);
+    message_fail(error, "bad_field", "baseline: a name of 1 to %zu bytes, without control characters, other than 'now', expected",
+                 sizeof(out->baseline_name) - 1);
     return false;
 }
 
