@@ -152,18 +152,17 @@ static void place_parallel(struct camera *camera, const struct basis *basis, con
     }
 }
 
-static void place_eye(struct camera *camera, const struct basis *basis, const double min_m[3], const double max_m[3],
+static void place_eye(struct camera *camera, const struct basis *basis, const double (*points_m)[3], size_t count,
                       const double center_m[3], double aspect, const struct camera_window *window)
 {
     double t_up = tan(camera->fov_deg * M_PI / 360), nearest_m = INFINITY;
     struct side right, up;
     side_init(&right, window->left, window->right, t_up * aspect);
     side_init(&up, window->bottom, window->top, t_up);
-    for (int corner = 0; corner < 8; corner++) {
+    for (size_t n = 0; n < count; n++) {
         double p[3];
-        corner_of(min_m, max_m, corner, p);
         for (int i = 0; i < 3; i++)
-            p[i] -= center_m[i];
+            p[i] = points_m[n][i] - center_m[i];
         double z = dot(p, basis->forward);
         nearest_m = fmin(nearest_m, z);
         side_add(&right, dot(p, basis->right), z);
@@ -177,23 +176,52 @@ static void place_eye(struct camera *camera, const struct basis *basis, const do
     }
 }
 
+static const struct camera_window whole = { -1, 1, -1, 1 };
+
+static const struct camera_window *window_of(const struct camera_window *window)
+{
+    return window->left < window->right && window->bottom < window->top ? window : &whole;
+}
+
 void camera_fit_along(struct camera *camera, const double forward[3], const double min_m[3], const double max_m[3], double aspect,
                       const struct camera_window *window)
 {
-    static const struct camera_window whole = { -1, 1, -1, 1 };
-    double safe_min_m[3], safe_max_m[3], center_m[3], half_m[3];
+    double safe_min_m[3], safe_max_m[3], center_m[3], half_m[3], corners_m[8][3];
     struct basis basis;
-    window = window->left < window->right && window->bottom < window->top ? window : &whole;
     basis_of(forward, camera->up, &basis);
     safe_box(min_m, max_m, safe_min_m, safe_max_m);
     for (int i = 0; i < 3; i++) {
         center_m[i] = (safe_min_m[i] + safe_max_m[i]) / 2;
         half_m[i] = (safe_max_m[i] - safe_min_m[i]) / 2;
     }
+    for (int corner = 0; corner < 8; corner++)
+        corner_of(safe_min_m, safe_max_m, corner, corners_m[corner]);
     if (camera->height_m > 0)
-        place_parallel(camera, &basis, half_m, center_m, aspect, window);
+        place_parallel(camera, &basis, half_m, center_m, aspect, window_of(window));
     else
-        place_eye(camera, &basis, safe_min_m, safe_max_m, center_m, aspect, window);
+        place_eye(camera, &basis, (const double(*)[3])corners_m, 8, center_m, aspect, window_of(window));
+}
+
+void camera_fit_points(struct camera *camera, const double forward[3], const double (*points_m)[3], size_t count, double aspect,
+                       const struct camera_window *window)
+{
+    double min_m[3], max_m[3], center_m[3], largest_m = 0;
+    struct basis basis;
+    for (int i = 0; i < 3; i++) {
+        min_m[i] = max_m[i] = points_m[0][i];
+        for (size_t n = 1; n < count; n++) {
+            min_m[i] = fmin(min_m[i], points_m[n][i]);
+            max_m[i] = fmax(max_m[i], points_m[n][i]);
+        }
+        center_m[i] = (min_m[i] + max_m[i]) / 2;
+        largest_m = fmax(largest_m, max_m[i] - min_m[i]);
+    }
+    if (camera->height_m > 0 || largest_m < LEAST_BOX_M) {
+        camera_fit_along(camera, forward, min_m, max_m, aspect, window);
+        return;
+    }
+    basis_of(forward, camera->up, &basis);
+    place_eye(camera, &basis, points_m, count, center_m, aspect, window_of(window));
 }
 
 void camera_fit_up(struct camera *camera, enum axis up, const double min_m[3], const double max_m[3], double aspect)

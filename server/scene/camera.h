@@ -25,6 +25,9 @@ struct camera_window { /* a part of the picture, each way from -1 to 1. Zero: al
    height is chosen. It fills that window. */
 void camera_fit_along(struct camera *camera, const double forward[3], const double min_m[3], const double max_m[3], double aspect,
                       const struct camera_window *window);
+/* The same for places, at least one, in perspective; else for the box around them. */
+void camera_fit_points(struct camera *camera, const double forward[3], const double (*points_m)[3], size_t count, double aspect,
+                       const struct camera_window *window);
 /* Unit vectors of the picture. */
 void camera_basis(const struct camera *camera, double right[3], double up[3], double forward[3]);
 /* From so far off, an eye of the usual angle sees as much as an orthographic picture shows. 0: perspective. */

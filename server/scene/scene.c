@@ -11,6 +11,7 @@
 #include "plant/sensors.h"
 #include "plant/transform.h"
 #include "scene/coincident.h"
+#include "scene/outline.h"
 #include "scene/manifest.h"
 
 #define SAME_PLACE_M 1e-4
@@ -220,10 +221,12 @@ struct scene *scene_create(struct log *log, const struct plant *plant, const cha
         log_err(log, "%s: every asset is missing; run plantcast-prep %s", prepared_folder, plant->path);
         good = false;
     }
-    if (good)
+    if (good) {
         coincident_find(scene);
-    else
+        outline_find(scene);
+    } else {
         scene_destroy(&scene);
+    }
     return scene;
 }
 
@@ -238,6 +241,7 @@ void scene_destroy(struct scene **scene_ptr)
         mem_free(scene->assets[i].missing);
     }
     mem_free(scene->assets);
+    mem_free(scene->outline_m);
     mem_free(scene);
     *scene_ptr = NULL;
 }
@@ -246,6 +250,13 @@ void scene_home(const struct scene *scene, double aspect, struct camera *camera)
 {
     const struct plant_view *view = &scene->plant->view;
     camera_fit_up(camera, scene->plant->up, scene->bounds_min_m, scene->bounds_max_m, aspect);
+    if (!view->set && scene->outline_count > 0) {
+        double forward[3];
+        for (int i = 0; i < 3; i++)
+            forward[i] = camera->target_m[i] - camera->eye_m[i];
+        camera_fit_points(camera, forward, (const double(*)[3])scene->outline_m, scene->outline_count, aspect,
+                          &(struct camera_window){ 0 });
+    }
     if (!view->set)
         return;
     memcpy(camera->eye_m, view->eye_m, sizeof(camera->eye_m));

@@ -33,6 +33,8 @@ struct scene {
     struct scene_asset *assets;  /* by index in plant->assets */
     size_t asset_count;
     double bounds_min_m[3], bounds_max_m[3];
+    double (*outline_m)[3];      /* outermost places of what a view of the whole has to hold: scene/outline.h */
+    size_t outline_count;        /* 0: not known */
 };
 
 /* Opens the prepared files of the plant (folder: as plant_prepared_folder). Refuses files that do not fit the plant as it is

@@ -309,6 +309,16 @@ static void home_is_the_view_of_the_plant(void **state)
     assert_non_null(scene);
     scene_home(scene, 1.5, &camera);
     assert_true(camera_valid(&camera));
+    assert_true(scene->outline_count >= 4);
+    for (int i = 0; i < 3; i++) { /* the outermost places are within the plant, and reach about as far */
+        double least = INFINITY, most = -INFINITY, slack = 0.15 * (scene->bounds_max_m[i] - scene->bounds_min_m[i]) + 1e-6;
+        for (size_t n = 0; n < scene->outline_count; n++) {
+            least = fmin(least, scene->outline_m[n][i]);
+            most = fmax(most, scene->outline_m[n][i]);
+        }
+        assert_true(least >= scene->bounds_min_m[i] - 1e-4 && most <= scene->bounds_max_m[i] + 1e-4);
+        assert_true(least <= scene->bounds_min_m[i] + slack && most >= scene->bounds_max_m[i] - slack);
+    }
     for (int i = 0; i < 3; i++) /* west, south, above */
         assert_true(i < 2 ? camera.eye_m[i] < scene->bounds_min_m[i] : camera.eye_m[i] > scene->bounds_max_m[i]);
     scene_destroy(&scene);

@@ -2,11 +2,11 @@
 // The camera's mathematics: what must stay put stays put, the horizon stays level, and what should fit fits.
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
-import { basis, fit, home, MIN_DISTANCE_M, projector, same, valid } from '../../clients/web/core/camera.js';
+import { basis, besideLegend, home, MIN_DISTANCE_M, projector, same, valid } from '../../clients/web/core/camera.js';
 import { flight, FLIGHT_MS } from '../../clients/web/core/flight.js';
 import {
-    depthAt, depthOf, distance, elevation, enterBox, face, lookAround, MAX_ELEVATION_DEG, orbit, pan, sight, toParallel, toPerspective,
-    zoom,
+    depthAt, depthOf, distance, elevation, enterBox, face, fit, lookAround, MAX_ELEVATION_DEG, orbit, pan, sight, toParallel,
+    toPerspective, zoom,
 } from '../../clients/web/core/moves.js';
 import { along, dot, length, subtract } from '../../clients/web/core/vector.js';
 
@@ -175,14 +175,37 @@ test('a point is faced from its own side, level, a little from above', () => {
     assert.ok(valid(above) && dot(subtract(above.eye, above.target), subtract(camera.eye, camera.target)) > 0, 'on top: from where one is');
 });
 
-test('home is the plant\'s own view, and the whole plant in a narrow window', () => {
-    const plant = { home: camera, bounds: { min: [-20, -15, 0], max: [22, 16, 14] } };
-    assert.ok(same(home(plant, 1.6), camera));
-    const narrow = home(plant, 0.46);
-    const project = projector(narrow, 390, 844);
-    for (const x of [-20, 22]) {
-        for (const y of [-15, 16])
-            assert.ok(project([x, y, 0])[0] > 0 && project([x, y, 0])[0] < 390);
+// How much of the window's limiting side places take, and the rims there.
+function filled(view, points, [width, height], { left = -1, right = 1, bottom = -1, top = 1 }) {
+    const project = projector(view, width, height), at = points.map((point) => project(point));
+    const across = at.map(([x]) => (2 * x) / width - 1), up = at.map(([, y]) => 1 - (2 * y) / height);
+    return [[across, left, right], [up, bottom, top]].map(([list, low, high]) => {
+        const [a, b] = [Math.min(...list), Math.max(...list)];
+        return { fills: (b - a) / (high - low), rims: [(a - low) / (high - low), (high - b) / (high - low)] };
+    }).sort((a, b) => b.fills - a.fills)[0];
+}
+
+test('the first view: what there is fills what the legend leaves free, on any screen', () => {
+    for (let round = 0; round < 200; round++) {
+        const size = [0, 1, 2].map(() => 2 + 60 * Math.random()), outline = Array.from({ length: 40 }, () =>
+            size.map((m) => 5e5 + m * Math.random()));
+        const plant = { home: { eye: [5e5 - 30, 5e5 - 40, 5e5 + 25], target: [5e5, 5e5, 5e5], up: [0, 0, 1], fov: 45 }, outline };
+        const screen = [300 + 1700 * Math.random(), 200 + 900 * Math.random()], lies = screen[0] < 720;
+        const window = besideLegend(...screen, lies), { fills, rims } = filled(home(plant, ...screen, window), outline, screen, window);
+        assert.ok(fills >= 0.7 && fills <= 1 && rims.every((rim) => rim >= 0 && rim <= 0.1), `${screen}: ${fills}, ${rims}`);
+    }
+});
+
+test('a view of the plant file stays as it is where all it was made for is seen, and steps back where a legend is in the way', () => {
+    const outline = [[-10, -10, 0], [10, -10, 0], [-10, 10, 0], [10, 10, 6], [0, 0, 9], [400, 0, 0]]; // the last one is not seen in it
+    const given = { eye: [-20, -30, 15], target: [0, 0, 2], up: [0, 0, 1], fov: 50, given: true }, { given: _, ...view } = given;
+    const plant = { home: given, outline };
+    assert.ok(same(home(plant, 1600, 900), view));
+    const wide = home(plant, 1600, 900, { right: 0.1 }), narrow = home(plant, 400, 800, besideLegend(400, 800, true));
+    for (const [camera_, screen, window] of [[wide, [1600, 900], { right: 0.1 }], [narrow, [400, 800], besideLegend(400, 800, true)]]) {
+        const { fills, rims } = filled(camera_, outline.slice(0, 5), screen, window);
+        assert.ok(fills > 0.7 && rims.every((rim) => rim >= 0), `${screen}: ${fills}, ${rims}`);
+        assert.ok(dot(subtract(camera_.target, camera_.eye), subtract(view.target, view.eye)) > 0);
     }
 });
 

@@ -62,7 +62,7 @@ test('none over another, none over a mark, all inside; important ones are not cr
 // From a phone's picture to a wall's, from a few rings to many, with a legend in the way.
 test('every ring is in a label or a call-out, within the picture and over no legend', () => {
     for (let round = 0; round < 300; round++) {
-        const [right, bottom] = [random(150, 1300), random(110, 700)], legend = { left: right - 90, right, top: 0, bottom: bottom * 0.8 };
+        const [right, bottom] = [random(170, 1300), random(110, 700)], legend = { left: right - 90, right, top: 0, bottom: bottom * 0.8 };
         const near = random(0, 1) < 0.5 ? 40 : 2000, centre = [random(0, right), random(0, bottom)];
         const clamp = (x, most) => Math.max(0, Math.min(most, x));
         const items = Array.from({ length: 1 + Math.floor(random(0, 60)) }, (_, id) => {

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Hands to camera: pointers, wheel and keys over the viewport, and flights between views.
 // Loaded when hands first come near (hands.js).
-import { fit, home, MIN_DISTANCE_M, same } from '../core/camera.js';
+import { MIN_DISTANCE_M, same } from '../core/camera.js';
 import { flight, FLIGHT_MS } from '../core/flight.js';
 import { Gestures, wheelZoom } from '../core/gestures.js';
 import { HeldKeys, keyMeaning } from '../core/keys.js';
-import { depthAt, depthOf, elevation, lookAround, orbit, pan, sight, zoom } from '../core/moves.js';
+import { depthAt, depthOf, elevation, fit, lookAround, orbit, pan, sight, zoom } from '../core/moves.js';
 import { halfAt } from '../core/nearest.js';
 import { askPick } from '../core/requests.js';
-import { along } from '../core/vector.js';
+import { along, length, subtract } from '../core/vector.js';
 import { Approach } from './approach.js';
 import { clock } from './clock.js';
 import { proveCodecs } from './first.js';
@@ -20,6 +20,9 @@ const ANCHOR_MS = 600, ANCHOR_PX = 10; // a wheel that goes on, about the same p
 const LEAST_ARRIVAL_DEG = 15;   // nobody wants to arrive below the floor
 const MOST_BACK = 30;           // flights that can be taken back
 const WRITTEN = 'input:not([type="radio"], [type="checkbox"], [type="range"]), select, textarea'; // keys write there
+
+// The same but for rounding.
+const isNear = (a, b) => ['eye', 'target'].every((name) => length(subtract(a[name], b[name])) < 0.02 * length(subtract(b.eye, b.target)));
 
 export class Pilot {
     // told: who is told what hands say that moves no camera: { click(x, y, kind), point({ x, y } or null), command(name), group(index) }.
@@ -229,16 +232,24 @@ export class Pilot {
         this.steer(last.camera);
     }
 
+    get homeNow() {
+        const { width } = halfAt(this.session.params, this.viewport.width, 0);
+        return this.session.homeIn(width, this.viewport.height);
+    }
+
     // Who looks at the whole plant goes on doing so in a picture of another shape.
     stayHome() {
-        const { session, aspect, shape = aspect } = this, { plant } = session.model ?? {};
-        this.shape = aspect;
-        if (plant && session.leader === null && same(session.camera, home(plant, shape)))
-            session.setCamera(home(plant, aspect));
+        const { session } = this;
+        if (!session.model)
+            return;
+        const now = this.homeNow, was = this.lastHome ?? now;
+        this.lastHome = now;
+        if (session.leader === null && isNear(session.camera, was) && !same(now, was))
+            session.setCamera(now);
     }
 
     flyHome() {
-        this.flyTo(home(this.session.model.plant, this.aspect));
+        this.flyTo(this.homeNow);
     }
 
     flyToTag(tag, asset) {

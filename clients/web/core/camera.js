@@ -39,31 +39,6 @@ export const isParallel = (camera) => camera.height_m !== undefined;
 export const heightAt = (camera, depth) => camera.height_m ?? 2 * depth * Math.tan((camera.fov * RADIANS) / 2);
 export const metresPerPixel = (camera, heightPx, depth) => heightAt(camera, depth) / heightPx;
 
-const corners = (box) => [0, 1, 2, 3, 4, 5, 6, 7].map((n) => [0, 1, 2].map((i) => (n & (1 << i) ? box.max[i] : box.min[i])));
-
-function fitParallel(camera, box, aspect, margin) {
-    const { forward, right, up } = basis(camera);
-    const half = scale(subtract(box.max, box.min), 0.5), centre = middle(box.min, box.max);
-    const reach = (axis) => half.reduce((sum, m, i) => sum + Math.abs(m * axis[i]), 0);
-    const height_m = Math.max(MIN_DISTANCE_M, 2 * margin * Math.max(reach(up), reach(right) / aspect));
-    return { ...camera, height_m, eye: along(centre, forward, -(2 * reach(forward) + height_m)), target: centre };
-}
-
-// Looks the same way at the middle of a box, from just so far that all of it is inside the picture with a margin around.
-export function fit(camera, box, aspect, margin = 1.08) {
-    const { forward, right, up } = basis(camera);
-    const centre = middle(box.min, box.max);
-    if (isParallel(camera))
-        return fitParallel(camera, box, aspect, margin);
-    const tall = Math.tan((camera.fov * RADIANS) / 2) / margin, wide = tall * aspect;
-    let far = MIN_DISTANCE_M;
-    for (const corner of corners(box)) {
-        const c = subtract(corner, centre);
-        far = Math.max(far, Math.abs(dot(c, right)) / wide - dot(c, forward), Math.abs(dot(c, up)) / tall - dot(c, forward));
-    }
-    return { ...camera, eye: along(centre, forward, -Math.min(far, MAX_DISTANCE_M)), target: centre };
-}
-
 // As plantcast.v1 says it.
 export function cameraMessage({ eye, target, up, fov, height_m }) {
     return { eye, target, up, ...(height_m === undefined ? { fov } : { projection: 'orthographic', height_m }) };
@@ -86,8 +61,37 @@ export function projector(camera, widthPx, heightPx) {
     };
 }
 
-// The plant's own first view; where the picture is too narrow to hold what it was made for, the whole plant from there.
-export function home(plant, aspect) {
-    const view = { ...plant.home };
-    return aspect >= 1.3 ? view : fit(view, plant.bounds, aspect);
+// What a legend leaves free, each way from -1 to 1; title: its letters. In a low picture its keys stand beside its bar.
+export const besideLegend = (width, height, lies, title = 14) => (lies ? { top: 1 - 2 * Math.min(0.4, 130 / height) }
+    : { right: 1 - 2 * Math.min(0.4, (Math.max(128, 7.6 * title + 24) + (height <= 320 ? 110 : 28)) / width) });
+
+const FIT = 1.08; // leaves a rim
+
+// Looks the same way, in perspective, from just so far that all points are within the window.
+export function fitPoints(camera, points, aspect, { left = -1, right = 1, bottom = -1, top = 1 }) {
+    const axes = basis(camera), tall = Math.tan((camera.fov * RADIANS) / 2);
+    const centre = middle(...[Math.min, Math.max].map((f) => [0, 1, 2].map((i) => f(...points.map((p) => p[i])))));
+    const all = points.map((p) => subtract(p, centre)).map((p) => [dot(p, axes.right), dot(p, axes.up), dot(p, axes.forward)]);
+    const side = (axis, low, high, slope) => {
+        const half = (high - low) / 2 / FIT, from = ((low + high) / 2 - half) * slope, to = ((low + high) / 2 + half) * slope;
+        const least = Math.max(...all.map((p) => p[2] * from - p[axis])), most = Math.max(...all.map((p) => p[axis] - p[2] * to));
+        return { back: (least + most) / (to - from), shift: (back) => (most - least - back * (to + from)) / 2 };
+    };
+    const across = side(0, left, right, tall * aspect), up = side(1, bottom, top, tall);
+    const back = Math.max(across.back, up.back, MIN_DISTANCE_M - 1.001 * Math.min(...all.map((p) => p[2])));
+    const target = along(along(centre, axes.right, across.shift(back)), axes.up, up.shift(back));
+    return { ...camera, eye: along(target, axes.forward, -back), target };
+}
+
+// The whole plant. A view of the plant file stays as it is where all that is seen in it at 16:9 is seen here, else it steps back.
+export function home({ home: { given, ...view }, outline }, width, height, window = {}) {
+    const aspect = width / height, sees = (shape, { right = 1, top = 1 }) => {
+        const project = projector(view, 2 * shape, 2);
+        return (point) => {
+            const [x, y] = project(point) ?? [-1];
+            return x >= 0 && x / shape - 1 <= right && 1 - y <= top && y <= 2;
+        };
+    };
+    const held = given ? outline?.filter(sees(16 / 9, {})) : outline;
+    return !outline?.length || (given && held.every(sees(aspect, window))) ? view : fitPoints(view, held, aspect, window);
 }

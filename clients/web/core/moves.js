@@ -12,6 +12,31 @@ function turn(v, axis, angle) {
     return add(add(scale(v, c), scale(cross(axis, v), s)), scale(axis, dot(axis, v) * (1 - c)));
 }
 
+const corners = (box) => [0, 1, 2, 3, 4, 5, 6, 7].map((n) => [0, 1, 2].map((i) => (n & (1 << i) ? box.max[i] : box.min[i])));
+
+function fitParallel(camera, box, aspect, margin) {
+    const { forward, right, up } = basis(camera);
+    const half = scale(subtract(box.max, box.min), 0.5), centre = middle(box.min, box.max);
+    const reach = (axis) => half.reduce((sum, m, i) => sum + Math.abs(m * axis[i]), 0);
+    const height_m = Math.max(MIN_DISTANCE_M, 2 * margin * Math.max(reach(up), reach(right) / aspect));
+    return { ...camera, height_m, eye: along(centre, forward, -(2 * reach(forward) + height_m)), target: centre };
+}
+
+// Looks the same way at the middle of a box, from just so far that all of it is inside the picture with a margin around.
+export function fit(camera, box, aspect, margin = 1.08) {
+    const { forward, right, up } = basis(camera);
+    const centre = middle(box.min, box.max);
+    if (isParallel(camera))
+        return fitParallel(camera, box, aspect, margin);
+    const tall = Math.tan((camera.fov * RADIANS) / 2) / margin, wide = tall * aspect;
+    let far = MIN_DISTANCE_M;
+    for (const corner of corners(box)) {
+        const c = subtract(corner, centre);
+        far = Math.max(far, Math.abs(dot(c, right)) / wide - dot(c, forward), Math.abs(dot(c, up)) / tall - dot(c, forward));
+    }
+    return { ...camera, eye: along(centre, forward, -Math.min(far, MAX_DISTANCE_M)), target: centre };
+}
+
 export const distance = (camera) => length(subtract(camera.target, camera.eye));
 
 // How far above the target the eye stands, degrees.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // One viewer's conversation with the server: it owns the camera and the parameters, and says both again after a reconnect.
-import { cameraMessage, cameraOfMessage, home, same, valid } from './camera.js';
+import { besideLegend, cameraMessage, cameraOfMessage, home, same, valid } from './camera.js';
+import { quantityText } from './format.js';
 import { LatencyMeter, RateMeter } from './meters.js';
 import { Model } from './model.js';
 import { decodeFrame, decodeMessage, isGivenUp, WireError } from './wire.js';
@@ -349,6 +350,12 @@ export class Session {
 
     // --- what the screen asks
 
+    // In CSS pixels. legendLies(): null: no legend lies in the picture.
+    homeIn(width, height) {
+        const { plant, groups: [group] } = this.model, lies = this.legendLies?.() ?? null, title = `${quantityText(group)} ${group.unit}`;
+        return home(plant, width, height, lies === null ? {} : besideLegend(width, height, lies, title.length));
+    }
+
     get group() {
         return this.model?.group(this.params.group) ?? null;
     }
@@ -392,7 +399,8 @@ const HANDLERS = {
         this.confirmed = this.params = pick(message.view, SAID);
         if (!this.helloParts.includes('camera') || (before && before.identity !== this.model.identity))
             this.camera = null;
-        this.camera ??= home(this.model.plant, this.size.width / this.size.height);
+        const { width, height, pixel_ratio: ratio = 1 } = this.size;
+        this.camera ??= this.homeIn(width / ratio, height / ratio);
         this.cameraNews = !same(this.camera, this.greetedCamera ?? this.model.plant.home);
         this.catchUp();
         if (this.leader !== null)

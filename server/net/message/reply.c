@@ -289,6 +289,12 @@ static json_t *plant_object(const struct session_world *world, const struct came
     json_object_set_new(object, "home",
                         json_pack("{s:o,s:o,s:o,s:o}", "eye", vector(home->eye_m), "target", vector(home->target_m), "up", vector(home->up),
                                   "fov", number(home->fov_deg)));
+    if (world->plant->view.set)
+        json_object_set_new(json_object_get(object, "home"), "given", json_true());
+    json_t *outline = json_array();
+    for (size_t i = 0; i < world->scene->outline_count; i++)
+        json_array_append_new(outline, vector(world->scene->outline_m[i]));
+    json_object_set_new(object, "outline", outline);
     return object;
 }
 

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The first view of a plant whose file has none: what there is fills the picture, and none of it is under a legend.
+import assert from 'node:assert/strict';
+import { readFileSync, writeFileSync } from 'node:fs';
+import { after, before, test } from 'node:test';
+import { arrive, openPage, PHONE, shoot, TABLET, waitForPicture } from './support/browser.mjs';
+import { startAlarmed } from './support/panels.mjs';
+import { missing } from './support/tiny_plant.mjs';
+
+const absent = missing();
+const options = { skip: absent.length > 0 ? `not built: ${absent.join(', ')}` : false, timeout: 200000 };
+const SCREENS = { desk: { viewport: { width: 1280, height: 800 } }, 'large desk': { viewport: { width: 1920, height: 1080 } },
+    tablet: TABLET,
+    'tablet upright': { ...TABLET, viewport: { width: 768, height: 1024 } }, phone: PHONE,
+    'phone across': { ...PHONE, viewport: { width: 844, height: 390 } } };
+let plant, url;
+
+before(async () => {
+    const more = [-3, 0, 3, 6].map((x) => `  - { id: S${x}, model: box.gltf, placement: { translate: [${x}, 9, 0] } }\n`).join('');
+    if (!options.skip)
+        [plant, url] = await startAlarmed((file) =>
+            writeFileSync(file, readFileSync(file, 'utf8').replace('groups:', `${more}groups:`)));
+});
+after(() => plant?.destroy());
+
+for (const [name, screen] of Object.entries(SCREENS))
+    test(name, options, async (t) => {
+        const { page, close, errors } = await openPage(`${url}?lang=en`, screen);
+        try {
+            await waitForPicture(page);
+            await page.locator('.legend:visible').first().waitFor();
+            await arrive(page);
+            const seen = await page.evaluate(async () => {
+                const { projector } = await import('/core/camera.js');
+                const { session, viewport } = globalThis.plantcast;
+                const project = projector(session.picture.camera, viewport.width, viewport.height);
+                const origin = viewport.element.getBoundingClientRect();
+                const corners = session.model.assets.flatMap(({ bounds: { min, max } }) => [0, 1, 2, 3, 4, 5, 6, 7].map((n) =>
+                    project([0, 1, 2].map((i) => (n & (1 << i) ? max[i] : min[i])))));
+                const legend = document.getElementById('legend').getBoundingClientRect(), lies = legend.width > 0.7 * origin.width;
+                return { points: corners, width: viewport.width, height: viewport.height, shown: legend.width > 0,
+                    right: lies ? viewport.width : legend.left - origin.left, top: lies ? legend.bottom - origin.top : 0 };
+            });
+            const range = (list) => [Math.min(...list), Math.max(...list)];
+            const [left, right] = range(seen.points.map(([x]) => x)), [top, bottom] = range(seen.points.map(([, y]) => y));
+            const freeRight = seen.shown ? seen.right : seen.width, freeTop = seen.shown ? seen.top : 0;
+            const across = (right - left) / freeRight, up = (bottom - top) / (seen.height - freeTop);
+            const rims = across > up ? [left / freeRight, 1 - right / freeRight]
+                : [(top - freeTop) / (seen.height - freeTop), (seen.height - bottom) / (seen.height - freeTop)];
+            const part = (x) => `${(100 * x).toFixed(1)} %`;
+            t.diagnostic(`fills ${part(Math.max(across, up))}, rims ${rims.map(part).join(' and ')}`);
+            await shoot(page, `first-${name.replace(/ /g, '-')}`);
+            assert.ok(left >= 0 && top >= freeTop && right <= freeRight && bottom <= seen.height, 'nothing under the legend, all in sight');
+            assert.ok(Math.max(across, up) >= 0.7 && rims.every((rim) => rim <= 0.1));
+            assert.deepEqual(errors, []);
+        } finally {
+            await close();
+        }
+    });
