@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Somebody who tries everything, by dice: every look, light, backdrop, group, show, split, cut, ghost, size, instant and snapshot that the
 // protocol has. Each step waits for its answer, so that what a person does in an hour takes as long as the machine needs for it.
-import { get, PlainClient } from './plain_client.mjs';
+import { http, PlainClient } from './plain_client.mjs';
 
 const SIZES = [[640, 360], [1280, 720], [1366, 768], [1920, 1080], [390, 844], [1024, 1366]];
 const PATIENCE_MS = 120000;
+const get = (port, path) => http(port, `GET ${path} HTTP/1.1\r\nHost: 127.0.0.1:${port}\r\n\r\n`, { timeoutMs: PATIENCE_MS });
 
 // 0 <= x < 1, the same for the same seed (mulberry32).
 export function dice(seed) {

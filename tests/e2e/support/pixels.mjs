@@ -78,3 +78,28 @@ export function deltaE(a, b) {
     const mean = all.reduce((sum, value) => sum + value, 0) / all.length;
     return { mean, p99: all.sort()[Math.floor(all.length * 0.99)] };
 }
+
+// Structural similarity of two pictures of one size (Wang, Bovik, Sheikh and Simoncelli, 2004), by luma, in windows of 8 x 8 pixels every 4.
+export function similarity(a, b) {
+    const { width, height } = a, SIDE = 8, STEP = 4, C1 = (0.01 * 255) ** 2, C2 = (0.03 * 255) ** 2;
+    const luma = ({ rgba }) => Float64Array.from({ length: width * height }, (_, i) =>
+        0.299 * rgba[4 * i] + 0.587 * rgba[4 * i + 1] + 0.114 * rgba[4 * i + 2]);
+    const [p, q] = [luma(a), luma(b)], n = SIDE * SIDE;
+    let sum = 0, windows = 0;
+    for (let top = 0; top + SIDE <= height; top += STEP)
+        for (let left = 0; left + SIDE <= width; left += STEP, windows++) {
+            let sp = 0, sq = 0, spp = 0, sqq = 0, spq = 0;
+            for (let y = top; y < top + SIDE; y++)
+                for (let x = left, i = y * width + left; x < left + SIDE; x++, i++) {
+                    sp += p[i];
+                    sq += q[i];
+                    spp += p[i] * p[i];
+                    sqq += q[i] * q[i];
+                    spq += p[i] * q[i];
+                }
+            const mp = sp / n, mq = sq / n;
+            sum += ((2 * mp * mq + C1) * (2 * (spq / n - mp * mq) + C2)) /
+                ((mp * mp + mq * mq + C1) * (spp / n - mp * mp + sqq / n - mq * mq + C2));
+        }
+    return sum / windows;
+}

@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The first move on a fresh page, beside much else that the machine does: the picture is as good as any other.
+import assert from 'node:assert/strict';
+import { after, before, test } from 'node:test';
+import { grab, openPage, settle, shoot, waitForPicture } from './support/browser.mjs';
+import { similarity } from './support/pixels.mjs';
+import { missing, startPlant } from './support/plant.mjs';
+
+const why = missing();
+const options = { skip: why ?? false, timeout: 200000 };
+const SCREEN = { viewport: { width: 1280, height: 720 } };
+const LEAST = 0.95, WITHIN_MS = 1000, BUSY_MS = 350, QUIET_MS = 1500;
+const SPIN_MS = 80, LEAST_SHARE = 0.85; // of a processor
+let plant, browser, page;
+
+function share() {
+    const began = performance.now(), used = process.cpuUsage();
+    while (performance.now() - began < SPIN_MS);
+    const { user, system } = process.cpuUsage(used);
+    return (user + system) / 1000 / (performance.now() - began);
+}
+
+// The page does nothing else for so long: what a page that loads, and a machine that is busy, do to it.
+const BUSY = `globalThis.busy = (ms) => { for (const end = performance.now() + ms; performance.now() < end;); };
+    addEventListener('load', () => [0, 1000, 2000].forEach((at) => setTimeout(globalThis.busy, at, 700)));`;
+
+before(async () => {
+    if (why)
+        return;
+    plant = await startPlant();
+    const { tags } = await (await fetch(`${plant.url}api/v1/tags`)).json();
+    await plant.freeze(tags.map(({ name }) => name));
+    browser = await openPage(plant.url, SCREEN, BUSY);
+    page = browser.page;
+});
+after(async () => {
+    await browser?.close();
+    await plant?.stop();
+});
+
+const shown = () => page.evaluate(() => {
+    const { seq, camera, codec, fullWidth, fullHeight, still } = globalThis.plantcast.session.picture;
+    return { seq, camera, codec, fullWidth, fullHeight, still };
+});
+
+const isSettled = (p) => p.evaluate(() => {
+    const { picture, cameraSeq, cameraNews } = globalThis.plantcast.session;
+    return picture.still && picture.cameraSeq === cameraSeq && !cameraNews;
+});
+
+test('it looks as the refined picture does, within a second', options, async (t) => {
+    await waitForPicture(page);
+    await settle(page, QUIET_MS);
+    const box = await page.locator('#viewport').boundingBox(), [x, y] = [box.x + box.width / 2, box.y + box.height / 2];
+    const beforeMove = share();
+    await page.mouse.move(x, y);
+    await page.mouse.down();
+    for (let n = 1; n <= 12; n++) {
+        await page.mouse.move(x + 5 * n, y + n);
+        if (n % 4 === 0)
+            await page.evaluate((ms) => globalThis.busy(ms), BUSY_MS);
+        await page.waitForTimeout(16);
+    }
+    await page.mouse.up();
+    const ended = performance.now(), seen = [];
+    do { // each picture, and what is known of it
+        const picture = await shown(), at = performance.now() - ended, image = await grab(page);
+        if (picture.seq === (await shown()).seq && picture.seq !== seen.at(-1)?.seq)
+            seen.push({ ...picture, at, image });
+        if (seen.length === 1)
+            await shoot(page, 'first-move');
+    } while (!seen.at(-1)?.still || !await isSettled(page));
+    const { image } = seen.at(-1), alike = seen.map((one) => similarity(one.image, image));
+    const said = seen.map(({ at, codec, fullWidth, fullHeight, still }, n) =>
+        `${at.toFixed(0)} ms: ${codec} of ${fullWidth}x${fullHeight}${still ? ', refined' : ''}, SSIM ${alike[n].toFixed(3)}`);
+    t.diagnostic(said.join('; '));
+    const good = seen[alike.findIndex((ssim) => ssim >= LEAST)], first = alike[seen.findIndex(({ still }) => still)];
+    assert.ok(first >= LEAST, `refined at once, not in two stages: ${said.join('; ')}`);
+    const had = [beforeMove, share()];
+    if (Math.min(...had) >= LEAST_SHARE) {
+        assert.ok(seen.every((one) => one.fullWidth === image.width), `of the viewport's size: ${said.join('; ')}`);
+        assert.ok(good.at <= WITHIN_MS, said.join('; '));
+    } else {
+        t.diagnostic(`others take too much of the machine for a time to mean anything: ${had.map((part) => part.toFixed(2)).join(', ')}`);
+    }
+    assert.deepEqual(browser.errors, []);
+});
