@@ -11,17 +11,25 @@ static const int64_t WAITED_NS = 1 * NS_PER_MS;     /* decoding that began so so
 static const size_t SMALL_BYTES = 4096;             /* pictures in which little changed say at most that there is more bandwidth */
 static const double SHARE = 0.25;                   /* of a new sample in what is smoothed */
 
-/* The first few say what is known; after them it is smoothed. */
-static void note(double *value, struct channel_last *last, double sample)
+static void smooth(double *value, double sample)
+{
+    *value = *value > 0 ? *value + SHARE * (sample - *value) : sample;
+}
+
+/* The least of the last `most`. The first few say what is known; after them it is smoothed. */
+static void note(double *value, struct channel_last *last, int most, double sample)
 {
     last->at[last->count % CHANNEL_LAST] = sample;
-    int known = ++last->count < CHANNEL_LAST ? last->count : CHANNEL_LAST;
-    double least = last->at[0];
-    for (int i = 1; i < known; i++)
-        least = last->at[i] < least ? last->at[i] : least;
-    *value = last->count > CHANNEL_LAST ? *value + SHARE * (least - *value) : least;
-    if (last->count >= INT32_MAX - CHANNEL_LAST)
-        last->count = CHANNEL_LAST;
+    last->count = last->count < 2 * CHANNEL_LAST ? last->count + 1 : CHANNEL_LAST + 1; /* it goes round */
+    double least = sample;
+    for (int back = 1; back <= most && back <= last->count; back++) {
+        double one = last->at[(last->count - back) % CHANNEL_LAST];
+        least = one < least ? one : least;
+    }
+    if (last->count > most)
+        smooth(value, least);
+    else
+        *value = least;
 }
 
 static int64_t more(int64_t a, int64_t b)
@@ -65,21 +73,23 @@ void channel_on_ack(struct channel *channel, const struct channel_ack *ack)
     int64_t transfer_ns = arrived_ns - more(ack->sent_ns + rtt_ns, channel->arrived_ns);
     channel->decoding = decode_ns > WAITED_NS && arrived_ns - channel->acked_ns < WAITED_NS;
     if (ack->decode_ns >= 0)
-        note(&channel->decode_ns, &channel->last_decode_ns, (double)decode_ns);
+        note(&channel->decode_ns, &channel->last_decode_ns, CHANNEL_LAST, (double)decode_ns);
     channel->acked_ns = ack->now_ns;
     channel->arrived_ns = arrived_ns;
     if (channel->decoding)
         return;
-    note(&channel->lag_ns, &channel->last_lag_ns, (double)more(arrived_ns - ack->sent_ns - rtt_ns, 1));
+    note(&channel->lag_ns, &channel->last_lag_ns, 2, (double)more(arrived_ns - ack->sent_ns - rtt_ns, 1));
     double ns_per_byte = (double)more(transfer_ns, SHORTEST_NS) / (double)(ack->bytes + 1);
-    if (ack->bytes >= SMALL_BYTES || ns_per_byte < channel->ns_per_byte)
-        note(&channel->ns_per_byte, &channel->last_ns_per_byte, ns_per_byte);
+    if (ack->bytes >= SMALL_BYTES)
+        note(&channel->ns_per_byte, &channel->last_ns_per_byte, 2, ns_per_byte);
+    else if (ns_per_byte < channel->ns_per_byte)
+        smooth(&channel->ns_per_byte, ns_per_byte);
 }
 
 void channel_on_bytes(struct channel *channel, size_t bytes, int64_t took_ns)
 {
     int64_t transfer_ns = more(took_ns - channel_rtt_ns(channel), SHORTEST_NS);
-    note(&channel->ns_per_byte, &channel->last_ns_per_byte, (double)transfer_ns / (double)(bytes + 1));
+    channel->ns_per_byte = (double)transfer_ns / (double)(bytes + 1); /* a guess, while the client begins: pictures tell */
 }
 
 int64_t channel_transfer_ns(const struct channel *channel, double bytes)

@@ -9,7 +9,7 @@
 #include <stdint.h>
 
 /* A client that is busy for a moment (a page that loads, a decoder that begins) looks like a slow network once or twice, a slow network
-   time and again: what counts is the least of the last few. */
+   time and again: what counts is the least of the last two, of decoding of the last three. */
 enum { CHANNEL_LAST = 3 };
 struct channel_last { /* zero-initialise */
     double at[CHANNEL_LAST];

@@ -4,7 +4,7 @@
 import { http, PlainClient } from './plain_client.mjs';
 
 const SIZES = [[640, 360], [1280, 720], [1366, 768], [1920, 1080], [390, 844], [1024, 1366]];
-const PATIENCE_MS = 120000;
+const PATIENCE_MS = 120000, QUIET_MS = 10000;
 const get = (port, path) => http(port, `GET ${path} HTTP/1.1\r\nHost: 127.0.0.1:${port}\r\n\r\n`, { timeoutMs: PATIENCE_MS });
 
 // 0 <= x < 1, the same for the same seed (mulberry32).
@@ -40,7 +40,9 @@ export class Curious {
         const { seq, playing } = this;
         const is = (f) => (playing || (f.flags & 2) !== 0) && Math.max(f.camera_seq, f.params_seq) >= seq;
         const wrong = (t) => t.type === 'error';
-        await this.client.until(`a picture of ${seq}`, (c) => c.closed !== null || c.texts.some(wrong) || c.frames.some(is), PATIENCE_MS);
+        const said = performance.now(), quiet = (c) => performance.now() - (c.frames.at(-1)?.at ?? said) > QUIET_MS; // nothing to refine
+        await this.client.until(`a picture of ${seq}`, (c) => c.closed !== null || c.texts.some(wrong) || c.frames.some(is) || quiet(c),
+            PATIENCE_MS);
         if (this.client.closed)
             throw new Error(`closed: ${JSON.stringify(this.client.closed)}`);
         this.refused.push(...this.client.texts.filter(wrong).map((t) => t.text));
