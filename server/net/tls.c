@@ -66,12 +66,12 @@ static void warn(const struct tls *tls)
 static bool check(struct tls *tls)
 {
     char text[200];
-    const char *at;
+    const char *at = "a context";
     SSL_CTX *context = SSL_CTX_new(TLS_server_method());
     mark_read(&tls->cert_watch, tls->cert_path);
     mark_read(&tls->key_watch, tls->key_path);
     if (!context || !load(context, tls, &at)) {
-        log_err(tls->log, "TLS: %s: %s", context ? at : "a context", why(text));
+        log_err(tls->log, "TLS: %s: %s", at, why(text));
         SSL_CTX_free(context);
         return false;
     }
