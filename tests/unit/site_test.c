@@ -78,6 +78,23 @@ static void honest_paths_are_served(void **state)
     expect(*state, "/core/wire.js", "export {};", "text/javascript; charset=utf-8");
 }
 
+/* Lines keep their numbers; what only looks like a comment, and what is not the page's own, stays. */
+static void scripts_come_without_comments(void **state)
+{
+    struct fixture *f = *state;
+    static const char source[] = "// licence\n// what it is\nconst a = 1; // why\n    // more\n\nconst b = 'x//y';\n// end";
+    static const char served[] = "// licence\n\nconst a = 1; // why\n\n\nconst b = 'x//y';\n";
+    char *vendor = mem_printf("%s/vendor", f->web);
+    assert_int_equal(mkdir(vendor, 0700), 0);
+    write_file(f->web, "a.js", source);
+    write_file(f->web, "a.css", source);
+    write_file(vendor, "a.js", source);
+    expect(f, "/a.js", served, "text/javascript; charset=utf-8");
+    expect(f, "/a.css", source, "text/css; charset=utf-8");
+    expect(f, "/vendor/a.js", source, "text/javascript; charset=utf-8");
+    mem_free(vendor);
+}
+
 static void nothing_else_is(void **state)
 {
     struct fixture *f = *state;
@@ -127,6 +144,7 @@ int main(void)
 #define TEST(name) cmocka_unit_test_setup_teardown(name, set_up, tear_down)
     const struct CMUnitTest tests[] = {
         TEST(honest_paths_are_served),
+        TEST(scripts_come_without_comments),
         TEST(nothing_else_is),
         TEST(etags_change_with_the_file),
     };

@@ -61,6 +61,31 @@ static bool inside(const char *folder, const char *path)
     return good;
 }
 
+static bool is_own_script(const char *path)
+{
+    const char *dot = strrchr(path, '.');
+    return dot && !strcmp(dot, ".js") && strncmp(path, "/vendor/", 8) != 0;
+}
+
+/* Empties lines that only comment, a tenth of what a page loads, but for the first, which is the licence. Line numbers stay those of
+   the source. Returns what is left of count. */
+static size_t drop_comments(char *bytes, size_t count)
+{
+    size_t out = 0;
+    for (size_t at = 0, end; at < count; at = end) {
+        const char *stop = memchr(bytes + at, '\n', count - at);
+        size_t text = at;
+        end = stop ? (size_t)(stop - bytes) + 1 : count;
+        while (text < end && bytes[text] == ' ')
+            text++;
+        bool comment = at > 0 && end - text >= 2 && bytes[text] == '/' && bytes[text + 1] == '/';
+        size_t from = comment ? end - (stop != NULL) : at;
+        memmove(bytes + out, bytes + from, end - from);
+        out += end - from;
+    }
+    return out;
+}
+
 bool site_read(const char *folder, const char *path, bool only_etag, struct site_file *out)
 {
     struct stat st;
@@ -74,6 +99,8 @@ bool site_read(const char *folder, const char *path, bool only_etag, struct site
                  (uint64_t)st.st_mtim.tv_sec * 1000000000u + (uint64_t)st.st_mtim.tv_nsec);
         if (!only_etag)
             good = (out->bytes = text_read_file(full, MAX_FILE_BYTES, &out->count)) != NULL;
+        if (out->bytes && is_own_script(path))
+            out->count = drop_comments(out->bytes, out->count);
     }
     mem_free(full);
     return good;

@@ -12,7 +12,8 @@ struct site_file {
     char etag[48];    /* with its quotes */
 };
 
-/* path: decoded, starts with '/'. False: there is no such file that may be served. bytes stay NULL if only_etag. */
+/* path: decoded, starts with '/'. False: there is no such file that may be served. bytes stay NULL if only_etag. The page's own scripts
+   come without lines that only comment. */
 bool site_read(const char *folder, const char *path, bool only_etag, struct site_file *out);
 
 #endif
