@@ -58,6 +58,7 @@ static const char view_usage[] =
     "  --split \"NAME=V;...\"    a second picture beside it, under the same camera; names as above without dashes, but\n"
     "                          ramp_interval, radius_m, reach_m. What is not named is as in the first\n"
     "  --hide A,B --isolate A,B --ghost A,B   assets: left out; alone left; see-through, without a field\n"
+    "                          (in place of those that the plant file starts so; \"\": none)\n"
     "  --clip NX,NY,NZ,D[;...] cut away where n p + d < 0, by up to 6 planes;  --clip-box X,Y,Z,X,Y,Z   all outside\n";
 static const char offline_usage[] =
     "offline only:\n"

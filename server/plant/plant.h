@@ -16,6 +16,8 @@ enum interpolation { INTERPOLATION_SHEPARD, INTERPOLATION_PAPER };
 enum distance_mode { DISTANCE_GEODESIC, DISTANCE_EUCLIDEAN };
 enum fill_mode { FILL_NONE, FILL_NEIGHBOURS };       /* may neighbours paint the place of a lost sensor? */
 enum plant_show { PLANT_SHOW_VALUE, PLANT_SHOW_OPERATOR }; /* what a client begins with: readings, or their places between limits */
+enum plant_start { PLANT_START_SHOWN, PLANT_START_GHOST, PLANT_START_HIDDEN }; /* an asset, until somebody asks for something else */
+enum { PLANT_STARTS = 4096 };                        /* of so many assets, the first, each can be hidden by itself */
 enum axis { AXIS_Y, AXIS_Z };                        /* which way is up */
 enum data_type { DATA_BIT, DATA_INT16, DATA_UINT16, DATA_INT32, DATA_UINT32, DATA_FLOAT32, DATA_INT64, DATA_UINT64, DATA_FLOAT64,
                  DATA_BCD /* 4 digits, one register */, DATA_LBCD /* 8 digits, two */ };
@@ -52,6 +54,7 @@ struct plant_asset {
     enum axis up;                 /* of the model */
     double tolerance_m;           /* gaps up to this are closed when distances are found; 0: chosen from the model */
     double placement[16];         /* plant from asset frame (Z up), column-major; turns and moves only: both are in the same metres */
+    enum plant_start start;
     bool sensors_in_asset_frame;  /* X, Y, Z of its tags; else plant frame */
     struct plant_property *properties; /* of its people's own, in their order */
     size_t property_count;

@@ -119,7 +119,8 @@ static void diff_assets(struct plant_diff *diff, const struct plant *before, con
             say(diff, "asset %s added", b->id);
         else if (!same_text(a->model, b->model) || !same_text(a->nodes, b->nodes) || a->unit_m != b->unit_m || a->up != b->up ||
                  memcmp(a->placement, b->placement, sizeof(a->placement)) != 0 || !same_text(a->tag, b->tag) ||
-                 !same_text(a->description, b->description) || !same_text(a->area, b->area) || !plant_properties_same(a, b))
+                 !same_text(a->description, b->description) || !same_text(a->area, b->area) ||
+                 a->start != b->start || !plant_properties_same(a, b))
             say(diff, "asset %s changed", b->id);
     }
 }

@@ -24,6 +24,9 @@ struct plant_file {
 
 static const struct choice up_choices[] = { { "z", AXIS_Z }, { "y", AXIS_Y }, { 0 } };
 static const struct choice show_choices[] = { { "value", PLANT_SHOW_VALUE }, { "operator", PLANT_SHOW_OPERATOR }, { 0 } };
+static const struct choice start_choices[] = {
+    { "shown", PLANT_START_SHOWN }, { "ghost", PLANT_START_GHOST }, { "hidden", PLANT_START_HIDDEN }, { 0 }
+};
 static const struct choice unit_choices[] = { { "m", 1 }, { "mm", 1e-3 }, { "cm", 1e-2 }, { "in", 0.0254 }, { "ft", 0.3048 }, { 0 } };
 static const struct choice frame_choices[] = { { "plant", 0 }, { "asset", 1 }, { 0 } };
 static const struct choice interpolation_choices[] = { { "shepard", INTERPOLATION_SHEPARD }, { "paper", INTERPOLATION_PAPER }, { 0 } };
@@ -190,6 +193,7 @@ static void read_asset(struct yaml_reader *reader, yaml_node_t *node, struct pla
         { "up", KEY_CHOICE, false, offsetof(struct asset_record, asset.up), 0, 0, up_choices, NULL },
         { "placement", KEY_CUSTOM, false, 0, 0, 0, NULL, read_placement },
         { "tolerance_m", KEY_NUMBER, false, offsetof(struct asset_record, asset.tolerance_m), 1e-6, 1000, NULL, NULL },
+        { "start", KEY_CHOICE, false, offsetof(struct asset_record, asset.start), 0, 0, start_choices, NULL },
         { "sensor_frame", KEY_FLAG, false, offsetof(struct asset_record, asset.sensors_in_asset_frame), 0, 0, frame_choices, NULL },
         { 0 }
     };
@@ -203,6 +207,8 @@ static void read_asset(struct yaml_reader *reader, yaml_node_t *node, struct pla
     if (!is_map)
         return;
     check_nodes(reader, &map, asset, errors);
+    if (asset->start != PLANT_START_SHOWN && plant->asset_count > PLANT_STARTS)
+        yaml_error(reader, yaml_map_place(&map, "start"), "start: only the first %d assets can be hidden or ghosts", PLANT_STARTS);
     plant_resolve_path(plant, &asset->model);
     if (yaml_map_good(&map, "model"))
         check_model(reader, &map, asset->model);

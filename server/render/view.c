@@ -57,6 +57,7 @@ void view_default(const struct scene *scene, int width_px, int height_px, struct
         view_own_scale(scene, view);
     }
     default_light(scene, view->light_dir);
+    visibility_start(plant, &view->visibility);
     view->environment = plant->environment_count > 0 ? 1 : 0;
 }
 

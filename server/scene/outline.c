@@ -63,9 +63,10 @@ void outline_find(struct scene *scene)
         memcpy(directions[d], (double[]){ flat * cos(turn), flat * sin(turn), z }, sizeof(directions[d]));
         most[d] = -INFINITY;
     }
-    for (int with_ground = 0; with_ground <= 1 && !isfinite(most[0]); with_ground++)
+    for (int round = 0; round < 3 && !isfinite(most[0]); round++) /* without the ground, with it, with what starts hidden */
         for (size_t i = 0; i < scene->asset_count; i++)
-            if (!scene->assets[i].missing && (with_ground || !is_ground(scene, &scene->assets[i])))
+            if (!scene->assets[i].missing && (round > 0 || !is_ground(scene, &scene->assets[i])) &&
+                (round > 1 || scene->plant->assets[i].start != PLANT_START_HIDDEN))
                 add_asset(&scene->assets[i], (const double(*)[3])directions, most, points);
     scene->outline_m = mem_array(DIRECTIONS, sizeof(*scene->outline_m));
     scene->outline_count = 0;

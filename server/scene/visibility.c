@@ -6,7 +6,10 @@
 #include <math.h>
 #include <string.h>
 
+#include "plant/plant.h"
+
 static const double SLACK_M = 1e-3;
+_Static_assert((int)PLANT_STARTS <= (int)ASSET_SET_MAX, "each can be in a set");
 
 void asset_set_add(struct asset_set *set, int asset)
 {
@@ -109,6 +112,14 @@ enum asset_look visibility_of(const struct visibility *visibility, int asset)
     if (asset_set_has(&visibility->ghosts, asset))
         return ASSET_GHOST;
     return visibility->isolated.count > 0 && !asset_set_has(&visibility->isolated, asset) ? ASSET_HIDDEN : ASSET_SHOWN;
+}
+
+void visibility_start(const struct plant *plant, struct visibility *out)
+{
+    *out = (struct visibility){ 0 };
+    for (size_t i = 0; i < plant->asset_count; i++)
+        if (plant->assets[i].start != PLANT_START_SHOWN)
+            asset_set_add(plant->assets[i].start == PLANT_START_GHOST ? &out->ghosts : &out->hidden, (int)i);
 }
 
 bool visibility_equal(const struct visibility *a, const struct visibility *b)

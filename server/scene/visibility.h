@@ -40,6 +40,8 @@ enum asset_look {
     ASSET_HIDDEN /* asked to be hidden; or others are isolated, and it is no ghost */
 };
 enum asset_look visibility_of(const struct visibility *visibility, int asset);
+struct plant;
+void visibility_start(const struct plant *plant, struct visibility *out); /* until somebody asks for something else */
 bool visibility_equal(const struct visibility *a, const struct visibility *b);
 
 #endif

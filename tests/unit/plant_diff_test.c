@@ -58,6 +58,19 @@ static void each_difference_is_said(void **state)
     plant_destroy(&after);
 }
 
+static void another_start_of_an_asset_is_said(void **state)
+{
+    struct plant_case *c = *state;
+    struct plant *before = load(c, YAML(TEMP, ""), TAGS "A,40001,bar,90\n");
+    struct plant *after = load(c,
+                               "plant: { name: P }\nassets:\n  - { id: E-101, model: m.glb, start: ghost }\ngroups:\n" TEMP
+                               "sources:\n  - { id: plc, type: modbus, host: h, byte_order: CDAB, address_base: 1 }\ntags: tags.csv\n",
+                               TAGS "A,40001,bar,90\n");
+    assert_diff(c, before, after, (const char *const[]){ "asset E-101 changed" }, 1);
+    plant_destroy(&before);
+    plant_destroy(&after);
+}
+
 static void the_same_files_have_the_same_hash(void **state)
 {
     struct plant_case *c = *state;
@@ -109,6 +122,7 @@ int main(void)
     cmocka_set_message_output(CM_OUTPUT_TAP);
     const struct CMUnitTest tests[] = {
         TEST(each_difference_is_said),
+        TEST(another_start_of_an_asset_is_said),
         TEST(the_same_files_have_the_same_hash),
         TEST(what_a_daemon_cannot_change_is_named),
         TEST(many_differences_end_in_their_number),

@@ -44,6 +44,7 @@ static void defaults_are_as_documented(void **state)
     assert_float_equal(p->assets[0].unit_m, 1, 0);
     assert_int_equal(p->assets[0].up, AXIS_Y);
     assert_false(p->assets[0].sensors_in_asset_frame);
+    assert_int_equal(p->assets[0].start, PLANT_START_SHOWN);
     assert_int_equal(p->assets[1].line, 2);
     const struct plant_group *g = &p->groups[1];
     assert_string_equal(g->quantity, "pressure");
@@ -403,10 +404,11 @@ static void wrong_types_are_named(void **state)
 static void bad_choices_list_the_allowed(void **state)
 {
     struct plant_case *f = *state;
-    load_with(f, 2, "assets: [{ id: E, model: m.glb, units: yd, up: x, sensor_frame: world }]");
+    load_with(f, 2, "assets: [{ id: E, model: m.glb, units: yd, up: x, sensor_frame: world, start: away }]");
     FOUND(f, { "plant.yaml", 2, 40, "units: expected m, mm, cm, in or ft, found 'yd'" },
           { "plant.yaml", 2, 48, "up: expected z or y, found 'x'" },
-          { "plant.yaml", 2, 65, "sensor_frame: expected plant or asset, found 'world'" });
+          { "plant.yaml", 2, 65, "sensor_frame: expected plant or asset, found 'world'" },
+          { "plant.yaml", 2, 79, "start: expected shown, ghost or hidden, found 'away'" });
     load_with(f, 3, "groups: [{ id: g, unit: K, min: 0, max: 1, interpolation: idw, distance: [geodesic], fill: some }]");
     FOUND(f, { "plant.yaml", 3, 59, "interpolation: expected shepard or paper, found 'idw'" },
           { "plant.yaml", 3, 74, "distance: expected geodesic or euclidean, found a list" },
@@ -415,6 +417,24 @@ static void bad_choices_list_the_allowed(void **state)
     FOUND(f, { "plant.yaml", 4, 26, "type: expected modbus or replay, found 'opcua'" },
           { "plant.yaml", 4, 54, "byte_order: expected ABCD, CDAB, BADC or DCBA, found 'abcd'" },
           { "plant.yaml", 4, 74, "address_base: expected a whole number from 0 to 1, found '2'" });
+}
+
+static void assets_may_start_out_of_the_way(void **state)
+{
+    struct plant_case *f = *state;
+    struct text yaml = { 0 };
+    load_csv_with(f, 2, "assets: [{ id: E, model: m.glb, start: hidden }, { id: F, model: m.glb, start: ghost }, { id: G, model: m.glb }]",
+                  small_csv);
+    plant_case_assert_loaded(f, 0);
+    assert_int_equal(f->plant->assets[0].start, PLANT_START_HIDDEN);
+    assert_int_equal(f->plant->assets[1].start, PLANT_START_GHOST);
+    assert_int_equal(f->plant->assets[2].start, PLANT_START_SHOWN);
+    text_add(&yaml, "assets:");
+    for (int i = 0; i <= PLANT_STARTS; i++)
+        text_add(&yaml, "\n- { id: A%d, model: m.glb, start: %s }", i, i < PLANT_STARTS ? "shown" : "hidden");
+    load_with(f, 2, yaml.at);
+    text_finish(&yaml);
+    FOUND(f, { "plant.yaml", 4099, 37, "start: only the first 4096 assets can be hidden or ghosts" });
 }
 
 static void sources_say_how_they_are_reached(void **state)
@@ -708,6 +728,7 @@ int main(void)
         TEST(missing_keys_are_named),
         TEST(wrong_types_are_named),
         TEST(bad_choices_list_the_allowed),
+        TEST(assets_may_start_out_of_the_way),
         TEST(sources_say_how_they_are_reached),
         TEST(keys_without_meaning_are_errors),
         TEST(numbers_have_ranges),

@@ -334,6 +334,24 @@ static void home_is_the_view_of_the_plant(void **state)
     scene_destroy(&scene);
 }
 
+/* B stands 10 m away from what is between the others. */
+static void home_is_of_what_is_shown_at_the_start(void **state)
+{
+    struct fixture *f = *state;
+    f->plant->assets[1].start = PLANT_START_HIDDEN;
+    struct scene *scene = scene_create(f->log, f->plant, f->prepared);
+    assert_non_null(scene);
+    assert_true(scene->outline_count >= 4);
+    for (size_t n = 0; n < scene->outline_count; n++)
+        assert_true(scene->outline_m[n][0] < scene->assets[1].bounds_min_m[0]);
+    scene_destroy(&scene);
+    f->plant->assets[0].start = f->plant->assets[2].start = PLANT_START_HIDDEN; /* somewhere one has to look */
+    scene = scene_create(f->log, f->plant, f->prepared);
+    assert_non_null(scene);
+    assert_true(scene->outline_count >= 4);
+    scene_destroy(&scene);
+}
+
 int main(void)
 {
     cmocka_set_message_output(CM_OUTPUT_TAP);
@@ -345,6 +363,7 @@ int main(void)
         cmocka_unit_test_setup_teardown(what_was_not_prepared_is_refused, set_up, tear_down),
         cmocka_unit_test_setup_teardown(a_missing_asset_does_not_keep_the_others_away, set_up, tear_down),
         cmocka_unit_test_setup_teardown(home_is_the_view_of_the_plant, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(home_is_of_what_is_shown_at_the_start, set_up, tear_down),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

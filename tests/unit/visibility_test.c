@@ -12,6 +12,7 @@
 
 #include <cmocka.h>
 
+#include "render/view.h"
 #include "tests/support/small_scene.h"
 
 static void looks_of_assets(void **state)
@@ -134,12 +135,30 @@ static void what_is_said_comes_back(void **state)
     assert_int_equal(nothing.given, 0);
 }
 
+static void assets_start_as_the_plant_says(void **state)
+{
+    (void)state;
+    struct plant_asset *assets = small_scene()->plant->assets;
+    struct view view;
+    assets[0].start = PLANT_START_GHOST;
+    assets[1].start = PLANT_START_HIDDEN;
+    view_default(small_scene(), 640, 360, &view);
+    assets[0].start = assets[1].start = PLANT_START_SHOWN;
+    assert_printed(&view.visibility, "{\"hidden\":[\"P-101A\"],\"isolate\":[],\"ghost\":[\"E-101\"],\"clip\":null}");
+    struct params_change change = parse("{\"hidden\":[]}"); /* none is said */
+    visibility_apply(&change, &view.visibility);
+    assert_printed(&view.visibility, "{\"hidden\":[],\"isolate\":[],\"ghost\":[\"E-101\"],\"clip\":null}");
+    change = parse("{\"ghost\":[]}");
+    visibility_apply(&change, &view.visibility);
+    assert_true(visibility_equal(&view.visibility, &(struct visibility){ 0 }));
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(looks_of_assets),           cmocka_unit_test(equal_views_are_equal),
         cmocka_unit_test(a_box_keeps_what_is_in_it), cmocka_unit_test(rays_are_cut_where_planes_are),
-        cmocka_unit_test(what_is_said_comes_back),
+        cmocka_unit_test(what_is_said_comes_back),   cmocka_unit_test(assets_start_as_the_plant_says),
     };
     cmocka_set_message_output(CM_OUTPUT_TAP);
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -204,6 +204,10 @@ test('so it does with all that a view can have', () => {
     assert.deepEqual(readAddress(text), { camera: null, params, tag: null, time: { atUs: at } });
     assert.ok(!writeAddress({ params, own: { power: 3, range: [-5, 5] } }).match(/power|range/), 'what is usual is not said');
     assert.equal(writeAddress({ params: { strength: 1, decay: 1, radius_m: 0, reach_m: null, sensors: {} } }), '');
+    const own = { hidden: ['ROOF'], isolate: [], ghost: ['HALL'] };
+    assert.equal(writeAddress({ params: own, own }), '', 'as the plant begins');
+    assert.equal(writeAddress({ params: { ...own, hidden: [] }, own }), '#hide=');
+    assert.deepEqual(readAddress('#hide=&ghost=A,B').params, { hidden: [], ghost: ['A', 'B'] });
     assert.deepEqual(readAddress(writeAddress({ params: { look: 'flat', split: { look: 'flat' } } })).params, { look: 'flat', split: {} });
 });
 
@@ -217,7 +221,7 @@ test('a snapshot is asked for as the view is', () => {
     };
     assert.deepEqual(snapshotQuery(view), {
         width: 800, height: 600, group: 'g', range: '0,50', ghost: 'A,B', split: 'group=h;range=1,2', sensors: 'T-1=2:3',
-        clip: '1,0,0,-2', light: '0,0,1', camera: '1,2,3,0,0,0,45',
+        clip: '1,0,0,-2', light: '0,0,1', hidden: '', camera: '1,2,3,0,0,0,45',
     });
     const { camera, projection, height_m, at } = snapshotQuery({ ...view, camera: { ...view.camera, height_m: 7 }, time: { atUs: 1e15 } });
     assert.deepEqual([camera, projection, height_m, at], ['1,2,3,0,0,0', 'orthographic', 7, '2001-09-09T01:46:40.000Z']);

@@ -6,6 +6,7 @@ import { actionsFor, asideOf, inMessages, passes, rowActions, targetsOf } from '
 import { health } from '../../clients/web/core/health.js';
 import { orbit } from '../../clients/web/core/moves.js';
 import { actOnAlarm, giveLead, travel } from '../../clients/web/core/requests.js';
+import { showAll } from '../../clients/web/core/section.js';
 import { kbitPerS, timingOf } from '../../clients/web/core/timings.js';
 import { makeSession, vector, vectorBytes } from './fixtures.mjs';
 
@@ -166,6 +167,28 @@ test('after a reconnect the same camera and the same parameters are asked for', 
     sockets[1].say({ ...welcome, view: { ...welcome.view, ...params } });
     assert.deepEqual(session.camera, camera);
     assert.equal(session.params.ramp_interval, 10);
+});
+
+test('what the plant begins with need not be said; other sets are, empty ones too, and after a reconnect all', () => {
+    const { connection, session, sockets } = makeSession();
+    const [first, ...rest] = welcome.assets, assets = [{ ...first, start: 'hidden' }, ...rest];
+    connection.start();
+    sockets[0].accept();
+    assert.equal(sockets[0].sent[0].params, undefined);
+    sockets[0].say({ ...welcome, assets, view: { ...welcome.view, hidden: [first.id], isolate: [], ghost: [] } });
+    assert.deepEqual(session.ownParams.hidden, [first.id]);
+    assert.deepEqual(['hidden', 'isolate', 'ghost'].filter((name) => session.carried()[name]), []);
+    session.setParams(showAll(session.params));
+    assert.deepEqual(session.carried().hidden, []);
+    session.setParams({ hidden: [first.id] });
+    sockets[0].fail();
+    connection.retryNow();
+    sockets[1].accept();
+    assert.deepEqual(sockets[1].sent[0].params.hidden, [first.id], 'whatever the plant begins with by then');
+    const named = makeSession({ camera: null, params: { hidden: [] } });
+    named.connection.start();
+    named.sockets[0].accept();
+    assert.deepEqual(named.sockets[0].sent[0].params.hidden, []);
 });
 
 test('what of our view is not in this plant is left out and said; the rest is asked for again', () => {

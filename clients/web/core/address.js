@@ -45,7 +45,7 @@ export function writeAddress({ camera, params = {}, tag = null, time = null, own
     if (params.selected)
         put('asset', params.selected);
     for (const [name, param] of Object.entries(SETS)) {
-        if (params[param]?.length > 0)
+        if (params[param] && differs(param)) // none is said, too, where the plant begins otherwise
             put(name, params[param].join(','));
     }
     if (params.clip)
@@ -115,8 +115,8 @@ export function readAddress(hash) {
     if (fields.get('show') === 'difference' && fields.get('baseline'))
         Object.assign(params, { show: 'difference', baseline: { name: fields.get('baseline') } });
     for (const [name, param] of Object.entries(SETS)) {
-        if (fields.get(name))
-            params[param] = fields.get(name).split(',');
+        if (fields.has(name))
+            params[param] = fields.get(name).split(',').filter(Boolean);
     }
     const clip = readClip(fields.get('clip') ?? '');
     if (clip)

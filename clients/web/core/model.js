@@ -14,6 +14,8 @@ export class Model {
         this.environments = welcome.environments ?? ['sky'];
         this.references = welcome.links ?? []; // where else one reads about assets and tags
         this.assets = welcome.assets.map((asset) => ({ ...asset, tags: [] }));
+        const starting = (how) => this.assets.filter(({ start }) => start === how).map(({ id }) => id);
+        this.start = { hidden: starting('hidden'), isolate: [], ghost: starting('ghost') }; // parameters, until somebody changes them
         const assets = new Map(this.assets.map((asset) => [asset.id, asset]));
         for (const tag of this.tags)
             assets.get(tag.asset)?.tags.push(tag);

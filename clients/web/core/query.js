@@ -45,7 +45,7 @@ function text(name, value) {
 }
 
 const isSaid = ([name, value]) => !APART.includes(name) && value !== null && value !== undefined &&
-    !(Array.isArray(value) && value.length === 0);
+    !(Array.isArray(value) && value.length === 0 && !NAMES.includes(name));
 
 // The query of one picture of what a session shows. carried: its parameters, as after a reconnect.
 export function snapshotQuery({ carried, camera, size, time }) {

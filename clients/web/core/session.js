@@ -15,6 +15,7 @@ export const PARAMS = [
 const SAID = [...PARAMS, 'sensor', 'baseline', 'baselines', 'sensors', 'unit']; // by the server
 export const ENGINEERS = ['fill', 'strength', 'decay', 'power', 'radius_m', 'reach_m', 'sensors']; // others may not ask for these
 const SHARED = ['light', 'environment', 'backdrop', 'selected', 'hidden', 'isolate', 'ghost', 'clip', 'split']; // by both halves
+const SETS = ['hidden', 'isolate', 'ghost']; // kept as they are, whatever the plant begins with by then
 const GROUPS_OWN = ['interpolation', 'distance', 'fill', 'power', 'radius_m', 'reach_m', 'scale', 'isolines'];
 const OF_THE_INSTANT = ['tags', 'picked']; // their time is that of what is shown
 const NOW = { atUs: null, speed: 0, fromUs: null };
@@ -154,7 +155,7 @@ export class Session {
             Object.assign(message, { at_us: this.time.atUs, speed: this.time.speed });
         if (this.greetedCamera)
             message.camera = { seq: ++this.cameraSeq, ...cameraMessage(this.greetedCamera) };
-        const params = this.carried({ baseline: parts.includes('baseline') });
+        const params = { ...this.carried({ baseline: parts.includes('baseline') }), ...pick(this.params, SETS) };
         if (parts.includes('params') && Object.keys(params).length > 0)
             message.params = { seq: ++this.paramsSeq, ...params };
         this.connection.send(message);
@@ -166,10 +167,10 @@ export class Session {
             ...(this.anew ? { anew: true } : {}) };
     }
 
-    // What need not be said of the parameters: a group has it by itself.
+    // What need not be said of the parameters: a group has it by itself, or the plant begins with it.
     get ownParams() {
-        const { group } = this;
-        return group ? { ...pick(group, GROUPS_OWN), range: [group.min, group.max], strength: 1, decay: 1 } : {};
+        const { group, model } = this;
+        return { ...model?.start, ...(group ? { ...pick(group, GROUPS_OWN), range: [group.min, group.max], strength: 1, decay: 1 } : {}) };
     }
 
     // The parameters to ask for again: not those that only are the group's own, which may have been changed there since.

@@ -236,6 +236,8 @@ static json_t *assets(const struct scene *scene, bool open)
         json_t *asset = json_pack("{s:o,s:o,s:o,s:o,s:o}", "id", string(a->plant->id), "tag", string(a->plant->tag),
                                   "description", string(description), "area", string(area), "bounds",
                                   box(a->bounds_min_m, a->bounds_max_m));
+        if (a->plant->start != PLANT_START_SHOWN)
+            json_object_set_new(asset, "start", string(a->plant->start == PLANT_START_GHOST ? "ghost" : "hidden"));
         if (a->plant->property_count > 0 && !open)
             json_object_set_new(asset, "properties", properties(a->plant));
         if (a->missing && !open)

@@ -40,11 +40,24 @@ static bool apply(struct session *session, const json_t *wish)
            session_apply_params(session, &message, &session->view, &error);
 }
 
+/* Assets that are gone are not in its lists any more; the others stay hidden, or ghosts. */
+static void forget_gone(const struct plant *plant, json_t *o)
+{
+    static const char *const sets[] = { "hidden", "isolate", "ghost" };
+    for (size_t i = 0; i < sizeof(sets) / sizeof(sets[0]); i++) {
+        json_t *list = json_object_get(o, sets[i]);
+        for (size_t n = json_array_size(list); n-- > 0;)
+            if (plant_find_asset(plant, json_string_value(json_array_get(list, n))) < 0)
+                json_array_remove(list, n);
+    }
+}
+
 /* All of it, or each that still means something. */
 static void apply_carried(struct session *session, const char *carried)
 {
     json_t *o = wish_of(carried), *value;
     const char *key;
+    forget_gone(session->world->plant, o);
     if (o && !apply(session, o)) {
         json_t *group = json_pack("{s:O}", "group", json_object_get(o, "group"));
         apply(session, group);

@@ -30,6 +30,7 @@ struct bake {
     const struct bake_programs *programs;
     const double *plant_from_ground;
     struct light_set set;
+    struct visibility start; /* of the plant: what the sky's maps have */
     bool with_sky;
     struct directions_block *directions;
     GLuint sky_maps, directions_buffer, framebuffer;
@@ -152,13 +153,12 @@ static void find_directions(struct bake *bake)
 
 static void sky_map_bit(struct bake *bake)
 {
-    static const struct visibility everything;
     const struct stage *stage = bake->stage;
     double towards[3], clip_from_plant[16];
     float brightness;
     sky_direction(stage, bake->direction, towards, &brightness);
     matrix_parallel(stage->middle_m, stage->radius_m, towards, clip_from_plant);
-    draw_on_map(bake, bake->sky_maps, bake->direction, SKY_MAP_PX, clip_from_plant, &everything, 0.5 * bake->sky_texel_m);
+    draw_on_map(bake, bake->sky_maps, bake->direction, SKY_MAP_PX, clip_from_plant, &bake->start, 0.5 * bake->sky_texel_m);
     if (++bake->asset < bake->stage->scene->asset_count)
         return;
     bake->asset = 0;
@@ -271,7 +271,7 @@ double bake_least_open(const struct stage *stage, const struct visibility *shown
     const struct scene *scene = stage->scene;
     double missing_m = shown->clip.plane_count > 0 ? stage->radius_m : 0;
     for (size_t i = 0; i < scene->asset_count; i++)
-        if (visibility_of(shown, (int)i) != ASSET_SHOWN)
+        if (visibility_of(shown, (int)i) != ASSET_SHOWN && scene->plant->assets[i].start == PLANT_START_SHOWN)
             missing_m = fmax(missing_m, size_of(scene->assets[i].bounds_min_m, scene->assets[i].bounds_max_m));
     return OPEN_AT_LEAST * fmin(missing_m / (2 * stage->radius_m), 1);
 }
@@ -353,6 +353,7 @@ struct bake *bake_begin(const struct stage *stage, const struct bake_programs *p
 {
     struct bake *bake = mem_new(sizeof(*bake));
     *bake = (struct bake){ .stage = stage, .programs = programs, .plant_from_ground = plant_from_ground };
+    visibility_start(stage->scene->plant, &bake->start);
     bake->with_sky = !from && !key->rough;
     struct sun_frame sun;
     int size_px = sun_map_px(stage);

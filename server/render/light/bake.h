@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Works out one set of light, bit by bit, so that pictures can be drawn in between: a map of what the sun sees, and what reaches each
    vertex and the ground. Sky light and openness come from depth maps taken from 32 directions all round; how open a place is
-   depends on neither sun nor surroundings, and is taken over from a set that has it. That is of the whole plant; where some of it is not
-   shown, it is only kept from being too dark. Thread: the one of the GL context. */
+   depends on neither sun nor surroundings, and is taken over from a set that has it. That is of the plant as it starts; where less of it
+   is shown, it is only kept from being too dark. Thread: the one of the GL context. */
 #ifndef RENDER_BAKE_H
 #define RENDER_BAKE_H
 #include "gpu/pool.h"

@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Assets that start hidden or as ghosts: what begins with it, how it ends, and what a link and a reload of the plant make of it.
+import assert from 'node:assert/strict';
+import { readFileSync, writeFileSync } from 'node:fs';
+import { join } from 'node:path';
+import { test } from 'node:test';
+import { openPage, settle, shoot, waitForPicture } from './support/browser.mjs';
+import { missing, runProgram, TinyPlant } from './support/tiny_plant.mjs';
+
+const options = { skip: missing().length > 0 && `not built: ${missing().join(', ')}`, timeout: 120000 };
+const NONE = { hidden: [], isolate: [], ghost: [] };
+
+test('a plant may begin with less than all of it; whoever asks for the rest keeps it', options, async () => {
+    const tiny = await TinyPlant.create(), text = readFileSync(tiny.file, 'utf8');
+    const write = (id, how) => writeFileSync(tiny.file, text.replace('{ id: P-101A,', '{ id: P-101A, start: ghost,')
+        .replace('groups:', `  - { id: ${id}, model: box.gltf, start: ${how}, placement: { scale: 9 } }\ngroups:`));
+    write('HOUSE', 'hidden');
+    assert.equal(tiny.prepare().code, 0);
+    await tiny.startSim();
+    await tiny.startDaemon();
+    const url = `http://127.0.0.1:${tiny.port}/`, own = await openPage(url, { viewport: { width: 1200, height: 720 } }), { page } = own;
+    const sets = async () => page.evaluate(() => {
+        const { hidden, isolate, ghost } = globalThis.plantcast.session.confirmed;
+        return { hidden, isolate, ghost };
+    });
+    const sign = () => page.waitForFunction(() => document.getElementById('shown')?.textContent);
+    try {
+        await waitForPicture(page);
+        await sign();
+        await settle(page);
+        assert.deepEqual(await sets(), { hidden: ['HOUSE'], isolate: [], ghost: ['P-101A'] });
+        assert.equal(await page.locator('#shown span').textContent(), '1 of 3 hidden, 1 see-through');
+        const { outline } = await page.evaluate(() => globalThis.plantcast.session.model.plant);
+        assert.ok(outline.every((place) => Math.abs(place[1]) < 0.6), 'what starts hidden is not in the first view');
+        await shoot(page, 'start');
+
+        // Pictures for which nobody says more are of the same.
+        const picture = async (more = '') => {
+            const answer = await fetch(`${url}snapshot.png?width=320&height=200&camera=6,-9,5,1.5,0,0${more}`);
+            return (await answer.arrayBuffer()).byteLength;
+        };
+        const [begun, said, all] = [await picture(), await picture('&hidden=HOUSE&ghost=P-101A'), await picture('&hidden=&ghost=')];
+        assert.ok(Math.abs(begun - said) < 0.1 * said && Math.abs(all - said) > 0.1 * said, `${begun}, ${said} and ${all} bytes`);
+        const files = [[], ['--hide', 'HOUSE', '--ghost', 'P-101A'], ['--hide', '', '--ghost', '']].map((more, i) => {
+            const out = join(tiny.folder, `${i}.png`);
+            const { code, err } = runProgram('plantcast', ['snapshot', tiny.file, '--size', '320x200', '--no-overlay', ...more, '--out', out]);
+            assert.equal(code, 0, err);
+            return readFileSync(out);
+        });
+        assert.ok(files[0].equals(files[1]) && !files[0].equals(files[2]));
+
+        // The way back, and the link to it.
+        await page.locator('#shown button').click();
+        await page.waitForFunction(() => globalThis.plantcast.session.confirmed.hidden.length === 0);
+        assert.deepEqual(await sets(), NONE);
+        assert.equal(await page.locator('#shown').isVisible(), false);
+        await page.waitForFunction(() => /hide=&ghost=(&|$)/.test(location.hash));
+        await page.reload();
+        await waitForPicture(page);
+        await page.waitForFunction(() => globalThis.plantcast.session.confirmed);
+        assert.deepEqual(await sets(), NONE, 'the link says so');
+
+        // Another start is for those who come.
+        await page.evaluate(() => globalThis.plantcast.session.setParams({ hidden: ['E-101', 'HOUSE'] }));
+        await page.waitForFunction(() => globalThis.plantcast.session.confirmed.hidden.length === 2);
+        write('ROOF', 'ghost');
+        assert.equal(tiny.prepare().code, 0);
+        const before = await page.evaluate(() => globalThis.plantcast.session.model.plant.configuration);
+        const { changes } = await (await fetch(`${url}api/v1/reload`, { method: 'POST' })).json();
+        assert.deepEqual(changes, ['asset HOUSE removed', 'asset ROOF added']);
+        await page.waitForFunction((was) => globalThis.plantcast.session.model.plant.configuration !== was, before);
+        assert.deepEqual(await sets(), { ...NONE, hidden: ['E-101'] }, 'who is there keeps what he sees');
+        await page.goto(`${url}?again`);
+        await waitForPicture(page);
+        await sign();
+        assert.deepEqual(await sets(), { hidden: [], isolate: [], ghost: ['P-101A', 'ROOF'] });
+        assert.equal(await page.locator('#shown span').textContent(), '2 see-through');
+        assert.deepEqual(own.errors, []);
+    } finally {
+        await own.close();
+        await tiny.destroy();
+    }
+});
