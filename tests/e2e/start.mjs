@@ -43,7 +43,8 @@ test('a plant may begin with less than all of it; whoever asks for the rest keep
         assert.ok(Math.abs(begun - said) < 0.1 * said && Math.abs(all - said) > 0.1 * said, `${begun}, ${said} and ${all} bytes`);
         const files = [[], ['--hide', 'HOUSE', '--ghost', 'P-101A'], ['--hide', '', '--ghost', '']].map((more, i) => {
             const out = join(tiny.folder, `${i}.png`);
-            const { code, err } = runProgram('plantcast', ['snapshot', tiny.file, '--size', '320x200', '--no-overlay', ...more, '--out', out]);
+            const args = ['snapshot', tiny.file, '--size', '320x200', '--no-overlay', '--out', out, ...more];
+            const { code, err } = runProgram('plantcast', args);
             assert.equal(code, 0, err);
             return readFileSync(out);
         });
