@@ -24,6 +24,7 @@ export class Engineer {
         byId('viewport').parentElement.append(this.element);
         this.choose('place');
         page.overlay.drawTried = (tag) => this.mark(tag);
+        page.overlay.isMarked = (tag) => this.isMarked(tag);
         page.session.on('welcome', () => page.session.role !== 'engineer' && this.close());
     }
 
@@ -65,10 +66,19 @@ export class Engineer {
         return this.open && this.part === 'place' && this.parts.place.takesClick(x, y);
     }
 
+    isAt(part, name, tag) {
+        return this.open && this.part === part && this.parts[part][name] === tag.name;
+    }
+
+    // Whether mark() draws anything: it is not left out where markers crowd.
+    isMarked(tag) {
+        return this.page.session.model.placed.has(tag.name) || this.isAt('place', 'tag', tag) || this.isAt('prove', 'stirred', tag);
+    }
+
     // Over its marker: a dashed ring where it is tried out, a whole one where it is chosen, a double one where it moved.
     mark(tag) {
         const c = this.page.overlay.context, moved = this.page.session.model.placed.has(tag.name);
-        const stirred = this.open && this.part === 'prove' && this.parts.prove.stirred === tag.name;
+        const stirred = this.isAt('prove', 'stirred', tag);
         const ring = (radius, dash, width) => {
             c.beginPath();
             c.arc(0, 0, radius, 0, 2 * Math.PI);
@@ -80,7 +90,7 @@ export class Engineer {
         };
         if (moved)
             ring(13, [4, 3], 2);
-        if (this.open && this.part === 'place' && this.parts.place.tag === tag.name)
+        if (this.isAt('place', 'tag', tag))
             ring(9, [], 2.5);
         if (stirred)
             [12, 16].forEach((radius) => ring(radius, [], 2.5));

@@ -53,7 +53,8 @@ function build(dialog) {
         make('h2', { id: 'help-title' }, say('help.title')),
         closeButton('help.close', () => dialog.close()),
         make('table', {}, make('thead', {}, make('tr', {}, make('td'), ...head)), make('tbody', {}, ...rows)),
-        make('h2', {}, say('help.markers')), make('ul', { class: 'marks' }, ...marks));
+        make('h2', {}, say('help.markers')), make('ul', { class: 'marks' }, ...marks),
+        make('p', { class: 'note' }, say('help.crowd')));
 }
 
 export class Help {

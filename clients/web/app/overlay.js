@@ -2,6 +2,7 @@
 // Markers and labels, drawn crisply over the picture with the camera that the picture was drawn with.
 import { isGone } from '../core/alarms.js';
 import { projector } from '../core/camera.js';
+import { thinOut } from '../core/crowd.js';
 import { changeText, decimalsFor, numberText, unitText } from '../core/format.js';
 import { halves } from '../core/halves.js';
 import { FIRST_FAR, leaderLine, MOST_BAD, placeLabels, RANK_RING } from '../core/labels.js';
@@ -37,7 +38,8 @@ export class Overlay {
         this.context = canvas.getContext('2d');
         this.font = getComputedStyle(document.body).fontFamily;
         this.unit = 1;     // CSS pixels: larger on a wall
-        this.markers = []; // { tag, x, y, depth, occluded, reading }, in units
+        this.all = [];     // { tag, x, y, depth, occluded, reading }, in units: of the shown group, and with alarms
+        this.markers = []; // those of them that are drawn
         this.places = new Map();
         this.widths = new Map();
         this.onRings = () => {}; // there are several, or one without a label: call-outs are needed
@@ -90,7 +92,21 @@ export class Overlay {
     }
 
     marker(tag) {
-        return this.markers.find((marker) => marker.tag === tag) ?? null;
+        return this.all.find((marker) => marker.tag === tag) ?? null;
+    }
+
+    // Each half for itself: those that are drawn, the farthest first.
+    thinned() {
+        const id = ({ tag, half }) => tag.index * 2 + half, { selected } = this.session.params;
+        const before = new Set(this.markers.filter(({ kept, held }) => held || !kept).map(id)); // not what was only kept
+        for (const marker of this.all) {
+            const { tag, alarm, origin, reading } = marker;
+            marker.kept = alarm || origin || reading.quality !== 'good' || tag.asset === selected || this.isChosen(tag) ||
+                this.isMarked?.(tag);
+            marker.held = before.has(id(marker));
+        }
+        const drawn = [0, 1].flatMap((number) => thinOut(this.all.filter(({ half }) => half === number)));
+        return drawn.sort((a, b) => b.depth - a.depth);
     }
 
     // CSS pixels of the viewport.
@@ -107,8 +123,9 @@ export class Overlay {
             [this.canvas.width, this.canvas.height] = pixels;
         c.setTransform(ratio, 0, 0, ratio, 0, 0);
         c.clearRect(0, 0, width, height);
-        this.markers = this.project().sort((a, b) => b.depth - a.depth);
-        this.radius = markerRadius(this.markers.filter((marker) => !marker.occluded));
+        this.all = this.project();
+        this.markers = this.thinned();
+        this.radius = markerRadius(this.all.filter((marker) => !marker.occluded));
         const labels = this.labels();
         this.places = this.place(labels);
         for (const marker of this.markers)

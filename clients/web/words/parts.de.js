@@ -322,6 +322,7 @@ mark.behind: verdeckt
 mark.alarm: Alarm; die Farbe ist die Priorität
 mark.acknowledged: quittierter Alarm
 mark.returned: gegangen oder gehalten
+crowd: Wo sich Markierungen drängen, fehlen einige; aus der Nähe sind alle da. Alarme fehlen nie.
 
 [measure]
 first: Ersten Punkt anklicken

@@ -322,6 +322,7 @@ mark.behind: behind something
 mark.alarm: alarm; its colour is the priority
 mark.acknowledged: acknowledged alarm
 mark.returned: returned or latched
+crowd: Where markers crowd, some are left out; nearer by all are there. Alarms are never left out.
 
 [measure]
 first: Click the first place

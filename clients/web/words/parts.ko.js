@@ -320,6 +320,7 @@ mark.behind: 가려짐
 mark.alarm: 알람, 색은 우선순위
 mark.acknowledged: 확인된 알람
 mark.returned: 복귀 또는 유지
+crowd: 몰린 표식은 일부 생략되며, 가까이 가면 모두 보입니다. 알람은 생략되지 않습니다.
 
 [measure]
 first: 첫 번째 지점을 누르세요

@@ -4,6 +4,7 @@
 #include <stdio.h>
 
 #include "base/mem.h"
+#include "render/crowd.h"
 #include "render/overlay/overlay_pen.h"
 #include "value/quality.h"
 
@@ -337,18 +338,52 @@ bool overlay_marker_seen(const struct pen *pen, const struct frame_marker *marke
     return !marker->occluded && is_inside(pen, marker) && !is_under(pen, pen->taken_count, &mark);
 }
 
+/* It has its place in any case, whatever crowds about it. */
+static bool is_kept(const struct pen *pen, const struct frame_marker *marker)
+{
+    return has_alarm(pen, marker) || is_bad(marker) || quality_is_uncertain(marker->quality) ||
+           (pen->view.field.show == SHOW_DISTANCE && pen->view.field.sensor == marker->tag) ||
+           pen->scene->plant->tags[marker->tag].asset == pen->view.selected_asset;
+}
+
+/* The indices of those that are drawn, of those that no card covers; how many there are. The caller frees the list. */
+static size_t choose_markers(const struct pen *pen, int cards, size_t **chosen)
+{
+    const struct frame *frame = pen->frame;
+    struct crowd_item *items = mem_array(frame->marker_count, sizeof(*items));
+    bool *drawn = mem_array(frame->marker_count, sizeof(*drawn));
+    size_t count = 0, kept = 0;
+    *chosen = mem_array(frame->marker_count, sizeof(**chosen));
+    for (size_t i = 0; i < frame->marker_count && !pen->bare; i++) {
+        const struct frame_marker *marker = &frame->markers[i];
+        struct box mark = mark_box(pen, marker);
+        if (!is_inside(pen, marker) || is_under(pen, cards, &mark))
+            continue;
+        items[count] = (struct crowd_item){ .x = (double)marker->x_px, .y = (double)marker->y_px, .occluded = marker->occluded };
+        items[count].depth_m = depth_of(pen, marker->tag);
+        items[count].kept = is_kept(pen, marker);
+        (*chosen)[count++] = i;
+    }
+    crowd_thin(items, count, pen->unit, drawn);
+    for (size_t i = 0; i < count; i++)
+        if (drawn[i])
+            (*chosen)[kept++] = (*chosen)[i];
+    mem_free(items);
+    mem_free(drawn);
+    return kept;
+}
+
 void overlay_markers(struct pen *pen)
 {
     int cards = pen->taken_count; /* what lies over the picture already */
     struct wanted wanted = { .pen = pen };
-    wanted.items = mem_array(pen->frame->marker_count, sizeof(*wanted.items));
-    wanted.texts = mem_array(pen->frame->marker_count, sizeof(*wanted.texts));
-    wanted.tags = mem_array(pen->frame->marker_count, sizeof(*wanted.tags));
-    for (size_t i = 0; i < pen->frame->marker_count && !pen->bare; i++) {
-        const struct frame_marker *marker = &pen->frame->markers[i];
+    size_t *chosen, count = choose_markers(pen, cards, &chosen);
+    wanted.items = mem_array(count, sizeof(*wanted.items));
+    wanted.texts = mem_array(count, sizeof(*wanted.texts));
+    wanted.tags = mem_array(count, sizeof(*wanted.tags));
+    for (size_t i = 0; i < count; i++) {
+        const struct frame_marker *marker = &pen->frame->markers[chosen[i]];
         struct box mark = mark_box(pen, marker);
-        if (!is_inside(pen, marker) || is_under(pen, cards, &mark))
-            continue;
         if (!marker->occluded)
             pen_take(pen, &mark);
         if (!marker->occluded || has_alarm(pen, marker))
@@ -359,6 +394,7 @@ void overlay_markers(struct pen *pen)
     }
     place_labels(pen, &wanted, cards);
     label_isolines(pen);
+    mem_free(chosen);
     mem_free(wanted.items);
     mem_free(wanted.texts);
     mem_free(wanted.tags);

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Which markers are drawn where many crowd: the rule of protocol/LABELS.md.
+
+const MOST = 6, NEAR = 30, HELD = 0.8; // within so many units, of which so much counts for what was drawn in the picture before
+
+// items: { x, y, depth, occluded, kept (drawn in any case), held (drawn in the picture before) }. Returns those drawn, in their order.
+export function thinOut(items, unit = 1) {
+    const cell = NEAR * unit, cells = new Map(), drawn = new Set(items.filter(({ kept }) => kept));
+    const key = ({ x, y }) => Math.floor(x / cell) * 65536 + Math.floor(y / cell);
+    const put = (item) => {
+        const at = key(item), there = cells.get(at);
+        if (there)
+            there.push(item);
+        else
+            cells.set(at, [item]);
+    };
+    const isCrowded = (item) => {
+        const { x, y, held } = item, middle = key(item), least = (cell * (held ? HELD : 1)) ** 2;
+        let count = 0;
+        for (let i = -65536; i <= 65536; i += 65536) {
+            for (let k = -1; k <= 1; k++) {
+                for (const other of cells.get(middle + i + k) ?? []) {
+                    if ((other.x - x) ** 2 + (other.y - y) ** 2 < least && ++count === MOST)
+                        return true;
+                }
+            }
+        }
+        return false;
+    };
+    drawn.forEach(put);
+    const others = items.filter(({ kept }) => !kept); // sorting is stable: then by index
+    others.sort((a, b) => a.occluded - b.occluded || b.held - a.held || a.depth - b.depth);
+    for (const item of others) {
+        if (!isCrowded(item)) {
+            put(item);
+            drawn.add(item);
+        }
+    }
+    return items.filter((item) => drawn.has(item));
+}

@@ -1,0 +1,91 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Which markers are drawn, by the rule of protocol/LABELS.md, against the vectors that the browser's are tested with too. */
+#include "render/crowd.h"
+
+#include <dirent.h>
+#include <jansson.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "base/mem.h"
+#include "tests/support/synthetic.h"
+
+#define FOLDER "protocol/vectors/markers"
+
+static double at(const json_t *array, size_t i)
+{
+    return json_number_value(json_array_get(array, i));
+}
+
+static void check_vector(const char *name)
+{
+    char *path = mem_printf("%s/%s", FOLDER, name);
+    json_t *vector = json_load_file(path, 0, NULL);
+    assert_non_null(vector);
+    const json_t *list = json_object_get(vector, "items"), *expected = json_object_get(vector, "drawn");
+    size_t count = json_array_size(list), next = 0;
+    struct crowd_item *items = mem_array(count, sizeof(*items));
+    bool *drawn = mem_array(count, sizeof(*drawn));
+    for (size_t i = 0; i < count; i++) {
+        const json_t *item = json_array_get(list, i);
+        items[i] = (struct crowd_item){ at(item, 0), at(item, 1), at(item, 2), at(item, 3) > 0, at(item, 4) > 0, at(item, 5) > 0 };
+    }
+    crowd_thin(items, count, json_number_value(json_object_get(vector, "unit")), drawn);
+    for (size_t i = 0; i < count; i++) {
+        bool is_next = next < json_array_size(expected) && (size_t)at(expected, next) == i;
+        if (drawn[i] != is_next)
+            fail_msg("%s: item %zu is %sdrawn", name, i, drawn[i] ? "" : "not ");
+        next += is_next;
+    }
+    assert_int_equal(next, json_array_size(expected));
+    mem_free(items);
+    mem_free(drawn);
+    mem_free(path);
+    json_decref(vector);
+}
+
+static void draws_what_the_vectors_say(void **state)
+{
+    (void)state;
+    int count = 0;
+    DIR *folder = opendir(FOLDER);
+    assert_non_null(folder);
+    for (struct dirent *entry; (entry = readdir(folder));)
+        if (strstr(entry->d_name, ".json")) {
+            check_vector(entry->d_name);
+            count++;
+        }
+    closedir(folder);
+    assert_true(count >= 4);
+}
+
+/* Also where they lie on one another, and where there are none. */
+static void draws_the_first_of_thousands(void **state)
+{
+    (void)state;
+    enum { COUNT = 4096 };
+    static struct crowd_item items[COUNT];
+    static bool drawn[COUNT];
+    uint64_t seed = 7;
+    for (int i = 0; i < COUNT; i++)
+        items[i] = (struct crowd_item){ .x = 5 * synthetic_random_unit(&seed), .y = 5, .depth_m = i, .occluded = i == 0 };
+    crowd_thin(items, 0, 1, NULL);
+    crowd_thin(items, COUNT, 1, drawn);
+    for (int i = 0; i < COUNT; i++)
+        assert_int_equal(drawn[i], i > 0 && i <= 6);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(draws_what_the_vectors_say),
+        cmocka_unit_test(draws_the_first_of_thousands),
+    };
+    cmocka_set_message_output(CM_OUTPUT_TAP);
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
