@@ -24,30 +24,29 @@ static int await_recalled(struct hub *hub, struct request *request, struct recal
     return 0;
 }
 
-int ask_history(struct hub *hub, struct request *request)
+static int ask_recorded(struct hub *hub, struct request *request, bool gaps)
 {
     struct recall_order order;
     struct message_error error = { 0 };
     struct args args;
+    int64_t now_us = clock_utc_ns() / 1000;
     if (!hub->recall)
         return request_answer_text(request, HTTP_STATUS_NOT_FOUND, HTTP_NOTHING_RECORDED);
     if (!request_args(request->wsi, &args, &error) ||
-        !recall_parse(hub->params.plant.scene->plant, args.list, args.count, clock_utc_ns() / 1000, &order, &error))
+        !(gaps ? recall_parse_gaps(args.list, args.count, now_us, &order, &error)
+               : recall_parse(hub->params.plant.scene->plant, args.list, args.count, now_us, &order, &error)))
         return request_answer_error(request, &error);
     return await_recalled(hub, request, &order);
 }
 
+int ask_history(struct hub *hub, struct request *request)
+{
+    return ask_recorded(hub, request, false);
+}
+
 int ask_gaps(struct hub *hub, struct request *request)
 {
-    struct recall_order order;
-    struct message_error error = { 0 };
-    struct args args;
-    if (!hub->recall)
-        return request_answer_text(request, HTTP_STATUS_NOT_FOUND, HTTP_NOTHING_RECORDED);
-    if (!request_args(request->wsi, &args, &error) ||
-        !recall_parse_gaps(args.list, args.count, clock_utc_ns() / 1000, &order, &error))
-        return request_answer_error(request, &error);
-    return await_recalled(hub, request, &order);
+    return ask_recorded(hub, request, true);
 }
 
 static bool read_alarm_query(struct hub *hub, struct request *request, bool journal, struct alarm_query *query, struct message_error *error)
