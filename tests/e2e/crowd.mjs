@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A hundred sensors on one side of a box: some markers are left out, a click where one was shows the surface, and who asks for one by
+// its name, or comes nearer, sees it.
+import assert from 'node:assert/strict';
+import { readFileSync, writeFileSync } from 'node:fs';
+import { join } from 'node:path';
+import { after, before, test } from 'node:test';
+import { openPage, shoot, waitForHealth, waitForPicture } from './support/browser.mjs';
+import { missing, TinyPlant } from './support/tiny_plant.mjs';
+
+const absent = missing();
+const options = { skip: absent.length > 0 ? `not built: ${absent.join(', ')}` : false, timeout: 120000 };
+const MANY = 100, ACROSS = 10, REACH_PX = 15; // of a click
+const TO_THE_SIDE = { eye: [3.25, 0, 0], target: [0, 0, 0], up: [0, 0, 1], fov: 45 };
+let plant, browser;
+
+before(async () => {
+    if (options.skip)
+        return;
+    plant = await TinyPlant.create();
+    const file = join(plant.folder, 'tags.csv'), at = (n) => ((n - (ACROSS - 1) / 2) * 0.07).toFixed(3);
+    const lines = Array.from({ length: MANY }, (_, i) =>
+        `X-${i},${400101 + 2 * i},Float,°C,one of many,temperature,E-101,0.5,${at(i % ACROSS)},${at(Math.floor(i / ACROSS))},9`);
+    writeFileSync(file, `${readFileSync(file, 'utf8')}${lines.join('\n')}\n`);
+    writeFileSync(plant.file, readFileSync(plant.file, 'utf8').replace('placement: { translate: [3', 'placement: { translate: [-3'));
+    const { code, err } = plant.prepare();
+    assert.equal(code, 0, err);
+    await plant.startSim();
+    await plant.startDaemon();
+    browser = await openPage(`http://127.0.0.1:${plant.port}/?lang=en`, { viewport: { width: 900, height: 700 } });
+});
+after(async () => {
+    await browser?.close();
+    await plant?.destroy();
+});
+
+const look = (page) => page.evaluate((reach) => {
+    const { overlay } = globalThis.plantcast, shown = new Set(overlay.markers);
+    const names = (list) => list.map(({ tag }) => tag.name);
+    const free = overlay.all.find((a) => !shown.has(a) && overlay.markers.every((b) => Math.hypot(a.x - b.x, a.y - b.y) > reach));
+    return { all: names(overlay.all), drawn: names(overlay.markers), free: free && [free.tag.name, free.x, free.y] };
+}, REACH_PX);
+
+test('some are left out, and are there again from near by', options, async () => {
+    const { page } = browser;
+    await waitForPicture(page);
+    await waitForHealth(page, 'live');
+    const goTo = async (camera) => {
+        await page.evaluate((there) => globalThis.plantcast.session.setCamera(there), camera);
+        await page.waitForFunction(({ eye }) => globalThis.plantcast.session.picture.camera.eye[0] === eye[0] &&
+            globalThis.plantcast.overlay.all.length > 0, camera);
+    };
+    await goTo(TO_THE_SIDE);
+    await page.waitForFunction((many) => globalThis.plantcast.overlay.all.length >= many &&
+        globalThis.plantcast.overlay.markers.length < many, MANY);
+    const { all, drawn, free } = await look(page);
+    await shoot(page, 'crowd');
+    assert.ok(drawn.length < 0.9 * all.length && drawn.length > 0.2 * all.length, `${drawn.length} of ${all.length}`);
+    assert.ok(free, 'one of those left out has none beside it');
+    const [name, x, y] = free, { x: left, y: top } = await page.locator('#viewport').boundingBox();
+    await page.mouse.click(left + x, top + y);
+    await page.locator('#place').waitFor();
+    assert.equal(await page.evaluate(() => globalThis.plantcast.selection.tag), null, `${name} is not there to be clicked`);
+
+    await page.evaluate((chosen) => {
+        const { selection, refresh } = globalThis.plantcast;
+        selection.tag = chosen;
+        refresh();
+    }, name);
+    await page.waitForFunction((chosen) => globalThis.plantcast.overlay.markers.some(({ tag }) => tag.name === chosen), name);
+    await goTo({ ...TO_THE_SIDE, eye: [1.5, 0, 0] });
+    await page.waitForFunction(() => globalThis.plantcast.overlay.markers.length === globalThis.plantcast.overlay.all.length);
+    assert.deepEqual(browser.errors, []);
+});
