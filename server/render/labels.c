@@ -118,7 +118,7 @@ static bool fits(const struct layout *layout, int index, int slot)
 static void place(struct layout *layout, int index)
 {
     const struct label_item *item = &layout->items[index];
-    for (int n = is_held(item) ? -1 : 0; n < LABEL_SLOTS; n++) {
+    for (int n = is_held(item) && item->held < LABEL_SLOTS ? -1 : 0; n < LABEL_SLOTS; n++) { /* not where a call-out was */
         int slot = n < 0 ? item->held : n;
         if (!fits(layout, index, slot))
             continue;

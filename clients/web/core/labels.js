@@ -80,7 +80,7 @@ export function placeLabels(items, { area, unit = 1, blocked = [], rings = null,
         return inside && !taken.meets(grown, item.id) ? box : null;
     };
     const place = (item) => {
-        for (let n = isHeld(item) ? -1 : 0; n < SLOTS.length; n++) {
+        for (let n = isHeld(item) && item.held < SLOTS.length ? -1 : 0; n < SLOTS.length; n++) { // not where a call-out was
             const slot = n < 0 ? item.held : n, box = fits(item, slot);
             if (!box)
                 continue;
