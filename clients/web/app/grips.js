@@ -63,7 +63,9 @@ export class Grips {
 
     place(grips, view, half) {
         const taken = [], covers = this.covers(), path = outline(grips, view);
-        this.lines.append(makeSvg('path', { class: 'under', d: path }), makeSvg('path', { d: path }));
+        const { left: x, width } = view, { height } = this.viewport; // nothing of it in the other half
+        this.lines.append(makeSvg('svg', { x, width, height, viewBox: `${x} 0 ${width} ${height}` },
+            makeSvg('path', { class: 'under', d: path }), makeSvg('path', { d: path })));
         for (const grip of grips) {
             const button = this.buttons.get(`${grip.id}/${half}`) ?? this.make(grip.id, half);
             const held = this.dragging?.button === button ? this.dragging.spot : null;

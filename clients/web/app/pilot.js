@@ -42,6 +42,7 @@ export class Pilot {
         });
         window.addEventListener('blur', () => this.keys.clear());
         new ResizeObserver(() => this.stayHome()).observe(viewport.element);
+        session.on('params', () => this.stayHome()); // a split view has halves of another shape
         proveCodecs(); // there will be motion
     }
 
