@@ -47,7 +47,8 @@ test('under its bound, whatever somebody tries', options, async (t) => {
             [most, mostOf] = [now, await gauges()];
         assert.ok(now <= BOUND_MB, `after ${n} uses, the last of them ${name}: ${now} MB; ${told(mostOf)}`);
         const { bound, drawing, ...kept } = await gauges(), sum = Object.values(kept).reduce((a, b) => a + b);
-        assert.ok(sum <= bound * 1.02, `${sum} MB of ${bound} are kept, beside ${drawing} to draw the next picture in: ${told(kept)}`);
+        assert.ok(sum <= bound * 1.1, // what the present picture needs may pass it
+            `${sum} MB of ${bound} are kept, beside ${drawing} to draw the next picture in: ${told(kept)}`);
         if (random() < LEAVES) {
             await one.leave();
             one = await Curious.come(port, random);

@@ -10,7 +10,7 @@ static const int64_t LOOK_NS = 1 * NS_PER_S; /* between counts */
 static const int64_t REST_NS = 10 * NS_PER_S; /* nobody is there for so long */
 static const double FIELD_SHARE = 0.3;        /* of the bound: values and weights of all fields */
 /* Beside models and caches: shaders, threads, the plant; and what is made while a picture, or a light, is under way. */
-static const size_t OWN_BYTES = (size_t)448 << 20;
+static const size_t OWN_BYTES = (size_t)576 << 20;
 
 static counter *add(struct painter *painter, const char *of)
 {

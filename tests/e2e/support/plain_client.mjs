@@ -3,6 +3,7 @@
 import { createHash, randomBytes } from 'node:crypto';
 import { connect } from 'node:net';
 
+const MORE = 8; // another part of the same picture follows
 const OPCODE = { continuation: 0, text: 1, binary: 2, close: 8, ping: 9, pong: 10 };
 
 // { status, headers (lower case), body } of one HTTP request, written as given.
@@ -143,7 +144,7 @@ export class PlainClient {
             if (frame.payload.length < frame.payload_bytes)
                 return; // given up by the server
             this.frames.push({ ...frame, at: performance.now() });
-            if (this.acknowledge)
+            if (this.acknowledge && !(frame.flags & MORE)) // a picture in parts with its last one, as the rest may be given up
                 this.say({ type: 'ack', seq: frame.seq });
         }
         this.wake();
