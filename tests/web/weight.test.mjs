@@ -10,9 +10,11 @@ const read = (path) => readFileSync(new URL(path, WEB), 'utf8');
 const page = read('index.html');
 const all = (pattern) => [...page.matchAll(pattern)].map(([, path]) => path);
 const scripts = all(/<script type="module" src="([^"]+)"/g), sheets = all(/<link rel="stylesheet" href="([^"]+)"/g);
-const MOST_BYTES = 115000;
+const MOST_BYTES = 106000;
 
-const weigh = (files) => files.reduce((sum, path) => sum + Buffer.byteLength(read(path)), 0);
+// As the daemon serves it: scripts without lines that only comment (server/net/http/site.c).
+const served = (path) => (path.endsWith('.js') ? read(path).replace(/(?<=\n) *\/\/.*/g, '') : read(path));
+const weigh = (files) => files.reduce((sum, path) => sum + Buffer.byteLength(served(path)), 0);
 const ours = (language) => ['index.html', `words/${language}.js`, `words/parts.${language}.js`, ...['app', 'core'].flatMap((folder) =>
     readdirSync(new URL(folder, WEB)).map((name) => `${folder}/${name}`))];
 
