@@ -9,7 +9,7 @@ import { get } from './support/plain_client.mjs';
 import { missing, startPlant } from './support/plant.mjs';
 
 const USES = Number(process.env.USES ?? 240), SEED = Number(process.env.PLANTCAST_SEED ?? 20), LEAVES = 0.02;
-const BOUND_MB = Number(process.env.MEMORY_MB ?? 1024), REST_MS = 60000, GROWN = 1.2;
+const BOUND_MB = Number(process.env.MEMORY_MB ?? 1280), REST_MS = 60000, GROWN = 1.2;
 const why = missing();
 const options = { skip: why ?? false, timeout: 100000 + 4000 * USES };
 let plant, port, start, one;
