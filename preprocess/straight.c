@@ -16,11 +16,6 @@ static double factor_of(double x)
     return x > 0 && x < 1e4 ? x : x > 0 ? 1e4 : 0;
 }
 
-bool straight_looks_at_paper(const struct plant_group *group, size_t sensor_count)
-{
-    return sensor_count <= MANY && (sensor_count > 1 || group->interpolation == INTERPOLATION_PAPER);
-}
-
 static void add_group(struct straight *straight, const struct plant *plant, int group, const struct plant_sensor *sensors)
 {
     const struct plant_group *from = &plant->groups[group];
@@ -46,7 +41,7 @@ static void add_group(struct straight *straight, const struct plant *plant, int 
         to->of.decays |= decay[i] != 1;
     }
     to->in_a_row = to->columns[to->count - 1] - to->columns[0] == to->count - 1;
-    to->papers = straight_looks_at_paper(from, to->count);
+    to->papers = to->count <= MANY;
     straight->group_count++;
     straight->share_count += (to->papers ? 4 : 2) * padded;
     straight->most_count = padded > straight->most_count ? padded : straight->most_count;
