@@ -51,7 +51,7 @@ bool file_unwritten(std::string *, const std::string &, const std::vector<unsign
     return false;
 }
 
-bool file_unmeasured(size_t *, std::string *, const std::string &, void *)
+[[maybe_unused]] bool file_unmeasured(size_t *, std::string *, const std::string &, void *)
 {
     return false;
 }
