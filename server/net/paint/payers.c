@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A short list. */
+/* Drawing time by address: who has spent how much, for as long as it has clients or is ahead of the others. */
 #include "net/paint/payers.h"
 
 #include "base/mem.h"
