@@ -9,6 +9,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <time.h>
 #include <unistd.h>
 #define XXH_INLINE_ALL
@@ -25,7 +26,7 @@ static const char head[] = "Time,Tag Name,Result,Value,Unit,Expected,Tolerance,B
 struct proofs {
     struct log *log;
     const struct plant *plant;
-    char *path;
+    char *folder, *path;
     struct proof *at;  /* by tag */
     uint64_t *numbers; /* likewise */
     uint64_t number;
@@ -155,6 +156,7 @@ struct proofs *proofs_open(struct log *log, const struct plant *plant, const cha
     struct proofs *proofs = mem_new(sizeof(*proofs));
     proofs->log = log;
     proofs->plant = plant;
+    proofs->folder = mem_strdup(folder);
     proofs->path = mem_printf("%s/" PROOFS_FILE, folder);
     proofs->at = mem_array(plant->tag_count, sizeof(*proofs->at));
     proofs->numbers = mem_array(plant->tag_count, sizeof(*proofs->numbers));
@@ -172,6 +174,7 @@ void proofs_close(struct proofs **pointer)
     struct proofs *proofs = *pointer;
     if (!proofs)
         return;
+    mem_free(proofs->folder);
     mem_free(proofs->path);
     mem_free(proofs->at);
     mem_free(proofs->numbers);
@@ -180,9 +183,11 @@ void proofs_close(struct proofs **pointer)
     *pointer = NULL;
 }
 
-/* A line that was cut off, by a power cut say, is ended first. */
-static bool append(const char *path, const struct text *row)
+/* A line that was cut off, by a power cut say, is ended first. The historian makes the folder too, on a thread of its own, and may not
+ * have come to it yet. */
+static bool append(const char *folder, const char *path, const struct text *row)
 {
+    mkdir(folder, 0777); /* where it cannot be made, opening says why */
     FILE *file = fopen(path, "a+b");
     if (!file)
         return false;
@@ -203,7 +208,7 @@ const char *proofs_add(struct proofs *proofs, int tag, const struct proof *proof
 {
     struct text row = { 0 };
     add_row(&row, proofs->plant, tag, proof);
-    bool good = append(proofs->path, &row);
+    bool good = append(proofs->folder, proofs->path, &row);
     text_finish(&row);
     if (!good) {
         log_err(proofs->log, "%s: %s: %s", proofs->path, proofs->plant->tags[tag].name, strerror(errno));

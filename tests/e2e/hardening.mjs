@@ -57,7 +57,8 @@ test('with the system calls that the unit leaves it, the daemon draws on llvmpip
         client.say({ type: 'params', seq: 1, baseline: 'now' });
         await client.text('params');
         client.say({ type: 'prove', seq: 1, tag: 'TI-1', expected: 1, tolerance: 1, fail: true }); // written and synced
-        assert.equal((await client.text('proved')).kept, true);
+        const proved = await client.text('proved');
+        assert.equal(proved.kept, true, plant.daemon.said);
         client.close();
         assert.equal((await get(plant.port, '/snapshot.png?width=320&height=200')).status, 200);
         assert.deepEqual(await plant.daemon.stop(), { code: 0, signal: null }, plant.daemon.said);

@@ -182,6 +182,15 @@ static void test_what_cannot_be_kept_is_refused_and_counts_for_nothing(void **st
     assert_false(proofs_begun(f->proofs));
 }
 
+static void test_the_folder_is_made_where_nobody_has_yet(void **state)
+{
+    struct fixture *f = *state;
+    assert_int_equal(rmdir(f->folder), 0);
+    assert_null(proofs_add(f->proofs, 0, &passed));
+    open_again(f);
+    assert_int_equal(proofs_of(f->proofs, 0)->state, PROOF_PASSED);
+}
+
 static void test_all_tags_with_a_source_are_told(void **state)
 {
     struct fixture *f = *state;
@@ -204,6 +213,7 @@ int main(void)
         cmocka_unit_test_setup_teardown(test_a_tag_that_is_another_is_unproven_again, set_up, tear_down),
         cmocka_unit_test_setup_teardown(test_a_line_that_was_cut_off_spoils_no_other, set_up, tear_down),
         cmocka_unit_test_setup_teardown(test_what_cannot_be_kept_is_refused_and_counts_for_nothing, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(test_the_folder_is_made_where_nobody_has_yet, set_up, tear_down),
         cmocka_unit_test_setup_teardown(test_all_tags_with_a_source_are_told, set_up, tear_down),
     };
     cmocka_set_message_output(CM_OUTPUT_TAP);
