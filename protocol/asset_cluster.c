@@ -81,9 +81,3 @@ bool asset_cluster_turned_away(const struct asset_cluster *cluster, const float 
     }
     return cluster->cone_cutoff < 1 && dot >= cluster->cone_cutoff * sqrtf(length2) + sqrtf(radius2);
 }
-
-bool asset_cluster_turned_along(const struct asset_cluster *cluster, const float looking[3])
-{
-    const float *axis = cluster->cone_axis;
-    return cluster->cone_cutoff < 1 && looking[0] * axis[0] + looking[1] * axis[1] + looking[2] * axis[2] >= cluster->cone_cutoff;
-}

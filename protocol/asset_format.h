@@ -122,8 +122,6 @@ bool asset_view_fresh(struct asset_view *view, const void *bytes, size_t size, c
 void asset_cluster_measure(struct asset_cluster *cluster, const float (*positions_m)[3], const uint32_t *indices);
 /* An eye there (less origin_m) sees only the backs of its triangles, by their winding. */
 bool asset_cluster_turned_away(const struct asset_cluster *cluster, const float eye_m[3]);
-/* The same for all eyes far away against that direction, of unit length: orthographic views. */
-bool asset_cluster_turned_along(const struct asset_cluster *cluster, const float looking[3]);
 
 /* What an asset file is made of. Pointers are only read. Zero-initialise. */
 struct asset_parts {

@@ -254,23 +254,6 @@ static void unlink_alarm(struct alarms *alarms, int index)
         alarms->newest = alarm->older;
 }
 
-/* Who asks for changes gets it. */
-void alarms_touch(struct alarms *alarms, int index)
-{
-    struct alarm *alarm = &alarms->list[index];
-    alarm->number = ++alarms->number;
-    if (alarms->newest != index) {
-        unlink_alarm(alarms, index);
-        alarm->newer = -1;
-        alarm->older = alarms->newest;
-        if (alarms->newest >= 0)
-            alarms->list[alarms->newest].newer = index;
-        alarms->newest = index;
-    }
-    if (alarm->tag >= 0)
-        alarms_find_gravest(alarms, alarm->tag);
-}
-
 enum alarm_word alarm_word_of(const struct alarm *alarm)
 {
     return alarm_state_word(&alarm->state, &alarm->rule);
@@ -282,7 +265,7 @@ static bool graver(const struct alarm *a, const struct alarm *b)
     return alarm_graver(&x, &y);
 }
 
-void alarms_find_gravest(struct alarms *alarms, int tag)
+static void find_gravest(struct alarms *alarms, int tag)
 {
     const struct alarm *gravest = NULL;
     for (int i = alarms->first_alarm[tag]; i < alarms->first_alarm[tag + 1]; i++) {
@@ -298,6 +281,23 @@ void alarms_find_gravest(struct alarms *alarms, int tag)
     *was = now;
     if (alarms->listener.of_tag)
         alarms->listener.of_tag(alarms->listener.arg, tag, (enum alarm_kind)now.kind, (enum alarm_word)now.word);
+}
+
+/* Who asks for changes gets it. */
+void alarms_touch(struct alarms *alarms, int index)
+{
+    struct alarm *alarm = &alarms->list[index];
+    alarm->number = ++alarms->number;
+    if (alarms->newest != index) {
+        unlink_alarm(alarms, index);
+        alarm->newer = -1;
+        alarm->older = alarms->newest;
+        if (alarms->newest >= 0)
+            alarms->list[alarms->newest].newer = index;
+        alarms->newest = index;
+    }
+    if (alarm->tag >= 0)
+        find_gravest(alarms, alarm->tag);
 }
 
 void alarms_watch(struct alarms *alarms, int index)

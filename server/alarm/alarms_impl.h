@@ -42,7 +42,6 @@ struct alarms {
 };
 
 void alarms_touch(struct alarms *alarms, int index);
-void alarms_find_gravest(struct alarms *alarms, int tag);
 void alarms_watch(struct alarms *alarms, int index); /* in timed, if time can change it */
 
 #endif

@@ -2,7 +2,6 @@
 /* The two clocks. */
 #include "base/clock.h"
 
-#include <errno.h>
 #include <sys/timex.h>
 #include <time.h>
 
@@ -28,13 +27,6 @@ bool clock_utc_is_set(void)
     struct timex asked = { .modes = 0 };
     int state = adjtimex(&asked);
     return state >= 0 && state != TIME_ERROR && !(asked.status & STA_UNSYNC);
-}
-
-void clock_sleep_ns(int64_t ns)
-{
-    struct timespec t = { .tv_sec = ns / NS_PER_S, .tv_nsec = ns % NS_PER_S };
-    while (ns > 0 && nanosleep(&t, &t) != 0 && errno == EINTR)
-        ;
 }
 
 int64_t clock_work_ns(void)

@@ -12,7 +12,6 @@
 int64_t clock_mono_ns(void); /* monotonic: ages, deadlines */
 int64_t clock_utc_ns(void);  /* since 1970: what is shown and stored */
 bool clock_utc_is_set(void);  /* somebody keeps it right (NTP, PTP): the kernel says so */
-void clock_sleep_ns(int64_t ns);
 void clock_cond_init(pthread_cond_t *cond); /* timed waits on it are by clock_mono_ns */
 int64_t clock_work_ns(void); /* of all threads of this process, on all cores */
 

@@ -3,6 +3,7 @@
 #include "base/log.h"
 
 #include <pthread.h>
+#include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
 #include <time.h>
@@ -63,12 +64,15 @@ void log_destroy(struct log **log)
     *log = NULL;
 }
 
-void log_at_v(struct log *log, enum log_level level, const char *fmt, va_list ap)
+void log_at(struct log *log, enum log_level level, const char *fmt, ...)
 {
     char text[LINE_BYTES];
+    va_list ap;
     if (level > log->level)
         return;
+    va_start(ap, fmt);
     vsnprintf(text, sizeof(text), fmt, ap);
+    va_end(ap);
     pthread_mutex_lock(&log->lock);
     int64_t now_ns = clock_mono_ns();
     if (level == log->last_level && now_ns - log->last_ns < REPEAT_NS && !strcmp(text, log->last)) {
@@ -81,12 +85,4 @@ void log_at_v(struct log *log, enum log_level level, const char *fmt, va_list ap
         log->last_ns = now_ns;
     }
     pthread_mutex_unlock(&log->lock);
-}
-
-void log_at(struct log *log, enum log_level level, const char *fmt, ...)
-{
-    va_list ap;
-    va_start(ap, fmt);
-    log_at_v(log, level, fmt, ap);
-    va_end(ap);
 }

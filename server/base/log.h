@@ -2,8 +2,6 @@
 /* One line per event, to stderr: time, level, text. Thread: any. Repeated lines are counted and said once a second. */
 #ifndef BASE_LOG_H
 #define BASE_LOG_H
-#include <stdarg.h>
-
 enum log_level { LOG_ERROR, LOG_WARN, LOG_INFO, LOG_DEBUG };
 
 struct log;
@@ -14,7 +12,6 @@ struct log *log_create(enum log_level level);
 void log_destroy(struct log **log);
 
 void log_at(struct log *log, enum log_level level, const char *fmt, ...) __attribute__((format(printf, 3, 4)));
-void log_at_v(struct log *log, enum log_level level, const char *fmt, va_list ap) __attribute__((format(printf, 3, 0)));
 
 #define log_err(log, ...) log_at(log, LOG_ERROR, __VA_ARGS__)
 #define log_warn(log, ...) log_at(log, LOG_WARN, __VA_ARGS__)

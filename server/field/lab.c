@@ -54,7 +54,8 @@ void lab_from_rgb(const uint8_t rgb[3], double lab[3])
     lab_from_srgb((double[3]){ rgb[0], rgb[1], rgb[2] }, SIGHT_NORMAL, lab);
 }
 
-bool rgb_from_lab(const double lab[3], uint8_t rgb[3])
+/* False: sRGB has no such colour; rgb is cut. */
+static bool rgb_from_lab(const double lab[3], uint8_t rgb[3])
 {
     static const double to_rgb[3][3] = { { 3.2404542, -1.5371385, -0.4985314 },
                                          { -0.9692660, 1.8760108, 0.0415560 },

@@ -35,7 +35,7 @@ struct trial_reach *trial_reach_create(float *distance_m)
     return reach;
 }
 
-struct trial_reach *trial_reach_ref(struct trial_reach *reach)
+static struct trial_reach *reach_ref(struct trial_reach *reach)
 {
     if (reach)
         atomic_fetch_add(&reach->refs, 1);
@@ -116,7 +116,7 @@ uint32_t trials_put(struct trials *trials, const struct trial_sensor *sensors, s
     memcpy(kept->trial.sensors, sensors, kept->trial.count * sizeof(*sensors));
     pthread_mutex_lock(&trials->lock);
     for (size_t i = 0; i < kept->trial.count; i++) {
-        trial_reach_ref(kept->trial.sensors[i].reach);
+        reach_ref(kept->trial.sensors[i].reach);
         kept->trial.sensors[i].number = ++trials->newest_sensor;
     }
     uint32_t id = kept->trial.id = ++trials->newest;

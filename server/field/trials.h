@@ -12,7 +12,6 @@ enum { TRIAL_SENSORS = 64 };
 struct trial_reach; /* distances along the surface, of every vertex; counted */
 /* Takes distance_m (mem_free). */
 struct trial_reach *trial_reach_create(float *distance_m);
-struct trial_reach *trial_reach_ref(struct trial_reach *reach);
 void trial_reach_unref(struct trial_reach **reach); /* &NULL is fine; leaves NULL */
 
 struct trial_sensor {

@@ -17,7 +17,8 @@ static void add_number(struct text *out, double value, const char *none)
         text_add(out, "%.10g", value + 0.0); /* of -0.0 it makes 0.0 */
 }
 
-void series_text_string(struct text *out, const char *string)
+/* In quotes, as JSON has it. */
+static void add_string(struct text *out, const char *string)
 {
     text_add(out, "\"");
     for (; *string; string++) {
@@ -52,9 +53,9 @@ static void add_bucket(struct text *out, const struct history_bucket *bucket)
 void series_text_json(struct text *out, const char *tag, const char *unit, const struct history_series *series)
 {
     text_add(out, "{\"tag\":");
-    series_text_string(out, tag);
+    add_string(out, tag);
     text_add(out, ",\"unit\":");
-    series_text_string(out, unit);
+    add_string(out, unit);
     text_add(out, ",\"step\":%s,\"bucket_us\":%lld,\"points\":[", series->step ? "true" : "false", (long long)series->bucket_us);
     for (size_t i = 0; i < series->points.count; i++) {
         text_add(out, i ? "," : "");

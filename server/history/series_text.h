@@ -10,6 +10,5 @@ void series_text_json(struct text *out, const char *tag, const char *unit, const
 /* Its rows, and once before all of them the line that names the columns: of points, or of buckets. */
 void series_text_csv_head(struct text *out, bool buckets);
 void series_text_csv(struct text *out, const char *tag, const char *unit, const struct history_series *series);
-void series_text_string(struct text *out, const char *string); /* in quotes, as JSON has it */
 
 #endif

@@ -246,7 +246,8 @@ void streams_close(struct hub *hub)
         close_with(stream, LWS_CLOSE_STATUS_GOINGAWAY, "the server goes down");
 }
 
-struct stream *stream_find(const struct hub *hub, uint64_t client)
+/* NULL: not connected. */
+static struct stream *find_stream(const struct hub *hub, uint64_t client)
 {
     size_t place = place_of(hub, client);
     bool there = place < (size_t)hub->stream_count && hub->by_client[place]->session->id == client;
@@ -263,12 +264,12 @@ struct stream *stream_called(const struct hub *hub, uint64_t number)
 
 bool stream_owns(const struct hub *hub, uint64_t client)
 {
-    return stream_find(hub, client) != NULL;
+    return find_stream(hub, client) != NULL;
 }
 
 void stream_on_picture(struct hub *hub, struct picture *picture)
 {
-    struct stream *stream = stream_find(hub, picture->client);
+    struct stream *stream = find_stream(hub, picture->client);
     const struct frame *frame = picture->packet ? picture->packet->frame : NULL;
     if (frame && frame->view.tier == TIER_STILL && picture->wish.urgency >= URGENCY_REFINE)
         hub->still_ns = frame->render_ns + frame->readback_ns;
@@ -279,7 +280,7 @@ void stream_on_picture(struct hub *hub, struct picture *picture)
 
 void stream_on_pick(struct hub *hub, const struct pick_answer *answer)
 {
-    struct stream *stream = stream_find(hub, answer->order.client);
+    struct stream *stream = find_stream(hub, answer->order.client);
     session_on_pick(stream->session, answer);
     pump(hub, stream);
 }
@@ -295,7 +296,7 @@ static void pump_followers(struct hub *hub, const struct stream *leader)
 
 void stream_on_gaps(struct hub *hub, const struct gaps_answer *answer)
 {
-    struct stream *stream = stream_find(hub, answer->client);
+    struct stream *stream = find_stream(hub, answer->client);
     if (!stream)
         return;
     session_on_gaps(stream->session, answer);
@@ -314,7 +315,7 @@ void streams_on_placed(struct hub *hub)
 
 void stream_say(struct hub *hub, uint64_t client, const char *text)
 {
-    struct stream *stream = stream_find(hub, client);
+    struct stream *stream = find_stream(hub, client);
     if (!stream)
         return;
     session_say(stream->session, text);
@@ -396,7 +397,7 @@ static void on_receive(struct hub *hub, struct stream *stream, const void *bytes
 
 void stream_on_moment(struct hub *hub, const struct past_answer *answer)
 {
-    struct stream *stream = stream_find(hub, answer->client);
+    struct stream *stream = find_stream(hub, answer->client);
     session_on_moment(stream->session, answer->at_us, answer->good, clock_mono_ns());
     if (follow_spread(hub, stream))
         pump_followers(hub, stream);

@@ -38,8 +38,7 @@ bool stream_send(struct hub *hub, struct stream *stream);
 bool stream_has_output(const struct stream *stream, int64_t now_ns);
 /* Frees a picture that is half sent, if it is not worth sending on. */
 void stream_give_up(struct hub *hub, struct stream *stream, int64_t now_ns);
-struct stream *stream_find(const struct hub *hub, uint64_t client); /* NULL: not connected */
-struct stream *stream_called(const struct hub *hub, uint64_t number); /* likewise, by the number that clients know */
+struct stream *stream_called(const struct hub *hub, uint64_t number); /* by the number that clients know; NULL: not connected */
 void follow_resolve(struct hub *hub, struct stream *stream);        /* its session may have asked to follow another */
 bool follow_spread(struct hub *hub, const struct stream *leader);   /* its view changed. False: nobody follows it */
 void follow_share_steps(struct hub *hub);                           /* every tick */

@@ -2,6 +2,7 @@
 /* The table of beginnings. */
 #include "plant/file_kind.h"
 
+#include <stdbool.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -30,15 +31,15 @@ static const struct {
     { BEGINS("\x7F" "ELF"), "a program" },
 };
 
+enum { LOOKED_AT_BYTES = 512 };
+
 static bool has(const char *bytes, size_t count, const char *word)
 {
     return memmem(bytes, count, word, strlen(word)) != NULL;
 }
 
-const char *file_kind(const void *bytes, size_t count)
+static const char *kind_of(const char *text, size_t count)
 {
-    const char *text = bytes;
-    count = count < FILE_KIND_BYTES ? count : FILE_KIND_BYTES;
     if (count > 12 && !memcmp(text, "ISO-10303-21", 12))
         return has(text, count, "IFC") ? "an IFC model" : "a STEP file";
     for (size_t i = 0; i < sizeof(known) / sizeof(*known); i++)
@@ -57,10 +58,10 @@ const char *file_kind(const void *bytes, size_t count)
 
 const char *file_kind_of(const char *path)
 {
-    char bytes[FILE_KIND_BYTES];
+    char bytes[LOOKED_AT_BYTES];
     FILE *file = fopen(path, "rb");
     size_t count = file ? fread(bytes, 1, sizeof(bytes), file) : 0;
     if (file)
         fclose(file);
-    return file_kind(bytes, count);
+    return kind_of(bytes, count);
 }

@@ -2,14 +2,9 @@
 /* What a file is that somebody named by mistake, by how it begins. Pure. Thread: any. */
 #ifndef PLANT_FILE_KIND_H
 #define PLANT_FILE_KIND_H
-#include <stdbool.h>
-#include <stddef.h>
 
-enum { FILE_KIND_BYTES = 512 }; /* more is not looked at */
-
-/* "a STEP file", "a model (GLB)", ...; NULL: nothing that begins so is known, text for instance. */
-const char *file_kind(const void *bytes, size_t count);
-/* Likewise of a file; NULL too where it cannot be read. */
+/* Tells what a file is: "a STEP file", "a model (GLB)", ... Returns NULL for what is not known, text for instance, and for a file that
+   cannot be read. */
 const char *file_kind_of(const char *path);
 
 #endif

@@ -8,12 +8,14 @@
 #include "render/light/sky.h"
 #include "render/matrix.h"
 
-double frame_block_pattern_px(const struct view *view)
+/* Side of a cell of the hatching and stippling. */
+static double pattern_px(const struct view *view)
 {
     return fmax(6, view->height_px / 90.0);
 }
 
-double frame_block_line_px(const struct view *view)
+/* Width of an isoline. */
+static double line_px(const struct view *view)
 {
     return fmax(1.2, view->height_px / 640.0);
 }
@@ -35,8 +37,8 @@ static void fill_scale(struct frame_block *block, const struct picture *picture)
     block->scale[0] = (float)low;
     block->scale[1] = (float)(1 / (high - low));
     block->scale[2] = scale.log;
-    block->scale[3] = (float)frame_block_pattern_px(view);
-    block->lines[0] = picture->palette.lines ? (float)frame_block_line_px(view) : 0;
+    block->scale[3] = (float)pattern_px(view);
+    block->lines[0] = picture->palette.lines ? (float)line_px(view) : 0;
     block->lines[1] = view->dark ? SKY_ROUNDINGS : 0;
     block->lines[2] = block->lines[3] = 0;
 }

@@ -11,9 +11,5 @@ struct frame_block { /* std140 */
 };
 
 void frame_block_fill(struct frame_block *block, const struct picture *picture);
-/* Side of a cell of the hatching and stippling. */
-double frame_block_pattern_px(const struct view *view);
-/* Width of an isoline. */
-double frame_block_line_px(const struct view *view);
 
 #endif

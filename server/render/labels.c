@@ -94,7 +94,7 @@ struct box layout_box(const struct label_item *item, int slot, double unit, doub
     return (struct box){ x, y, item->width, item->height };
 }
 
-struct box label_box(const struct label_item *item, int slot, double unit)
+static struct box box_of(const struct label_item *item, int slot, double unit)
 {
     return layout_box(item, slot, unit, 0, 0);
 }
@@ -109,7 +109,7 @@ bool layout_is_inside(const struct layout *layout, const struct box *box)
 static bool fits(const struct layout *layout, int index, int slot)
 {
     const struct label_item *item = &layout->items[index];
-    struct box box = label_box(item, slot, layout->area->unit);
+    struct box box = box_of(item, slot, layout->area->unit);
     double more = slot == item->held ? 0 : LABEL_CLEARANCE * layout->area->unit;
     struct box grown = { box.x - more, box.y - more, box.width + 2 * more, box.height + 2 * more };
     return layout_is_inside(layout, &box) && layout_is_free(layout, &grown, index, OVER_NOTHING);
@@ -122,7 +122,7 @@ static void place(struct layout *layout, int index)
         int slot = n < 0 ? item->held : n;
         if (!fits(layout, index, slot))
             continue;
-        struct box box = label_box(item, slot, layout->area->unit);
+        struct box box = box_of(item, slot, layout->area->unit);
         take(layout, &box, index, OVER_ALL);
         layout->places[index] = (struct label_place){ box, slot, LABEL_NONE };
         layout->labelled[layout->labelled_count++] = index;

@@ -36,6 +36,5 @@ struct label_place {
 
 /* places: by item. */
 void labels_place(const struct label_item *items, size_t count, const struct label_area *area, struct label_place *places);
-struct box label_box(const struct label_item *item, int slot, double unit);
 
 #endif

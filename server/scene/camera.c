@@ -231,11 +231,6 @@ void camera_fit_up(struct camera *camera, enum axis up, const double min_m[3], c
     camera_fit_along(camera, forward[up], min_m, max_m, aspect, &(struct camera_window){ 0 });
 }
 
-void camera_fit(struct camera *camera, const double min_m[3], const double max_m[3], double aspect)
-{
-    camera_fit_up(camera, AXIS_Z, min_m, max_m, aspect);
-}
-
 /* --- matrices --------------------------------------------------------------------------------------------------------------- */
 
 static void depth_range(const struct camera *camera, const struct basis *basis, const double min_m[3], const double max_m[3],

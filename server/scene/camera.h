@@ -14,9 +14,8 @@ struct camera {
 
 /* Finite, eye apart from target, up not along the view, 1 <= fov <= 120, or 1e-3 <= height; nothing beyond PLANT_MAX_M. */
 bool camera_valid(const struct camera *camera);
-/* Looks at the whole box, filling the picture, from a raised south-west corner of a plant that is Z up. Sets every field. */
-void camera_fit(struct camera *camera, const double min_m[3], const double max_m[3], double aspect);
-/* The same for either kind of plant frame: x is east; north is y in a Z-up frame and -z in a Y-up one. */
+/* Looks at the whole box, filling the picture, from the plant's raised south-west corner: x is east; north is y in a Z-up frame and -z in
+   a Y-up one. Sets every field. */
 void camera_fit_up(struct camera *camera, enum axis up, const double min_m[3], const double max_m[3], double aspect);
 struct camera_window { /* a part of the picture, each way from -1 to 1. Zero: all of it */
     double left, right, bottom, top;

@@ -115,7 +115,7 @@ int modbus_link_host(const struct modbus_link *link)
     return link->host;
 }
 
-void modbus_link_close(struct modbus_link *link)
+static void close_link(struct modbus_link *link)
 {
     if (link->open && link->source->transport == TRANSPORT_RTU) {
         ioctl(link->slot_fd, TIOCNXCL);
@@ -129,7 +129,7 @@ void modbus_link_close(struct modbus_link *link)
 bool modbus_link_next_host(struct modbus_link *link)
 {
     int count = link->source->transport == TRANSPORT_RTU ? 1 : link->source->host_count;
-    modbus_link_close(link);
+    close_link(link);
     if (count > 1)
         lookup_destroy(&link->lookup);
     link->host = (link->host + 1) % count;
@@ -210,7 +210,7 @@ int modbus_link_open(struct modbus_link *link)
     close(fd);
     link->open = status == 0;
     if (link->open && wait_for(-1, 0, link->stop_fd, 0) == -ECANCELED) { /* interrupted before it was in its slot */
-        modbus_link_close(link);
+        close_link(link);
         status = -ECANCELED;
     }
     return status;
@@ -307,7 +307,7 @@ int modbus_link_read(struct modbus_link *link, int unit, enum register_table tab
     if (status == -EBADMSG)
         status = ask_anew(link, &question, words);
     if (status < 0)
-        modbus_link_close(link);
+        close_link(link);
     return status == -EBADMSG ? -EPROTO : status;
 }
 

@@ -21,7 +21,6 @@ const char *modbus_link_name(const struct modbus_link *link);
 int modbus_link_host(const struct modbus_link *link); /* which of the source's hosts that is; 0: the first */
 /* Within the source's timeout_ms. 0 or -errno; -ECANCELED: stopping. */
 int modbus_link_open(struct modbus_link *link);
-void modbus_link_close(struct modbus_link *link);
 /* The present host is of no use: the next one of the source's is opened next. True: that was the last, and the first is next. */
 bool modbus_link_next_host(struct modbus_link *link);
 /* Within the source's timeout_ms, however slowly the device drips. words: `count` registers, or bits as 0 and 1.

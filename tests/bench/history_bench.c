@@ -9,6 +9,7 @@
 #include "history/history.h"
 #include "history/month.h"
 #include "tests/support/plant_by_hand.h"
+#include "tests/support/sleep.h"
 #include "tests/support/temp.h"
 #include "value/quality.h"
 
@@ -66,7 +67,7 @@ static void record(const char *name, double noise_size)
     for (int i = 0; i < SECONDS * RATE_HZ; i++) {
         write_values(store, samples, 0.2, noise_size);
         int64_t next_ns = begin_ns + (i + 1) * NS_PER_S / RATE_HZ, now_ns = clock_mono_ns();
-        clock_sleep_ns(next_ns > now_ns ? next_ns - now_ns : 0);
+        sleep_ns(next_ns > now_ns ? next_ns - now_ns : 0);
     }
     double took_s = (double)(clock_mono_ns() - begin_ns) / 1e9;
     historian_stop(&historian);

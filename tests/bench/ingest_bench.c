@@ -7,6 +7,7 @@
 #include "base/mem.h"
 #include "tests/support/modbus_device.h"
 #include "tests/support/plant_by_hand.h"
+#include "tests/support/sleep.h"
 #include "value/quality.h"
 #include "value/source.h"
 
@@ -64,7 +65,7 @@ static void watch(struct store *store)
     long wrong = 0, slow_wrong = 0, dead_wrong = 0;
     int64_t work_ns = clock_work_ns(), begin_ns = clock_mono_ns();
     for (int look = 0; look < LOOKS; look++) {
-        clock_sleep_ns(begin_ns + (look + 1) * 100 * NS_PER_MS - clock_mono_ns());
+        sleep_ns(begin_ns + (look + 1) * 100 * NS_PER_MS - clock_mono_ns());
         store_snapshot(store, clock_mono_ns(), clock_utc_ns(), snapshot);
         for (int d = 0; d < DEVICES; d++)
             if (d != DEAD && d != SLOW)
@@ -98,7 +99,7 @@ int main(void)
     struct store *store = store_create(plant);
     for (int d = 0; d < DEVICES; d++)
         sources[d] = source_start(log, plant, d, store, counters);
-    clock_sleep_ns(WARM_S * NS_PER_S);
+    sleep_ns(WARM_S * NS_PER_S);
     watch(store);
     for (int d = 0; d < DEVICES; d++)
         source_stop(&sources[d]);

@@ -10,6 +10,7 @@
 #include "scene/manifest.h"
 #include "scene/scene.h"
 #include "surface/mover.h"
+#include "tests/support/sleep.h"
 
 #define ROUNDS 30
 #define NAME "prep_move_sensor_ms"
@@ -111,7 +112,7 @@ int main(void)
     struct mover *mover = view ? create_mover(log, workers, view) : NULL;
     if (mover) {
         while (mover_state(mover) == MOVER_WARMING)
-            clock_sleep_ns(NS_PER_MS);
+            sleep_ns(NS_PER_MS);
         measure(mover, view);
     } else {
         printf("{\"name\": \"" NAME "\", \"value\": null, \"unit\": \"ms\", \"why\": \"there is no " ASSET " in build/demo\"}\n");

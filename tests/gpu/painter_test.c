@@ -17,6 +17,7 @@
 #include "base/clock.h"
 #include "base/mem.h"
 #include "net/paint/painter.h"
+#include "tests/support/sleep.h"
 #include "tests/support/toy.h"
 #include "value/quality.h"
 
@@ -347,7 +348,7 @@ static void test_lost_context_is_made_again_under_load(void **state)
     for (int i = 0; i < MOVES; i++)
         moved[i] = picture_of(MOVER, URGENCY_INPUT, 6 + i);
     for (int loss = 0; loss < LOSSES; loss++) {
-        clock_sleep_ns(RECENT_NS);
+        sleep_ns(RECENT_NS);
         int64_t steps = count_of("plantcast_render_steps_total");
         int refinements = 0;
         ask(REFINER, URGENCY_REFINE, 5 + 0.1 * loss);

@@ -12,6 +12,7 @@
 #include "base/clock.h"
 #include "base/mem.h"
 #include "tests/support/plant_by_hand.h"
+#include "tests/support/sleep.h"
 #include "value/quality.h"
 
 int modbus_case_set_up(void **state)
@@ -73,7 +74,7 @@ void modbus_case_expect(struct modbus_case *c, int tag, uint32_t quality, double
 {
     int64_t end_ns = clock_mono_ns() + (int64_t)(timeout_s * 1e9);
     while (modbus_case_look(c, tag)->quality != quality && clock_mono_ns() < end_ns)
-        clock_sleep_ns(10 * NS_PER_MS);
+        sleep_ns(10 * NS_PER_MS);
     assert_string_equal(quality_name(modbus_case_look(c, tag)->quality), quality_name(quality));
 }
 

@@ -16,6 +16,7 @@
 #include "net/message/alarm_message.h"
 #include "net/message/alarm_text.h"
 #include "tests/support/plant_by_hand.h"
+#include "tests/support/sleep.h"
 #include "tests/support/temp.h"
 #include "value/quality.h"
 
@@ -69,7 +70,7 @@ static void give(struct setup *s, int tag, double value, uint32_t quality)
     int64_t end_ns = clock_mono_ns() + 5 * NS_PER_S;
     store_write(s->store, &(struct sample){ tag, value, quality }, 1, clock_mono_ns(), clock_utc_ns());
     while (alarming_number(s->alarming) == before && clock_mono_ns() < end_ns)
-        clock_sleep_ns(5 * NS_PER_MS);
+        sleep_ns(5 * NS_PER_MS);
 }
 
 /* Takes the text. */
@@ -150,7 +151,7 @@ static void a_device_has_its_own(void **state)
     int64_t end_ns = clock_mono_ns() + 5 * NS_PER_S;
     store_link_lost(s->store, 0, clock_mono_ns());
     while (alarming_number(s->alarming) < 3 && clock_mono_ns() < end_ns)
-        clock_sleep_ns(5 * NS_PER_MS);
+        sleep_ns(5 * NS_PER_MS);
     json_t *all = parse(alarms_text(NULL, s->alarming, s->plant, 5000, &number)), *link = NULL, *row;
     json_t *rows = json_object_get(all, "alarms");
     size_t i;

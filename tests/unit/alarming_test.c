@@ -20,6 +20,7 @@
 #include "base/mem.h"
 #include "history/month.h"
 #include "tests/support/plant_by_hand.h"
+#include "tests/support/sleep.h"
 #include "tests/support/temp.h"
 #include "value/quality.h"
 
@@ -121,7 +122,7 @@ static int wait_for(struct setup *s, enum alarm_word word, int wanted)
         alarming_changes(s->alarming, 0, count_alarm, words);
         if (words[word] == wanted || clock_mono_ns() > end_ns)
             return words[word];
-        clock_sleep_ns(10 * NS_PER_MS);
+        sleep_ns(10 * NS_PER_MS);
     }
 }
 
@@ -211,14 +212,14 @@ static void killed_at_any_moment_it_goes_on(void **state)
     }
     int64_t end_ns = clock_mono_ns() + 10 * NS_PER_S;
     while (read_rows(s, NULL, 100000, INT64_MAX).count < TAGS + 400 && clock_mono_ns() < end_ns)
-        clock_sleep_ns(20 * NS_PER_MS);
+        sleep_ns(20 * NS_PER_MS);
     kill(child, SIGKILL);
     waitpid(child, NULL, 0);
     start(s);
     assert_int_equal(wait_for(s, ALARM_ACKNOWLEDGED, 400), 400);
     assert_int_equal(wait_for(s, ALARM_UNACKNOWLEDGED, TAGS - 400), TAGS - 400);
     give_all(s, 90);
-    clock_sleep_ns(400 * NS_PER_MS);
+    sleep_ns(400 * NS_PER_MS);
     alarming_stop(&s->alarming);
     assert_int_equal(read_rows(s, NULL, 100000, INT64_MAX).count, TAGS + 400); /* still there is nothing new */
 }

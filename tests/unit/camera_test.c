@@ -197,7 +197,7 @@ static void a_fit_is_from_the_raised_south_west(void **state)
     (void)state;
     const double min[3] = { 0, 0, 0 }, max[3] = { 10, 10, 10 };
     struct camera c;
-    camera_fit(&c, min, max, 1.5);
+    camera_fit_up(&c, AXIS_Z, min, max, 1.5);
     assert_true(c.eye_m[0] < 0 && c.eye_m[1] < 0 && c.eye_m[2] > 10);
     assert_float_equal(c.up[2], 1, 0);
     camera_fit_up(&c, AXIS_Y, min, max, 1.5); /* north is -z there, so south is +z */
@@ -210,9 +210,9 @@ static void empty_boxes_are_fitted_somehow(void **state)
     (void)state;
     const double point[3] = { 3, 4, 5 }, none_min[3] = { INFINITY, INFINITY, INFINITY }, none_max[3] = { -INFINITY, -INFINITY, -INFINITY };
     struct camera c;
-    camera_fit(&c, point, point, 1);
+    camera_fit_up(&c, AXIS_Z, point, point, 1);
     assert_true(camera_valid(&c));
-    camera_fit(&c, none_min, none_max, 1);
+    camera_fit_up(&c, AXIS_Z, none_min, none_max, 1);
     assert_true(camera_valid(&c));
 }
 

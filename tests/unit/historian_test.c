@@ -29,6 +29,7 @@
 #include "history/history.h"
 #include "history/month.h"
 #include "tests/support/plant_by_hand.h"
+#include "tests/support/sleep.h"
 #include "tests/support/temp.h"
 #include "value/quality.h"
 
@@ -169,7 +170,7 @@ static void wait_until_counted(struct setup *s, const char *name, double wanted)
 {
     int64_t end_ns = clock_mono_ns() + 30 * NS_PER_S;
     while (counted(s, name) != wanted && clock_mono_ns() < end_ns)
-        clock_sleep_ns(20 * NS_PER_MS);
+        sleep_ns(20 * NS_PER_MS);
     assert_true(counted(s, name) == wanted);
 }
 
@@ -186,7 +187,7 @@ static void all_that_was_told_is_there(void **state)
             lost_ns = clock_utc_ns();
             store_link_lost(s->store, 0, clock_mono_ns());
         }
-        clock_sleep_ns(30 * NS_PER_MS);
+        sleep_ns(30 * NS_PER_MS);
     }
     historian_stop(&s->historian);
     for (int i = 0; i < 40; i++) {
@@ -205,7 +206,7 @@ static void quiet_readers_see_the_last_second(void **state)
     struct snapshot *snapshot = snapshot_create(TAGS);
     start(s);
     write_all(s, 42);
-    clock_sleep_ns(2200 * NS_PER_MS); /* two ticks */
+    sleep_ns(2200 * NS_PER_MS); /* two ticks */
     look(s, clock_utc_ns(), snapshot);
     assert_int_equal(snapshot->readings[7].quality, QUALITY_GOOD);
     assert_true(snapshot->readings[7].value == 49);
@@ -219,7 +220,7 @@ static void record_for_ever(struct setup *s, _Atomic int64_t *told)
     for (int64_t i = 1;; i++) {
         write_all(s, (double)(i % 1000));
         atomic_store(told, clock_utc_ns());
-        clock_sleep_ns(5 * NS_PER_MS);
+        sleep_ns(5 * NS_PER_MS);
     }
 }
 
@@ -232,8 +233,8 @@ static double kill_one(struct setup *s, _Atomic int64_t *told, unsigned *seed)
     if (child == 0)
         record_for_ever(s, told);
     while (atomic_load(told) == 0)
-        clock_sleep_ns(10 * NS_PER_MS);
-    clock_sleep_ns((2300 + rand_r(seed) % 1000) * NS_PER_MS);
+        sleep_ns(10 * NS_PER_MS);
+    sleep_ns((2300 + rand_r(seed) % 1000) * NS_PER_MS);
     int64_t killed_ns = atomic_load(told);
     kill(child, SIGKILL);
     waitpid(child, NULL, 0);
@@ -268,11 +269,11 @@ static void a_full_disk_loses_nothing(void **state)
     assert_int_equal(getrlimit(RLIMIT_FSIZE, &unlimited), 0);
     start(s);
     write_all(s, 1);
-    clock_sleep_ns(1500 * NS_PER_MS);
+    sleep_ns(1500 * NS_PER_MS);
     assert_int_equal(setrlimit(RLIMIT_FSIZE, &(struct rlimit){ 200000, unlimited.rlim_max }), 0);
     for (int i = 0; i < 200; i++) {
         write_all(s, i * i * 7919 % 1009);
-        clock_sleep_ns(10 * NS_PER_MS);
+        sleep_ns(10 * NS_PER_MS);
     }
     bool was_good = counted(s, "plantcast_history_good") == 1;
     assert_int_equal(setrlimit(RLIMIT_FSIZE, &unlimited), 0);
@@ -293,7 +294,7 @@ static void a_folder_that_comes_later_is_used(void **state)
     char *path = temp_write_text(s->folder, "history", "not a folder");
     start(s);
     write_all(s, 5);
-    clock_sleep_ns(1300 * NS_PER_MS);
+    sleep_ns(1300 * NS_PER_MS);
     assert_true(counted(s, "plantcast_history_good") == 0);
     assert_int_equal(unlink(path), 0);
     historian_stop(&s->historian);
@@ -354,7 +355,7 @@ static void a_clock_set_back_loses_nothing(void **state)
         if (i == 3)
             atomic_fetch_sub(&clock_off_ns, 3600 * NS_PER_S);
         times_ns[i] = write_all(s, 10 * i);
-        clock_sleep_ns(2 * NS_PER_MS);
+        sleep_ns(2 * NS_PER_MS);
         if (i == 2 || i == 3)
             wait_until_counted(s, "plantcast_history_samples_total", (i + 1) * TAGS);
     }
@@ -381,7 +382,7 @@ static void summer_time_comes_and_goes(void **state)
         start(s);
         for (int i = 0; i < 10; i++) {
             times_ns[i] = write_all(s, i * i);
-            clock_sleep_ns(20 * NS_PER_MS);
+            sleep_ns(20 * NS_PER_MS);
         }
         historian_stop(&s->historian);
         assert_true(times_ns[0] < change_ns && times_ns[9] > change_ns);
@@ -492,7 +493,7 @@ static void a_disk_that_hangs_holds_up_nobody(void **state)
     write_all(s, 1);
     month_path(s, path, sizeof(path));
     for (int i = 0; i < 500 && access(path, F_OK) != 0; i++)
-        clock_sleep_ns(20 * NS_PER_MS);
+        sleep_ns(20 * NS_PER_MS);
     assert_int_equal(sqlite3_open(path, &db), SQLITE_OK);
     sqlite3_busy_timeout(db, 10000);
     assert_int_equal(sqlite3_exec(db, "BEGIN IMMEDIATE", NULL, NULL, NULL), SQLITE_OK);
@@ -504,7 +505,7 @@ static void a_disk_that_hangs_holds_up_nobody(void **state)
         assert_true(snapshot->readings[3].value == i * i * 7919 % 1009 + 3);
         int64_t took_ns = clock_mono_ns() - begun_ns;
         longest_ns = took_ns > longest_ns ? took_ns : longest_ns;
-        clock_sleep_ns(50 * NS_PER_MS);
+        sleep_ns(50 * NS_PER_MS);
     }
     assert_int_equal(sqlite3_exec(db, "ROLLBACK", NULL, NULL, NULL), SQLITE_OK);
     sqlite3_close(db);

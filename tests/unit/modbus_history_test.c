@@ -21,6 +21,7 @@
 #include "history/historian.h"
 #include "history/history.h"
 #include "tests/support/modbus_device.h"
+#include "tests/support/sleep.h"
 #include "tests/support/temp.h"
 #include "value/quality.h"
 #include "value/source.h"
@@ -79,7 +80,7 @@ static void *device_main(void *arg)
         for (size_t i = 0; i < r->mapped_count; i++)
             add_row(&r->held[r->mapped[i]], now_ns, 0, (double)(float)sim_values_at(r->values, r->mapped[i]), QUALITY_GOOD);
         last_ns = now_ns;
-        done = r->deaf ? clock_sleep_ns(TICK_MS * NS_PER_MS), false : sim_ports_serve(&port, 1, r->stop_fd, TICK_MS);
+        done = r->deaf ? sleep_ns(TICK_MS * NS_PER_MS), false : sim_ports_serve(&port, 1, r->stop_fd, TICK_MS);
     }
     sim_port_close(&port);
     return NULL;
@@ -158,15 +159,15 @@ static void check_history(const struct replay *r, struct history_reader *reader,
 static void run(struct replay *r, double seconds)
 {
     int64_t ms = (int64_t)(seconds * 1000);
-    clock_sleep_ns((ms / 4) * NS_PER_MS);
+    sleep_ns((ms / 4) * NS_PER_MS);
     r->spike = (int)r->mapped[0];
-    clock_sleep_ns(SPIKE_MS * NS_PER_MS);
+    sleep_ns(SPIKE_MS * NS_PER_MS);
     r->spike = -1;
-    clock_sleep_ns((ms / 4) * NS_PER_MS);
+    sleep_ns((ms / 4) * NS_PER_MS);
     r->deaf = true;
-    clock_sleep_ns(OUTAGE_MS * NS_PER_MS);
+    sleep_ns(OUTAGE_MS * NS_PER_MS);
     r->deaf = false;
-    clock_sleep_ns((ms / 2) * NS_PER_MS);
+    sleep_ns((ms / 2) * NS_PER_MS);
 }
 
 static void make_plant(struct replay *r)

@@ -18,6 +18,7 @@
 #include "base/text.h"
 #include "tests/support/modbus_case.h"
 #include "tests/support/plant_by_hand.h"
+#include "tests/support/sleep.h"
 #include "tests/support/temp.h"
 #include "value/quality.h"
 
@@ -140,7 +141,7 @@ static char *ask_until_answered(const char *command)
 {
     int status = 1;
     char *out = NULL;
-    for (int64_t end_ns = clock_mono_ns() + 20 * NS_PER_S; status && clock_mono_ns() < end_ns; clock_sleep_ns(50 * NS_PER_MS)) {
+    for (int64_t end_ns = clock_mono_ns() + 20 * NS_PER_S; status && clock_mono_ns() < end_ns; sleep_ns(50 * NS_PER_MS)) {
         mem_free(out);
         out = output_of(command, &status);
     }

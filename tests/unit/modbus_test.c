@@ -18,6 +18,7 @@
 #include "base/text.h"
 #include "tests/support/modbus_case.h"
 #include "tests/support/plant_by_hand.h"
+#include "tests/support/sleep.h"
 #include "value/quality.h"
 
 static int64_t count_of(struct modbus_case *s, const char *line_start)
@@ -79,7 +80,7 @@ static void is_asked_at_its_scan_time(void **state)
     modbus_case_start(s);
     modbus_case_expect(s, 0, QUALITY_GOOD, 3);
     int before = s->device.requests;
-    clock_sleep_ns(NS_PER_S);
+    sleep_ns(NS_PER_S);
     int asked = s->device.requests - before;
     assert_in_range(asked, 3, 12);
 }
@@ -126,7 +127,7 @@ static void silent_device_loses_the_link_though_it_accepts(void **state)
     s->device.manner = DEVICE_SILENT;
     modbus_case_expect(s, 1, QUALITY_UNCERTAIN_NO_COMMUNICATION_LAST_USABLE, 3);
     assert_false(store_link_is_up(s->store, 0));
-    clock_sleep_ns(2 * NS_PER_S);
+    sleep_ns(2 * NS_PER_S);
     assert_false(store_link_is_up(s->store, 0)); /* to be connected is not to be up */
     s->device.manner = DEVICE_GOOD;
     modbus_case_expect(s, 1, QUALITY_GOOD, 8);
@@ -140,7 +141,7 @@ static void resets_do_no_harm(void **state)
     device_start(&s->device);
     modbus_case_start(s);
     modbus_case_expect(s, 1, QUALITY_BAD_NO_COMMUNICATION, 3);
-    clock_sleep_ns(NS_PER_S);
+    sleep_ns(NS_PER_S);
     assert_in_range(s->device.connections, 1, 5); /* no storm: it backs off */
     s->device.manner = DEVICE_GOOD;
     modbus_case_expect(s, 1, QUALITY_GOOD, 8);
@@ -196,7 +197,7 @@ static void reply_sent_twice_does_not_poison(void **state)
         for (int tag = 0; tag < 2; tag++)
             if (!quality_is_bad(modbus_case_look(s, tag)->quality))
                 assert_true(modbus_case_look(s, tag)->value == tag * 500);
-        clock_sleep_ns(5 * NS_PER_MS);
+        sleep_ns(5 * NS_PER_MS);
     }
 }
 
@@ -225,7 +226,7 @@ static void reply_to_an_older_request_is_never_taken(void **state)
     modbus_case_expect(s, 0, QUALITY_BAD_NO_COMMUNICATION, 3);
     while (s->device.requests < 3) {
         assert_true(quality_is_bad(modbus_case_look(s, 0)->quality));
-        clock_sleep_ns(5 * NS_PER_MS);
+        sleep_ns(5 * NS_PER_MS);
     }
     s->device.manner = DEVICE_GOOD;
     modbus_case_expect(s, 0, QUALITY_GOOD, 8);
@@ -248,7 +249,7 @@ static void one_bad_register_does_not_lose_the_rest(void **state)
         }
     int refused = s->device.refused;
     assert_in_range(refused, 1, 8);
-    clock_sleep_ns(500 * NS_PER_MS);
+    sleep_ns(500 * NS_PER_MS);
     assert_int_equal(s->device.refused, refused); /* remembered */
     modbus_case_expect(s, 0, QUALITY_GOOD, 1);
     assert_true(modbus_case_look(s, 0)->age_ns < NS_PER_S);
@@ -313,7 +314,7 @@ static void one_refusal_loses_nothing(void **state)
         for (int after = s->device.requests + 4; s->device.requests < after || s->device.bad_code;) {
             for (int tag = 0; tag < 10; tag++)
                 assert_int_equal(modbus_case_look(s, tag)->quality, QUALITY_GOOD);
-            clock_sleep_ns(2 * NS_PER_MS);
+            sleep_ns(2 * NS_PER_MS);
         }
     }
     assert_int_equal(s->device.refused, 4);
@@ -370,7 +371,7 @@ static void check_other_unit_lives(struct modbus_case *s)
         assert_int_equal(modbus_case_look(s, 0)->quality, QUALITY_GOOD);
         assert_true(modbus_case_look(s, 0)->age_ns < 2 * NS_PER_S);
         assert_true(store_link_is_up(s->store, 0));
-        clock_sleep_ns(20 * NS_PER_MS);
+        sleep_ns(20 * NS_PER_MS);
     }
     s->device.dead_unit = s->device.silent_unit = 0;
     modbus_case_expect(s, 1, QUALITY_GOOD, 12);
@@ -408,7 +409,7 @@ static void stops_while_the_device_hangs(void **state)
     device_start(&s->device);
     modbus_case_start(s);
     while (s->device.requests == 0)
-        clock_sleep_ns(5 * NS_PER_MS);
+        sleep_ns(5 * NS_PER_MS);
     modbus_case_assert_stops_soon(s);
 }
 
@@ -445,7 +446,7 @@ static void stops_while_a_connection_hangs(void **state)
     modbus_case_add_registers(s, 1);
     s->plant->sources[0].timeout_ms = 20000;
     modbus_case_start(s);
-    clock_sleep_ns(300 * NS_PER_MS);
+    sleep_ns(300 * NS_PER_MS);
     assert_int_equal(modbus_case_look(s, 0)->quality, QUALITY_BAD_WAITING); /* still connecting */
     modbus_case_assert_stops_soon(s);
     full_close(&full);

@@ -11,6 +11,7 @@
 #include "base/mem.h"
 #include "tests/support/modbus_case.h"
 #include "tests/support/plant_by_hand.h"
+#include "tests/support/sleep.h"
 #include "value/quality.h"
 
 static void use_wire(struct modbus_case *s, enum device_wire wire)
@@ -72,7 +73,7 @@ static void check_late_rtu(struct modbus_case *s, enum device_wire wire)
                 assert_true(modbus_case_look(s, tag)->value == tag * 500);
         if (modbus_case_look(s, 0)->quality == QUALITY_GOOD && modbus_case_look(s, 1)->quality == QUALITY_GOOD)
             break;
-        clock_sleep_ns(2 * NS_PER_MS);
+        sleep_ns(2 * NS_PER_MS);
     }
     modbus_case_expect(s, 1, QUALITY_GOOD, 4);
 }
@@ -125,13 +126,13 @@ static void the_second_host_stands_in(void **state)
     assert_int_equal(host_of(s), 2);
     device_start(&s->device); /* the first is back, and nothing goes back to it while the second answers */
     for (int asked = second.requests + 10; second.requests < asked;)
-        clock_sleep_ns(10 * NS_PER_MS);
+        sleep_ns(10 * NS_PER_MS);
     assert_int_equal(s->device.requests, first_asked);
     assert_int_equal(host_of(s), 2);
     second.manner = DEVICE_SILENT; /* it takes connections, and that is all */
     int before = s->device.requests;
     while (s->device.requests == before)
-        clock_sleep_ns(10 * NS_PER_MS);
+        sleep_ns(10 * NS_PER_MS);
     modbus_case_expect(s, 0, QUALITY_GOOD, 3);
     assert_int_equal(host_of(s), 1);
     device_stop(&second);
@@ -146,7 +147,7 @@ static void requests_keep_to_the_device_s_limits(void **state)
     device_start(&s->device);
     modbus_case_start(s);
     modbus_case_expect(s, 39, QUALITY_GOOD, 3);
-    clock_sleep_ns(300 * NS_PER_MS);
+    sleep_ns(300 * NS_PER_MS);
     assert_int_equal(s->device.most, 10);
     print_message("# shortest rest %.1f ms\n", (double)s->device.least_gap_ns / 1e6);
     assert_true(s->device.least_gap_ns > 29 * NS_PER_MS);
@@ -167,7 +168,7 @@ static void a_hole_is_refused_once(void **state)
     for (int i = 0; i < 16; i++)
         modbus_case_expect(s, i, QUALITY_GOOD, 3);
     int refused = s->device.refused;
-    clock_sleep_ns(500 * NS_PER_MS);
+    sleep_ns(500 * NS_PER_MS);
     assert_int_equal(s->device.refused, refused);
     assert_in_range(refused, 1, 4);
     assert_true(modbus_case_look(s, 0)->age_ns < NS_PER_S && modbus_case_look(s, 15)->age_ns < NS_PER_S);
@@ -182,7 +183,7 @@ static void busy_is_asked_again_soon(void **state)
     device_start(&s->device);
     modbus_case_start(s);
     while (s->device.requests < 2) /* the first was refused, the second comes long before the next poll */
-        clock_sleep_ns(5 * NS_PER_MS);
+        sleep_ns(5 * NS_PER_MS);
     s->device.bad_code = 0;
     modbus_case_expect(s, 0, QUALITY_GOOD, 3);
 }
@@ -200,7 +201,7 @@ static void check_hostile(struct modbus_case *s, enum device_wire wire, int mann
     while (s->device.requests == before) {
         for (int tag = 0; tag < 21; tag++)
             assert_true(modbus_case_look(s, tag)->value == (tag == 20 ? 500 : tag));
-        clock_sleep_ns(5 * NS_PER_MS);
+        sleep_ns(5 * NS_PER_MS);
     }
     s->device.manner = DEVICE_GOOD;
     modbus_case_expect(s, 20, QUALITY_GOOD, 8);

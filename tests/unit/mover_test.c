@@ -21,6 +21,7 @@
 #include "surface/surface_store.h"
 #include "tests/support/cad.h"
 #include "tests/support/prep_case.h"
+#include "tests/support/sleep.h"
 #include "tests/support/temp.h"
 
 #define FAR 3e-3 /* of the largest distance */
@@ -199,7 +200,7 @@ static void try_sensors(const struct asset *asset, const struct mover_shape *fro
     for (size_t v = 0; v < shape.vertex_count; v++)
         assert_float_equal(euclidean_m[v], distance(shape.positions_m[v], cold.surface_m), 1e-5);
     while (mover_state(mover) == MOVER_WARMING)
-        clock_sleep_ns(NS_PER_MS);
+        sleep_ns(NS_PER_MS);
     for (size_t s = 0; s < asset->view.header->sensor_count; s++) {
         const struct asset_sensor *sensor = &asset->view.sensors[s];
         const double point[3] = { (double)sensor->position_m[0], (double)sensor->position_m[1], (double)sensor->position_m[2] };
@@ -316,7 +317,7 @@ void *__wrap_mem_try_array(size_t count, size_t bytes_each)
 static void wait_until_warm(struct mover *mover)
 {
     while (mover_state(mover) == MOVER_WARMING)
-        clock_sleep_ns(NS_PER_MS);
+        sleep_ns(NS_PER_MS);
 }
 
 static void ask_and_wait(struct mover *mover, struct box *box)

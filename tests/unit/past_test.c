@@ -13,6 +13,7 @@
 #include "history/history.h"
 #include "history/month.h"
 #include "tests/support/plant_by_hand.h"
+#include "tests/support/sleep.h"
 #include "tests/support/temp.h"
 #include "value/quality.h"
 
@@ -79,7 +80,7 @@ static struct reading read_at(struct setup *s, int64_t at_us)
     int before = s->notified;
     past_ask(s->past, 7, at_us);
     for (int i = 0; i < 1000 && s->notified == before; i++)
-        clock_sleep_ns(10 * NS_PER_MS);
+        sleep_ns(10 * NS_PER_MS);
     struct past_answer *answer = past_collect(s->past);
     assert_non_null(answer);
     assert_true(answer->good && answer->client == 7 && answer->at_us == at_us && !answer->next);
@@ -122,7 +123,7 @@ static void test_only_the_newest_wish_of_a_client_counts(void **state)
             count++;
             mem_free(answer);
         }
-        clock_sleep_ns(5 * NS_PER_MS);
+        sleep_ns(5 * NS_PER_MS);
     }
     assert_true(other && last_us == BEGIN + WISHES && count < WISHES);
 }

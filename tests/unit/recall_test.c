@@ -16,6 +16,7 @@
 #include "history/month.h"
 #include "net/recall.h"
 #include "tests/support/plant_by_hand.h"
+#include "tests/support/sleep.h"
 #include "tests/support/temp.h"
 
 static const int64_t NOW = INT64_C(1793500000) * US_PER_S;
@@ -124,7 +125,7 @@ static void gaps_are_asked_by_time_alone(void **state)
 static struct recall_answer *wait_for(struct setup *s, int count)
 {
     for (int i = 0; i < 1000 && s->notified < count; i++)
-        clock_sleep_ns(10 * NS_PER_MS);
+        sleep_ns(10 * NS_PER_MS);
     assert_int_equal(s->notified, count);
     return recall_collect(s->recall);
 }
@@ -198,7 +199,7 @@ static void long_answers_come_in_pieces(void **state)
     assert_true(recall_ask(s->recall, &order));
     struct recall_answer *answer = wait_for(s, ++pieces);
     assert_true(answer->first && !answer->last && answer->length > 256 * 1024);
-    clock_sleep_ns(50 * NS_PER_MS);
+    sleep_ns(50 * NS_PER_MS);
     assert_null(recall_collect(s->recall)); /* nothing more before it is wanted */
     for (;;) {
         bool last = answer->last;
@@ -232,7 +233,7 @@ static void who_is_forgotten_leaves_room(void **state)
             next = answer->next;
             recall_answer_free(&answer);
         }
-        clock_sleep_ns(NS_PER_MS);
+        sleep_ns(NS_PER_MS);
     }
 }
 

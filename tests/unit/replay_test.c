@@ -14,6 +14,7 @@
 #include "base/mem.h"
 #include "base/when.h"
 #include "tests/support/plant_case.h"
+#include "tests/support/sleep.h"
 #include "tests/support/temp.h"
 #include "value/quality.h"
 #include "value/series.h"
@@ -85,14 +86,14 @@ static void play(struct setup *s, const char *keys, const char *csv, const char 
 static void wait_for_heard(struct setup *s, size_t count)
 {
     for (int64_t end_ns = clock_mono_ns() + 10 * NS_PER_S; s->heard.count < count && clock_mono_ns() < end_ns;)
-        clock_sleep_ns(5 * NS_PER_MS);
+        sleep_ns(5 * NS_PER_MS);
     assert_true(s->heard.count >= count);
 }
 
 static void wait_for_link(struct setup *s, bool up)
 {
     for (int64_t end_ns = clock_mono_ns() + 10 * NS_PER_S; store_link_is_up(s->store, 0) != up && clock_mono_ns() < end_ns;)
-        clock_sleep_ns(5 * NS_PER_MS);
+        sleep_ns(5 * NS_PER_MS);
     assert_true(store_link_is_up(s->store, 0) == up);
 }
 
@@ -169,7 +170,7 @@ static void nothing_in_the_file_is_ours(void **state)
     struct setup *s = *state;
     play(s, "speed: 1", "t_s,a\n0,0\n", "Tag Name,Address\nB,b\n");
     wait_for_heard(s, 1);
-    clock_sleep_ns(50 * NS_PER_MS);
+    sleep_ns(50 * NS_PER_MS);
     assert_false(store_link_is_up(s->store, 0));
 }
 

@@ -18,6 +18,7 @@
 #include "base/clock.h"
 #include "base/mem.h"
 #include "tests/support/prep_case.h"
+#include "tests/support/sleep.h"
 #include "tests/support/temp.h"
 
 #define ASSETS 40
@@ -78,7 +79,7 @@ static void wait_for_files(const struct prep_case *c, size_t count)
 {
     int64_t end_ns = clock_mono_ns() + PATIENCE_NS;
     while (count_files(c, ".asset") < count && clock_mono_ns() < end_ns)
-        clock_sleep_ns(2 * NS_PER_MS);
+        sleep_ns(2 * NS_PER_MS);
     assert_true(count_files(c, ".asset") >= count);
 }
 

@@ -22,6 +22,7 @@
 #include "base/mem.h"
 #include "base/text.h"
 #include "tests/support/modbus_device.h"
+#include "tests/support/sleep.h"
 #include "value/quality.h"
 #include "value/source.h"
 
@@ -221,7 +222,7 @@ static void expect(struct reader *reader, const struct plant *plant, const char 
     assert_true(tag >= 0);
     const struct reading *r = look(reader, tag);
     while ((r->quality != quality || fabs(r->value - value) > 1e-4 * fmax(1, fabs(value))) && clock_mono_ns() < end_ns) {
-        clock_sleep_ns(10 * NS_PER_MS);
+        sleep_ns(10 * NS_PER_MS);
         r = look(reader, tag);
         if (isnan(value) && r->quality == quality)
             return;

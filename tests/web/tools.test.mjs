@@ -6,7 +6,7 @@ import { health, simulatedText } from '../../clients/web/core/health.js';
 import { shareLinks } from '../../clients/web/core/links.js';
 import { measure, metresText } from '../../clients/web/core/measure.js';
 import { Wake } from '../../clients/web/core/wake.js';
-import { LEAST, letterMinutes, MINUTES, readWall, wallFit, wallScale } from '../../clients/web/core/wall.js';
+import { LEAST, MINUTES, readWall, wallFit, wallScale } from '../../clients/web/core/wall.js';
 import { makeSession, vector } from './fixtures.mjs';
 
 test('a sleep is seen by the calendar going on without the monotonic clock', () => {
@@ -58,6 +58,12 @@ test('simulated is said on the picture, but not of the past', () => {
     assert.equal(simulatedText({ model, time: { atUs: 5 }, picture: {} }), '');
     assert.equal(simulatedText({ model: null, time, picture: null }), '');
 });
+
+// Height of a capital letter, 0.72 of the font's size, in minutes of arc.
+function letterMinutes(fontPx, { inches, metres }, screen) {
+    const millimetres = (0.72 * fontPx * inches * 25.4) / Math.hypot(screen.width, screen.height);
+    return (Math.atan(millimetres / (metres * 1000)) * 60 * 180) / Math.PI;
+}
 
 test('the wall: capitals of 16 minutes of arc and more, wherever the screen hangs', () => {
     assert.equal(readWall('?lang=ko'), null);

@@ -35,9 +35,3 @@ export function wallFit(wall, screen, { width, height }) {
 
 // Whether legends lie below the picture or stand beside it, on a wall so many units wide and high.
 export const legendsLie = (width, height, split) => width < height || (split && width < 800);
-
-// Height of a capital letter in minutes of arc, for fontPx on that screen.
-export function letterMinutes(fontPx, { inches, metres }, screen) {
-    const millimetres = (CAPITAL * fontPx * inches * 25.4) / Math.hypot(screen.width, screen.height);
-    return (Math.atan(millimetres / (metres * 1000)) * 60 * 180) / Math.PI;
-}

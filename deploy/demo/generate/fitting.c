@@ -48,7 +48,8 @@ void fitting_studs(struct mesh *mesh, struct frame at, double r)
     }
 }
 
-void fitting_blind(struct mesh *mesh, struct frame at, double r)
+/* A flanged blind end (manway, spare nozzle): face at the origin, cover in front of it. */
+static void add_blind(struct mesh *mesh, struct frame at, double r)
 {
     double outer = fitting_flange_radius(r), thick = fitting_flange_thickness(r);
     struct profile profile = { 0 };
@@ -86,7 +87,7 @@ struct frame item_nozzle(struct item *item, const char *name, struct vec surface
 void item_manway(struct item *item, struct vec surface, struct vec dir, double r, double length)
 {
     struct frame face = nozzle_neck(item, surface, dir, r, length);
-    fitting_blind(item->flanges, face, r);
+    add_blind(item->flanges, face, r);
     double thick = fitting_flange_thickness(r);
     struct vec side = face.y; /* the handle and the davit on which the cover swings */
     struct vec grip = frame_point(&face, vec(0, 0, thick));

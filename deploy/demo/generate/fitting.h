@@ -10,8 +10,6 @@ double fitting_flange_thickness(double r);
 void fitting_flange(struct mesh *mesh, struct frame at, double r);
 /* Studs through a pair of flanges whose gasket is at the origin. */
 void fitting_studs(struct mesh *mesh, struct frame at, double r);
-/* A flanged blind end (manway, spare nozzle): face at the origin, cover in front of it. */
-void fitting_blind(struct mesh *mesh, struct frame at, double r);
 
 /* A neck from inside the shell (the neck just ends there) to a flange `length` above `surface`; uses item->necks and ->flanges. */
 struct frame item_nozzle(struct item *item, const char *name, struct vec surface, struct vec dir, double r, double length);

@@ -14,7 +14,7 @@
 
 enum { ROWS_DEFAULT = 1000, ROWS_MOST = 10000, DIGITS = 7 };
 
-const char *alarm_mode_name(enum alarm_mode mode)
+static const char *mode_name(enum alarm_mode mode)
 {
     static const char *const names[] = { [ALARMS_DISPLAY] = "display", [ALARMS_MIRROR] = "mirror", [ALARMS_LOCAL] = "local" };
     return names[mode];
@@ -71,7 +71,7 @@ char *alarms_text(struct alarms_said *said, struct alarming *alarming, const str
     }
     json_t *rows = json_array();
     *number_out = alarming_changes(alarming, since, add_row, rows);
-    char *text = print(json_pack("{s:s,s:s,s:b,s:I,s:o}", "type", "alarms", "mode", alarm_mode_name(plant->alarms), "all", since == 0,
+    char *text = print(json_pack("{s:s,s:s,s:b,s:I,s:o}", "type", "alarms", "mode", mode_name(plant->alarms), "all", since == 0,
                                  "time_us", (json_int_t)(now_utc_ns / 1000), "alarms", rows));
     if (said) {
         alarms_said_finish(said);
@@ -256,7 +256,7 @@ char *alarms_api_text(struct alarming *alarming, const struct plant *plant, cons
     }
     text_finish(&listing.csv);
     int64_t next = query->offset + listing.count;
-    return print(json_pack("{s:s,s:I,s:o,s:I,s:o,s:o}", "mode", alarm_mode_name(plant->alarms), "time_us", (json_int_t)(now_utc_ns / 1000),
+    return print(json_pack("{s:s,s:I,s:o,s:I,s:o,s:o}", "mode", mode_name(plant->alarms), "time_us", (json_int_t)(now_utc_ns / 1000),
                            "counts", counts(alarming), "total", (json_int_t)listing.total, "alarms", listing.rows, "next_offset",
                            next < listing.total ? json_integer(next) : json_null()));
 }

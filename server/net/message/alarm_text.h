@@ -30,6 +30,5 @@ bool alarm_query_parse(const struct plant *plant, bool journal, const char *cons
 char *alarms_api_text(struct alarming *alarming, const struct plant *plant, const struct alarm_query *query, int64_t now_utc_ns);
 /* False: it could not be read; logged. */
 bool alarms_journal_text(struct log *log, const char *folder, const struct alarm_query *query, struct text *out);
-const char *alarm_mode_name(enum alarm_mode mode);
 
 #endif

@@ -23,7 +23,8 @@ struct source { /* equirectangular, as the image; then octahedral, plant axes */
 
 /* --- directions ---------------------------------------------------------------------------------------------------------------- */
 
-void environment_texel(int x, int y, int side_px, double towards[3])
+/* Towards the texel's centre; the mapping of `mirrored`. */
+static void texel_direction(int x, int y, int side_px, double towards[3])
 {
     double u = (2.0 * x) / (side_px - 1) - 1, v = (2.0 * y) / (side_px - 1) - 1, z = 1 - fabs(u) - fabs(v);
     if (z < 0) {
@@ -195,7 +196,7 @@ static void base_rows(void *arg, size_t begin, size_t end)
         double sum[3] = { 0 };
         for (int k = 0; k < 16; k++) {
             double towards[3], color[3];
-            environment_texel((int)(i % BASE_PX) * 4 + k % 4, (int)(i / BASE_PX) * 4 + k / 4, BASE_PX * 4, towards);
+            texel_direction((int)(i % BASE_PX) * 4 + k % 4, (int)(i / BASE_PX) * 4 + k / 4, BASE_PX * 4, towards);
             source_radiance(job->source, towards, color);
             for (int c = 0; c < 3; c++)
                 sum[c] += color[c] / 16;
@@ -276,7 +277,7 @@ static void layer_rows(void *arg, size_t begin, size_t end)
     double roughness = (double)job->layer / (ENVIRONMENT_LAYERS - 1);
     for (size_t i = begin * (size_t)job->side_px; i < end * (size_t)job->side_px; i++) {
         double towards[3], color[3], x, y;
-        environment_texel((int)(i % (size_t)job->side_px), (int)(i / (size_t)job->side_px), job->side_px, towards);
+        texel_direction((int)(i % (size_t)job->side_px), (int)(i / (size_t)job->side_px), job->side_px, towards);
         if (job->layer == 0) {
             texel_of(towards, BASE_PX / 2, &x, &y);
             bilinear((const float(*)[4])job->source->pyramid[1], BASE_PX / 2, BASE_PX / 2, x, y, false, color);

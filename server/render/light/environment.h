@@ -23,8 +23,6 @@ struct environment {
    NULL: the built-in sky. False: it is all black. */
 bool environment_init(struct environment *environment, const struct image_float *image, bool y_up, struct workers *workers);
 void environment_finish(struct environment *environment);
-/* Towards the texel's centre; the mapping of `mirrored`. */
-void environment_texel(int x, int y, int side_px, double towards[3]);
 
 /* Scale and bias of F0 that the surroundings, all alike, would be reflected with. side x side texels: cosine to the viewer from left
    to right, roughness from top to bottom, both at texel centres of (0, 1). */
