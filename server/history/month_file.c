@@ -1,18 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A month's file: making it, opening it, setting it aside where it is damaged. */
-#include <errno.h>
+/* A month's file: its tables, its statements, opening it. */
 #include <stdio.h>
-#include <string.h>
 #include <sys/stat.h>
-#include <unistd.h>
 
-#include "base/damaged.h"
 #include "base/mem.h"
-#include "base/text.h"
 #include "history/month.h"
 #include "history/month_file_impl.h"
 
-enum { APPLICATION_ID = 0x50434849 /* "PCHI" */, BUSY_MS = 5000 };
+enum { APPLICATION_ID = 0x50434849 /* "PCHI" */ };
 
 const int64_t history_level_us[LEVEL_COUNT] = { 10 * US_PER_S, 60 * US_PER_S, 600 * US_PER_S, 3600 * US_PER_S };
 
@@ -74,85 +69,27 @@ static const char *const sql[SQL_COUNT] = {
                  " UNION ALL SELECT (SELECT min(t) FROM sample WHERE tag = id), (SELECT max(t) FROM sample WHERE tag = id) FROM tag)",
 };
 
+static const struct database_format format = {
+    APPLICATION_ID, HISTORY_VERSION, "PRAGMA cache_size = -16000; PRAGMA wal_autocheckpoint = 4000", schemas, sql, SQL_COUNT,
+};
+
 /* --- for the other files ------------------------------------------------------------------------------------------------------ */
 
 sqlite3_stmt *month_sql(struct month_file *file, enum month_statement which)
 {
-    sqlite3_stmt **statement = &file->statements[which];
-    if (!*statement && sqlite3_prepare_v3(file->db, sql[which], -1, SQLITE_PREPARE_PERSISTENT, statement, NULL) != SQLITE_OK)
-        return NULL;
-    sqlite3_reset(*statement);
-    return *statement;
+    return database_statement(&file->db, (int)which);
 }
 
-int month_run(sqlite3_stmt *statement)
+int month_run(struct month_file *file, sqlite3_stmt *statement, const char *doing)
 {
-    int code;
-    if (!statement)
-        return SQLITE_ERROR;
-    do
-        code = sqlite3_step(statement);
-    while (code == SQLITE_ROW);
-    sqlite3_reset(statement);
-    return code == SQLITE_DONE ? SQLITE_OK : code;
-}
-
-static int errno_of(int code)
-{
-    switch (code & 0xff) {
-    case SQLITE_FULL: return ENOSPC;
-    case SQLITE_READONLY: return EROFS;
-    case SQLITE_CORRUPT:
-    case SQLITE_NOTADB: return EBADMSG;
-    case SQLITE_BUSY:
-    case SQLITE_LOCKED: return EBUSY;
-    case SQLITE_CANTOPEN:
-    case SQLITE_PERM: return EACCES;
-    case SQLITE_NOMEM: return ENOMEM;
-    default: return EIO;
-    }
-}
-
-static bool is_on_read_only_disk(const struct month_file *file)
-{
-    return access(file->path, W_OK) != 0 && errno == EROFS;
-}
-
-/* What the system said, where SQLite only says that it cannot. */
-static int cause_of(const struct month_file *file)
-{
-    return is_on_read_only_disk(file) ? EROFS : sqlite3_system_errno(file->db);
-}
-
-int month_fail(struct month_file *file, int code, const char *doing)
-{
-    if (code == SQLITE_OK || code == SQLITE_ROW || code == SQLITE_DONE)
-        return 0;
-    bool told = file->db && sqlite3_errcode(file->db) != SQLITE_OK;
-    int error = errno_of(code), cause = (error == EACCES || error == EIO) && told ? cause_of(file) : 0;
-    log_err(file->log, "%s: %s: %s%s%s", file->path, doing, told ? sqlite3_errmsg(file->db) : sqlite3_errstr(code), cause ? ": " : "",
-            cause ? strerror(cause) : "");
-    return -(cause ? cause : error);
-}
-
-void month_bind_value(sqlite3_stmt *statement, int index, double value)
-{
-    if (isnan(value))
-        sqlite3_bind_null(statement, index);
-    else
-        sqlite3_bind_double(statement, index, value);
-}
-
-double month_value(sqlite3_stmt *statement, int column)
-{
-    return sqlite3_column_type(statement, column) == SQLITE_NULL ? NAN : sqlite3_column_double(statement, column);
+    return database_fail(&file->db, database_run(&file->db, statement), doing);
 }
 
 struct history_point month_point(sqlite3_stmt *statement, int first_column)
 {
     return (struct history_point){
         .t_us = sqlite3_column_int64(statement, first_column),
-        .value = month_value(statement, first_column + 1),
+        .value = database_value(statement, first_column + 1),
         .quality = (uint32_t)sqlite3_column_int64(statement, first_column + 2),
     };
 }
@@ -165,122 +102,14 @@ void history_points_add(struct history_points *points, const struct history_poin
 
 /* --- opening ------------------------------------------------------------------------------------------------------------------ */
 
-static int pragma_int(sqlite3 *db, const char *pragma, int *code)
+static int count_waiting(struct month_file *file)
 {
-    sqlite3_stmt *statement = NULL;
-    int value = 0;
-    if ((*code = sqlite3_prepare_v2(db, pragma, -1, &statement, NULL)) != SQLITE_OK)
-        return 0;
-    *code = sqlite3_step(statement);
-    if (*code == SQLITE_ROW) {
-        value = sqlite3_column_int(statement, 0);
-        *code = SQLITE_OK;
-    }
-    sqlite3_finalize(statement);
-    return value;
-}
-
-/* From whatever version the file has to this program's, or none of it. */
-static int migrate(struct month_file *file)
-{
-    int code, version = pragma_int(file->db, "PRAGMA user_version", &code);
-    if (code != SQLITE_OK || version == HISTORY_VERSION)
-        return code;
-    if (version > HISTORY_VERSION) {
-        log_err(file->log, "%s: version %d is a newer Plantcast's; this program knows version %d", file->path, version, HISTORY_VERSION);
-        return SQLITE_PERM;
-    }
-    if ((code = sqlite3_exec(file->db, "BEGIN IMMEDIATE", NULL, NULL, NULL)) != SQLITE_OK)
-        return code;
-    for (; code == SQLITE_OK && version < HISTORY_VERSION; version++)
-        code = sqlite3_exec(file->db, schemas[version], NULL, NULL, NULL);
-    char *stamp = mem_printf("PRAGMA user_version = %d; PRAGMA application_id = %d;", HISTORY_VERSION, APPLICATION_ID);
-    if (code == SQLITE_OK)
-        code = sqlite3_exec(file->db, stamp, NULL, NULL, NULL);
-    mem_free(stamp);
-    int ended = sqlite3_exec(file->db, code == SQLITE_OK ? "COMMIT" : "ROLLBACK", NULL, NULL, NULL);
-    return code == SQLITE_OK ? ended : code;
-}
-
-static int open_database(struct month_file *file, int flags)
-{
-    int code = sqlite3_open_v2(file->path, &file->db, flags | SQLITE_OPEN_NOMUTEX, NULL);
-    if (code != SQLITE_OK)
-        return code;
-    sqlite3_extended_result_codes(file->db, 1);
-    sqlite3_busy_timeout(file->db, BUSY_MS);
-    return code;
-}
-
-/* On a disk that cannot be written SQLite makes no files beside it; where there are none, nothing is missing. */
-static int open_unchanging(struct month_file *file)
-{
-    struct text uri = { 0 };
-    text_add(&uri, "file:");
-    for (const char *c = file->path; *c; c++)
-        text_add(&uri, strchr("%?#", *c) ? "%%%02X" : "%c", (unsigned char)*c);
-    text_add(&uri, "?immutable=1");
-    sqlite3_close(file->db);
-    int code = sqlite3_open_v2(uri.at, &file->db, SQLITE_OPEN_READONLY | SQLITE_OPEN_URI | SQLITE_OPEN_NOMUTEX, NULL);
-    text_finish(&uri);
-    return code;
-}
-
-static bool has_log(const struct month_file *file)
-{
-    char *path = mem_printf("%s-wal", file->path);
-    bool there = access(path, F_OK) == 0;
-    mem_free(path);
-    return there;
-}
-
-static int open_to_read(struct month_file *file, int *version)
-{
-    int code = open_database(file, SQLITE_OPEN_READONLY);
-    if (code == SQLITE_OK)
-        *version = pragma_int(file->db, "PRAGMA user_version", &code);
-    if ((code & 0xff) != SQLITE_CANTOPEN || has_log(file) || !is_on_read_only_disk(file))
-        return code; /* elsewhere somebody may be about to write it */
-    code = open_unchanging(file);
-    if (code == SQLITE_OK)
-        *version = pragma_int(file->db, "PRAGMA user_version", &code);
-    return code;
-}
-
-static int open_to_write(struct month_file *file)
-{
-    /* FULL: what was committed outlives a loss of power too. One commit a second makes it cheap. */
-    static const char set_up[] = "PRAGMA journal_mode = WAL; PRAGMA synchronous = FULL; PRAGMA cache_size = -16000; "
-                                 "PRAGMA wal_autocheckpoint = 4000;";
-    int code = open_database(file, SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE);
-    if (code == SQLITE_OK)
-        code = sqlite3_exec(file->db, set_up, NULL, NULL, NULL);
-    if (code == SQLITE_OK)
-        code = migrate(file);
-    if (code != SQLITE_OK)
-        return code;
     sqlite3_stmt *waiting = month_sql(file, SQL_WAITING);
-    code = waiting ? sqlite3_step(waiting) : SQLITE_ERROR;
+    int code = database_step(&file->db, waiting);
     if (code == SQLITE_ROW)
         file->waiting = (size_t)sqlite3_column_int64(waiting, 0);
     sqlite3_reset(waiting);
-    return code == SQLITE_ROW ? SQLITE_OK : waiting ? code : sqlite3_errcode(file->db);
-}
-
-static void close_database(struct month_file *file)
-{
-    for (int i = 0; i < SQL_COUNT; i++) {
-        sqlite3_finalize(file->statements[i]);
-        file->statements[i] = NULL;
-    }
-    sqlite3_close(file->db);
-    file->db = NULL;
-}
-
-static bool set_aside(struct month_file *file)
-{
-    close_database(file);
-    return damaged_set_aside(file->log, file->path);
+    return code;
 }
 
 static ino_t inode_of(const char *path)
@@ -294,9 +123,8 @@ static struct month_file *create(struct log *log, const char *folder, int month)
     struct month_file *file = mem_new(sizeof(*file));
     char name[MONTH_NAME_BYTES];
     month_name(month, name);
-    file->log = log;
     file->month = month;
-    file->path = mem_printf("%s/%s", folder, name);
+    database_init(&file->db, log, mem_printf("%s/%s", folder, name), &format);
     return file;
 }
 
@@ -304,15 +132,18 @@ struct month_file *month_file_open(struct log *log, const char *folder, int mont
                                    int *error)
 {
     struct month_file *file = create(log, folder, month);
+    bool renewed;
     file->tags = tags;
     file->tag_count = tag_count;
-    int code = open_to_write(file);
-    if (errno_of(code) == EBADMSG && code != SQLITE_OK && set_aside(file))
-        code = open_to_write(file);
-    *error = month_fail(file, code, "cannot be opened");
+    *error = database_open(&file->db, &renewed);
+    int code = *error ? SQLITE_OK : count_waiting(file);
+    if ((code & 0xff) == SQLITE_CORRUPT && database_set_aside(&file->db) && !(*error = database_open(&file->db, &renewed)))
+        code = count_waiting(file);
+    if (!*error)
+        *error = database_fail(&file->db, code, "cannot be opened");
     if (*error)
         goto error;
-    file->inode = inode_of(file->path);
+    file->inode = inode_of(file->db.path);
     file->ids = mem_array(tag_count, sizeof(*file->ids));
     file->rollups = mem_array(tag_count, sizeof(*file->rollups));
     return file;
@@ -324,45 +155,33 @@ error:
 struct month_file *month_file_read(struct log *log, const char *folder, int month, int *error)
 {
     struct month_file *file = create(log, folder, month);
-    if (access(file->path, F_OK) != 0) {
-        *error = -errno;
-        goto error;
-    }
-    int version = 0, code = open_to_read(file, &version);
-    *error = month_fail(file, code, "cannot be read");
-    if (!*error && (version < 1 || version > HISTORY_VERSION)) {
-        log_err(log, "%s: is of version %d; this program reads 1 to %d", file->path, version, HISTORY_VERSION);
-        *error = -EPROTO;
-    }
+    *error = database_open_to_read(&file->db);
     if (*error)
-        goto error;
-    file->inode = inode_of(file->path);
+        month_file_close(&file);
+    else
+        file->inode = inode_of(file->db.path);
     return file;
-error:
-    month_file_close(&file);
-    return NULL;
 }
 
 bool month_file_is_there(const struct month_file *file)
 {
-    return inode_of(file->path) == file->inode;
+    return inode_of(file->db.path) == file->inode;
 }
 
 void month_file_close(struct month_file **file)
 {
     if (!*file)
         return;
-    close_database(*file);
+    database_finish(&(*file)->db);
     mem_free((*file)->ids);
     mem_free((*file)->rollups);
-    mem_free((*file)->path);
     mem_free(*file);
     *file = NULL;
 }
 
 void month_file_set_aside(struct month_file **file)
 {
-    set_aside(*file);
+    database_set_aside(&(*file)->db);
     month_file_close(file);
 }
 

@@ -2,9 +2,9 @@
 /* What the files about a month's file share. Only for them. */
 #ifndef HISTORY_MONTH_FILE_IMPL_H
 #define HISTORY_MONTH_FILE_IMPL_H
-#include <sqlite3.h>
 #include <sys/types.h>
 
+#include "base/database.h"
 #include "history/month_file.h"
 
 enum month_statement {
@@ -21,12 +21,9 @@ struct month_rollups {
 };
 
 struct month_file {
-    struct log *log;
-    char *path;
+    struct database db;
     int month;
     ino_t inode;
-    sqlite3 *db;
-    sqlite3_stmt *statements[SQL_COUNT];
     const struct plant *shown_by; /* in whose units its values are given; NULL: as they are there */
     const struct history_tag *tags;
     size_t tag_count, waiting;
@@ -34,15 +31,10 @@ struct month_file {
     struct month_rollups *rollups; /* of tags */
 };
 
-/* Ready to bind and step. NULL: the database is damaged or out of memory. */
+/* Returns one of the statements above, ready to bind and step (base/database.h). */
 sqlite3_stmt *month_sql(struct month_file *file, enum month_statement which);
-/* Steps to the end. An SQLite result code. */
-int month_run(sqlite3_stmt *statement);
-/* Logs it and turns it into -errno; SQLITE_OK, _ROW and _DONE are 0. */
-int month_fail(struct month_file *file, int code, const char *doing);
-
-void month_bind_value(sqlite3_stmt *statement, int index, double value);       /* NaN is NULL */
-double month_value(sqlite3_stmt *statement, int column);                       /* NULL is NaN */
+/* Steps to the end, and logs what fails. Returns 0 or -errno. */
+int month_run(struct month_file *file, sqlite3_stmt *statement, const char *doing);
 struct history_point month_point(sqlite3_stmt *statement, int first_column);   /* t, v, q */
 /* The row of SQL_BEFORE or SQL_AFTER; t_us INT64_MIN: there is none. 0 or -errno. */
 int month_one_point(struct month_file *file, enum month_statement which, int64_t id, int64_t t_us, struct history_point *out);

@@ -11,12 +11,12 @@
 
 int month_file_begin_read(struct month_file *file)
 {
-    return month_fail(file, month_run(month_sql(file, SQL_BEGIN_READ)), "cannot be read");
+    return month_run(file, month_sql(file, SQL_BEGIN_READ), "cannot be read");
 }
 
 void month_file_end_read(struct month_file *file)
 {
-    month_run(month_sql(file, SQL_COMMIT));
+    database_run(&file->db, month_sql(file, SQL_COMMIT));
 }
 
 void month_file_show_by(struct month_file *file, const struct plant *plant)
@@ -37,14 +37,12 @@ static int64_t find_tag(struct month_file *file, const char *name, const char *w
     *change = (struct unit_change){ 0 };
     sqlite3_stmt *find = month_sql(file, SQL_FIND_TAG);
     int64_t id = 0;
-    if (!find)
-        return 0;
-    sqlite3_bind_text(find, 1, name, -1, SQLITE_STATIC);
-    if (sqlite3_step(find) == SQLITE_ROW) {
+    database_bind_text(find, 1, name);
+    if (database_step(&file->db, find) == SQLITE_ROW) {
         id = sqlite3_column_int64(find, 0);
         *step = sqlite3_column_int(find, 1) != 0;
         if (wanted)
-            units_compare((const char *)sqlite3_column_text(find, 2), wanted, change);
+            units_compare(database_text(find, 2), wanted, change);
     }
     sqlite3_reset(find);
     return id;
@@ -54,28 +52,24 @@ int month_one_point(struct month_file *file, enum month_statement which, int64_t
 {
     sqlite3_stmt *statement = month_sql(file, which);
     out->t_us = INT64_MIN;
-    if (!statement)
-        return month_fail(file, sqlite3_errcode(file->db), "cannot be read");
     sqlite3_bind_int64(statement, 1, id);
     sqlite3_bind_int64(statement, 2, t_us);
-    int code = sqlite3_step(statement);
+    int code = database_step(&file->db, statement);
     if (code == SQLITE_ROW)
         *out = month_point(statement, 0);
     sqlite3_reset(statement);
-    return month_fail(file, code, "cannot be read");
+    return database_fail(&file->db, code, "cannot be read");
 }
 
 static int add_points(struct month_file *file, sqlite3_stmt *statement, struct history_points *out)
 {
     int code;
-    if (!statement)
-        return month_fail(file, sqlite3_errcode(file->db), "cannot be read");
-    while ((code = sqlite3_step(statement)) == SQLITE_ROW) {
+    while ((code = database_step(&file->db, statement)) == SQLITE_ROW) {
         struct history_point point = month_point(statement, 0);
         history_points_add(out, &point);
     }
     sqlite3_reset(statement);
-    return month_fail(file, code, "cannot be read");
+    return database_fail(&file->db, code, "cannot be read");
 }
 
 static int by_time(const void *a, const void *b)
@@ -89,10 +83,8 @@ static int add_recent(struct month_file *file, int64_t id, int64_t from_us, int6
 {
     struct history_points recent = { 0 };
     sqlite3_stmt *of = month_sql(file, SQL_RECENT_OF), *held = month_sql(file, SQL_HELD_OF);
-    if (of)
-        sqlite3_bind_int64(of, 1, id);
-    if (held)
-        sqlite3_bind_int64(held, 1, id);
+    sqlite3_bind_int64(of, 1, id);
+    sqlite3_bind_int64(held, 1, id);
     int error = add_points(file, of, &recent);
     if (!error)
         error = add_points(file, held, &recent);
@@ -117,11 +109,9 @@ static int add_samples(struct month_file *file, int64_t id, int64_t from_us, int
     if (edge.t_us != INT64_MIN)
         history_points_add(out, &edge);
     sqlite3_stmt *range = month_sql(file, SQL_RANGE);
-    if (range) {
-        sqlite3_bind_int64(range, 1, id);
-        sqlite3_bind_int64(range, 2, from_us);
-        sqlite3_bind_int64(range, 3, to_us);
-    }
+    sqlite3_bind_int64(range, 1, id);
+    sqlite3_bind_int64(range, 2, from_us);
+    sqlite3_bind_int64(range, 3, to_us);
     error = add_points(file, range, out);
     if (!error)
         error = month_one_point(file, SQL_AFTER, id, to_us, &edge);
@@ -173,21 +163,19 @@ int month_file_buckets(struct month_file *file, const char *tag, enum history_le
     if (!id)
         return 0;
     sqlite3_stmt *rollups = month_sql(file, SQL_ROLLUPS);
-    if (!rollups)
-        return month_fail(file, sqlite3_errcode(file->db), "cannot be read");
     sqlite3_bind_int64(rollups, 1, length_us / US_PER_S);
     sqlite3_bind_int64(rollups, 2, id);
     sqlite3_bind_int64(rollups, 3, from_us - length_us);
     sqlite3_bind_int64(rollups, 4, to_us);
     int code;
-    while ((code = sqlite3_step(rollups)) == SQLITE_ROW) {
+    while ((code = database_step(&file->db, rollups)) == SQLITE_ROW) {
         struct history_bucket bucket = {
             .t_us = sqlite3_column_int64(rollups, 0),
-            .low = unit_change_value(&change, month_value(rollups, 1)),
-            .high = unit_change_value(&change, month_value(rollups, 2)),
-            .mean = unit_change_value(&change, month_value(rollups, 3)),
-            .first = unit_change_value(&change, month_value(rollups, 4)),
-            .last = unit_change_value(&change, month_value(rollups, 5)),
+            .low = unit_change_value(&change, database_value(rollups, 1)),
+            .high = unit_change_value(&change, database_value(rollups, 2)),
+            .mean = unit_change_value(&change, database_value(rollups, 3)),
+            .first = unit_change_value(&change, database_value(rollups, 4)),
+            .last = unit_change_value(&change, database_value(rollups, 5)),
             .good_us = sqlite3_column_int64(rollups, 6),
             .bad_us = sqlite3_column_int64(rollups, 7),
             .quality = (uint32_t)sqlite3_column_int64(rollups, 8),
@@ -197,7 +185,7 @@ int month_file_buckets(struct month_file *file, const char *tag, enum history_le
         *until_us = bucket.t_us + length_us;
     }
     sqlite3_reset(rollups);
-    return month_fail(file, code, "cannot be read");
+    return database_fail(&file->db, code, "cannot be read");
 }
 
 /* --- one instant -------------------------------------------------------------------------------------------------------------- */
@@ -238,16 +226,14 @@ static int take_recent(struct month_file *file, int64_t t_us, const int *index, 
 {
     sqlite3_stmt *all = month_sql(file, SQL_RECENT_ALL);
     int code;
-    if (!all)
-        return month_fail(file, sqlite3_errcode(file->db), "cannot be read");
-    while ((code = sqlite3_step(all)) == SQLITE_ROW) {
+    while ((code = database_step(&file->db, all)) == SQLITE_ROW) {
         int64_t id = sqlite3_column_int64(all, 0);
         struct history_point point = month_point(all, 1);
         if (id <= most && index[id] >= 0)
             take(&pairs[index[id]], &point, t_us);
     }
     sqlite3_reset(all);
-    return month_fail(file, code, "cannot be read");
+    return database_fail(&file->db, code, "cannot be read");
 }
 
 int month_file_at(struct month_file *file, int64_t t_us, const struct history_tag *tags, size_t count, struct history_pair *pairs)
@@ -272,15 +258,13 @@ int month_file_at(struct month_file *file, int64_t t_us, const struct history_ta
 int month_file_span(struct month_file *file, int64_t *first_us, int64_t *last_us)
 {
     sqlite3_stmt *span = month_sql(file, SQL_SPAN);
-    if (!span)
-        return month_fail(file, sqlite3_errcode(file->db), "cannot be read");
-    int code = sqlite3_step(span);
+    int code = database_step(&file->db, span);
     if (code == SQLITE_ROW && sqlite3_column_type(span, 0) != SQLITE_NULL) {
         *first_us = sqlite3_column_int64(span, 0);
         *last_us = sqlite3_column_int64(span, 1);
     }
     sqlite3_reset(span);
-    return month_fail(file, code, "cannot be read");
+    return database_fail(&file->db, code, "cannot be read");
 }
 
 /* The texts that the historian notes, read back. */
@@ -301,15 +285,12 @@ int month_file_gaps(struct month_file *file, struct history_gaps *out)
     sqlite3_stmt *events = month_sql(file, SQL_EVENTS);
     struct history_gap gap;
     int code;
-    if (!events)
-        return month_fail(file, sqlite3_errcode(file->db), "cannot be read");
-    while ((code = sqlite3_step(events)) == SQLITE_ROW) {
-        const char *kind = (const char *)sqlite3_column_text(events, 1), *text = (const char *)sqlite3_column_text(events, 2);
-        if (!kind || !text || !read_gap(kind, text, sqlite3_column_int64(events, 0), &gap))
+    while ((code = database_step(&file->db, events)) == SQLITE_ROW) {
+        if (!read_gap(database_text(events, 1), database_text(events, 2), sqlite3_column_int64(events, 0), &gap))
             continue;
         mem_grow(&out->at, &out->capacity, out->count + 1, sizeof(*out->at));
         out->at[out->count++] = gap;
     }
     sqlite3_reset(events);
-    return month_fail(file, code, "cannot be read");
+    return database_fail(&file->db, code, "cannot be read");
 }

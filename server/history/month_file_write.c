@@ -11,18 +11,18 @@
 
 static int begin(struct month_file *file)
 {
-    return month_fail(file, month_run(month_sql(file, SQL_BEGIN)), "cannot begin to write");
+    return month_run(file, month_sql(file, SQL_BEGIN), "cannot begin to write");
 }
 
 /* Commits if `error` is 0, else undoes. What was rolled up in memory is then not what lies on disk any more. */
 static int end(struct month_file *file, int error)
 {
     if (!error)
-        error = month_fail(file, month_run(month_sql(file, SQL_COMMIT)), "cannot commit");
+        error = month_run(file, month_sql(file, SQL_COMMIT), "cannot commit");
     if (!error)
         return 0;
-    if (!sqlite3_get_autocommit(file->db))
-        month_run(month_sql(file, SQL_ROLLBACK));
+    if (!sqlite3_get_autocommit(file->db.handle))
+        database_run(&file->db, month_sql(file, SQL_ROLLBACK));
     memset(file->rollups, 0, file->tag_count * sizeof(*file->rollups));
     memset(file->ids, 0, file->tag_count * sizeof(*file->ids));
     return error;
@@ -34,12 +34,10 @@ static int convert_unit(struct month_file *file, const struct history_tag *of)
     sqlite3_stmt *find = month_sql(file, SQL_FIND_TAG);
     struct unit_change change = { 0 };
     int64_t id = 0;
-    if (!find)
-        return month_fail(file, sqlite3_errcode(file->db), "cannot find a tag");
-    sqlite3_bind_text(find, 1, of->name, -1, SQLITE_STATIC);
-    if (sqlite3_step(find) == SQLITE_ROW) {
+    database_bind_text(find, 1, of->name);
+    if (database_step(&file->db, find) == SQLITE_ROW) {
         id = sqlite3_column_int64(find, 0);
-        units_compare((const char *)sqlite3_column_text(find, 2), of->unit, &change);
+        units_compare(database_text(find, 2), of->unit, &change);
     }
     sqlite3_reset(find);
     if (!change.converts)
@@ -50,7 +48,7 @@ static int convert_unit(struct month_file *file, const struct history_tag *of)
     for (size_t i = 0; i < sizeof(columns) / sizeof(columns[0]) && !error; i++) {
         char *sql = mem_printf("UPDATE %s SET %s = %s * %.17g + %.17g WHERE tag = %lld", columns[i][0], columns[i][1], columns[i][1],
                                change.factor, change.offset, (long long)id);
-        error = month_fail(file, sqlite3_exec(file->db, sql, NULL, NULL, NULL), "cannot convert units");
+        error = database_exec(&file->db, sql, "cannot convert units");
         mem_free(sql);
     }
     return error;
@@ -66,16 +64,14 @@ static int tag_id(struct month_file *file, int tag, int64_t *id)
     if (unit_error)
         return unit_error;
     sqlite3_stmt *add = month_sql(file, SQL_ADD_TAG);
-    if (!add)
-        return month_fail(file, sqlite3_errcode(file->db), "cannot add a tag");
-    sqlite3_bind_text(add, 1, of->name, -1, SQLITE_STATIC);
-    sqlite3_bind_text(add, 2, of->unit, -1, SQLITE_STATIC);
+    database_bind_text(add, 1, of->name);
+    database_bind_text(add, 2, of->unit);
     sqlite3_bind_int(add, 3, of->step);
     sqlite3_bind_double(add, 4, of->within);
-    int code = sqlite3_step(add);
+    int code = database_step(&file->db, add);
     if (code == SQLITE_ROW)
         file->ids[tag] = *id = sqlite3_column_int64(add, 0);
-    int error = month_fail(file, code, "cannot add a tag");
+    int error = database_fail(&file->db, code, "cannot add a tag");
     sqlite3_reset(add);
     return error;
 }
@@ -83,13 +79,11 @@ static int tag_id(struct month_file *file, int tag, int64_t *id)
 static int put(struct month_file *file, enum month_statement which, int64_t id, const struct history_point *point)
 {
     sqlite3_stmt *statement = month_sql(file, which);
-    if (!statement)
-        return month_fail(file, sqlite3_errcode(file->db), "cannot write");
     sqlite3_bind_int64(statement, 1, id);
     sqlite3_bind_int64(statement, 2, point->t_us);
-    month_bind_value(statement, 3, point->value);
+    database_bind_value(statement, 3, point->value);
     sqlite3_bind_int64(statement, 4, point->quality);
-    return month_fail(file, month_run(statement), "cannot write");
+    return month_run(file, statement, "cannot write");
 }
 
 static int put_rows(struct month_file *file, enum month_statement which, const struct history_row *rows, size_t count)
@@ -122,12 +116,10 @@ int month_file_write(struct month_file *file, const struct history_row *rows, si
 int month_file_note(struct month_file *file, int64_t t_us, const char *kind, const char *text)
 {
     sqlite3_stmt *note = month_sql(file, SQL_NOTE);
-    if (!note)
-        return month_fail(file, sqlite3_errcode(file->db), "cannot note an event");
     sqlite3_bind_int64(note, 1, t_us);
-    sqlite3_bind_text(note, 2, kind, -1, SQLITE_STATIC);
-    sqlite3_bind_text(note, 3, text, -1, SQLITE_STATIC);
-    return month_fail(file, month_run(note), "cannot note an event");
+    database_bind_text(note, 2, kind);
+    database_bind_text(note, 3, text);
+    return month_run(file, note, "cannot note an event");
 }
 
 /* --- rolling up --------------------------------------------------------------------------------------------------------------- */
@@ -135,20 +127,18 @@ int month_file_note(struct month_file *file, int64_t t_us, const char *kind, con
 static int put_bucket(struct month_file *file, int64_t id, int64_t length_us, const struct history_bucket *bucket)
 {
     sqlite3_stmt *add = month_sql(file, SQL_ADD_ROLLUP);
-    if (!add)
-        return month_fail(file, sqlite3_errcode(file->db), "cannot roll up");
     sqlite3_bind_int64(add, 1, length_us / US_PER_S);
     sqlite3_bind_int64(add, 2, id);
     sqlite3_bind_int64(add, 3, bucket->t_us);
-    month_bind_value(add, 4, bucket->low);
-    month_bind_value(add, 5, bucket->high);
-    month_bind_value(add, 6, bucket->mean);
-    month_bind_value(add, 7, bucket->first);
-    month_bind_value(add, 8, bucket->last);
+    database_bind_value(add, 4, bucket->low);
+    database_bind_value(add, 5, bucket->high);
+    database_bind_value(add, 6, bucket->mean);
+    database_bind_value(add, 7, bucket->first);
+    database_bind_value(add, 8, bucket->last);
     sqlite3_bind_int64(add, 9, bucket->good_us);
     sqlite3_bind_int64(add, 10, bucket->bad_us);
     sqlite3_bind_int64(add, 11, bucket->quality);
-    return month_fail(file, month_run(add), "cannot roll up");
+    return month_run(file, add, "cannot roll up");
 }
 
 static void reset_rollups(struct month_rollups *rollups, bool step)
@@ -164,11 +154,9 @@ static int roll_from(struct month_file *file, int64_t id, int64_t from_us, struc
     sqlite3_stmt *samples = month_sql(file, SQL_SAMPLES_FROM);
     int64_t hour_us = from_us - from_us % history_level_us[LEVEL_1_H];
     int code, error = 0;
-    if (!samples)
-        return month_fail(file, sqlite3_errcode(file->db), "cannot read samples");
     sqlite3_bind_int64(samples, 1, id);
     sqlite3_bind_int64(samples, 2, hour_us);
-    while (!error && (code = sqlite3_step(samples)) == SQLITE_ROW) {
+    while (!error && (code = database_step(&file->db, samples)) == SQLITE_ROW) {
         struct history_point point = month_point(samples, 0);
         struct history_bucket closed;
         for (int level = 0; level < LEVEL_COUNT && !error; level++)
@@ -176,7 +164,7 @@ static int roll_from(struct month_file *file, int64_t id, int64_t from_us, struc
                 error = put_bucket(file, id, history_level_us[level], &closed);
     }
     sqlite3_reset(samples);
-    return error ? error : month_fail(file, code, "cannot read samples");
+    return error ? error : database_fail(&file->db, code, "cannot read samples");
 }
 
 /* As they were left by whoever wrote the file before. */
@@ -185,13 +173,11 @@ static int load_rollups(struct month_file *file, int tag, int64_t id)
     struct month_rollups *rollups = &file->rollups[tag];
     reset_rollups(rollups, file->tags[tag].step);
     sqlite3_stmt *last = month_sql(file, SQL_LAST_SAMPLE);
-    if (!last)
-        return month_fail(file, sqlite3_errcode(file->db), "cannot read samples");
     sqlite3_bind_int64(last, 1, id);
-    int code = sqlite3_step(last);
+    int code = database_step(&file->db, last);
     int64_t t_us = code == SQLITE_ROW ? sqlite3_column_int64(last, 0) : INT64_MIN;
     sqlite3_reset(last);
-    int error = month_fail(file, code, "cannot read samples");
+    int error = database_fail(&file->db, code, "cannot read samples");
     return error || t_us == INT64_MIN ? error : roll_from(file, id, t_us, rollups, false);
 }
 
@@ -237,17 +223,14 @@ static int move_rows(struct month_file *file)
     int64_t most;
     int code, error = 0, *tags = tags_by_id(file, &most);
     sqlite3_stmt *recent = month_sql(file, SQL_RECENT);
-    while (recent && !error && (code = sqlite3_step(recent)) == SQLITE_ROW) {
+    while (!error && (code = database_step(&file->db, recent)) == SQLITE_ROW) {
         int64_t id = sqlite3_column_int64(recent, 0);
         struct history_point point = month_point(recent, 1);
         error = move_row(file, id <= most ? tags[id] : -1, id, &point);
     }
-    if (recent)
-        sqlite3_reset(recent);
+    sqlite3_reset(recent);
     mem_free(tags);
-    if (!recent)
-        return month_fail(file, sqlite3_errcode(file->db), "cannot read what is recent");
-    return error ? error : month_fail(file, code, "cannot read what is recent");
+    return error ? error : database_fail(&file->db, code, "cannot read what is recent");
 }
 
 int month_file_tidy(struct month_file *file)
@@ -264,7 +247,7 @@ int month_file_tidy(struct month_file *file)
     if (!error)
         error = move_rows(file);
     if (!error)
-        error = month_fail(file, month_run(month_sql(file, SQL_CLEAR_RECENT)), "cannot clear what was recent");
+        error = month_run(file, month_sql(file, SQL_CLEAR_RECENT), "cannot clear what was recent");
     error = end(file, error);
     if (!error)
         file->waiting = 0;
@@ -283,13 +266,11 @@ static int roll_again(struct month_file *file, int tag, int64_t id, int64_t from
     from_us -= from_us % history_level_us[LEVEL_1_H];
     for (int level = 0; level < LEVEL_COUNT && !error; level++) {
         sqlite3_stmt *clear = month_sql(file, SQL_CLEAR_ROLLUPS);
-        if (!clear)
-            return month_fail(file, sqlite3_errcode(file->db), "cannot roll up again");
         sqlite3_bind_int64(clear, 1, history_level_us[level] / US_PER_S);
         sqlite3_bind_int64(clear, 2, id);
         sqlite3_bind_int64(clear, 3, from_us);
         sqlite3_bind_int64(clear, 4, INT64_MAX);
-        error = month_fail(file, month_run(clear), "cannot roll up again");
+        error = month_run(file, clear, "cannot roll up again");
     }
     reset_rollups(&rollups, file->tags[tag].step);
     if (!error)
@@ -318,8 +299,8 @@ int month_file_import(struct month_file *file, int tag, const struct history_poi
 static int end_lines(struct month_file *file, uint32_t gap_quality, int64_t *ended_us)
 {
     sqlite3_stmt *held = month_sql(file, SQL_ALL_HELD);
-    int code = SQLITE_ERROR, error = 0;
-    while (held && !error && (code = sqlite3_step(held)) == SQLITE_ROW) {
+    int code, error = 0;
+    while (!error && (code = database_step(&file->db, held)) == SQLITE_ROW) {
         int64_t id = sqlite3_column_int64(held, 0);
         struct history_point point = month_point(held, 1);
         struct history_point gap = { .t_us = point.t_us + 1, .value = NAN, .quality = gap_quality };
@@ -332,14 +313,13 @@ static int end_lines(struct month_file *file, uint32_t gap_quality, int64_t *end
         if (point.t_us > *ended_us)
             *ended_us = point.t_us;
     }
-    if (held)
-        sqlite3_reset(held);
-    return error ? error : month_fail(file, held ? code : sqlite3_errcode(file->db), "cannot read what was held");
+    sqlite3_reset(held);
+    return error ? error : database_fail(&file->db, code, "cannot read what was held");
 }
 
 int month_file_clear_held(struct month_file *file)
 {
-    return month_fail(file, month_run(month_sql(file, SQL_CLEAR_HELD)), "cannot clear what was held");
+    return month_run(file, month_sql(file, SQL_CLEAR_HELD), "cannot clear what was held");
 }
 
 int month_file_recover(struct month_file *file, uint32_t gap_quality, int64_t *ended_us)

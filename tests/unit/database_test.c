@@ -1,0 +1,162 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* SQLite files in a format of ours: versions, damage, errors. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <cmocka.h>
+
+#include <errno.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "base/database.h"
+#include "base/mem.h"
+#include "base/text.h"
+#include "tests/support/temp.h"
+
+enum { ADD, ALL, WRONG, STATEMENTS };
+static const char *const schemas[] = { "CREATE TABLE a(v REAL, s TEXT)", "CREATE TABLE b(x INTEGER); INSERT INTO b VALUES(7)" };
+static const char *const sql[STATEMENTS] = {
+    [ADD] = "INSERT INTO a VALUES(?, ?)",
+    [ALL] = "SELECT v, s FROM a",
+    [WRONG] = "SELECT 1 FROM none",
+};
+static const struct database_format first = { 99, 1, "", schemas, sql, STATEMENTS }, second = { 99, 2, "", schemas, sql, STATEMENTS };
+
+struct setup {
+    struct log *log;
+    char *folder;
+};
+
+static int set_up(void **state)
+{
+    struct setup *s = mem_new(sizeof(*s));
+    s->log = log_create(LOG_ERROR);
+    s->folder = temp_folder_create();
+    *state = s;
+    return 0;
+}
+
+static int tear_down(void **state)
+{
+    struct setup *s = *state;
+    temp_folder_destroy(&s->folder);
+    log_destroy(&s->log);
+    mem_free(s);
+    return 0;
+}
+
+static struct database make(struct setup *s, const struct database_format *format)
+{
+    struct database db;
+    database_init(&db, s->log, temp_path(s->folder, "x.sqlite"), format);
+    return db;
+}
+
+static void write_once(struct setup *s, const struct database_format *format)
+{
+    struct database db = make(s, format);
+    bool renewed;
+    assert_int_equal(database_open(&db, &renewed), 0);
+    assert_false(renewed);
+    sqlite3_stmt *add = database_statement(&db, ADD);
+    database_bind_value(add, 1, NAN);
+    database_bind_text(add, 2, "x");
+    assert_int_equal(database_run(&db, add), SQLITE_OK);
+    database_finish(&db);
+}
+
+static int version_read(struct setup *s, const struct database_format *format)
+{
+    struct database db = make(s, format);
+    int error = database_open_to_read(&db);
+    database_finish(&db);
+    return error;
+}
+
+static void what_is_written_is_read(void **state)
+{
+    struct setup *s = *state;
+    assert_int_equal(version_read(s, &first), -ENOENT);
+    write_once(s, &first);
+    struct database db = make(s, &second);
+    assert_int_equal(database_open_to_read(&db), 0);
+    sqlite3_stmt *all = database_statement(&db, ALL);
+    assert_int_equal(database_step(&db, all), SQLITE_ROW);
+    assert_true(isnan(database_value(all, 0)));
+    assert_string_equal(database_text(all, 1), "x");
+    assert_int_equal(database_step(&db, all), SQLITE_DONE);
+    database_finish(&db);
+}
+
+static void an_older_version_is_converted_and_a_newer_one_left_alone(void **state)
+{
+    struct setup *s = *state;
+    bool renewed;
+    write_once(s, &first);
+    write_once(s, &second);
+    struct database db = make(s, &second);
+    assert_int_equal(database_open(&db, &renewed), 0);
+    assert_int_equal(database_exec(&db, "UPDATE b SET x = 8", "cannot"), 0);
+    database_finish(&db);
+    db = make(s, &first);
+    assert_int_equal(database_open(&db, &renewed), -EACCES);
+    assert_false(renewed);
+    database_finish(&db);
+    assert_int_equal(version_read(s, &first), -EACCES);
+}
+
+static void a_file_without_anything_in_it_is_none(void **state)
+{
+    struct setup *s = *state;
+    mem_free(temp_write(s->folder, "x.sqlite", "", 0));
+    assert_int_equal(version_read(s, &first), -ENOENT);
+}
+
+static void a_damaged_file_is_set_aside(void **state)
+{
+    struct setup *s = *state;
+    char rubbish[4096];
+    memset(rubbish, 'z', sizeof(rubbish));
+    mem_free(temp_write(s->folder, "x.sqlite", rubbish, sizeof(rubbish)));
+    assert_int_equal(version_read(s, &first), -EBADMSG);
+    struct database db = make(s, &first);
+    bool renewed;
+    assert_int_equal(database_open(&db, &renewed), 0);
+    assert_true(renewed);
+    database_finish(&db);
+    char *look = mem_printf("test -e '%s'/x.damaged-*.sqlite", s->folder);
+    assert_int_equal(system(look), 0);
+    mem_free(look);
+}
+
+/* A statement that cannot be prepared is bound to and stepped as others are: the error comes out of the step. */
+static void a_wrong_statement_is_an_error_when_it_is_stepped(void **state)
+{
+    struct setup *s = *state;
+    write_once(s, &first);
+    struct database db = make(s, &first);
+    assert_int_equal(database_open_to_read(&db), 0);
+    sqlite3_stmt *wrong = database_statement(&db, WRONG);
+    assert_null(wrong);
+    sqlite3_bind_int64(wrong, 1, 5);
+    database_bind_text(wrong, 2, "y");
+    assert_int_equal(database_fail(&db, database_step(&db, wrong), "cannot be read"), -EIO);
+    assert_int_equal(database_fail(&db, database_run(&db, database_statement(&db, ADD)), "cannot be written"), -EROFS);
+    database_finish(&db);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test_setup_teardown(what_is_written_is_read, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(an_older_version_is_converted_and_a_newer_one_left_alone, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(a_file_without_anything_in_it_is_none, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(a_damaged_file_is_set_aside, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(a_wrong_statement_is_an_error_when_it_is_stepped, set_up, tear_down),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
