@@ -62,7 +62,7 @@ programs := $(if $(wildcard server/main.c),$(bin)/plantcastd) $(if $(wildcard pr
             $(if $(generate_sources),$(bin)/plantcast-demo)
 modules  := $(bin)/plantcast-images.so
 
-.PHONY: all programs run demo test test-long bench gpu-bench style layers headers deps test-deps golden-update install clean help
+.PHONY: all programs run demo test check test-long bench gpu-bench style layers headers deps test-deps golden-update install clean help
 all: $(programs) $(modules) clients/web/vendor/uPlot.js clients/web/made/version.js
 # The page's charts: asked for again with each make until they are there.
 clients/web/vendor/uPlot.js: clients/web/package-lock.json

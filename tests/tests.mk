@@ -1,10 +1,17 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Running the tests, the checks of the source, and the bench.
+jobs := -j$(shell nproc)
 test: test-deps
-	@$(MAKE) --no-print-directory checked
+	@$(MAKE) --no-print-directory $(jobs) tests checked
 	@tests/run $(out) $(bin) quick
-# What `make test` does, under each sanitizer, and once more built by clang.
-test-long: test
+# What a developer runs before each commit.
+check: test-deps
+	@$(MAKE) --no-print-directory $(jobs) tests checked
+	@tests/run $(out) $(bin) check
+# All sweeps whole, each GL test on each context; then all under each sanitizer, and built by clang.
+test-long: test-deps
+	@$(MAKE) --no-print-directory $(jobs) tests checked
+	@tests/run $(out) $(bin) whole
 	@deploy/deps build test long
 	@$(MAKE) --no-print-directory CC=clang build=$(build)/clang all tests
 	@for c in asan tsan; do \
@@ -27,8 +34,8 @@ soak: all tests
 	@PLANTCAST_BIN=$(bin) PLANTCAST_OUT=$(out) SOAK_S=$(or $(SOAK_S),1800) node --test tests/e2e/flow.mjs
 .PHONY: soak
 
-checked: all tests demo style layers headers
-tests: $(unit_tests) $(gpu_tests) $(out)/tests/scale/facility $(out)/tests/relay/relay $(out)/tests/faults/libEGL.so.1
+checked: demo style layers headers
+tests: all $(unit_tests) $(gpu_tests) $(out)/tests/scale/facility $(out)/tests/relay/relay $(out)/tests/faults/libEGL.so.1
 unit: tests
 	@tests/run $(out) $(bin) unit
 gpu: tests
@@ -38,9 +45,11 @@ style:
 	@tests/style
 layers:
 	@tests/layers
-# Every header stands alone.
-headers: | $(gen)/glad/include/glad/gl.h
-	@for h in $$(git ls-files '*.h'); do $(CC) $(cflags) -MF /dev/null -fsyntax-only -x c $$h || exit 1; done
+# Every header stands alone; one that has not changed since, nor what it includes, is not looked at again.
+stand_alone := $(patsubst %.h,$(out)/obj/%.h.alone,$(shell git ls-files '*.h'))
+headers: $(stand_alone)
+$(out)/obj/%.h.alone: %.h | $(gen)/glad/include/glad/gl.h
+	@mkdir -p $(@D) && $(CC) $(filter-out -MMD,$(cflags)) -MD -MF $(@:.alone=.d) -MT $@ -fsyntax-only -x c $< && touch $@
 
 bench_programs := $(patsubst tests/%.c,$(out)/tests/%,$(wildcard tests/bench/*_bench.c))
 bench: test-deps
@@ -67,7 +76,8 @@ results:
 seeds ?= 40
 accuracy: $(patsubst %,$(out)/tests/unit/%_test,surface accuracy contact)
 	@mkdir -p $(build)/accuracy; for s in $$(seq $(seeds)); do for t in surface accuracy contact; do \
-	    PLANTCAST_SEED=$$s $(out)/tests/unit/$${t}_test >$(build)/accuracy/$$t.$$s || { grep '^not ok' $(build)/accuracy/$$t.$$s; exit 1; }; \
+	    PLANTCAST_LONG=1 PLANTCAST_SEED=$$s \
+	    $(out)/tests/unit/$${t}_test >$(build)/accuracy/$$t.$$s || { grep '^not ok' $(build)/accuracy/$$t.$$s; exit 1; }; \
 	done; done
 	@tests/bench/accuracy tests/bench/RESULTS.md $(build)/accuracy/surface.* $(build)/accuracy/accuracy.* $(build)/accuracy/contact.*
 .PHONY: accuracy
@@ -83,7 +93,7 @@ gallery: test-deps
 golden-update: $(out)/tests/gpu/golden_test
 	@PLANTCAST_GL=egl-surfaceless GOLDEN_UPDATE=1 $<
 
-.PHONY: checked tests unit gpu scale
+.PHONY: check checked tests unit gpu scale
 
 # `make fuzz seconds=600`: each fuzzer in turn, from its seeds in tests/fuzz/NAME; what it finds is written to build/.
 seconds ?= 60

@@ -9,7 +9,8 @@ import { connect as connectTls } from 'node:tls';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
 import { encodeFrame, http, PlainClient } from './support/plain_client.mjs';
-import { freePort, missing, runProgram, TinyPlant } from './support/tiny_plant.mjs';
+import { freePort } from './support/ports.mjs';
+import { missing, runProgram, TinyPlant } from './support/tiny_plant.mjs';
 
 const NGINX = '/usr/sbin/nginx';
 const absent = missing();

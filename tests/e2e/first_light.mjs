@@ -56,7 +56,6 @@ test('one reading changes: the picture changes at its sensor, and nowhere but on
     await page.evaluate((group) => globalThis.plantcast.session.setParams({ group }), GROUP);
     const tags = await page.evaluate(() => globalThis.plantcast.session.model.tags.map((tag) => tag.name));
     await plant.freeze(tags);
-    await page.waitForTimeout(2000); // two polls: what was read before the freeze has passed
     await settle(page, QUIET_MS);
     const before = await grab(page), seen = await markers(page);
     const off = ({ x, y }) => Math.hypot(x - before.width / 2, y - before.height / 2);

@@ -5,9 +5,10 @@ import { after, before, test } from 'node:test';
 import { camera, median, metrics, Mover, openFiles, openMany, residentKb, sanitized, sleep } from './support/crowd.mjs';
 import { PlainClient } from './support/plain_client.mjs';
 import { Relay, relayMissing } from './support/relay.mjs';
+import { sweep } from './support/sweep.mjs';
 import { missing, TinyPlant } from './support/tiny_plant.mjs';
 
-const STALLED = 50, VIEWERS = 100, SOAK_S = Number(process.env.SOAK_S ?? 20);
+const STALLED = 50, VIEWERS = 100, SOAK_S = Number(process.env.SOAK_S ?? sweep(20, 10));
 const LIMITS = ['address-sessions=300', 'address-connections=400', 'address-messages=100000', 'least-fps=1'];
 const absent = [...missing(), relayMissing()].filter(Boolean);
 const skip = absent.length > 0 ? `not built: ${absent.join(', ')}` : false;

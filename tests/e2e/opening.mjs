@@ -4,7 +4,7 @@ import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
 import { Worker } from 'node:worker_threads';
 import { availableParallelism } from 'node:os';
-import { DESKTOP, openBrowser } from './support/browser.mjs';
+import { browserWith, DESKTOP } from './support/browser.mjs';
 import { median } from './support/crowd.mjs';
 import { missing, startPlant } from './support/plant.mjs';
 
@@ -33,7 +33,7 @@ before(async () => {
     if (why)
         return;
     plant = await startPlant();
-    browser = await openBrowser();
+    browser = await browserWith([]);
     while (spinners.length < availableParallelism())
         spinners.push(new Worker(spin, { eval: true }));
     await share(); // they start

@@ -108,7 +108,6 @@ test('desktop: two sets of parameters side by side, each with legend and markers
     assert.deepEqual(whole, [], 'name and state of the plant have room');
     const tags = await page.evaluate(() => globalThis.plantcast.session.model.tags.map((tag) => tag.name));
     await plant.freeze(tags);
-    await page.waitForTimeout(2000); // two polls
     await page.locator('#picture-toggle').click();
     await page.locator('#split-on label').nth(1).click();
     await page.locator('#legend-right').waitFor();

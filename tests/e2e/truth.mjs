@@ -277,7 +277,7 @@ test('by https it is installed: it opens without its server, says so, and is liv
     await secure.startSim();
     await secure.startDaemon(...by.daemon);
     const { port } = secure, address = `https://127.0.0.1:${port}/`;
-    await withPage(address, { ...TABLET, args: by.browser }, async (page) => {
+    await withPage(address, { ...TABLET, args: by.browser, profile: true }, async (page) => {
         await page.evaluate(() => navigator.serviceWorker.ready);
         const client = await page.context().newCDPSession(page);
         assert.deepEqual((await client.send('Page.getInstallabilityErrors')).installabilityErrors, []);

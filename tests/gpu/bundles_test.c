@@ -16,6 +16,7 @@
 #include "render/canvas.h"
 #include "tests/support/gl_calls.h"
 #include "tests/support/rig.h"
+#include "tests/support/sweep.h"
 #include "tests/support/synthetic.h"
 #include "value/quality.h"
 
@@ -176,7 +177,7 @@ static void test_together_as_one_by_one(void **state)
         int most = 0;
         stand_init(&stand, &rig, make_crowd(24));
         renderer_use_gl(stand.renderer, true);
-        for (int i = 0; i < PICTURES; i++) {
+        for (int i = 0; i < sweep(PICTURES, PICTURES / 3); i++) {
             struct view view;
             read_anyhow(&stand);
             look_anyhow(&stand.toy->scene, &view);

@@ -14,6 +14,7 @@
 
 #include "base/mem.h"
 #include "tests/support/site.h"
+#include "tests/support/sweep.h"
 #include "tests/support/synthetic.h"
 
 enum { WIDTH_PX = 320, HEIGHT_PX = 180 };
@@ -104,12 +105,12 @@ static void test_the_demo_plant(void **state)
     struct tally tally = { 0 };
     assert_true(site_init(&site, &rig, SITE_DEMO, NULL));
     renderer_use_gl(site.renderer, true);
-    for (int i = 0; i < 40; i++) {
+    for (int i = 0; i < sweep(40, 12); i++) {
         struct view view;
         look_anyhow(site.scene, &view);
         compare(&tally, site.renderer, &view, site.snapshot);
     }
-    finish("demo", &tally, 4);
+    finish("demo", &tally, 1);
     site_finish(&site);
 }
 
@@ -151,7 +152,7 @@ static void test_cubes(void **state)
         double gap_m = (double[]){ 0, 0.02, 0.3 }[i];
         stand_init(&stand, &rig, make_city(gap_m));
         renderer_use_gl(stand.renderer, true);
-        for (int k = 0; k < 25; k++) {
+        for (int k = 0; k < sweep(25, 8); k++) {
             struct view view;
             look_anyhow(&stand.toy->scene, &view);
             compare(&tally, stand.renderer, &view, stand.snapshot);

@@ -12,6 +12,7 @@
 #include "base/clock.h"
 #include "base/mem.h"
 #include "tests/support/plant_by_hand.h"
+#include "tests/support/ports.h"
 #include "tests/support/sleep.h"
 #include "value/quality.h"
 
@@ -19,7 +20,7 @@ int modbus_case_set_up(void **state)
 {
     struct modbus_case *c = mem_new(sizeof(*c));
     c->plant = plant_by_hand_create(300);
-    c->device.port = device_free_port();
+    c->device.port = free_port();
     plant_by_hand_source(c->plant, "plc", c->device.port);
     c->log = log_create(LOG_ERROR);
     c->counters = counters_create();

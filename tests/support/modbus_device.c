@@ -50,16 +50,6 @@ static int bound_port(int fd)
     return ntohs(at.sin_port);
 }
 
-int device_free_port(void)
-{
-    struct sockaddr_in at = { .sin_family = AF_INET, .sin_addr.s_addr = htonl(INADDR_LOOPBACK) };
-    int fd = socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
-    must(fd >= 0 && bind(fd, (struct sockaddr *)&at, sizeof(at)) == 0, "bind");
-    int port = bound_port(fd);
-    close(fd);
-    return port;
-}
-
 static void drop_client(struct device_thread *t, size_t index, bool reset)
 {
     struct linger linger = { .l_onoff = 1 };

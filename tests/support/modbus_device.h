@@ -41,8 +41,6 @@ struct device { /* set what you like before or while it runs */
     struct device_thread *thread;
 };
 
-/* A free port at which nothing listens. */
-int device_free_port(void);
 void device_start(struct device *device);
 void device_stop(struct device *device); /* connections are closed; may be started again */
 

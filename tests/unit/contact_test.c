@@ -14,6 +14,7 @@
 #include "base/mem.h"
 #include "tests/oracle/geodesic.h"
 #include "tests/support/surface_case.h"
+#include "tests/support/sweep.h"
 
 #define MEAN_MAX 0.006 /* of the largest distance */
 #define WORST_MAX 0.03
@@ -145,8 +146,14 @@ static size_t covered_corners(const struct outer *outer, const struct cad *shape
     return count;
 }
 
+/* Clean, and with each fault; by default with every third one, of each pair others. */
+static bool is_tried(int row, int fault)
+{
+    return fault == CAD_CLEAN || sweep_takes(row, fault, 3);
+}
+
 /* Two bodies, with a gap in z between the tested ones: the truth has none. Vertices within are hidden, those outside are not. */
-static void test_pair(const char *name, const struct cad *below, const struct cad *above, double gap)
+static void test_pair(const char *name, int row, const struct cad *below, const struct cad *above, double gap)
 {
     struct cad both = { 0 };
     struct outer outer;
@@ -156,6 +163,8 @@ static void test_pair(const char *name, const struct cad *below, const struct ca
     for (size_t v = below->vertex_count; v < both.vertex_count; v++)
         both.positions[v][2] += (float)gap;
     for (int fault = 0; fault < CAD_FAULTS; fault++) {
+        if (!is_tried(row, fault))
+            continue;
         size_t hidden = score(name, &both, &outer, (enum cad_fault)fault);
         if (fault == CAD_CLEAN)
             assert_in_range(hidden, covered(&outer, &both) * 9 / 10, covered(&outer, &both));
@@ -184,9 +193,9 @@ static void a_foot_stands_on_a_base(void **state)
     cad_box(&base, &chance, 40, 40, 6, 0.05);
     cad_box(&foot, &chance, 13, 11, 20, 0.06);
     move(&foot, turn, 0.8 + 0.1 * cad_random(&chance), 0.5 + 0.1 * cad_random(&chance), (double)(6 * 0.05f));
-    test_pair("foot on a base", &base, &foot, 0);
-    test_pair("foot just over a base", &base, &foot, 0.0005);
-    test_pair("foot just into a base", &base, &foot, -0.0005);
+    test_pair("foot on a base", 1, &base, &foot, 0);
+    test_pair("foot just over a base", 2, &base, &foot, 0.0005);
+    test_pair("foot just into a base", 0, &base, &foot, -0.0005);
     cad_finish(&base);
     cad_finish(&foot);
 }
@@ -204,7 +213,7 @@ static void a_flange_lies_on_a_plate(void **state)
     (void)state;
     skip_if_watched();
     make_flange(&plate, &pipe);
-    test_pair("flange on a plate", &plate, &pipe, 0);
+    test_pair("flange on a plate", 1, &plate, &pipe, 0);
     cad_finish(&plate);
     cad_finish(&pipe);
 }
@@ -251,7 +260,7 @@ static void boxes_are_stacked(void **state)
     (void)state;
     skip_if_watched();
     make_boxes(&below, &above, true);
-    test_pair("stacked boxes", &below, &above, 0);
+    test_pair("stacked boxes", 2, &below, &above, 0);
     cad_finish(&below);
     cad_finish(&above);
 }
@@ -263,7 +272,7 @@ static void a_box_stands_at_the_edge_of_another(void **state)
     (void)state;
     skip_if_watched();
     make_boxes(&below, &above, false);
-    test_pair("box at a box's edge", &below, &above, 0);
+    test_pair("box at a box's edge", 0, &below, &above, 0);
     cad_finish(&below);
     cad_finish(&above);
 }
@@ -375,8 +384,9 @@ static void a_tube_passes_through_itself(void **state)
     cad_eight(&down, &chance, 150, 36, radius, 2);
     outer_init(&outer, &up, &down, &tube);
     for (int fault = 0; fault < CAD_FAULTS; fault++)
-        assert_in_range(score("tube through itself", &tube, &outer, (enum cad_fault)fault), covered(&outer, &tube) * 9 / 10,
-                        covered_corners(&outer, &tube));
+        if (is_tried(2, fault))
+            assert_in_range(score("tube through itself", &tube, &outer, (enum cad_fault)fault), covered(&outer, &tube) * 9 / 10,
+                            covered_corners(&outer, &tube));
     outer_finish(&outer);
     cad_finish(&tube);
     cad_finish(&up);

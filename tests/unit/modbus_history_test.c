@@ -21,6 +21,7 @@
 #include "history/historian.h"
 #include "history/history.h"
 #include "tests/support/modbus_device.h"
+#include "tests/support/ports.h"
 #include "tests/support/sleep.h"
 #include "tests/support/temp.h"
 #include "value/quality.h"
@@ -184,7 +185,7 @@ static void make_plant(struct replay *r)
         r->mapped[r->mapped_count++] = (size_t)plant_find_tag(r->plant, map.entries[i].tag);
     sim_map_finish(&map);
     diag_finish(&diag);
-    r->port = r->plant->sources[0].port = device_free_port();
+    r->port = r->plant->sources[0].port = free_port();
     r->plant->sources[0].poll_ms = 100;
     r->plant->sources[0].timeout_ms = 500;
     assert_true(sim_init(&r->sim, r->plant, r->values, 0));

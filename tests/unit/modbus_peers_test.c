@@ -18,6 +18,7 @@
 #include "base/text.h"
 #include "tests/support/modbus_case.h"
 #include "tests/support/plant_by_hand.h"
+#include "tests/support/ports.h"
 #include "tests/support/sleep.h"
 #include "tests/support/temp.h"
 #include "value/quality.h"
@@ -163,7 +164,7 @@ static void assert_prints(const char *words, const char *fmt, int port)
 
 static void mbpoll_reads_the_simulator(void **state)
 {
-    int port = device_free_port();
+    int port = free_port();
     (void)state;
     if (access("/usr/bin/mbpoll", X_OK) != 0) {
         print_message("# mbpoll is not installed\n");
@@ -181,7 +182,7 @@ static void mbpoll_reads_the_simulator(void **state)
 
 static void a_probe_shows_every_type_and_order(void **state)
 {
-    int port = device_free_port();
+    int port = free_port();
     (void)state;
     char *folder = temp_folder_create(), *path = program("plantcast");
     pid_t pid = simulate(folder, port);

@@ -22,6 +22,7 @@
 #include "base/mem.h"
 #include "base/text.h"
 #include "tests/support/modbus_device.h"
+#include "tests/support/ports.h"
 #include "tests/support/sleep.h"
 #include "value/quality.h"
 #include "value/source.h"
@@ -99,8 +100,8 @@ static int set_up(void **state)
     static struct setup s;
     s = (struct setup){ .folder = "/tmp/plantcast-sim-XX" "XX" "XX", .control_fd = -1 };
     assert_non_null(mkdtemp(s.folder));
-    s.port = device_free_port();
-    s.control_port = device_free_port();
+    s.port = free_port();
+    s.control_port = free_port();
     s.plant_path = mem_printf("%s/sim-test.yaml", s.folder);
     s.tags_path = mem_printf("%s/sim-test.csv", s.folder);
     s.model_path = mem_printf("%s/none.glb", s.folder);

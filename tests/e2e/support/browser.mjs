@@ -3,7 +3,9 @@
 import { mkdirSync, mkdtempSync, rmSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
+import { after } from 'node:test';
 import { BUILD } from './plant.mjs';
+import { sweep } from './sweep.mjs';
 
 const CHROMIUM = process.env.CHROMIUM ?? '/usr/bin/chromium';
 const QUIET = [
@@ -15,14 +17,31 @@ export const DESKTOP = { viewport: { width: 1920, height: 1080 } };
 export const TABLET = { viewport: { width: 1024, height: 768 }, deviceScaleFactor: 2, hasTouch: true };
 export const PHONE = { viewport: { width: 390, height: 844 }, deviceScaleFactor: 2, hasTouch: true, isMobile: true };
 
-// { page, errors, close }. errors: what went wrong in the page and what it tried to fetch from elsewhere. before: a function that runs in
-// the page before its own scripts; arrange(page): what else to do before.
+// One browser for all pages of a test program, for each set of its own arguments.
+const browsers = new Map();
+
+export async function browserWith(args) {
+    const { chromium } = await import('playwright-core'), key = args.join(' ');
+    if (!browsers.has(key))
+        browsers.set(key, chromium.launch({ executablePath: CHROMIUM, args: [...QUIET, ...args] }));
+    return browsers.get(key);
+}
+after(() => Promise.all([...browsers.values()].map(async (browser) => (await browser).close())));
+
+// One with a profile on the disk, as people have: only there a page can be installed.
+async function profileWith(args, shape) {
+    const { chromium } = await import('playwright-core'), folder = mkdtempSync(join(tmpdir(), 'plantcast-chromium-'));
+    const context = await chromium.launchPersistentContext(folder, { executablePath: CHROMIUM, ...shape, args: [...QUIET, ...args] });
+    context.once('close', () => rmSync(folder, { recursive: true, force: true }));
+    return context;
+}
+
+// { page, errors, close }. The page remembers nothing of others. errors: what went wrong in it and what it tried to fetch from elsewhere.
+// before: a function that runs in the page before its own scripts; arrange(page): what else to do before. screen.args: the browser's;
+// screen.profile: it has a browser of its own, with a profile.
 export async function openPage(url, screen = DESKTOP, before = null, arrange = () => {}) {
-    const { chromium } = await import('playwright-core');
-    const folder = mkdtempSync(join(tmpdir(), 'plantcast-chromium-'));
-    const context = await chromium.launchPersistentContext(folder, {
-        executablePath: CHROMIUM, ...screen, args: [...QUIET, ...screen.args ?? []],
-    });
+    const { args = [], profile = false, ...shape } = screen;
+    const context = await (profile ? profileWith(args, shape) : (await browserWith(args)).newContext(shape));
     const page = context.pages()[0] ?? await context.newPage();
     const errors = [];
     page.on('pageerror', (error) => errors.push(String(error)));
@@ -40,20 +59,14 @@ export async function openPage(url, screen = DESKTOP, before = null, arrange = (
     await page.goto(url);
     return {
         page, errors,
-        async close() {
-            await context.close();
-            rmSync(folder, { recursive: true, force: true });
-        },
+        close: () => context.close(),
     };
 }
 
-// One that remembers nothing from page to page.
-export async function openBrowser() {
-    const { chromium } = await import('playwright-core');
-    return chromium.launch({ executablePath: CHROMIUM, args: QUIET });
-}
-
+// Of what is to be looked at: in `make test-long`, or with PLANTCAST_SHOTS=1. Many would take longer than all else that a test does.
 export async function shoot(page, name) {
+    if (!sweep(true, process.env.PLANTCAST_SHOTS === '1'))
+        return;
     mkdirSync(SCREENSHOTS, { recursive: true });
     await page.screenshot({ path: join(SCREENSHOTS, `${name}.png`) });
 }

@@ -3,7 +3,7 @@
 import assert from 'node:assert/strict';
 import { appendFileSync, readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
-import { drawnAt } from './browser.mjs';
+import { drawnAt, land } from './browser.mjs';
 import { TinyPlant } from './tiny_plant.mjs';
 
 // [plant, url]. arrange(file): what else is to be done to the plant file.
@@ -32,6 +32,7 @@ export async function everyPanel(page, f) {
         await f(name);
     };
     await page.waitForFunction(() => globalThis.plantcast.session.recorded && globalThis.plantcast.session.model.alarms.list().length > 0);
+    await land(page); // what is clicked stands still
     await f('page');
     const places = await page.evaluate(() => {
         const { model } = globalThis.plantcast.session;

@@ -2,10 +2,11 @@
 // The demo plant running on free ports: its simulated PLC with a control port, and the daemon.
 import { spawn } from 'node:child_process';
 import { existsSync, mkdtempSync, readdirSync, readFileSync, rmSync, symlinkSync, writeFileSync } from 'node:fs';
-import { connect, createServer } from 'node:net';
+import { connect } from 'node:net';
 import { tmpdir } from 'node:os';
 import { join, resolve } from 'node:path';
 import { faultOf } from './fault.mjs';
+import { freePort } from './ports.mjs';
 
 export const BIN = resolve(process.env.PLANTCAST_BIN ?? 'build');
 export const BUILD = resolve('build');
@@ -17,14 +18,6 @@ export function missing() {
     const needed = [join(BIN, 'plantcastd'), join(BIN, 'plantcast-sim'), join(DEMO, 'plant.yaml'), join(DEMO, 'plant.prepared')];
     const absent = needed.filter((path) => !existsSync(path));
     return absent.length > 0 ? `not built: ${absent.join(', ')}` : null;
-}
-
-async function freePort() {
-    const server = createServer().listen(0, '127.0.0.1');
-    await new Promise((done) => server.once('listening', done));
-    const { port } = server.address();
-    await new Promise((done) => server.close(done));
-    return port;
 }
 
 // Started when it prints a line that begins with `ready`; what it says afterwards is kept for the report.
@@ -111,10 +104,15 @@ export async function startPlant(more = '', arrange = () => {}, flags = []) {
         async startDaemon() {
             daemon = await startDaemon();
         },
-        // Holds every tag at the value that it has: from now on nothing changes by itself.
+        // Holds every tag at the value that it has, until the daemon has read that: from then on nothing changes by itself.
         async freeze(tags) {
             for (const tag of tags)
                 await plant.ask(`set ${tag} ${await plant.ask(`get ${tag}`)}`);
+            const frozen = Date.now();
+            for (let old = true; old && Date.now() < frozen + START_MS;) {
+                const asked = Date.now(), { tags: read } = await (await fetch(`${plant.url}api/v1/tags`)).json();
+                old = read.some(({ value, age_ms: age }) => value !== null && age > asked - frozen);
+            }
         },
         async stop() {
             const fault = daemon?.fault() ?? sim?.fault();

@@ -2,10 +2,11 @@
 // A plant of two boxes and three tags in a folder of its own, prepared and served on free ports.
 import { spawn, spawnSync } from 'node:child_process';
 import { chownSync, existsSync, mkdtempSync, readdirSync, rmSync, writeFileSync } from 'node:fs';
-import { connect, createServer } from 'node:net';
+import { connect } from 'node:net';
 import { tmpdir } from 'node:os';
 import { join, resolve } from 'node:path';
 import { faultOf } from './fault.mjs';
+import { freePort } from './ports.mjs';
 
 export const BIN = resolve(process.env.PLANTCAST_BIN ?? 'build');
 const NOBODY = 65534;
@@ -64,14 +65,6 @@ TI-1,400001,Float,°C,left,temperature,E-101,0.5,0,0,1
 TI-2,400003,Float,°C,right,temperature,E-101,-0.5,0,0,1
 PI-1,400005,Float,bar,pump,pressure,P-101A,3,0,0.5,1
 `;
-
-export async function freePort() {
-    const server = createServer().listen(0, '127.0.0.1');
-    await new Promise((done) => server.once('listening', done));
-    const { port } = server.address();
-    await new Promise((done) => server.close(done));
-    return port;
-}
 
 // Ends by itself: { code, out, err }.
 export function runProgram(name, args, timeout = 30000) {

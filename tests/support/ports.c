@@ -1,0 +1,45 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Port numbers for programs that must be told theirs. */
+#include "tests/support/ports.h"
+
+#include <netinet/in.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <sys/random.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+/* As in tests/e2e/support/ports.mjs. Below the ports that the system gives away by itself (net.ipv4.ip_local_port_range begins at
+   32768). */
+enum { FIRST = 20000, COUNT = 1500, EACH = 4, LOCKS = FIRST + COUNT * EACH };
+
+static int listen_at(int port, in_addr_t address)
+{
+    struct sockaddr_in at = { .sin_family = AF_INET, .sin_port = htons((uint16_t)port), .sin_addr.s_addr = htonl(address) };
+    int fd = socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
+    if (fd >= 0 && bind(fd, (struct sockaddr *)&at, sizeof(at)) == 0 && listen(fd, 1) == 0)
+        return fd;
+    if (fd >= 0)
+        close(fd);
+    return -1;
+}
+
+int free_port(void)
+{
+    for (int tries = 0; tries < COUNT; tries++) {
+        unsigned chance = 0;
+        if (getrandom(&chance, sizeof(chance), 0) != sizeof(chance))
+            break;
+        int n = (int)(chance % COUNT), lock = listen_at(LOCKS + n, INADDR_LOOPBACK); /* held until the process ends, however it ends */
+        if (lock < 0)
+            continue;
+        int probe = listen_at(FIRST + n * EACH, INADDR_ANY); /* somebody else may listen */
+        if (probe >= 0) {
+            close(probe);
+            return FIRST + n * EACH;
+        }
+        close(lock);
+    }
+    fprintf(stderr, "no port is free\n");
+    abort();
+}
