@@ -288,7 +288,7 @@ static void write_distances(void *arg, float *geodesic_m)
     struct build *build = arg;
     struct folder_draft *file = &build->output->file;
     off_t at = (char *)geodesic_m - (char *)file->bytes;
-    build->write_error = rows_write(&build->distances, build->workers, file->fd, at);
+    build->write_error = rows_write(&build->distances, build->workers, file->file.fd, at);
     build->sending = workers_begin(build->workers, send_file, &build->output->file);
 }
 

@@ -15,6 +15,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "base/atomic_file.h"
 #include "base/mem.h"
 #include "base/text.h"
 
@@ -115,12 +116,13 @@ void folder_close(struct folder_file *file)
 int folder_draft(struct folder_draft *draft, const char *folder, uint64_t key, size_t size)
 {
     char *path = folder_path(folder, key, ASSET);
-    *draft = (struct folder_draft){ .size = size, .path = mem_printf("%s.%ld.new", path, (long)getpid()) };
+    *draft = (struct folder_draft){ .size = size };
+    int status = -atomic_file_begin(&draft->file, path, 0666);
     mem_free(path);
-    draft->fd = open(draft->path, O_RDWR | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
-    int status = draft->fd < 0 ? errno : posix_fallocate(draft->fd, 0, (off_t)size);
+    if (status == 0)
+        status = posix_fallocate(draft->file.fd, 0, (off_t)size);
     if (status == 0) {
-        draft->bytes = mmap(NULL, size, PROT_READ | PROT_WRITE, MAP_SHARED, draft->fd, 0);
+        draft->bytes = mmap(NULL, size, PROT_READ | PROT_WRITE, MAP_SHARED, draft->file.fd, 0);
         status = draft->bytes == MAP_FAILED ? errno : 0;
         draft->bytes = status ? NULL : draft->bytes;
     }
@@ -131,21 +133,18 @@ int folder_draft(struct folder_draft *draft, const char *folder, uint64_t key, s
 
 void folder_draft_send(const struct folder_draft *draft)
 {
-    sync_file_range(draft->fd, 0, (off_t)draft->size, SYNC_FILE_RANGE_WRITE); /* where it cannot, all is written in folder_put */
+    sync_file_range(draft->file.fd, 0, (off_t)draft->size, SYNC_FILE_RANGE_WRITE); /* where it cannot, all is written in folder_put */
 }
 
 int folder_put(struct folder_draft *draft, const char *folder, uint64_t key, const char *report)
 {
-    char *path = folder_path(folder, key, ASSET), *beside = folder_path(folder, key, REPORT);
-    int status = report ? text_write_file(beside, report, strlen(report)) : 0;
-    if (status == 0 && (msync(draft->bytes, draft->size, MS_SYNC) != 0 || fsync(draft->fd) != 0 || rename(draft->path, path) != 0))
+    char *path = folder_path(folder, key, REPORT);
+    int status = report ? atomic_file_put(path, report, strlen(report)) : 0;
+    if (status == 0 && msync(draft->bytes, draft->size, MS_SYNC) != 0)
         status = -errno;
-    if (status == 0) {
-        mem_free(draft->path);
-        draft->path = NULL;
-    }
+    if (status == 0)
+        status = atomic_file_commit(&draft->file, false);
     mem_free(path);
-    mem_free(beside);
     return status;
 }
 
@@ -153,11 +152,7 @@ void folder_draft_close(struct folder_draft *draft)
 {
     if (draft->bytes)
         munmap(draft->bytes, draft->size);
-    if (draft->path && draft->fd >= 0)
-        unlink(draft->path);
-    if (draft->size && draft->fd >= 0)
-        close(draft->fd);
-    mem_free(draft->path);
+    atomic_file_abandon(&draft->file);
     *draft = (struct folder_draft){ 0 };
 }
 
@@ -260,7 +255,7 @@ int folder_finish(const char *folder, const struct folder_entry *entries, size_t
     char *old = text_read_file(path, MANIFEST_MAX_BYTES, &size);
     int status = text ? 0 : -ENOMEM;
     if (text && (!old || size != strlen(text) || memcmp(old, text, size) != 0))
-        status = text_write_file(path, text, strlen(text));
+        status = atomic_file_put(path, text, strlen(text));
     if (status == 0 && removed)
         remove_unnamed(folder, entries, count, removed);
     mem_free(old);

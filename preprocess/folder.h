@@ -7,6 +7,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "base/atomic_file.h"
 #include "base/log.h"
 #include "protocol/asset_format.h"
 
@@ -42,8 +43,7 @@ void folder_close(struct folder_file *file);
 struct folder_draft {
     void *bytes; /* mapped; zeros at first. NULL: none */
     size_t size;
-    int fd;
-    char *path;
+    struct atomic_file file;
 };
 /* 0, or -errno; the disk has room for all of it. */
 int folder_draft(struct folder_draft *draft, const char *folder, uint64_t key, size_t size);

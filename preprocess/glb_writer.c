@@ -8,6 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/atomic_file.h"
 #include "base/mem.h"
 
 enum { FLOAT = 5126, USHORT = 5123, UINT = 5125, VERTICES = 34962, INDICES = 34963 };
@@ -138,7 +139,7 @@ int glb_writer_save(struct glb_writer *w, const char *path)
     add_chunk(&file, "BIN\0", w->bytes.at, w->bytes.length, 0);
     uint32_t total = (uint32_t)file.length;
     memcpy(file.at + 8, &total, sizeof(total));
-    int status = text_write_file(path, file.at, file.length);
+    int status = atomic_file_put(path, file.at, file.length);
     text_finish(&file);
     free(json);
     return status;

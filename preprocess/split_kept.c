@@ -7,6 +7,7 @@
 #include <string.h>
 #include <xxhash.h>
 
+#include "base/atomic_file.h"
 #include "base/mem.h"
 #include "preprocess/folder.h"
 #include "preprocess/split_impl.h"
@@ -164,7 +165,7 @@ void split_kept_write(const struct split_kept *kept, const char *folder, uint64_
 {
     const struct head head = { kept->sensors.length / sizeof(struct sensor), kept->found.length / sizeof(struct split_kept_finding),
                                kept->given_up, kept->changes_since };
-    const struct text_part parts[] = { { &head, sizeof(head) },
+    const struct atomic_file_part parts[] = { { &head, sizeof(head) },
                                        { kept->sensors.at, kept->sensors.length },
                                        { kept->found.at, kept->found.length } };
     if (!kept->applies)

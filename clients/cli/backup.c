@@ -11,6 +11,7 @@
 #include <unistd.h>
 
 #include "alarm/journal.h"
+#include "base/atomic_file.h"
 #include "base/clock.h"
 #include "base/mem.h"
 #include "base/text.h"
@@ -131,7 +132,7 @@ static bool write_manifest(struct job *job, const struct plant *plant)
     json_t *manifest = json_pack("{s:i,s:s,s:s?,s:s,s:O}", "version", MANIFEST_VERSION, "made", now, "history", history_name(plant),
                                  "tags", as_written(plant, plant->tags_path), "files", job->files);
     char *path = mem_printf("%s/" MANIFEST, job->folder), *text = json_dumps(manifest, JSON_INDENT(2));
-    int error = text_write_file(path, text, strlen(text));
+    int error = atomic_file_put(path, text, strlen(text));
     if (error)
         say(path, strerror(-error));
     free(text);

@@ -6,6 +6,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "base/atomic_file.h"
 #include "base/mem.h"
 #include "commands.h"
 #include "net/message/message.h"
@@ -181,7 +182,7 @@ int daemon_download(const char *url_text, const char *path, const char *out)
     if (status == 200) {
         if (!out)
             printf("%s\n", body.at ? body.at : "");
-        int error = !out ? 0 : text_write_file(out, body.at ? body.at : "", body.length);
+        int error = !out ? 0 : atomic_file_put(out, body.at ? body.at : "", body.length);
         if (error)
             fprintf(stderr, "plantcast: %s: %s\n", out, strerror(-error));
         result = error ? 1 : 0;

@@ -8,6 +8,7 @@
 #include <time.h>
 
 #include "alarm/then.h"
+#include "base/atomic_file.h"
 #include "base/clock.h"
 #include "base/mem.h"
 #include "encode/encoder.h"
@@ -184,7 +185,7 @@ bool studio_save(struct studio *studio, struct frame *frame, const char *path)
     struct encoder *encoder = encoder_create(studio->log, "png", NULL);
     struct packet *packet = NULL;
     bool good = encoder && encoder_send(encoder, frame, &(struct encoder_params){ 0 }) == 0 && encoder_receive(encoder, &packet) == 0;
-    int status = good ? text_write_file(path, packet->bytes, packet->count) : 0;
+    int status = good ? atomic_file_put(path, packet->bytes, packet->count) : 0;
     if (status < 0)
         log_err(studio->log, "%s: %s", path, strerror(-status));
     packet_unref(&packet);

@@ -9,6 +9,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "base/atomic_file.h"
 #include "base/clock.h"
 #include "base/mem.h"
 #include "base/text.h"
@@ -98,24 +99,23 @@ static char *read_file(const char *path, bool may_be_new)
     return text;
 }
 
-/* In one step, with the owner and rights that it had; a new one is its maker's alone. What is there under the name of the step is
-   somebody else's, and stays. */
+/* In one step, with the owner and rights that it had; a new one is its maker's alone. */
 static int write_file(const char *path, const struct text *text)
 {
     struct stat st;
+    struct atomic_file file;
     bool old = lstat(path, &st) == 0;
-    char *beside = mem_printf("%s.%ld.new", path, (long)getpid());
-    int fd = open(beside, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC | O_NOFOLLOW, 0600);
-    bool good = fd >= 0 && (!old || (fchown(fd, st.st_uid, st.st_gid) == 0 && fchmod(fd, st.st_mode & 07777) == 0)) &&
-                write(fd, text->at, text->length) == (ssize_t)text->length && fsync(fd) == 0;
-    if (fd >= 0)
-        good = close(fd) == 0 && good;
-    good = good && rename(beside, path) == 0;
-    int result = good ? 0 : fail_at(path, strerror(errno));
-    if (!good && fd >= 0)
-        unlink(beside);
-    mem_free(beside);
-    return result;
+    int error = atomic_file_begin(&file, path, 0600);
+    if (error)
+        return fail_at(path, strerror(-error));
+    if (old && (fchown(file.fd, st.st_uid, st.st_gid) != 0 || fchmod(file.fd, st.st_mode & 07777) != 0))
+        error = -errno;
+    if (!error)
+        error = atomic_file_write(&file, text->at, text->length);
+    if (!error)
+        error = atomic_file_commit(&file, true);
+    atomic_file_abandon(&file);
+    return error ? fail_at(path, strerror(-error)) : 0;
 }
 
 static bool has_name(const char *lines, const char *name)

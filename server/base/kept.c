@@ -10,6 +10,7 @@
 #define XXH_STATIC_LINKING_ONLY /* the hash state on the stack */
 #include <xxhash.h>
 
+#include "base/atomic_file.h"
 #include "base/mem.h"
 
 struct head {
@@ -55,14 +56,14 @@ void kept_close(struct kept *kept)
 
 int kept_write(const char *path, const char *magic, uint64_t key, const void *bytes, size_t count)
 {
-    return kept_write_parts(path, magic, key, &(struct text_part){ bytes, count }, 1);
+    return kept_write_parts(path, magic, key, &(struct atomic_file_part){ bytes, count }, 1);
 }
 
 /* Not put together first: there may be tens of megabytes. */
-int kept_write_parts(const char *path, const char *magic, uint64_t key, const struct text_part *parts, size_t part_count)
+int kept_write_parts(const char *path, const char *magic, uint64_t key, const struct atomic_file_part *parts, size_t part_count)
 {
     struct head head = { .key = key };
-    struct text_part *all = mem_array(part_count + 1, sizeof(*all));
+    struct atomic_file_part *all = mem_array(part_count + 1, sizeof(*all));
     XXH3_state_t state;
     XXH3_INITSTATE(&state);
     XXH3_64bits_reset_withSeed(&state, key);
@@ -73,8 +74,8 @@ int kept_write_parts(const char *path, const char *magic, uint64_t key, const st
         all[i + 1] = parts[i];
     }
     head.checksum = XXH3_64bits_digest(&state);
-    all[0] = (struct text_part){ &head, sizeof(head) };
-    int status = text_write_parts(path, all, part_count + 1);
+    all[0] = (struct atomic_file_part){ &head, sizeof(head) };
+    int status = atomic_file_put_parts(path, all, part_count + 1);
     mem_free(all);
     return status;
 }

@@ -7,6 +7,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "base/atomic_file.h"
 #include "base/text.h"
 
 struct kept { /* mapped */
@@ -21,6 +22,6 @@ bool kept_open(struct kept *kept, const char *path, const char *magic, uint64_t 
 void kept_close(struct kept *kept); /* a zeroed one is fine */
 /* 0 or -errno. */
 int kept_write(const char *path, const char *magic, uint64_t key, const void *bytes, size_t count);
-int kept_write_parts(const char *path, const char *magic, uint64_t key, const struct text_part *parts, size_t part_count);
+int kept_write_parts(const char *path, const char *magic, uint64_t key, const struct atomic_file_part *parts, size_t part_count);
 
 #endif

@@ -1,12 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A growing string, and whole files in and out. */
+/* A growing string, and reading whole files. */
 #include "base/text.h"
 
 #include <errno.h>
 #include <stdio.h>
 #include <string.h>
 #include <sys/stat.h>
-#include <unistd.h>
 
 #include "base/mem.h"
 
@@ -112,34 +111,4 @@ error:;
     mem_free(bytes);
     errno = cause;
     return NULL;
-}
-
-int text_write_file(const char *path, const void *bytes, size_t count)
-{
-    return text_write_parts(path, &(struct text_part){ bytes, count }, 1);
-}
-
-int text_write_parts(const char *path, const struct text_part *parts, size_t part_count)
-{
-    int status = 0;
-    char *beside = mem_printf("%s.%ld.new", path, (long)getpid());
-    FILE *file = fopen(beside, "wb");
-    if (!file) {
-        status = -errno;
-        goto done;
-    }
-    for (size_t i = 0; i < part_count && !status; i++)
-        if (fwrite(parts[i].bytes, 1, parts[i].count, file) != parts[i].count)
-            status = errno ? -errno : -EIO;
-    if (!status && (fflush(file) != 0 || fsync(fileno(file)) != 0))
-        status = errno ? -errno : -EIO;
-    if (fclose(file) != 0 && !status)
-        status = -errno;
-    if (!status && rename(beside, path) != 0)
-        status = -errno;
-    if (status)
-        unlink(beside);
-done:
-    mem_free(beside);
-    return status;
 }

@@ -25,12 +25,5 @@ void text_finish(struct text *text); /* frees; leaves it empty */
 /* Reads a whole file of at most max_bytes; one 0 byte follows the content. NULL on failure: errno says why (EFBIG: too large).
    Free with mem_free. */
 char *text_read_file(const char *path, size_t max_bytes, size_t *out_bytes);
-/* Writes beside and renames, so that a reader sees the old file or the new one. 0 or -errno. */
-int text_write_file(const char *path, const void *bytes, size_t count);
-struct text_part {
-    const void *bytes;
-    size_t count;
-};
-int text_write_parts(const char *path, const struct text_part *parts, size_t part_count); /* one after the other */
 
 #endif

@@ -11,6 +11,7 @@
 #define XXH_INLINE_ALL
 #include <xxhash.h>
 
+#include "base/atomic_file.h"
 #include "base/mem.h"
 #include "base/text.h"
 
@@ -64,6 +65,26 @@ static char *keep(const char *path, char **why)
     return NULL;
 }
 
+/* With the rights that the list has. */
+static int replace(const struct tag_save *save)
+{
+    struct stat was;
+    struct atomic_file file;
+    int error = stat(save->path, &was) == 0 ? 0 : -errno;
+    if (!error)
+        error = atomic_file_begin(&file, save->path, 0600);
+    if (error)
+        return error;
+    if (fchmod(file.fd, was.st_mode & 07777) != 0)
+        error = -errno;
+    if (!error)
+        error = atomic_file_write(&file, save->after, strlen(save->after));
+    if (!error)
+        error = atomic_file_commit(&file, true);
+    atomic_file_abandon(&file);
+    return error;
+}
+
 bool tag_file_put(const struct tag_save *save, char **kept, char **why)
 {
     char *now = tag_file_read(save->path, why);
@@ -74,10 +95,7 @@ bool tag_file_put(const struct tag_save *save, char **kept, char **why)
     char *name = same ? keep(save->path, why) : NULL;
     if (!name)
         return false;
-    struct stat was;
-    int error = text_write_file(save->path, save->after, strlen(save->after));
-    if (!error && stat(name, &was) == 0 && chmod(save->path, was.st_mode & 07777) != 0)
-        error = -errno;
+    int error = replace(save);
     if (error) {
         *why = mem_printf("%s cannot be written: %s", base_name(save->path), strerror(-error));
         unlink(name);

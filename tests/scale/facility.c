@@ -8,6 +8,7 @@
 #include <string.h>
 #include <sys/stat.h>
 
+#include "base/atomic_file.h"
 #include "base/mem.h"
 #include "base/text.h"
 #include "tests/support/cad.h"
@@ -241,7 +242,7 @@ static void add_asset(struct facility *f, long asset)
 static void must_write(const char *folder, const char *name, const struct text *text)
 {
     char *path = mem_printf("%s/%s", folder, name);
-    int status = text_write_file(path, text->at, text->length);
+    int status = atomic_file_put(path, text->at, text->length);
     if (status != 0) {
         fprintf(stderr, "facility: %s: %s\n", path, strerror(-status));
         exit(1);

@@ -10,6 +10,7 @@
 #include <string.h>
 #include <sys/stat.h>
 
+#include "base/atomic_file.h"
 #include "base/mem.h"
 #include "base/text.h"
 #include "preprocess/prepare.h"
@@ -67,8 +68,8 @@ static bool write_files(const struct crowd_params *params, const struct places *
         for (int s = 0; s < places->count; s++)
             text_add(&tags, "T%d-%d,t,A%d,%.4f,%.4f,%.4f\n", i, s, i, places->at_m[s][0], places->at_m[s][1], places->at_m[s][2]);
     }
-    bool good = (mkdir(params->folder, 0777) == 0 || errno == EEXIST) && text_write_file(yaml_path, yaml.at, yaml.length) == 0 &&
-                text_write_file(tags_path, tags.at, tags.length) == 0;
+    bool good = (mkdir(params->folder, 0777) == 0 || errno == EEXIST) && atomic_file_put(yaml_path, yaml.at, yaml.length) == 0 &&
+                atomic_file_put(tags_path, tags.at, tags.length) == 0;
     text_finish(&yaml);
     text_finish(&tags);
     mem_free(yaml_path);

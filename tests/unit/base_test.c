@@ -11,6 +11,7 @@
 #include <unistd.h>
 #include <cmocka.h>
 
+#include "base/atomic_file.h"
 #include "base/clock.h"
 #include "base/counters.h"
 #include "base/histogram.h"
@@ -58,8 +59,8 @@ static void files_are_read_whole_and_replaced_at_once(void **state)
     (void)state;
     char *folder = temp_folder_create(), *path = temp_path(folder, "f"), *nowhere = temp_path(folder, "no/f");
     size_t bytes = 99;
-    assert_int_equal(text_write_file(path, "one\0two", 7), 0);
-    assert_int_equal(text_write_file(path, "12\0" "456", 6), 0);
+    assert_int_equal(atomic_file_put(path, "one\0two", 7), 0);
+    assert_int_equal(atomic_file_put(path, "12\0" "456", 6), 0);
     char *text = text_read_file(path, 6, &bytes);
     assert_non_null(text);
     assert_int_equal(bytes, 6);
@@ -71,8 +72,8 @@ static void files_are_read_whole_and_replaced_at_once(void **state)
     assert_int_equal(errno, ENOENT);
     assert_null(text_read_file(folder, 1 << 20, &bytes));
     assert_int_equal(errno, EISDIR);
-    assert_int_equal(text_write_file(nowhere, "x", 1), -ENOENT);
-    assert_int_equal(text_write_file(folder, "x", 1), -EISDIR);
+    assert_int_equal(atomic_file_put(nowhere, "x", 1), -ENOENT);
+    assert_int_equal(atomic_file_put(folder, "x", 1), -EISDIR);
     assert_int_equal(unlink(path), 0);
     temp_folder_destroy(&folder);
     mem_free(path);

@@ -10,6 +10,7 @@
 
 #include <cmocka.h>
 
+#include "base/atomic_file.h"
 #include "base/clock.h"
 #include "base/mem.h"
 #include "tests/support/small_scene.h"
@@ -39,7 +40,7 @@ static void write_tokens(struct fixture *f, bool with_bob)
     tokens_print_line(&text, &alice);
     if (with_bob)
         tokens_print_line(&text, &bob);
-    assert_int_equal(text_write_file(f->path, text.at, text.length), 0);
+    assert_int_equal(atomic_file_put(f->path, text.at, text.length), 0);
     assert_int_equal(chmod(f->path, 0600), 0);
     text_finish(&text);
 }

@@ -22,6 +22,7 @@
 #include <cmocka.h>
 #include <sqlite3.h>
 
+#include "base/atomic_file.h"
 #include "base/clock.h"
 #include "base/mem.h"
 #include "base/text.h"
@@ -467,7 +468,7 @@ static void a_corrupt_month_is_set_aside_and_recording_goes_on(void **state)
     month_path(s, path, sizeof(path));
     char rubbish[30000];
     memset(rubbish, 'x', sizeof(rubbish));
-    assert_int_equal(text_write_file(path, rubbish, sizeof(rubbish)), 0);
+    assert_int_equal(atomic_file_put(path, rubbish, sizeof(rubbish)), 0);
     start(s);
     int64_t first_ns = write_all(s, 1);
     wait_until_counted(s, "plantcast_history_points_total", TAGS);

@@ -13,6 +13,7 @@
 #include <cmocka.h>
 #include <sqlite3.h>
 
+#include "base/atomic_file.h"
 #include "base/mem.h"
 #include "base/text.h"
 #include "history/history.h"
@@ -312,7 +313,7 @@ static void a_damaged_file_is_set_aside(void **state)
     struct setup *s = *state;
     char *path = temp_path(s->folder, "history-2026-11.sqlite");
     static const char rubbish[20000] = "this was never a database";
-    assert_int_equal(text_write_file(path, rubbish, sizeof(rubbish)), 0);
+    assert_int_equal(atomic_file_put(path, rubbish, sizeof(rubbish)), 0);
     record(s, NOVEMBER, 100);
     assert_int_equal(count_damaged(s->folder), 1);
     struct snapshot *snapshot = snapshot_create(TAGS);

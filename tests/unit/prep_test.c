@@ -16,6 +16,7 @@
 #include <unistd.h>
 #include <cmocka.h>
 
+#include "base/atomic_file.h"
 #include "base/mem.h"
 #include "base/text.h"
 #include "preprocess/folder.h"
@@ -180,7 +181,7 @@ static void damaged_files_are_made_anew_and_said(void **state)
     size_t size;
     char *bytes = text_read_file(c, (size_t)1 << 30, &size);
     bytes[size / 2] ^= 1;
-    assert_int_equal(text_write_file(c, bytes, size), 0);
+    assert_int_equal(atomic_file_put(c, bytes, size), 0);
     mem_free(bytes);
     prep_case_expect(s, "$PLANT", 0);
     prep_case_says(&s->err, "truncated: 1000 bytes");

@@ -18,9 +18,9 @@
 #include <unistd.h>
 #include <cmocka.h>
 
+#include "base/atomic_file.h"
 #include "base/clock.h"
 #include "base/mem.h"
-#include "base/text.h"
 #include "tests/support/modbus_device.h"
 #include "tests/support/ports.h"
 #include "tests/support/sleep.h"
@@ -105,10 +105,10 @@ static int set_up(void **state)
     s.plant_path = mem_printf("%s/sim-test.yaml", s.folder);
     s.tags_path = mem_printf("%s/sim-test.csv", s.folder);
     s.model_path = mem_printf("%s/none.glb", s.folder);
-    assert_int_equal(text_write_file(s.model_path, "glTF", 4), 0); /* nobody opens it here */
+    assert_int_equal(atomic_file_put(s.model_path, "glTF", 4), 0); /* nobody opens it here */
     char *text = mem_printf(plant_text, s.port);
-    assert_int_equal(text_write_file(s.plant_path, text, strlen(text)), 0);
-    assert_int_equal(text_write_file(s.tags_path, tags_text, strlen(tags_text)), 0);
+    assert_int_equal(atomic_file_put(s.plant_path, text, strlen(text)), 0);
+    assert_int_equal(atomic_file_put(s.tags_path, tags_text, strlen(tags_text)), 0);
     mem_free(text);
     struct diag diag = { 0 };
     s.plant = plant_load(s.plant_path, &diag);

@@ -11,8 +11,8 @@
 #include <unistd.h>
 #include <cmocka.h>
 
+#include "base/atomic_file.h"
 #include "base/mem.h"
-#include "base/text.h"
 #include "deploy/demo/sim_encode.h"
 #include "deploy/demo/sim_image.h"
 #include "deploy/demo/sim_map.h"
@@ -270,7 +270,7 @@ static void process_repeats_with_its_seed(void **state)
 static char *write_file(const char *name, const char *text)
 {
     char *path = mem_printf("/tmp/plantcast-sim-test-%ld-%s", (long)getpid(), name);
-    assert_int_equal(text_write_file(path, text, strlen(text)), 0);
+    assert_int_equal(atomic_file_put(path, text, strlen(text)), 0);
     return path;
 }
 

@@ -12,8 +12,8 @@
 
 #include <cmocka.h>
 
+#include "base/atomic_file.h"
 #include "base/mem.h"
-#include "base/text.h"
 
 struct fixture {
     char root[64], web[80];
@@ -22,7 +22,7 @@ struct fixture {
 static void write_file(const char *folder, const char *name, const char *content)
 {
     char *path = mem_printf("%s/%s", folder, name);
-    assert_int_equal(text_write_file(path, content, strlen(content)), 0);
+    assert_int_equal(atomic_file_put(path, content, strlen(content)), 0);
     mem_free(path);
 }
 

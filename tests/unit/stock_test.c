@@ -17,6 +17,7 @@
 #include <unistd.h>
 #include <cmocka.h>
 
+#include "base/atomic_file.h"
 #include "base/mem.h"
 #include "preprocess/folder.h"
 #include "preprocess/stock.h"
@@ -164,7 +165,7 @@ static void damage(const char *path, bool cut)
     assert_non_null(bytes);
     for (size_t i = size / 8; i < size; i += size / 8) /* all columns, and every part of the stock */
         bytes[i] ^= 4;
-    assert_int_equal(text_write_file(path, bytes, cut ? size / 3 : size), 0);
+    assert_int_equal(atomic_file_put(path, bytes, cut ? size / 3 : size), 0);
     mem_free(bytes);
 }
 

@@ -10,6 +10,7 @@
 #include <string.h>
 #include <time.h>
 
+#include "base/atomic_file.h"
 #include "base/mem.h"
 #include "base/text.h"
 #include "plant/csv.h"
@@ -121,7 +122,7 @@ static void write_random(struct text *text, char separator, int rows)
 
 static void save(const char *path, const char *text)
 {
-    assert_int_equal(text_write_file(path, text, strlen(text)), 0);
+    assert_int_equal(atomic_file_put(path, text, strlen(text)), 0);
 }
 
 static void compare(const char *before_path, const char *after_path, int changed)

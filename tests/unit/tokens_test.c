@@ -10,6 +10,7 @@
 
 #include <cmocka.h>
 
+#include "base/atomic_file.h"
 #include "base/clock.h"
 #include "base/mem.h"
 #include "tests/support/temp.h"
@@ -51,7 +52,7 @@ static void add_line(struct text *text, enum role role, const char *name, const 
 
 static void write_file(struct fixture *f, const char *text, mode_t mode)
 {
-    assert_int_equal(text_write_file(f->path, text, strlen(text)), 0);
+    assert_int_equal(atomic_file_put(f->path, text, strlen(text)), 0);
     assert_int_equal(chmod(f->path, mode), 0);
 }
 

@@ -6,6 +6,7 @@
 #include <jansson.h>
 #include <string.h>
 
+#include "base/atomic_file.h"
 #include "base/mem.h"
 #include "base/text.h"
 
@@ -140,7 +141,7 @@ static int write_chunks(const char *json, const struct text *buffer, const char 
     append_u32(&out, (uint32_t)buffer->length);
     text_add_bytes(&out, "BIN", 4);
     text_add_bytes(&out, buffer->at, buffer->length);
-    int status = text_write_file(path, out.at, out.length);
+    int status = atomic_file_put(path, out.at, out.length);
     text_finish(&out);
     return status;
 }

@@ -2,6 +2,7 @@
 /* plant.yaml and tags.csv as text. */
 #include "plant_file.h"
 
+#include "base/atomic_file.h"
 #include "base/text.h"
 #include "layout.h"
 
@@ -66,7 +67,7 @@ int plant_file_write(const char *path)
         text_add(&out, "  - { id: %s, model: plant.glb, nodes: %s, up: y, description: \"%s\" }\n", layout_assets[i].name,
                  layout_assets[i].name,
                  layout_assets[i].description);
-    int status = text_write_file(path, out.at, out.length);
+    int status = atomic_file_put(path, out.at, out.length);
     text_finish(&out);
     return status;
 }
@@ -119,7 +120,7 @@ int tag_list_write(const struct tags *tags, const char *path)
                    "Source,Group,Asset,Node,X,Y,Z,Byte Order,LL,L,H,HH,Sim Value,Sim Loop\n");
     for (size_t i = 0; i < tags->count; i++)
         add_tag(&out, tags->at + i);
-    int status = text_write_file(path, out.at, out.length);
+    int status = atomic_file_put(path, out.at, out.length);
     text_finish(&out);
     return status;
 }

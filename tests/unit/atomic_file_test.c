@@ -1,0 +1,113 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Files that are replaced at once: what is seen meanwhile, what is left, and that nothing which is there is written through. */
+#include "base/atomic_file.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cmocka.h>
+
+#include "base/mem.h"
+#include "base/text.h"
+#include "tests/support/temp.h"
+
+struct fixture {
+    char *folder, *path;
+};
+
+static int set_up(void **state)
+{
+    struct fixture *f = mem_new(sizeof(*f));
+    f->folder = temp_folder_create();
+    f->path = temp_write_text(f->folder, "f", "old");
+    *state = f;
+    return 0;
+}
+
+static int tear_down(void **state)
+{
+    struct fixture *f = *state;
+    temp_folder_destroy(&f->folder);
+    mem_free(f->path);
+    mem_free(f);
+    return 0;
+}
+
+static void assert_text(const char *path, const char *want)
+{
+    size_t bytes;
+    char *text = text_read_file(path, 100, &bytes);
+    assert_string_equal(text, want);
+    mem_free(text);
+}
+
+static void assert_nothing_beside(const struct fixture *f)
+{
+    char *look = mem_printf("test -z \"$(ls '%s' | grep new)\"", f->folder);
+    assert_int_equal(system(look), 0);
+    mem_free(look);
+}
+
+static void the_old_file_stays_until_the_new_one_is_whole(void **state)
+{
+    struct fixture *f = *state;
+    struct atomic_file file;
+    for (int durable = 0; durable < 2; durable++) {
+        assert_int_equal(atomic_file_begin(&file, f->path, 0600), 0);
+        assert_int_equal(atomic_file_write(&file, "n", 1), 0);
+        assert_int_equal(atomic_file_write(&file, "ew", 2), 0);
+        assert_text(f->path, durable ? "new" : "old");
+        assert_int_equal(atomic_file_commit(&file, durable), 0);
+        atomic_file_abandon(&file); /* does nothing any more */
+        assert_text(f->path, "new");
+    }
+    struct stat st;
+    assert_int_equal(stat(f->path, &st), 0);
+    assert_int_equal(st.st_mode & 0777, 0600);
+    assert_nothing_beside(f);
+}
+
+static void one_that_is_given_up_leaves_nothing(void **state)
+{
+    struct fixture *f = *state;
+    struct atomic_file file;
+    assert_int_equal(atomic_file_begin(&file, f->path, 0600), 0);
+    assert_int_equal(atomic_file_write(&file, "x", 1), 0);
+    atomic_file_abandon(&file);
+    assert_text(f->path, "old");
+    assert_nothing_beside(f);
+}
+
+/* Somebody put a link where it would be written, to what only this program may write. */
+static void links_and_files_beside_are_not_written_through(void **state)
+{
+    struct fixture *f = *state;
+    char *secret = temp_write_text(f->folder, "secret", "secret"), *link = mem_printf("%s.%ld.new", f->path, (long)getpid());
+    assert_int_equal(symlink(secret, link), 0);
+    assert_int_equal(atomic_file_put(f->path, "new", 3), 0);
+    assert_text(f->path, "new");
+    assert_text(secret, "secret");
+    struct stat st;
+    assert_int_equal(lstat(f->path, &st), 0);
+    assert_true(S_ISREG(st.st_mode));
+    assert_int_equal(unlink(link), 0);
+    assert_nothing_beside(f);
+    mem_free(secret);
+    mem_free(link);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test_setup_teardown(the_old_file_stays_until_the_new_one_is_whole, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(one_that_is_given_up_leaves_nothing, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(links_and_files_beside_are_not_written_through, set_up, tear_down),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
