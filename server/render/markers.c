@@ -163,9 +163,10 @@ void markers_look(const struct picture *picture, const float *depth, size_t pitc
     int width_px = picture->view->width_px, height_px = picture->view->height_px;
     double eye[3], near[3], clip[4], near_clip[4];
     double length = fmax(sqrt((double)(place[0] * place[0] + place[1] * place[1] + place[2] * place[2])), 1e-6);
+    bool parallel = picture->shot.pixel_per_metre > 0;
     for (int c = 0; c < 3; c++) {
         eye[c] = place[c];
-        near[c] = place[c] * (1 - fmin(place[3] / length, 0.5));
+        near[c] = parallel ? place[c] + picture->shot.back[c] * place[3] : place[c] * (1 - fmin(place[3] / length, 0.5));
     }
     matrix_point(picture->shot.clip_from_eye, eye, clip);
     matrix_point(picture->shot.clip_from_eye, near, near_clip);

@@ -104,7 +104,8 @@ static void bench_finish(struct bench *bench)
     log_destroy(&bench->log);
 }
 
-enum dress { PLAIN, LINED, BANDED, LOGARITHMIC, LIMITS, CUT };
+enum dress { PLAIN, LINED, BANDED, LOGARITHMIC, LIMITS, CUT, ORTHOGRAPHIC, GHOSTS, GLOSSY };
+enum { GHOST_COUNT = 5 };
 
 static void put_on(const struct bench *bench, enum dress dress, struct view *view)
 {
@@ -120,6 +121,15 @@ static void put_on(const struct bench *bench, enum dress dress, struct view *vie
         view->field.show = SHOW_OPERATOR;
         view_own_scale(bench->scene, view);
     }
+    if (dress == ORTHOGRAPHIC) {
+        double away_m = 0;
+        for (int c = 0; c < 3; c++)
+            away_m = hypot(away_m, view->camera.eye_m[c] - view->camera.target_m[c]);
+        view->camera.height_m = 2 * away_m * tan(view->camera.fov_deg * M_PI / 360);
+    }
+    for (int i = 0; dress == GHOSTS && i < GHOST_COUNT; i++)
+        asset_set_add(&view->visibility.ghosts, i * (int)bench->scene->asset_count / GHOST_COUNT);
+    view->look = dress == GLOSSY ? LOOK_GLOSSY : view->look;
     if (dress == CUT) { /* half-way up, what is closed with caps */
         double middle_m = 0.5 * (bench->scene->bounds_min_m[2] + bench->scene->bounds_max_m[2]);
         view->visibility.clip = (struct clip){ .plane_count = 1, .planes = { { 0, 0, -1, middle_m } } };
@@ -148,6 +158,18 @@ static void measure(struct bench *bench, enum tier tier, enum dress dress, const
     }
     print_row(time_name, time_ms, rounds, tier == TIER_STILL ? 300 : 0);
     print_row(work_name, work_ms, rounds, 0);
+}
+
+static void measure_all(struct bench *bench, enum tier tier, int rounds)
+{
+    static const char *const names[] = { "", "lines_", "bands_", "log_", "operator_", "cut_", "orthographic_", "ghosts_", "glossy_" };
+    for (enum dress dress = PLAIN; dress <= GLOSSY; dress++) {
+        char time_name[64], work_name[64];
+        const char *shown = tier == TIER_MOVING ? "moving" : "still";
+        snprintf(time_name, sizeof(time_name), "render_%s_%s1080p_ms", shown, names[dress]);
+        snprintf(work_name, sizeof(work_name), "render_%s_%s1080p_cpu_ms", shown, names[dress]);
+        measure(bench, tier, dress, time_name, work_name, rounds);
+    }
 }
 
 /* The camera stands still, and one reading changes. */
@@ -248,14 +270,9 @@ int main(void)
         return 0;
     }
     if (bench_init(&bench)) {
-        measure(&bench, TIER_MOVING, PLAIN, "render_moving_1080p_ms", "render_moving_1080p_cpu_ms", MOVING_ROUNDS);
-        measure(&bench, TIER_MOVING, LINED, "render_moving_lines_1080p_ms", "render_moving_lines_1080p_cpu_ms", MOVING_ROUNDS);
-        measure(&bench, TIER_MOVING, BANDED, "render_moving_bands_1080p_ms", "render_moving_bands_1080p_cpu_ms", MOVING_ROUNDS);
-        measure(&bench, TIER_MOVING, LOGARITHMIC, "render_moving_log_1080p_ms", "render_moving_log_1080p_cpu_ms", MOVING_ROUNDS);
-        measure(&bench, TIER_MOVING, LIMITS, "render_moving_operator_1080p_ms", "render_moving_operator_1080p_cpu_ms", MOVING_ROUNDS);
+        measure_all(&bench, TIER_MOVING, MOVING_ROUNDS);
         measure_recolour(&bench);
-        measure(&bench, TIER_MOVING, CUT, "render_moving_cut_1080p_ms", "render_moving_cut_1080p_cpu_ms", STILL_ROUNDS);
-        measure(&bench, TIER_STILL, PLAIN, "render_still_1080p_ms", "render_still_1080p_cpu_ms", STILL_ROUNDS);
+        measure_all(&bench, TIER_STILL, STILL_ROUNDS);
         measure_steps(&bench);
         measure_again(&bench, PLAIN, false, "render_still_recolor_1080p_ms", "render_still_recolor_1080p_cpu_ms");
         measure_again(&bench, PLAIN, true, "render_still_recolor_all_1080p_ms", "render_still_recolor_all_1080p_cpu_ms");

@@ -50,9 +50,10 @@ static void assert_same_pixels(const struct frame *draft, const struct frame *gl
 static void assert_same(const struct view *view, double may_differ)
 {
     struct frame *draft = draw(view, false), *gl = draw(view, true);
+    assert_true(draft_can(stand.renderer->draft, view) || view->look == LOOK_GLOSSY || view->visibility.ghosts.count > 0);
     assert_same_pixels(draft, gl, may_differ);
     assert_int_equal(draft->marker_count, gl->marker_count);
-    assert_true(draft->marker_count > 0);
+    assert_true(draft->marker_count > 0 || view->visibility.clip.plane_count > 0);
     for (size_t i = 0; i < gl->marker_count; i++) {
         assert_int_equal(draft->markers[i].tag, gl->markers[i].tag);
         assert_int_equal(draft->markers[i].occluded, gl->markers[i].occluded);
@@ -75,6 +76,12 @@ static void start_view(struct view *view, int width_px, int height_px)
 {
     view_default(&stand.toy->scene, width_px, height_px, view);
     view->tier = TIER_MOVING;
+}
+
+static void draw_lines_every(struct view *view, double step)
+{
+    for (double line = step; line < 100 && view->paint.line_count < VIEW_LINES; line += step)
+        view->paint.lines[view->paint.line_count++] = line;
 }
 
 static void test_home(void **state)
@@ -118,6 +125,49 @@ static void test_cameras(void **state)
     for (int i = 0; i < 12; i++) {
         stand_look(&stand, i, &view);
         assert_same(&view, 0.01);
+    }
+}
+
+/* Rays are parallel: from all round and above, wide and so narrow that the eye stands among the pipes. */
+static void test_orthographic(void **state)
+{
+    (void)state;
+    for (int i = 0; i < 12; i++) {
+        struct view view;
+        start_view(&view, 320, 240);
+        stand_look(&stand, i, &view);
+        view.camera.height_m = i % 3 ? 6 : 1.5;
+        view.selected_asset = i % 4 - 1;
+        if (i % 2)
+            draw_lines_every(&view, 10);
+        assert_same(&view, 0.015);
+    }
+}
+
+static void cut_at(struct view *view, int plane, double x, double y, double z, double d)
+{
+    memcpy(view->visibility.clip.planes[plane], (double[4]){ x, y, z, d }, 4 * sizeof(double));
+    view->visibility.clip.plane_count = plane + 1;
+}
+
+/* By a level plane, by a slanting one, and by a box; bodies that are closed have caps, the inner side of others shows. */
+static void test_cuts(void **state)
+{
+    (void)state;
+    for (int i = 0; i < 24; i++) {
+        struct view view;
+        start_view(&view, 320, 240);
+        stand_look(&stand, i % 12, &view);
+        view.camera.height_m = i % 5 == 4 ? 6 : 0;
+        view.selected_asset = i % 6 == 5 ? 1 : -1;
+        view.look = i % 7 == 3 ? LOOK_FLAT : LOOK_DEFAULT;
+        if (i % 3 == 0)
+            cut_at(&view, 0, 0, 0, -1, 0.2 + 0.1 * i);
+        if (i % 3 == 1)
+            cut_at(&view, 0, 0.6, 0.64, -0.48, 0.3);
+        if (i % 3 == 2)
+            clip_box(&view.visibility.clip, (double[3]){ -0.8, -0.5, -0.2 }, (double[3]){ 2.1, 0.3, 1.1 });
+        assert_same(&view, view.selected_asset < 0 ? 0.01 : 0.02);
     }
 }
 
@@ -200,13 +250,6 @@ static void test_moves_after_standing(void **state)
     assert_same(&view, 0.01);
     asset_set_add(&view.visibility.hidden, 0);
     assert_same(&view, 0.01);
-}
-
-/* What it leaves to GL is what GL draws. */
-static void draw_lines_every(struct view *view, double step)
-{
-    for (double line = step; line < 100 && view->paint.line_count < VIEW_LINES; line += step)
-        view->paint.lines[view->paint.line_count++] = line;
 }
 
 /* What is worked out pixel by pixel: lines, bands, logarithms. Rims of lines differ by the way slopes are measured. */
@@ -359,6 +402,8 @@ static void test_kernels(void **state)
         view.selected_asset = i % 4 == 2 ? 0 : -1;
         if (i % 4 == 1)
             draw_lines_every(&view, 5);
+        if (i % 5 == 3)
+            cut_at(&view, 0, 0.6, 0.64, -0.48, 0.3);
         compare_kernels(&view, other_kernels[i / 24]);
     }
 }
@@ -395,6 +440,7 @@ static void test_sky(void **state)
     assert_in_range(worst, 0, 2);
 }
 
+/* What it leaves to GL is what GL draws. */
 static void test_left_to_gl(void **state)
 {
     (void)state;
@@ -412,7 +458,8 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_home),    cmocka_unit_test(test_sizes), cmocka_unit_test(test_flat),
-        cmocka_unit_test(test_cameras), cmocka_unit_test(test_sun),   cmocka_unit_test(test_outlines),
+        cmocka_unit_test(test_cameras), cmocka_unit_test(test_orthographic), cmocka_unit_test(test_cuts),
+        cmocka_unit_test(test_sun),   cmocka_unit_test(test_outlines),
         cmocka_unit_test(test_hidden_assets), cmocka_unit_test(test_still_camera),
         cmocka_unit_test(test_moves_after_standing), cmocka_unit_test(test_lines_and_scales),
         cmocka_unit_test(test_patterns_close_by), cmocka_unit_test(test_operator),

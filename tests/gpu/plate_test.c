@@ -12,6 +12,7 @@
 #include <cmocka.h>
 
 #include "base/mem.h"
+#include "render/stroke.h"
 #include "tests/support/rig.h"
 #include "value/quality.h"
 
@@ -31,6 +32,7 @@ static struct frame *draw_anew(const struct view *view)
 {
     struct stroke *stroke = renderer_begin(stand.renderer, view, stand.snapshot);
     assert_non_null(stroke);
+    assert_non_null(stroke->plate);
     struct frame *frame = renderer_end(stand.renderer, &stroke);
     assert_non_null(frame);
     return frame;
@@ -111,6 +113,19 @@ static void test_cameras(void **state)
     start_view(&view, 320, 240);
     for (int i = 0; i < 12; i++) {
         stand_look(&stand, i, &view);
+        assert_like_gl(&view, 0.02);
+    }
+}
+
+/* Rays are parallel. */
+static void test_orthographic(void **state)
+{
+    (void)state;
+    for (int i = 0; i < 12; i++) {
+        struct view view;
+        start_view(&view, 320, 240);
+        stand_look(&stand, i, &view);
+        view.camera.height_m = i % 3 ? 6 : 1.5;
         assert_like_gl(&view, 0.02);
     }
 }
@@ -366,6 +381,7 @@ int main(void)
         cmocka_unit_test(test_home),
         cmocka_unit_test(test_sizes),
         cmocka_unit_test(test_cameras),
+        cmocka_unit_test(test_orthographic),
         cmocka_unit_test(test_suns),
         cmocka_unit_test(test_outlines),
         cmocka_unit_test(test_hidden_assets),

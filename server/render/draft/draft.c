@@ -52,12 +52,11 @@ void draft_destroy(struct draft **draft_ptr)
     *draft_ptr = NULL;
 }
 
-/* Holes need textures; what is see-through and what cuts are other passes' work. */
+/* Holes need textures; what is see-through is another pass's work. */
 bool draft_can(const struct draft *draft, const struct view *view)
 {
     return view->tier == TIER_MOVING && view->look != LOOK_GLOSSY && view->look != LOOK_MATERIALS &&
-           view->visibility.ghosts.count == 0 && view->visibility.clip.plane_count == 0 && view->camera.height_m <= 0 &&
-           draft->ramp_count <= MOST_RAMPS && !draft->has_holes;
+           view->visibility.ghosts.count == 0 && draft->ramp_count <= MOST_RAMPS && !draft->has_holes;
 }
 
 /* Lines are worked out with the triangles: such a picture is drawn anew each time. */
@@ -163,6 +162,7 @@ bool draft_draw(struct draft *draft, const struct picture *picture, const struct
     draft->greys = view_is_operator(picture->view);
     draft->out = frame->bgrx;
     draft->out_stride_bytes = (size_t)frame->stride_bytes;
+    draft_aim_cuts(draft);
     draft_aim(draft, light);
     if (!draft_find(draft))
         return complain(draft);

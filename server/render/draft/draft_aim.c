@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The matrices by which pixels look things up. */
 #include <math.h>
+#include <string.h>
 
 #include "render/draft/draft_impl.h"
 #include "render/light/sky.h"
@@ -43,6 +44,12 @@ static void aim_rays(struct draft *draft, const double clip[16])
     matrix_invert(draft->picture->shot.clip_from_eye, eye_from_clip);
     matrix_multiply(eye_from_clip, clip, out);
     double w = out[11] + out[15]; /* at depth 1 */
+    if (draft->picture->shot.pixel_per_metre > 0) {
+        memset(draft->ray_from_pixel, 0, sizeof(draft->ray_from_pixel));
+        for (int r = 0; r < 3; r++)
+            draft->ray_from_pixel[2][r] = (float)-draft->picture->shot.back[r];
+        return;
+    }
     for (int r = 0; r < 3; r++) {
         draft->ray_from_pixel[0][r] = (float)(out[r] / w);
         draft->ray_from_pixel[1][r] = (float)(out[4 + r] / w);
@@ -64,7 +71,7 @@ static void choose_stretch(struct draft *draft)
         area2 += normal * normal;
         volume += normal * (double)m[2][r];
     }
-    double turn2 = step2 * area2 / (volume * volume); /* 1 / f^2 */
+    double turn2 = step2 > 0 ? step2 * area2 / (volume * volume) : 0; /* 1 / f^2; rays are parallel */
     int n = DRAFT_STRETCH_MOST;
     while (n >= DRAFT_STRETCH_LEAST && !(0.15 * n * n * turn2 * SKY_BACKDROPS / 2 <= most))
         n /= 2;
@@ -99,6 +106,53 @@ static void aim_ground(struct draft *draft, const struct light *light)
         size = fmax(size, fabs((double)to[i / 3][i % 3]));
     for (int i = 0; i < 9; i++)
         to[i / 3][i % 3] = (float)((double)to[i / 3][i % 3] * sign / size);
+}
+
+void draft_aim_cuts(struct draft *draft)
+{
+    float half[2] = { 0.5f * (float)draft->width_px, 0.5f * (float)draft->height_px };
+    int count = draft->picture->view->visibility.clip.plane_count;
+    draft->cut_count = 0;
+    for (int leave = 0; leave < 2; leave++) {
+        for (int i = 0; i < count; i++) {
+            const float *plane = draft->block.clip[i];
+            float *out = draft->cuts[draft->cut_count];
+            if ((plane[2] < 0) == leave)
+                continue;
+            out[0] = plane[0] / half[0];
+            out[1] = -plane[1] / half[1];
+            out[2] = plane[2];
+            out[3] = plane[3] - plane[0] + plane[1];
+            draft->cut_count++;
+        }
+        if (!leave)
+            draft->entry_count = draft->cut_count;
+    }
+}
+
+bool draft_is_cut_off(const struct draft *draft, const float at[4], int planes)
+{
+    for (int i = 0; i < planes; i++) {
+        const float *plane = draft->cuts[i];
+        if (plane[0] * at[0] + plane[1] * at[1] + plane[2] * at[2] + plane[3] * at[3] < 0)
+            return true;
+    }
+    return false;
+}
+
+bool draft_cuts_box(const struct draft *draft, const struct draft_mesh *mesh, int plane, const float low[3], const float high[3],
+                    bool *cut)
+{
+    float most = 0, least = 0;
+    for (int c = 0; c < 4; c++) {
+        float by = 0;
+        for (int r = 0; r < 4; r++)
+            by += draft->cuts[plane][r] * mesh->place[c][r];
+        most += by * (c == 3 ? 1 : by > 0 ? high[c] : low[c]);
+        least += by * (c == 3 ? 1 : by > 0 ? low[c] : high[c]);
+    }
+    *cut |= least < 0;
+    return most < 0;
 }
 
 void draft_aim(struct draft *draft, const struct light *light)

@@ -5,7 +5,7 @@
 
 #include "base/mem.h"
 #include "render/culling.h"
-#include "render/draft/draft_impl.h"
+#include "render/draft/draft_near.h"
 #include "render/matrix.h"
 #include "render/solid.h"
 
@@ -23,7 +23,10 @@ void draft_fill_mesh(struct draft *draft, struct draft_mesh *mesh, int index, co
         .first_vertex = (uint32_t)draft->vertex_count,
         .vertex_count = level->vertex_count,
         .mirrored = stage_mirrored(asset),
+        .cut = clip_touches(&picture->view->visibility.clip, asset->bounds_min_m, asset->bounds_max_m),
     };
+    if (mesh->cut)
+        matrix_normals(asset->placement, mesh->turn);
     matrix_multiply(picture->shot.clip_from_plant, asset->placement, clip);
     shot_bring_forward(&picture->shot, asset, clip);
     for (int c = 0; c < 4; c++) {
@@ -35,14 +38,21 @@ void draft_fill_mesh(struct draft *draft, struct draft_mesh *mesh, int index, co
     draft->vertex_count += level->vertex_count;
 }
 
+/* Triangles that are cut become more. */
+static uint32_t most_triangles(const struct draft *draft)
+{
+    return draft->cut_count > 0 ? CHUNK_TRIANGLES / NEAR_TRIANGLES : CHUNK_TRIANGLES;
+}
+
 /* A cluster of any size, in draws that fit into chunks. */
 static void add_cluster(struct draft *draft, const struct draft_draw *whole)
 {
-    for (uint32_t done = 0; done < whole->index_count; done += 3 * CHUNK_TRIANGLES) {
+    uint32_t most = 3 * most_triangles(draft);
+    for (uint32_t done = 0; done < whole->index_count; done += most) {
         struct draft_draw part = *whole;
         uint32_t left = whole->index_count - done;
         part.first_index += done;
-        part.index_count = left < 3 * CHUNK_TRIANGLES ? left : 3 * CHUNK_TRIANGLES;
+        part.index_count = left < most ? left : most;
         mem_grow(&draft->draws, &draft->draw_capacity, draft->draw_count + 1, sizeof(*draft->draws));
         draft->draws[draft->draw_count++] = part;
     }
@@ -58,6 +68,15 @@ static float nearest(const struct culling *culling, const struct asset_cluster *
         size += half * half;
     }
     return sqrtf(away) - sqrtf(size);
+}
+
+static bool is_cut_away(const struct draft *draft, const struct draft_mesh *mesh, const struct asset_cluster *cluster)
+{
+    bool cut = false;
+    for (int p = 0; p < draft->cut_count && mesh->cut; p++)
+        if (draft_cuts_box(draft, mesh, p, cluster->low_m, cluster->high_m, &cut))
+            return true;
+    return false;
 }
 
 static void collect_asset(struct draft *draft, int index)
@@ -79,12 +98,12 @@ static void collect_asset(struct draft *draft, int index)
         const struct asset_primitive *primitive = &file->primitives[level->first_primitive + p];
         const struct asset_material *material = &file->materials[primitive->material];
         uint32_t end = primitive->first_index + primitive->index_count;
-        struct draft_draw draw = { .mesh = (uint32_t)draft->mesh_count, .double_sided = material->double_sided };
+        struct draft_draw draw = { .mesh = (uint32_t)draft->mesh_count, .double_sided = material->double_sided || mesh->cut };
         draw.mark = mesh->has_field ? MARK_FIELD : MARK_CONTEXT | (ramp + primitive->material) << 16;
         for (; cluster < file->clusters + file->header->cluster_count && cluster->first_index < end &&
                cluster->first_index >= primitive->first_index;
              cluster++) {
-            if (!culling_sees(&culling, cluster, draw.double_sided))
+            if (!culling_sees(&culling, cluster, draw.double_sided) || is_cut_away(draft, mesh, cluster))
                 continue;
             draw.near_m = nearest(&culling, cluster);
             draw.first_index = cluster->first_index;
@@ -115,7 +134,7 @@ static void cut_into_chunks(struct draft *draft)
     draft->chunk_count = 0;
     for (size_t d = 0; d < draft->draw_count; d++) {
         size_t count = draft->draws[d].index_count / 3;
-        if (draft->chunk_count == 0 || triangles + count > CHUNK_TRIANGLES) {
+        if (draft->chunk_count == 0 || triangles + count > most_triangles(draft)) {
             mem_grow(&draft->chunks, &draft->chunk_capacity, draft->chunk_count + 1, sizeof(*draft->chunks));
             struct draft_chunk *chunk = &draft->chunks[draft->chunk_count++];
             chunk->first_draw = d;

@@ -5,6 +5,7 @@
 
 #include "render/draft/draft_kernels.h"
 #include "render/draft/draft_look.h"
+#include "render/draft/draft_section.h"
 
 /* How much of the sun is seen, 0..1. */
 DRAFT_INLINE lanes sun_at(const struct draft *draft, lanes x, float y, lanes depth)
@@ -40,7 +41,7 @@ static void draw_lines(const uint32_t marks[LANES], uint32_t colors[LANES])
     for (int i = 0; i < LANES; i++) {
         float part = most * (float)(marks[i] >> MARK_LINE & MARK_LINE_WHOLE), grey = 0;
         uint32_t was = colors[i], now = 0;
-        if (!(marks[i] & MARK_FIELD) || part <= 0)
+        if ((marks[i] & MARK_KIND) != MARK_FIELD || part <= 0)
             continue;
         for (int c = 0; c < 3; c++)
             grey += grey_parts[c] * (float)(was >> (8 * c) & 0xff);
@@ -94,13 +95,30 @@ DRAFT_INLINE lanes_int sky_color(const struct draft *draft, const struct heights
     return darkened(color, ground_at(draft, LANES_IOTA + ((float)column + 0.5f), (float)row + 0.5f));
 }
 
+/* What a cut opens. */
+DRAFT_INLINE lanes_int section_color(const struct draft *draft, lanes_int marks, lanes x, float y)
+{
+    const float(*m)[3] = draft->ray_from_pixel;
+    lanes v[3], n[3], square = { 0 };
+    for (int r = 0; r < 3; r++) {
+        v[r] = -(x * m[0][r] + (y * m[1][r] + m[2][r]));
+        square += v[r] * v[r];
+    }
+    lanes over = 1.0f / lanes_root(square);
+    for (int r = 0; r < 3; r++)
+        v[r] *= over;
+    inside_normal(marks, n);
+    lanes_int is_cap = (marks & (int32_t)MARK_CAP) == (int32_t)MARK_CAP;
+    return lanes_choose_int(is_cap, cap_color(x, y, draft->block.scale[3]), inside_color(v, n, draft->block.up)) | (int32_t)0xff000000;
+}
+
 /* All eight of a field, or all empty: as most are. */
 DRAFT_INLINE lanes_int color_at(const struct draft *draft, const struct heights *heights, int column, int row)
 {
     size_t place = (size_t)row * (size_t)draft->pitch_px + (size_t)column;
     const uint32_t *mark = draft->marks + place;
     lanes_int marks = *(const lanes_int *)mark, color;
-    if (!lanes_any(~marks & (int32_t)MARK_FIELD)) {
+    if (!lanes_any((~marks & (int32_t)MARK_FIELD) | (marks & (int32_t)MARK_CONTEXT))) {
         color = gather(draft->palette, marks & (int32_t)MARK_PLACE);
         if (lanes_any(marks & MARK_LINE_WHOLE << MARK_LINE))
             color = lined(mark, color);
@@ -108,12 +126,16 @@ DRAFT_INLINE lanes_int color_at(const struct draft *draft, const struct heights 
     }
     if (!lanes_any(marks))
         return sky_color(draft, heights, column, row);
-    lanes_int is_field = (marks & (int32_t)MARK_FIELD) != 0, is_context = marks < 0, is_sky = marks == 0;
+    lanes_int kinds = marks & (int32_t)MARK_KIND, is_field = kinds == (int32_t)MARK_FIELD, is_sky = marks == 0;
+    lanes_int is_context = kinds == (int32_t)MARK_CONTEXT, is_section = kinds == (int32_t)MARK_SECTION;
     color = gather(draft->palette, marks & is_field & (int32_t)MARK_PLACE);
     if (lanes_any(marks & is_field & MARK_LINE_WHOLE << MARK_LINE))
         color = lined(mark, color);
+    lanes x = LANES_IOTA + ((float)column + 0.5f);
+    if (lanes_any(is_section))
+        color = lanes_choose_int(is_section, section_color(draft, marks, x, (float)row + 0.5f), color);
     if (lanes_any(is_context)) {
-        lanes depth = *(const lanes *)(draft->depth + place), x = LANES_IOTA + ((float)column + 0.5f);
+        lanes depth = *(const lanes *)(draft->depth + place);
         color = lanes_choose_int(is_context, context_color(draft, marks & is_context, x, (float)row + 0.5f, depth), color);
     }
     if (lanes_any(is_sky))

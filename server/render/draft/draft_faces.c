@@ -214,13 +214,13 @@ DRAFT_INLINE lanes_int may_face(const float *planes, int rounded, const float ey
     return x * eye_m[0] + y * eye_m[1] + z * eye_m[2] + slack_m >= *(const lanes *)(planes + 3 * rounded);
 }
 
-/* first: of the eight, in the part. */
-DRAFT_INLINE void keep_faces(struct draft_tile *tile, const struct eight *eight, int first)
+/* first: of the eight, in the part. back: of those that look away where that is asked for, FACE_BACK. */
+DRAFT_INLINE void keep_faces(struct draft_tile *tile, const struct eight *eight, int first, lanes_int back)
 {
     uint32_t words[sizeof(struct draft_face) / sizeof(uint32_t)][LANES]; /* as they lie in memory */
     float nearest[LANES];
     *(lanes_int *)words[0] = eight->corners[0] | eight->corners[1] << 16;
-    *(lanes_int *)words[1] = eight->corners[2] | ((lanes_int){ 0, 1, 2, 3, 4, 5, 6, 7 } + first) << 16;
+    *(lanes_int *)words[1] = eight->corners[2] | ((lanes_int){ 0, 1, 2, 3, 4, 5, 6, 7 } + first + back) << 16;
     *(lanes_int *)words[2] = eight->left | eight->right << 16;
     *(lanes_int *)words[3] = eight->top | eight->bottom << 16;
     *(lanes *)nearest = eight->nearest;
@@ -243,6 +243,7 @@ void draft_find_faces(struct draft_tile *tile, const struct draft_mesh *mesh, co
     bool both_sides = found->both_sides, one_side = !both_sides && !part->double_sided && !mesh->mirrored;
     const uint8_t *first = parts->corners + part->first_corner, *second = first + part->rounded, *third = second + part->rounded;
     lanes_int any_side = (lanes_int){ 0 } - (int)(both_sides || part->double_sided), mirrored = (lanes_int){ 0 } - (int)mesh->mirrored;
+    lanes_int back = (lanes_int){ 0 } + (mesh->cut ? FACE_BACK : 0);
     tile->face_count = 0;
     for (int i = 0; i < part->triangle_count; i += LANES) {
         if (one_side && !lanes_any(may_face(planes + i, part->rounded, found->eye_m)))
@@ -263,7 +264,7 @@ void draft_find_faces(struct draft_tile *tile, const struct draft_mesh *mesh, co
         if (!lanes_any(eight.kept))
             continue;
         hide(tile, &eight);
-        keep_faces(tile, &eight, i);
+        keep_faces(tile, &eight, i, (turned ^ mirrored) & back);
     }
 }
 

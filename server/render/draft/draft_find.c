@@ -58,6 +58,19 @@ static void include(struct draft_rect *rect, const struct draft_rect *other)
     rect->bottom = other->bottom > rect->bottom ? other->bottom : rect->bottom;
 }
 
+/* Nothing of the part is left, nor does it bound what is. */
+static bool is_cut_away(const struct draft *draft, const struct draft_mesh *mesh, const struct asset_cluster *box, struct draft_item *item)
+{
+    item->cut = item->beyond = false;
+    for (int p = 0; p < draft->cut_count && mesh->cut; p++) {
+        bool away = draft_cuts_box(draft, mesh, p, box->low_m, box->high_m, &item->cut);
+        if (away && (p < draft->entry_count || !draft->counts_bodies))
+            return true;
+        item->beyond |= away;
+    }
+    return false;
+}
+
 DRAFT_KERNEL static void find_parts(const struct draft *draft, const struct draft_mesh *mesh, struct draft_found *found)
 {
     found->count = 0;
@@ -68,6 +81,8 @@ DRAFT_KERNEL static void find_parts(const struct draft *draft, const struct draf
         if (!part->double_sided && !found->both_sides && !mesh->mirrored && asset_cluster_turned_away(&part->cluster, found->eye_m))
             continue;
         if (!project(draft, mesh, part->cluster.low_m, part->cluster.high_m, &item->rect, &item->near))
+            continue;
+        if (is_cut_away(draft, mesh, &part->cluster, item))
             continue;
         item->part = p;
         include(&found->rect, &item->rect);
@@ -99,24 +114,37 @@ static const struct draft_parts *parts_of(struct draft *draft, const struct mode
     return parts;
 }
 
+/* Whose side of a surface is seen. In an orthographic picture all rays are parallel: far enough away for floats not to tell. */
+static void find_eye(const struct draft *draft, double eye_m[3])
+{
+    const struct shot *shot = &draft->picture->shot;
+    for (int c = 0; c < 3; c++)
+        eye_m[c] = shot->pixel_per_metre > 0 ? draft->stage->middle_m[c] + 1e6 * draft->stage->radius_m * shot->back[c] : shot->eye_m[c];
+}
+
 static bool add_asset(struct draft *draft, int asset, bool both_sides)
 {
     const struct picture *picture = draft->picture;
     const struct model *model = draft->stage->of_asset[asset];
     const struct model_level *level = solid_level(picture, asset);
-    double file_from_plant[16], eye[4];
+    double file_from_plant[16], eye_m[3], eye[4];
     mem_grow(&draft->meshes, &draft->mesh_capacity, draft->mesh_count + 1, sizeof(*draft->meshes));
     mem_grow(&draft->found, &draft->found_capacity, draft->mesh_count + 1, sizeof(*draft->found));
+    const struct draft_mesh *mesh = &draft->meshes[draft->mesh_count];
     draft_fill_mesh(draft, &draft->meshes[draft->mesh_count], asset, level);
     struct draft_found *found = &draft->found[draft->mesh_count++];
     found->parts = parts_of(draft, model, level);
     found->ramp = draft->ramp_of_model[model - draft->stage->models];
-    found->both_sides = both_sides;
+    found->both_sides = both_sides || mesh->cut; /* the inner side of what is cut shows */
     matrix_invert(draft->stage->scene->assets[asset].placement, file_from_plant);
-    matrix_point(file_from_plant, picture->shot.eye_m, eye);
+    find_eye(draft, eye_m);
+    matrix_point(file_from_plant, eye_m, eye);
     for (int c = 0; c < 3; c++)
         found->eye_m[c] = (float)eye[c];
-    return found->parts != NULL;
+    if (!found->parts || !mesh->cut || !draft->counts_bodies)
+        return found->parts != NULL;
+    return draft_parts_close(&draft->parts[model - draft->stage->models][level - model->levels], mesh->file,
+                             asset_closed(model->file, (uint32_t)(level - model->levels)), level->vertex_count);
 }
 
 bool draft_find(struct draft *draft)
@@ -124,6 +152,7 @@ bool draft_find(struct draft *draft)
     const struct picture *picture = draft->picture;
     bool good = true;
     draft->mesh_count = draft->vertex_count = 0;
+    draft->counts_bodies = draft->cut_count > 0;
     for (size_t i = 0; i < picture->visible_count && good; i++)
         good = add_asset(draft, picture->visible[i], false);
     if (!good)
@@ -140,6 +169,7 @@ bool draft_find(struct draft *draft)
 bool draft_find_only(struct draft *draft, int asset)
 {
     draft->mesh_count = draft->vertex_count = 0;
+    draft->counts_bodies = false;
     if (!add_asset(draft, asset, true))
         return false;
     find_meshes(draft, 0, 1);

@@ -16,6 +16,9 @@ enum { BAND_ROWS = 32, CHUNK_TRIANGLES = 2048, RAMP_STEPS = MODEL_LIGHT_STEPS, D
 #define MARK_PLACE 0x1ffffu
 enum { MARK_LINE = 17, MARK_LINE_WHOLE = 255 };
 #define MARK_CONTEXT 0x80000000u /* | ambient << 8 (8 bits) | sun (8 bits) | row of the ramps << 16 (14 bits) */
+#define MARK_SECTION 0xc0000000u /* what a cut opens: MARK_CAP, or the inner side of a surface | its normal (draft_section.h) */
+#define MARK_CAP 0xe0000000u
+#define MARK_KIND 0xc0000000u
 enum { MOST_RAMPS = 1 << 14 };
 
 struct draft_vertex {
@@ -56,6 +59,8 @@ struct draft_mesh { /* one asset in this picture */
     float place[4][4]; /* columns; x w, y w in pixels, z and w of clip space */
     uint32_t first_vertex, vertex_count;
     bool mirrored;
+    bool cut;       /* something of it is cut away: what is left shows its inner side */
+    float turn[9];  /* of one that is cut: columns, plant from file, for normals */
 };
 
 struct draft_draw { /* neighbouring triangles of one material */
@@ -91,6 +96,8 @@ struct draft_item { /* a part that may be seen */
     float near; /* depth; over 1: some of it is nearer than the near plane */
     struct draft_rect rect;
     uint32_t part;
+    bool cut;    /* it lies on both sides of a plane that cuts */
+    bool beyond; /* nothing of it is left; it may bound a body that is cut open before it */
 };
 
 struct draft_found { /* what of one mesh may be seen; kept from picture to picture */
@@ -154,6 +161,9 @@ struct draft {
     size_t pixel_capacity;
     uint8_t *out;
     size_t out_stride_bytes;
+    float cuts[CLIP_MAX_PLANES][4]; /* planes that cut, of x w, y w in pixels, z, w; those that rays come in by first */
+    int cut_count, entry_count;
+    bool counts_bodies; /* planes that cut show which bodies are solid (draft_caps.c) */
     bool has_ground;
     bool greys; /* context has no colours */
     float sun_from_pixel[4][4], ground_from_pixel[3][3], ray_from_pixel[3][3]; /* columns */
@@ -167,6 +177,13 @@ void draft_free_light(const struct draft *draft, struct draft_light *light);
 void draft_read_palette(struct draft *draft, const struct palette *palette);
 /* The steps. */
 void draft_aim(struct draft *draft, const struct light *light); /* the matrices from pixels */
+void draft_aim_cuts(struct draft *draft);                       /* before all that follows */
+bool draft_is_cut_off(const struct draft *draft, const float at[4], int planes); /* x w, y w in pixels, z, w */
+/* A box of the mesh: none of it is left by that plane; or some is not (*cut: as it was, else). */
+bool draft_cuts_box(const struct draft *draft, const struct draft_mesh *mesh, int plane, const float low[3], const float high[3],
+                    bool *cut);
+/* Where the ray of that place in the picture comes into what is left: depth. 0: nowhere, or its eye is within. */
+float draft_entry_depth(const struct draft *draft, float x, float y);
 bool draft_collect(struct draft *draft);                        /* meshes, draws and chunks: what may be seen. False: out of memory */
 /* An asset, its vertices counted on from draft->vertex_count. */
 void draft_fill_mesh(struct draft *draft, struct draft_mesh *mesh, int asset, const struct model_level *level);

@@ -7,6 +7,7 @@ const struct draft_kernels draft_kernels_of_set = {
     .carry_part = draft_carry_part,
     .find_faces = draft_find_faces,
     .raster_faces = draft_raster_faces,
+    .count_faces = draft_count_faces,
     .look_again = draft_look_again,
     .color = draft_color,
 };

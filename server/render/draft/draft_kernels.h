@@ -16,6 +16,8 @@ struct draft_kernels {
                        const struct draft_part *part);
     /* Depth and marks of all faces. */
     void (*raster_faces)(const struct draft_tile *tile, uint32_t mark);
+    /* Of all faces: into the marks, one more where a face looks away, one less where it faces the eye. */
+    void (*count_faces)(const struct draft_tile *tile);
     /* How far these blocks reach now. */
     void (*look_again)(struct draft_tile *tile, const struct draft_rect *blocks);
     /* From marks; begins at a whole DRAFT_STRETCH_MOST. */
@@ -33,6 +35,7 @@ extern const struct draft_kernels draft_kernels_plain, draft_kernels_wide, draft
 #define draft_carry_part DRAFT_IN_SET(draft_carry_part, DRAFT_SET)
 #define draft_find_faces DRAFT_IN_SET(draft_find_faces, DRAFT_SET)
 #define draft_raster_faces DRAFT_IN_SET(draft_raster_faces, DRAFT_SET)
+#define draft_count_faces DRAFT_IN_SET(draft_count_faces, DRAFT_SET)
 #define draft_look_again DRAFT_IN_SET(draft_look_again, DRAFT_SET)
 #define draft_color DRAFT_IN_SET(draft_color, DRAFT_SET)
 void draft_place_part(struct draft_tile *tile, const struct draft_mesh *mesh, const struct draft_parts *parts,
@@ -42,6 +45,7 @@ void draft_carry_part(struct draft_tile *tile, const struct draft_mesh *mesh, co
 void draft_find_faces(struct draft_tile *tile, const struct draft_mesh *mesh, const struct draft_found *found,
                       const struct draft_part *part);
 void draft_raster_faces(const struct draft_tile *tile, uint32_t mark);
+void draft_count_faces(const struct draft_tile *tile);
 void draft_look_again(struct draft_tile *tile, const struct draft_rect *blocks);
 void draft_color(const struct draft *draft, const struct draft_rect *rect);
 

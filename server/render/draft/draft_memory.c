@@ -23,7 +23,8 @@ static size_t chunk_bytes(const struct draft_chunk *chunk)
 static size_t parts_bytes(const struct draft_parts *parts)
 {
     return parts->part_capacity * sizeof(*parts->parts) + parts->vertex_capacity * sizeof(*parts->vertices) +
-           parts->place_capacity * sizeof(*parts->places_m) + parts->corner_capacity + parts->plane_capacity * sizeof(*parts->planes);
+           parts->place_capacity * sizeof(*parts->places_m) + parts->corner_capacity + parts->plane_capacity * sizeof(*parts->planes) +
+           (parts->closed ? parts->vertex_count : 0);
 }
 
 size_t draft_room_bytes(const struct draft *draft)

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* One triangle against the near plane and the band. */
+/* One triangle against the near plane, the band and the planes that cut. */
 #include <string.h>
 
 #include "render/draft/draft_near.h"
@@ -13,10 +13,14 @@ struct near_corner near_corner_of(const struct draft_mesh *mesh, uint32_t vertex
     return corner;
 }
 
-/* Over 0 on the side that stays. plane: 0 the near one, then left, right, top, bottom of the band. */
+/* Over 0 on the side that stays. plane: 0 the near one, then left, right, top, bottom of the band, then those that cut. */
 static float inside(const struct draft *draft, const struct near_corner *corner, int plane)
 {
     const float *at = corner->at;
+    if (plane >= NEAR_PLANES) {
+        const float *cut = draft->cuts[plane - NEAR_PLANES];
+        return cut[0] * at[0] + cut[1] * at[1] + cut[2] * at[2] + cut[3] * at[3];
+    }
     float width = (float)draft->width_px * at[3], height = (float)draft->height_px * at[3];
     switch (plane) {
     case 0:
@@ -65,11 +69,11 @@ static int cut_by(const struct draft *draft, int plane, const struct near_corner
     return kept;
 }
 
-int near_cut(const struct draft *draft, const struct near_corner at[3], struct near_corner out[NEAR_CORNERS])
+int near_cut(const struct draft *draft, int cuts, const struct near_corner at[3], struct near_corner out[NEAR_CORNERS])
 {
     struct near_corner before[NEAR_CORNERS];
     int count = cut_by(draft, 0, at, 3, out);
-    for (int plane = 1; plane < 5; plane++) {
+    for (int plane = 1; plane < NEAR_PLANES + cuts; plane++) {
         memcpy(before, out, (size_t)count * sizeof(*before));
         count = cut_by(draft, plane, before, count, out);
     }

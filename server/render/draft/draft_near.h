@@ -1,11 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Triangles that the near plane cuts, or the edge of the band about the picture: one picture wide to either side, one high above and below.
-   Corners farther out, as those that lie just before the eye, would leave an edge too few digits. Private to draft*.c. */
+/* Triangles that the near plane cuts, or the edge of the band about the picture (one picture wide to either side, one high above and
+   below), or a plane that something is cut away by. Corners farther out, as those that lie just before the eye, would leave an edge too few
+   digits. Private to draft*.c. */
 #ifndef RENDER_DRAFT_NEAR_H
 #define RENDER_DRAFT_NEAR_H
 #include "render/draft/draft_impl.h"
 
-enum { NEAR_CORNERS = 3 + 5, NEAR_TRIANGLES = NEAR_CORNERS - 2 }; /* what five planes may make of one triangle */
+/* The latter: what all planes may make of one triangle. */
+enum { NEAR_PLANES = 5, NEAR_CORNERS = 3 + NEAR_PLANES + CLIP_MAX_PLANES, NEAR_TRIANGLES = NEAR_CORNERS - 2 };
 
 struct near_corner { /* in clip space, x and y in pixels; a and b as a vertex carries them */
     float at[4], a, b;
@@ -15,8 +17,9 @@ struct near_corner { /* in clip space, x and y in pixels; a and b as a vertex ca
 };
 
 struct near_corner near_corner_of(const struct draft_mesh *mesh, uint32_t vertex, float a, float b, uint32_t flags);
-/* What lies beyond the near plane and in the band. How many corners it has, in order: 0, or 3 and more. */
-int near_cut(const struct draft *draft, const struct near_corner at[3], struct near_corner out[NEAR_CORNERS]);
+/* What lies beyond the near plane and in the band, and is left by the first `cuts` planes that cut. How many corners it has, in order:
+   0, or 3 and more. */
+int near_cut(const struct draft *draft, int cuts, const struct near_corner at[3], struct near_corner out[NEAR_CORNERS]);
 
 static inline struct near_patterns near_patterns_of(uint32_t flags)
 {

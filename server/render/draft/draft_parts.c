@@ -209,5 +209,6 @@ void draft_parts_finish(struct draft_parts *parts)
     mem_free(parts->corners);
     mem_free(parts->places_m);
     mem_free(parts->planes);
+    mem_free(parts->closed);
     *parts = (struct draft_parts){ 0 };
 }

@@ -24,6 +24,7 @@ struct draft_parts {
     float *places_m;    /* of the same: three times as many; each part's x, then its y, then its z */
     uint8_t *corners;   /* vertices of the part */
     float *planes;      /* four for three corners: each part's normals (x, then y, then z), then how far along them its triangles lie */
+    uint8_t *closed;    /* as vertices: 1 where they are of a closed body. NULL: not asked for yet */
     size_t part_count, vertex_count, corner_count;
     size_t part_capacity, vertex_capacity, place_capacity, corner_capacity, plane_capacity;
 };
@@ -40,6 +41,8 @@ static inline const float *draft_part_planes(const struct draft_parts *parts, co
 
 /* False: out of memory. Finish in both cases. */
 bool draft_parts_init(struct draft_parts *parts, const struct asset_view *file, const struct model_level *level);
+/* Finds out which vertices are of closed bodies, if that is not known. vertex_count: of the level. False: out of memory. */
+bool draft_parts_close(struct draft_parts *parts, const struct asset_view *file, const struct closed *closed, uint32_t vertex_count);
 void draft_parts_finish(struct draft_parts *parts);
 
 #endif

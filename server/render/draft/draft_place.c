@@ -15,6 +15,8 @@ static inline void place_one(const struct draft *draft, const struct draft_mesh 
         at[r] = mesh->place[0][r] * p[0] + mesh->place[1][r] * p[1] + mesh->place[2][r] * p[2] + mesh->place[3][r];
     float width = (float)draft->width_px * at[3], height = (float)draft->height_px * at[3];
     bool before = at[3] > 0 && at[2] <= at[3] && at[0] >= -width && at[0] <= 2 * width && at[1] >= -height && at[1] <= 2 * height;
+    if (mesh->cut && draft_is_cut_off(draft, at, draft->cut_count))
+        before = false;
     float inverse = before ? 1 / at[3] : 0;
     out->x = at[0] * inverse;
     out->y = at[1] * inverse;

@@ -4,6 +4,7 @@
    A pixel on an edge that two triangles share belongs to exactly one of them: both compute the edge from the same end in the same way,
    and one takes what is not negative, the other what is. */
 #include "render/draft/draft_kernels.h"
+#include "render/draft/draft_section.h"
 #include "render/draft/draft_sixteen.h"
 
 /* Which triangle a pixel shows, where that is asked for. */
@@ -12,7 +13,7 @@ DRAFT_INLINE void keep_id(const struct draft_tile *tile, const struct draft_face
     if (!tile->draft->ids)
         return;
     lanes_int *ids = (lanes_int *)(tile->draft->ids + at);
-    *ids = lanes_choose_int(seen, (lanes_int){ 0 } + (int32_t)(tile->first_id + face->triangle), *ids);
+    *ids = lanes_choose_int(seen, (lanes_int){ 0 } + (int32_t)(tile->first_id + (face->triangle & FACE_TRIANGLE)), *ids);
 }
 
 /* --- any face --------------------------------------------------------------------------------------------------------------- */
@@ -102,6 +103,8 @@ DRAFT_INLINE lanes_int marks_at(const struct setup *setup, const struct ink *ink
 {
     lanes from_x = x - setup->x;
     float from_y = y - setup->y;
+    if (setup->mark >= MARK_SECTION)
+        return (lanes_int){ 0 } + (int32_t)setup->mark;
     lanes a = plane_at(&setup->a, from_x, from_y, setup->thin), b = plane_at(&setup->b, from_x, from_y, setup->thin), w = { 0 };
     if (!setup->flat) {
         w = 1.0f / plane_at(&setup->inverse_w, from_x, from_y, setup->thin);
@@ -222,6 +225,15 @@ static void draw_any(const struct draft_tile *tile, const struct draft_face *fac
     draw_face(tile, face, &setup, ink);
 }
 
+/* Of the inner side of what is cut. */
+static uint32_t mark_of_back(const struct draft_tile *tile, const struct draft_face *face)
+{
+    const float *planes = draft_part_planes(tile->parts, tile->part) + (face->triangle & FACE_TRIANGLE), *turn = tile->mesh->turn;
+    const float x = planes[0], y = planes[tile->part->rounded], z = planes[2 * tile->part->rounded];
+    return inside_mark((float[3]){ turn[0] * x + turn[3] * y + turn[6] * z, turn[1] * x + turn[4] * y + turn[7] * z,
+                                   turn[2] * x + turn[5] * y + turn[8] * z });
+}
+
 void draft_raster_faces(const struct draft_tile *tile, uint32_t mark)
 {
     struct ink ink = ink_of(tile->draft);
@@ -229,6 +241,10 @@ void draft_raster_faces(const struct draft_tile *tile, uint32_t mark)
     int count = 0;
     for (int i = 0; i < tile->face_count; i++) {
         const struct draft_face *face = &tile->faces[i];
+        if (face->triangle & FACE_BACK) {
+            draw_any(tile, face, mark_of_back(tile, face), &ink);
+            continue;
+        }
         if (!is_small(face) || !is_plain(&tile->corners, face)) {
             draw_any(tile, face, mark, &ink);
             continue;
@@ -243,4 +259,34 @@ void draft_raster_faces(const struct draft_tile *tile, uint32_t mark)
         waiting[l] = waiting[0];
     if (count > 0)
         draw_eight(tile, waiting, count, mark, &ink);
+}
+
+/* --- bodies ----------------------------------------------------------------------------------------------------------------- */
+
+static void count_face(const struct draft_tile *tile, const struct draft_face *face)
+{
+    struct edge edges[3];
+    struct draft_vertex v[3];
+    int32_t by = face->triangle & FACE_BACK ? 1 : -1;
+    for (int i = 0; i < 3; i++)
+        v[i] = vertex_of(&tile->corners, face->corners[i]);
+    for (int e = 0; e < 3; e++)
+        edge_init(&edges[e], &v[e], &v[(e + 1) % 3]);
+    for (int row = face->top; row <= face->bottom; row++) {
+        uint32_t *counts = tile->draft->marks + (size_t)row * (size_t)tile->draft->pitch_px;
+        float sides[3];
+        for (int e = 0; e < 3; e++)
+            sides[e] = edge_row(&edges[e], (float)row + 0.5f);
+        for (int column = face->left / LANES * LANES; column <= face->right; column += LANES) { /* each pixel once */
+            lanes x = LANES_IOTA + ((float)column + 0.5f);
+            lanes_int side = edge_side(&edges[0], sides[0], x) | edge_side(&edges[1], sides[1], x) | edge_side(&edges[2], sides[2], x);
+            *(lanes_int *)(counts + column) += (side >= 0) & by;
+        }
+    }
+}
+
+void draft_count_faces(const struct draft_tile *tile)
+{
+    for (int i = 0; i < tile->face_count; i++)
+        count_face(tile, &tile->faces[i]);
 }

@@ -116,7 +116,8 @@ DRAFT_INLINE void draw_many(const struct draft_tile *tile, const struct draft_fa
     many_put_ints(draft->marks + place, pitch, width, seen, marks);
     many_put_floats(draft->depth + place, pitch, width, (sixteen)_mm512_mask_mov_ps((__m512)depth, seen, (__m512)here));
     if (draft->ids)
-        many_put_ints(draft->ids + place, pitch, width, seen, (sixteen_int){ 0 } + (int32_t)(tile->first_id + face->triangle));
+        many_put_ints(draft->ids + place, pitch, width, seen,
+                      (sixteen_int){ 0 } + (int32_t)(tile->first_id + (face->triangle & FACE_TRIANGLE)));
 }
 
 DRAFT_INLINE void draw_by_many(const struct draft_tile *tile, const struct draft_face *face, const struct small *small, int l,

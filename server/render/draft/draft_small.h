@@ -167,7 +167,7 @@ DRAFT_INLINE void draw_stamp(const struct draft_tile *tile, const struct draft_f
     stamp_put_floats(draft->depth + place, pitch, two, lanes_choose(seen, here, depth));
     if (draft->ids)
         stamp_put_ints(draft->ids + place, pitch, two,
-                       lanes_choose_int(seen, (lanes_int){ 0 } + (int32_t)(tile->first_id + face->triangle),
+                       lanes_choose_int(seen, (lanes_int){ 0 } + (int32_t)(tile->first_id + (face->triangle & FACE_TRIANGLE)),
                                         stamp_ints(draft->ids + place, pitch, two)));
 }
 

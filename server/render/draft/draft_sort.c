@@ -33,7 +33,7 @@ static int cut(const struct draft *draft, struct draft_chunk *chunk, const struc
         const struct draft_vertex *vertex = &draft->vertices[mesh->first_vertex + indices[i]];
         at[i] = near_corner_of(mesh, indices[i], vertex->a, vertex->b, 0);
     }
-    int count = near_cut(draft, at, left);
+    int count = near_cut(draft, mesh->cut ? draft->cut_count : 0, at, left);
     for (int i = 0; i < count; i++)
         corners[i] = add_extra(chunk, &left[i], source);
     return count;

@@ -88,18 +88,28 @@ static struct draft_rect faces_rect(const struct draft_tile *tile)
     return rect;
 }
 
-static void draw_part(struct draft_tile *tile, const struct draft_mesh *mesh, const struct draft_found *found,
-                      const struct draft_item *item)
+static void begin_part(struct draft_tile *tile, const struct draft_found *found, const struct draft_item *item, int cuts)
 {
-    const struct draft_part *part = &found->parts->parts[item->part];
+    tile->mesh = &tile->draft->meshes[found - tile->draft->found];
+    tile->parts = found->parts;
+    tile->part = &found->parts->parts[item->part];
+    tile->cuts = cuts;
+}
+
+static void draw_part(struct draft_tile *tile, const struct draft_found *found, const struct draft_item *item)
+{
+    const struct draft_mesh *mesh = tile->mesh;
+    const struct draft_part *part = tile->part;
     const struct draft_kernels *kernels = tile->draft->kernels;
     struct draft_rect blocks = blocks_of(tile, &item->rect);
-    if (is_hidden(tile, &blocks, item->near))
+    if (item->beyond || is_hidden(tile, &blocks, item->near))
         return;
     kernels->place_part(tile, mesh, found->parts, part);
+    if (item->cut)
+        draft_cut_corners(tile);
     if (tile->corners.cut) {
         kernels->carry_part(tile, mesh, found->parts, part);
-        draft_cut_faces(tile, mesh, found->parts, part, found->both_sides);
+        draft_cut_faces(tile, found->both_sides);
     } else {
         kernels->find_faces(tile, mesh, found, part);
         if (tile->face_count > 0)
@@ -112,6 +122,21 @@ static void draw_part(struct draft_tile *tile, const struct draft_mesh *mesh, co
     struct draft_rect rect = faces_rect(tile);
     blocks = blocks_of(tile, &rect);
     kernels->look_again(tile, &blocks);
+}
+
+/* Before all else: what is behind a body that is cut open is hidden. */
+static void draw_caps(struct draft_tile *tile, const struct list *list)
+{
+    const struct draft *draft = tile->draft;
+    for (size_t i = 0; i < list->count; i++) {
+        const struct draft_found *found = &draft->found[list->entries[i].mesh];
+        const struct draft_item *item = &found->items[list->entries[i].item];
+        begin_part(tile, found, item, draft->entry_count);
+        draft_count_part(tile, found, item);
+    }
+    draft_cap_tile(tile);
+    struct draft_rect blocks = blocks_of(tile, &tile->rect);
+    draft->kernels->look_again(tile, &blocks);
 }
 
 static void clear(const struct draft_tile *tile)
@@ -142,9 +167,13 @@ static void draw_tile(const struct draft *draft, int number, struct list *list)
     memset(tile.farthest, 0, sizeof(tile.farthest));
     clear(&tile);
     fill_list(&tile, list);
+    if (draft->counts_bodies)
+        draw_caps(&tile, list);
     for (size_t i = 0; i < list->count; i++) {
         const struct draft_found *found = &draft->found[list->entries[i].mesh];
-        draw_part(&tile, &draft->meshes[list->entries[i].mesh], found, &found->items[list->entries[i].item]);
+        const struct draft_item *item = &found->items[list->entries[i].item];
+        begin_part(&tile, found, item, draft->cut_count);
+        draw_part(&tile, found, item);
     }
 }
 

@@ -23,9 +23,11 @@ struct draft_corners { /* vertices of a part, as struct draft_vertex, then those
 
 struct draft_face { /* a triangle that faces the eye and covers a pixel's middle in the tile; its area as pixels go is over 0 */
     uint16_t corners[3];
-    uint16_t triangle;                /* of the part */
+    uint16_t triangle;                /* of the part; of a mesh that is cut also FACE_BACK */
     int16_t left, right, top, bottom; /* in the picture */
 };
+
+enum { FACE_BACK = 0x8000, FACE_TRIANGLE = PART_TRIANGLES - 1 }; /* the former: it looks away */
 
 struct draft_tile {
     const struct draft *draft;
@@ -35,10 +37,19 @@ struct draft_tile {
     struct draft_face faces[MOST_FACES];
     int face_count;
     uint32_t first_id; /* of the part's triangles, in draft->ids */
+    int cuts;          /* planes that cut, of those of draft->cuts */
+    /* --- of the part being drawn */
+    const struct draft_mesh *mesh;
+    const struct draft_parts *parts;
+    const struct draft_part *part;
 };
 
+/* The closed bodies that a part bounds, into the marks. */
+void draft_count_part(struct draft_tile *tile, const struct draft_found *found, const struct draft_item *item);
+void draft_cap_tile(struct draft_tile *tile); /* from these: marks and depth of what is cut open */
+/* Vertices of a part that lie beyond a plane that cuts are to be cut off. */
+void draft_cut_corners(struct draft_tile *tile);
 /* The faces of a part out of corners that were placed, some of them to be cut off, and that carry. */
-void draft_cut_faces(struct draft_tile *tile, const struct draft_mesh *mesh, const struct draft_parts *parts,
-                     const struct draft_part *part, bool both_sides);
+void draft_cut_faces(struct draft_tile *tile, bool both_sides);
 
 #endif

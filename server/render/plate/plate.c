@@ -126,7 +126,7 @@ bool plates_can(const struct plates *plates, const struct picture *picture)
     const struct view *view = picture->view;
     double lines[VIEW_ALL_LINES];
     if (view->tier != TIER_STILL || view->look == LOOK_GLOSSY || view_lines(view, lines) > 0 || view_is_operator(view) ||
-        view->visibility.ghosts.count > 0 || view->visibility.clip.plane_count > 0 || view->camera.height_m > 0 || picture->reference)
+        view->visibility.ghosts.count > 0 || view->visibility.clip.plane_count > 0 || picture->reference)
         return false;
     for (size_t i = 0; i < picture->visible_count; i++) {
         int asset = picture->visible[i];
@@ -213,6 +213,7 @@ static bool take_up(struct plate *plate, const struct picture *picture, struct f
         return false;
     draft_read_palette(draft, &picture->palette);
     frame_block_fill(&draft->block, picture);
+    draft_aim_cuts(draft);
     draft->out = frame->bgrx;
     draft->out_stride_bytes = (size_t)frame->stride_bytes;
     if (plate->step > PLATE_COLLECT && plate->step < PLATE_INK)

@@ -7,6 +7,7 @@
 struct view_of_depth {
     const float *depth;
     int width_px, height_px, pitch_px;
+    float scale; /* of depth, in an orthographic picture; 0: depth is one over the distance */
 };
 
 DRAFT_INLINE lanes at(const struct view_of_depth *view, int column, int row)
@@ -47,7 +48,8 @@ DRAFT_INLINE lanes edge(const struct view_of_depth *view, int x, int y, lanes he
     lanes next = at(view, x + dx, y + dy), zero = { 0 }, lines = zero;
     if (!lanes_any(next > here))
         return zero;
-    lanes level = here + high(here - at(view, x - dx, y - dy), zero), least = high(next, zero + 1e-9f);
+    lanes level = here + high(here - at(view, x - dx, y - dy), zero);
+    lanes part = view->scale > 0 ? zero + view->scale : 1.0f / high(next, zero + 1e-9f);
     lanes ahead = next, left = next, right = next;
     if (!lanes_any(next > level))
         return zero;
@@ -55,7 +57,7 @@ DRAFT_INLINE lanes edge(const struct view_of_depth *view, int x, int y, lanes he
         ahead = low(ahead, at(view, x + i * dx, y + i * dy));
         left = low(left, at(view, x + dx + (i - 1) * dy, y + dy + (i - 1) * dx));
         right = low(right, at(view, x + dx - (i - 1) * dy, y + dy - (i - 1) * dx));
-        lines += line((low(ahead, high(left, right)) - level) / least);
+        lines += line((low(ahead, high(left, right)) - level) * part);
     }
     return lines * (1.0f / (WIDE - THIN + 1));
 }
@@ -63,7 +65,7 @@ DRAFT_INLINE lanes edge(const struct view_of_depth *view, int x, int y, lanes he
 DRAFT_KERNEL void plate_ink_band(const struct plate *plate, int number)
 {
     const struct draft *draft = plate->draft;
-    struct view_of_depth view = { draft->depth, draft->width_px, draft->height_px, draft->pitch_px };
+    struct view_of_depth view = { draft->depth, draft->width_px, draft->height_px, draft->pitch_px, draft->block.back[3] };
     int end = (number + 1) * PLATE_ROWS < draft->height_px ? (number + 1) * PLATE_ROWS : draft->height_px;
     for (int y = number * PLATE_ROWS; y < end; y++)
         for (int x = 0; x < draft->width_px; x += LANES) {
