@@ -47,8 +47,13 @@ static long same_place(const struct oracle_mesh *outer, const float p[3])
     return -1;
 }
 
-/* The first source is a vertex, the second lies inside a triangle. */
-static void find_truth(struct truth *truth, const struct cad *clean, const struct oracle_mesh *outer)
+/* The first source is a vertex, the second lies inside a triangle; by default one of them is tried, of each shape another one. */
+static bool is_source_tried(int row, int source)
+{
+    return sweep_takes(row, source, SOURCES);
+}
+
+static void find_truth(struct truth *truth, int row, const struct cad *clean, const struct oracle_mesh *outer)
 {
     double *all = mem_array(outer->vertex_count, sizeof(*all));
     long *outer_of = mem_array(clean->vertex_count, sizeof(*outer_of));
@@ -66,6 +71,8 @@ static void find_truth(struct truth *truth, const struct cad *clean, const struc
         for (int axis = 0; axis < 3; axis++)
             for (size_t i = 0; i < 3; i++)
                 truth->sources[s][axis] += w[i] * (double)outer->positions[outer->triangles[3 * t + i]][axis];
+        if (!is_source_tried(row, s))
+            continue;
         assert_true(oracle_distances(outer, t, w, all));
         truth->distances[s] = mem_array(clean->vertex_count, sizeof(double));
         for (size_t v = 0; v < clean->vertex_count; v++)
@@ -115,7 +122,7 @@ static void test_faults(const char *name, int row, const struct cad *clean, cons
     double sources[SOURCES][3];
     uint32_t *vertex_of = mem_array(clean->vertex_count, sizeof(*vertex_of));
     assert_true(clean->vertex_count >= 20000);
-    find_truth(&truth, clean, outer);
+    find_truth(&truth, row, clean, outer);
     cad_random_place(&place, &chance);
     for (int s = 0; s < SOURCES; s++)
         put_point(&place, truth.sources[s], sources[s]);
@@ -131,7 +138,8 @@ static void test_faults(const char *name, int row, const struct cad *clean, cons
         assert_non_null(surface);
         assert_true(surface_distances(surface, (const double(*)[3])sources, SOURCES, distances));
         for (int s = 0; s < SOURCES; s++)
-            score(name, fault, s, &truth, clean, distances + (size_t)s * broken.vertex_count, vertex_of, place.scale);
+            if (is_source_tried(row, s))
+                score(name, fault, s, &truth, clean, distances + (size_t)s * broken.vertex_count, vertex_of, place.scale);
         surface_destroy(&surface);
         cad_finish(&broken);
         mem_free(distances);
@@ -205,7 +213,7 @@ static void interpenetrating_pipes(void **state)
         clean.triangles[3 * triangles + i] = (uint32_t)vertices + second.triangles[i];
     clean.vertex_count += second.vertex_count;
     clean.triangle_count += second.triangle_count;
-    test_faults("two pipes", 1, &clean, &outer);
+    test_faults("two pipes", 3, &clean, &outer);
     cad_finish(&clean);
     cad_finish(&second);
     free((void *)outer.positions);
