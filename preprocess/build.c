@@ -24,15 +24,25 @@ static void hash_text(XXH3_state_t *state, const char *text)
     XXH3_64bits_update(state, text ? text : "", text ? strlen(text) + 1 : 1);
 }
 
-/* What the splitting takes from the plant file. */
-static void hash_field(XXH3_state_t *state, const struct plant *plant, const struct plant_sensor *sensor)
+static bool is_alone(const struct plant *plant, const struct plant_sensor *sensors, size_t count, size_t sensor)
 {
-    const struct plant_tag *tag = &plant->tags[sensor->tag];
+    for (size_t i = 0; i < count; i++)
+        if (i != sensor && plant->tags[sensors[i].tag].group == plant->tags[sensors[sensor].tag].group)
+            return false;
+    return true;
+}
+
+/* What the splitting takes from the plant file. */
+static void hash_field(XXH3_state_t *state, const struct plant *plant, const struct plant_sensor *sensors, size_t count, size_t sensor)
+{
+    const struct plant_tag *tag = &plant->tags[sensors[sensor].tag];
     const struct plant_group *group = &plant->groups[tag->group];
     const double numbers[5] = { tag->group, tag->strength, tag->decay, group->power, group->radius_m };
     XXH3_64bits_update(state, numbers, sizeof(numbers));
     if (group->reach_m < INFINITY)
         XXH3_64bits_update(state, &group->reach_m, sizeof(group->reach_m));
+    if (is_alone(plant, sensors, count, sensor) && !straight_looks_at_paper(group, 1))
+        XXH3_64bits_update(state, "s", 1);
 }
 
 uint64_t build_recipe(uint64_t model_hash, const struct geometry_params *geometry)
@@ -69,7 +79,7 @@ uint64_t build_key(uint64_t stock_key, const struct plant *plant, const struct p
     for (size_t i = 0; i < sensor_count; i++) {
         hash_text(&state, sensors[i].node);
         XXH3_64bits_update(&state, sensors[i].position_m, sizeof(sensors[i].position_m));
-        hash_field(&state, plant, &sensors[i]);
+        hash_field(&state, plant, sensors, sensor_count, i);
     }
     return XXH3_64bits_digest(&state);
 }

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "base/mem.h"
+#include "plant/singles.h"
 #include "surface/vec.h"
 
 #define MOST_SLACK (2 / 255.0) /* of the range */
@@ -14,6 +15,11 @@
 static double factor_of(double x)
 {
     return x > 0 && x < 1e4 ? x : x > 0 ? 1e4 : 0;
+}
+
+bool straight_looks_at_paper(const struct plant_group *group, size_t sensor_count)
+{
+    return sensor_count <= MANY && (sensor_count > 1 || plant_cuts_singles(group));
 }
 
 static void add_group(struct straight *straight, const struct plant *plant, int group, const struct plant_sensor *sensors)
@@ -41,7 +47,7 @@ static void add_group(struct straight *straight, const struct plant *plant, int 
         to->of.decays |= decay[i] != 1;
     }
     to->in_a_row = to->columns[to->count - 1] - to->columns[0] == to->count - 1;
-    to->papers = to->count <= MANY;
+    to->papers = straight_looks_at_paper(from, to->count);
     straight->group_count++;
     straight->share_count += (to->papers ? 4 : 2) * padded;
     straight->most_count = padded > straight->most_count ? padded : straight->most_count;

@@ -4,7 +4,8 @@
    Whatever the readings (within MIN and MAX), a value is the sum of readings times the sensors' shares there. So the worst error at a point
    between two others is the sum of the shares that are larger than the line says, or of those that are smaller, in parts of the range. It
    is looked for over every group with sensors on the asset, in both interpolations and on both distances, with the parameters that the
-   plant file gives.
+   plant file gives. Where a group has a single sensor, paper is looked at only if plant_cuts_singles says so: by shepard its field is
+   constant.
 
    Where no sensor of a group reaches, there is no data, and the nearest's value is carried on. */
 #ifndef PREPROCESS_STRAIGHT_H
@@ -28,6 +29,9 @@ struct straight {
     size_t most_count;    /* sensors of the largest group, padded */
     float *axes_m[3];     /* of the sensors' places on the surface, by column, padded */
 };
+
+/* Tells whether a group with so many sensors on an asset is looked at in paper, too. */
+bool straight_looks_at_paper(const struct plant_group *group, size_t sensor_count);
 
 /* places_m: of the sensors, on the surface. Radii that the plant file leaves open are to be set by straight_set_radius. */
 void straight_init(struct straight *straight, const struct plant *plant, const struct plant_sensor *sensors, size_t sensor_count,

@@ -28,6 +28,7 @@ test-long: test-deps
 # 10 million triangles in 2,000 assets, prepared, killed and continued, within 8 GB: some minutes.
 scale: all $(out)/tests/scale/facility
 	@tests/scale/run $(out) $(bin) --kill
+	@tests/scale/run $(out) $(bin) --singles 250 --assets 100 --triangles 22200
 
 # Half an hour of clients that come, drag, stall and are cut off.
 soak: all tests

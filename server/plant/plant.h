@@ -86,6 +86,7 @@ struct plant_group {
     double strength, decay, power;
     double radius_m;              /* R of Algorithm 1; 0 = the largest distance on the asset */
     double reach_m;               /* INFINITY: no limit */
+    bool cuts_singles;            /* singles: cut; see plant_cuts_singles */
     enum fill_mode fill;
     bool log;                     /* scale: log; min > 0 */
     double breaks[PLANT_BREAKS];  /* ascending; of bands, where somebody asks for them */

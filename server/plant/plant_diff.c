@@ -132,8 +132,9 @@ static bool same_group(const struct plant_group *a, const struct plant_group *b)
     for (int i = 0; i < LIMIT_COUNT; i++)
         same = same && same_number(a->limits[i], b->limits[i]);
     return same && a->interpolation == b->interpolation && a->distance == b->distance && a->strength == b->strength &&
-           a->decay == b->decay && a->power == b->power && a->radius_m == b->radius_m && a->reach_m == b->reach_m && a->fill == b->fill &&
-           a->log == b->log && a->break_count == b->break_count && a->isoline_count == b->isoline_count &&
+           a->decay == b->decay && a->power == b->power && a->radius_m == b->radius_m && a->reach_m == b->reach_m &&
+           a->cuts_singles == b->cuts_singles && a->fill == b->fill && a->log == b->log && a->break_count == b->break_count &&
+           a->isoline_count == b->isoline_count &&
            !memcmp(a->breaks, b->breaks, sizeof(a->breaks)) && !memcmp(a->isolines, b->isolines, sizeof(a->isolines)) &&
            a->alarming.deadband == b->alarming.deadband && a->alarming.priority == b->alarming.priority;
 }

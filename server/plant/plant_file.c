@@ -33,6 +33,7 @@ static const struct choice interpolation_choices[] = { { "shepard", INTERPOLATIO
 static const struct choice distance_choices[] = { { "geodesic", DISTANCE_GEODESIC }, { "euclidean", DISTANCE_EUCLIDEAN }, { 0 } };
 static const struct choice fill_choices[] = { { "none", FILL_NONE }, { "neighbours", FILL_NEIGHBOURS }, { 0 } };
 static const struct choice units_choices[] = { { "convert", 0 }, { "as-written", 1 }, { 0 } };
+static const struct choice singles_choices[] = { { "whole", 0 }, { "cut", 1 }, { 0 } };
 static const struct choice scale_choices[] = { { "linear", 0 }, { "log", 1 }, { 0 } };
 
 /* --- plant ------------------------------------------------------------------------------------------------------------------ */
@@ -337,6 +338,7 @@ static void read_group(struct yaml_reader *reader, yaml_node_t *node, struct pla
         { "power", KEY_NUMBER, false, offsetof(struct plant_group, power), 0.5, 16, NULL, NULL },
         { "radius_m", KEY_CUSTOM, false, 0, 0, 0, NULL, read_radius },
         { "reach_m", KEY_NUMBER, false, offsetof(struct plant_group, reach_m), 1e-3, 1e6, NULL, NULL },
+        { "singles", KEY_FLAG, false, offsetof(struct plant_group, cuts_singles), 0, 0, singles_choices, NULL },
         { "fill", KEY_CHOICE, false, offsetof(struct plant_group, fill), 0, 0, fill_choices, NULL },
         { "scale", KEY_FLAG, false, offsetof(struct plant_group, log), 0, 0, scale_choices, NULL },
         { "breaks", KEY_CUSTOM, false, 0, 0, 0, NULL, read_breaks },

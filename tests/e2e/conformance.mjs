@@ -55,7 +55,7 @@ test('welcome has what the page says', { skip }, async () => {
     assert.deepEqual(Object.keys(welcome.plant).sort(), ['bounds', 'configuration', 'home', 'name', 'outline', 'time_zone']);
     const lists = {
         groups: ['id', 'quantity', 'unit', 'min', 'max', 'limits', 'interpolation', 'distance', 'fill', 'power', 'radius_m', 'reach_m',
-            'scale', 'breaks', 'isolines'],
+            'singles', 'scale', 'breaks', 'isolines'],
         assets: ['id', 'tag', 'description', 'bounds'],
         tags: ['name', 'description', 'unit', 'group', 'asset', 'position', 'limits'],
         colormaps: ['name', 'rgb', 'below', 'above', 'safe'],

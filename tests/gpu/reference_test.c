@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The field that pictures show against the one worked out anew at each fragment, over all sensors: numbers, not colours, at random pixels
-   of whole plants, seen from near and far. Twice: at the very point of the level that the pixel shows; and within a pixel of there on the
-   finest level, since a coarser one may have moved its surface that far. There at pixels' middles first; what those leave out, since much
-   of what is far away is smaller than a pixel, is looked for with many samples to a pixel. */
+   of whole plants, seen from near and far, in all ways that a client may ask for. Twice: at the very point of the level that the pixel
+   shows; and within a pixel of there on the finest level, since a coarser one may have moved its surface that far. There at pixels' middles
+   first; what those leave out, since much of what is far away is smaller than a pixel, is looked for with many samples to a pixel. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -15,6 +15,7 @@
 #include <cmocka.h>
 
 #include "base/mem.h"
+#include "net/message/message.h"
 #include "plant/transform.h"
 #include "surface/vec.h"
 #include "tests/support/site.h"
@@ -173,6 +174,7 @@ static void look_at_some_asset(struct site *site, double away, struct view *view
 }
 
 struct way { /* of showing a plant */
+    int group;
     int number; /* chooses its views, by default */
     enum interpolation interpolation;
     enum distance_mode distance;
@@ -180,6 +182,19 @@ struct way { /* of showing a plant */
     bool finest;
     uint64_t seed; /* of its views */
 };
+
+/* As a client does. False: it is refused. */
+static bool ask_for(const struct site *site, const struct way *way, struct view *view)
+{
+    struct params_change change;
+    struct message_error error;
+    json_t *wish = json_pack("{s:s,s:s,s:s}", "group", site->plant->groups[way->group].id, "interpolation",
+                             way->interpolation == INTERPOLATION_PAPER ? "paper" : "shepard", "distance",
+                             way->distance == DISTANCE_EUCLIDEAN ? "euclidean" : "geodesic");
+    assert_true(params_parse(site->plant, wish, &change, &error));
+    json_decref(wish);
+    return params_apply(&(struct params_world){ .scene = site->scene }, &change, view, &error);
+}
 
 static void compare_views(struct site *site, const struct way *way, struct tally *tally)
 {
@@ -193,11 +208,10 @@ static void compare_views(struct site *site, const struct way *way, struct tally
         if (!sweep_takes(way->number, i, EACH))
             continue;
         view_default(site->scene, WIDTH_PX, HEIGHT_PX, &view);
+        ask_for(site, way, &view);
         view.tier = way->tier;
         if (i % 2) /* else as the plant says */
             view.field.reach_m = (double)INFINITY;
-        view.field.interpolation = way->interpolation;
-        view.field.distance = way->distance;
         site->random = way->seed + (uint64_t)i; /* views stay what they are where levels change */
         synthetic_random(&site->random);
         look_at_some_asset(site, away[i / 2], &view);
@@ -218,9 +232,9 @@ static void compare_views(struct site *site, const struct way *way, struct tally
 
 static void say(const struct way *way, const struct tally *tally)
 {
-    print_message("# %s, %s, %s, %s: %zu pixels; over 1/255: %zu, worst %.3f %% (camera %d); "
+    print_message("# group %d, %s, %s, %s, %s: %zu pixels; over 1/255: %zu, worst %.3f %% (camera %d); "
                   "within a pixel of the finest level: %zu, worst %.3f %%; other flags %zu\n",
-                  way->interpolation == INTERPOLATION_PAPER ? "paper" : "shepard",
+                  way->group, way->interpolation == INTERPOLATION_PAPER ? "paper" : "shepard",
                   way->distance == DISTANCE_EUCLIDEAN ? "euclidean" : "geodesic", way->tier == TIER_STILL ? "still" : "moving",
                   way->finest ? "finest level" : "levels as drawn", tally->compared, tally->over, 100 * tally->worst, tally->worst_camera,
                   tally->beyond, 100 * tally->worst_beyond, tally->flags_differ);
@@ -235,11 +249,14 @@ struct bounds { /* the same of moving pictures, on the levels that are drawn */
     double worst;
 };
 
-static void compare_plant(struct site *site, const struct bounds *bounds)
+static void compare_group(struct site *site, int group, int refused, const struct bounds *bounds)
 {
     int bad = 0;
+    struct view view;
+    view_default(site->scene, WIDTH_PX, HEIGHT_PX, &view);
     for (int i = 0; i < 16; i++) {
         const struct way way = {
+            .group = group,
             .number = i + i / 4,
             .interpolation = i & 1 ? INTERPOLATION_PAPER : INTERPOLATION_SHEPARD,
             .distance = i & 2 ? DISTANCE_EUCLIDEAN : DISTANCE_GEODESIC,
@@ -248,6 +265,10 @@ static void compare_plant(struct site *site, const struct bounds *bounds)
             .seed = 1000 * (uint64_t)(i + 1),
         };
         struct tally tally = { 0 };
+        if (!ask_for(site, &way, &view)) {
+            refused--;
+            continue;
+        }
         compare_views(site, &way, &tally);
         say(&way, &tally);
         assert_true(tally.compared > (size_t)sweep(VIEWS, VIEWS / EACH) * SAMPLES / 2);
@@ -258,13 +279,14 @@ static void compare_plant(struct site *site, const struct bounds *bounds)
         bad += (double)tally.beyond > (finest ? FINEST_OVER : bounds->beyond) * (double)tally.compared;
     }
     assert_int_equal(bad, 0);
+    assert_int_equal(refused, 0);
 }
 
 static void test_plant(const char *path, const char *name, const struct bounds *bounds)
 {
     struct site site;
     assert_true(site_init(&site, &rig, path, name));
-    compare_plant(&site, bounds);
+    compare_group(&site, 0, 0, bounds);
     site_finish(&site);
 }
 
@@ -279,7 +301,11 @@ static void test_plant_room(void **state)
     (void)state;
     if (!site_is_there("plm_plant_equipment.glb"))
         skip();
-    test_plant("tests/plants/plant_room.yaml", "plant_room", &(struct bounds){ 0.001, 0.001, 0.008 });
+    struct site site;
+    assert_true(site_init(&site, &rig, "tests/plants/plant_room.yaml", "plant_room"));
+    compare_group(&site, 0, 0, &(struct bounds){ 0.001, 0.001, 0.008 });
+    compare_group(&site, 1, 8, &(struct bounds){ 0.001, 0.001, 0.008 }); /* single sensors, whole triangles: no paper */
+    site_finish(&site);
 }
 
 static void test_cookie_line(void **state)

@@ -21,12 +21,16 @@ static const char usage[] = "usage: facility --output DIR [--assets N] [--triang
                             "  --assets N       default 2000\n"
                             "  --triangles N    of all of them, about; default 10000000\n"
                             "  --sensors EVERY  every so many-th asset has two sensors; default 8\n"
+                            "  --singles N      instead, N tags: one of each group on each asset in turn. Without flanges\n"
                             "  --seed N         default 1\n"
                             "Writes DIR/facility.glb, DIR/facility.yaml and DIR/facility.csv.\n";
 
+#define GROUPS 5
+static const char *const groups[GROUPS] = { "temperature", "pressure", "vibration", "current", "speed" };
+
 struct options {
     const char *folder;
-    long assets, triangles, sensors, seed;
+    long assets, triangles, sensors, singles, seed;
 };
 
 struct facility {
@@ -202,11 +206,21 @@ static void add_sensors(struct facility *f, long asset, const struct mesh *body,
     }
 }
 
+/* Tags 0, 1, 2, ... go to assets 0, 1, 2, ... and begin again: each time round with the next group. */
+static void add_singles(struct facility *f, long asset, const struct mesh *body, const double at[3])
+{
+    for (long tag = asset, group = 0; tag < f->options.singles; tag += f->options.assets, group++) {
+        const float *p = body->places[(size_t)(cad_random(&f->random) * (double)body->vertices)];
+        text_add(&f->csv, "T-%05ld,%ld,Float,plc,%s,A-%05ld,%.6f,%.6f,%.6f\n", tag, 400001 + 2 * tag, groups[group % GROUPS], asset,
+                 at[0] + (double)p[0], at[1] + (double)p[1], at[2] + (double)p[2]);
+    }
+}
+
 static void add_asset(struct facility *f, long asset)
 {
     const struct options *o = &f->options;
     double share = 0.5 + cad_random(&f->random), radius = 0.2 + 0.5 * cad_random(&f->random), length = 2 + 3 * cad_random(&f->random);
-    int flanges = 2 + (int)(4 * cad_random(&f->random)), flange_triangles = 2 * FLANGE_AROUND * (FLANGE_ROWS - 1);
+    int flanges = o->singles ? 0 : 2 + (int)(4 * cad_random(&f->random)), flange_triangles = 2 * FLANGE_AROUND * (FLANGE_ROWS - 1);
     double wanted = fmax(share * (double)o->triangles / (double)o->assets - flanges * flange_triangles, 200);
     int around = (int)fmax(sqrt(wanted / 5), 8), rows = (int)fmax(wanted / (2 * around), 4) + 1;
     long across = (long)ceil(sqrt((double)o->assets)), root = f->nodes;
@@ -230,7 +244,9 @@ static void add_asset(struct facility *f, long asset)
             asset, c, f->flange, tank ? radius * 0.98 : 0.1 + 0.15 * c, 0.0, tank ? 1 + length * c / 8 : 1.0,
             "0,0.7071067811865475,0,0.7071067811865475", radius / 2.4, radius / 2.4, radius / 4);
     text_add(&f->yaml, "  - { id: A-%05ld, model: facility.glb, nodes: A-%05ld, up: z }\n", asset, asset);
-    if (o->sensors > 0 && asset % o->sensors == 0)
+    if (o->singles > 0)
+        add_singles(f, asset, &body, at);
+    else if (o->sensors > 0 && asset % o->sensors == 0)
         add_sensors(f, asset, &body, at);
     f->triangles += body.corners / 3 + (size_t)(flanges * flange_triangles);
     text_finish(&children);
@@ -301,7 +317,8 @@ static bool read_options(int argc, char **argv, struct options *options)
 {
     static const struct option known[] = { { "output", required_argument, NULL, 'o' },    { "assets", required_argument, NULL, 'a' },
                                            { "triangles", required_argument, NULL, 't' }, { "sensors", required_argument, NULL, 's' },
-                                           { "seed", required_argument, NULL, 'r' },      { 0 } };
+                                           { "seed", required_argument, NULL, 'r' },
+                                           { "singles", required_argument, NULL, 'i' },   { 0 } };
     int c;
     while ((c = getopt_long(argc, argv, "", known, NULL)) != -1)
         switch (c) {
@@ -309,6 +326,7 @@ static bool read_options(int argc, char **argv, struct options *options)
         case 'a': options->assets = strtol(optarg, NULL, 10); break;
         case 't': options->triangles = strtol(optarg, NULL, 10); break;
         case 's': options->sensors = strtol(optarg, NULL, 10); break;
+        case 'i': options->singles = strtol(optarg, NULL, 10); break;
         case 'r': options->seed = strtol(optarg, NULL, 10); break;
         default: return false;
         }
@@ -337,8 +355,10 @@ int main(int argc, char **argv)
     mesh_finish(&flange);
     for (long asset = 0; asset < f.options.assets; asset++)
         add_asset(&f, asset);
-    text_add(&f.yaml, "groups:\n  - { id: temperature, unit: K, min: 0, max: 100 }\n"
-                      "sources:\n  - { id: plc, type: modbus, host: 127.0.0.1, byte_order: CDAB, address_base: 1 }\ntags: facility.csv\n");
+    text_add(&f.yaml, "groups:\n");
+    for (int group = 0; group < (f.options.singles ? GROUPS : 1); group++)
+        text_add(&f.yaml, "  - { id: %s, unit: K, min: 0, max: 100 }\n", groups[group]);
+    text_add(&f.yaml, "sources:\n  - { id: plc, type: modbus, host: 127.0.0.1, byte_order: CDAB, address_base: 1 }\ntags: facility.csv\n");
     write_glb(&f);
     must_write(f.options.folder, "facility.yaml", &f.yaml);
     must_write(f.options.folder, "facility.csv", &f.csv);

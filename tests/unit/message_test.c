@@ -359,6 +359,30 @@ static void queries_make_views(void **state)
     assert_true(view.width_px == 1280 && view.height_px == 720 && !view.dark);
 }
 
+/* TI-1 is the only one on E-101. */
+static void what_is_not_drawn_truly_on_whole_triangles_is_refused(void **state)
+{
+    (void)state;
+    static const char *const paper[] = { "interpolation=paper" }, *const split[] = { "split=interpolation=paper" };
+    static const char *const far[] = { "show=distance", "sensor=TI-1" }, *const other[] = { "group=pressure" };
+    struct plant_group *group = &small_scene()->plant->groups[0];
+    struct message_error error = { 0 };
+    struct view view;
+    assert_true(query(paper, 1, &view, &error) && query(split, 1, &view, &error) && query(far, 2, &view, &error));
+    group->cuts_singles = false;
+    assert_false(query(paper, 1, &view, &error));
+    assert_string_equal(error.text,
+                        "interpolation: 'paper' is not prepared where 'temperature' has one sensor (1 of 2 assets, first 'E-101'); "
+                        "write 'singles: cut' at that group in the plant file");
+    assert_false(query(split, 1, &view, &error));
+    assert_false(query(far, 2, &view, &error));
+    assert_string_equal(error.text, "sensor: distances are not prepared where 'temperature' has one sensor, as on 'E-101'; "
+                                    "write 'singles: cut' at that group in the plant file");
+    assert_true(query(other, 1, &view, &error)); /* the plant file asks for paper there */
+    assert_int_equal(view.field.interpolation, INTERPOLATION_PAPER);
+    group->cuts_singles = true;
+}
+
 static void what_is_fitted_lies_beside_the_legend(void **state)
 {
     (void)state;
@@ -621,6 +645,7 @@ int main(void)
         cmocka_unit_test(a_plant_may_begin_with_limits),
         cmocka_unit_test(bands_and_lines),
         cmocka_unit_test(a_view_splits),
+        cmocka_unit_test(what_is_not_drawn_truly_on_whole_triangles_is_refused),
         cmocka_unit_test(what_is_fitted_lies_beside_the_legend),
         cmocka_unit_test(queries_make_views),
         cmocka_unit_test(bad_queries_are_named),

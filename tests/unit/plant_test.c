@@ -85,7 +85,7 @@ static void everything_is_read(void **state)
          "  - { id: g, quantity: q, unit: '', min: -1, max: 1, limits: { L: -0.5, HH: 0.5 }, interpolation: paper, distance: euclidean,\n"
          "      strength: 2, decay: 3, power: 4, radius_m: 5, reach_m: 6, fill: neighbours,\n"
          "      breaks: [-0.5, 0, 0.25], isolines: [0.1] }\n"
-         "  - { id: l, unit: Pa, min: 1e-3, max: 10, scale: log }\n"
+         "  - { id: l, unit: Pa, min: 1e-3, max: 10, scale: log, singles: cut }\n"
          "sources:\n"
          "  - { id: s, type: modbus, host: h, port: 5020, unit: 9, poll_ms: 2000, timeout_ms: 99, byte_order: CDAB, address_base: 0 }\n"
          "tags: tags.csv\n",
@@ -107,6 +107,7 @@ static void everything_is_read(void **state)
     assert_true(g->interpolation == INTERPOLATION_PAPER && g->distance == DISTANCE_EUCLIDEAN && g->fill == FILL_NEIGHBOURS);
     assert_true(g->strength == 2 && g->decay == 3 && g->power == 4 && g->radius_m == 5 && g->reach_m == 6);
     assert_true(g->break_count == 3 && g->breaks[2] == 0.25 && g->isoline_count == 1 && g->isolines[0] == 0.1 && p->groups[1].log);
+    assert_true(!g->cuts_singles && p->groups[1].cuts_singles);
     const struct plant_tag *t = &p->tags[0];
     assert_true(t->register_index == 1 && t->table == TABLE_HOLDING && t->type == DATA_FLOAT32 && t->byte_order == BYTE_ORDER_BADC);
     assert_true(t->scan_ms == 500 && t->scaling == SCALING_SQUARE_ROOT && t->raw_high == 27648 && t->scaled_low == -50 && t->negate);

@@ -338,6 +338,30 @@ static void textures_are_read(void **state)
     sheet_finish(&sheet);
 }
 
+/* By shepard, a single sensor has all of a value everywhere. */
+static void a_field_that_is_constant_needs_no_triangles(void **state)
+{
+    struct prep_case *c = *state;
+    static const char plant[] = "plant: { name: Singles }\nassets: [{ id: A, model: model.glb, nodes: plate-1, up: z }]\n"
+                                "groups: [{ id: t, unit: K, min: 0, max: 1 }, { id: p, unit: bar, min: 0, max: 1%s }]\n"
+                                "sources: [{ id: plc, type: modbus, host: h, byte_order: CDAB, address_base: 1 }]\ntags: tags.csv\n";
+    static const char *const mores[3] = { "", ", interpolation: paper", ", singles: cut" };
+    double triangles[3];
+    prep_case_tags(c, "T1,400001,Float,plc,t,A,,0.31,0.42,0\nT2,400003,Float,plc,p,A,,1.63,0.57,0\n");
+    for (int more = 0; more < 3; more++) {
+        char *yaml = mem_printf(plant, mores[more]);
+        prep_case_plant(c, yaml);
+        mem_free(yaml);
+        prep_case_expect(c, "$PLANT --report json", 0);
+        json_t *report = prep_case_json(&c->out);
+        triangles[more] = prep_case_number(report, "assets.0.levels.0.triangles");
+        json_decref(report);
+    }
+    assert_in_range((int)triangles[0], 2 * ACROSS * UP, 2 * ACROSS * UP + 8); /* a vertex for each sensor */
+    assert_true(triangles[1] > triangles[0] + 8); /* paper's field has a peak there */
+    assert_true(triangles[2] == triangles[1]);
+}
+
 static void a_new_revision_costs_what_it_changes(void **state)
 {
     struct prep_case *s = *state;
@@ -410,6 +434,7 @@ int main(void)
         WITH_PLANT(another_reach_is_another_file),
         WITH_PLANT(two_at_a_time_take_turns),
         WITH_PLANT(who_waits_says_for_whom_and_can_be_stopped),
+        WITH_PLANT(a_field_that_is_constant_needs_no_triangles),
         WITH_PLANT(a_new_revision_costs_what_it_changes),
         WITH_PLANT(distances_are_printed),
         WITH_PLANT(textures_are_read),

@@ -59,6 +59,11 @@ const SAID = [
     ['reach_m: expected more than 0', [], 'a number of > 0 is expected'],
     ['%s: a number from %g to %g expected', ['strength', 0, 100], 'a number of 0–100 is expected'],
     ['sensor: it has no place in the shown group', [], 'that sensor has no place in this quantity'],
+    ["interpolation: 'paper' is not prepared where '%s' has one sensor (%zu of %zu assets, first '%s'); ", ['t', 1, 12, 'V-1'],
+        'Paper cannot be drawn truly where t has one sensor (1 of 12 assets, the first V-1). ' +
+        'The plant file may say “singles: cut” at that group.'],
+    ["sensor: distances are not prepared where '%s' has one sensor, as on '%s'; ", ['t', 'V-1'],
+        'distances cannot be drawn truly where t has one sensor, as on V-1. The plant file may say “singles: cut” at that group.'],
     ['sensors: one has no place in the shown group', [], 'that sensor has no place in this quantity'],
     ['split: %d pixels are too narrow for two pictures', [30], 'the picture is too narrow for two halves'],
     ['%dx%d cannot be drawn: the server is out of memory; the last picture stays', [4, 2],
@@ -72,7 +77,7 @@ const SAID = [
 test('what the server says, in our words', () => {
     for (const [format, values, want] of SAID) {
         assert.ok(source.includes(format), `the server does not say: ${format}`);
-        const rest = [...values], text = format.replace(/%(?:llu|[sdg])/g, () => rest.shift());
+        const rest = [...values], text = format.replace(/%(?:llu|zu|[sdg])/g, () => rest.shift());
         assert.equal(refusalText(text), want, text);
         assert.equal(refusalText(`moves: ${text}`), want, text);
     }

@@ -12,9 +12,12 @@ const ARRIVAL_MARGIN = 1.7; // around one piece of equipment
 const REACH_PX = { mouse: 14, pen: 18, touch: 26 };
 const HELD_US = 3.5e6;      // what is newer than that counts as now
 
-// Those of the shown group that stand somewhere.
-export const sensorsOf = ({ model, params }) =>
-    model.tags.filter(({ group, asset, position }) => group === params.group && asset && position);
+// Those of the shown group that stand somewhere and whose distances can be shown: not of single ones whose equipment was left whole.
+export function sensorsOf({ model, params }) {
+    const all = model.tags.filter(({ group, asset, position }) => group === params.group && asset && position);
+    const isAlone = (sensor) => !all.some((other) => other !== sensor && other.asset === sensor.asset);
+    return model.group(params.group)?.singles === 'whole' ? all.filter((sensor) => !isAlone(sensor)) : all;
+}
 
 export class Commands {
     constructor(page) {

@@ -11,6 +11,9 @@ const KNOWN = [
     [/^'(.*)' is no (group|asset|tag) of this plant/, 'no', (name, kind) => ({ name, kind: put(`kind.${kind}`) })],
     [/^there is no (group|asset|tag) '(.*)'$/, 'no', (kind, name) => ({ name, kind: put(`kind.${kind}`) })],
     [/^'(.*)' is (?:unknown|neither .*)$/, 'unknown', (name) => ({ name })],
+    [/^'paper' is not prepared where '(.*)' has one sensor \((\d+) of (\d+) assets, first '(.*)'\)/, 'uncut',
+        (group, count, all, asset) => ({ group, count, all, asset })],
+    [/^distances are not prepared where '(.*)' has one sensor, as on '(.*)';/, 'far_uncut', (group, asset) => ({ group, asset })],
     [/^alarms are another system's here/, 'elsewhere'],
     [/^the plant is being loaded anew; try again$/, 'anew'],
     [/^there is nothing to acknowledge$/, 'quiet'],
@@ -44,8 +47,9 @@ const KNOWN = [
 ];
 // What has no words of ours, by its code.
 const CODES = ['too_fast', 'limit', 'not_allowed'];
-const FIELDS = ['baseline', 'breaks', 'colormap', 'decay', 'environment', 'ghost', 'group', 'hidden', 'isolate', 'isolines', 'moves',
-    'power', 'radius_m', 'range', 'reach_m', 'save_tags', 'scale', 'selected', 'sensor', 'sensors', 'session', 'split', 'strength', 'tag'];
+const FIELDS = ['baseline', 'breaks', 'colormap', 'decay', 'environment', 'ghost', 'group', 'hidden', 'interpolation', 'isolate', 'isolines',
+    'moves', 'power', 'radius_m', 'range', 'reach_m', 'save_tags', 'scale', 'selected', 'sensor', 'sensors', 'session', 'split', 'strength',
+    'tag'];
 const FIELD = new RegExp(`^((?:${FIELDS.join('|')}): )+`);
 
 // code: where the server said one.

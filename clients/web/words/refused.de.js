@@ -10,6 +10,10 @@ role: das darf nur die Rolle {role}
 no: in dieser Anlage gibt es „{name}“ nicht ({kind})
 link: Dieser Link passt nicht: {why}. Er kann zu einer anderen Anlage gehören oder älter sein als eine Änderung der Anlage.
 unknown: „{name}“ ist hier nicht bekannt
+uncut: Paper wird nicht richtig gezeichnet, wo {group} nur einen Sensor hat ({count} von {all} Anlagenteilen, zuerst {asset}).
+  In der Anlagendatei hilft „singles: cut“ bei dieser Gruppe.
+far_uncut: Abstände werden nicht richtig gezeichnet, wo {group} nur einen Sensor hat, wie an {asset}.
+  In der Anlagendatei hilft „singles: cut“ bei dieser Gruppe.
 elsewhere: die Alarme gehören einem anderen System
 anew: die Anlage wird gerade neu geladen; bitte noch einmal
 quiet: es gibt nichts zu quittieren

@@ -10,6 +10,10 @@ role: that takes the role {role}
 no: this plant has no {kind} “{name}”
 link: This link does not fit: {why}. It may be of another plant, or from before the plant was changed.
 unknown: “{name}” is not known here
+uncut: Paper cannot be drawn truly where {group} has one sensor ({count} of {all} assets, the first {asset}).
+  The plant file may say “singles: cut” at that group.
+far_uncut: distances cannot be drawn truly where {group} has one sensor, as on {asset}.
+  The plant file may say “singles: cut” at that group.
 elsewhere: alarms are another system’s here
 anew: the plant is being loaded anew; try again
 quiet: there is nothing to acknowledge

@@ -4,6 +4,7 @@
 
 #include "field/colormap.h"
 #include "net/message/fields.h"
+#include "plant/singles.h"
 
 static const char *const NOW = "now";
 
@@ -184,6 +185,29 @@ static void take_quantity(const struct params_world *world, const struct field_p
         view->colormap = now->show == SHOW_DIFFERENCE ? colormap_find("diverging") : 0;
 }
 
+/* Where triangles were left whole for single sensors, only what is constant is drawn truly. */
+static bool may_show(const struct plant *plant, const struct field_params *field, struct message_error *error)
+{
+    char group[48], asset[48];
+    int first;
+    const struct plant_group *of = &plant->groups[field->group];
+    if (plant_cuts_singles(of))
+        return true;
+    size_t count = field->interpolation == INTERPOLATION_PAPER ? plant_singles(plant, field->group, &first) : 0;
+    if (count > 0)
+        message_fail(error, "bad_field",
+                     "interpolation: 'paper' is not prepared where '%s' has one sensor (%zu of %zu assets, first '%s'); "
+                     "write 'singles: cut' at that group in the plant file", quoted(of->id, group), count, plant->asset_count,
+                     quoted(plant->assets[first].id, asset));
+    else if (field->show == SHOW_DISTANCE && plant_is_single(plant, field->sensor))
+        message_fail(error, "bad_field", "sensor: distances are not prepared where '%s' has one sensor, as on '%s'; "
+                     "write 'singles: cut' at that group in the plant file", quoted(of->id, group),
+                     quoted(plant->assets[plant->tags[field->sensor].asset].id, asset));
+    else
+        return true;
+    return false;
+}
+
 bool params_apply_show(const struct params_world *world, const struct params_change *change, const struct view *before, struct view *view,
                        struct message_error *error)
 {
@@ -199,6 +223,8 @@ bool params_apply_show(const struct params_world *world, const struct params_cha
         message_fail(error, "bad_field", "%s", wrong);
         return false;
     }
+    if (!may_show(world->scene->plant, field, error))
+        return false;
     take_quantity(world, &before->field, view);
     return true;
 }

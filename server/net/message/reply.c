@@ -11,6 +11,7 @@
 #include "net/message/names.h"
 #include "net/message/number.h"
 #include "net/message/visibility.h"
+#include "plant/singles.h"
 #include "value/alarm.h"
 #include "value/quality.h"
 
@@ -199,6 +200,7 @@ static json_t *groups(const struct plant *plant)
                                               string(name_of(names_distance, g->distance)), "fill", string(name_of(names_fill, g->fill)),
                                               "power", number(g->power), "radius_m", number(g->radius_m), "reach_m", number(g->reach_m)));
         json_t *group = json_array_get(list, i);
+        json_object_set_new(group, "singles", string(plant_cuts_singles(g) ? "cut" : "whole"));
         json_object_set_new(group, "scale", string(name_of(names_scale, g->log)));
         json_object_set_new(group, "breaks", number_list(g->breaks, g->break_count));
         json_object_set_new(group, "isolines", number_list(g->isolines, g->isoline_count));

@@ -1,0 +1,32 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Which assets have one sensor of a group. */
+#include "plant/singles.h"
+
+#include "base/mem.h"
+
+bool plant_cuts_singles(const struct plant_group *group)
+{
+    return group->interpolation == INTERPOLATION_PAPER || group->cuts_singles;
+}
+
+size_t plant_singles(const struct plant *plant, int group, int *first)
+{
+    size_t *sensors = mem_array(plant->asset_count, sizeof(*sensors)), count = 0;
+    for (size_t i = 0; i < plant->tag_count; i++)
+        if (plant->tags[i].group == group && plant->tags[i].asset >= 0)
+            sensors[plant->tags[i].asset]++;
+    for (size_t a = 0; a < plant->asset_count; a++)
+        if (sensors[a] == 1 && count++ == 0)
+            *first = (int)a;
+    mem_free(sensors);
+    return count;
+}
+
+bool plant_is_single(const struct plant *plant, int tag)
+{
+    const struct plant_tag *of = &plant->tags[tag];
+    for (size_t i = 0; i < plant->tag_count; i++)
+        if ((int)i != tag && plant->tags[i].group == of->group && plant->tags[i].asset == of->asset)
+            return false;
+    return of->group >= 0 && of->asset >= 0;
+}
