@@ -47,9 +47,9 @@ const KNOWN = [
 ];
 // What has no words of ours, by its code.
 const CODES = ['too_fast', 'limit', 'not_allowed'];
-const FIELDS = ['baseline', 'breaks', 'colormap', 'decay', 'environment', 'ghost', 'group', 'hidden', 'interpolation', 'isolate', 'isolines',
-    'moves', 'power', 'radius_m', 'range', 'reach_m', 'save_tags', 'scale', 'selected', 'sensor', 'sensors', 'session', 'split', 'strength',
-    'tag'];
+const FIELDS = ['baseline', 'breaks', 'colormap', 'decay', 'environment', 'ghost', 'group', 'hidden', 'interpolation', 'isolate',
+    'isolines', 'moves', 'power', 'radius_m', 'range', 'reach_m', 'save_tags', 'scale', 'selected', 'sensor', 'sensors', 'session', 'split',
+    'strength', 'tag'];
 const FIELD = new RegExp(`^((?:${FIELDS.join('|')}): )+`);
 
 // code: where the server said one.
