@@ -36,7 +36,7 @@ test('paper and distances of a single sensor are refused, until the plant file h
         assert.match(paper[1], PAPER);
         assert.match(distances[1], DISTANCES);
         assert.equal((await picture('interpolation=shepard'))[0], 200);
-        const out = join(tiny.folder, 'paper.png'), args = ['snapshot', tiny.file, '--size', '160x100', '--group', 'pressure', '--out', out];
+        const args = ['snapshot', tiny.file, '--size', '160x100', '--group', 'pressure', '--out', join(tiny.folder, 'paper.png')];
         const refused = runProgram('plantcast', [...args, '--interpolation', 'paper']);
         assert.deepEqual([refused.code, PAPER.test(refused.err)], [2, true], refused.err);
 
