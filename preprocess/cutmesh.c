@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "base/mem.h"
+#include "base/vec.h"
 
 bool cutmesh_init(struct cutmesh *mesh, struct geometry *geometry)
 {
@@ -248,7 +249,7 @@ static uint32_t add_vertex(struct cutmesh *mesh, uint32_t place, const uint32_t 
         for (int c = 0; c < 4 && g->colors; c++)
             color[c] += w * (float)g->colors[from[i]][c];
     }
-    float length = sqrtf(normal[0] * normal[0] + normal[1] * normal[1] + normal[2] * normal[2]);
+    float length = sqrtf(vecf_dot(normal, normal));
     for (int c = 0; c < 3; c++)
         g->normals[vertex][c] = length > 1e-3f ? normal[c] / length : g->normals[from[0]][c];
     add_texcoord(&g->texcoords, &mesh->texcoord_capacity, vertex, from, weights, count);

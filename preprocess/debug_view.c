@@ -6,11 +6,11 @@
 #include <string.h>
 
 #include "base/mem.h"
+#include "base/vec.h"
 #include "field/colormap.h"
 #include "preprocess/glb_writer.h"
 #include "surface/stitch.h"
 #include "surface/trimesh.h"
-#include "surface/vec.h"
 
 #define ISOLINES 20  /* at most so many */
 #define LIFT 3e-4    /* of the size: isolines and open edges lie so far off the surface, on both sides */
@@ -77,15 +77,8 @@ static void give(struct drawing *drawing, struct soup *soup, const char *name, e
 
 static void face_normal(const struct surface_look *look, size_t t, double n[3])
 {
-    double ab[3], ac[3];
-    vec_sub(look->points_m[look->tris[t][1]], look->points_m[look->tris[t][0]], ab);
-    vec_sub(look->points_m[look->tris[t][2]], look->points_m[look->tris[t][0]], ac);
-    vec_cross(ab, ac, n);
-}
-
-static double length_of(const double v[3])
-{
-    return sqrt(vec_dot(v, v));
+    const uint32_t *v = look->tris[t];
+    vec_normal(look->points_m[v[0]], look->points_m[v[1]], look->points_m[v[2]], n);
 }
 
 /* Which way the surface faces at each point; faces may be turned either way. */
@@ -106,7 +99,7 @@ static double (*find_normals(const struct surface_look *look))[3]
 
 static void color_at(const struct drawing *drawing, uint32_t point, const uint8_t plain[3], const double normal[3], uint16_t out[4])
 {
-    double length = length_of(normal), shade = length > 0 ? DARKEST + (1 - DARKEST) * fabs(vec_dot(normal, light)) / length : 1;
+    double length = vec_length(normal), shade = length > 0 ? DARKEST + (1 - DARKEST) * fabs(vec_dot(normal, light)) / length : 1;
     const uint8_t *rgb = plain;
     if (!plain) {
         double share = drawing->farthest_m > 0 ? (double)drawing->view->distances_m[point] / drawing->farthest_m : 0;
@@ -172,7 +165,7 @@ static void add_lifted(struct soup *soup, const struct drawing *drawing, size_t 
 {
     double n[3], length;
     face_normal(&drawing->look, t, n);
-    length = length_of(n);
+    length = vec_length(n);
     for (int side = -1; side <= 1 && length > 0; side += 2) {
         double p[3], q[3];
         for (int axis = 0; axis < 3; axis++) {

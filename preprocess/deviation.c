@@ -8,7 +8,7 @@
 #include <xxhash.h>
 
 #include "base/mem.h"
-#include "surface/vec.h"
+#include "base/vec.h"
 
 #define SMALL 4.0  /* expected distances: in smaller triangles the middle is probed */
 #define LARGE 16.0 /* likewise: in larger ones, twelve points inside; else the middles of the edges */

@@ -8,10 +8,10 @@
 #include <string.h>
 
 #include "base/mem.h"
+#include "base/vec.h"
 #include "plant/transform.h"
 #include "preprocess/diff_shape.h"
 #include "preprocess/prepare.h"
-#include "surface/vec.h"
 
 #define TOLERANCE_M 0.01
 #define TOLERANCE_OF_SIZE 0.01

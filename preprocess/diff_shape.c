@@ -6,9 +6,9 @@
 #include <string.h>
 
 #include "base/mem.h"
+#include "base/vec.h"
 #include "plant/transform.h"
 #include "surface/bvh.h"
-#include "surface/vec.h"
 
 #define SPREAD 100.0     /* places on a triangle are so many to the diagonal */
 #define PLACES_MAX 64    /* along a side of one triangle */

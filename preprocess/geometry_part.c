@@ -9,6 +9,8 @@
 #include "preprocess/geometry_parts.h"
 #include "preprocess/normals.h"
 
+#include "base/vec.h"
+
 /* Model units and axes to metres and Z up: (x, y, z) of a Y-up model is (x, -z, y). */
 static void frame_of(const struct geometry_params *params, double out[16])
 {
@@ -68,15 +70,9 @@ static bool turn_normal(const double matrix[9], const float normal[3], float out
 
 static bool has_area(const float (*p)[3], const uint32_t v[3])
 {
-    double n[3], ab[3], ac[3];
-    for (int i = 0; i < 3; i++) {
-        ab[i] = (double)p[v[1]][i] - (double)p[v[0]][i];
-        ac[i] = (double)p[v[2]][i] - (double)p[v[0]][i];
-    }
-    n[0] = ab[1] * ac[2] - ab[2] * ac[1];
-    n[1] = ab[2] * ac[0] - ab[0] * ac[2];
-    n[2] = ab[0] * ac[1] - ab[1] * ac[0];
-    return n[0] * n[0] + n[1] * n[1] + n[2] * n[2] > 0;
+    double n[3];
+    vecf_normal(p[v[0]], p[v[1]], p[v[2]], n);
+    return vec_dot(n, n) > 0;
 }
 
 /* Indices of triangles with an area, wound so that the outside stays outside under a mirroring transform. */
@@ -100,7 +96,7 @@ static size_t take_triangles(const struct gltf_primitive *primitive, const float
 /* The winding says which side is out; some exporters' normals do not follow it. Those that lean over an edge are let be. */
 static void turn_outward(const float outward[3], float normal[3])
 {
-    if (normal[0] * outward[0] + normal[1] * outward[1] + normal[2] * outward[2] < -0.2f)
+    if (vecf_dot(normal, outward) < -0.2f)
         for (int i = 0; i < 3; i++)
             normal[i] = -normal[i];
 }

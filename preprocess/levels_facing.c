@@ -5,8 +5,8 @@
 #include <string.h>
 
 #include "base/mem.h"
+#include "base/vec.h"
 #include "preprocess/levels_impl.h"
-#include "surface/vec.h"
 
 #define AWAY (-0.5f) /* cosines: the vertex that suits a face best looks away from it; */
 #define ALONG 0.7f   /* one beside it looks its way */
@@ -32,13 +32,11 @@ struct facing {
 
 void levels_normal(const struct knots *knots, const uint32_t corners[3], float n[3])
 {
-    double at[3][3], u[3], v[3], m[3];
+    double at[3][3], m[3];
     for (int c = 0; c < 3; c++)
         for (int i = 0; i < 3; i++)
             at[c][i] = (double)knots->positions_m[corners[c]][i];
-    vec_sub(at[1], at[0], u);
-    vec_sub(at[2], at[0], v);
-    vec_cross(u, v, m);
+    vec_normal(at[0], at[1], at[2], m);
     double length2 = vec_dot(m, m);
     for (int i = 0; i < 3; i++)
         n[i] = length2 > 0 ? (float)(m[i] / sqrt(length2)) : 0;
@@ -47,7 +45,7 @@ void levels_normal(const struct knots *knots, const uint32_t corners[3], float n
 static float cosine_of(const struct knots *knots, uint32_t vertex, const float n[3])
 {
     const float *m = knots->geometry->normals[vertex];
-    return n[0] * m[0] + n[1] * m[1] + n[2] * m[2];
+    return vecf_dot(n, m);
 }
 
 uint32_t levels_vertex(const struct knots *knots, const char *used, uint32_t knot, const float n[3], bool one_side)
@@ -134,7 +132,7 @@ static void move_faces(const struct facing *facing, uint32_t *corners)
                 moved[facing->needs[end].corner - at] = facing->needs[end].knot;
         levels_normal(facing->knots, moved, n);
         const float *was = facing->needs[i].normal;
-        if (n[0] * was[0] + n[1] * was[1] + n[2] * was[2] > ALONG)
+        if (vecf_dot(n, was) > ALONG)
             memcpy(corners + at, moved, sizeof(moved));
         i = end;
     }

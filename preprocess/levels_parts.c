@@ -4,10 +4,10 @@
 #include <string.h>
 
 #include "base/mem.h"
+#include "base/vec.h"
 #include "preprocess/box_groups.h"
 #include "preprocess/levels_impl.h"
 #include "surface/bvh.h"
-#include "surface/vec.h"
 
 #define MUCH_LARGER 4.0f /* times: a part that another may lie on */
 #define MOST_PX 8.0f     /* a part that lies on another is left out once it is no larger than so many pixels */

@@ -7,48 +7,25 @@
 #include <string.h>
 
 #include "base/mem.h"
+#include "base/vec.h"
 
 #define CREASE_COSINE 0.766 /* of 40 degrees: a cylinder of ten sides is round, one of eight has edges */
 
-static void sub(const float a[3], const float b[3], double out[3])
-{
-    for (int i = 0; i < 3; i++)
-        out[i] = (double)a[i] - (double)b[i];
-}
-
-static double dot(const double a[3], const double b[3])
-{
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
-static bool make_unit(double v[3])
-{
-    double length = sqrt(dot(v, v));
-    for (int i = 0; i < 3 && length > 0; i++)
-        v[i] /= length;
-    return length > 0;
-}
-
 static void face_normal(const float a[3], const float b[3], const float c[3], double out[3])
 {
-    double ab[3], ac[3];
-    sub(b, a, ab);
-    sub(c, a, ac);
-    out[0] = ab[1] * ac[2] - ab[2] * ac[1];
-    out[1] = ab[2] * ac[0] - ab[0] * ac[2];
-    out[2] = ab[0] * ac[1] - ab[1] * ac[0];
-    if (!make_unit(out))
+    vecf_normal(a, b, c, out);
+    if (!(vec_normalize(out) > 0))
         memcpy(out, (const double[3]){ 0, 0, 0 }, 3 * sizeof(*out));
 }
 
 static double corner_angle(const float at[3], const float b[3], const float c[3])
 {
     double ab[3], ac[3];
-    sub(b, at, ab);
-    sub(c, at, ac);
-    if (!make_unit(ab) || !make_unit(ac))
+    vecf_sub(b, at, ab);
+    vecf_sub(c, at, ac);
+    if (!(vec_normalize(ab) > 0) || !(vec_normalize(ac) > 0))
         return 0;
-    return acos(fmin(fmax(dot(ab, ac), -1), 1));
+    return acos(fmin(fmax(vec_dot(ab, ac), -1), 1));
 }
 
 struct around {      /* which corners meet at a place */
@@ -98,13 +75,13 @@ static void corner_normal(const struct around *a, uint32_t corner, unsigned plac
     double sum[3] = { 0 };
     for (uint32_t i = a->first[place]; i < a->first[place + 1]; i++) {
         const double *face = a->faces[a->corners[i] / 3];
-        if (dot(own, face) < CREASE_COSINE)
+        if (vec_dot(own, face) < CREASE_COSINE)
             continue;
         for (int axis = 0; axis < 3; axis++)
             sum[axis] += a->angles[a->corners[i]] * face[axis];
     }
-    if (!make_unit(sum))
-        memcpy(sum, dot(own, own) > 0 ? own : (const double[3]){ 0, 0, 1 }, sizeof(sum));
+    if (!(vec_normalize(sum) > 0))
+        memcpy(sum, vec_dot(own, own) > 0 ? own : (const double[3]){ 0, 0, 1 }, sizeof(sum));
     for (int axis = 0; axis < 3; axis++)
         out[axis] = (float)sum[axis];
 }

@@ -6,7 +6,7 @@
 #include <stdint.h>
 #include <string.h>
 
-#include "base/wide.h"
+#include "base/simd.h"
 
 #define L SHARES_LANES
 #define LEAST_M 1e-5f    /* a sensor nearer than that has all the weight */
@@ -16,34 +16,34 @@
 typedef float lanes __attribute__((vector_size(4 * L)));
 typedef int32_t mask __attribute__((vector_size(4 * L))); /* of each lane all bits, or none */
 
-WIDE_BODY void load(const float *from, lanes *to)
+SIMD_BODY void load(const float *from, lanes *to)
 {
     memcpy(to, from, sizeof(*to));
 }
 
-WIDE_BODY void store(const lanes *from, float *to)
+SIMD_BODY void store(const lanes *from, float *to)
 {
     memcpy(to, from, sizeof(*from));
 }
 
-WIDE_BODY void keep(const mask *which, lanes *x) /* 0 elsewhere */
+SIMD_BODY void keep(const mask *which, lanes *x) /* 0 elsewhere */
 {
     *x = (lanes)(*which & (mask)*x);
 }
 
-WIDE_BODY void take_less(const lanes *x, lanes *least)
+SIMD_BODY void take_less(const lanes *x, lanes *least)
 {
     mask less = *x < *least;
     *least = (lanes)((less & (mask)*x) | (~less & (mask)*least));
 }
 
-WIDE_BODY void take_more(const lanes *x, lanes *most)
+SIMD_BODY void take_more(const lanes *x, lanes *most)
 {
     mask more = *x > *most;
     *most = (lanes)((more & (mask)*x) | (~more & (mask)*most));
 }
 
-WIDE_BODY float sum_of(const lanes *x)
+SIMD_BODY float sum_of(const lanes *x)
 {
     float sum = 0;
     for (int i = 0; i < L; i++)
@@ -53,7 +53,7 @@ WIDE_BODY float sum_of(const lanes *x)
 
 /* --- distances ---------------------------------------------------------------------------------------------------------------- */
 
-WIDE_BODY void euclidean(const float point_m[3], const float *const places_m[3], size_t count, float *distance_m)
+SIMD_BODY void euclidean(const float point_m[3], const float *const places_m[3], size_t count, float *distance_m)
 {
     for (size_t i = 0; i < count; i += L) {
         lanes sum = { 0 }, place;
@@ -68,7 +68,7 @@ WIDE_BODY void euclidean(const float point_m[3], const float *const places_m[3],
     }
 }
 
-WIDE_BODY float least(const float *values, size_t count)
+SIMD_BODY float least(const float *values, size_t count)
 {
     lanes low = (lanes){ 0 } + INFINITY, x;
     for (size_t i = 0; i < count; i += L) {
@@ -82,7 +82,7 @@ WIDE_BODY float least(const float *values, size_t count)
 
 /* --- shepard ------------------------------------------------------------------------------------------------------------------ */
 
-WIDE_BODY void raise_lanes(lanes *x, float power)
+SIMD_BODY void raise_lanes(lanes *x, float power)
 {
     lanes base = *x;
     if (power == 2)
@@ -95,7 +95,7 @@ WIDE_BODY void raise_lanes(lanes *x, float power)
 }
 
 /* Towards the reach, by what is left of it against what the nearest has left; from there on, 0 for all but the nearest. */
-WIDE_BODY void fade(const struct shares_group *group, float near_m, const lanes *far, lanes *weight)
+SIMD_BODY void fade(const struct shares_group *group, float near_m, const lanes *far, lanes *weight)
 {
     const lanes zero = { 0 }, near = zero + near_m;
     float own_m = group->reach_m - near_m;
@@ -108,7 +108,7 @@ WIDE_BODY void fade(const struct shares_group *group, float near_m, const lanes 
 }
 
 /* Weights as shares of the nearest one's, so that no power is too large for a float. */
-WIDE_BODY void shepard_weight(const struct shares_group *group, size_t i, float near_m, const float *distance_m, lanes *weight)
+SIMD_BODY void shepard_weight(const struct shares_group *group, size_t i, float near_m, const float *distance_m, lanes *weight)
 {
     const lanes floor_m = (lanes){ 0 } + LEAST_M;
     lanes far, strength;
@@ -123,7 +123,7 @@ WIDE_BODY void shepard_weight(const struct shares_group *group, size_t i, float 
 }
 
 /* How fast a weight fades, in parts of itself. */
-WIDE_BODY void per_left(const struct shares_group *group, const lanes *far, lanes *out)
+SIMD_BODY void per_left(const struct shares_group *group, const lanes *far, lanes *out)
 {
     const lanes least_m = (lanes){ 0 } + LEAST_M;
     lanes left = group->reach_m - *far;
@@ -131,7 +131,7 @@ WIDE_BODY void per_left(const struct shares_group *group, const lanes *far, lane
     *out = 2 / left;
 }
 
-WIDE_BODY float shepard_slope(const struct shares_group *group, const float *distance_m, const float *shares)
+SIMD_BODY float shepard_slope(const struct shares_group *group, const float *distance_m, const float *shares)
 {
     const lanes floor_m = (lanes){ 0 } + LEAST_M;
     lanes slope = { 0 }, fading = { 0 }, far, weight;
@@ -148,7 +148,7 @@ WIDE_BODY float shepard_slope(const struct shares_group *group, const float *dis
     return group->power * sum_of(&slope) + sum_of(&fading);
 }
 
-WIDE_BODY float shepard(const struct shares_group *group, const float *distance_m, bool slopes, float *shares, struct shares_norm *norm)
+SIMD_BODY float shepard(const struct shares_group *group, const float *distance_m, bool slopes, float *shares, struct shares_norm *norm)
 {
     lanes sum = { 0 }, weight;
     float near_m = least(distance_m, group->count);
@@ -172,7 +172,7 @@ WIDE_BODY float shepard(const struct shares_group *group, const float *distance_
     return slopes ? shepard_slope(group, distance_m, shares) : 0;
 }
 
-WIDE_BODY void shepard_norm(const struct shares_group *group, const float *distance_m, struct shares_norm *norm)
+SIMD_BODY void shepard_norm(const struct shares_group *group, const float *distance_m, struct shares_norm *norm)
 {
     lanes sum = { 0 }, weight;
     float near_m = least(distance_m, group->count);
@@ -185,7 +185,7 @@ WIDE_BODY void shepard_norm(const struct shares_group *group, const float *dista
     norm->per = total > 0 ? 1 / total : 0;
 }
 
-WIDE_BODY void shepard_again(const struct shares_group *group, const float *distance_m, const struct shares_norm *norm, float *shares)
+SIMD_BODY void shepard_again(const struct shares_group *group, const float *distance_m, const struct shares_norm *norm, float *shares)
 {
     lanes weight;
     for (size_t i = 0; i < group->count && norm->near_m < INFINITY; i += L) {
@@ -200,7 +200,7 @@ WIDE_BODY void shepard_again(const struct shares_group *group, const float *dist
 /* --- paper -------------------------------------------------------------------------------------------------------------------- */
 
 /* Of numbers up to 0: 2^n times a polynomial, right to about 2e-7. */
-WIDE_BODY void exponential(lanes *x)
+SIMD_BODY void exponential(lanes *x)
 {
     const lanes lowest = (lanes){ 0 } + LEAST_EXP;
     take_more(&lowest, x);
@@ -222,7 +222,7 @@ struct softmax {
 };
 
 /* 1 at the sensor, 0 at the radius and beyond. */
-WIDE_BODY void nearness(const float *distance_m, float per_m, lanes *out)
+SIMD_BODY void nearness(const float *distance_m, float per_m, lanes *out)
 {
     const lanes zero = { 0 };
     load(distance_m, out);
@@ -231,7 +231,7 @@ WIDE_BODY void nearness(const float *distance_m, float per_m, lanes *out)
 }
 
 /* Softmax weights, not yet divided by their sum; `near` of each. */
-WIDE_BODY void paper_weight(const struct shares_group *group, size_t i, const struct softmax *softmax, const float *distance_m, lanes *near,
+SIMD_BODY void paper_weight(const struct shares_group *group, size_t i, const struct softmax *softmax, const float *distance_m, lanes *near,
                             lanes *weight)
 {
     const lanes infinite = (lanes){ 0 } + INFINITY;
@@ -249,7 +249,7 @@ WIDE_BODY void paper_weight(const struct shares_group *group, size_t i, const st
 
 /* The most that a value changes where all nearnesses change by one at most: a sensor's changes its own share, by its weight's part and its
    decay's, and the weights of the others, of whose shares there are all but its own. Beyond the radius nothing changes. */
-WIDE_BODY float paper_slope(const struct shares_group *group, const struct softmax *softmax, const float *distance_m, float per,
+SIMD_BODY float paper_slope(const struct shares_group *group, const struct softmax *softmax, const float *distance_m, float per,
                             const float *shares, float all)
 {
     const lanes zero = { 0 }, least_near = (lanes){ 0 } + LEAST_NEAR;
@@ -276,7 +276,7 @@ WIDE_BODY float paper_slope(const struct shares_group *group, const struct softm
     return sum_of(&sum);
 }
 
-WIDE_BODY float paper(const struct shares_group *group, float radius_m, const float *distance_m, float *shares)
+SIMD_BODY float paper(const struct shares_group *group, float radius_m, const float *distance_m, float *shares)
 {
     lanes high = { 0 }, sum = { 0 }, valued = { 0 }, d, weight, strength, far;
     struct softmax softmax = { .per_m = 1 / radius_m, .near_m = INFINITY };
@@ -318,7 +318,7 @@ WIDE_BODY float paper(const struct shares_group *group, float radius_m, const fl
 
 /* --- errors ------------------------------------------------------------------------------------------------------------------- */
 
-WIDE_BODY float error_of(const float *const *corners, const float *weights, size_t corner_count, const float *sample, size_t count)
+SIMD_BODY float error_of(const float *const *corners, const float *weights, size_t corner_count, const float *sample, size_t count)
 {
     const lanes zero = { 0 };
     lanes above = { 0 }, below = { 0 }, at, x;
@@ -340,39 +340,39 @@ WIDE_BODY float error_of(const float *const *corners, const float *weights, size
 
 /* --- as wide as the processor is ------------------------------------------------------------------------------------------------ */
 
-WIDE_TARGET static void euclidean_wide(const float point_m[3], const float *const places_m[3], size_t count, float *distance_m)
+SIMD_AVX2 static void euclidean_wide(const float point_m[3], const float *const places_m[3], size_t count, float *distance_m)
 {
     euclidean(point_m, places_m, count, distance_m);
 }
 
-WIDE_TARGET static float least_wide(const float *values, size_t count)
+SIMD_AVX2 static float least_wide(const float *values, size_t count)
 {
     return least(values, count);
 }
 
-WIDE_TARGET static float shepard_wide(const struct shares_group *group, const float *distance_m, bool slopes, float *shares,
+SIMD_AVX2 static float shepard_wide(const struct shares_group *group, const float *distance_m, bool slopes, float *shares,
                                       struct shares_norm *norm)
 {
     return shepard(group, distance_m, slopes, shares, norm);
 }
 
-WIDE_TARGET static void shepard_norm_wide(const struct shares_group *group, const float *distance_m, struct shares_norm *norm)
+SIMD_AVX2 static void shepard_norm_wide(const struct shares_group *group, const float *distance_m, struct shares_norm *norm)
 {
     shepard_norm(group, distance_m, norm);
 }
 
-WIDE_TARGET static void shepard_again_wide(const struct shares_group *group, const float *distance_m, const struct shares_norm *norm,
+SIMD_AVX2 static void shepard_again_wide(const struct shares_group *group, const float *distance_m, const struct shares_norm *norm,
                                            float *shares)
 {
     shepard_again(group, distance_m, norm, shares);
 }
 
-WIDE_TARGET static float paper_wide(const struct shares_group *group, float radius_m, const float *distance_m, float *shares)
+SIMD_AVX2 static float paper_wide(const struct shares_group *group, float radius_m, const float *distance_m, float *shares)
 {
     return paper(group, radius_m, distance_m, shares);
 }
 
-WIDE_TARGET static float error_wide(const float *const *corners, const float *weights, size_t corner_count, const float *sample,
+SIMD_AVX2 static float error_wide(const float *const *corners, const float *weights, size_t corner_count, const float *sample,
                                     size_t count)
 {
     return corner_count == 2 ? error_of(corners, weights, 2, sample, count) : error_of(corners, weights, corner_count, sample, count);
@@ -380,7 +380,7 @@ WIDE_TARGET static float error_wide(const float *const *corners, const float *we
 
 void shares_euclidean(const float point_m[3], const float *const places_m[3], size_t count, float *distance_m)
 {
-    if (wide_is_there())
+    if (simd_has_avx2())
         euclidean_wide(point_m, places_m, count, distance_m);
     else
         euclidean(point_m, places_m, count, distance_m);
@@ -388,17 +388,17 @@ void shares_euclidean(const float point_m[3], const float *const places_m[3], si
 
 float shares_least(const float *values, size_t count)
 {
-    return wide_is_there() ? least_wide(values, count) : least(values, count);
+    return simd_has_avx2() ? least_wide(values, count) : least(values, count);
 }
 
 float shares_shepard(const struct shares_group *group, const float *distance_m, bool slopes, float *shares, struct shares_norm *norm)
 {
-    return wide_is_there() ? shepard_wide(group, distance_m, slopes, shares, norm) : shepard(group, distance_m, slopes, shares, norm);
+    return simd_has_avx2() ? shepard_wide(group, distance_m, slopes, shares, norm) : shepard(group, distance_m, slopes, shares, norm);
 }
 
 void shares_shepard_norm(const struct shares_group *group, const float *distance_m, struct shares_norm *norm)
 {
-    if (wide_is_there())
+    if (simd_has_avx2())
         shepard_norm_wide(group, distance_m, norm);
     else
         shepard_norm(group, distance_m, norm);
@@ -406,7 +406,7 @@ void shares_shepard_norm(const struct shares_group *group, const float *distance
 
 void shares_shepard_again(const struct shares_group *group, const float *distance_m, const struct shares_norm *norm, float *shares)
 {
-    if (wide_is_there())
+    if (simd_has_avx2())
         shepard_again_wide(group, distance_m, norm, shares);
     else
         shepard_again(group, distance_m, norm, shares);
@@ -414,11 +414,11 @@ void shares_shepard_again(const struct shares_group *group, const float *distanc
 
 float shares_paper(const struct shares_group *group, float radius_m, const float *distance_m, float *shares)
 {
-    return wide_is_there() ? paper_wide(group, radius_m, distance_m, shares) : paper(group, radius_m, distance_m, shares);
+    return simd_has_avx2() ? paper_wide(group, radius_m, distance_m, shares) : paper(group, radius_m, distance_m, shares);
 }
 
 float shares_error(const float *const *corners, const float *weights, size_t corner_count, const float *sample, size_t count)
 {
-    return wide_is_there() ? error_wide(corners, weights, corner_count, sample, count)
+    return simd_has_avx2() ? error_wide(corners, weights, corner_count, sample, count)
                            : error_of(corners, weights, corner_count, sample, count);
 }

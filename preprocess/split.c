@@ -7,8 +7,8 @@
 #include <string.h>
 
 #include "base/mem.h"
+#include "base/vec.h"
 #include "preprocess/split_impl.h"
-#include "surface/vec.h"
 
 #define MOST_ROUNDS 16
 #define GRAIN 2048       /* triangles: a few tenths of a millisecond */
@@ -69,16 +69,14 @@ static size_t keep_worst(struct split_finding *findings, size_t count, size_t mo
 /* It has no width that a picture could show. */
 static bool is_line(const struct split *split, const struct cut_tri *tri)
 {
-    double p[3][3], ab[3], ac[3], normal[3], longest_m = 0;
+    double p[3][3], normal[3], longest_m = 0;
     for (int c = 0; c < 3; c++)
         for (int axis = 0; axis < 3; axis++)
             p[c][axis] = (double)split_position(split, tri->v[c])[axis];
     for (int c = 0; c < 3; c++)
         longest_m = max_of(longest_m, vec_distance(p[c], p[(c + 1) % 3]));
-    vec_sub(p[1], p[0], ab);
-    vec_sub(p[2], p[0], ac);
-    vec_cross(ab, ac, normal);
-    return sqrt(vec_dot(normal, normal)) <= LINE_OF_SIZE * split->size_m * longest_m;
+    vec_normal(p[0], p[1], p[2], normal);
+    return vec_length(normal) <= LINE_OF_SIZE * split->size_m * longest_m;
 }
 
 void split_measure_new_edges(struct split *split, struct split_finding *findings, size_t count)

@@ -5,9 +5,9 @@
 #include <xxhash.h>
 
 #include "base/mem.h"
+#include "base/vec.h"
 #include "preprocess/split_impl.h"
 #include "surface/bvh.h"
-#include "surface/vec.h"
 
 #define PROBABLE 0.4 /* of an error that would matter: if an edge errs by less at its middle, it does so everywhere */
 #define CLOSE 0.5    /* of the way to the nearest sensor: only of shorter edges that is true */
@@ -56,12 +56,7 @@ static bool list_faces(struct split *split)
     for (uint32_t t = 0; split->faces && t < g->index_count / 3; t++) {
         const uint32_t *v = split->model + 3 * (size_t)t;
         const float *a = split_position(split, v[0]), *b = split_position(split, v[1]), *c = split_position(split, v[2]);
-        double ab[3], ac[3];
-        for (int i = 0; i < 3; i++) {
-            ab[i] = (double)b[i] - (double)a[i];
-            ac[i] = (double)c[i] - (double)a[i];
-        }
-        vec_cross(ab, ac, split->faces[t].normal);
+        vecf_normal(a, b, c, split->faces[t].normal);
         split->faces[t].part = split->part[place_of(split, v[0])];
     }
     return split->faces != NULL;

@@ -4,9 +4,9 @@
 #include <string.h>
 
 #include "base/mem.h"
+#include "base/vec.h"
 #include "preprocess/split_impl.h"
 #include "surface/bvh.h"
-#include "surface/vec.h"
 
 #define ON_OF_SIZE 1e-5 /* a sensor as near to a vertex or an edge stands on it */
 #define MOST_CUTS 30    /* of edges that the other levels cut elsewhere */

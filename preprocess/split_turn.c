@@ -4,8 +4,8 @@
 #include <string.h>
 
 #include "base/mem.h"
+#include "base/vec.h"
 #include "preprocess/split_impl.h"
-#include "surface/vec.h"
 
 #define MOST_TURNS 4       /* in a row */
 #define FLAT_OF_ERROR 0.02 /* the surface may move so far, of the level's error */

@@ -6,8 +6,8 @@
 #include <string.h>
 
 #include "base/mem.h"
+#include "base/vec.h"
 #include "plant/singles.h"
-#include "surface/vec.h"
 
 #define MOST_SLACK (2 / 255.0) /* of the range */
 #define MANY 64 /* sensors: with more, each has so small a share in paper that its bends are far below shepard's, and are not looked at */

@@ -6,7 +6,7 @@
 #include <stdbool.h>
 #include <string.h>
 
-#include "base/wide.h"
+#include "base/simd.h"
 
 enum { TILE_W = 16, TILE_H = PLANES_BAND_PX / 2 }; /* samples of chroma */
 enum { COLOUR = 16 };         /* chroma that counts as one, in steps */
@@ -41,7 +41,7 @@ static bool has_rim(uint8_t *const at[2], const int pitch[2], int width, int hei
     return colour && grey;
 }
 
-WIDE_BODY void weigh_row(const uint32_t *pixels, float u[2 * TILE_W], float v[2 * TILE_W], float weight[2 * TILE_W])
+SIMD_BODY void weigh_row(const uint32_t *pixels, float u[2 * TILE_W], float v[2 * TILE_W], float weight[2 * TILE_W])
 {
     for (int i = 0; i < 2 * TILE_W; i++) {
         float b = (float)(int)(pixels[i] & 255), g = (float)(int)(pixels[i] >> 8 & 255), r = (float)(int)(pixels[i] >> 16 & 255);
@@ -53,7 +53,7 @@ WIDE_BODY void weigh_row(const uint32_t *pixels, float u[2 * TILE_W], float v[2 
 }
 
 /* pixels: two rows of 2 * TILE_W, one below the other. */
-WIDE_BODY void weigh_pair(const uint32_t *pixels, uint8_t out[2][TILE_W])
+SIMD_BODY void weigh_pair(const uint32_t *pixels, uint8_t out[2][TILE_W])
 {
     float u[2][2 * TILE_W], v[2][2 * TILE_W], weight[2][2 * TILE_W];
     for (int j = 0; j < 2; j++)
@@ -75,7 +75,7 @@ static void weigh_plain(const uint32_t *pixels, uint8_t out[2][TILE_W])
     weigh_pair(pixels, out);
 }
 
-WIDE_TARGET static void weigh_wide(const uint32_t *pixels, uint8_t out[2][TILE_W])
+SIMD_AVX2 static void weigh_wide(const uint32_t *pixels, uint8_t out[2][TILE_W])
 {
     weigh_pair(pixels, out);
 }
@@ -104,7 +104,7 @@ static void mend_tile(const struct planes *planes, int x, int y)
         return;
     for (int j = 0; j < height; j++) {
         gather(planes, 2 * x, 2 * (y + j), pixels);
-        (wide_is_there() ? weigh_wide : weigh_plain)(pixels[0], out);
+        (simd_has_avx2() ? weigh_wide : weigh_plain)(pixels[0], out);
         for (int c = 0; c < 2; c++)
             memcpy(at[c] + (ptrdiff_t)j * pitch[c], out[c], (size_t)width);
     }

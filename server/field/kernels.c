@@ -7,14 +7,10 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/simd.h"
 #include "field/scalars.h"
 
-/* Built for wider registers too; the loader takes what the machine has. Not under sanitizers, whose run time starts after the loader. */
-#if defined(__x86_64__) && defined(__linux__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__) && !defined(__clang__)
-#define KERNEL __attribute__((target_clones("avx512f", "avx2", "default")))
-#else
-#define KERNEL
-#endif
+#define KERNEL SIMD_CLONES("avx512f", "avx2")
 
 #if defined(__GNUC__) && !defined(__clang__)
 #pragma GCC optimize("no-trapping-math") /* both sides of a choice may be computed, which SIMD needs */

@@ -5,6 +5,7 @@
 #include <math.h>
 
 #include "base/mem.h"
+#include "base/vec.h"
 #include "field/kernels.h"
 #include "plant/transform.h"
 
@@ -17,14 +18,14 @@ static double *areas_of(const struct asset_view *view)
         const struct asset_primitive *primitive = &view->primitives[finest->first_primitive + p];
         for (uint32_t i = 0; i + 2 < primitive->index_count; i += 3) {
             const uint32_t *corner = &view->indices[primitive->first_index + i];
-            double u[3], v[3];
+            double u[3], v[3], n[3];
             for (int c = 0; c < 3; c++) {
                 u[c] = (double)(view->positions_m[corner[1]][c] - view->positions_m[corner[0]][c]);
                 v[c] = (double)(view->positions_m[corner[2]][c] - view->positions_m[corner[0]][c]);
             }
-            double x = u[1] * v[2] - u[2] * v[1], y = u[2] * v[0] - u[0] * v[2], z = u[0] * v[1] - u[1] * v[0];
+            vec_cross(u, v, n);
             for (int k = 0; k < 3; k++)
-                areas[corner[k]] += sqrt(x * x + y * y + z * z) / 6;
+                areas[corner[k]] += vec_length(n) / 6;
         }
     }
     return areas;

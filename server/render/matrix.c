@@ -5,6 +5,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/vec.h"
+
 void matrix_identity(double out[16])
 {
     for (int i = 0; i < 16; i++)
@@ -65,20 +67,13 @@ void matrix_invert(const double m[16], double out[16])
             out[4 * c + r] = a[r][4 + c];
 }
 
-static void cross(const double a[3], const double b[3], double out[3])
-{
-    out[0] = a[1] * b[2] - a[2] * b[1];
-    out[1] = a[2] * b[0] - a[0] * b[2];
-    out[2] = a[0] * b[1] - a[1] * b[0];
-}
-
 void matrix_normals(const double m[16], float out[9])
 {
     double columns[3][3];
-    cross(m + 4, m + 8, columns[0]);
-    cross(m + 8, m, columns[1]);
-    cross(m, m + 4, columns[2]);
-    double determinant = m[0] * columns[0][0] + m[1] * columns[0][1] + m[2] * columns[0][2];
+    vec_cross(m + 4, m + 8, columns[0]);
+    vec_cross(m + 8, m, columns[1]);
+    vec_cross(m, m + 4, columns[2]);
+    double determinant = vec_dot(m, columns[0]);
     for (int c = 0; c < 3; c++)
         for (int r = 0; r < 3; r++)
             out[3 * c + r] = (float)(columns[c][r] * (determinant < 0 ? -1 : 1));
@@ -99,11 +94,9 @@ void matrix_to_float(const double m[16], float out[16])
 void matrix_parallel(const double center[3], double radius, const double towards[3], double out[16])
 {
     double helper[3] = { fabs(towards[2]) < 0.9 ? 0 : 1, 0, fabs(towards[2]) < 0.9 ? 1 : 0 }, side[3], up[3];
-    cross(helper, towards, side);
-    double length = sqrt(side[0] * side[0] + side[1] * side[1] + side[2] * side[2]);
-    for (int i = 0; i < 3; i++)
-        side[i] /= length;
-    cross(towards, side, up);
+    vec_cross(helper, towards, side);
+    vec_normalize(side);
+    vec_cross(towards, side, up);
     matrix_identity(out);
     out[14] = 0.5;
     for (int i = 0; i < 3; i++) {

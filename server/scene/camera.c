@@ -5,32 +5,13 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/vec.h"
+
 #define FIT_MARGIN 1.06      /* the box may fill 1/1.06 of the picture */
 #define LEAST_BOX_M 0.1      /* a smaller box, or one that is empty, is looked at as if it had this size */
 #define NEAR_TO_FAR 1e-4     /* never less, so that 24 bits of depth resolve what is near */
 #define LEAST_NEAR_M 1e-3
 #define LEAST_HEIGHT_M 1e-3  /* of an orthographic picture */
-
-static double dot(const double a[3], const double b[3])
-{
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
-static void cross(const double a[3], const double b[3], double out[3])
-{
-    out[0] = a[1] * b[2] - a[2] * b[1];
-    out[1] = a[2] * b[0] - a[0] * b[2];
-    out[2] = a[0] * b[1] - a[1] * b[0];
-}
-
-/* Returns the length it had; leaves 0 alone. */
-static double normalize(double v[3])
-{
-    double length = sqrt(dot(v, v));
-    for (int i = 0; i < 3 && length > 0; i++)
-        v[i] /= length;
-    return length;
-}
 
 /* --- which way it looks ----------------------------------------------------------------------------------------------------- */
 
@@ -43,12 +24,12 @@ static bool basis_of(const double forward[3], const double up[3], struct basis *
 {
     double sure_up[3] = { up[0], up[1], up[2] };
     memcpy(basis->forward, forward, sizeof(basis->forward));
-    if (!(normalize(basis->forward) > 0) || !(normalize(sure_up) > 0))
+    if (!(vec_normalize(basis->forward) > 0) || !(vec_normalize(sure_up) > 0))
         return false;
-    cross(basis->forward, sure_up, basis->right);
-    if (!(normalize(basis->right) > 1e-6))
+    vec_cross(basis->forward, sure_up, basis->right);
+    if (!(vec_normalize(basis->right) > 1e-6))
         return false;
-    cross(basis->right, basis->forward, basis->up);
+    vec_cross(basis->right, basis->forward, basis->up);
     return true;
 }
 
@@ -163,10 +144,10 @@ static void place_eye(struct camera *camera, const struct basis *basis, const do
         double p[3];
         for (int i = 0; i < 3; i++)
             p[i] = points_m[n][i] - center_m[i];
-        double z = dot(p, basis->forward);
+        double z = vec_dot(p, basis->forward);
         nearest_m = fmin(nearest_m, z);
-        side_add(&right, dot(p, basis->right), z);
-        side_add(&up, dot(p, basis->up), z);
+        side_add(&right, vec_dot(p, basis->right), z);
+        side_add(&up, vec_dot(p, basis->up), z);
     }
     double back_m = fmax(fmax(side_back(&right), side_back(&up)), -nearest_m * 1.001);
     double sideways_m = side_shift(&right, back_m), upwards_m = side_shift(&up, back_m);
@@ -242,7 +223,7 @@ static void depth_range(const struct camera *camera, const struct basis *basis, 
         corner_of(min_m, max_m, corner, p);
         for (int i = 0; i < 3; i++)
             p[i] -= camera->eye_m[i];
-        double z = dot(p, basis->forward);
+        double z = vec_dot(p, basis->forward);
         nearest = fmin(nearest, z);
         farthest = fmax(farthest, z);
     }
@@ -294,9 +275,9 @@ void camera_matrices(const struct camera *camera, double aspect, const double mi
         view[i * 4 + 2] = -basis.forward[i];
         view[i * 4 + 3] = 0;
     }
-    view[12] = -dot(basis.right, camera->eye_m);
-    view[13] = -dot(basis.up, camera->eye_m);
-    view[14] = dot(basis.forward, camera->eye_m);
+    view[12] = -vec_dot(basis.right, camera->eye_m);
+    view[13] = -vec_dot(basis.up, camera->eye_m);
+    view[14] = vec_dot(basis.forward, camera->eye_m);
     view[15] = 1;
     memset(projection, 0, 16 * sizeof(*projection));
     if (camera->height_m > 0) {

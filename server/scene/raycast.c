@@ -5,6 +5,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/vec.h"
 #include "plant/transform.h"
 #include "scene/coincident.h"
 
@@ -52,18 +53,6 @@ struct search { /* of one asset */
     int asset;
 };
 
-static double dot(const double a[3], const double b[3])
-{
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
-static void cross(const double a[3], const double b[3], double out[3])
-{
-    out[0] = a[1] * b[2] - a[2] * b[1];
-    out[1] = a[2] * b[0] - a[0] * b[2];
-    out[2] = a[0] * b[1] - a[1] * b[0];
-}
-
 struct crossing {
     double t, u, v;
     bool back; /* it is left there */
@@ -80,18 +69,18 @@ static bool cross_triangle(const struct search *search, const uint32_t corners[3
         ac[i] = (double)c[i] - (double)a[i];
         s[i] = search->origin[i] - (double)a[i];
     }
-    cross(search->direction, ac, p);
-    double determinant = dot(ab, p);
+    vec_cross(search->direction, ac, p);
+    double determinant = vec_dot(ab, p);
     if (determinant == 0)
         return false;
-    double u = dot(s, p) / determinant;
+    double u = vec_dot(s, p) / determinant;
     if (u < -RIM || u > 1 + RIM)
         return false;
-    cross(s, ab, q);
-    double v = dot(search->direction, q) / determinant;
+    vec_cross(s, ab, q);
+    double v = vec_dot(search->direction, q) / determinant;
     if (v < -RIM || u + v > 1 + RIM)
         return false;
-    *out = (struct crossing){ dot(ac, q) / determinant, u, v, determinant < 0 };
+    *out = (struct crossing){ vec_dot(ac, q) / determinant, u, v, determinant < 0 };
     return true;
 }
 
@@ -147,8 +136,8 @@ static void find_normal(const struct scene *scene, const struct ray *ray, struct
         ab[i] = at[1][i] - at[0][i];
         ac[i] = at[2][i] - at[0][i];
     }
-    cross(ab, ac, hit->normal);
-    double length = sqrt(dot(hit->normal, hit->normal)), turn = dot(hit->normal, ray->direction) > 0 ? -1 : 1;
+    vec_cross(ab, ac, hit->normal);
+    double length = sqrt(vec_dot(hit->normal, hit->normal)), turn = vec_dot(hit->normal, ray->direction) > 0 ? -1 : 1;
     for (int i = 0; i < 3; i++)
         hit->normal[i] *= turn / length;
 }
@@ -230,7 +219,7 @@ static void find_cap_normal(const struct clip *clip, const struct ray *ray, stru
     for (int p = 0; p < clip->plane_count; p++) {
         double plane[4], height;
         clip_plane(clip, p, plane);
-        height = plane[3] + dot(plane, ray->origin) + hit->t * dot(plane, ray->direction);
+        height = plane[3] + vec_dot(plane, ray->origin) + hit->t * vec_dot(plane, ray->direction);
         if (fabs(height) >= least)
             continue;
         least = fabs(height);

@@ -7,8 +7,8 @@
 #include <xxhash.h>
 
 #include "base/mem.h"
+#include "base/vec.h"
 #include "surface/surface_state.h"
-#include "surface/vec.h"
 
 #define GRAIN 512
 #define ON_SURFACE 1e-3 /* mean edges: as near, a vertex lies on a face */
@@ -78,13 +78,11 @@ static bool find_normals(struct job *job, const float (*normals)[3], const uint3
     memset(job->is_off, 1, count);
     for (size_t t = 0; t < triangle_count; t++) {
         const uint32_t *v = triangles + 3 * t;
-        double p[3][3], ab[3], ac[3], n[3];
+        double p[3][3], n[3];
         for (int i = 0; i < 3; i++)
             for (int axis = 0; axis < 3; axis++)
                 p[i][axis] = (double)job->positions_m[v[i]][axis];
-        vec_sub(p[1], p[0], ab);
-        vec_sub(p[2], p[0], ac);
-        vec_cross(ab, ac, n);
+        vec_normal(p[0], p[1], p[2], n);
         for (int i = 0; i < 3; i++) {
             job->is_off[v[i]] = 0;
             for (int axis = 0; axis < 3; axis++)

@@ -7,9 +7,9 @@
 #include <string.h>
 
 #include "base/mem.h"
+#include "base/vec.h"
 #include "surface/bvh.h"
 #include "surface/piece.h"
-#include "surface/vec.h"
 
 void attach_init(struct attach *attach)
 {
@@ -235,7 +235,7 @@ static void lay_out(struct piece *piece, const struct trimesh *mesh, const uint3
     piece->count = piece->tri_count = 0;
     piece_point(piece, corners[0], 0, 0);
     piece_point(piece, corners[1], length, 0);
-    piece_point(piece, corners[2], vec_dot(pq, pr) / length, sqrt(vec_dot(n, n)) / length);
+    piece_point(piece, corners[2], vec_dot(pq, pr) / length, vec_length(n) / length);
 }
 
 static size_t side_count(const struct lists *lists, const uint32_t corners[3], uint32_t i)

@@ -6,7 +6,7 @@
 #include <string.h>
 
 #include "base/mem.h"
-#include "surface/vec.h"
+#include "base/vec.h"
 
 void borders_finish(struct borders *b)
 {

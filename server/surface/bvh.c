@@ -5,8 +5,8 @@
 #include <string.h>
 
 #include "base/mem.h"
+#include "base/vec.h"
 #include "surface/bvh_impl.h"
-#include "surface/vec.h"
 
 #define LEAF_TRIS 4u
 #define STACK_NODES 128

@@ -7,9 +7,9 @@
 #endif
 
 #include "base/mem.h"
-#include "base/wide.h"
+#include "base/simd.h"
+#include "base/vec.h"
 #include "surface/bvh_impl.h"
-#include "surface/vec.h"
 
 #define IS_TRIANGLE 0x80000000u
 #define STACK 256         /* seven of each node on the way down wait, and there are 10 or less */
@@ -202,7 +202,7 @@ static unsigned look_plain(const struct bvh_wide *node, const float p[3], float 
 }
 
 #if defined(__x86_64__)
-WIDE_TARGET static unsigned look_wide(const struct bvh_wide *node, const float p[3], float limit2, float distance2[BVH_WIDE])
+SIMD_AVX2 static unsigned look_wide(const struct bvh_wide *node, const float p[3], float limit2, float distance2[BVH_WIDE])
 {
     __m256 sum = _mm256_setzero_ps();
     for (int axis = 0; axis < 3; axis++) {
@@ -220,7 +220,7 @@ WIDE_TARGET static unsigned look_wide(const struct bvh_wide *node, const float p
 
 /* Puts those boxes of a node on the stack that are near enough, the nearest on top: squares of distances, which are not negative and have
    their order as bits too, above numbers of children. Returns how many. */
-WIDE_BODY size_t push_near(look *look_at, const struct bvh_wide *node, const float p[3], float limit2, uint64_t *stack)
+SIMD_BODY size_t push_near(look *look_at, const struct bvh_wide *node, const float p[3], float limit2, uint64_t *stack)
 {
     float distance2[BVH_WIDE];
     size_t count = 0;
@@ -237,7 +237,7 @@ WIDE_BODY size_t push_near(look *look_at, const struct bvh_wide *node, const flo
     return count;
 }
 
-WIDE_BODY void search(struct search *s, look *look_at)
+SIMD_BODY void search(struct search *s, look *look_at)
 {
     const float p[3] = { (float)s->point[0], (float)s->point[1], (float)s->point[2] };
     const struct bvh_wide *wide = s->bvh->wide;
@@ -270,7 +270,7 @@ static void search_plain(struct search *s)
     search(s, look_plain);
 }
 
-WIDE_TARGET static void search_wide(struct search *s)
+SIMD_AVX2 static void search_wide(struct search *s)
 {
     search(s, look_wide);
 }
@@ -280,7 +280,7 @@ void bvh_nearest(const struct bvh *bvh, const double point[3], double limit_m, b
 {
     struct search s = { bvh, point, allowed, arg, false, limit_m * limit_m, place };
     *place = (struct bvh_place){ .tri = TRIMESH_NONE, .distance_m = INFINITY };
-    (wide_is_there() ? search_wide : search_plain)(&s);
+    (simd_has_avx2() ? search_wide : search_plain)(&s);
     if (place->tri != TRIMESH_NONE)
         place->distance_m = sqrt(s.best2);
 }
@@ -293,7 +293,7 @@ bool bvh_any_within(const struct bvh *bvh, const double point[3], double limit_m
     if (*tri != TRIMESH_NONE && (!allowed || allowed(arg, *tri)))
         try_tri(bvh, *tri, point, &s.best2, &place);
     if (place.tri == TRIMESH_NONE)
-        (wide_is_there() ? search_wide : search_plain)(&s);
+        (simd_has_avx2() ? search_wide : search_plain)(&s);
     if (place.tri != TRIMESH_NONE)
         *tri = place.tri;
     return place.tri != TRIMESH_NONE;

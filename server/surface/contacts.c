@@ -5,12 +5,12 @@
 #include <string.h>
 
 #include "base/mem.h"
+#include "base/vec.h"
 #include "surface/attach.h"
 #include "surface/bvh.h"
 #include "surface/sight.h"
 #include "surface/stitch.h"
 #include "surface/stitch_impl.h"
-#include "surface/vec.h"
 
 #define CLEAR 0.05    /* of the reach */
 #define PARALLEL 1e-4 /* squared sine of the angle between edges */
@@ -48,13 +48,11 @@ static double reach_of(const struct contacts *c, uint32_t tri)
 /* Both ends stand clear of the triangle's plane: faces of one part that lie on each other do not count as crossing. */
 static bool stands_clear(const struct contacts *c, const uint32_t *v)
 {
-    double ab[3], ac[3], n[3], up[3];
-    vec_sub(c->mesh->points[v[1]], c->mesh->points[v[0]], ab);
-    vec_sub(c->mesh->points[v[2]], c->mesh->points[v[0]], ac);
-    vec_cross(ab, ac, n);
+    double n[3], up[3];
+    vec_normal(c->mesh->points[v[0]], c->mesh->points[v[1]], c->mesh->points[v[2]], n);
     for (int i = 0; i < 2; i++) {
         vec_sub(c->mesh->points[c->edge[i]], c->mesh->points[v[0]], up);
-        if (fabs(vec_dot(up, n)) < CLEAR * c->parts->reach_m[c->own] * sqrt(vec_dot(n, n)))
+        if (fabs(vec_dot(up, n)) < CLEAR * c->parts->reach_m[c->own] * vec_length(n))
             return false;
     }
     return true;

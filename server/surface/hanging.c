@@ -6,10 +6,10 @@
 #include <string.h>
 
 #include "base/mem.h"
+#include "base/vec.h"
 #include "surface/attach.h"
 #include "surface/borders.h"
 #include "surface/stitch_impl.h"
-#include "surface/vec.h"
 
 #define ROUNDS 4 /* an edge of several faces that are all cut, each elsewhere, takes as many, less one */
 

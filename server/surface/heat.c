@@ -10,7 +10,7 @@
 #include <string.h>
 
 #include "base/mem.h"
-#include "surface/vec.h"
+#include "base/vec.h"
 
 /* L alone is singular on every piece of surface; this much of M, in shares of the piece's area, moves distances by a millionth. */
 #define REGULARISATION 1e-6

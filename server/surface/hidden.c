@@ -6,8 +6,8 @@
 #include <string.h>
 
 #include "base/mem.h"
+#include "base/vec.h"
 #include "surface/bvh.h"
-#include "surface/vec.h"
 
 #define RAYS 5
 #define RAYS_INSIDE 4 /* so many must agree */
@@ -124,21 +124,12 @@ struct hits { /* of one ray */
     } at[HITS];
 };
 
-static void tri_normal(const struct trimesh *mesh, size_t t, double n[3])
-{
-    const uint32_t *v = mesh->tris[t];
-    double ab[3], ac[3];
-    vec_sub(mesh->points[v[1]], mesh->points[v[0]], ab);
-    vec_sub(mesh->points[v[2]], mesh->points[v[0]], ac);
-    vec_cross(ab, ac, n);
-}
-
 static void count_hit(void *arg, uint32_t tri, double t)
 {
     struct hits *hits = arg;
     if (hits->solid->winds) {
         double n[3];
-        tri_normal(&hits->solid->mesh, tri, n);
+        trimesh_normal(&hits->solid->mesh, tri, n);
         hits->turns += vec_dot(n, hits->direction) > 0 ? hits->solid->side[tri] : -hits->solid->side[tri];
         return;
     }
@@ -219,8 +210,8 @@ static char is_hidden_by(const struct face *face, const struct solid *solid, dou
     bvh_nearest(solid->bvh, face->middle, reach_m, NULL, NULL, &at);
     if (at.tri == TRIMESH_NONE)
         return is_inside(solid, face->middle, BARELY * reach_m) ? HIDDEN_INSIDE : HIDDEN_NOT;
-    tri_normal(&solid->mesh, at.tri, n);
-    double length = sqrt(vec_dot(n, n));
+    trimesh_normal(&solid->mesh, at.tri, n);
+    double length = vec_length(n);
     for (int axis = 0; axis < 3; axis++)
         n[axis] /= length;
     /* A sliver between points of both looks anywhere. */
@@ -243,7 +234,7 @@ static char tri_is_hidden(const struct search *s, size_t t)
     const uint32_t *v = s->mesh->tris[t], part = s->part[t];
     struct face face = { .own = s->solids->of_part[part] };
     double reach_m = s->parts->reach_m[part];
-    tri_normal(s->mesh, t, face.normal);
+    trimesh_normal(s->mesh, t, face.normal);
     double length = sqrt(vec_dot(face.normal, face.normal));
     for (int axis = 0; axis < 3; axis++) {
         face.middle[axis] = (s->mesh->points[v[0]][axis] + s->mesh->points[v[1]][axis] + s->mesh->points[v[2]][axis]) / 3;

@@ -6,7 +6,7 @@
 #include <string.h>
 
 #include "base/mem.h"
-#include "surface/vec.h"
+#include "base/vec.h"
 
 #define MOLLIFY 1e-4
 #define FLIPS_PER_EDGE 50u /* never met; ends what rounding could keep going */

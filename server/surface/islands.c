@@ -3,18 +3,8 @@
 #include <math.h>
 
 #include "base/mem.h"
+#include "base/vec.h"
 #include "surface/hidden.h"
-#include "surface/vec.h"
-
-static double area_of(const struct trimesh *mesh, size_t t)
-{
-    const uint32_t *v = mesh->tris[t];
-    double ab[3], ac[3], n[3];
-    vec_sub(mesh->points[v[1]], mesh->points[v[0]], ab);
-    vec_sub(mesh->points[v[2]], mesh->points[v[0]], ac);
-    vec_cross(ab, ac, n);
-    return sqrt(vec_dot(n, n)) / 2;
-}
 
 struct island {                /* by its lowest point */
     double seen_m2, hidden_m2; /* area; of hidden triangles that touch it */
@@ -34,7 +24,7 @@ void hidden_islands(const struct trimesh *mesh, char *hidden)
     for (size_t t = 0; t < mesh->tri_count; t++) {
         const uint32_t r[3] = { trimesh_root(root, mesh->tris[t][0]), trimesh_root(root, mesh->tris[t][1]),
                                 trimesh_root(root, mesh->tris[t][2]) };
-        double area_m2 = area_of(mesh, t);
+        double area_m2 = trimesh_tri_area(mesh, t);
         for (int i = 0; i < 3; i++)
             touched[mesh->tris[t][i]] |= hidden[t];
         for (int i = 0; i < (hidden[t] ? 3 : 1); i++)

@@ -8,10 +8,10 @@
 
 #include "base/kept.h"
 #include "base/mem.h"
+#include "base/vec.h"
 #include "surface/anchors.h"
 #include "surface/bvh.h"
 #include "surface/surface_store.h"
-#include "surface/vec.h"
 
 struct ask {
     uint64_t ticket;

@@ -6,7 +6,7 @@
 #include <string.h>
 
 #include "base/mem.h"
-#include "surface/vec.h"
+#include "base/vec.h"
 
 #define BITS 21 /* of each coordinate; three of them fill a number */
 

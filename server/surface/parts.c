@@ -6,8 +6,8 @@
 #include <string.h>
 
 #include "base/mem.h"
+#include "base/vec.h"
 #include "surface/parts_impl.h"
-#include "surface/vec.h"
 
 #define DOUBLES 0.75   /* of a wall's area, at least: slits that stay in one layer leave single pieces at a wall */
 #define OF_THICKNESS 0.5
@@ -68,7 +68,7 @@ static void face_outwards(struct finding *f)
         double from[3], n[3];
         for (int axis = 0; axis < 3; axis++)
             from[axis] = mesh->points[mesh->tris[t][0]][axis] - vote->middle[axis] / (double)vote->corners;
-        tri_cross(mesh, t, n);
+        trimesh_normal(mesh, t, n);
         vote->volume += side[t] * vec_dot(from, n);
     }
     for (size_t t = 0; t < mesh->tri_count; t++)
@@ -92,8 +92,8 @@ static void drop_walls(struct finding *f, const uint32_t *times)
     for (size_t t = 0; t < mesh->tri_count; t++) {
         struct patch *patch = &f->patches[f->patch[t]];
         double n[3];
-        tri_cross(mesh, t, n);
-        patch->doubles_m2 += times[t] >= 2 * least[parts->of_tri[t]] ? sqrt(vec_dot(n, n)) / 2 : 0;
+        trimesh_normal(mesh, t, n);
+        patch->doubles_m2 += times[t] >= 2 * least[parts->of_tri[t]] ? vec_length(n) / 2 : 0;
     }
     for (size_t t = 0; t < mesh->tri_count; t++) {
         const struct patch *patch = &f->patches[f->patch[t]];
@@ -117,9 +117,9 @@ static void limit_reach(struct parts *parts, double tolerance_m)
     for (size_t t = 0; t < mesh->tri_count; t++) {
         uint32_t part = parts->of_tri[t];
         double from[3], n[3];
-        tri_cross(mesh, t, n);
+        trimesh_normal(mesh, t, n);
         vec_sub(mesh->points[mesh->tris[t][0]], mesh->points[first[part]], from);
-        area_m2[part] += sqrt(vec_dot(n, n)) / 2;
+        area_m2[part] += vec_length(n) / 2;
         volume_m3[part] += parts->side[t] * vec_dot(from, n) / 6;
     }
     for (size_t p = 0; p < parts->count; p++)

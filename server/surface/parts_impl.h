@@ -25,7 +25,6 @@ static inline const struct edge_use *use_of(const struct finding *f, size_t t, i
     return &f->uses[f->edge[t][i]];
 }
 
-void tri_cross(const struct trimesh *mesh, size_t t, double n[3]); /* twice its area, along its normal */
 
 /* Edges, patches and parts of parts->solid, which of them are closed, and the bodies of mesh, whose triangles are the solid's. */
 void parts_number(struct finding *f, const struct trimesh *mesh);

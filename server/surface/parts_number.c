@@ -5,20 +5,11 @@
 #include <string.h>
 
 #include "base/mem.h"
+#include "base/vec.h"
 #include "surface/parts_impl.h"
-#include "surface/vec.h"
 
 #define OPEN_OF_SIZE 0.05 /* open edges together, in roots of the area: a hair gap's leftovers, not a pipe's end */
 #define ALONE 0.5         /* likewise, of a patch and all edges that it ends at */
-
-void tri_cross(const struct trimesh *mesh, size_t t, double n[3])
-{
-    const uint32_t *v = mesh->tris[t];
-    double ab[3], ac[3];
-    vec_sub(mesh->points[v[1]], mesh->points[v[0]], ab);
-    vec_sub(mesh->points[v[2]], mesh->points[v[0]], ac);
-    vec_cross(ab, ac, n);
-}
 
 static double edge_length(const struct trimesh *mesh, size_t t, int i)
 {
@@ -111,8 +102,8 @@ static void measure_patches(struct finding *f, const struct branches *b)
     for (size_t t = 0; t < mesh->tri_count; t++) {
         struct patch *patch = &f->patches[f->patch[t]];
         double n[3];
-        tri_cross(mesh, t, n);
-        patch->area_m2 += sqrt(vec_dot(n, n)) / 2;
+        trimesh_normal(mesh, t, n);
+        patch->area_m2 += vec_length(n) / 2;
         for (int i = 0; i < 3; i++)
             patch->open_m += use_of(f, t, i)->faces == 1 ? edge_length(mesh, t, i) : 0;
     }
@@ -190,8 +181,8 @@ static void find_closed(struct finding *f)
     for (size_t t = 0; t < mesh->tri_count; t++) {
         double n[3], open = 0;
         bool fin = f->patches[f->patch[t]].loose; /* so is what stands on an edge that is closed without it */
-        tri_cross(mesh, t, n);
-        area_m2[parts->of_tri[t]] += sqrt(vec_dot(n, n)) / 2;
+        trimesh_normal(mesh, t, n);
+        area_m2[parts->of_tri[t]] += vec_length(n) / 2;
         for (int i = 0; i < 3; i++) {
             const struct edge_use *use = use_of(f, t, i);
             open += use->faces == 1 ? edge_length(mesh, t, i) : 0;

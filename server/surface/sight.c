@@ -5,7 +5,7 @@
 #include <math.h>
 
 #include "base/mem.h"
-#include "surface/vec.h"
+#include "base/vec.h"
 
 #define LOOKS 0.5    /* cosine between a face's normal and the way to what it looks at, at least */
 #define NEXT_TO 1e-3 /* of the way */
@@ -51,12 +51,8 @@ static bool looks_both_ways(const struct sight *sight, uint32_t tri)
 static void find_normal(const struct sight *sight, uint32_t tri, double n[3])
 {
     const struct trimesh *mesh = sight->mesh;
-    const uint32_t *v = mesh->tris[tri];
-    double ab[3], ac[3];
-    vec_sub(mesh->points[v[1]], mesh->points[v[0]], ab);
-    vec_sub(mesh->points[v[2]], mesh->points[v[0]], ac);
-    vec_cross(ab, ac, n);
-    double length = sqrt(vec_dot(n, n));
+    trimesh_normal(mesh, tri, n);
+    double length = vec_length(n);
     for (int axis = 0; axis < 3; axis++)
         n[axis] *= length > 0 ? sight->parts->side_of_source[mesh->tri_source[tri]] / length : 0;
 }

@@ -6,12 +6,12 @@
 #include <string.h>
 
 #include "base/mem.h"
+#include "base/vec.h"
 #include "surface/attach.h"
 #include "surface/borders.h"
 #include "surface/bvh.h"
 #include "surface/cloud.h"
 #include "surface/stitch_impl.h"
-#include "surface/vec.h"
 
 #define GAP_OF_EDGE 0.45 /* two points become one only if they are nearer than this share of the shortest edge at either */
 #define EXACT_OF_TOLERANCE 0.01

@@ -3,9 +3,9 @@
 #include <string.h>
 
 #include "base/mem.h"
+#include "base/vec.h"
 #include "surface/bvh.h"
 #include "surface/stitch_impl.h"
-#include "surface/vec.h"
 
 bool stitch_tri_has(const struct trimesh *mesh, uint32_t tri, uint32_t point)
 {

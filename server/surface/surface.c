@@ -9,13 +9,13 @@
 
 #include "base/clock.h"
 #include "base/mem.h"
+#include "base/vec.h"
 #include "surface/hidden.h"
 #include "surface/order.h"
 #include "surface/parts.h"
 #include "surface/stitch.h"
 #include "surface/surface_state.h"
 #include "surface/thin.h"
-#include "surface/vec.h"
 
 #define WELD_OF_SIZE 1e-6 /* vertices this near are one: float positions are no finer */
 #define TOLERANCE_OF_SIZE 5e-4

@@ -4,9 +4,9 @@
 #include <string.h>
 
 #include "base/mem.h"
-#include "base/wide.h"
+#include "base/simd.h"
+#include "base/vec.h"
 #include "surface/surface_state.h"
-#include "surface/vec.h"
 
 #define BLOCK 16 /* sources walked one after another by one thread, then written side by side */
 
@@ -196,7 +196,7 @@ static struct sight sight_of(double ab, double to_a, double to_b)
 }
 
 /* The square of what the corners' distances offer through the edge, where the source, laid out beyond it, has a ray there: else best2. */
-WIDE_BODY float through_edge(const struct sight *sight, float da, float db, float best2)
+SIMD_BODY float through_edge(const struct sight *sight, float da, float db, float best2)
 {
     const float x = sight->x, y = sight->y;
     float sx = (da - db) * (da + db) * sight->per + sight->half, sy2 = (da - sx) * (da + sx), sy = sqrtf(sy2 > 0 ? sy2 : 0);
@@ -208,7 +208,7 @@ WIDE_BODY float through_edge(const struct sight *sight, float da, float db, floa
 }
 
 /* Through each of the edges, or along a straight line from a corner. */
-WIDE_BODY void fill_row(const struct sight sights[3], const float to_m[3], const float *restrict a, const float *restrict b,
+SIMD_BODY void fill_row(const struct sight sights[3], const float to_m[3], const float *restrict a, const float *restrict b,
                         const float *restrict c, size_t count, float *restrict out)
 {
     const struct sight ab = sights[0], bc = sights[1], ca = sights[2];
@@ -227,7 +227,7 @@ static void fill_row_plain(const struct sight sights[3], const float to_m[3], co
     fill_row(sights, to_m, rows[0], rows[1], rows[2], count, out);
 }
 
-WIDE_TARGET static void fill_row_wide(const struct sight sights[3], const float to_m[3], const float *const rows[3], size_t count,
+SIMD_AVX2 static void fill_row_wide(const struct sight sights[3], const float to_m[3], const float *const rows[3], size_t count,
                                       float *out)
 {
     fill_row(sights, to_m, rows[0], rows[1], rows[2], count, out);
@@ -248,7 +248,7 @@ void surface_field_at_spot(const struct surface_field *field, const struct surfa
         int j = (i + 1) % 3;
         sights[i] = sight_of(vec_distance(mesh->points[v[i]], mesh->points[v[j]]), to_m[i], to_m[j]);
     }
-    (wide_is_there() ? fill_row_wide : fill_row_plain)(sights, (const float[3]){ (float)to_m[0], (float)to_m[1], (float)to_m[2] }, rows,
+    (simd_has_avx2() ? fill_row_wide : fill_row_plain)(sights, (const float[3]){ (float)to_m[0], (float)to_m[1], (float)to_m[2] }, rows,
                                                        field->source_count, out);
     for (size_t s = 0; s < field->source_count; s++)
         if (field->source_tris[s] == spot->tri)

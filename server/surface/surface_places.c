@@ -3,8 +3,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/vec.h"
 #include "surface/surface_state.h"
-#include "surface/vec.h"
 
 #define SPOT_ON_SURFACE 1e-3 /* mean edges: nearer than that, a point lies on its triangle */
 #define ON_PIECE 1e-5        /* likewise: no nearer piece is looked for */
@@ -31,11 +31,8 @@ void surface_nearest(const struct surface *surface, const double point_m[3], str
 bool surface_faces(const void *arg, uint32_t tri)
 {
     const struct surface_facing *facing = arg;
-    const uint32_t *v = facing->mesh->tris[tri];
-    double ab[3], ac[3], n[3];
-    vec_sub(facing->mesh->points[v[1]], facing->mesh->points[v[0]], ab);
-    vec_sub(facing->mesh->points[v[2]], facing->mesh->points[v[0]], ac);
-    vec_cross(ab, ac, n);
+    double n[3];
+    trimesh_normal(facing->mesh, tri, n);
     return vec_dot(n, facing->normal) > 0;
 }
 

@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "base/mem.h"
-#include "surface/vec.h"
+#include "base/vec.h"
 
 #define MOST_STAR 48      /* triangles at a point; one that has more stays */
 #define THINNEST 0.02     /* height of a new triangle, in its longest sides, unless the old one was as thin */
@@ -36,14 +36,6 @@ static const double *point_of(const struct thin *thin, uint32_t point)
     return thin->mesh->points[point];
 }
 
-static void normal_of(const double a[3], const double b[3], const double c[3], double normal[3])
-{
-    double ab[3], ac[3];
-    vec_sub(b, a, ab);
-    vec_sub(c, a, ac);
-    vec_cross(ab, ac, normal);
-}
-
 static uint32_t corner_of(const struct thin *thin, const struct face *face, uint32_t after)
 {
     return thin->mesh->tris[face->tri][(face->corner + after) % 3];
@@ -63,7 +55,7 @@ static bool look_round(const struct thin *thin, uint32_t point, struct star *sta
         struct face *face = &star->faces[star->count++];
         *face = (struct face){ .tri = corner / 3, .corner = corner % 3 };
         const double *b = point_of(thin, corner_of(thin, face, 1)), *c = point_of(thin, corner_of(thin, face, 2));
-        normal_of(point_of(thin, point), b, c, face->normal);
+        vec_normal(point_of(thin, point), b, c, face->normal);
         face->length = sqrt(vec_dot(face->normal, face->normal));
         star->longest_m = max_of(star->longest_m, max_of(vec_distance(point_of(thin, point), b), vec_distance(point_of(thin, point), c)));
     }
@@ -79,8 +71,8 @@ static bool can_take(const struct thin *thin, const struct star *star, const str
     vec_sub(to, a, way);
     if (face->length <= 0 || fabs(vec_dot(way, face->normal)) > thin->params->within_m * face->length)
         return false;
-    normal_of(to, b, c, normal);
-    *length = sqrt(vec_dot(normal, normal));
+    vec_normal(to, b, c, normal);
+    *length = vec_length(normal);
     double longest_m = max_of(vec_distance(to, b), vec_distance(to, c));
     return vec_dot(normal, face->normal) > 0 && longest_m <= max_of(thin->params->longest_m, star->longest_m) &&
            *length >= min_of(face->length, THINNEST * longest_m * longest_m);
@@ -173,7 +165,7 @@ static void join_planes(struct thin *thin, const struct star *star)
             double across[3];
             vec_cross(a->normal, b->normal, across);
             if (from != to && same_part(thin, a->tri, b->tri) &&
-                sqrt(vec_dot(across, across)) * star->longest_m <= 8 * thin->params->within_m * a->length * b->length)
+                vec_length(across) * star->longest_m <= 8 * thin->params->within_m * a->length * b->length)
                 trimesh_join(thin->plane, from, to);
         }
 }

@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "base/mem.h"
-#include "surface/vec.h"
+#include "base/vec.h"
 
 /* --- edges --------------------------------------------------------------------------------------------------------------- */
 
@@ -262,7 +262,7 @@ static bool tri_has_area(const struct trimesh *mesh, uint32_t a, uint32_t b, uin
     vec_sub(mesh->points[c], mesh->points[b], bc);
     vec_cross(ab, ac, n);
     double longest2 = max_of(vec_dot(ab, ab), max_of(vec_dot(ac, ac), vec_dot(bc, bc)));
-    return sqrt(vec_dot(n, n)) >
+    return vec_length(n) >
            1e-6 * longest2; /* height over a millionth of the longest edge; else its corner hangs on that edge (stitch.h) */
 }
 
@@ -341,13 +341,17 @@ static int longest_side(const struct trimesh *mesh, size_t t)
     return longest;
 }
 
-static double tri_area(const struct trimesh *mesh, size_t t)
+void trimesh_normal(const struct trimesh *mesh, size_t tri, double out[3])
 {
-    double ab[3], ac[3], n[3];
-    vec_sub(mesh->points[mesh->tris[t][1]], mesh->points[mesh->tris[t][0]], ab);
-    vec_sub(mesh->points[mesh->tris[t][2]], mesh->points[mesh->tris[t][0]], ac);
-    vec_cross(ab, ac, n);
-    return sqrt(vec_dot(n, n)) / 2;
+    const uint32_t *v = mesh->tris[tri];
+    vec_normal(mesh->points[v[0]], mesh->points[v[1]], mesh->points[v[2]], out);
+}
+
+double trimesh_tri_area(const struct trimesh *mesh, size_t tri)
+{
+    double n[3];
+    trimesh_normal(mesh, tri, n);
+    return vec_length(n) / 2;
 }
 
 /* New points on edges: edge number -> first point; the edge is cut into equal parts, listed from its lower to its higher point. */
@@ -448,7 +452,7 @@ static bool halve_round(struct trimesh *mesh, double height_m, size_t point_limi
     for (size_t t = 0; t < tri_count && mesh->point_count < point_limit; t++) {
         int side = longest_side(mesh, t);
         uint32_t a = mesh->tris[t][side], b = mesh->tris[t][(side + 1) % 3];
-        if (2 * tri_area(mesh, t) > height_m * sqrt(edge2(mesh, a, b)))
+        if (2 * trimesh_tri_area(mesh, t) > height_m * sqrt(edge2(mesh, a, b)))
             cut_edge(mesh, &cuts, a, b, 2);
     }
     zip_all(mesh, &cuts);
@@ -524,6 +528,6 @@ double trimesh_area(const struct trimesh *mesh)
 {
     double area = 0;
     for (size_t t = 0; t < mesh->tri_count; t++)
-        area += tri_area(mesh, t);
+        area += trimesh_tri_area(mesh, t);
     return area;
 }

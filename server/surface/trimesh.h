@@ -44,6 +44,9 @@ size_t trimesh_components(const struct trimesh *mesh, uint32_t *component);
 uint32_t trimesh_root(uint32_t *parent, uint32_t i);
 void trimesh_join(uint32_t *parent, uint32_t a, uint32_t b);
 
+/* Along the triangle's normal, and twice as long as it is large. */
+void trimesh_normal(const struct trimesh *mesh, size_t tri, double out[3]);
+double trimesh_tri_area(const struct trimesh *mesh, size_t tri);
 double trimesh_area(const struct trimesh *mesh);
 
 /* Edges in a hash table: (a, b) in any order -> a number from 0. */

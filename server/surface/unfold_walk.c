@@ -4,9 +4,9 @@
 #include <string.h>
 
 #include "base/mem.h"
-#include "base/wide.h"
+#include "base/simd.h"
+#include "base/vec.h"
 #include "surface/unfold.h"
-#include "surface/vec.h"
 
 #define INSIDE 1e-6 /* least weight of a corner: the source is a little inside its triangle */
 #define ASIDE 1e-3  /* of the way to the side across: a place beside a corner */
@@ -74,14 +74,14 @@ static inline void offer(const struct unfold *unfold, struct unfold_walk *walk, 
     *bucket = (uint32_t)walk->item_count++;
 }
 
-WIDE_BODY void root(lanes *x)
+SIMD_BODY void root(lanes *x)
 {
     for (int i = 0; i < UNFOLD_FAN; i++)
         (*x)[i] = sqrtf((*x)[i]);
 }
 
 /* A bit for each lane. */
-WIDE_BODY uint32_t bits_of(const mask *which)
+SIMD_BODY uint32_t bits_of(const mask *which)
 {
     const mask bits = { 1, 2, 4, 8, 16, 32, 64, 128 }, left = *which & bits;
     uint64_t words[4], all;
@@ -90,14 +90,14 @@ WIDE_BODY uint32_t bits_of(const mask *which)
     return (uint32_t)(all | all >> 32);
 }
 
-WIDE_BODY void choose(const mask *which, const lanes *x, const lanes *otherwise, lanes *out)
+SIMD_BODY void choose(const mask *which, const lanes *x, const lanes *otherwise, lanes *out)
 {
     *out = (lanes)((*which & (mask)*x) | (~*which & (mask)*otherwise));
 }
 
 /* What the edge from p (at d) to b (at db, pb away) offers to c, pc away from p: the source is laid out in the triangle's plane on the
    other side of the edge. INFINITY where its ray to c does not pass between p and b, or b is farther than `reached`. */
-WIDE_BODY void through_edge(const lanes *d_of_p, const lanes *reached, const lanes *d_of_b, const lanes *p_to_b, const lanes *p_to_c,
+SIMD_BODY void through_edge(const lanes *d_of_p, const lanes *reached, const lanes *d_of_b, const lanes *p_to_b, const lanes *p_to_c,
                             const lanes *cosine, const lanes *sine, lanes *out)
 {
     const lanes zero = { 0 }, infinite = zero + INFINITY, d = *d_of_p, db = *d_of_b, pb = *p_to_b, pc = *p_to_c;
@@ -114,7 +114,7 @@ WIDE_BODY void through_edge(const lanes *d_of_p, const lanes *reached, const lan
 
 /* To each of a fan's points: along the edge from p (at d), or through the triangle that it has with the point before or after it, if that
    one is nearer. */
-WIDE_BODY void offers_of(const lanes *d_of_p, const lanes *reached, const lanes *d_of_each, const lanes *length_m, const lanes *cosine,
+SIMD_BODY void offers_of(const lanes *d_of_p, const lanes *reached, const lanes *d_of_each, const lanes *length_m, const lanes *cosine,
                          const lanes *sine, lanes *out)
 {
     const lanes infinite = (lanes){ 0 } + INFINITY, here = *d_of_each, length = *length_m;
@@ -147,7 +147,7 @@ struct front {
 };
 
 /* Takes the next point in hand. False: there is none left. */
-WIDE_BODY bool next_point(const struct unfold *unfold, struct front *front)
+SIMD_BODY bool next_point(const struct unfold *unfold, struct front *front)
 {
     struct unfold_walk *walk = front->walk;
     for (; front->empty < unfold->bucket_count; walk->at++) {
@@ -171,7 +171,7 @@ WIDE_BODY bool next_point(const struct unfold *unfold, struct front *front)
 }
 
 /* What the point in hand offers to those of its fan: no branches, so that those of several walks are under way at once. */
-WIDE_BODY void look_round(struct front *front)
+SIMD_BODY void look_round(struct front *front)
 {
     const lanes zero = { 0 };
     const struct unfold_fan *fan = front->fan;
@@ -189,7 +189,7 @@ WIDE_BODY void look_round(struct front *front)
     front->takes = bits_of(&takes);
 }
 
-WIDE_BODY void hand_out(const struct unfold *unfold, struct front *front)
+SIMD_BODY void hand_out(const struct unfold *unfold, struct front *front)
 {
     for (uint32_t left = front->takes; left; left &= left - 1) {
         int i = __builtin_ctz(left);
@@ -376,7 +376,7 @@ static void look_around(const struct unfold *unfold, struct unfold_walk *walk, u
 }
 
 /* From the source to all points: one after another, since places of points that offers go to lie all over the memory. */
-WIDE_BODY void measure_straight(const struct trimesh *mesh, struct unfold_walk *walk)
+SIMD_BODY void measure_straight(const struct trimesh *mesh, struct unfold_walk *walk)
 {
     const double q[3] = { walk->source_m[0], walk->source_m[1], walk->source_m[2] }, (*points)[3] = (const double(*)[3])mesh->points;
     float *restrict straight_m = walk->straight_m;
@@ -388,7 +388,7 @@ WIDE_BODY void measure_straight(const struct trimesh *mesh, struct unfold_walk *
 
 /* From what is in the buckets outwards: the walks take turns, a fan each. A walk's next fan hangs on what the last one's came to, and the
    processor would wait for that; walks know nothing of each other. */
-WIDE_BODY void go_on(const struct unfold *unfold, struct unfold_walk *walks, size_t count)
+SIMD_BODY void go_on(const struct unfold *unfold, struct unfold_walk *walks, size_t count)
 {
     struct front fronts[UNFOLD_ABREAST] = { { 0 } };
     size_t left = 0;
@@ -413,7 +413,7 @@ static void measure_straight_plain(const struct trimesh *mesh, struct unfold_wal
     measure_straight(mesh, walk);
 }
 
-WIDE_TARGET static void measure_straight_wide(const struct trimesh *mesh, struct unfold_walk *walk)
+SIMD_AVX2 static void measure_straight_wide(const struct trimesh *mesh, struct unfold_walk *walk)
 {
     measure_straight(mesh, walk);
 }
@@ -423,7 +423,7 @@ static void go_on_plain(const struct unfold *unfold, struct unfold_walk *walks, 
     go_on(unfold, walks, count);
 }
 
-WIDE_TARGET static void go_on_wide(const struct unfold *unfold, struct unfold_walk *walks, size_t count)
+SIMD_AVX2 static void go_on_wide(const struct unfold *unfold, struct unfold_walk *walks, size_t count)
 {
     go_on(unfold, walks, count);
 }
@@ -437,7 +437,7 @@ static bool set_out(const struct unfold *unfold, struct unfold_walk *walk, uint3
     for (int axis = 0; axis < 3; axis++)
         walk->source_m[axis] =
             weights[0] * mesh->points[v[0]][axis] + weights[1] * mesh->points[v[1]][axis] + weights[2] * mesh->points[v[2]][axis];
-    (wide_is_there() ? measure_straight_wide : measure_straight_plain)(mesh, walk);
+    (simd_has_avx2() ? measure_straight_wide : measure_straight_plain)(mesh, walk);
     for (int i = 0; i < 3; i++)
         offer(unfold, walk, v[i], (float)vec_distance(walk->source_m, mesh->points[v[i]]));
     look_around(unfold, walk, tri, weights);
@@ -449,6 +449,6 @@ bool unfold_from(const struct unfold *unfold, struct unfold_walk *walks, const s
     for (size_t i = 0; i < count; i++)
         if (!set_out(unfold, &walks[i], sources[i].tri, sources[i].weights))
             return false;
-    (wide_is_there() ? go_on_wide : go_on_plain)(unfold, walks, count);
+    (simd_has_avx2() ? go_on_wide : go_on_plain)(unfold, walks, count);
     return true;
 }

@@ -15,9 +15,9 @@
 #include <cmocka.h>
 
 #include "base/mem.h"
+#include "base/vec.h"
 #include "net/message/message.h"
 #include "plant/transform.h"
-#include "surface/vec.h"
 #include "tests/support/site.h"
 #include "tests/support/sweep.h"
 #include "tests/support/synthetic.h"

@@ -9,8 +9,8 @@
 #include <cmocka.h>
 
 #include "base/mem.h"
+#include "base/vec.h"
 #include "surface/bvh.h"
-#include "surface/vec.h"
 #include "tests/support/cad.h"
 
 #define POINTS 400

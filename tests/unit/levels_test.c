@@ -9,10 +9,10 @@
 #include <cmocka.h>
 
 #include "base/mem.h"
+#include "base/vec.h"
 #include "preprocess/order.h"
 #include "preprocess/places.h"
 #include "surface/bvh.h"
-#include "surface/vec.h"
 
 #define AROUND 120u /* squares round the torus, and round its tube */
 #define TUBE 48u

@@ -13,11 +13,11 @@
 #include <cmocka.h>
 
 #include "base/mem.h"
+#include "base/vec.h"
 #include "preprocess/places.h"
 #include "preprocess/split.h"
 #include "surface/bvh.h"
 #include "surface/trimesh.h"
-#include "surface/vec.h"
 
 #define PI 3.14159265358979323846
 #define SENSORS 6

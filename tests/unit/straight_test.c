@@ -13,9 +13,9 @@
 #include <cmocka.h>
 
 #include "base/mem.h"
+#include "base/vec.h"
 #include "preprocess/geometry.h"
 #include "preprocess/model_source.h"
-#include "surface/vec.h"
 #include "tests/support/surface_case.h"
 
 #define SOURCES 6

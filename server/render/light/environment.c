@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "base/mem.h"
+#include "base/vec.h"
 #include "render/light/ggx.h"
 
 enum { SKY_WIDTH = 512, SKY_HEIGHT = 256, BASE_PX = 256, PYRAMID = 6, SAMPLES = 128 };
@@ -229,15 +230,9 @@ static void make_pyramid(struct source *source, struct workers *workers)
 static void frame_of(const double n[3], double t[3], double b[3])
 {
     const double other[3] = { fabs(n[2]) < 0.7 ? 0 : 1, 0, fabs(n[2]) < 0.7 ? 1 : 0 };
-    t[0] = other[1] * n[2] - other[2] * n[1];
-    t[1] = other[2] * n[0] - other[0] * n[2];
-    t[2] = other[0] * n[1] - other[1] * n[0];
-    double size = sqrt(t[0] * t[0] + t[1] * t[1] + t[2] * t[2]);
-    for (int i = 0; i < 3; i++)
-        t[i] /= size;
-    b[0] = n[1] * t[2] - n[2] * t[1];
-    b[1] = n[2] * t[0] - n[0] * t[2];
-    b[2] = n[0] * t[1] - n[1] * t[0];
+    vec_cross(other, n, t);
+    vec_normalize(t);
+    vec_cross(n, t, b);
 }
 
 /* The level of the pyramid whose texels are as large as the sample is wide. */

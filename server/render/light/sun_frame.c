@@ -4,6 +4,7 @@
 
 #include <math.h>
 
+#include "base/vec.h"
 #include "render/matrix.h"
 
 enum { TURNS = 32 }; /* tried, in a quarter of a circle */
@@ -16,13 +17,9 @@ static void axes_of(const double towards[3], double turn, double axes[3][3])
 {
     double side[3], up[3], most = fabs(towards[2]) < 0.9, c = cos(turn), s = sin(turn);
     double helper[3] = { 1 - most, 0, most };
-    for (int i = 0; i < 3; i++)
-        side[i] = helper[(i + 1) % 3] * towards[(i + 2) % 3] - helper[(i + 2) % 3] * towards[(i + 1) % 3];
-    double length = sqrt(side[0] * side[0] + side[1] * side[1] + side[2] * side[2]);
-    for (int i = 0; i < 3; i++)
-        side[i] /= length;
-    for (int i = 0; i < 3; i++)
-        up[i] = towards[(i + 1) % 3] * side[(i + 2) % 3] - towards[(i + 2) % 3] * side[(i + 1) % 3];
+    vec_cross(helper, towards, side);
+    vec_normalize(side);
+    vec_cross(towards, side, up);
     for (int i = 0; i < 3; i++) {
         axes[0][i] = c * side[i] + s * up[i];
         axes[1][i] = c * up[i] - s * side[i];
