@@ -57,12 +57,18 @@ const letters = (page) => page.evaluate(() => {
     return found;
 });
 
+// How high a capital letter of that size is to an eye there, in minutes of arc; of the fonts of the page a capital has 0.72 of it.
+function letterMinutes(px, { inches, metres }, screen) {
+    const millimetres = (0.72 * px * inches * 25.4) / Math.hypot(screen.width, screen.height);
+    return (Math.atan2(millimetres, metres * 1000) * 180 * 60) / Math.PI;
+}
+
 test('a 4K wall: every letter is read from 3 m, alarms are counted, and nothing is to be pressed', options, () =>
     withPage(`${url}?wall&theme=dark`, WALL, async (page) => {
         await waitForHealth(page, 'live');
         await page.waitForFunction(() => document.querySelector('#alarm-counts .priority'));
         await settle(page);
-        const { letterMinutes, readWall } = await import('../../clients/web/core/wall.js');
+        const { readWall } = await import('../../clients/web/core/wall.js');
         const seen = await letters(page);
         assert.ok(seen.length > 12, `${seen.length} texts`);
         const small = seen.map(({ text, px }) => ({ text, minutes: letterMinutes(px, readWall('?wall'), WALL.screen) }))
