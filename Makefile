@@ -44,7 +44,7 @@ cxxflags = -std=c++17 -D_GNU_SOURCE $(warn) $(common) $(CXXFLAGS)
 ldflags  = $(flags_$(config)) -pthread -Wl,--as-needed -Wl,-z,relro,-z,now $(LDFLAGS)
 
 # --- what is built: one archive per layer, left to right ------------------------------------------------------------------
-layers   := base plant surface value history alarm proving scene field placing gpu render encode net
+layers   := base plant surface value history alarm loopcheck scene field placing gpu render encode message service access session net
 layers   := $(foreach l,$(layers),$(if $(wildcard server/$(l)/*.c),$(l)))
 without  := $(if $(filter h264,$(CODECS)),,$(wildcard server/encode/h264*))
 archives := $(foreach l,$(layers),$(out)/lib/$(l).a) $(out)/lib/protocol.a
@@ -56,7 +56,7 @@ sim_sources      := $(filter-out %/generate.c,$(wildcard deploy/demo/*.c))
 generate_sources := $(wildcard deploy/demo/generate*.c deploy/demo/generate/*.c)
 sim_sources      := $(filter-out $(generate_sources),$(sim_sources))
 sim_archive      := $(if $(sim_sources),$(out)/lib/sim.a)
-prep_sources     := $(filter-out %/main.c %/image_later.c,$(wildcard preprocess/*.c preprocess/*.cc))
+prep_sources     := $(filter-out %/main.c %/image_lazy.c,$(wildcard preprocess/*.c preprocess/*/*.c preprocess/*/*.cc))
 programs := $(if $(wildcard server/main.c),$(bin)/plantcastd) $(if $(wildcard preprocess/main.c),$(bin)/plantcast-prep) \
             $(if $(wildcard clients/cli/main.c),$(bin)/plantcast) $(if $(sim_sources),$(bin)/plantcast-sim) \
             $(if $(generate_sources),$(bin)/plantcast-demo)
@@ -68,14 +68,14 @@ all: $(programs) $(modules) clients/web/vendor/uPlot.js clients/web/made/version
 clients/web/vendor/uPlot.js: clients/web/package-lock.json
 	@echo "  NPM  $(@D)"; deploy/vendor $(build)/npm; [ ! -f $@ ] || touch $@
 # Icons of the page, and its version.
-page := $(filter-out clients/web/made/%,$(wildcard clients/web/*.* clients/web/*/*))
+page := $(filter-out clients/web/made/%,$(wildcard clients/web/*.* clients/web/*/*.* clients/web/*/*/*.*))
 clients/web/made/version.js: deploy/stamp $(page) clients/web/vendor/uPlot.js
 	@echo "  WEB  $(@D)"; deploy/stamp clients/web
 programs: all
 
 $(bin)/plantcastd: $(call objects,$(wildcard server/*.c)) $(archives)
 	$(link)
-$(bin)/plantcast-prep: $(call objects,preprocess/main.c preprocess/image_later.c) $(out)/lib/prep.a $(archives) | $(modules)
+$(bin)/plantcast-prep: $(call objects,preprocess/main.c preprocess/image_lazy.c) $(out)/lib/prep.a $(archives) | $(modules)
 	$(link)
 $(bin)/plantcast-images.so: $(patsubst %,$(out)/obj/server/base/%.pic.o,image_shim mem)
 	@mkdir -p $(@D); echo "  LINK $@"; $(CXX) $(ldflags) -shared -o $@ $^ $(pkg_libs)
@@ -106,7 +106,7 @@ $(out)/lib/%.a:
 	@mkdir -p $(@D); rm -f $@; $(AR) rcs $@ $^
 
 # Loops that choose between two numbers become wide only if no comparison can trap.
-$(call objects,server/surface/surface_field.c preprocess/shares.c): CFLAGS += -fno-trapping-math
+$(call objects,server/surface/surface_field.c preprocess/subdivision/interp_weights.c): CFLAGS += -fno-trapping-math
 $(out)/obj/%.o: %.c Makefile $(out)/codecs | $(gen)/glad/include/glad/gl.h
 	@mkdir -p $(@D); echo "  CC   $<"
 	@$(CC) $(cflags) -c -o $@ $<
@@ -158,7 +158,7 @@ $(out)/tests/gallery/album: $(filter-out %/main.o,$(call objects,$(cli_sources))
 $(out)/tests/faults/libEGL.so.1: $(out)/obj/tests/faults/gl_faults.pic.o
 	@mkdir -p $(@D); echo "  LINK $@"; $(CC) $(ldflags) -shared -o $@ $<
 # Where memory runs out: the test decides.
-$(out)/tests/unit/mover_test: ldflags += -Wl,--wrap=mem_try_array
+$(out)/tests/unit/relocation_test: ldflags += -Wl,--wrap=mem_try_array
 $(out)/tests/gpu/field_memory_test: ldflags += -Wl,--wrap=mem_try_array,--wrap=pool_take
 # The wall clock: the test sets it.
 $(out)/tests/unit/historian_test: ldflags += -Wl,--wrap=clock_utc_ns

@@ -8,10 +8,10 @@
 
 #include "base/mem.h"
 #include "plant/model_check.h"
-#include "preprocess/debug_views.h"
-#include "preprocess/diff.h"
-#include "preprocess/distances.h"
-#include "preprocess/report.h"
+#include "preprocess/debug/debug_views.h"
+#include "preprocess/diff/diff.h"
+#include "preprocess/report/distances.h"
+#include "preprocess/report/report.h"
 
 enum { GRACE_S = 5 }; /* what stops services and containers kills after 10 s and more */
 

@@ -21,8 +21,8 @@
 enum { FIRST = 16 }; /* views that the new plant is drawn from before it takes over */
 
 struct reload {
-    const struct loaded_context *context;
-    struct loaded **loaded;
+    const struct plant_runtime_context *context;
+    struct plant_runtime **loaded;
     struct net *net;
     pthread_t thread;
     bool started;
@@ -55,9 +55,9 @@ struct verdict {
 static void say(void *arg)
 {
     struct verdict *verdict = arg;
-    net_say_reloaded(verdict->net, verdict->good, verdict->text);
+    net_report_reload(verdict->net, verdict->good, verdict->text);
     if (verdict->saved)
-        net_say_saved(verdict->net, verdict->client, verdict->saved);
+        net_report_save(verdict->net, verdict->client, verdict->saved);
 }
 
 static char *print(const json_t *object)
@@ -121,7 +121,7 @@ static void refuse(struct reload *reload, const struct diag *diag, const char *w
 
 struct swap {
     struct net *net;
-    const struct loaded *after;
+    const struct plant_runtime *after;
     struct view first[FIRST];
     size_t first_count;
 };
@@ -130,25 +130,25 @@ struct swap {
 static void look_at_views(void *arg)
 {
     struct swap *swap = arg;
-    const struct net_plant plant = loaded_net_plant(swap->after);
+    const struct net_plant plant = plant_runtime_net_plant(swap->after);
     swap->first_count = net_views(swap->net, &plant, swap->first, FIRST);
 }
 
 /* Beside the old plant's painter, which goes on meanwhile, so that the new one is as quick from its first picture on. */
-static bool start_painter(struct reload *reload, struct loaded *after)
+static bool start_painter(struct reload *reload, struct plant_runtime *after)
 {
     struct swap swap = { .net = reload->net, .after = after };
     store_adopt(after->store, (*reload->loaded)->store);
-    return net_call(reload->net, look_at_views, &swap) && loaded_start_painter(after, swap.first, swap.first_count);
+    return net_call(reload->net, look_at_views, &swap) && plant_runtime_start_render_service(after, swap.first, swap.first_count);
 }
 
 /* In the loop. */
 static void swap(void *arg)
 {
     struct swap *swap = arg;
-    const struct net_plant plant = loaded_net_plant(swap->after);
-    net_let_go(swap->net);
-    net_take(swap->net, &plant);
+    const struct net_plant plant = plant_runtime_net_plant(swap->after);
+    net_release_plant(swap->net);
+    net_take_plant(swap->net, &plant);
 }
 
 static void say_difference(struct reload *reload, const struct plant_diff *diff, const char *before, double took_s)
@@ -166,16 +166,16 @@ static void say_difference(struct reload *reload, const struct plant_diff *diff,
 }
 
 /* Sources end: from here on there is a new plant, or, if no thread can be had any more, no daemon. begun_ns: when it was asked for. */
-static void put_in_force(struct reload *reload, struct loaded *after, const struct plant_diff *diff, int64_t begun_ns)
+static void put_in_force(struct reload *reload, struct plant_runtime *after, const struct plant_diff *diff, int64_t begun_ns)
 {
-    struct loaded *before = *reload->loaded;
+    struct plant_runtime *before = *reload->loaded;
     struct swap both = { .net = reload->net, .after = after };
     char *hash = mem_strdup(before->plant->hash);
-    loaded_hand_over(before, after->plant);
-    bool good = loaded_start_recording(after, before) && loaded_start_sources(after) && net_call(reload->net, swap, &both);
+    plant_runtime_hand_over(before, after->plant);
+    bool good = plant_runtime_start_recording(after, before) && plant_runtime_start_sources(after) && net_call(reload->net, swap, &both);
     if (good) {
         *reload->loaded = after;
-        loaded_destroy(&before);
+        plant_runtime_destroy(&before);
         malloc_trim(0);
         reload_count(reload->context->counters, hash, false);
         reload_count(reload->context->counters, after->plant->hash, true);
@@ -183,7 +183,7 @@ static void put_in_force(struct reload *reload, struct loaded *after, const stru
     } else {
         log_err(reload->context->log, "reload: the new plant cannot be put in force; the daemon ends, and has it when it starts again");
         net_stop(reload->net);
-        loaded_destroy(&after);
+        plant_runtime_destroy(&after);
     }
     mem_free(hash);
 }
@@ -194,7 +194,7 @@ static bool reload_now(struct reload *reload)
     struct diag diag = { 0 };
     struct plant_diff diff = { 0 };
     int64_t begun_ns = clock_mono_ns();
-    struct loaded *before = *reload->loaded, *after = loaded_read(reload->context, &diag);
+    struct plant_runtime *before = *reload->loaded, *after = plant_runtime_read(reload->context, &diag);
     const char *why = after ? plant_needs_restart(before->plant, after->plant) : diag.errors ? NULL : "the log says why";
     if (after && !why && !start_painter(reload, after))
         why = "nothing draws it beside the one in force; the log says why";
@@ -204,7 +204,7 @@ static bool reload_now(struct reload *reload)
         put_in_force(reload, after, &diff, begun_ns);
     } else {
         refuse(reload, &diag, why);
-        loaded_destroy(&after);
+        plant_runtime_destroy(&after);
     }
     plant_diff_finish(&diff);
     diag_finish(&diag);
@@ -224,8 +224,8 @@ static bool is_stopping(struct reload *reload)
 /* As somebody would by hand, and no more urgent than serving pictures is. */
 static bool prepare(struct reload *reload)
 {
-    const struct loaded_context *context = reload->context;
-    char program[PATH_MAX], *folder = loaded_prepared_folder(context->params, (*reload->loaded)->plant);
+    const struct plant_runtime_context *context = reload->context;
+    char program[PATH_MAX], *folder = plant_runtime_prepared_folder(context->params, (*reload->loaded)->plant);
     ssize_t n = readlink("/proc/self/exe", program, sizeof(program) - 32);
     program[n > 0 ? n : 0] = 0;
     char *slash = strrchr(program, '/');
@@ -302,7 +302,7 @@ static void *run(void *arg)
     }
 }
 
-struct reload *reload_create(const struct loaded_context *context, struct loaded **loaded, struct net *net)
+struct reload *reload_create(const struct plant_runtime_context *context, struct plant_runtime **loaded, struct net *net)
 {
     struct reload *reload = mem_new(sizeof(*reload));
     reload->context = context;

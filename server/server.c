@@ -16,12 +16,12 @@
 #include "base/counters.h"
 #include "base/mem.h"
 #include "encode/encoder.h"
-#include "scene/far.h"
+#include "scene/far_sensors.h"
 #include "field/colormap.h"
-#include "loaded.h"
+#include "plant_runtime.h"
 #include "reload.h"
 #include "plant/model_check.h"
-#include "value/plan_text.h"
+#include "value/read_plan_text.h"
 #include "value/series_check.h"
 #include "version.h"
 
@@ -30,8 +30,8 @@ struct server {
     struct log *log;
     struct counters *counters;
     struct workers *workers;
-    struct loaded_context context;
-    struct loaded *loaded;
+    struct plant_runtime_context context;
+    struct plant_runtime *loaded;
     struct reload *reload;
     pthread_mutex_t wake_lock; /* holds net alive while the render thread wakes it */
     struct net *net;
@@ -57,7 +57,7 @@ static void on_hangup(int number)
     int cause = errno;
     struct net *net = atomic_load(&to_stop);
     if (net)
-        net_look(net);
+        net_check_credentials(net);
     errno = cause;
 }
 
@@ -112,7 +112,7 @@ static char *find_web(const char *given)
 /* H.264 is offered where it works; JPEG always is. */
 static unsigned find_codecs(const struct server *server)
 {
-    const char *library = loaded_h264_library(&server->params);
+    const char *library = plant_runtime_h264_library(&server->params);
     unsigned codecs = 1u << WIRE_CODEC_JPEG | 1u << WIRE_CODEC_PNG;
     if (strcmp(library, "off") != 0 && encoder_works(server->log, "h264", library))
         codecs |= 1u << WIRE_CODEC_H264;
@@ -136,7 +136,7 @@ static bool start_net(struct server *server)
 {
     struct net_params params = {
         .log = server->log,
-        .plant = loaded_net_plant(server->loaded),
+        .plant = plant_runtime_net_plant(server->loaded),
         .counters = server->counters,
         .address = server->params.address,
         .port = server->params.port,
@@ -168,7 +168,7 @@ static void set_time_zone(const struct plant *plant)
 static bool read_plant(struct server *server)
 {
     struct diag diag = { 0 };
-    server->loaded = loaded_read(&server->context, &diag);
+    server->loaded = plant_runtime_read(&server->context, &diag);
     diag_print(&diag, stderr);
     if (diag.errors)
         fprintf(stderr, "plantcastd: %s: %d error%s\n", server->params.plant_path, diag.errors, diag.errors == 1 ? "" : "s");
@@ -179,21 +179,20 @@ static bool read_plant(struct server *server)
 static bool server_start(struct server *server)
 {
     server->counters = counters_create();
-    server->context = (struct loaded_context){
+    server->context = (struct plant_runtime_context){
         .params = &server->params, .log = server->log, .counters = server->counters, .notify = on_pictures, .notify_arg = server
     };
     if (!read_plant(server))
         return false;
     set_time_zone(server->loaded->plant);
     colormaps_of_plant(server->loaded->plant);
-    if (!net_port_free(server->log, server->params.address, server->params.port) ||
-        !net_access_good(server->log, &server->params.access))
+    if (!net_port_free(server->log, server->params.address, server->params.port) || !net_access_good(server->log, &server->params.access))
         return false;
     server->context.workers = server->workers = workers_create(server->params.threads);
     server->web = find_web(server->params.web);
     reload_count(server->counters, server->loaded->plant->hash, true);
-    return loaded_start_recording(server->loaded, NULL) && loaded_start_sources(server->loaded) &&
-           loaded_start_painter(server->loaded, NULL, 0) && start_net(server);
+    return plant_runtime_start_recording(server->loaded, NULL) && plant_runtime_start_sources(server->loaded) &&
+           plant_runtime_start_render_service(server->loaded, NULL, 0) && start_net(server);
 }
 
 /* Against the flow of data: first who takes, last who gives. */
@@ -205,7 +204,7 @@ static void server_finish(struct server *server)
     pthread_mutex_unlock(&server->wake_lock);
     reload_destroy(&server->reload);
     net_destroy(&net);
-    loaded_destroy(&server->loaded);
+    plant_runtime_destroy(&server->loaded);
     workers_destroy(&server->workers);
     counters_destroy(&server->counters);
     mem_free(server->web);
@@ -251,7 +250,7 @@ int server_run(const struct server_params *params)
 
 static int check_prepared(const struct server_params *params, const struct plant *plant)
 {
-    char *folder = loaded_prepared_folder(params, plant);
+    char *folder = plant_runtime_prepared_folder(params, plant);
     bool exists = access(folder, F_OK) == 0;
     if (!exists)
         printf("%s: not prepared yet (%s)\n", params->plant_path, folder);
@@ -259,13 +258,13 @@ static int check_prepared(const struct server_params *params, const struct plant
     if (!exists)
         return 0;
     struct log *log = log_create(LOG_WARN);
-    struct scene *scene = loaded_open_scene(log, params, plant);
+    struct scene *scene = plant_runtime_open_scene(log, params, plant);
     int status = scene ? 0 : 1;
     for (size_t i = 0; scene && i < scene->asset_count; i++)
         status |= scene->assets[i].missing != NULL; /* logged */
     if (scene) {
         size_t count;
-        struct far_sensor *far = far_sensors(scene, &count);
+        struct far_sensor *far = far_sensors_find(scene, &count);
         for (size_t i = 0; i < count; i++) {
             const struct plant_tag *tag = &plant->tags[far[i].sensor->tag];
             printf("%s:%d: warning: sensor %s is %.3f m from the surface of %s (at most %.3f m is expected)\n", plant->tags_path, tag->line,
@@ -324,7 +323,7 @@ int server_dump_plan(const struct server_params *params)
     if (!plant)
         return 1;
     for (size_t i = 0; i < plant->source_count; i++)
-        plan_text(&text, plant, (int)i);
+        read_plan_text(&text, plant, (int)i);
     fputs(text.at ? text.at : "no sources\n", stdout);
     text_finish(&text);
     plant_destroy(&plant);

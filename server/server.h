@@ -4,7 +4,7 @@
 #define SERVER_SERVER_H
 #include "base/log.h"
 #include "gpu/gl.h"
-#include "net/access.h"
+#include "access/access.h"
 
 struct server_params {
     const char *plant_path;
@@ -17,16 +17,16 @@ struct server_params {
     const char *history;  /* NULL: as the plant file says */
     const char *web;      /* NULL: found from where the program is */
     enum log_level log_level;
-    const char *h264;     /* an encoder of libavcodec, or "off"; NULL: the usual one */
+    const char *h264;    /* an encoder of libavcodec, or "off"; NULL: the usual one */
     size_t memory_bytes; /* 0: what suits the machine */
-    int threads; /* workers; 0: one per core */
+    int threads;         /* workers; 0: one per core */
     struct access_params access;
     bool per_fragment; /* the field anew at each fragment; for comparison */
 };
 
 /* They return the exit code: 0 good, 1 anything wrong, said on stderr. */
-int server_run(const struct server_params *params);   /* until SIGINT or SIGTERM */
-int server_check(const struct server_params *params); /* reads everything, starts nothing */
+int server_run(const struct server_params *params);       /* until SIGINT or SIGTERM */
+int server_check(const struct server_params *params);     /* reads everything, starts nothing */
 int server_dump_plan(const struct server_params *params); /* prints what field devices will be asked */
 
 #endif

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The colour of the field at a pixel: one look-up by place on the scale and by light. The palette (render/palette.h) holds sRGB colours
+// The colour of the field at a pixel: one look-up by place on the scale and by light. The colormap (render/shaded_colormap.h) holds sRGB colours
 // by the legend's rule (field/scale.h), with bands, what lies outside MIN and MAX, and the patterns.
-layout(binding = 0) uniform sampler2D palette;
+layout(binding = 0) uniform sampler2D colormap;
 #ifdef RICH
 layout(binding = 15) uniform sampler2D lines; // by place: the nearest place that has a line
 #endif
@@ -10,20 +10,20 @@ const int PLACES = 1024, HATCH_LIGHT = PLACES + 2, HATCH_DARK = PLACES + 3, STIP
           PLAIN_LIGHT = PLACES + 5, PLAIN_DARK = PLACES + 6;
 
 // Interpolating equal values may round: the ends have some slack. Column 0 is below MIN, PLACES + 1 above MAX.
-int palette_column(float place)
+int colormap_column(float place)
 {
     const float slack = 1e-5, columns = float(PLACES) / (1.0 + 2.0 * slack);
     return int(clamp(place * columns + (1.0 + slack * columns), 0.0, float(PLACES + 1)));
 }
 
-int palette_row(float light)
+int colormap_row(float light)
 {
     return int(clamp(light * frame.shade.x + frame.shade.y, 0.0, frame.shade.z));
 }
 
-vec3 palette_color(int column, int row)
+vec3 colormap_color(int column, int row)
 {
-    return texelFetch(palette, ivec2(column, row), 0).rgb;
+    return texelFetch(colormap, ivec2(column, row), 0).rgb;
 }
 
 // Diagonal stripes: over 0.5 on the dark ones.
@@ -72,7 +72,7 @@ vec3 field_color(FIELD_TYPE field, float light)
 #else
     float place = field.x;
 #endif
-    int row = palette_row(light), column = palette_column(place), second = column;
+    int row = colormap_row(light), column = colormap_column(place), second = column;
     float part = 0.0;
 #ifdef RICH
     float line = frame.lines.x > 0.0 ? line_part(place, column) : 0.0;
@@ -93,10 +93,10 @@ vec3 field_color(FIELD_TYPE field, float light)
         second = HATCH_DARK;
         part = hatch(gl_FragCoord.xy);
     }
-#ifdef STILL
-    vec3 color = mix(palette_color(column, row), palette_color(second, row), clamp(part, 0.0, 1.0));
+#ifdef REFINED
+    vec3 color = mix(colormap_color(column, row), colormap_color(second, row), clamp(part, 0.0, 1.0));
 #else
-    vec3 color = palette_color(part > 0.5 ? second : column, row); // one look-up
+    vec3 color = colormap_color(part > 0.5 ? second : column, row); // one look-up
 #endif
 #ifdef RICH
     vec3 ink = dot(color, vec3(0.30, 0.59, 0.11)) > 0.32 ? vec3(0.07, 0.09, 0.12) : vec3(0.93);

@@ -5,14 +5,14 @@ layout(binding = 1) uniform sampler2D ground_light; // sun and openness
 layout(location = 0) in vec2 at;
 layout(location = 1) in vec3 place;
 layout(location = 0) out vec4 factor;
-#ifdef STILL
+#ifdef REFINED
 #include "shadow.glsl"
 #endif
 
 void main()
 {
     vec2 light = texture(ground_light, at).rg;
-#ifdef STILL
+#ifdef REFINED
     light.x = sun_visibility(frame.sun_from_eye, place, frame.up.xyz, frame.sun.w);
 #endif
     vec2 margin = smoothstep(vec2(0.5), vec2(0.3), abs(at - 0.5));

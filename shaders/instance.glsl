@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What differs between assets that are drawn by one call: where they stand, and numbers by vertex, each asset's somewhere in a buffer that
-// many share (gpu/pool.h). Same layout as struct bundle_instance.
+// many share (gpu/pool.h). Same layout as struct draw_instance.
 layout(location = 4) in mat3x4 eye_from_normal; // three rows; then the first block of light, of the field (-1: none), nothing
 layout(location = 8) in mat4 clip_from_file;
 layout(location = 12) in mat3x4 from_file; // as rows: to eye space; moving: to texture coordinates and depth of the shadow map

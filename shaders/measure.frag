@@ -2,7 +2,7 @@
 // Not a colour but the field itself: its place in the range, no data (-1: no field at all), uncertain, and the depth.
 #include "frame.glsl"
 #ifdef FIELD
-#ifdef STILL
+#ifdef REFINED
 layout(location = 5) centroid in vec3 field;
 #else
 layout(location = 1) in vec3 field;

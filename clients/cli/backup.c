@@ -18,9 +18,9 @@
 #include "commands.h"
 #include "history/copy.h"
 #include "history/month.h"
-#include "base/when.h"
+#include "base/timestamp.h"
 #include "plant/plant.h"
-#include "proving/proofs.h"
+#include "loopcheck/loop_checks.h"
 
 #define MANIFEST "backup.json"
 #define PLANT_FILE "plant.yaml"
@@ -77,7 +77,7 @@ static const char *base_name(const char *path)
 static bool is_ours(const char *name)
 {
     int month;
-    return month_parse(name, &month) || !strcmp(name, JOURNAL_FILE) || !strcmp(name, PROOFS_FILE);
+    return month_parse(name, &month) || !strcmp(name, JOURNAL_FILE) || !strcmp(name, LOOP_CHECKS_FILE);
 }
 
 /* --- backup --------------------------------------------------------------------------------------------------------------------- */
@@ -109,13 +109,13 @@ static bool add_history(struct job *job, const char *folder)
         mem_free(from);
     }
     mem_free(months);
-    char *journal = mem_printf("%s/" JOURNAL_FILE, folder), *proofs = mem_printf("%s/" PROOFS_FILE, folder);
+    char *journal = mem_printf("%s/" JOURNAL_FILE, folder), *loop_checks = mem_printf("%s/" LOOP_CHECKS_FILE, folder);
     if (good && access(journal, F_OK) == 0)
         good = add(job, copy_database, journal, JOURNAL_FILE);
-    if (good && access(proofs, F_OK) == 0)
-        good = add(job, copy_file, proofs, PROOFS_FILE);
+    if (good && access(loop_checks, F_OK) == 0)
+        good = add(job, copy_file, loop_checks, LOOP_CHECKS_FILE);
     mem_free(journal);
-    mem_free(proofs);
+    mem_free(loop_checks);
     return good;
 }
 
@@ -127,10 +127,10 @@ static const char *history_name(const struct plant *plant)
 
 static bool write_manifest(struct job *job, const struct plant *plant)
 {
-    char now[WHEN_BYTES];
-    when_print(clock_utc_ns() / 1000, now);
-    json_t *manifest = json_pack("{s:i,s:s,s:s?,s:s,s:O}", "version", MANIFEST_VERSION, "made", now, "history", history_name(plant),
-                                 "tags", as_written(plant, plant->tags_path), "files", job->files);
+    char now[TIMESTAMP_BYTES];
+    timestamp_print(clock_utc_ns() / 1000, now);
+    json_t *manifest = json_pack("{s:i,s:s,s:s?,s:s,s:O}", "version", MANIFEST_VERSION, "made", now, "history", history_name(plant), "tags",
+                                 as_written(plant, plant->tags_path), "files", job->files);
     char *path = mem_printf("%s/" MANIFEST, job->folder), *text = json_dumps(manifest, JSON_INDENT(2));
     int error = atomic_file_put(path, text, strlen(text));
     if (error)
@@ -190,8 +190,8 @@ static json_t *read_manifest(const char *folder)
     size_t bytes;
     char *text = text_read_file(path, MANIFEST_MAX, &bytes);
     json_t *manifest = text ? json_loads(text, 0, NULL) : NULL;
-    bool good = json_integer_value(json_object_get(manifest, "version")) == MANIFEST_VERSION &&
-                json_is_array(json_object_get(manifest, "files"));
+    bool good =
+        json_integer_value(json_object_get(manifest, "version")) == MANIFEST_VERSION && json_is_array(json_object_get(manifest, "files"));
     if (!good)
         say(path, text ? "is no list of a backup that this program knows" : strerror(errno));
     if (!good && manifest) {

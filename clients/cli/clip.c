@@ -18,7 +18,7 @@ int cmd_clip(int argc, char **argv)
 }
 #else
 #include "daemon.h"
-#include "studio.h"
+#include "offline_renderer.h"
 #include "video.h"
 
 enum { MOST_PICTURES = 1000000, SAY_EACH = 250 };
@@ -26,7 +26,7 @@ enum { MOST_PICTURES = 1000000, SAY_EACH = 250 };
 struct film {
     struct snapshot_options *options;
     struct video *video;
-    struct studio studio; /* without a daemon */
+    struct offline_renderer offline; /* without a daemon */
     struct view view;
     struct daemon_url url;
     struct text query;
@@ -44,9 +44,9 @@ static bool add(struct film *film, const uint8_t *bgrx, int width_px, int height
 
 static bool draw(struct film *film, int64_t at_us)
 {
-    if (!studio_travel(&film->studio, at_us, &film->view))
+    if (!offline_renderer_seek(&film->offline, at_us, &film->view))
         return false;
-    struct frame *frame = studio_draw(&film->studio, film->options, &film->view);
+    struct frame *frame = offline_renderer_draw(&film->offline, film->options, &film->view);
     bool good = frame && add(film, frame->bgrx, frame->width_px, frame->height_px, frame->stride_bytes);
     frame_unref(&frame);
     return good;
@@ -104,12 +104,13 @@ static bool make(struct film *film, bool (*picture)(struct film *film, int64_t a
 
 static int from_plant(struct film *film)
 {
-    int code = studio_open(&film->studio, film->options, &film->view);
-    if (code == 0 && !(studio_open_history(&film->studio, film->options) && studio_open_gl(&film->studio, film->options)))
+    int code = offline_renderer_open(&film->offline, film->options, &film->view);
+    if (code == 0 &&
+        !(offline_renderer_open_history(&film->offline, film->options) && offline_renderer_open_gl(&film->offline, film->options)))
         code = 1;
     if (code == 0)
         code = make(film, draw) ? 0 : 1;
-    studio_close(&film->studio);
+    offline_renderer_close(&film->offline);
     return code;
 }
 

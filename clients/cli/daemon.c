@@ -9,7 +9,7 @@
 #include "base/atomic_file.h"
 #include "base/mem.h"
 #include "commands.h"
-#include "net/message/message.h"
+#include "message/message.h"
 
 enum { MAX_BODY_BYTES = 256 * 1024 * 1024, RECEIVE_BYTES = 16 * 1024 };
 
@@ -101,7 +101,9 @@ int daemon_add_token(struct lws *wsi, void *in, size_t len)
     if (!authorization[0])
         return 0;
     return lws_add_http_header_by_token(wsi, WSI_TOKEN_HTTP_AUTHORIZATION, (unsigned char *)authorization, (int)strlen(authorization), at,
-                                        end) ? -1 : 0;
+                                        end)
+               ? -1
+               : 0;
 }
 
 struct exchange {

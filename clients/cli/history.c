@@ -12,7 +12,7 @@
 #include "history/import.h"
 #include "history/month.h"
 #include "history/series_text.h"
-#include "base/when.h"
+#include "base/timestamp.h"
 
 struct history_options {
     const char *plant, *folder, *csv, *tags, *from, *to, *start, *unit;
@@ -64,9 +64,9 @@ static bool parse_unit(const char *text, int64_t *unit_us)
 
 static void print_counts(const char *path, const struct import_counts *counts)
 {
-    char from[WHEN_BYTES], to[WHEN_BYTES];
-    when_print(counts->from_us, from);
-    when_print(counts->to_us, to);
+    char from[TIMESTAMP_BYTES], to[TIMESTAMP_BYTES];
+    timestamp_print(counts->from_us, from);
+    timestamp_print(counts->to_us, to);
     printf("%s: %lld samples of %d tags from %s to %s: %lld points kept\n", path, counts->samples, counts->tags, from, to, counts->points);
 }
 
@@ -77,10 +77,10 @@ static int run_import(const struct history_options *options, const struct plant 
     };
     struct import_counts counts;
     struct diag diag = { 0 };
-    when_use_zone(plant->time_zone);
-    if (options->start && !when_parse(options->start, clock_utc_ns() / 1000, &params.start_us) &&
-        !when_parse_local(options->start, INT64_MIN, &params.start_us))
-        return wrong("--start: expected " WHEN_FORMS ", found", options->start);
+    timestamp_use_zone(plant->time_zone);
+    if (options->start && !timestamp_parse(options->start, clock_utc_ns() / 1000, &params.start_us) &&
+        !timestamp_parse_local(options->start, INT64_MIN, &params.start_us))
+        return wrong("--start: expected " TIMESTAMP_FORMS ", found", options->start);
     if (options->unit && (!options->start || !parse_unit(options->unit, &params.unit_us)))
         return wrong("--unit: expected ms, s, min or h, and --start, found", options->unit);
     bool good = history_import(&params, &diag, &counts);
@@ -119,11 +119,11 @@ static int run_export(const struct history_options *options, const struct plant 
     int64_t now_us = clock_utc_ns() / 1000, to_us = now_us, from_us;
     if (!options->tags)
         return wrong("--tags: expected names, with commas between them, found", "none");
-    if (options->to && !when_parse(options->to, now_us, &to_us))
-        return wrong("--to: expected " WHEN_FORMS ", found", options->to);
+    if (options->to && !timestamp_parse(options->to, now_us, &to_us))
+        return wrong("--to: expected " TIMESTAMP_FORMS ", found", options->to);
     from_us = to_us - 3600 * US_PER_S;
-    if (options->from && !when_parse(options->from, now_us, &from_us))
-        return wrong("--from: expected " WHEN_FORMS ", found", options->from);
+    if (options->from && !timestamp_parse(options->from, now_us, &from_us))
+        return wrong("--from: expected " TIMESTAMP_FORMS ", found", options->from);
     if (from_us >= to_us)
         return wrong("--from: expected an earlier instant than --to, found", options->from ? options->from : "");
     struct history_reader *reader = history_reader_create(log, folder);

@@ -9,9 +9,9 @@
 
 #include "base/mem.h"
 #include "commands.h"
-#include "crew.h"
+#include "viewer_threads.h"
 #include "decoder.h"
-#include "swarm.h"
+#include "load_generator.h"
 
 enum { MAX_SESSIONS = 1000 };
 
@@ -64,7 +64,7 @@ static int run(struct probe *probe)
     pthread_mutex_init(&probe->lead.lock, NULL);
     for (int i = 0; i < probe->sessions; i++)
         good &= (probe->viewers[i] = make_viewer(probe, i)) != NULL;
-    bool (*drive)(struct viewer **, int) = probe->blind && !probe->url.tls ? swarm_run : crew_run;
+    bool (*drive)(struct viewer **, int) = probe->blind && !probe->url.tls ? load_generator_run : viewer_threads_run;
     good = good && drive(probe->viewers, probe->sessions) && probe_report(probe);
     for (int i = 0; i < probe->sessions; i++)
         viewer_destroy(&probe->viewers[i]);

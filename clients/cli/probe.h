@@ -13,7 +13,7 @@ struct probe {
     enum motion motion;
     bool as_json, blind, follow, spread;
     struct viewer **viewers;
-    struct lead lead;
+    struct leader lead;
 };
 
 extern const char *const probe_motions[MOTION_COUNT];

@@ -9,7 +9,7 @@
 
 #include "base/clock.h"
 #include "base/mem.h"
-#include "base/when.h"
+#include "base/timestamp.h"
 
 static const char snapshot_usage[] =
     "usage: plantcast snapshot (PLANT.yaml | http://HOST:PORT/) -o OUT.png [options]\n"
@@ -19,15 +19,14 @@ static const char snapshot_usage[] =
     "  --at INSTANT            as it was then, out of what was recorded; with --values: the time of these\n"
     "  --values FILE           without a daemon: CSV of tag,value[,quality] (perhaps unit; else the tag's Eng Units);\n"
     "                          may be repeated. Tags without a value have no data\n";
-static const char clip_usage[] =
-    "usage: plantcast clip (PLANT.yaml | http://HOST:PORT/) -o OUT.mp4 --from INSTANT --to INSTANT [options]\n"
-    "\n"
-    "A film of what was recorded, with the plant's clock and the word HISTORY in every picture.\n"
-    "\n"
-    "  -o, --out FILE          film to write: .mp4, .mkv or .mov, H.264\n"
-    "  --from, --to INSTANT    what it shows\n"
-    "  --speed F               seconds of the plant's in one of the film's; 60\n"
-    "  --fps F                 pictures in one second of the film; 25\n";
+static const char clip_usage[] = "usage: plantcast clip (PLANT.yaml | http://HOST:PORT/) -o OUT.mp4 --from INSTANT --to INSTANT [options]\n"
+                                 "\n"
+                                 "A film of what was recorded, with the plant's clock and the word HISTORY in every picture.\n"
+                                 "\n"
+                                 "  -o, --out FILE          film to write: .mp4, .mkv or .mov, H.264\n"
+                                 "  --from, --to INSTANT    what it shows\n"
+                                 "  --speed F               seconds of the plant's in one of the film's; 60\n"
+                                 "  --fps F                 pictures in one second of the film; 25\n";
 static const char instant_usage[] =
     "  INSTANT                 2026-11-20T10:00:00Z, with an offset (+01:00), seconds since 1970, or back from now: -8h\n"
     "  --size WxH              pixels; 1280x720\n";
@@ -73,15 +72,39 @@ static const char offline_usage[] =
 static const struct {
     const char *option, *name;
 } shared[] = {
-    { "camera", "camera" },     { "group", "group" },       { "distance", "distance" },  { "interpolation", "interpolation" },
-    { "fill", "fill" },         { "strength", "strength" }, { "decay", "decay" },        { "power", "power" },
-    { "radius", "radius_m" },   { "reach", "reach_m" },     { "ramp", "ramp_interval" }, { "range", "range" },
-    { "colormap", "colormap" }, { "look", "look" },         { "light", "light" },
-    { "backdrop", "backdrop" }, { "environment", "environment" },        { "select", "selected" },
-    { "show", "show" },         { "sensor", "sensor" },     { "sensors", "sensors" },
-    { "scale", "scale" },       { "breaks", "breaks" },     { "isolines", "isolines" },  { "split", "split" },
-    { "projection", "projection" }, { "height", "height_m" }, { "fit", "fit" },          { "side", "side" },
-    { "hide", "hidden" },       { "isolate", "isolate" },   { "ghost", "ghost" },        { "clip", "clip" },
+    { "camera", "camera" },
+    { "group", "group" },
+    { "distance", "distance" },
+    { "interpolation", "interpolation" },
+    { "fill", "fill" },
+    { "strength", "strength" },
+    { "decay", "decay" },
+    { "power", "power" },
+    { "radius", "radius_m" },
+    { "reach", "reach_m" },
+    { "ramp", "ramp_interval" },
+    { "range", "range" },
+    { "colormap", "colormap" },
+    { "look", "look" },
+    { "light", "light" },
+    { "backdrop", "backdrop" },
+    { "environment", "environment" },
+    { "select", "selected" },
+    { "show", "show" },
+    { "sensor", "sensor" },
+    { "sensors", "sensors" },
+    { "scale", "scale" },
+    { "breaks", "breaks" },
+    { "isolines", "isolines" },
+    { "split", "split" },
+    { "projection", "projection" },
+    { "height", "height_m" },
+    { "fit", "fit" },
+    { "side", "side" },
+    { "hide", "hidden" },
+    { "isolate", "isolate" },
+    { "ghost", "ghost" },
+    { "clip", "clip" },
     { "clip-box", "clip_box" },
 };
 enum { SHARED = sizeof(shared) / sizeof(shared[0]) };
@@ -171,7 +194,7 @@ static bool parse_pick(struct snapshot_options *options, const char *text)
 static bool parse_instant(const char *text, const char **given, int64_t *at_us)
 {
     *given = text;
-    return when_parse(text, clock_utc_ns() / 1000, at_us);
+    return timestamp_parse(text, clock_utc_ns() / 1000, at_us);
 }
 
 static bool parse_factor(const char *text, double least, double most, double *out)

@@ -14,8 +14,8 @@
 #include "base/mem.h"
 #include "base/text.h"
 #include "commands.h"
-#include "net/message/names.h"
-#include "net/tokens.h"
+#include "message/names.h"
+#include "access/tokens.h"
 
 enum { MAX_FILE_BYTES = 1024 * 1024 };
 
@@ -206,9 +206,7 @@ static bool take_option(int option, struct token_holder *holder)
         role = name_find(names_role, optarg);
         holder->role = (enum role)role;
         return role >= ROLE_VIEWER;
-    case 'n':
-        snprintf(holder->name, sizeof(holder->name), "%s", optarg);
-        return tokens_name_valid(optarg);
+    case 'n': snprintf(holder->name, sizeof(holder->name), "%s", optarg); return tokens_name_valid(optarg);
     case 'u': return tokens_parse_day(optarg, &holder->until_utc_ns);
     default: return false;
     }

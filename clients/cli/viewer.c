@@ -36,7 +36,7 @@ static void read_vector(const json_t *o, const char *name, double v[3])
 
 static void lead_begin(struct viewer *viewer)
 {
-    struct lead *lead = viewer->params.lead;
+    struct leader *lead = viewer->params.lead;
     if (!lead || viewer->params.follows)
         return;
     pthread_mutex_lock(&lead->lock);
@@ -104,7 +104,7 @@ static void record_input(struct viewer *viewer, uint32_t camera_seq, int64_t now
 /* By the camera that it was drawn with. */
 static void record_behind(struct viewer *viewer, const struct wire_frame *frame, int64_t now_ns)
 {
-    struct lead *lead = viewer->params.lead;
+    struct leader *lead = viewer->params.lead;
     if (!viewer->followed || now_ns - viewer->result.first_ns < VIEWER_SETTLES_S * NS_PER_S)
         return;
     pthread_mutex_lock(&lead->lock);
@@ -225,7 +225,7 @@ static int on_receive(struct viewer *viewer, struct lws *wsi, const void *bytes,
     viewer->in.length = 0;
     if (viewer->params.stalls && viewer->result.frames > 0)
         lws_rx_flow_control(wsi, 0);
-    if (viewer_has_words(viewer))
+    if (viewer_has_output(viewer))
         lws_callback_on_writable(wsi);
     return viewer->done ? -1 : 0;
 }
@@ -245,7 +245,7 @@ void viewer_on_time(struct viewer *viewer, int64_t now_ns)
     else if (now_ns - since_ns > PATIENCE_NS && expects_frames(viewer))
         viewer_fail(viewer, "no frame for 20 s");
     else
-        viewer_think(viewer, now_ns);
+        viewer_schedule(viewer, now_ns);
 }
 
 /* Ticks keep to a grid: what one is late, the next is not. */
@@ -254,7 +254,7 @@ static void on_timer(lws_sorted_usec_list_t *sul)
     struct viewer *viewer = lws_container_of(sul, struct viewer, timer);
     int64_t now_ns = clock_mono_ns();
     viewer_on_time(viewer, now_ns);
-    if (viewer->wsi && (viewer->done || viewer_has_words(viewer)))
+    if (viewer->wsi && (viewer->done || viewer_has_output(viewer)))
         lws_callback_on_writable(viewer->wsi); /* which closes it, if it is done */
     viewer->next_ns += (int64_t)(1e9 / viewer->params.hz);
     if (viewer->next_ns < now_ns)
@@ -267,8 +267,8 @@ static int on_writeable(struct viewer *viewer)
 {
     if (viewer->done)
         return -1;
-    int status = viewer_say(viewer);
-    if (viewer_has_words(viewer))
+    int status = viewer_send(viewer);
+    if (viewer_has_output(viewer))
         lws_callback_on_writable(viewer->wsi);
     return status;
 }

@@ -15,7 +15,7 @@ enum motion { MOTION_STILL, MOTION_ORBIT, MOTION_RANDOM, MOTION_COUNT };
 enum { VIEWER_SETTLES_S = 3, LEAD_CAMERAS = 256 };
 
 /* What followers know of the one they follow. */
-struct lead {
+struct leader {
     pthread_mutex_t lock;
     /* --- below: under lock */
     uint64_t session; /* 0: not connected yet */
@@ -31,13 +31,13 @@ struct viewer_params {
     int width_px, height_px;
     const char *codec; /* "jpeg", "h264" */
     enum motion motion;
-    double seconds, hz; /* hz: cameras in a second */
-    double start_deg;   /* of the orbit; of the view, where it stands still and that is not 0 */
-    unsigned seed;      /* of random motion */
-    bool blind;         /* acknowledges without decoding */
-    bool stalls;        /* reads nothing after the first frame */
-    struct lead *lead;  /* NULL: follows nobody and leads nobody */
-    bool follows;       /* else it leads */
+    double seconds, hz;  /* hz: cameras in a second */
+    double start_deg;    /* of the orbit; of the view, where it stands still and that is not 0 */
+    unsigned seed;       /* of random motion */
+    bool blind;          /* acknowledges without decoding */
+    bool stalls;         /* reads nothing after the first frame */
+    struct leader *lead; /* NULL: follows nobody and leads nobody */
+    bool follows;        /* else it leads */
 };
 
 struct samples { /* milliseconds */
@@ -49,7 +49,7 @@ enum viewer_stage { STAGE_WAIT, STAGE_FIELD, STAGE_RENDER, STAGE_ENCODE, STAGE_N
 
 struct viewer_result {
     int frames, still_frames, errors;
-    int given_up; /* frames that the server did not send to their end */
+    int given_up;                     /* frames that the server did not send to their end */
     int64_t text_bytes, steady_bytes; /* steady: of all messages but pongs, once VIEWER_SETTLES_S have gone by since the first frame */
     int64_t bytes, first_ns, last_ns; /* of frames; monotonic */
     struct samples input;             /* from sending a camera to its frame decoded */

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What the halves of a viewer share: what comes and how long it lives (viewer.c), what it says (viewer_say.c). Private to them. */
+/* What the halves of a viewer share: what comes and how long it lives (viewer.c), what it says (viewer_send.c). Private to them. */
 #ifndef CLI_VIEWER_IMPL_H
 #define CLI_VIEWER_IMPL_H
-#include "bare.h"
+#include "raw_websocket.h"
 #include "base/text.h"
 #include "decoder.h"
 #include "viewer.h"
@@ -13,13 +13,13 @@ struct viewer {
     struct viewer_params params;
     struct viewer_result result;
     struct lws_context *context;
-    struct lws *wsi;   /* one of these, while it is connected */
-    struct bare *bare;
+    struct lws *wsi; /* one of these, while it is connected */
+    struct raw_websocket *raw;
     lws_sorted_usec_list_t timer;
     struct decoder *decoder;
     int64_t decode_ns; /* of the parts of a picture so far */
-    struct text in;  /* the message that comes; over `bare`, of a binary one no more than its beginning */
-    size_t in_count; /* its length */
+    struct text in;    /* the message that comes; over `bare`, of a binary one no more than its beginning */
+    size_t in_count;   /* its length */
     bool greeted, welcomed, camera_due, ping_due, follow_due, followed, done;
     double eye[3], target[3], fov_deg;
     uint64_t session;
@@ -37,10 +37,10 @@ struct viewer {
 
 void viewer_fail(struct viewer *viewer, const char *why); /* the first reason stands */
 /* Sends the next of what is due. Negative: the connection is gone. */
-int viewer_say(struct viewer *viewer);
-bool viewer_has_words(const struct viewer *viewer);
+int viewer_send(struct viewer *viewer);
+bool viewer_has_output(const struct viewer *viewer);
 /* Notes what is due by now. */
-void viewer_think(struct viewer *viewer, int64_t now_ns);
+void viewer_schedule(struct viewer *viewer, int64_t now_ns);
 /* A whole message is in viewer->in. */
 void viewer_on_message(struct viewer *viewer, bool binary);
 /* As often as its cameras go. */

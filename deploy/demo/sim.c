@@ -15,7 +15,7 @@
 
 #include "base/clock.h"
 #include "base/mem.h"
-#include "base/when.h"
+#include "base/timestamp.h"
 #include "sim_process.h"
 
 enum { TICK_MS = 100, EXIT_USAGE = 2, MAX_SPEED = 10000 };
@@ -81,32 +81,20 @@ static bool take_option(struct options *options, int option, const char *text, s
 {
     struct in_addr address;
     switch (option) {
-    case 'p':
-        return read_port("port", text, &options->port);
-    case 'c':
-        return read_port("control", text, &options->control);
-    case 's':
-        return read_speed(text, &options->speed);
+    case 'p': return read_port("port", text, &options->port);
+    case 'c': return read_port("control", text, &options->control);
+    case 's': return read_speed(text, &options->speed);
     case 'b':
         options->bind = text;
         if (inet_pton(AF_INET, text, &address) == 1)
             return true;
         fprintf(stderr, "plantcast-sim: --bind %s: expected an IPv4 address\n", text);
         return false;
-    case 'v':
-        sim_map_add_file(&options->map, text);
-        return true;
-    case 'm':
-        sim_map_add(&options->map, text, "--map", 0, diag);
-        return true;
-    case 'f':
-        options->map_file = text;
-        return true;
-    case 'l':
-        options->loop = true;
-        return true;
-    default:
-        return false;
+    case 'v': sim_map_add_file(&options->map, text); return true;
+    case 'm': sim_map_add(&options->map, text, "--map", 0, diag); return true;
+    case 'f': options->map_file = text; return true;
+    case 'l': options->loop = true; return true;
+    default: return false;
     }
 }
 
@@ -114,10 +102,11 @@ static bool take_option(struct options *options, int option, const char *text, s
 static int read_options(struct options *options, int argc, char **argv)
 {
     static const struct option known[] = {
-        { "port", required_argument, NULL, 'p' },  { "bind", required_argument, NULL, 'b' },     { "values", required_argument, NULL, 'v' },
-        { "map", required_argument, NULL, 'm' },   { "map-file", required_argument, NULL, 'f' }, { "speed", required_argument, NULL, 's' },
-        { "loop", no_argument, NULL, 'l' },        { "control", required_argument, NULL, 'c' },  { "help", no_argument, NULL, 'h' },
-        { 0 },
+        { "port", required_argument, NULL, 'p' },     { "bind", required_argument, NULL, 'b' },
+        { "values", required_argument, NULL, 'v' },   { "map", required_argument, NULL, 'm' },
+        { "map-file", required_argument, NULL, 'f' }, { "speed", required_argument, NULL, 's' },
+        { "loop", no_argument, NULL, 'l' },           { "control", required_argument, NULL, 'c' },
+        { "help", no_argument, NULL, 'h' },           { 0 },
     };
     struct diag diag = { 0 };
     int option, status = EXIT_SUCCESS;
@@ -222,7 +211,7 @@ static int run(struct options *options)
     bool good = false;
     struct plant *plant = plant_load(options->plant, &diag);
     if (plant) {
-        when_use_zone(plant->time_zone); /* of recorded times */
+        timestamp_use_zone(plant->time_zone); /* of recorded times */
         read_map_file(options, &diag);
         values = sim_values_create(plant, &options->map, options->loop || options->map.loop, &diag);
     }

@@ -4,9 +4,8 @@
 
 #include <string.h>
 
-static const char *const event_names[ALARM_EVENTS] = { "raise",    "clear",    "acknowledge", "reset",          "shelve",
-                                                       "unshelve", "suppress", "unsuppress",  "out_of_service", "in_service",
-                                                       "carry",    "call" };
+static const char *const event_names[ALARM_EVENTS] = { "raise",    "clear",      "acknowledge",    "reset",      "shelve", "unshelve",
+                                                       "suppress", "unsuppress", "out_of_service", "in_service", "carry",  "call" };
 
 const char *alarm_event_name(enum alarm_event event)
 {
@@ -101,7 +100,7 @@ enum alarm_outcome alarm_state_step(struct alarm_state *state, const struct alar
     return ALARM_REFUSED;
 }
 
-enum alarm_word alarm_state_word(const struct alarm_state *state, const struct alarm_rule *rule)
+enum alarm_status alarm_state_status(const struct alarm_state *state, const struct alarm_rule *rule)
 {
     if (state->aside & ALARM_ASIDE_OUT)
         return ALARM_OUT_OF_SERVICE;

@@ -26,7 +26,7 @@ static int64_t ns_of(double s)
 
 static int add_alarm(struct alarms *alarms, int tag, enum alarm_kind kind, double limit)
 {
-    const struct plant_alarming *alarming = &alarms->plant->tags[tag].alarming;
+    const struct plant_alarm_settings *alarm_settings = &alarms->plant->tags[tag].alarm_settings;
     int index = (int)alarms->count;
     mem_grow(&alarms->list, &alarms->capacity, alarms->count + 1, sizeof(*alarms->list));
     alarms->list[alarms->count++] = (struct alarm){
@@ -36,8 +36,8 @@ static int add_alarm(struct alarms *alarms, int tag, enum alarm_kind kind, doubl
         .priority = alarm_priority(&alarms->plant->tags[tag], kind),
         .limit = limit,
         .value = NAN,
-        .rule = { .acknowledges = alarms->plant->alarms == ALARMS_LOCAL, .latches = alarming->latch && kind != ALARM_BAD },
-        .delays = { ns_of(alarming->on_delay_s), ns_of(alarming->off_delay_s) },
+        .rule = { .acknowledges = alarms->plant->alarms == ALARMS_LOCAL, .latches = alarm_settings->latch && kind != ALARM_BAD },
+        .delays = { ns_of(alarm_settings->on_delay_s), ns_of(alarm_settings->off_delay_s) },
         .older = -1,
         .newer = -1,
     };
@@ -61,8 +61,8 @@ static void add_bad(struct alarms *alarms, int tag)
 /* As soon, and one less urgent, as the first and the most urgent of those that it stands for. */
 static void add_link(struct alarms *alarms, struct device *device, const struct alarm *bad)
 {
-    const struct plant_alarming *alarming = &alarms->plant->tags[bad->tag].alarming;
-    int priority = (alarming->priority ? alarming->priority : ALARM_PRIORITY_DEFAULT) + 1;
+    const struct plant_alarm_settings *alarm_settings = &alarms->plant->tags[bad->tag].alarm_settings;
+    int priority = (alarm_settings->priority ? alarm_settings->priority : ALARM_PRIORITY_DEFAULT) + 1;
     priority = priority > ALARM_PRIORITIES ? ALARM_PRIORITIES : priority;
     if (device->alarm >= 0) {
         struct alarm *link = &alarms->list[device->alarm];
@@ -254,14 +254,14 @@ static void unlink_alarm(struct alarms *alarms, int index)
         alarms->newest = alarm->older;
 }
 
-enum alarm_word alarm_word_of(const struct alarm *alarm)
+enum alarm_status alarm_status_of(const struct alarm *alarm)
 {
-    return alarm_state_word(&alarm->state, &alarm->rule);
+    return alarm_state_status(&alarm->state, &alarm->rule);
 }
 
 static bool graver(const struct alarm *a, const struct alarm *b)
 {
-    const struct alarm_grade x = { a->priority, a->kind, alarm_word_of(a) }, y = { b->priority, b->kind, alarm_word_of(b) };
+    const struct alarm_grade x = { a->priority, a->kind, alarm_status_of(a) }, y = { b->priority, b->kind, alarm_status_of(b) };
     return alarm_graver(&x, &y);
 }
 
@@ -270,17 +270,17 @@ static void find_gravest(struct alarms *alarms, int tag)
     const struct alarm *gravest = NULL;
     for (int i = alarms->first_alarm[tag]; i < alarms->first_alarm[tag + 1]; i++) {
         const struct alarm *alarm = &alarms->list[alarms->by_tag[i]];
-        if (alarm_word_calls(alarm_word_of(alarm)) && (!gravest || graver(alarm, gravest)))
+        if (alarm_status_is_annunciated(alarm_status_of(alarm)) && (!gravest || graver(alarm, gravest)))
             gravest = alarm;
     }
     struct gravest now = { .kind = (uint8_t)(gravest ? gravest->kind : ALARM_NONE),
-                           .word = (uint8_t)(gravest ? alarm_word_of(gravest) : ALARM_NORMAL) };
+                           .status = (uint8_t)(gravest ? alarm_status_of(gravest) : ALARM_NORMAL) };
     struct gravest *was = &alarms->gravest[tag];
-    if (was->kind == now.kind && was->word == now.word)
+    if (was->kind == now.kind && was->status == now.status)
         return;
     *was = now;
     if (alarms->listener.of_tag)
-        alarms->listener.of_tag(alarms->listener.arg, tag, (enum alarm_kind)now.kind, (enum alarm_word)now.word);
+        alarms->listener.of_tag(alarms->listener.arg, tag, (enum alarm_kind)now.kind, (enum alarm_status)now.status);
 }
 
 /* Who asks for changes gets it. */
@@ -314,7 +314,7 @@ static enum alarm_outcome step(struct alarms *alarms, int index, const struct al
 {
     struct alarm *alarm = &alarms->list[index];
     struct alarm_change change = *what;
-    change.before = alarm_word_of(alarm);
+    change.before = alarm_status_of(alarm);
     alarms->carried -= (alarm->state.aside & ALARM_ASIDE_CARRIED) != 0;
     enum alarm_outcome outcome = alarm_state_step(&alarm->state, &alarm->rule, what->event);
     alarms->carried += (alarm->state.aside & ALARM_ASIDE_CARRIED) != 0;
@@ -330,7 +330,7 @@ static enum alarm_outcome step(struct alarms *alarms, int index, const struct al
         alarm->value = what->value;
     }
     change.alarm = alarm;
-    change.after = alarm_word_of(alarm);
+    change.after = alarm_status_of(alarm);
     alarms_touch(alarms, index);
     if (alarms->listener.changed)
         alarms->listener.changed(alarms->listener.arg, &change);
@@ -357,7 +357,7 @@ static const struct device *carrier_of(const struct alarms *alarms, const struct
 {
     int of = alarm->kind == ALARM_BAD ? alarms->devices->of_tag[alarm->tag] : -1;
     const struct device *device = of < 0 ? NULL : &alarms->devices->list[of];
-    return device && device_is_lost(device) && alarms->devices->words[alarm->tag] == DEVICE_GONE ? device : NULL;
+    return device && device_is_lost(device) && alarms->devices->statuses[alarm->tag] == DEVICE_GONE ? device : NULL;
 }
 
 static void turned(struct alarms *alarms, int index, double value, struct instant at)
@@ -366,8 +366,11 @@ static void turned(struct alarms *alarms, int index, double value, struct instan
     const struct device *carrier = alarm->condition.active ? carrier_of(alarms, alarm) : NULL;
     alarm->rule.carried = carrier != NULL;
     step(alarms, index,
-         &(struct alarm_change){ .event = alarm->condition.active ? ALARM_RAISE : ALARM_CLEAR, .utc_ns = at.utc_ns, .value = value,
-                                 .who = "", .reason = carrier ? carrier->name : "" },
+         &(struct alarm_change){ .event = alarm->condition.active ? ALARM_RAISE : ALARM_CLEAR,
+                                 .utc_ns = at.utc_ns,
+                                 .value = value,
+                                 .who = "",
+                                 .reason = carrier ? carrier->name : "" },
          at.mono_ns);
     follow_acknowledgement(alarms, index, at);
 }
@@ -398,47 +401,50 @@ static void set_held(struct alarms *alarms, int index, bool held)
     if (alarms->list[index].held == held)
         return;
     alarms->list[index].held = held;
-    if (alarm_word_of(&alarms->list[index]) != ALARM_NORMAL)
+    if (alarm_status_of(&alarms->list[index]) != ALARM_NORMAL)
         alarms_touch(alarms, index);
 }
 
-static void hear_value(struct alarms *alarms, int index, const struct heard *heard, bool is_bit)
+static void put_value(struct alarms *alarms, int index, const struct sample_event *event, bool is_bit)
 {
     struct alarm *alarm = &alarms->list[index];
-    struct instant now = { heard->mono_ns, heard->utc_ns };
-    bool bad = quality_is_bad(heard->quality);
+    struct instant now = { event->mono_ns, event->utc_ns };
+    bool bad = quality_is_bad(event->quality);
     set_held(alarms, index, bad);
     if (bad) {
         advance(alarms, index, now);
         condition_hold(&alarm->condition);
     } else if (is_bit) {
-        put(alarms, index, heard->value != 0 ? CONDITION_BEYOND : CONDITION_CLEAR, heard->value, now);
+        put(alarms, index, event->value != 0 ? CONDITION_BEYOND : CONDITION_CLEAR, event->value, now);
     } else {
-        double deadband = alarms->plant->tags[alarm->tag].alarming.deadband;
-        put(alarms, index, condition_side(alarm->kind, alarm->limit, deadband, heard->value), heard->value, now);
+        double deadband = alarms->plant->tags[alarm->tag].alarm_settings.deadband;
+        put(alarms, index, condition_side(alarm->kind, alarm->limit, deadband, event->value), event->value, now);
     }
 }
 
-static void hear(struct alarms *alarms, const struct feed *feed, const struct heard *heard)
+static void put_sample(struct alarms *alarms, const struct feed *feed, const struct sample_event *event)
 {
-    bool bad = quality_is_bad(heard->quality);
+    bool bad = quality_is_bad(event->quality);
     switch (feed->role) {
-    case FEED_VALUE: hear_value(alarms, feed->alarm, heard, false); break;
-    case FEED_BIT: hear_value(alarms, feed->alarm, heard, true); break;
+    case FEED_VALUE: put_value(alarms, feed->alarm, event, false); break;
+    case FEED_BIT: put_value(alarms, feed->alarm, event, true); break;
     case FEED_BADNESS:
-        put(alarms, feed->alarm, bad ? CONDITION_BEYOND : CONDITION_CLEAR, NAN, (struct instant){ heard->mono_ns, heard->utc_ns });
+        put(alarms, feed->alarm, bad ? CONDITION_BEYOND : CONDITION_CLEAR, NAN, (struct instant){ event->mono_ns, event->utc_ns });
         break;
     case FEED_ACKNOWLEDGED:
         if (!bad)
-            alarms->list[feed->alarm].acknowledged_there = heard->value != 0;
-        follow_acknowledgement(alarms, feed->alarm, (struct instant){ heard->mono_ns, heard->utc_ns });
+            alarms->list[feed->alarm].acknowledged_there = event->value != 0;
+        follow_acknowledgement(alarms, feed->alarm, (struct instant){ event->mono_ns, event->utc_ns });
         break;
     case FEED_SUPPRESSES:
         if (!bad)
             step(alarms, feed->alarm,
-                 &(struct alarm_change){ .event = heard->value != 0 ? ALARM_SUPPRESS : ALARM_UNSUPPRESS, .utc_ns = heard->utc_ns,
-                                         .value = NAN, .who = "", .reason = alarms->plant->tags[heard->tag].name },
-                 heard->mono_ns);
+                 &(struct alarm_change){ .event = event->value != 0 ? ALARM_SUPPRESS : ALARM_UNSUPPRESS,
+                                         .utc_ns = event->utc_ns,
+                                         .value = NAN,
+                                         .who = "",
+                                         .reason = alarms->plant->tags[event->tag].name },
+                 event->mono_ns);
         break;
     }
 }
@@ -484,28 +490,28 @@ static void call_those_left(struct alarms *alarms, struct instant now)
     for (size_t i = 0; i < alarms->count && alarms->carried > 0; i++) {
         const struct alarm *alarm = &alarms->list[i];
         if (alarm->state.aside & ALARM_ASIDE_CARRIED && calls_by_itself(alarms, alarm, now.mono_ns))
-            step(alarms, (int)i,
-                 &(struct alarm_change){ .event = ALARM_CALL, .utc_ns = now.utc_ns, .value = NAN, .who = "", .reason = "" }, now.mono_ns);
+            step(alarms, (int)i, &(struct alarm_change){ .event = ALARM_CALL, .utc_ns = now.utc_ns, .value = NAN, .who = "", .reason = "" },
+                 now.mono_ns);
     }
 }
 
 /* What becomes of devices is known before what becomes of their tags is judged. */
-void alarms_hear(struct alarms *alarms, const struct heard *heard, size_t count)
+void alarms_put(struct alarms *alarms, const struct sample_event *event, size_t count)
 {
     for (size_t i = 0; i < count; i++)
-        devices_hear(alarms->devices, heard[i].tag, device_word_of(heard[i].quality), heard[i].mono_ns);
+        devices_put(alarms->devices, event[i].tag, device_status_of(event[i].quality), event[i].mono_ns);
     if (count > 0)
-        look_at_devices(alarms, (struct instant){ heard[count - 1].mono_ns, heard[count - 1].utc_ns });
+        look_at_devices(alarms, (struct instant){ event[count - 1].mono_ns, event[count - 1].utc_ns });
     for (size_t i = 0; i < count; i++) {
-        int tag = heard[i].tag;
+        int tag = event[i].tag;
         struct seen *seen = &alarms->seen[tag];
-        if (heard[i].quality == QUALITY_BAD_WAITING)
+        if (event[i].quality == QUALITY_BAD_WAITING)
             continue;
-        seen->heard = true;
-        seen->bad = quality_is_bad(heard[i].quality);
+        seen->sampled = true;
+        seen->bad = quality_is_bad(event[i].quality);
         for (int k = alarms->first_feed[tag]; k < alarms->first_feed[tag + 1]; k++)
-            hear(alarms, &alarms->feeds[k], &heard[i]);
-        seen->value = heard[i].value;
+            put_sample(alarms, &alarms->feeds[k], &event[i]);
+        seen->value = event[i].value;
     }
 }
 
@@ -524,12 +530,12 @@ static bool is_no_news(const struct alarms *alarms, size_t tag, bool bad, uint32
     bool counts = of >= 0 && alarms->devices->list[of].alarm >= 0;
     if (alarms->first_feed[tag] == alarms->first_feed[tag + 1] && !counts)
         return true;
-    if (!seen->heard)
+    if (!seen->sampled)
         return !bad;
-    return seen->bad == bad && (!counts || alarms->devices->words[tag] == device_word_of(quality));
+    return seen->bad == bad && (!counts || alarms->devices->statuses[tag] == device_status_of(quality));
 }
 
-/* Those that went stale since they were heard, or never came. */
+/* Those that went stale since they were sampled, or never came. */
 static void look_at_qualities(struct alarms *alarms, const struct snapshot *now)
 {
     size_t count = 0;
@@ -547,9 +553,9 @@ static void look_at_qualities(struct alarms *alarms, const struct snapshot *now)
             quality = QUALITY_BAD_NO_COMMUNICATION;
         }
         alarms->noticed[count++] =
-            (struct heard){ (int)i, bad ? NAN : reading->value, quality, now->taken_mono_ns, now->taken_utc_ns };
+            (struct sample_event){ (int)i, bad ? NAN : reading->value, quality, now->taken_mono_ns, now->taken_utc_ns };
     }
-    alarms_hear(alarms, alarms->noticed, count);
+    alarms_put(alarms, alarms->noticed, count);
 }
 
 static void end_shelf(struct alarms *alarms, int index, struct instant now)
@@ -604,15 +610,15 @@ const char *alarms_act(struct alarms *alarms, int index, const struct alarm_act 
     memcpy(who, alarm->who, sizeof(who));
     memcpy(reason, alarm->reason, sizeof(reason));
     struct instant until = alarm->until;
-    alarm->until = shelves ? (struct instant){ now.mono_ns + act->for_ns, now.utc_ns + act->for_ns }
+    alarm->until = shelves                        ? (struct instant){ now.mono_ns + act->for_ns, now.utc_ns + act->for_ns }
                    : act->event == ALARM_UNSHELVE ? (struct instant){ 0 }
                                                   : until;
     strncpy(alarm->who, act->who, sizeof(alarm->who) - 1);
     strncpy(alarm->reason, act->reason, sizeof(alarm->reason) - 1);
-    enum alarm_outcome outcome = step(alarms, index,
-                                      &(struct alarm_change){ .event = act->event, .utc_ns = now.utc_ns, .value = NAN, .who = act->who,
-                                                              .reason = act->reason },
-                                      now.mono_ns);
+    enum alarm_outcome outcome =
+        step(alarms, index,
+             &(struct alarm_change){ .event = act->event, .utc_ns = now.utc_ns, .value = NAN, .who = act->who, .reason = act->reason },
+             now.mono_ns);
     if (outcome == ALARM_CHANGED) {
         alarms_watch(alarms, index);
         return NULL;

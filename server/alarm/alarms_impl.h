@@ -13,11 +13,11 @@ struct feed { /* which samples an alarm hears, and as what */
 
 struct seen { /* of a tag */
     double value;
-    bool heard, bad;
+    bool sampled, bad;
 };
 
 struct gravest {
-    uint8_t kind, word;
+    uint8_t kind, status;
 };
 
 struct alarms {
@@ -27,18 +27,18 @@ struct alarms {
     size_t count, capacity;
     struct feed *feeds; /* by tag */
     size_t feed_count, feed_capacity;
-    int *by_tag;        /* indices of alarms, by tag */
+    int *by_tag;                   /* indices of alarms, by tag */
     int *first_feed, *first_alarm; /* by tag, and one more: in feeds, by_tag */
     struct seen *seen;
     struct devices *devices;
-    struct heard *noticed; /* room for what alarms_tick finds out; by tag */
+    struct sample_event *noticed; /* room for what alarms_tick finds out; by tag */
     struct gravest *gravest;
-    int *timed;         /* alarms with a delay or a shelf that runs */
+    int *timed; /* alarms with a delay or a shelf that runs */
     size_t timed_count, timed_capacity;
-    int carried;        /* alarms that those of their devices stand for */
+    int carried; /* alarms that those of their devices stand for */
     uint64_t number;
     int newest;
-    int64_t begun_ns;   /* monotonic, of the first tick */
+    int64_t begun_ns; /* monotonic, of the first tick */
 };
 
 void alarms_touch(struct alarms *alarms, int index);

@@ -48,7 +48,7 @@ struct devices *devices_create(const struct plant *plant)
 {
     struct devices *devices = mem_new(sizeof(*devices));
     devices->of_tag = mem_array(plant->tag_count ? plant->tag_count : 1, sizeof(*devices->of_tag));
-    devices->words = mem_array(plant->tag_count ? plant->tag_count : 1, sizeof(*devices->words));
+    devices->statuses = mem_array(plant->tag_count ? plant->tag_count : 1, sizeof(*devices->statuses));
     for (size_t i = 0; i < plant->tag_count; i++) {
         const struct plant_tag *tag = &plant->tags[i];
         devices->of_tag[i] = tag->source < 0 ? -1 : find_or_add(devices, tag->source, unit_of(plant, tag));
@@ -66,7 +66,7 @@ void devices_destroy(struct devices **pointer)
         mem_free(devices->list[i].name);
     mem_free(devices->list);
     mem_free(devices->of_tag);
-    mem_free(devices->words);
+    mem_free(devices->statuses);
     mem_free(devices);
     *pointer = NULL;
 }
@@ -79,10 +79,10 @@ int devices_find(const struct devices *devices, const char *name)
     return i;
 }
 
-enum device_word device_word_of(uint32_t quality)
+enum device_status device_status_of(uint32_t quality)
 {
     switch (quality) {
-    case QUALITY_BAD_WAITING: return DEVICE_UNHEARD;
+    case QUALITY_BAD_WAITING: return DEVICE_UNKNOWN;
     case QUALITY_BAD_NO_COMMUNICATION:
     case QUALITY_BAD_COMMUNICATION_ERROR:
     case QUALITY_BAD_DEVICE_FAILURE: return DEVICE_GONE;
@@ -91,15 +91,15 @@ enum device_word device_word_of(uint32_t quality)
     }
 }
 
-void devices_hear(struct devices *devices, int tag, enum device_word word, int64_t mono_ns)
+void devices_put(struct devices *devices, int tag, enum device_status status, int64_t mono_ns)
 {
     int of = devices->of_tag[tag];
-    if (of < 0 || devices->words[tag] == word)
+    if (of < 0 || devices->statuses[tag] == status)
         return;
     struct device *device = &devices->list[of];
-    device->usable += (word == DEVICE_USABLE) - (devices->words[tag] == DEVICE_USABLE);
-    device->gone += (word == DEVICE_GONE) - (devices->words[tag] == DEVICE_GONE);
-    devices->words[tag] = (uint8_t)word;
+    device->usable += (status == DEVICE_USABLE) - (devices->statuses[tag] == DEVICE_USABLE);
+    device->gone += (status == DEVICE_GONE) - (devices->statuses[tag] == DEVICE_GONE);
+    devices->statuses[tag] = (uint8_t)status;
     device->changed = true;
     if (!device->usable)
         device->back_ns = 0;

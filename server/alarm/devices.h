@@ -5,31 +5,31 @@
 #define ALARM_DEVICES_H
 #include "plant/plant.h"
 
-enum device_word { DEVICE_UNHEARD, DEVICE_USABLE, DEVICE_GONE /* nothing comes, or the controller has stopped */, DEVICE_OTHER };
+enum device_status { DEVICE_UNKNOWN, DEVICE_USABLE, DEVICE_GONE /* nothing comes, or the controller has stopped */, DEVICE_OTHER };
 
 struct device {
-    char *name;          /* of its source, and its unit where that has several: "plc1", "gateway/7" */
+    char *name; /* of its source, and its unit where that has several: "plc1", "gateway/7" */
     int source, unit;
-    int usable, gone;    /* how many of its tags are so */
-    int64_t back_ns;     /* monotonic: since when there is something usable; 0: there is nothing */
-    int alarm;           /* index in alarms; -1: nobody would miss it */
-    bool changed;        /* since it was looked at */
+    int usable, gone; /* how many of its tags are so */
+    int64_t back_ns;  /* monotonic: since when there is something usable; 0: there is nothing */
+    int alarm;        /* index in alarms; -1: nobody would miss it */
+    bool changed;     /* since it was looked at */
 };
 
 struct devices {
     struct device *list;
     size_t count, capacity;
-    int *of_tag;         /* -1: from no device */
-    uint8_t *words;      /* by tag, enum device_word */
+    int *of_tag;       /* -1: from no device */
+    uint8_t *statuses; /* by tag, enum device_status */
 };
 
-struct devices *devices_create(const struct plant *plant); /* outlives it */
-void devices_destroy(struct devices **devices);            /* &NULL is fine; leaves NULL */
+struct devices *devices_create(const struct plant *plant);         /* outlives it */
+void devices_destroy(struct devices **devices);                    /* &NULL is fine; leaves NULL */
 int devices_find(const struct devices *devices, const char *name); /* index or -1 */
 
-enum device_word device_word_of(uint32_t quality);
+enum device_status device_status_of(uint32_t quality);
 /* What is known of a tag by now. */
-void devices_hear(struct devices *devices, int tag, enum device_word word, int64_t mono_ns);
+void devices_put(struct devices *devices, int tag, enum device_status status, int64_t mono_ns);
 bool device_is_lost(const struct device *device);
 
 #endif

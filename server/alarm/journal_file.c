@@ -41,14 +41,13 @@ static const char *const sql[SQL_COUNT] = {
     [SQL_ROWS] = IN_TIME NEWEST,
     [SQL_ROWS_OF] = IN_TIME " AND tag = ?6" NEWEST,
     /* From one alarm to the next in the index, and of each the last row until then: a few steps an alarm, however long the journal is. */
-    [SQL_AT] =
-        "WITH RECURSIVE known(tag, kind) AS ("
-        " SELECT * FROM (SELECT tag, kind FROM event ORDER BY tag, kind LIMIT 1)"
-        " UNION ALL SELECT next.tag, next.kind FROM known JOIN event next ON next.id ="
-        " coalesce((SELECT id FROM event WHERE tag = known.tag AND kind > known.kind ORDER BY kind LIMIT 1),"
-        " (SELECT id FROM event WHERE tag > known.tag ORDER BY tag, kind LIMIT 1))) "
-        "SELECT " ROW " FROM event WHERE id IN (SELECT (SELECT id FROM event WHERE tag = known.tag AND kind = known.kind AND t <= ?1"
-        " ORDER BY t DESC, id DESC LIMIT 1) FROM known) AND after <> 'normal' ORDER BY id",
+    [SQL_AT] = "WITH RECURSIVE known(tag, kind) AS ("
+               " SELECT * FROM (SELECT tag, kind FROM event ORDER BY tag, kind LIMIT 1)"
+               " UNION ALL SELECT next.tag, next.kind FROM known JOIN event next ON next.id ="
+               " coalesce((SELECT id FROM event WHERE tag = known.tag AND kind > known.kind ORDER BY kind LIMIT 1),"
+               " (SELECT id FROM event WHERE tag > known.tag ORDER BY tag, kind LIMIT 1))) "
+               "SELECT " ROW " FROM event WHERE id IN (SELECT (SELECT id FROM event WHERE tag = known.tag AND kind = known.kind AND t <= ?1"
+               " ORDER BY t DESC, id DESC LIMIT 1) FROM known) AND after <> 'normal' ORDER BY id",
 };
 static const struct database_format format = { APPLICATION_ID, JOURNAL_VERSION, "", schemas, sql, SQL_COUNT };
 
@@ -105,8 +104,8 @@ static int write_event(struct journal_file *file, const struct journal_entry *en
     database_bind_text(s, 2, entry->tag);
     database_bind_text(s, 3, alarm_kind_name(entry->alarm.kind));
     database_bind_text(s, 4, alarm_event_name(entry->event));
-    database_bind_text(s, 5, alarm_word_name(entry->before));
-    database_bind_text(s, 6, alarm_word_name(entry->after));
+    database_bind_text(s, 5, alarm_status_name(entry->before));
+    database_bind_text(s, 6, alarm_status_name(entry->after));
     sqlite3_bind_int(s, 7, entry->alarm.priority);
     database_bind_value(s, 8, entry->alarm.limit);
     database_bind_value(s, 9, entry->value);
@@ -118,7 +117,7 @@ static int write_event(struct journal_file *file, const struct journal_entry *en
 static int write_state(struct journal_file *file, const struct journal_entry *entry)
 {
     const struct alarm *alarm = &entry->alarm;
-    bool normal = alarm_word_of(alarm) == ALARM_NORMAL;
+    bool normal = alarm_status_of(alarm) == ALARM_NORMAL;
     sqlite3_stmt *s = database_statement(&file->db, normal ? SQL_NORMAL : SQL_STATE);
     database_bind_text(s, 1, entry->tag);
     database_bind_text(s, 2, alarm_kind_name(alarm->kind));
@@ -223,8 +222,8 @@ static int tell_all(struct journal_file *file, sqlite3_stmt *s, void (*each)(voi
     return database_fail(&file->db, code, "cannot be read");
 }
 
-int journal_file_rows(struct journal_file *file, const struct journal_query *query,
-                      void (*each)(void *arg, const struct journal_row *row), void *arg)
+int journal_file_rows(struct journal_file *file, const struct journal_query *query, void (*each)(void *arg, const struct journal_row *row),
+                      void *arg)
 {
     int64_t before_us = query->before_id == INT64_MAX ? INT64_MIN : time_of(file, query->before_id), to_us = query->to_us;
     sqlite3_stmt *s = database_statement(&file->db, query->tag ? SQL_ROWS_OF : SQL_ROWS);

@@ -5,10 +5,10 @@
 #include "alarm/journal.h"
 
 struct journal_entry {
-    struct alarm alarm;    /* as it was then */
-    bool changed;          /* else only how it is */
+    struct alarm alarm; /* as it was then */
+    bool changed;       /* else only how it is */
     enum alarm_event event;
-    enum alarm_word before, after;
+    enum alarm_status before, after;
     int64_t utc_ns;
     double value;
     char tag[256], who[ALARM_NAME_BYTES], reason[ALARM_REASON_BYTES];
@@ -25,8 +25,8 @@ int journal_file_write(struct journal_file *file, const struct journal_entry *en
 int journal_file_forget(struct journal_file *file, int64_t before_us); /* rows that are older */
 /* How alarms were when the journal was last written. */
 int journal_file_states(struct journal_file *file, void (*each)(void *arg, const char *tag, const struct alarm *alarm), void *arg);
-int journal_file_rows(struct journal_file *file, const struct journal_query *query,
-                      void (*each)(void *arg, const struct journal_row *row), void *arg);
+int journal_file_rows(struct journal_file *file, const struct journal_query *query, void (*each)(void *arg, const struct journal_row *row),
+                      void *arg);
 int journal_file_at(struct journal_file *file, int64_t t_us, void (*each)(void *arg, const struct journal_row *row), void *arg);
 
 #endif

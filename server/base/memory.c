@@ -45,7 +45,7 @@ size_t memory_default_bytes(void)
     return quarter < MOST_BYTES ? quarter : MOST_BYTES;
 }
 
-void memory_look(struct memory_use *use)
+void memory_measure(struct memory_use *use)
 {
     unsigned long long all = 0, resident = 0, shared = 0;
     size_t page = (size_t)sysconf(_SC_PAGESIZE);
@@ -63,7 +63,7 @@ void memory_look(struct memory_use *use)
 #endif
 }
 
-void memory_give_back(void)
+void memory_trim(void)
 {
 #ifdef __GLIBC__
     malloc_trim(0);

@@ -8,12 +8,12 @@
 /* A quarter of the machine, or of what its control group may take, at most 2 GiB. */
 size_t memory_default_bytes(void);
 
-struct memory_use {            /* bytes */
+struct memory_use {             /* bytes */
     size_t resident, anonymous; /* in RAM; of these, what is no file's */
     size_t allocated;           /* handed out by malloc */
 };
-void memory_look(struct memory_use *use);
+void memory_measure(struct memory_use *use);
 /* What malloc keeps goes back to the machine, as far as whole pages are free. */
-void memory_give_back(void);
+void memory_trim(void);
 
 #endif

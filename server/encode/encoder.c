@@ -51,31 +51,31 @@ bool encoder_is_stream(const char *name)
 }
 
 /* Of a frame that follows `before` under the same view. False: nothing differs. */
-static bool find_changes(const struct encoder *encoder, const struct frame *frame, const struct frame *before, struct change *changes,
-                         int *count)
+static bool find_dirty_rects(const struct encoder *encoder, const struct frame *frame, const struct frame *before, struct dirty_rect *rects,
+                             int *count)
 {
     if (encoder->impl->is_stream) /* it finds them itself */
-        return !changes_none(before, frame);
-    *count = changes_find(before, frame, changes);
+        return !dirty_rects_none(before, frame);
+    *count = dirty_rects_find(before, frame, rects);
     if (*count == 0)
         return false;
-    if (changes_share(frame, changes, *count) > WHOLE_SHARE)
+    if (dirty_rects_share(frame, rects, *count) > WHOLE_SHARE)
         *count = 0;
     return true;
 }
 
 int encoder_send(struct encoder *encoder, struct frame *frame, const struct encoder_params *params)
 {
-    struct change changes[CHANGES_MAX];
+    struct dirty_rect rects[DIRTY_RECTS_MAX];
     const struct frame *before = params->key ? NULL : params->before;
     int count = 0;
     if (encoder->ready)
         return -EAGAIN;
     int64_t begin_ns = clock_mono_ns();
     if (before && before->width_px == frame->width_px && before->height_px == frame->height_px && view_equal(&before->view, &frame->view) &&
-        !find_changes(encoder, frame, before, changes, &count))
+        !find_dirty_rects(encoder, frame, before, rects, &count))
         return 0;
-    int status = encoder->impl->send(encoder, frame, params, changes, count);
+    int status = encoder->impl->send(encoder, frame, params, rects, count);
     if (status == 0)
         encoder->ready->encode_ns = clock_mono_ns() - begin_ns;
     return status;

@@ -2,7 +2,7 @@
 /* What one codec supplies: a line in the table of encoder.c. Private to encode/. */
 #ifndef ENCODE_ENCODER_IMPL_H
 #define ENCODE_ENCODER_IMPL_H
-#include "encode/changes.h"
+#include "encode/dirty_rects.h"
 #include "encode/encoder.h"
 
 struct encoder_impl {
@@ -11,7 +11,8 @@ struct encoder_impl {
     struct encoder *(*create)(struct log *log, const char *library);
     /* Leaves encoder->ready. changes: none for the whole picture, else the only rectangles that differ from params->before; a codec
        may send more than those. */
-    int (*send)(struct encoder *encoder, struct frame *frame, const struct encoder_params *params, const struct change *changes, int count);
+    int (*send)(struct encoder *encoder, struct frame *frame, const struct encoder_params *params, const struct dirty_rect *rects,
+                int count);
     void (*destroy)(struct encoder *encoder);
 };
 

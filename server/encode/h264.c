@@ -197,12 +197,12 @@ static int fill_picture(struct h264_encoder *h264, const struct frame *frame, co
     return 0;
 }
 
-static int h264_send(struct encoder *encoder, struct frame *frame, const struct encoder_params *params, const struct change *changes,
+static int h264_send(struct encoder *encoder, struct frame *frame, const struct encoder_params *params, const struct dirty_rect *rects,
                      int count)
 {
     struct h264_encoder *h264 = (struct h264_encoder *)encoder;
     bool fits = h264->context && h264->width_px == frame->width_px && h264->height_px == frame->height_px;
-    (void)changes; /* what did not change is skipped block by block */
+    (void)rects; /* what did not change is skipped block by block */
     (void)count;
     int status = fits ? 0 : open_codec(h264, frame);
     if (status < 0) {

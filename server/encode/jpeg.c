@@ -57,7 +57,7 @@ static int padded(int px)
 }
 
 /* No picture needs more: TurboJPEG's bound. */
-static size_t most_bytes(const struct change *part)
+static size_t most_bytes(const struct dirty_rect *part)
 {
     return (size_t)padded(part->width_px) * (size_t)padded(part->height_px) * 6 + 2048;
 }
@@ -75,7 +75,7 @@ static void extend(const struct planes *planes)
 }
 
 /* Returns how many bytes; 0: failed, why says how. */
-static size_t compress_halved(struct jpeg_encoder *jpeg, const uint8_t *from, int stride_bytes, const struct change *part, int quality,
+static size_t compress_halved(struct jpeg_encoder *jpeg, const uint8_t *from, int stride_bytes, const struct dirty_rect *part, int quality,
                               unsigned char *to, const char **why)
 {
     int width = padded(part->width_px), height = padded(part->height_px);
@@ -93,8 +93,8 @@ static size_t compress_halved(struct jpeg_encoder *jpeg, const uint8_t *from, in
 }
 
 /* Appends one rectangle at *end of what is reserved. */
-static bool compress(struct jpeg_encoder *jpeg, const struct frame *frame, const struct change *part, const struct encoder_params *params,
-                     size_t *end)
+static bool compress(struct jpeg_encoder *jpeg, const struct frame *frame, const struct dirty_rect *part,
+                     const struct encoder_params *params, size_t *end)
 {
     const uint8_t *from = frame->bgrx + (size_t)part->y_px * (size_t)frame->stride_bytes + (size_t)part->x_px * 4;
     const char *why = jpeg_writer_why(jpeg->writer);
@@ -108,7 +108,7 @@ static bool compress(struct jpeg_encoder *jpeg, const struct frame *frame, const
     return count > 0;
 }
 
-static bool reserve_for(struct jpeg_encoder *jpeg, const struct change *parts, int count)
+static bool reserve_for(struct jpeg_encoder *jpeg, const struct dirty_rect *parts, int count)
 {
     size_t need = 0;
     for (int i = 0; i < count; i++)
@@ -116,13 +116,13 @@ static bool reserve_for(struct jpeg_encoder *jpeg, const struct change *parts, i
     return reserve(&jpeg->out, &jpeg->capacity, need);
 }
 
-static int jpeg_send(struct encoder *encoder, struct frame *frame, const struct encoder_params *params, const struct change *changes,
+static int jpeg_send(struct encoder *encoder, struct frame *frame, const struct encoder_params *params, const struct dirty_rect *rects,
                      int count)
 {
     struct jpeg_encoder *jpeg = (struct jpeg_encoder *)encoder;
-    struct change whole = { .width_px = frame->width_px, .height_px = frame->height_px };
-    struct packet_part parts[CHANGES_MAX];
-    const struct change *from = count ? changes : &whole;
+    struct dirty_rect whole = { .width_px = frame->width_px, .height_px = frame->height_px };
+    struct packet_part parts[DIRTY_RECTS_MAX];
+    const struct dirty_rect *from = count ? rects : &whole;
     int part_count = count ? count : 1;
     size_t end = 0;
     if (!reserve_for(jpeg, from, part_count)) {

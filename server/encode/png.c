@@ -34,11 +34,11 @@ static uint8_t *pack_bgr(const struct frame *frame)
     return packed;
 }
 
-static int png_send(struct encoder *encoder, struct frame *frame, const struct encoder_params *params, const struct change *changes,
+static int png_send(struct encoder *encoder, struct frame *frame, const struct encoder_params *params, const struct dirty_rect *rects,
                     int count)
 {
     (void)params; /* nothing to choose: it is lossless, and always whole */
-    (void)changes;
+    (void)rects;
     (void)count;
     png_image image = {
         .version = PNG_IMAGE_VERSION,

@@ -13,9 +13,8 @@
 #include "field/lab.h"
 
 enum { BUILT_IN = 6, MOST = BUILT_IN + PLANT_COLORMAPS + 8 };
-static struct colormap maps[MOST] = {
-    { .name = "relief" }, { .name = "calm" }, { .name = "viridis" }, { .name = "cividis" }, { .name = "diverging" }, { .name = "turbo" }
-};
+static struct colormap maps[MOST] = { { .name = "relief" },  { .name = "calm" },      { .name = "viridis" },
+                                      { .name = "cividis" }, { .name = "diverging" }, { .name = "turbo" } };
 static size_t map_count = BUILT_IN;
 static char names[MOST - BUILT_IN][128]; /* of those that were added */
 static struct colormap operator_map = { .name = "operator" };
@@ -109,7 +108,7 @@ int colormap_add(const char *name, const uint8_t rgb[256][3])
     memcpy(map->rgb, rgb, sizeof(map->rgb));
     choose_outside(map, below, 4, map->below);
     choose_outside(map, above, 4, map->above);
-    colormap_judge(map);
+    colormap_rate_shading(map);
     return (int)(map - maps);
 }
 

@@ -23,12 +23,12 @@ struct colormap {
 int colormap_add(const char *name, const uint8_t rgb[256][3]);
 void colormaps_of_plant(const struct plant *plant);
 /* Works out shading and safe from the colours; some milliseconds. Those of the embedded maps stand in their files. */
-void colormap_judge(struct colormap *map);
+void colormap_rate_shading(struct colormap *map);
 
 size_t colormap_count(void);
 const struct colormap *colormap_at(size_t index); /* 0 is the default */
 /* Colours of places between limits, -3 to 3 (field/limits.h): not on the list, since it does not show values. */
 const struct colormap *colormap_operator(void);
-int colormap_find(const char *name);              /* index or -1 */
+int colormap_find(const char *name); /* index or -1 */
 
 #endif

@@ -64,7 +64,7 @@ struct workers *field_workers(const struct field *field)
     return field->workers;
 }
 
-void field_rest(struct field *field)
+void field_clear_cache(struct field *field)
 {
     for (size_t i = 0; i < field->scene->asset_count; i++)
         while (field->states[i])
@@ -79,7 +79,7 @@ void field_destroy(struct field **field_ptr)
     struct field *field = *field_ptr;
     if (!field)
         return;
-    field_rest(field);
+    field_clear_cache(field);
     for (size_t i = 0; i < field->scene->asset_count * field->scene->plant->group_count; i++)
         layout_destroy(&field->layouts[i]);
     field_trials_finish(field);
@@ -99,7 +99,7 @@ bool field_baseline(const struct field *field, const struct field_params *params
     return params->show == SHOW_DIFFERENCE && field->baselines && baselines_describe(field->baselines, params->baseline, out);
 }
 
-void field_set_bound(struct field *field, size_t bytes)
+void field_set_cache_limit(struct field *field, size_t bytes)
 {
     field->bound = bytes;
 }
@@ -189,13 +189,13 @@ struct layout *field_layout(struct field *field, int asset, const struct field_p
 {
     struct layout **at = &field->layouts[(size_t)asset * field->scene->plant->group_count + (size_t)params->group];
     if (params->trial)
-        return field_tried_layout(field, asset, params);
+        return field_trial_layout(field, asset, params);
     if (!*at)
         *at = layout_create(field->scene, asset, params->group, NULL);
     return *at;
 }
 
-void field_forget_tried(struct field *field, const struct tried *tried)
+void field_forget_trial_layout(struct field *field, const struct trial_layout *tried)
 {
     for (struct state **link = &field->states[tried->asset]; *link;)
         if ((*link)->layout == tried->layout)
@@ -231,7 +231,7 @@ static bool weights_take(struct field *field, struct state *state)
         weights = weights_create(state->layout, &state->params, radius_m, state->usable, &key);
         for (size_t i = 0; weights && i < FIELD_BUCKETS; i++)
             for (const struct weights *other = field->weights[i]; other; other = other->next)
-                weights_learn(weights, other);
+                weights_copy_known(weights, other);
         if (weights) {
             weights->next = *bucket;
             *bucket = weights;

@@ -50,7 +50,7 @@ struct field_params {
     int sensor;        /* tag whose distance is shown; -1: none */
     uint32_t baseline; /* id of what the difference is from; 0: none */
     uint32_t trial;    /* places of sensors that are tried out (field/trials.h); 0: none */
-    int slot;          /* of the instant that the readings are of (value/moments.h): its fields are kept apart; 0: now */
+    int slot;          /* of the instant that the readings are of (value/snapshot_cache.h): its fields are kept apart; 0: now */
     enum interpolation interpolation;
     enum distance_mode distance;
     enum fill_mode fill;
@@ -70,11 +70,11 @@ bool field_params_override(struct field_params *params, struct field_override ov
 const struct field_override *field_params_override_of(const struct field_params *params, int tag); /* NULL: none */
 /* The values that the colour map spans when nobody says otherwise: the group's MIN and MAX; 0 to the largest distance, rounded up; a
    quarter of the range below and above 0; all places between limits. */
-void field_own_range(const struct scene *scene, const struct field_params *params, double *min, double *max);
+void field_default_range(const struct scene *scene, const struct field_params *params, double *min, double *max);
 
 struct field;
 struct field *field_create(struct workers *workers, const struct scene *scene); /* both must outlive it */
-void field_destroy(struct field **field); /* &NULL is fine; leaves NULL */
+void field_destroy(struct field **field);                                       /* &NULL is fine; leaves NULL */
 struct workers *field_workers(const struct field *field);
 /* Where differences look their baselines up; it must outlive the field. Without it, and for a baseline that was forgotten, a
    difference has no data anywhere. */
@@ -91,9 +91,9 @@ void field_give_trial(struct field *field, const struct trial **trial);
 bool field_baseline(const struct field *field, const struct field_params *params, struct baseline *out);
 /* The bound on what is kept, FIELD_DEFAULT_BYTES at first. What the parameters asked for last need for themselves may pass it. */
 #define FIELD_DEFAULT_BYTES ((size_t)512 << 20)
-void field_set_bound(struct field *field, size_t bytes);
+void field_set_cache_limit(struct field *field, size_t bytes);
 size_t field_bytes(const struct field *field); /* kept now */
-void field_rest(struct field *field);          /* drops all that is kept */
+void field_clear_cache(struct field *field);   /* drops all that is kept */
 
 /* The scalars of one asset, brought up to date with the snapshot: values, metres, or differences. Distances have no data where the
    surface does not lead (the value there is the largest). Belongs to `field`, valid until the next call with other parameters;
@@ -121,11 +121,11 @@ bool field_covers(struct field *field, int asset, const struct field_params *par
 /* What the field at any point of an asset is made of, for whoever works it out by himself. */
 struct field_sensor {
     int tag;
-    float surface_m[3]; /* as the asset file's positions */
-    uint32_t column;    /* in the asset file's sensors; beyond them: it is tried out */
+    float surface_m[3];   /* as the asset file's positions */
+    uint32_t column;      /* in the asset file's sensors; beyond them: it is tried out */
     const float *along_m; /* distances along the surface, of each vertex; NULL: not known yet */
     float strength, decay;
-    float value; /* as it is summed: for `paper` 0..1, for a difference that of two */
+    float value;                        /* as it is summed: for `paper` 0..1, for a difference that of two */
     bool configured, usable, uncertain; /* configured: would take part, were it good */
 };
 /* Those of the asset, as field_scalars with these parameters has just taken them; *radius_m: R of `paper`. Belongs to whoever asked

@@ -15,12 +15,12 @@ struct field {
     struct weights *weights[FIELD_BUCKETS]; /* all of them, by hash of the key */
     struct baselines *baselines;            /* NULL: none */
     struct trials *trials;                  /* NULL: none */
-    struct tried {                          /* layouts with places that are tried out */
+    struct trial_layout {                   /* layouts with places that are tried out */
         const struct trial *trial;          /* held */
         int asset, group;
-        struct layout *layout;              /* NULL: no sensor is left there */
-        struct tried *next;
-    } *tried;
+        struct layout *layout; /* NULL: no sensor is left there */
+        struct trial_layout *next;
+    } * tried;
     size_t bytes, bound;
     uint64_t tick; /* counts calls: what was used last */
     uint64_t versions;
@@ -29,8 +29,8 @@ struct field {
 /* NULL: no sensor of the group on the asset. trial: as in field_params_of, which params have been through. */
 struct layout *field_layout(struct field *field, int asset, const struct field_params *params);
 /* field_trials.c: what the trial makes of it. */
-struct layout *field_tried_layout(struct field *field, int asset, const struct field_params *params);
-void field_forget_tried(struct field *field, const struct tried *tried); /* in field.c: all that is made of its layout */
+struct layout *field_trial_layout(struct field *field, int asset, const struct field_params *params);
+void field_forget_trial_layout(struct field *field, const struct trial_layout *tried); /* in field.c: all that is made of its layout */
 void field_trials_finish(struct field *field);
 /* Found or made; not brought up to date. NULL: no sensor of the group on the asset, or out of memory. */
 struct state *field_state(struct field *field, int asset, const struct field_params *params);

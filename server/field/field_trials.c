@@ -19,12 +19,12 @@ void field_give_trial(struct field *field, const struct trial **trial)
         trials_give(field->trials, trial);
 }
 
-static void tried_remove(struct field *field, struct tried **link)
+static void tried_remove(struct field *field, struct trial_layout **link)
 {
-    struct tried *tried = *link;
+    struct trial_layout *tried = *link;
     *link = tried->next;
     if (tried->layout)
-        field_forget_tried(field, tried);
+        field_forget_trial_layout(field, tried);
     layout_destroy(&tried->layout);
     trials_give(field->trials, &tried->trial);
     mem_free(tried);
@@ -39,16 +39,16 @@ void field_trials_finish(struct field *field)
 /* A sensor that is dragged leaves a layout behind at every step. */
 static void forget_dropped(struct field *field, uint32_t keep)
 {
-    for (struct tried **link = &field->tried; *link;)
+    for (struct trial_layout **link = &field->tried; *link;)
         if ((*link)->trial->id != keep && !trials_live(field->trials, (*link)->trial->id))
             tried_remove(field, link);
         else
             link = &(*link)->next;
 }
 
-static struct tried *find(const struct field *field, int asset, const struct field_params *params)
+static struct trial_layout *find(const struct field *field, int asset, const struct field_params *params)
 {
-    struct tried *tried = field->tried;
+    struct trial_layout *tried = field->tried;
     while (tried && (tried->trial->id != params->trial || tried->asset != asset || tried->group != params->group))
         tried = tried->next;
     return tried;
@@ -61,9 +61,9 @@ const struct field_params *field_params_of(struct field *field, int asset, const
     const struct trial *trial = field_take_trial(field, params);
     bool touched = layout_is_touched(field->scene, asset, params->group, trial);
     if (touched) {
-        struct tried *tried = mem_new(sizeof(*tried));
+        struct trial_layout *tried = mem_new(sizeof(*tried));
         forget_dropped(field, params->trial);
-        *tried = (struct tried){ .trial = trial, .asset = asset, .group = params->group, .next = field->tried };
+        *tried = (struct trial_layout){ .trial = trial, .asset = asset, .group = params->group, .next = field->tried };
         tried->layout = layout_create(field->scene, asset, params->group, trial);
         field->tried = tried;
         return params;
@@ -74,7 +74,7 @@ const struct field_params *field_params_of(struct field *field, int asset, const
     return room;
 }
 
-struct layout *field_tried_layout(struct field *field, int asset, const struct field_params *params)
+struct layout *field_trial_layout(struct field *field, int asset, const struct field_params *params)
 {
     return find(field, asset, params)->layout;
 }

@@ -27,7 +27,7 @@ static void see_without_green(double c[3])
         c[i] = fmin(fmax(seen[i][0] * from[0] + seen[i][1] * from[1] + seen[i][2] * from[2], 0), 1);
 }
 
-void lab_from_srgb(const double srgb[3], enum sight sight, double lab[3])
+void lab_from_srgb(const double srgb[3], enum color_vision vision, double lab[3])
 {
     static const double to_xyz[3][3] = { { 0.4124564, 0.3575761, 0.1804375 },
                                          { 0.2126729, 0.7151522, 0.0721750 },
@@ -35,7 +35,7 @@ void lab_from_srgb(const double srgb[3], enum sight sight, double lab[3])
     double f[3], linear[3];
     for (int c = 0; c < 3; c++)
         linear[c] = linear_from_srgb(srgb[c] / 255);
-    if (sight == SIGHT_DEUTERANOPE)
+    if (vision == VISION_DEUTERANOPE)
         see_without_green(linear);
     for (int i = 0; i < 3; i++) {
         double t = 0;
@@ -51,7 +51,7 @@ void lab_from_srgb(const double srgb[3], enum sight sight, double lab[3])
 
 void lab_from_rgb(const uint8_t rgb[3], double lab[3])
 {
-    lab_from_srgb((double[3]){ rgb[0], rgb[1], rgb[2] }, SIGHT_NORMAL, lab);
+    lab_from_srgb((double[3]){ rgb[0], rgb[1], rgb[2] }, VISION_NORMAL, lab);
 }
 
 /* False: sRGB has no such colour; rgb is cut. */

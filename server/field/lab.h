@@ -5,10 +5,10 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-enum sight { SIGHT_NORMAL, SIGHT_DEUTERANOPE, SIGHT_COUNT };
+enum color_vision { VISION_NORMAL, VISION_DEUTERANOPE, VISION_COUNT };
 
 /* srgb: 0..255, not necessarily whole. Deuteranopes: Machado, Oliveira, Fernandes 2009, severity 1. */
-void lab_from_srgb(const double srgb[3], enum sight sight, double lab[3]);
+void lab_from_srgb(const double srgb[3], enum color_vision vision, double lab[3]);
 void lab_from_rgb(const uint8_t rgb[3], double lab[3]);
 /* The colour with `offset` added to its L*, as far as sRGB goes; hue and chroma stay. */
 void lab_shade(const uint8_t rgb[3], double offset, uint8_t out[3]);

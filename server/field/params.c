@@ -106,7 +106,7 @@ static double distance_range(const struct scene *scene, const struct field_param
     return 1;
 }
 
-void field_own_range(const struct scene *scene, const struct field_params *params, double *min, double *max)
+void field_default_range(const struct scene *scene, const struct field_params *params, double *min, double *max)
 {
     const struct plant_group *group = &scene->plant->groups[params->group];
     double part = DIFFERENCE_PART * (group->max - group->min);
@@ -172,8 +172,7 @@ const char *field_params_wrong(const struct plant *plant, const struct field_par
         return "distance: expected geodesic or euclidean";
     if (params->fill != FILL_NONE && params->fill != FILL_NEIGHBOURS)
         return "fill: expected none or neighbours";
-    if (params->show != SHOW_VALUE && params->show != SHOW_DISTANCE && params->show != SHOW_DIFFERENCE &&
-        params->show != SHOW_OPERATOR)
+    if (params->show != SHOW_VALUE && params->show != SHOW_DISTANCE && params->show != SHOW_DIFFERENCE && params->show != SHOW_OPERATOR)
         return "show: expected value, distance, difference or operator";
     const char *wrong = numbers_wrong(params);
     return wrong ? wrong : sensors_wrong(plant, params);

@@ -8,7 +8,7 @@
 #include <xxhash.h>
 
 #include "base/mem.h"
-#include "base/pages.h"
+#include "base/huge_pages.h"
 
 struct key_head { /* without holes: compared as bytes */
     const struct asset *file;
@@ -151,7 +151,7 @@ static bool same_strengths(const struct weights *a, const struct weights *b)
            memcmp(a->strength, b->strength, a->layout->sensor_count * sizeof(*a->strength)) == 0;
 }
 
-void weights_learn(struct weights *weights, const struct weights *from)
+void weights_copy_known(struct weights *weights, const struct weights *from)
 {
     if (!same_sensors(weights, from))
         return;
@@ -230,7 +230,7 @@ size_t weights_keep(struct weights *weights, size_t bytes)
     weights->kept = mem_try_array(weights->kept_blocks * weights->member_count, 1);
     if (!weights->columns || !weights->kept)
         weights_drop_columns(weights);
-    pages_make_large(weights->columns, weights->kept_blocks * weights->member_count * KERNEL_BLOCK * sizeof(float));
+    huge_pages_advise(weights->columns, weights->kept_blocks * weights->member_count * KERNEL_BLOCK * sizeof(float));
     return weights_kept_bytes(weights);
 }
 

@@ -37,10 +37,10 @@ struct weights {
     enum interpolation interpolation;
     enum distance_mode distance;
     float power, reach_m, radius_m, steps_per_m; /* steps: of `lacking` */
-    bool alike;              /* all members have one strength */
-    float *strength, *decay; /* by sensor of the layout */
-    uint8_t *configured;     /* by sensor of the layout: may take part, were it good; more than 1: SENSOR_NO_LIMITS */
-    uint32_t *members;       /* usable sensors of the layout; a column's number is its place here */
+    bool alike;                                  /* all members have one strength */
+    float *strength, *decay;                     /* by sensor of the layout */
+    uint8_t *configured;                         /* by sensor of the layout: may take part, were it good; more than 1: SENSOR_NO_LIMITS */
+    uint32_t *members;                           /* usable sensors of the layout; a column's number is its place here */
     size_t member_count;
     float *near_m, *top; /* by vertex: distance of the nearest usable sensor; scale (kernels.h) */
     float *total;        /* by vertex: the weights' sum */
@@ -61,11 +61,11 @@ void weights_key_init(struct weights_key *key, const struct layout *layout, cons
 void weights_key_finish(struct weights_key *key);
 bool weights_key_equal(const struct weights_key *a, const struct weights_key *b);
 
-/* Takes over the key. NULL: out of memory. Nothing is computed yet, but what can be taken over from others is by weights_learn. */
+/* Takes over the key. NULL: out of memory. Nothing is computed yet, but what can be taken over from others is by weights_copy_known. */
 struct weights *weights_create(const struct layout *layout, const struct field_params *params, float radius_m, const uint8_t *usable,
                                struct weights_key *key);
 /* Copies what is the same in `from`, which has been summed: while a parameter is dragged most of it is. */
-void weights_learn(struct weights *weights, const struct weights *from);
+void weights_copy_known(struct weights *weights, const struct weights *from);
 void weights_destroy(struct weights **weights); /* &NULL is fine; leaves NULL */
 size_t weights_bytes(const struct layout *layout);
 size_t weights_column_bytes(const struct weights *weights); /* of all columns, kept or not */

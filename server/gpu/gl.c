@@ -161,18 +161,18 @@ static GLenum next_error(void)
     return error;
 }
 
-void gl_forget_errors(void)
+void gl_clear_errors(void)
 {
     for (int i = 0; i < 8 && next_error() != GL_NO_ERROR; i++) { /* a lost context has no end of them */
     }
 }
 
-bool gl_good(void)
+bool gl_no_errors(void)
 {
     return next_error() == GL_NO_ERROR;
 }
 
-unsigned gl_shortages(void)
+unsigned gl_out_of_memory_count(void)
 {
     return shortages;
 }

@@ -41,11 +41,11 @@ bool gl_lost(const struct gl *gl);
 /* Destroys the context underneath, as a reset of the device does. So that tests can see what comes after. */
 void gl_lose(struct gl *gl);
 
-void gl_forget_errors(void); /* those of what was done before, so that the next one is of what is done now */
-bool gl_good(void);          /* there was none since */
+void gl_clear_errors(void); /* those of what was done before, so that the next one is of what is done now */
+bool gl_no_errors(void);    /* there was none since */
 /* How often the GPU was out of memory in the contexts of this thread, as far as was asked above or below: what was made or drawn before
    it rose is worth nothing. */
-unsigned gl_shortages(void);
+unsigned gl_out_of_memory_count(void);
 /* Around everything a pass does: a debug group, and on leaving the GL errors of the pass, logged by its name. False: there was one. */
 void gl_pass_enter(const char *name);
 bool gl_pass_leave(struct gl *gl, const char *name);

@@ -12,10 +12,10 @@ enum { BIND_POSITION, BIND_NORMAL, BIND_TEXCOORD, BIND_COLOR, BIND_SECOND_TEXCOO
 GLuint mesh_buffer(struct log *log, const char *name, size_t bytes, const void *data, GLbitfield flags)
 {
     GLuint buffer = 0;
-    gl_forget_errors();
+    gl_clear_errors();
     glCreateBuffers(1, &buffer);
     glNamedBufferStorage(buffer, (GLsizeiptr)bytes, data, flags);
-    if (gl_good())
+    if (gl_no_errors())
         return buffer;
     log_err(log, "%s: the GPU has no room for %zu bytes", name, bytes);
     glDeleteBuffers(1, &buffer);

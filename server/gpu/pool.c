@@ -128,14 +128,14 @@ struct pool_slice *pool_take(struct pool *pool, size_t count)
     return page ? take_from(page, count) : NULL;
 }
 
-struct pool_slice *pool_hold(struct pool_slice *slice)
+struct pool_slice *pool_ref(struct pool_slice *slice)
 {
     if (slice)
         slice->holds++;
     return slice;
 }
 
-void pool_release(struct pool_slice **slice_ptr)
+void pool_unref(struct pool_slice **slice_ptr)
 {
     struct pool_slice *slice = *slice_ptr;
     *slice_ptr = NULL;

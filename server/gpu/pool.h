@@ -33,9 +33,9 @@ void pool_destroy(struct pool **pool); /* &NULL is fine; leaves NULL */
 void pool_expect(struct pool *pool, size_t texels, size_t slices);
 /* Held once. NULL: the GPU has no room for so many texels, logged. */
 struct pool_slice *pool_take(struct pool *pool, size_t count);
-struct pool_slice *pool_hold(struct pool_slice *slice); /* NULL is fine */
-void pool_release(struct pool_slice **slice);           /* &NULL is fine; leaves NULL */
-size_t pool_offset(const struct pool_slice *slice);     /* bytes, in the page's buffer */
+struct pool_slice *pool_ref(struct pool_slice *slice); /* NULL is fine */
+void pool_unref(struct pool_slice **slice);            /* &NULL is fine; leaves NULL */
+size_t pool_offset(const struct pool_slice *slice);    /* bytes, in the page's buffer */
 size_t pool_bytes(const struct pool_slice *slice);
 size_t pool_bytes_taken(const struct pool *pool); /* of all pages */
 

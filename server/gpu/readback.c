@@ -41,7 +41,7 @@ static bool is_signaled(GLenum status)
     return status == GL_ALREADY_SIGNALED || status == GL_CONDITION_SATISFIED;
 }
 
-bool readback_is_there(const struct readback *readback)
+bool readback_is_done(const struct readback *readback)
 {
     return is_signaled(glClientWaitSync(readback->done, 0, 0));
 }
@@ -74,7 +74,7 @@ void readback_get(const struct readback *readback, struct workers *workers, uint
     workers_for(workers, (size_t)readback->height_px, GRAIN_ROWS, copy_rows, &copy);
 }
 
-void readback_forget(struct readback *readback)
+void readback_drop(struct readback *readback)
 {
     glDeleteSync(readback->done);
     readback->done = NULL;
@@ -82,7 +82,7 @@ void readback_forget(struct readback *readback)
 
 void readback_finish(struct readback *readback)
 {
-    readback_forget(readback);
+    readback_drop(readback);
     glDeleteBuffers(1, &readback->buffer);
     *readback = (struct readback){ 0 };
 }

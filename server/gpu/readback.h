@@ -19,11 +19,11 @@ struct readback { /* zero-initialise */
 
 /* Of the resolved picture. False: out of GPU memory, logged. */
 bool readback_start(struct readback *readback, struct log *log, const struct target *target);
-bool readback_is_there(const struct readback *readback);            /* without waiting */
-bool readback_wait(struct readback *readback, struct log *log);     /* until it is there. False: the GL context is lost, logged */
+bool readback_is_done(const struct readback *readback);         /* without waiting */
+bool readback_wait(struct readback *readback, struct log *log); /* until it is there. False: the GL context is lost, logged */
 /* After that: 4 bytes a pixel (B, G, R, X), rows from the top, stride_bytes apart. */
 void readback_get(const struct readback *readback, struct workers *workers, uint8_t *bgrx, size_t stride_bytes);
-void readback_forget(struct readback *readback); /* it is not waited for, or was */
+void readback_drop(struct readback *readback); /* it is not waited for, or was */
 void readback_finish(struct readback *readback);
 
 #endif

@@ -6,7 +6,7 @@
 
 static bool make(GLuint *framebuffer, GLuint *color, GLuint *depth, int width_px, int height_px, int samples)
 {
-    gl_forget_errors();
+    gl_clear_errors();
     GLenum kind = samples > 1 ? GL_TEXTURE_2D_MULTISAMPLE : GL_TEXTURE_2D;
     glCreateTextures(kind, 1, color);
     glCreateTextures(kind, 1, depth);
@@ -23,7 +23,7 @@ static bool make(GLuint *framebuffer, GLuint *color, GLuint *depth, int width_px
     glCreateFramebuffers(1, framebuffer);
     glNamedFramebufferTexture(*framebuffer, GL_COLOR_ATTACHMENT0, *color, 0);
     glNamedFramebufferTexture(*framebuffer, GL_DEPTH_ATTACHMENT, *depth, 0);
-    return glCheckNamedFramebufferStatus(*framebuffer, GL_FRAMEBUFFER) == GL_FRAMEBUFFER_COMPLETE && gl_good();
+    return glCheckNamedFramebufferStatus(*framebuffer, GL_FRAMEBUFFER) == GL_FRAMEBUFFER_COMPLETE && gl_no_errors();
 }
 
 bool target_init(struct target *target, struct log *log, int width_px, int height_px, int samples)
@@ -42,7 +42,7 @@ bool target_init(struct target *target, struct log *log, int width_px, int heigh
     if (good)
         return true;
     log_err(log, "picture of %dx%d with %d samples: out of GPU memory", width_px, height_px, samples);
-    gl_forget_errors();
+    gl_clear_errors();
     target_finish(target);
     return false;
 }
@@ -72,13 +72,13 @@ void target_resolve(const struct target *target, int x_px, int y_px, int width_p
                                bottom_px, GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT, GL_NEAREST);
 }
 
-bool layer_fit(struct layer *layer, GLenum format, GLenum attachment, int width_px, int height_px)
+bool render_texture_fit(struct render_texture *layer, GLenum format, GLenum attachment, int width_px, int height_px)
 {
     if (layer->texture && layer->width_px == width_px && layer->height_px == height_px)
         return true;
-    layer_finish(layer);
-    *layer = (struct layer){ .width_px = width_px, .height_px = height_px };
-    gl_forget_errors();
+    render_texture_finish(layer);
+    *layer = (struct render_texture){ .width_px = width_px, .height_px = height_px };
+    gl_clear_errors();
     glCreateTextures(GL_TEXTURE_2D, 1, &layer->texture);
     glTextureStorage2D(layer->texture, 1, format, width_px, height_px);
     glTextureParameteri(layer->texture, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
@@ -86,15 +86,15 @@ bool layer_fit(struct layer *layer, GLenum format, GLenum attachment, int width_
     glNamedFramebufferTexture(layer->framebuffer, attachment, layer->texture, 0);
     if (attachment == GL_DEPTH_ATTACHMENT)
         glNamedFramebufferDrawBuffer(layer->framebuffer, GL_NONE);
-    if (gl_good())
+    if (gl_no_errors())
         return true;
-    layer_finish(layer);
+    render_texture_finish(layer);
     return false;
 }
 
-void layer_finish(struct layer *layer)
+void render_texture_finish(struct render_texture *layer)
 {
     glDeleteFramebuffers(1, &layer->framebuffer);
     glDeleteTextures(1, &layer->texture);
-    *layer = (struct layer){ 0 };
+    *layer = (struct render_texture){ 0 };
 }

@@ -25,12 +25,12 @@ void target_finish(struct target *target);
 void target_resolve(const struct target *target, int x_px, int y_px, int width_px, int height_px);
 
 /* One texture to draw to, that is made again when pictures of another size come. Zero-initialise. */
-struct layer {
+struct render_texture {
     int width_px, height_px;
     GLuint framebuffer, texture;
 };
 /* False: out of GPU memory; it is tried again the next time. */
-bool layer_fit(struct layer *layer, GLenum format, GLenum attachment, int width_px, int height_px);
-void layer_finish(struct layer *layer);
+bool render_texture_fit(struct render_texture *layer, GLenum format, GLenum attachment, int width_px, int height_px);
+void render_texture_finish(struct render_texture *layer);
 
 #endif

@@ -12,22 +12,22 @@
 #include "base/clock.h"
 #include "base/mem.h"
 #include "history/history.h"
-#include "history/keep.h"
+#include "history/retention.h"
 #include "history/month.h"
 #include "history/recorder.h"
 #include "value/quality.h"
 
 enum {
-    TOLD_MAX = 4000000,     /* samples that one second may bring */
-    WAITING_MAX = 4000000,  /* rows that wait for a disk that takes them again */
+    QUEUE_MAX = 4000000,   /* samples that one second may bring */
+    WAITING_MAX = 4000000, /* rows that wait for a disk that takes them again */
     TIDY_ROWS = 200000,
     RETRY_MAX_S = 30,
 };
 static const int64_t TICK_NS = NS_PER_S, TIDY_NS = 60 * NS_PER_S, KEEP_NS = 600 * NS_PER_S, STEP_NS = 2 * NS_PER_S,
                      LOOK_NS = 20 * NS_PER_MS;
 
-struct told {
-    struct heard *at; /* samples as they came */
+struct event_queue {
+    struct sample_event *at; /* samples as they came */
     size_t count, capacity, lost;
 };
 struct now {
@@ -50,29 +50,29 @@ struct historian {
     struct snapshot *snapshot;
     struct recorder_rows waiting, held;
     struct month_file *file;
-    struct told taken;
+    struct event_queue taken;
     bool recovered, failing;
     int64_t retry_ns, retry_after_ns, tidied_ns, kept_ns, utc_ahead_ns;
     pthread_mutex_t lock;
     pthread_cond_t wake;
     /* --- below: under lock */
-    struct told told;
+    struct event_queue queue;
     bool stopping;
     const struct plant *next; /* whose historian follows; NULL: none */
 };
 
 /* --- from the store ----------------------------------------------------------------------------------------------------------- */
 
-static void on_sample(void *arg, const struct heard *heard)
+static void on_sample(void *arg, const struct sample_event *event)
 {
     struct historian *historian = arg;
     pthread_mutex_lock(&historian->lock);
-    struct told *told = &historian->told;
-    if (told->count < TOLD_MAX) {
-        mem_grow(&told->at, &told->capacity, told->count + 1, sizeof(*told->at));
-        told->at[told->count++] = *heard;
+    struct event_queue *queue = &historian->queue;
+    if (queue->count < QUEUE_MAX) {
+        mem_grow(&queue->at, &queue->capacity, queue->count + 1, sizeof(*queue->at));
+        queue->at[queue->count++] = *event;
     } else {
-        told->lost++;
+        queue->lost++;
     }
     pthread_mutex_unlock(&historian->lock);
 }
@@ -110,28 +110,28 @@ static void leave_out(struct historian *historian, int64_t last_us)
 }
 
 /* By the clock as it is now, and not as it was before. */
-static bool is_after_step(const struct heard *heard, int64_t ahead_ns, int64_t step_ns)
+static bool is_after_step(const struct sample_event *event, int64_t ahead_ns, int64_t step_ns)
 {
-    int64_t off_ns = heard->utc_ns - heard->mono_ns - ahead_ns;
+    int64_t off_ns = event->utc_ns - event->mono_ns - ahead_ns;
     return llabs(off_ns) < llabs(off_ns + step_ns);
 }
 
 /* step_ns: by which the wall clock was set since the last time; 0: it was not. */
-static void take_told(struct historian *historian, const struct now *now, int64_t step_ns)
+static void take_events(struct historian *historian, const struct now *now, int64_t step_ns)
 {
     pthread_mutex_lock(&historian->lock);
-    struct told taken = historian->told;
-    historian->told = historian->taken;
+    struct event_queue taken = historian->queue;
+    historian->queue = historian->taken;
     pthread_mutex_unlock(&historian->lock);
     int64_t ahead_ns = now->utc_ns - now->mono_ns;
     bool left_out = step_ns <= 0;
     for (size_t i = 0; i < taken.count; i++) {
-        const struct heard *heard = &taken.at[i];
-        if (!left_out && is_after_step(heard, ahead_ns, step_ns)) {
-            leave_out(historian, (heard->utc_ns - step_ns) / 1000);
+        const struct sample_event *event = &taken.at[i];
+        if (!left_out && is_after_step(event, ahead_ns, step_ns)) {
+            leave_out(historian, (event->utc_ns - step_ns) / 1000);
             left_out = true;
         }
-        put(historian, heard->tag, &(struct history_point){ heard->utc_ns / 1000, heard->value, heard->quality });
+        put(historian, event->tag, &(struct history_point){ event->utc_ns / 1000, event->value, event->quality });
     }
     if (!left_out)
         leave_out(historian, (now->utc_ns - step_ns) / 1000);
@@ -265,7 +265,7 @@ static int write_second(struct historian *historian)
     return error ? error : write_rows(historian, held, true);
 }
 
-static int keep_house(struct historian *historian, int64_t mono_ns, int64_t utc_ns)
+static int apply_retention(struct historian *historian, int64_t mono_ns, int64_t utc_ns)
 {
     int error = 0;
     if (historian->file && (mono_ns - historian->tidied_ns >= TIDY_NS || month_file_waiting(historian->file) >= TIDY_ROWS)) {
@@ -273,9 +273,9 @@ static int keep_house(struct historian *historian, int64_t mono_ns, int64_t utc_
         error = month_file_tidy(historian->file);
     }
     if (mono_ns - historian->kept_ns >= KEEP_NS || !historian->kept_ns) {
-        const struct keep_limits limits = { historian->plant->history.keep_days, historian->plant->history.keep_gb * 1e9 };
+        const struct retention_limits limits = { historian->plant->history.keep_days, historian->plant->history.keep_gb * 1e9 };
         historian->kept_ns = mono_ns;
-        counter_set(historian->counters.bytes, history_keep(historian->log, historian->folder, &limits, utc_ns / 1000));
+        counter_set(historian->counters.bytes, retention_apply(historian->log, historian->folder, &limits, utc_ns / 1000));
     }
     return error;
 }
@@ -293,7 +293,7 @@ static int write_all(struct historian *historian, int64_t mono_ns, int64_t utc_n
     if (!error)
         error = write_second(historian);
     if (!error)
-        error = keep_house(historian, mono_ns, utc_ns);
+        error = apply_retention(historian, mono_ns, utc_ns);
     if (error == -EBADMSG && historian->file)
         month_file_set_aside(&historian->file);
     return error;
@@ -369,7 +369,7 @@ static void tick(struct historian *historian, bool last)
 {
     const struct now now = look_at_clocks();
     int64_t mono_ns = now.mono_ns, utc_ns = now.utc_ns, step_ns = watch_clock(historian, &now);
-    take_told(historian, &now, step_ns);
+    take_events(historian, &now, step_ns);
     take_qualities(historian, mono_ns, utc_ns);
     if (step_ns)
         note_step(historian, utc_ns, step_ns);
@@ -469,7 +469,7 @@ void historian_stop(struct historian **pointer)
     mem_free(historian->tags);
     mem_free(historian->waiting.at);
     mem_free(historian->held.at);
-    mem_free(historian->told.at);
+    mem_free(historian->queue.at);
     mem_free(historian->taken.at);
     mem_free(historian->folder);
     pthread_cond_destroy(&historian->wake);

@@ -7,6 +7,8 @@
 #include "plant/plant.h"
 #include "value/snapshot.h"
 
+static const int64_t HISTORY_SETTLED_US = 3 * 1000000; /* what is newer than this may not all be written yet */
+
 /* As the historian keeps the plant's tags. Free with mem_free; names are the plant's. */
 struct history_tag *history_tags(const struct plant *plant);
 
@@ -15,7 +17,7 @@ struct history_reader *history_reader_create(struct log *log, const char *folder
 /* Series are given in the units in which this plant shows its tags, whatever they were when they were recorded; else as they were then.
    history_at does so by its tags. plant outlives the reader. */
 void history_reader_show_by(struct history_reader *reader, const struct plant *plant);
-void history_reader_destroy(struct history_reader **reader);                       /* &NULL is fine; leaves NULL */
+void history_reader_destroy(struct history_reader **reader); /* &NULL is fine; leaves NULL */
 
 /* One tag from..to: its points, where there are at most max_points of them; else buckets of one length. Spikes are in both. */
 struct history_series {

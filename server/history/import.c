@@ -13,7 +13,7 @@
 #include "history/history.h"
 #include "history/month.h"
 #include "history/recorder.h"
-#include "base/when.h"
+#include "base/timestamp.h"
 #include "plant/csv.h"
 #include "plant/number.h"
 #include "value/quality.h"
@@ -24,10 +24,10 @@ struct import {
     const struct import_params *params;
     struct csv csv;
     int time, tag, value, quality, unit; /* columns; tag -1: wide */
-    int *tags;                     /* wide: of each column; -1: passed over */
-    int64_t *last_us;              /* by tag */
+    int *tags;                           /* wide: of each column; -1: passed over */
+    int64_t *last_us;                    /* by tag */
     bool *seen;
-    int64_t row_us;                /* wide: of the last row; else INT64_MIN */
+    int64_t row_us; /* wide: of the last row; else INT64_MIN */
     struct import_counts *counts;
 };
 
@@ -88,7 +88,7 @@ static bool take_time(struct import *import, int64_t after_us, int64_t *t_us)
     const char *text = csv_text(&import->csv, import->time);
     double count;
     if (import->params->start_us == INT64_MIN) {
-        if (*text != '-' && (when_parse(text, 0, t_us) || when_parse_local(text, after_us, t_us)))
+        if (*text != '-' && (timestamp_parse(text, 0, t_us) || timestamp_parse_local(text, after_us, t_us)))
             return true;
         csv_error(&import->csv, import->time,
                   "expected an instant such as 2026-11-20T10:00:00Z (without Z or an offset: one that clocks in %s showed), found '%.60s'",
@@ -210,8 +210,8 @@ static bool check_sample(struct import *import, void *arg, int tag, const struct
     struct import_counts *counts = import->counts;
     (void)arg;
     if (import->seen[tag] && point->t_us <= import->last_us[tag]) {
-        char text[WHEN_BYTES];
-        when_print(import->last_us[tag], text);
+        char text[TIMESTAMP_BYTES];
+        timestamp_print(import->last_us[tag], text);
         csv_error(&import->csv, column, "%s: expected a time after its last sample, %s", import->params->plant->tags[tag].name, text);
         return false;
     }
@@ -298,7 +298,7 @@ bool history_import(const struct import_params *params, struct diag *diag, struc
         return false;
     struct filling filling = { .params = params, .tags = history_tags(params->plant), .recorder = recorder_create(params->plant) };
     mkdir(params->folder, 0777); /* where it cannot be made, opening says why */
-    struct diag again = { 0 }; /* says what diag has said */
+    struct diag again = { 0 };   /* says what diag has said */
     bool good = read_file(params, &again, counts, fill_sample, &filling);
     diag_finish(&again);
     size_t before = filling.rows.count;

@@ -10,7 +10,7 @@ struct import_params {
     struct log *log;
     const struct plant *plant;
     const char *folder, *path;
-    int64_t start_us; /* times are numbers that count from here; INT64_MIN: they are instants (when_parse, when_parse_local) */
+    int64_t start_us; /* times are numbers that count from here; INT64_MIN: they are instants (timestamp_parse, timestamp_parse_local) */
     int64_t unit_us;  /* of such numbers */
 };
 

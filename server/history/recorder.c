@@ -3,14 +3,14 @@
 #include "history/recorder.h"
 
 #include "base/mem.h"
-#include "history/door.h"
+#include "history/swinging_door.h"
 #include "history/history.h"
 #include "history/month.h"
 #include "value/quality.h"
 
 struct lane {
-    struct door door;
-    struct door_params params;
+    struct swinging_door door;
+    struct swinging_door_params params;
     uint32_t quality;
     bool touched; /* is in recorder->touched */
 };
@@ -55,7 +55,7 @@ struct recorder *recorder_create(const struct plant *plant)
     for (size_t i = 0; i < recorder->count; i++) {
         const struct history_tag *tag = &recorder->tags[i];
         recorder->lanes[i].quality = QUALITY_BAD_WAITING;
-        recorder->lanes[i].params = (struct door_params){
+        recorder->lanes[i].params = (struct swinging_door_params){
             .deadband = tag->step ? 0 : tag->within / 4, /* 2 * 1/4 + 1/2: door.h */
             .deviation = tag->step ? 0 : tag->within / 2,
             .override_us = (int64_t)(plant->history.override_s * US_PER_S),
@@ -86,8 +86,8 @@ static void add(struct recorder_rows *rows, int tag, const struct history_point 
 void recorder_put(struct recorder *recorder, int tag, const struct history_point *sample, struct recorder_rows *kept)
 {
     struct lane *lane = &recorder->lanes[tag];
-    struct history_point points[DOOR_MAX_KEPT];
-    add(kept, tag, points, door_put(&lane->door, &lane->params, sample, points));
+    struct history_point points[SWINGING_DOOR_MAX_POINTS];
+    add(kept, tag, points, swinging_door_put(&lane->door, &lane->params, sample, points));
     lane->quality = sample->quality;
     if (!lane->touched)
         recorder->touched[recorder->touched_count++] = tag;
@@ -116,7 +116,7 @@ void recorder_held(struct recorder *recorder, struct recorder_rows *held)
         struct lane *lane = &recorder->lanes[recorder->touched[i]];
         lane->touched = false;
         /* What was kept just now is held too: where the last writer ended must be known. */
-        if (!door_held(&lane->door, &point))
+        if (!swinging_door_held(&lane->door, &point))
             point = lane->door.anchor;
         add(held, recorder->touched[i], &point, 1);
     }
@@ -125,7 +125,7 @@ void recorder_held(struct recorder *recorder, struct recorder_rows *held)
 
 void recorder_end(struct recorder *recorder, struct recorder_rows *kept)
 {
-    struct history_point points[DOOR_MAX_KEPT];
+    struct history_point points[SWINGING_DOOR_MAX_POINTS];
     for (size_t i = 0; i < recorder->count; i++)
-        add(kept, (int)i, points, door_end(&recorder->lanes[i].door, &recorder->lanes[i].params, points));
+        add(kept, (int)i, points, swinging_door_end(&recorder->lanes[i].door, &recorder->lanes[i].params, points));
 }

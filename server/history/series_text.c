@@ -6,7 +6,7 @@
 #include <string.h>
 
 #include "history/month.h"
-#include "base/when.h"
+#include "base/timestamp.h"
 
 /* ten digits: more than any transmitter has */
 static void add_number(struct text *out, double value, const char *none)
@@ -72,8 +72,8 @@ static const char SPECIAL[] = ",;\t\"\r\n "; /* what makes a cell of CSV a quote
 
 static void begin_row(struct text *out, const char *tag, int64_t t_us)
 {
-    char when[WHEN_BYTES];
-    when_print(t_us, when);
+    char when[TIMESTAMP_BYTES];
+    timestamp_print(t_us, when);
     text_add_cell(out, tag, SPECIAL);
     text_add(out, ",%s,", when);
 }

@@ -15,7 +15,7 @@
 #include "base/clock.h"
 #include "base/mem.h"
 #include "net/tls.h"
-#include "net/visitor.h"
+#include "net/connection.h"
 #include "value/quality.h"
 
 static const int64_t TICK_NS = 100 * NS_PER_MS;
@@ -41,16 +41,16 @@ static void lws_log_line(int level, const char *line)
         log_at(log, level == LLL_ERR ? LOG_WARN : LOG_DEBUG, "lws: %.*s", (int)strcspn(line, "\n"), line);
 }
 
-bool hub_write(struct hub *hub, struct lws *wsi, const void *bytes, size_t count, enum lws_write_protocol how)
+bool net_write(struct server_context *hub, struct lws *wsi, const void *bytes, size_t count, enum lws_write_protocol how)
 {
     memcpy(hub->out + LWS_PRE, bytes, count);
     return lws_write(wsi, hub->out + LWS_PRE, count, how) >= (int)count;
 }
 
-void hub_go(struct hub *hub)
+void net_wake_render_service(struct server_context *hub)
 {
     if (hub->asked)
-        painter_go(hub->params.plant.painter);
+        render_service_wake(hub->params.plant.painter);
     hub->asked = false;
 }
 
@@ -63,7 +63,7 @@ static int64_t changed_ns(const struct snapshot *snapshot, const struct reading 
     return snapshot->taken_mono_ns - (usable ? reading->age_ns : 0);
 }
 
-static bool take_snapshot(struct hub *hub)
+static bool take_snapshot(struct server_context *hub)
 {
     bool changed = false;
     store_snapshot(hub->params.plant.store, clock_mono_ns(), clock_utc_ns(), hub->snapshot);
@@ -80,7 +80,7 @@ static bool take_snapshot(struct hub *hub)
     return changed;
 }
 
-static bool look_at_links(struct hub *hub)
+static bool look_at_links(struct server_context *hub)
 {
     bool changed = false, any = false;
     for (size_t i = 0; i < hub->world.plant->source_count; i++) {
@@ -100,7 +100,7 @@ static bool look_at_links(struct hub *hub)
 /* Twice, if need be: a file counts as changed once it has stopped changing. */
 static void look_at_files(struct net *net, int64_t now_ns)
 {
-    struct hub *hub = &net->hub;
+    struct server_context *hub = &net->hub;
     bool asked = atomic_exchange(&net->look, false);
     if (!asked && now_ns - hub->looked_ns < LOOK_NS)
         return;
@@ -142,19 +142,19 @@ static void on_tick(lws_sorted_usec_list_t *sul)
     counter_set(net->hub.counters.logins_slowed, logins_slowed(net->hub.logins, now_ns));
     bool data_changed = take_snapshot(&net->hub), links_changed = look_at_links(&net->hub);
     if (net->hub.past)
-        net->hub.world.history_first_us = past_first_us(net->hub.past);
+        net->hub.world.history_first_us = history_loader_first_us(net->hub.past);
     if (data_changed)
         net->hub.world.changed_ns = net->hub.snapshot->taken_mono_ns;
     if (data_changed)
-        painter_new_data(net->hub.params.plant.painter);
+        render_service_on_data(net->hub.params.plant.painter);
     streams_on_tick(&net->hub, data_changed, links_changed);
-    hub_go(&net->hub);
+    net_wake_render_service(&net->hub);
     lws_sul_schedule(net->hub.context, 0, sul, on_tick, TICK_NS / 1000);
 }
 
-static void collect_picks(struct hub *hub)
+static void collect_picks(struct server_context *hub)
 {
-    for (struct pick_answer *answer = painter_collect_picks(hub->params.plant.painter), *next; answer; answer = next) {
+    for (struct pick_answer *answer = render_service_collect_picks(hub->params.plant.painter), *next; answer; answer = next) {
         next = answer->next;
         if (stream_owns(hub, answer->order.client))
             stream_on_pick(hub, answer);
@@ -164,47 +164,47 @@ static void collect_picks(struct hub *hub)
     }
 }
 
-static void collect_recalled(struct hub *hub)
+static void collect_recalled(struct server_context *hub)
 {
-    struct recall_answer *recalled = hub->recall ? recall_collect(hub->recall) : NULL;
-    for (struct recall_answer *next; recalled; recalled = next) {
+    struct history_answer *recalled = hub->recall ? history_queries_collect(hub->recall) : NULL;
+    for (struct history_answer *next; recalled; recalled = next) {
         next = recalled->next;
-        http_on_recall(hub, recalled);
-        recall_answer_free(&recalled);
+        http_on_history_answer(hub, recalled);
+        history_answer_free(&recalled);
     }
 }
 
-static void look_at_alarms(struct hub *hub)
+static void look_at_alarms(struct server_context *hub)
 {
-    uint64_t number = hub->params.plant.alarming ? alarming_number(hub->params.plant.alarming) : 0;
+    uint64_t number = hub->params.plant.alarm_service ? alarm_service_number(hub->params.plant.alarm_service) : 0;
     if (number == hub->alarms_number)
         return;
     hub->alarms_number = number;
     streams_on_alarms(hub);
 }
 
-static void collect_moments(struct hub *hub)
+static void collect_moments(struct server_context *hub)
 {
-    struct past_answer *answer = hub->past ? past_collect(hub->past) : NULL;
+    struct history_loader_answer *answer = hub->past ? history_loader_collect(hub->past) : NULL;
     if (answer)
-        hub->world.history_first_us = past_first_us(hub->past);
-    for (struct past_answer *next; answer; answer = next) {
+        hub->world.history_first_us = history_loader_first_us(hub->past);
+    for (struct history_loader_answer *next; answer; answer = next) {
         next = answer->next;
         if (stream_owns(hub, answer->client))
-            stream_on_moment(hub, answer);
+            stream_on_historical_snapshot(hub, answer);
         else
-            http_on_moment(hub, answer);
+            http_on_historical_snapshot(hub, answer);
         mem_free(answer);
     }
 }
 
-static void collect_places(struct hub *hub)
+static void collect_places(struct server_context *hub)
 {
-    struct gaps_answer *answer = hub->params.plant.placing ? placing_collect(hub->params.plant.placing) : NULL;
-    for (struct gaps_answer *next; answer; answer = next) {
+    struct sensor_coverage_answer *answer = hub->params.plant.placing ? placing_collect(hub->params.plant.placing) : NULL;
+    for (struct sensor_coverage_answer *next; answer; answer = next) {
         next = answer->next;
         stream_on_gaps(hub, answer);
-        gaps_answer_free(answer);
+        sensor_coverage_answer_free(answer);
     }
     if (hub->params.plant.placing)
         streams_on_placed(hub);
@@ -212,22 +212,22 @@ static void collect_places(struct hub *hub)
 
 static void collect(struct net *net)
 {
-    struct hub *hub = &net->hub;
+    struct server_context *hub = &net->hub;
     net_calls_run(net);
     look_at_alarms(hub);
     collect_picks(hub);
     collect_recalled(hub);
     collect_moments(hub);
     collect_places(hub);
-    for (struct picture *picture = painter_collect(hub->params.plant.painter), *next; picture; picture = next) {
+    for (struct encoded_frame *picture = render_service_collect(hub->params.plant.painter), *next; picture; picture = next) {
         next = picture->next;
         picture->next = NULL;
         if (stream_owns(hub, picture->client))
-            stream_on_picture(hub, picture);
+            stream_on_frame(hub, picture);
         else
-            http_on_picture(hub, picture);
+            http_on_frame(hub, picture);
     }
-    hub_go(hub);
+    net_wake_render_service(hub);
 }
 
 /* --- life ------------------------------------------------------------------------------------------------------------------ */
@@ -270,10 +270,10 @@ bool net_port_free(struct log *log, const char *address, int port)
     return good;
 }
 
-static void add_counters(struct hub *hub)
+static void add_counters(struct server_context *hub)
 {
     struct counters *c = hub->params.counters;
-    stages_init(&hub->stages, c);
+    latency_stages_init(&hub->stages, c);
     hub->counters.sessions = counters_add(c, "plantcast_sessions", "gauge", "Clients that are connected.");
     hub->counters.sessions_all = counters_add(c, "plantcast_sessions_total", "counter", "Clients that ever were.");
     hub->counters.refused = counters_add(c, "plantcast_sessions_refused_total", "counter", "Clients that were not let in.");
@@ -299,7 +299,7 @@ static void add_counters(struct hub *hub)
 
 static bool open_context(struct net *net)
 {
-    struct hub *hub = &net->hub;
+    struct server_context *hub = &net->hub;
     struct lws_context_creation_info info = {
         .port = hub->params.port,
         .iface = hub->params.address,
@@ -307,8 +307,7 @@ static bool open_context(struct net *net)
         .user = hub,
         .gid = -1,
         .uid = -1,
-        .options = LWS_SERVER_OPTION_FAIL_UPON_UNABLE_TO_BIND | LWS_SERVER_OPTION_DISABLE_OS_CA_CERTS |
-                   LWS_SERVER_OPTION_VALIDATE_UTF8 |
+        .options = LWS_SERVER_OPTION_FAIL_UPON_UNABLE_TO_BIND | LWS_SERVER_OPTION_DISABLE_OS_CA_CERTS | LWS_SERVER_OPTION_VALIDATE_UTF8 |
                    (strchr(hub->params.address, ':') ? 0 : LWS_SERVER_OPTION_DISABLE_IPV6),
         .timeout_secs = (unsigned)hub->quotas->at[QUOTA_PATIENCE_S],
         .keepalive_timeout = 30,
@@ -338,9 +337,9 @@ static bool open_context(struct net *net)
 
 static bool open_access(struct net *net)
 {
-    struct hub *hub = &net->hub;
+    struct server_context *hub = &net->hub;
     const struct access_params *access = &hub->params.access;
-    visitor_learn_name(hub);
+    connection_learn_host_name(hub);
     hub->content_policy = access_content_policy(access);
     hub->local_only = access_name_is_local(hub->params.address) && !access->behind_proxy;
     if (access->tokens_path && !(hub->world.tokens = hub->tokens = tokens_create(hub->params.log, access->tokens_path)))
@@ -355,19 +354,19 @@ static void wake(void *arg)
 
 bool net_open_history(struct net *net)
 {
-    struct hub *hub = &net->hub;
+    struct server_context *hub = &net->hub;
     const struct net_plant *plant = &hub->params.plant;
-    const struct past_params past = { .log = hub->params.log,
-                                      .plant = plant->scene->plant,
-                                      .folder = plant->history_folder,
-                                      .moments = plant->moments,
-                                      .notify = wake,
-                                      .notify_arg = net };
-    hub->world.moments = plant->history_folder ? plant->moments : NULL;
+    const struct history_loader_params past = { .log = hub->params.log,
+                                                .plant = plant->scene->plant,
+                                                .folder = plant->history_folder,
+                                                .snapshot_cache = plant->snapshot_cache,
+                                                .notify = wake,
+                                                .notify_arg = net };
+    hub->world.snapshot_cache = plant->history_folder ? plant->snapshot_cache : NULL;
     if (!plant->history_folder)
         return true;
-    hub->recall = recall_create(hub->params.log, plant->scene->plant, plant->history_folder, wake, net);
-    hub->past = past_create(&past);
+    hub->recall = history_queries_create(hub->params.log, plant->scene->plant, plant->history_folder, wake, net);
+    hub->past = history_loader_create(&past);
     return hub->recall && hub->past;
 }
 
@@ -381,9 +380,9 @@ bool net_access_good(struct log *log, const struct access_params *access)
     return good;
 }
 
-void net_look_at_plant(struct net *net)
+void net_bind_plant(struct net *net)
 {
-    struct hub *hub = &net->hub;
+    struct server_context *hub = &net->hub;
     const struct plant *plant = hub->params.plant.scene->plant;
     hub->snapshot = snapshot_create(plant->tag_count);
     hub->changes = mem_array(plant->tag_count, sizeof(*hub->changes));
@@ -392,9 +391,9 @@ void net_look_at_plant(struct net *net)
     hub->world.scene = hub->params.plant.scene;
     hub->world.snapshot = hub->snapshot;
     hub->world.baselines = hub->params.plant.baselines;
-    hub->world.alarming = hub->params.plant.alarming;
+    hub->world.alarm_service = hub->params.plant.alarm_service;
     hub->world.placing = hub->params.save ? hub->params.plant.placing : NULL;
-    hub->world.proofs = hub->params.plant.proofs;
+    hub->world.loop_checks = hub->params.plant.loop_checks;
     hub->world.tag_list = hub->params.plant.tag_list;
     hub->world.links_up = hub->links_up;
     take_snapshot(hub);
@@ -404,15 +403,15 @@ void net_look_at_plant(struct net *net)
 struct net *net_create(const struct net_params *params)
 {
     struct net *net = mem_new(sizeof(*net));
-    struct hub *hub = &net->hub;
+    struct server_context *hub = &net->hub;
     net_calls_init(net);
     hub->params = *params;
     hub->next_client = 1;
     hub->quotas = &hub->params.access.quotas;
     hub->admission.quotas = hub->quotas;
-    hub->peers = peers_create(hub->quotas, !params->access.behind_proxy);
-    hub->logins = logins_create();
-    hub->world = (struct session_world){
+    hub->peers = address_limits_create(hub->quotas, !params->access.behind_proxy);
+    hub->logins = login_throttle_create();
+    hub->world = (struct session_context){
         .alarms_said = &hub->alarms_said,
         .tags_said = &hub->tags_said,
         .lists_said = hub->lists_said,
@@ -424,7 +423,7 @@ struct net *net_create(const struct net_params *params)
         .logins = hub->logins,
     };
     add_counters(hub);
-    net_look_at_plant(net);
+    net_bind_plant(net);
     raise_file_limit(params->log, hub->quotas);
     if (!open_access(net) || !open_context(net) || !net_open_history(net))
         net_destroy(&net);
@@ -437,23 +436,23 @@ void net_destroy(struct net **net_ptr)
     if (!net)
         return;
     lws_sul_cancel(&net->tick);
-    recall_destroy(&net->hub.recall); /* before what they wake */
-    past_destroy(&net->hub.past);
+    history_queries_destroy(&net->hub.recall); /* before what they wake */
+    history_loader_destroy(&net->hub.past);
     if (net->hub.context)
         lws_context_destroy(net->hub.context);
     atomic_store(&lws_log_to, NULL);
     tls_destroy(&net->hub.tls);
     tokens_destroy(&net->hub.tokens);
     mem_free(net->hub.content_policy);
-    peers_destroy(&net->hub.peers);
-    logins_destroy(&net->hub.logins);
+    address_limits_destroy(&net->hub.peers);
+    login_throttle_destroy(&net->hub.logins);
     mem_free(net->hub.by_client);
     resumes_destroy(&net->hub.world.resumes);
-    alarms_said_finish(&net->hub.alarms_said);
-    tags_said_finish(&net->hub.tags_said);
+    alarm_text_cache_finish(&net->hub.alarms_said);
+    tag_text_cache_finish(&net->hub.tags_said);
     for (int i = 0; i < 2; i++)
         mem_free(net->hub.lists_said[i]);
-    marker_lists_finish(&net->hub.marker_lists);
+    marker_text_cache_finish(&net->hub.marker_lists);
     snapshot_destroy(&net->hub.snapshot);
     mem_free(net->hub.changes);
     mem_free(net->hub.links_up);
@@ -469,7 +468,7 @@ int net_port(const struct net *net)
 
 void net_run(struct net *net)
 {
-    struct hub *hub = &net->hub;
+    struct server_context *hub = &net->hub;
     on_tick(&net->tick);
     while (!atomic_load(&net->stopping) && lws_service(hub->context, 0) >= 0)
         collect(net);
@@ -490,7 +489,7 @@ void net_stop(struct net *net)
     lws_cancel_service(net->hub.context);
 }
 
-void net_look(struct net *net)
+void net_check_credentials(struct net *net)
 {
     atomic_store(&net->look, true);
     lws_cancel_service(net->hub.context);

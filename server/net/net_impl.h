@@ -5,10 +5,10 @@
 #include <pthread.h>
 #include <stdatomic.h>
 
-#include "net/hub.h"
+#include "net/server_context.h"
 
 struct net {
-    struct hub hub;
+    struct server_context hub;
     struct lws_vhost *vhost;
     lws_sorted_usec_list_t tick;
     struct cpu_meter cpu;
@@ -28,7 +28,7 @@ void net_calls_init(struct net *net);
 void net_calls_finish(struct net *net);
 void net_calls_run(struct net *net);   /* what is asked */
 void net_calls_close(struct net *net); /* nobody waits any longer */
-void net_look_at_plant(struct net *net);  /* makes what depends on the plant of hub->params */
+void net_bind_plant(struct net *net);  /* makes what depends on the plant of hub->params */
 bool net_open_history(struct net *net);
 
 #endif

@@ -8,7 +8,7 @@
 #include "base/clock.h"
 #include "base/mem.h"
 #include "net/stream.h"
-#include "net/visitor.h"
+#include "net/connection.h"
 
 enum { STREAM_CLOSE_STALLED = 4000, LAST_WORDS_S = 2 };
 static const int64_t MOVING_NS = 200 * NS_PER_MS; /* after an input somebody is taken to be moving */
@@ -31,10 +31,10 @@ static void close_with(struct stream *stream, int code, const char *text)
     lws_callback_on_writable(stream->wsi);
 }
 
-static void pump(struct hub *hub, struct stream *stream);
+static void pump(struct server_context *hub, struct stream *stream);
 
 /* Where it is, or would be, in hub->by_client. */
-static size_t place_of(const struct hub *hub, uint64_t client)
+static size_t place_of(const struct server_context *hub, uint64_t client)
 {
     size_t low = 0, high = (size_t)hub->stream_count;
     while (low < high) {
@@ -48,7 +48,7 @@ static size_t place_of(const struct hub *hub, uint64_t client)
 }
 
 /* Whoever has it may follow. 48 bits: more than anyone can try, and exact in any JSON. */
-static uint64_t new_number(const struct hub *hub)
+static uint64_t new_number(const struct server_context *hub)
 {
     uint64_t number = 0;
     while (number == 0 || stream_called(hub, number)) {
@@ -59,24 +59,24 @@ static uint64_t new_number(const struct hub *hub)
     return number;
 }
 
-static void on_open(struct hub *hub, struct lws *wsi, struct stream **slot)
+static void on_open(struct server_context *hub, struct lws *wsi, struct stream **slot)
 {
     struct stream *stream = mem_new(sizeof(*stream));
     *stream = (struct stream){ .wsi = wsi, .next = hub->streams };
     stream->session = session_create(&hub->world, hub->next_client++, clock_mono_ns());
     stream->session->called = new_number(hub);
     stream->session->starting = true;
-    stream->peer = visitor_of(wsi)->client;
+    stream->peer = connection_of(wsi)->client;
     memcpy(stream->session->address, stream->peer->address, sizeof(stream->session->address));
-    stream->session->role = visitor_of(wsi)->role;
-    stream->session->holder = visitor_of(wsi)->holder;
+    stream->session->role = connection_of(wsi)->role;
+    stream->session->holder = connection_of(wsi)->holder;
     *slot = hub->streams = stream;
     mem_grow(&hub->by_client, &hub->by_client_capacity, (size_t)hub->stream_count + 1, sizeof(struct stream *));
     hub->by_client[hub->stream_count++] = stream; /* numbers go up */
     counter_set(hub->counters.sessions, hub->stream_count);
     counter_inc(hub->counters.sessions_all, 1);
     tune_socket(wsi);
-    bool address_full = !peers_may_stream(hub->peers, stream->peer);
+    bool address_full = !address_limits_may_stream(hub->peers, stream->peer);
     stream->peer->sessions++;
     stream->session->share = &stream->peer->share;
     admission_join(&hub->admission, stream->session->share);
@@ -88,7 +88,7 @@ static void on_open(struct hub *hub, struct lws *wsi, struct stream **slot)
     log_debug(hub->params.log, "session %llu: opened", (unsigned long long)stream->session->id);
 }
 
-static void count(struct hub *hub, struct stream *stream)
+static void count(struct server_context *hub, struct stream *stream)
 {
     const struct session *session = stream->session;
     counter_inc(hub->counters.messages, session->messages - stream->messages);
@@ -105,7 +105,7 @@ static bool may_return(const struct stream *stream)
     return stream->session->hello && stream->session->close_code != 1008;
 }
 
-static void on_close(struct hub *hub, struct stream **slot)
+static void on_close(struct server_context *hub, struct stream **slot)
 {
     struct stream *stream = *slot, **at = &hub->streams;
     if (!stream)
@@ -120,16 +120,16 @@ static void on_close(struct hub *hub, struct stream **slot)
     follow_forget(hub, stream);
     log_debug(hub->params.log, "session %llu: closed (%lld messages, %lld errors)", (unsigned long long)stream->session->id,
               (long long)stream->messages, (long long)stream->errors);
-    painter_forget(hub->params.plant.painter, stream->session->id);
+    render_service_forget(hub->params.plant.painter, stream->session->id);
     if (hub->past)
-        past_forget(hub->past, stream->session->id);
+        history_loader_forget(hub->past, stream->session->id);
     stream->peer->sessions--;
     session_leave(stream->session, may_return(stream), clock_mono_ns());
     admission_leave(&hub->admission, stream->session->share);
     session_destroy(&stream->session);
-    picture_destroy(&stream->sending);
+    encoded_frame_destroy(&stream->sending);
     text_finish(&stream->in);
-    marker_said_finish(&stream->said);
+    known_markers_finish(&stream->said);
     mem_free(stream);
     *slot = NULL;
 }
@@ -137,20 +137,20 @@ static void on_close(struct hub *hub, struct stream **slot)
 /* --- after anything happened to a session ---------------------------------------------------------------------------------- */
 
 /* Play goes on; those who follow come along. */
-static void travel(struct hub *hub, struct stream *stream, int64_t now_ns)
+static void travel(struct server_context *hub, struct stream *stream, int64_t now_ns)
 {
     struct session *session = stream->session;
     int64_t before_us = session->view.at_us, at_us;
-    if (hub->past && session_wants_moment(session, now_ns, clock_utc_ns(), &at_us))
-        past_ask(hub->past, session->id, at_us);
+    if (hub->past && session_wants_historical_snapshot(session, now_ns, clock_utc_ns(), &at_us))
+        history_loader_ask(hub->past, session->id, at_us);
     if (session->view.at_us != before_us)
         follow_spread(hub, stream);
 }
 
-static void pump(struct hub *hub, struct stream *stream)
+static void pump(struct server_context *hub, struct stream *stream)
 {
     struct session *session = stream->session;
-    struct wish wish;
+    struct frame_request wish;
     int64_t now_ns = clock_mono_ns();
     travel(hub, stream, now_ns);
     if (session->close_code && session->reply_count == 0 && !stream->close_code) {
@@ -160,15 +160,15 @@ static void pump(struct hub *hub, struct stream *stream)
     }
     if (stream->close_code)
         return;
-    if (session_wish(session, now_ns, &wish)) {
-        enum painter_answer answer = painter_ask(hub->params.plant.painter, session->id, &wish);
-        if (answer != PAINTER_REFUSED)
-            session_asked(session, &wish, answer == PAINTER_REPLACED);
+    if (session_next_request(session, now_ns, &wish)) {
+        enum request_outcome answer = render_service_request(hub->params.plant.painter, session->id, &wish);
+        if (answer != REQUEST_REFUSED)
+            session_requested(session, &wish, answer == REQUEST_REPLACED);
         hub->asked = true;
     }
-    struct pick_order order;
-    if (session_pick(session, &order))
-        painter_pick(hub->params.plant.painter, &order);
+    struct pick_query order;
+    if (session_next_pick(session, &order))
+        render_service_pick(hub->params.plant.painter, &order);
     if (session->too_fast != stream->throttled) {
         stream->throttled = session->too_fast;
         lws_rx_flow_control(stream->wsi, !stream->throttled);
@@ -178,7 +178,7 @@ static void pump(struct hub *hub, struct stream *stream)
 }
 
 /* When every session is refined for every change of a reading, and there is one each second. */
-static bool is_loaded(const struct hub *hub)
+static bool is_loaded(const struct server_context *hub)
 {
     int count = 0;
     for (const struct stream *stream = hub->streams; stream; stream = stream->next)
@@ -186,22 +186,22 @@ static bool is_loaded(const struct hub *hub)
     return count * hub->still_ns > NS_PER_S;
 }
 
-static void count_moving(const struct hub *hub, int64_t now_ns)
+static void count_moving(const struct server_context *hub, int64_t now_ns)
 {
-    for (struct share *share = hub->admission.shares; share; share = share->next)
+    for (struct address_share *share = hub->admission.shares; share; share = share->next)
         share->moving = 0;
     for (const struct stream *stream = hub->streams; stream; stream = stream->next)
         stream->session->share->moving += stream->session->hello && now_ns - stream->session->input_ns < NS_PER_S;
 }
 
-void streams_check_tokens(struct hub *hub, int64_t now_utc_ns)
+void streams_check_tokens(struct server_context *hub, int64_t now_utc_ns)
 {
     for (struct stream *stream = hub->streams; stream; stream = stream->next)
         session_check_token(stream->session, now_utc_ns);
 }
 
 /* Who takes nothing gets nothing, and keeps nothing of the server's but its view; then it is closed. */
-static void watch_stall(struct hub *hub, struct stream *stream, int64_t now_ns)
+static void watch_stall(struct server_context *hub, struct stream *stream, int64_t now_ns)
 {
     enum pacer_state state = session_state(stream->session, now_ns);
     if (state == PACER_FLOWS || stream->close_code)
@@ -214,7 +214,7 @@ static void watch_stall(struct hub *hub, struct stream *stream, int64_t now_ns)
     lws_set_timeout(stream->wsi, PENDING_TIMEOUT_CLOSE_SEND, LAST_WORDS_S); /* its socket may take not even that */
 }
 
-void streams_on_tick(struct hub *hub, bool data_changed, bool links_changed)
+void streams_on_tick(struct server_context *hub, bool data_changed, bool links_changed)
 {
     int64_t now_ns = clock_mono_ns(), patience_ns = hub->quotas->at[QUOTA_PATIENCE_S] * NS_PER_S;
     hub->world.loaded = is_loaded(hub);
@@ -234,27 +234,27 @@ void streams_on_tick(struct hub *hub, bool data_changed, bool links_changed)
     }
 }
 
-void streams_on_alarms(struct hub *hub)
+void streams_on_alarms(struct server_context *hub)
 {
     for (struct stream *stream = hub->streams; stream; stream = stream->next)
         pump(hub, stream);
 }
 
-void streams_close(struct hub *hub)
+void streams_close(struct server_context *hub)
 {
     for (struct stream *stream = hub->streams; stream; stream = stream->next)
         close_with(stream, LWS_CLOSE_STATUS_GOINGAWAY, "the server goes down");
 }
 
 /* NULL: not connected. */
-static struct stream *find_stream(const struct hub *hub, uint64_t client)
+static struct stream *find_stream(const struct server_context *hub, uint64_t client)
 {
     size_t place = place_of(hub, client);
     bool there = place < (size_t)hub->stream_count && hub->by_client[place]->session->id == client;
     return there ? hub->by_client[place] : NULL;
 }
 
-struct stream *stream_called(const struct hub *hub, uint64_t number)
+struct stream *stream_called(const struct server_context *hub, uint64_t number)
 {
     struct stream *stream = hub->streams;
     while (stream && stream->session->called != number)
@@ -262,23 +262,23 @@ struct stream *stream_called(const struct hub *hub, uint64_t number)
     return stream;
 }
 
-bool stream_owns(const struct hub *hub, uint64_t client)
+bool stream_owns(const struct server_context *hub, uint64_t client)
 {
     return find_stream(hub, client) != NULL;
 }
 
-void stream_on_picture(struct hub *hub, struct picture *picture)
+void stream_on_frame(struct server_context *hub, struct encoded_frame *picture)
 {
     struct stream *stream = find_stream(hub, picture->client);
     const struct frame *frame = picture->packet ? picture->packet->frame : NULL;
-    if (frame && frame->view.tier == TIER_STILL && picture->wish.urgency >= URGENCY_REFINE)
+    if (frame && frame->view.tier == TIER_REFINED && picture->wish.urgency >= URGENCY_REFINE)
         hub->still_ns = frame->render_ns + frame->readback_ns;
-    admission_on_picture(&hub->admission, stream->session->share, picture);
-    session_on_picture(stream->session, picture);
+    admission_on_frame(&hub->admission, stream->session->share, picture);
+    session_on_frame(stream->session, picture);
     pump(hub, stream);
 }
 
-void stream_on_pick(struct hub *hub, const struct pick_answer *answer)
+void stream_on_pick(struct server_context *hub, const struct pick_answer *answer)
 {
     struct stream *stream = find_stream(hub, answer->order.client);
     session_on_pick(stream->session, answer);
@@ -287,14 +287,14 @@ void stream_on_pick(struct hub *hub, const struct pick_answer *answer)
 
 /* --- input ------------------------------------------------------------------------------------------------------------------ */
 
-static void pump_followers(struct hub *hub, const struct stream *leader)
+static void pump_followers(struct server_context *hub, const struct stream *leader)
 {
     for (struct stream *stream = hub->streams; stream; stream = stream->next)
         if (stream->session->leader == leader->session)
             pump(hub, stream);
 }
 
-void stream_on_gaps(struct hub *hub, const struct gaps_answer *answer)
+void stream_on_gaps(struct server_context *hub, const struct sensor_coverage_answer *answer)
 {
     struct stream *stream = find_stream(hub, answer->client);
     if (!stream)
@@ -303,7 +303,7 @@ void stream_on_gaps(struct hub *hub, const struct gaps_answer *answer)
     pump(hub, stream);
 }
 
-void streams_on_placed(struct hub *hub)
+void streams_on_placed(struct server_context *hub)
 {
     int64_t now_ns = clock_mono_ns();
     for (struct stream *stream = hub->streams; stream; stream = stream->next)
@@ -313,7 +313,7 @@ void streams_on_placed(struct hub *hub)
         }
 }
 
-void stream_say(struct hub *hub, uint64_t client, const char *text)
+void stream_say(struct server_context *hub, uint64_t client, const char *text)
 {
     struct stream *stream = find_stream(hub, client);
     if (!stream)
@@ -323,7 +323,7 @@ void stream_say(struct hub *hub, uint64_t client, const char *text)
 }
 
 /* Once for each session that was let in, and for each token that was not. */
-static void note_login(struct hub *hub, struct stream *stream, bool was_in)
+static void note_login(struct server_context *hub, struct stream *stream, bool was_in)
 {
     const struct session *session = stream->session;
     bool good = login_is_good(session->login);
@@ -335,11 +335,11 @@ static void note_login(struct hub *hub, struct stream *stream, bool was_in)
     if (!good)
         counter_inc(hub->counters.refused, session->login != LOGIN_HELD); /* whoever gets 1013 is counted there */
     if (!good || session->role > ROLE_OPEN)
-        visitor_note_login(hub, stream->wsi, "stream", &holder, good ? LOGIN_GOOD_NEW : session->login);
+        connection_log_login(hub, stream->wsi, "stream", &holder, good ? LOGIN_GOOD_NEW : session->login);
 }
 
 /* It goes to the thread that loads the plant anew. */
-static void save_resolve(struct hub *hub, struct session *session)
+static void save_resolve(struct server_context *hub, struct session *session)
 {
     struct tag_save *save = session->save;
     if (!save)
@@ -350,12 +350,12 @@ static void save_resolve(struct hub *hub, struct session *session)
     hub->params.save(hub->params.reload_arg, save);
 }
 
-static void on_message(struct hub *hub, struct stream *stream)
+static void on_message(struct server_context *hub, struct stream *stream)
 {
     struct session *session = stream->session;
     int64_t now_ns = clock_mono_ns();
     bool was_in = session->hello || session->close_code;
-    if (!peers_count_message(hub->peers, stream->peer, now_ns))
+    if (!address_limits_count_message(hub->peers, stream->peer, now_ns))
         session_too_fast(session, hub->quotas->at[QUOTA_ADDRESS_MESSAGES], "of this address ");
     if (stream->in_count > (size_t)hub->quotas->at[QUOTA_MESSAGE_BYTES])
         session_on_oversize(session, stream->in_count, now_ns);
@@ -365,7 +365,7 @@ static void on_message(struct hub *hub, struct stream *stream)
     follow_resolve(hub, stream);
     save_resolve(hub, session);
     if (session->measured)
-        stages_shown(&hub->stages, &session->pacer);
+        latency_stages_shown(&hub->stages, &session->pacer);
     session->measured = false;
     if (session->input_ns == now_ns) {
         hub->world.moving_until_ns = now_ns + MOVING_NS;
@@ -378,7 +378,7 @@ static void on_message(struct hub *hub, struct stream *stream)
         text_finish(&stream->in);
 }
 
-static void on_receive(struct hub *hub, struct stream *stream, const void *bytes, size_t len)
+static void on_receive(struct server_context *hub, struct stream *stream, const void *bytes, size_t len)
 {
     if (stream->in_count == 0)
         stream->in_begin_ns = clock_mono_ns();
@@ -395,10 +395,10 @@ static void on_receive(struct hub *hub, struct stream *stream, const void *bytes
     pump(hub, stream);
 }
 
-void stream_on_moment(struct hub *hub, const struct past_answer *answer)
+void stream_on_historical_snapshot(struct server_context *hub, const struct history_loader_answer *answer)
 {
     struct stream *stream = find_stream(hub, answer->client);
-    session_on_moment(stream->session, answer->at_us, answer->good, clock_mono_ns());
+    session_on_historical_snapshot(stream->session, answer->at_us, answer->good, clock_mono_ns());
     if (follow_spread(hub, stream))
         pump_followers(hub, stream);
     pump(hub, stream);
@@ -406,7 +406,7 @@ void stream_on_moment(struct hub *hub, const struct past_answer *answer)
 
 /* --- lws --------------------------------------------------------------------------------------------------------------------- */
 
-static int on_writeable(struct hub *hub, struct stream *stream)
+static int on_writeable(struct server_context *hub, struct stream *stream)
 {
     if (stream->close_code) {
         lws_close_reason(stream->wsi, (enum lws_close_status)stream->close_code, (unsigned char *)stream->close_text,
@@ -416,7 +416,7 @@ static int on_writeable(struct hub *hub, struct stream *stream)
     if (!stream_send(hub, stream))
         return -1;
     pump(hub, stream);
-    hub_go(hub);
+    net_wake_render_service(hub);
     return 0;
 }
 
@@ -424,18 +424,18 @@ int stream_callback(struct lws *wsi, enum lws_callback_reasons reason, void *use
 {
     struct stream **slot = user;
     switch (reason) {
-    case LWS_CALLBACK_ESTABLISHED: on_open(hub_of(wsi), wsi, slot); break;
-    case LWS_CALLBACK_CLOSED: on_close(hub_of(wsi), slot); break;
+    case LWS_CALLBACK_ESTABLISHED: on_open(server_context_of(wsi), wsi, slot); break;
+    case LWS_CALLBACK_CLOSED: on_close(server_context_of(wsi), slot); break;
     case LWS_CALLBACK_RECEIVE:
-        on_receive(hub_of(wsi), *slot, in, len);
-        hub_go(hub_of(wsi));
+        on_receive(server_context_of(wsi), *slot, in, len);
+        net_wake_render_service(server_context_of(wsi));
         break;
     case LWS_CALLBACK_RECEIVE_PONG:
         stream_on_pong(*slot, in, len);
-        pump(hub_of(wsi), *slot);
-        hub_go(hub_of(wsi));
+        pump(server_context_of(wsi), *slot);
+        net_wake_render_service(server_context_of(wsi));
         break;
-    case LWS_CALLBACK_SERVER_WRITEABLE: return on_writeable(hub_of(wsi), *slot);
+    case LWS_CALLBACK_SERVER_WRITEABLE: return on_writeable(server_context_of(wsi), *slot);
     default: break;
     }
     return 0;

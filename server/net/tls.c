@@ -11,7 +11,7 @@
 #include <time.h>
 
 #include "base/mem.h"
-#include "net/file_watch.h"
+#include "access/file_watch.h"
 
 struct tls {
     struct log *log;

@@ -10,9 +10,9 @@
 
 #include "base/mem.h"
 #include "plant/transform.h"
-#include "scene/far.h"
+#include "scene/far_sensors.h"
 #include "scene/manifest.h"
-#include "surface/mover.h"
+#include "surface/relocation.h"
 #include "value/quality.h"
 
 enum { MOVERS = 4 }; /* kept warm; those that moves are on, in any case */
@@ -24,7 +24,7 @@ struct ask { /* distances of one move, on their way */
     struct ask *next;
 };
 
-struct entry { /* a move; beside it, in the set, what is said of it */
+struct entry {      /* a move; beside it, in the set, what is said of it */
     uint64_t asked; /* number; 0: nothing is asked */
     uint64_t ticket;
     struct trial_sensor sensor;
@@ -41,7 +41,7 @@ struct place_set {
 };
 
 struct warm {
-    struct mover *mover; /* NULL: none */
+    struct relocation *relocation; /* NULL: none */
     uint64_t used;
 };
 
@@ -56,7 +56,7 @@ struct placing {
     pthread_cond_t idle;
     /* --- below: under lock */
     struct ask *done;
-    struct gaps_answer *gaps, **gaps_last;
+    struct sensor_coverage_answer *answers, **answers_last;
     int jobs; /* for gaps */
 };
 
@@ -69,7 +69,7 @@ struct placing *placing_create(const struct placing_params *params)
     placing->folder = mem_strdup(params->folder);
     placing->trials = trials_create();
     placing->warm = mem_array(params->scene->asset_count, sizeof(*placing->warm));
-    placing->gaps_last = &placing->gaps;
+    placing->answers_last = &placing->answers;
     pthread_mutex_init(&placing->lock, NULL);
     pthread_cond_init(&placing->idle, NULL);
     return placing;
@@ -89,7 +89,7 @@ static void forget_done(struct ask *done)
     }
 }
 
-void gaps_answer_free(struct gaps_answer *answer)
+void sensor_coverage_answer_free(struct sensor_coverage_answer *answer)
 {
     mem_free(answer->assets);
     mem_free(answer);
@@ -105,11 +105,11 @@ void placing_destroy(struct placing **pointer)
         pthread_cond_wait(&placing->idle, &placing->lock);
     pthread_mutex_unlock(&placing->lock);
     for (size_t i = 0; i < placing->params.scene->asset_count; i++)
-        mover_destroy(&placing->warm[i].mover);
+        relocation_destroy(&placing->warm[i].relocation);
     forget_done(placing->done);
-    for (struct gaps_answer *answer = placing->gaps, *next; answer; answer = next) {
+    for (struct sensor_coverage_answer *answer = placing->answers, *next; answer; answer = next) {
         next = answer->next;
-        gaps_answer_free(answer);
+        sensor_coverage_answer_free(answer);
     }
     trials_destroy(&placing->trials);
     pthread_mutex_destroy(&placing->lock);
@@ -122,24 +122,24 @@ void placing_destroy(struct placing **pointer)
 
 /* --- movers ------------------------------------------------------------------------------------------------------------------ */
 
-static void shape_of(const struct scene_asset *asset, struct mover_shape *shape)
+static void shape_of(const struct scene_asset *asset, struct relocation_shape *shape)
 {
     const struct asset_view *view = &asset->file->view;
     const struct asset_level *finest = &view->levels[0];
     const struct asset_primitive *first = &view->primitives[finest->first_primitive], *last = first + finest->primitive_count - 1;
-    *shape = (struct mover_shape){ .positions_m = view->positions_m,
-                                   .normals = view->normals,
-                                   .vertex_count = view->header->vertex_count,
-                                   .triangles = view->indices + first->first_index,
-                                   .triangle_count = (last->first_index + last->index_count - first->first_index) / 3,
-                                   .tolerance_m = asset->plant->tolerance_m };
+    *shape = (struct relocation_shape){ .positions_m = view->positions_m,
+                                        .normals = view->normals,
+                                        .vertex_count = view->header->vertex_count,
+                                        .triangles = view->indices + first->first_index,
+                                        .triangle_count = (last->first_index + last->index_count - first->first_index) / 3,
+                                        .tolerance_m = asset->plant->tolerance_m };
 }
 
-static struct mover *make_mover(const struct placing *placing, int asset)
+static struct relocation *make_mover(const struct placing *placing, int asset)
 {
     const struct scene_asset *of = &placing->params.scene->assets[asset];
     struct manifest manifest = { 0 };
-    struct mover_shape shape;
+    struct relocation_shape shape;
     char *path = NULL;
     shape_of(of, &shape);
     bool read = manifest_read(placing->params.log, placing->folder, &manifest);
@@ -148,11 +148,11 @@ static struct mover *make_mover(const struct placing *placing, int asset)
         shape.surface_path = path = mem_printf("%s/%s", placing->folder, entry->surface);
         shape.surface_key = strtoull(entry->surface, NULL, 16); /* KEY.surface */
     }
-    struct mover *mover = mover_create(placing->params.log, placing->params.workers, &shape);
+    struct relocation *relocation = relocation_create(placing->params.log, placing->params.workers, &shape);
     mem_free(path);
     if (read)
         manifest_finish(&manifest);
-    return mover;
+    return relocation;
 }
 
 static bool is_moved_on(const struct placing *placing, int asset)
@@ -170,33 +170,33 @@ static void cool(struct placing *placing, int keep)
     int count = 0, oldest = -1;
     for (int i = 0; i < (int)placing->params.scene->asset_count; i++) {
         const struct warm *warm = &placing->warm[i];
-        count += warm->mover != NULL;
-        if (warm->mover && i != keep && mover_state(warm->mover) != MOVER_WARMING && !is_moved_on(placing, i) &&
+        count += warm->relocation != NULL;
+        if (warm->relocation && i != keep && relocation_state(warm->relocation) != RELOCATION_WARMING && !is_moved_on(placing, i) &&
             (oldest < 0 || warm->used < placing->warm[oldest].used))
             oldest = i;
     }
     if (count > MOVERS && oldest >= 0)
-        mover_destroy(&placing->warm[oldest].mover);
+        relocation_destroy(&placing->warm[oldest].relocation);
 }
 
-static struct mover *mover_of(struct placing *placing, int asset)
+static struct relocation *relocation_of(struct placing *placing, int asset)
 {
     struct warm *warm = &placing->warm[asset];
-    if (!warm->mover) {
-        warm->mover = make_mover(placing, asset);
+    if (!warm->relocation) {
+        warm->relocation = make_mover(placing, asset);
         cool(placing, asset);
     }
     warm->used = ++placing->uses;
-    return warm->mover;
+    return warm->relocation;
 }
 
 /* --- one move ---------------------------------------------------------------------------------------------------------------- */
 
-static void on_distances(void *arg, struct mover_result *result)
+static void on_distances(void *arg, struct relocation_result *result)
 {
     struct ask *ask = arg;
     struct placing *placing = ask->placing;
-    if (result->status == MOVER_CANCELLED) {
+    if (result->status == RELOCATION_CANCELLED) {
         mem_free(result->geodesic_m);
         mem_free(ask);
         return;
@@ -221,10 +221,10 @@ static void to_file(const struct scene_asset *asset, const double plant_m[3], do
 static bool find_place(struct placing *placing, const struct place_move *move, struct entry *entry, struct placed *placed)
 {
     const struct scene_asset *asset = &placing->params.scene->assets[move->asset];
-    struct mover_place place;
+    struct relocation_place place;
     double at_m[3];
     to_file(asset, move->position_m, at_m);
-    if (!mover_place(mover_of(placing, move->asset), at_m, &place, NULL))
+    if (!relocation_place(relocation_of(placing, move->asset), at_m, &place, NULL))
         return false;
     *placed = (struct placed){ .move = *move, .distance_m = place.distance_m, .limit_m = far_limit_m(asset) };
     transform_point(asset->placement, place.surface_m, placed->surface_m);
@@ -242,7 +242,7 @@ static void ask_distances(struct placing *placing, struct entry *entry, struct p
     to_file(&placing->params.scene->assets[placed->move.asset], placed->move.position_m, at_m);
     *ask = (struct ask){ .placing = placing, .number = ++placing->asked };
     entry->asked = ask->number;
-    entry->ticket = mover_ask(mover_of(placing, placed->move.asset), at_m, on_distances, ask);
+    entry->ticket = relocation_request(relocation_of(placing, placed->move.asset), at_m, on_distances, ask);
     if (entry->ticket == 0) {
         entry->asked = 0;
         placed->state = PLACED_STRAIGHT;
@@ -253,7 +253,7 @@ static void ask_distances(struct placing *placing, struct entry *entry, struct p
 static void let_go(struct placing *placing, struct entry *entry, const struct placed *placed)
 {
     if (entry->asked)
-        mover_cancel(placing->warm[placed->move.asset].mover, entry->ticket);
+        relocation_cancel(placing->warm[placed->move.asset].relocation, entry->ticket);
     entry->asked = 0;
     trial_reach_unref(&entry->sensor.reach);
 }
@@ -390,14 +390,14 @@ static void take(struct placing *placing, struct ask *ask)
         }
 }
 
-struct gaps_answer *placing_collect(struct placing *placing)
+struct sensor_coverage_answer *placing_collect(struct placing *placing)
 {
     pthread_mutex_lock(&placing->lock);
     struct ask *done = placing->done;
-    struct gaps_answer *gaps = placing->gaps;
+    struct sensor_coverage_answer *gaps = placing->answers;
     placing->done = NULL;
-    placing->gaps = NULL;
-    placing->gaps_last = &placing->gaps;
+    placing->answers = NULL;
+    placing->answers_last = &placing->answers;
     pthread_mutex_unlock(&placing->lock);
     for (struct ask *ask = done; ask; ask = ask->next)
         take(placing, ask);
@@ -407,30 +407,30 @@ struct gaps_answer *placing_collect(struct placing *placing)
 
 /* --- gaps --------------------------------------------------------------------------------------------------------------------- */
 
-struct gaps_job {
+struct sensor_coverage_job {
     struct placing *placing;
-    struct gaps_order order;
+    struct sensor_coverage_query order;
     uint8_t *good;
-    struct gaps_answer *answer;
+    struct sensor_coverage_answer *answer;
 };
 
 static void find_gaps(void *arg)
 {
-    struct gaps_job *job = arg;
+    struct sensor_coverage_job *job = arg;
     struct placing *placing = job->placing;
-    struct gaps_answer *answer = job->answer;
+    struct sensor_coverage_answer *answer = job->answer;
     const struct scene *scene = placing->params.scene;
     answer->assets = mem_array(scene->asset_count, sizeof(*answer->assets));
     for (size_t a = 0; a < scene->asset_count; a++) {
         job->order.asset = answer->assets[answer->count].asset = (int)a;
-        answer->count += gaps_find(&job->order, &answer->assets[answer->count].gaps);
+        answer->count += sensor_coverage_find(&job->order, &answer->assets[answer->count].gaps);
     }
     trials_give(placing->trials, &job->order.trial);
     mem_free(job->good);
     mem_free(job);
     pthread_mutex_lock(&placing->lock);
-    *placing->gaps_last = answer;
-    placing->gaps_last = &answer->next;
+    *placing->answers_last = answer;
+    placing->answers_last = &answer->next;
     pthread_mutex_unlock(&placing->lock);
     placing->params.notify(placing->params.notify_arg);
     pthread_mutex_lock(&placing->lock);
@@ -439,21 +439,23 @@ static void find_gaps(void *arg)
     pthread_mutex_unlock(&placing->lock);
 }
 
-void placing_ask_gaps(struct placing *placing, const struct place_set *set, int group, double far_m, const struct snapshot *snapshot,
-                      uint64_t client, uint32_t seq)
+void placing_request_coverage(struct placing *placing, const struct place_set *set, int group, double far_m,
+                              const struct snapshot *snapshot, uint64_t client, uint32_t seq)
 {
     const struct scene *scene = placing->params.scene;
     const struct plant_group *of = &scene->plant->groups[group];
-    struct gaps_job *job = mem_new(sizeof(*job));
-    *job = (struct gaps_job){ .placing = placing,
-                              .order = { .scene = scene, .group = group, .mode = of->distance, .reach_m = of->reach_m, .far_m = far_m },
-                              .good = mem_array(scene->plant->tag_count, 1),
-                              .answer = mem_new(sizeof(*job->answer)) };
+    struct sensor_coverage_job *job = mem_new(sizeof(*job));
+    *job = (struct sensor_coverage_job){
+        .placing = placing,
+        .order = { .scene = scene, .group = group, .mode = of->distance, .reach_m = of->reach_m, .far_m = far_m },
+        .good = mem_array(scene->plant->tag_count, 1),
+        .answer = mem_new(sizeof(*job->answer))
+    };
     for (size_t i = 0; i < scene->plant->tag_count; i++)
         job->good[i] = !quality_is_bad(snapshot->readings[i].quality);
     job->order.good = job->good;
     job->order.trial = set && set->trial ? trials_take(placing->trials, set->trial) : NULL;
-    *job->answer = (struct gaps_answer){ .client = client, .seq = seq, .group = group, .reach_m = of->reach_m };
+    *job->answer = (struct sensor_coverage_answer){ .client = client, .seq = seq, .group = group, .reach_m = of->reach_m };
     pthread_mutex_lock(&placing->lock);
     placing->jobs++;
     pthread_mutex_unlock(&placing->lock);

@@ -6,7 +6,7 @@
 #include "base/log.h"
 #include "base/workers.h"
 #include "field/trials.h"
-#include "placing/gaps.h"
+#include "placing/sensor_coverage.h"
 #include "value/snapshot.h"
 
 struct placing_params {
@@ -47,26 +47,29 @@ void place_set_destroy(struct place_set **set); /* &NULL is fine; leaves NULL; w
 /* In place of all that was in the set; what is as it was keeps its distances. At most PLACING_MOVES, each tag once. False: nothing has
    changed, and why says which tag cannot be there (it has no group, or the place is farther from the asset than that is large). */
 bool place_set_moves(struct place_set *set, const struct place_move *moves, size_t count, char why[160]);
-uint32_t place_set_trial(const struct place_set *set);                       /* 0: no moves */
+uint32_t place_set_trial(const struct place_set *set);                        /* 0: no moves */
 size_t place_set_get(const struct place_set *set, const struct placed **out); /* valid until it changes */
 /* Distances came in since it was asked last: another trial stands for the set. */
 bool place_set_changed(struct place_set *set);
 
 /* Gaps of a group on all its assets, by a worker. client, seq: whose answer it is. */
-struct gaps_answer {
+struct sensor_coverage_answer {
     uint64_t client;
     uint32_t seq;
     int group;
     double reach_m;
     size_t count;
-    struct { int asset; struct gaps gaps; } *assets; /* those with sensors of the group */
-    struct gaps_answer *next;
+    struct {
+        int asset;
+        struct sensor_coverage gaps;
+    } * assets; /* those with sensors of the group */
+    struct sensor_coverage_answer *next;
 };
-/* set: whose moves count; NULL: nobody's. far_m: as in gaps_order. */
-void placing_ask_gaps(struct placing *placing, const struct place_set *set, int group, double far_m, const struct snapshot *snapshot,
-                      uint64_t client, uint32_t seq);
-/* What came in: sets take their distances; gaps go to the caller (gaps_answer_free), oldest first. */
-struct gaps_answer *placing_collect(struct placing *placing);
-void gaps_answer_free(struct gaps_answer *answer);
+/* set: whose moves count; NULL: nobody's. far_m: as in sensor_coverage_query. */
+void placing_request_coverage(struct placing *placing, const struct place_set *set, int group, double far_m,
+                              const struct snapshot *snapshot, uint64_t client, uint32_t seq);
+/* What came in: sets take their distances; gaps go to the caller (sensor_coverage_answer_free), oldest first. */
+struct sensor_coverage_answer *placing_collect(struct placing *placing);
+void sensor_coverage_answer_free(struct sensor_coverage_answer *answer);
 
 #endif

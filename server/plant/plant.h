@@ -14,23 +14,34 @@
 
 enum interpolation { INTERPOLATION_SHEPARD, INTERPOLATION_PAPER };
 enum distance_mode { DISTANCE_GEODESIC, DISTANCE_EUCLIDEAN };
-enum fill_mode { FILL_NONE, FILL_NEIGHBOURS };       /* may neighbours paint the place of a lost sensor? */
+enum fill_mode { FILL_NONE, FILL_NEIGHBOURS };             /* may neighbours paint the place of a lost sensor? */
 enum plant_show { PLANT_SHOW_VALUE, PLANT_SHOW_OPERATOR }; /* what a client begins with: readings, or their places between limits */
 enum plant_start { PLANT_START_SHOWN, PLANT_START_GHOST, PLANT_START_HIDDEN }; /* an asset, until somebody asks for something else */
-enum { PLANT_STARTS = 4096 };                        /* of so many assets, the first, each can be hidden by itself */
-enum axis { AXIS_Y, AXIS_Z };                        /* which way is up */
-enum data_type { DATA_BIT, DATA_INT16, DATA_UINT16, DATA_INT32, DATA_UINT32, DATA_FLOAT32, DATA_INT64, DATA_UINT64, DATA_FLOAT64,
-                 DATA_BCD /* 4 digits, one register */, DATA_LBCD /* 8 digits, two */ };
+enum { PLANT_STARTS = 4096 }; /* of so many assets, the first, each can be hidden by itself */
+enum axis { AXIS_Y, AXIS_Z }; /* which way is up */
+enum data_type {
+    DATA_BIT,
+    DATA_INT16,
+    DATA_UINT16,
+    DATA_INT32,
+    DATA_UINT32,
+    DATA_FLOAT32,
+    DATA_INT64,
+    DATA_UINT64,
+    DATA_FLOAT64,
+    DATA_BCD /* 4 digits, one register */,
+    DATA_LBCD /* 8 digits, two */
+};
 /* What register bytes of a value A B C D (most significant first) come in; for 64 bits likewise: CDAB reverses the registers, BADC
    the bytes of each, DCBA both. NONE: not stated. */
 enum byte_order { BYTE_ORDER_NONE, BYTE_ORDER_ABCD, BYTE_ORDER_CDAB, BYTE_ORDER_BADC, BYTE_ORDER_DCBA };
 enum register_table { TABLE_COIL, TABLE_DISCRETE, TABLE_INPUT, TABLE_HOLDING }; /* function codes 1, 2, 4, 3 */
 enum scaling { SCALING_NONE, SCALING_LINEAR, SCALING_SQUARE_ROOT };
 enum limit { LIMIT_LL, LIMIT_L, LIMIT_H, LIMIT_HH, LIMIT_COUNT };
-enum alarm_mode { /* whose the alarms are */
-    ALARMS_DISPLAY, /* another system's: limits are watched and shown, nothing can be acknowledged here */
-    ALARMS_MIRROR,  /* likewise; its own alarm bits are read */
-    ALARMS_LOCAL    /* ours */
+enum alarm_mode {                 /* whose the alarms are */
+                  ALARMS_DISPLAY, /* another system's: limits are watched and shown, nothing can be acknowledged here */
+                  ALARMS_MIRROR,  /* likewise; its own alarm bits are read */
+                  ALARMS_LOCAL    /* ours */
 };
 enum { ALARM_PRIORITIES = 4, ALARM_PRIORITY_DEFAULT = 2 };
 extern const char *const plant_limit_names[LIMIT_COUNT];
@@ -55,41 +66,41 @@ struct plant_asset {
     double tolerance_m;           /* gaps up to this are closed when distances are found; 0: chosen from the model */
     double placement[16];         /* plant from asset frame (Z up), column-major; turns and moves only: both are in the same metres */
     enum plant_start start;
-    bool sensors_in_asset_frame;  /* X, Y, Z of its tags; else plant frame */
+    bool sensors_in_asset_frame;       /* X, Y, Z of its tags; else plant frame */
     struct plant_property *properties; /* of its people's own, in their order */
     size_t property_count;
     int line;
 };
 
-struct plant_alarming { /* how alarms come and go */
-    double deadband;      /* engineering units */
+struct plant_alarm_settings { /* how alarms come and go */
+    double deadband;          /* engineering units */
     double on_delay_s, off_delay_s;
-    int priority;         /* 1, the most urgent, to ALARM_PRIORITIES: of LL and HH; L and H are one less urgent */
-    bool latch;           /* stays until it is reset */
+    int priority; /* 1, the most urgent, to ALARM_PRIORITIES: of LL and HH; L and H are one less urgent */
+    bool latch;   /* stays until it is reset */
 };
 
-struct plant_mirror { /* a bit of another alarm system */
-    int tag;              /* whose alarm it is, or -1 */
-    int limit;            /* enum limit; LIMIT_COUNT: an alarm of no limit */
-    bool acknowledged;    /* the bit says that, not that the alarm is there */
+struct plant_mirror {  /* a bit of another alarm system */
+    int tag;           /* whose alarm it is, or -1 */
+    int limit;         /* enum limit; LIMIT_COUNT: an alarm of no limit */
+    bool acknowledged; /* the bit says that, not that the alarm is there */
 };
 
 enum { PLANT_BREAKS = 16, PLANT_ISOLINES = 32 };
 struct plant_group {
     char *id, *quantity, *unit;
-    bool as_written;              /* units: as-written; what its tags measure is taken for its unit, whatever their rows say */
+    bool as_written; /* units: as-written; what its tags measure is taken for its unit, whatever their rows say */
     double min, max;
-    double limits[LIMIT_COUNT];   /* NaN: none */
-    struct plant_alarming alarming;
+    double limits[LIMIT_COUNT]; /* NaN: none */
+    struct plant_alarm_settings alarm_settings;
     enum interpolation interpolation;
     enum distance_mode distance;
     double strength, decay, power;
-    double radius_m;              /* R of Algorithm 1; 0 = the largest distance on the asset */
-    double reach_m;               /* INFINITY: no limit */
-    bool cuts_singles;            /* singles: cut; see plant_cuts_singles */
+    double radius_m;   /* R of Algorithm 1; 0 = the largest distance on the asset */
+    double reach_m;    /* INFINITY: no limit */
+    bool cuts_singles; /* singles: cut; see plant_cuts_singles */
     enum fill_mode fill;
-    bool log;                     /* scale: log; min > 0 */
-    double breaks[PLANT_BREAKS];  /* ascending; of bands, where somebody asks for them */
+    bool log;                    /* scale: log; min > 0 */
+    double breaks[PLANT_BREAKS]; /* ascending; of bands, where somebody asks for them */
     double isolines[PLANT_ISOLINES];
     int break_count, isoline_count;
     int line;
@@ -104,32 +115,32 @@ struct plant_colormap { /* out of an image */
 enum transport { TRANSPORT_TCP, TRANSPORT_RTU_TCP /* RTU frames through a socket */, TRANSPORT_RTU /* a serial line */ };
 enum { PLANT_HOSTS = 4 };
 struct plant_source {
-    char *id, *kind;              /* "modbus", "replay" */
+    char *id, *kind; /* "modbus", "replay" */
     enum transport transport;
-    char *hosts[PLANT_HOSTS];     /* of one device: the next is tried where one does not answer */
+    char *hosts[PLANT_HOSTS]; /* of one device: the next is tried where one does not answer */
     int host_count;
-    char *device;                 /* of a serial line */
-    int baud, parity, stop_bits;  /* parity: 'N', 'E' or 'O' */
-    int port, unit;               /* unit: Modbus unit identifier */
+    char *device;                      /* of a serial line */
+    int baud, parity, stop_bits;       /* parity: 'N', 'E' or 'O' */
+    int port, unit;                    /* unit: Modbus unit identifier */
     int poll_ms, timeout_ms, pause_ms; /* pause: between two requests */
-    int max_registers, max_bits;  /* of one request */
-    int max_gap;                  /* registers or bits that nobody wants and that may be asked for none the less */
+    int max_registers, max_bits;       /* of one request */
+    int max_gap;                       /* registers or bits that nobody wants and that may be asked for none the less */
     enum byte_order byte_order;
-    int address_base;             /* 0 or 1: what the first register is called in plain addresses; see base_stated */
+    int address_base; /* 0 or 1: what the first register is called in plain addresses; see base_stated */
     bool base_stated;
-    char *heartbeat;              /* the tag that must change, or NULL */
-    int heartbeat_tag;            /* index, or -1 */
-    double heartbeat_s;           /* at least this often; 0: there is none */
-    char *file;                   /* of a replay */
+    char *heartbeat;    /* the tag that must change, or NULL */
+    int heartbeat_tag;  /* index, or -1 */
+    double heartbeat_s; /* at least this often; 0: there is none */
+    char *file;         /* of a replay */
     double speed;
     bool loop;
-    bool simulated;               /* what it brings was not measured now */
+    bool simulated; /* what it brings was not measured now */
     int line;
 };
 
 struct plant_history {
     bool off;
-    char *folder;            /* NULL: plant_history_folder says */
+    char *folder; /* NULL: plant_history_folder says */
     double keep_days, keep_gb;
     double deadband_percent; /* of a tag's span, where it has no deadband of its own */
     double override_s;       /* a point is kept at least this often */
@@ -144,49 +155,49 @@ struct plant_sentinel {
 
 /* Another tag that says whether this one may be believed: if ((value & mask) == want) != negate. */
 struct plant_quality_tag {
-    int tag;                          /* index */
-    uint64_t mask, want;              /* mask 0: there is none */
+    int tag;             /* index */
+    uint64_t mask, want; /* mask 0: there is none */
     bool negate;
 };
 
 enum { PLANT_SENTINELS = 4 };
 struct plant_tag {
     char *name, *description;
-    char *unit;                       /* of its readings, limits and deadbands: its group's, else as the row says */
-    char *own_unit;                   /* of what its address gives, and of scaled_low and scaled_high: as the row says, else unit */
-    struct unit_change change;        /* from own_unit to unit */
-    int source, group, asset;         /* index, or -1 */
-    char *lost_asset;                 /* the id of an asset that is not there (plant_load_with_orphans), or NULL */
-    char *address;                    /* as written: of a register, the name of a series, or = and an expression */
-    int modbus_unit;                  /* -1: the source's */
+    char *unit;                /* of its readings, limits and deadbands: its group's, else as the row says */
+    char *own_unit;            /* of what its address gives, and of scaled_low and scaled_high: as the row says, else unit */
+    struct unit_change change; /* from own_unit to unit */
+    int source, group, asset;  /* index, or -1 */
+    char *lost_asset;          /* the id of an asset that is not there (plant_load_with_orphans), or NULL */
+    char *address;             /* as written: of a register, the name of a series, or = and an expression */
+    int modbus_unit;           /* -1: the source's */
     enum register_table table;
-    int register_index;               /* from 0, as on the wire */
-    int bit;                          /* bit of a register, or -1 */
+    int register_index; /* from 0, as on the wire */
+    int bit;            /* bit of a register, or -1 */
     enum data_type type;
-    enum byte_order byte_order;       /* resolved for 32 and 64 bits. 16 bits: as the row says, else NONE (the standard); bits: NONE */
-    int scan_ms;                      /* 0: the source's poll_ms */
+    enum byte_order byte_order; /* resolved for 32 and 64 bits. 16 bits: as the row says, else NONE (the standard); bits: NONE */
+    int scan_ms;                /* 0: the source's poll_ms */
     enum scaling scaling;
     double raw_low, raw_high, scaled_low, scaled_high; /* scaled: in own_unit */
-    bool has_range;                   /* scaled_low to scaled_high is what the instrument can measure */
-    bool ne43;                        /* raw_low and raw_high are 4 and 20 mA, and NAMUR NE 43 says what is beyond */
+    bool has_range;                                    /* scaled_low to scaled_high is what the instrument can measure */
+    bool ne43;                                         /* raw_low and raw_high are 4 and 20 mA, and NAMUR NE 43 says what is beyond */
     struct plant_sentinel sentinels[PLANT_SENTINELS];
     int sentinel_count;
     bool negate;
-    bool has_position;                /* position_m is set; else see node */
-    double position_m[3];             /* in the frame that the asset states */
-    char *node;                       /* name of the model node whose place this is, or NULL */
-    double strength, decay;           /* resolved: own, else the group's */
-    double stale_s;                   /* resolved; default 3 polls, at least 5 s */
-    double flatline_s;                /* a value that has not changed for so long is doubted; 0: never */
-    bool states_stale;                /* in its row */
-    struct expression *expression;    /* of a derived tag: what its value is; else NULL */
+    bool has_position;             /* position_m is set; else see node */
+    double position_m[3];          /* in the frame that the asset states */
+    char *node;                    /* name of the model node whose place this is, or NULL */
+    double strength, decay;        /* resolved: own, else the group's */
+    double stale_s;                /* resolved; default 3 polls, at least 5 s */
+    double flatline_s;             /* a value that has not changed for so long is doubted; 0: never */
+    bool states_stale;             /* in its row */
+    struct expression *expression; /* of a derived tag: what its value is; else NULL */
     struct plant_quality_tag quality;
-    double limits[LIMIT_COUNT];       /* resolved: own, else the group's; NaN: none */
-    double deadband;                  /* history is within this of what was read; NaN: the plant's history says */
-    struct plant_alarming alarming;   /* resolved: own, else the group's */
-    int suppressed_by;                /* while this tag, a bit, is 1, by design; -1: none */
+    double limits[LIMIT_COUNT];                 /* resolved: own, else the group's; NaN: none */
+    double deadband;                            /* history is within this of what was read; NaN: the plant's history says */
+    struct plant_alarm_settings alarm_settings; /* resolved: own, else the group's */
+    int suppressed_by;                          /* while this tag, a bit, is 1, by design; -1: none */
     struct plant_mirror mirror;
-    int line, column;                 /* of its name in the tag list */
+    int line, column; /* of its name in the tag list */
 };
 
 enum { PLANT_ENVIRONMENTS = 8 };
@@ -198,17 +209,17 @@ struct plant_environment { /* pictures of surroundings, to light the plant with 
 enum { PLANT_LINKS = 16 };
 struct plant_link { /* where else one reads about an asset, or a tag */
     char *name;
-    char *url;             /* http or https; what is in braces is put in, escaped (PLANT.md) */
+    char *url; /* http or https; what is in braces is put in, escaped (PLANT.md) */
     bool of_tags;
 };
 
 struct plant {
-    char *path, *folder;              /* of the plant file; folder without trailing slash */
+    char *path, *folder; /* of the plant file; folder without trailing slash */
     char *tags_path;
-    char hash[17];                    /* of both files, hexadecimal: which configuration this is */
-    bool keeps_orphans;               /* while it is loaded: tags of assets that are not there are no error */
-    char *name, *time_zone;           /* IANA name; default UTC */
-    enum axis up;                     /* of the plant frame */
+    char hash[17];          /* of both files, hexadecimal: which configuration this is */
+    bool keeps_orphans;     /* while it is loaded: tags of assets that are not there are no error */
+    char *name, *time_zone; /* IANA name; default UTC */
+    enum axis up;           /* of the plant frame */
     struct plant_view view;
     enum plant_show show;
     struct plant_environment environments[PLANT_ENVIRONMENTS]; /* the first is shown where nobody asks for another */

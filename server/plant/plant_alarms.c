@@ -35,15 +35,15 @@ void plant_alarms_read_group(struct yaml_reader *reader, yaml_node_t *node, void
 {
     static const struct choice latch_choices[] = { { "no", 0 }, { "yes", 1 }, { 0 } };
     static const struct key keys[] = {
-        { "deadband", KEY_NUMBER, false, offsetof(struct plant_alarming, deadband), 0, PLANT_MAX_VALUE, NULL, NULL },
-        { "on_delay_s", KEY_NUMBER, false, offsetof(struct plant_alarming, on_delay_s), 0, MAX_DELAY_S, NULL, NULL },
-        { "off_delay_s", KEY_NUMBER, false, offsetof(struct plant_alarming, off_delay_s), 0, MAX_DELAY_S, NULL, NULL },
-        { "priority", KEY_INT, false, offsetof(struct plant_alarming, priority), 1, ALARM_PRIORITIES, NULL, NULL },
-        { "latch", KEY_FLAG, false, offsetof(struct plant_alarming, latch), 0, 0, latch_choices, NULL },
+        { "deadband", KEY_NUMBER, false, offsetof(struct plant_alarm_settings, deadband), 0, PLANT_MAX_VALUE, NULL, NULL },
+        { "on_delay_s", KEY_NUMBER, false, offsetof(struct plant_alarm_settings, on_delay_s), 0, MAX_DELAY_S, NULL, NULL },
+        { "off_delay_s", KEY_NUMBER, false, offsetof(struct plant_alarm_settings, off_delay_s), 0, MAX_DELAY_S, NULL, NULL },
+        { "priority", KEY_INT, false, offsetof(struct plant_alarm_settings, priority), 1, ALARM_PRIORITIES, NULL, NULL },
+        { "latch", KEY_FLAG, false, offsetof(struct plant_alarm_settings, latch), 0, 0, latch_choices, NULL },
         { 0 }
     };
     struct yaml_map map;
-    yaml_map_read(reader, node, "alarm", keys, &((struct plant_group *)group)->alarming, &map);
+    yaml_map_read(reader, node, "alarm", keys, &((struct plant_group *)group)->alarm_settings, &map);
 }
 
 void plant_alarms_check(struct yaml_reader *reader, struct place place, const struct plant *plant)
@@ -69,30 +69,30 @@ static void keep_reference(struct tag_columns *columns, const struct plant *plan
     };
 }
 
-static void read_priority(struct tag_columns *columns, struct plant_alarming *alarming)
+static void read_priority(struct tag_columns *columns, struct plant_alarm_settings *alarm_settings)
 {
     double priority;
     if (!cell_number(columns, COL_PRIORITY, 1, ALARM_PRIORITIES, &priority))
         return;
-    alarming->priority = (int)priority;
-    if (alarming->priority != priority)
+    alarm_settings->priority = (int)priority;
+    if (alarm_settings->priority != priority)
         cell_error(columns, COL_PRIORITY, "Priority: expected a whole number from 1 to %d, found '%.60s'", ALARM_PRIORITIES,
                    cell_text(columns, COL_PRIORITY));
 }
 
 void plant_alarms_read_row(struct tag_columns *columns, struct plant *plant, struct plant_tag *tag, struct alarm_references *references)
 {
-    struct plant_alarming *alarming = &tag->alarming;
-    *alarming = (struct plant_alarming){ .priority = ALARM_PRIORITY_DEFAULT };
+    struct plant_alarm_settings *alarm_settings = &tag->alarm_settings;
+    *alarm_settings = (struct plant_alarm_settings){ .priority = ALARM_PRIORITY_DEFAULT };
     if (tag->group >= 0)
-        *alarming = plant->groups[tag->group].alarming;
-    if (cell_number(columns, COL_ALARM_DEADBAND, 0, PLANT_MAX_VALUE, &alarming->deadband))
-        alarming->deadband = unit_change_span(&tag->change, alarming->deadband);
-    cell_number(columns, COL_ON_DELAY, 0, MAX_DELAY_S, &alarming->on_delay_s);
-    cell_number(columns, COL_OFF_DELAY, 0, MAX_DELAY_S, &alarming->off_delay_s);
-    read_priority(columns, alarming);
+        *alarm_settings = plant->groups[tag->group].alarm_settings;
+    if (cell_number(columns, COL_ALARM_DEADBAND, 0, PLANT_MAX_VALUE, &alarm_settings->deadband))
+        alarm_settings->deadband = unit_change_span(&tag->change, alarm_settings->deadband);
+    cell_number(columns, COL_ON_DELAY, 0, MAX_DELAY_S, &alarm_settings->on_delay_s);
+    cell_number(columns, COL_OFF_DELAY, 0, MAX_DELAY_S, &alarm_settings->off_delay_s);
+    read_priority(columns, alarm_settings);
     if (cell_given(columns, COL_LATCH))
-        alarming->latch = cell_flag(columns, COL_LATCH);
+        alarm_settings->latch = cell_flag(columns, COL_LATCH);
     tag->suppressed_by = tag->mirror.tag = -1;
     keep_reference(columns, plant, COL_SUPPRESSED_BY, references);
     keep_reference(columns, plant, COL_MIRRORS, references);

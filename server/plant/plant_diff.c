@@ -76,16 +76,21 @@ static void compare_tags(struct plant_diff *diff, const struct plant *before, co
     add(what, sizeof(what), !same_text(group_of(before, a), group_of(after, b)), "group");
     add(what, sizeof(what), !same_text(asset_of(before, a), asset_of(after, b)), "asset");
     add(what, sizeof(what), !same_text(a->node, b->node) || memcmp(a->position_m, b->position_m, sizeof(a->position_m)) != 0, "place");
-    add(what, sizeof(what), a->scaling != b->scaling || a->raw_low != b->raw_low || a->raw_high != b->raw_high ||
-            a->scaled_low != b->scaled_low || a->scaled_high != b->scaled_high || a->negate != b->negate, "scaling");
+    add(what, sizeof(what),
+        a->scaling != b->scaling || a->raw_low != b->raw_low || a->raw_high != b->raw_high || a->scaled_low != b->scaled_low ||
+            a->scaled_high != b->scaled_high || a->negate != b->negate,
+        "scaling");
     add(what, sizeof(what), a->scan_ms != b->scan_ms || a->stale_s != b->stale_s, "timing");
     add(what, sizeof(what), a->strength != b->strength || a->decay != b->decay, "strength, decay");
-    add(what, sizeof(what), !same_text(a->unit, b->unit) || !same_text(a->own_unit, b->own_unit) ||
-            !same_text(a->description, b->description), "unit, description");
+    add(what, sizeof(what),
+        !same_text(a->unit, b->unit) || !same_text(a->own_unit, b->own_unit) || !same_text(a->description, b->description),
+        "unit, description");
     add(what, sizeof(what), !same_number(a->deadband, b->deadband), "deadband");
-    add(what, sizeof(what), a->alarming.deadband != b->alarming.deadband || a->alarming.on_delay_s != b->alarming.on_delay_s ||
-            a->alarming.off_delay_s != b->alarming.off_delay_s || a->alarming.priority != b->alarming.priority ||
-            a->alarming.latch != b->alarming.latch, "alarming");
+    add(what, sizeof(what),
+        a->alarm_settings.deadband != b->alarm_settings.deadband || a->alarm_settings.on_delay_s != b->alarm_settings.on_delay_s ||
+            a->alarm_settings.off_delay_s != b->alarm_settings.off_delay_s || a->alarm_settings.priority != b->alarm_settings.priority ||
+            a->alarm_settings.latch != b->alarm_settings.latch,
+        "alarming");
     if (what[0])
         say(diff, "tag %s changed: %s", b->name, what);
 }
@@ -119,24 +124,24 @@ static void diff_assets(struct plant_diff *diff, const struct plant *before, con
             say(diff, "asset %s added", b->id);
         else if (!same_text(a->model, b->model) || !same_text(a->nodes, b->nodes) || a->unit_m != b->unit_m || a->up != b->up ||
                  memcmp(a->placement, b->placement, sizeof(a->placement)) != 0 || !same_text(a->tag, b->tag) ||
-                 !same_text(a->description, b->description) || !same_text(a->area, b->area) ||
-                 a->start != b->start || !plant_properties_same(a, b))
+                 !same_text(a->description, b->description) || !same_text(a->area, b->area) || a->start != b->start ||
+                 !plant_properties_same(a, b))
             say(diff, "asset %s changed", b->id);
     }
 }
 
 static bool same_group(const struct plant_group *a, const struct plant_group *b)
 {
-    bool same = same_text(a->unit, b->unit) && a->as_written == b->as_written && same_text(a->quantity, b->quantity) &&
-                a->min == b->min && a->max == b->max;
+    bool same = same_text(a->unit, b->unit) && a->as_written == b->as_written && same_text(a->quantity, b->quantity) && a->min == b->min &&
+                a->max == b->max;
     for (int i = 0; i < LIMIT_COUNT; i++)
         same = same && same_number(a->limits[i], b->limits[i]);
     return same && a->interpolation == b->interpolation && a->distance == b->distance && a->strength == b->strength &&
            a->decay == b->decay && a->power == b->power && a->radius_m == b->radius_m && a->reach_m == b->reach_m &&
            a->cuts_singles == b->cuts_singles && a->fill == b->fill && a->log == b->log && a->break_count == b->break_count &&
-           a->isoline_count == b->isoline_count &&
-           !memcmp(a->breaks, b->breaks, sizeof(a->breaks)) && !memcmp(a->isolines, b->isolines, sizeof(a->isolines)) &&
-           a->alarming.deadband == b->alarming.deadband && a->alarming.priority == b->alarming.priority;
+           a->isoline_count == b->isoline_count && !memcmp(a->breaks, b->breaks, sizeof(a->breaks)) &&
+           !memcmp(a->isolines, b->isolines, sizeof(a->isolines)) && a->alarm_settings.deadband == b->alarm_settings.deadband &&
+           a->alarm_settings.priority == b->alarm_settings.priority;
 }
 
 static void diff_groups(struct plant_diff *diff, const struct plant *before, const struct plant *after)

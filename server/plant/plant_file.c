@@ -74,14 +74,12 @@ static void read_view(struct yaml_reader *reader, yaml_node_t *node, void *recor
 
 static void read_plant(struct yaml_reader *reader, yaml_node_t *node, void *record)
 {
-    static const struct key keys[] = {
-        { "name", KEY_NAME, true, offsetof(struct plant, name), 0, 0, NULL, NULL },
-        { "time_zone", KEY_NAME, false, offsetof(struct plant, time_zone), 0, 0, NULL, NULL },
-        { "up", KEY_CHOICE, false, offsetof(struct plant, up), 0, 0, up_choices, NULL },
-        { "view", KEY_CUSTOM, false, 0, 0, 0, NULL, read_view },
-        { "show", KEY_CHOICE, false, offsetof(struct plant, show), 0, 0, show_choices, NULL },
-        { 0 }
-    };
+    static const struct key keys[] = { { "name", KEY_NAME, true, offsetof(struct plant, name), 0, 0, NULL, NULL },
+                                       { "time_zone", KEY_NAME, false, offsetof(struct plant, time_zone), 0, 0, NULL, NULL },
+                                       { "up", KEY_CHOICE, false, offsetof(struct plant, up), 0, 0, up_choices, NULL },
+                                       { "view", KEY_CUSTOM, false, 0, 0, 0, NULL, read_view },
+                                       { "show", KEY_CHOICE, false, offsetof(struct plant, show), 0, 0, show_choices, NULL },
+                                       { 0 } };
     struct plant *plant = ((struct plant_file *)record)->plant;
     struct yaml_map map;
     if (yaml_map_read(reader, node, "plant", keys, plant, &map) && yaml_map_good(&map, "time_zone") && !zone_known(plant->time_zone))
@@ -346,8 +344,12 @@ static void read_group(struct yaml_reader *reader, yaml_node_t *node, struct pla
         { 0 }
     };
     struct yaml_map map;
-    *group = (struct plant_group){ .limits = { NAN, NAN, NAN, NAN }, .strength = 1, .decay = 1, .power = 2, .reach_m = INFINITY,
-                                   .alarming.priority = ALARM_PRIORITY_DEFAULT,
+    *group = (struct plant_group){ .limits = { NAN, NAN, NAN, NAN },
+                                   .strength = 1,
+                                   .decay = 1,
+                                   .power = 2,
+                                   .reach_m = INFINITY,
+                                   .alarm_settings.priority = ALARM_PRIORITY_DEFAULT,
                                    .line = yaml_place(node).line };
     if (!yaml_map_read(reader, node, "a group", keys, group, &map))
         return;
@@ -418,19 +420,17 @@ static void read_history(struct yaml_reader *reader, yaml_node_t *node, void *re
 
 void plant_file_read(struct plant *plant, struct diag *diag)
 {
-    static const struct key keys[] = {
-        { "plant", KEY_CUSTOM, true, 0, 0, 0, NULL, read_plant },
-        { "assets", KEY_CUSTOM, true, 0, 0, 0, NULL, read_assets },
-        { "groups", KEY_CUSTOM, true, 0, 0, 0, NULL, read_groups },
-        { "sources", KEY_CUSTOM, false, 0, 0, 0, NULL, read_sources },
-        { "colormaps", KEY_CUSTOM, false, 0, 0, 0, NULL, read_colormaps },
-        { "environment", KEY_CUSTOM, false, 0, 0, 0, NULL, read_environment },
-        { "links", KEY_CUSTOM, false, 0, 0, 0, NULL, read_links },
-        { "history", KEY_CUSTOM, false, 0, 0, 0, NULL, read_history },
-        { "alarms", KEY_CUSTOM, false, 0, 0, 0, NULL, read_alarms },
-        { "tags", KEY_NAME, true, offsetof(struct plant_file, tags), 0, 0, NULL, NULL },
-        { 0 }
-    };
+    static const struct key keys[] = { { "plant", KEY_CUSTOM, true, 0, 0, 0, NULL, read_plant },
+                                       { "assets", KEY_CUSTOM, true, 0, 0, 0, NULL, read_assets },
+                                       { "groups", KEY_CUSTOM, true, 0, 0, 0, NULL, read_groups },
+                                       { "sources", KEY_CUSTOM, false, 0, 0, 0, NULL, read_sources },
+                                       { "colormaps", KEY_CUSTOM, false, 0, 0, 0, NULL, read_colormaps },
+                                       { "environment", KEY_CUSTOM, false, 0, 0, 0, NULL, read_environment },
+                                       { "links", KEY_CUSTOM, false, 0, 0, 0, NULL, read_links },
+                                       { "history", KEY_CUSTOM, false, 0, 0, 0, NULL, read_history },
+                                       { "alarms", KEY_CUSTOM, false, 0, 0, 0, NULL, read_alarms },
+                                       { "tags", KEY_NAME, true, offsetof(struct plant_file, tags), 0, 0, NULL, NULL },
+                                       { 0 } };
     struct plant_file file = { .plant = plant };
     struct yaml_reader reader;
     struct yaml_map map;

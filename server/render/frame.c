@@ -61,7 +61,7 @@ size_t frame_bytes(void)
     return atomic_load_explicit(&all_bytes, memory_order_relaxed);
 }
 
-void frame_rest(void)
+void frame_drop_spares(void)
 {
     pthread_mutex_lock(&spares.lock);
     for (int i = 0; i < SPARES; i++) {
@@ -111,7 +111,7 @@ void frame_unref(struct frame **frame_ptr)
 
 /* What one half shows beside readings: what they differ from. */
 struct then {
-    bool wanted, distance; /* of a distance: nothing, the markers tell it */
+    bool wanted, distance;           /* of a distance: nothing, the markers tell it */
     const struct snapshot *snapshot; /* NULL: forgotten */
 };
 

@@ -50,6 +50,6 @@ struct frame *frame_ref(struct frame *frame);
 void frame_unref(struct frame **frame);
 /* Any thread: pixels of all frames that are there, and of some that are gone, for the next. */
 size_t frame_bytes(void);
-void frame_rest(void); /* drops the latter */
+void frame_drop_spares(void); /* drops the latter */
 
 #endif

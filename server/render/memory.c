@@ -30,8 +30,8 @@ void renderer_measure_memory(const struct renderer *renderer, size_t out[RENDER_
         out[STORE_LIGHT] += draft_light_bytes(renderer->draft) + plates_light_bytes(renderer->plates);
         out[STORE_PICTURES] = draft_kept_bytes(renderer->draft) + plates_kept_bytes(renderer->plates);
     }
-    for (size_t i = 0; i < renderer->stage.model_count; i++) {
-        const struct mesh *mesh = &renderer->stage.models[i].mesh;
+    for (size_t i = 0; i < renderer->gpu_scene.model_count; i++) {
+        const struct mesh *mesh = &renderer->gpu_scene.models[i].mesh;
         out[STORE_MODELS] += mesh->vertex_count * mesh_vertex_bytes(mesh) + 4 * mesh->index_count;
     }
 }
@@ -51,11 +51,11 @@ void renderer_bound_memory(struct renderer *renderer, size_t bytes)
     }
 }
 
-void renderer_rest(struct renderer *renderer)
+void renderer_drop_caches(struct renderer *renderer)
 {
     struct light_key usual = renderer_usual_light(renderer);
-    fields_rest(&renderer->fields);
-    light_rest(&renderer->light, &usual);
+    fields_drop(&renderer->fields);
+    light_drop(&renderer->light, &usual);
     targets_finish(&renderer->targets);
     if (renderer->plates)
         plates_rest(renderer->plates);

@@ -20,7 +20,7 @@ extern const char *const render_store_names[RENDER_STORES];
 void renderer_measure_memory(const struct renderer *renderer, size_t out[RENDER_STORES]);
 /* All but the models together. What the picture that is drawn needs may pass it. Between pictures. */
 void renderer_bound_memory(struct renderer *renderer, size_t bytes);
-/* Nobody looks: all goes but the models and the light that most views have. No stroke may be under way. */
-void renderer_rest(struct renderer *renderer);
+/* Nobody looks: all goes but the models and the light that most views have. No job may be under way. */
+void renderer_drop_caches(struct renderer *renderer);
 
 #endif

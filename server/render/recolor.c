@@ -216,15 +216,15 @@ static void read_corners(void *arg, size_t begin, size_t end)
     }
 }
 
-void recolor_read(struct recolor *recolor, const struct picture *picture, struct workers *workers)
+void recolor_read(struct recolor *recolor, const struct frame_context *context, struct workers *workers)
 {
-    struct frame_block block;
-    frame_block_fill(&block, picture);
+    struct frame_uniforms block;
+    frame_uniforms_fill(&block, context);
     bool same_scale = !memcmp(recolor->scale, block.scale, sizeof(recolor->scale)), changed = false;
     memcpy(recolor->scale, block.scale, sizeof(recolor->scale));
     for (size_t m = 0; m < recolor->mesh_count; m++) {
         struct recolor_mesh *mesh = &recolor->meshes[m];
-        const struct fields_entry *field = picture->fields[mesh->asset];
+        const struct fields_entry *field = context->fields[mesh->asset];
         struct reading_job job = { recolor, field->shown, block.scale, mesh->first_vertex };
         if (mesh->read && same_scale && mesh->content == field->content && field->shown)
             continue;

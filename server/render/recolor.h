@@ -6,7 +6,7 @@
 #define RENDER_RECOLOR_H
 #include "base/workers.h"
 #include "render/frame.h"
-#include "render/picture.h"
+#include "render/frame_context.h"
 
 /* What a pixel shows: a colour that no reading changes (blue | green << 8 | red << 16), several surfaces (their number in the band),
    or one triangle of the field (its number in the band). */
@@ -29,7 +29,7 @@ struct recolor_mixed {
     uint8_t part_count;
 };
 
-struct recolor_band { /* of rows; written by one worker */
+struct recolor_band {         /* of rows; written by one worker */
     uint32_t (*triangles)[3]; /* vertices of the picture; once it is settled, of what is kept */
     float (*corners)[4];      /* of what these carry now: the first corner's; by how much the second's is more, and the third's */
     struct recolor_part *parts;
@@ -41,24 +41,24 @@ struct recolor_band { /* of rows; written by one worker */
 struct recolor_mesh { /* an asset with a field */
     int asset;
     uint32_t first_vertex, vertex_count; /* of the picture; once it is settled, of what is kept */
-    bool read;        /* what its vertices show now: */
-    uint64_t content; /* of struct fields_entry */
+    bool read;                           /* what its vertices show now: */
+    uint64_t content;                    /* of struct fields_entry */
 };
 
 struct recolor {
     int width_px, height_px, band_rows, band_count;
     uint32_t *surfaces; /* per pixel, as above */
     uint32_t *weights;  /* of the triangle's second and third corner, 16 bits each */
-    uint8_t *rows;      /* of the palette */
+    uint8_t *rows;      /* of the colormap */
     uint8_t *ink;       /* once it is settled: not of what is fixed, which has it */
     struct recolor_band *bands;
     struct recolor_mesh *meshes;
     size_t mesh_count, mesh_capacity, vertex_count;
-    float scale[4]; /* of struct frame_block, when the vertices were read */
-    uint32_t *vertices; /* those that are kept, by mesh: which of the asset's */
-    float *carried; /* per vertex: column of the palette (on a logarithmic scale: the value); NAN: look at flags */
-    float *plain;   /* the same without NAN */
-    uint16_t *flags; /* as draft_flags */
+    float scale[4];               /* of struct frame_uniforms, when the vertices were read */
+    uint32_t *vertices;           /* those that are kept, by mesh: which of the asset's */
+    float *carried;               /* per vertex: column of the colormap (on a logarithmic scale: the value); NAN: look at flags */
+    float *plain;                 /* the same without NAN */
+    uint16_t *flags;              /* as draft_flags */
     struct frame_marker *markers; /* places, and whether they are hidden */
     size_t marker_count;
 };
@@ -73,9 +73,9 @@ void recolor_add_mesh(struct recolor *recolor, const struct recolor_mesh *mesh);
 bool recolor_settle(struct recolor *recolor, struct workers *workers);
 
 /* The fields of the picture, into what vertices carry. */
-void recolor_read(struct recolor *recolor, const struct picture *picture, struct workers *workers);
-/* Colours of those bands. palette: PALETTE_ROWS x PALETTE_COLUMNS, as it comes from the GPU. pattern_px: size of its cells. */
-void recolor_draw(const struct recolor *recolor, const uint32_t *palette, float pattern_px, struct workers *workers, int first, int count,
+void recolor_read(struct recolor *recolor, const struct frame_context *context, struct workers *workers);
+/* Colours of those bands. colormap: COLORMAP_ROWS x COLORMAP_COLUMNS, as it comes from the GPU. pattern_px: size of its cells. */
+void recolor_draw(const struct recolor *recolor, const uint32_t *colormap, float pattern_px, struct workers *workers, int first, int count,
                   struct frame *frame);
 
 #endif

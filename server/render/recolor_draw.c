@@ -7,7 +7,7 @@
 
 struct coloring {
     const struct recolor *recolor;
-    const uint32_t *palette;
+    const uint32_t *colormap;
     float pattern_px;
     bool log;
     struct frame *frame;
@@ -43,14 +43,14 @@ static inline int column_at(const struct coloring *coloring, float carried)
 {
     if (coloring->log)
         carried = column_of(lanes_log2((lanes){ 0 } + carried)[0], coloring->recolor->scale);
-    return (int)clamped(carried, 0, PALETTE_PLACES + 1);
+    return (int)clamped(carried, 0, COLORMAP_PLACES + 1);
 }
 
 /* Where a corner has flags. */
 static uint32_t flagged_color(const struct coloring *coloring, const uint32_t vertices[3], uint32_t weights, uint8_t row, float x, float y)
 {
     const struct recolor *recolor = coloring->recolor;
-    const uint32_t *colors = coloring->palette + row * PALETTE_COLUMNS;
+    const uint32_t *colors = coloring->colormap + row * COLORMAP_COLUMNS;
     float w1 = (float)(weights & 0xffff) * WEIGHT, w2 = (float)(weights >> 16) * WEIGHT, w[3] = { 1 - w1 - w2, w1, w2 };
     float carried = 0, none = 0, little = 0;
     for (int i = 0; i < 3; i++) {
@@ -59,12 +59,12 @@ static uint32_t flagged_color(const struct coloring *coloring, const uint32_t ve
         little += w[i] * draft_uncertain(recolor->flags[vertices[i]]);
     }
     if (none > 0.5f)
-        return mix(colors[PALETTE_PATTERNS + PATTERN_HATCH_LIGHT], colors[PALETTE_PATTERNS + PATTERN_HATCH_DARK],
+        return mix(colors[COLORMAP_PATTERNS + PATTERN_HATCH_LIGHT], colors[COLORMAP_PATTERNS + PATTERN_HATCH_DARK],
                    clamped(hatch(x, y, coloring->pattern_px), 0, 1));
     uint32_t color = colors[column_at(coloring, carried)];
     if (little <= 0.5f)
         return color;
-    return mix(color, colors[PALETTE_PATTERNS + PATTERN_STIPPLE], clamped(stipple(x, y, coloring->pattern_px), 0, 1));
+    return mix(color, colors[COLORMAP_PATTERNS + PATTERN_STIPPLE], clamped(stipple(x, y, coloring->pattern_px), 0, 1));
 }
 
 /* Four rows of four, the first three columns of them. */
@@ -111,9 +111,9 @@ DRAFT_INLINE lanes_int field_colors(const struct coloring *coloring, const struc
     carried = lanes_choose(*known, carried, (lanes){ 0 });
     if (coloring->log)
         carried = columns_of_logs(carried, coloring->recolor->scale);
-    lanes_int columns = lanes_whole(lanes_clamp(carried, 0, PALETTE_PLACES + 1));
+    lanes_int columns = lanes_whole(lanes_clamp(carried, 0, COLORMAP_PLACES + 1));
     for (int i = 0; i < LANES; i++)
-        colors[i] = (int32_t)coloring->palette[(rows >> (8 * i) & 0xff) * PALETTE_COLUMNS + (uint32_t)columns[i]];
+        colors[i] = (int32_t)coloring->colormap[(rows >> (8 * i) & 0xff) * COLORMAP_COLUMNS + (uint32_t)columns[i]];
     return colors;
 }
 
@@ -260,9 +260,9 @@ static void color_bands(void *arg, size_t begin, size_t end)
         color_band(coloring, (int)(coloring->first_band + band));
 }
 
-void recolor_draw(const struct recolor *recolor, const uint32_t *palette, float pattern_px, struct workers *workers, int first, int count,
+void recolor_draw(const struct recolor *recolor, const uint32_t *colormap, float pattern_px, struct workers *workers, int first, int count,
                   struct frame *frame)
 {
-    struct coloring coloring = { recolor, palette, pattern_px, is_log(recolor->scale), frame, (size_t)first };
+    struct coloring coloring = { recolor, colormap, pattern_px, is_log(recolor->scale), frame, (size_t)first };
     workers_for(workers, (size_t)count, 2, color_bands, &coloring);
 }

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* From what vertices carry to columns of the palette. Private to recolor*.c. */
+/* From what vertices carry to columns of the colormap. Private to recolor*.c. */
 #ifndef RENDER_RECOLOR_IMPL_H
 #define RENDER_RECOLOR_IMPL_H
 #include <string.h>
@@ -8,7 +8,7 @@
 #include "render/draft/draft_simd.h"
 #include "render/recolor.h"
 
-static const float SLACK = 1e-5f, COLUMNS_OF_RANGE = PALETTE_PLACES / (1 + 2 * 1e-5f);
+static const float SLACK = 1e-5f, COLUMNS_OF_RANGE = COLORMAP_PLACES / (1 + 2 * 1e-5f);
 
 static inline float clamped(float x, float low, float high)
 {

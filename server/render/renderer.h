@@ -28,21 +28,21 @@ struct frame *renderer_draw(struct renderer *renderer, const struct view *view, 
 void renderer_use_gl(struct renderer *renderer, bool always);
 /* What other assets hide is left out of pictures of so many triangles. INT_MAX: of none, but clusters that are not seen. From the
    beginning: what pays. */
-void renderer_leave_out(struct renderer *renderer, int least_triangles);
+void renderer_set_occlusion_least(struct renderer *renderer, int least_triangles);
 /* By GL each asset is drawn by calls of its own, not with all that are alike: to compare. */
-void renderer_draw_one_by_one(struct renderer *renderer, bool one_by_one);
+void renderer_set_batching_off(struct renderer *renderer, bool one_by_one);
 /* So many assets were left out of the last picture that GL drew; waits for it. */
-size_t renderer_left_out(const struct renderer *renderer);
+size_t renderer_occluded_count(const struct renderer *renderer);
 
 /* A light that is not baked yet: pictures of the moving tier show the one most like it for now, and bake on for about that long each.
    Where none is, a rough one is made for now. Without this, and in the still tier, a picture takes the time that its light takes.
    False: out of GPU memory, logged. */
-bool renderer_hurry(struct renderer *renderer, int64_t bake_ns);
+bool renderer_set_bake_budget(struct renderer *renderer, int64_t bake_ns);
 /* Nobody wants a picture: bakes the light that most views have, for about that long. True: there is nothing more to do. */
-bool renderer_idle(struct renderer *renderer, int64_t budget_ns);
+bool renderer_bake_idle(struct renderer *renderer, int64_t budget_ns);
 
 /* From now on the field is worked out at each fragment, over all sensors, on the finest level (renderer_measure: on the one it is asked
-   for; render/reference.h): slow, for comparison. */
+   for; render/reference/reference.h): slow, for comparison. */
 void renderer_set_per_fragment(struct renderer *renderer, bool per_fragment);
 /* What the pixels of the view's tier stand for, at one sample each, rows from the top: the field's place in the range (unclamped,
    never on a logarithmic scale), no data (0..1; MEASURE_CONTEXT: an asset without a field; MEASURE_NOTHING), uncertain (0..1), depth
@@ -52,17 +52,17 @@ bool renderer_measure(struct renderer *renderer, const struct view *view, const 
 
 /* The same picture drawn bit by bit, so that others can be drawn in between; it shows what there was to see when it was begun.
    As many as fit in memory may be under way. NULL on failure, logged. */
-struct stroke *renderer_begin(struct renderer *renderer, const struct view *view, const struct snapshot *snapshot);
-bool renderer_keeps(const struct stroke *stroke); /* when it is ended, the same with other readings is quick (renderer_is_quick) */
+struct render_job *renderer_begin(struct renderer *renderer, const struct view *view, const struct snapshot *snapshot);
+bool renderer_keeps(const struct render_job *job); /* when it is ended, the same with other readings is quick (renderer_is_quick) */
 /* Draws on for about that long, and a bit at least. True: nothing is left to do but renderer_end. */
-bool renderer_step(struct renderer *renderer, struct stroke *stroke, int64_t budget_ns);
-/* Draws what is left. The caller owns the frame. NULL on failure, logged. The stroke is gone in either case. */
-struct frame *renderer_end(struct renderer *renderer, struct stroke **stroke);
+bool renderer_step(struct renderer *renderer, struct render_job *job, int64_t budget_ns);
+/* Draws what is left. The caller owns the frame. NULL on failure, logged. The job is gone in either case. */
+struct frame *renderer_end(struct renderer *renderer, struct render_job **job);
 /* With a GPU: gives it the whole picture and does not wait; renderer_end does. A few may be under way, so that one is drawn while
    another one's pixels come. NULL on failure, logged. */
-bool renderer_launches(const struct renderer *renderer);
-struct stroke *renderer_launch(struct renderer *renderer, const struct view *view, const struct snapshot *snapshot);
-bool renderer_landed(const struct stroke *stroke); /* renderer_end would not wait */
-void renderer_abandon(struct renderer *renderer, struct stroke **stroke); /* &NULL is fine; leaves NULL */
+bool renderer_submits(const struct renderer *renderer);
+struct render_job *renderer_submit(struct renderer *renderer, const struct view *view, const struct snapshot *snapshot);
+bool renderer_is_complete(const struct render_job *job);                   /* renderer_end would not wait */
+void renderer_abandon(struct renderer *renderer, struct render_job **job); /* &NULL is fine; leaves NULL */
 
 #endif

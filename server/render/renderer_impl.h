@@ -2,62 +2,63 @@
 /* What the parts of the renderer share. Private to renderer*.c. */
 #ifndef RENDER_RENDERER_IMPL_H
 #define RENDER_RENDERER_IMPL_H
-#include "render/caps.h"
+#include "render/gl/section_caps.h"
 #include "render/draft/draft.h"
-#include "render/flight.h"
-#include "render/ghosts.h"
-#include "render/isolines.h"
+#include "render/gl/frames_in_flight.h"
+#include "render/gl/ghosts.h"
+#include "render/pick/isolines.h"
 #include "render/light/sky.h"
-#include "render/lines.h"
-#include "render/markers.h"
-#include "render/palettes.h"
+#include "render/gl/lines.h"
+#include "render/pick/markers.h"
+#include "render/shaded_colormap_cache.h"
 #include "render/plate/plate.h"
 #include "render/renderer.h"
-#include "render/solid.h"
-#include "render/targets.h"
+#include "render/gl/surface_pass.h"
+#include "render/gl/targets.h"
 
 enum { SURFACES, EDGES, PASSES }; /* of what GL draws bit by bit */
 
 struct renderer {
     struct gl *gl;
     const struct scene *scene;
-    struct stage stage;
+    struct gpu_scene gpu_scene;
     struct environments environments;
     struct light light;
     struct fields fields;
     struct reference reference;
     bool per_fragment;
-    struct solid solid;
+    struct surface_pass surface_pass;
     struct sky sky;
     struct lines lines;
     struct ghosts ghosts;
-    struct caps caps;
+    struct section_caps section_caps;
     struct isolines isolines;
-    struct flights flights;
-    GLuint frame_buffer;                      /* struct frame_block */
-    struct palettes palettes;
+    struct frames_in_flight frames_in_flight;
+    GLuint frame_buffer; /* struct frame_uniforms */
+    struct shaded_colormap_cache colormaps;
     struct targets targets;
     double pixel_ns[PASSES]; /* as measured lately */
-    int64_t hurry_ns;    /* 0: none */
-    int64_t still_ns;    /* what a GPU took for the last still picture; 0: not known */
-    struct draft *draft;   /* NULL: a GPU draws moving pictures too; and below */
-    struct plates *plates; /* still ones */
+    int64_t bake_budget_ns;  /* 0: none */
+    int64_t refined_ns;      /* what a GPU took for the last still picture; 0: not known */
+    struct draft *draft;     /* NULL: a GPU draws moving pictures too; and below */
+    struct plates *plates;   /* still ones */
     bool always_gl;
     const struct fields_entry **asset_fields; /* per asset, of the picture being drawn */
     int *visible;
-    double *distance_m; /* per asset */
+    double *distance_m;      /* per asset */
     struct visibility shown; /* by the last picture that was drawn at once */
 };
 
 /* An empty frame, and what there is to draw. NULL: out of memory, logged. */
-struct frame *renderer_start(struct renderer *renderer, const struct view *view, const struct snapshot *snapshot, struct picture *picture);
-/* Light, palette and uniforms of the picture: others drew meanwhile. False: out of GPU memory, logged. */
-bool renderer_take_up(struct renderer *renderer, struct picture *picture);
-/* The whole picture at once by the steps of a stroke. As renderer_draw. */
-struct frame *renderer_draw_stroke(struct renderer *renderer, const struct view *view, const struct snapshot *snapshot);
+struct frame *renderer_start(struct renderer *renderer, const struct view *view, const struct snapshot *snapshot,
+                             struct frame_context *context);
+/* Light, colormap and uniforms of the picture: others drew meanwhile. False: out of GPU memory, logged. */
+bool renderer_take_up(struct renderer *renderer, struct frame_context *context);
+/* The whole picture at once by the steps of a job. As renderer_draw. */
+struct frame *renderer_draw_job(struct renderer *renderer, const struct view *view, const struct snapshot *snapshot);
 /* The light that most views have. */
 struct light_key renderer_usual_light(const struct renderer *renderer);
-/* As renderer_launch. */
-struct stroke *renderer_launch_stroke(struct renderer *renderer, const struct view *view, const struct snapshot *snapshot);
+/* As renderer_submit. */
+struct render_job *renderer_submit_job(struct renderer *renderer, const struct view *view, const struct snapshot *snapshot);
 
 #endif

@@ -6,9 +6,9 @@
 #include "base/clock.h"
 #include "base/mem.h"
 #include "render/renderer_impl.h"
-#include "render/stroke.h"
+#include "render/render_job.h"
 
-enum { STILL_SAMPLES = 4 };
+enum { REFINED_SAMPLES = 4 };
 /* Of what is drawn bit by bit, on a processor: how long a bit may take. */
 static const int64_t BIT_NS = 4 * NS_PER_MS;
 static const double TRIANGLE_NS = 36;
@@ -16,69 +16,69 @@ enum { BIT_TRIANGLES = 80000 };
 
 static bool take_target(struct renderer *renderer, const struct view *view, struct target *target)
 {
-    int samples = view->tier == TIER_STILL && renderer->gl->max_samples >= STILL_SAMPLES ? STILL_SAMPLES : 1;
+    int samples = view->tier == TIER_REFINED && renderer->gl->max_samples >= REFINED_SAMPLES ? REFINED_SAMPLES : 1;
     return targets_take(&renderer->targets, renderer->gl->log, view->width_px, view->height_px, samples, target);
 }
 
-static struct stroke *begin(struct renderer *renderer, const struct view *view, const struct snapshot *snapshot, bool whole)
+static struct render_job *begin(struct renderer *renderer, const struct view *view, const struct snapshot *snapshot, bool whole)
 {
-    struct picture picture;
+    struct frame_context context;
     struct target target = { 0 };
-    struct frame *frame = renderer_start(renderer, view, snapshot, &picture);
+    struct frame *frame = renderer_start(renderer, view, snapshot, &context);
     if (!frame)
         return NULL;
-    bool by_plate = renderer->plates && !renderer->always_gl && plates_can(renderer->plates, &picture);
+    bool by_plate = renderer->plates && !renderer->always_gl && plates_can(renderer->plates, &context);
     struct plate *plate = by_plate ? plate_begin(renderer->plates) : NULL;
     if (by_plate ? !plate : !take_target(renderer, view, &target)) {
         frame_unref(&frame);
         return NULL;
     }
-    struct stroke *stroke = mem_new(sizeof(*stroke));
-    stroke_init(stroke, &picture, &target, frame, whole);
-    stroke->plate = plate;
+    struct render_job *job = mem_new(sizeof(*job));
+    render_job_init(job, &context, &target, frame, whole);
+    job->plate = plate;
     if (!plate)
-        isolines_collect(&renderer->isolines, &picture, &stroke->isolines);
-    return stroke;
+        isolines_collect(&renderer->isolines, &context, &job->isolines);
+    return job;
 }
 
 /* From now on its light stays. */
-static bool take_up_stroke(struct renderer *renderer, struct stroke *stroke)
+static bool take_up_job(struct renderer *renderer, struct render_job *job)
 {
-    if (!stroke->light) {
-        stroke->light = light_get(&renderer->light, &stroke->picture.lit_by);
-        if (!stroke->light)
+    if (!job->light) {
+        job->light = light_get(&renderer->light, &job->context.lit_by);
+        if (!job->light)
             return false;
-        light_hold(stroke->light);
-        stroke->picture.light = stroke->light;
+        light_hold(job->light);
+        job->context.light = job->light;
     }
-    return renderer_take_up(renderer, &stroke->picture);
+    return renderer_take_up(renderer, &job->context);
 }
 
 /* Some of the tile. Returns about how long its triangles took, and that is not for their pixels; done: all is drawn. */
-static double draw_surfaces(struct renderer *renderer, struct stroke *stroke, const struct tile *tile, bool *done)
+static double draw_surfaces(struct renderer *renderer, struct render_job *job, const struct tile *tile, bool *done)
 {
-    struct picture picture = stroke_tile_picture(stroke, tile);
-    size_t first = stroke->drawn;
-    int triangles = stroke->copies && renderer->gl->software ? BIT_TRIANGLES : INT_MAX;
-    glBindFramebuffer(GL_DRAW_FRAMEBUFFER, stroke->target.framebuffer);
+    struct frame_context context = render_job_tile_context(job, tile);
+    size_t first = job->drawn;
+    int triangles = job->copies && renderer->gl->software ? BIT_TRIANGLES : INT_MAX;
+    glBindFramebuffer(GL_DRAW_FRAMEBUFFER, job->target.framebuffer);
     glDepthMask(GL_TRUE);
     if (first == 0)
         glClear(GL_DEPTH_BUFFER_BIT);
-    renderer->solid.triangles = 0;
-    stroke->drawn = solid_draw_some(&renderer->solid, &picture, first, triangles);
-    *done = stroke->drawn == picture.visible_count;
+    renderer->surface_pass.triangles = 0;
+    job->drawn = surface_pass_draw_some(&renderer->surface_pass, &context, first, triangles);
+    *done = job->drawn == context.visible_count;
     if (*done) {
-        sky_draw(&renderer->sky, &picture, &renderer->light); /* seen through what is blended */
-        solid_draw_blended(&renderer->solid, &picture);
-        target_resolve(&stroke->target, tile->x_px, tile->y_px, tile->width_px, tile->height_px);
+        sky_draw(&renderer->sky, &context, &renderer->light); /* seen through what is blended */
+        surface_pass_draw_blended(&renderer->surface_pass, &context);
+        target_resolve(&job->target, tile->x_px, tile->y_px, tile->width_px, tile->height_px);
     }
-    return TRIANGLE_NS * renderer->solid.triangles;
+    return TRIANGLE_NS * renderer->surface_pass.triangles;
 }
 
 /* First the surfaces of all tiles, then their edges: those look over the rim of a tile. */
-static int cells_of(const struct stroke *stroke)
+static int cells_of(const struct render_job *job)
 {
-    return stroke_cells(stroke) * (stroke->view.tier == TIER_STILL ? PASSES : 1);
+    return render_job_cells(job) * (job->view.tier == TIER_REFINED ? PASSES : 1);
 }
 
 struct bit {
@@ -86,27 +86,27 @@ struct bit {
     double pixels, triangles_ns;
 };
 
-static struct bit draw_bit(struct renderer *renderer, struct stroke *stroke)
+static struct bit draw_bit(struct renderer *renderer, struct render_job *job)
 {
     bool done = true;
-    struct bit bit = { .pass = stroke->next < stroke_cells(stroke) ? SURFACES : EDGES };
-    struct tile tile = stroke_choose_tile(stroke, (double)BIT_NS / renderer->pixel_ns[bit.pass]);
+    struct bit bit = { .pass = job->next < render_job_cells(job) ? SURFACES : EDGES };
+    struct tile tile = render_job_choose_tile(job, (double)BIT_NS / renderer->pixel_ns[bit.pass]);
     bit.pixels = (double)tile.width_px * tile.height_px;
     if (bit.pixels > 0) {
         glEnable(GL_SCISSOR_TEST);
         glScissor(tile.x_px, tile.y_px, tile.width_px, tile.height_px);
         if (bit.pass == SURFACES)
-            bit.triangles_ns = draw_surfaces(renderer, stroke, &tile, &done);
+            bit.triangles_ns = draw_surfaces(renderer, job, &tile, &done);
         else
-            lines_draw_edges(&renderer->lines, &stroke->picture);
+            lines_draw_edges(&renderer->lines, &job->context);
         glDisable(GL_SCISSOR_TEST);
     }
     if (done) {
-        stroke->next += stroke->span;
-        stroke->span = 0;
-        stroke->drawn = 0;
-        if (stroke->next == stroke_cells(stroke))
-            caps_draw(&renderer->caps, &stroke->picture);
+        job->next += job->span;
+        job->span = 0;
+        job->drawn = 0;
+        if (job->next == render_job_cells(job))
+            section_caps_draw(&renderer->section_caps, &job->context);
     }
     return bit;
 }
@@ -119,158 +119,158 @@ static void learn(struct renderer *renderer, const struct bit *bit, int64_t took
         *pixel_ns = fmax(*pixel_ns + 0.3 * (now_ns - *pixel_ns), 1);
 }
 
-struct stroke *renderer_begin(struct renderer *renderer, const struct view *view, const struct snapshot *snapshot)
+struct render_job *renderer_begin(struct renderer *renderer, const struct view *view, const struct snapshot *snapshot)
 {
     /* A GPU draws the whole in the time that a processor takes for a tile. */
-    struct stroke *stroke = begin(renderer, view, snapshot, !renderer->gl->software);
-    if (stroke && !stroke_hold_fields(stroke))
-        renderer_abandon(renderer, &stroke);
-    return stroke;
+    struct render_job *job = begin(renderer, view, snapshot, !renderer->gl->software);
+    if (job && !render_job_hold_fields(job))
+        renderer_abandon(renderer, &job);
+    return job;
 }
 
-bool renderer_keeps(const struct stroke *stroke)
+bool renderer_keeps(const struct render_job *job)
 {
-    return stroke->plate != NULL;
+    return job->plate != NULL;
 }
 
 /* A bit on all cores takes some milliseconds; the next one may take twice as long as the last. */
-static bool step_plate(struct renderer *renderer, struct stroke *stroke, int64_t budget_ns)
+static bool step_plate(struct renderer *renderer, struct render_job *job, int64_t budget_ns)
 {
     int64_t start_ns = clock_mono_ns(), spent_ns = 0, last_ns = 0;
-    bool done = !take_up_stroke(renderer, stroke); /* renderer_end fails likewise */
+    bool done = !take_up_job(renderer, job); /* renderer_end fails likewise */
     while (!done && spent_ns + 2 * last_ns <= budget_ns) {
-        done = plate_step(stroke->plate, &stroke->picture, &renderer->light, stroke->frame);
+        done = plate_step(job->plate, &job->context, &renderer->light, job->frame);
         last_ns = clock_mono_ns() - start_ns - spent_ns;
         spent_ns += last_ns;
     }
-    stroke->frame->render_ns += spent_ns;
+    job->frame->render_ns += spent_ns;
     return done;
 }
 
-bool renderer_step(struct renderer *renderer, struct stroke *stroke, int64_t budget_ns)
+bool renderer_step(struct renderer *renderer, struct render_job *job, int64_t budget_ns)
 {
     int64_t start_ns = clock_mono_ns(), spent_ns = 0, last_ns = 0;
-    int cells = cells_of(stroke);
-    if (!stroke->light && !light_step(&renderer->light, &stroke->picture.lit_by, budget_ns))
+    int cells = cells_of(job);
+    if (!job->light && !light_step(&renderer->light, &job->context.lit_by, budget_ns))
         return false;
-    if (stroke->plate)
-        return step_plate(renderer, stroke, budget_ns);
-    unsigned shortages = gl_shortages();
-    if (stroke->next < cells && !take_up_stroke(renderer, stroke))
-        stroke->next = cells; /* renderer_end fails likewise */
-    while (stroke->next < cells && (spent_ns == 0 || spent_ns + (last_ns > BIT_NS ? last_ns : BIT_NS) <= budget_ns)) {
+    if (job->plate)
+        return step_plate(renderer, job, budget_ns);
+    unsigned shortages = gl_out_of_memory_count();
+    if (job->next < cells && !take_up_job(renderer, job))
+        job->next = cells; /* renderer_end fails likewise */
+    while (job->next < cells && (spent_ns == 0 || spent_ns + (last_ns > BIT_NS ? last_ns : BIT_NS) <= budget_ns)) {
         int64_t work_ns = clock_work_ns();
-        struct bit bit = draw_bit(renderer, stroke);
+        struct bit bit = draw_bit(renderer, job);
         glFinish();
         learn(renderer, &bit, (clock_work_ns() - work_ns) / workers_count(field_workers(renderer->fields.field)));
         last_ns = clock_mono_ns() - start_ns - spent_ns;
         spent_ns += last_ns;
     }
-    stroke->short_of_memory |= gl_shortages() != shortages;
-    stroke->frame->render_ns += spent_ns;
-    if (!renderer->gl->software && stroke->view.tier == TIER_STILL && stroke->next == cells)
-        renderer->still_ns = stroke->frame->render_ns;
-    return stroke->next == cells;
+    job->short_of_memory |= gl_out_of_memory_count() != shortages;
+    job->frame->render_ns += spent_ns;
+    if (!renderer->gl->software && job->view.tier == TIER_REFINED && job->next == cells)
+        renderer->refined_ns = job->frame->render_ns;
+    return job->next == cells;
 }
 
 /* What is left of a plate. NULL: it failed, logged. */
-static struct frame *end_plate(struct renderer *renderer, struct stroke *stroke)
+static struct frame *end_plate(struct renderer *renderer, struct render_job *job)
 {
     int64_t start_ns = clock_mono_ns();
-    struct frame *frame = stroke->frame;
-    if (!take_up_stroke(renderer, stroke))
+    struct frame *frame = job->frame;
+    if (!take_up_job(renderer, job))
         return NULL;
-    while (!plate_step(stroke->plate, &stroke->picture, &renderer->light, frame)) {}
-    if (!plates_keep(renderer->plates, stroke->plate, &stroke->picture, frame))
+    while (!plate_step(job->plate, &job->context, &renderer->light, frame)) {
+    }
+    if (!plates_keep(renderer->plates, job->plate, &job->context, frame))
         return NULL;
     frame->render_ns += clock_mono_ns() - start_ns;
-    stroke->frame = NULL;
+    job->frame = NULL;
     return frame;
 }
 
 /* All that is left is given to the GPU, and the pixels are on their way. False: logged. */
-static bool launch(struct renderer *renderer, struct stroke *stroke)
+static bool submit(struct renderer *renderer, struct render_job *job)
 {
     struct log *log = renderer->gl->log;
     int64_t start_ns = clock_mono_ns();
-    gl_forget_errors();
-    unsigned shortages = gl_shortages();
-    struct flight *flight = flights_take(&renderer->flights, log);
-    if (!flight || !take_up_stroke(renderer, stroke)) {
-        flights_give(flight);
+    gl_clear_errors();
+    unsigned shortages = gl_out_of_memory_count();
+    struct frame_in_flight *in_flight = frames_in_flight_take(&renderer->frames_in_flight, log);
+    if (!in_flight || !take_up_job(renderer, job)) {
+        frames_in_flight_give(in_flight);
         return false;
     }
-    stroke->flight = flight;
-    while (stroke->next < cells_of(stroke))
-        draw_bit(renderer, stroke);
-    ghosts_draw(&renderer->ghosts, &stroke->picture);
-    lines_draw_outline(&renderer->lines, &stroke->picture);
-    bool good = markers_start(&flight->markers, &stroke->picture) &&
-                isolines_start(&flight->labels, &stroke->picture, &stroke->isolines) &&
-                readback_start(&flight->readback, log, &stroke->target);
-    gl_forget_errors();
-    stroke->short_of_memory |= gl_shortages() != shortages;
-    stroke->frame->render_ns += clock_mono_ns() - start_ns;
-    if (good && stroke->short_of_memory)
-        log_err(log, "picture of %dx%d: the GPU ran out of memory while it was drawn", stroke->view.width_px, stroke->view.height_px);
-    return good && !stroke->short_of_memory;
+    job->in_flight = in_flight;
+    while (job->next < cells_of(job))
+        draw_bit(renderer, job);
+    ghosts_draw(&renderer->ghosts, &job->context);
+    lines_draw_outline(&renderer->lines, &job->context);
+    bool good = markers_start(&in_flight->markers, &job->context) && isolines_start(&in_flight->labels, &job->context, &job->isolines) &&
+                readback_start(&in_flight->readback, log, &job->target);
+    gl_clear_errors();
+    job->short_of_memory |= gl_out_of_memory_count() != shortages;
+    job->frame->render_ns += clock_mono_ns() - start_ns;
+    if (good && job->short_of_memory)
+        log_err(log, "picture of %dx%d: the GPU ran out of memory while it was drawn", job->view.width_px, job->view.height_px);
+    return good && !job->short_of_memory;
 }
 
-/* What was launched. NULL: it failed, logged. */
-static struct frame *land(struct renderer *renderer, struct stroke *stroke)
+/* What was submitted. NULL: it failed, logged. */
+static struct frame *complete(struct renderer *renderer, struct render_job *job)
 {
-    struct flight *flight = stroke->flight;
-    struct frame *frame = stroke->frame;
+    struct frame_in_flight *in_flight = job->in_flight;
+    struct frame *frame = job->frame;
     int64_t start_ns = clock_mono_ns();
-    if (!readback_wait(&flight->readback, renderer->gl->log))
+    if (!readback_wait(&in_flight->readback, renderer->gl->log))
         return NULL;
     int64_t drawn_ns = clock_mono_ns();
-    readback_get(&flight->readback, field_workers(renderer->fields.field), frame->bgrx, (size_t)frame->stride_bytes);
-    markers_get(&flight->markers, &stroke->picture, frame);
-    isolines_get(&flight->labels, &stroke->isolines, frame);
+    readback_get(&in_flight->readback, field_workers(renderer->fields.field), frame->bgrx, (size_t)frame->stride_bytes);
+    markers_get(&in_flight->markers, &job->context, frame);
+    isolines_get(&in_flight->labels, &job->isolines, frame);
     frame->render_ns += drawn_ns - start_ns;
     frame->readback_ns = clock_mono_ns() - drawn_ns;
-    stroke->frame = NULL;
+    job->frame = NULL;
     return frame;
 }
 
-struct frame *renderer_end(struct renderer *renderer, struct stroke **stroke_ptr)
+struct frame *renderer_end(struct renderer *renderer, struct render_job **job_ptr)
 {
-    struct stroke *stroke = *stroke_ptr;
+    struct render_job *job = *job_ptr;
     struct frame *frame = NULL;
-    if (stroke->plate)
-        frame = end_plate(renderer, stroke);
-    else if (stroke->flight || launch(renderer, stroke))
-        frame = land(renderer, stroke);
-    renderer_abandon(renderer, stroke_ptr);
+    if (job->plate)
+        frame = end_plate(renderer, job);
+    else if (job->in_flight || submit(renderer, job))
+        frame = complete(renderer, job);
+    renderer_abandon(renderer, job_ptr);
     return frame;
 }
 
-void renderer_abandon(struct renderer *renderer, struct stroke **stroke_ptr)
+void renderer_abandon(struct renderer *renderer, struct render_job **job_ptr)
 {
-    struct stroke *stroke = *stroke_ptr;
-    if (!stroke)
+    struct render_job *job = *job_ptr;
+    if (!job)
         return;
-    if (stroke->plate)
-        plate_end(renderer->plates, &stroke->plate);
+    if (job->plate)
+        plate_end(renderer->plates, &job->plate);
     else
-        targets_give(&renderer->targets, &stroke->target);
-    flights_give(stroke->flight);
-    stroke_finish(stroke);
-    mem_free(stroke);
-    *stroke_ptr = NULL;
+        targets_give(&renderer->targets, &job->target);
+    frames_in_flight_give(job->in_flight);
+    render_job_finish(job);
+    mem_free(job);
+    *job_ptr = NULL;
 }
 
-struct frame *renderer_draw_stroke(struct renderer *renderer, const struct view *view, const struct snapshot *snapshot)
+struct frame *renderer_draw_job(struct renderer *renderer, const struct view *view, const struct snapshot *snapshot)
 {
-    struct stroke *stroke = begin(renderer, view, snapshot, true);
-    return stroke ? renderer_end(renderer, &stroke) : NULL;
+    struct render_job *job = begin(renderer, view, snapshot, true);
+    return job ? renderer_end(renderer, &job) : NULL;
 }
 
-struct stroke *renderer_launch_stroke(struct renderer *renderer, const struct view *view, const struct snapshot *snapshot)
+struct render_job *renderer_submit_job(struct renderer *renderer, const struct view *view, const struct snapshot *snapshot)
 {
-    struct stroke *stroke = begin(renderer, view, snapshot, true);
-    if (stroke && !launch(renderer, stroke))
-        renderer_abandon(renderer, &stroke);
-    return stroke;
+    struct render_job *job = begin(renderer, view, snapshot, true);
+    if (job && !submit(renderer, job))
+        renderer_abandon(renderer, &job);
+    return job;
 }

@@ -29,17 +29,17 @@ const char *view_unit(const struct plant *plant, const struct view *view)
     return view->field.show == SHOW_DISTANCE ? "m" : view_is_operator(view) || !unit ? "" : unit;
 }
 
-void view_own_scale(const struct scene *scene, struct view *view)
+void view_default_scale(const struct scene *scene, struct view *view)
 {
     const struct plant_group *group = &scene->plant->groups[view->field.group];
-    field_own_range(scene, &view->field, &view->range_min, &view->range_max);
+    field_default_range(scene, &view->field, &view->range_min, &view->range_max);
     view->ramp_interval = 0;
-    memset(&view->paint, 0, sizeof(view->paint));
+    memset(&view->color_scale, 0, sizeof(view->color_scale));
     if (view->field.show != SHOW_VALUE)
         return;
-    view->paint.log = group->log;
-    view->paint.line_count = group->isoline_count;
-    memcpy(view->paint.lines, group->isolines, sizeof(group->isolines));
+    view->color_scale.log = group->log;
+    view->color_scale.line_count = group->isoline_count;
+    memcpy(view->color_scale.lines, group->isolines, sizeof(group->isolines));
 }
 
 void view_default(const struct scene *scene, int width_px, int height_px, struct view *view)
@@ -50,11 +50,11 @@ void view_default(const struct scene *scene, int width_px, int height_px, struct
     view->height_px = height_px;
     scene_home(scene, (double)width_px / height_px, &view->camera);
     view->selected_asset = -1;
-    view->tier = TIER_STILL;
+    view->tier = TIER_REFINED;
     if (plant->group_count > 0) {
         field_params_default(plant, 0, &view->field);
         view->field.show = plant->show == PLANT_SHOW_OPERATOR ? SHOW_OPERATOR : SHOW_VALUE;
-        view_own_scale(scene, view);
+        view_default_scale(scene, view);
     }
     default_light(scene, view->light_dir);
     visibility_start(plant, &view->visibility);
@@ -76,34 +76,34 @@ void view_scale(const struct view *view, struct scale *scale)
         .map = colormap_at((size_t)view->colormap),
         .min = view->range_min,
         .max = view->range_max,
-        .log = view->paint.log,
+        .log = view->color_scale.log,
         .interval = view->ramp_interval,
-        .break_count = view->paint.break_count,
+        .break_count = view->color_scale.break_count,
     };
-    memcpy(scale->breaks, view->paint.breaks, sizeof(scale->breaks));
+    memcpy(scale->breaks, view->color_scale.breaks, sizeof(scale->breaks));
 }
 
-static void get_shown(const struct view *view, struct shown *out)
+static void get_half(const struct view *view, struct split_half *out)
 {
-    *out = (struct shown){
+    *out = (struct split_half){
         .field = view->field,
         .colormap = view->colormap,
         .ramp_interval = view->ramp_interval,
         .range_min = view->range_min,
         .range_max = view->range_max,
-        .paint = view->paint,
+        .color_scale = view->color_scale,
         .look = view->look,
     };
 }
 
-static void set_shown(struct view *view, const struct shown *shown)
+static void set_half(struct view *view, const struct split_half *shown)
 {
     view->field = shown->field;
     view->colormap = shown->colormap;
     view->ramp_interval = shown->ramp_interval;
     view->range_min = shown->range_min;
     view->range_max = shown->range_max;
-    view->paint = shown->paint;
+    view->color_scale = shown->color_scale;
     view->look = shown->look;
 }
 
@@ -121,13 +121,13 @@ void view_half(const struct view *view, int half, struct view *out)
         return;
     out->width_px = half ? view->width_px - view_left_px(view) : view_left_px(view);
     if (half)
-        set_shown(out, &view->right);
+        set_half(out, &view->right);
 }
 
 void view_split(struct view *view, const struct view *right)
 {
     view->split = true;
-    get_shown(right, &view->right);
+    get_half(right, &view->right);
 }
 
 static int by_size(const void *a, const void *b)
@@ -146,8 +146,8 @@ int view_lines(const struct view *view, double lines[VIEW_ALL_LINES])
     struct scale scale;
     view_scale(view, &scale);
     int count = scale_edges(&scale, lines), distinct = 0;
-    memcpy(lines + count, view->paint.lines, (size_t)view->paint.line_count * sizeof(*lines));
-    count += view->paint.line_count;
+    memcpy(lines + count, view->color_scale.lines, (size_t)view->color_scale.line_count * sizeof(*lines));
+    count += view->color_scale.line_count;
     qsort(lines, (size_t)count, sizeof(*lines), by_size);
     for (int i = 0; i < count; i++)
         if ((distinct == 0 || lines[i] != lines[distinct - 1]) && lines[i] >= scale.min && lines[i] <= scale.max)
@@ -171,26 +171,27 @@ static bool same_numbers(const double *a, int a_count, const double *b, int b_co
     return a_count == b_count && memcmp(a, b, (size_t)a_count * sizeof(*a)) == 0;
 }
 
-static bool same_paint(const struct paint *a, const struct paint *b)
+static bool same_color_scale(const struct color_scale *a, const struct color_scale *b)
 {
     return a->log == b->log && same_numbers(a->breaks, a->break_count, b->breaks, b->break_count) &&
            same_numbers(a->lines, a->line_count, b->lines, b->line_count);
 }
 
-static bool same_shown(const struct shown *a, const struct shown *b)
+static bool same_half(const struct split_half *a, const struct split_half *b)
 {
     return field_params_equal(&a->field, &b->field) && a->colormap == b->colormap && a->ramp_interval == b->ramp_interval &&
-           a->range_min == b->range_min && a->range_max == b->range_max && same_paint(&a->paint, &b->paint) && a->look == b->look;
+           a->range_min == b->range_min && a->range_max == b->range_max && same_color_scale(&a->color_scale, &b->color_scale) &&
+           a->look == b->look;
 }
 
-void view_try(struct view *view, uint32_t trial)
+void view_set_trial(struct view *view, uint32_t trial)
 {
     view->field.trial = trial;
     if (view->split)
         view->right.field.trial = trial;
 }
 
-void view_travel(struct view *view, int64_t at_us, int slot)
+void view_set_instant(struct view *view, int64_t at_us, int slot)
 {
     view->at_us = at_us;
     view->field.slot = slot;
@@ -200,12 +201,11 @@ void view_travel(struct view *view, int64_t at_us, int slot)
 
 bool view_equal(const struct view *a, const struct view *b)
 {
-    struct shown a_shown, b_shown;
-    get_shown(a, &a_shown);
-    get_shown(b, &b_shown);
+    struct split_half a_shown, b_shown;
+    get_half(a, &a_shown);
+    get_half(b, &b_shown);
     return a->width_px == b->width_px && a->height_px == b->height_px && same_camera(&a->camera, &b->camera) && a->tier == b->tier &&
-           a->selected_asset == b->selected_asset && same_vector(a->light_dir, b->light_dir) &&
-           a->environment == b->environment && a->dark == b->dark && same_shown(&a_shown, &b_shown) &&
-           visibility_equal(&a->visibility, &b->visibility) && a->at_us == b->at_us &&
-           a->split == b->split && (!a->split || same_shown(&a->right, &b->right));
+           a->selected_asset == b->selected_asset && same_vector(a->light_dir, b->light_dir) && a->environment == b->environment &&
+           a->dark == b->dark && same_half(&a_shown, &b_shown) && visibility_equal(&a->visibility, &b->visibility) &&
+           a->at_us == b->at_us && a->split == b->split && (!a->split || same_half(&a->right, &b->right));
 }

@@ -12,17 +12,17 @@
 #include "scene/visibility.h"
 
 enum look {
-    LOOK_DEFAULT, /* field colours shaded only by an additive L* within +-7; PBR elsewhere */
-    LOOK_GLOSSY,  /* PBR with the field as albedo (the paper's Fig. 13); labelled, since shading changes the colours */
-    LOOK_FLAT,    /* no shading */
+    LOOK_DEFAULT,  /* field colours shaded only by an additive L* within +-7; PBR elsewhere */
+    LOOK_GLOSSY,   /* PBR with the field as albedo (the paper's Fig. 13); labelled, since shading changes the colours */
+    LOOK_FLAT,     /* no shading */
     LOOK_MATERIALS /* no field: all assets as their models say, in full colour */
 };
-enum tier { TIER_MOVING, TIER_STILL };
+enum tier { TIER_PREVIEW, TIER_REFINED };
 #define VIEW_MAX_SIDE_PX 8192
 #define VIEW_MAX_PIXELS (16 * 1024 * 1024)
 
 enum { VIEW_LINES = PLANT_ISOLINES };
-struct paint { /* beside colour map, range and ramp: which colour a value has, and where lines run. Zero: nothing of it */
+struct color_scale { /* beside colour map, range and ramp: which colour a value has, and where lines run. Zero: nothing of it */
     bool log;
     double breaks[SCALE_BREAKS]; /* ascending; instead of the ramp */
     int break_count;
@@ -31,11 +31,11 @@ struct paint { /* beside colour map, range and ramp: which colour a value has, a
 };
 
 enum { VIEW_SPLIT_LEAST_PX = 64 };
-struct shown { /* what the right half of a split view shows; the names are those of the view itself */
+struct split_half { /* what the right half of a split view shows; the names are those of the view itself */
     struct field_params field;
     int colormap;
     double ramp_interval, range_min, range_max;
-    struct paint paint;
+    struct color_scale color_scale;
     enum look look;
 };
 
@@ -50,7 +50,7 @@ struct view {
     int colormap;                /* index */
     double ramp_interval;        /* engineering units; 0 = continuous */
     double range_min, range_max; /* of the colour map; the group's unless the client says otherwise */
-    struct paint paint;
+    struct color_scale color_scale;
     enum look look;
     enum tier tier;
     int selected_asset;  /* outlined; -1: none */
@@ -58,16 +58,16 @@ struct view {
     bool dark;           /* a dark backdrop; colours of the field stay what they are */
     int environment;     /* surroundings: 0 the built-in sky, then the plant's own */
     struct visibility visibility;
-    int64_t at_us;       /* the instant that is shown, UTC; 0: now. Set by view_travel */
-    bool split;          /* two halves beside each other under one camera: this view left, `right` right */
-    struct shown right;  /* zero where it is not split */
+    int64_t at_us;           /* the instant that is shown, UTC; 0: now. Set by view_set_instant */
+    bool split;              /* two halves beside each other under one camera: this view left, `right` right */
+    struct split_half right; /* zero where it is not split */
 };
 
 /* The unit of what the view shows: its group's, or "m". */
 const char *view_unit(const struct plant *plant, const struct view *view);
 void view_default(const struct scene *scene, int width_px, int height_px, struct view *view);
 /* The scale that what is shown has by itself: the group's range, isolines and logarithm, or those of a distance or a difference. */
-void view_own_scale(const struct scene *scene, struct view *view);
+void view_default_scale(const struct scene *scene, struct view *view);
 /* Shows places between limits (SHOW_OPERATOR): colours, lines and legend are its own, whatever the rest of the view says. */
 bool view_is_operator(const struct view *view);
 void view_scale(const struct view *view, struct scale *scale);
@@ -76,10 +76,10 @@ enum { VIEW_ALL_LINES = VIEW_LINES + SCALE_EDGES };
 int view_lines(const struct view *view, double lines[VIEW_ALL_LINES]);
 /* Half 0 (all of it, where it is not split) or 1 as a view of its own. */
 void view_half(const struct view *view, int half, struct view *out);
-/* Shows that instant of the past (value/moments.h); 0: now. A field that was set anew is told again. */
-void view_travel(struct view *view, int64_t at_us, int slot);
+/* Shows that instant of the past (value/snapshot_cache.h); 0: now. A field that was set anew is told again. */
+void view_set_instant(struct view *view, int64_t at_us, int slot);
 /* Likewise: with sensors where somebody tries them out (field/trials.h); 0: where the plant has them. */
-void view_try(struct view *view, uint32_t trial);
+void view_set_trial(struct view *view, uint32_t trial);
 int view_left_px(const struct view *view); /* width of the left half; x at which the right one begins */
 /* Splits, with a half that was taken by view_half (or a whole view) on the right. */
 void view_split(struct view *view, const struct view *right);

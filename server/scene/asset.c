@@ -107,16 +107,16 @@ void asset_unref(struct asset **asset_ptr)
     mem_free(asset);
 }
 
-const struct closed *asset_closed(const struct asset *asset, uint32_t level)
+const struct closed_bodies *asset_closed(const struct asset *asset, uint32_t level)
 {
-    struct closed *known = atomic_load(&asset->closed[level]);
+    struct closed_bodies *known = atomic_load(&asset->closed[level]);
     if (known)
         return known;
-    struct closed *found = mem_new(sizeof(*found));
-    closed_find(&asset->view, level, found);
+    struct closed_bodies *found = mem_new(sizeof(*found));
+    closed_bodies_find(&asset->view, level, found);
     if (atomic_compare_exchange_strong(&asset->closed[level], &known, found))
         return found;
-    closed_finish(found); /* another thread was faster */
+    closed_bodies_finish(found); /* another thread was faster */
     mem_free(found);
     return known;
 }
@@ -124,9 +124,9 @@ const struct closed *asset_closed(const struct asset *asset, uint32_t level)
 void asset_forget_closed(struct asset *asset)
 {
     for (uint32_t i = 0; asset->closed && i < asset->view.header->level_count; i++) {
-        struct closed *closed = atomic_load(&asset->closed[i]);
+        struct closed_bodies *closed = atomic_load(&asset->closed[i]);
         if (closed)
-            closed_finish(closed);
+            closed_bodies_finish(closed);
         mem_free(closed);
     }
     mem_free(asset->closed);

@@ -4,7 +4,7 @@
 #define SCENE_ASSET_H
 #include "base/log.h"
 #include "protocol/asset_format.h"
-#include "scene/closed.h"
+#include "scene/closed_bodies.h"
 
 struct asset {
     char *path;
@@ -13,7 +13,7 @@ struct asset {
     void *made;
     size_t bytes;
     _Atomic int refs;
-    struct closed *_Atomic *closed; /* by level; NULL: nobody asked yet */
+    struct closed_bodies *_Atomic *closed; /* by level; NULL: nobody asked yet */
 };
 
 /* NULL on failure, logged with path and reason. */
@@ -21,9 +21,9 @@ struct asset *asset_open(struct log *log, const char *path);
 /* What stands in for one that could not be prepared: a triangle that is too small to be seen, and no sensor. */
 struct asset *asset_stand_in(void);
 struct asset *asset_ref(struct asset *asset);
-void asset_unref(struct asset **asset); /* &NULL is fine; leaves NULL */
+void asset_unref(struct asset **asset);        /* &NULL is fine; leaves NULL */
 void asset_forget_closed(struct asset *asset); /* nobody may use them any more */
 /* Found when it is first asked for, which takes some milliseconds for each 100,000 triangles. */
-const struct closed *asset_closed(const struct asset *asset, uint32_t level);
+const struct closed_bodies *asset_closed(const struct asset *asset, uint32_t level);
 
 #endif

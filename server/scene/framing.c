@@ -107,8 +107,8 @@ void framing_look(const struct scene *scene, const struct framing *framing, doub
     }
     if (framing->side != SIDE_NOW)
         memcpy(camera->up, up, sizeof(up));
-    if (index < 0 && scene->outline_count > 0)
-        camera_fit_points(camera, forward, (const double(*)[3])scene->outline_m, scene->outline_count, aspect, &framing->window);
+    if (index < 0 && scene->extreme_count > 0)
+        camera_fit_points(camera, forward, (const double(*)[3])scene->extremes_m, scene->extreme_count, aspect, &framing->window);
     else
         camera_fit_along(camera, forward, min_m, max_m, aspect, &framing->window);
 }

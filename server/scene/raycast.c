@@ -177,7 +177,7 @@ static bool aim_at(struct search *search, const struct scene_asset *asset, const
 /* How many closed bodies of the asset the ray is in at search->low: those that it leaves less those that it comes into. */
 static int count_bodies(const struct search *search, const struct asset *file)
 {
-    const struct closed *closed = asset_closed(file, 0);
+    const struct closed_bodies *closed = asset_closed(file, 0);
     struct crossing at;
     int count = 0;
     for (size_t r = 0; r < closed->run_count; r++)
@@ -187,7 +187,7 @@ static int count_bodies(const struct search *search, const struct asset *file)
     return count;
 }
 
-/* Within a closed body, where the ray passes the cut: a plane closes that (render/caps.h). */
+/* Within a closed body, where the ray passes the cut: a plane closes that (render/gl/section_caps.h). */
 static bool hits_cap(const struct scene *scene, const struct visibility *visibility, const struct ray *ray, double low, double high,
                      struct raycast_hit *hit)
 {

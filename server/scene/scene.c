@@ -11,7 +11,7 @@
 #include "plant/sensors.h"
 #include "plant/transform.h"
 #include "scene/coincident.h"
-#include "scene/outline.h"
+#include "scene/extremes.h"
 #include "scene/manifest.h"
 
 #define SAME_PLACE_M 1e-4
@@ -223,7 +223,7 @@ struct scene *scene_create(struct log *log, const struct plant *plant, const cha
     }
     if (good) {
         coincident_find(scene);
-        outline_find(scene);
+        extremes_find(scene);
     } else {
         scene_destroy(&scene);
     }
@@ -241,7 +241,7 @@ void scene_destroy(struct scene **scene_ptr)
         mem_free(scene->assets[i].missing);
     }
     mem_free(scene->assets);
-    mem_free(scene->outline_m);
+    mem_free(scene->extremes_m);
     mem_free(scene);
     *scene_ptr = NULL;
 }
@@ -250,11 +250,11 @@ void scene_home(const struct scene *scene, double aspect, struct camera *camera)
 {
     const struct plant_view *view = &scene->plant->view;
     camera_fit_up(camera, scene->plant->up, scene->bounds_min_m, scene->bounds_max_m, aspect);
-    if (!view->set && scene->outline_count > 0) {
+    if (!view->set && scene->extreme_count > 0) {
         double forward[3];
         for (int i = 0; i < 3; i++)
             forward[i] = camera->target_m[i] - camera->eye_m[i];
-        camera_fit_points(camera, forward, (const double(*)[3])scene->outline_m, scene->outline_count, aspect,
+        camera_fit_points(camera, forward, (const double(*)[3])scene->extremes_m, scene->extreme_count, aspect,
                           &(struct camera_window){ 0 });
     }
     if (!view->set)

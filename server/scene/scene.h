@@ -10,31 +10,31 @@
 #include "scene/camera.h"
 
 struct scene_sensor {
-    int tag;                     /* index in plant->tags */
-    int column;                  /* index in the asset file's sensors */
-    double position_m[3];        /* plant frame, as configured */
-    double surface_m[3];         /* plant frame, on the surface */
+    int tag;              /* index in plant->tags */
+    int column;           /* index in the asset file's sensors */
+    double position_m[3]; /* plant frame, as configured */
+    double surface_m[3];  /* plant frame, on the surface */
     double surface_distance_m;
 };
 
 struct scene_asset {
     const struct plant_asset *plant;
-    struct asset *file;          /* instances share one */
-    double placement[16];        /* plant from file positions (origin_m taken in), column-major */
+    struct asset *file;                      /* instances share one */
+    double placement[16];                    /* plant from file positions (origin_m taken in), column-major */
     double bounds_min_m[3], bounds_max_m[3]; /* plant frame, axis-aligned */
-    struct scene_sensor *sensors; /* of every group, in the order of the tag list */
+    struct scene_sensor *sensors;            /* of every group, in the order of the tag list */
     size_t sensor_count;
-    char *missing;               /* why it could not be prepared: it has no sensors, and nothing of it is seen; NULL: it is there */
-    int front;                   /* where faces of two assets coincide, the greater one is seen: scene/coincident.h */
+    char *missing; /* why it could not be prepared: it has no sensors, and nothing of it is seen; NULL: it is there */
+    int front;     /* where faces of two assets coincide, the greater one is seen: scene/coincident.h */
 };
 
 struct scene {
     const struct plant *plant;
-    struct scene_asset *assets;  /* by index in plant->assets */
+    struct scene_asset *assets; /* by index in plant->assets */
     size_t asset_count;
     double bounds_min_m[3], bounds_max_m[3];
-    double (*outline_m)[3];      /* outermost places of what a view of the whole has to hold: scene/outline.h */
-    size_t outline_count;        /* 0: not known */
+    double (*extremes_m)[3]; /* outermost places of what a view of the whole has to hold: scene/extremes.h */
+    size_t extreme_count;    /* 0: not known */
 };
 
 /* Opens the prepared files of the plant (folder: as plant_prepared_folder). Refuses files that do not fit the plant as it is

@@ -10,12 +10,12 @@
 #include "base/clock.h"
 #include "base/mem.h"
 #include "base/vec.h"
-#include "surface/hidden.h"
-#include "surface/order.h"
-#include "surface/parts.h"
-#include "surface/stitch.h"
+#include "surface/repair/interior.h"
+#include "surface/mesh/spatial_order.h"
+#include "surface/repair/parts.h"
+#include "surface/repair/repair.h"
 #include "surface/surface_state.h"
-#include "surface/thin.h"
+#include "surface/mesh/decimate.h"
 
 #define WELD_OF_SIZE 1e-6 /* vertices this near are one: float positions are no finer */
 #define TOLERANCE_OF_SIZE 5e-4
@@ -106,7 +106,7 @@ static void follow(struct surface *surface, const uint32_t *target)
         surface->vertex_point[v] = target[surface->vertex_point[v]];
 }
 
-static void note_bridges(struct surface *surface, struct stitch_report *made)
+static void note_bridges(struct surface *surface, struct repair_report *made)
 {
     struct surface_report *report = &surface->report;
     mem_grow(&surface->bridges, &surface->bridge_capacity, surface->bridge_count + made->made_count, sizeof(*surface->bridges));
@@ -121,9 +121,9 @@ static void note_bridges(struct surface *surface, struct stitch_report *made)
 
 static bool close_seams(struct surface *surface, char *why)
 {
-    struct stitch_report made = { 0 };
+    struct repair_report made = { 0 };
     uint32_t *target = mem_array(surface->mesh.point_count, sizeof(*target));
-    stitch_seams(&surface->mesh, surface->report.tolerance_m, target, &made);
+    repair_seams(&surface->mesh, surface->report.tolerance_m, target, &made);
     follow(surface, target);
     note_bridges(surface, &made);
     mem_free(target);
@@ -176,10 +176,10 @@ static void thin_out(struct surface *surface, const uint32_t *part, size_t added
     for (size_t v = 0; v < surface->vertex_count; v++)
         keep[surface->vertex_point[v]] = 1;
     surface->plane = mem_array(surface->report.triangles, sizeof(*surface->plane));
-    thin_mesh(mesh, hidden,
-              &(struct thin_params){
-                  .part = part, .keep = keep, .within_m = surface->size_m * WELD_OF_SIZE / 4, .longest_m = surface->report.spacing_m },
-              surface->plane, surface->report.triangles, target);
+    decimate_mesh(mesh, hidden,
+                  &(struct decimate_params){
+                      .part = part, .keep = keep, .within_m = surface->size_m * WELD_OF_SIZE / 4, .longest_m = surface->report.spacing_m },
+                  surface->plane, surface->report.triangles, target);
     follow(surface, target);
     mem_free(target);
     mem_free(keep);
@@ -188,9 +188,9 @@ static void thin_out(struct surface *surface, const uint32_t *part, size_t added
 /* What hiding opened. */
 static void close_rims(struct surface *surface, const struct parts *parts, char **hidden)
 {
-    struct stitch_report made = { 0 };
+    struct repair_report made = { 0 };
     uint32_t *target = mem_array(surface->mesh.point_count, sizeof(*target));
-    size_t seen = stitch_rims(&surface->mesh, *hidden, parts, target, &made);
+    size_t seen = repair_rims(&surface->mesh, *hidden, parts, target, &made);
     follow(surface, target);
     note_bridges(surface, &made);
     mem_free(target);
@@ -201,25 +201,25 @@ static void close_rims(struct surface *surface, const struct parts *parts, char 
 
 static void join_parts(struct surface *surface, struct parts *parts)
 {
-    struct stitch_report made = { 0 };
+    struct repair_report made = { 0 };
     size_t own = surface->mesh.point_count;
     uint32_t *target = mem_array(own, sizeof(*target));
-    stitch_parts(&surface->mesh, parts, target, &made);
+    repair_contacts(&surface->mesh, parts, target, &made);
     follow(surface, target);
     note_bridges(surface, &made);
     mem_free(target);
     merge_twins(surface, made.crossings, made.crossing_count);
     char *hidden = mem_array(surface->mesh.tri_count, 1);
     uint32_t *part = parts_spread(&surface->mesh, parts->of_source);
-    hidden_find(&surface->mesh, part, parts, made.crossings, made.crossing_count, surface->workers, hidden);
-    hidden_islands(&surface->mesh, hidden);
+    interior_find(&surface->mesh, part, parts, made.crossings, made.crossing_count, surface->workers, hidden);
+    interior_islands(&surface->mesh, hidden);
     mem_free(part);
     close_rims(surface, parts, &hidden);
     part = parts_spread(&surface->mesh, parts->of_source);
     thin_out(surface, part, own, hidden);
     size_t visible_count = sort_hidden(&surface->mesh, hidden);
     target = mem_array(surface->mesh.point_count, sizeof(*target));
-    order_mesh(&surface->mesh, visible_count, target);
+    spatial_order_mesh(&surface->mesh, visible_count, target);
     follow(surface, target);
     surface->visible = surface->mesh;
     surface->visible.tri_count = visible_count;
@@ -260,7 +260,7 @@ static void find_strays(struct surface *surface)
     for (uint32_t v = 0; v < surface->vertex_count; v++) {
         uint32_t p = surface->vertex_point[v];
         struct bvh_place place;
-        surface->report.hidden_vertices += used[p] && surface->unfold.hidden[p];
+        surface->report.hidden_vertices += used[p] && surface->propagation.hidden[p];
         if (used[p])
             continue;
         bvh_nearest(surface->bvh, surface->mesh.points[p], INFINITY, NULL, NULL, &place);
@@ -294,7 +294,7 @@ static void index_some(void *arg, size_t begin, size_t end)
         if (i == 0) {
             if (!surface->intrinsic.points)
                 intrinsic_init(&surface->intrinsic, &surface->visible);
-            unfold_init(&surface->unfold, &surface->mesh, surface->visible.tri_count, &surface->intrinsic);
+            propagation_init(&surface->propagation, &surface->mesh, surface->visible.tri_count, &surface->intrinsic);
         } else if (i == 1) {
             surface->bvh = bvh_create(&surface->visible);
         } else {
@@ -364,7 +364,7 @@ void surface_destroy(struct surface **surface_ptr)
     if (!surface)
         return;
     intrinsic_finish(&surface->intrinsic);
-    unfold_finish(&surface->unfold);
+    propagation_finish(&surface->propagation);
     bvh_destroy(&surface->bvh);
     trimesh_finish(&surface->mesh);
     mem_free(surface->vertex_point);
@@ -383,9 +383,9 @@ const struct surface_report *surface_report(const struct surface *surface)
     return &surface->report;
 }
 
-void surface_look(const struct surface *surface, struct surface_look *look)
+void surface_debug_mesh(const struct surface *surface, struct surface_debug_mesh *look)
 {
-    *look = (struct surface_look){
+    *look = (struct surface_debug_mesh){
         .points_m = (const double(*)[3])surface->mesh.points,
         .tris = (const uint32_t(*)[3])surface->mesh.tris,
         .point_count = surface->mesh.point_count,

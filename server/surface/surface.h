@@ -61,17 +61,17 @@ void surface_destroy(struct surface **surface); /* &NULL is fine; leaves NULL */
 const struct surface_report *surface_report(const struct surface *surface);
 
 /* The surface as distances are found on it, to be looked at. Belongs to the surface. */
-struct stitch_bridge;
-struct surface_look {
+struct crack_bridge;
+struct surface_debug_mesh {
     const double (*points_m)[3];
     const uint32_t (*tris)[3]; /* the visible ones first */
     size_t point_count, tri_count, visible_count;
     const uint32_t *vertex_point; /* of the model's vertices; other points are samples */
     size_t vertex_count;
-    const struct stitch_bridge *bridges; /* stitch.h */
+    const struct crack_bridge *bridges; /* stitch.h */
     size_t bridge_count;
 };
-void surface_look(const struct surface *surface, struct surface_look *look);
+void surface_debug_mesh(const struct surface *surface, struct surface_debug_mesh *look);
 
 struct surface_place {
     double position_m[3]; /* on the surface */
@@ -82,24 +82,24 @@ void surface_nearest(const struct surface *surface, const double point_m[3], str
 
 /* The spot nearest to a point; off the surface, one whose triangle faces along `normal` if there is one about as near (NULL: any), so that
    a thin wall's other side is not taken. */
-struct surface_spot {
+struct surface_point {
     uint32_t tri;                              /* of the sampled surface */
     double weights[3], point_m[3], distance_m; /* weights: of tri's corners; distance_m: from the point asked for */
 };
-void surface_find_spot(const struct surface *surface, const double point_m[3], const double normal[3], struct surface_spot *spot);
+void surface_find_point(const struct surface *surface, const double point_m[3], const double normal[3], struct surface_point *spot);
 /* Whether that spot is within limit_m; it is not looked for farther away. */
-bool surface_find_spot_within(const struct surface *surface, const double point_m[3], const double normal[3], double limit_m,
-                              struct surface_spot *spot);
+bool surface_find_point_within(const struct surface *surface, const double point_m[3], const double normal[3], double limit_m,
+                               struct surface_point *spot);
 /* The nearest one within limit_m, on pieces of two triangles of the model (which may be one); on pieces of those for which
    allowed(arg, triangle) holds. False: none is near and seen. */
-bool surface_find_spot_on(const struct surface *surface, const double point_m[3], double limit_m, const uint32_t triangles[2],
-                          struct surface_spot *spot);
-bool surface_find_spot_among(const struct surface *surface, const double point_m[3], double limit_m,
-                             bool (*allowed)(const void *arg, uint32_t triangle), const void *arg, struct surface_spot *spot);
+bool surface_find_point_on(const struct surface *surface, const double point_m[3], double limit_m, const uint32_t triangles[2],
+                           struct surface_point *spot);
+bool surface_find_point_among(const struct surface *surface, const double point_m[3], double limit_m,
+                              bool (*allowed)(const void *arg, uint32_t triangle), const void *arg, struct surface_point *spot);
 
 /* The spot nearest to a point on one triangle of the sampled surface; of one that was found for the point, the same again. False: there is
    no such triangle, or it is farther than limit_m. */
-bool surface_spot_on(const struct surface *surface, const double point_m[3], double limit_m, uint32_t tri, struct surface_spot *spot);
+bool surface_point_on(const struct surface *surface, const double point_m[3], double limit_m, uint32_t tri, struct surface_point *spot);
 
 /* Metres along the surface from each point (dropped onto the surface first) to every vertex of the model:
    out[point * vertex_count + vertex]. INFINITY where no way leads. Points are spread over all workers.
@@ -109,9 +109,9 @@ bool surface_distances(const struct surface *surface, const double (*points_m)[3
 /* The same at all points of the sampled surface; from them follows the distance at any place. */
 struct surface_field {
     size_t source_count;
-    struct surface_spot *sources;
+    struct surface_point *sources;
     uint32_t *source_tris; /* theirs, side by side */
-    float *distances_m; /* [point of the sampled surface][source] */
+    float *distances_m;    /* [point of the sampled surface][source] */
 };
 /* Distances from sources that were found before: at each point of the sampled surface. Both are called on any thread. */
 struct surface_columns {
@@ -126,7 +126,7 @@ bool surface_field_init(struct surface_field *field, const struct surface *surfa
 void surface_field_finish(struct surface_field *field);
 /* out[source] */
 void surface_field_at_vertex(const struct surface_field *field, const struct surface *surface, uint32_t vertex, float *out);
-void surface_field_at_spot(const struct surface_field *field, const struct surface *surface, const struct surface_spot *spot, float *out);
+void surface_field_at_point(const struct surface_field *field, const struct surface *surface, const struct surface_point *spot, float *out);
 
 /* Holds distances against the heat method's, for some of the field's sources: the report's heat_disagreement, time_m2, factor_s. False: out
    of memory, logged. Thread: one at a time, beside calls that do not ask for the report. */

@@ -6,7 +6,7 @@
 #include "base/clock.h"
 #include "base/mem.h"
 #include "base/vec.h"
-#include "surface/heat.h"
+#include "surface/geodesic/heat.h"
 #include "surface/surface_state.h"
 
 #define TIME_OF_SPACING 3.0 /* t in mean edge lengths squared */
@@ -23,13 +23,13 @@ static double reach_of(const struct surface *surface)
     for (uint32_t t = 0; t < mesh->tri_count; t++)
         if (++counts[surface->component[mesh->tris[t][0]]] > counts[surface->component[mesh->tris[best][0]]])
             best = t;
-    struct unfold_walk walk = { 0 };
+    struct propagation_front walk = { 0 };
     double reach_m = 0;
-    if (unfold_from(&surface->unfold, &walk, &(struct unfold_source){ best, (const double[3]){ 1, 0, 0 } }, 1))
+    if (propagation_run(&surface->propagation, &walk, &(struct propagation_source){ best, (const double[3]){ 1, 0, 0 } }, 1))
         for (size_t i = 0; i < mesh->point_count; i++)
             if (walk.distance_m[i] < INFINITY)
                 reach_m = max_of(reach_m, (double)walk.distance_m[i]);
-    unfold_walk_finish(&walk);
+    propagation_front_finish(&walk);
     mem_free(counts);
     return reach_m;
 }
@@ -37,12 +37,12 @@ static double reach_of(const struct surface *surface)
 /* How far the two methods differ, as a share of the largest distance. Heat leaves a constant open: it is taken so that they agree on
    average. Heat smooths ridges and borders over about one root of t, so some percent at single points are its nature; more is a sign that
    the surface does not hang together as it looks. */
-static double disagreement_of(const struct unfold *unfold, const struct surface_field *field, size_t source, const double *heat_m)
+static double disagreement_of(const struct propagation *propagation, const struct surface_field *field, size_t source, const double *heat_m)
 {
     double sum = 0, squares = 0, largest_m = 0, count = 0;
-    for (size_t p = 0; p < unfold->mesh->point_count; p++) {
+    for (size_t p = 0; p < propagation->mesh->point_count; p++) {
         double walked_m = (double)field->distances_m[p * field->source_count + source], difference_m = walked_m - heat_m[p];
-        if (unfold->hidden[p] || walked_m == INFINITY)
+        if (propagation->hidden[p] || walked_m == INFINITY)
             continue;
         count++;
         sum += difference_m;
@@ -75,7 +75,7 @@ static void check_block(void *arg, size_t begin, size_t end)
     struct heat_source *sources = mem_array(count, sizeof(*sources));
     double *heat_m = mem_try_array(count * points, sizeof(*heat_m));
     for (size_t s = 0; s < count; s++) {
-        const struct surface_spot *spot = &check->field->sources[source_of(check, begin + s)];
+        const struct surface_point *spot = &check->field->sources[source_of(check, begin + s)];
         memcpy(sources[s].points, surface->visible.tris[spot->tri], sizeof(sources[s].points));
         memcpy(sources[s].weights, spot->weights, sizeof(sources[s].weights));
     }
@@ -83,7 +83,7 @@ static void check_block(void *arg, size_t begin, size_t end)
         check->failed = true;
     for (size_t s = 0; s < count && !check->failed; s++)
         check->disagreement[begin + s] =
-            disagreement_of(&surface->unfold, check->field, source_of(check, begin + s), heat_m + s * points);
+            disagreement_of(&surface->propagation, check->field, source_of(check, begin + s), heat_m + s * points);
     mem_free(sources);
     mem_free(heat_m);
 }

@@ -12,10 +12,10 @@
 
 struct solve {
     const struct surface *surface;
-    const struct surface_spot *spots;
+    const struct surface_point *spots;
     size_t count;
-    float *out;                  /* NULL, or [spot][vertex] */
-    struct surface_field *field; /* or NULL */
+    float *out;                            /* NULL, or [spot][vertex] */
+    struct surface_field *field;           /* or NULL */
     const struct surface_columns *columns; /* or NULL */
     atomic_bool failed;
 };
@@ -60,9 +60,9 @@ static void take_rows(const struct solve *solve, const float *block, size_t firs
 }
 
 struct abreast { /* sources that are walked at once */
-    struct unfold_walk walks[UNFOLD_ABREAST];
-    struct unfold_source from[UNFOLD_ABREAST];
-    size_t source[UNFOLD_ABREAST], count;
+    struct propagation_front walks[PROPAGATION_ABREAST];
+    struct propagation_source from[PROPAGATION_ABREAST];
+    size_t source[PROPAGATION_ABREAST], count;
 };
 
 /* block: columns of the sources from `first` on, if it is for a field. */
@@ -70,7 +70,7 @@ static bool walk(const struct solve *solve, struct abreast *abreast, float *bloc
 {
     const struct surface *surface = solve->surface;
     size_t points = surface->mesh.point_count;
-    if (!unfold_from(&surface->unfold, abreast->walks, abreast->from, abreast->count))
+    if (!propagation_run(&surface->propagation, abreast->walks, abreast->from, abreast->count))
         return false;
     for (size_t i = 0; i < abreast->count; i++) {
         const float *distance_m = abreast->walks[i].distance_m;
@@ -96,16 +96,16 @@ static void solve_block(void *arg, size_t begin, size_t end)
     for (size_t s = begin; s < end && !solve->failed; s++) {
         bool known = solve->columns && solve->columns->fetch(solve->columns->arg, s, block + (s - begin) * points);
         if (!known) {
-            abreast.from[abreast.count] = (struct unfold_source){ solve->spots[s].tri, solve->spots[s].weights };
+            abreast.from[abreast.count] = (struct propagation_source){ solve->spots[s].tri, solve->spots[s].weights };
             abreast.source[abreast.count++] = s;
         }
-        if (abreast.count > 0 && (abreast.count == UNFOLD_ABREAST || s + 1 == end) && !walk(solve, &abreast, block, begin))
+        if (abreast.count > 0 && (abreast.count == PROPAGATION_ABREAST || s + 1 == end) && !walk(solve, &abreast, block, begin))
             solve->failed = true;
     }
     if (block && !solve->failed)
         take_rows(solve, block, begin, end - begin);
-    for (size_t i = 0; i < UNFOLD_ABREAST; i++)
-        unfold_walk_finish(&abreast.walks[i]);
+    for (size_t i = 0; i < PROPAGATION_ABREAST; i++)
+        propagation_front_finish(&abreast.walks[i]);
     mem_free(block);
 }
 
@@ -123,17 +123,17 @@ static bool solve_all(struct solve *solve)
     return !solve->failed;
 }
 
-static struct surface_spot *find_spots(const struct surface *surface, const double (*points_m)[3], size_t count)
+static struct surface_point *find_spots(const struct surface *surface, const double (*points_m)[3], size_t count)
 {
-    struct surface_spot *spots = mem_array(count, sizeof(*spots));
+    struct surface_point *spots = mem_array(count, sizeof(*spots));
     for (size_t i = 0; i < count; i++)
-        surface_find_spot(surface, points_m[i], NULL, &spots[i]);
+        surface_find_point(surface, points_m[i], NULL, &spots[i]);
     return spots;
 }
 
 bool surface_distances(const struct surface *surface, const double (*points_m)[3], size_t point_count, float *out)
 {
-    struct surface_spot *spots = find_spots(surface, points_m, point_count);
+    struct surface_point *spots = find_spots(surface, points_m, point_count);
     struct solve solve = { .surface = surface, .spots = spots, .count = point_count, .out = out };
     bool good = solve_all(&solve);
     mem_free(spots);
@@ -183,20 +183,20 @@ void surface_field_at_vertex(const struct surface_field *field, const struct sur
 
 /* Seen from a spot, an edge of its triangle from corner a to corner b: its length, and the spot's place with a at (0, 0) and b at
    (side, 0). */
-struct sight {
+struct line_of_sight {
     float side, half, per, x, y;
 };
 
-static struct sight sight_of(double ab, double to_a, double to_b)
+static struct line_of_sight sight_of(double ab, double to_a, double to_b)
 {
     double x, y;
     ab = max_of(ab, 1e-30);
     intrinsic_layout((const double[3]){ ab, to_b, to_a }, &x, &y);
-    return (struct sight){ (float)ab, (float)ab / 2, 1 / (2 * (float)ab), (float)x, (float)y };
+    return (struct line_of_sight){ (float)ab, (float)ab / 2, 1 / (2 * (float)ab), (float)x, (float)y };
 }
 
 /* The square of what the corners' distances offer through the edge, where the source, laid out beyond it, has a ray there: else best2. */
-SIMD_BODY float through_edge(const struct sight *sight, float da, float db, float best2)
+SIMD_BODY float through_edge(const struct line_of_sight *sight, float da, float db, float best2)
 {
     const float x = sight->x, y = sight->y;
     float sx = (da - db) * (da + db) * sight->per + sight->half, sy2 = (da - sx) * (da + sx), sy = sqrtf(sy2 > 0 ? sy2 : 0);
@@ -208,10 +208,10 @@ SIMD_BODY float through_edge(const struct sight *sight, float da, float db, floa
 }
 
 /* Through each of the edges, or along a straight line from a corner. */
-SIMD_BODY void fill_row(const struct sight sights[3], const float to_m[3], const float *restrict a, const float *restrict b,
+SIMD_BODY void fill_row(const struct line_of_sight sights[3], const float to_m[3], const float *restrict a, const float *restrict b,
                         const float *restrict c, size_t count, float *restrict out)
 {
-    const struct sight ab = sights[0], bc = sights[1], ca = sights[2];
+    const struct line_of_sight ab = sights[0], bc = sights[1], ca = sights[2];
     const float to_a = to_m[0], to_b = to_m[1], to_c = to_m[2];
     for (size_t s = 0; s < count; s++) {
         float da = a[s], db = b[s], dc = c[s], along_a = da + to_a, along_b = db + to_b, along_c = dc + to_c;
@@ -222,23 +222,23 @@ SIMD_BODY void fill_row(const struct sight sights[3], const float to_m[3], const
     }
 }
 
-static void fill_row_plain(const struct sight sights[3], const float to_m[3], const float *const rows[3], size_t count, float *out)
+static void fill_row_plain(const struct line_of_sight sights[3], const float to_m[3], const float *const rows[3], size_t count, float *out)
 {
     fill_row(sights, to_m, rows[0], rows[1], rows[2], count, out);
 }
 
-SIMD_AVX2 static void fill_row_wide(const struct sight sights[3], const float to_m[3], const float *const rows[3], size_t count,
-                                      float *out)
+SIMD_AVX2 static void fill_row_wide(const struct line_of_sight sights[3], const float to_m[3], const float *const rows[3], size_t count,
+                                    float *out)
 {
     fill_row(sights, to_m, rows[0], rows[1], rows[2], count, out);
 }
 
-void surface_field_at_spot(const struct surface_field *field, const struct surface *surface, const struct surface_spot *spot, float *out)
+void surface_field_at_point(const struct surface_field *field, const struct surface *surface, const struct surface_point *spot, float *out)
 {
     const struct trimesh *mesh = &surface->visible;
     const uint32_t *v = mesh->tris[spot->tri];
     const float *rows[3];
-    struct sight sights[3];
+    struct line_of_sight sights[3];
     double to_m[3];
     for (int i = 0; i < 3; i++) {
         to_m[i] = vec_distance(spot->point_m, mesh->points[v[i]]);

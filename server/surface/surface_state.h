@@ -2,10 +2,10 @@
 /* Shared by the files that make a surface and measure on it. */
 #ifndef SURFACE_SURFACE_STATE_H
 #define SURFACE_SURFACE_STATE_H
-#include "surface/bvh.h"
-#include "surface/stitch.h"
+#include "surface/mesh/bvh.h"
+#include "surface/repair/repair.h"
 #include "surface/surface.h"
-#include "surface/unfold.h"
+#include "surface/geodesic/propagation.h"
 
 struct stray { /* a vertex of the model whose triangles have no area: it takes the nearest place's distance */
     uint32_t vertex, points[3];
@@ -23,13 +23,13 @@ struct surface {
     struct stray *strays;   /* by vertex */
     size_t stray_count;
     struct intrinsic intrinsic;
-    struct unfold unfold;
+    struct propagation propagation;
     struct bvh *bvh;
     uint32_t *plane;                /* of the model's triangles: the lowest that it is not told apart from (thin.h) */
     uint32_t *piece_first, *pieces; /* visible triangles by the plane of the model's triangle that they are a piece of */
     double size_m, edge_m;          /* edge_m: mean edge length */
     struct surface_report report;
-    struct stitch_bridge *bridges;
+    struct crack_bridge *bridges;
     size_t bridge_count, bridge_capacity;
 };
 

@@ -9,7 +9,7 @@ void surface_pack(const struct surface *surface, struct text *to);
 /* Distances on it are the same to the last bit. NULL: the bytes are no surface, or out of memory. */
 struct surface *surface_unpack(struct unpack *from, struct log *log, struct workers *workers);
 
-/* Its file holds that and no more (base/kept.h). */
+/* Its file holds that and no more (base/cache_file.h). */
 #define SURFACE_MAGIC "PLCSURF2"
 
 #endif

@@ -8,8 +8,8 @@
 #include "value/quality.h"
 
 static const char *const kind_names[ALARM_KINDS] = { NULL, "LL", "L", "H", "HH", "ALM", "BAD", "LINK" };
-static const char *const word_names[ALARM_WORDS] = { "normal",  "active",  "unacknowledged", "acknowledged",  "returned",
-                                                     "latched", "shelved", "suppressed",     "out_of_service" };
+static const char *const status_names[ALARM_STATUSES] = { "normal",  "active",  "unacknowledged", "acknowledged",  "returned",
+                                                          "latched", "shelved", "suppressed",     "out_of_service" };
 
 const char *alarm_kind_name(enum alarm_kind kind)
 {
@@ -24,27 +24,27 @@ enum alarm_kind alarm_kind_find(const char *name)
     return ALARM_NONE;
 }
 
-const char *alarm_word_name(enum alarm_word word)
+const char *alarm_status_name(enum alarm_status status)
 {
-    return word_names[word];
+    return status_names[status];
 }
 
-enum alarm_word alarm_word_find(const char *name)
+enum alarm_status alarm_status_find(const char *name)
 {
     int i = 0;
-    while (i < ALARM_WORDS && strcmp(word_names[i], name) != 0)
+    while (i < ALARM_STATUSES && strcmp(status_names[i], name) != 0)
         i++;
-    return (enum alarm_word)i;
+    return (enum alarm_status)i;
 }
 
-bool alarm_word_calls(enum alarm_word word)
+bool alarm_status_is_annunciated(enum alarm_status status)
 {
-    return word != ALARM_NORMAL && word < ALARM_SHELVED;
+    return status != ALARM_NORMAL && status < ALARM_SHELVED;
 }
 
-bool alarm_word_gone(enum alarm_word word)
+bool alarm_status_is_cleared(enum alarm_status status)
 {
-    return word == ALARM_RETURNED || word == ALARM_LATCHED;
+    return status == ALARM_RETURNED || status == ALARM_LATCHED;
 }
 
 static bool is_outer(enum alarm_kind kind)
@@ -52,25 +52,25 @@ static bool is_outer(enum alarm_kind kind)
     return kind == ALARM_LL || kind == ALARM_HH;
 }
 
-static bool is_waiting(enum alarm_word word)
+static bool is_waiting(enum alarm_status status)
 {
-    return word == ALARM_UNACKNOWLEDGED || word == ALARM_RETURNED;
+    return status == ALARM_UNACKNOWLEDGED || status == ALARM_RETURNED;
 }
 
 bool alarm_graver(const struct alarm_grade *a, const struct alarm_grade *b)
 {
-    if (alarm_word_gone(a->word) != alarm_word_gone(b->word))
-        return alarm_word_gone(b->word);
+    if (alarm_status_is_cleared(a->status) != alarm_status_is_cleared(b->status))
+        return alarm_status_is_cleared(b->status);
     if (a->priority != b->priority)
         return a->priority < b->priority;
     if (is_outer(a->kind) != is_outer(b->kind))
         return is_outer(a->kind);
-    return is_waiting(a->word) && !is_waiting(b->word);
+    return is_waiting(a->status) && !is_waiting(b->status);
 }
 
 int alarm_priority(const struct plant_tag *tag, enum alarm_kind kind)
 {
-    int priority = tag->alarming.priority ? tag->alarming.priority : ALARM_PRIORITY_DEFAULT;
+    int priority = tag->alarm_settings.priority ? tag->alarm_settings.priority : ALARM_PRIORITY_DEFAULT;
     priority += kind == ALARM_L || kind == ALARM_H;
     return kind == ALARM_BAD || priority > ALARM_PRIORITIES ? ALARM_PRIORITIES : priority;
 }
@@ -94,6 +94,6 @@ void alarm_by_limits(const struct plant *plant, struct snapshot *snapshot)
     for (size_t i = 0; i < snapshot->count; i++) {
         struct reading *reading = &snapshot->readings[i];
         reading->alarm = (uint8_t)alarm_beyond(&plant->tags[i], reading);
-        reading->alarm_word = reading->alarm ? ALARM_ACTIVE : ALARM_NORMAL;
+        reading->alarm_status = reading->alarm ? ALARM_ACTIVE : ALARM_NORMAL;
     }
 }

@@ -7,32 +7,35 @@
 
 enum alarm_kind {
     ALARM_NONE,
-    ALARM_LL, ALARM_L, ALARM_H, ALARM_HH, /* 1 + enum limit */
-    ALARM_ON,                             /* of a bit of another alarm system */
-    ALARM_BAD,                            /* the measurement is bad */
-    ALARM_LINK,                           /* of a device: none of its measurements can be used */
+    ALARM_LL,
+    ALARM_L,
+    ALARM_H,
+    ALARM_HH,   /* 1 + enum limit */
+    ALARM_ON,   /* of a bit of another alarm system */
+    ALARM_BAD,  /* the measurement is bad */
+    ALARM_LINK, /* of a device: none of its measurements can be used */
     ALARM_KINDS
 };
 
-enum alarm_word { /* the states of ISA-18.2 and IEC 62682, and one for alarms that somebody else's system keeps */
-    ALARM_NORMAL,
-    ALARM_ACTIVE, /* whether it was acknowledged, the other system knows */
-    ALARM_UNACKNOWLEDGED,
-    ALARM_ACKNOWLEDGED,
-    ALARM_RETURNED, /* to normal, not acknowledged */
-    ALARM_LATCHED,  /* the cause is gone; stays until it is reset */
-    ALARM_SHELVED,
-    ALARM_SUPPRESSED, /* by design */
-    ALARM_OUT_OF_SERVICE,
-    ALARM_WORDS
+enum alarm_status { /* the states of ISA-18.2 and IEC 62682, and one for alarms that somebody else's system keeps */
+                    ALARM_NORMAL,
+                    ALARM_ACTIVE, /* whether it was acknowledged, the other system knows */
+                    ALARM_UNACKNOWLEDGED,
+                    ALARM_ACKNOWLEDGED,
+                    ALARM_RETURNED, /* to normal, not acknowledged */
+                    ALARM_LATCHED,  /* the cause is gone; stays until it is reset */
+                    ALARM_SHELVED,
+                    ALARM_SUPPRESSED, /* by design */
+                    ALARM_OUT_OF_SERVICE,
+                    ALARM_STATUSES
 };
 
-const char *alarm_kind_name(enum alarm_kind kind); /* "HH"; NULL: none */
-enum alarm_kind alarm_kind_find(const char *name); /* ALARM_NONE: there is none of that name */
-const char *alarm_word_name(enum alarm_word word); /* "out_of_service" */
-enum alarm_word alarm_word_find(const char *name); /* ALARM_WORDS: likewise */
-bool alarm_word_calls(enum alarm_word word);       /* it is to be seen: neither normal nor set aside */
-bool alarm_word_gone(enum alarm_word word);        /* its cause is no longer there: returned or latched */
+const char *alarm_kind_name(enum alarm_kind kind);          /* "HH"; NULL: none */
+enum alarm_kind alarm_kind_find(const char *name);          /* ALARM_NONE: there is none of that name */
+const char *alarm_status_name(enum alarm_status status);    /* "out_of_service" */
+enum alarm_status alarm_status_find(const char *name);      /* ALARM_STATUSES: likewise */
+bool alarm_status_is_annunciated(enum alarm_status status); /* it is to be seen: neither normal nor set aside */
+bool alarm_status_is_cleared(enum alarm_status status);     /* its cause is no longer there: returned or latched */
 
 int alarm_priority(const struct plant_tag *tag, enum alarm_kind kind); /* 1, the most urgent, to ALARM_PRIORITIES */
 
@@ -41,7 +44,7 @@ int alarm_priority(const struct plant_tag *tag, enum alarm_kind kind); /* 1, the
 struct alarm_grade {
     int priority;
     enum alarm_kind kind;
-    enum alarm_word word;
+    enum alarm_status status;
 };
 bool alarm_graver(const struct alarm_grade *a, const struct alarm_grade *b);
 

@@ -20,8 +20,8 @@ static bool stopping(const struct modbus_source *modbus)
 
 static void read_block(struct modbus_source *modbus, size_t index)
 {
-    struct plan_block *block = &modbus->plan.blocks[index];
-    uint16_t words[PLAN_MAX_BITS];
+    struct read_plan_block *block = &modbus->plan.blocks[index];
+    uint16_t words[READ_PLAN_MAX_BITS];
     if (!modbus_link_is_open(modbus->link) && !modbus_connect_link(modbus))
         return;
     if (modbus->config->pause_ms > 0 &&
@@ -43,7 +43,7 @@ static void read_block(struct modbus_source *modbus, size_t index)
 }
 
 /* When this block may be asked: when it is due, and its unit and the connection are not being left alone. */
-static int64_t ready_ns(const struct modbus_source *modbus, const struct plan_block *block)
+static int64_t ready_ns(const struct modbus_source *modbus, const struct read_plan_block *block)
 {
     const struct unit *unit = modbus_unit_of(modbus, block);
     int64_t at_ns = block->due_ns;
@@ -95,7 +95,7 @@ static void modbus_stop(struct source *source)
     modbus_link_destroy(&modbus->link);
     if (modbus->stop_fd >= 0)
         close(modbus->stop_fd);
-    plan_finish(&modbus->plan);
+    read_plan_finish(&modbus->plan);
     mem_free(modbus->units);
     mem_free(modbus->refused);
     mem_free(modbus->samples);
@@ -124,7 +124,7 @@ static void add_counters(struct modbus_source *modbus, struct counters *counters
 
 static void add_plan(struct modbus_source *modbus)
 {
-    plan_init(&modbus->plan, modbus->plant, modbus->index);
+    read_plan_init(&modbus->plan, modbus->plant, modbus->index);
     modbus->units = mem_array(modbus->plan.unit_count, sizeof(*modbus->units));
     for (size_t i = 0; i < modbus->plan.unit_count; i++)
         modbus->units[i].id = modbus->plan.units[i];

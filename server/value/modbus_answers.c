@@ -13,7 +13,7 @@ static const int64_t BUSY_NS = 50 * NS_PER_MS;
 enum { BUSY_TRIES = 4 };
 
 /* True: some tag changed. */
-static bool note_refused(struct modbus_source *modbus, const struct plan_block *block, bool refused, const char *why)
+static bool note_refused(struct modbus_source *modbus, const struct read_plan_block *block, bool refused, const char *why)
 {
     size_t changed = 0;
     const char *first = "";
@@ -29,7 +29,7 @@ static bool note_refused(struct modbus_source *modbus, const struct plan_block *
     return changed > 0;
 }
 
-void modbus_take_values(struct modbus_source *modbus, struct plan_block *block, const uint16_t *words)
+void modbus_take_values(struct modbus_source *modbus, struct read_plan_block *block, const uint16_t *words)
 {
     for (size_t i = 0; i < block->tag_count; i++) {
         int index = modbus->plan.tags[block->first_tag + i];
@@ -46,7 +46,7 @@ void modbus_take_values(struct modbus_source *modbus, struct plan_block *block, 
         modbus_replan(modbus);
 }
 
-static void take_refusal(struct modbus_source *modbus, const struct plan_block *block, uint32_t quality, const char *why)
+static void take_refusal(struct modbus_source *modbus, const struct read_plan_block *block, uint32_t quality, const char *why)
 {
     for (size_t i = 0; i < block->tag_count; i++)
         modbus->samples[i] = (struct sample){ .tag = modbus->plan.tags[block->first_tag + i], .quality = quality };
@@ -59,13 +59,10 @@ static uint32_t quality_of_exception(int code)
     switch (code) {
     case MODBUS_EXCEPTION_ILLEGAL_FUNCTION:
     case MODBUS_EXCEPTION_ILLEGAL_DATA_ADDRESS:
-    case MODBUS_EXCEPTION_ILLEGAL_DATA_VALUE:
-        return QUALITY_BAD_CONFIGURATION;
+    case MODBUS_EXCEPTION_ILLEGAL_DATA_VALUE: return QUALITY_BAD_CONFIGURATION;
     case MODBUS_EXCEPTION_SLAVE_OR_SERVER_FAILURE:
-    case MODBUS_EXCEPTION_MEMORY_PARITY:
-        return QUALITY_BAD_DEVICE_FAILURE;
-    default: /* busy and the like: asked again soon; stale if that goes on */
-        return QUALITY_GOOD;
+    case MODBUS_EXCEPTION_MEMORY_PARITY: return QUALITY_BAD_DEVICE_FAILURE;
+    default: /* busy and the like: asked again soon; stale if that goes on */ return QUALITY_GOOD;
     }
 }
 
@@ -76,7 +73,7 @@ static int64_t refused_pause_ns(int before)
 
 void modbus_take_exception(struct modbus_source *modbus, size_t index, int code, int64_t now_ns)
 {
-    struct plan_block *block = &modbus->plan.blocks[index];
+    struct read_plan_block *block = &modbus->plan.blocks[index];
     const char *why = modbus_strerror(MODBUS_ENOBASE + code);
     uint32_t quality = quality_of_exception(code);
     if (code == MODBUS_EXCEPTION_GATEWAY_PATH || code == MODBUS_EXCEPTION_GATEWAY_TARGET) {
@@ -99,7 +96,7 @@ void modbus_take_exception(struct modbus_source *modbus, size_t index, int code,
     modbus->plan_cut = true;
     if (code != MODBUS_EXCEPTION_ILLEGAL_FUNCTION && block->tag_count > 1) {
         block->due_ns = now_ns; /* both halves at once, and so on down to the register that is to blame */
-        plan_split(&modbus->plan, modbus->plant, index);
+        read_plan_split(&modbus->plan, modbus->plant, index);
         return;
     }
     if (quality == QUALITY_BAD_CONFIGURATION)
@@ -109,7 +106,7 @@ void modbus_take_exception(struct modbus_source *modbus, size_t index, int code,
 
 void modbus_replan(struct modbus_source *modbus)
 {
-    plan_finish(&modbus->plan);
-    plan_init(&modbus->plan, modbus->plant, modbus->index);
+    read_plan_finish(&modbus->plan);
+    read_plan_init(&modbus->plan, modbus->plant, modbus->index);
     modbus->plan_cut = false;
 }

@@ -7,7 +7,7 @@
 
 #include "value/backoff.h"
 #include "value/modbus_link.h"
-#include "value/plan.h"
+#include "value/read_plan.h"
 #include "value/source.h"
 
 enum unit_state { UNIT_UNKNOWN, UNIT_UP, UNIT_DOWN };
@@ -32,24 +32,24 @@ struct modbus_source {
     bool has_thread;
     struct modbus_link *link;
     /* --- below: the thread's own */
-    struct plan plan;
-    bool plan_cut;              /* blocks were cut at what was refused */
+    struct read_plan plan;
+    bool plan_cut; /* blocks were cut at what was refused */
     struct unit *units;
-    struct backoff backoff;     /* of connecting */
-    int64_t connect_ns;         /* not before */
-    int64_t asked_ns;           /* the last request's end */
+    struct backoff backoff; /* of connecting */
+    int64_t connect_ns;     /* not before */
+    int64_t asked_ns;       /* the last request's end */
     bool link_up, link_known;
-    bool *refused;              /* by index in plant->tags: the device has said no to it */
-    struct sample *samples;     /* room for all tags */
-    int *lost;                  /* likewise */
+    bool *refused;          /* by index in plant->tags: the device has said no to it */
+    struct sample *samples; /* room for all tags */
+    int *lost;              /* likewise */
 };
 
-struct unit *modbus_unit_of(const struct modbus_source *modbus, const struct plan_block *block);
+struct unit *modbus_unit_of(const struct modbus_source *modbus, const struct read_plan_block *block);
 void modbus_unit_is_up(struct modbus_source *modbus, struct unit *unit);
 void modbus_unit_is_down(struct modbus_source *modbus, struct unit *unit, const char *why);
 bool modbus_connect_link(struct modbus_source *modbus); /* false: it is known when to try again */
 
-void modbus_take_values(struct modbus_source *modbus, struct plan_block *block, const uint16_t *words);
+void modbus_take_values(struct modbus_source *modbus, struct read_plan_block *block, const uint16_t *words);
 void modbus_take_exception(struct modbus_source *modbus, size_t block, int code, int64_t now_ns);
 /* Forgets what was refused and asks for everything anew: a device may have been repaired or replaced. */
 void modbus_replan(struct modbus_source *modbus);

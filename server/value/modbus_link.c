@@ -19,7 +19,7 @@
 #include "base/mem.h"
 #include "value/lookup.h"
 #include "value/modbus_tcp.h"
-#include "value/plan.h"
+#include "value/read_plan.h"
 
 static const int64_t SETTLE_NS = 50 * NS_PER_MS;
 
@@ -29,11 +29,11 @@ struct modbus_link {
     uint16_t number;  /* of the last question in TCP frames */
     int stop_fd;
     int null_fd;
-    int slot_fd;   /* taken early and kept for life, the connection is put into it: libmodbus calls select(), whose sets end at
+    int slot_fd; /* taken early and kept for life, the connection is put into it: libmodbus calls select(), whose sets end at
                       FD_SETSIZE, while the daemon may hold more files than that by the time of a reconnect */
     bool open;
-    bool suspect;  /* a serial line on which a reply may still come that was given up */
-    int host;      /* index in source->hosts: the one in use */
+    bool suspect; /* a serial line on which a reply may still come that was given up */
+    int host;     /* index in source->hosts: the one in use */
     struct lookup *lookup;
     char name[300];
 };
@@ -231,7 +231,7 @@ static void flush(struct modbus_link *link)
 
 static int read_bits(modbus_t *modbus, enum register_table table, int first, int count, uint16_t *words)
 {
-    uint8_t bits[PLAN_MAX_BITS];
+    uint8_t bits[READ_PLAN_MAX_BITS];
     int got = table == TABLE_COIL ? modbus_read_bits(modbus, first, count, bits) : modbus_read_input_bits(modbus, first, count, bits);
     for (int i = 0; i < got; i++)
         words[i] = bits[i];

@@ -8,13 +8,13 @@
 #include <sys/socket.h>
 
 #include "value/lookup.h"
-#include "value/plan.h"
+#include "value/read_plan.h"
 
 enum {
-    HEADER_BYTES = 7,              /* number, protocol, length (of all that follows it), unit */
-    REFUSED = 0x80,                /* in the function code of an exception */
+    HEADER_BYTES = 7, /* number, protocol, length (of all that follows it), unit */
+    REFUSED = 0x80,   /* in the function code of an exception */
     LAST_EXCEPTION = 11,
-    MOST_VALUE_BYTES = 2 * PLAN_MAX_REGISTERS, /* as many as PLAN_MAX_BITS take */
+    MOST_VALUE_BYTES = 2 * READ_PLAN_MAX_REGISTERS, /* as many as READ_PLAN_MAX_BITS take */
 };
 
 static uint8_t function_of(enum register_table table)

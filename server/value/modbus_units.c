@@ -6,7 +6,7 @@
 #include "base/clock.h"
 #include "value/modbus_impl.h"
 
-struct unit *modbus_unit_of(const struct modbus_source *modbus, const struct plan_block *block)
+struct unit *modbus_unit_of(const struct modbus_source *modbus, const struct read_plan_block *block)
 {
     size_t i = 0;
     while (modbus->units[i].id != block->unit)
@@ -55,7 +55,7 @@ static void lose_tags_of(struct modbus_source *modbus, const struct unit *unit)
 {
     size_t count = 0;
     for (size_t b = 0; b < modbus->plan.block_count; b++) {
-        const struct plan_block *block = &modbus->plan.blocks[b];
+        const struct read_plan_block *block = &modbus->plan.blocks[b];
         for (size_t t = 0; block->unit == unit->id && t < block->tag_count; t++)
             modbus->lost[count++] = modbus->plan.tags[block->first_tag + t];
     }

@@ -11,11 +11,10 @@
 
 #include "base/mem.h"
 #include "base/text.h"
-#include "base/when.h"
+#include "base/timestamp.h"
 
 enum { MAX_BYTES = 512 * 1024 * 1024, LONG_CELLS = 5 };
-#define NO_TIME \
-    "%s:1: no column is the time: expected a name that ends in _ms, _s, _min or _h, or instants such as 2026-11-20T10:00:00Z"
+#define NO_TIME "%s:1: no column is the time: expected a name that ends in _ms, _s, _min or _h, or instants such as 2026-11-20T10:00:00Z"
 
 struct cell {
     const char *at;
@@ -98,12 +97,12 @@ static void add(struct series *series, double time_s, double value)
     series->value[series->count++] = value;
 }
 
-struct clock { /* of one file */
-    bool instants;  /* dates and times; else numbers */
-    bool begun;     /* first or first_us is set */
+struct clock {     /* of one file */
+    bool instants; /* dates and times; else numbers */
+    bool begun;    /* first or first_us is set */
     double unit_s, first, last_s;
     int64_t first_us, last_us;
-    size_t ticks;   /* different times */
+    size_t ticks; /* different times */
 };
 
 static bool instant_of(const struct cell *cell, int64_t after_us, int64_t *t_us)
@@ -113,7 +112,7 @@ static bool instant_of(const struct cell *cell, int64_t after_us, int64_t *t_us)
         return false;
     memcpy(text, cell->at, cell->length);
     text[cell->length] = 0;
-    return when_parse_local(text, after_us, t_us);
+    return timestamp_parse_local(text, after_us, t_us);
 }
 
 static bool read_instant(struct clock *clock, const struct cell *cell, double *time_s)
@@ -194,9 +193,9 @@ static bool read_long(struct series *series, struct lines *lines, struct clock *
     return true;
 }
 
-struct header { /* columns; the number of columns where there is none */
-    size_t time, column;                     /* wide: of the series */
-    size_t tag, value, unit;                 /* of lines of one value each */
+struct header {              /* columns; the number of columns where there is none */
+    size_t time, column;     /* wide: of the series */
+    size_t tag, value, unit; /* of lines of one value each */
     bool of_values;
 };
 
@@ -271,8 +270,11 @@ static bool begins_with_instant(const struct lines *header, size_t column)
 static bool read_header(const struct lines *lines, const char *name, struct header *header, struct clock *clock)
 {
     static const char *const times[] = { "Time", "Timestamp", "UTC", "DateTime", "Date" };
-    *header = (struct header){ .time = lines->count, .column = lines->count, .tag = column_called(lines, "Tag"),
-                               .value = column_called(lines, "Value"), .unit = column_called(lines, "Unit") };
+    *header = (struct header){ .time = lines->count,
+                               .column = lines->count,
+                               .tag = column_called(lines, "Tag"),
+                               .value = column_called(lines, "Value"),
+                               .unit = column_called(lines, "Unit") };
     for (size_t i = lines->count; i-- > 0;)
         if (is(&lines->cells[i], name, strlen(name)))
             header->column = i;

@@ -6,12 +6,12 @@
 #include <stdint.h>
 
 struct reading {
-    double value;             /* engineering units; never NaN while quality is not Bad */
-    uint32_t quality;         /* OPC UA, staleness already applied */
-    uint32_t changes;         /* counts every change of value, quality or alarm: equal means nothing to do */
-    uint8_t alarm, alarm_word; /* its gravest (enum alarm_kind) of those that are to be seen, and how that is (enum alarm_word) */
-    int64_t received_utc_ns;  /* when the value came in; 0 = never */
-    int64_t age_ns;           /* at the snapshot, by the monotonic clock; INT64_MAX = never */
+    double value;                /* engineering units; never NaN while quality is not Bad */
+    uint32_t quality;            /* OPC UA, staleness already applied */
+    uint32_t changes;            /* counts every change of value, quality or alarm: equal means nothing to do */
+    uint8_t alarm, alarm_status; /* its gravest (enum alarm_kind) of those that are to be seen, and how that is (enum alarm_status) */
+    int64_t received_utc_ns;     /* when the value came in; 0 = never */
+    int64_t age_ns;              /* at the snapshot, by the monotonic clock; INT64_MAX = never */
 };
 
 struct snapshot {

@@ -11,17 +11,17 @@
 #include "value/quality.h"
 
 struct held {
-    double value;               /* the last usable one */
-    uint32_t quality;           /* of the last sample */
-    bool has_value, lost;       /* lost: could not be read since the last sample */
-    int64_t sampled_mono_ns;    /* last sample, Bad ones too */
+    double value;                              /* the last usable one */
+    uint32_t quality;                          /* of the last sample */
+    bool has_value, lost;                      /* lost: could not be read since the last sample */
+    int64_t sampled_mono_ns;                   /* last sample, Bad ones too */
     int64_t received_mono_ns, received_utc_ns; /* last usable value */
-    int64_t changed_mono_ns;    /* when that value was another the last time */
+    int64_t changed_mono_ns;                   /* when that value was another the last time */
     int64_t stale_ns, flatline_ns;
     int first_vouched, next_vouched; /* tags whose quality this one says, and the next of those that share one; -1: none */
-    uint32_t shown_quality;     /* as last counted in changes */
+    uint32_t shown_quality;          /* as last counted in changes */
     uint32_t changes;
-    uint8_t alarm, alarm_word;
+    uint8_t alarm, alarm_status;
 };
 
 struct link {
@@ -158,10 +158,10 @@ void store_unlisten(struct store *store, store_listener *listener, void *arg)
 
 static void tell(struct store *store, size_t tag, uint32_t quality, int64_t mono_ns, int64_t utc_ns)
 {
-    const struct heard heard = { (int)tag, quality_is_bad(quality) ? NAN : store->tags[tag].value, quality, mono_ns, utc_ns };
+    const struct sample_event event = { (int)tag, quality_is_bad(quality) ? NAN : store->tags[tag].value, quality, mono_ns, utc_ns };
     for (int i = 0; i < STORE_LISTENERS; i++)
         if (store->listeners[i].hear)
-            store->listeners[i].hear(store->listeners[i].arg, &heard);
+            store->listeners[i].hear(store->listeners[i].arg, &event);
 }
 
 /* By what was read of it alone. */
@@ -319,13 +319,13 @@ void store_link_up(struct store *store, int source, int64_t now_mono_ns)
     pthread_mutex_unlock(&store->lock);
 }
 
-void store_set_alarm(struct store *store, int tag, int alarm, int word)
+void store_set_alarm(struct store *store, int tag, int alarm, int status)
 {
     struct held *held = &store->tags[tag];
     pthread_mutex_lock(&store->lock);
-    held->changes += held->alarm != alarm || held->alarm_word != word;
+    held->changes += held->alarm != alarm || held->alarm_status != status;
     held->alarm = (uint8_t)alarm;
-    held->alarm_word = (uint8_t)word;
+    held->alarm_status = (uint8_t)status;
     pthread_mutex_unlock(&store->lock);
 }
 
@@ -348,7 +348,7 @@ static void read_held(struct store *store, size_t tag, int64_t now_mono_ns, stru
         .quality = held->shown_quality,
         .changes = held->changes,
         .alarm = held->alarm,
-        .alarm_word = held->alarm_word,
+        .alarm_status = held->alarm_status,
         .received_utc_ns = held->received_utc_ns,
         .age_ns = held->has_value ? (age_ns > 0 ? age_ns : 0) : INT64_MAX,
     };

@@ -36,7 +36,7 @@ static void count(void *arg, const struct alarm_change *change)
 
 struct bench {
     struct alarms *alarms;
-    struct heard *heard;
+    struct sample_event *events;
     struct snapshot *snapshot;
     int64_t second_ns; /* of the plant */
     int changes;
@@ -47,10 +47,10 @@ static double second(struct bench *bench)
 {
     int64_t begun_ns = clock_work_ns();
     for (int i = 0; i < TAGS; i++) {
-        bench->heard[i].mono_ns = bench->heard[i].utc_ns = bench->second_ns;
-        bench->snapshot->readings[i] = (struct reading){ .value = bench->heard[i].value };
+        bench->events[i].mono_ns = bench->events[i].utc_ns = bench->second_ns;
+        bench->snapshot->readings[i] = (struct reading){ .value = bench->events[i].value };
     }
-    alarms_hear(bench->alarms, bench->heard, TAGS);
+    alarms_put(bench->alarms, bench->events, TAGS);
     for (int i = 0; i < 10; i++) {
         bench->snapshot->taken_mono_ns = bench->snapshot->taken_utc_ns = bench->second_ns + i * NS_PER_S / 10;
         alarms_tick(bench->alarms, bench->snapshot);
@@ -65,8 +65,8 @@ static double flood(struct bench *bench)
     double worst_ms = 0;
     for (int s = 0; s < SECONDS; s++) {
         for (int i = 0; i < FLOOD_HZ; i++) {
-            bench->heard[(FLOOD_HZ * s + i) % TAGS].value = 85;
-            bench->heard[(FLOOD_HZ * (s + TAGS - 1) + i) % TAGS].value = 50;
+            bench->events[(FLOOD_HZ * s + i) % TAGS].value = 85;
+            bench->events[(FLOOD_HZ * (s + TAGS - 1) + i) % TAGS].value = 50;
         }
         double ms = second(bench);
         worst_ms = ms > worst_ms ? ms : worst_ms;
@@ -77,10 +77,10 @@ static double flood(struct bench *bench)
 static double burst(struct bench *bench)
 {
     for (int i = 0; i < TAGS; i++)
-        bench->heard[i].value = i < BURST ? 95 : 50;
+        bench->events[i].value = i < BURST ? 95 : 50;
     double ms = second(bench);
     for (int i = 0; i < BURST; i++)
-        bench->heard[i].value = 50;
+        bench->events[i].value = 50;
     second(bench);
     return ms;
 }
@@ -159,10 +159,10 @@ int main(void)
     struct plant *plant = make_plant();
     struct bench bench = { .second_ns = 1000 * NS_PER_S };
     bench.alarms = alarms_create(plant, &(struct alarms_listener){ .changed = count, .arg = &bench.changes });
-    bench.heard = mem_array(TAGS, sizeof(*bench.heard));
+    bench.events = mem_array(TAGS, sizeof(*bench.events));
     bench.snapshot = snapshot_create(TAGS);
     for (int i = 0; i < TAGS; i++)
-        bench.heard[i] = (struct heard){ .tag = i, .value = 50, .quality = QUALITY_GOOD };
+        bench.events[i] = (struct sample_event){ .tag = i, .value = 50, .quality = QUALITY_GOOD };
     second(&bench);
     double flood_ms = flood(&bench), burst_ms = 1e9;
     for (int i = 0; i < ROUNDS; i++) {
@@ -174,7 +174,7 @@ int main(void)
     row("alarms_20000_flood_second_ms", flood_ms, 100);
     row("alarms_20000_burst_1000_ms", burst_ms, 100);
     snapshot_destroy(&bench.snapshot);
-    mem_free(bench.heard);
+    mem_free(bench.events);
     alarms_destroy(&bench.alarms);
     plant_by_hand_destroy(&plant);
     return look_back() ? 0 : 1;

@@ -172,7 +172,7 @@ static void measure_updates(struct bench *bench, struct measured measured[CODECS
 {
     struct view view;
     view_default(bench->scene, 1920, 1080, &view);
-    view.tier = TIER_STILL;
+    view.tier = TIER_REFINED;
     for (int i = 0; i < UPDATES + 1; i++) {
         struct frame *frame = draw(bench, &view);
         if (i == 1)

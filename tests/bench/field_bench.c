@@ -157,7 +157,7 @@ static void measure_plant(struct workers *workers, size_t sensors)
     measure_pieces(&bench, "one_quality", change_quality);
     measure_pieces(&bench, "drag_power", drag_power);
     bench.params.interpolation = INTERPOLATION_PAPER;
-    field_set_bound(bench.field, 0);
+    field_set_cache_limit(bench.field, 0);
     bench.params.decay = 1;
     measure_named(&bench, "paper_all_readings_uncached", change_all, 0);
     field_destroy(&bench.field);

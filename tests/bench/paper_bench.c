@@ -22,10 +22,10 @@
 #define FOLDER "build/bench"
 enum { WIDTH_PX = 1920, HEIGHT_PX = 1080, PROBE_WIDTH_PX = 192, PROBE_HEIGHT_PX = 108 };
 enum { FEW_SENSORS = 5, MANY_SENSORS = 512 }; /* of which frames should take equally long */
-enum { IN_FLIGHT = 3, FLOW_FRAMES = 960 }; /* of pictures that are not waited for one by one */
+enum { IN_FLIGHT = 3, FLOW_FRAMES = 960 };    /* of pictures that are not waited for one by one */
 enum { CAMERAS = 48, MOST_FRAMES = 96, LEAST_FRAMES = 2, HULL_POINTS = 96 };
 static const int64_t CHANGE_NS = 100 * NS_PER_MS, LONGEST_NS = 3 * NS_PER_S; /* of a row */
-static const double LONGEST_BRUTE_MS = 20e3; /* of a frame that is drawn more than once */
+static const double LONGEST_BRUTE_MS = 20e3;                                 /* of a frame that is drawn more than once */
 static const double SWING_RAD = 6 * M_PI / 180, FOV_DEG = 15, WANTED_COVERAGE = 0.6;
 
 struct model {
@@ -139,7 +139,7 @@ static void fit(const struct bench *bench, double azimuth, double elevation, str
 static void make_view(const struct bench *bench, int width_px, int height_px, struct view *view)
 {
     view_default(bench->crowd.scene, width_px, height_px, view);
-    view->tier = TIER_MOVING;
+    view->tier = TIER_PREVIEW;
 }
 
 static struct frame *draw(struct bench *bench, const struct view *view)
@@ -307,14 +307,14 @@ static void run_one(struct bench *bench, struct series *series)
 static void run_flow(struct bench *bench, struct series *series)
 {
     struct view view;
-    struct stroke *flying[IN_FLIGHT] = { NULL };
+    struct render_job *flying[IN_FLIGHT] = { NULL };
     int64_t began_ns = 0, changed_ns = clock_mono_ns();
     double worked_ms = 0;
     *series = (struct series){ 0 };
     make_view(bench, WIDTH_PX, HEIGHT_PX, &view);
     for (int i = -IN_FLIGHT; i < FLOW_FRAMES; i++) {
         int64_t now_ns = clock_mono_ns();
-        struct stroke **stroke = &flying[(i + IN_FLIGHT) % IN_FLIGHT];
+        struct render_job **job = &flying[(i + IN_FLIGHT) % IN_FLIGHT];
         if (i == 0) {
             began_ns = now_ns;
             worked_ms = now_ms(CLOCK_PROCESS_CPUTIME_ID);
@@ -324,13 +324,13 @@ static void run_flow(struct bench *bench, struct series *series)
             crowd_change(&bench->crowd, now_ns);
             series->changes += i >= 0;
         }
-        if (*stroke) {
-            struct frame *frame = renderer_end(bench->renderer, stroke);
+        if (*job) {
+            struct frame *frame = renderer_end(bench->renderer, job);
             series->triangles = frame->triangles;
             frame_unref(&frame);
         }
         view.camera = bench->cameras[(i + CAMERAS) % CAMERAS];
-        *stroke = renderer_launch(bench->renderer, &view, bench->crowd.snapshot);
+        *job = renderer_submit(bench->renderer, &view, bench->crowd.snapshot);
     }
     series->seconds = (double)(clock_mono_ns() - began_ns) / 1e9;
     for (int i = 0; i < IN_FLIGHT; i++)
@@ -421,8 +421,9 @@ struct goal { /* 0: none */
     double cpu_ms, gpu_ms; /* on two cores; ten times as fast as the paper's */
 };
 static const struct goal instance_goals[] = { { 1, 10, 100.0 / 420 }, { 5, 0, 0 }, { 25, 0, 0 }, { 100, 16, 100.0 / 140 }, { 400, 33, 0 } };
-static const struct goal sensor_goals[] = { { 5, 0, 0 },   { 10, 0, 0 },  { 20, 0, 0 },           { 32, 0, 0 },   { 64, 0, 0 },
-                                            { 128, 0, 0 }, { 256, 0, 0 }, { 512, 0, 100.0 / 200 }, { 1024, 0, 0 }, { 4096, 0, 0 } };
+static const struct goal sensor_goals[] = { { 5, 0, 0 },    { 10, 0, 0 },  { 20, 0, 0 },  { 32, 0, 0 },
+                                            { 64, 0, 0 },   { 128, 0, 0 }, { 256, 0, 0 }, { 512, 0, 100.0 / 200 },
+                                            { 1024, 0, 0 }, { 4096, 0, 0 } };
 enum { INSTANCE_GOALS = sizeof(instance_goals) / sizeof(instance_goals[0]), SENSOR_GOALS = sizeof(sensor_goals) / sizeof(sensor_goals[0]) };
 
 /* instances, sensors: of the only rows; -1: all of them. */

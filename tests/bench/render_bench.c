@@ -111,15 +111,15 @@ static void put_on(const struct bench *bench, enum dress dress, struct view *vie
 {
     double range = view->range_max - view->range_min;
     for (int i = 1; dress == LINED && i < 10; i++)
-        view->paint.lines[view->paint.line_count++] = view->range_min + 0.1 * i * range;
+        view->color_scale.lines[view->color_scale.line_count++] = view->range_min + 0.1 * i * range;
     view->ramp_interval = dress == BANDED ? 0.1 * range : 0;
     if (dress == LOGARITHMIC) {
         view->range_min = fmax(view->range_min, 0.01 * view->range_max);
-        view->paint.log = true;
+        view->color_scale.log = true;
     }
     if (dress == LIMITS) {
         view->field.show = SHOW_OPERATOR;
-        view_own_scale(bench->scene, view);
+        view_default_scale(bench->scene, view);
     }
     if (dress == ORTHOGRAPHIC) {
         double away_m = 0;
@@ -156,7 +156,7 @@ static void measure(struct bench *bench, enum tier tier, enum dress dress, const
         time_ms[i] = now_ms(CLOCK_MONOTONIC) - began_ms;
         work_ms[i] = now_ms(CLOCK_PROCESS_CPUTIME_ID) - worked_ms;
     }
-    print_row(time_name, time_ms, rounds, tier == TIER_STILL ? 300 : 0);
+    print_row(time_name, time_ms, rounds, tier == TIER_REFINED ? 300 : 0);
     print_row(work_name, work_ms, rounds, 0);
 }
 
@@ -165,7 +165,7 @@ static void measure_all(struct bench *bench, enum tier tier, int rounds)
     static const char *const names[] = { "", "lines_", "bands_", "log_", "operator_", "cut_", "orthographic_", "ghosts_", "glossy_" };
     for (enum dress dress = PLAIN; dress <= GLOSSY; dress++) {
         char time_name[64], work_name[64];
-        const char *shown = tier == TIER_MOVING ? "moving" : "still";
+        const char *shown = tier == TIER_PREVIEW ? "moving" : "still";
         snprintf(time_name, sizeof(time_name), "render_%s_%s1080p_ms", shown, names[dress]);
         snprintf(work_name, sizeof(work_name), "render_%s_%s1080p_cpu_ms", shown, names[dress]);
         measure(bench, tier, dress, time_name, work_name, rounds);
@@ -179,7 +179,7 @@ static void measure_recolour(struct bench *bench)
     double time_ms[MOVING_ROUNDS], work_ms[MOVING_ROUNDS];
     size_t tag = 0;
     view_default(bench->scene, 1920, 1080, &view);
-    view.tier = TIER_MOVING;
+    view.tier = TIER_PREVIEW;
     while (tag + 1 < bench->plant->tag_count && bench->plant->tags[tag].group != view.field.group)
         tag++;
     const struct plant_group *group = &bench->plant->groups[view.field.group];
@@ -205,20 +205,20 @@ static void measure_steps(struct bench *bench)
     struct view view;
     double work_ms[STILL_ROUNDS], longest_ms[STILL_ROUNDS] = { 0 }, longest_work_ms[STILL_ROUNDS] = { 0 };
     view_default(bench->scene, 1920, 1080, &view);
-    view.tier = TIER_STILL;
+    view.tier = TIER_REFINED;
     for (int i = -1; i < STILL_ROUNDS; i++) {
         double worked_ms = now_ms(CLOCK_PROCESS_CPUTIME_ID), longest = 0, longest_work = 0;
-        struct stroke *stroke = renderer_begin(bench->renderer, &view, bench->snapshot);
-        if (!stroke)
+        struct render_job *job = renderer_begin(bench->renderer, &view, bench->snapshot);
+        if (!job)
             abort();
         for (bool done = false; !done;) {
             double began_ms = now_ms(CLOCK_MONOTONIC), work_began_ms = now_ms(CLOCK_PROCESS_CPUTIME_ID);
-            done = renderer_step(bench->renderer, stroke, 10 * NS_PER_MS);
+            done = renderer_step(bench->renderer, job, 10 * NS_PER_MS);
             double step_ms = now_ms(CLOCK_MONOTONIC) - began_ms;
             longest = step_ms > longest ? step_ms : longest;
             longest_work = fmax(longest_work, now_ms(CLOCK_PROCESS_CPUTIME_ID) - work_began_ms);
         }
-        struct frame *frame = renderer_end(bench->renderer, &stroke);
+        struct frame *frame = renderer_end(bench->renderer, &job);
         if (!frame)
             abort();
         frame_unref(&frame);
@@ -239,13 +239,14 @@ static void measure_again(struct bench *bench, enum dress dress, bool all, const
     struct view view;
     double time_ms[MOST_ROUNDS], work_ms[MOST_ROUNDS];
     view_default(bench->scene, 1920, 1080, &view);
-    view.tier = TIER_STILL;
+    view.tier = TIER_REFINED;
     put_on(bench, dress, &view);
     for (int i = -2; i < MOVING_ROUNDS; i++) {
         struct reading *readings = bench->snapshot->readings;
         for (size_t tag = 0; tag < (all ? bench->plant->tag_count : 1); tag++)
             readings[tag].value *= i % 2 ? 0.97 : 1 / 0.97;
-        while (!renderer_prepare(bench->renderer, &view, bench->snapshot, INT64_MAX / 4)) {}
+        while (!renderer_prepare(bench->renderer, &view, bench->snapshot, INT64_MAX / 4)) {
+        }
         renderer_content(bench->renderer, &view, bench->snapshot);
         double began_ms = now_ms(CLOCK_MONOTONIC), worked_ms = now_ms(CLOCK_PROCESS_CPUTIME_ID);
         struct frame *frame = renderer_draw(bench->renderer, &view, bench->snapshot);
@@ -270,9 +271,9 @@ int main(void)
         return 0;
     }
     if (bench_init(&bench)) {
-        measure_all(&bench, TIER_MOVING, MOVING_ROUNDS);
+        measure_all(&bench, TIER_PREVIEW, MOVING_ROUNDS);
         measure_recolour(&bench);
-        measure_all(&bench, TIER_STILL, STILL_ROUNDS);
+        measure_all(&bench, TIER_REFINED, STILL_ROUNDS);
         measure_steps(&bench);
         measure_again(&bench, PLAIN, false, "render_still_recolor_1080p_ms", "render_still_recolor_1080p_cpu_ms");
         measure_again(&bench, PLAIN, true, "render_still_recolor_all_1080p_ms", "render_still_recolor_all_1080p_cpu_ms");

@@ -7,7 +7,7 @@
 
 #include "base/clock.h"
 #include "base/mem.h"
-#include "net/message/reply.h"
+#include "session/reply.h"
 #include "tests/support/plant_by_hand.h"
 #include "value/quality.h"
 
@@ -26,7 +26,7 @@ static struct plant *make_plant(void)
 }
 
 /* Milliseconds of the longest page and of all of them. */
-static void ask_all(const struct session_world *world, size_t count, double *longest_ms, double *all_ms, size_t *bytes)
+static void ask_all(const struct session_context *world, size_t count, double *longest_ms, double *all_ms, size_t *bytes)
 {
     *longest_ms = *all_ms = 0;
     *bytes = 0;
@@ -41,7 +41,7 @@ static void ask_all(const struct session_world *world, size_t count, double *lon
     }
 }
 
-static void measure(const struct session_world *world, size_t count)
+static void measure(const struct session_context *world, size_t count)
 {
     double longest_ms = INFINITY, all_ms = INFINITY;
     size_t bytes = 0;
@@ -63,7 +63,7 @@ int main(void)
     struct snapshot *snapshot = snapshot_create(TAGS);
     for (int i = 0; i < TAGS; i++)
         snapshot->readings[i] = (struct reading){ .value = 20 + i * 0.001, .quality = QUALITY_GOOD, .age_ns = i * NS_PER_MS };
-    const struct session_world world = { .plant = plant, .snapshot = snapshot };
+    const struct session_context world = { .plant = plant, .snapshot = snapshot };
     measure(&world, PAGE);
     measure(&world, LONGEST_PAGE);
     snapshot_destroy(&snapshot);

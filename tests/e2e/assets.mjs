@@ -172,7 +172,7 @@ test('memory does not grow with use', { ...options, timeout: options.timeout + 1
         return { megabytes: usedSize / 1e6, nodes };
     };
     const use = (ms) => page.evaluate(async (long) => {
-        const { assets, session, parts, selectTag, showTrend } = globalThis.plantcast, { root } = assets.list;
+        const { assets, session, modules, selectTag, showTrend } = globalThis.plantcast, { root } = assets.list;
         const search = document.getElementById('assets-search');
         const press = (key) => document.getElementById('viewport').dispatchEvent(new KeyboardEvent('keydown', { key, bubbles: true }));
         // Every panel that opens and shuts, trends of some tags and their cards.
@@ -188,7 +188,7 @@ test('memory does not grow with use', { ...options, timeout: options.timeout + 1
             search.value = `TI-${Math.floor(Math.random() * 200)}`;
             search.dispatchEvent(new Event('input'));
             session.setParams({ selected: `E-${Math.floor(Math.random() * 200)}` });
-            (await parts.get('pilot')).flyHome();
+            (await modules.get('cameraController')).flyHome();
             await new Promise((done) => setTimeout(done, 50));
         }
         search.value = '';

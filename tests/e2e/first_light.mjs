@@ -119,7 +119,7 @@ const waitForMeasured = (count) => page.waitForFunction((least) =>
     globalThis.plantcast.session.model.readings.filter(({ quality }) => quality === 'good').length >= least, count, { timeout: 60000 });
 
 test('the daemon dies: said in words, the picture stays; it returns: the same view, by itself', options, async () => {
-    await page.evaluate(async () => (await import('/app/first.js')).proveCodecs()); // else it does so at some later picture
+    await page.evaluate(async () => (await import('/app/startup.js')).probeCodecs()); // else it does so at some later picture
     await page.evaluate(() => globalThis.plantcast.session.setParams({ distance: 'euclidean', ramp_interval: 20 }));
     await settle(page, QUIET_MS);
     const before = await grab(page), asked = await view(page), tags = await measured(), coded = await codec();

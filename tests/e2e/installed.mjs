@@ -58,7 +58,7 @@ test('files are kept as they are used, parts too', options, async () => {
     await page.locator('#views.open').waitFor();
     const { [version]: files, ...others } = await kept();
     assert.deepEqual(others, {});
-    for (const path of ['/', '/app/first.js', '/app/main.js', '/app/style.css', '/words/en.js', '/app/views.js', '/app/views.html'])
+    for (const path of ['/', '/app/startup.js', '/app/main.js', '/app/style.css', '/words/en.js', '/app/views/views.js', '/app/views/views.html'])
         assert.ok(files.includes(path), path);
 });
 
@@ -68,7 +68,7 @@ test('with another version nothing of the one before stays', options, async () =
     await reload();
     const { [version]: files, ...others } = await kept();
     assert.deepEqual(others, { foreign: [] }, 'what is not ours stays');
-    assert.ok(files.includes('/app/main.js') && !files.includes('/app/views.js'), 'what was used of it, and no more');
+    assert.ok(files.includes('/app/main.js') && !files.includes('/app/views/views.js'), 'what was used of it, and no more');
 });
 
 test('without a network it opens, and says what is missing', options, async () => {

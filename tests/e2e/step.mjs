@@ -93,7 +93,7 @@ async function look(page) {
         session.setCamera({ eye: [2.2, -2.6, 1.6], target: [0, 0, 0], up: [0, 0, 1], fov: 45 });
         globalThis.plantcast.viewport.invalidate();
     });
-    await page.evaluate(() => globalThis.plantcast.parts.get('pilot'));
+    await page.evaluate(() => globalThis.plantcast.modules.get('cameraController'));
     await settle(page);
     await watch(page);
 }

@@ -70,7 +70,7 @@ test('an alarm: counted at once, listed, and one click leads there', options, as
     await page.locator('#alarms-close').click();
     await page.locator('#card').waitFor();
     assert.match(await page.locator('#card h3').textContent(), new RegExp(HOT));
-    await page.waitForFunction(() => globalThis.plantcast.pilot?.fly === null);
+    await page.waitForFunction(() => globalThis.plantcast.cameraController?.fly === null);
     await settle(page);
     const near = await page.evaluate((name) => {
         const { overlay, session } = globalThis.plantcast, marker = overlay.marker(session.model.tag(name));

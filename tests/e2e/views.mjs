@@ -29,7 +29,7 @@ after(async () => {
 // Until the camera is what is asked for, and nothing flies any more.
 const arrive = async (is, what) => {
     await page.waitForFunction(is, what, { timeout: 60000 });
-    await page.waitForFunction(() => !globalThis.plantcast.pilot.fly);
+    await page.waitForFunction(() => !globalThis.plantcast.cameraController.fly);
     await settle(page);
 };
 // Until the page has it as f says.
@@ -43,7 +43,7 @@ const middleOf = async (id) => drawnAt(page, await page.evaluate((asset) => {
 
 test('a click tells what is there, and goes on telling it', options, async () => {
     await page.evaluate(() => globalThis.plantcast.session.setParams({ selected: 'TK-101' }));
-    await page.evaluate(() => globalThis.plantcast.parts.get('pilot'));
+    await page.evaluate(() => globalThis.plantcast.modules.get('cameraController'));
     const before = (await view(page)).camera.eye;
     await page.keyboard.press('f');
     await arrive((eye) => globalThis.plantcast.session.camera.eye.some((m, i) => m !== eye[i]), before);
@@ -129,8 +129,8 @@ test('a cut, ghosts and hidden equipment', options, async () => {
 // Of every sixth tag: whether it would be seen from its own side at 5 m, and whether it is where one arrives.
 test('who flies to a tag sees it', options, async (t) => {
     const arrived = await page.evaluate(async () => {
-        const { session, pilot } = globalThis.plantcast, { face } = await import('/core/moves.js'), from = session.camera;
-        const { approach } = pilot, found = [];
+        const { session, cameraController } = globalThis.plantcast, { face } = await import('/core/camera_moves.js'), from = session.camera;
+        const { approach } = cameraController, found = [];
         for (const tag of session.model.tags.filter(({ position, asset }, i) => position && asset && i % 6 === 0)) {
             if (tag.group !== session.params.group)
                 session.setParams({ group: tag.group });
@@ -158,12 +158,12 @@ test('what stands before a tag on all sides becomes a ghost; Backspace goes back
     const ghosts = (ids) => on.waitForFunction((all) => globalThis.plantcast.session.confirmed.ghost.join() === all, ids.join());
     try {
         await waitForPicture(on);
-        await on.evaluate(() => globalThis.plantcast.parts.get('pilot'));
+        await on.evaluate(() => globalThis.plantcast.modules.get('cameraController'));
         const { camera: before } = await view(on);
         await on.locator('#assets-list .asset', { hasText: 'E-101' }).locator('.twist').click();
         await on.locator('.reading', { hasText: 'TI-1' }).click();
         await ghosts(['HOUSE']);
-        await on.waitForFunction(() => !globalThis.plantcast.pilot.fly);
+        await on.waitForFunction(() => !globalThis.plantcast.cameraController.fly);
         await settle(on);
         await on.waitForFunction(() => globalThis.plantcast.overlay.markers.find(({ tag }) => tag.name === 'TI-1')?.occluded === false);
         assert.match(await on.locator('#shown span').textContent(), /^1 see-through$/);

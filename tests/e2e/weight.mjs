@@ -10,8 +10,8 @@ import { missing } from './support/tiny_plant.mjs';
 const absent = missing();
 const options = { skip: absent.length > 0 ? `not built: ${absent.join(', ')}` : false, timeout: 200000 };
 const MOST_BYTES = 200000, QUIET_MS = 1500;
-const source = readFileSync(new URL('../../clients/web/app/parts.js', import.meta.url), 'utf8');
-const PARTS = [...source.matchAll(/^    (\w+): \{ type:/gm)].map(([, name]) => name);
+const source = readFileSync(new URL('../../clients/web/app/lazy_modules.js', import.meta.url), 'utf8');
+const PARTS = [...source.matchAll(/^    (\w+): \{ file:/gm)].map(([, name]) => name);
 const kB = (bytes) => `${(bytes / 1000).toFixed(1)} kB`;
 let plant, url;
 
@@ -86,8 +86,8 @@ const press = async (page, key) => {
 const isSaid = (page) => page.locator('#toast', { hasText: 'could not be loaded' }).waitFor();
 
 test('a part that cannot be loaded says so, and comes by itself once it can be', options, async () => {
-    for (const [key, file, opened] of [['v', 'app/views.js', '#views.open'], ['p', 'app/picture.html', '#picture-panel.open'],
-        ['m', 'app/timings.css', '#timings'], ['y', 'core/history.js', '#timeline'], ['v', 'words/parts.en.js', '#views.open']])
+    for (const [key, file, opened] of [['v', 'app/views/views.js', '#views.open'], ['p', 'app/picture/picture.html', '#picture-panel.open'],
+        ['m', 'app/help/timings.css', '#timings'], ['y', 'core/history.js', '#timeline'], ['v', 'words/lazy.en.js', '#views.open']])
         await withPage(async (page) => {
             await page.waitForFunction(() => globalThis.plantcast.session.recorded);
             await page.route(`**/${file}*`, (route) => route.abort());
@@ -105,21 +105,21 @@ test('no part says anything before the words of parts are there', options, () =>
     const warnings = [];
     return withPage(async (page) => {
         page.on('console', (message) => warnings.push(message.text()));
-        await page.evaluate((names) => Promise.all(names.map((name) => globalThis.plantcast.parts.prepare(name))), PARTS);
+        await page.evaluate((names) => Promise.all(names.map((name) => globalThis.plantcast.modules.prepare(name))), PARTS);
         assert.deepEqual(warnings.filter((text) => text.includes('no words')), []);
-    }, (page) => page.route('**/words/parts.en.js', async (route) => {
+    }, (page) => page.route('**/words/lazy.en.js', async (route) => {
         await new Promise((done) => setTimeout(done, 500));
         await route.continue();
     }));
 });
 
 test('who has given up is not surprised by what comes late', options, () => withPage(async (page) => {
-    await page.route('**/app/views.js*', (route) => route.abort());
+    await page.route('**/app/views/views.js*', (route) => route.abort());
     await press(page, 'v');
     await isSaid(page);
     await press(page, 'Escape');
-    await page.unroute('**/app/views.js*');
-    await page.waitForFunction(() => globalThis.plantcast.parts.there('views'), null, { timeout: 20000 });
+    await page.unroute('**/app/views/views.js*');
+    await page.waitForFunction(() => globalThis.plantcast.modules.there('views'), null, { timeout: 20000 });
     assert.equal(await page.locator('#views.open').isVisible(), false);
     await press(page, 'v');
     await page.locator('#views.open').waitFor();
@@ -140,7 +140,7 @@ const eye = (page) => page.evaluate(() => globalThis.plantcast.session.camera.ey
 const waitForMove = (page, before) => page.waitForFunction((was) =>
     globalThis.plantcast.session.camera.eye.some((m, i) => Math.abs(m - was[i]) > 0.01), before);
 const ELSEWHERE = { eye: [9, -14, 6], target: [0, 0, 0], up: [0, 0, 1], fov: 30 };
-const isPilotThere = (page) => page.evaluate(() => Boolean(globalThis.plantcast.pilot));
+const isCameraControllerThere = (page) => page.evaluate(() => Boolean(globalThis.plantcast.cameraController));
 const drag = async (page) => {
     const { x, y, width, height } = await page.locator('#viewport').boundingBox();
     await page.mouse.move(x + width / 2, y + height / 2);
@@ -158,7 +158,7 @@ test('what hands and keys do first is done, though what steers by them is still 
     ];
     for (const act of firsts)
         await withPage(async (page) => {
-            assert.equal(await isPilotThere(page), false, 'nobody needed it yet');
+            assert.equal(await isCameraControllerThere(page), false, 'nobody needed it yet');
             await page.evaluate((camera) => globalThis.plantcast.session.setCamera(camera), ELSEWHERE);
             await act(page);
             await waitForMove(page, ELSEWHERE.eye);
@@ -175,12 +175,12 @@ test('a drag that began before what steers was there is followed, however long t
     await page.mouse.down();
     await page.waitForTimeout(2500); // longer than a click is worth waiting for
     await page.mouse.move(left + 90, top, { steps: 3 });
-    assert.equal(await isPilotThere(page), false);
+    assert.equal(await isCameraControllerThere(page), false);
     assert.deepEqual(await eye(page), ELSEWHERE.eye);
-    await page.unroute('**/app/pilot.js*');
+    await page.unroute('**/app/input/camera_controller.js*');
     await waitForMove(page, ELSEWHERE.eye);
     await page.mouse.up();
-}, (page) => page.route('**/app/pilot.js*', (route) => route.abort())));
+}, (page) => page.route('**/app/input/camera_controller.js*', (route) => route.abort())));
 
 test('what a hand points at is said, though it moved no more since', options, () => withPage(async (page) => {
     await page.waitForFunction(() => globalThis.plantcast.overlay.markers.some(({ occluded }) => !occluded));
@@ -191,7 +191,7 @@ test('what a hand points at is said, though it moved no more since', options, ()
     const { x, y } = await page.locator('#viewport').boundingBox();
     await page.mouse.move(x + marker[0], y + marker[1]);
     await page.locator('#card').waitFor();
-}, (page) => page.route('**/app/commands.js', async (route) => {
+}, (page) => page.route('**/app/input/commands.js', async (route) => {
     await new Promise((done) => setTimeout(done, 500));
     await route.continue();
 })));
@@ -201,11 +201,11 @@ test('hands that cannot be followed are told so, and are followed once they can 
     await drag(page);
     await isSaid(page);
     assert.deepEqual(await eye(page), before);
-    await page.unroute('**/app/pilot.js*');
-    await page.waitForFunction(() => globalThis.plantcast.pilot, null, { timeout: 20000 });
+    await page.unroute('**/app/input/camera_controller.js*');
+    await page.waitForFunction(() => globalThis.plantcast.cameraController, null, { timeout: 20000 });
     await drag(page);
     await waitForMove(page, before);
-}, (page) => page.route('**/app/pilot.js*', (route) => route.abort())));
+}, (page) => page.route('**/app/input/camera_controller.js*', (route) => route.abort())));
 
 test('a page whose server was another one meanwhile loads itself anew instead of mixing both', options, () => {
     let version = 'aaaaaaaaaaaa';

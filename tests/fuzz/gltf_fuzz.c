@@ -8,7 +8,7 @@
 #include <stdlib.h>
 
 #include "base/mem.h"
-#include "preprocess/geometry.h"
+#include "preprocess/geometry/geometry.h"
 #include "tests/support/temp.h"
 
 #define MOST_CUT 100000u /* corners: more would only take long */

@@ -11,7 +11,7 @@
 
 #include "base/clock.h"
 #include "base/mem.h"
-#include "net/session/session.h"
+#include "session/session.h"
 #include "tests/support/small_scene.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t count);
@@ -80,15 +80,15 @@ int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t count)
     struct baselines *baselines = baselines_create();
     struct resumes *resumes = resumes_create();
     const bool up[1] = { true };
-    const struct session_world world = { .plant = plant,
-                                         .scene = small_scene(),
-                                         .snapshot = snapshot,
-                                         .baselines = baselines,
-                                         .links_up = up,
-                                         .version = "1",
-                                         .quotas = &quotas,
-                                         .resumes = resumes,
-                                         .admission = &admission };
+    const struct session_context world = { .plant = plant,
+                                           .scene = small_scene(),
+                                           .snapshot = snapshot,
+                                           .baselines = baselines,
+                                           .links_up = up,
+                                           .version = "1",
+                                           .quotas = &quotas,
+                                           .resumes = resumes,
+                                           .admission = &admission };
     int64_t now_ns = 1000 * NS_PER_S;
     struct session *session = session_create(&world, 1, now_ns);
     say_lines(session, (const char *)bytes, count, now_ns);

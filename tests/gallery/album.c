@@ -5,7 +5,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "clients/cli/studio.h"
+#include "clients/cli/offline_renderer.h"
 
 enum { WORDS = 64, LINE_BYTES = 4096 };
 
@@ -18,18 +18,18 @@ static int split(char *line, char **words)
     return count;
 }
 
-static bool draw(struct studio *studio, char *plant, char *line)
+static bool draw(struct offline_renderer *offline, char *plant, char *line)
 {
     char *words[WORDS + 4] = { "album", plant, "-o" };
     struct snapshot_options options;
     struct view view;
     int count = 3 + split(line, words + 3);
     optind = 0; /* from the first word again */
-    bool first = !studio->gl, good = snapshot_parse(count, words, false, &options) < 0;
-    good = good && (first ? studio_open(studio, &options, &view) : studio_turn(studio, &options, &view)) == 0;
-    good = good && (!first || studio_open_gl(studio, &options));
-    struct frame *frame = good ? studio_draw(studio, &options, &view) : NULL;
-    good = frame && studio_save(studio, frame, options.out);
+    bool first = !offline->gl, good = snapshot_parse(count, words, false, &options) < 0;
+    good = good && (first ? offline_renderer_open(offline, &options, &view) : offline_renderer_reopen(offline, &options, &view)) == 0;
+    good = good && (!first || offline_renderer_open_gl(offline, &options));
+    struct frame *frame = good ? offline_renderer_draw(offline, &options, &view) : NULL;
+    good = frame && offline_renderer_save(offline, frame, options.out);
     printf("gallery: %s%s\n", options.out ? options.out : "?", good ? "" : ": failed");
     fflush(stdout);
     frame_unref(&frame);
@@ -39,11 +39,11 @@ static bool draw(struct studio *studio, char *plant, char *line)
 
 int main(int argc, char **argv)
 {
-    struct studio studio = { 0 };
+    struct offline_renderer offline = { 0 };
     char line[LINE_BYTES];
     bool good = argc == 2;
     while (good && fgets(line, sizeof(line), stdin))
-        good = draw(&studio, argv[1], line);
-    studio_close(&studio);
+        good = draw(&offline, argv[1], line);
+    offline_renderer_close(&offline);
     return !good;
 }

@@ -40,7 +40,6 @@ static size_t differences(const struct frame *both, const struct frame *wall)
     return count;
 }
 
-
 static size_t seen_through(struct stand *stand, struct view *view, bool by_gl)
 {
     renderer_use_gl(stand->renderer, by_gl);
@@ -85,14 +84,14 @@ static void test_one_of_two_faces_is_seen(void **state)
     (void)state;
     stand_init(&stand, &rig, make_wall());
     toy_set(stand.snapshot, 0, 60, QUALITY_GOOD);
-    size_t untold = all_seen_through(&stand, false, TIER_MOVING);
+    size_t untold = all_seen_through(&stand, false, TIER_PREVIEW);
     if (untold < 2000)
         print_message("%zu pixels differ where nothing says which is seen\n", untold);
     assert_true(untold >= 2000);
     coincident_find(&stand.toy->scene);
-    assert_int_equal(all_seen_through(&stand, false, TIER_MOVING), 0);
-    assert_int_equal(all_seen_through(&stand, true, TIER_MOVING), 0);
-    assert_int_equal(all_seen_through(&stand, true, TIER_STILL), 0);
+    assert_int_equal(all_seen_through(&stand, false, TIER_PREVIEW), 0);
+    assert_int_equal(all_seen_through(&stand, true, TIER_PREVIEW), 0);
+    assert_int_equal(all_seen_through(&stand, true, TIER_REFINED), 0);
     stand_finish(&stand);
 }
 

@@ -75,13 +75,13 @@ static void assert_same(const struct view *view, double may_differ)
 static void start_view(struct view *view, int width_px, int height_px)
 {
     view_default(&stand.toy->scene, width_px, height_px, view);
-    view->tier = TIER_MOVING;
+    view->tier = TIER_PREVIEW;
 }
 
 static void draw_lines_every(struct view *view, double step)
 {
-    for (double line = step; line < 100 && view->paint.line_count < VIEW_LINES; line += step)
-        view->paint.lines[view->paint.line_count++] = line;
+    for (double line = step; line < 100 && view->color_scale.line_count < VIEW_LINES; line += step)
+        view->color_scale.lines[view->color_scale.line_count++] = line;
 }
 
 static void test_home(void **state)
@@ -228,7 +228,7 @@ static void test_still_camera(void **state)
         view.range_max -= 10;
         assert_same(&view, selected < 0 ? 0.01 : 0.02);
         view.range_min = 10;
-        view.paint.log = true;
+        view.color_scale.log = true;
         assert_same(&view, selected < 0 ? 0.01 : 0.02);
         toy_fill(stand.snapshot, 2.0);
         assert_same(&view, selected < 0 ? 0.01 : 0.02);
@@ -264,7 +264,7 @@ static void test_lines_and_scales(void **state)
         view.ramp_interval = i == 1 ? 20 : 0;
         if (i >= 2) {
             view.range_min = 10;
-            view.paint.log = true;
+            view.color_scale.log = true;
         }
         view.look = i == 3 ? LOOK_FLAT : LOOK_DEFAULT;
         for (int camera = 0; camera < 4; camera++) {
@@ -338,7 +338,7 @@ static void test_operator(void **state)
             memcpy(plant->tags[tag].limits, (double[]){ 0, 20, 70, 90 }, 4 * sizeof(double));
     start_view(&view, 400, 300);
     view.field.show = SHOW_OPERATOR;
-    view_own_scale(&stand.toy->scene, &view);
+    view_default_scale(&stand.toy->scene, &view);
     for (int camera = 0; camera < 6; camera++) {
         assert_same(&view, 0.012);
         stand_look(&stand, 2 * camera, &view);
@@ -457,13 +457,23 @@ static void test_left_to_gl(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_home),    cmocka_unit_test(test_sizes), cmocka_unit_test(test_flat),
-        cmocka_unit_test(test_cameras), cmocka_unit_test(test_orthographic), cmocka_unit_test(test_cuts),
-        cmocka_unit_test(test_sun),   cmocka_unit_test(test_outlines),
-        cmocka_unit_test(test_hidden_assets), cmocka_unit_test(test_still_camera),
-        cmocka_unit_test(test_moves_after_standing), cmocka_unit_test(test_lines_and_scales),
-        cmocka_unit_test(test_patterns_close_by), cmocka_unit_test(test_operator),
-        cmocka_unit_test(test_lines_of_a_still_camera), cmocka_unit_test(test_left_to_gl), cmocka_unit_test(test_sky),
+        cmocka_unit_test(test_home),
+        cmocka_unit_test(test_sizes),
+        cmocka_unit_test(test_flat),
+        cmocka_unit_test(test_cameras),
+        cmocka_unit_test(test_orthographic),
+        cmocka_unit_test(test_cuts),
+        cmocka_unit_test(test_sun),
+        cmocka_unit_test(test_outlines),
+        cmocka_unit_test(test_hidden_assets),
+        cmocka_unit_test(test_still_camera),
+        cmocka_unit_test(test_moves_after_standing),
+        cmocka_unit_test(test_lines_and_scales),
+        cmocka_unit_test(test_patterns_close_by),
+        cmocka_unit_test(test_operator),
+        cmocka_unit_test(test_lines_of_a_still_camera),
+        cmocka_unit_test(test_left_to_gl),
+        cmocka_unit_test(test_sky),
         cmocka_unit_test(test_kernels),
     };
     cmocka_set_message_output(CM_OUTPUT_TAP);

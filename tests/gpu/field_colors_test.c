@@ -12,7 +12,7 @@
 
 #include "field/lab.h"
 #include "render/overlay/overlay.h"
-#include "render/palette.h"
+#include "render/shaded_colormap.h"
 #include "tests/support/rig.h"
 #include "tests/support/temp.h"
 #include "value/alarm.h"
@@ -71,7 +71,7 @@ static bool is_color_of(const struct view *view, double value, const uint8_t *bg
     struct scale scale;
     view_scale(view, &scale);
     double slack = 1e-4 * (view->range_max - view->range_min);
-    int mix = view->tier == TIER_STILL ? 4 : 0;
+    int mix = view->tier == TIER_REFINED ? 4 : 0;
     for (int side = -1; side <= 1; side++) {
         uint8_t rgb[3];
         scale_look_up(&scale, value + side * slack, rgb);
@@ -115,7 +115,7 @@ static void test_every_pixel_has_the_legends_color(void **state)
     struct view view;
     (void)state;
     look_down(&view);
-    for (int tier = TIER_MOVING; tier <= TIER_STILL; tier++)
+    for (int tier = TIER_PREVIEW; tier <= TIER_REFINED; tier++)
         for (int interpolation = INTERPOLATION_SHEPARD; interpolation <= INTERPOLATION_PAPER; interpolation++)
             for (int map = 0; map < (int)colormap_count(); map++) {
                 view.tier = (enum tier)tier;
@@ -130,13 +130,13 @@ static void test_bands(void **state)
     struct view view;
     (void)state;
     look_down(&view);
-    for (int tier = TIER_MOVING; tier <= TIER_STILL; tier++) {
+    for (int tier = TIER_PREVIEW; tier <= TIER_REFINED; tier++) {
         view.tier = (enum tier)tier;
-        view.paint.break_count = 0;
+        view.color_scale.break_count = 0;
         for (view.ramp_interval = 10; view.ramp_interval < 80; view.ramp_interval += 13.3)
             assert_int_equal(count_wrong(&view), 0);
-        memcpy(view.paint.breaks, (double[]){ 20, 22, 60, 90 }, 4 * sizeof(double));
-        view.paint.break_count = 4;
+        memcpy(view.color_scale.breaks, (double[]){ 20, 22, 60, 90 }, 4 * sizeof(double));
+        view.color_scale.break_count = 4;
         assert_int_equal(count_wrong(&view), 0);
     }
 }
@@ -147,8 +147,8 @@ static void test_logarithmic_scale(void **state)
     (void)state;
     look_down(&view);
     view.range_min = 1;
-    view.paint.log = true;
-    for (int tier = TIER_MOVING; tier <= TIER_STILL; tier++) {
+    view.color_scale.log = true;
+    for (int tier = TIER_PREVIEW; tier <= TIER_REFINED; tier++) {
         view.tier = (enum tier)tier;
         assert_int_equal(count_wrong(&view), 0);
     }
@@ -161,9 +161,9 @@ static void test_isolines_run_where_the_value_is(void **state)
     (void)state;
     look_down(&view);
     const struct scalars *scalars = field_scalars(stand.field, 0, &view.field, stand.snapshot);
-    memcpy(view.paint.lines, (double[]){ 30, 60 }, 2 * sizeof(double));
-    view.paint.line_count = 2;
-    for (int tier = TIER_MOVING; tier <= TIER_STILL; tier++) {
+    memcpy(view.color_scale.lines, (double[]){ 30, 60 }, 2 * sizeof(double));
+    view.color_scale.line_count = 2;
+    for (int tier = TIER_PREVIEW; tier <= TIER_REFINED; tier++) {
         int dark = 0, near = 0;
         view.tier = (enum tier)tier;
         struct frame *frame = stand_draw(&stand, &view);
@@ -178,8 +178,8 @@ static void test_isolines_run_where_the_value_is(void **state)
         assert_true(dark > near / 12 && dark < near / 2); /* one or two of five pixels */
         frame_unref(&frame);
     }
-    view.paint.lines[0] = 300; /* beyond the range */
-    view.paint.line_count = 1;
+    view.color_scale.lines[0] = 300; /* beyond the range */
+    view.color_scale.line_count = 1;
     assert_int_equal(count_wrong(&view), 0);
 }
 
@@ -190,11 +190,11 @@ static void test_labels_stand_on_their_lines(void **state)
     (void)state;
     look_down(&view);
     const struct scalars *scalars = field_scalars(stand.field, 0, &view.field, stand.snapshot);
-    memcpy(view.paint.lines, (double[]){ 30, 60 }, 2 * sizeof(double));
-    view.paint.line_count = 2;
+    memcpy(view.color_scale.lines, (double[]){ 30, 60 }, 2 * sizeof(double));
+    view.color_scale.line_count = 2;
     for (int bits = 0; bits < 2; bits++) {
-        struct stroke *stroke = bits ? renderer_begin(stand.renderer, &view, stand.snapshot) : NULL;
-        struct frame *frame = bits ? renderer_end(stand.renderer, &stroke) : stand_draw(&stand, &view);
+        struct render_job *job = bits ? renderer_begin(stand.renderer, &view, stand.snapshot) : NULL;
+        struct frame *frame = bits ? renderer_end(stand.renderer, &job) : stand_draw(&stand, &view);
         int of_each[2] = { 0 };
         for (size_t i = 0; i < frame->label_count; i++) {
             const struct frame_label *label = &frame->labels[i];
@@ -207,7 +207,7 @@ static void test_labels_stand_on_their_lines(void **state)
         assert_in_range(of_each[1], 1, 8);
         frame_unref(&frame);
     }
-    view.paint.line_count = 0;
+    view.color_scale.line_count = 0;
     struct frame *frame = stand_draw(&stand, &view);
     assert_int_equal(frame->label_count, 0);
     frame_unref(&frame);
@@ -221,7 +221,7 @@ static void test_beyond_the_range_has_its_own_colors(void **state)
     look_down(&view);
     view.range_min = 40;
     view.range_max = 60;
-    for (int tier = TIER_MOVING; tier <= TIER_STILL; tier++) {
+    for (int tier = TIER_PREVIEW; tier <= TIER_REFINED; tier++) {
         view.tier = (enum tier)tier;
         struct frame *frame = stand_draw(&stand, &view);
         const uint8_t *low = frame_pixel(frame, 6, SIDE_PX - 7), *high = frame_pixel(frame, SIDE_PX / 2, 6);
@@ -261,7 +261,7 @@ static void test_no_data_is_grey_stripes(void **state)
     look_down(&view);
     for (int tag = 0; tag < PLATE_TAGS; tag++)
         toy_set(stand.snapshot, tag, 0, QUALITY_BAD_SENSOR_FAILURE);
-    for (int tier = TIER_MOVING; tier <= TIER_STILL; tier++) {
+    for (int tier = TIER_PREVIEW; tier <= TIER_REFINED; tier++) {
         int light = 0, dark = 0;
         view.tier = (enum tier)tier;
         struct frame *frame = stand_draw(&stand, &view);
@@ -269,8 +269,8 @@ static void test_no_data_is_grey_stripes(void **state)
             for (int x = 2; x < SIDE_PX - 2; x++) {
                 const uint8_t *pixel = frame_pixel(frame, x, y);
                 assert_true(is_grey(pixel));
-                light += pixel[0] == palette_no_data[0][0];
-                dark += pixel[0] == palette_no_data[1][0];
+                light += pixel[0] == colormap_no_data[0][0];
+                dark += pixel[0] == colormap_no_data[1][0];
             }
         assert_true(light > SIDE_PX * SIDE_PX / 5 && dark > SIDE_PX * SIDE_PX / 5);
         assert_true(frame->oldest_age_ns == INT64_MAX);
@@ -300,14 +300,14 @@ static void test_uncertain_is_stippled(void **state)
     look_down(&view);
     for (int tag = 0; tag < PLATE_TAGS; tag++)
         toy_set(stand.snapshot, tag, 50.2, QUALITY_UNCERTAIN_LAST_USABLE);
-    for (int tier = TIER_MOVING; tier <= TIER_STILL; tier++) {
+    for (int tier = TIER_PREVIEW; tier <= TIER_REFINED; tier++) {
         int map = 0, dots = 0;
         view.tier = (enum tier)tier;
         struct frame *frame = stand_draw(&stand, &view);
         for (int y = 2; y < SIDE_PX - 2; y++)
             for (int x = 2; x < SIDE_PX - 2; x++) {
                 map += is_color_of(&view, 50.2, frame_pixel(frame, x, y));
-                dots += frame_pixel(frame, x, y)[1] < colormap_at(0)->rgb[128][1] / 2 + palette_uncertain[1] / 2;
+                dots += frame_pixel(frame, x, y)[1] < colormap_at(0)->rgb[128][1] / 2 + colormap_uncertain[1] / 2;
             }
         assert_true(map > SIDE_PX * SIDE_PX / 2);
         assert_true(dots > SIDE_PX * SIDE_PX / 10);
@@ -340,7 +340,7 @@ static void test_the_rim_of_the_uncertain_runs_true(void **state)
     for (int i = 1; i < PLATE_TAGS; i++)
         toy_set(stand.snapshot, i, 50.2, QUALITY_GOOD);
     view.field.distance = DISTANCE_EUCLIDEAN;
-    for (int tier = TIER_MOVING; tier <= TIER_STILL; tier++) {
+    for (int tier = TIER_PREVIEW; tier <= TIER_REFINED; tier++) {
         int near_rim = 0;
         view.tier = (enum tier)tier;
         struct frame *frame = stand_draw(&stand, &view);
@@ -408,15 +408,15 @@ static void test_operator_sees_limits(void **state)
     toy_set(stand.snapshot, 0, 45, QUALITY_GOOD);
     toy_set(stand.snapshot, 1, 80, QUALITY_GOOD); /* beyond H */
     view.field.show = SHOW_OPERATOR;
-    view_own_scale(&stand.toy->scene, &view);
-    for (int tier = TIER_MOVING; tier <= TIER_STILL; tier++) {
+    view_default_scale(&stand.toy->scene, &view);
+    for (int tier = TIER_PREVIEW; tier <= TIER_REFINED; tier++) {
         view.tier = (enum tier)tier;
         struct frame *frame = stand_draw(&stand, &view);
         const uint8_t *within = frame_pixel(frame, 6, SIDE_PX - 7), *beyond = frame_pixel(frame, SIDE_PX - 4, SIDE_PX * 3 / 4);
         const uint8_t *without = frame_pixel(frame, SIDE_PX / 2, 6);
         assert_true(is_grey(within) && within[0] > 180);
         assert_true(beyond[2] - beyond[0] > 20 && beyond[2] - beyond[0] < 80); /* sand */
-        assert_true(is_grey(without) && without[0] <= palette_no_limits[0][0] && without[0] >= palette_no_limits[1][0]);
+        assert_true(is_grey(without) && without[0] <= colormap_no_limits[0][0] && without[0] >= colormap_no_limits[1][0]);
         frame_unref(&frame);
     }
     check_alarms(&view);
@@ -433,10 +433,10 @@ static void test_markers_tell_distances(void **state)
     view.field.show = SHOW_DISTANCE;
     view.field.sensor = 1;
     for (int mode = DISTANCE_GEODESIC; mode <= DISTANCE_EUCLIDEAN; mode++)
-        for (int tier = TIER_MOVING; tier <= TIER_STILL; tier++) {
+        for (int tier = TIER_PREVIEW; tier <= TIER_REFINED; tier++) {
             view.field.distance = (enum distance_mode)mode;
             view.tier = (enum tier)tier;
-            view_own_scale(&stand.toy->scene, &view);
+            view_default_scale(&stand.toy->scene, &view);
             struct frame *frame = stand_draw(&stand, &view);
             frame_read_markers(frame, stand.snapshot, NULL);
             assert_int_equal(frame->marker_count, PLATE_TAGS);
@@ -483,16 +483,17 @@ static void test_unproven_tags_are_marked(void **state)
     plant->sources = &source;
     for (int i = 0; i < PLATE_TAGS; i++)
         plant->tags[i].source = 0;
-    struct proofs *proofs = proofs_open(rig.log, plant, folder);
+    struct loop_checks *loop_checks = loop_checks_open(rig.log, plant, folder);
     look_down(&view);
     view.camera.eye_m[2] = 14;
     view.width_px = view.height_px = WIDE_PX;
     struct frame *plain = stand_draw(&stand, &view), *before = stand_draw(&stand, &view), *begun = stand_draw(&stand, &view);
     overlay_draw(plain, &stand.toy->scene, stand.snapshot, NULL);
-    overlay_draw(before, &stand.toy->scene, stand.snapshot, proofs);
+    overlay_draw(before, &stand.toy->scene, stand.snapshot, loop_checks);
     assert_memory_equal(plain->bgrx, before->bgrx, (size_t)WIDE_PX * (size_t)plain->stride_bytes); /* nobody has begun */
-    assert_null(proofs_add(proofs, 0, &(struct proof){ .state = PROOF_PASSED, .value = 10, .expected = 10, .tolerance = 1 }));
-    overlay_draw(begun, &stand.toy->scene, stand.snapshot, proofs);
+    assert_null(
+        loop_checks_add(loop_checks, 0, &(struct loop_check){ .state = LOOP_CHECK_PASSED, .value = 10, .expected = 10, .tolerance = 1 }));
+    overlay_draw(begun, &stand.toy->scene, stand.snapshot, loop_checks);
     for (size_t i = 0; i < begun->marker_count; i++)
         for (int y = -6; y <= 6; y++)
             for (int x = -6; x <= 6; x++) {
@@ -504,7 +505,7 @@ static void test_unproven_tags_are_marked(void **state)
     frame_unref(&plain);
     frame_unref(&before);
     frame_unref(&begun);
-    proofs_close(&proofs);
+    loop_checks_close(&loop_checks);
     plant->tags_by_name = NULL;
     plant->sources = NULL;
     for (int i = 0; i < PLATE_TAGS; i++)
@@ -521,13 +522,13 @@ static void test_default_look_keeps_to_the_palette(void **state)
     view.ramp_interval = 200; /* one band: one colour, only lightness may differ */
     uint8_t rgb[3], shaded[3];
     memcpy(rgb, colormap_at(0)->rgb[128], 3);
-    for (int tier = TIER_MOVING; tier <= TIER_STILL; tier++) {
+    for (int tier = TIER_PREVIEW; tier <= TIER_REFINED; tier++) {
         view.tier = (enum tier)tier;
         struct frame *frame = stand_draw(&stand, &view);
         const uint8_t *pixel = frame_pixel(frame, SIDE_PX / 2, SIDE_PX / 2);
         bool found = false;
-        for (int row = 0; row < PALETTE_ROWS; row++) {
-            lab_shade(rgb, colormap_at(0)->shading * (2.0 * row / (PALETTE_ROWS - 1) - 1), shaded);
+        for (int row = 0; row < COLORMAP_ROWS; row++) {
+            lab_shade(rgb, colormap_at(0)->shading * (2.0 * row / (COLORMAP_ROWS - 1) - 1), shaded);
             found = found || (shaded[0] == pixel[2] && shaded[1] == pixel[1] && shaded[2] == pixel[0]);
         }
         assert_true(found);
@@ -558,15 +559,15 @@ static void test_context_has_no_color(void **state)
                                                 .normal_texture = ASSET_NO_TEXTURE,
                                                 .occlusion_texture = ASSET_NO_TEXTURE,
                                                 .emissive_texture = ASSET_NO_TEXTURE };
-        shape_plate(&shape, i, (double[3]){ side_m * i / STRIPS, 0, 0 }, (double[3]){ side_m / STRIPS, 0, 0 },
-                    (double[3]){ 0, side_m, 0 }, 2);
+        shape_plate(&shape, i, (double[3]){ side_m * i / STRIPS, 0, 0 }, (double[3]){ side_m / STRIPS, 0, 0 }, (double[3]){ 0, side_m, 0 },
+                    2);
     }
     tear_down(NULL);
     toy_add(toy, "STEEL", &shape, low, NULL, 0);
     stand_init(&stand, &rig, toy);
     look_down(&view);
     for (int by_gl = 0; by_gl <= 1; by_gl++)
-        for (int tier = TIER_MOVING; tier <= TIER_STILL; tier++)
+        for (int tier = TIER_PREVIEW; tier <= TIER_REFINED; tier++)
             for (int look = LOOK_DEFAULT; look <= LOOK_FLAT; look++) {
                 view.tier = (enum tier)tier;
                 view.look = (enum look)look;

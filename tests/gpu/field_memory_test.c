@@ -12,7 +12,7 @@
 #include <cmocka.h>
 
 #include "gpu/pool.h"
-#include "render/palette.h"
+#include "render/shaded_colormap.h"
 #include "render/renderer_impl.h"
 #include "tests/support/rig.h"
 #include "value/quality.h"
@@ -101,8 +101,8 @@ static void assert_hatched(const struct view *view)
         for (int x = 2; x < SIDE_PX - 2; x++) {
             const uint8_t *pixel = frame_pixel(frame, x, y);
             assert_true(pixel[0] == pixel[1] && pixel[1] == pixel[2]);
-            light += pixel[0] == palette_no_data[0][0];
-            dark += pixel[0] == palette_no_data[1][0];
+            light += pixel[0] == colormap_no_data[0][0];
+            dark += pixel[0] == colormap_no_data[1][0];
         }
     assert_true(light > SIDE_PX * SIDE_PX / 5 && dark > SIDE_PX * SIDE_PX / 5);
     assert_true(frame->oldest_age_ns == INT64_MAX);
@@ -115,7 +115,7 @@ static void test_without_memory_there_is_no_data(void **state)
     (void)state;
     look_down(&view);
     for (int kind = NO_SUMS; kind <= NO_BUFFER; kind++)
-        for (int tier = TIER_MOVING; tier <= TIER_STILL; tier++) {
+        for (int tier = TIER_PREVIEW; tier <= TIER_REFINED; tier++) {
             view.tier = (enum tier)tier;
             view.field.power = 1 + kind + 0.25 * tier; /* none that is known */
             fault = kind;
@@ -134,14 +134,14 @@ static void test_bit_by_bit_too(void **state)
     struct view view;
     (void)state;
     look_down(&view);
-    view.tier = TIER_STILL;
+    view.tier = TIER_REFINED;
     view.field.power = 9;
     fault = NO_WEIGHTS;
-    struct stroke *stroke = renderer_begin(stand.renderer, &view, stand.snapshot);
-    assert_non_null(stroke);
-    while (!renderer_step(stand.renderer, stroke, 1000000)) {
+    struct render_job *job = renderer_begin(stand.renderer, &view, stand.snapshot);
+    assert_non_null(job);
+    while (!renderer_step(stand.renderer, job, 1000000)) {
     }
-    struct frame *frame = renderer_end(stand.renderer, &stroke);
+    struct frame *frame = renderer_end(stand.renderer, &job);
     const uint8_t *pixel = frame_pixel(frame, SIDE_PX / 2, SIDE_PX / 2);
     assert_true(pixel[0] == pixel[1] && pixel[1] == pixel[2]);
     frame_unref(&frame);
@@ -155,11 +155,11 @@ static void test_with_little_room_many_are_shown_alike(void **state)
     struct field *poor = field_create(rig.workers, &stand.toy->scene);
     struct renderer *frugal = renderer_create(rig.log, rig.gl, &stand.toy->scene, poor);
     assert_non_null(frugal);
-    field_set_bound(poor, 1);
+    field_set_cache_limit(poor, 1);
     look_down(&view);
     view.camera.eye_m[2] = 40;
     for (int round = 0; round < 24; round++) {
-        view.tier = round % 3 == 2 ? TIER_STILL : TIER_MOVING;
+        view.tier = round % 3 == 2 ? TIER_REFINED : TIER_PREVIEW;
         view.field.interpolation = round % 2 ? INTERPOLATION_PAPER : INTERPOLATION_SHEPARD;
         view.field.power = 2 + round / 2 % 2;
         for (int i = 0; i < 2 * PLATES; i++)

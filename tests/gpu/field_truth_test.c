@@ -10,7 +10,7 @@
 
 #include <cmocka.h>
 
-#include "render/palette.h"
+#include "render/shaded_colormap.h"
 #include "tests/support/rig.h"
 #include "value/quality.h"
 
@@ -80,7 +80,7 @@ static int shown_at(const struct view *view, double x_m, double y_m)
     struct frame *frame = stand_draw(&stand, view);
     const uint8_t *pixel = pixel_at(frame, x_m, y_m);
     int index = map_index_exact(colormap_at(0), pixel);
-    if (index < 0 && view->tier == TIER_STILL && !is_grey(pixel))
+    if (index < 0 && view->tier == TIER_REFINED && !is_grey(pixel))
         index = map_index_nearest(colormap_at(0), pixel, false);
     frame_unref(&frame);
     return index;
@@ -98,7 +98,7 @@ static bool is_hatched(const struct view *view, double x_m, double y_m, double h
     return all;
 }
 
-static const enum tier tiers[] = { TIER_MOVING, TIER_STILL };
+static const enum tier tiers[] = { TIER_PREVIEW, TIER_REFINED };
 #define for_each_tier(view) for (int tier_index = 0; tier_index < 2 && (look_down(view, tiers[tier_index]), true); tier_index++)
 
 static void test_the_hottest_goes_bad(void **state)
@@ -118,7 +118,7 @@ static void test_the_hottest_goes_bad(void **state)
         int dots = 0;
         for (double y = 1.5; y < 2.5; y += 0.021)
             for (double x = 1.5; x < 2.5; x += 0.021)
-                dots += abs(pixel_at(frame, x, y)[1] - palette_uncertain[1]) < 12;
+                dots += abs(pixel_at(frame, x, y)[1] - colormap_uncertain[1]) < 12;
         assert_in_range(dots, 100, 1200);
         frame_unref(&frame);
     }
@@ -232,7 +232,7 @@ static void test_a_distance_is_no_reading(void **state)
     {
         view.field.show = SHOW_DISTANCE;
         view.field.sensor = HOTTEST;
-        field_own_range(&stand.toy->scene, &view.field, &view.range_min, &view.range_max);
+        field_default_range(&stand.toy->scene, &view.field, &view.range_min, &view.range_max);
         assert_true(view.range_max > sqrt(8) - 1e-5 && view.range_max < 4);
         toy_set(stand.snapshot, HOTTEST, 95, QUALITY_BAD_SENSOR_FAILURE);
         assert_in_range(shown_at(&view, 2.02, 2.02), 0, 4);

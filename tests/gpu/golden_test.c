@@ -14,7 +14,7 @@
 #include <png.h>
 
 #include "base/mem.h"
-#include "render/canvas.h"
+#include "render/split_view.h"
 #include "render/overlay/overlay.h"
 #include "scene/framing.h"
 #include "tests/support/rig.h"
@@ -39,14 +39,14 @@ struct golden {
 enum { FAR = 20 };
 
 static const struct golden goldens[] = {
-    { "moving", TIER_MOVING, LOOK_DEFAULT, 0, -1, false, false, 0.01, false, false },
-    { "still", TIER_STILL, LOOK_DEFAULT, 0, -1, false, false, 0.01, false, false },
-    { "ramp", TIER_STILL, LOOK_FLAT, 20, 1, false, false, 0.01, false, false },
-    { "glossy", TIER_STILL, LOOK_GLOSSY, 0, -1, false, false, 0.015, false, false },
-    { "opened", TIER_STILL, LOOK_DEFAULT, 0, -1, false, true, 0.015, false, false },
-    { "split", TIER_STILL, LOOK_DEFAULT, 0, -1, true, false, 0.04, true, false },
-    { "dark", TIER_MOVING, LOOK_DEFAULT, 0, -1, false, false, 0.01, false, true },
-    { "overlay", TIER_STILL, LOOK_DEFAULT, 0, -1, true, false, 0.04, false, false }, /* fonts differ by version */
+    { "moving", TIER_PREVIEW, LOOK_DEFAULT, 0, -1, false, false, 0.01, false, false },
+    { "still", TIER_REFINED, LOOK_DEFAULT, 0, -1, false, false, 0.01, false, false },
+    { "ramp", TIER_REFINED, LOOK_FLAT, 20, 1, false, false, 0.01, false, false },
+    { "glossy", TIER_REFINED, LOOK_GLOSSY, 0, -1, false, false, 0.015, false, false },
+    { "opened", TIER_REFINED, LOOK_DEFAULT, 0, -1, false, true, 0.015, false, false },
+    { "split", TIER_REFINED, LOOK_DEFAULT, 0, -1, true, false, 0.04, true, false },
+    { "dark", TIER_PREVIEW, LOOK_DEFAULT, 0, -1, false, false, 0.01, false, true },
+    { "overlay", TIER_REFINED, LOOK_DEFAULT, 0, -1, true, false, 0.04, false, false }, /* fonts differ by version */
 };
 
 static void save(const char *folder, const char *name, const char *what, const uint8_t *bgrx)
@@ -126,12 +126,12 @@ static void split_up(struct view *view)
 {
     struct view right = *view;
     view->field.show = SHOW_OPERATOR;
-    view_own_scale(&stand.toy->scene, view);
+    view_default_scale(&stand.toy->scene, view);
     right.range_min = 10;
-    right.paint.log = true;
-    memcpy(right.paint.breaks, (double[]){ 30, 60 }, 2 * sizeof(double));
-    right.paint.break_count = 2;
-    right.paint.lines[right.paint.line_count++] = 45;
+    right.color_scale.log = true;
+    memcpy(right.color_scale.breaks, (double[]){ 30, 60 }, 2 * sizeof(double));
+    right.color_scale.break_count = 2;
+    right.color_scale.lines[right.color_scale.line_count++] = 45;
     right.colormap = colormap_find("calm");
     view_split(view, &right);
 }
@@ -152,7 +152,7 @@ static void test_golden(void **state)
         split_up(&view);
     for (int by_gl = 0; by_gl <= 1; by_gl++) {
         renderer_use_gl(stand.renderer, by_gl);
-        struct frame *frame = canvas_draw(stand.renderer, &view, stand.snapshot);
+        struct frame *frame = split_view_draw(stand.renderer, &view, stand.snapshot);
         frame_read_markers(frame, stand.snapshot, NULL);
         if (golden->overlay)
             overlay_draw(frame, &stand.toy->scene, stand.snapshot, NULL);

@@ -25,19 +25,19 @@ static struct light_key sun(int i)
     return (struct light_key){ .towards = { across * cos(0.7 * i), across * sin(0.7 * i), height } };
 }
 
-static void *bytes_of(const struct stage *stage, const struct light_set *set, size_t asset, size_t *count)
+static void *bytes_of(const struct gpu_scene *gpu_scene, const struct light_set *set, size_t asset, size_t *count)
 {
-    *count = 4 * stage->of_asset[asset]->mesh.vertex_count;
+    *count = 4 * gpu_scene->of_asset[asset]->mesh.vertex_count;
     uint8_t *bytes = malloc(*count);
     glGetNamedBufferSubData(set->baked[asset]->page->buffer, (GLintptr)pool_offset(set->baked[asset]), (GLsizeiptr)*count, bytes);
     return bytes;
 }
 
-static void assert_same_light(const struct stage *stage, const struct light_set *a, const struct light_set *b)
+static void assert_same_light(const struct gpu_scene *gpu_scene, const struct light_set *a, const struct light_set *b)
 {
-    for (size_t i = 0; i < stage->scene->asset_count; i++) {
+    for (size_t i = 0; i < gpu_scene->scene->asset_count; i++) {
         size_t count;
-        void *first = bytes_of(stage, a, i, &count), *second = bytes_of(stage, b, i, &count);
+        void *first = bytes_of(gpu_scene, a, i, &count), *second = bytes_of(gpu_scene, b, i, &count);
         assert_memory_equal(first, second, count);
         free(first);
         free(second);
@@ -47,24 +47,24 @@ static void assert_same_light(const struct stage *stage, const struct light_set 
 /* With and without the light of the sky to be worked out. */
 static void test_bits_make_the_same_light(void **state)
 {
-    struct stage stage;
+    struct gpu_scene gpu_scene;
     struct light at_once, in_bits;
     const struct light_key suns[2] = { sun(1), sun(2) };
     (void)state;
-    assert_true(stage_init(&stage, rig.gl, &stand.toy->scene) && light_init(&at_once, &stage, &environments) &&
-                light_init(&in_bits, &stage, &environments));
+    assert_true(gpu_scene_init(&gpu_scene, rig.gl, &stand.toy->scene) && light_init(&at_once, &gpu_scene, &environments) &&
+                light_init(&in_bits, &gpu_scene, &environments));
     for (int i = 0; i < 2; i++) {
         int steps = 1;
         while (!light_step(&in_bits, &suns[i], 0))
             steps++;
-        assert_true(steps > (int)stage.scene->asset_count);
+        assert_true(steps > (int)gpu_scene.scene->asset_count);
         struct light_set *a = light_get(&at_once, &suns[i]), *b = light_get(&in_bits, &suns[i]);
         assert_true(a && b && !in_bits.bake);
-        assert_same_light(&stage, a, b);
+        assert_same_light(&gpu_scene, a, b);
     }
     light_finish(&at_once);
     light_finish(&in_bits);
-    stage_finish(&stage);
+    gpu_scene_finish(&gpu_scene);
 }
 
 /* A wall whose corners stick in others: as bright in between as it is, not as dark as its corners. */
@@ -73,7 +73,7 @@ static void test_large_faces_are_lit_within(void **state)
     static const double here[3] = { 0, 0, 0 };
     struct toy *toy = toy_create();
     struct shape shape = { 0 };
-    struct stage stage;
+    struct gpu_scene gpu_scene;
     struct light light;
     struct light_key key = sun(1);
     size_t count;
@@ -85,29 +85,29 @@ static void test_large_faces_are_lit_within(void **state)
         shape_box(&shape, TOY_STEEL, (double[]){ x - 0.3, -0.3, z - 0.3 }, (double[]){ x + 0.3, 0.3, z + 0.3 });
     }
     toy_add(toy, "CORNERS", &shape, here, NULL, 0);
-    assert_true(stage_init(&stage, rig.gl, &toy->scene) && light_init(&light, &stage, &environments));
+    assert_true(gpu_scene_init(&gpu_scene, rig.gl, &toy->scene) && light_init(&light, &gpu_scene, &environments));
     const struct light_set *set = light_get(&light, &key);
     assert_non_null(set);
-    uint8_t(*baked)[4] = bytes_of(&stage, set, (size_t)wall, &count);
+    uint8_t(*baked)[4] = bytes_of(&gpu_scene, set, (size_t)wall, &count);
     for (size_t i = 0; i < count / 4; i++) {
         print_message("# corner %zu: openness %d of 255\n", i, baked[i][2]);
         assert_true(baked[i][2] > 200);
     }
     free(baked);
     light_finish(&light);
-    stage_finish(&stage);
+    gpu_scene_finish(&gpu_scene);
     toy_destroy(&toy);
 }
 
 /* Forty sessions, each with a sun of its own; one of them is being drawn all the while. */
 static void test_many_lights_fit_in_a_bound(void **state)
 {
-    struct stage stage;
+    struct gpu_scene gpu_scene;
     struct light light;
     struct light_key key = sun(0);
     (void)state;
-    assert_true(stage_init(&stage, rig.gl, &stand.toy->scene) && light_init(&light, &stage, &environments));
-    size_t one = bake_bytes(&stage);
+    assert_true(gpu_scene_init(&gpu_scene, rig.gl, &stand.toy->scene) && light_init(&light, &gpu_scene, &environments));
+    size_t one = bake_bytes(&gpu_scene);
     light.bound_bytes = 3 * one;
     struct light_set *held = light_get(&light, &key);
     uint64_t id = held->id;
@@ -126,22 +126,22 @@ static void test_many_lights_fit_in_a_bound(void **state)
     }
     assert_true(held->id != id);
     light_finish(&light);
-    stage_finish(&stage);
+    gpu_scene_finish(&gpu_scene);
 }
 
 static void test_the_nearest_sun_stands_in(void **state)
 {
-    struct stage stage;
+    struct gpu_scene gpu_scene;
     struct light light;
     (void)state;
-    assert_true(stage_init(&stage, rig.gl, &stand.toy->scene) && light_init(&light, &stage, &environments));
+    assert_true(gpu_scene_init(&gpu_scene, rig.gl, &stand.toy->scene) && light_init(&light, &gpu_scene, &environments));
     assert_null(light_near(&light, &(struct light_key){ .towards = { 0, 0, 1 } }));
     light_get(&light, &(struct light_key){ .towards = { 1, 0, 0 } });
     light_get(&light, &(struct light_key){ .towards = { 0, 0, 1 } });
     assert_true(light_near(&light, &(struct light_key){ .towards = { 0.6, 0, 0.8 } })->key.towards[2] == 1);
     assert_true(light_near(&light, &(struct light_key){ .towards = { 0.8, 0, 0.6 } })->key.towards[0] == 1);
     light_finish(&light);
-    stage_finish(&stage);
+    gpu_scene_finish(&gpu_scene);
 }
 
 static bool same_pixels(const struct frame *a, const struct frame *b)
@@ -155,9 +155,9 @@ static void test_a_moving_session_does_not_wait(void **state)
     struct view view;
     (void)state;
     view_default(&stand.toy->scene, 320, 180, &view);
-    view.tier = TIER_MOVING;
+    view.tier = TIER_PREVIEW;
     struct frame *before = stand_draw(&stand, &view);
-    renderer_hurry(stand.renderer, 1);
+    renderer_set_bake_budget(stand.renderer, 1);
     memcpy(view.light_dir, sun(3).towards, sizeof(view.light_dir));
     struct frame *first = stand_draw(&stand, &view);
     assert_true(same_pixels(before, first) && first->content != before->content);
@@ -170,7 +170,7 @@ static void test_a_moving_session_does_not_wait(void **state)
     }
     assert_true(pictures > 3 && pictures < 1000);
     struct frame *after = stand_draw(&stand, &view);
-    renderer_hurry(stand.renderer, 0);
+    renderer_set_bake_budget(stand.renderer, 0);
     struct frame *exact = stand_draw(&stand, &view);
     assert_true(same_pixels(after, exact) && !same_pixels(after, before));
     frame_unref(&before);
@@ -189,11 +189,11 @@ static void test_the_first_light_is_rough(void **state)
     for (int i = 0; i < 8; i++)
         toy_set(fresh.snapshot, i, 20 + 7 * i, QUALITY_GOOD);
     view_default(&fresh.toy->scene, 320, 180, &view);
-    view.tier = TIER_MOVING;
-    assert_true(renderer_hurry(fresh.renderer, 1));
+    view.tier = TIER_PREVIEW;
+    assert_true(renderer_set_bake_budget(fresh.renderer, 1));
     struct frame *first = stand_draw(&fresh, &view);
     int steps = 1;
-    while (!renderer_idle(fresh.renderer, 1))
+    while (!renderer_bake_idle(fresh.renderer, 1))
         steps++;
     assert_true(steps > 8 && renderer_content(fresh.renderer, &view, fresh.snapshot) != first->content);
     struct frame *after = stand_draw(&fresh, &view), *exact = stand_draw(&stand, &view);
@@ -211,10 +211,11 @@ static void test_a_still_picture_waits_for_its_light(void **state)
     (void)state;
     view_default(&stand.toy->scene, 320, 180, &view);
     memcpy(view.light_dir, sun(4).towards, sizeof(view.light_dir));
-    struct stroke *stroke = renderer_begin(stand.renderer, &view, stand.snapshot);
+    struct render_job *job = renderer_begin(stand.renderer, &view, stand.snapshot);
     int steps = 1;
-    for (; !renderer_step(stand.renderer, stroke, 1); steps++) {}
-    struct frame *bits = renderer_end(stand.renderer, &stroke), *whole = stand_draw(&stand, &view);
+    for (; !renderer_step(stand.renderer, job, 1); steps++) {
+    }
+    struct frame *bits = renderer_end(stand.renderer, &job), *whole = stand_draw(&stand, &view);
     assert_true(steps > 8 && same_pixels(bits, whole) && bits->content == whole->content);
     frame_unref(&bits);
     frame_unref(&whole);
@@ -223,12 +224,9 @@ static void test_a_still_picture_waits_for_its_light(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_bits_make_the_same_light),
-        cmocka_unit_test(test_large_faces_are_lit_within),
-        cmocka_unit_test(test_many_lights_fit_in_a_bound),
-        cmocka_unit_test(test_the_nearest_sun_stands_in),
-        cmocka_unit_test(test_a_moving_session_does_not_wait),
-        cmocka_unit_test(test_a_still_picture_waits_for_its_light),
+        cmocka_unit_test(test_bits_make_the_same_light),       cmocka_unit_test(test_large_faces_are_lit_within),
+        cmocka_unit_test(test_many_lights_fit_in_a_bound),     cmocka_unit_test(test_the_nearest_sun_stands_in),
+        cmocka_unit_test(test_a_moving_session_does_not_wait), cmocka_unit_test(test_a_still_picture_waits_for_its_light),
         cmocka_unit_test(test_the_first_light_is_rough),
     };
     cmocka_set_message_output(CM_OUTPUT_TAP);

@@ -29,10 +29,10 @@ struct tally {
 static struct frame *draw(struct renderer *renderer, const struct view *view, const struct snapshot *snapshot, bool leave_out,
                           size_t *count)
 {
-    renderer_leave_out(renderer, leave_out ? 0 : INT_MAX - 1);
+    renderer_set_occlusion_least(renderer, leave_out ? 0 : INT_MAX - 1);
     struct frame *frame = renderer_draw(renderer, view, snapshot);
     assert_non_null(frame);
-    *count = renderer_left_out(renderer);
+    *count = renderer_occluded_count(renderer);
     return frame;
 }
 
@@ -69,7 +69,7 @@ static void look_anyhow(const struct scene *scene, struct view *view)
     const struct scene_asset *asset = &scene->assets[synthetic_random(&seed) % scene->asset_count];
     double away = (double[]){ 0, 0.5, 1, 5 }[synthetic_random(&seed) % 4], middle[3], far[3];
     view_default(scene, WIDTH_PX, HEIGHT_PX, view);
-    view->tier = synthetic_random(&seed) % 3 ? TIER_MOVING : TIER_STILL;
+    view->tier = synthetic_random(&seed) % 3 ? TIER_PREVIEW : TIER_REFINED;
     for (int c = 0; c < 3; c++) {
         double size = asset->bounds_max_m[c] - asset->bounds_min_m[c] + 0.2;
         middle[c] = scene->bounds_min_m[c] + random_between(0.2, 0.8) * (scene->bounds_max_m[c] - scene->bounds_min_m[c]);
@@ -175,7 +175,7 @@ static void test_a_wall_hides_what_is_behind(void **state)
     stand_init(&stand, &rig, make_city(0.02));
     renderer_use_gl(stand.renderer, true);
     view_default(&stand.toy->scene, WIDTH_PX, HEIGHT_PX, &view);
-    view.tier = TIER_MOVING;
+    view.tier = TIER_PREVIEW;
     view.width_px = 1280; /* where the rim round boxes is less than what is between the cubes */
     view.height_px = 720;
     double middle_m = 0.5 * (ROW + 0.02 * (ROW - 1));

@@ -137,7 +137,7 @@ static void look_down(struct view *view, enum interpolation interpolation, enum 
     view->camera = (struct camera){ .eye_m = { SIDE_M / 2, SIDE_M / 2, 10 }, .target_m = { SIDE_M / 2, SIDE_M / 2, 0 }, .up = { 0, 1, 0 } };
     view->camera.height_m = SIDE_M;
     view->look = LOOK_FLAT;
-    view->tier = TIER_MOVING;
+    view->tier = TIER_PREVIEW;
     view->field.interpolation = interpolation;
     view->field.distance = distance;
 }

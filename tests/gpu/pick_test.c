@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Picks against the picture itself: the numbers that its pixels stand for, its depth, its markers; and against the sums in double
    precision, at the demo plant and at a small one. */
-#include "render/pick.h"
+#include "render/pick/pick.h"
 
 #include <math.h>
 #include <setjmp.h>
@@ -187,7 +187,7 @@ static void test_small_plant(void **state)
     for (int way = 0; way < 12; way++) {
         struct tally tally = { 0 };
         view_default(site.scene, WIDTH_PX, HEIGHT_PX, &view);
-        view.tier = way & 1 ? TIER_STILL : TIER_MOVING;
+        view.tier = way & 1 ? TIER_REFINED : TIER_PREVIEW;
         view.field.distance = way & 2 ? DISTANCE_EUCLIDEAN : DISTANCE_GEODESIC;
         view.camera.height_m = way & 4 ? 6 : 0;
         if (way >= 8) {
@@ -221,14 +221,14 @@ static void test_demo_plant(void **state)
         struct tally tally = { 0 };
         struct view view;
         view_default(scene, WIDTH_PX, HEIGHT_PX, &view);
-        view.tier = TIER_MOVING;
+        view.tier = TIER_PREVIEW;
         view.camera.height_m = side & 1;
         struct framing framing = { .asset = -1, .tag = -1, .side = (enum side)side };
         framing_look(scene, &framing, (double)WIDTH_PX / HEIGHT_PX, &view.camera);
         compare_view(&site, &view, 2000, &tally);
         say(&tally);
         assert_true(tally.worst_px < 1e-3 && tally.longest_ms < 10);
-        assert_in_range(tally.over, 0, tally.compared / 300); /* GPUs and we part at rims */
+        assert_in_range(tally.over, 0, tally.compared / 300);                /* GPUs and we part at rims */
         assert_in_range(tally.moved + tally.differ, 0, tally.compared / 10); /* much of it is thinner than a pixel */
     }
     renderer_destroy(&site.renderer);

@@ -12,7 +12,7 @@
 #include <cmocka.h>
 
 #include "base/mem.h"
-#include "render/stroke.h"
+#include "render/render_job.h"
 #include "tests/support/rig.h"
 #include "value/quality.h"
 
@@ -30,10 +30,10 @@ static struct frame *draw_by_gl(const struct view *view)
 /* Whatever was drawn before. */
 static struct frame *draw_anew(const struct view *view)
 {
-    struct stroke *stroke = renderer_begin(stand.renderer, view, stand.snapshot);
-    assert_non_null(stroke);
-    assert_non_null(stroke->plate);
-    struct frame *frame = renderer_end(stand.renderer, &stroke);
+    struct render_job *job = renderer_begin(stand.renderer, view, stand.snapshot);
+    assert_non_null(job);
+    assert_non_null(job->plate);
+    struct frame *frame = renderer_end(stand.renderer, &job);
     assert_non_null(frame);
     return frame;
 }
@@ -75,7 +75,7 @@ static void assert_like_gl(const struct view *view, double may_differ)
 static void start_view(struct view *view, int width_px, int height_px)
 {
     view_default(&stand.toy->scene, width_px, height_px, view);
-    view->tier = TIER_STILL;
+    view->tier = TIER_REFINED;
 }
 
 static void test_home(void **state)
@@ -90,7 +90,7 @@ static void test_home(void **state)
     assert_like_gl(&view, 0.01);
     view.look = LOOK_DEFAULT;
     view.range_min = 10;
-    view.paint.log = true;
+    view.color_scale.log = true;
     assert_like_gl(&view, 0.005);
 }
 
@@ -209,7 +209,7 @@ static void test_nothing_in_sight(void **state)
     start_view(&view, 320, 180);
     for (int c = 0; c < 3; c++) /* the sky behind */
         view.camera.target_m[c] = 2 * view.camera.eye_m[c] - view.camera.target_m[c];
-    struct stroke *first = renderer_begin(stand.renderer, &view, stand.snapshot);
+    struct render_job *first = renderer_begin(stand.renderer, &view, stand.snapshot);
     assert_non_null(first);
     assert_like_gl(&view, 0);
     struct frame *frame = renderer_end(stand.renderer, &first);
@@ -327,7 +327,7 @@ static void test_new_colors_too(void **state)
     view.range_min = 30;
     view.range_max = 70;
     assert_same_anew(&view);
-    view.paint.log = true;
+    view.color_scale.log = true;
     assert_same_anew(&view);
     toy_set(stand.snapshot, 0, 75, QUALITY_GOOD);
     toy_set(stand.snapshot, 3, 20, QUALITY_UNCERTAIN_LAST_USABLE);

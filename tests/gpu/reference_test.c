@@ -16,7 +16,7 @@
 
 #include "base/mem.h"
 #include "base/vec.h"
-#include "net/message/message.h"
+#include "message/message.h"
 #include "plant/transform.h"
 #include "tests/support/site.h"
 #include "tests/support/sweep.h"
@@ -24,7 +24,7 @@
 
 enum { WIDTH_PX = 640, HEIGHT_PX = 360, PIXELS = WIDTH_PX * HEIGHT_PX };
 enum { VIEWS = 14, SAMPLES = 715 }; /* samples: of a view */
-enum { CLOSE_PX = 32 }; /* samples of two pixels, each way */
+enum { CLOSE_PX = 32 };             /* samples of two pixels, each way */
 static const double TOLERANCE = 1.0 / 255;
 
 static struct rig rig;
@@ -193,7 +193,7 @@ static bool ask_for(const struct site *site, const struct way *way, struct view 
                              way->distance == DISTANCE_EUCLIDEAN ? "euclidean" : "geodesic");
     assert_true(params_parse(site->plant, wish, &change, &error));
     json_decref(wish);
-    return params_apply(&(struct params_world){ .scene = site->scene }, &change, view, &error);
+    return params_apply(&(struct params_context){ .scene = site->scene }, &change, view, &error);
 }
 
 static void compare_views(struct site *site, const struct way *way, struct tally *tally)
@@ -235,7 +235,7 @@ static void say(const struct way *way, const struct tally *tally)
     print_message("# group %d, %s, %s, %s, %s: %zu pixels; over 1/255: %zu, worst %.3f %% (camera %d); "
                   "within a pixel of the finest level: %zu, worst %.3f %%; other flags %zu\n",
                   way->group, way->interpolation == INTERPOLATION_PAPER ? "paper" : "shepard",
-                  way->distance == DISTANCE_EUCLIDEAN ? "euclidean" : "geodesic", way->tier == TIER_STILL ? "still" : "moving",
+                  way->distance == DISTANCE_EUCLIDEAN ? "euclidean" : "geodesic", way->tier == TIER_REFINED ? "still" : "moving",
                   way->finest ? "finest level" : "levels as drawn", tally->compared, tally->over, 100 * tally->worst, tally->worst_camera,
                   tally->beyond, 100 * tally->worst_beyond, tally->flags_differ);
 }
@@ -244,7 +244,7 @@ static void say(const struct way *way, const struct tally *tally)
    which have room for it; there no pixel errs by two such steps. */
 static const double FINEST_OVER = 0.0005, FINEST_WORST = 2.0 / 255;
 
-struct bounds { /* the same of moving pictures, on the levels that are drawn */
+struct bounds {           /* the same of moving pictures, on the levels that are drawn */
     double drawn, beyond; /* beyond: also of what the finest level has within a pixel */
     double worst;
 };
@@ -261,7 +261,7 @@ static void compare_group(struct site *site, int group, int refused, const struc
             .each = (i & 12) == 8 ? 4 : 7, /* more where errors have their bound on average: moving, on the levels that are drawn */
             .interpolation = i & 1 ? INTERPOLATION_PAPER : INTERPOLATION_SHEPARD,
             .distance = i & 2 ? DISTANCE_EUCLIDEAN : DISTANCE_GEODESIC,
-            .tier = i & 4 ? TIER_STILL : TIER_MOVING,
+            .tier = i & 4 ? TIER_REFINED : TIER_PREVIEW,
             .finest = !(i & 8),
             .seed = 1000 * (uint64_t)(i + 1),
         };
@@ -274,7 +274,7 @@ static void compare_group(struct site *site, int group, int refused, const struc
         say(&way, &tally);
         assert_true(tally.compared > (size_t)sweep(VIEWS, VIEWS / way.each) * SAMPLES / 2);
         assert_in_range(tally.flags_differ, 0, tally.compared / 200);
-        bool finest = way.finest || way.tier == TIER_STILL;
+        bool finest = way.finest || way.tier == TIER_REFINED;
         bad += (double)tally.over > (finest ? FINEST_OVER : bounds->drawn) * (double)tally.compared;
         bad += tally.worst > (finest ? FINEST_WORST : bounds->worst);
         bad += (double)tally.beyond > (finest ? FINEST_OVER : bounds->beyond) * (double)tally.compared;

@@ -24,7 +24,7 @@ static int reset(void **state)
     for (int i = 0; i < 8; i++)
         toy_set(stand.snapshot, i, 20 + 7 * i, QUALITY_GOOD);
     view_default(&stand.toy->scene, 320, 180, &view);
-    view.tier = TIER_MOVING;
+    view.tier = TIER_PREVIEW;
     return 0;
 }
 
@@ -62,7 +62,7 @@ static void test_content_sees_what_is_drawn(void **state)
     view.camera.eye_m[0] += 0.01;
     assert_true(content() != before);
     view = first;
-    view.tier = TIER_STILL;
+    view.tier = TIER_REFINED;
     assert_true(content() != before);
     view = first;
     view.look = LOOK_FLAT;
@@ -157,10 +157,10 @@ static const struct {
     double ramp_interval;
     int selected_asset;
 } bit_cases[] = {
-    { TIER_STILL, LOOK_DEFAULT, 0, -1 },
-    { TIER_STILL, LOOK_GLOSSY, 0, 1 },
-    { TIER_STILL, LOOK_FLAT, 20, -1 },
-    { TIER_MOVING, LOOK_DEFAULT, 0, -1 },
+    { TIER_REFINED, LOOK_DEFAULT, 0, -1 },
+    { TIER_REFINED, LOOK_GLOSSY, 0, 1 },
+    { TIER_REFINED, LOOK_FLAT, 20, -1 },
+    { TIER_PREVIEW, LOOK_DEFAULT, 0, -1 },
 };
 
 /* While it is under way, others draw other views, readings change, and its light goes from the cache. */
@@ -175,17 +175,17 @@ static void test_bit_by_bit_is_the_same_picture(void **state)
         view.ramp_interval = bit_cases[i].ramp_interval;
         view.selected_asset = bit_cases[i].selected_asset;
         toy_set(stand.snapshot, 2, 34, QUALITY_GOOD);
-        renderer_use_gl(stand.renderer, view.tier == TIER_MOVING); /* as bit by bit */
+        renderer_use_gl(stand.renderer, view.tier == TIER_PREVIEW); /* as bit by bit */
         struct frame *whole = stand_draw(&stand, &view);
         renderer_use_gl(stand.renderer, false);
-        struct stroke *stroke = renderer_begin(stand.renderer, &view, stand.snapshot);
+        struct render_job *job = renderer_begin(stand.renderer, &view, stand.snapshot);
         int steps = 1;
-        assert_non_null(stroke);
-        for (; !renderer_step(stand.renderer, stroke, 0); steps++) {
+        assert_non_null(job);
+        for (; !renderer_step(stand.renderer, job, 0); steps++) {
             struct view other = view;
             if (steps % 4)
                 continue;
-            other.tier = steps % 8 ? TIER_MOVING : TIER_STILL;
+            other.tier = steps % 8 ? TIER_PREVIEW : TIER_REFINED;
             other.camera.eye_m[steps % 3] *= 1.1;
             other.light_dir[2] = 0.3 + 0.02 * (steps % 5);
             toy_set(stand.snapshot, 2, 40 + steps, QUALITY_GOOD);
@@ -193,8 +193,8 @@ static void test_bit_by_bit_is_the_same_picture(void **state)
             frame_unref(&frame);
         }
         assert_true(steps >= (rig.gl->software ? 12 : 1));
-        struct frame *bits = renderer_end(stand.renderer, &stroke);
-        assert_true(bits && !stroke);
+        struct frame *bits = renderer_end(stand.renderer, &job);
+        assert_true(bits && !job);
         assert_same_picture(whole, bits);
         frame_unref(&whole);
         frame_unref(&bits);
@@ -204,15 +204,15 @@ static void test_bit_by_bit_is_the_same_picture(void **state)
 static void test_abandoned_picture_leaves_no_trace(void **state)
 {
     (void)state;
-    view.tier = TIER_STILL;
+    view.tier = TIER_REFINED;
     struct frame *before = stand_draw(&stand, &view);
     for (int i = 0; i < 20; i++) {
-        struct stroke *stroke = renderer_begin(stand.renderer, &view, stand.snapshot);
-        assert_non_null(stroke);
+        struct render_job *job = renderer_begin(stand.renderer, &view, stand.snapshot);
+        assert_non_null(job);
         for (int step = 0; step < i % 3; step++)
-            renderer_step(stand.renderer, stroke, 0);
-        renderer_abandon(stand.renderer, &stroke);
-        assert_null(stroke);
+            renderer_step(stand.renderer, job, 0);
+        renderer_abandon(stand.renderer, &job);
+        assert_null(job);
     }
     struct frame *after = stand_draw(&stand, &view);
     assert_same_picture(before, after);
@@ -238,7 +238,7 @@ static void test_markers(void **state)
 {
     (void)state;
     const double *at = stand.toy->scene.assets[1].sensors[0].surface_m;
-    for (int tier = TIER_MOVING; tier <= TIER_STILL; tier++) {
+    for (int tier = TIER_PREVIEW; tier <= TIER_REFINED; tier++) {
         view.tier = (enum tier)tier;
         look(at[0] - 2, at[1] - 2, at[2], at[0], at[1], at[2]);
         struct frame *frame = stand_draw(&stand, &view);
@@ -328,7 +328,7 @@ static void test_default_light_is_one(void **state)
 static void test_selection_is_outlined(void **state)
 {
     (void)state;
-    for (int tier = TIER_MOVING; tier <= TIER_STILL; tier++) {
+    for (int tier = TIER_PREVIEW; tier <= TIER_REFINED; tier++) {
         view.tier = (enum tier)tier;
         view.selected_asset = -1;
         struct frame *plain = stand_draw(&stand, &view);
@@ -350,7 +350,7 @@ static void test_many_sizes(void **state)
                                     { 333, 211 }, { 640, 360 }, { 800, 600 }, { 801, 601 } };
     (void)state;
     for (size_t i = 0; i < sizeof(sizes) / sizeof(sizes[0]); i++)
-        for (int tier = TIER_MOVING; tier <= TIER_STILL; tier++) {
+        for (int tier = TIER_PREVIEW; tier <= TIER_REFINED; tier++) {
             view.width_px = sizes[i][0];
             view.height_px = sizes[i][1];
             view.tier = (enum tier)tier;
@@ -381,7 +381,7 @@ static void draw_much(void)
         stand_look(&stand, i, &view);
         view.width_px = sizes[i % 3][0];
         view.height_px = sizes[i % 3][1];
-        view.tier = i % 2 ? TIER_STILL : TIER_MOVING;
+        view.tier = i % 2 ? TIER_REFINED : TIER_PREVIEW;
         view.look = i % 5 == 4 ? LOOK_MATERIALS : LOOK_DEFAULT;
         view.light_dir[0] = i % 4 == 3 ? 0.6 : 0;
         view.light_dir[1] = 0;
@@ -405,12 +405,12 @@ static void test_what_is_kept_can_be_had_anew(void **state)
     (void)state;
     struct view seen = view;
     stand_look(&stand, 1, &seen);
-    seen.tier = TIER_STILL;
+    seen.tier = TIER_REFINED;
     struct frame *before = stand_draw(&stand, &seen);
     draw_much();
     size_t full = caches();
-    renderer_rest(stand.renderer);
-    field_rest(stand.field);
+    renderer_drop_caches(stand.renderer);
+    field_clear_cache(stand.field);
     assert_int_equal(field_bytes(stand.field), 0);
     size_t bytes[RENDER_STORES];
     renderer_measure_memory(stand.renderer, bytes);

@@ -167,7 +167,7 @@ static struct frame *picture_of(struct prep_case *c, enum way way)
     assert_true(site.scene->assets[0].file->view.levels[0].added_count > 0);
     view_default(site.scene, WIDTH, HEIGHT, &view);
     view.camera = (struct camera){ .eye_m = { 1.2, -1.1, 2.2 }, .target_m = { 1, 0.5, 0 }, .up = { 0, 0, 1 }, .fov_deg = 40 };
-    view.tier = TIER_STILL;
+    view.tier = TIER_REFINED;
     view.look = LOOK_MATERIALS;
     struct frame *frame = renderer_draw(site.renderer, &view, site.snapshot);
     assert_non_null(frame);

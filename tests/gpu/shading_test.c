@@ -41,7 +41,7 @@ static int tear_down(void **state)
 /* How a picture reaches its reader. */
 struct way {
     const char *name;
-    int quality; /* of JPEG; 0: none */
+    int quality;                             /* of JPEG; 0: none */
     bool full_chroma, deuteranope, standard; /* standard: by any encoder, with the tables that everybody has */
 };
 static const struct way ways[] = {
@@ -49,7 +49,7 @@ static const struct way ways[] = {
     { "JPEG q80 4:2:0", 80, false, false, false },
     { "deuteranope", 0, false, true, false },
     { "JPEG, deuteranope", 80, false, true, false },
-    { "refined, as sent, deuteranope", 92, true, true, false }, /* server/net/session/session_wishes.c */
+    { "refined, as sent, deuteranope", 92, true, true, false }, /* server/session/session_frames.c */
     { "JPEG by another", 80, false, false, true },
     { "that, deuteranope", 80, false, true, true },
 };
@@ -58,8 +58,8 @@ enum { WAYS = sizeof(ways) / sizeof(*ways), OURS = 5 };
 static void decode(struct frame *frame, const uint8_t *bytes, size_t count)
 {
     tjhandle turbo = tjInitDecompress();
-    assert_int_equal(
-        tjDecompress2(turbo, bytes, count, frame->bgrx, frame->width_px, frame->stride_bytes, frame->height_px, TJPF_BGRX, 0), 0);
+    assert_int_equal(tjDecompress2(turbo, bytes, count, frame->bgrx, frame->width_px, frame->stride_bytes, frame->height_px, TJPF_BGRX, 0),
+                     0);
     tjDestroy(turbo);
 }
 
@@ -119,7 +119,7 @@ static double measure(const struct view *view, double p95[WAYS])
     struct view flat = *view;
     double worst = 0;
     flat.look = LOOK_FLAT;
-    flat.tier = TIER_MOVING;
+    flat.tier = TIER_PREVIEW;
     struct frame *truth = stand_draw(&stand, &flat);
     struct frame *drawn = stand_draw(&stand, view);
     for (int i = 0; i < WAYS; i++) {
@@ -133,7 +133,7 @@ static double measure(const struct view *view, double p95[WAYS])
     }
     frame_unref(&truth);
     frame_unref(&drawn);
-    printf("# %-9s %s:", map->name, view->tier == TIER_STILL ? "still " : "moving");
+    printf("# %-9s %s:", map->name, view->tier == TIER_REFINED ? "still " : "moving");
     for (int i = 0; i < WAYS; i++)
         printf(" %s %.2f %%%s", ways[i].name, p95[i], i + 1 < WAYS ? "," : " (p95)\n");
     return worst;
@@ -162,7 +162,7 @@ static void test_far_away_it_is_not_either(void **state)
     (void)state;
     for (int distance = 1; distance < 3; distance++) {
         look_from(distance, &view);
-        view.tier = TIER_STILL;
+        view.tier = TIER_REFINED;
         measure(&view, shaded);
         view.look = LOOK_FLAT;
         measure(&view, flat);
@@ -179,7 +179,7 @@ static void test_shading_is_not_read_as_value(void **state)
     (void)state;
     look_close(&view);
     for (int map = 0; map < (int)colormap_count(); map++)
-        for (int tier = TIER_MOVING; tier <= TIER_STILL; tier++) {
+        for (int tier = TIER_PREVIEW; tier <= TIER_REFINED; tier++) {
             view.colormap = map;
             view.tier = (enum tier)tier;
             double worst = measure(&view, p95);
@@ -206,9 +206,9 @@ static void test_tiers_agree(void **state)
     int count = 0, far = 0;
     (void)state;
     view_default(&stand.toy->scene, WIDTH, HEIGHT, &view);
-    view.tier = TIER_STILL;
+    view.tier = TIER_REFINED;
     struct frame *still = stand_draw(&stand, &view);
-    view.tier = TIER_MOVING;
+    view.tier = TIER_PREVIEW;
     struct frame *moving = stand_draw(&stand, &view);
     for (int y = 0; y < HEIGHT; y++)
         for (int x = 0; x < WIDTH; x++, count++) {
@@ -231,12 +231,12 @@ static void test_operator_sees_greys(void **state)
     view_default(&stand.toy->scene, WIDTH, HEIGHT, &values);
     for (size_t i = 0; i < stand.toy->plant.tag_count; i++)
         memcpy(stand.toy->plant.tags[i].limits, (double[]){ -20, -10, 110, 120 }, 4 * sizeof(double));
-    for (int tier = TIER_MOVING; tier <= TIER_STILL; tier++) {
+    for (int tier = TIER_PREVIEW; tier <= TIER_REFINED; tier++) {
         int other = 0, coloured = 0;
         values.tier = (enum tier)tier;
         limits = values;
         limits.field.show = SHOW_OPERATOR;
-        view_own_scale(&stand.toy->scene, &limits);
+        view_default_scale(&stand.toy->scene, &limits);
         struct frame *first = stand_draw(&stand, &values), *second = stand_draw(&stand, &limits);
         for (int i = 0; i < WIDTH * HEIGHT; i++) {
             const uint8_t *a = frame_pixel(first, i % WIDTH, i / WIDTH), *b = frame_pixel(second, i % WIDTH, i / WIDTH);
@@ -258,10 +258,8 @@ static void test_operator_sees_greys(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        each(test_shading_is_not_read_as_value),
-        each(test_far_away_it_is_not_either),
-        each(test_glossy_would_be_misread),
-        each(test_tiers_agree),
+        each(test_shading_is_not_read_as_value), each(test_far_away_it_is_not_either),
+        each(test_glossy_would_be_misread),      each(test_tiers_agree),
         each(test_operator_sees_greys),
     };
     cmocka_set_message_output(CM_OUTPUT_TAP);

@@ -11,7 +11,7 @@
 
 #include <cmocka.h>
 
-#include "render/pick.h"
+#include "render/pick/pick.h"
 #include "tests/support/rig.h"
 #include "value/quality.h"
 
@@ -34,7 +34,7 @@ static int reset(void **state)
     for (int i = 0; i < 8; i++)
         toy_set(stand.snapshot, i, i < 5 ? 30 : 80, QUALITY_GOOD);
     view_default(&stand.toy->scene, 480, 270, &view);
-    view.tier = TIER_MOVING;
+    view.tier = TIER_PREVIEW;
     view.look = LOOK_FLAT;
     return 0;
 }
@@ -70,7 +70,7 @@ static int count_different(const struct frame *a, const struct frame *b)
 
 static void assert_looks(double exchanger_least, double tank_least, size_t markers)
 {
-    for (int tier = TIER_MOVING; tier <= TIER_STILL; tier++) {
+    for (int tier = TIER_PREVIEW; tier <= TIER_REFINED; tier++) {
         view.tier = (enum tier)tier;
         struct frame *frame = stand_draw(&stand, &view);
         int exchanger = count_value(frame, 30), tank = count_value(frame, 80);
@@ -79,7 +79,7 @@ static void assert_looks(double exchanger_least, double tank_least, size_t marke
         assert_int_equal(frame->marker_count, markers);
         frame_unref(&frame);
     }
-    view.tier = TIER_MOVING;
+    view.tier = TIER_PREVIEW;
 }
 
 static void test_hidden_and_isolated(void **state)
@@ -147,7 +147,7 @@ static void test_ghosts_change_few_colours(void **state)
 {
     (void)state;
     view.camera = (struct camera){ .eye_m = { 11, 2.5, 2 }, .target_m = { 0, 0, 1.2 }, .up = { 0, 0, 1 }, .fov_deg = 30 };
-    for (int tier = TIER_MOVING; tier <= TIER_STILL; tier++) {
+    for (int tier = TIER_PREVIEW; tier <= TIER_REFINED; tier++) {
         view.tier = (enum tier)tier;
         view.visibility = (struct visibility){ 0 };
         struct frame *solid = stand_draw(&stand, &view);
@@ -212,7 +212,7 @@ static void test_a_cut_opens_a_neutral_inside(void **state)
 {
     (void)state;
     view.camera = (struct camera){ .eye_m = { 0, -8, 1.2 }, .target_m = { 0, 0, 1.2 }, .up = { 0, 0, 1 }, .fov_deg = 40 };
-    for (int tier = TIER_MOVING; tier <= TIER_STILL; tier++)
+    for (int tier = TIER_PREVIEW; tier <= TIER_REFINED; tier++)
         for (int look = LOOK_DEFAULT; look <= LOOK_FLAT; look++) {
             view.tier = (enum tier)tier;
             view.look = (enum look)look;
@@ -294,7 +294,7 @@ static void test_a_cut_closes_bodies(void **state)
     (void)state;
     for (int i = 0; i < 12; i++) {
         int way = i % 3;
-        enum tier tier = i / 3 % 2 ? TIER_STILL : TIER_MOVING;
+        enum tier tier = i / 3 % 2 ? TIER_REFINED : TIER_PREVIEW;
         bool box = i / 6;
         struct stand own;
         set_up(&own, nested(way == 1, way == 2));
@@ -338,14 +338,14 @@ static void test_a_cut_leaves_the_rest_alone(void **state)
 static void test_bit_by_bit_is_the_same(void **state)
 {
     (void)state;
-    view.tier = TIER_STILL;
+    view.tier = TIER_REFINED;
     asset_set_add(&view.visibility.ghosts, TANK);
     view.visibility.clip = (struct clip){ .plane_count = 1, .planes = { { 0, 1, 0, 0.1 } } };
     struct frame *at_once = stand_draw(&stand, &view);
-    struct stroke *stroke = renderer_begin(stand.renderer, &view, stand.snapshot);
-    while (!renderer_step(stand.renderer, stroke, 1))
+    struct render_job *job = renderer_begin(stand.renderer, &view, stand.snapshot);
+    while (!renderer_step(stand.renderer, job, 1))
         continue;
-    struct frame *bits = renderer_end(stand.renderer, &stroke);
+    struct frame *bits = renderer_end(stand.renderer, &job);
     assert_memory_equal(at_once->bgrx, bits->bgrx, (size_t)bits->stride_bytes * (size_t)bits->height_px);
     frame_unref(&at_once);
     frame_unref(&bits);
@@ -357,7 +357,7 @@ static void test_orthographic_markers_stand_where_they_should(void **state)
     (void)state;
     view.camera = (struct camera){ .eye_m = { 1.3, -8, 1.2 }, .target_m = { 1.3, 0, 1.2 }, .up = { 0, 0, 1 }, .height_m = 5 };
     double scale = 270 / 5.0;
-    for (int tier = TIER_MOVING; tier <= TIER_STILL; tier++) {
+    for (int tier = TIER_PREVIEW; tier <= TIER_REFINED; tier++) {
         view.tier = (enum tier)tier;
         struct frame *frame = stand_draw(&stand, &view);
         for (size_t i = 0; i < frame->marker_count; i++) {
@@ -384,7 +384,7 @@ static void test_what_is_not_shown_throws_no_shadow(void **state)
 {
     (void)state;
     view.look = LOOK_DEFAULT;
-    view.tier = TIER_STILL;
+    view.tier = TIER_REFINED;
     memcpy(view.light_dir, (double[3]){ 0, -0.6, 0.8 }, sizeof(view.light_dir));
     view.camera = (struct camera){ .eye_m = { 0, -1, 9 }, .target_m = { 0, 0.9, 0 }, .up = { 0, 0, 1 }, .height_m = 3 };
     int shaded[3];
@@ -415,7 +415,7 @@ static void stand_room(struct stand *room, struct view *of)
     toy_add(toy, "WALLS", &walls, (double[3]){ 0, 0, 2 }, NULL, 0);
     set_up(room, toy);
     view_default(&toy->scene, 240, 180, of);
-    of->tier = TIER_STILL;
+    of->tier = TIER_REFINED;
     of->look = LOOK_MATERIALS;
 }
 
@@ -453,7 +453,8 @@ int main(void)
         each(test_what_is_hidden_has_no_age),
         each(test_content_sees_what_is_shown),
         each(test_ghosts_change_few_colours),
-        each(test_a_steep_ghost_is_seen_through), each(test_a_ghost_behind_something_is_not_seen),
+        each(test_a_steep_ghost_is_seen_through),
+        each(test_a_ghost_behind_something_is_not_seen),
         each(test_a_cut_opens_a_neutral_inside),
         each(test_a_cut_closes_bodies),
         each(test_a_cut_leaves_the_rest_alone),

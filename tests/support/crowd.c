@@ -13,12 +13,12 @@
 #include "base/atomic_file.h"
 #include "base/mem.h"
 #include "base/text.h"
-#include "preprocess/prepare.h"
+#include "preprocess/pipeline/prepare.h"
 #include "tests/support/synthetic.h"
 #include "value/quality.h"
 
-static const double GAP = 1.01;      /* between the middles of neighbours, in their sizes */
-static const double ASPECT = 1.0;    /* of the ground that all stand on: fills a wide picture when seen from above and aside */
+static const double GAP = 1.01;   /* between the middles of neighbours, in their sizes */
+static const double ASPECT = 1.0; /* of the ground that all stand on: fills a wide picture when seen from above and aside */
 
 struct places { /* of the sensors, in the asset frame */
     double (*at_m)[3];

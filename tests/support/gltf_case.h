@@ -2,7 +2,7 @@
 /* One test's folder for models, and the model that was last read from it. */
 #ifndef TESTS_GLTF_CASE_H
 #define TESTS_GLTF_CASE_H
-#include "preprocess/geometry.h"
+#include "preprocess/geometry/geometry.h"
 
 struct gltf_case {
     char *folder;

@@ -65,7 +65,7 @@ struct plant_tag *plant_by_hand_tag(struct plant *plant, const char *name, enum 
     *tag = (struct plant_tag){
         .suppressed_by = -1,
         .mirror.tag = -1,
-        .alarming.priority = ALARM_PRIORITY_DEFAULT,
+        .alarm_settings.priority = ALARM_PRIORITY_DEFAULT,
         .name = mem_strdup(name),
         .source = (int)plant->source_count - 1,
         .group = -1,

@@ -11,7 +11,7 @@ int session_case_set_up(void **state)
     struct session_case *c = mem_new(sizeof(*c));
     c->snapshot = snapshot_create(small_scene()->plant->tag_count);
     c->up[0] = true;
-    c->world = (struct session_world){
+    c->world = (struct session_context){
         .plant = small_scene()->plant, .scene = small_scene(), .snapshot = c->snapshot, .links_up = c->up, .live = true, .version = "1.2.3"
     };
     c->world.baselines = baselines_create();

@@ -2,10 +2,10 @@
 /* One session on the small scene, without socket, clock or painter. */
 #ifndef TESTS_SESSION_CASE_H
 #define TESTS_SESSION_CASE_H
-#include "net/session/session.h"
+#include "session/session.h"
 
 struct session_case {
-    struct session_world world;
+    struct session_context world;
     struct quotas quotas;
     struct admission admission;
     struct snapshot *snapshot;

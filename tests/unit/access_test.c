@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Who may do what: each message by each role, where a daemon may listen, names, pages, and what headers say. */
-#include "net/access.h"
+#include "access/access.h"
 
 #include <setjmp.h>
 #include <stdarg.h>
@@ -9,7 +9,7 @@
 #include <cmocka.h>
 
 #include "base/mem.h"
-#include "net/message/names.h"
+#include "message/names.h"
 #include "tests/support/small_scene.h"
 
 #define HELLO_WITH(params) "{\"type\":\"hello\",\"width\":64,\"height\":64,\"codecs\":[\"png\"],\"params\":{\"seq\":1," params "}}"
@@ -22,7 +22,7 @@ static void expect_least(const char *text, enum role least)
     if (!message_parse(small_scene()->plant, text, strlen(text), &message, &error))
         fail_msg("%s: %s", text, error.text);
     for (enum role role = ROLE_NOBODY; role <= ROLE_ENGINEER; role++) {
-        bool may = access_message(role, &message, &error);
+        bool may = role_may_send(role, &message, &error);
         if (may != (role >= least))
             fail_msg("%s as %s: %s", text, name_of(names_role, (int)role), may ? "let" : error.text);
         if (!may)
@@ -65,8 +65,13 @@ static void what_others_see_takes_an_operator(void **state)
 static void how_the_field_is_computed_takes_an_engineer(void **state)
 {
     (void)state;
-    static const char *const fields[] = { "\"fill\":\"neighbours\"", "\"strength\":2", "\"decay\":2", "\"power\":3", "\"radius_m\":4",
-                                          "\"reach_m\":5", "\"sensors\":{\"TI-1\":{\"strength\":2}}" };
+    static const char *const fields[] = { "\"fill\":\"neighbours\"",
+                                          "\"strength\":2",
+                                          "\"decay\":2",
+                                          "\"power\":3",
+                                          "\"radius_m\":4",
+                                          "\"reach_m\":5",
+                                          "\"sensors\":{\"TI-1\":{\"strength\":2}}" };
     for (size_t i = 0; i < sizeof(fields) / sizeof(fields[0]); i++) {
         char text[256];
         snprintf(text, sizeof(text), "{\"type\":\"params\",\"seq\":1,%s}", fields[i]);
@@ -110,10 +115,16 @@ static void hosts_are_names_without_ports(void **state)
     (void)state;
     static const struct {
         const char *host, *name;
-    } good[] = { { "plant.example", "plant.example" }, { "Plant.Example:8443", "plant.example" }, { "plant.example.", "plant.example" },
-                 { "127.0.0.1:80", "127.0.0.1" },      { "[::1]", "::1" },                        { "[FD00::2]:443", "fd00::2" } };
-    static const char *const bad[] = { "",    ":80",      "[::1",  "[::1]x", "a b",     "plant.example:80x", "user@plant.example",
-                                       "a/b", "a:80:90", "[]:80", "\xc3\xa9", "a,b.example", ".", "a..", ".a" };
+    } good[] = { { "plant.example", "plant.example" },
+                 { "Plant.Example:8443", "plant.example" },
+                 { "plant.example.", "plant.example" },
+                 { "127.0.0.1:80", "127.0.0.1" },
+                 { "[::1]", "::1" },
+                 { "[FD00::2]:443", "fd00::2" } };
+    static const char *const bad[] = {
+        "",         ":80",         "[::1", "[::1]x", "a b", "plant.example:80x", "user@plant.example", "a/b", "a:80:90", "[]:80",
+        "\xc3\xa9", "a,b.example", ".",    "a..",    ".a"
+    };
     char name[64];
     for (size_t i = 0; i < sizeof(good) / sizeof(good[0]); i++) {
         assert_true(access_host_name(good[i].host, name, sizeof(name)));

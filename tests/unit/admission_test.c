@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* How much clients may have: limits by name, what addresses have, and whether drawing has room for one more. */
-#include "net/session/admission.h"
+#include "session/admission.h"
 
 #include <setjmp.h>
 #include <stdarg.h>
@@ -10,7 +10,7 @@
 
 #include "base/clock.h"
 #include "base/mem.h"
-#include "net/peers.h"
+#include "net/address_limits.h"
 
 static struct quotas quotas;
 
@@ -27,8 +27,10 @@ static void limits_are_set_by_name_and_within_range(void **state)
     assert_true(quotas_parse(&quotas, "sessions=7"));
     assert_int_equal(quotas.at[QUOTA_SESSIONS], 7);
     assert_true(quotas.given[QUOTA_SESSIONS] && !quotas.given[QUOTA_PIXELS]);
-    static const char *const bad[] = { "sessions", "sessions=", "sessions=x", "sessions=7x", "sessions=0", "sessions=-1", "session=7", "=7",
-                                       "sessions=99999999999999999999", "message-bytes=65537" };
+    static const char *const bad[] = { "sessions",           "sessions=",  "sessions=x",
+                                       "sessions=7x",        "sessions=0", "sessions=-1",
+                                       "session=7",          "=7",         "sessions=99999999999999999999",
+                                       "message-bytes=65537" };
     for (size_t i = 0; i < sizeof(bad) / sizeof(bad[0]); i++)
         if (quotas_parse(&quotas, bad[i]))
             fail_msg("%s is taken", bad[i]);
@@ -40,37 +42,38 @@ static void limits_are_set_by_name_and_within_range(void **state)
 static void an_address_is_one_however_it_is_written(void **state)
 {
     (void)state;
-    struct peers *peers = peers_create(&quotas, true);
-    struct peer *four = peers_ref(peers, "203.0.113.7"), *mapped = peers_ref(peers, "::ffff:203.0.113.7");
-    struct peer *six = peers_ref(peers, "2001:db8:1:2::1"), *near_it = peers_ref(peers, "2001:db8:1:2:ffff::9");
-    struct peer *far_from_it = peers_ref(peers, "2001:db8:1:3::1");
+    struct address_limits *peers = address_limits_create(&quotas, true);
+    struct address_usage *four = address_limits_ref(peers, "203.0.113.7"), *mapped = address_limits_ref(peers, "::ffff:203.0.113.7");
+    struct address_usage *six = address_limits_ref(peers, "2001:db8:1:2::1"), *near_it = address_limits_ref(peers, "2001:db8:1:2:ffff::9");
+    struct address_usage *far_from_it = address_limits_ref(peers, "2001:db8:1:3::1");
     assert_true(four == mapped && six == near_it && six != far_from_it && six != four);
-    assert_int_equal(peers_count(peers), 3);
-    struct peer *local = peers_ref(peers, "127.0.0.1"), *local6 = peers_ref(peers, "::1"), *none = peers_ref(peers, "nonsense");
+    assert_int_equal(address_limits_count(peers), 3);
+    struct address_usage *local = address_limits_ref(peers, "127.0.0.1"), *local6 = address_limits_ref(peers, "::1"),
+                         *none = address_limits_ref(peers, "nonsense");
     assert_true(local->local && local6->local && !four->local && !none->local);
-    struct peer *all[] = { four, mapped, six, near_it, far_from_it, local, local6, none };
+    struct address_usage *all[] = { four, mapped, six, near_it, far_from_it, local, local6, none };
     for (size_t i = 0; i < sizeof(all) / sizeof(all[0]); i++)
-        peers_unref(peers, &all[i]);
-    assert_int_equal(peers_count(peers), 0);
-    peers_destroy(&peers);
+        address_limits_unref(peers, &all[i]);
+    assert_int_equal(address_limits_count(peers), 0);
+    address_limits_destroy(&peers);
 }
 
 static void an_address_has_its_limits_and_this_machine_only_those_set(void **state)
 {
     (void)state;
-    struct peers *peers = peers_create(&quotas, true);
-    struct peer *peer = peers_ref(peers, "203.0.113.7"), *local = peers_ref(peers, "127.0.0.1");
+    struct address_limits *peers = address_limits_create(&quotas, true);
+    struct address_usage *peer = address_limits_ref(peers, "203.0.113.7"), *local = address_limits_ref(peers, "127.0.0.1");
     peer->connections = local->connections = (int)quotas.at[QUOTA_ADDRESS_CONNECTIONS];
     peer->sessions = local->sessions = (int)quotas.at[QUOTA_ADDRESS_SESSIONS];
-    assert_false(peers_may_connect(peers, peer) || peers_may_stream(peers, peer));
-    assert_true(peers_may_connect(peers, local) && peers_may_stream(peers, local));
+    assert_false(address_limits_may_connect(peers, peer) || address_limits_may_stream(peers, peer));
+    assert_true(address_limits_may_connect(peers, local) && address_limits_may_stream(peers, local));
     peer->connections--;
-    assert_true(peers_may_connect(peers, peer));
+    assert_true(address_limits_may_connect(peers, peer));
     assert_true(quotas_parse(&quotas, "address-sessions=2"));
-    assert_false(peers_may_stream(peers, local));
-    peers_unref(peers, &peer);
-    peers_unref(peers, &local);
-    peers_destroy(&peers);
+    assert_false(address_limits_may_stream(peers, local));
+    address_limits_unref(peers, &peer);
+    address_limits_unref(peers, &local);
+    address_limits_destroy(&peers);
 }
 
 static void messages_of_an_address_are_counted_together(void **state)
@@ -78,34 +81,34 @@ static void messages_of_an_address_are_counted_together(void **state)
     (void)state;
     int64_t now_ns = 1000 * NS_PER_S;
     quotas_parse(&quotas, "address-messages=10");
-    struct peers *peers = peers_create(&quotas, true);
-    struct peer *peer = peers_ref(peers, "203.0.113.7");
+    struct address_limits *peers = address_limits_create(&quotas, true);
+    struct address_usage *peer = address_limits_ref(peers, "203.0.113.7");
     for (int i = 0; i < 10; i++)
-        assert_true(peers_count_message(peers, peer, now_ns));
-    assert_false(peers_count_message(peers, peer, now_ns + NS_PER_S / 2));
-    assert_true(peers_count_message(peers, peer, now_ns + NS_PER_S));
-    peers_unref(peers, &peer);
-    peers_destroy(&peers);
+        assert_true(address_limits_count_message(peers, peer, now_ns));
+    assert_false(address_limits_count_message(peers, peer, now_ns + NS_PER_S / 2));
+    assert_true(address_limits_count_message(peers, peer, now_ns + NS_PER_S));
+    address_limits_unref(peers, &peer);
+    address_limits_destroy(&peers);
 }
 
 /* --- room ------------------------------------------------------------------------------------------------------------------------ */
 
 /* A second in which `moving` sessions get `fps` pictures each that take cost_ms to draw, and readings wait data_wait_ms. */
-static void a_second(struct admission *admission, struct share *share, int moving, int fps, int cost_ms, int data_wait_ms)
+static void a_second(struct admission *admission, struct address_share *share, int moving, int fps, int cost_ms, int data_wait_ms)
 {
     static uint64_t content;
     for (int i = 0; i < moving * fps + (data_wait_ms > 0); i++) {
         struct frame *frame = frame_create(16, 16);
-        frame->view.tier = TIER_MOVING;
+        frame->view.tier = TIER_PREVIEW;
         frame->render_ns = cost_ms * NS_PER_MS;
         frame->content = ++content;
-        struct picture picture = { .packet = packet_create(frame, WIRE_CODEC_JPEG, true, "jpeg", 4), .wish.urgency = URGENCY_INPUT };
+        struct encoded_frame picture = { .packet = packet_create(frame, WIRE_CODEC_JPEG, true, "jpeg", 4), .wish.urgency = URGENCY_INPUT };
         if (i == moving * fps) {
             picture.wish.urgency = URGENCY_DATA;
             picture.wait_ns = data_wait_ms * NS_PER_MS;
         }
-        admission_on_picture(admission, share, &picture);
-        admission_on_picture(admission, share, &picture); /* of another who shares it */
+        admission_on_frame(admission, share, &picture);
+        admission_on_frame(admission, share, &picture); /* of another who shares it */
         packet_unref(&picture.packet);
         frame_unref(&frame);
     }
@@ -113,14 +116,14 @@ static void a_second(struct admission *admission, struct share *share, int movin
     admission_on_tick(admission, admission->begin_ns + NS_PER_S);
 }
 
-static void seconds(struct admission *admission, struct share *share, int moving, int fps, int cost_ms, int data_wait_ms)
+static void seconds(struct admission *admission, struct address_share *share, int moving, int fps, int cost_ms, int data_wait_ms)
 {
     for (int i = 0; i < ADMISSION_WINDOWS; i++)
         a_second(admission, share, moving, fps, cost_ms, data_wait_ms);
 }
 
 /* A session more of an address of which so many move. */
-static const char *refuses(const struct admission *admission, struct share *share, int64_t pixels, int moving)
+static const char *refuses(const struct admission *admission, struct address_share *share, int64_t pixels, int moving)
 {
     share->moving = moving;
     return admission_refuses(admission, share, pixels);
@@ -130,7 +133,7 @@ static void who_would_slow_the_others_down_too_far_is_refused(void **state)
 {
     (void)state;
     struct admission admission = { .quotas = &quotas };
-    struct share share = { 0 };
+    struct address_share share = { 0 };
     admission_join(&admission, &share);
     assert_null(refuses(&admission, &share, 1000, 0));
     seconds(&admission, &share, 4, 6, 40, 0); /* 4 at 6 frames/s: a fifth would leave 4.8 */
@@ -146,7 +149,7 @@ static void a_busy_second_is_no_reason(void **state)
 {
     (void)state;
     struct admission admission = { .quotas = &quotas };
-    struct share share = { 0 };
+    struct address_share share = { 0 };
     admission_join(&admission, &share);
     for (int i = 0; i < ADMISSION_WINDOWS - 1; i++)
         a_second(&admission, &share, 2, 1, 490, 2000);
@@ -156,7 +159,7 @@ static void a_busy_second_is_no_reason(void **state)
 }
 
 /* A second in which each address draws `of_each` pictures per moving session, that take cost_ms. */
-static void a_second_of(struct admission *admission, struct share *shares, int count, int of_each, int cost_ms)
+static void a_second_of(struct admission *admission, struct address_share *shares, int count, int of_each, int cost_ms)
 {
     static uint64_t content = 1 << 20;
     for (int i = 0; i < count; i++)
@@ -164,8 +167,9 @@ static void a_second_of(struct admission *admission, struct share *shares, int c
             struct frame *frame = frame_create(16, 16);
             frame->render_ns = cost_ms * NS_PER_MS;
             frame->content = ++content;
-            struct picture picture = { .packet = packet_create(frame, WIRE_CODEC_JPEG, true, "jpeg", 4), .wish.urgency = URGENCY_INPUT };
-            admission_on_picture(admission, &shares[i], &picture);
+            struct encoded_frame picture = { .packet = packet_create(frame, WIRE_CODEC_JPEG, true, "jpeg", 4),
+                                             .wish.urgency = URGENCY_INPUT };
+            admission_on_frame(admission, &shares[i], &picture);
             packet_unref(&picture.packet);
             frame_unref(&frame);
         }
@@ -176,7 +180,7 @@ static void one_address_keeps_no_other_out(void **state)
 {
     (void)state;
     struct admission admission = { .quotas = &quotas };
-    struct share shares[2] = { { .moving = 30 }, { .moving = 0 } };
+    struct address_share shares[2] = { { .moving = 30 }, { .moving = 0 } };
     admission_join(&admission, &shares[0]);
     for (int i = 0; i < ADMISSION_WINDOWS; i++)
         a_second_of(&admission, shares, 1, 1, 30); /* 30 sessions with a picture a second each */
@@ -189,7 +193,7 @@ static void one_address_keeps_no_other_out(void **state)
     assert_null(admission_refuses(&admission, &shares[1], 1000)); /* half of 31 pictures for two */
     shares[1].moving = 3;
     assert_non_null(admission_refuses(&admission, &shares[1], 1000)); /* but not for four */
-    struct share third = { 0 };
+    struct address_share third = { 0 };
     assert_null(admission_refuses(&admission, &third, 1000)); /* a third of 31 pictures is 10 */
     quotas_parse(&quotas, "least-fps=11");
     assert_non_null(admission_refuses(&admission, &third, 1000));
@@ -199,7 +203,7 @@ static void many_addresses_of_one_session_each_are_as_many_sessions(void **state
 {
     (void)state;
     struct admission admission = { .quotas = &quotas };
-    struct share shares[5] = { { .moving = 1 }, { .moving = 1 }, { .moving = 1 }, { .moving = 1 }, { .moving = 0 } };
+    struct address_share shares[5] = { { .moving = 1 }, { .moving = 1 }, { .moving = 1 }, { .moving = 1 }, { .moving = 0 } };
     for (int i = 0; i < 4; i++)
         admission_join(&admission, &shares[i]);
     for (int i = 0; i < ADMISSION_WINDOWS; i++)
@@ -214,7 +218,7 @@ static void readings_that_are_drawn_too_late_are_a_reason(void **state)
 {
     (void)state;
     struct admission admission = { .quotas = &quotas };
-    struct share share = { 0 };
+    struct address_share share = { 0 };
     admission_join(&admission, &share);
     seconds(&admission, &share, 1, 30, 30, 900);
     assert_null(refuses(&admission, &share, 1000, 1));
@@ -226,7 +230,7 @@ static void pixels_of_all_views_have_a_limit(void **state)
 {
     (void)state;
     struct admission admission = { .quotas = &quotas };
-    struct share share = { 0 };
+    struct address_share share = { 0 };
     admission_join(&admission, &share);
     quotas_parse(&quotas, "pixels=1000000");
     admission.pixels = 900000;

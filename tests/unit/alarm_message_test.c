@@ -12,9 +12,9 @@
 
 #include "base/clock.h"
 #include "base/mem.h"
-#include "net/access.h"
-#include "net/message/alarm_message.h"
-#include "net/message/alarm_text.h"
+#include "access/access.h"
+#include "message/alarm_message.h"
+#include "message/alarm_text.h"
 #include "tests/support/plant_by_hand.h"
 #include "tests/support/sleep.h"
 #include "tests/support/temp.h"
@@ -25,7 +25,7 @@ struct setup { /* two tags with H 80 and HH 90 */
     struct counters *counters;
     struct plant *plant;
     struct store *store;
-    struct alarming *alarming;
+    struct alarm_service *alarm_service;
     char *folder;
 };
 
@@ -44,8 +44,8 @@ static int set_up(void **state)
         tag->limits[LIMIT_HH] = 90;
     }
     s.store = store_create(s.plant);
-    s.alarming = alarming_start(&(struct alarming_params){ .log = s.log, .counters = s.counters, .plant = s.plant, .store = s.store,
-                                                           .folder = s.folder, .keep_days = 400 });
+    s.alarm_service = alarm_service_start(&(struct alarm_service_params){
+        .log = s.log, .counters = s.counters, .plant = s.plant, .store = s.store, .folder = s.folder, .keep_days = 400 });
     *state = &s;
     return 0;
 }
@@ -53,7 +53,7 @@ static int set_up(void **state)
 static int tear_down(void **state)
 {
     struct setup *s = *state;
-    alarming_stop(&s->alarming);
+    alarm_service_stop(&s->alarm_service);
     store_destroy(&s->store);
     s->plant->tags_by_name = NULL;
     plant_by_hand_destroy(&s->plant);
@@ -66,10 +66,10 @@ static int tear_down(void **state)
 /* And waits until alarms know it. */
 static void give(struct setup *s, int tag, double value, uint32_t quality)
 {
-    uint64_t before = alarming_number(s->alarming);
+    uint64_t before = alarm_service_number(s->alarm_service);
     int64_t end_ns = clock_mono_ns() + 5 * NS_PER_S;
     store_write(s->store, &(struct sample){ tag, value, quality }, 1, clock_mono_ns(), clock_utc_ns());
-    while (alarming_number(s->alarming) == before && clock_mono_ns() < end_ns)
+    while (alarm_service_number(s->alarm_service) == before && clock_mono_ns() < end_ns)
         sleep_ns(5 * NS_PER_MS);
 }
 
@@ -86,9 +86,8 @@ static const char *state_of(const json_t *message, const char *kind)
 {
     size_t i;
     json_t *row;
-    json_array_foreach(json_object_get(message, "alarms"), i, row)
-        if (!strcmp(json_string_value(json_array_get(row, 1)), kind))
-            return json_string_value(json_array_get(row, 2));
+    json_array_foreach(json_object_get(message, "alarms"), i,
+                       row) if (!strcmp(json_string_value(json_array_get(row, 1)), kind)) return json_string_value(json_array_get(row, 2));
     return NULL;
 }
 
@@ -100,24 +99,24 @@ static bool ask(struct setup *s, const char *text, struct message *message, stru
 static void sessions_hear_what_changed(void **state)
 {
     struct setup *s = *state;
-    struct alarms_said said = { 0 };
+    struct alarm_text_cache said = { 0 };
     uint64_t number = 0, other = 0;
     give(s, 0, 95, QUALITY_GOOD);
-    json_t *all = parse(alarms_text(&said, s->alarming, s->plant, 5000, &number));
+    json_t *all = parse(alarms_text(&said, s->alarm_service, s->plant, 5000, &number));
     assert_string_equal(json_string_value(json_object_get(all, "mode")), "local");
     assert_true(json_is_true(json_object_get(all, "all")));
     assert_int_equal(json_array_size(json_object_get(all, "alarms")), 2);
     assert_string_equal(state_of(all, "HH"), "unacknowledged");
     json_decref(all);
-    json_decref(parse(alarms_text(&said, s->alarming, s->plant, 5000, &other))); /* as it was said to the one before */
+    json_decref(parse(alarms_text(&said, s->alarm_service, s->plant, 5000, &other))); /* as it was said to the one before */
     assert_int_equal(number, other);
     give(s, 0, 85, QUALITY_GOOD);
-    json_t *changed = parse(alarms_text(&said, s->alarming, s->plant, 6000, &number));
+    json_t *changed = parse(alarms_text(&said, s->alarm_service, s->plant, 6000, &number));
     assert_true(json_is_false(json_object_get(changed, "all")));
     assert_int_equal(json_array_size(json_object_get(changed, "alarms")), 1);
     assert_string_equal(state_of(changed, "HH"), "returned");
     json_decref(changed);
-    alarms_said_finish(&said);
+    alarm_text_cache_finish(&said);
 }
 
 static void what_is_asked_is_done_or_refused(void **state)
@@ -126,17 +125,19 @@ static void what_is_asked_is_done_or_refused(void **state)
     struct message message;
     struct message_error error;
     give(s, 0, 95, QUALITY_GOOD);
-    assert_true(ask(s, "{\"type\":\"alarm\",\"seq\":4,\"action\":\"acknowledge\",\"name\":\"Kim\","
-                       "\"alarms\":[[\"TT-1\",\"H\"],[\"TT-2\",\"H\"],"
-                       "[\"TT-2\",\"L\"]]}", &message, &error));
-    json_t *answer = parse(alarm_do(s->alarming, s->plant, &message, "panel")), *refused = json_object_get(answer, "refused");
+    assert_true(ask(s,
+                    "{\"type\":\"alarm\",\"seq\":4,\"action\":\"acknowledge\",\"name\":\"Kim\","
+                    "\"alarms\":[[\"TT-1\",\"H\"],[\"TT-2\",\"H\"],"
+                    "[\"TT-2\",\"L\"]]}",
+                    &message, &error));
+    json_t *answer = parse(alarm_do(s->alarm_service, s->plant, &message, "panel")), *refused = json_object_get(answer, "refused");
     assert_int_equal(json_integer_value(json_object_get(answer, "done")), 1);
     assert_int_equal(json_array_size(refused), 2);
     assert_string_equal(json_string_value(json_array_get(json_array_get(refused, 0), 2)), "there is nothing to acknowledge");
     assert_string_equal(json_string_value(json_array_get(json_array_get(refused, 1), 2)), "there is no such alarm");
     json_decref(answer);
     uint64_t number = 0;
-    char *text = alarms_text(NULL, s->alarming, s->plant, 0, &number);
+    char *text = alarms_text(NULL, s->alarm_service, s->plant, 0, &number);
     assert_non_null(strstr(text, "null,\"Kim (panel)\",\"\"]"));
     mem_free(text);
 }
@@ -150,27 +151,24 @@ static void a_device_has_its_own(void **state)
     uint64_t number = 0;
     int64_t end_ns = clock_mono_ns() + 5 * NS_PER_S;
     store_link_lost(s->store, 0, clock_mono_ns());
-    while (alarming_number(s->alarming) < 3 && clock_mono_ns() < end_ns)
+    while (alarm_service_number(s->alarm_service) < 3 && clock_mono_ns() < end_ns)
         sleep_ns(5 * NS_PER_MS);
-    json_t *all = parse(alarms_text(NULL, s->alarming, s->plant, 5000, &number)), *link = NULL, *row;
+    json_t *all = parse(alarms_text(NULL, s->alarm_service, s->plant, 5000, &number)), *link = NULL, *row;
     json_t *rows = json_object_get(all, "alarms");
     size_t i;
-    json_array_foreach(rows, i, row)
-        if (!strcmp(json_string_value(json_array_get(row, 1)), "LINK"))
-            link = row;
+    json_array_foreach(rows, i, row) if (!strcmp(json_string_value(json_array_get(row, 1)), "LINK")) link = row;
     assert_int_equal(json_array_size(rows), 3);
     assert_string_equal(json_string_value(json_array_get(link, 0)), "plc");
     assert_string_equal(state_of(all, "BAD"), "suppressed");
     json_decref(all);
     assert_true(ask(s, "{\"type\":\"alarm\",\"seq\":1,\"action\":\"acknowledge\",\"alarms\":[[\"plc\",\"LINK\"],[\"TT-1\",\"BAD\"]]}",
                     &message, &error));
-    json_t *answer = parse(alarm_do(s->alarming, s->plant, &message, "local"));
+    json_t *answer = parse(alarm_do(s->alarm_service, s->plant, &message, "local"));
     assert_int_equal(json_integer_value(json_object_get(answer, "done")), 1); /* a carried one is not to be acknowledged */
     json_decref(answer);
-    assert_false(ask(s, "{\"type\":\"alarm\",\"seq\":2,\"action\":\"acknowledge\",\"alarms\":[[\"TT-1\",\"LINK\"]]}", &message,
-                     &error));
+    assert_false(ask(s, "{\"type\":\"alarm\",\"seq\":2,\"action\":\"acknowledge\",\"alarms\":[[\"TT-1\",\"LINK\"]]}", &message, &error));
     assert_non_null(strstr(error.text, "there is no device 'TT-1'"));
-    json_t *api = parse(alarms_api_text(s->alarming, s->plant, &(struct alarm_query){ .limit = 10 }, 5000));
+    json_t *api = parse(alarms_api_text(s->alarm_service, s->plant, &(struct alarm_query){ .limit = 10 }, 5000));
     assert_int_equal(json_integer_value(json_object_get(json_object_get(api, "counts"), "active")), 1);
     json_decref(api);
 }
@@ -181,7 +179,7 @@ static void roles_are_kept(void **state)
     static const struct {
         const char *action;
         enum role least;
-    } actions[] = { { "acknowledge", ROLE_OPERATOR }, { "reset", ROLE_OPERATOR }, { "shelve", ROLE_OPERATOR },
+    } actions[] = { { "acknowledge", ROLE_OPERATOR }, { "reset", ROLE_OPERATOR },          { "shelve", ROLE_OPERATOR },
                     { "unshelve", ROLE_OPERATOR },    { "out_of_service", ROLE_ENGINEER }, { "in_service", ROLE_ENGINEER } };
     for (size_t i = 0; i < sizeof(actions) / sizeof(actions[0]); i++) {
         struct message message;
@@ -191,7 +189,7 @@ static void roles_are_kept(void **state)
                                 actions[i].action);
         assert_true(ask(s, text, &message, &error));
         for (int role = ROLE_OPEN; role <= ROLE_ENGINEER; role++)
-            assert_int_equal(access_message((enum role)role, &message, &error), role >= (int)actions[i].least);
+            assert_int_equal(role_may_send((enum role)role, &message, &error), role >= (int)actions[i].least);
         mem_free(text);
     }
 }
@@ -209,18 +207,18 @@ static void programs_get_pages(void **state)
     give(s, 0, 95, QUALITY_GOOD);
     give(s, 1, 95, QUALITY_GOOD);
     assert_true(query(s, false, "limit=3", &q));
-    json_t *page = parse(alarms_api_text(s->alarming, s->plant, &q, 0));
+    json_t *page = parse(alarms_api_text(s->alarm_service, s->plant, &q, 0));
     assert_int_equal(json_array_size(json_object_get(page, "alarms")), 3);
     assert_int_equal(json_integer_value(json_object_get(page, "next_offset")), 3);
     assert_int_equal(json_integer_value(json_object_get(json_object_get(page, "counts"), "active")), 4);
     json_decref(page);
     assert_true(query(s, false, "offset=3", &q));
-    page = parse(alarms_api_text(s->alarming, s->plant, &q, 0));
+    page = parse(alarms_api_text(s->alarm_service, s->plant, &q, 0));
     assert_int_equal(json_array_size(json_object_get(page, "alarms")), 1);
     assert_true(json_is_null(json_object_get(page, "next_offset")));
     json_decref(page);
     assert_true(query(s, false, "format=csv", &q));
-    char *csv = alarms_api_text(s->alarming, s->plant, &q, 0);
+    char *csv = alarms_api_text(s->alarm_service, s->plant, &q, 0);
     assert_non_null(strstr(csv, "\nTT-1,HH,unacknowledged,2,"));
     assert_non_null(strstr(csv, "Z,95,90,0,,,\n"));
     mem_free(csv);
@@ -238,9 +236,9 @@ static void the_journal_is_read_by_pages(void **state)
     struct text out = { 0 };
     give(s, 0, 95, QUALITY_GOOD);
     const struct alarm_act shelve = { ALARM_SHELVE, NS_PER_S * 60, "Kim", "says \"now\", and means it" };
-    assert_null(alarming_act(s->alarming, "TT-1", ALARM_H, &shelve));
-    alarming_halt(s->alarming);
-    alarming_stop(&s->alarming);
+    assert_null(alarm_service_act(s->alarm_service, "TT-1", ALARM_H, &shelve));
+    alarm_service_halt(s->alarm_service);
+    alarm_service_stop(&s->alarm_service);
     assert_true(query(s, true, "limit=2", &q));
     assert_true(alarms_journal_text(s->log, s->folder, &q, &out));
     json_t *page = json_loads(out.at, 0, NULL), *rows = json_object_get(page, "rows");

@@ -48,24 +48,24 @@ enum { STATE_COUNT = sizeof(states) / sizeof(states[0]), ROWS = 18 };
 /* Columns in the order of enum alarm_event. "=": as it was; "-": refused. Rows of an alarm that does not latch. */
 static const char *const table[ROWS][1 + ALARM_EVENTS] = {
     /* each row: from; raise, clear, acknowledge, reset, shelve, unshelve, suppress, unsuppress, take out, put back, carry, call */
-    { "normal"   , "unack"    , "="        , "-"      , "-"     , "shelved"  , "=", "suppr", "=", "out", "=", "=", "=" },
-    { "unack"    , "="        , "returned" , "acked"  , "-"     , "shelved+a", "=", "suppr+a", "=", "out+a", "=", "carried", "=" },
-    { "acked"    , "="        , "normal"   , "-"      , "-"     , "shelved+a", "=", "suppr+a", "=", "out+a", "=", "carried", "=" },
-    { "returned" , "unack"    , "="        , "normal" , "-"     , "shelved"  , "=", "suppr", "=", "out", "=", "=", "=" },
-    { "unack+l"  , "="        , "latched+u", "acked+l", "-"     , NULL       , "=", NULL, "=", NULL, "=", NULL, "=" },
-    { "acked+l"  , "="        , "latched"  , "-"      , "-"     , NULL       , "=", NULL, "=", NULL, "=", NULL, "=" },
-    { "latched+u", NULL       , "="        , "latched", "-"     , "shelved+l", "=", NULL, "=", NULL, "=", "=", "=" },
-    { "latched"  , NULL       , "="        , "-"      , "normal", "shelved+l", "=", NULL, "=", NULL, "=", "=", "=" },
-    { "shelved"  , "shelved+a", "="        , "-"      , "-"     , "shelved"  , "normal", "suppr+s", "=", "out+s", "=", "=", "=" },
-    { "shelved+a", "="        , "shelved"  , "-"      , "-"     , "shelved+a", "unack", NULL, "=", NULL, "=", NULL, "=" },
-    { "suppr"    , "suppr+a"  , "="        , "-"      , "-"     , "suppr+s"  , "=", "=", "normal", "out+d", "=", "=", "=" },
-    { "suppr+a"  , "="        , "suppr"    , "-"      , "-"     , NULL       , "=", "=", "unack", NULL, "=", NULL, "=" },
-    { "out"      , "out+a"    , "="        , "-"      , "-"     , "out+s"    , "=", "out+d", "=", "=", "normal", "=", "=" },
-    { "out+a"    , "="        , "out"      , "-"      , "-"     , NULL       , "=", NULL, "=", "=", "unack", NULL, "=" },
-    { "suppr+s"  , NULL       , "="        , "-"      , "-"     , "suppr+s"  , "suppr", "=", "shelved", NULL, "=", "=", "=" },
-    { "out+s"    , NULL       , "="        , "-"      , "-"     , "out+s"    , "out", NULL, "=", "=", "shelved", "=", "=" },
-    { "shelved+l", NULL       , "="        , "-"      , "-"     , "shelved+l", "latched", NULL, "=", NULL, "=", "=", "=" },
-    { "carried"  , "="        , "normal"   , "-"      , "-"     , NULL       , "=", NULL, "=", NULL, "=", "=", "unack" },
+    { "normal", "unack", "=", "-", "-", "shelved", "=", "suppr", "=", "out", "=", "=", "=" },
+    { "unack", "=", "returned", "acked", "-", "shelved+a", "=", "suppr+a", "=", "out+a", "=", "carried", "=" },
+    { "acked", "=", "normal", "-", "-", "shelved+a", "=", "suppr+a", "=", "out+a", "=", "carried", "=" },
+    { "returned", "unack", "=", "normal", "-", "shelved", "=", "suppr", "=", "out", "=", "=", "=" },
+    { "unack+l", "=", "latched+u", "acked+l", "-", NULL, "=", NULL, "=", NULL, "=", NULL, "=" },
+    { "acked+l", "=", "latched", "-", "-", NULL, "=", NULL, "=", NULL, "=", NULL, "=" },
+    { "latched+u", NULL, "=", "latched", "-", "shelved+l", "=", NULL, "=", NULL, "=", "=", "=" },
+    { "latched", NULL, "=", "-", "normal", "shelved+l", "=", NULL, "=", NULL, "=", "=", "=" },
+    { "shelved", "shelved+a", "=", "-", "-", "shelved", "normal", "suppr+s", "=", "out+s", "=", "=", "=" },
+    { "shelved+a", "=", "shelved", "-", "-", "shelved+a", "unack", NULL, "=", NULL, "=", NULL, "=" },
+    { "suppr", "suppr+a", "=", "-", "-", "suppr+s", "=", "=", "normal", "out+d", "=", "=", "=" },
+    { "suppr+a", "=", "suppr", "-", "-", NULL, "=", "=", "unack", NULL, "=", NULL, "=" },
+    { "out", "out+a", "=", "-", "-", "out+s", "=", "out+d", "=", "=", "normal", "=", "=" },
+    { "out+a", "=", "out", "-", "-", NULL, "=", NULL, "=", "=", "unack", NULL, "=" },
+    { "suppr+s", NULL, "=", "-", "-", "suppr+s", "suppr", "=", "shelved", NULL, "=", "=", "=" },
+    { "out+s", NULL, "=", "-", "-", "out+s", "out", NULL, "=", "=", "shelved", "=", "=" },
+    { "shelved+l", NULL, "=", "-", "-", "shelved+l", "latched", NULL, "=", NULL, "=", "=", "=" },
+    { "carried", "=", "normal", "-", "-", NULL, "=", NULL, "=", NULL, "=", "=", "unack" },
 };
 
 static int find_state(const char *name)
@@ -105,9 +105,9 @@ static void every_state_has_its_word(void **unused)
     static const struct alarm_rule rule = { .acknowledges = true };
     (void)unused;
     for (int i = 0; i < STATE_COUNT; i++)
-        assert_string_equal(alarm_word_name(alarm_state_word(&states[i].state, &rule)), states[i].word);
-    for (int i = 0; i < ALARM_WORDS; i++)
-        assert_int_equal(alarm_word_find(alarm_word_name((enum alarm_word)i)), i);
+        assert_string_equal(alarm_status_name(alarm_state_status(&states[i].state, &rule)), states[i].word);
+    for (int i = 0; i < ALARM_STATUSES; i++)
+        assert_int_equal(alarm_status_find(alarm_status_name((enum alarm_status)i)), i);
     for (int i = 1; i < ALARM_KINDS; i++)
         assert_int_equal(alarm_kind_find(alarm_kind_name((enum alarm_kind)i)), i);
     assert_int_equal(alarm_kind_find("XX"), ALARM_NONE);
@@ -116,11 +116,11 @@ static void every_state_has_its_word(void **unused)
 /* All that can be reached, whatever the rule is. */
 static void check_invariants(const struct alarm_state *state, const struct alarm_rule *rule)
 {
-    enum alarm_word word = alarm_state_word(state, rule);
+    enum alarm_status word = alarm_state_status(state, rule);
     assert_false(state->unacknowledged && state->aside);
     assert_false(state->unacknowledged && !rule->acknowledges);
     assert_false(state->latched && !(rule->acknowledges && rule->latches));
-    assert_int_equal(alarm_word_calls(word), !state->aside && (state->active || state->unacknowledged || state->latched));
+    assert_int_equal(alarm_status_is_annunciated(word), !state->aside && (state->active || state->unacknowledged || state->latched));
     assert_false(word == ALARM_NORMAL && state->active);
     assert_false(rule->forgets && !state->active && state->unacknowledged);
     if (rule->latches && rule->acknowledges && state->active && !state->aside)

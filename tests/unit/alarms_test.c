@@ -30,12 +30,12 @@ static void on_change(void *arg, const struct alarm_change *change)
 {
     struct stage *s = arg;
     size_t n = strlen(s->log);
-    snprintf(s->log + n, sizeof(s->log) - n, "%d %s.%s %s: %s > %s%s%s\n", (int)((change->utc_ns - UTC) / S),
-             change->alarm->name, alarm_kind_name(change->alarm->kind), alarm_event_name(change->event),
-             alarm_word_name(change->before), alarm_word_name(change->after), change->who[0] ? " by " : "", change->who);
+    snprintf(s->log + n, sizeof(s->log) - n, "%d %s.%s %s: %s > %s%s%s\n", (int)((change->utc_ns - UTC) / S), change->alarm->name,
+             alarm_kind_name(change->alarm->kind), alarm_event_name(change->event), alarm_status_name(change->before),
+             alarm_status_name(change->after), change->who[0] ? " by " : "", change->who);
 }
 
-static void on_tag(void *arg, int tag, enum alarm_kind kind, enum alarm_word word)
+static void on_tag(void *arg, int tag, enum alarm_kind kind, enum alarm_status word)
 {
     (void)word;
     ((struct stage *)arg)->told[tag] = (int)kind;
@@ -50,8 +50,8 @@ static void make_plant(struct stage *s, enum alarm_mode mode)
     for (int i = 0; i < 5; i++) {
         struct plant_tag *tag = plant_by_hand_tag(s->plant, names[i], TABLE_HOLDING, i, i < 2 ? DATA_INT16 : DATA_BIT);
         memcpy(tag->limits, i == 0 ? tt : i == 1 ? pt : none, sizeof(tag->limits));
-        tag->alarming.deadband = i == 0 ? 2 : 0;
-        tag->alarming.on_delay_s = i == 1 ? 2 : 0;
+        tag->alarm_settings.deadband = i == 0 ? 2 : 0;
+        tag->alarm_settings.on_delay_s = i == 1 ? 2 : 0;
     }
     s->plant->tags[1].suppressed_by = 2;
     s->plant->tags_by_name = mem_array(5, sizeof(int));
@@ -86,18 +86,18 @@ static void hear(struct stage *s, int second, int tag, double value, uint32_t qu
 {
     struct reading *reading = &s->snapshot->readings[tag];
     *reading = (struct reading){ .value = quality_is_bad(quality) ? 0 : value, .quality = quality };
-    alarms_hear(s->alarms, &(struct heard){ tag, quality_is_bad(quality) ? NAN : value, quality, second * S, UTC + second * S }, 1);
+    alarms_put(s->alarms, &(struct sample_event){ tag, quality_is_bad(quality) ? NAN : value, quality, second * S, UTC + second * S }, 1);
 }
 
 /* All tags at once, as a lost link tells it. */
 static void hear_all(struct stage *s, int second, double value, uint32_t quality)
 {
-    struct heard heard[5];
+    struct sample_event heard[5];
     for (int tag = 0; tag < 5; tag++) {
         s->snapshot->readings[tag] = (struct reading){ .value = quality_is_bad(quality) ? 0 : value, .quality = quality };
-        heard[tag] = (struct heard){ tag, quality_is_bad(quality) ? NAN : value, quality, second * S, UTC + second * S };
+        heard[tag] = (struct sample_event){ tag, quality_is_bad(quality) ? NAN : value, quality, second * S, UTC + second * S };
     }
-    alarms_hear(s->alarms, heard, 5);
+    alarms_put(s->alarms, heard, 5);
 }
 
 static void tick(struct stage *s, int second)
@@ -114,7 +114,7 @@ static struct instant at(int second)
 
 static const char *word(const struct stage *s, int tag, enum alarm_kind kind)
 {
-    return alarm_word_name(alarm_word_of(alarms_at(s->alarms, alarms_find(s->alarms, tag, kind))));
+    return alarm_status_name(alarm_status_of(alarms_at(s->alarms, alarms_find(s->alarms, tag, kind))));
 }
 
 static const char *act(struct stage *s, int second, int tag, enum alarm_kind kind, enum alarm_event event, int for_s)
@@ -263,7 +263,7 @@ static void a_mirror_shows_what_the_other_system_says(void **unused)
     (void)unused;
     begin(&s, ALARMS_MIRROR);
     assert_int_equal(alarms_count(s.alarms), 4); /* one, two bits that may go bad, and their device */
-    hear(&s, 1, 0, 95, QUALITY_GOOD);             /* the limit is the other's to watch */
+    hear(&s, 1, 0, 95, QUALITY_GOOD);            /* the limit is the other's to watch */
     assert_told(&s, "");
     hear(&s, 2, 3, 1, QUALITY_GOOD);
     hear(&s, 3, 4, 1, QUALITY_GOOD);
@@ -295,7 +295,7 @@ static void what_was_kept_is_taken_up(void **unused)
     assert_string_equal(word(&next, 0, ALARM_H), "shelved");
     assert_true(alarms_at(next.alarms, alarms_find(next.alarms, 0, ALARM_HH))->held);
     hear(&next, 6, 0, 95, QUALITY_GOOD);
-    assert_told(&next, ""); /* still there: not anew */
+    assert_told(&next, "");                /* still there: not anew */
     next.snapshot->taken_mono_ns = 27 * S; /* 22 s were left */
     next.snapshot->taken_utc_ns = UTC + 62 * S;
     alarms_tick(next.alarms, next.snapshot);
@@ -357,9 +357,9 @@ static void counts_are_what_there_is(void **unused)
     }
     hear(&s, 20, 0, 5, QUALITY_GOOD);
     alarms_counts(s.alarms, 21 * S, &counts);
-    assert_int_equal(counts.words[ALARM_UNACKNOWLEDGED], 1);
-    assert_int_equal(counts.words[ALARM_RETURNED], 1);
-    assert_int_equal(counts.words[ALARM_NORMAL], (int)alarms_count(s.alarms) - 2);
+    assert_int_equal(counts.statuses[ALARM_UNACKNOWLEDGED], 1);
+    assert_int_equal(counts.statuses[ALARM_RETURNED], 1);
+    assert_int_equal(counts.statuses[ALARM_NORMAL], (int)alarms_count(s.alarms) - 2);
     assert_int_equal(counts.active, 1); /* what has returned is not */
     assert_int_equal(counts.chattering, 1);
     assert_int_equal(counts.standing, 0);
@@ -391,8 +391,9 @@ static void what_is_there_stands_before_what_has_gone(void **unused)
 /* Whatever comes, in whatever order: each step goes on from where the one before ended, and the gravest is the gravest. */
 static void no_sequence_tells_a_contradiction(void **unused)
 {
-    static const uint32_t bad[12] = { [9] = QUALITY_BAD_SENSOR_FAILURE, [10] = QUALITY_BAD_COMMUNICATION_ERROR,
-                                      [11] = QUALITY_BAD_DEVICE_FAILURE };
+    static const uint32_t bad[12] = {
+        [9] = QUALITY_BAD_SENSOR_FAILURE, [10] = QUALITY_BAD_COMMUNICATION_ERROR, [11] = QUALITY_BAD_DEVICE_FAILURE
+    };
     unsigned seed = 42;
     (void)unused;
     for (int mode = ALARMS_DISPLAY; mode <= ALARMS_LOCAL; mode++) {
@@ -410,7 +411,7 @@ static void no_sequence_tells_a_contradiction(void **unused)
             tick(&s, i);
             for (size_t k = 0; k < alarms_count(s.alarms); k++) {
                 const struct alarm *alarm = alarms_at(s.alarms, (int)k);
-                bool calls = alarm_word_calls(alarm_word_of(alarm));
+                bool calls = alarm_status_is_annunciated(alarm_status_of(alarm));
                 assert_false(calls && alarm->tag >= 0 && s.told[alarm->tag] == ALARM_NONE);
                 assert_true(alarm->kind == ALARM_BAD || !(alarm->state.aside & ALARM_ASIDE_CARRIED));
                 assert_true(alarm->state.active || !(alarm->state.aside & ALARM_ASIDE_CARRIED));
@@ -529,7 +530,7 @@ static void units_are_devices_of_their_own(void **unused)
     s = (struct stage){ .plant = NULL };
     make_plant(&s, ALARMS_LOCAL);
     s.plant->tags[1].modbus_unit = 7;
-    s.plant->tags[1].alarming.on_delay_s = 0;
+    s.plant->tags[1].alarm_settings.on_delay_s = 0;
     s.plant->tags[1].suppressed_by = -1;
     s.alarms = alarms_create(s.plant, &(struct alarms_listener){ on_change, on_tag, &s });
     s.snapshot = snapshot_create(5);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Boxes that hang together, beside each compared with each. */
-#include "preprocess/box_groups.h"
+#include "preprocess/levels/box_groups.h"
 
 #include <math.h>
 #include <setjmp.h>
@@ -12,7 +12,7 @@
 #include <cmocka.h>
 
 #include "base/mem.h"
-#include "surface/trimesh.h"
+#include "surface/mesh/trimesh.h"
 #include "tests/support/cad.h"
 
 static double cpu_s(void)

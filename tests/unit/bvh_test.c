@@ -10,7 +10,7 @@
 
 #include "base/mem.h"
 #include "base/vec.h"
-#include "surface/bvh.h"
+#include "surface/mesh/bvh.h"
 #include "tests/support/cad.h"
 
 #define POINTS 400
@@ -175,8 +175,7 @@ static void test_equally_near_ones_go_by_number(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = { cmocka_unit_test(test_finds_the_nearest),
-                                        cmocka_unit_test(test_equally_near_ones_go_by_number) };
+    const struct CMUnitTest tests[] = { cmocka_unit_test(test_finds_the_nearest), cmocka_unit_test(test_equally_near_ones_go_by_number) };
     cmocka_set_message_output(CM_OUTPUT_TAP);
     return cmocka_run_group_tests(tests, set_up, NULL);
 }

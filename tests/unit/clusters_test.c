@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Clusters of a torus of two materials: no triangle is lost, they are small, and views from outside leave out about what they may. */
-#include "preprocess/clusters.h"
+#include "preprocess/levels/clusters.h"
 
 #include <math.h>
 #include <setjmp.h>

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Which markers are drawn, by the rule of protocol/LABELS.md, against the vectors that the browser's are tested with too. */
-#include "render/crowd.h"
+#include "render/overlay/crowd.h"
 
 #include <dirent.h>
 #include <jansson.h>

@@ -11,7 +11,7 @@
 #include <cmocka.h>
 
 #include "base/mem.h"
-#include "preprocess/gltf_shim.h"
+#include "preprocess/model/gltf_shim.h"
 #include "tests/support/boxes.h"
 #include "tests/support/prep_case.h"
 #include "tests/support/temp.h"

@@ -624,7 +624,7 @@ static void test_a_sensor_fades_towards_its_reach(void **state)
             synthetic_geodesic(rig.plant, 1)[20 + k] = 2.5f + 0.01f * (float)k;
         }
         synthetic_geodesic(rig.plant, 0)[20] = synthetic_geodesic(rig.plant, 1)[20] = 4; /* as far as both reach: of both */
-        synthetic_geodesic(rig.plant, 0)[21] = 3.999f;                                  /* alone, it is not seen to fade */
+        synthetic_geodesic(rig.plant, 0)[21] = 3.999f;                                   /* alone, it is not seen to fade */
         synthetic_geodesic(rig.plant, 1)[21] = 4.001f;
         const struct scalar *at = show(&rig)->at + 20;
         double weight = (paper ? exp(-1 / 8.0) : pow(2 / 3.0, 2)) * pow(0.5, 2); /* at 3 m it has half of what the nearest has left */
@@ -924,7 +924,7 @@ static void test_dragging_stays_under_the_bound(void **state)
     const size_t slack = 256 << 10; /* layouts, and what only lives during a call */
     struct rig rig = rig_create(synthetic_create(.vertices = 5000, .sensors = 20, .assets = 2));
     size_t bound = 3 << 20;
-    field_set_bound(rig.field, bound);
+    field_set_cache_limit(rig.field, bound);
     rig.params.interpolation = INTERPOLATION_PAPER;
     size_t before = bytes_allocated();
     for (int step = 0; step < 60; step++)
@@ -948,10 +948,10 @@ static void test_without_room_for_columns_the_bits_are_the_same(void **state)
     struct rig rig = rig_create(synthetic_create(.vertices = 3000, .sensors = 37, .seed = random));
     struct field *tight = field_create(workers, &rig.plant->scene), *half = field_create(workers, &rig.plant->scene);
     const size_t columns = (size_t)3000 * 37 * sizeof(float);
-    field_set_bound(tight, 1);
+    field_set_cache_limit(tight, 1);
     for (int tick = 0; tick < 60; tick++) {
         size_t bound = tick % 20 < 15 ? columns / 2 + 500000 : 4 * columns; /* what is not columns takes some 450,000 */
-        field_set_bound(half, bound);
+        field_set_cache_limit(half, bound);
         rig.params.interpolation = tick / 20 == 1 ? INTERPOLATION_PAPER : INTERPOLATION_SHEPARD;
         rig.params.power = tick / 20 == 2 ? 3.1 : 2;
         set(&rig, synthetic_random(&random) % 37, between(&random, 0, 100), QUALITY_GOOD);
@@ -981,7 +981,7 @@ static void test_as_many_columns_as_fit_are_kept(void **state)
     size_t bare = field_bytes(rig.field), rooms[] = { block - 1, 4 * block + 100, 2 * columns };
     size_t want[] = { 0, 4 * block, columns };
     for (int room = 0; room < 3; room++) {
-        field_set_bound(rig.field, bare + rooms[room]);
+        field_set_cache_limit(rig.field, bare + rooms[room]);
         for (int round = 0; round < 3; round++) {
             set(&rig, 0, room + round * 0.1, QUALITY_GOOD);
             show(&rig);
@@ -996,7 +996,7 @@ static void test_scalars_of_the_same_parameters_stay(void **state)
 {
     (void)state;
     struct rig rig = rig_create(synthetic_create(.vertices = 2000, .sensors = 5, .assets = 8));
-    field_set_bound(rig.field, 100000);
+    field_set_cache_limit(rig.field, 100000);
     for (int round = 0; round < 6; round++) {
         const struct scalars *all[8];
         rig.params.power = 2 + round % 2;
@@ -1064,7 +1064,7 @@ static void check_many_at_once(size_t sensors)
         int assets[ASSETS];
         size_t counts[ASSETS], asset_count = 0;
         rig.params.interpolation = round / 10 % 2 ? INTERPOLATION_PAPER : INTERPOLATION_SHEPARD;
-        field_set_bound(rig.field, bounds[round / 30]);
+        field_set_cache_limit(rig.field, bounds[round / 30]);
         for (size_t i = 0; i < ASSETS * sensors; i++)
             if (synthetic_random(&random) % 3 == 0)
                 set(&rig, i, (double)(synthetic_random(&random) % 1000) / 10,
@@ -1104,7 +1104,7 @@ static void check_far_assets(size_t sensors)
     struct rig rig = rig_create(synthetic_create(.vertices = VERTICES, .sensors = sensors, .assets = ASSETS));
     int assets[ASSETS];
     size_t counts[ASSETS], columns = (size_t)(VERTICES + 255) / 256 * sensors * (256 * sizeof(float) + 1), last = 0, bound = 4 << 20;
-    field_set_bound(rig.field, columns + bound);
+    field_set_cache_limit(rig.field, columns + bound);
     for (int round = 0; round < 4; round++) {
         for (int i = 0; i < ASSETS; i++) {
             assets[i] = i;
@@ -1206,7 +1206,7 @@ static void test_what_is_under_way_may_be_dropped(void **state)
     (void)state;
     struct rig rig = rig_create(synthetic_create(.vertices = 5000, .sensors = 30));
     struct field_params other = rig.params;
-    field_set_bound(rig.field, 0);
+    field_set_cache_limit(rig.field, 0);
     for (int round = 0; round < 20; round++) {
         rig.params.power = 1 + 0.1 * round;
         other.power = 4 + 0.1 * round;
@@ -1287,7 +1287,7 @@ static void test_distance_from_one_sensor(void **state)
     assert_true(way->at[1].value == 0 && line->at[1].value == 0);
     for (size_t j = 480; j < 500; j++)
         assert_true(way->at[j].no_data == 255 && way->at[j].value == most && line->at[j].no_data == 0);
-    field_own_range(&rig.plant->scene, &rig.params, &low, &high);
+    field_default_range(&rig.plant->scene, &rig.params, &low, &high);
     assert_true(low == 0 && high >= (double)most * (1 - 1e-6) && high < 1.06 * (double)most);
     uint64_t version = way->version;
     set(&rig, 4, 7, QUALITY_BAD_SENSOR_FAILURE); /* its place stays where it is */

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Models: what glTF files may hold is read as it is meant, and what is wrong is refused by name. */
-#include "preprocess/geometry.h"
+#include "preprocess/geometry/geometry.h"
 
 #include <math.h>
 #include <setjmp.h>
@@ -449,8 +449,7 @@ static void what_cannot_be_cut_is_refused(void **state)
         { HEAD "\"scenes\":[{\"nodes\":[]}],\"nodes\":[{\"mesh\":0}]," MESH(SQUARE) ACCESSORS "}", "the scene has no node" },
         { HEAD "\"scenes\":[{\"nodes\":[0]}],\"nodes\":[{\"mesh\":0,\"scale\":[1,0,1]}]," MESH(SQUARE) ACCESSORS "}",
           "none of its 2 triangles has an area" },
-        { HEAD "\"scenes\":[{\"nodes\":[0,1]}],\"nodes\":[{\"mesh\":0},{\"mesh\":0,\"translation\":[0,2e7,0]}]," MESH(SQUARE) ACCESSORS
-               "}",
+        { HEAD "\"scenes\":[{\"nodes\":[0,1]}],\"nodes\":[{\"mesh\":0},{\"mesh\":0,\"translation\":[0,2e7,0]}]," MESH(SQUARE) ACCESSORS "}",
           "its size is 2e+07 m along axis 1, more than 1e+07 m" },
     };
     for (size_t i = 0; i < sizeof(cases) / sizeof(cases[0]); i++) {
@@ -490,10 +489,11 @@ static void wrong_instances_and_sparse_elements_are_refused(void **state)
         { 1, 5123, 307, "do not fit into bufferView 0" },
     };
     for (size_t i = 0; i < sizeof(sparse) / sizeof(sparse[0]); i++) {
-        char *json = mem_printf(HEAD PLAIN_NODES MESH(SQUARE) "\"accessors\":[{\"bufferView\":0,\"componentType\":5126,\"count\":4,"
-                                "\"type\":\"VEC3\",\"sparse\":{\"count\":%d,\"indices\":{\"bufferView\":0,\"byteOffset\":%d,"
-                                "\"componentType\":%d},\"values\":{\"bufferView\":0,\"byteOffset\":116}}},"
-                                "{\"bufferView\":0,\"byteOffset\":48,\"componentType\":5123,\"count\":6,\"type\":\"SCALAR\"}]}",
+        char *json = mem_printf(HEAD PLAIN_NODES MESH(
+                                    SQUARE) "\"accessors\":[{\"bufferView\":0,\"componentType\":5126,\"count\":4,"
+                                            "\"type\":\"VEC3\",\"sparse\":{\"count\":%d,\"indices\":{\"bufferView\":0,\"byteOffset\":%d,"
+                                            "\"componentType\":%d},\"values\":{\"bufferView\":0,\"byteOffset\":116}}},"
+                                            "{\"bufferView\":0,\"byteOffset\":48,\"componentType\":5123,\"count\":6,\"type\":\"SCALAR\"}]}",
                                 sparse[i].count, sparse[i].at, sparse[i].type);
         refused(l, json, sparse[i].reason);
         mem_free(json);

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* One surface said in every way that glTF knows is always the same surface; compressed by the compressions' own encoders, and by the
    programs that people compress with. */
-#include "preprocess/geometry.h"
+#include "preprocess/geometry/geometry.h"
 
 #include <math.h>
 #include <setjmp.h>

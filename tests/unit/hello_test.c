@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The first message of a session: whom its token stands for, the view it comes back to, and whether there is room. */
-#include "net/session/session.h"
+#include "session/session.h"
 
 #include <jansson.h>
 #include <setjmp.h>
@@ -20,7 +20,7 @@
 #define HELLO "{\"type\":\"hello\"," SIZE "}"
 
 struct fixture {
-    struct session_world world;
+    struct session_context world;
     struct quotas quotas;
     struct admission admission;
     struct log *log;
@@ -57,16 +57,16 @@ static int set_up(void **state)
     f->quotas = quotas_default();
     f->admission.quotas = &f->quotas;
     f->now_ns = 1000 * NS_PER_S;
-    f->world = (struct session_world){ .plant = small_scene()->plant,
-                                       .scene = small_scene(),
-                                       .snapshot = snapshot_create(small_scene()->plant->tag_count),
-                                       .baselines = baselines_create(),
-                                       .links_up = (const bool[]){ true },
-                                       .version = "1.2.3",
-                                       .quotas = &f->quotas,
-                                       .tokens = f->tokens,
-                                       .resumes = resumes_create(),
-                                       .admission = &f->admission };
+    f->world = (struct session_context){ .plant = small_scene()->plant,
+                                         .scene = small_scene(),
+                                         .snapshot = snapshot_create(small_scene()->plant->tag_count),
+                                         .baselines = baselines_create(),
+                                         .links_up = (const bool[]){ true },
+                                         .version = "1.2.3",
+                                         .quotas = &f->quotas,
+                                         .tokens = f->tokens,
+                                         .resumes = resumes_create(),
+                                         .admission = &f->admission };
     *state = f;
     return 0;
 }
@@ -192,8 +192,8 @@ static void a_revoked_token_ends_its_sessions_and_no_others(void **state)
     leave(f, &local);
 }
 
-#define VIEW \
-    "{\"type\":\"hello\"," SIZE ",\"pixel_ratio\":2,\"camera\":{\"seq\":4,\"eye\":[7,8,9],\"target\":[0,0,1]}," \
+#define VIEW                                                                                                                               \
+    "{\"type\":\"hello\"," SIZE ",\"pixel_ratio\":2,\"camera\":{\"seq\":4,\"eye\":[7,8,9],\"target\":[0,0,1]},"                            \
     "\"params\":{\"seq\":5,\"group\":\"pressure\",\"ramp_interval\":2}}"
 
 /* "" where there is no more after `extra`. */
@@ -246,8 +246,8 @@ static void what_is_said_comes_on_top_of_the_view_of_before(void **state)
     char secret[RESUME_CHARS + 1];
     strcpy(secret, first->resume);
     leave(f, &first);
-    come_back(f, ROLE_ENGINEER, secret,
-              ",\"width\":200,\"height\":100,\"codecs\":[\"png\"],\"params\":{\"seq\":1,\"ramp_interval\":4}", &again);
+    come_back(f, ROLE_ENGINEER, secret, ",\"width\":200,\"height\":100,\"codecs\":[\"png\"],\"params\":{\"seq\":1,\"ramp_interval\":4}",
+              &again);
     expect_welcome(f, again, "engineer", true);
     assert_true(again->view.width_px == 200 && again->view.height_px == 100 && again->view.ramp_interval == 4);
     assert_true(again->view.field.group == 1 && again->view.camera.eye_m[0] == 7 && again->codec == WIRE_CODEC_PNG);
@@ -316,7 +316,7 @@ static void without_room_a_session_is_told_when_to_come_again(void **state)
     leave(f, &second);
 }
 
-static struct session *open_of(struct fixture *f, struct share *share, const char *hello)
+static struct session *open_of(struct fixture *f, struct address_share *share, const char *hello)
 {
     struct session *session = session_create(&f->world, ++f->next_id, f->now_ns);
     session->share = share;
@@ -327,7 +327,7 @@ static struct session *open_of(struct fixture *f, struct share *share, const cha
 
 static void leave_share(struct fixture *f, struct session **session)
 {
-    struct share *share = (*session)->share;
+    struct address_share *share = (*session)->share;
     leave(f, session);
     admission_leave(&f->admission, share);
 }
@@ -335,7 +335,7 @@ static void leave_share(struct fixture *f, struct session **session)
 static void an_address_has_its_part_of_all_pixels(void **state)
 {
     struct fixture *f = *state;
-    struct share share = { .payer = 1 }, other = { .payer = 2 };
+    struct address_share share = { .payer = 1 }, other = { .payer = 2 };
     quotas_parse(&f->quotas, "pixels=1000000");
     quotas_parse(&f->quotas, "address-pixels=300000");
     struct session *first = open_of(f, &share, HELLO), *second = open_of(f, &share, HELLO), *third = open_of(f, &other, HELLO);
@@ -352,8 +352,8 @@ static void an_address_has_its_part_of_all_pixels(void **state)
 static void who_is_hidden_gives_its_place_back_and_takes_it_again(void **state)
 {
     struct fixture *f = *state;
-    struct share share = { .payer = 1 }, other = { .payer = 2 };
-    struct wish wish;
+    struct address_share share = { .payer = 1 }, other = { .payer = 2 };
+    struct frame_request wish;
     quotas_parse(&f->quotas, "pixels=300000");
     struct session *hidden = open_of(f, &share, HELLO);
     expect_welcome(f, hidden, "engineer", false);
@@ -366,11 +366,11 @@ static void who_is_hidden_gives_its_place_back_and_takes_it_again(void **state)
     expect_welcome(f, second, "engineer", false);
     say(f, hidden, "{\"type\":\"visible\",\"visible\":true}");
     expect_error(f, hidden, "limit", 0);
-    assert_false(session_wish(hidden, f->now_ns, &wish));
+    assert_false(session_next_request(hidden, f->now_ns, &wish));
     leave_share(f, &second);
     session_on_tick(hidden, f->now_ns += NS_PER_S); /* there is room again, and nobody has to ask */
     assert_int_equal(share.pixels, 230400);
-    assert_true(session_wish(hidden, f->now_ns, &wish) && wish.payer == 1);
+    assert_true(session_next_request(hidden, f->now_ns, &wish) && wish.payer == 1);
     leave_share(f, &hidden);
 }
 

@@ -17,7 +17,7 @@
 #include "base/mem.h"
 #include "base/text.h"
 #include "history/history.h"
-#include "history/keep.h"
+#include "history/retention.h"
 #include "history/month.h"
 #include "history/recorder.h"
 #include "tests/support/plant_by_hand.h"
@@ -500,13 +500,13 @@ static void old_and_large_months_go(void **state)
         mem_free(name);
     }
     /* 100 days before November: 24 July */
-    assert_int_equal(history_keep(s->log, s->folder, &(struct keep_limits){ .days = 100 }, NOVEMBER), 3000);
+    assert_int_equal(retention_apply(s->log, s->folder, &(struct retention_limits){ .days = 100 }, NOVEMBER), 3000);
     int *months = month_list(s->folder, &count);
     assert_int_equal(count, 3);
     assert_int_equal(months[0], month_of(NOVEMBER) - 4);
     mem_free(months);
-    assert_int_equal(history_keep(s->log, s->folder, &(struct keep_limits){ .bytes = 2500 }, NOVEMBER), 2000);
-    assert_int_equal(history_keep(s->log, s->folder, &(struct keep_limits){ .bytes = 1 }, NOVEMBER), 1000); /* the newest stays */
+    assert_int_equal(retention_apply(s->log, s->folder, &(struct retention_limits){ .bytes = 2500 }, NOVEMBER), 2000);
+    assert_int_equal(retention_apply(s->log, s->folder, &(struct retention_limits){ .bytes = 1 }, NOVEMBER), 1000); /* the newest stays */
     months = month_list(s->folder, &count);
     assert_int_equal(count, 1);
     assert_int_equal(months[0], month_of(NOVEMBER) - 2);

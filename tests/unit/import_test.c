@@ -10,7 +10,7 @@
 
 #include "base/mem.h"
 #include "base/text.h"
-#include "base/when.h"
+#include "base/timestamp.h"
 #include "history/history.h"
 #include "history/import.h"
 #include "history/month.h"
@@ -150,9 +150,11 @@ static void everything_wrong_is_said_and_nothing_is_taken(void **state)
 static void times_without_a_zone_are_the_plant_s(void **state)
 {
     struct setup *s = *state;
-    when_use_zone("Europe/Berlin");
-    assert_true(import(s, "wide", "time,FT-1\n2026-10-25 01:30,1\n2026-10-25 02:30,2\n2026-10-25 02:00,3\n2026-10-25 02:30,4\n"
-                                  "2026-10-25 03:30,5\n", INT64_MIN, 0));
+    timestamp_use_zone("Europe/Berlin");
+    assert_true(import(s, "wide",
+                       "time,FT-1\n2026-10-25 01:30,1\n2026-10-25 02:30,2\n2026-10-25 02:00,3\n2026-10-25 02:30,4\n"
+                       "2026-10-25 03:30,5\n",
+                       INT64_MIN, 0));
     assert_true(import(s, "long", "Tag,Time,Value\nTT-1,2026-10-25T02:30,7\nTT-1,2026-10-25T02:30,8\nFT-1,2026-10-25T02:30:00.5,9\n",
                        INT64_MIN, 0));
     struct history_series wide = read_series(s, "wide", "FT-1"), fresh = read_series(s, "long", "FT-1");
@@ -164,7 +166,7 @@ static void times_without_a_zone_are_the_plant_s(void **state)
     history_series_finish(&wide);
     history_series_finish(&fresh);
     assert_false(import(s, "gap", "Time,FT-1\n2026-03-29 02:30,1\n", INT64_MIN, 0));
-    when_use_zone("UTC");
+    timestamp_use_zone("UTC");
 }
 
 static void files_that_are_no_series_are_refused(void **state)

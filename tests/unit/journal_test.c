@@ -21,7 +21,7 @@ enum { ROWS = 3000, TAGS = 7, KINDS = 3, BEGIN_US = 1000000 };
 struct row {
     int tag, kind;
     int64_t t_us;
-    enum alarm_word after;
+    enum alarm_status after;
 };
 
 struct setup {
@@ -64,8 +64,8 @@ static int set_up(void **state)
     assert_non_null(s.file);
     for (int i = 0; i < ROWS; i++) {
         t_us += rand_r(&seed) % 3 ? 0 : rand_r(&seed) % 1000;
-        s.rows[i] = (struct row){ rand_r(&seed) % TAGS, rand_r(&seed) % KINDS, t_us,
-                                  rand_r(&seed) % 2 ? ALARM_NORMAL : ALARM_UNACKNOWLEDGED };
+        s.rows[i] =
+            (struct row){ rand_r(&seed) % TAGS, rand_r(&seed) % KINDS, t_us, rand_r(&seed) % 2 ? ALARM_NORMAL : ALARM_UNACKNOWLEDGED };
     }
     write_rows(&s);
     *state = &s;

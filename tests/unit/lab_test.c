@@ -79,7 +79,7 @@ static void test_shading_and_safety(void **state)
     (void)state;
     for (size_t m = 0; m < colormap_count(); m++) {
         struct colormap judged = *colormap_at(m);
-        colormap_judge(&judged);
+        colormap_rate_shading(&judged);
         printf("# %s: L* +-%.1f%s\n", judged.name, judged.shading, judged.safe ? ", safe" : "");
         assert_true(judged.shading == colormap_at(m)->shading && judged.safe == colormap_at(m)->safe);
     }
@@ -95,9 +95,9 @@ static void test_maps_that_cannot_be_read_are_not_safe(void **state)
         memset(there_and_back.rgb[i], 2 * (i < 128 ? i : 255 - i), 3);
         memcpy(green_to_red.rgb[i], (uint8_t[]){ (uint8_t)(60 + i / 2), (uint8_t)(140 - i / 3), 60 }, 3); /* about as light all along */
     }
-    colormap_judge(&there_and_back);
+    colormap_rate_shading(&there_and_back);
     assert_true(!there_and_back.safe && there_and_back.shading >= 2);
-    colormap_judge(&green_to_red);
+    colormap_rate_shading(&green_to_red);
     assert_true(!green_to_red.safe && green_to_red.shading >= 2);
 }
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Labels by the rule of protocol/LABELS.md, against the vectors that the browser's are tested with too. */
-#include "render/labels.h"
+#include "render/overlay/labels.h"
 
 #include <dirent.h>
 #include <jansson.h>
@@ -48,9 +48,8 @@ static void check_vector(const char *name)
     struct label_place *places = mem_array(count, sizeof(*places));
     for (size_t i = 0; i < count; i++) {
         const json_t *item = json_array_get(list, i);
-        items[i] =
-            (struct label_item){ at(item, 0), at(item, 1), at(item, 2), at(item, 3), at(item, 5), (int)at(item, 4), (int)at(item, 6),
-                                 at(item, 7) > 0, LABEL_NONE }; /* left out: no ring */
+        items[i] = (struct label_item){ at(item, 0),      at(item, 1),      at(item, 2),     at(item, 3), at(item, 5),
+                                        (int)at(item, 4), (int)at(item, 6), at(item, 7) > 0, LABEL_NONE }; /* left out: no ring */
         if (json_array_size(item) > 8)
             items[i].callout = (int)at(item, 8);
     }

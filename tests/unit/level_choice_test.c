@@ -8,8 +8,8 @@
 #include <cmocka.h>
 
 #include "base/mem.h"
-#include "render/detail.h"
-#include "render/stage.h"
+#include "render/plan/lod_selection.h"
+#include "render/gl/gpu_scene.h"
 
 /* A box of 2 m whose near side is `away` metres from the camera, with levels that err by 0, 1, 10 and 100 mm. */
 static size_t chosen_within(double error_px, double away_m, double pixel_per_radian)
@@ -19,9 +19,9 @@ static size_t chosen_within(double error_px, double away_m, double pixel_per_rad
     const struct model *of_asset[1] = { &model };
     struct scene_asset asset = { .bounds_min_m = { 5 + away_m, 1, 1 }, .bounds_max_m = { 7 + away_m, 3, 3 } };
     struct scene scene = { .assets = &asset, .asset_count = 1 };
-    struct stage stage = { .scene = &scene, .of_asset = of_asset };
-    const struct shot shot = { .eye_m = { 5, 2, 2 }, .pixel_per_radian = pixel_per_radian };
-    return (size_t)(stage_level(&stage, &shot, 0, error_px) - levels);
+    struct gpu_scene gpu_scene = { .scene = &scene, .of_asset = of_asset };
+    const struct view_constants constants = { .eye_m = { 5, 2, 2 }, .pixel_per_radian = pixel_per_radian };
+    return (size_t)(gpu_scene_level(&gpu_scene, &constants, 0, error_px) - levels);
 }
 
 static size_t chosen(double away_m, double pixel_per_radian)
@@ -39,7 +39,7 @@ static void levels_change_within_a_pixel(void **state)
     assert_int_equal(chosen(9, 1000), 1);
     assert_int_equal(chosen(20, 1000), 2);
     assert_int_equal(chosen(200, 1000), 3);
-    assert_int_equal(chosen(200, 10000), 2); /* a picture of ten times the pixels */
+    assert_int_equal(chosen(200, 10000), 2);            /* a picture of ten times the pixels */
     assert_int_equal(chosen_within(0.5, 1.5, 1000), 0); /* 0.67 pixels are too much */
     assert_int_equal(chosen_within(0.7, 1.5, 1000), 1);
     for (double away_m = 0.01; away_m < 1000; away_m *= 1.1) {
@@ -59,7 +59,7 @@ static double error_among(size_t assets, int fewer, enum tier tier)
     struct model model = { .levels = levels, .level_count = 4 };
     const struct model **of_asset = mem_array(assets, sizeof(const struct model *));
     struct scene scene = { .assets = mem_array(assets, sizeof(*scene.assets)), .asset_count = assets };
-    struct stage stage = { .scene = &scene, .of_asset = of_asset };
+    struct gpu_scene gpu_scene = { .scene = &scene, .of_asset = of_asset };
     int *visible = mem_array(assets, sizeof(*visible));
     struct view view = { .tier = tier };
     for (size_t i = 0; i < assets; i++) {
@@ -67,10 +67,10 @@ static double error_among(size_t assets, int fewer, enum tier tier)
         visible[i] = (int)i;
         scene.assets[i] = (struct scene_asset){ .bounds_min_m = { 10, -1, -1 }, .bounds_max_m = { 12, 1, 1 } };
     }
-    const struct picture picture = {
-        .stage = &stage, .view = &view, .shot = { .pixel_per_radian = 1000 }, .visible = visible, .visible_count = assets
+    const struct frame_context context = {
+        .gpu_scene = &gpu_scene, .view = &view, .constants = { .pixel_per_radian = 1000 }, .visible = visible, .visible_count = assets
     };
-    double error_px = detail_error_px(&picture);
+    double error_px = lod_error_px(&context);
     mem_free(visible);
     mem_free(scene.assets);
     mem_free(of_asset);
@@ -80,17 +80,17 @@ static double error_among(size_t assets, int fewer, enum tier tier)
 static void pictures_with_room_are_drawn_finer(void **state)
 {
     (void)state;
-    assert_float_equal(error_among(3, 1, TIER_STILL), 0, 0); /* all that it may have, and no more */
-    assert_float_equal(error_among(4, 1, TIER_STILL), 0.35, 1e-9); /* 2 mm */
-    assert_float_equal(error_among(10, 1, TIER_STILL), 0.35, 1e-9);
-    assert_float_equal(error_among(11, 1, TIER_STILL), 0.7, 1e-9);
-    assert_float_equal(error_among(1000, 1, TIER_STILL), 0.7, 1e-9); /* never coarser than shapes allow */
-    assert_float_equal(error_among(3, 10, TIER_MOVING), 0, 0);
-    assert_float_equal(error_among(4, 10, TIER_MOVING), 0.25, 1e-9);
-    assert_float_equal(error_among(11, 10, TIER_MOVING), 0.5, 1e-9);
-    assert_float_equal(error_among(31, 10, TIER_MOVING), 1, 1e-9);
-    assert_float_equal(error_among(1000, 10, TIER_MOVING), 1, 1e-9);
-    assert_float_equal(error_among(0, 1, TIER_MOVING), 0, 0);
+    assert_float_equal(error_among(3, 1, TIER_REFINED), 0, 0);       /* all that it may have, and no more */
+    assert_float_equal(error_among(4, 1, TIER_REFINED), 0.35, 1e-9); /* 2 mm */
+    assert_float_equal(error_among(10, 1, TIER_REFINED), 0.35, 1e-9);
+    assert_float_equal(error_among(11, 1, TIER_REFINED), 0.7, 1e-9);
+    assert_float_equal(error_among(1000, 1, TIER_REFINED), 0.7, 1e-9); /* never coarser than shapes allow */
+    assert_float_equal(error_among(3, 10, TIER_PREVIEW), 0, 0);
+    assert_float_equal(error_among(4, 10, TIER_PREVIEW), 0.25, 1e-9);
+    assert_float_equal(error_among(11, 10, TIER_PREVIEW), 0.5, 1e-9);
+    assert_float_equal(error_among(31, 10, TIER_PREVIEW), 1, 1e-9);
+    assert_float_equal(error_among(1000, 10, TIER_PREVIEW), 1, 1e-9);
+    assert_float_equal(error_among(0, 1, TIER_PREVIEW), 0, 0);
 }
 
 int main(void)

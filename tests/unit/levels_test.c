@@ -10,9 +10,9 @@
 
 #include "base/mem.h"
 #include "base/vec.h"
-#include "preprocess/order.h"
-#include "preprocess/places.h"
-#include "surface/bvh.h"
+#include "preprocess/levels/vertex_order.h"
+#include "preprocess/geometry/welded_positions.h"
+#include "surface/mesh/bvh.h"
 
 #define AROUND 120u /* squares round the torus, and round its tube */
 #define TUBE 48u
@@ -22,7 +22,7 @@
 struct set_of { /* what the tests look at */
     struct geometry g;
     struct levels levels;
-    struct places places;
+    struct welded_positions places;
 };
 
 static uint32_t add_vertex(struct geometry *g, double u, double v)
@@ -75,7 +75,7 @@ static int set_up(void **state)
     add_part(g, 0, AROUND / 3, 0);
     add_part(g, AROUND / 3, AROUND, 1);
     assert_true(levels_make(&s->levels, g, NULL));
-    assert_true(places_init(&s->places, (const float(*)[3])g->positions_m, g->vertex_count));
+    assert_true(welded_init(&s->places, (const float(*)[3])g->positions_m, g->vertex_count));
     *state = s;
     return 0;
 }
@@ -84,7 +84,7 @@ static int tear_down(void **state)
 {
     struct set_of *s = *state;
     levels_finish(&s->levels);
-    places_finish(&s->places);
+    welded_finish(&s->places);
     geometry_finish(&s->g);
     mem_free(s);
     return 0;
@@ -242,7 +242,7 @@ static void a_level_is_a_prefix(void **state)
     float(*before)[3] = mem_array(count, sizeof(*before));
     memcpy(before, s->g.positions_m, count * sizeof(*before));
     add_lone(&s->g);
-    assert_true(order_vertices(&s->g, &s->levels, first_added, file, &new_of));
+    assert_true(vertex_order_apply(&s->g, &s->levels, first_added, file, &new_of));
     assert_int_equal(s->g.vertex_count, count);
     assert_int_equal(file[0].vertex_count, count);
     for (uint32_t v = count; v < count + LONE; v++)

@@ -26,22 +26,22 @@ static void what_is_freed_goes_back(void **state)
     static void *pieces[PIECES];
     struct memory_use before, full, after;
     size_t all = (size_t)PIECES * PIECE_BYTES;
-    memory_look(&before);
+    memory_measure(&before);
     assert_true(before.resident >= before.anonymous && before.anonymous > 0);
     for (int i = 0; i < PIECES; i++) {
         pieces[i] = mem_array(PIECE_BYTES, 1);
         memset(pieces[i], 1, PIECE_BYTES);
     }
     void *last = mem_array(PIECE_BYTES, 1);
-    memory_look(&full);
+    memory_measure(&full);
     assert_true(full.anonymous >= before.anonymous + all * 9 / 10);
 #if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__) /* which have a malloc of their own */
     assert_true(full.allocated >= before.allocated + all);
 #endif
     for (int i = 0; i < PIECES; i++)
         mem_free(pieces[i]);
-    memory_give_back();
-    memory_look(&after);
+    memory_trim();
+    memory_measure(&after);
     mem_free(last);
 #if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
     assert_true(after.anonymous <= before.anonymous + all / 10);

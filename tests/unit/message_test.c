@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What clients say: the vectors, the merging of parameters, the query of snapshots, and text that was damaged at random. */
-#include "net/message/message.h"
+#include "message/message.h"
 
 #include <dirent.h>
 #include <math.h>
@@ -15,9 +15,9 @@
 #include "base/mem.h"
 #include "base/text.h"
 #include "field/colormap.h"
-#include "net/message/query.h"
-#include "net/message/reply.h"
-#include "net/message/visibility.h"
+#include "message/view_query.h"
+#include "session/reply.h"
+#include "message/visibility.h"
 #include "tests/support/small_scene.h"
 
 #define FOLDER "protocol/vectors/client"
@@ -27,14 +27,14 @@ static const struct plant *plant(void)
     return small_scene()->plant;
 }
 
-static struct params_world world;
+static struct params_context world;
 
 static int set_up(void **state)
 {
     (void)state;
-    world = (struct params_world){ .scene = small_scene(),
-                                   .baselines = baselines_create(),
-                                   .snapshot = snapshot_create(small_scene()->plant->tag_count) };
+    world = (struct params_context){ .scene = small_scene(),
+                                     .baselines = baselines_create(),
+                                     .snapshot = snapshot_create(small_scene()->plant->tag_count) };
     return 0;
 }
 
@@ -197,18 +197,19 @@ static void bands_and_lines(void **state)
     struct view view;
     view_default(small_scene(), 640, 360, &view);
     view = changed(view, "{\"type\":\"params\",\"seq\":1,\"ramp_interval\":5,\"isolines\":[30,70]}");
-    assert_true(view.ramp_interval == 5 && view.paint.line_count == 2 && view.paint.lines[1] == 70);
+    assert_true(view.ramp_interval == 5 && view.color_scale.line_count == 2 && view.color_scale.lines[1] == 70);
     view = changed(view, "{\"type\":\"params\",\"seq\":2,\"breaks\":\"limits\"}");
-    assert_true(view.ramp_interval == 0 && view.paint.break_count == 2 && view.paint.breaks[0] == 30 && view.paint.breaks[1] == 150);
-    assert_int_equal(view.paint.line_count, 2);
+    assert_true(view.ramp_interval == 0 && view.color_scale.break_count == 2 && view.color_scale.breaks[0] == 30 &&
+                view.color_scale.breaks[1] == 150);
+    assert_int_equal(view.color_scale.line_count, 2);
     view = changed(view, "{\"type\":\"params\",\"seq\":3,\"isolines\":50}");
-    assert_true(view.paint.line_count == 3 && view.paint.lines[0] == 50 && view.paint.lines[2] == 150);
+    assert_true(view.color_scale.line_count == 3 && view.color_scale.lines[0] == 50 && view.color_scale.lines[2] == 150);
     view = changed(view, "{\"type\":\"params\",\"seq\":4,\"ramp_interval\":20}");
-    assert_true(view.ramp_interval == 20 && view.paint.break_count == 0);
+    assert_true(view.ramp_interval == 20 && view.color_scale.break_count == 0);
     view = changed(view, "{\"type\":\"params\",\"seq\":5,\"scale\":\"log\",\"isolines\":null}");
-    assert_true(view.paint.log && view.paint.line_count == 0);
+    assert_true(view.color_scale.log && view.color_scale.line_count == 0);
     view = changed(view, "{\"type\":\"params\",\"seq\":6,\"breaks\":[25,50],\"group\":\"pressure\"}");
-    assert_true(!view.paint.log && view.paint.break_count == 2 && view.range_max == 16);
+    assert_true(!view.color_scale.log && view.color_scale.break_count == 2 && view.range_max == 16);
 }
 
 static void a_view_splits(void **state)
@@ -316,8 +317,8 @@ static void baselines_are_set_shown_and_forgotten(void **state)
 static bool query(const char *const *args, size_t count, struct view *view, struct message_error *error)
 {
     *error = (struct message_error){ 0 };
-    const struct params_world of_query = { .scene = small_scene(), .baselines = world.baselines };
-    return query_parse(&of_query, ROLE_ENGINEER, args, count, view, NULL, error);
+    const struct params_context of_query = { .scene = small_scene(), .baselines = world.baselines };
+    return view_query_parse(&of_query, ROLE_ENGINEER, args, count, view, NULL, error);
 }
 
 static void queries_make_views(void **state)
@@ -331,7 +332,7 @@ static void queries_make_views(void **state)
     assert_true(query(args, sizeof(args) / sizeof(args[0]), &view, &error));
     assert_true(view.width_px == 320 && view.height_px == 200 && view.camera.eye_m[1] == 2 && view.camera.target_m[2] == 6);
     assert_true(view.camera.fov_deg == 50 && view.field.group == 1 && view.range_max == 2.5 && view.field.reach_m == 3);
-    assert_true(view.selected_asset == 0 && view.look == LOOK_FLAT && view.light_dir[2] == 1 && view.tier == TIER_STILL);
+    assert_true(view.selected_asset == 0 && view.look == LOOK_FLAT && view.light_dir[2] == 1 && view.tier == TIER_REFINED);
     static const char *const shown[] = { "show=distance", "sensor=TI-1", "sensors=TI-1=2:0.5" };
     assert_true(query(shown, sizeof(shown) / sizeof(shown[0]), &view, &error));
     assert_true(view.field.show == SHOW_DISTANCE && view.field.sensor == 0 && view.range_max == 7);
@@ -340,9 +341,11 @@ static void queries_make_views(void **state)
     static const char *const painted[] = { "breaks=limits", "isolines=every:20", "scale=log",
                                            "split=group=pressure;breaks=1,2.5;isolines=3,4;look=flat" };
     assert_true(query(painted, sizeof(painted) / sizeof(painted[0]), &view, &error));
-    assert_true(view.paint.break_count == 2 && view.paint.line_count == 9 && view.paint.lines[8] == 180 && view.paint.log);
-    assert_true(view.split && view.right.field.group == 1 && view.right.paint.breaks[1] == 2.5 && view.right.paint.lines[1] == 4);
-    assert_true(view.right.look == LOOK_FLAT && !view.right.paint.log);
+    assert_true(view.color_scale.break_count == 2 && view.color_scale.line_count == 9 && view.color_scale.lines[8] == 180 &&
+                view.color_scale.log);
+    assert_true(view.split && view.right.field.group == 1 && view.right.color_scale.breaks[1] == 2.5 &&
+                view.right.color_scale.lines[1] == 4);
+    assert_true(view.right.look == LOOK_FLAT && !view.right.color_scale.log);
     assert_true(view.camera.height_m == 0 && view.visibility.hidden.count == 0);
     static const char *const seen[] = { "fit=E-101",     "side=top",           "projection=orthographic",
                                         "hidden=P-101A", "ghost=E-101,P-101A", "clip=1,0,0,2;0,3,0,1.5" };
@@ -387,19 +390,19 @@ static void what_is_fitted_lies_beside_the_legend(void **state)
 {
     (void)state;
     static const char *const args[] = { "fit=E-101", "side=front", "look=materials", "split=colormap=viridis;look=default" };
-    const struct params_world bare = { .scene = small_scene(), .bare = true };
+    const struct params_context bare = { .scene = small_scene(), .bare = true };
     struct message_error error = { 0 };
     struct view whole, view;
-    assert_true(query_parse(&bare, ROLE_ENGINEER, args, 2, &whole, NULL, &error));
+    assert_true(view_query_parse(&bare, ROLE_ENGINEER, args, 2, &whole, NULL, &error));
     assert_float_equal(whole.camera.target_m[0], 0, 1e-6);
     assert_true(query(args, 2, &view, &error));
     assert_true(view.camera.target_m[0] > 0.2 && view.camera.eye_m[1] < whole.camera.eye_m[1]);
     assert_true(query(args, 3, &view, &error)); /* no legend */
     assert_float_equal(view.camera.target_m[0], 0, 1e-6);
     struct view all;
-    assert_true(query_parse(&bare, ROLE_ENGINEER, NULL, 0, &whole, NULL, &error) && query(NULL, 0, &all, &error));
+    assert_true(view_query_parse(&bare, ROLE_ENGINEER, NULL, 0, &whole, NULL, &error) && query(NULL, 0, &all, &error));
     assert_true(all.camera.target_m[0] > whole.camera.target_m[0] && all.camera.eye_m[1] < whole.camera.eye_m[1]);
-    assert_true(query_parse(&bare, ROLE_ENGINEER, args, 2, &whole, NULL, &error));
+    assert_true(view_query_parse(&bare, ROLE_ENGINEER, args, 2, &whole, NULL, &error));
     assert_true(query(args, 4, &view, &error)); /* one to the right */
     assert_true(view.camera.target_m[0] > 0.2 && view.camera.eye_m[1] < 1.5 * whole.camera.eye_m[1]);
 }

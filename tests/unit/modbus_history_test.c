@@ -36,7 +36,7 @@ struct rows { /* what the registers held, or what the store was told */
         int64_t mono_ns, utc_ns;
         double value;
         uint32_t quality;
-    } *at;
+    } * at;
     size_t count, capacity;
 };
 
@@ -45,8 +45,8 @@ struct replay {
     struct sim_values *values;
     struct sim sim;
     int port, stop_fd;
-    _Atomic bool deaf; /* the device does not answer */
-    _Atomic int spike; /* tag that is forced, or -1 */
+    _Atomic bool deaf;        /* the device does not answer */
+    _Atomic int spike;        /* tag that is forced, or -1 */
     struct rows *held, *told; /* by tag */
     size_t *mapped, mapped_count;
 };
@@ -57,10 +57,10 @@ static void add_row(struct rows *rows, int64_t mono_ns, int64_t utc_ns, double v
     rows->at[rows->count++] = (struct row){ mono_ns, utc_ns, value, quality };
 }
 
-static void on_heard(void *arg, const struct heard *heard)
+static void on_sample_event(void *arg, const struct sample_event *event)
 {
     struct replay *r = arg;
-    add_row(&r->told[heard->tag], heard->mono_ns, heard->utc_ns, heard->value, heard->quality);
+    add_row(&r->told[event->tag], event->mono_ns, event->utc_ns, event->value, event->quality);
 }
 
 static void *device_main(void *arg)
@@ -128,8 +128,7 @@ static double line_at(const struct history_series *series, int64_t t_us, uint32_
 }
 
 /* Within the tag's deviation of everything that was told, and of its quality. */
-static void check_history(const struct replay *r, struct history_reader *reader, const struct history_tag *tag, size_t index,
-                          double *worst)
+static void check_history(const struct replay *r, struct history_reader *reader, const struct history_tag *tag, size_t index, double *worst)
 {
     const struct rows *told = &r->told[index];
     struct history_series series;
@@ -226,7 +225,7 @@ static void history_gives_back_what_the_device_held(void **state)
     struct counters *counters = counters_create();
     struct store *store = store_create(r.plant);
     const struct historian_params params = { .log = log, .counters = counters, .plant = r.plant, .store = store, .folder = folder };
-    store_listen(store, on_heard, &r);
+    store_listen(store, on_sample_event, &r);
     struct historian *historian = historian_start(&params);
     assert_non_null(historian);
     assert_int_equal(pthread_create(&device, NULL, device_main, &r), 0);

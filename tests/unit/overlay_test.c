@@ -81,7 +81,7 @@ static void alarms_out_of_sight_are_listed(void **state)
         reading->alarm = ALARM_NONE;
         assert_false(lists(2, false, split));
         reading->alarm = ALARM_H;
-        reading->alarm_word = ALARM_ACTIVE;
+        reading->alarm_status = ALARM_ACTIVE;
         assert_false(lists(2, false, split));
         assert_true(lists(2, true, split));
         assert_true(lists(1, false, split)); /* its mark is not in the picture at all */
@@ -117,7 +117,7 @@ static struct frame *draw_bare(double value, enum alarm_kind alarm)
     frame->markers[0] = (struct frame_marker){ .tag = 2, .x_px = 300, .y_px = 200, .value = (float)value };
     for (size_t i = 1; i < 3; i++) {
         stand.snapshot->readings[i].alarm = (uint8_t)alarm;
-        stand.snapshot->readings[i].alarm_word = ALARM_ACTIVE;
+        stand.snapshot->readings[i].alarm_status = ALARM_ACTIVE;
     }
     overlay_draw_bare(frame, &stand.toy->scene, stand.snapshot, NULL);
     for (size_t i = 1; i < 3; i++)
@@ -180,8 +180,8 @@ static void halves_share_a_legend_that_says_the_same(void **state)
         right.field.interpolation = way == DISTANCE ? INTERPOLATION_PAPER : right.field.interpolation;
         right.range_max += way == RANGE ? 10 : 0;
         right.colormap += way == MAP;
-        right.paint.line_count = way == LINES;
-        right.paint.lines[0] = 50;
+        right.color_scale.line_count = way == LINES;
+        right.color_scale.lines[0] = 50;
         right.look = way == LOOK ? LOOK_MATERIALS : right.look;
         right.field.show = way == SHOWN ? SHOW_DIFFERENCE : right.field.show;
         struct frame *frame = draw_beside(0, false, &right);
@@ -272,14 +272,10 @@ static void halves_say_what_they_differ_in(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(halves_say_what_they_differ_in),
-        cmocka_unit_test(halves_share_a_legend_that_says_the_same),
-        cmocka_unit_test(alarms_out_of_sight_are_listed),
-        cmocka_unit_test(any_number_of_alarms_fits),
-        cmocka_unit_test(a_bare_one_tells_of_no_sensor),
-        cmocka_unit_test(the_legend_says_glossy),
-        cmocka_unit_test(what_rounds_to_nought_has_no_sign),
-        cmocka_unit_test(the_window_is_what_is_left_free),
+        cmocka_unit_test(halves_say_what_they_differ_in),    cmocka_unit_test(halves_share_a_legend_that_says_the_same),
+        cmocka_unit_test(alarms_out_of_sight_are_listed),    cmocka_unit_test(any_number_of_alarms_fits),
+        cmocka_unit_test(a_bare_one_tells_of_no_sensor),     cmocka_unit_test(the_legend_says_glossy),
+        cmocka_unit_test(what_rounds_to_nought_has_no_sign), cmocka_unit_test(the_window_is_what_is_left_free),
     };
     cmocka_set_message_output(CM_OUTPUT_TAP);
     stand.toy = toy_unit();

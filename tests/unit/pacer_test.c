@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Pictures under way: the window, acknowledgements in and out of order and of what was never sent; and a network that is simulated. */
-#include "net/session/pacer.h"
+#include "session/pacer.h"
 
 #include <setjmp.h>
 #include <stdarg.h>
@@ -154,7 +154,7 @@ struct world {
 
 static void deliver(struct world *world, struct pacer *pacer)
 {
-    struct rung rung = ladder_rung(&pacer->ladder, pacer->ladder.step);
+    struct rung rung = quality_ladder_rung(&pacer->ladder, pacer->ladder.step);
     double area = rung.scale * rung.scale;
     size_t bytes = (size_t)(world->pixels * 0.12 * area * rung.quality / 78);
     int64_t made_ns = world->now_ns;
@@ -284,7 +284,7 @@ static void a_client_that_is_busy_for_a_moment_keeps_its_quality(void **state)
     struct pacer pacer = fresh();
     struct world world = { .bytes_per_s = 100e6, .rtt_ns = MS, .decode_ns = 4 * MS, .pixels = 1280 * 720, .now_ns = NS_PER_S };
     channel_on_bytes(&pacer.channel, 1000000, 2500 * MS); /* the first texts, while it begins */
-    ladder_begin(&pacer.ladder, &pacer.channel, world.pixels);
+    quality_ladder_begin(&pacer.ladder, &pacer.channel, world.pixels);
     run_busy(&world, &pacer, 700 * MS, 0.75);
     run_world(&world, &pacer, 0.1); /* two or three pictures */
     world.now_ns += 12 * NS_PER_S;
@@ -337,23 +337,24 @@ static void steps_do_not_swing(void **state)
 static void who_see_the_same_take_one_step(void **state)
 {
     (void)state;
-    struct ladder ladder = { .step = 1 }, seen = { 0 };
-    assert_int_equal(ladder_common(&seen, (int[LADDER_STEPS]){ 1, 0, 1 }), -1);
-    int common = ladder_common(&seen, (int[LADDER_STEPS]){ 60, 30, 5, 0, 0, 5 });
+    struct quality_ladder ladder = { .step = 1 }, seen = { 0 };
+    assert_int_equal(quality_ladder_common(&seen, (int[QUALITY_LADDER_STEPS]){ 1, 0, 1 }), -1);
+    int common = quality_ladder_common(&seen, (int[QUALITY_LADDER_STEPS]){ 60, 30, 5, 0, 0, 5 });
     assert_int_equal(common, 1); /* the few slow ones do not count */
-    assert_int_equal(ladder_common(&seen, (int[LADDER_STEPS]){ [LADDER_STEPS - 1] = 10 }), LADDER_STEPS - 1);
+    assert_int_equal(quality_ladder_common(&seen, (int[QUALITY_LADDER_STEPS]){ [QUALITY_LADDER_STEPS - 1] = 10 }),
+                     QUALITY_LADDER_STEPS - 1);
     seen.unit_bytes = 90e3; /* too much for 500, not for 100 */
-    assert_int_equal(ladder_common(&seen, (int[LADDER_STEPS]){ 100 }), 0);
-    int crowd = ladder_common(&seen, (int[LADDER_STEPS]){ 500 });
-    assert_true(crowd > 0 && ladder_rung(&seen, crowd).scale == 1);
-    assert_int_equal(ladder_step(&ladder, common), 1);
-    assert_int_equal(ladder_step(&ladder, -1), 1);
+    assert_int_equal(quality_ladder_common(&seen, (int[QUALITY_LADDER_STEPS]){ 100 }), 0);
+    int crowd = quality_ladder_common(&seen, (int[QUALITY_LADDER_STEPS]){ 500 });
+    assert_true(crowd > 0 && quality_ladder_rung(&seen, crowd).scale == 1);
+    assert_int_equal(quality_ladder_step(&ladder, common), 1);
+    assert_int_equal(quality_ladder_step(&ladder, -1), 1);
     ladder.step = 0;
-    assert_int_equal(ladder_step(&ladder, common), 1);
+    assert_int_equal(quality_ladder_step(&ladder, common), 1);
     ladder.step = 3;
-    assert_int_equal(ladder_step(&ladder, common), 1);
+    assert_int_equal(quality_ladder_step(&ladder, common), 1);
     ladder.step = 5;
-    assert_int_equal(ladder_step(&ladder, common), 5);
+    assert_int_equal(quality_ladder_step(&ladder, common), 5);
 }
 
 /* Whatever a client acknowledges, the window is never exceeded, and a good acknowledgement always opens it. */
@@ -370,7 +371,7 @@ static void random_clients(void **state)
         else
             pacer_acked(&pacer, pacer.last_seq + (uint32_t)(rand_r(&seed) % 9) - 4, rand_r(&seed) - RAND_MAX / 2, i * MS);
         assert_true(pacer.flight_count >= 0 && pacer.flight_count <= PACER_MOST && pacer.asked == 0);
-        assert_in_range(pacer.ladder.step, 0, LADDER_STEPS - 1);
+        assert_in_range(pacer.ladder.step, 0, QUALITY_LADDER_STEPS - 1);
     }
     pacer_acked(&pacer, pacer.last_seq, -1, 100000 * MS);
     assert_int_equal(pacer.flight_count, 0);

@@ -56,8 +56,8 @@ static int set_up(void **state)
     for (int i = 0; i < TAGS; i++)
         toy_set(f->snapshot, i, 50, QUALITY_GOOD);
     f->folder = temp_folder_create(); /* nothing is prepared there */
-    f->placing = placing_create(&(struct placing_params){ .log = f->log, .workers = f->workers, .scene = &f->toy->scene,
-                                                          .folder = f->folder, .notify = notify, .notify_arg = f });
+    f->placing = placing_create(&(struct placing_params){
+        .log = f->log, .workers = f->workers, .scene = &f->toy->scene, .folder = f->folder, .notify = notify, .notify_arg = f });
     f->set = place_set_create(f->placing);
     *state = f;
     return 0;
@@ -80,10 +80,10 @@ static int tear_down(void **state)
 }
 
 /* The next answer about gaps; or NULL, once none of the set waits. */
-static struct gaps_answer *collect(struct fixture *f, bool gaps)
+static struct sensor_coverage_answer *collect(struct fixture *f, bool gaps)
 {
     for (int seen = 0;;) {
-        struct gaps_answer *answer = placing_collect(f->placing);
+        struct sensor_coverage_answer *answer = placing_collect(f->placing);
         const struct placed *placed;
         bool waits = false;
         for (size_t i = place_set_get(f->set, &placed); i-- > 0;)
@@ -176,14 +176,14 @@ static void test_gaps_are_of_what_the_set_has_moved(void **state)
     move(f, &(struct place_move){ .tag = 0, .position_m = { 11, 0.5, 0.4 } }, 1, NULL); /* beside the other one */
     collect(f, false);
     for (int moved = 0; moved < 2; moved++) {
-        placing_ask_gaps(f->placing, moved ? f->set : NULL, 0, 0.8, f->snapshot, 7, 3 + (uint32_t)moved);
-        struct gaps_answer *answer = collect(f, true);
+        placing_request_coverage(f->placing, moved ? f->set : NULL, 0, 0.8, f->snapshot, 7, 3 + (uint32_t)moved);
+        struct sensor_coverage_answer *answer = collect(f, true);
         assert_non_null(answer);
         assert_true(answer->client == 7 && answer->seq == 3 + (uint32_t)moved && answer->count == 1);
         assert_int_equal(answer->assets[0].gaps.sensors, TAGS);
         assert_true(moved ? answer->assets[0].gaps.next_m < 0.2 : answer->assets[0].gaps.next_m >= 1);
         assert_true(moved ? answer->assets[0].gaps.far_share > 0.3 : answer->assets[0].gaps.far_share < 0.2);
-        gaps_answer_free(answer);
+        sensor_coverage_answer_free(answer);
     }
 }
 
@@ -195,15 +195,15 @@ static void test_a_set_that_goes_takes_its_questions_along(void **state)
         struct place_set *other = place_set_create(f->placing);
         char why[160];
         assert_true(place_set_moves(other, &(struct place_move){ .tag = 0, .position_m = { 10.5, 0.05 * i, 1 } }, 1, why));
-        placing_ask_gaps(f->placing, other, 0, 0, f->snapshot, 1, 1);
+        placing_request_coverage(f->placing, other, 0, 0, f->snapshot, 1, 1);
         place_set_destroy(&other);
         assert_null(other);
     }
     int answers = 0;
     while (answers < 20)
-        for (struct gaps_answer *answer = collect(f, true), *next; answer; answer = next) {
+        for (struct sensor_coverage_answer *answer = collect(f, true), *next; answer; answer = next) {
             next = answer->next;
-            gaps_answer_free(answer);
+            sensor_coverage_answer_free(answer);
             answers++;
         }
 }

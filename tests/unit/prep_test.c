@@ -19,7 +19,7 @@
 #include "base/atomic_file.h"
 #include "base/mem.h"
 #include "base/text.h"
-#include "preprocess/folder.h"
+#include "preprocess/cache/folder.h"
 #include "tests/support/glb.h"
 #include "tests/support/model_seeds.h"
 #include "tests/support/prep_case.h"
@@ -358,7 +358,7 @@ static void a_field_that_is_constant_needs_no_triangles(void **state)
         json_decref(report);
     }
     assert_in_range((int)triangles[0], 2 * ACROSS * UP, 2 * ACROSS * UP + 8); /* a vertex for each sensor */
-    assert_true(triangles[1] > triangles[0] + 8); /* paper's field has a peak there */
+    assert_true(triangles[1] > triangles[0] + 8);                             /* paper's field has a peak there */
     assert_true(triangles[2] == triangles[1]);
 }
 

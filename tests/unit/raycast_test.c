@@ -81,7 +81,7 @@ static int slow_bodies(const struct visibility *visibility, const struct ray *ra
     int bodies = 0;
     for (size_t i = 0; i < toy->scene.asset_count; i++) {
         const struct scene_asset *at = &toy->scene.assets[i];
-        const struct closed *closed = asset_closed(at->file, 0);
+        const struct closed_bodies *closed = asset_closed(at->file, 0);
         if (visibility_of(visibility, (int)i) != ASSET_SHOWN || !clip_touches(&visibility->clip, at->bounds_min_m, at->bounds_max_m))
             continue;
         for (size_t r = 0; r < closed->run_count; r++)

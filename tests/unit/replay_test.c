@@ -12,7 +12,7 @@
 
 #include "base/clock.h"
 #include "base/mem.h"
-#include "base/when.h"
+#include "base/timestamp.h"
 #include "tests/support/plant_case.h"
 #include "tests/support/sleep.h"
 #include "tests/support/temp.h"
@@ -22,8 +22,8 @@
 
 enum { MOST = 4000 };
 
-struct heard_all {
-    struct heard at[MOST];
+struct event_log {
+    struct sample_event at[MOST];
     _Atomic size_t count;
 };
 
@@ -33,7 +33,7 @@ struct setup {
     struct counters *counters;
     struct store *store;
     struct source *source;
-    struct heard_all heard;
+    struct event_log events;
 };
 
 static int set_up(void **state)
@@ -60,34 +60,35 @@ static int tear_down(void **state)
     return plant_case_tear_down(&c);
 }
 
-static void on_heard(void *arg, const struct heard *heard)
+static void on_sample_event(void *arg, const struct sample_event *event)
 {
-    struct heard_all *all = arg;
+    struct event_log *all = arg;
     if (all->count == MOST)
         return;
-    all->at[all->count] = *heard;
+    all->at[all->count] = *event;
     all->count++; /* only now may it be looked at */
 }
 
 static void play(struct setup *s, const char *keys, const char *csv, const char *tags)
 {
     char *yaml = mem_printf("plant: { name: P }\nassets: [{ id: A, model: m.glb }]\ngroups: [{ id: g, unit: K, min: 0, max: 9 }]\n"
-                            "sources: [{ id: r, type: replay, file: series.csv, %s }]\ntags: tags.csv\n", keys);
+                            "sources: [{ id: r, type: replay, file: series.csv, %s }]\ntags: tags.csv\n",
+                            keys);
     mem_free(temp_write_text(s->c->folder, "series.csv", csv));
     plant_case_load(s->c, yaml, tags);
     mem_free(yaml);
     plant_case_assert_loaded(s->c, 0);
     s->store = store_create(s->c->plant);
-    store_listen(s->store, on_heard, &s->heard);
+    store_listen(s->store, on_sample_event, &s->events);
     s->source = source_start(s->log, s->c->plant, 0, s->store, s->counters);
     assert_non_null(s->source);
 }
 
 static void wait_for_heard(struct setup *s, size_t count)
 {
-    for (int64_t end_ns = clock_mono_ns() + 10 * NS_PER_S; s->heard.count < count && clock_mono_ns() < end_ns;)
+    for (int64_t end_ns = clock_mono_ns() + 10 * NS_PER_S; s->events.count < count && clock_mono_ns() < end_ns;)
         sleep_ns(5 * NS_PER_MS);
-    assert_true(s->heard.count >= count);
+    assert_true(s->events.count >= count);
 }
 
 static void wait_for_link(struct setup *s, bool up)
@@ -98,19 +99,19 @@ static void wait_for_link(struct setup *s, bool up)
 }
 
 /* Of one tag, in the order of hearing. */
-static size_t of_tag(const struct setup *s, int tag, struct heard *out, size_t most)
+static size_t of_tag(const struct setup *s, int tag, struct sample_event *out, size_t most)
 {
     size_t count = 0;
-    for (size_t i = 0; i < s->heard.count && count < most; i++)
-        if (s->heard.at[i].tag == tag && !quality_is_bad(s->heard.at[i].quality))
-            out[count++] = s->heard.at[i];
+    for (size_t i = 0; i < s->events.count && count < most; i++)
+        if (s->events.at[i].tag == tag && !quality_is_bad(s->events.at[i].quality))
+            out[count++] = s->events.at[i];
     return count;
 }
 
 static void every_sample_comes_at_its_time(void **state)
 {
     struct setup *s = *state;
-    struct heard got[20];
+    struct sample_event got[20];
     const double values[] = { 1, 2.5, -3, 0, 4 }, at_s[] = { 0, 10, 20, 50, 60 };
     play(s, "speed: 100", "time_s,shell,TT 2\n0,1,5\n10,2.5,\n20,-3,\n50,0,6\n60,4,7\n", "Tag Name,Address\nTT-1,shell\nTT 2,\n");
     wait_for_heard(s, 8);
@@ -128,7 +129,7 @@ static void every_sample_comes_at_its_time(void **state)
 static void a_loop_goes_on(void **state)
 {
     struct setup *s = *state;
-    struct heard got[MOST];
+    struct sample_event got[MOST];
     play(s, "speed: 1000, loop: yes", "t_s,a\n0,0\n10,1\n20,2\n", "Tag Name,Address\nA,a\n");
     wait_for_heard(s, 30);
     assert_true(store_link_is_up(s->store, 0));
@@ -142,7 +143,7 @@ static void a_loop_goes_on(void **state)
 static void a_long_file_is_read(void **state)
 {
     struct setup *s = *state;
-    struct heard got[5];
+    struct sample_event got[5];
     play(s, "speed: 10", "1000,x,pump,flow,7,,\n1000,x,pump,temp,70,,\n1500,x,pump,flow,8,,\n2000,x,tank,flow,9,,\n",
          "Tag Name,Address\nF,pump/flow\nT,pump/temp\n");
     wait_for_heard(s, 3);
@@ -157,8 +158,8 @@ static void what_is_not_in_the_file_is_bad(void **state)
     struct setup *s = *state;
     play(s, "speed: 1", "t_s,a\n0,0\n10,1\n", "Tag Name,Address\nA,a\nB,b\n");
     wait_for_heard(s, 2);
-    assert_true(s->heard.at[0].tag == 1 && s->heard.at[0].quality == QUALITY_BAD_CONFIGURATION);
-    assert_true(s->heard.at[1].tag == 0 && s->heard.at[1].value == 0);
+    assert_true(s->events.at[0].tag == 1 && s->events.at[0].quality == QUALITY_BAD_CONFIGURATION);
+    assert_true(s->events.at[1].tag == 0 && s->events.at[1].value == 0);
     wait_for_link(s, true);
     int64_t begin_ns = clock_mono_ns();
     source_stop(&s->source); /* long before it ends */
@@ -195,7 +196,7 @@ static void times_may_be_instants(void **state)
         "\xEF\xBB\xBFwhen,a\r\n2026-10-25 02:00,1\r\n\r\n2026-10-25 02:00:00.5,2\r\n",
     };
     struct setup *s = *state;
-    when_use_zone("Europe/Berlin");
+    timestamp_use_zone("Europe/Berlin");
     for (size_t i = 0; i < 3; i++) {
         char *path = temp_write_text(s->c->folder, "series.csv", wide[i]);
         check_series(path, "a", 2, i < 2 ? 3600.5 : 0.5, 2);
@@ -203,7 +204,8 @@ static void times_may_be_instants(void **state)
     }
     char *path = temp_write_text(s->c->folder, "series.csv", "time,a\n2026-10-25 02:30,1\n2026-10-25 02:10,2\n");
     check_series(path, "a", 2, 2400, 2);
-    mem_free(temp_write_text(s->c->folder, "series.csv", "Tag,Time,Value,Quality,Unit\nb,2026-10-25T00:00:10Z,3,0,K\n"
+    mem_free(temp_write_text(s->c->folder, "series.csv",
+                             "Tag,Time,Value,Quality,Unit\nb,2026-10-25T00:00:10Z,3,0,K\n"
                              "b,2026-10-25T00:00:20Z,4,0,K\na,2026-10-25T00:00:00Z,1,0,\na,2026-10-25T00:00:07Z,,0x80050000,\n"));
     check_series(path, "b", 2, 20, 4);
     check_series(path, "a", 1, 0, 1);
@@ -214,19 +216,19 @@ static void times_may_be_instants(void **state)
     assert_false(series_read(&series, path, "a", &found, why));
     assert_non_null(strstr(why, "series.csv:1: no column is the time: expected a name that ends in _ms, _s, _min or _h, or instants"));
     mem_free(path);
-    when_use_zone("UTC");
+    timestamp_use_zone("UTC");
 }
 
 static void a_file_with_units_is_converted(void **state)
 {
     struct setup *s = *state;
-    struct heard got[2] = { 0 };
+    struct sample_event got[2] = { 0 };
     play(s, "speed: 1", "Tag,Time,Value,Unit\nA,2026-10-25T00:00:00Z,20,degC\nB,2026-10-25T00:00:00Z,3,bar\n",
          "Tag Name,Address,Group,Asset,X,Y,Z\nA,,g,A,0,0,0\nB,,g,A,0,0,0\n");
     wait_for_heard(s, 2);
     assert_int_equal(of_tag(s, 0, got, 1), 1);
     assert_true(fabs(got[0].value - 293.15) < 1e-9);
-    assert_true(s->heard.at[0].tag == 1 && s->heard.at[0].quality == QUALITY_BAD_CONFIGURATION);
+    assert_true(s->events.at[0].tag == 1 && s->events.at[0].quality == QUALITY_BAD_CONFIGURATION);
 }
 
 int main(void)

@@ -10,8 +10,8 @@
 #include <cmocka.h>
 
 #include "base/mem.h"
-#include "preprocess/progress.h"
-#include "preprocess/table.h"
+#include "preprocess/pipeline/progress.h"
+#include "preprocess/report/text_table.h"
 #include "tests/support/boxes.h"
 #include "tests/support/prep_case.h"
 
@@ -202,23 +202,23 @@ static void the_plant_file_sets_the_tolerance(void **state)
 
 static void tables_fit_what_is_in_them(void **state)
 {
-    static const struct table_column columns[] = { { "name", false }, { "empty", false }, { "number", true } };
-    struct table table = { .columns = columns, .column_count = 3 };
+    static const struct text_table_column columns[] = { { "name", false }, { "empty", false }, { "number", true } };
+    struct text_table table = { .columns = columns, .column_count = 3 };
     char text[400] = { 0 };
     (void)state;
     FILE *out = fmemopen(text, sizeof(text), "w");
     for (int row = 0; row < 3; row++) {
-        table_add(&table, "%s", row == 0 ? "K\xc3\xbchler" : "P");
-        table_add(&table, "%s", "");
-        table_add(&table, "%s", table_number(row == 0 ? 1234567 : 12).text);
+        text_table_add(&table, "%s", row == 0 ? "K\xc3\xbchler" : "P");
+        text_table_add(&table, "%s", "");
+        text_table_add(&table, "%s", text_table_number(row == 0 ? 1234567 : 12).text);
     }
-    table_print(&table, 2, out);
+    text_table_print(&table, 2, out);
     fclose(out);
     assert_string_equal(text, "name       number\nK\xc3\xbchler  1,234,567\nP              12\n... and 1 more: --report text has all\n");
-    table_finish(&table);
-    assert_string_equal(table_number(0).text, "0");
-    assert_string_equal(table_number(100).text, "100");
-    assert_string_equal(table_number(1000).text, "1,000");
+    text_table_finish(&table);
+    assert_string_equal(text_table_number(0).text, "0");
+    assert_string_equal(text_table_number(100).text, "100");
+    assert_string_equal(text_table_number(1000).text, "1,000");
 }
 
 static void the_time_left_follows_the_work(void **state)
@@ -252,10 +252,9 @@ int main(void)
 {
     cmocka_set_message_output(CM_OUTPUT_TAP);
     const struct CMUnitTest tests[] = {
-        WITH_PLANT(numbers_are_those_of_the_model),       WITH_PLANT(what_is_wrong_comes_first),
-        WITH_PLANT(an_unchanged_asset_keeps_its_report),
-        WITH_PLANT(the_plant_file_sets_the_tolerance),  cmocka_unit_test(tables_fit_what_is_in_them),
-        cmocka_unit_test(the_time_left_follows_the_work),
+        WITH_PLANT(numbers_are_those_of_the_model),      WITH_PLANT(what_is_wrong_comes_first),
+        WITH_PLANT(an_unchanged_asset_keeps_its_report), WITH_PLANT(the_plant_file_sets_the_tolerance),
+        cmocka_unit_test(tables_fit_what_is_in_them),    cmocka_unit_test(the_time_left_follows_the_work),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

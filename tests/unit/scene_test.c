@@ -31,15 +31,14 @@ static const char plant_text[] =
     "tags: tags.csv\n";
 
 /* B's places are where those of the asset frame come to lie: (x, y, z) -> (10 - y, 20 + x, 30 + z). */
-static const char tags_text[] =
-    "Tag Name,Group,Asset,Node,X,Y,Z\n"
-    "a1,t,A,,1,2,3\n"
-    "b1,t,B,,8,21,33\n"
-    "c1,t,C,,1,2,3\n"
-    "a2,t,A,TI-2,,,\n"
-    "b2,t,B,TI-2,,,\n"
-    "c2,t,C,TI-2,,,\n"
-    "x,t,,,,,\n";
+static const char tags_text[] = "Tag Name,Group,Asset,Node,X,Y,Z\n"
+                                "a1,t,A,,1,2,3\n"
+                                "b1,t,B,,8,21,33\n"
+                                "c1,t,C,,1,2,3\n"
+                                "a2,t,A,TI-2,,,\n"
+                                "b2,t,B,TI-2,,,\n"
+                                "c2,t,C,TI-2,,,\n"
+                                "x,t,,,,,\n";
 
 struct fixture {
     char *folder, *prepared;
@@ -54,17 +53,31 @@ static void write_asset(const struct fixture *f, const char *name, double sensor
     const uint32_t indices[3] = { 0, 1, 2 };
     const struct asset_primitive primitive = { .index_count = 3 };
     const uint32_t none = ASSET_NO_TEXTURE;
-    const struct asset_material plain = { .base_color_texture = none, .metallic_roughness_texture = none, .normal_texture = none,
-                                          .occlusion_texture = none, .emissive_texture = none };
+    const struct asset_material plain = { .base_color_texture = none,
+                                          .metallic_roughness_texture = none,
+                                          .normal_texture = none,
+                                          .occlusion_texture = none,
+                                          .emissive_texture = none };
     const struct asset_sensor sensors[2] = {
         { .position_m = { (float)(sensor_x_m - 1), 1, 2 }, .surface_m = { 0, 1, 1.5f }, .surface_distance_m = 0.5f },
         { .position_m = { 3, 1, -1 }, .surface_m = { 3, 0, 0 }, .node_hash = XXH3_64bits(node, strlen(node)) },
     };
     const float geodesic[6] = { 0, 1, 2, 3, 4, 5 };
     const struct asset_parts parts = {
-        .key = 7, .origin_m = { 1, 1, 1 }, .positions_m = positions, .normals = normals, .indices = indices, .primitives = &primitive,
-        .materials = &plain, .sensors = sensors, .geodesic_m = geodesic, .vertex_count = 3, .index_count = 3, .primitive_count = 1,
-        .material_count = 1, .sensor_count = sensor_count,
+        .key = 7,
+        .origin_m = { 1, 1, 1 },
+        .positions_m = positions,
+        .normals = normals,
+        .indices = indices,
+        .primitives = &primitive,
+        .materials = &plain,
+        .sensors = sensors,
+        .geodesic_m = geodesic,
+        .vertex_count = 3,
+        .index_count = 3,
+        .primitive_count = 1,
+        .material_count = 1,
+        .sensor_count = sensor_count,
     };
     size_t bytes;
     void *file = asset_build(&parts, &bytes);
@@ -309,12 +322,12 @@ static void home_is_the_view_of_the_plant(void **state)
     assert_non_null(scene);
     scene_home(scene, 1.5, &camera);
     assert_true(camera_valid(&camera));
-    assert_true(scene->outline_count >= 4);
+    assert_true(scene->extreme_count >= 4);
     for (int i = 0; i < 3; i++) { /* the outermost places are within the plant, and reach about as far */
         double least = INFINITY, most = -INFINITY, slack = 0.15 * (scene->bounds_max_m[i] - scene->bounds_min_m[i]) + 1e-6;
-        for (size_t n = 0; n < scene->outline_count; n++) {
-            least = fmin(least, scene->outline_m[n][i]);
-            most = fmax(most, scene->outline_m[n][i]);
+        for (size_t n = 0; n < scene->extreme_count; n++) {
+            least = fmin(least, scene->extremes_m[n][i]);
+            most = fmax(most, scene->extremes_m[n][i]);
         }
         assert_true(least >= scene->bounds_min_m[i] - 1e-4 && most <= scene->bounds_max_m[i] + 1e-4);
         assert_true(least <= scene->bounds_min_m[i] + slack && most >= scene->bounds_max_m[i] - slack);
@@ -341,14 +354,14 @@ static void home_is_of_what_is_shown_at_the_start(void **state)
     f->plant->assets[1].start = PLANT_START_HIDDEN;
     struct scene *scene = scene_create(f->log, f->plant, f->prepared);
     assert_non_null(scene);
-    assert_true(scene->outline_count >= 4);
-    for (size_t n = 0; n < scene->outline_count; n++)
-        assert_true(scene->outline_m[n][0] < scene->assets[1].bounds_min_m[0]);
+    assert_true(scene->extreme_count >= 4);
+    for (size_t n = 0; n < scene->extreme_count; n++)
+        assert_true(scene->extremes_m[n][0] < scene->assets[1].bounds_min_m[0]);
     scene_destroy(&scene);
     f->plant->assets[0].start = f->plant->assets[2].start = PLANT_START_HIDDEN; /* somewhere one has to look */
     scene = scene_create(f->log, f->plant, f->prepared);
     assert_non_null(scene);
-    assert_true(scene->outline_count >= 4);
+    assert_true(scene->extreme_count >= 4);
     scene_destroy(&scene);
 }
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A session without socket, clock or renderer: what it wants, what it is told, what it answers. */
-#include "net/session/session.h"
+#include "session/session.h"
 
 #include <jansson.h>
 #include <setjmp.h>
@@ -12,7 +12,7 @@
 
 #include "base/clock.h"
 #include "base/mem.h"
-#include "net/message/reply.h"
+#include "session/reply.h"
 #include "tests/support/session_case.h"
 #include "value/quality.h"
 
@@ -66,47 +66,47 @@ static void greet(struct session_case *f)
 }
 
 /* Asks the painter that there is not. False: the session wants nothing, or the painter would refuse. */
-static bool ask(struct session_case *f, struct wish *wish)
+static bool ask(struct session_case *f, struct frame_request *wish)
 {
-    if (!session_wish(f->session, f->now_ns, wish) || wish->only_replace)
+    if (!session_next_request(f->session, f->now_ns, wish) || wish->only_replace)
         return false;
-    session_asked(f->session, wish, false);
+    session_requested(f->session, wish, false);
     return true;
 }
 
-static struct picture *empty_picture(struct session_case *f, const struct wish *wish)
+static struct encoded_frame *empty_picture(struct session_case *f, const struct frame_request *wish)
 {
-    struct picture *picture = mem_new(sizeof(*picture));
-    *picture = (struct picture){ .client = 7, .number = ++f->number, .wish = *wish };
+    struct encoded_frame *picture = mem_new(sizeof(*picture));
+    *picture = (struct encoded_frame){ .client = 7, .number = ++f->number, .wish = *wish };
     return picture;
 }
 
-static void paint_nothing(struct session_case *f, const struct wish *wish)
+static void paint_nothing(struct session_case *f, const struct frame_request *wish)
 {
-    struct picture *picture = empty_picture(f, wish);
+    struct encoded_frame *picture = empty_picture(f, wish);
     picture->failed = true;
-    session_on_picture(f->session, picture);
+    session_on_frame(f->session, picture);
 }
 
-static void paint(struct session_case *f, const struct wish *wish, bool same)
+static void paint(struct session_case *f, const struct frame_request *wish, bool same)
 {
-    struct picture *picture = empty_picture(f, wish);
+    struct encoded_frame *picture = empty_picture(f, wish);
     if (!same) {
         struct frame *frame = frame_create(16, 16);
         frame->view = wish->view;
         picture->packet = packet_create(frame, WIRE_CODEC_JPEG, true, "jpeg", 4);
         frame_unref(&frame);
     }
-    session_on_picture(f->session, picture);
+    session_on_frame(f->session, picture);
 }
 
 static uint32_t send_picture(struct session_case *f)
 {
     uint32_t seq = 0;
-    struct picture *picture = session_next_picture(f->session, f->now_ns, &seq);
+    struct encoded_frame *picture = session_next_frame(f->session, f->now_ns, &seq);
     if (picture)
         session_wrote(f->session, true, f->now_ns);
-    picture_destroy(&picture);
+    encoded_frame_destroy(&picture);
     return seq;
 }
 
@@ -118,25 +118,25 @@ static void ack(struct session_case *f, uint32_t seq)
 }
 
 /* It is drawn, sent, and acknowledged after so long. */
-static void carry(struct session_case *f, const struct wish *wish, size_t bytes, int64_t way_ns)
+static void carry(struct session_case *f, const struct frame_request *wish, size_t bytes, int64_t way_ns)
 {
-    struct picture *picture = empty_picture(f, wish);
+    struct encoded_frame *picture = empty_picture(f, wish);
     struct frame *frame = frame_create(16, 16);
     uint8_t *payload = mem_array(bytes, 1);
     frame->view = wish->view;
     picture->packet = packet_create(frame, WIRE_CODEC_JPEG, true, payload, bytes);
     frame_unref(&frame);
     mem_free(payload);
-    session_on_picture(f->session, picture);
+    session_on_frame(f->session, picture);
     uint32_t seq = send_picture(f);
     f->now_ns += way_ns;
     ack(f, seq);
 }
 
 /* One picture all the way. */
-static struct wish show(struct session_case *f)
+static struct frame_request show(struct session_case *f)
 {
-    struct wish wish = { 0 };
+    struct frame_request wish = { 0 };
     if (!ask(f, &wish))
         fail_msg("no picture is wanted");
     paint(f, &wish, false);
@@ -145,14 +145,14 @@ static struct wish show(struct session_case *f)
 }
 
 /* New readings under a refined picture: quick says whether the render thread can colour it again, or draws a moving one instead. */
-static struct wish show_data(struct session_case *f, bool quick)
+static struct frame_request show_data(struct session_case *f, bool quick)
 {
-    struct wish wish = { 0 };
+    struct frame_request wish = { 0 };
     session_on_data(f->session, f->now_ns);
     if (!ask(f, &wish))
         fail_msg("no picture is wanted");
     if (wish.or_moving && !quick)
-        wish.view.tier = TIER_MOVING;
+        wish.view.tier = TIER_PREVIEW;
     paint(f, &wish, false);
     ack(f, send_picture(f));
     return wish;
@@ -161,13 +161,13 @@ static struct wish show_data(struct session_case *f, bool quick)
 static void nothing_before_hello(void **state)
 {
     struct session_case *f = *state;
-    struct wish wish;
-    assert_false(session_wish(f->session, f->now_ns, &wish));
+    struct frame_request wish;
+    assert_false(session_next_request(f->session, f->now_ns, &wish));
     session_on_data(f->session, f->now_ns);
     expect(f, "");
     say(f, "{\"type\":\"resize\",\"width\":640,\"height\":360}");
     expect_error(f, "hello_first");
-    assert_false(session_wish(f->session, f->now_ns, &wish));
+    assert_false(session_next_request(f->session, f->now_ns, &wish));
     say(f, HELLO);
     say(f, HELLO);
     expect(f, "welcome error status tags ");
@@ -200,10 +200,10 @@ static void welcome_tells_the_plant_and_no_addresses(void **state)
 static void first_picture_comes_at_once_then_refined_then_nothing(void **state)
 {
     struct session_case *f = *state;
-    struct wish wish;
+    struct frame_request wish;
     greet(f);
     assert_true(ask(f, &wish));
-    assert_true(wish.always && wish.urgency == URGENCY_INPUT && wish.view.tier == TIER_MOVING && !wish.quality.full_chroma);
+    assert_true(wish.always && wish.urgency == URGENCY_INPUT && wish.view.tier == TIER_PREVIEW && !wish.quality.full_chroma);
     paint(f, &wish, false);
     assert_int_equal(send_picture(f), 1);
     ack(f, 1);
@@ -211,7 +211,7 @@ static void first_picture_comes_at_once_then_refined_then_nothing(void **state)
     assert_false(ask(f, &wish));
     f->now_ns += 150 * MS;
     assert_true(ask(f, &wish));
-    assert_true(wish.urgency == URGENCY_REFINE && wish.view.tier == TIER_STILL && wish.quality.full_chroma && wish.quality.quality >= 90);
+    assert_true(wish.urgency == URGENCY_REFINE && wish.view.tier == TIER_REFINED && wish.quality.full_chroma && wish.quality.quality >= 90);
     paint(f, &wish, false);
     ack(f, send_picture(f));
     f->now_ns += 60 * NS_PER_S;
@@ -221,7 +221,7 @@ static void first_picture_comes_at_once_then_refined_then_nothing(void **state)
 static void newest_camera_wins_and_the_last_state_arrives(void **state)
 {
     struct session_case *f = *state;
-    struct wish wish;
+    struct frame_request wish;
     greet(f);
     show(f);
     for (uint32_t seq = 1; seq <= 50; seq++) { /* nobody acknowledges: two pictures, then none */
@@ -244,23 +244,23 @@ static void newest_camera_wins_and_the_last_state_arrives(void **state)
 static void a_full_window_only_replaces(void **state)
 {
     struct session_case *f = *state;
-    struct wish wish;
+    struct frame_request wish;
     greet(f);
     assert_true(ask(f, &wish));
     say(f, "{\"type\":\"camera\",\"seq\":1,\"eye\":[9,9,9],\"target\":[0,0,1]}");
     assert_true(ask(f, &wish));
     say(f, "{\"type\":\"camera\",\"seq\":2,\"eye\":[8,9,9],\"target\":[0,0,1]}");
-    assert_true(session_wish(f->session, f->now_ns, &wish));
+    assert_true(session_next_request(f->session, f->now_ns, &wish));
     assert_true(wish.only_replace && wish.view.camera_seq == 2);
-    session_asked(f->session, &wish, true);
+    session_requested(f->session, &wish, true);
     assert_int_equal(f->session->pacer.asked, 2);
-    assert_false(session_wish(f->session, f->now_ns, &wish));
+    assert_false(session_next_request(f->session, f->now_ns, &wish));
 }
 
 static void equal_pictures_free_their_place(void **state)
 {
     struct session_case *f = *state;
-    struct wish wish;
+    struct frame_request wish;
     greet(f);
     for (int i = 0; i < 10; i++) {
         say(f, "{\"type\":\"camera\",\"seq\":1,\"eye\":[9,9,9],\"target\":[0,0,1]}");
@@ -274,7 +274,7 @@ static void equal_pictures_free_their_place(void **state)
 static void without_a_first_picture_a_session_is_refused(void **state)
 {
     struct session_case *f = *state;
-    struct wish wish;
+    struct frame_request wish;
     greet(f);
     assert_true(ask(f, &wish));
     paint_nothing(f, &wish);
@@ -285,7 +285,7 @@ static void without_a_first_picture_a_session_is_refused(void **state)
 static void a_view_that_cannot_be_drawn_is_said_once(void **state)
 {
     struct session_case *f = *state;
-    struct wish wish;
+    struct frame_request wish;
     greet(f);
     show(f);
     for (int camera = 1; camera <= 2; camera++) {
@@ -309,7 +309,7 @@ static void a_view_that_cannot_be_drawn_is_said_once(void **state)
 static void a_view_that_cannot_be_drawn_is_tried_again(void **state)
 {
     struct session_case *f = *state;
-    struct wish wish;
+    struct frame_request wish;
     greet(f);
     show(f);
     say(f, "{\"type\":\"camera\",\"seq\":1,\"eye\":[9,9,5],\"target\":[0,0,1]}");
@@ -320,13 +320,13 @@ static void a_view_that_cannot_be_drawn_is_tried_again(void **state)
         f->now_ns += 100 * MS;
         if (!ask(f, &wish))
             continue;
-        assert_true(wish.view.tier == TIER_STILL && wish.view.camera_seq == 1);
+        assert_true(wish.view.tier == TIER_REFINED && wish.view.camera_seq == 1);
         paint_nothing(f, &wish);
         tries++;
     }
     assert_in_range(tries, 3, 6);
     f->now_ns += 3 * NS_PER_S;
-    assert_int_equal(show(f).view.tier, TIER_STILL);
+    assert_int_equal(show(f).view.tier, TIER_REFINED);
     f->now_ns += 10 * NS_PER_S;
     assert_false(ask(f, &wish));
 }
@@ -334,21 +334,21 @@ static void a_view_that_cannot_be_drawn_is_tried_again(void **state)
 static void overtaken_pictures_are_not_sent(void **state)
 {
     struct session_case *f = *state;
-    struct wish wish;
+    struct frame_request wish;
     greet(f);
     assert_true(ask(f, &wish));
     say(f, "{\"type\":\"camera\",\"seq\":1,\"eye\":[9,9,9],\"target\":[0,0,1]}");
-    struct wish first = wish;
+    struct frame_request first = wish;
     assert_true(ask(f, &wish));
     f->number = 1;
     paint(f, &wish, false); /* number 2 */
     f->number = 0;
     paint(f, &first, false); /* number 1 comes later */
     uint32_t seq;
-    struct picture *picture = session_next_picture(f->session, f->now_ns, &seq);
+    struct encoded_frame *picture = session_next_frame(f->session, f->now_ns, &seq);
     assert_int_equal(picture->wish.view.camera_seq, 1);
-    picture_destroy(&picture);
-    assert_null(session_next_picture(f->session, f->now_ns, &seq));
+    encoded_frame_destroy(&picture);
+    assert_null(session_next_frame(f->session, f->now_ns, &seq));
     assert_int_equal(f->session->pacer.asked, 0);
     assert_int_equal(f->session->dropped, 1);
 }
@@ -356,14 +356,14 @@ static void overtaken_pictures_are_not_sent(void **state)
 static void data_under_a_still_view_is_drawn_once_and_refined(void **state)
 {
     struct session_case *f = *state;
-    struct wish wish;
+    struct frame_request wish;
     greet(f);
     show(f);
     f->now_ns += NS_PER_S;
-    assert_true(show(f).view.tier == TIER_STILL);
+    assert_true(show(f).view.tier == TIER_REFINED);
     session_on_data(f->session, f->now_ns);
     assert_true(ask(f, &wish));
-    assert_true(!wish.always && wish.view.tier == TIER_STILL && wish.view.input_ns == f->now_ns);
+    assert_true(!wish.always && wish.view.tier == TIER_REFINED && wish.view.input_ns == f->now_ns);
     paint(f, &wish, true);
     assert_false(ask(f, &wish));
 }
@@ -371,7 +371,7 @@ static void data_under_a_still_view_is_drawn_once_and_refined(void **state)
 static void readings_come_with_the_next_camera_of_a_slow_drag(void **state)
 {
     struct session_case *f = *state;
-    struct wish wish;
+    struct frame_request wish;
     greet(f);
     show(f);
     for (int camera = 1; camera <= 5; camera++) {
@@ -394,7 +394,7 @@ static void readings_come_with_the_next_camera_of_a_slow_drag(void **state)
 static void nobody_is_refined_while_another_moves(void **state)
 {
     struct session_case *f = *state;
-    struct wish wish;
+    struct frame_request wish;
     greet(f);
     show(f);
     for (int i = 0; i < 9; i++) {
@@ -402,41 +402,41 @@ static void nobody_is_refined_while_another_moves(void **state)
         f->world.moving_until_ns = f->now_ns + 200 * MS;
         assert_false(ask(f, &wish));
         session_on_data(f->session, f->now_ns);
-        assert_true(show(f).view.tier == TIER_MOVING);
+        assert_true(show(f).view.tier == TIER_PREVIEW);
     }
     f->now_ns += 250 * MS;
     assert_true(ask(f, &wish));
-    assert_true(wish.view.tier == TIER_STILL);
+    assert_true(wish.view.tier == TIER_REFINED);
 }
 
 static void others_may_move_for_a_while_not_for_ever(void **state)
 {
     struct session_case *f = *state;
-    struct wish wish;
+    struct frame_request wish;
     greet(f);
     show(f);
     f->now_ns += 11 * NS_PER_S;
     f->world.moving_until_ns = f->now_ns + 200 * MS;
     assert_true(ask(f, &wish));
-    assert_true(wish.view.tier == TIER_STILL);
+    assert_true(wish.view.tier == TIER_REFINED);
 }
 
 static void data_on_a_loaded_server_is_not_refined_at_once(void **state)
 {
     struct session_case *f = *state;
-    struct wish wish;
+    struct frame_request wish;
     greet(f);
     show(f);
     f->now_ns += NS_PER_S;
-    assert_true(show(f).view.tier == TIER_STILL);
+    assert_true(show(f).view.tier == TIER_REFINED);
     f->world.loaded = true;
     wish = show_data(f, false);
-    assert_true(wish.view.tier == TIER_MOVING && wish.urgency == URGENCY_DATA);
+    assert_true(wish.view.tier == TIER_PREVIEW && wish.urgency == URGENCY_DATA);
     f->now_ns += 900 * MS;
     assert_false(ask(f, &wish));
     f->now_ns += 200 * MS;
     assert_true(ask(f, &wish));
-    assert_true(wish.view.tier == TIER_STILL);
+    assert_true(wish.view.tier == TIER_REFINED);
 }
 
 static void data_on_a_loaded_server_does_not_put_refinement_off_for_ever(void **state)
@@ -446,11 +446,11 @@ static void data_on_a_loaded_server_does_not_put_refinement_off_for_ever(void **
     greet(f);
     show(f);
     f->now_ns += NS_PER_S;
-    assert_true(show(f).view.tier == TIER_STILL);
+    assert_true(show(f).view.tier == TIER_REFINED);
     f->world.loaded = true;
     for (int i = 0; i < 20; i++) { /* 10 s */
         f->now_ns += 500 * MS;
-        refined += show_data(f, false).view.tier == TIER_STILL;
+        refined += show_data(f, false).view.tier == TIER_REFINED;
     }
     assert_in_range(refined, 2, 4);
 }
@@ -459,16 +459,16 @@ static void data_on_a_loaded_server_does_not_put_refinement_off_for_ever(void **
 static void data_leaves_a_refined_picture_that_is_quick_to_color(void **state)
 {
     struct session_case *f = *state;
-    struct wish wish;
+    struct frame_request wish;
     greet(f);
     show(f);
     f->now_ns += NS_PER_S;
-    assert_true(show(f).view.tier == TIER_STILL);
+    assert_true(show(f).view.tier == TIER_REFINED);
     f->world.loaded = true;
     for (int i = 0; i < 120; i++) {
         f->now_ns += 500 * MS;
         wish = show_data(f, true);
-        assert_true(wish.view.tier == TIER_STILL && wish.urgency == URGENCY_DATA && wish.quality.full_chroma);
+        assert_true(wish.view.tier == TIER_REFINED && wish.urgency == URGENCY_DATA && wish.quality.full_chroma);
     }
     f->now_ns += 5 * NS_PER_S;
     assert_false(ask(f, &wish));
@@ -478,7 +478,7 @@ static void data_leaves_a_refined_picture_that_is_quick_to_color(void **state)
 static void a_slow_client_gets_less_and_everything_in_the_end(void **state)
 {
     struct session_case *f = *state;
-    struct wish wish;
+    struct frame_request wish;
     greet(f);
     for (int i = 1; i <= 40; i++) {
         char text[96];
@@ -492,7 +492,7 @@ static void a_slow_client_gets_less_and_everything_in_the_end(void **state)
     assert_int_equal(f->session->view.width_px, 640);
     f->now_ns += 300 * MS;
     assert_true(ask(f, &wish));
-    assert_true(wish.view.tier == TIER_STILL && wish.view.width_px == 640 && !wish.quality.full_chroma);
+    assert_true(wish.view.tier == TIER_REFINED && wish.view.width_px == 640 && !wish.quality.full_chroma);
     carry(f, &wish, 100000, 800 * MS);
     f->now_ns += 1100 * MS;
     assert_true(ask(f, &wish));
@@ -505,16 +505,16 @@ static void a_slow_client_gets_less_and_everything_in_the_end(void **state)
 static void a_refined_picture_that_is_out_of_date_is_not_sent_on(void **state)
 {
     struct session_case *f = *state;
-    struct wish wish;
+    struct frame_request wish;
     uint32_t seq;
     greet(f);
     assert_true(ask(f, &wish));
     carry(f, &wish, 50000, 400 * MS);
     f->now_ns += 300 * MS;
     assert_true(ask(f, &wish));
-    assert_true(wish.view.tier == TIER_STILL);
+    assert_true(wish.view.tier == TIER_REFINED);
     paint(f, &wish, false);
-    struct picture *sending = session_next_picture(f->session, f->now_ns, &seq);
+    struct encoded_frame *sending = session_next_frame(f->session, f->now_ns, &seq);
     assert_false(session_gives_up(f->session, sending, 400000, f->now_ns));
     say(f, "{\"type\":\"camera\",\"seq\":1,\"eye\":[9,9,9],\"target\":[0,0,1]}");
     assert_false(session_gives_up(f->session, sending, 1000, f->now_ns));
@@ -524,13 +524,13 @@ static void a_refined_picture_that_is_out_of_date_is_not_sent_on(void **state)
     session_wrote(f->session, true, f->now_ns);
     assert_true(ask(f, &wish));
     assert_true(wish.always && wish.view.camera_seq == 1);
-    picture_destroy(&sending);
+    encoded_frame_destroy(&sending);
 }
 
 static void who_takes_nothing_is_paused_and_costs_nothing(void **state)
 {
     struct session_case *f = *state;
-    struct wish wish;
+    struct frame_request wish;
     greet(f);
     assert_true(ask(f, &wish));
     paint(f, &wish, false);
@@ -557,7 +557,7 @@ static void who_takes_nothing_is_paused_and_costs_nothing(void **state)
 static void hidden_pages_get_nothing(void **state)
 {
     struct session_case *f = *state;
-    struct wish wish;
+    struct frame_request wish;
     greet(f);
     show(f);
     say(f, "{\"type\":\"visible\",\"visible\":false}");
@@ -709,15 +709,15 @@ static void a_fit_is_answered_with_a_camera_and_moves_nothing(void **state)
 static void a_pick_is_asked_once_and_answered(void **state)
 {
     struct session_case *f = *state;
-    struct pick_order order;
+    struct pick_query order;
     greet(f);
-    assert_false(session_pick(f->session, &order));
+    assert_false(session_next_pick(f->session, &order));
     say(f, "{\"type\":\"pick\",\"seq\":5,\"x\":10.5,\"y\":20}");
     say(f, "{\"type\":\"pick\",\"seq\":6,\"x\":11,\"y\":20,\"camera\":{\"eye\":[1,2,3],\"target\":[4,5,6]}}");
-    assert_true(session_pick(f->session, &order));
+    assert_true(session_next_pick(f->session, &order));
     assert_true(order.client == f->session->id && order.seq == 6 && order.x_px == 11 && order.view.camera.eye_m[2] == 3);
     assert_true(f->session->view.camera.eye_m[2] != 3);
-    assert_false(session_pick(f->session, &order));
+    assert_false(session_next_pick(f->session, &order));
     struct pick_answer answer = { .order = order, .pick = { .asset = 0, .state = PICK_MEASURED, .value = 30.5, .sensor = 0 } };
     answer.pick.nearest_count = 1;
     answer.pick.nearest[0] = (struct pick_sensor){ .tag = 0, .distance_m = 0.25, .value = 30.5 };
@@ -744,7 +744,7 @@ static void a_pick_is_asked_once_and_answered(void **state)
 static void a_follower_is_shown_its_leaders_view(void **state)
 {
     struct session_case *f = *state;
-    struct wish wish;
+    struct frame_request wish;
     struct session *leader = session_create(&f->world, 8, f->now_ns);
     static const char hello[] = "{\"type\":\"hello\",\"width\":800,\"height\":600,\"codecs\":[\"jpeg\"]}";
     static const char camera[] = "{\"type\":\"camera\",\"seq\":77,\"eye\":[3,4,5],\"target\":[0,0,1]}";
@@ -827,7 +827,7 @@ static void pings_come_back_exactly(void **state)
 static void codecs_are_chosen_and_chosen_again(void **state)
 {
     struct session_case *f = *state;
-    struct wish wish;
+    struct frame_request wish;
     f->world.codecs = 1u << WIRE_CODEC_JPEG | 1u << WIRE_CODEC_H264;
     say(f, "{\"type\":\"hello\",\"width\":640,\"height\":360,\"codecs\":[\"auto\",\"h264\",\"jpeg\"]}");
     expect(f, "welcome status tags ");

@@ -10,8 +10,8 @@
 #include <cmocka.h>
 
 #include "base/clock.h"
-#include "net/past.h"
-#include "net/session/session.h"
+#include "service/history_loader.h"
+#include "session/session.h"
 #include "tests/support/session_case.h"
 #include "value/quality.h"
 
@@ -23,7 +23,7 @@ static int set_up(void **state)
     session_case_set_up(state);
     struct session_case *f = *state;
     f->world.live = false;
-    f->world.moments = moments_create();
+    f->world.snapshot_cache = snapshot_cache_create();
     f->world.history_first_us = NOW_US - INT64_C(3600000000);
     return 0;
 }
@@ -31,9 +31,9 @@ static int set_up(void **state)
 static int tear_down(void **state)
 {
     struct session_case *f = *state;
-    struct moments *moments = f->world.moments;
+    struct snapshot_cache *snapshot_cache = f->world.snapshot_cache;
     session_case_tear_down(state);
-    moments_destroy(&moments);
+    snapshot_cache_destroy(&snapshot_cache);
     return 0;
 }
 
@@ -104,7 +104,7 @@ static void go(struct session_case *f, int64_t ago_s, double speed)
 static double wanted(struct session_case *f)
 {
     int64_t at_us;
-    return session_wants_moment(f->session, f->now_ns, utc_ns(f), &at_us) ? (double)(NOW_US - at_us) / 1e6 : (double)NAN;
+    return session_wants_historical_snapshot(f->session, f->now_ns, utc_ns(f), &at_us) ? (double)(NOW_US - at_us) / 1e6 : (double)NAN;
 }
 
 static void bring(struct session_case *f, double ago_s, double value)
@@ -113,22 +113,22 @@ static void bring(struct session_case *f, double ago_s, double value)
     int64_t at_us = NOW_US - (int64_t)llround(ago_s * 1e6);
     snapshot->taken_utc_ns = at_us * 1000;
     snapshot->readings[0] = (struct reading){ .value = value };
-    moments_add(f->world.moments, at_us, snapshot);
+    snapshot_cache_add(f->world.snapshot_cache, at_us, snapshot);
     snapshot_destroy(&snapshot);
-    session_on_moment(f->session, at_us, true, f->now_ns);
+    session_on_historical_snapshot(f->session, at_us, true, f->now_ns);
 }
 
 static void test_an_instant_is_shown_once_it_was_read(void **state)
 {
     struct session_case *f = *state;
-    struct wish wish;
+    struct frame_request wish;
     greet(f, "");
     go(f, 60, 0);
     assert_true(f->session->view.at_us == 0);
     assert_true(wanted(f) == 60);
     assert_true(isnan(wanted(f))); /* asked once */
     bring(f, 60, 5);
-    assert_true(session_wish(f->session, f->now_ns, &wish));
+    assert_true(session_next_request(f->session, f->now_ns, &wish));
     assert_true(wish.view.at_us == NOW_US - 60000000 && wish.view.field.slot == 1 && wish.urgency == URGENCY_INPUT);
     assert_true(session_snapshot(f->session)->readings[0].value == 5);
     json_t *tags = hear(f, "tags");
@@ -176,7 +176,7 @@ static void test_play_goes_on_by_the_clock_and_ends_in_the_present(void **state)
     say(f, "{\"type\":\"time\",\"speed\":100}");
     f->now_ns += 1000 * MS;
     assert_true(isnan(wanted(f)));
-    assert_true(f->session->view.at_us == 0 && f->session->travel.speed == 0 && !f->session->travel.moment);
+    assert_true(f->session->view.at_us == 0 && f->session->travel.speed == 0 && !f->session->travel.historical);
 }
 
 static void test_backwards_it_stops_where_history_begins(void **state)
@@ -215,16 +215,16 @@ static void test_what_cannot_be_read_is_said_and_changes_nothing(void **state)
     greet(f, "");
     go(f, 60, 60);
     wanted(f);
-    session_on_moment(f->session, NOW_US - 60000000, false, f->now_ns);
+    session_on_historical_snapshot(f->session, NOW_US - 60000000, false, f->now_ns);
     expect_error(f, "no_history");
     assert_true(f->session->view.at_us == 0 && f->session->travel.speed == 0 && isnan(wanted(f)));
     say(f, "{\"type\":\"time\",\"speed\":2}");
     expect_error(f, "bad_field");
-    struct moments *moments = f->world.moments;
-    f->world.moments = NULL;
+    struct snapshot_cache *snapshot_cache = f->world.snapshot_cache;
+    f->world.snapshot_cache = NULL;
     go(f, 60, 0);
     expect_error(f, "no_history");
-    f->world.moments = moments;
+    f->world.snapshot_cache = snapshot_cache;
 }
 
 static void test_the_newest_seconds_are_the_present(void **state)
@@ -254,13 +254,13 @@ static void test_whoever_begins_in_the_past_never_sees_the_present(void **state)
 {
     struct session_case *f = *state;
     char more[64];
-    struct wish wish;
+    struct frame_request wish;
     snprintf(more, sizeof(more), ",\"at_us\":%lld,\"speed\":60", (long long)(NOW_US - 600000000));
     greet(f, more);
-    assert_false(session_wish(f->session, f->now_ns, &wish));
+    assert_false(session_next_request(f->session, f->now_ns, &wish));
     assert_true(wanted(f) == 600);
     bring(f, 600, 5);
-    assert_true(session_wish(f->session, f->now_ns, &wish));
+    assert_true(session_next_request(f->session, f->now_ns, &wish));
     assert_true(wish.view.at_us == NOW_US - 600000000);
     f->now_ns += 1000 * MS;
     assert_true(wanted(f) == 540);
@@ -269,7 +269,7 @@ static void test_whoever_begins_in_the_past_never_sees_the_present(void **state)
 static void test_who_comes_back_is_where_he_was(void **state)
 {
     struct session_case *f = *state;
-    struct wish wish;
+    struct frame_request wish;
     char more[128];
     greet(f, "");
     go(f, 60, 0);
@@ -280,10 +280,10 @@ static void test_who_comes_back_is_where_he_was(void **state)
     f->session = session_create(&f->world, 8, f->now_ns);
     snprintf(more, sizeof(more), ",\"resume\":\"%s\"", f->resume);
     greet(f, more);
-    assert_false(session_wish(f->session, f->now_ns, &wish));
+    assert_false(session_next_request(f->session, f->now_ns, &wish));
     assert_true(wanted(f) == 60);
     bring(f, 60, 5);
-    assert_true(session_wish(f->session, f->now_ns, &wish));
+    assert_true(session_next_request(f->session, f->now_ns, &wish));
     assert_true(wish.view.at_us == NOW_US - 60000000);
 }
 

@@ -222,9 +222,9 @@ static void the_snapshot_says_when(void **state)
     assert_int_equal(s->snapshot->count, 3);
 }
 
-static void count_heard(void *arg, const struct heard *heard)
+static void count_events(void *arg, const struct sample_event *event)
 {
-    *(int64_t *)arg += heard->mono_ns;
+    *(int64_t *)arg += event->mono_ns;
 }
 
 /* Another plant: one tag stays, at another place and with another patience; one is new. */
@@ -258,10 +258,10 @@ static void all_who_listen_hear_until_they_leave(void **state)
 {
     struct setup *s = *state;
     int64_t one = 0, other = 0;
-    store_listen(s->store, count_heard, &one);
-    store_listen(s->store, count_heard, &other);
+    store_listen(s->store, count_events, &one);
+    store_listen(s->store, count_events, &other);
     write_one(s, 0, 1, QUALITY_GOOD, 3);
-    store_unlisten(s->store, count_heard, &one);
+    store_unlisten(s->store, count_events, &one);
     store_link_lost(s->store, 0, 10);
     assert_int_equal(one, 3);
     assert_int_equal(other, 3 + 2 * 10); /* both tags of the link */
@@ -272,7 +272,7 @@ static void what_is_lost_at_first_is_not_told_at_a_wrong_time(void **state)
 {
     struct setup *s = *state;
     int64_t heard = 0;
-    store_listen(s->store, count_heard, &heard);
+    store_listen(s->store, count_events, &heard);
     store_link_lost(s->store, 0, 10);
     assert_int_equal(heard, 0);
     assert_int_equal(look(s, 0, 10)->quality, QUALITY_BAD_NO_COMMUNICATION); /* whoever looks has it */
@@ -363,10 +363,10 @@ static void a_heartbeat_that_is_refused_from_the_start(void **state)
     assert_quality(look(s, 0, 0)->quality, QUALITY_BAD_CONFIGURATION);
 }
 
-static void on_heard(void *arg, const struct heard *heard)
+static void on_sample_event(void *arg, const struct sample_event *event)
 {
     uint32_t *qualities = arg;
-    qualities[heard->tag] = heard->quality;
+    qualities[event->tag] = event->quality;
 }
 
 static void other_tags_vouch(void **state)
@@ -376,16 +376,18 @@ static void other_tags_vouch(void **state)
     s->plant->tags[0].quality = (struct plant_quality_tag){ .tag = 1, .mask = 0x0C, .want = 0x04 };
     s->plant->tags[2].quality = (struct plant_quality_tag){ .tag = 1, .mask = UINT64_MAX, .want = 0, .negate = true };
     set_up_again(s);
-    store_listen(s->store, on_heard, heard);
+    store_listen(s->store, on_sample_event, heard);
     write_one(s, 0, 20, QUALITY_GOOD, 0);
     write_one(s, 2, 30, QUALITY_GOOD, 0);
     assert_quality(look(s, 0, 0)->quality, QUALITY_UNCERTAIN); /* nothing is known of it */
     const struct {
         double word;
         uint32_t pattern, any;
-    } cases[] = { { 0x04, QUALITY_GOOD, QUALITY_GOOD }, { 0xF7, QUALITY_GOOD, QUALITY_GOOD },
+    } cases[] = { { 0x04, QUALITY_GOOD, QUALITY_GOOD },
+                  { 0xF7, QUALITY_GOOD, QUALITY_GOOD },
                   { 0x0C, QUALITY_BAD_SENSOR_FAILURE, QUALITY_GOOD },
-                  { 0, QUALITY_BAD_SENSOR_FAILURE, QUALITY_BAD_SENSOR_FAILURE }, { -1, QUALITY_BAD_SENSOR_FAILURE, QUALITY_GOOD } };
+                  { 0, QUALITY_BAD_SENSOR_FAILURE, QUALITY_BAD_SENSOR_FAILURE },
+                  { -1, QUALITY_BAD_SENSOR_FAILURE, QUALITY_GOOD } };
     for (size_t i = 0; i < sizeof(cases) / sizeof(*cases); i++) {
         write_one(s, 1, cases[i].word, QUALITY_GOOD, S);
         assert_quality(heard[0], cases[i].pattern); /* at once, not with its own next sample */

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Distances along surfaces against formulas, on clean shapes and on the same shapes with every fault that exports have; what is joined,
    what is not, what is hidden. */
-#include "surface/stitch.h"
+#include "surface/repair/repair.h"
 #include "surface/surface.h"
 
 #include <math.h>
@@ -293,13 +293,13 @@ static void gaps_are_closed_and_walls_are_not_passed(void **state)
 static void assert_bridges_are_shown(const struct surface *surface, double low_x, double high_x)
 {
     const struct surface_report *report = surface_report(surface);
-    struct surface_look look;
+    struct surface_debug_mesh look;
     double longest_m = 0;
-    surface_look(surface, &look);
+    surface_debug_mesh(surface, &look);
     assert_true(look.bridge_count > 0);
     assert_int_equal(look.bridge_count, report->bridges);
     for (size_t i = 0; i < look.bridge_count; i++) {
-        const struct stitch_bridge *bridge = &look.bridges[i];
+        const struct crack_bridge *bridge = &look.bridges[i];
         assert_true(bridge->from_m[0] > low_x && bridge->from_m[0] < high_x);
         longest_m = fmax(longest_m, hypot3(bridge->from_m, bridge->to_m));
     }
@@ -502,11 +502,11 @@ static void within_a_limit_is_the_same_spot_or_none(void **state)
             normal[axis] = 2 * cad_random(&chance) - 1;
         }
         p[2] *= 0.25;
-        struct surface_spot spot, near, any;
-        surface_find_spot(surface, p, normal, &spot);
-        surface_find_spot(surface, p, NULL, &any);
+        struct surface_point spot, near, any;
+        surface_find_point(surface, p, normal, &spot);
+        surface_find_point(surface, p, NULL, &any);
         double limit_m = spot.distance_m * (0.2 + 1.6 * cad_random(&chance));
-        bool found = surface_find_spot_within(surface, p, normal, limit_m, &near);
+        bool found = surface_find_point_within(surface, p, normal, limit_m, &near);
         assert_int_equal(found, spot.distance_m <= limit_m);
         if (found) {
             assert_int_equal(near.tri, spot.tri);
@@ -518,7 +518,7 @@ static void within_a_limit_is_the_same_spot_or_none(void **state)
         other_side += !found && any.distance_m <= limit_m;
     }
     assert_true(within > 500 && beyond > 500 && other_side > 20);
-    assert_false(surface_find_spot_within(surface, (const double[3]){ 9, 9, 9 }, NULL, 1, &(struct surface_spot){ 0 }));
+    assert_false(surface_find_point_within(surface, (const double[3]){ 9, 9, 9 }, NULL, 1, &(struct surface_point){ 0 }));
     surface_destroy(&surface);
     cad_finish(&torus);
 }
@@ -539,7 +539,7 @@ static void long_thin_strips_are_exact_near_a_source_too(void **state)
     for (int i = 0; i < PLACES; i++) {
         double place[3];
         float found[SOURCES];
-        struct surface_spot spot;
+        struct surface_point spot;
         choose_source(&pipe, true, place);
         if (i % 2) { /* near a source */
             const double *near = sources[i / 2 % SOURCES];
@@ -548,8 +548,8 @@ static void long_thin_strips_are_exact_near_a_source_too(void **state)
             place[1] = sin(turn);
             place[2] = fmin(fmax(near[2] + 0.4 * (cad_random(&chance) - 0.5), 0), size[0]);
         }
-        surface_find_spot(surface, place, NULL, &spot);
-        surface_field_at_spot(&field, surface, &spot, found);
+        surface_find_point(surface, place, NULL, &spot);
+        surface_field_at_point(&field, surface, &spot, found);
         for (int s = 0; s < SOURCES; s++) {
             double truth = cylinder_distance(size, spot.point_m, sources[s]), error = fabs((double)found[s] - truth);
             sum += error / (truth + 0.05) / (PLACES * SOURCES);
@@ -582,9 +582,9 @@ static double worst_short_way(int across, int up)
     for (int i = 0; i < PLACES; i++) {
         const double *near = sources[i % SOURCES], turn = 2 * M_PI * cad_random(&chance), far_m = 0.1 * cad_random(&chance);
         float found[SOURCES];
-        struct surface_spot spot;
-        surface_find_spot(surface, (const double[3]){ near[0] + far_m * cos(turn), near[1] + far_m * sin(turn), 0 }, NULL, &spot);
-        surface_field_at_spot(&field, surface, &spot, found);
+        struct surface_point spot;
+        surface_find_point(surface, (const double[3]){ near[0] + far_m * cos(turn), near[1] + far_m * sin(turn), 0 }, NULL, &spot);
+        surface_field_at_point(&field, surface, &spot, found);
         for (int s = 0; s < SOURCES; s++) {
             double truth = hypot3(spot.point_m, sources[s]);
             worst = fmax(worst, fabs((double)found[s] - truth) / (truth + 0.002));

@@ -14,17 +14,16 @@
 #include "tests/support/plant_case.h"
 #include "tests/support/temp.h"
 
-#define YAML(source) \
-    "plant: { name: P }\n" \
-    "assets: [{ id: E-101, model: m.glb }, { id: E-102, model: m.glb }]\n" \
-    "groups: [{ id: temp, unit: °C, min: 0, max: 100, limits: { L: 10, H: 90 }, strength: 3, decay: 4 }]\n" \
-    "sources: " source "\n" \
+#define YAML(source)                                                                                                                       \
+    "plant: { name: P }\n"                                                                                                                 \
+    "assets: [{ id: E-101, model: m.glb }, { id: E-102, model: m.glb }]\n"                                                                 \
+    "groups: [{ id: temp, unit: °C, min: 0, max: 100, limits: { L: 10, H: 90 }, strength: 3, decay: 4 }]\n"                               \
+    "sources: " source "\n"                                                                                                                \
     "tags: tags.csv\n"
 static const char yaml[] = YAML("[{ id: plc, type: modbus, host: h, byte_order: CDAB, address_base: 1, poll_ms: 3000 }]");
 static const char yaml_no_order[] = YAML("[{ id: plc, type: modbus, host: h }]");
-static const char yaml_two_sources[] =
-    YAML("[{ id: plc1, type: modbus, host: h, byte_order: ABCD, address_base: 1 }, "
-         "{ id: plc2, type: modbus, host: h2, byte_order: DCBA, address_base: 0 }]");
+static const char yaml_two_sources[] = YAML("[{ id: plc1, type: modbus, host: h, byte_order: ABCD, address_base: 1 }, "
+                                            "{ id: plc2, type: modbus, host: h2, byte_order: DCBA, address_base: 0 }]");
 static const char yaml_no_source[] = YAML("[]");
 
 static void a_kepware_export_is_read(void **state)
@@ -83,8 +82,8 @@ static void byte_orders_are_resolved(void **state)
                     "G,400007,Short,DCBA,plc1\n"
                     "H,400009,LBCD,,plc1\n");
     plant_case_assert_loaded(c, 0);
-    static const enum byte_order orders[] = { BYTE_ORDER_ABCD, BYTE_ORDER_DCBA, BYTE_ORDER_BADC, BYTE_ORDER_CDAB, BYTE_ORDER_CDAB,
-                                              BYTE_ORDER_NONE, BYTE_ORDER_DCBA, BYTE_ORDER_ABCD };
+    static const enum byte_order orders[] = { BYTE_ORDER_ABCD, BYTE_ORDER_DCBA, BYTE_ORDER_BADC, BYTE_ORDER_CDAB,
+                                              BYTE_ORDER_CDAB, BYTE_ORDER_NONE, BYTE_ORDER_DCBA, BYTE_ORDER_ABCD };
     for (int i = 0; i < 8; i++)
         assert_int_equal(c->plant->tags[i].byte_order, orders[i]);
     assert_int_equal(c->plant->tags[0].register_index, 0);
@@ -159,9 +158,9 @@ static void tags_vouch_for_other_tags(void **state)
                     "TI-1,40001,TI-1\nB,40002,TI-11\nC,40003,B&\nD,40004,B&0\nE,40005,B&2=1\nF,40006,!\nG,40007,B&1=1x\nH,40008,B\n");
     FOUND(c, { "tags.csv", 2, 12, "Quality Tag: expected another tag than 'TI-1' itself" },
           { "tags.csv", 3, 9, "Quality Tag: unknown tag 'TI-11'; did you mean 'TI-1'?" },
-          { "tags.csv", 4, 9, "expected TAG, !TAG, TAG&MASK" },
-          { "tags.csv", 5, 9, "found 'B&0'" }, { "tags.csv", 6, 9, "found 'B&2=1'" }, { "tags.csv", 7, 9, "found '!'" },
-          { "tags.csv", 8, 9, "found 'B&1=1x'" }, { "tags.csv", 9, 9, "Quality Tag: 'B' has a quality tag of its own" });
+          { "tags.csv", 4, 9, "expected TAG, !TAG, TAG&MASK" }, { "tags.csv", 5, 9, "found 'B&0'" }, { "tags.csv", 6, 9, "found 'B&2=1'" },
+          { "tags.csv", 7, 9, "found '!'" }, { "tags.csv", 8, 9, "found 'B&1=1x'" },
+          { "tags.csv", 9, 9, "Quality Tag: 'B' has a quality tag of its own" });
 }
 
 static void references_are_looked_up(void **state)
@@ -255,8 +254,7 @@ static void scaling_is_whole(void **state)
           { "tags.csv", 5, 21, "Raw Low: expected a number, since Scaling is Square Root" },
           { "tags.csv", 5, 26, "Scaled High: expected a finite number, found 'inf'" },
           { "tags.csv", 6, 24, "Negate Value: expected 0 or 1, found 'maybe'" },
-          { "tags.csv", 7, 10, "Scaling is blank, so the raw range has no effect" },
-          { "tags.csv", 7, 19, "Clamp Low has no effect" });
+          { "tags.csv", 7, 10, "Scaling is blank, so the raw range has no effect" }, { "tags.csv", 7, 19, "Clamp Low has no effect" });
 }
 
 static void numbers_have_ranges_and_limits_rise(void **state)
@@ -318,7 +316,7 @@ static void alarms_are_of_the_tag_else_of_the_group(void **state)
                     "B,40002,,,,,,\n"
                     "STOP,10001,,,,,,\n");
     plant_case_assert_loaded(c, 0);
-    const struct plant_alarming *a = &c->plant->tags[0].alarming, *b = &c->plant->tags[1].alarming;
+    const struct plant_alarm_settings *a = &c->plant->tags[0].alarm_settings, *b = &c->plant->tags[1].alarm_settings;
     assert_true(a->deadband == 1.5 && a->on_delay_s == 2 && a->off_delay_s == 3 && a->priority == 1 && a->latch);
     assert_int_equal(c->plant->tags[0].suppressed_by, 2);
     assert_true(b->deadband == 0 && b->on_delay_s == 0 && b->priority == ALARM_PRIORITY_DEFAULT && !b->latch);

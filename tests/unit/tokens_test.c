@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The file of tokens: who is let in, who no longer, and which files let in nobody. */
-#include "net/tokens.h"
+#include "access/tokens.h"
 
 #include <setjmp.h>
 #include <stdarg.h>
@@ -199,12 +199,9 @@ int main(void)
     cmocka_set_message_output(CM_OUTPUT_TAP);
 #define TEST(name) cmocka_unit_test_setup_teardown(name, set_up, tear_down)
     const struct CMUnitTest tests[] = {
-        TEST(holders_are_found_by_their_tokens),
-        TEST(time_runs_out),
-        TEST(files_that_others_may_touch_let_in_nobody),
-        TEST(wrong_lines_let_in_nobody_and_leave_the_others),
-        TEST(a_changed_file_is_read_and_revokes),
-        TEST(made_tokens_differ_and_hash_as_others_do),
+        TEST(holders_are_found_by_their_tokens),         TEST(time_runs_out),
+        TEST(files_that_others_may_touch_let_in_nobody), TEST(wrong_lines_let_in_nobody_and_leave_the_others),
+        TEST(a_changed_file_is_read_and_revokes),        TEST(made_tokens_differ_and_hash_as_others_do),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

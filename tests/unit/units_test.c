@@ -18,7 +18,7 @@
 #include "history/recorder.h"
 #include "history/series_text.h"
 #include "plant/units.h"
-#include "proving/proofs.h"
+#include "loopcheck/loop_checks.h"
 #include "tests/support/plant_case.h"
 #include "tests/support/temp.h"
 #include "value/decode.h"
@@ -37,19 +37,44 @@ static void values_are_converted(void **state)
         double wanted;
         const char *to;
     } known[] = {
-        { 212, "°F", 100, "°C" }, { -40, "degF", -40, "Cel" }, { 0, "℃", 273.15, "K" }, { 491.67, "degR", 0, "°C" },
+        { 212, "°F", 100, "°C" },
+        { -40, "degF", -40, "Cel" },
+        { 0, "℃", 273.15, "K" },
+        { 491.67, "degR", 0, "°C" },
         { 77, "[degF]", 25, "C" },
-        { 9, "delta °F", 5, "ΔK" }, { 1, "bar", 14.503774, "psi" }, { 14.503774, "psig", 1, "bar(g)" }, { 1, "bara", 100, "kPa abs" },
-        { 1, "kgf/cm²", 0.980665, "bar" }, { 760, "mmHg", 1.0132501, "bar" }, { 30, "inHg", 101.59166, "kPa" },
-        { 100, "mmH2O", 9.80665, "hPa" }, { 27.7, "inWC", 6.8997630, "kPa" }, { 100, "gpm", 22.712471, "m³/h" }, { 36, "m3/h", 10, "L/s" },
-        { 1000, "bbl/d", 6.6244706, "m3/h" }, { 1, "ft3/min", 28.316847, "l/min" }, { 1, "Nm3/h", 16.666667, "Nl/min" },
-        { 1, "t/h", 2204.6226, "lb/h" }, { 3.6, "t/h", 1, "kg/s" },
-        { 1, "in", 25.4, "mm" }, { 10, "ft", 3.048, "m" }, { 3, "mil", 76.2, "µm" },
+        { 9, "delta °F", 5, "ΔK" },
+        { 1, "bar", 14.503774, "psi" },
+        { 14.503774, "psig", 1, "bar(g)" },
+        { 1, "bara", 100, "kPa abs" },
+        { 1, "kgf/cm²", 0.980665, "bar" },
+        { 760, "mmHg", 1.0132501, "bar" },
+        { 30, "inHg", 101.59166, "kPa" },
+        { 100, "mmH2O", 9.80665, "hPa" },
+        { 27.7, "inWC", 6.8997630, "kPa" },
+        { 100, "gpm", 22.712471, "m³/h" },
+        { 36, "m3/h", 10, "L/s" },
+        { 1000, "bbl/d", 6.6244706, "m3/h" },
+        { 1, "ft3/min", 28.316847, "l/min" },
+        { 1, "Nm3/h", 16.666667, "Nl/min" },
+        { 1, "t/h", 2204.6226, "lb/h" },
+        { 3.6, "t/h", 1, "kg/s" },
+        { 1, "in", 25.4, "mm" },
+        { 10, "ft", 3.048, "m" },
+        { 3, "mil", 76.2, "µm" },
         { 0.3, "in/s", 7.62, "mm/s" },
         { 1, "mm/s RMS", 0.039370079, "in/s rms" },
-        { 100, "ft/min", 0.508, "m/s" }, { 36, "km/h", 10, "m/s" }, { 1, "hp", 0.74569987, "kW" },
-        { 1000, "BTU/h", 293.07107, "W" }, { 2, "MW", 2000, "kW" }, { 0.5, "1", 50, "%" }, { 5, "‰", 0.5, "%" }, { 1, "kWh", 3.6, "MJ" },
-        { 62.427961, "lb/ft3", 1000, "kg/m³" }, { 180, "°", 3.1415927, "rad" }, { 1500, "1/min", 25, "r/s" }, { 1, "kg/h", 1, "KG/H" },
+        { 100, "ft/min", 0.508, "m/s" },
+        { 36, "km/h", 10, "m/s" },
+        { 1, "hp", 0.74569987, "kW" },
+        { 1000, "BTU/h", 293.07107, "W" },
+        { 2, "MW", 2000, "kW" },
+        { 0.5, "1", 50, "%" },
+        { 5, "‰", 0.5, "%" },
+        { 1, "kWh", 3.6, "MJ" },
+        { 62.427961, "lb/ft3", 1000, "kg/m³" },
+        { 180, "°", 3.1415927, "rad" },
+        { 1500, "1/min", 25, "r/s" },
+        { 1, "kg/h", 1, "KG/H" },
     };
     for (size_t i = 0; i < sizeof(known) / sizeof(*known); i++) {
         struct unit_change change;
@@ -68,14 +93,18 @@ static void what_is_not_the_same_is_kept_apart(void **state)
         const char *a, *b;
         enum unit_match match;
     } pairs[] = {
-        { "bara", "barg", UNITS_OTHER_KIND },  { "bar", "barg", UNITS_OTHER_KIND },       { "psia", "psi", UNITS_OTHER_KIND },
-        { "K", "ΔK", UNITS_OTHER_KIND },       { "Nm3/h", "m3/h", UNITS_OTHER_KIND },     { "Nm3/h", "Sm3/h", UNITS_OTHER_KIND },
-        { "kg/h", "m3/h", UNITS_OTHER_KIND },  { "mm/s", "mm/s RMS", UNITS_OTHER_KIND },  { "Hz", "rpm", UNITS_OTHER_KIND },
-        { "kVA", "kW", UNITS_OTHER_KIND },     { "mW", "MW", UNITS_CONVERT },             { "MPa", "mPa", UNITS_CONVERT },
-        { "MPA", "bar", UNITS_UNKNOWN },       { "degC", "foo", UNITS_UNKNOWN },          { "foo", "foo", UNITS_SAME },
-        { "NTU", "Ntu", UNITS_SAME },          { "MFoo", "mFoo", UNITS_UNKNOWN },         { "", "", UNITS_SAME },
-        { "degC", "°C", UNITS_SAME },          { "DEGC", "C", UNITS_SAME },               { "bar g", "BARG", UNITS_SAME },
-        { "kn", "kN", UNITS_OTHER_KIND },      { "nm", "N", UNITS_OTHER_KIND },           { "psi gauge", "PSI(G)", UNITS_SAME },
+        { "bara", "barg", UNITS_OTHER_KIND },  { "bar", "barg", UNITS_OTHER_KIND },
+        { "psia", "psi", UNITS_OTHER_KIND },   { "K", "ΔK", UNITS_OTHER_KIND },
+        { "Nm3/h", "m3/h", UNITS_OTHER_KIND }, { "Nm3/h", "Sm3/h", UNITS_OTHER_KIND },
+        { "kg/h", "m3/h", UNITS_OTHER_KIND },  { "mm/s", "mm/s RMS", UNITS_OTHER_KIND },
+        { "Hz", "rpm", UNITS_OTHER_KIND },     { "kVA", "kW", UNITS_OTHER_KIND },
+        { "mW", "MW", UNITS_CONVERT },         { "MPa", "mPa", UNITS_CONVERT },
+        { "MPA", "bar", UNITS_UNKNOWN },       { "degC", "foo", UNITS_UNKNOWN },
+        { "foo", "foo", UNITS_SAME },          { "NTU", "Ntu", UNITS_SAME },
+        { "MFoo", "mFoo", UNITS_UNKNOWN },     { "", "", UNITS_SAME },
+        { "degC", "°C", UNITS_SAME },          { "DEGC", "C", UNITS_SAME },
+        { "bar g", "BARG", UNITS_SAME },       { "kn", "kN", UNITS_OTHER_KIND },
+        { "nm", "N", UNITS_OTHER_KIND },       { "psi gauge", "PSI(G)", UNITS_SAME },
     };
     for (size_t i = 0; i < sizeof(pairs) / sizeof(*pairs); i++) {
         struct unit_change change;
@@ -92,35 +121,34 @@ static void what_is_not_the_same_is_kept_apart(void **state)
 
 /* --- a plant with such tags ------------------------------------------------------------------------------------------------- */
 
-static const char yaml[] =
-    "plant: { name: P }\nassets: [{ id: A, model: m.glb }]\n"
-    "groups:\n"
-    "  - { id: temp, unit: °C, min: 0, max: 200, limits: { H: 90 }, alarm: { deadband: 2 } }\n"
-    "  - { id: taken, unit: °C, min: 0, max: 200, units: as-written }\n"
-    "sources: [{ id: plc, type: modbus, host: h, byte_order: ABCD, address_base: 1 }]\ntags: tags.csv\n";
+static const char yaml[] = "plant: { name: P }\nassets: [{ id: A, model: m.glb }]\n"
+                           "groups:\n"
+                           "  - { id: temp, unit: °C, min: 0, max: 200, limits: { H: 90 }, alarm: { deadband: 2 } }\n"
+                           "  - { id: taken, unit: °C, min: 0, max: 200, units: as-written }\n"
+                           "sources: [{ id: plc, type: modbus, host: h, byte_order: ABCD, address_base: 1 }]\ntags: tags.csv\n";
 
-#define HEAD \
-    "Tag Name,Address,Data Type,Group,Asset,X,Y,Z,Scaling,Raw Low,Raw High,Scaled Low,Scaled High,Negate Value,Eng Units," \
+#define HEAD                                                                                                                               \
+    "Tag Name,Address,Data Type,Group,Asset,X,Y,Z,Scaling,Raw Low,Raw High,Scaled Low,Scaled High,Negate Value,Eng Units,"                 \
     "L,H,Deadband,Alarm Deadband\n"
 
 static void rows_are_in_their_own_unit(void **state)
 {
     struct plant_case *c = *state;
-    plant_case_load(c, yaml, HEAD
-                    "F,hr:0,Float,temp,A,0,0,0,,,,,,,°F,50,194,1.8,9\n"
-                    "S,hr:2,Short,temp,A,0,0,0,Linear,0,1000,32,392,,degF,,,,\n"
-                    "N,hr:3,Short,temp,A,0,0,0,Linear,0,1000,32,392,1,degF,,,,\n"
-                    "T,hr:4,Float,taken,A,0,0,0,,,,,,,°F,,,,\n"
-                    "C,hr:6,Float,temp,A,0,0,0,,,,,,,°C,,80,1,1\n"
-                    "L,hr:8,Float,,,,,,,,,,,,°F,,,,\n"
-                    "D,= [F] - 32,,temp,A,0,0,0,,,,,,,°F,,,,\n");
+    plant_case_load(c, yaml,
+                    HEAD "F,hr:0,Float,temp,A,0,0,0,,,,,,,°F,50,194,1.8,9\n"
+                         "S,hr:2,Short,temp,A,0,0,0,Linear,0,1000,32,392,,degF,,,,\n"
+                         "N,hr:3,Short,temp,A,0,0,0,Linear,0,1000,32,392,1,degF,,,,\n"
+                         "T,hr:4,Float,taken,A,0,0,0,,,,,,,°F,,,,\n"
+                         "C,hr:6,Float,temp,A,0,0,0,,,,,,,°C,,80,1,1\n"
+                         "L,hr:8,Float,,,,,,,,,,,,°F,,,,\n"
+                         "D,= [F] - 32,,temp,A,0,0,0,,,,,,,°F,,,,\n");
     plant_case_assert_loaded(c, 0);
     const struct plant_tag *t = c->plant->tags;
     assert_string_equal(t[0].unit, "°C");
     assert_string_equal(t[0].own_unit, "°F");
     assert_true(fabs(t[0].limits[LIMIT_L] - 10) < 1e-9 && fabs(t[0].limits[LIMIT_H] - 90) < 1e-9); /* a temperature */
-    assert_true(fabs(t[0].deadband - 1) < 1e-9 && fabs(t[0].alarming.deadband - 5) < 1e-9);        /* a difference */
-    assert_true(t[1].limits[LIMIT_H] == 90 && t[1].alarming.deadband == 2);                        /* the group's */
+    assert_true(fabs(t[0].deadband - 1) < 1e-9 && fabs(t[0].alarm_settings.deadband - 5) < 1e-9);  /* a difference */
+    assert_true(t[1].limits[LIMIT_H] == 90 && t[1].alarm_settings.deadband == 2);                  /* the group's */
     assert_true(t[4].limits[LIMIT_H] == 80 && t[4].deadband == 1 && !t[4].change.converts);
     assert_true(!t[3].change.converts && !t[5].change.converts);
     assert_string_equal(t[3].unit, "°F");
@@ -131,7 +159,7 @@ static void rows_are_in_their_own_unit(void **state)
     static const struct {
         int tag;
         double device, shown;
-    } read[] = { { 0, 212, 100 }, { 0, 50, 10 },  { 1, 212, 100 }, { 2, -212, -1220 / 9.0 },
+    } read[] = { { 0, 212, 100 }, { 0, 50, 10 },   { 1, 212, 100 }, { 2, -212, -1220 / 9.0 },
                  { 3, 212, 212 }, { 4, 100, 100 }, { 5, 212, 212 } };
     for (size_t i = 0; i < sizeof(read) / sizeof(*read); i++) {
         uint16_t words[4];
@@ -198,8 +226,8 @@ static void readings_are_not_adopted_in_another_unit(void **state)
     store_snapshot(is, 2, 2, snapshot);
     assert_int_equal(snapshot->readings[0].quality, QUALITY_BAD_WAITING);
     assert_true(snapshot->readings[1].value == 70);
-    assert_true(proof_fingerprint(c->plant, 0) != proof_fingerprint(other.plant, 0)); /* what was proven is another value now */
-    assert_true(proof_fingerprint(c->plant, 1) == proof_fingerprint(other.plant, 1));
+    assert_true(loop_check_fingerprint(c->plant, 0) != loop_check_fingerprint(other.plant, 0)); /* what was proven is another value now */
+    assert_true(loop_check_fingerprint(c->plant, 1) == loop_check_fingerprint(other.plant, 1));
     snapshot_destroy(&snapshot);
     store_destroy(&was);
     store_destroy(&is);
@@ -223,7 +251,8 @@ static void files_say_their_unit_or_mean_the_row_s(void **state)
     plant_case_load(c, yaml, "Tag Name,Address,Data Type,Group,Asset,X,Y,Z,Eng Units,Deadband\nF,hr:0,Float,temp,A,0,0,0,°F,0\n");
     plant_case_assert_loaded(c, 0);
     char *folder = temp_path(c->folder, "h"), *again = temp_path(c->folder, "again");
-    char *path = temp_write_text(c->folder, "s.csv", "Tag,Time,Value,Unit\nF,2026-10-25T00:00:01Z,212,\nF,2026-10-25T00:00:02Z,373.15,K\n"
+    char *path = temp_write_text(c->folder, "s.csv",
+                                 "Tag,Time,Value,Unit\nF,2026-10-25T00:00:01Z,212,\nF,2026-10-25T00:00:02Z,373.15,K\n"
                                  "F,2026-10-25T00:00:03Z,50,degC\n");
     struct import_params params = { .log = log, .plant = c->plant, .folder = folder, .path = path, .start_us = INT64_MIN };
     assert_true(history_import(&params, &diag, &counts));

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What is shown, hinted at, hidden and cut away; and how clients say so. */
-#include "net/message/visibility.h"
+#include "message/visibility.h"
 
 #include <math.h>
 #include <setjmp.h>

@@ -4,7 +4,7 @@ import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import { approachDistance, approaches } from '../../clients/web/core/approach.js';
 import { valid } from '../../clients/web/core/camera.js';
-import { distance } from '../../clients/web/core/moves.js';
+import { distance } from '../../clients/web/core/camera_moves.js';
 
 const box = (x, y, z) => ({ min: [0, 0, 0], max: [x, y, z] });
 

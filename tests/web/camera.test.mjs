@@ -3,11 +3,11 @@
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import { basis, besideLegend, home, MIN_DISTANCE_M, projector, same, valid } from '../../clients/web/core/camera.js';
-import { flight, FLIGHT_MS } from '../../clients/web/core/flight.js';
+import { flight, FLIGHT_MS } from '../../clients/web/core/camera_flight.js';
 import {
     depthAt, depthOf, distance, elevation, enterBox, face, fit, lookAround, MAX_ELEVATION_DEG, orbit, pan, sight, toParallel,
     toPerspective, zoom,
-} from '../../clients/web/core/moves.js';
+} from '../../clients/web/core/camera_moves.js';
 import { along, dot, length, subtract } from '../../clients/web/core/vector.js';
 
 const camera = { eye: [35, -42, 24], target: [1, 0.5, 6], up: [0, 0, 1], fov: 45 };

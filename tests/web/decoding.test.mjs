@@ -81,7 +81,7 @@ test('the codec is called by what its parameter set says', () => {
 
 test('a page without WebCodecs asks for JPEG, and tries nothing', async () => {
     const { decoding, tried, store } = bench({ api: {} });
-    await decoding.prove();
+    await decoding.probe();
     assert.deepEqual([decoding.codecs, tried, store.kept.size], [PLAIN, [], 0]);
     assert.equal((await decoding.decode(JPEG)).type, 'image/jpeg');
     await assert.rejects(decoding.decode(KEY), /not asked for/);
@@ -90,24 +90,24 @@ test('a page without WebCodecs asks for JPEG, and tries nothing', async () => {
 test('what works is used and remembered for this browser; what does not, for it alone', async () => {
     const store = fakeStore(), wrong = { 'no-preference': 'green', 'prefer-software': 'late' };
     const first = bench({ store, wrong: { 'no-preference': 'green' } });
-    await first.decoding.prove();
+    await first.decoding.probe();
     assert.deepEqual(first.tried, ['no-preference', 'prefer-software']);
     assert.deepEqual(first.decoding.codecs, ['auto', 'h264', 'jpeg', 'png']);
     const again = bench({ store });
-    await again.decoding.prove();
+    await again.decoding.probe();
     assert.deepEqual(again.tried, ['prefer-software'], 'hardware that failed is not tried again');
     const other = bench({ store, agent: 'browser 2', wrong });
-    await other.decoding.prove();
+    await other.decoding.probe();
     assert.deepEqual([other.tried.length, other.decoding.codecs], [2, PLAIN]);
     const never = bench({ store, agent: 'browser 2' });
-    await never.decoding.prove();
+    await never.decoding.probe();
     assert.deepEqual([never.tried, never.decoding.codecs], [[], PLAIN]);
 });
 
 test('a store that may not be used does no harm', async () => {
     const refuse = () => { throw new Error('denied'); };
     const { decoding } = bench({ store: { getItem: refuse, setItem: refuse } });
-    await decoding.prove();
+    await decoding.probe();
     assert.ok(decoding.codecs.includes('h264'));
 });
 
@@ -157,7 +157,7 @@ test('the proof sees colours that are wrong', async () => {
 test('a lost place asks for a key frame once, and nothing is shown before it', async () => {
     let breaks = false;
     const { decoding, told } = bench({ api: fakeApi({ breaks: () => breaks }) });
-    await decoding.prove();
+    await decoding.probe();
     await decoding.decode(KEY);
     breaks = true;
     await assert.rejects(decoding.decode(DELTA), /broken/);
@@ -170,13 +170,13 @@ test('a lost place asks for a key frame once, and nothing is shown before it', a
 
 test('what fails again and again gives way: hardware to software, that to JPEG, and so it stays', async () => {
     const { decoding, told, store } = bench({ api: fakeApi({ breaks: () => true }) });
-    await decoding.prove();
+    await decoding.probe();
     await assert.rejects(decoding.decode(KEY));
     assert.deepEqual([decoding.acceleration, told], ['prefer-software', ['lost']]);
     await assert.rejects(decoding.decode(KEY));
     assert.deepEqual(told, ['lost', PLAIN]);
     assert.equal((await decoding.decode(JPEG)).type, 'image/jpeg');
     const later = bench({ store });
-    await later.decoding.prove();
+    await later.decoding.probe();
     assert.deepEqual([later.tried, later.decoding.codecs], [[], PLAIN]);
 });

@@ -2,7 +2,7 @@
 // Pointers, wheel and keys to camera moves.
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
-import { listenToHands } from '../../clients/web/app/hands.js';
+import { listenToInput } from '../../clients/web/app/input/input.js';
 import { Gestures, wheelZoom } from '../../clients/web/core/gestures.js';
 import { HeldKeys, HOLD_S, keyMeaning, TAP_S } from '../../clients/web/core/keys.js';
 
@@ -120,7 +120,7 @@ test('a key whose shift was let go first does not stay down', () => {
     assert.equal(keys.moving, false);
 });
 
-test('what hands did before the pilot came: of what is old only a drag is told that has not ended, or has just', async () => {
+test('what hands did before the camera controller came: of what is old only a drag is told that has not ended, or has just', async () => {
     const on = new Map(), now = performance.now();
     globalThis.document = { addEventListener: () => {} };
     const element = { addEventListener: (name, f) => on.set(name, f), setPointerCapture: () => {}, focus: () => {} };
@@ -128,11 +128,11 @@ test('what hands did before the pilot came: of what is old only a drag is told t
     const toldOf = async (...events) => {
         const told = [];
         let come;
-        const pilot = { hear: ({ type }) => told.push(type) }, coming = new Promise((done) => { come = done; });
-        listenToHands(element, { there: () => null, get: () => coming, prepare: () => coming });
+        const cameraController = { handle: ({ type }) => told.push(type) }, coming = new Promise((done) => { come = done; });
+        listenToInput(element, { there: () => null, get: () => coming, prepare: () => coming });
         for (const [type, ago] of events)
             on.get(type)({ type, target, timeStamp: now - ago, preventDefault: () => {} });
-        come(pilot);
+        come(cameraController);
         await coming;
         return told;
     };

@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a module of the page loads together with itself.
-import { readFileSync } from 'node:fs';
+// The files of the page, and what a module loads together with itself.
+import { readdirSync, readFileSync } from 'node:fs';
 import { posix } from 'node:path';
 
 const WEB = new URL('../../clients/web/', import.meta.url);
+
+// Paths of all files in a folder of the page and in those below it.
+export const filesIn = (folder) => readdirSync(new URL(folder, WEB), { withFileTypes: true })
+    .flatMap((entry) => (entry.isDirectory() ? filesIn(`${folder}/${entry.name}`) : `${folder}/${entry.name}`));
 
 // Paths of a module and of all that it imports at once.
 export function graph(path, seen = new Set()) {

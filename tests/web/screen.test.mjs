@@ -7,7 +7,7 @@ import {
     ageText, changeText, decimalsFor, numberText, shortNumberText, unitText, worst, zoneClock,
 } from '../../clients/web/core/format.js';
 import { halfAt, nearestMarker } from '../../clients/web/core/nearest.js';
-import { halves } from '../../clients/web/core/halves.js';
+import { halves } from '../../clients/web/core/split_view.js';
 import {
     colourOf, edges, niceStep, placeOf, rampChoices, scaleTicks, spread, ticks, valueAt,
 } from '../../clients/web/core/legend.js';

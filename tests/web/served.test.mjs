@@ -1,22 +1,23 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The daemon serves the page's scripts without lines that only comment (server/net/http/site.c): no such line may be part of a text.
 import assert from 'node:assert/strict';
-import { readdirSync, readFileSync } from 'node:fs';
+import { readFileSync } from 'node:fs';
 import { test } from 'node:test';
+import { filesIn } from './modules.mjs';
 
 const WEB = new URL('../../clients/web/', import.meta.url);
 
 test('no line of a template literal begins as a comment does', () => {
     for (const folder of ['app', 'core', 'words']) {
-        for (const name of readdirSync(new URL(`${folder}/`, WEB)).filter((one) => one.endsWith('.js'))) {
+        for (const name of filesIn(folder).filter((one) => one.endsWith('.js'))) {
             let open = false;
-            readFileSync(new URL(`${folder}/${name}`, WEB), 'utf8').split('\n').forEach((line, i) => {
+            readFileSync(new URL(name, WEB), 'utf8').split('\n').forEach((line, i) => {
                 const comments = /^ *\/\//.test(line);
-                assert.ok(!(open && comments), `${folder}/${name}:${i + 1}: a line of a text begins with //`);
+                assert.ok(!(open && comments), `${name}:${i + 1}: a line of a text begins with //`);
                 if (!comments && (line.replace(/\\`/g, '').match(/`/g) ?? []).length % 2 === 1)
                     open = !open;
             });
-            assert.ok(!open, `${folder}/${name}: an odd number of backticks`);
+            assert.ok(!open, `${name}: an odd number of backticks`);
         }
     }
 });

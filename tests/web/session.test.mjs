@@ -2,9 +2,9 @@
 // The conversation with the server: what is said first, what is said again, what is ignored.
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
-import { actionsFor, asideOf, inMessages, passes, rowActions, targetsOf } from '../../clients/web/core/acting.js';
+import { actionsFor, asideOf, inMessages, passes, rowActions, targetsOf } from '../../clients/web/core/alarm_actions.js';
 import { health } from '../../clients/web/core/health.js';
-import { orbit } from '../../clients/web/core/moves.js';
+import { orbit } from '../../clients/web/core/camera_moves.js';
 import { actOnAlarm, giveLead, travel } from '../../clients/web/core/requests.js';
 import { showAll } from '../../clients/web/core/section.js';
 import { kbitPerS, timingOf } from '../../clients/web/core/timings.js';

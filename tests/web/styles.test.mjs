@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The sheets of the page: no rule is for what the page never has.
 import assert from 'node:assert/strict';
-import { readdirSync, readFileSync } from 'node:fs';
+import { readFileSync } from 'node:fs';
 import { test } from 'node:test';
+import { filesIn } from './modules.mjs';
 
 const WEB = new URL('../../clients/web/', import.meta.url);
 const read = (name) => readFileSync(new URL(name, WEB), 'utf8');
-const files = ['app', 'core'].flatMap((folder) => readdirSync(new URL(folder, WEB)).map((name) => `${folder}/${name}`));
+const files = ['app', 'core'].flatMap(filesIn);
 const page = read('index.html') + files.filter((name) => /\.(js|html)$/.test(name)).map(read).join('\n');
 const words = new Set(page.match(/[\w-]+/g));
 const isNumbered = (name) => /^[a-z]\d$/.test(name) && page.includes(` ${name[0]}\${`); // p1, p2, ...

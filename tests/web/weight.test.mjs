@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What the page fetches first: all that the first picture takes is asked for at once, and it is little.
 import assert from 'node:assert/strict';
-import { readdirSync, readFileSync } from 'node:fs';
+import { readFileSync } from 'node:fs';
 import { test } from 'node:test';
-import { graph } from './modules.mjs';
+import { filesIn, graph } from './modules.mjs';
 
 const WEB = new URL('../../clients/web/', import.meta.url);
 const read = (path) => readFileSync(new URL(path, WEB), 'utf8');
@@ -15,17 +15,17 @@ const MOST_BYTES = 106000;
 // As the daemon serves it: scripts without lines that only comment (server/net/http/site.c).
 const served = (path) => (path.endsWith('.js') ? read(path).replace(/(?<=\n) *\/\/.*/g, '') : read(path));
 const weigh = (files) => files.reduce((sum, path) => sum + Buffer.byteLength(served(path)), 0);
-const ours = (language) => ['index.html', `words/${language}.js`, `words/parts.${language}.js`, ...['app', 'core'].flatMap((folder) =>
-    readdirSync(new URL(folder, WEB)).map((name) => `${folder}/${name}`))];
+const ours = (language) => ['index.html', `words/${language}.js`, `words/lazy.${language}.js`, ...['app', 'core'].flatMap((folder) =>
+    filesIn(folder))];
 
 test('what the first picture takes is asked for by the page itself, and nothing else is', () => {
-    const needed = [...graph('app/first.js')].filter((path) => !scripts.includes(path));
+    const needed = [...graph('app/startup.js')].filter((path) => !scripts.includes(path));
     assert.deepEqual(all(/<link rel="modulepreload" href="([^"]+)"/g).sort(), needed.sort());
 });
 
 test('it is little: page, styles, words and modules', (t) => {
     for (const language of ['en', 'de', 'ko']) {
-        const files = ['index.html', ...sheets, ...graph('app/first.js'), `words/${language}.js`];
+        const files = ['index.html', ...sheets, ...graph('app/startup.js'), `words/${language}.js`];
         const bytes = weigh(files);
         t.diagnostic(`${language}: ${bytes} bytes in ${files.length} files, of ${weigh(ours(language))} that there are in this language`);
         assert.ok(bytes <= MOST_BYTES, `${bytes}`);

@@ -1,20 +1,19 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The words of the page: the same keys in every language, none missing, none for nothing, each in its file, and how one language is chosen.
 import assert from 'node:assert/strict';
-import { readdirSync, readFileSync } from 'node:fs';
+import { readFileSync } from 'node:fs';
 import { test } from 'node:test';
 import { chooseLanguage, LANGUAGES, phrase, readWords, say, sayIfKnown } from '../../clients/web/core/words.js';
-import { graph } from './modules.mjs';
+import { filesIn, graph } from './modules.mjs';
 
 const WEB = new URL('../../clients/web/', import.meta.url);
 const read = (...names) => names.map((name) => readFileSync(new URL(name, WEB), 'utf8')).join('\n');
-const filesOf = (language) => [`words/${language}.js`, `words/parts.${language}.js`]; // said at once; by parts that are loaded later
+const filesOf = (language) => [`words/${language}.js`, `words/lazy.${language}.js`]; // said at once; by parts that are loaded later
 const tableOf = async (file) => readWords((await import(`../../clients/web/${file}`)).default);
 const tables = Object.fromEntries(await Promise.all(LANGUAGES.map(async (language) =>
     [language, Object.assign({}, ...await Promise.all(filesOf(language).map(tableOf)))])));
-const source = read(...['core', 'app'].flatMap((folder) => readdirSync(new URL(folder, WEB)).filter((name) => name.endsWith('.js'))
-    .map((name) => `${folder}/${name}`)));
-const html = readdirSync(new URL('app', WEB)).filter((name) => name.endsWith('.html')).map((name) => `app/${name}`);
+const source = read(...['core', 'app'].flatMap(filesIn).filter((name) => name.endsWith('.js')));
+const html = filesIn('app').filter((name) => name.endsWith('.html'));
 const page = read('index.html', ...html);
 
 const blanks = (entry) => [...new Set((typeof entry === 'string' ? entry : entry.other).match(/\{\w+\}|\[[^\]]+\]/g) ?? [])].sort();
@@ -75,7 +74,7 @@ test('no key that is asked for is missing', () => {
 });
 
 test('what the page says before any of its parts is loaded is in the first file, and nothing else', async () => {
-    const wordless = [...read('app/parts.js').matchAll(/^    (\w+): \{.*wordless: true/gm)].map(([, name]) => `app/${name}.js`);
+    const wordless = [...read('app/lazy_modules.js').matchAll(/^    \w+: \{ file: '([^']+)'.*wordless: true/gm)].map(([, file]) => `app/${file}.js`);
     const paths = new Set(['app/main.js', ...wordless].flatMap((path) => [...graph(path)]));
     const first = await tableOf(filesOf('en')[0]), modules = read(...paths);
     const all = asked(modules, read('index.html'));

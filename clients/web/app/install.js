@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A page that was kept from another version of the server loads itself anew; where https allows, it can be installed.
-import { store, stored } from './stored.js';
+import { store, stored } from './common/storage.js';
 
 const versionIn = (text) => text.match(/version = '(\w+)'/)?.[1];
 const fetched = (options) => fetch('made/version.js', options).then((answer) => (answer.ok ? answer.text() : ''), () => '');

@@ -1,25 +1,25 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Puts the page together: one session, the viewport, and the panels around it.
-import { watchSleep } from './clock.js';
-import { byId, setText } from './dom.js';
-import { address, connection, narrow, page, proveCodecs, session, viewport } from './first.js';
-import { listenToHands } from './hands.js';
+import { watchSleep } from './common/clock.js';
+import { byId, setText } from './common/dom.js';
+import { address, connection, narrow, page, probeCodecs, session, viewport } from './startup.js';
+import { listenToInput } from './input/input.js';
 import { renewIfOld, serveInstalled } from './install.js';
-import { Legend } from './legend.js';
-import { Overlay } from './overlay.js';
-import { Parts } from './parts.js';
-import { Status } from './status.js';
-import { AlarmStrip } from './strip.js';
-import { Tools } from './tools.js';
-import { Toolbar } from './toolbar.js';
+import { Legend } from './viewport/legend.js';
+import { Overlay } from './viewport/overlay.js';
+import { LazyModules } from './lazy_modules.js';
+import { Status } from './toolbar/status.js';
+import { AlarmBar } from './alarms/alarm_bar.js';
+import { Tools } from './toolbar/tools.js';
+import { Toolbar } from './toolbar/toolbar.js';
 
 const ADDRESS_WAIT_MS = 400, TOAST_MS = 6000;
 const MANY_PICTURES = 30; // a codec for pictures that change pays from here on
 const COMMANDS = ['selectTag', 'showTag', 'flyToTag', 'fitView', 'selectAsset', 'showTrend', 'addTrend', 'showAsset']; // of parts, too
 
 const selection = { tag: address.tag, hover: null };
-const parts = new Parts(page, tell);
-const does = (name) => (...given) => parts.use('commands', (commands) => commands[name](...given));
+const modules = new LazyModules(page, tell);
+const does = (name) => (...given) => modules.use('commands', (commands) => commands[name](...given));
 new Toolbar({ session, does });
 const rightOf = (params) => params.split && { ...params, ...params.split };
 const isShared = (params, right) => right && legend.contents(params) === legend.contents(right); // then the right one is enough
@@ -28,15 +28,15 @@ const legend = new Legend({ session, element: byId('legend'), lying: page.lying,
 new Legend({ session, element: byId('legend-right'), lying: page.lying, paramsOf: rightOf });
 const overlay = new Overlay({ canvas: byId('overlay'), viewport, session, selection });
 overlay.unit = page.unit;
-overlay.onRings = () => parts.prepare('callouts');
-const strip = new AlarmStrip({ session, refresh });
+overlay.onRings = () => modules.prepare('callouts');
+const alarmBar = new AlarmBar({ session, refresh });
 const status = new Status({ session, onFreshness: (fresh) => {
     overlay.fresh = fresh;
-    strip.setFresh(fresh);
+    alarmBar.setFresh(fresh);
     refresh();
 } });
 new Tools({ session });
-Object.assign(page, { selection, overlay, parts, saveAddress, refresh, tell });
+Object.assign(page, { selection, overlay, modules, saveAddress, refresh, tell });
 page.onTell?.(tell);
 for (const name of COMMANDS)
     page[name] = does(name);
@@ -61,43 +61,43 @@ for (const [id, name] of Object.entries(BUTTONS))
 // The newest is what counts, also where what it means is still on its way.
 function point(place) {
     page.pointed = place;
-    parts.there('commands')?.point(place);
+    modules.there('commands')?.point(place);
 }
 
-page.told = {
+page.handlers = {
     click: does('click'), point, command: (name) => does(name)(),
     group: does('group'),
 };
-listenToHands(byId('viewport'), parts);
+listenToInput(byId('viewport'), modules);
 
 // --- the picture and what lies over it
 
 let pictures = 0;
-viewport.onTick = (now) => parts.there('pilot')?.tick(now);
+viewport.onTick = (now) => modules.there('cameraController')?.tick(now);
 viewport.onDrawn = (newPicture) => {
     if (newPicture) {
         byId('waiting').hidden = true;
         byId('viewport').classList.toggle('split', Boolean(session.shown.split));
         if (++pictures === MANY_PICTURES)
-            proveCodecs();
+            probeCodecs();
     }
     if (newPicture && (session.picture.past || status.past))
         status.show(); // what it shows and what is said of it change together
     if (newPicture || overlay.dirty) {
-        for (const name of ['card', 'place', 'measure', 'grips'])
-            parts.there(name)?.show();
+        for (const name of ['card', 'place', 'measure', 'clipGizmo'])
+            modules.there(name)?.show();
         overlay.draw();
     }
 };
 new ResizeObserver(refresh).observe(byId('viewport'));
-setInterval(() => parts.there('card')?.tag && refresh(), 500); // its age goes on
+setInterval(() => modules.there('card')?.tag && refresh(), 500); // its age goes on
 
 for (const name of ['tags', 'alarms', 'proofs'])
     session.on(name, refresh);
 session.on('time', () => {
     byId('time-toggle').hidden = false;
     if (session.time.atUs !== null)
-        parts.get('timeline');
+        modules.get('timeline');
     saveAddress();
     status.show();
     refresh();
@@ -107,10 +107,10 @@ session.on('params', async () => {
     saveAddress();
     refresh();
     if ([params.hidden, params.isolate, params.ghost].some((ids) => ids?.length > 0))
-        parts.get('shown');
+        modules.get('shown');
     if ([params, params.split].some((half) => half?.isolines?.length > 0))
-        parts.get('isolines');
-    if (params.clip && !document.body.classList.contains('wall') && await parts.get('grips')) // by hand, but for a wall
+        modules.get('isolines');
+    if (params.clip && !document.body.classList.contains('wall') && await modules.get('clipGizmo')) // by hand, but for a wall
         refresh();
 });
 let moved = false;
@@ -121,20 +121,20 @@ session.on('camera', () => {
 });
 session.on('welcome', () => {
     renewIfOld();
-    parts.retryNow();
+    modules.retryNow();
     byId('engineer-toggle').hidden = session.role !== 'engineer';
     document.body.classList.toggle('looker', session.role === 'open');
     byId('time-toggle').hidden = true; // until the server says that it records
     status.show();
     arrive();
     if (selection.tag)
-        parts.get('card');
+        modules.get('card');
     viewport.invalidate();
 });
 session.on('status', () => status.show());
-session.on('denied', ({ code }) => parts.use('token', (token) => token.ask(code)));
-session.on('followers', () => parts.get('share'));
-session.on('following', () => session.leader !== null && parts.get('following'));
+session.on('denied', ({ code }) => modules.use('token', (token) => token.ask(code)));
+session.on('followers', () => modules.get('share'));
+session.on('following', () => session.leader !== null && modules.get('following'));
 session.on('ignored', (what) => console.warn(`ignored: ${what}`));
 
 // Where a link leads, and what of it, or of the view before, is not in this plant.
@@ -143,7 +143,7 @@ session.on('astray', (text) => astray.push(text));
 function arrive() {
     const link = arrived ? null : address, refused = astray;
     if (refused.length > 0 || (!arrived && location.hash.length > 1))
-        parts.use('arrival', (arrival) => arrival.come(link, refused));
+        modules.use('arrival', (arrival) => arrival.come(link, refused));
     arrived = true;
     astray = [];
 }
@@ -198,12 +198,12 @@ watchSleep(() => {
 });
 serveInstalled();
 // The list of equipment is there from the beginning where there is room for it.
-const showAssets = () => !narrow.matches && !document.body.classList.contains('wall') && parts.get('assets');
+const showAssets = () => !narrow.matches && !document.body.classList.contains('wall') && modules.get('assets');
 narrow.addEventListener('change', showAssets);
 showAssets();
 session.listen();
 refresh();
 
 // For the console and for tests of the whole.
-globalThis.plantcast = { ...page, legend, get pilot() { return parts.there('pilot'); }, get trends() { return parts.there('trends'); },
-    get assets() { return parts.there('assets'); } };
+globalThis.plantcast = { ...page, legend, get cameraController() { return modules.there('cameraController'); }, get trends() { return modules.there('trends'); },
+    get assets() { return modules.there('assets'); } };

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // From where a sensor is looked at: cameras to try, the best first.
-import { face, orbit } from './moves.js';
+import { face, orbit } from './camera_moves.js';
 import { subtract } from './vector.js';
 
 const LEAST_M = 5, MOST_M = 12, PART = 1.1;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The camera of one viewer (moves.js moves it). A camera is { eye, target, up, fov }: metres in the plant frame, fov vertical in
+// The camera of one viewer (camera_moves.js moves it). A camera is { eye, target, up, fov }: metres in the plant frame, fov vertical in
 // degrees; target is what it turns about. One that has height_m, what its picture is high, is orthographic; fov is then kept for
 // later. Every function returns a new camera. Picture places are pixels from the top left.
 import { along, cross, dot, finite, length, middle, scale, subtract, unit } from './vector.js';

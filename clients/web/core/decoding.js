@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Pictures of frames: JPEG and PNG by the browser itself, H.264 once it has been found (ways.js) to work here.
+// Pictures of frames: JPEG and PNG by the browser itself, H.264 once it has been found (decoder_fallback.js) to work here.
 
 export const PLAIN = ['jpeg', 'png'];
 const MIME = { jpeg: 'image/jpeg', png: 'image/png' };
@@ -15,10 +15,10 @@ export class Decoding {
     }
 
     // Finds out whether H.264 works here.
-    async prove() {
+    async probe() {
         if (this.env.api.VideoDecoder)
-            this.ways = await import('./ways.js').catch(() => null); // the server is away: JPEG it stays
-        await this.ways?.prove(this);
+            this.fallback = await import('./decoder_fallback.js').catch(() => null); // the server is away: JPEG it stays
+        await this.fallback?.probe(this);
     }
 
     // A promise of something with close() that a canvas draws.
@@ -47,7 +47,7 @@ export class Decoding {
         const first = !this.lost, now = this.env.now(), again = now - this.failedAt < AGAIN_MS;
         this.lost = true;
         if (frame.codec === 'h264' && this.h264 && (again || frame.key)) {
-            this.ways.demote(this);
+            this.fallback.demote(this);
             return;
         }
         this.failedAt = now;

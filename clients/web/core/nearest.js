@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What a pointer is at: a half of the picture, a marker.
-import { halves } from './halves.js';
+import { halves } from './split_view.js';
 
 // The half in which a place of the picture lies.
 export function halfAt(params, width, x) {

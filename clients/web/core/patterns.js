@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The patterns that say "no data" and "uncertain", as the server draws them (shaders/field.glsl, server/render/palette.c).
+// The patterns that say "no data" and "uncertain", as the server draws them (shaders/field.glsl, server/render/shaded_colormap.c).
 
 const HATCH = [[240, 240, 240], [150, 150, 150]], STIPPLE = [64, 64, 64], RULE = [[226, 226, 226], [196, 196, 196]];
 const fract = (x) => x - Math.floor(x);

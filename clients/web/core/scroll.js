@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Where a long list (window.js) is scrolled to.
+// Where a long list (list_window.js) is scrolled to.
 
 // Where to scroll so that a row is wholly seen; unchanged where it is.
 export function scrollTo(tops, row, scrollTop, height) {

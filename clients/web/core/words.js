@@ -57,7 +57,7 @@ export const say = (key, values) => phrase(words, rules, key, values);
 // The words of parts that are loaded later, there from now on; a promise, which fails where they cannot be fetched.
 let learnt = null, failures = 0;
 export function learnWords() {
-    learnt ??= tableOf(`parts.${language}`, failures).then((more) => Object.assign(words, more), (error) => {
+    learnt ??= tableOf(`lazy.${language}`, failures).then((more) => Object.assign(words, more), (error) => {
         learnt = null;
         failures++;
         throw error;

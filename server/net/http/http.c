@@ -6,29 +6,29 @@
 #include "net/http/http_impl.h"
 #include "net/http/site.h"
 #include "net/tls.h"
-#include "net/visitor.h"
+#include "net/connection.h"
 
-static int alive(struct hub *hub, struct request *request)
+static int alive(struct server_context *hub, struct request *request)
 {
     (void)hub;
     return request_answer_text(request, HTTP_STATUS_OK, "ok\n");
 }
 
-static int ready(struct hub *hub, struct request *request)
+static int ready(struct server_context *hub, struct request *request)
 {
-    if (painter_ready(hub->params.plant.painter))
+    if (render_service_ready(hub->params.plant.painter))
         return request_answer_text(request, HTTP_STATUS_OK, "ok\n");
     return request_answer_text(request, HTTP_STATUS_SERVICE_UNAVAILABLE, "the GL context was lost; a new one is being made\n");
 }
 
-static int stream_without_upgrade(struct hub *hub, struct request *request)
+static int stream_without_upgrade(struct server_context *hub, struct request *request)
 {
     (void)hub;
     static const char text[] = "a WebSocket with the subprotocol " WIRE_SUBPROTOCOL " is here\n";
     return request_answer(request, 426, HTTP_TEXT, mem_strdup(text), strlen(text), "upgrade:", "websocket");
 }
 
-static int file(struct hub *hub, struct request *request, const char *path)
+static int file(struct server_context *hub, struct request *request, const char *path)
 {
     struct site_file found;
     char seen[64] = "";
@@ -44,7 +44,7 @@ static int file(struct hub *hub, struct request *request, const char *path)
 
 static const struct {
     const char *path;
-    int (*serve)(struct hub *hub, struct request *request);
+    int (*serve)(struct server_context *hub, struct request *request);
     enum role least;
 } routes[] = {
     { "/healthz", alive, ROLE_NOBODY },
@@ -68,7 +68,10 @@ static int refuse(struct request *request, const struct refusal *refusal)
     bool whose = refusal->status == HTTP_STATUS_UNAUTHORIZED, held = refusal->status == 429 || refusal->status == 503;
     request->close |= refusal->status == HTTP_STATUS_SERVICE_UNAVAILABLE;
     return request_answer(request, refusal->status, HTTP_TEXT, mem_strdup(refusal->text), strlen(refusal->text),
-                  whose ? "www-authenticate:" : held ? "retry-after:" : NULL, whose ? "Bearer realm=\"plantcast\"" : "5");
+                          whose  ? "www-authenticate:"
+                          : held ? "retry-after:"
+                                 : NULL,
+                          whose ? "Bearer realm=\"plantcast\"" : "5");
 }
 
 /* Pages of other sites may link to us, but not have us draw. */
@@ -83,9 +86,9 @@ static const struct refusal NOT_FOR_YOU = { HTTP_STATUS_FORBIDDEN, "viewers get 
 static const struct refusal NOT_ENGINEER = { HTTP_STATUS_FORBIDDEN, "this takes the role engineer\n" };
 static const struct refusal FOREIGN = { HTTP_STATUS_FORBIDDEN, "pages of other sites do not get this\n" };
 
-static int serve_route(struct hub *hub, struct request *request, size_t i)
+static int serve_route(struct server_context *hub, struct request *request, size_t i)
 {
-    enum role role = visitor_of(request->wsi)->role;
+    enum role role = connection_of(request->wsi)->role;
     if (role < routes[i].least)
         return refuse(request, role == ROLE_NOBODY ? &NEED_TOKEN : &NOT_FOR_YOU);
     if (routes[i].least > ROLE_NOBODY && is_foreign_page(request->wsi))
@@ -93,16 +96,16 @@ static int serve_route(struct hub *hub, struct request *request, size_t i)
     return routes[i].serve(hub, request);
 }
 
-static int serve_reload(struct hub *hub, struct request *request)
+static int serve_reload(struct server_context *hub, struct request *request)
 {
-    enum role role = visitor_of(request->wsi)->role;
+    enum role role = connection_of(request->wsi)->role;
     request->close = true;
     if (role < ROLE_ENGINEER)
         return refuse(request, role == ROLE_NOBODY ? &NEED_TOKEN : &NOT_ENGINEER);
     return is_foreign_page(request->wsi) ? refuse(request, &FOREIGN) : ask_reload(hub, request);
 }
 
-static int serve(struct hub *hub, struct request *request, const char *path)
+static int serve(struct server_context *hub, struct request *request, const char *path)
 {
     bool post = lws_hdr_total_length(request->wsi, WSI_TOKEN_POST_URI) > 0 && !strcmp(path, RELOAD_PATH);
     bool get = lws_hdr_total_length(request->wsi, WSI_TOKEN_GET_URI) > 0;
@@ -112,10 +115,9 @@ static int serve(struct hub *hub, struct request *request, const char *path)
     if (!get && !request->head && !post) {
         request->close = true; /* there may be a body that nobody reads */
         static const char text[] = "only GET and HEAD (POST: /api/v1/reload)\n";
-        return request_answer(request, HTTP_STATUS_METHOD_NOT_ALLOWED, HTTP_TEXT, mem_strdup(text), strlen(text),
-                      "allow:", "GET, HEAD");
+        return request_answer(request, HTTP_STATUS_METHOD_NOT_ALLOWED, HTTP_TEXT, mem_strdup(text), strlen(text), "allow:", "GET, HEAD");
     }
-    if (!visitor_enter(hub, request->wsi, &refusal)) {
+    if (!connection_identify(hub, request->wsi, &refusal)) {
         counter_inc(hub->counters.refused, 1);
         return refuse(request, &refusal);
     }
@@ -127,14 +129,14 @@ static int serve(struct hub *hub, struct request *request, const char *path)
     return file(hub, request, path);
 }
 
-static int on_writeable(struct hub *hub, struct request *request)
+static int on_writeable(struct server_context *hub, struct request *request)
 {
     if (request->pieces)
-        return pieces_write(hub, request);
+        return chunked_write(hub, request);
     size_t left = request->count - request->sent, slice = left < SLICE_BYTES ? left : SLICE_BYTES;
     if (!request->body)
         return 0;
-    if (!hub_write(hub, request->wsi, request->body + request->sent, slice, slice == left ? LWS_WRITE_HTTP_FINAL : LWS_WRITE_HTTP))
+    if (!net_write(hub, request->wsi, request->body + request->sent, slice, slice == left ? LWS_WRITE_HTTP_FINAL : LWS_WRITE_HTTP))
         return -1;
     request->sent += slice;
     if (slice == left)
@@ -153,7 +155,7 @@ static struct request *request_of(struct lws *wsi, struct request **slot)
     return *slot;
 }
 
-static void request_end(struct hub *hub, struct request **slot)
+static void request_end(struct server_context *hub, struct request **slot)
 {
     if (!slot || !*slot)
         return;
@@ -168,10 +170,12 @@ static bool on_connection(struct lws *wsi, enum lws_callback_reasons reason, voi
 {
     *result = 0;
     switch (reason) {
-    case LWS_CALLBACK_FILTER_NETWORK_CONNECTION: *result = visitor_may_come(hub_of(wsi), (int)(intptr_t)in) ? 0 : -1; return true;
-    case LWS_CALLBACK_SERVER_NEW_CLIENT_INSTANTIATED: visitor_come(hub_of(wsi), wsi); return true;
-    case LWS_CALLBACK_WSI_DESTROY: visitor_go(hub_of(wsi), wsi); return true;
-    case LWS_CALLBACK_OPENSSL_LOAD_EXTRA_SERVER_VERIFY_CERTS: tls_serve(hub_of(wsi)->tls, user); return true;
+    case LWS_CALLBACK_FILTER_NETWORK_CONNECTION:
+        *result = connection_may_open(server_context_of(wsi), (int)(intptr_t)in) ? 0 : -1;
+        return true;
+    case LWS_CALLBACK_SERVER_NEW_CLIENT_INSTANTIATED: connection_open(server_context_of(wsi), wsi); return true;
+    case LWS_CALLBACK_WSI_DESTROY: connection_close(server_context_of(wsi), wsi); return true;
+    case LWS_CALLBACK_OPENSSL_LOAD_EXTRA_SERVER_VERIFY_CERTS: tls_serve(server_context_of(wsi)->tls, user); return true;
     default: return false;
     }
 }
@@ -184,11 +188,12 @@ int http_callback(struct lws *wsi, enum lws_callback_reasons reason, void *user,
     if (on_connection(wsi, reason, user, in, &result))
         return result;
     switch (reason) {
-    case LWS_CALLBACK_HTTP: return serve(hub_of(wsi), request_of(wsi, slot), in);
-    case LWS_CALLBACK_HTTP_WRITEABLE: return *slot ? on_writeable(hub_of(wsi), *slot) : 0;
+    case LWS_CALLBACK_HTTP: return serve(server_context_of(wsi), request_of(wsi, slot), in);
+    case LWS_CALLBACK_HTTP_WRITEABLE: return *slot ? on_writeable(server_context_of(wsi), *slot) : 0;
     case LWS_CALLBACK_HTTP_DROP_PROTOCOL: /* also when the connection is upgraded */
-    case LWS_CALLBACK_CLOSED_HTTP: request_end(hub_of(wsi), slot); return 0;
-    case LWS_CALLBACK_HTTP_CONFIRM_UPGRADE: return strcasecmp(in, "websocket") == 0 ? stream_check_upgrade(hub_of(wsi), wsi) : -1;
+    case LWS_CALLBACK_CLOSED_HTTP: request_end(server_context_of(wsi), slot); return 0;
+    case LWS_CALLBACK_HTTP_CONFIRM_UPGRADE:
+        return strcasecmp(in, "websocket") == 0 ? stream_check_upgrade(server_context_of(wsi), wsi) : -1;
     case LWS_CALLBACK_ESTABLISHED: { /* a WebSocket without a subprotocol lands here */
         static unsigned char text[] = "the subprotocol is " WIRE_SUBPROTOCOL;
         lws_close_reason(wsi, LWS_CLOSE_STATUS_PROTOCOL_ERR, text, sizeof(text) - 1);

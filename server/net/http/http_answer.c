@@ -4,7 +4,7 @@
 
 #include "base/mem.h"
 #include "net/http/http_impl.h"
-#include "net/visitor.h"
+#include "net/connection.h"
 
 enum { SMALL_BYTES = 64 * 1024 }; /* as many connections as there may be have room for these */
 enum { HEAD_BYTES = 8192 };       /* with as many origins as may be named, of 256 characters */
@@ -36,7 +36,7 @@ bool request_write_head(struct request *request, int status, const char *type, c
 {
     unsigned char buffer[LWS_PRE + HEAD_BYTES], *start = buffer + LWS_PRE, *p = start, *end = buffer + sizeof(buffer) - 1;
     struct lws *wsi = request->wsi;
-    const struct hub *hub = hub_of(wsi);
+    const struct server_context *hub = server_context_of(wsi);
     if (!add_first(request, status, type, &p, end))
         return false;
     for (size_t i = 0; i < sizeof(security) / sizeof(security[0]); i++)
@@ -53,13 +53,13 @@ bool request_write_head(struct request *request, int status, const char *type, c
 
 void request_hold(struct request *request, char *body, size_t count)
 {
-    struct hub *hub = hub_of(request->wsi);
+    struct server_context *hub = server_context_of(request->wsi);
     if (request->holder) {
         request->holder->answer_bytes -= (int64_t)request->count;
         hub->answer_bytes -= (int64_t)request->count;
     }
     mem_free(request->body);
-    request->holder = body ? visitor_of(request->wsi)->client : NULL;
+    request->holder = body ? connection_of(request->wsi)->client : NULL;
     request->body = body;
     request->count = count;
     request->sent = 0;
@@ -72,10 +72,10 @@ void request_hold(struct request *request, char *body, size_t count)
 /* A large answer waits for whoever asked for it to read it, for as long as he takes. */
 static bool may_hold(const struct request *request, size_t count)
 {
-    const struct hub *hub = hub_of(request->wsi);
-    const struct visitor *visitor = visitor_of(request->wsi);
+    const struct server_context *hub = server_context_of(request->wsi);
+    const struct connection *visitor = connection_of(request->wsi);
     bool room = hub->answer_bytes + (int64_t)count < hub->quotas->at[QUOTA_ANSWER_BYTES];
-    return count <= SMALL_BYTES || !visitor->client || (room && peers_may_hold(hub->peers, visitor->client, count));
+    return count <= SMALL_BYTES || !visitor->client || (room && address_limits_may_hold(hub->peers, visitor->client, count));
 }
 
 int request_done(struct request *request)
@@ -87,7 +87,7 @@ int request_done(struct request *request)
 
 /* Takes body. The rest happens as the socket takes it. */
 int request_answer(struct request *request, int status, const char *type, char *body, size_t count, const char *extra_name,
-                  const char *extra)
+                   const char *extra)
 {
     if (!may_hold(request, count)) {
         mem_free(body);
@@ -146,16 +146,16 @@ bool request_args(struct lws *wsi, struct args *args, struct message_error *erro
     return true;
 }
 
-void request_await(struct hub *hub, struct request *request)
+void request_await(struct server_context *hub, struct request *request)
 {
     request->client = hub->next_client++;
     request->next = hub->snapshots;
     hub->snapshots = request;
-    request->peer = visitor_of(request->wsi)->client;
+    request->peer = connection_of(request->wsi)->client;
     lws_set_timeout(request->wsi, PENDING_TIMEOUT_HTTP_CONTENT, 60);
 }
 
-struct request *request_find(const struct hub *hub, uint64_t client)
+struct request *request_find(const struct server_context *hub, uint64_t client)
 {
     struct request *request = hub->snapshots;
     while (request && request->client != client)
@@ -163,7 +163,7 @@ struct request *request_find(const struct hub *hub, uint64_t client)
     return request;
 }
 
-void request_forget(struct hub *hub, struct request *request)
+void request_forget(struct server_context *hub, struct request *request)
 {
     struct request **at = &hub->snapshots;
     while (*at && *at != request)
@@ -176,13 +176,13 @@ void request_forget(struct hub *hub, struct request *request)
     hub->question_count -= request->asks;
     request->peer->questions -= request->asks;
     request->asks = false;
-    painter_forget(hub->params.plant.painter, request->client);
+    render_service_forget(hub->params.plant.painter, request->client);
     if (hub->recall)
-        recall_forget(hub->recall, request->client);
+        history_queries_forget(hub->recall, request->client);
     if (hub->past)
-        past_forget(hub->past, request->client);
-    if (request->asked && request->asked->moment)
-        moments_give(hub->params.plant.moments, &request->asked->moment);
+        history_loader_forget(hub->past, request->client);
+    if (request->asked && request->asked->historical)
+        snapshot_cache_give(hub->params.plant.snapshot_cache, &request->asked->historical);
     mem_free(request->asked);
     request->asked = NULL;
 }

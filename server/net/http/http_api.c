@@ -7,15 +7,16 @@
 #include "base/mem.h"
 #include "base/memory.h"
 #include "net/http/http_impl.h"
-#include "net/visitor.h"
-#include "net/message/reply.h"
+#include "net/connection.h"
+#include "session/reply.h"
 
-static int await_recalled(struct hub *hub, struct request *request, struct recall_order *order)
+static int await_recalled(struct server_context *hub, struct request *request, struct history_query *order)
 {
-    struct peer *peer = visitor_of(request->wsi)->client;
+    struct address_usage *peer = connection_of(request->wsi)->client;
     order->client = hub->next_client;
     order->payer = peer->share.payer;
-    if (hub->question_count >= hub->quotas->at[QUOTA_QUESTIONS] || !peers_may_ask(hub->peers, peer) || !recall_ask(hub->recall, order))
+    if (hub->question_count >= hub->quotas->at[QUOTA_QUESTIONS] || !address_limits_may_ask(hub->peers, peer) ||
+        !history_queries_ask(hub->recall, order))
         return request_answer_later(request, "too much is being asked; try again\n");
     request_await(hub, request);
     request->asks = true;
@@ -24,54 +25,55 @@ static int await_recalled(struct hub *hub, struct request *request, struct recal
     return 0;
 }
 
-static int ask_recorded(struct hub *hub, struct request *request, bool gaps)
+static int ask_recorded(struct server_context *hub, struct request *request, bool gaps)
 {
-    struct recall_order order;
+    struct history_query order;
     struct message_error error = { 0 };
     struct args args;
     int64_t now_us = clock_utc_ns() / 1000;
     if (!hub->recall)
         return request_answer_text(request, HTTP_STATUS_NOT_FOUND, HTTP_NOTHING_RECORDED);
     if (!request_args(request->wsi, &args, &error) ||
-        !(gaps ? recall_parse_gaps(args.list, args.count, now_us, &order, &error)
-               : recall_parse(hub->params.plant.scene->plant, args.list, args.count, now_us, &order, &error)))
+        !(gaps ? history_query_parse_gaps(args.list, args.count, now_us, &order, &error)
+               : history_query_parse(hub->params.plant.scene->plant, args.list, args.count, now_us, &order, &error)))
         return request_answer_error(request, &error);
     return await_recalled(hub, request, &order);
 }
 
-int ask_history(struct hub *hub, struct request *request)
+int ask_history(struct server_context *hub, struct request *request)
 {
     return ask_recorded(hub, request, false);
 }
 
-int ask_gaps(struct hub *hub, struct request *request)
+int ask_gaps(struct server_context *hub, struct request *request)
 {
     return ask_recorded(hub, request, true);
 }
 
-static bool read_alarm_query(struct hub *hub, struct request *request, bool journal, struct alarm_query *query, struct message_error *error)
+static bool read_alarm_query(struct server_context *hub, struct request *request, bool journal, struct alarm_query *query,
+                             struct message_error *error)
 {
     struct args args;
     return request_args(request->wsi, &args, error) &&
            alarm_query_parse(hub->params.plant.scene->plant, journal, args.list, args.count, clock_utc_ns() / 1000, query, error);
 }
 
-int api_alarms(struct hub *hub, struct request *request)
+int api_alarms(struct server_context *hub, struct request *request)
 {
     struct alarm_query query;
     struct message_error error = { 0 };
-    if (!hub->params.plant.alarming)
+    if (!hub->params.plant.alarm_service)
         return request_answer_text(request, HTTP_STATUS_NOT_FOUND, "there are no alarms here\n");
     if (!read_alarm_query(hub, request, false, &query, &error))
         return request_answer_error(request, &error);
-    char *text = alarms_api_text(hub->params.plant.alarming, hub->params.plant.scene->plant, &query, clock_utc_ns());
+    char *text = alarms_api_text(hub->params.plant.alarm_service, hub->params.plant.scene->plant, &query, clock_utc_ns());
     return query.csv ? request_answer(request, HTTP_STATUS_OK, "text/csv; charset=utf-8", text, strlen(text), NULL, NULL)
                      : request_answer_json(request, text);
 }
 
-int ask_journal(struct hub *hub, struct request *request)
+int ask_journal(struct server_context *hub, struct request *request)
 {
-    struct recall_order order = { .journal = true };
+    struct history_query order = { .journal = true };
     struct message_error error = { 0 };
     if (!hub->recall)
         return request_answer_text(request, HTTP_STATUS_NOT_FOUND, HTTP_NOTHING_RECORDED);
@@ -81,23 +83,23 @@ int ask_journal(struct hub *hub, struct request *request)
 }
 
 /* The first piece of several, or one that follows. */
-static int take_piece(struct request *request, struct recall_answer *piece, const char *type)
+static int take_piece(struct request *request, struct history_answer *piece, const char *type)
 {
-    if (piece->first && pieces_begin(request, type) < 0)
+    if (piece->first && chunked_begin(request, type) < 0)
         return -1;
-    pieces_take(request, piece->text, piece->length, piece->last);
+    chunked_append(request, piece->text, piece->length, piece->last);
     piece->text = NULL;
     return 0;
 }
 
-static int answer_whole(struct request *request, struct recall_answer *answer, const char *type)
+static int answer_whole(struct request *request, struct history_answer *answer, const char *type)
 {
     char *text = answer->text;
     answer->text = NULL;
     return request_answer(request, HTTP_STATUS_OK, type, text, answer->length, NULL, NULL);
 }
 
-void http_on_recall(struct hub *hub, struct recall_answer *recalled)
+void http_on_history_answer(struct server_context *hub, struct history_answer *recalled)
 {
     struct request *request = request_find(hub, recalled->client);
     const char *type = recalled->csv ? "text/csv; charset=utf-8" : "application/json";
@@ -112,22 +114,22 @@ void http_on_recall(struct hub *hub, struct recall_answer *recalled)
     if (!recalled->text) /* what was begun cannot be taken back, but it can be seen not to be whole */
         request_answered(request, recalled->first ? request_answer_text(request, HTTP_STATUS_INTERNAL_SERVER_ERROR, HTTP_UNREADABLE) : -1);
     else
-        request_answered(request, whole ? answer_whole(request, recalled, type) : pieces_begin(request, type));
+        request_answered(request, whole ? answer_whole(request, recalled, type) : chunked_begin(request, type));
 }
 
 /* Of the whole process, when somebody asks. */
-static void count_memory(struct hub *hub)
+static void count_memory(struct server_context *hub)
 {
     struct counters *counters = hub->params.counters;
     struct memory_use use;
-    memory_look(&use);
+    memory_measure(&use);
     counter_set(counters_add(counters, "process_resident_memory_bytes", "gauge", "Resident memory, mapped files and all."),
                 (int64_t)use.resident);
     counter_set(counters_add(counters, "plantcast_anonymous_bytes", "gauge", "Resident memory that is no file's."), (int64_t)use.anonymous);
     counter_set(counters_add(counters, "plantcast_heap_bytes", "gauge", "Memory that malloc has handed out."), (int64_t)use.allocated);
 }
 
-int metrics(struct hub *hub, struct request *request)
+int metrics(struct server_context *hub, struct request *request)
 {
     struct text text = { 0 };
     count_memory(hub);
@@ -135,7 +137,7 @@ int metrics(struct hub *hub, struct request *request)
     return request_answer(request, HTTP_STATUS_OK, "text/plain; version=0.0.4; charset=utf-8", text.at, text.length, NULL, NULL);
 }
 
-int api_plant(struct hub *hub, struct request *request)
+int api_plant(struct server_context *hub, struct request *request)
 {
     return request_answer_json(request, reply_api_plant_text(&hub->world));
 }
@@ -158,7 +160,7 @@ static bool read_page(const struct args *args, size_t *first, size_t *count)
     return *count >= 1 && *count <= TAGS_PAGE_MAX;
 }
 
-int api_tags(struct hub *hub, struct request *request)
+int api_tags(struct server_context *hub, struct request *request)
 {
     struct message_error error = { 0 };
     struct args args;
@@ -168,12 +170,12 @@ int api_tags(struct hub *hub, struct request *request)
     return request_answer_json(request, reply_api_tags_text(&hub->world, first, count));
 }
 
-int api_proofs(struct hub *hub, struct request *request)
+int api_proofs(struct server_context *hub, struct request *request)
 {
     struct text text = { 0 };
-    if (!hub->params.plant.proofs)
+    if (!hub->params.plant.loop_checks)
         return request_answer_text(request, HTTP_STATUS_NOT_FOUND, HTTP_NOTHING_RECORDED);
-    proofs_print(hub->params.plant.proofs, &text);
-    return request_answer(request, HTTP_STATUS_OK, "text/csv; charset=utf-8", text.at, text.length, "content-disposition:",
-                          "attachment; filename=\"proofs.csv\"");
+    loop_checks_print(hub->params.plant.loop_checks, &text);
+    return request_answer(request, HTTP_STATUS_OK, "text/csv; charset=utf-8", text.at, text.length,
+                          "content-disposition:", "attachment; filename=\"proofs.csv\"");
 }

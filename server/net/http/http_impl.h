@@ -2,30 +2,30 @@
 /* What the files of HTTP share: a request, its answer, and waiting for it. Private to http*.c. Thread: the loop. */
 #ifndef NET_HTTP_IMPL_H
 #define NET_HTTP_IMPL_H
-#include "net/hub.h"
+#include "net/server_context.h"
 
 struct asked { /* a picture, or what is at a pixel of it */
     bool picks;
-    struct wish wish;
-    struct pick_order pick;
-    const struct moment *moment; /* held; NULL: of now, or it is being read */
+    struct frame_request wish;
+    struct pick_query pick;
+    const struct historical_snapshot *historical; /* held; NULL: of now, or it is being read */
 };
 
 struct request {
     struct lws *wsi;
-    struct peer *peer; /* whose it is, while it waits; the connection's visitor keeps it */
-    bool head;  /* no body is wanted */
-    bool close; /* after the answer */
+    struct address_usage *peer; /* whose it is, while it waits; the connection's visitor keeps it */
+    bool head;                  /* no body is wanted */
+    bool close;                 /* after the answer */
     char *body;
     size_t count, sent;
-    struct peer *holder;  /* in whose answer_bytes the body is counted; NULL: in none. The connection's visitor keeps it */
-    bool asks;            /* a question about the past is being answered: */
+    struct address_usage *holder; /* in whose answer_bytes the body is counted; NULL: in none. The connection's visitor keeps it */
+    bool asks;                    /* a question about the past is being answered: */
     enum { PIECES_NONE, PIECES_CHUNKED, PIECES_TO_END } pieces; /* its head was sent, and the body comes in so many pieces as it takes */
-    bool last_piece;      /* the body is */
-    uint64_t client;      /* of the painter, while a picture is awaited */
-    bool reloads;         /* the plant is: that is what is awaited */
-    struct asked *asked;  /* meanwhile; NULL: not for one */
-    struct request *next; /* in hub->snapshots */
+    bool last_piece;                                            /* the body is */
+    uint64_t client;                                            /* of the painter, while a picture is awaited */
+    bool reloads;                                               /* the plant is: that is what is awaited */
+    struct asked *asked;                                        /* meanwhile; NULL: not for one */
+    struct request *next;                                       /* in hub->snapshots */
 };
 
 enum { MAX_ARGS = 32, MAX_ARG_BYTES = 2048 };
@@ -44,11 +44,11 @@ int request_answer(struct request *request, int status, const char *type, char *
                    const char *extra);
 int request_answer_text(struct request *request, int status, const char *text);
 /* The same for a body that comes in pieces, each when the one before was sent: http_pieces.c. */
-int pieces_begin(struct request *request, const char *type);
-void pieces_take(struct request *request, char *body, size_t count, bool last); /* takes body */
-int pieces_write(struct hub *hub, struct request *request); /* one write; as on_writeable */
-int request_answer_later(struct request *request, const char *why); /* 503, and when to come again */
-int request_answer_json(struct request *request, char *text); /* takes text */
+int chunked_begin(struct request *request, const char *type);
+void chunked_append(struct request *request, char *body, size_t count, bool last); /* takes body */
+int chunked_write(struct server_context *hub, struct request *request);            /* one write; as on_writeable */
+int request_answer_later(struct request *request, const char *why);                /* 503, and when to come again */
+int request_answer_json(struct request *request, char *text);                      /* takes text */
 int request_answer_error(struct request *request, const struct message_error *error);
 /* Takes body in place of the one before, and counts what there is of it in memory: of all, and of the address. NULL: none. */
 void request_hold(struct request *request, char *body, size_t count);
@@ -57,21 +57,21 @@ int request_done(struct request *request); /* all of its answer was sent */
 bool request_args(struct lws *wsi, struct args *args, struct message_error *error);
 
 /* A request that waits has a number, request->client, and is answered outside of its own callback. */
-void request_await(struct hub *hub, struct request *request);
-struct request *request_find(const struct hub *hub, uint64_t client);
-void request_forget(struct hub *hub, struct request *request); /* it waits no more; as well if it did not */
-void request_answered(struct request *request, int result);   /* result of its answer: a broken connection is closed soon */
+void request_await(struct server_context *hub, struct request *request);
+struct request *request_find(const struct server_context *hub, uint64_t client);
+void request_forget(struct server_context *hub, struct request *request); /* it waits no more; as well if it did not */
+void request_answered(struct request *request, int result);               /* result of its answer: a broken connection is closed soon */
 
-int ask_snapshot(struct hub *hub, struct request *request);
-int ask_pick(struct hub *hub, struct request *request);
-int ask_history(struct hub *hub, struct request *request);
-int ask_gaps(struct hub *hub, struct request *request);
-int ask_journal(struct hub *hub, struct request *request);
-int ask_reload(struct hub *hub, struct request *request);
-int api_alarms(struct hub *hub, struct request *request);
-int api_plant(struct hub *hub, struct request *request);
-int api_proofs(struct hub *hub, struct request *request);
-int api_tags(struct hub *hub, struct request *request);
-int metrics(struct hub *hub, struct request *request);
+int ask_snapshot(struct server_context *hub, struct request *request);
+int ask_pick(struct server_context *hub, struct request *request);
+int ask_history(struct server_context *hub, struct request *request);
+int ask_gaps(struct server_context *hub, struct request *request);
+int ask_journal(struct server_context *hub, struct request *request);
+int ask_reload(struct server_context *hub, struct request *request);
+int api_alarms(struct server_context *hub, struct request *request);
+int api_plant(struct server_context *hub, struct request *request);
+int api_proofs(struct server_context *hub, struct request *request);
+int api_tags(struct server_context *hub, struct request *request);
+int metrics(struct server_context *hub, struct request *request);
 
 #endif

@@ -4,17 +4,17 @@
 
 #include "base/mem.h"
 #include "net/http/http_impl.h"
-#include "net/visitor.h"
+#include "net/connection.h"
 
 /* A page of another site may have its user's browser send this. */
-static bool may_change(struct hub *hub, struct lws *wsi)
+static bool may_change(struct server_context *hub, struct lws *wsi)
 {
     char origin[256], host[256];
-    return visitor_header(wsi, WSI_TOKEN_ORIGIN, origin, sizeof(origin)) && visitor_header(wsi, WSI_TOKEN_HOST, host, sizeof(host)) &&
+    return connection_header(wsi, WSI_TOKEN_ORIGIN, origin, sizeof(origin)) && connection_header(wsi, WSI_TOKEN_HOST, host, sizeof(host)) &&
            access_origin(&hub->params.access, origin, host, hub->tls != NULL);
 }
 
-int ask_reload(struct hub *hub, struct request *request)
+int ask_reload(struct server_context *hub, struct request *request)
 {
     request->close = true; /* there may be a body that nobody reads */
     if (!may_change(hub, request->wsi))
@@ -27,7 +27,7 @@ int ask_reload(struct hub *hub, struct request *request)
     return 0;
 }
 
-static void answer_all(struct hub *hub, bool reloads, int status, const char *type, const char *text)
+static void answer_all(struct server_context *hub, bool reloads, int status, const char *type, const char *text)
 {
     for (struct request *request = hub->snapshots, *next; request; request = next) {
         next = request->next;
@@ -40,13 +40,12 @@ static void answer_all(struct hub *hub, bool reloads, int status, const char *ty
     }
 }
 
-void http_let_go(struct hub *hub)
+void http_release_plant(struct server_context *hub)
 {
-    answer_all(hub, false, HTTP_STATUS_SERVICE_UNAVAILABLE, HTTP_TEXT,
-               "the plant was loaded anew meanwhile; try again\n");
+    answer_all(hub, false, HTTP_STATUS_SERVICE_UNAVAILABLE, HTTP_TEXT, "the plant was loaded anew meanwhile; try again\n");
 }
 
-void http_on_reloaded(struct hub *hub, bool good, const char *text)
+void http_on_reloaded(struct server_context *hub, bool good, const char *text)
 {
     answer_all(hub, true, good ? HTTP_STATUS_OK : 422, "application/json", text);
 }

@@ -3,10 +3,10 @@
 #include "render/draft/draft.h"
 
 #include "base/mem.h"
-#include "render/content.h"
+#include "render/plan/content_hash.h"
 #include "render/draft/draft_kernels.h"
 #include "render/draft/draft_simd.h"
-#include "render/markers.h"
+#include "render/pick/markers.h"
 
 static const size_t KEPT_BYTES = (size_t)128 << 20; /* some five pictures of 1920x1080 */
 
@@ -23,14 +23,14 @@ static const struct draft_kernels *choose_kernels(void)
     return &draft_kernels_plain;
 }
 
-struct draft *draft_create(struct workers *workers, const struct stage *stage, const struct sky *sky)
+struct draft *draft_create(struct workers *workers, const struct gpu_scene *gpu_scene, const struct sky *sky)
 {
     struct draft *draft = mem_new(sizeof(*draft));
     draft->workers = workers;
     draft->kernels = choose_kernels();
-    draft->stage = stage;
+    draft->gpu_scene = gpu_scene;
     draft->kept.bound_bytes = KEPT_BYTES;
-    draft->parts = mem_array(stage->model_count, sizeof(*draft->parts));
+    draft->parts = mem_array(gpu_scene->model_count, sizeof(*draft->parts));
     if (!draft_read_textures(draft, sky))
         draft_destroy(&draft);
     return draft;
@@ -46,7 +46,7 @@ void draft_destroy(struct draft **draft_ptr)
     mem_free(draft->ramps);
     mem_free(draft->ramp_of_model);
     mem_free(draft->backdrops);
-    mem_free(draft->palette);
+    mem_free(draft->colormap);
     mem_free(draft->lines);
     mem_free(draft);
     *draft_ptr = NULL;
@@ -55,14 +55,14 @@ void draft_destroy(struct draft **draft_ptr)
 /* Holes need textures; what is see-through is another pass's work. */
 bool draft_can(const struct draft *draft, const struct view *view)
 {
-    return view->tier == TIER_MOVING && view->look != LOOK_GLOSSY && view->look != LOOK_MATERIALS &&
-           view->visibility.ghosts.count == 0 && draft->ramp_count <= MOST_RAMPS && !draft->has_holes;
+    return view->tier == TIER_PREVIEW && view->look != LOOK_GLOSSY && view->look != LOOK_MATERIALS && view->visibility.ghosts.count == 0 &&
+           draft->ramp_count <= MOST_RAMPS && !draft->has_holes;
 }
 
 /* Lines are worked out with the triangles: such a picture is drawn anew each time. */
-static bool has_lines(const struct picture *picture)
+static bool has_lines(const struct frame_context *context)
 {
-    return picture->palette.lines || view_is_operator(picture->view);
+    return context->colormap.lines || view_is_operator(context->view);
 }
 
 /* Rows end in whole lanes. */
@@ -84,18 +84,18 @@ bool draft_make_room(struct draft *draft, const struct frame *frame, int band_ro
     return draft->pixel_capacity > 0;
 }
 
-static bool is_selected_shown(const struct picture *picture)
+static bool is_selected_shown(const struct frame_context *context)
 {
-    int selected = picture->view->selected_asset;
-    for (size_t i = 0; i < picture->visible_count && selected >= 0; i++)
-        if (picture->visible[i] == selected)
+    int selected = context->view->selected_asset;
+    for (size_t i = 0; i < context->visible_count && selected >= 0; i++)
+        if (context->visible[i] == selected)
             return true;
     return false;
 }
 
 static bool complain(const struct draft *draft)
 {
-    log_err(draft->stage->gl->log, "moving picture of %dx%d, %zu vertices: out of memory", draft->width_px, draft->height_px,
+    log_err(draft->gpu_scene->gl->log, "moving picture of %dx%d, %zu vertices: out of memory", draft->width_px, draft->height_px,
             draft->vertex_count);
     return false;
 }
@@ -112,9 +112,9 @@ static bool is_still(struct draft *draft, uint64_t shape)
 
 static bool draw_selected(struct draft *draft, struct recolor *recolor)
 {
-    if (!is_selected_shown(draft->picture))
+    if (!is_selected_shown(draft->context))
         return true;
-    if (!draft_find_only(draft, draft->picture->view->selected_asset))
+    if (!draft_find_only(draft, draft->context->view->selected_asset))
         return complain(draft);
     draft_tiles(draft, false);
     if (recolor)
@@ -133,38 +133,38 @@ static bool draw_all(struct draft *draft, struct isolines *isolines, struct fram
     struct recolor *recolor = draft->ids ? draft_keep(draft) : NULL;
     mem_free(draft->ids);
     draft->ids = NULL;
-    markers_find(draft->picture, draft->depth, (size_t)draft->pitch_px, frame);
-    isolines_collect(isolines, draft->picture, &points);
-    isolines_find(draft->picture, &points, draft->depth, (size_t)draft->pitch_px, frame);
+    markers_find(draft->context, draft->depth, (size_t)draft->pitch_px, frame);
+    isolines_collect(isolines, draft->context, &points);
+    isolines_find(draft->context, &points, draft->depth, (size_t)draft->pitch_px, frame);
     mem_free(points.at);
     bool good = draw_selected(draft, recolor);
     if (recolor && good && recolor_settle(recolor, draft->workers))
-        draft_give(&draft->kept, draft->picture, recolor, frame);
+        draft_give(&draft->kept, draft->context, recolor, frame);
     else
         recolor_destroy(&recolor);
     return good;
 }
 
-bool draft_draw(struct draft *draft, const struct picture *picture, const struct light *light, struct isolines *isolines,
+bool draft_draw(struct draft *draft, const struct frame_context *context, const struct light *light, struct isolines *isolines,
                 struct frame *frame)
 {
-    bool lined = has_lines(picture);
-    if (!lined && draft_recolor(draft, &draft->kept, picture, frame))
+    bool lined = has_lines(context);
+    if (!lined && draft_recolor(draft, &draft->kept, context, frame))
         return true;
-    draft->picture = picture;
-    draft->light = draft_get_light(draft, picture->light);
+    draft->context = context;
+    draft->light = draft_get_light(draft, context->light);
     if (!draft->light)
         return false;
-    draft_read_palette(draft, &picture->palette);
+    draft_read_palette(draft, &context->colormap);
     if (!draft_make_room(draft, frame, BAND_ROWS))
         return complain(draft);
-    frame_block_fill(&draft->block, picture);
-    draft->greys = view_is_operator(picture->view);
+    frame_uniforms_fill(&draft->block, context);
+    draft->greys = view_is_operator(context->view);
     draft->out = frame->bgrx;
     draft->out_stride_bytes = (size_t)frame->stride_bytes;
     draft_aim_cuts(draft);
     draft_aim(draft, light);
     if (!draft_find(draft))
         return complain(draft);
-    return draw_all(draft, isolines, frame, !lined && is_still(draft, content_shape_hash(picture)));
+    return draw_all(draft, isolines, frame, !lined && is_still(draft, content_shape_hash(context)));
 }

@@ -10,15 +10,15 @@
 #define RENDER_DRAFT_H
 #include "base/workers.h"
 #include "render/frame.h"
-#include "render/isolines.h"
+#include "render/pick/isolines.h"
 #include "render/light/sky.h"
-#include "render/picture.h"
+#include "render/frame_context.h"
 
 struct draft;
 
-/* NULL: the GL context is lost. workers and stage must outlive it. */
-struct draft *draft_create(struct workers *workers, const struct stage *stage, const struct sky *sky);
-void draft_destroy(struct draft **draft); /* &NULL is fine; leaves NULL */
+/* NULL: the GL context is lost. workers and gpu_scene must outlive it. */
+struct draft *draft_create(struct workers *workers, const struct gpu_scene *gpu_scene, const struct sky *sky);
+void draft_destroy(struct draft **draft);            /* &NULL is fine; leaves NULL */
 void draft_bound(struct draft *draft, size_t bytes); /* of pictures of cameras that stand still */
 size_t draft_kept_bytes(const struct draft *draft);  /* of these */
 size_t draft_room_bytes(const struct draft *draft);  /* to draw in */
@@ -26,7 +26,7 @@ size_t draft_light_bytes(const struct draft *draft); /* read back */
 void draft_rest(struct draft *draft);                /* drops all three */
 bool draft_can(const struct draft *draft, const struct view *view);
 /* Pixels, markers and labels. False: out of memory, or the GL context is lost; logged. */
-bool draft_draw(struct draft *draft, const struct picture *picture, const struct light *light, struct isolines *isolines,
+bool draft_draw(struct draft *draft, const struct frame_context *context, const struct light *light, struct isolines *isolines,
                 struct frame *frame);
 
 #endif

@@ -6,7 +6,7 @@
 #include "render/draft/draft_impl.h"
 #include "render/light/sky.h"
 #include "render/matrix.h"
-#include "render/solid.h"
+#include "render/gl/surface_pass.h"
 
 static void copy_columns(const double from[16], float to[4][4])
 {
@@ -27,13 +27,13 @@ static void clip_from_pixel(const struct draft *draft, double out[16])
 
 static void aim_sun(struct draft *draft, const double clip[16])
 {
-    const struct picture *picture = draft->picture;
+    const struct frame_context *context = draft->context;
     double plant_from_clip[16], out[16];
-    matrix_invert(picture->shot.clip_from_plant, plant_from_clip);
-    matrix_multiply(picture->light->texture_from_plant, plant_from_clip, out);
+    matrix_invert(context->constants.clip_from_plant, plant_from_clip);
+    matrix_multiply(context->light->texture_from_plant, plant_from_clip, out);
     matrix_multiply(out, clip, out);
     for (int c = 0; c < 4; c++)
-        out[4 * c + 2] += solid_sun_slack(picture) * out[4 * c + 3];
+        out[4 * c + 2] += surface_pass_sun_slack(context) * out[4 * c + 3];
     copy_columns(out, draft->sun_from_pixel);
 }
 
@@ -41,13 +41,13 @@ static void aim_sun(struct draft *draft, const double clip[16])
 static void aim_rays(struct draft *draft, const double clip[16])
 {
     double eye_from_clip[16], out[16];
-    matrix_invert(draft->picture->shot.clip_from_eye, eye_from_clip);
+    matrix_invert(draft->context->constants.clip_from_eye, eye_from_clip);
     matrix_multiply(eye_from_clip, clip, out);
     double w = out[11] + out[15]; /* at depth 1 */
-    if (draft->picture->shot.pixel_per_metre > 0) {
+    if (draft->context->constants.pixel_per_metre > 0) {
         memset(draft->ray_from_pixel, 0, sizeof(draft->ray_from_pixel));
         for (int r = 0; r < 3; r++)
-            draft->ray_from_pixel[2][r] = (float)-draft->picture->shot.back[r];
+            draft->ray_from_pixel[2][r] = (float)-draft->context->constants.back[r];
         return;
     }
     for (int r = 0; r < 3; r++) {
@@ -83,8 +83,8 @@ static void aim_ground(struct draft *draft, const struct light *light)
 {
     double clip[16];
     float(*to)[3] = draft->ground_from_pixel;
-    draft->has_ground = sky_sees_ground(draft->picture, light);
-    matrix_multiply(draft->picture->shot.clip_from_plant, light->plant_from_ground, clip);
+    draft->has_ground = sky_sees_ground(draft->context, light);
+    matrix_multiply(draft->context->constants.clip_from_plant, light->plant_from_ground, clip);
     double h[3][3]; /* rows: x w, y w in pixels, w; columns: u, v, 1 */
     for (int c = 0; c < 3; c++) {
         const double *column = &clip[c == 2 ? 12 : 4 * c];
@@ -111,7 +111,7 @@ static void aim_ground(struct draft *draft, const struct light *light)
 void draft_aim_cuts(struct draft *draft)
 {
     float half[2] = { 0.5f * (float)draft->width_px, 0.5f * (float)draft->height_px };
-    int count = draft->picture->view->visibility.clip.plane_count;
+    int count = draft->context->view->visibility.clip.plane_count;
     draft->cut_count = 0;
     for (int leave = 0; leave < 2; leave++) {
         for (int i = 0; i < count; i++) {
@@ -140,8 +140,7 @@ bool draft_is_cut_off(const struct draft *draft, const float at[4], int planes)
     return false;
 }
 
-bool draft_cuts_box(const struct draft *draft, const struct draft_mesh *mesh, int plane, const float low[3], const float high[3],
-                    bool *cut)
+bool draft_cuts_box(const struct draft *draft, const struct draft_mesh *mesh, int plane, const float low[3], const float high[3], bool *cut)
 {
     float most = 0, least = 0;
     for (int c = 0; c < 4; c++) {

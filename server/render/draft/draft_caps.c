@@ -75,7 +75,7 @@ void draft_cap_tile(struct draft_tile *tile)
 
 /* --- which triangles bound closed bodies ------------------------------------------------------------------------------------------ */
 
-bool draft_parts_close(struct draft_parts *parts, const struct asset_view *file, const struct closed *closed, uint32_t vertex_count)
+bool draft_parts_close(struct draft_parts *parts, const struct asset_view *file, const struct closed_bodies *closed, uint32_t vertex_count)
 {
     uint8_t *of_file = mem_try_array(vertex_count, 1);
     if (!of_file || parts->closed) {

@@ -4,31 +4,31 @@
 #include <stdlib.h>
 
 #include "base/mem.h"
-#include "render/culling.h"
+#include "render/plan/culling.h"
 #include "render/draft/draft_near.h"
 #include "render/matrix.h"
-#include "render/solid.h"
+#include "render/gl/surface_pass.h"
 
 void draft_fill_mesh(struct draft *draft, struct draft_mesh *mesh, int index, const struct model_level *level)
 {
-    const struct picture *picture = draft->picture;
-    const struct scene_asset *asset = &picture->stage->scene->assets[index];
+    const struct frame_context *context = draft->context;
+    const struct scene_asset *asset = &context->gpu_scene->scene->assets[index];
     double clip[16], half[2] = { 0.5 * draft->width_px, 0.5 * draft->height_px };
     *mesh = (struct draft_mesh){
         .asset = index,
         .file = &asset->file->view,
-        .has_field = picture->fields[index] != NULL,
-        .scalars = picture->fields[index] ? picture->fields[index]->shown : NULL,
+        .has_field = context->fields[index] != NULL,
+        .scalars = context->fields[index] ? context->fields[index]->shown : NULL,
         .baked = (const uint8_t(*)[4])draft->light->baked[index],
         .first_vertex = (uint32_t)draft->vertex_count,
         .vertex_count = level->vertex_count,
-        .mirrored = stage_mirrored(asset),
-        .cut = clip_touches(&picture->view->visibility.clip, asset->bounds_min_m, asset->bounds_max_m),
+        .mirrored = gpu_scene_mirrored(asset),
+        .cut = clip_touches(&context->view->visibility.clip, asset->bounds_min_m, asset->bounds_max_m),
     };
     if (mesh->cut)
         matrix_normals(asset->placement, mesh->turn);
-    matrix_multiply(picture->shot.clip_from_plant, asset->placement, clip);
-    shot_bring_forward(&picture->shot, asset, clip);
+    matrix_multiply(context->constants.clip_from_plant, asset->placement, clip);
+    view_constants_bring_forward(&context->constants, asset, clip);
     for (int c = 0; c < 4; c++) {
         mesh->place[c][0] = (float)(half[0] * (clip[4 * c + 3] + clip[4 * c]));
         mesh->place[c][1] = (float)(half[1] * (clip[4 * c + 3] - clip[4 * c + 1]));
@@ -81,18 +81,18 @@ static bool is_cut_away(const struct draft *draft, const struct draft_mesh *mesh
 
 static void collect_asset(struct draft *draft, int index)
 {
-    const struct picture *picture = draft->picture;
-    const struct scene_asset *asset = &picture->stage->scene->assets[index];
-    const struct model *model = picture->stage->of_asset[index];
-    const struct model_level *level = solid_level(picture, index);
+    const struct frame_context *context = draft->context;
+    const struct scene_asset *asset = &context->gpu_scene->scene->assets[index];
+    const struct model *model = context->gpu_scene->of_asset[index];
+    const struct model_level *level = surface_pass_level(context, index);
     const struct asset_view *file = &asset->file->view;
-    uint32_t ramp = draft->ramp_of_model[model - picture->stage->models];
+    uint32_t ramp = draft->ramp_of_model[model - context->gpu_scene->models];
     size_t draws = draft->draw_count, vertices = draft->vertex_count;
     struct culling culling;
     mem_grow(&draft->meshes, &draft->mesh_capacity, draft->mesh_count + 1, sizeof(*draft->meshes));
     struct draft_mesh *mesh = &draft->meshes[draft->mesh_count];
     draft_fill_mesh(draft, mesh, index, level);
-    culling_init(&culling, &picture->shot, asset);
+    culling_init(&culling, &context->constants, asset);
     const struct asset_cluster *cluster = &file->clusters[level->first_cluster];
     for (uint32_t p = 0; p < level->primitive_count; p++) {
         const struct asset_primitive *primitive = &file->primitives[level->first_primitive + p];
@@ -162,9 +162,9 @@ static bool finish(struct draft *draft)
 
 bool draft_collect(struct draft *draft)
 {
-    const struct picture *picture = draft->picture;
+    const struct frame_context *context = draft->context;
     draft->mesh_count = draft->draw_count = draft->vertex_count = 0;
-    for (size_t i = 0; i < picture->visible_count; i++)
-        collect_asset(draft, picture->visible[i]);
+    for (size_t i = 0; i < context->visible_count; i++)
+        collect_asset(draft, context->visible[i]);
     return finish(draft);
 }

@@ -79,8 +79,7 @@ DRAFT_INLINE lanes_int ground_at(const struct draft *draft, lanes x, float y)
     u = lanes_clamp(u * size - 0.5f, 0, size - 1);
     v = lanes_clamp(v * size - 0.5f, 0, size - 1);
     lanes u0 = whole_part(u), v0 = whole_part(v), u_part = u - u0, v_part = v - v0;
-    lanes_int four =
-        gather(light->ground, lanes_whole(v0) * light->ground_px + lanes_whole(u0));
+    lanes_int four = gather(light->ground, lanes_whole(v0) * light->ground_px + lanes_whole(u0));
     lanes upper = byte_of(four, 0) + u_part * (byte_of(four, 1) - byte_of(four, 0));
     lanes lower = byte_of(four, 2) + u_part * (byte_of(four, 3) - byte_of(four, 2));
     lanes_int factor = lanes_whole((upper + v_part * (lower - upper)) * (256 / 255.0f) + 0.5f);
@@ -119,7 +118,7 @@ DRAFT_INLINE lanes_int color_at(const struct draft *draft, const struct heights 
     const uint32_t *mark = draft->marks + place;
     lanes_int marks = *(const lanes_int *)mark, color;
     if (!lanes_any((~marks & (int32_t)MARK_FIELD) | (marks & (int32_t)MARK_CONTEXT))) {
-        color = gather(draft->palette, marks & (int32_t)MARK_PLACE);
+        color = gather(draft->colormap, marks & (int32_t)MARK_PLACE);
         if (lanes_any(marks & MARK_LINE_WHOLE << MARK_LINE))
             color = lined(mark, color);
         return color;
@@ -128,7 +127,7 @@ DRAFT_INLINE lanes_int color_at(const struct draft *draft, const struct heights 
         return sky_color(draft, heights, column, row);
     lanes_int kinds = marks & (int32_t)MARK_KIND, is_field = kinds == (int32_t)MARK_FIELD, is_sky = marks == 0;
     lanes_int is_context = kinds == (int32_t)MARK_CONTEXT, is_section = kinds == (int32_t)MARK_SECTION;
-    color = gather(draft->palette, marks & is_field & (int32_t)MARK_PLACE);
+    color = gather(draft->colormap, marks & is_field & (int32_t)MARK_PLACE);
     if (lanes_any(marks & is_field & MARK_LINE_WHOLE << MARK_LINE))
         color = lined(mark, color);
     lanes x = LANES_IOTA + ((float)column + 0.5f);

@@ -53,11 +53,11 @@ void draft_place_part(struct draft_tile *tile, const struct draft_mesh *mesh, co
     corners->flat = most <= DRAFT_LITTLE * least;
 }
 
-/* As palette_column and palette_row in shaders/field.glsl. numbers: of those that carry, up to whole lanes. */
+/* As colormap_column and colormap_row in shaders/field.glsl. numbers: of those that carry, up to whole lanes. */
 DRAFT_INLINE void carry_field(const struct draft *draft, const struct draft_mesh *mesh, const uint32_t *vertices, const uint8_t *numbers,
                               int count, struct draft_corners *corners)
 {
-    const float slack = 1e-5f, columns = PALETTE_PLACES / (1 + 2 * slack);
+    const float slack = 1e-5f, columns = COLORMAP_PLACES / (1 + 2 * slack);
     bool log = draft->block.scale[2] > 0.5f;
     uint32_t all = 0;
     for (int i = 0; i < count; i += LANES) {
@@ -199,8 +199,8 @@ DRAFT_INLINE void hide(const struct draft_tile *tile, struct eight *eight)
     right >>= BLOCK_SHIFT;
     lanes far = lanes_least(lanes_least(lanes_look_up(farthest, top + left), lanes_look_up(farthest, top + right)),
                             lanes_least(lanes_look_up(farthest, bottom + left), lanes_look_up(farthest, bottom + right)));
-    eight->nearest = most_of(lanes_look_up(depth, eight->corners[0]), lanes_look_up(depth, eight->corners[1]),
-                             lanes_look_up(depth, eight->corners[2]));
+    eight->nearest =
+        most_of(lanes_look_up(depth, eight->corners[0]), lanes_look_up(depth, eight->corners[1]), lanes_look_up(depth, eight->corners[2]));
     lanes_int hidden = eight->nearest < far, wide = (bottom - top > BLOCK_COLUMNS) | (right - left > 1);
     eight->kept &= ~hidden | wide;
     eight->doubtful = hidden & wide;

@@ -7,7 +7,7 @@
 #include "render/draft/draft_impl.h"
 #include "render/draft/draft_simd.h"
 #include "render/matrix.h"
-#include "render/solid.h"
+#include "render/gl/surface_pass.h"
 
 #define SLACK_PX 0.02f    /* boxes and vertices round differently */
 #define SLACK_DEPTH 1e-5f /* of it */
@@ -103,7 +103,7 @@ static void find_meshes(void *arg, size_t begin, size_t end)
 /* NULL: out of memory. */
 static const struct draft_parts *parts_of(struct draft *draft, const struct model *model, const struct model_level *level)
 {
-    struct draft_parts **of_model = &draft->parts[model - draft->stage->models];
+    struct draft_parts **of_model = &draft->parts[model - draft->gpu_scene->models];
     if (!*of_model)
         *of_model = mem_array(model->level_count, sizeof(**of_model));
     struct draft_parts *parts = &(*of_model)[level - model->levels];
@@ -117,16 +117,17 @@ static const struct draft_parts *parts_of(struct draft *draft, const struct mode
 /* Whose side of a surface is seen. In an orthographic picture all rays are parallel: far enough away for floats not to tell. */
 static void find_eye(const struct draft *draft, double eye_m[3])
 {
-    const struct shot *shot = &draft->picture->shot;
+    const struct view_constants *constants = &draft->context->constants;
     for (int c = 0; c < 3; c++)
-        eye_m[c] = shot->pixel_per_metre > 0 ? draft->stage->middle_m[c] + 1e6 * draft->stage->radius_m * shot->back[c] : shot->eye_m[c];
+        eye_m[c] = constants->pixel_per_metre > 0 ? draft->gpu_scene->middle_m[c] + 1e6 * draft->gpu_scene->radius_m * constants->back[c]
+                                                  : constants->eye_m[c];
 }
 
 static bool add_asset(struct draft *draft, int asset, bool both_sides)
 {
-    const struct picture *picture = draft->picture;
-    const struct model *model = draft->stage->of_asset[asset];
-    const struct model_level *level = solid_level(picture, asset);
+    const struct frame_context *context = draft->context;
+    const struct model *model = draft->gpu_scene->of_asset[asset];
+    const struct model_level *level = surface_pass_level(context, asset);
     double file_from_plant[16], eye_m[3], eye[4];
     mem_grow(&draft->meshes, &draft->mesh_capacity, draft->mesh_count + 1, sizeof(*draft->meshes));
     mem_grow(&draft->found, &draft->found_capacity, draft->mesh_count + 1, sizeof(*draft->found));
@@ -134,27 +135,27 @@ static bool add_asset(struct draft *draft, int asset, bool both_sides)
     draft_fill_mesh(draft, &draft->meshes[draft->mesh_count], asset, level);
     struct draft_found *found = &draft->found[draft->mesh_count++];
     found->parts = parts_of(draft, model, level);
-    found->ramp = draft->ramp_of_model[model - draft->stage->models];
+    found->ramp = draft->ramp_of_model[model - draft->gpu_scene->models];
     found->both_sides = both_sides || mesh->cut; /* the inner side of what is cut shows */
-    matrix_invert(draft->stage->scene->assets[asset].placement, file_from_plant);
+    matrix_invert(draft->gpu_scene->scene->assets[asset].placement, file_from_plant);
     find_eye(draft, eye_m);
     matrix_point(file_from_plant, eye_m, eye);
     for (int c = 0; c < 3; c++)
         found->eye_m[c] = (float)eye[c];
     if (!found->parts || !mesh->cut || !draft->counts_bodies)
         return found->parts != NULL;
-    return draft_parts_close(&draft->parts[model - draft->stage->models][level - model->levels], mesh->file,
+    return draft_parts_close(&draft->parts[model - draft->gpu_scene->models][level - model->levels], mesh->file,
                              asset_closed(model->file, (uint32_t)(level - model->levels)), level->vertex_count);
 }
 
 bool draft_find(struct draft *draft)
 {
-    const struct picture *picture = draft->picture;
+    const struct frame_context *context = draft->context;
     bool good = true;
     draft->mesh_count = draft->vertex_count = 0;
     draft->counts_bodies = draft->cut_count > 0;
-    for (size_t i = 0; i < picture->visible_count && good; i++)
-        good = add_asset(draft, picture->visible[i], false);
+    for (size_t i = 0; i < context->visible_count && good; i++)
+        good = add_asset(draft, context->visible[i], false);
     if (!good)
         return false;
     workers_for(draft->workers, draft->mesh_count, 1, find_meshes, draft);

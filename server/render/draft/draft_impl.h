@@ -4,15 +4,15 @@
 #define RENDER_DRAFT_IMPL_H
 #include "render/draft/draft.h"
 #include "render/draft/draft_parts.h"
-#include "render/frame_block.h"
-#include "render/palette.h"
+#include "render/gl/frame_uniforms.h"
+#include "render/shaded_colormap.h"
 #include "render/recolor.h"
 #include "render/visibility_buffers.h"
 
 enum { BAND_ROWS = 32, CHUNK_TRIANGLES = 2048, RAMP_STEPS = MODEL_LIGHT_STEPS, DRAFT_STRETCH_MOST = 64, DRAFT_STRETCH_LEAST = 8 };
 
-/* Marks of pixels. 0: nothing. Else a colour of the palette, or a material and the light on it, to be looked up. */
-#define MARK_FIELD 0x40000000u   /* | palette row * PALETTE_COLUMNS + column (MARK_PLACE) | so much of an isoline << MARK_LINE (8 bits) */
+/* Marks of pixels. 0: nothing. Else a colour of the colormap, or a material and the light on it, to be looked up. */
+#define MARK_FIELD 0x40000000u /* | colormap row * COLORMAP_COLUMNS + column (MARK_PLACE) | so much of an isoline << MARK_LINE (8 bits) */
 #define MARK_PLACE 0x1ffffu
 enum { MARK_LINE = 17, MARK_LINE_WHOLE = 255 };
 #define MARK_CONTEXT 0x80000000u /* | ambient << 8 (8 bits) | sun (8 bits) | row of the ramps << 16 (14 bits) */
@@ -22,11 +22,11 @@ enum { MARK_LINE = 17, MARK_LINE_WHOLE = 255 };
 enum { MOST_RAMPS = 1 << 14 };
 
 struct draft_vertex {
-    float x, y, depth;     /* pixels from the top left; 1 near, 0 far */
-    float inverse_w;       /* 0: nearer than the near plane, or beyond the band (draft_near.h) */
-    float a, b;            /* field: column and row of the palette (logarithmic: value and row); context: ambient, facing the sun */
-    uint32_t flags;        /* draft_flags */
-    uint32_t source;       /* of one that a cut made: first index of the triangle that was cut */
+    float x, y, depth; /* pixels from the top left; 1 near, 0 far */
+    float inverse_w;   /* 0: nearer than the near plane, or beyond the band (draft_near.h) */
+    float a, b;        /* field: column and row of the colormap (logarithmic: value and row); context: ambient, facing the sun */
+    uint32_t flags;    /* draft_flags */
+    uint32_t source;   /* of one that a cut made: first index of the triangle that was cut */
 };
 /* Two bytes, scalar.uncertain and from bit DRAFT_LACKING on scalar.lacking; and a bit. */
 enum { DRAFT_LACKING = 8, DRAFT_NO_DATA = 0x8000, DRAFT_UNCERTAIN = 0x80, DRAFT_NO_LIMITS = 0x10000 };
@@ -59,8 +59,8 @@ struct draft_mesh { /* one asset in this picture */
     float place[4][4]; /* columns; x w, y w in pixels, z and w of clip space */
     uint32_t first_vertex, vertex_count;
     bool mirrored;
-    bool cut;       /* something of it is cut away: what is left shows its inner side */
-    float turn[9];  /* of one that is cut: columns, plant from file, for normals */
+    bool cut;      /* something of it is cut away: what is left shows its inner side */
+    float turn[9]; /* of one that is cut: columns, plant from file, for normals */
 };
 
 struct draft_draw { /* neighbouring triangles of one material */
@@ -93,7 +93,7 @@ struct draft_rect { /* pixels, the last ones included */
 };
 
 struct draft_item { /* a part that may be seen */
-    float near; /* depth; over 1: some of it is nearer than the near plane */
+    float near;     /* depth; over 1: some of it is nearer than the near plane */
     struct draft_rect rect;
     uint32_t part;
     bool cut;    /* it lies on both sides of a plane that cuts */
@@ -111,12 +111,12 @@ struct draft_found { /* what of one mesh may be seen; kept from picture to pictu
     size_t count, capacity;
 };
 
-struct draft_light { /* a light_set, read back */
+struct draft_light {      /* a light_set, read back */
     uint64_t id;          /* of the set; 0: empty */
     uint8_t (**baked)[4]; /* by asset */
     uint16_t *sun_map;    /* rows from the top; one more row and column than it has */
     int sun_map_px;
-    uint32_t *ground;     /* a byte each: this texel, its right, lower, lower right neighbour; 255: no shadow */
+    uint32_t *ground; /* a byte each: this texel, its right, lower, lower right neighbour; 255: no shadow */
     int ground_px;
     uint64_t used;
 };
@@ -126,12 +126,12 @@ struct draft_kernels;
 struct draft {
     struct workers *workers;
     const struct draft_kernels *kernels;
-    const struct stage *stage;
+    const struct gpu_scene *gpu_scene;
     uint32_t *ramps, *ramp_of_model; /* colours, RAMP_STEPS to a row; first row, by number of the model */
     size_t ramp_count;
-    bool has_holes;                  /* some material cuts them by a texture */
-    uint32_t *backdrops;             /* as render/light/sky.c makes them */
-    uint32_t *palette;
+    bool has_holes;      /* some material cuts them by a texture */
+    uint32_t *backdrops; /* as render/light/sky.c makes them */
+    uint32_t *colormap;
     float *lines; /* by place of the scale: the nearest place that has a line */
     uint64_t palette_version;
     struct draft_light lights[DRAFT_LIGHTS];
@@ -141,9 +141,9 @@ struct draft {
     size_t shape_count;
     struct draft_parts **parts; /* by number of the model, level; made when they are first needed */
     /* --- of the picture being drawn */
-    const struct picture *picture;
+    const struct frame_context *context;
     const struct draft_light *light;
-    struct frame_block block;
+    struct frame_uniforms block;
     struct draft_mesh *meshes;
     struct draft_found *found; /* by mesh */
     size_t found_capacity;
@@ -165,34 +165,34 @@ struct draft {
     int cut_count, entry_count;
     bool counts_bodies; /* planes that cut show which bodies are solid (draft_caps.c) */
     bool has_ground;
-    bool greys; /* context has no colours */
+    bool greys;                                                                /* context has no colours */
     float sun_from_pixel[4][4], ground_from_pixel[3][3], ray_from_pixel[3][3]; /* columns */
     int stretch_px; /* of the sky: from DRAFT_STRETCH_LEAST to DRAFT_STRETCH_MOST, a power of two; 1: each pixel by itself */
 };
 
-/* From the GPU: what is the same in all pictures (false: the context is lost); light (NULL: out of memory, logged); a palette. */
+/* From the GPU: what is the same in all pictures (false: the context is lost); light (NULL: out of memory, logged); a colormap. */
 bool draft_read_textures(struct draft *draft, const struct sky *sky);
 const struct draft_light *draft_get_light(struct draft *draft, const struct light_set *set);
 void draft_free_light(const struct draft *draft, struct draft_light *light);
-void draft_read_palette(struct draft *draft, const struct palette *palette);
+void draft_read_palette(struct draft *draft, const struct shaded_colormap *colormap);
 /* The steps. */
-void draft_aim(struct draft *draft, const struct light *light); /* the matrices from pixels */
-void draft_aim_cuts(struct draft *draft);                       /* before all that follows */
+void draft_aim(struct draft *draft, const struct light *light);                  /* the matrices from pixels */
+void draft_aim_cuts(struct draft *draft);                                        /* before all that follows */
 bool draft_is_cut_off(const struct draft *draft, const float at[4], int planes); /* x w, y w in pixels, z, w */
 /* A box of the mesh: none of it is left by that plane; or some is not (*cut: as it was, else). */
 bool draft_cuts_box(const struct draft *draft, const struct draft_mesh *mesh, int plane, const float low[3], const float high[3],
                     bool *cut);
 /* Where the ray of that place in the picture comes into what is left: depth. 0: nowhere, or its eye is within. */
 float draft_entry_depth(const struct draft *draft, float x, float y);
-bool draft_collect(struct draft *draft);                        /* meshes, draws and chunks: what may be seen. False: out of memory */
+bool draft_collect(struct draft *draft); /* meshes, draws and chunks: what may be seen. False: out of memory */
 /* An asset, its vertices counted on from draft->vertex_count. */
 void draft_fill_mesh(struct draft *draft, struct draft_mesh *mesh, int asset, const struct model_level *level);
-bool draft_find(struct draft *draft);                           /* meshes, and which of their parts may be seen. False: out of memory */
-bool draft_find_only(struct draft *draft, int asset);           /* the same of one, from both sides */
-void draft_tiles(struct draft *draft, bool color);              /* depth and marks of what was found; and colours, or not */
+bool draft_find(struct draft *draft);                 /* meshes, and which of their parts may be seen. False: out of memory */
+bool draft_find_only(struct draft *draft, int asset); /* the same of one, from both sides */
+void draft_tiles(struct draft *draft, bool color);    /* depth and marks of what was found; and colours, or not */
 bool draft_make_room(struct draft *draft, const struct frame *frame, int band_rows); /* false: out of memory */
-void draft_place(struct draft *draft, size_t begin, size_t end); /* vertices */
-void draft_sort(struct draft *draft, size_t begin, size_t end);  /* triangles of chunks into bands */
+void draft_place(struct draft *draft, size_t begin, size_t end);                     /* vertices */
+void draft_sort(struct draft *draft, size_t begin, size_t end);                      /* triangles of chunks into bands */
 enum draft_rim { RIM_NONE, RIM_LIGHT, RIM_DARK };
 const uint8_t *draft_rim(const struct draft *draft); /* per pixel, rows of pitch_px; in place of depth */
 /* What is needed to colour it again, while draft->ids says what is seen and the frame has all but rims: no ink and no markers yet. NULL:
@@ -200,9 +200,9 @@ const uint8_t *draft_rim(const struct draft *draft); /* per pixel, rows of pitch
 struct recolor *draft_keep(struct draft *draft);
 void draft_keep_rim(const struct draft *draft, struct recolor *recolor); /* likewise: depth is lost */
 /* Hands it over to a store, with the frame's markers. */
-void draft_give(struct visibility_buffers *store, const struct picture *picture, struct recolor *recolor, const struct frame *frame);
+void draft_give(struct visibility_buffers *store, const struct frame_context *context, struct recolor *recolor, const struct frame *frame);
 /* Pixels and markers, if the store has such a picture. False: it has not. */
-bool draft_recolor(struct draft *draft, struct visibility_buffers *store, const struct picture *picture, struct frame *frame);
-void draft_outline(const struct draft *draft);                  /* of all that has a mark; depth is lost */
+bool draft_recolor(struct draft *draft, struct visibility_buffers *store, const struct frame_context *context, struct frame *frame);
+void draft_outline(const struct draft *draft); /* of all that has a mark; depth is lost */
 
 #endif

@@ -3,7 +3,7 @@
 #include <string.h>
 
 #include "base/mem.h"
-#include "render/content.h"
+#include "render/plan/content_hash.h"
 #include "render/draft/draft_tile.h"
 
 struct keeping {
@@ -13,7 +13,7 @@ struct keeping {
 
 struct spot { /* a triangle, in the picture */
     uint32_t id;
-    uint32_t number;     /* in the band */
+    uint32_t number;      /* in the band */
     double weights[3][3]; /* of x, y and 1: of its corners, up to a factor */
 };
 
@@ -110,7 +110,7 @@ static void keep_band(const struct keeping *keeping, int number)
                 find_spot(keeping, band, id, spot);
             recolor->surfaces[to + x] = spot->number;
             recolor->weights[to + x] = weights_at(spot, (double)x + 0.5, y + 0.5);
-            recolor->rows[to + x] = (uint8_t)((mark & MARK_PLACE) / PALETTE_COLUMNS);
+            recolor->rows[to + x] = (uint8_t)((mark & MARK_PLACE) / COLORMAP_COLUMNS);
         }
     }
 }
@@ -130,7 +130,7 @@ struct recolor *draft_keep(struct draft *draft)
         const struct draft_mesh *mesh = &draft->meshes[m];
         if (mesh->has_field)
             recolor_add_mesh(recolor, &(struct recolor_mesh){
-                                         .asset = mesh->asset, .first_vertex = mesh->first_vertex, .vertex_count = mesh->vertex_count });
+                                          .asset = mesh->asset, .first_vertex = mesh->first_vertex, .vertex_count = mesh->vertex_count });
     }
     struct keeping keeping = { draft, recolor };
     workers_for(draft->workers, (size_t)recolor->band_count, 1, keep_bands, &keeping);
@@ -153,25 +153,25 @@ static void forget(void *recolor)
     recolor_destroy(&(struct recolor *){ recolor });
 }
 
-void draft_give(struct visibility_buffers *store, const struct picture *picture, struct recolor *recolor, const struct frame *frame)
+void draft_give(struct visibility_buffers *store, const struct frame_context *context, struct recolor *recolor, const struct frame *frame)
 {
     recolor->markers = mem_array(frame->marker_count, sizeof(*recolor->markers));
     recolor->marker_count = frame->marker_count;
     if (frame->marker_count > 0)
         memcpy(recolor->markers, frame->markers, frame->marker_count * sizeof(*recolor->markers));
-    visibility_buffers_give(store, content_shape_hash(picture), recolor, recolor_bytes(recolor), forget);
+    visibility_buffers_give(store, content_shape_hash(context), recolor, recolor_bytes(recolor), forget);
 }
 
-bool draft_recolor(struct draft *draft, struct visibility_buffers *store, const struct picture *picture, struct frame *frame)
+bool draft_recolor(struct draft *draft, struct visibility_buffers *store, const struct frame_context *context, struct frame *frame)
 {
-    struct recolor *recolor = visibility_buffers_find(store, content_shape_hash(picture));
-    struct frame_block block;
+    struct recolor *recolor = visibility_buffers_find(store, content_shape_hash(context));
+    struct frame_uniforms block;
     if (!recolor)
         return false;
-    frame_block_fill(&block, picture);
-    draft_read_palette(draft, &picture->palette);
-    recolor_read(recolor, picture, draft->workers);
-    recolor_draw(recolor, draft->palette, block.scale[3], draft->workers, 0, recolor->band_count, frame);
+    frame_uniforms_fill(&block, context);
+    draft_read_palette(draft, &context->colormap);
+    recolor_read(recolor, context, draft->workers);
+    recolor_draw(recolor, draft->colormap, block.scale[3], draft->workers, 0, recolor->band_count, frame);
     frame->markers = mem_array(recolor->marker_count, sizeof(*frame->markers));
     frame->marker_count = recolor->marker_count;
     memcpy(frame->markers, recolor->markers, recolor->marker_count * sizeof(*recolor->markers));

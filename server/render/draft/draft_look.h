@@ -46,7 +46,7 @@ DRAFT_INLINE lanes sun_tap(const struct draft_light *light, lanes s, lanes t, la
     }
     lanes_uint above = *(const lanes_uint *)pairs[0], below = *(const lanes_uint *)pairs[1];
     lanes one = (lanes){ 0 } + 1.0f, none = { 0 };
-#define LIT(pair) lanes_choose(place >= __builtin_convertvector((lanes_int)((pair) & 0xffff), lanes), one, none)
+#define LIT(pair) lanes_choose(place >= __builtin_convertvector((lanes_int)((pair)&0xffff), lanes), one, none)
     lanes upper = LIT(above) + u_part * (LIT(above >> 16) - LIT(above)), lower = LIT(below) + u_part * (LIT(below >> 16) - LIT(below));
 #undef LIT
     return upper + v_part * (lower - upper);
@@ -64,7 +64,7 @@ static float height_at(const struct draft *draft, float x, float y)
     float up = 0, square = 0;
     for (int r = 0; r < 3; r++) {
         float ray = x * m[0][r] + (y * m[1][r] + m[2][r]);
-        up += ray * (float)draft->stage->up[r];
+        up += ray * (float)draft->gpu_scene->up[r];
         square += ray * ray;
     }
     return up / sqrtf(square) * 1023.5f + 1024.0f;
@@ -84,7 +84,7 @@ DRAFT_INLINE lanes_int backdrop_at(const struct draft *draft, const struct heigh
     for (int i = 0; i < LANES && draft->stretch_px == 1; i++)
         height[i] = height_at(draft, (float)(column + i) + 0.5f, (float)row + 0.5f);
     lanes_int at = lanes_whole(lanes_clamp(height, 0, SKY_BACKDROPS - 1));
-    lanes_int tile = (draft->picture->view->dark ? SKY_ROUNDINGS : 0) + (row & 3) * 4 + (lanes_whole(x) & 3);
+    lanes_int tile = (draft->context->view->dark ? SKY_ROUNDINGS : 0) + (row & 3) * 4 + (lanes_whole(x) & 3);
     return gather(draft->backdrops, tile * SKY_BACKDROPS + at);
 }
 

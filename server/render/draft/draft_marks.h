@@ -6,7 +6,7 @@
 #include "render/draft/draft_simd.h"
 
 struct ink {
-    int32_t last_row; /* of the palette */
+    int32_t last_row; /* of the colormap */
     float pattern_px;
     bool rich; /* there are lines, or the scale is logarithmic */
     bool log;
@@ -17,7 +17,7 @@ struct ink {
 
 DRAFT_INLINE struct ink ink_of(const struct draft *draft)
 {
-    const struct frame_block *block = &draft->block;
+    const struct frame_uniforms *block = &draft->block;
     return (struct ink){
         .last_row = (int32_t)block->shade[2],
         .pattern_px = block->scale[3],
@@ -39,7 +39,7 @@ DRAFT_INLINE lanes_int whole_within(lanes x, int32_t high)
 
 DRAFT_INLINE lanes_int field_mark(lanes column, lanes row, int32_t last_row)
 {
-    return (whole_within(row, last_row) * PALETTE_COLUMNS + whole_within(column, PALETTE_PLACES + 1)) | (int32_t)MARK_FIELD;
+    return (whole_within(row, last_row) * COLORMAP_COLUMNS + whole_within(column, COLORMAP_PLACES + 1)) | (int32_t)MARK_FIELD;
 }
 
 DRAFT_INLINE lanes_int context_mark(lanes ambient, lanes sun, uint32_t mark)
@@ -69,7 +69,7 @@ DRAFT_INLINE lanes_int stipple(lanes x, float y, float pattern_px)
 /* As field_color in shaders/field.glsl, but for patterns. value_x, value_y: by how much the value grows from pixel to pixel. */
 DRAFT_INLINE lanes_int rich_mark(lanes value, lanes value_x, lanes value_y, lanes row, const struct ink *ink)
 {
-    const float slack = 1e-5f, columns = PALETTE_PLACES / (1 + 2 * slack), first = 1 + slack * columns, farthest = 1e6f;
+    const float slack = 1e-5f, columns = COLORMAP_PLACES / (1 + 2 * slack), first = 1 + slack * columns, farthest = 1e6f;
     lanes none = { 0 }, slope = lanes_root(value_x * value_x + value_y * value_y), place;
     if (ink->log) {
         lanes_int counts = value > 1e-30f;
@@ -83,7 +83,7 @@ DRAFT_INLINE lanes_int rich_mark(lanes value, lanes value_x, lanes value_y, lane
     lanes_int marks = field_mark(value, row, ink->last_row);
     if (!(ink->line_px > 0))
         return marks;
-    lanes_int at = whole_within(lanes_clamp(value - 1.0f, 0, PALETTE_PLACES - 1), PALETTE_PLACES - 1), steep = slope > 1e-7f;
+    lanes_int at = whole_within(lanes_clamp(value - 1.0f, 0, COLORMAP_PLACES - 1), COLORMAP_PLACES - 1), steep = slope > 1e-7f;
     lanes away;
     for (int l = 0; l < LANES; l++)
         away[l] = __builtin_fabsf(place[l] - ink->lines[at[l]]);
@@ -103,7 +103,7 @@ DRAFT_INLINE bool rule(float y, float pattern_px)
 DRAFT_INLINE lanes_int pattern_marks(lanes_int marks, lanes_int no_data, lanes_int uncertain, lanes_int no_limits, lanes row, lanes x,
                                      float y, const struct ink *ink)
 {
-    lanes_int r = whole_within(row, ink->last_row) * PALETTE_COLUMNS + (int32_t)MARK_FIELD + PALETTE_PATTERNS;
+    lanes_int r = whole_within(row, ink->last_row) * COLORMAP_COLUMNS + (int32_t)MARK_FIELD + COLORMAP_PATTERNS;
     lanes_int dark = hatch(x, y, ink->pattern_px), dots = stipple(x, y, ink->pattern_px);
     lanes_int lines = marks & MARK_LINE_WHOLE << MARK_LINE;
     marks = lanes_choose_int(uncertain & dots, (r + PATTERN_STIPPLE) | lines, marks);

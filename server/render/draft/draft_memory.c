@@ -36,8 +36,8 @@ size_t draft_room_bytes(const struct draft *draft)
         bytes += chunk_bytes(&draft->chunks[i]);
     for (size_t i = 0; i < draft->found_capacity; i++)
         bytes += draft->found[i].capacity * sizeof(*draft->found[i].items);
-    for (size_t m = 0; m < draft->stage->model_count; m++)
-        for (size_t l = 0; draft->parts[m] && l < draft->stage->models[m].level_count; l++)
+    for (size_t m = 0; m < draft->gpu_scene->model_count; m++)
+        for (size_t l = 0; draft->parts[m] && l < draft->gpu_scene->models[m].level_count; l++)
             bytes += sizeof(struct draft_parts) + parts_bytes(&draft->parts[m][l]);
     return bytes;
 }
@@ -49,8 +49,8 @@ size_t draft_light_bytes(const struct draft *draft)
         const struct draft_light *light = &draft->lights[i];
         size_t row = light->sun_map ? (size_t)light->sun_map_px + 1 : 0, side = light->ground ? (size_t)light->ground_px : 0;
         bytes += row * row * sizeof(*light->sun_map) + side * side * sizeof(*light->ground);
-        for (size_t a = 0; light->baked && a < draft->stage->scene->asset_count; a++)
-            bytes += 4 * draft->stage->of_asset[a]->mesh.vertex_count;
+        for (size_t a = 0; light->baked && a < draft->gpu_scene->scene->asset_count; a++)
+            bytes += 4 * draft->gpu_scene->of_asset[a]->mesh.vertex_count;
     }
     return bytes;
 }
@@ -71,8 +71,8 @@ static void drop_chunks(struct draft *draft)
 
 static void drop_parts(struct draft *draft)
 {
-    for (size_t m = 0; draft->parts && m < draft->stage->model_count; m++) {
-        for (size_t l = 0; draft->parts[m] && l < draft->stage->models[m].level_count; l++)
+    for (size_t m = 0; draft->parts && m < draft->gpu_scene->model_count; m++) {
+        for (size_t l = 0; draft->parts[m] && l < draft->gpu_scene->models[m].level_count; l++)
             draft_parts_finish(&draft->parts[m][l]);
         mem_free(draft->parts[m]);
         draft->parts[m] = NULL;

@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "render/draft/draft_impl.h"
-#include "render/lines.h"
+#include "render/gl/lines.h"
 
 enum { MOST_REACH_PX = 32 };
 static const uint8_t dark_bgr[3] = { 41, 23, 13 };
@@ -62,7 +62,7 @@ const uint8_t *draft_rim(const struct draft *draft)
 {
     struct brush brush;
     uint8_t *rim = (uint8_t *)draft->depth; /* which is done with */
-    brush_init(&brush, lines_outline_px(draft->picture->view));
+    brush_init(&brush, lines_outline_px(draft->context->view));
     memset(rim, 0, (size_t)draft->pitch_px * (size_t)draft->height_px);
     for (int y = 0; y < draft->height_px; y++)
         for (int x = 0; x < draft->width_px; x++)

@@ -4,7 +4,7 @@
    away goes eight at a time. Private to draft*.c. */
 #ifndef RENDER_DRAFT_PARTS_H
 #define RENDER_DRAFT_PARTS_H
-#include "render/model.h"
+#include "render/gl/model.h"
 
 enum { PART_TRIANGLES = 256, PART_VERTICES = 256 };
 
@@ -42,7 +42,7 @@ static inline const float *draft_part_planes(const struct draft_parts *parts, co
 /* False: out of memory. Finish in both cases. */
 bool draft_parts_init(struct draft_parts *parts, const struct asset_view *file, const struct model_level *level);
 /* Finds out which vertices are of closed bodies, if that is not known. vertex_count: of the level. False: out of memory. */
-bool draft_parts_close(struct draft_parts *parts, const struct asset_view *file, const struct closed *closed, uint32_t vertex_count);
+bool draft_parts_close(struct draft_parts *parts, const struct asset_view *file, const struct closed_bodies *closed, uint32_t vertex_count);
 void draft_parts_finish(struct draft_parts *parts);
 
 #endif

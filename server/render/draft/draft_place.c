@@ -26,8 +26,8 @@ static inline void place_one(const struct draft *draft, const struct draft_mesh 
 
 static void carry_field(const struct draft *draft, const struct draft_mesh *mesh, uint32_t v, struct draft_vertex *out)
 {
-    /* As palette_column and palette_row in shaders/field.glsl. */
-    const float slack = 1e-5f, columns = PALETTE_PLACES / (1 + 2 * slack);
+    /* As colormap_column and colormap_row in shaders/field.glsl. */
+    const float slack = 1e-5f, columns = COLORMAP_PLACES / (1 + 2 * slack);
     const struct scalar *scalar = &mesh->scalars[v];
     float place = (scalar->value - draft->block.scale[0]) * draft->block.scale[1];
     out->a = fminf(fmaxf(place * columns + (1 + slack * columns), -FARTHEST), FARTHEST);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What the other passes made on the GPU, brought here: light, ramps, backdrops and palettes. */
+/* What the other passes made on the GPU, brought here: light, ramps, backdrops and colormaps. */
 #include <math.h>
 #include <string.h>
 
@@ -9,7 +9,7 @@
 
 static bool fail(const struct draft *draft, const char *what)
 {
-    log_err(draft->stage->gl->log, "moving pictures: %s cannot be read back: out of memory", what);
+    log_err(draft->gpu_scene->gl->log, "moving pictures: %s cannot be read back: out of memory", what);
     return false;
 }
 
@@ -21,42 +21,42 @@ static void read_colors(GLuint texture, uint32_t *to, size_t texels)
 
 bool draft_read_textures(struct draft *draft, const struct sky *sky)
 {
-    const struct stage *stage = draft->stage;
+    const struct gpu_scene *gpu_scene = draft->gpu_scene;
     size_t rows = 0, backdrops = SKY_BACKDROPS * SKY_ROWS;
-    draft->ramp_of_model = mem_array(stage->model_count, sizeof(*draft->ramp_of_model));
-    for (size_t m = 0; m < stage->model_count; m++) {
+    draft->ramp_of_model = mem_array(gpu_scene->model_count, sizeof(*draft->ramp_of_model));
+    for (size_t m = 0; m < gpu_scene->model_count; m++) {
         draft->ramp_of_model[m] = (uint32_t)rows;
-        rows += stage->models[m].material_count;
-        for (size_t i = 0; i < stage->models[m].material_count; i++)
-            draft->has_holes |= stage->models[m].materials[i].masked;
+        rows += gpu_scene->models[m].material_count;
+        for (size_t i = 0; i < gpu_scene->models[m].material_count; i++)
+            draft->has_holes |= gpu_scene->models[m].materials[i].masked;
     }
     draft->ramp_count = rows;
     draft->ramps = mem_array(rows * RAMP_STEPS, sizeof(*draft->ramps));
-    for (size_t m = 0; m < stage->model_count; m++)
-        read_colors(stage->models[m].ramps, draft->ramps + (size_t)draft->ramp_of_model[m] * RAMP_STEPS,
-                    stage->models[m].material_count * RAMP_STEPS);
-    draft->palette = mem_array(PALETTE_ROWS * PALETTE_COLUMNS, sizeof(*draft->palette));
-    draft->lines = mem_array(PALETTE_PLACES, sizeof(*draft->lines));
+    for (size_t m = 0; m < gpu_scene->model_count; m++)
+        read_colors(gpu_scene->models[m].ramps, draft->ramps + (size_t)draft->ramp_of_model[m] * RAMP_STEPS,
+                    gpu_scene->models[m].material_count * RAMP_STEPS);
+    draft->colormap = mem_array(COLORMAP_ROWS * COLORMAP_COLUMNS, sizeof(*draft->colormap));
+    draft->lines = mem_array(COLORMAP_PLACES, sizeof(*draft->lines));
     draft->backdrops = mem_array(backdrops, sizeof(*draft->backdrops));
     read_colors(sky->backdrops, draft->backdrops, backdrops);
     return glGetError() == GL_NO_ERROR;
 }
 
-void draft_read_palette(struct draft *draft, const struct palette *palette)
+void draft_read_palette(struct draft *draft, const struct shaded_colormap *colormap)
 {
-    if (draft->palette_version == palette->version)
+    if (draft->palette_version == colormap->version)
         return;
-    read_colors(palette->colors, draft->palette, PALETTE_ROWS * PALETTE_COLUMNS);
-    if (palette->lines)
-        glGetTextureImage(palette->lines, 0, GL_RED, GL_FLOAT, PALETTE_PLACES * sizeof(*draft->lines), draft->lines);
-    draft->palette_version = palette->version;
+    read_colors(colormap->colors, draft->colormap, COLORMAP_ROWS * COLORMAP_COLUMNS);
+    if (colormap->lines)
+        glGetTextureImage(colormap->lines, 0, GL_RED, GL_FLOAT, COLORMAP_PLACES * sizeof(*draft->lines), draft->lines);
+    draft->palette_version = colormap->version;
 }
 
 /* --- light ------------------------------------------------------------------------------------------------------------------ */
 
 void draft_free_light(const struct draft *draft, struct draft_light *light)
 {
-    for (size_t i = 0; light->baked && i < draft->stage->scene->asset_count; i++)
+    for (size_t i = 0; light->baked && i < draft->gpu_scene->scene->asset_count; i++)
         mem_free(light->baked[i]);
     mem_free(light->baked);
     mem_free(light->sun_map);
@@ -66,10 +66,10 @@ void draft_free_light(const struct draft *draft, struct draft_light *light)
 
 static bool read_baked(const struct draft *draft, struct draft_light *light, const struct light_set *set)
 {
-    const struct stage *stage = draft->stage;
-    light->baked = mem_array(stage->scene->asset_count, sizeof(*light->baked));
-    for (size_t i = 0; i < stage->scene->asset_count; i++) {
-        size_t vertices = stage->of_asset[i]->mesh.vertex_count;
+    const struct gpu_scene *gpu_scene = draft->gpu_scene;
+    light->baked = mem_array(gpu_scene->scene->asset_count, sizeof(*light->baked));
+    for (size_t i = 0; i < gpu_scene->scene->asset_count; i++) {
+        size_t vertices = gpu_scene->of_asset[i]->mesh.vertex_count;
         light->baked[i] = mem_try_array(vertices, 4);
         if (!light->baked[i])
             return fail(draft, "light");

@@ -112,7 +112,7 @@ DRAFT_INLINE void draw_many(const struct draft_tile *tile, const struct draft_fa
     if (mark != MARK_FIELD)
         marks = __builtin_convertvector(a + 0.5f, sixteen_int) << 8 | __builtin_convertvector(b + 0.5f, sixteen_int) | (int32_t)mark;
     else
-        marks = (many_within(b, ink->last_row) * PALETTE_COLUMNS + many_within(a, PALETTE_PLACES + 1)) | (int32_t)MARK_FIELD;
+        marks = (many_within(b, ink->last_row) * COLORMAP_COLUMNS + many_within(a, COLORMAP_PLACES + 1)) | (int32_t)MARK_FIELD;
     many_put_ints(draft->marks + place, pitch, width, seen, marks);
     many_put_floats(draft->depth + place, pitch, width, (sixteen)_mm512_mask_mov_ps((__m512)depth, seen, (__m512)here));
     if (draft->ids)

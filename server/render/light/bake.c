@@ -26,7 +26,7 @@ struct directions_block {
 };
 
 struct bake {
-    const struct stage *stage;
+    const struct gpu_scene *gpu_scene;
     const struct bake_programs *programs;
     const double *plant_from_ground;
     struct light_set set;
@@ -62,12 +62,12 @@ void bake_programs_finish(struct bake_programs *programs)
     program_destroy(&programs->ground_sun);
 }
 
-void light_set_finish(struct light_set *set, const struct stage *stage)
+void light_set_finish(struct light_set *set, const struct gpu_scene *gpu_scene)
 {
     glDeleteTextures(1, &set->sun_map);
     glDeleteTextures(1, &set->ground);
-    for (size_t i = 0; set->baked && i < stage->scene->asset_count; i++)
-        pool_release(&set->baked[i]);
+    for (size_t i = 0; set->baked && i < gpu_scene->scene->asset_count; i++)
+        pool_unref(&set->baked[i]);
     mem_free(set->baked);
     pool_destroy(&set->pool);
     *set = (struct light_set){ 0 };
@@ -95,16 +95,16 @@ static GLuint make_map(GLenum kind, int size_px, int layers)
     return map;
 }
 
-static int sun_map_px(const struct stage *stage)
+static int sun_map_px(const struct gpu_scene *gpu_scene)
 {
-    return SUN_MAP_PX < stage->gl->max_texture_px ? SUN_MAP_PX : stage->gl->max_texture_px;
+    return SUN_MAP_PX < gpu_scene->gl->max_texture_px ? SUN_MAP_PX : gpu_scene->gl->max_texture_px;
 }
 
 /* One asset, if it is shown. layer -1: the texture is not an array. error_m: of the level of detail. */
 static void draw_on_map(struct bake *bake, GLuint map, int layer, int size_px, const double clip_from_plant[16],
                         const struct visibility *shown, double error_m)
 {
-    const struct stage *stage = bake->stage;
+    const struct gpu_scene *gpu_scene = bake->gpu_scene;
     if (layer < 0)
         glNamedFramebufferTexture(bake->framebuffer, GL_DEPTH_ATTACHMENT, map, 0);
     else
@@ -117,16 +117,16 @@ static void draw_on_map(struct bake *bake, GLuint map, int layer, int size_px, c
     if (bake->asset == 0)
         glClear(GL_DEPTH_BUFFER_BIT);
     if (visibility_of(shown, (int)bake->asset) == ASSET_SHOWN)
-        stage_draw_depth(stage, clip_from_plant, &shown->clip, (int)bake->asset, error_m, false);
+        gpu_scene_draw_depth(gpu_scene, clip_from_plant, &shown->clip, (int)bake->asset, error_m, false);
     glBindFramebuffer(GL_DRAW_FRAMEBUFFER, 0);
 }
 
 /* Evenly over the sphere (Fibonacci lattice). Ground throws back less than half of what the sky gives. */
-static void sky_direction(const struct stage *stage, int i, double towards[3], float *brightness)
+static void sky_direction(const struct gpu_scene *gpu_scene, int i, double towards[3], float *brightness)
 {
     double height = 1 - (2 * i + 1.0) / SKY_DIRECTIONS, angle = i * 2.399963229728653, flat = sqrt(1 - height * height);
     double a = flat * cos(angle), b = flat * sin(angle);
-    bool y_up = stage->up[1] > 0;
+    bool y_up = gpu_scene->up[1] > 0;
     towards[0] = a;
     towards[1] = y_up ? height : b;
     towards[2] = y_up ? -b : height;
@@ -135,14 +135,14 @@ static void sky_direction(const struct stage *stage, int i, double towards[3], f
 
 static void find_directions(struct bake *bake)
 {
-    const struct stage *stage = bake->stage;
+    const struct gpu_scene *gpu_scene = bake->gpu_scene;
     double to_middle[16], matrix[16];
     bake->directions = mem_new(sizeof(*bake->directions));
-    matrix_translation(stage->middle_m, to_middle);
+    matrix_translation(gpu_scene->middle_m, to_middle);
     for (int i = 0; i < SKY_DIRECTIONS; i++) {
         double towards[3];
-        sky_direction(stage, i, towards, &bake->directions->direction[i][3]);
-        matrix_parallel(stage->middle_m, stage->radius_m, towards, matrix);
+        sky_direction(gpu_scene, i, towards, &bake->directions->direction[i][3]);
+        matrix_parallel(gpu_scene->middle_m, gpu_scene->radius_m, towards, matrix);
         matrix_texture_from_clip(matrix, matrix);
         matrix_multiply(matrix, to_middle, matrix);
         matrix_to_float(matrix, bake->directions->map_from_plant[i]);
@@ -153,13 +153,13 @@ static void find_directions(struct bake *bake)
 
 static void sky_map_bit(struct bake *bake)
 {
-    const struct stage *stage = bake->stage;
+    const struct gpu_scene *gpu_scene = bake->gpu_scene;
     double towards[3], clip_from_plant[16];
     float brightness;
-    sky_direction(stage, bake->direction, towards, &brightness);
-    matrix_parallel(stage->middle_m, stage->radius_m, towards, clip_from_plant);
+    sky_direction(gpu_scene, bake->direction, towards, &brightness);
+    matrix_parallel(gpu_scene->middle_m, gpu_scene->radius_m, towards, clip_from_plant);
     draw_on_map(bake, bake->sky_maps, bake->direction, SKY_MAP_PX, clip_from_plant, &bake->start, 0.5 * bake->sky_texel_m);
-    if (++bake->asset < bake->stage->scene->asset_count)
+    if (++bake->asset < bake->gpu_scene->scene->asset_count)
         return;
     bake->asset = 0;
     if (++bake->direction == SKY_DIRECTIONS)
@@ -169,8 +169,8 @@ static void sky_map_bit(struct bake *bake)
 static void sun_map_bit(struct bake *bake)
 {
     const struct light_set *set = &bake->set;
-    draw_on_map(bake, set->sun_map, -1, sun_map_px(bake->stage), bake->sun_clip_from_plant, &set->key.shown, 0.5 * set->texel_m);
-    if (++bake->asset < bake->stage->scene->asset_count)
+    draw_on_map(bake, set->sun_map, -1, sun_map_px(bake->gpu_scene), bake->sun_clip_from_plant, &set->key.shown, 0.5 * set->texel_m);
+    if (++bake->asset < bake->gpu_scene->scene->asset_count)
         return;
     bake->asset = 0;
     bake->part = BAKE_GROUND;
@@ -182,7 +182,7 @@ static void set_uniforms(const struct bake *bake, const double plant_from_here[1
 {
     double around_middle[16];
     float matrix[16], normals[9];
-    const double *middle = bake->stage->middle_m, *towards = bake->set.key.towards;
+    const double *middle = bake->gpu_scene->middle_m, *towards = bake->set.key.towards;
     matrix_translation((double[3]){ -middle[0], -middle[1], -middle[2] }, around_middle);
     matrix_multiply(around_middle, plant_from_here, around_middle);
     matrix_to_float(around_middle, matrix);
@@ -208,12 +208,12 @@ static size_t smaller(size_t a, size_t b)
 
 static void ground_bit(struct bake *bake)
 {
-    const struct stage *stage = bake->stage;
-    int rows = !stage->gl->software ? GROUND_PX : bake->with_sky ? SKY_ROWS : SUN_ROWS;
+    const struct gpu_scene *gpu_scene = bake->gpu_scene;
+    int rows = !gpu_scene->gl->software ? GROUND_PX : bake->with_sky ? SKY_ROWS : SUN_ROWS;
     size_t first = (size_t)bake->row * GROUND_PX, end = smaller(first + (size_t)rows * GROUND_PX, GROUND_PX * GROUND_PX);
     glUseProgram(bake->with_sky ? bake->programs->ground_sky : bake->programs->ground_sun);
     set_uniforms(bake, bake->plant_from_ground, first, end);
-    glUniform3f(11, (float)stage->up[0], (float)stage->up[1], (float)stage->up[2]);
+    glUniform3f(11, (float)gpu_scene->up[0], (float)gpu_scene->up[1], (float)gpu_scene->up[2]);
     glBindImageTexture(0, bake->set.ground, 0, GL_FALSE, 0, GL_READ_WRITE, GL_RG8);
     glDispatchCompute((GLuint)(end - first + 63) / 64, 1, 1);
     bake->row += rows;
@@ -223,12 +223,12 @@ static void ground_bit(struct bake *bake)
 
 static size_t places_in_a_bit(const struct bake *bake)
 {
-    return !bake->stage->gl->software ? SIZE_MAX / 2 : bake->with_sky ? SKY_VERTICES : SUN_VERTICES;
+    return !bake->gpu_scene->gl->software ? SIZE_MAX / 2 : bake->with_sky ? SKY_VERTICES : SUN_VERTICES;
 }
 
 static void bind_vertices(const struct bake *bake)
 {
-    const struct mesh *mesh = &bake->stage->of_asset[bake->asset]->mesh;
+    const struct mesh *mesh = &bake->gpu_scene->of_asset[bake->asset]->mesh;
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 2, mesh->positions);
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 3, mesh->normals);
     const struct pool_slice *baked = bake->set.baked[bake->asset];
@@ -240,10 +240,10 @@ static void bind_vertices(const struct bake *bake)
 /* Without memory for it, vertices are looked at alone. */
 static void faces_bit(struct bake *bake)
 {
-    const struct scene_asset *asset = &bake->stage->scene->assets[bake->asset];
+    const struct scene_asset *asset = &bake->gpu_scene->scene->assets[bake->asset];
     double least_m = LARGE_FACE_TEXELS * bake->sky_texel_m;
     if (bake->place == 0)
-        bake_faces_init(&bake->faces, bake->stage, bake->asset, least_m);
+        bake_faces_init(&bake->faces, bake->gpu_scene, bake->asset, least_m);
     size_t all = bake->faces.count * BAKE_FACE_SAMPLES, end = smaller(bake->place + places_in_a_bit(bake), all);
     if (all > 0) {
         glUseProgram(bake->with_sky ? bake->programs->faces_sky : bake->programs->faces_sun);
@@ -266,25 +266,25 @@ static double size_of(const double min_m[3], const double max_m[3])
                 (max_m[2] - min_m[2]) * (max_m[2] - min_m[2]));
 }
 
-double bake_least_open(const struct stage *stage, const struct visibility *shown)
+double bake_least_open(const struct gpu_scene *gpu_scene, const struct visibility *shown)
 {
-    const struct scene *scene = stage->scene;
-    double missing_m = shown->clip.plane_count > 0 ? stage->radius_m : 0;
+    const struct scene *scene = gpu_scene->scene;
+    double missing_m = shown->clip.plane_count > 0 ? gpu_scene->radius_m : 0;
     for (size_t i = 0; i < scene->asset_count; i++)
         if (visibility_of(shown, (int)i) != ASSET_SHOWN && scene->plant->assets[i].start == PLANT_START_SHOWN)
             missing_m = fmax(missing_m, size_of(scene->assets[i].bounds_min_m, scene->assets[i].bounds_max_m));
-    return OPEN_AT_LEAST * fmin(missing_m / (2 * stage->radius_m), 1);
+    return OPEN_AT_LEAST * fmin(missing_m / (2 * gpu_scene->radius_m), 1);
 }
 
 static void vertices_bit(struct bake *bake)
 {
-    const struct scene_asset *asset = &bake->stage->scene->assets[bake->asset];
-    const struct mesh *mesh = &bake->stage->of_asset[bake->asset]->mesh;
+    const struct scene_asset *asset = &bake->gpu_scene->scene->assets[bake->asset];
+    const struct mesh *mesh = &bake->gpu_scene->of_asset[bake->asset]->mesh;
     size_t end = smaller(bake->vertex + places_in_a_bit(bake), mesh->vertex_count);
     glUseProgram(bake->with_sky ? bake->programs->sky : bake->programs->sun);
     set_uniforms(bake, asset->placement, bake->vertex, end);
     glUniform1i(13, bake->faces.count > 0);
-    glUniform1f(14, (float)bake_least_open(bake->stage, &bake->set.key.shown));
+    glUniform1f(14, (float)bake_least_open(bake->gpu_scene, &bake->set.key.shown));
     bind_vertices(bake);
     glDispatchCompute((GLuint)(end - bake->vertex + 63) / 64, 1, 1);
     bake->vertex = end;
@@ -292,33 +292,33 @@ static void vertices_bit(struct bake *bake)
         return;
     bake->vertex = 0;
     bake_faces_finish(&bake->faces);
-    bool last = ++bake->asset == bake->stage->scene->asset_count;
+    bool last = ++bake->asset == bake->gpu_scene->scene->asset_count;
     bake->part = last ? BAKE_DONE : bake->set.key.rough ? BAKE_VERTICES : BAKE_FACES;
 }
 
 /* --- life ------------------------------------------------------------------------------------------------------------------------ */
 
-size_t bake_bytes(const struct stage *stage)
+size_t bake_bytes(const struct gpu_scene *gpu_scene)
 {
-    size_t side = (size_t)sun_map_px(stage), bytes = 2 * side * side + 2 * GROUND_PX * GROUND_PX;
-    for (size_t i = 0; i < stage->scene->asset_count; i++)
-        bytes += 4 * stage->of_asset[i]->mesh.vertex_count;
+    size_t side = (size_t)sun_map_px(gpu_scene), bytes = 2 * side * side + 2 * GROUND_PX * GROUND_PX;
+    for (size_t i = 0; i < gpu_scene->scene->asset_count; i++)
+        bytes += 4 * gpu_scene->of_asset[i]->mesh.vertex_count;
     return bytes;
 }
 
 static bool make_buffers(struct bake *bake, const struct light_set *from)
 {
-    const struct stage *stage = bake->stage;
+    const struct gpu_scene *gpu_scene = bake->gpu_scene;
     struct light_set *set = &bake->set;
-    size_t assets = stage->scene->asset_count;
+    size_t assets = gpu_scene->scene->asset_count;
     size_t texels = 0;
     set->baked = mem_array(assets, sizeof(*set->baked));
-    set->pool = pool_create(stage->gl->log, "light", GL_RGBA8, 4, 0);
+    set->pool = pool_create(gpu_scene->gl->log, "light", GL_RGBA8, 4, 0);
     for (size_t i = 0; i < assets; i++)
-        texels += stage->of_asset[i]->mesh.vertex_count;
+        texels += gpu_scene->of_asset[i]->mesh.vertex_count;
     pool_expect(set->pool, texels, assets);
     for (size_t i = 0; i < assets; i++) {
-        struct pool_slice *slice = set->baked[i] = pool_take(set->pool, stage->of_asset[i]->mesh.vertex_count);
+        struct pool_slice *slice = set->baked[i] = pool_take(set->pool, gpu_scene->of_asset[i]->mesh.vertex_count);
         if (!slice)
             return false;
         if (set->key.rough)
@@ -344,24 +344,24 @@ static bool make_sky(struct bake *bake)
 {
     find_directions(bake);
     bake->sky_maps = make_map(GL_TEXTURE_2D_ARRAY, SKY_MAP_PX, SKY_DIRECTIONS);
-    bake->directions_buffer = mesh_buffer(bake->stage->gl->log, "sky directions", sizeof(*bake->directions), bake->directions, 0);
+    bake->directions_buffer = mesh_buffer(bake->gpu_scene->gl->log, "sky directions", sizeof(*bake->directions), bake->directions, 0);
     return bake->directions_buffer != 0;
 }
 
-struct bake *bake_begin(const struct stage *stage, const struct bake_programs *programs, const double plant_from_ground[16],
+struct bake *bake_begin(const struct gpu_scene *gpu_scene, const struct bake_programs *programs, const double plant_from_ground[16],
                         const struct light_key *key, const struct light_set *from)
 {
     struct bake *bake = mem_new(sizeof(*bake));
-    *bake = (struct bake){ .stage = stage, .programs = programs, .plant_from_ground = plant_from_ground };
-    visibility_start(stage->scene->plant, &bake->start);
+    *bake = (struct bake){ .gpu_scene = gpu_scene, .programs = programs, .plant_from_ground = plant_from_ground };
+    visibility_start(gpu_scene->scene->plant, &bake->start);
     bake->with_sky = !from && !key->rough;
     struct sun_frame sun;
-    int size_px = sun_map_px(stage);
+    int size_px = sun_map_px(gpu_scene);
     bake->part = bake->with_sky ? BAKE_SKY_MAPS : BAKE_SUN_MAP;
-    bake->set.bytes = bake_bytes(stage);
-    bake->sky_texel_m = 2 * stage->radius_m / SKY_MAP_PX;
+    bake->set.bytes = bake_bytes(gpu_scene);
+    bake->sky_texel_m = 2 * gpu_scene->radius_m / SKY_MAP_PX;
     bake->set.key = *key;
-    sun_frame_fit(&sun, stage, key->towards, &key->shown, SUN_MARGIN);
+    sun_frame_fit(&sun, gpu_scene, key->towards, &key->shown, SUN_MARGIN);
     memcpy(bake->sun_clip_from_plant, sun.clip_from_plant, sizeof(sun.clip_from_plant));
     matrix_texture_from_clip(sun.clip_from_plant, bake->set.texture_from_plant);
     bake->set.texel_m = sun.width_m / size_px;
@@ -371,7 +371,7 @@ struct bake *bake_begin(const struct stage *stage, const struct bake_programs *p
     glNamedFramebufferDrawBuffer(bake->framebuffer, GL_NONE);
     bool good = make_buffers(bake, from) && (!bake->with_sky || make_sky(bake));
     bake->set.sun_map = make_map(GL_TEXTURE_2D, size_px, 1);
-    if (!gl_pass_leave(stage->gl, "light") || !good)
+    if (!gl_pass_leave(gpu_scene->gl, "light") || !good)
         bake_abandon(&bake);
     return bake;
 }
@@ -384,23 +384,12 @@ const struct light_key *bake_key(const struct bake *bake)
 bool bake_step(struct bake *bake)
 {
     switch (bake->part) {
-    case BAKE_SKY_MAPS:
-        sky_map_bit(bake);
-        break;
-    case BAKE_SUN_MAP:
-        sun_map_bit(bake);
-        break;
-    case BAKE_GROUND:
-        ground_bit(bake);
-        break;
-    case BAKE_FACES:
-        faces_bit(bake);
-        break;
-    case BAKE_VERTICES:
-        vertices_bit(bake);
-        break;
-    case BAKE_DONE:
-        break;
+    case BAKE_SKY_MAPS: sky_map_bit(bake); break;
+    case BAKE_SUN_MAP: sun_map_bit(bake); break;
+    case BAKE_GROUND: ground_bit(bake); break;
+    case BAKE_FACES: faces_bit(bake); break;
+    case BAKE_VERTICES: vertices_bit(bake); break;
+    case BAKE_DONE: break;
     }
     return bake->part == BAKE_DONE;
 }
@@ -410,7 +399,7 @@ bool bake_end(struct bake **bake_ptr, struct light_set *set)
     struct bake *bake = *bake_ptr;
     gl_pass_enter("light");
     glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
-    bool good = gl_pass_leave(bake->stage->gl, "light");
+    bool good = gl_pass_leave(bake->gpu_scene->gl, "light");
     if (good) {
         *set = bake->set;
         bake->set = (struct light_set){ 0 };
@@ -424,7 +413,7 @@ void bake_abandon(struct bake **bake_ptr)
     struct bake *bake = *bake_ptr;
     if (!bake)
         return;
-    light_set_finish(&bake->set, bake->stage);
+    light_set_finish(&bake->set, bake->gpu_scene);
     bake_faces_finish(&bake->faces);
     glDeleteTextures(1, &bake->sky_maps);
     glDeleteBuffers(1, &bake->directions_buffer);

@@ -6,7 +6,7 @@
 #ifndef RENDER_BAKE_H
 #define RENDER_BAKE_H
 #include "gpu/pool.h"
-#include "render/stage.h"
+#include "render/gl/gpu_scene.h"
 
 struct light_key {
     double towards[3];       /* the sun; plant frame, unit length */
@@ -37,10 +37,10 @@ void bake_programs_finish(struct bake_programs *programs);
 
 struct bake;
 /* Where a part of the plant is hidden, what it hid must not stay in the dark: how open any place there is at least, 0..1. */
-double bake_least_open(const struct stage *stage, const struct visibility *shown);
+double bake_least_open(const struct gpu_scene *gpu_scene, const struct visibility *shown);
 /* Of a set that is to be; `from` need only live for the call, is not rough, and is of no larger bake_least_open. NULL for `from`: openness
    is worked out too, which is most of the work, unless the key is rough. NULL: out of GPU memory, logged. */
-struct bake *bake_begin(const struct stage *stage, const struct bake_programs *programs, const double plant_from_ground[16],
+struct bake *bake_begin(const struct gpu_scene *gpu_scene, const struct bake_programs *programs, const double plant_from_ground[16],
                         const struct light_key *key, const struct light_set *from);
 const struct light_key *bake_key(const struct bake *bake);
 /* Issues a bit of the work, of a few milliseconds, with its surroundings bound (render/light/environments.h). True: all was issued. */
@@ -49,7 +49,7 @@ bool bake_step(struct bake *bake);
 bool bake_end(struct bake **bake, struct light_set *set);
 void bake_abandon(struct bake **bake); /* &NULL is fine; leaves NULL */
 
-size_t bake_bytes(const struct stage *stage); /* of any set */
-void light_set_finish(struct light_set *set, const struct stage *stage);
+size_t bake_bytes(const struct gpu_scene *gpu_scene); /* of any set */
+void light_set_finish(struct light_set *set, const struct gpu_scene *gpu_scene);
 
 #endif

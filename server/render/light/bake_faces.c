@@ -20,9 +20,9 @@ static bool is_large(const struct asset_view *view, const uint32_t *corner, doub
     return false;
 }
 
-bool bake_faces_init(struct bake_faces *faces, const struct stage *stage, size_t asset, double least_m)
+bool bake_faces_init(struct bake_faces *faces, const struct gpu_scene *gpu_scene, size_t asset, double least_m)
 {
-    const struct asset_view *view = &stage->scene->assets[asset].file->view;
+    const struct asset_view *view = &gpu_scene->scene->assets[asset].file->view;
     const struct asset_level *level = &view->levels[0];
     uint32_t(*corners)[3] = NULL;
     size_t capacity = 0;
@@ -41,9 +41,9 @@ bool bake_faces_init(struct bake_faces *faces, const struct stage *stage, size_t
     }
     if (faces->count == 0)
         return true;
-    const char *id = stage->scene->assets[asset].plant->id;
-    faces->corners = mesh_buffer(stage->gl->log, id, faces->count * sizeof(*corners), corners, 0);
-    faces->sums = mesh_buffer(stage->gl->log, id, view->header->vertex_count * sizeof(uint32_t[3]), NULL, 0);
+    const char *id = gpu_scene->scene->assets[asset].plant->id;
+    faces->corners = mesh_buffer(gpu_scene->gl->log, id, faces->count * sizeof(*corners), corners, 0);
+    faces->sums = mesh_buffer(gpu_scene->gl->log, id, view->header->vertex_count * sizeof(uint32_t[3]), NULL, 0);
     mem_free(corners);
     if (!faces->corners || !faces->sums) {
         bake_faces_finish(faces);

@@ -4,7 +4,7 @@
    baking", 2011, with its matrix lumped). Private to bake.c. Thread: the one of the GL context. */
 #ifndef RENDER_BAKE_FACES_H
 #define RENDER_BAKE_FACES_H
-#include "render/stage.h"
+#include "render/gl/gpu_scene.h"
 
 enum { BAKE_FACE_SAMPLES = 6 }; /* in each; as in shaders/bake.comp */
 
@@ -15,7 +15,7 @@ struct bake_faces {
 };
 
 /* Those of the finest level with an edge of at least that length. False: out of GPU memory, logged; there are none then. */
-bool bake_faces_init(struct bake_faces *faces, const struct stage *stage, size_t asset, double least_m);
+bool bake_faces_init(struct bake_faces *faces, const struct gpu_scene *gpu_scene, size_t asset, double least_m);
 void bake_faces_finish(struct bake_faces *faces); /* leaves none */
 
 #endif

@@ -96,12 +96,12 @@ static bool upload(struct environments *environments, struct environment_slot *s
     glTextureParameteri(slot->mirrored, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
     glTextureParameteri(slot->mirrored, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
     glTextureParameteri(slot->mirrored, GL_TEXTURE_WRAP_R, GL_CLAMP_TO_EDGE);
-    return slot->irradiance && gl_good();
+    return slot->irradiance && gl_no_errors();
 }
 
 static void make_brdf(struct environments *environments)
 {
-    float (*texels)[2] = mem_array(BRDF_PX * BRDF_PX, sizeof(*texels));
+    float(*texels)[2] = mem_array(BRDF_PX * BRDF_PX, sizeof(*texels));
     environment_brdf(BRDF_PX, texels);
     glCreateTextures(GL_TEXTURE_2D, 1, &environments->brdf);
     glTextureStorage2D(environments->brdf, 1, GL_RG16F, BRDF_PX, BRDF_PX);

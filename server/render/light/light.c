@@ -13,36 +13,36 @@ static const int64_t READ_NS = 60 * NS_PER_S; /* a picture of surroundings is re
 
 static void find_ground(struct light *light)
 {
-    const struct stage *stage = light->stage;
-    const struct scene *scene = stage->scene;
-    int up = stage->up[1] > 0 ? 1 : 2, across[2] = { 0, up == 1 ? 2 : 1 };
-    double side_m = 0.6 * stage->radius_m;
+    const struct gpu_scene *gpu_scene = light->gpu_scene;
+    const struct scene *scene = gpu_scene->scene;
+    int up = gpu_scene->up[1] > 0 ? 1 : 2, across[2] = { 0, up == 1 ? 2 : 1 };
+    double side_m = 0.6 * gpu_scene->radius_m;
     for (int i = 0; i < 2; i++)
         side_m = fmax(side_m, scene->bounds_max_m[across[i]] - scene->bounds_min_m[across[i]]);
-    side_m += 1.2 * stage->radius_m;
-    light->ground_height_m = scene->bounds_min_m[up] - 0.001 * stage->radius_m; /* nothing of the plant in its plane */
+    side_m += 1.2 * gpu_scene->radius_m;
+    light->ground_height_m = scene->bounds_min_m[up] - 0.001 * gpu_scene->radius_m; /* nothing of the plant in its plane */
     memset(light->plant_from_ground, 0, sizeof(light->plant_from_ground));
     for (int i = 0; i < 2; i++) {
         light->plant_from_ground[4 * i + across[i]] = side_m;
-        light->plant_from_ground[12 + across[i]] = stage->middle_m[across[i]] - 0.5 * side_m;
+        light->plant_from_ground[12 + across[i]] = gpu_scene->middle_m[across[i]] - 0.5 * side_m;
     }
     light->plant_from_ground[8 + up] = 1;
     light->plant_from_ground[12 + up] = light->ground_height_m;
     light->plant_from_ground[15] = 1;
 }
 
-bool light_init(struct light *light, const struct stage *stage, struct environments *environments)
+bool light_init(struct light *light, const struct gpu_scene *gpu_scene, struct environments *environments)
 {
-    *light = (struct light){ .stage = stage, .environments = environments };
+    *light = (struct light){ .gpu_scene = gpu_scene, .environments = environments };
     light_bound(light, LIGHT_BYTES);
     find_ground(light);
-    return bake_programs_init(&light->programs, stage->gl->log);
+    return bake_programs_init(&light->programs, gpu_scene->gl->log);
 }
 
 static void drop(struct light *light, struct light_set *set)
 {
     light->bytes -= set->bytes;
-    light_set_finish(set, light->stage);
+    light_set_finish(set, light->gpu_scene);
 }
 
 void light_finish(struct light *light)
@@ -91,11 +91,11 @@ struct light_set *light_near(struct light *light, const struct light_key *key)
 
 void light_bound(struct light *light, size_t bytes)
 {
-    size_t two = 2 * bake_bytes(light->stage);
+    size_t two = 2 * bake_bytes(light->gpu_scene);
     light->bound_bytes = two > bytes ? two : bytes;
 }
 
-void light_rest(struct light *light, const struct light_key *usual)
+void light_drop(struct light *light, const struct light_key *usual)
 {
     bool known = find(light, usual) != NULL;
     if (light->bake && (known || !same(bake_key(light->bake), usual)))
@@ -126,10 +126,10 @@ static struct light_set *make_room(struct light *light, size_t bytes)
 /* One that knows how open places are. NULL: none does. */
 static const struct light_set *find_open(const struct light *light, const struct light_key *key)
 {
-    double most = bake_least_open(light->stage, &key->shown);
+    double most = bake_least_open(light->gpu_scene, &key->shown);
     for (int i = 0; i < LIGHT_SETS; i++) {
         const struct light_set *set = &light->sets[i];
-        if (set->id && !set->key.rough && bake_least_open(light->stage, &set->key.shown) <= most)
+        if (set->id && !set->key.rough && bake_least_open(light->gpu_scene, &set->key.shown) <= most)
             return set;
     }
     return NULL;
@@ -137,7 +137,7 @@ static const struct light_set *find_open(const struct light *light, const struct
 
 static bool begin(struct light *light, const struct light_key *key)
 {
-    light->bake = bake_begin(light->stage, &light->programs, light->plant_from_ground, key, find_open(light, key));
+    light->bake = bake_begin(light->gpu_scene, &light->programs, light->plant_from_ground, key, find_open(light, key));
     return light->bake != NULL;
 }
 
@@ -157,8 +157,8 @@ static struct light_set *end(struct light *light)
     drop_rough(light);
     set = make_room(light, baked.bytes);
     if (!set) {
-        log_err(light->stage->gl->log, "light: %d sets are in use at once, and no more can be", LIGHT_SETS);
-        light_set_finish(&baked, light->stage);
+        log_err(light->gpu_scene->gl->log, "light: %d sets are in use at once, and no more can be", LIGHT_SETS);
+        light_set_finish(&baked, light->gpu_scene);
         return NULL;
     }
     *set = baked;
@@ -179,7 +179,8 @@ struct light_set *light_get(struct light *light, const struct light_key *key)
     if (!light->bake && !begin(light, key))
         return NULL;
     environments_bind(light->environments, key->environment);
-    while (!bake_step(light->bake)) {}
+    while (!bake_step(light->bake)) {
+    }
     return end(light);
 }
 

@@ -8,7 +8,7 @@
 
 enum { LIGHT_SETS = 8 };
 struct light {
-    const struct stage *stage;
+    const struct gpu_scene *gpu_scene;
     struct environments *environments;
     struct bake_programs programs;
     double plant_from_ground[16]; /* from texture coordinates on the ground, and height over it */
@@ -19,7 +19,7 @@ struct light {
     uint64_t uses, last_id;
 };
 
-bool light_init(struct light *light, const struct stage *stage, struct environments *environments); /* false: logged */
+bool light_init(struct light *light, const struct gpu_scene *gpu_scene, struct environments *environments); /* false: logged */
 void light_finish(struct light *light);
 /* The light of that sun and those surroundings; baked now if it is not known, which takes a fraction of the time if it is rough: such a
    set is there until the first other one is. NULL: out of GPU memory, logged. */
@@ -31,7 +31,7 @@ struct light_set *light_near(struct light *light, const struct light_key *key);
 bool light_step(struct light *light, const struct light_key *key, int64_t budget_ns);
 /* So many bytes at most, but two sets at least: one to show while the next is baked. */
 void light_bound(struct light *light, size_t bytes);
-void light_rest(struct light *light, const struct light_key *usual); /* drops all but that one, and what is under way */
+void light_drop(struct light *light, const struct light_key *usual); /* drops all but that one, and what is under way */
 /* While it is held, a set stays. */
 void light_hold(struct light_set *set);
 void light_release(struct light_set *set); /* NULL is fine */

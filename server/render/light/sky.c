@@ -27,7 +27,7 @@ bool sky_init(struct sky *sky, struct log *log)
     sky->sky_program = program_create(log, program_params(.vertex = "sky.vert", .fragment = "sky.frag"));
     for (int tier = 0; tier < 2; tier++)
         sky->ground_programs[tier] = program_create(log, program_params(.vertex = "ground.vert", .fragment = "ground.frag",
-                                                                        .defines = tier == TIER_STILL ? "#define STILL\n" : NULL));
+                                                                        .defines = tier == TIER_REFINED ? "#define REFINED\n" : NULL));
     return sky->sky_program && sky->ground_programs[0] && sky->ground_programs[1] && make_backdrops(sky, log);
 }
 
@@ -40,21 +40,21 @@ void sky_finish(struct sky *sky)
     glDeleteVertexArrays(1, &sky->vao);
 }
 
-static void draw_ground(const struct sky *sky, const struct picture *picture, const struct light *light)
+static void draw_ground(const struct sky *sky, const struct frame_context *context, const struct light *light)
 {
-    const struct shot *shot = &picture->shot;
+    const struct view_constants *constants = &context->constants;
     double clip_from_ground[16], eye_from_ground[16];
     float matrix[16];
-    glUseProgram(sky->ground_programs[picture->view->tier]);
-    matrix_multiply(shot->clip_from_plant, light->plant_from_ground, clip_from_ground);
+    glUseProgram(sky->ground_programs[context->view->tier]);
+    matrix_multiply(constants->clip_from_plant, light->plant_from_ground, clip_from_ground);
     matrix_to_float(clip_from_ground, matrix);
     glUniformMatrix4fv(0, 1, GL_FALSE, matrix);
-    matrix_translation((double[3]){ -shot->eye_m[0], -shot->eye_m[1], -shot->eye_m[2] }, eye_from_ground);
+    matrix_translation((double[3]){ -constants->eye_m[0], -constants->eye_m[1], -constants->eye_m[2] }, eye_from_ground);
     matrix_multiply(eye_from_ground, light->plant_from_ground, eye_from_ground);
     matrix_to_float(eye_from_ground, matrix);
     glUniformMatrix4fv(1, 1, GL_FALSE, matrix);
-    glBindTextureUnit(1, picture->light->ground);
-    glBindTextureUnit(2, picture->light->sun_map);
+    glBindTextureUnit(1, context->light->ground);
+    glBindTextureUnit(2, context->light->sun_map);
     glEnable(GL_DEPTH_CLAMP); /* the far plane only holds the plant */
     glEnable(GL_BLEND);
     glBlendFunc(GL_ZERO, GL_SRC_COLOR);
@@ -63,21 +63,21 @@ static void draw_ground(const struct sky *sky, const struct picture *picture, co
     glDisable(GL_DEPTH_CLAMP);
 }
 
-bool sky_sees_ground(const struct picture *picture, const struct light *light)
+bool sky_sees_ground(const struct frame_context *context, const struct light *light)
 {
-    const struct shot *shot = &picture->shot;
-    const struct visibility *visibility = &picture->view->visibility;
+    const struct view_constants *constants = &context->constants;
+    const struct visibility *visibility = &context->view->visibility;
     double eye_height_m = 0, back_height = 0;
     for (int i = 0; i < 3; i++) {
-        eye_height_m += picture->stage->up[i] * shot->eye_m[i];
-        back_height += picture->stage->up[i] * shot->back[i];
+        eye_height_m += context->gpu_scene->up[i] * constants->eye_m[i];
+        back_height += context->gpu_scene->up[i] * constants->back[i];
     }
     if (visibility->clip.plane_count + visibility->hidden.count + visibility->isolated.count + visibility->ghosts.count > 0)
         return false;
-    return shot->pixel_per_metre > 0 ? back_height > 0 : eye_height_m > light->ground_height_m;
+    return constants->pixel_per_metre > 0 ? back_height > 0 : eye_height_m > light->ground_height_m;
 }
 
-void sky_draw(const struct sky *sky, const struct picture *picture, const struct light *light)
+void sky_draw(const struct sky *sky, const struct frame_context *context, const struct light *light)
 {
     gl_pass_enter("sky");
     glEnable(GL_DEPTH_TEST);
@@ -86,8 +86,8 @@ void sky_draw(const struct sky *sky, const struct picture *picture, const struct
     glBindTextureUnit(1, sky->backdrops);
     glBindVertexArray(sky->vao);
     glDrawArrays(GL_TRIANGLES, 0, 3);
-    if (sky_sees_ground(picture, light))
-        draw_ground(sky, picture, light);
+    if (sky_sees_ground(context, light))
+        draw_ground(sky, context, light);
     glDepthMask(GL_TRUE);
-    gl_pass_leave(picture->stage->gl, "sky");
+    gl_pass_leave(context->gpu_scene->gl, "sky");
 }

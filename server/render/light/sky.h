@@ -2,7 +2,7 @@
 /* The pass that fills what the plant leaves open: backdrop, and the shadow on the ground. Thread: the one of the GL context. */
 #ifndef RENDER_SKY_H
 #define RENDER_SKY_H
-#include "render/picture.h"
+#include "render/frame_context.h"
 
 /* Columns by height over the horizon; rows by place in a 4x4 tile, of the light backdrop and then of the dark one. */
 enum { SKY_BACKDROPS = 2048, SKY_ROUNDINGS = 16, SKY_ROWS = 2 * SKY_ROUNDINGS };
@@ -15,7 +15,7 @@ struct sky {
 bool sky_init(struct sky *sky, struct log *log); /* false: logged */
 void sky_finish(struct sky *sky);
 /* Seen from above; and what throws a shadow on it is there. */
-bool sky_sees_ground(const struct picture *picture, const struct light *light);
-void sky_draw(const struct sky *sky, const struct picture *picture, const struct light *light);
+bool sky_sees_ground(const struct frame_context *context, const struct light *light);
+void sky_draw(const struct sky *sky, const struct frame_context *context, const struct light *light);
 
 #endif

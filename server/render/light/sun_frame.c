@@ -41,18 +41,18 @@ static void add_box(struct extent *extent, const double axes[3][3], const double
     }
 }
 
-static struct extent extent_of(const struct stage *stage, const double axes[3][3], const struct visibility *shown)
+static struct extent extent_of(const struct gpu_scene *gpu_scene, const double axes[3][3], const struct visibility *shown)
 {
     struct extent extent = { { INFINITY, INFINITY, INFINITY }, { -INFINITY, -INFINITY, -INFINITY } };
-    for (size_t i = 0; i < stage->scene->asset_count; i++) {
-        const struct scene_asset *asset = &stage->scene->assets[i];
+    for (size_t i = 0; i < gpu_scene->scene->asset_count; i++) {
+        const struct scene_asset *asset = &gpu_scene->scene->assets[i];
         if (visibility_of(shown, (int)i) == ASSET_SHOWN && !clip_drops(&shown->clip, asset->bounds_min_m, asset->bounds_max_m))
-            add_box(&extent, axes, stage->middle_m, asset);
+            add_box(&extent, axes, gpu_scene->middle_m, asset);
     }
     for (int a = 0; a < 3; a++)
         if (!(extent.low[a] < extent.high[a])) { /* nothing throws a shadow */
-            extent.low[a] = -stage->radius_m;
-            extent.high[a] = stage->radius_m;
+            extent.low[a] = -gpu_scene->radius_m;
+            extent.high[a] = gpu_scene->radius_m;
         }
     return extent;
 }
@@ -62,14 +62,14 @@ static double longer_side(const struct extent *extent)
     return fmax(extent->high[0] - extent->low[0], extent->high[1] - extent->low[1]);
 }
 
-void sun_frame_fit(struct sun_frame *frame, const struct stage *stage, const double towards[3], const struct visibility *shown,
+void sun_frame_fit(struct sun_frame *frame, const struct gpu_scene *gpu_scene, const double towards[3], const struct visibility *shown,
                    double margin)
 {
     double best[3][3], axes[3][3];
     struct extent extent = { 0 };
     for (int turn = 0; turn < TURNS; turn++) {
         axes_of(towards, turn * M_PI_2 / TURNS, axes);
-        struct extent tried = extent_of(stage, (const double(*)[3])axes, shown);
+        struct extent tried = extent_of(gpu_scene, (const double(*)[3])axes, shown);
         if (turn > 0 && longer_side(&tried) >= longer_side(&extent))
             continue;
         extent = tried;
@@ -83,7 +83,7 @@ void sun_frame_fit(struct sun_frame *frame, const struct stage *stage, const dou
         frame->clip_from_plant[12 + a] = (a == 2 ? 0 : -1) - low * scale;
         for (int i = 0; i < 3; i++) {
             frame->clip_from_plant[4 * i + a] = best[a][i] * scale;
-            frame->clip_from_plant[12 + a] -= best[a][i] * scale * stage->middle_m[i];
+            frame->clip_from_plant[12 + a] -= best[a][i] * scale * gpu_scene->middle_m[i];
         }
     }
     frame->width_m = longer_side(&extent) + 2 * margin_m;

@@ -2,7 +2,7 @@
 /* What the sun's map shows: as little around what throws shadows as it can. Any thread. */
 #ifndef RENDER_SUN_FRAME_H
 #define RENDER_SUN_FRAME_H
-#include "render/stage.h"
+#include "render/gl/gpu_scene.h"
 
 struct sun_frame {
     double clip_from_plant[16]; /* depth 1 nearest to the sun, 0 farthest */
@@ -10,7 +10,7 @@ struct sun_frame {
 };
 
 /* margin: around it, as a part of its width. */
-void sun_frame_fit(struct sun_frame *frame, const struct stage *stage, const double towards[3], const struct visibility *shown,
+void sun_frame_fit(struct sun_frame *frame, const struct gpu_scene *gpu_scene, const double towards[3], const struct visibility *shown,
                    double margin);
 
 #endif

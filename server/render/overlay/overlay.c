@@ -234,19 +234,20 @@ void pen_choose_half(struct pen *pen, int half)
 }
 
 static void pen_init(struct pen *pen, cairo_surface_t *surface, const struct frame *frame, const struct scene *scene,
-                     const struct snapshot *snapshot, const struct proofs *proofs)
+                     const struct snapshot *snapshot, const struct loop_checks *loop_checks)
 {
-    *pen = (struct pen){ .cairo = cairo_create(surface), .frame = frame, .scene = scene, .snapshot = snapshot, .proofs = proofs };
+    *pen = (struct pen){ .cairo = cairo_create(surface), .frame = frame, .scene = scene, .snapshot = snapshot, .loop_checks = loop_checks };
     pen->unit = fmin(fmax(fmin(frame->width_px / 1280.0, frame->height_px / 720.0), 0.5), 8);
     pen->text_px = fmax(13 * pen->unit, 9.5);
 }
 
-static void draw(struct frame *frame, const struct scene *scene, const struct snapshot *snapshot, const struct proofs *proofs, bool bare)
+static void draw(struct frame *frame, const struct scene *scene, const struct snapshot *snapshot, const struct loop_checks *loop_checks,
+                 bool bare)
 {
     cairo_surface_t *surface =
         cairo_image_surface_create_for_data(frame->bgrx, CAIRO_FORMAT_RGB24, frame->width_px, frame->height_px, frame->stride_bytes);
     struct pen *pen = mem_new(sizeof(*pen));
-    pen_init(pen, surface, frame, scene, snapshot, proofs);
+    pen_init(pen, surface, frame, scene, snapshot, loop_checks);
     pen->bare = bare;
     draw_header(pen);
     if (frame->view.at_us)
@@ -273,14 +274,15 @@ static void draw(struct frame *frame, const struct scene *scene, const struct sn
     mem_free(pen);
 }
 
-void overlay_draw(struct frame *frame, const struct scene *scene, const struct snapshot *snapshot, const struct proofs *proofs)
+void overlay_draw(struct frame *frame, const struct scene *scene, const struct snapshot *snapshot, const struct loop_checks *loop_checks)
 {
-    draw(frame, scene, snapshot, proofs, false);
+    draw(frame, scene, snapshot, loop_checks, false);
 }
 
-void overlay_draw_bare(struct frame *frame, const struct scene *scene, const struct snapshot *snapshot, const struct proofs *proofs)
+void overlay_draw_bare(struct frame *frame, const struct scene *scene, const struct snapshot *snapshot,
+                       const struct loop_checks *loop_checks)
 {
-    draw(frame, scene, snapshot, proofs, true);
+    draw(frame, scene, snapshot, loop_checks, true);
 }
 
 void overlay_window(const struct scene *scene, const struct view *view, struct camera_window *out)

@@ -2,15 +2,16 @@
 /* Legend, markers, labels, clock and data age drawn into a frame, for snapshots, clips and walls (streams leave it to the client). */
 #ifndef RENDER_OVERLAY_H
 #define RENDER_OVERLAY_H
-#include "proving/proofs.h"
+#include "loopcheck/loop_checks.h"
 #include "render/frame.h"
 
 /* Draws over frame->bgrx. The frame must not be shared yet. The clock is shown in the time zone of the process (TZ), which its main
-   file sets to the plant's. proofs: tags that are unproven are marked as such; NULL: none is. */
-void overlay_draw(struct frame *frame, const struct scene *scene, const struct snapshot *snapshot, const struct proofs *proofs);
+   file sets to the plant's. loop_checks: tags that are unproven are marked as such; NULL: none is. */
+void overlay_draw(struct frame *frame, const struct scene *scene, const struct snapshot *snapshot, const struct loop_checks *loop_checks);
 
 /* Likewise, without markers, labels of sensors and alarms: for those who may see the picture and no reading. */
-void overlay_draw_bare(struct frame *frame, const struct scene *scene, const struct snapshot *snapshot, const struct proofs *proofs);
+void overlay_draw_bare(struct frame *frame, const struct scene *scene, const struct snapshot *snapshot,
+                       const struct loop_checks *loop_checks);
 
 /* What legend and clock leave free of the view, or of either half of one that is split. */
 void overlay_window(const struct scene *scene, const struct view *view, struct camera_window *out);

@@ -60,8 +60,8 @@ static void format_reading(const struct pen *pen, int tag, char out[200])
     if (quality_is_bad(reading->quality))
         snprintf(out, 200, "%.120s  BAD  %s", of->name, kind);
     else
-        snprintf(out, 200, "%.120s  %.*f %.20s  %s", of->name, decimals, pen_rounded(reading->value, decimals),
-                 of->unit ? of->unit : "", kind);
+        snprintf(out, 200, "%.120s  %.*f %.20s  %s", of->name, decimals, pen_rounded(reading->value, decimals), of->unit ? of->unit : "",
+                 kind);
 }
 
 static void draw_rows(struct pen *pen, const struct box *card, double pad, const struct unseen *list, size_t rows)
@@ -73,7 +73,7 @@ static void draw_rows(struct pen *pen, const struct box *card, double pad, const
         char text[200];
         format_reading(pen, list[i].tag, text);
         overlay_ring(pen, card->x + pad + 0.6 * pen->text_px, y + 0.65 * pen->text_px, 0.45 * pen->text_px, list[i].priority,
-                     (enum alarm_word)reading->alarm_word);
+                     (enum alarm_status)reading->alarm_status);
         pen_ink(pen, 1);
         pen_text(pen, card->x + pad + 1.7 * pen->text_px, y + pen->text_px, text);
     }
@@ -84,8 +84,11 @@ static void draw_list(struct pen *pen, const struct unseen *list, size_t count)
     double pad = 8 * pen->unit, most_px = MOST_HEIGHT * pen->frame->height_px - 2 * pad;
     size_t rows = (size_t)fmin(fmin((double)count, MOST_ROWS), fmax(most_px / (ROW * pen->text_px) - 1, 0));
     char title[80], text[200];
-    snprintf(title, sizeof(title), rows < count && rows ? "%zu alarms out of sight, such as" : count > 1 ? "%zu alarms out of sight" :
-             "%zu alarm out of sight", count);
+    snprintf(title, sizeof(title),
+             rows < count && rows ? "%zu alarms out of sight, such as"
+             : count > 1          ? "%zu alarms out of sight"
+                                  : "%zu alarm out of sight",
+             count);
     pen_font(pen, 0.9, true);
     double width = pen_text_width(pen, title);
     pen_font(pen, 0.85, false);

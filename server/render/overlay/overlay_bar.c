@@ -96,7 +96,7 @@ static void tick_text(const struct pen *pen, double value, char text[40])
     if (view_is_operator(view))
         snprintf(text, 40, "%s", plant_limit_names[(int)(value > 0 ? value + 1 : value + 2)]);
     else
-        pen_number(value, view->paint.log ? value : view->range_max - view->range_min, text);
+        pen_number(value, view->color_scale.log ? value : view->range_max - view->range_min, text);
 }
 
 static double text_width(struct pen *pen, const struct ticks *ticks)

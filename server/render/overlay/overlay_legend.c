@@ -7,7 +7,7 @@
 
 #include "base/clock.h"
 #include "render/overlay/overlay_pen.h"
-#include "render/palette.h"
+#include "render/shaded_colormap.h"
 
 enum { NOTES = 4, ROWS = 4 + ALARM_PRIORITIES };
 static const double ROW = 1.5, NOTE = 1.3; /* heights, in text_px */
@@ -103,11 +103,11 @@ static void write_words(const struct pen *pen, struct legend *legend)
     if (view_is_operator(view)) {
         add_note(legend, "by each tag's limits");
     } else {
-        pen_number(view->range_max, view->paint.log ? view->range_max : range, number);
+        pen_number(view->range_max, view->color_scale.log ? view->range_max : range, number);
         snprintf(legend->above, sizeof(legend->above), "> %s", number);
-        pen_number(view->range_min, view->paint.log ? view->range_min : range, number);
+        pen_number(view->range_min, view->color_scale.log ? view->range_min : range, number);
         snprintf(legend->below, sizeof(legend->below), "< %s", number);
-        if (view->paint.log)
+        if (view->color_scale.log)
             add_note(legend, "logarithmic scale");
     }
     if (view->field.show == SHOW_DIFFERENCE)
@@ -122,8 +122,15 @@ static void write_words(const struct pen *pen, struct legend *legend)
 
 static const char *row_text(const struct legend *legend, enum row row)
 {
-    static const char *const texts[] = { "", "no limits", "no data", "uncertain", "unproven", "alarm, priority 1",
-                                         "alarm, priority 2", "alarm, priority 3", "alarm, priority 4" };
+    static const char *const texts[] = { "",
+                                         "no limits",
+                                         "no data",
+                                         "uncertain",
+                                         "unproven",
+                                         "alarm, priority 1",
+                                         "alarm, priority 2",
+                                         "alarm, priority 3",
+                                         "alarm, priority 4" };
     return row == ROW_BELOW ? legend->below : texts[row];
 }
 
@@ -179,11 +186,11 @@ static void fill_box(struct pen *pen, const struct box *box, const uint8_t rgb[3
 
 static void draw_stripes(struct pen *pen, const struct box *box)
 {
-    fill_box(pen, box, palette_no_data[0]);
+    fill_box(pen, box, colormap_no_data[0]);
     cairo_save(pen->cairo);
     cairo_rectangle(pen->cairo, box->x, box->y, box->width, box->height);
     cairo_clip(pen->cairo);
-    pen_rgb(pen, palette_no_data[1]);
+    pen_rgb(pen, colormap_no_data[1]);
     cairo_set_line_width(pen->cairo, 0.25 * pen->text_px);
     for (double x = -box->height; x < box->width; x += 0.5 * pen->text_px) {
         cairo_move_to(pen->cairo, box->x + x, box->y + box->height);
@@ -195,10 +202,10 @@ static void draw_stripes(struct pen *pen, const struct box *box)
 
 static void draw_rules(struct pen *pen, const struct box *box)
 {
-    fill_box(pen, box, palette_no_limits[0]);
+    fill_box(pen, box, colormap_no_limits[0]);
     for (int i = 0; i < 3; i++)
         fill_box(pen, &(struct box){ box->x, box->y + box->height * (0.12 + 0.33 * i), box->width, 0.1 * box->height },
-                 palette_no_limits[1]);
+                 colormap_no_limits[1]);
 }
 
 static void draw_dots(struct pen *pen, const struct box *box)
@@ -206,7 +213,7 @@ static void draw_dots(struct pen *pen, const struct box *box)
     struct scale scale;
     view_scale(&pen->view, &scale);
     fill_box(pen, box, scale.map->rgb[128]);
-    pen_rgb(pen, palette_uncertain);
+    pen_rgb(pen, colormap_uncertain);
     for (int i = 0; i < 6; i++) {
         cairo_arc(pen->cairo, box->x + box->width * (i + 0.5) / 6, box->y + box->height * (i % 2 ? 0.7 : 0.3), 0.13 * pen->text_px, 0,
                   2 * M_PI);
@@ -276,8 +283,8 @@ void overlay_legend(struct pen *pen)
 
 static bool say_the_same(const struct legend *a, const struct legend *b)
 {
-    bool same = !strcmp(a->title, b->title) && !strcmp(a->above, b->above) && !strcmp(a->below, b->below) &&
-                a->row_count == b->row_count && a->note_count == b->note_count;
+    bool same = !strcmp(a->title, b->title) && !strcmp(a->above, b->above) && !strcmp(a->below, b->below) && a->row_count == b->row_count &&
+                a->note_count == b->note_count;
     for (int i = 0; same && i < a->row_count; i++)
         same = a->rows[i] == b->rows[i];
     for (int i = 0; same && i < a->note_count; i++)
@@ -304,7 +311,7 @@ bool overlay_legend_is_shared(struct pen *pen)
         view_scale(&pen->view, &scales[half]);
     }
     const struct view *right = &pen->view;
-    const struct paint *a = &left.paint, *b = &right->paint;
+    const struct color_scale *a = &left.color_scale, *b = &right->color_scale;
     return left.look != LOOK_MATERIALS && right->look != LOOK_MATERIALS && left.field.group == right->field.group &&
            left.field.show == right->field.show && say_the_same(&legends[0], &legends[1]) && are_the_same(&scales[0], &scales[1]) &&
            a->line_count == b->line_count && !memcmp(a->lines, b->lines, (size_t)a->line_count * sizeof(*a->lines));

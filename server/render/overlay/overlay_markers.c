@@ -4,13 +4,13 @@
 #include <stdio.h>
 
 #include "base/mem.h"
-#include "render/crowd.h"
+#include "render/overlay/crowd.h"
 #include "render/overlay/overlay_pen.h"
 #include "value/quality.h"
 
 bool overlay_unproven(const struct pen *pen, int tag)
 {
-    return pen->proofs && proofs_unproven(pen->proofs, tag);
+    return pen->loop_checks && loop_checks_unproven(pen->loop_checks, tag);
 }
 
 void overlay_outline(struct pen *pen, double x, double y, double radius, bool broken)
@@ -48,10 +48,11 @@ static void draw_mark(struct pen *pen, const struct frame_marker *marker, bool b
     }
 }
 
-void overlay_ring(struct pen *pen, double x, double y, double radius, int priority, enum alarm_word word)
+void overlay_ring(struct pen *pen, double x, double y, double radius, int priority, enum alarm_status word)
 {
-    static const double colors[ALARM_PRIORITIES][3] = { { 0.80, 0.05, 0.12 }, { 0.93, 0.42, 0.04 }, { 0.96, 0.74, 0.05 },
-                                                        { 0.10, 0.60, 0.74 } };
+    static const double colors[ALARM_PRIORITIES][3] = {
+        { 0.80, 0.05, 0.12 }, { 0.93, 0.42, 0.04 }, { 0.96, 0.74, 0.05 }, { 0.10, 0.60, 0.74 }
+    };
     const double *color = colors[priority - 1];
     double wide = word == ALARM_ACKNOWLEDGED ? 0.22 : 0.42;
     cairo_new_path(pen->cairo);
@@ -62,7 +63,7 @@ void overlay_ring(struct pen *pen, double x, double y, double radius, int priori
     cairo_set_source_rgb(pen->cairo, color[0], color[1], color[2]);
     cairo_set_line_width(pen->cairo, fmax(1.8, wide * radius));
     cairo_stroke_preserve(pen->cairo);
-    if (alarm_word_gone(word)) {
+    if (alarm_status_is_cleared(word)) {
         cairo_set_source_rgb(pen->cairo, 1, 1, 1);
         cairo_set_line_width(pen->cairo, fmax(1.0, 0.5 * wide * radius));
         cairo_stroke(pen->cairo);
@@ -84,7 +85,7 @@ static void draw_alarm(struct pen *pen, const struct frame_marker *marker)
 {
     const struct reading *reading = reading_of(pen, marker);
     int priority = alarm_priority(&pen->scene->plant->tags[marker->tag], (enum alarm_kind)reading->alarm);
-    overlay_ring(pen, marker->x_px, marker->y_px, 9.5 * pen->unit, priority, (enum alarm_word)reading->alarm_word);
+    overlay_ring(pen, marker->x_px, marker->y_px, 9.5 * pen->unit, priority, (enum alarm_status)reading->alarm_status);
 }
 
 /* On equipment that has no distance from the chosen sensor: there is nothing to say of it, but for its alarm. */
@@ -197,7 +198,7 @@ static void add_wanted(struct pen *pen, const struct frame_marker *marker, struc
                  : marker->occluded || is_elsewhere(pen, marker)                                   ? LABEL_NOT_WANTED
                  : is_bad(marker)                                                                  ? LABEL_BAD
                  : quality_is_uncertain(marker->quality) || tag->asset == pen->view.selected_asset ? LABEL_DOUBTFUL
-                                                                                                    : LABEL_PLAIN;
+                                                                                                   : LABEL_PLAIN;
     wanted->bad += item->rank == LABEL_BAD;
 }
 
@@ -214,7 +215,7 @@ static void write_callout(const struct wanted *wanted, const int *members, size_
     const struct reading *readings = wanted->pen->snapshot->readings;
     int asset = plant->tags[wanted->tags[members[0]]].asset, worst = -1, least = 0;
     for (size_t i = 0; i < count; i++) {
-        int tag = wanted->tags[members[i]], word = (int)readings[tag].alarm_word;
+        int tag = wanted->tags[members[i]], word = (int)readings[tag].alarm_status;
         bool gone = word == ALARM_RETURNED || word == ALARM_LATCHED; /* these come last */
         int grave = alarm_priority(&plant->tags[tag], (enum alarm_kind)readings[tag].alarm) + (gone ? ALARM_PRIORITIES : 0);
         if (worst < 0 || grave < least || (grave == least && tag < worst)) {
@@ -266,8 +267,12 @@ static void draw_callout(const struct wanted *wanted, const struct label_place *
 
 static void place_labels(struct pen *pen, struct wanted *wanted, int cards)
 {
-    struct label_area area = { .box = pen->area, .unit = pen->unit, .blocked = pen->taken, .blocked_count = (size_t)cards,
-                               .measure = measure_callout, .arg = wanted };
+    struct label_area area = { .box = pen->area,
+                               .unit = pen->unit,
+                               .blocked = pen->taken,
+                               .blocked_count = (size_t)cards,
+                               .measure = measure_callout,
+                               .arg = wanted };
     struct label_place *places = mem_array(wanted->count, sizeof(*places));
     for (size_t i = 0; i < wanted->count; i++)
         if (wanted->bad > LABEL_MOST_BAD && wanted->items[i].rank == LABEL_BAD)
@@ -309,7 +314,7 @@ static void label_isolines(struct pen *pen)
             crowded = done[k] && frame->labels[k].value == label->value &&
                       hypot(frame->labels[k].x_px - label->x_px, frame->labels[k].y_px - label->y_px) < least_px;
         char text[40];
-        pen_number(label->value, pen->view.paint.log ? label->value : range, text);
+        pen_number(label->value, pen->view.color_scale.log ? label->value : range, text);
         pen_font(pen, 0.75, true);
         double width = pen_text_width(pen, text) + 2 * pad, height = 0.75 * pen->text_px + 2 * pad;
         struct box box = { label->x_px - 0.5 * width, label->y_px - 0.5 * height, width, height };

@@ -6,9 +6,9 @@
 
 #include <cairo.h>
 
-#include "proving/proofs.h"
+#include "loopcheck/loop_checks.h"
 #include "render/frame.h"
-#include "render/labels.h"
+#include "render/overlay/labels.h"
 #include "value/alarm.h"
 
 bool box_meets(const struct box *a, const struct box *b);
@@ -17,19 +17,19 @@ enum { PEN_MAX_TAKEN = 512 };
 struct pen {
     cairo_t *cairo;
     const struct frame *frame;
-    struct view view;  /* of the half that is drawn over */
-    int half;          /* of a split view; else 0 */
-    struct box area;   /* that half */
+    struct view view; /* of the half that is drawn over */
+    int half;         /* of a split view; else 0 */
+    struct box area;  /* that half */
     const struct scene *scene;
     const struct snapshot *snapshot;
-    const struct proofs *proofs; /* NULL: none */
-    bool bare;                   /* nothing of sensors and alarms */
+    const struct loop_checks *loop_checks; /* NULL: none */
+    bool bare;                             /* nothing of sensors and alarms */
     double unit, text_px;
     struct box taken[PEN_MAX_TAKEN]; /* where nothing more may be put */
     int taken_count;
 };
 
-void pen_choose_half(struct pen *pen, int half); /* what is drawn over from now on */
+void pen_choose_half(struct pen *pen, int half);                /* what is drawn over from now on */
 bool pen_is_free(const struct pen *pen, const struct box *box); /* inside the area, and over nothing that is taken */
 void pen_take(struct pen *pen, const struct box *box);
 void pen_card(struct pen *pen, const struct box *box); /* a light plate with a thin rim, for text to stand on */
@@ -51,7 +51,7 @@ double overlay_bar_width(struct pen *pen); /* with all that is written beside it
 double overlay_bar_left(struct pen *pen);  /* of which before the bar itself */
 void overlay_legend(struct pen *pen);
 bool overlay_legend_is_shared(struct pen *pen); /* of a split view: both halves' say the same. Chooses the right half */
-double overlay_legend_width(struct pen *pen); /* what it takes of the area, with its margins */
+double overlay_legend_width(struct pen *pen);   /* what it takes of the area, with its margins */
 /* Of a split view: what each half has otherwise than the other one, where no legend says so. Chooses the right half. */
 void overlay_halves(struct pen *pen);
 /* A mark's outline: broken where its tag is unproven. */
@@ -59,7 +59,7 @@ void overlay_outline(struct pen *pen, double x, double y, double radius, bool br
 bool overlay_unproven(const struct pen *pen, int tag);
 /* Around a place with an alarm: its colour says the priority, its form how it is. Thick: it calls; thin: it is acknowledged;
    hollow: its cause is gone. */
-void overlay_ring(struct pen *pen, double x, double y, double radius, int priority, enum alarm_word word);
+void overlay_ring(struct pen *pen, double x, double y, double radius, int priority, enum alarm_status word);
 void overlay_markers(struct pen *pen);
 /* Within the half that is chosen, with nothing before it, and under nothing that was drawn over the picture so far. */
 bool overlay_marker_seen(const struct pen *pen, const struct frame_marker *marker);

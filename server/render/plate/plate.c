@@ -6,27 +6,27 @@
 #include <string.h>
 
 #include "base/mem.h"
-#include "render/content.h"
-#include "render/markers.h"
+#include "render/plan/content_hash.h"
+#include "render/pick/markers.h"
 #include "render/matrix.h"
 #include "render/plate/plate_impl.h"
-#include "render/solid.h"
+#include "render/gl/surface_pass.h"
 
 /* Of a step, for each core: some milliseconds' worth. */
 enum { VERTICES = 65536, CHUNKS = 32, SHADED_BANDS = 1, BANDS = 16 };
 static const size_t KEPT_BYTES = (size_t)256 << 20; /* some ten pictures of 1920 x 1080 */
-static const double OFF_SURFACE_TEXELS = 2.58; /* as sun_visibility in shaders/shadow.glsl */
+static const double OFF_SURFACE_TEXELS = 2.58;      /* as sun_visibility in shaders/shadow.glsl */
 
 /* --- what plates share ------------------------------------------------------------------------------------------------------- */
 
 static void find_models(struct plates *plates)
 {
-    const struct stage *stage = plates->stage;
-    plates->textured = mem_array(stage->model_count, sizeof(bool));
-    plates->masked = mem_array(stage->model_count, sizeof(bool));
-    plates->blended = mem_array(stage->model_count, sizeof(bool));
-    for (size_t m = 0; m < stage->model_count; m++) {
-        const struct model *model = &stage->models[m];
+    const struct gpu_scene *gpu_scene = plates->gpu_scene;
+    plates->textured = mem_array(gpu_scene->model_count, sizeof(bool));
+    plates->masked = mem_array(gpu_scene->model_count, sizeof(bool));
+    plates->blended = mem_array(gpu_scene->model_count, sizeof(bool));
+    for (size_t m = 0; m < gpu_scene->model_count; m++) {
+        const struct model *model = &gpu_scene->models[m];
         for (size_t i = 0; i < model->material_count; i++) {
             plates->textured[m] |= model->materials[i].mask != 0;
             plates->masked[m] |= model->materials[i].masked && model->materials[i].mask;
@@ -43,11 +43,11 @@ static void find_tones(struct plates *plates)
     }
 }
 
-struct plates *plates_create(struct workers *workers, const struct stage *stage, const struct sky *sky, struct draft *draft,
+struct plates *plates_create(struct workers *workers, const struct gpu_scene *gpu_scene, const struct sky *sky, struct draft *draft,
                              const struct environments *environments)
 {
     struct plates *plates = mem_new(sizeof(*plates));
-    *plates = (struct plates){ .workers = workers, .stage = stage, .sky = sky, .draft = draft, .environments = environments };
+    *plates = (struct plates){ .workers = workers, .gpu_scene = gpu_scene, .sky = sky, .draft = draft, .environments = environments };
     plates->kept.bound_bytes = KEPT_BYTES;
     find_models(plates);
     find_tones(plates);
@@ -121,17 +121,17 @@ void plates_rest(struct plates *plates)
     plates->light = (struct plate_light){ 0 };
 }
 
-bool plates_can(const struct plates *plates, const struct picture *picture)
+bool plates_can(const struct plates *plates, const struct frame_context *context)
 {
-    const struct view *view = picture->view;
+    const struct view *view = context->view;
     double lines[VIEW_ALL_LINES];
-    if (view->tier != TIER_STILL || view->look == LOOK_GLOSSY || view_lines(view, lines) > 0 || view_is_operator(view) ||
-        view->visibility.ghosts.count > 0 || view->visibility.clip.plane_count > 0 || picture->reference)
+    if (view->tier != TIER_REFINED || view->look == LOOK_GLOSSY || view_lines(view, lines) > 0 || view_is_operator(view) ||
+        view->visibility.ghosts.count > 0 || view->visibility.clip.plane_count > 0 || context->reference)
         return false;
-    for (size_t i = 0; i < picture->visible_count; i++) {
-        int asset = picture->visible[i];
-        size_t model = (size_t)(picture->stage->of_asset[asset] - picture->stage->models);
-        bool field = picture->fields[asset] != NULL, lost = field && !picture->fields[asset]->slice; /* only GL hatches without scalars */
+    for (size_t i = 0; i < context->visible_count; i++) {
+        int asset = context->visible[i];
+        size_t model = (size_t)(context->gpu_scene->of_asset[asset] - context->gpu_scene->models);
+        bool field = context->fields[asset] != NULL, lost = field && !context->fields[asset]->slice; /* only GL hatches without scalars */
         if (lost || plates->masked[model] || (!field && (plates->textured[model] || plates->blended[model])))
             return false;
     }
@@ -147,7 +147,7 @@ struct plate *plate_begin(struct plates *plates)
     if (!plate) {
         plate = mem_new(sizeof(*plate));
         plate->plates = plates;
-        plate->draft = draft_create(plates->workers, plates->stage, plates->sky);
+        plate->draft = draft_create(plates->workers, plates->gpu_scene, plates->sky);
         if (!plate->draft)
             destroy(&plate);
     }
@@ -182,37 +182,37 @@ static void copy_columns(const double from[16], float to[4][4])
 static void aim(struct plate *plate, const struct light *light)
 {
     struct draft *draft = plate->draft;
-    const struct picture *picture = plate->picture;
-    const double *sun = picture->light->texture_from_plant;
-    double off_m = OFF_SURFACE_TEXELS * picture->light->texel_m, matrix[16];
+    const struct frame_context *context = plate->context;
+    const double *sun = context->light->texture_from_plant;
+    double off_m = OFF_SURFACE_TEXELS * context->light->texel_m, matrix[16];
     draft_aim(draft, light);
     for (int c = 0; c < 4; c++)
         for (int r = 0; r < 4; r++) /* a draft moves surfaces towards the sun, here they step off along their normals */
-            plate->sun_from_pixel[c][r] = draft->sun_from_pixel[c][r] -
-                                          (r == 2 ? (float)solid_sun_slack(picture) * draft->sun_from_pixel[c][3] : 0);
+            plate->sun_from_pixel[c][r] =
+                draft->sun_from_pixel[c][r] - (r == 2 ? (float)surface_pass_sun_slack(context) * draft->sun_from_pixel[c][3] : 0);
     for (int c = 0; c < 3; c++)
         for (int r = 0; r < 3; r++)
             plate->sun_from_normal[c][r] = (float)(sun[4 * c + r] * off_m);
     for (int r = 0; r < 3; r++) {
         plate->ground_step[r] = 0;
         for (int c = 0; c < 3; c++)
-            plate->ground_step[r] += plate->sun_from_normal[c][r] * (float)plate->plates->stage->up[c];
+            plate->ground_step[r] += plate->sun_from_normal[c][r] * (float)plate->plates->gpu_scene->up[c];
     }
     matrix_multiply(sun, light->plant_from_ground, matrix);
     copy_columns(matrix, plate->sun_from_ground);
 }
 
 /* Others drew meanwhile. */
-static bool take_up(struct plate *plate, const struct picture *picture, struct frame *frame)
+static bool take_up(struct plate *plate, const struct frame_context *context, struct frame *frame)
 {
     struct draft *draft = plate->draft;
-    plate->picture = draft->picture = picture;
-    draft->light = draft_get_light(plate->plates->draft, picture->light);
-    if (!draft->light || !plate_read_light(plate->plates, picture->light) ||
-        !plate_read_surroundings(plate->plates, picture->lit_by.environment))
+    plate->context = draft->context = context;
+    draft->light = draft_get_light(plate->plates->draft, context->light);
+    if (!draft->light || !plate_read_light(plate->plates, context->light) ||
+        !plate_read_surroundings(plate->plates, context->lit_by.environment))
         return false;
-    draft_read_palette(draft, &picture->palette);
-    frame_block_fill(&draft->block, picture);
+    draft_read_palette(draft, &context->colormap);
+    frame_uniforms_fill(&draft->block, context);
     draft_aim_cuts(draft);
     draft->out = frame->bgrx;
     draft->out_stride_bytes = (size_t)frame->stride_bytes;
@@ -232,12 +232,12 @@ static lanes material_of(const struct asset_material *material)
 static void note_meshes(struct plate *plate)
 {
     struct draft *draft = plate->draft;
-    const struct stage *stage = plate->plates->stage;
+    const struct gpu_scene *gpu_scene = plate->plates->gpu_scene;
     mem_grow(&plate->normals, &plate->mesh_capacity, draft->mesh_count, sizeof(*plate->normals));
     mem_grow(&plate->draws, &plate->draw_capacity, draft->draw_count, sizeof(*plate->draws));
     for (size_t m = 0; m < draft->mesh_count; m++) {
         const struct draft_mesh *mesh = &draft->meshes[m];
-        matrix_normals(stage->scene->assets[mesh->asset].placement, plate->normals[m]);
+        matrix_normals(gpu_scene->scene->assets[mesh->asset].placement, plate->normals[m]);
         if (mesh->has_field)
             recolor_add_mesh(plate->recolor, &(struct recolor_mesh){
                                                  .asset = mesh->asset,
@@ -247,9 +247,9 @@ static void note_meshes(struct plate *plate)
     }
     for (size_t d = 0; d < draft->draw_count; d++) {
         struct draft_draw *draw = &draft->draws[d];
-        const struct model *model = stage->of_asset[draft->meshes[draw->mesh].asset];
+        const struct model *model = gpu_scene->of_asset[draft->meshes[draw->mesh].asset];
         bool field = draw->mark == MARK_FIELD;
-        size_t row = draw->mark >> 16 & (MOST_RAMPS - 1), material = row - draft->ramp_of_model[model - stage->models];
+        size_t row = draw->mark >> 16 & (MOST_RAMPS - 1), material = row - draft->ramp_of_model[model - gpu_scene->models];
         plate->draws[d] = (struct plate_draw){ .mesh = draw->mesh, .field = field };
         if (!field)
             plate->draws[d].material = material_of(&model->file->view.materials[material]);
@@ -337,11 +337,11 @@ static bool advance(struct plate *plate, size_t all, size_t some, size_t *begin,
     return *end == all;
 }
 
-static bool is_selected_shown(const struct picture *picture)
+static bool is_selected_shown(const struct frame_context *context)
 {
-    int selected = picture->view->selected_asset;
-    for (size_t i = 0; i < picture->visible_count && selected >= 0; i++)
-        if (picture->visible[i] == selected)
+    int selected = context->view->selected_asset;
+    for (size_t i = 0; i < context->visible_count && selected >= 0; i++)
+        if (context->visible[i] == selected)
             return true;
     return false;
 }
@@ -350,7 +350,7 @@ static bool is_selected_shown(const struct picture *picture)
 static bool mark(struct plate *plate, const struct frame *frame)
 {
     struct draft *draft = plate->draft;
-    if (!draft_make_room(draft, frame, BAND_ROWS) || !draft_find_only(draft, plate->picture->view->selected_asset))
+    if (!draft_make_room(draft, frame, BAND_ROWS) || !draft_find_only(draft, plate->context->view->selected_asset))
         return false;
     draft_tiles(draft, false);
     return true;
@@ -358,13 +358,13 @@ static bool mark(struct plate *plate, const struct frame *frame)
 
 static bool complain(struct plate *plate)
 {
-    log_err(plate->plates->stage->gl->log, "still picture of %dx%d, %zu vertices: out of memory", plate->draft->width_px,
+    log_err(plate->plates->gpu_scene->gl->log, "still picture of %dx%d, %zu vertices: out of memory", plate->draft->width_px,
             plate->draft->height_px, plate->draft->vertex_count);
     plate->failed = true;
     return true;
 }
 
-bool plate_step(struct plate *plate, const struct picture *picture, const struct light *light, struct frame *frame)
+bool plate_step(struct plate *plate, const struct frame_context *context, const struct light *light, struct frame *frame)
 {
     struct draft *draft = plate->draft;
     struct workers *workers = plate->plates->workers;
@@ -373,7 +373,7 @@ bool plate_step(struct plate *plate, const struct picture *picture, const struct
     bool done = true;
     if (plate->failed)
         return true;
-    if (!take_up(plate, picture, frame))
+    if (!take_up(plate, context, frame))
         return complain(plate);
     switch (plate->step) {
     case PLATE_COLLECT:
@@ -402,24 +402,24 @@ bool plate_step(struct plate *plate, const struct picture *picture, const struct
         piece.first = begin;
         workers_for(workers, end - begin, 1, ink_some, &piece);
         if (done)
-            markers_find(picture, draft->depth, (size_t)draft->pitch_px, frame);
+            markers_find(context, draft->depth, (size_t)draft->pitch_px, frame);
         break;
     case PLATE_MARK:
-        if (is_selected_shown(picture) && !mark(plate, frame))
+        if (is_selected_shown(context) && !mark(plate, frame))
             return complain(plate);
         break;
     case PLATE_RIM:
-        if (is_selected_shown(picture))
+        if (is_selected_shown(context))
             draft_keep_rim(plate->draft, plate->recolor);
         break;
     case PLATE_SETTLE:
         if (!recolor_settle(plate->recolor, workers))
             return complain(plate);
-        recolor_read(plate->recolor, picture, workers);
+        recolor_read(plate->recolor, context, workers);
         break;
     case PLATE_COLOR:
         done = advance(plate, bands, BANDS, &begin, &end);
-        recolor_draw(plate->recolor, draft->palette, draft->block.scale[3], workers, (int)begin, (int)(end - begin), frame);
+        recolor_draw(plate->recolor, draft->colormap, draft->block.scale[3], workers, (int)begin, (int)(end - begin), frame);
         break;
     case PLATE_DONE: return true;
     }
@@ -430,22 +430,22 @@ bool plate_step(struct plate *plate, const struct picture *picture, const struct
 
 /* --- once more --------------------------------------------------------------------------------------------------------------- */
 
-bool plates_keep(struct plates *plates, struct plate *plate, const struct picture *picture, const struct frame *frame)
+bool plates_keep(struct plates *plates, struct plate *plate, const struct frame_context *context, const struct frame *frame)
 {
     struct recolor *recolor = plate->recolor;
     if (plate->failed)
         return false;
     plate->recolor = NULL;
-    draft_give(&plates->kept, picture, recolor, frame);
+    draft_give(&plates->kept, context, recolor, frame);
     return true;
 }
 
-bool plates_know(struct plates *plates, const struct picture *picture)
+bool plates_know(struct plates *plates, const struct frame_context *context)
 {
-    return plates_can(plates, picture) && visibility_buffers_find(&plates->kept, content_shape_hash(picture));
+    return plates_can(plates, context) && visibility_buffers_find(&plates->kept, content_shape_hash(context));
 }
 
-bool plates_recolor(struct plates *plates, const struct picture *picture, struct frame *frame)
+bool plates_recolor(struct plates *plates, const struct frame_context *context, struct frame *frame)
 {
-    return plates_can(plates, picture) && draft_recolor(plates->draft, &plates->kept, picture, frame);
+    return plates_can(plates, context) && draft_recolor(plates->draft, &plates->kept, context, frame);
 }

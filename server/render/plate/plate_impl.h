@@ -18,7 +18,7 @@ enum { ID_BITS = 12 };
 #define MARK_BACK 0x80000000u /* | number of the draw; a triangle that looks away */
 
 enum { NORMAL_X, NORMAL_Y, NORMAL_Z, AMBIENT, OPEN, TINT }; /* of a vertex, in `lanes`: eight numbers */
-enum { BASE, METALLIC = 3, ROUGHNESS, EMISSIVE };          /* of a material, likewise */
+enum { BASE, METALLIC = 3, ROUGHNESS, EMISSIVE };           /* of a material, likewise */
 
 struct plate_draw {
     lanes material;
@@ -41,7 +41,7 @@ struct plate_surroundings {
 
 struct plates {
     struct workers *workers;
-    const struct stage *stage;
+    const struct gpu_scene *gpu_scene;
     const struct sky *sky;
     struct draft *draft; /* keeps the light */
     const struct environments *environments;
@@ -76,10 +76,10 @@ struct plate {
     size_t mesh_capacity, draw_capacity, attribute_capacity;
     struct recolor *recolor;
     /* --- of the picture, worked out anew at each step */
-    const struct picture *picture;
+    const struct frame_context *context;
     float sun_from_pixel[4][4], sun_from_ground[4][4]; /* columns */
-    float sun_from_normal[3][3]; /* columns; a step off the surface */
-    float ground_step[3];        /* likewise off the ground */
+    float sun_from_normal[3][3];                       /* columns; a step off the surface */
+    float ground_step[3];                              /* likewise off the ground */
 };
 
 struct samples { /* of a band; rows of pitch_px */

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Light on what shows the field, and on sky and ground, eight pixels at a time: shaders/still.frag, shadow.glsl, sky.frag and ground.frag
+/* Light on what shows the field, and on sky and ground, eight pixels at a time: shaders/refined.frag, shadow.glsl, sky.frag and ground.frag
    once more. */
 #include "render/plate/plate_spot.h"
 

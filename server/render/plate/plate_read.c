@@ -5,7 +5,7 @@
 
 static bool complain(const struct plates *plates, const char *what)
 {
-    log_err(plates->stage->gl->log, "still pictures: %s cannot be read back: out of memory", what);
+    log_err(plates->gpu_scene->gl->log, "still pictures: %s cannot be read back: out of memory", what);
     return false;
 }
 

@@ -12,7 +12,7 @@ typedef struct {
     lanes x, y, z;
 } vec;
 
-struct spot { /* eight of them */
+struct spot {            /* eight of them */
     lanes attributes[8]; /* NORMAL_X ... */
     lanes material[8];
     lanes x, y, depth; /* in the picture */
@@ -77,15 +77,14 @@ DRAFT_INLINE vec unit(vec a)
 
 /* --- where ------------------------------------------------------------------------------------------------------------------- */
 
-struct corners { /* of eight triangles, seen from the spots: what the weights are made of */
+struct corners {                    /* of eight triangles, seen from the spots: what the weights are made of */
     float a[3][LANES], b[3][LANES]; /* to the corner, in pixels; by w where the corner has no place in the picture */
     float w[3][LANES];              /* 1/w, or 1 */
     float z[3][LANES], g[3][LANES]; /* depth times g, and g: 1, or w */
 };
 
 /* A triangle that was cut: its corners may lie behind the eye. */
-static inline void see_cut_corner(const struct draft_mesh *mesh, uint32_t v, const struct item *item, int k, int i,
-                                  struct corners *out)
+static inline void see_cut_corner(const struct draft_mesh *mesh, uint32_t v, const struct item *item, int k, int i, struct corners *out)
 {
     const float *p = mesh->file->positions_m[v];
     float at[4];
@@ -229,7 +228,7 @@ DRAFT_INLINE vec view_of(const struct plate *plate, const struct spot *spot)
 /* Two-sided surfaces from behind, and those whose normals are of the other side: -1. */
 DRAFT_INLINE lanes_int is_turned(const struct spot *spot, vec view)
 {
-    const float most_away = -0.3f; /* as in shaders/still.frag */
+    const float most_away = -0.3f; /* as in shaders/refined.frag */
     lanes towards = dot(spot->normal, view);
     return (spot->back & (towards < 0.0f)) | (towards < most_away);
 }

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Light on surfaces without a field, eight at a time: shaders/still.frag, light.glsl, pbr.glsl and environment.glsl once more. */
+/* Light on surfaces without a field, eight at a time: shaders/refined.frag, light.glsl, pbr.glsl and environment.glsl once more. */
 #include "render/plate/plate_spot.h"
 
-static const float OPEN_BEHIND = 0.7f; /* as in shaders/still.frag */
+static const float OPEN_BEHIND = 0.7f; /* as in shaders/refined.frag */
 
 struct brdf {
     lanes scale, bias;
@@ -30,8 +30,9 @@ DRAFT_INLINE struct brdf brdf_at(const struct plate_surroundings *surroundings, 
 
 DRAFT_INLINE vec sky_irradiance(const struct plate_surroundings *surroundings, vec n)
 {
-    lanes terms[ENVIRONMENT_TERMS] = { all(1),    n.y, n.z, n.x, n.x * n.y, n.y * n.z, 3.0f * n.z * n.z - 1.0f,
-                                       n.x * n.z, n.x * n.x - n.y * n.y };
+    lanes terms[ENVIRONMENT_TERMS] = {
+        all(1), n.y, n.z, n.x, n.x * n.y, n.y * n.z, 3.0f * n.z * n.z - 1.0f, n.x * n.z, n.x * n.x - n.y * n.y
+    };
     lanes sum[3] = { all(0), all(0), all(0) };
     for (int t = 0; t < ENVIRONMENT_TERMS; t++)
         for (int c = 0; c < 3; c++)
@@ -171,7 +172,7 @@ DRAFT_KERNEL void plate_shade_surfaces(const struct plate *plate, const struct i
 {
     const struct plates *plates = plate->plates;
     float bright = plate->draft->block.up[3]; /* of context; 0: as it is */
-    bool greys = view_is_operator(plate->picture->view);
+    bool greys = view_is_operator(plate->context->view);
     for (size_t first = 0; first < count; first += LANES) {
         struct spot spot;
         size_t some = count - first < LANES ? count - first : LANES;

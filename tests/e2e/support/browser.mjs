@@ -97,7 +97,7 @@ export async function settle(page, quietMs = 0) {
 
 // Until the picture has the size that it has in the page, and nothing flies any more.
 export const land = (page) => page.waitForFunction(() => {
-    const { pilot, session: { picture, size }, viewport } = globalThis.plantcast, ratio = devicePixelRatio;
+    const { cameraController, session: { picture, size }, viewport } = globalThis.plantcast, ratio = devicePixelRatio;
     return !pilot?.fly && Math.abs(size.width - viewport.width * ratio) <= 2 && Math.abs(size.height - viewport.height * ratio) <= 2 &&
         picture.fullWidth === size.width && picture.fullHeight === size.height;
 }, null, { timeout: 60000 });
@@ -136,7 +136,7 @@ export const pageOf = (page, point) => page.evaluate(async (at) => {
 
 // Where the picture on the screen has a place of the plant, in the page: { x, y }.
 export const drawnAt = (page, point) => page.evaluate(async (place) => {
-    const [{ projector }, { halves }] = await Promise.all([import('/core/camera.js'), import('/core/halves.js')]);
+    const [{ projector }, { halves }] = await Promise.all([import('/core/camera.js'), import('/core/split_view.js')]);
     const { session: { picture, params }, viewport } = globalThis.plantcast, box = viewport.element.getBoundingClientRect();
     const [x, y] = projector(picture.camera, halves(params, picture.shownWidth)[0].width, picture.fullHeight)(place);
     return { x: box.left + (x * box.width) / picture.shownWidth, y: box.top + (y * box.height) / picture.fullHeight };
@@ -144,8 +144,8 @@ export const drawnAt = (page, point) => page.evaluate(async (place) => {
 
 // What the hand took hold of, once the server has said where that is; null: nothing.
 export async function held(page) {
-    await page.waitForFunction(() => globalThis.plantcast.pilot?.anchor?.sure, null, { timeout: 20000 });
-    return page.evaluate(() => globalThis.plantcast.pilot.anchor.point);
+    await page.waitForFunction(() => globalThis.plantcast.cameraController?.anchor?.sure, null, { timeout: 20000 });
+    return page.evaluate(() => globalThis.plantcast.cameraController.anchor.point);
 }
 
 // Markers of the shown group: name, asset, place in pixels of the picture, in sight or not.

@@ -1,0 +1,272 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The list of alarms, one row for each tag, and what can be done about one, or about several.
+import { asideOf, inMessages, passes, rowActions, targetsOf } from '../../core/alarm_actions.js';
+import { isGone } from '../../core/alarms.js';
+import { ageText, zoneClock } from '../../core/format.js';
+import { refusalText } from '../../core/refusals.js';
+import { actOnAlarm } from '../../core/requests.js';
+import { say } from '../../core/words.js';
+import { byId, make, setText } from '../common/dom.js';
+import { fillSelect } from '../common/choices.js';
+import { asOf, badge, limitText } from './alarm_bar.js';
+
+const SHOWN = 200; // rows at once
+const WHICH = ['all', 'waiting', 'active', 'gone'];
+
+export class AlarmList {
+    // showTag(tag), flyToTag(tag), overlay (whether what is shown is fresh): as the page has them.
+    constructor({ session, modules, overlay, showTag, flyToTag }) {
+        Object.assign(this, { session, modules, overlay, showTag, flyToTag });
+        this.chosen = new Map(); // rows to be acknowledged together: tag -> what was to be acknowledged of it when it was chosen
+        this.filter = { which: 'all', words: '' };
+        const priorities = [1, 2, 3, 4].map((priority) => [priority, say('alarms.priority', { priority })]);
+        fillSelect(byId('alarms-which'), [...WHICH.map((name) => [name, say(`which.${name}`)]), ...priorities], 'all');
+        for (const [id, name] of [['alarms-which', 'which'], ['alarms-words', 'words']])
+            byId(id).addEventListener('input', () => {
+                this.filter[name] = byId(id).value;
+                this.show();
+            });
+        byId('alarms-all').addEventListener('change', () => this.chooseAll(byId('alarms-all').checked));
+        byId('alarms-acknowledge').addEventListener('click', () => this.acknowledgeChosen());
+        this.small = window.matchMedia('(max-width: 719px), (max-height: 480px)');
+        byId('alarms-close').addEventListener('click', () => this.setOpen(false));
+        byId('shelve-form').addEventListener('submit', (event) => this.shelve(event));
+        byId('shelve-cancel').addEventListener('click', () => byId('shelve').close());
+        session.on('welcome', () => {
+            ['alarms-list', 'alarms-aside'].forEach((id) => byId(id).replaceChildren()); // they were of another plant
+            this.show();
+        });
+        session.on('alarms', () => this.show());
+        session.on('time', () => this.show());
+        session.on('alarmed', (answer) => this.answered(answer));
+        setInterval(() => this.tick(), 500);
+    }
+
+    get alarms() {
+        return this.session.model?.alarms ?? null;
+    }
+
+    get open() {
+        return !byId('alarms').hidden;
+    }
+
+    toggle() {
+        this.setOpen(!this.open);
+    }
+
+    setOpen(open) {
+        if (open)
+            this.modules.there('engineer')?.close(); // it stands in the same place
+        byId('alarms').hidden = !open;
+        byId('alarm-strip').setAttribute('aria-expanded', open);
+        this.show();
+        if (open)
+            byId('alarms-close').focus();
+        else
+            byId('alarm-strip').focus();
+    }
+
+    // Whose role can do something; nobody's while the server does not speak to us.
+    get role() {
+        return this.overlay.fresh ? this.session.role : null;
+    }
+
+    // Ages go on.
+    tick() {
+        if (!this.open)
+            return;
+        if (this.shownFresh !== this.overlay.fresh)
+            this.show();
+        for (const [element, alarm] of this.ages ?? [])
+            setText(element, this.since(alarm));
+    }
+
+    show() {
+        if (!this.alarms?.known || !this.open)
+            return;
+        const { fresh } = this.overlay;
+        this.shownFresh = fresh;
+        byId('alarms-then').hidden = this.session.time.atUs === null;
+        setText(byId('alarms-stale'), fresh ? '' : say('alarms.stale', { time: asOf(this.session) }));
+        this.keepFocus(() => this.showList());
+    }
+
+    showList() {
+        const all = this.alarms.list(), aside = asideOf(this.alarms);
+        const list = all.filter((row) => passes(row, this.textOf(row), this.filter));
+        this.rows = list.slice(0, SHOWN);
+        this.ages = [];
+        this.forgetChanged(all);
+        this.fill('alarms-list', this.rows);
+        const none = all.length > 0 ? say('alarms.filtered', { count: all.length }) : say('alarms.quiet');
+        setText(byId('alarms-none'), list.length > 0 ? '' : none);
+        byId('alarms-aside-head').hidden = aside.length === 0;
+        setText(byId('alarms-aside-head'), say('alarms.aside', { count: aside.length }));
+        this.fill('alarms-aside', aside.slice(0, SHOWN));
+        const more = Math.max(0, list.length - SHOWN) + Math.max(0, aside.length - SHOWN);
+        setText(byId('alarms-more'), more > 0 ? say('alarms.more', { count: more }) : '');
+        this.showChosen();
+    }
+
+    // What the filter searches.
+    textOf({ tag, kind }) {
+        const asset = this.session.model.asset(tag.asset);
+        return [tag.name, tag.description, kind, say(`kind.${kind}`), tag.asset, asset?.tag, asset?.description].filter(Boolean).join(' ');
+    }
+
+    // Rows that say what they said stay where they are, under the hand that presses in them.
+    fill(id, alarms) {
+        const list = byId(id), before = new Map([...list.children].map((row) => [row.said, row]));
+        const rows = alarms.map((alarm) => {
+            const said = [alarm, rowActions(alarm, this.alarms.mode, this.role)];
+            const is = JSON.stringify(said, (key, value) => (key === 'tag' ? undefined : value));
+            const row = before.get(is) ?? Object.assign(this.row(alarm), { said: is });
+            before.delete(is);
+            this.ages.push([row.querySelector('.since'), alarm]);
+            return row;
+        });
+        for (const row of before.values())
+            row.remove();
+        rows.forEach((row, i) => list.children[i] !== row && list.insertBefore(row, list.children[i] ?? null));
+    }
+
+    // --- several at once
+
+    // What is to be acknowledged of a row, as a text; '': nothing, or not by us.
+    waitsFor(row) {
+        return targetsOf(row, 'acknowledge', this.alarms.mode, this.role).map(({ id, raisedUs }) => `${id}@${raisedUs}`).join();
+    }
+
+    // A row that has something new to acknowledge has to be looked at again.
+    forgetChanged(all) {
+        const now = new Map(all.map((row) => [row.tag.name, this.waitsFor(row)]));
+        for (const [name, was] of this.chosen)
+            if (now.get(name) !== was)
+                this.chosen.delete(name);
+    }
+
+    choose(row, on) {
+        if (on)
+            this.chosen.set(row.tag.name, this.waitsFor(row));
+        else
+            this.chosen.delete(row.tag.name);
+        this.showChosen();
+    }
+
+    chooseAll(on) {
+        for (const row of this.rows.filter((one) => this.waitsFor(one)))
+            this.choose(row, on);
+        this.showChosen();
+    }
+
+    showChosen() {
+        const can = this.rows.filter((row) => this.waitsFor(row)), on = can.filter(({ tag }) => this.chosen.has(tag.name));
+        byId('alarms-many').hidden = can.length < 2;
+        byId('alarms-all').checked = on.length === can.length;
+        byId('alarms-all').indeterminate = on.length > 0 && on.length < can.length;
+        setText(byId('alarms-acknowledge'), say('alarms.acknowledge', { count: on.length }));
+        byId('alarms-acknowledge').disabled = on.length === 0;
+        for (const box of byId('alarms-list').querySelectorAll('.choose'))
+            box.checked = this.chosen.has(box.value);
+    }
+
+    // Those that are seen: what the filter hides is not acknowledged.
+    acknowledgeChosen() {
+        const rows = this.rows.filter(({ tag }) => this.chosen.has(tag.name));
+        const alarms = rows.flatMap((row) => targetsOf(row, 'acknowledge', this.alarms.mode, this.role));
+        for (const some of inMessages(alarms.map(({ tag, kind }) => [tag.name, kind])))
+            actOnAlarm(this.session, 'acknowledge', some);
+        this.chosen.clear();
+        this.showChosen();
+    }
+
+    // Where what had the focus has gone, its alarm has it, else the next one.
+    keepFocus(f) {
+        const held = document.activeElement, row = held.closest('#alarms li'), place = row && [...row.parentElement.children].indexOf(row);
+        f();
+        if (!row || document.activeElement === held)
+            return;
+        const next = document.querySelector(`#alarms li[data-alarm="${CSS.escape(row.dataset.alarm)}"]`) ??
+            [...document.querySelectorAll('#alarms li')][place];
+        (held.isConnected ? held : next?.querySelector('.do button, button') ?? byId('alarms-close')).focus();
+    }
+
+    since({ raisedUs }) {
+        const now = this.session.clockUs();
+        if (raisedUs === null || now === null)
+            return '';
+        const { time } = zoneClock(this.session.model.plant.time_zone)(raisedUs / 1000);
+        return say('alarms.since', { time, age: ageText((now - raisedUs) / 1000) });
+    }
+
+    // Who did what about it last, until when, and why.
+    note({ state, who, reason, untilUs, held }) {
+        const clock = zoneClock(this.session.model.plant.time_zone);
+        const until = untilUs === null ? '' : say('alarms.until', { time: clock(untilUs / 1000).time.slice(0, 5) });
+        const by = who && state !== 'unacknowledged' ? say('alarms.by', { who }) : '';
+        return [until, by, reason, held ? say('alarms.held') : ''].filter(Boolean).join(', ');
+    }
+
+    // The rest of what its tag has.
+    also({ others = [] }) {
+        return others.length === 0 ? '' : say('alarms.also', { what: others.map(({ kind, state }) =>
+            `${say(`kind.${kind}`)} (${say(`state.${state}`)})`).join(', ') });
+    }
+
+    row(alarm) {
+        const { tag, kind, state, priority } = alarm, { mode } = this.alarms, actions = rowActions(alarm, mode, this.role);
+        const value = limitText(this.session.model, alarm), what = ` ${say(`kind.${kind}`)}${value ? `, ${value}` : ''}`;
+        const asset = this.session.model.asset(tag.asset), age = make('span', { class: 'since' }, this.since(alarm));
+        const title = say('alarms.fly', { tag: tag.name }), nowhere = tag.index === null; // a device is at no place of the model
+        const how = nowhere ? { class: 'alarm-go' } : { type: 'button', class: 'alarm-go', title, onclick: () => this.flyTo(tag) };
+        const note = [this.note(alarm), this.also(alarm)].filter(Boolean).join('; ');
+        const fly = make(nowhere ? 'div' : 'button', how, badge(priority, isGone(state)),
+            make('span', { class: 'what' }, make('b', {}, tag.name), what),
+            make('span', { class: 'where' }, [asset?.tag ?? asset?.id, tag.description].filter(Boolean).join(', ')),
+            make('span', { class: 'state' }, say(`state.${state}`)), age, make('span', { class: 'note' }, note));
+        const buttons = actions.map((action) =>
+            make('button', { type: 'button', 'data-action': action, onclick: () => this.act(action, alarm) }, say(`action.${action}`)));
+        const choose = make('input', {
+            type: 'checkbox', class: 'choose', value: tag.name, 'aria-label': say('alarms.choose', { tag: tag.name }),
+            onchange: ({ target }) => this.choose(alarm, target.checked),
+        });
+        const look = { class: alarm.waiting ? 'calls' : state, 'data-alarm': alarm.id };
+        return make('li', look, actions.includes('acknowledge') ? choose : null, fly, make('div', { class: 'do' }, ...buttons));
+    }
+
+    flyTo(tag) {
+        if (this.small.matches)
+            this.setOpen(false); // there is room for the place or for the list
+        this.showTag(tag);
+        this.flyToTag(tag);
+    }
+
+    // Of all alarms of the row.
+    act(action, row) {
+        const alarms = targetsOf(row, action, this.alarms.mode, this.role);
+        if (action !== 'shelve') {
+            actOnAlarm(this.session, action, alarms.map(({ tag, kind }) => [tag.name, kind]));
+            return;
+        }
+        this.shelving = alarms;
+        const kinds = alarms.map(({ kind }) => say(`kind.${kind}`)).join(', ');
+        setText(byId('shelve-title'), say('shelve.title', { what: `${row.tag.name} ${kinds}` }));
+        byId('shelve-reason').value = '';
+        byId('shelve').showModal();
+    }
+
+    shelve(event) {
+        event.preventDefault();
+        const reason = byId('shelve-reason').value.trim();
+        if (!reason)
+            return;
+        const alarms = this.shelving.map(({ tag, kind }) => [tag.name, kind]);
+        actOnAlarm(this.session, 'shelve', alarms, { reason, for_s: Number(byId('shelve-for').value) });
+        byId('shelve').close();
+    }
+
+    answered({ refused }) {
+        setText(byId('alarms-refused'), refused.map(([tag, kind, why]) => `${tag} ${kind}: ${refusalText(why)}`).join('; '));
+    }
+}
+

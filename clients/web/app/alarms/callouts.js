@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Call-outs: what the rings of alarms that are close together say as one, in two lines.
+import { graver } from '../../core/alarms.js';
+import { placeRings } from '../../core/callouts.js';
+import { say } from '../../core/words.js';
+import { INK, INK_2, LABEL_HEIGHT } from '../viewport/overlay.js';
+
+const LINE = 16; // from line to line, in units
+
+const byGravity = (a, b) => graver(a.alarm, b.alarm) || a.tag.index - b.tag.index;
+
+export class Callouts {
+    constructor({ overlay, session, refresh }) {
+        Object.assign(this, { overlay, session, place: placeRings });
+        overlay.callouts = this;
+        refresh();
+    }
+
+    // Parts of the two lines, as the overlay's labels have them, and whose alarm is named.
+    lines(members) {
+        const [worst] = [...members].sort(byGravity), { model } = this.session;
+        const assets = new Set(members.map(({ tag }) => tag.asset)), count = say('callout.count', { count: members.length });
+        const where = assets.size === 1 ? `${model.asset(worst.tag.asset)?.tag || worst.tag.asset}, ` : '';
+        return {
+            alarm: worst.alarm,
+            first: [[`${where}${count}`, 650, INK]],
+            second: [[say('callout.worst'), 400, INK_2], [worst.alarm.kind, 700, null], [worst.tag.name, 650, INK]],
+        };
+    }
+
+    measure(members) {
+        const { first, second } = this.lines(members);
+        return { width: Math.max(...[first, second].map((parts) => this.overlay.lineWidth(parts))), height: LABEL_HEIGHT + LINE };
+    }
+
+    draw(members, place) {
+        const { first, second, alarm } = this.lines(members), { left, top } = place;
+        this.overlay.drawPlate(place, place);
+        this.overlay.drawParts(first, place, alarm);
+        this.overlay.drawParts(second, { left, top: top + LINE }, alarm);
+    }
+}

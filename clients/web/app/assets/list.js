@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A long list of which only what is in sight is in the page, with one row that the keyboard is at (rows.js moves it).
+import { rowsInSight, stack } from '../../core/list_window.js';
+import { make } from '../common/dom.js';
+
+const MORE = 8; // rows beyond both edges
+
+export class LongList {
+    // make(row): its element; fill(row, element): what changes in it; height(row) in CSS pixels; keyOf(row): what it is. The element
+    // `root` scrolls.
+    constructor({ root, make: build, fill, height, keyOf }) {
+        Object.assign(this, { root, build, fill, height, keyOf, rows: [], tops: stack([]), shown: new Map(), active: null });
+        this.space = make('div', { role: 'none', class: 'space' });
+        root.append(this.space);
+        root.addEventListener('scroll', () => this.show(), { passive: true });
+        new ResizeObserver(() => this.show()).observe(root);
+    }
+
+    // All rows are made anew by change(), which sets them; the keyboard stays where it is.
+    renew(change) {
+        const { root } = this, hasFocus = root.contains(document.activeElement);
+        this.space.replaceChildren();
+        this.shown.clear();
+        change();
+        if (hasFocus)
+            this.shown.get(this.active)?.focus({ preventScroll: true });
+    }
+
+    // Elements stay those of their rows.
+    set(rows) {
+        this.rows = rows;
+        this.tops = stack(rows.map(this.height));
+        this.space.style.height = `${this.tops.at(-1)}px`;
+        this.places = new Map(rows.map((row, i) => [this.keyOf(row), i]));
+        if (!this.places.has(this.active))
+            this.active = rows.length > 0 ? this.keyOf(rows[0]) : null;
+        this.show();
+    }
+
+    show() {
+        const { root, tops } = this;
+        const [from, to] = rowsInSight(tops, root.scrollTop, root.clientHeight, MORE), wanted = new Set();
+        for (let i = from; i < to; i++)
+            wanted.add(i);
+        if (this.active !== null)
+            wanted.add(this.places.get(this.active)); // or the keyboard would lose its place
+        const before = this.shown;
+        this.shown = new Map();
+        for (const i of [...wanted].sort((a, b) => a - b))
+            this.place(i, before);
+        for (const element of before.values())
+            element.remove();
+    }
+
+    place(i, before) {
+        const row = this.rows[i], key = this.keyOf(row);
+        let element = before.get(key);
+        before.delete(key);
+        if (!element) {
+            element = this.build(row);
+            element.dataset.row = key;
+            this.space.append(element);
+        }
+        this.shown.set(key, element);
+        element.tabIndex = key === this.active ? 0 : -1;
+        element.style.transform = `translateY(${this.tops[i]}px)`;
+        this.fill(row, element);
+    }
+}

@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The card of one sensor: what it is, what it says, whether that may be trusted, and how old it is.
+import { ageText, decimalsFor, numberText, unitText } from '../../core/format.js';
+import { statusText } from '../../core/quality.js';
+import { say } from '../../core/words.js';
+import { linksOf } from '../assets/about.js';
+import { standBeside } from './card_position.js';
+import { clock } from '../common/clock.js';
+import { byId, glyph, limitFlag, make, setText } from '../common/dom.js';
+import { closeButton, fill } from '../common/widgets.js';
+
+export class Card {
+    constructor({ session, selection, overlay, viewport, modules, selectTag, showTrend, addTrend }) {
+        Object.assign(this, { session, selection, overlay, viewport, modules, selectTag, showTrend, addTrend });
+        this.element = byId('card');
+        this.show();
+    }
+
+    get tag() {
+        return this.selection.hover ?? this.session.model?.tag(this.selection.tag) ?? null;
+    }
+
+    show() {
+        const { tag } = this;
+        const marker = tag && this.overlay.marker(tag);
+        this.element.hidden = !tag || (!marker && tag === this.selection.hover);
+        if (this.element.hidden)
+            return;
+        this.element.classList.toggle('hover', tag === this.selection.hover && tag.name !== this.selection.tag);
+        this.fill(tag);
+        this.place(marker);
+    }
+
+    fill(tag) {
+        const { model } = this.session;
+        if (this.filled !== tag) {
+            this.filled = tag;
+            this.build(tag, model.asset(tag.asset));
+        }
+        const reading = model.readings[tag.index], group = model.group(tag.group);
+        const known = reading.value !== null;
+        const number = known ? numberText(reading.value, group ? decimalsFor(group.max - group.min) : 2) : say('card.novalue');
+        const unit = known ? ` ${unitText(tag.unit || group?.unit)}` : '';
+        if (this.value.textContent !== number + unit)
+            this.value.replaceChildren(number, make('i', {}, unit));
+        const quality = statusText(reading.quality, reading.qualityName);
+        if (this.quality.textContent !== quality)
+            this.quality.replaceChildren(glyph(reading.quality), quality);
+        setText(this.age, ageText(model.ageMs(tag.index, clock.now())));
+        const unproven = model.unproven(tag);
+        setText(this.proof, unproven ? say(`proof.${unproven}`) : '');
+        this.adds.hidden = !this.modules.there('trends')?.takes(tag);
+        const alarm = model.alarms.gravest(tag.index);
+        this.limit.hidden = !alarm;
+        if (alarm) {
+            this.limit.replaceChildren(limitFlag(alarm), ` ${say(`card.${alarm.kind}`)}, ${say(`state.${alarm.state}`)}`);
+        }
+    }
+
+    build(tag, asset) {
+        const links = linksOf(this.session.model, 'tag', tag);
+        const on = asset ? [asset.tag || asset.id, asset.description].filter(Boolean).join(', ') : '–';
+        this.value = make('p', { class: 'value' });
+        this.limit = make('p', { class: 'limit', hidden: true });
+        this.proof = make('p', { class: 'proof' });
+        this.quality = make('dd');
+        this.age = make('dd');
+        const trend = (name, f, key) => make('button', { type: 'button', class: name, onclick: () => f(tag) }, say(key));
+        this.adds = trend('add-trend', this.addTrend, 'card.add');
+        fill(this.element,
+            closeButton('close', () => this.selectTag(null)),
+            make('h3', {}, tag.name), make('p', { class: 'about' }, tag.description ?? ''), this.value, this.limit, this.proof,
+            make('dl', {}, make('dt', {}, say('card.quality')), this.quality, make('dt', {}, say('card.age')), this.age,
+                make('dt', {}, say('card.on')), make('dd', {}, on)),
+            this.session.recorded ? make('div', { class: 'trends-of' }, trend('trend', this.showTrend, 'card.trend'), this.adds) : null,
+            links.length > 0 ? make('p', { class: 'links' }, ...links) : null);
+    }
+
+    place(marker) {
+        const at = marker && this.overlay.placeOf(marker);
+        standBeside(this.element, this.viewport, at && [at.x, at.y]);
+    }
+}

@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The card of a place on the plant: whose surface it is, what the field says there, by which sensors, and how sure that is.
+import { projector } from '../../core/camera.js';
+import { decimalsFor, numberText, unitText } from '../../core/format.js';
+import { halves } from '../../core/split_view.js';
+import { askPick } from '../../core/requests.js';
+import { say } from '../../core/words.js';
+import { standBeside } from './card_position.js';
+import { byId, glyph, make } from '../common/dom.js';
+import { closeButton, fill } from '../common/widgets.js';
+
+const SAME_M = 0.05;
+
+export class Place {
+    // showAsset(how, asset): hides it, shows it alone, ...
+    constructor({ session, viewport, showAsset }) {
+        Object.assign(this, { session, viewport, showAsset });
+        this.element = byId('place');
+        this.picked = null;
+        this.asked = null; // 'new' or 'again'
+        session.on('picked', (picked) => this.hear(picked));
+        session.on('tags', () => this.ask());
+        session.on('params', () => this.ask());
+        session.on('welcome', () => this.close());
+    }
+
+    // CSS pixels of the viewport.
+    open(x, y) {
+        this.asked = 'new';
+        this.half = this.session.shown.split && x >= this.viewport.width / 2 ? 1 : 0;
+        this.pick(x, y);
+    }
+
+    close() {
+        this.picked = this.asked = null;
+        this.element.hidden = true;
+    }
+
+    pick(x, y) {
+        askPick(this.session, this.viewport.pixelOf(x, y), 'place');
+    }
+
+    // Values go on: what is said of the place is said anew.
+    ask() {
+        const at = this.picked && this.project();
+        if (at && this.asked === null) {
+            this.asked = 'again';
+            this.pick(at[0], at[1]);
+        }
+    }
+
+    hear(picked) {
+        if (this.asked === null)
+            return; // closed meanwhile
+        if (picked.purpose !== 'place') { // another question came between
+            this.asked = null;
+            return;
+        }
+        const again = this.asked === 'again';
+        this.asked = null;
+        if (again && !this.isSamePlace(picked)) {
+            this.close(); // something stands before it now, or it is not shown any more
+            return;
+        }
+        this.picked = picked.asset === null ? null : picked;
+        this.element.hidden = !this.picked;
+        if (this.picked)
+            this.build();
+        if (this.picked && !again)
+            this.session.setParams({ selected: this.picked.asset });
+        this.show();
+    }
+
+    isSamePlace({ asset, position }) {
+        return asset !== null && asset === this.picked.asset && position.every((x, i) => Math.abs(x - this.picked.position[i]) < SAME_M);
+    }
+
+    project() {
+        const { picture, shown } = this.session;
+        const half = picture && halves(shown, picture.shownWidth)[this.half];
+        if (!half)
+            return null;
+        const at = projector(picture.camera, half.width, picture.fullHeight)(this.picked.position);
+        const { width, height } = this.viewport;
+        return at && [((half.left + at[0]) * width) / picture.shownWidth, (at[1] * height) / picture.fullHeight];
+    }
+
+    number(value) {
+        const [min, max] = this.session.range;
+        return numberText(value, decimalsFor(max - min));
+    }
+
+    build() {
+        const { state, value, unit, uncertain, inside, nearest } = this.picked;
+        const asset = this.session.model.asset(this.picked.asset);
+        const found = say(`place.${state}`);
+        const words = inside ? say('place.inside') : uncertain ? say('place.uncertain', { state: found }) : found;
+        const rows = nearest.map(({ tag, distance_m, value: reading, quality }) => make('li', {}, glyph(quality), make('span', {}, tag),
+            make('span', {}, say('distance.metres', { metres: numberText(distance_m, distance_m < 10 ? 2 : 1) })),
+            make('b', {}, this.number(reading))));
+        const button = (how) => make('button', { type: 'button', onclick: () => this.showOnly(how, asset) }, say(`place.${how}`));
+        fill(this.element,
+            closeButton('close', () => this.close()),
+            make('h3', {}, asset.tag || asset.id), make('p', { class: 'about' }, asset.description ?? ''),
+            value === null ? null : make('p', { class: 'value' }, this.number(value), make('i', {}, ` ${unitText(unit)}`)),
+            make('p', { class: 'state' }, words),
+            rows.length > 0 ? make('ul', { class: 'nearest' }, ...rows) : null,
+            make('div', { class: 'buttons' }, ...['hide', 'ghost', 'only'].map(button)));
+    }
+
+    showOnly(how, asset) {
+        this.showAsset(how, asset);
+        this.close();
+    }
+
+    // In step with the picture.
+    show() {
+        if (this.picked)
+            standBeside(this.element, this.viewport, this.project());
+    }
+}

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Small helpers around the document. Nothing here writes inline markup: the page runs under a strict content policy.
+
+import { isGone } from '../../core/alarms.js';
+import { say } from '../../core/words.js';
+
+const SVG = 'http://www.w3.org/2000/svg';
+
+export const byId = (id) => document.getElementById(id);
+
+// make('button', { class: 'x', onclick: f, 'aria-label': 'y' }, 'text', node, ...)
+export function make(name, attributes = {}, ...children) {
+    return furnish(document.createElement(name), attributes, children);
+}
+
+export function makeSvg(name, attributes = {}, ...children) {
+    return furnish(document.createElementNS(SVG, name), attributes, children);
+}
+
+function furnish(element, attributes, children) {
+    for (const [name, value] of Object.entries(attributes)) {
+        if (typeof value === 'function')
+            element.addEventListener(name.slice(2), value);
+        else if (value !== null && value !== undefined && value !== false)
+            element.setAttribute(name, value === true ? '' : value);
+    }
+    element.append(...children.filter((child) => child !== null && child !== undefined));
+    return element;
+}
+
+// Puts the words into what names them: data-say for its text, data-label, data-title, data-hint (of an empty field), data-name for
+// label and title; data-key is the key on the keyboard that does the same. data-icon is drawn before its text. In the folded
+// list each says its name.
+export function sayAll(root) {
+    for (const element of root.querySelectorAll('[data-say], [data-label], [data-title], [data-hint], [data-name], [data-icon]')) {
+        const { say: text, label, title, hint, name, key, icon: drawn } = element.dataset;
+        if (text)
+            element.textContent = say(text);
+        if (drawn)
+            element.prepend(icon(`i-${drawn}`));
+        if (element.parentNode.id === 'more')
+            element.append(make('span', { class: 'words' }, say(name)));
+        if (hint)
+            element.placeholder = say(hint);
+        if (label ?? hint ?? name)
+            element.setAttribute('aria-label', say(label ?? hint ?? name));
+        if (title ?? name)
+            element.title = say(title ?? name) + (key ? ` (${key})` : '');
+    }
+}
+
+// Writes only what differs: screen readers and the layout are left alone otherwise.
+export function setText(element, text) {
+    if (element.textContent !== text)
+        element.textContent = text;
+}
+
+// A style sheet of this folder, there from now on; a promise, which fails where it cannot be fetched.
+const sheets = new Map();
+export function styled(name) {
+    if (!sheets.has(name))
+        sheets.set(name, new Promise((done, fail) => {
+            const link = make('link', { rel: 'stylesheet', href: new URL(`../${name}.css`, import.meta.url).href, onload: done });
+            link.addEventListener('error', () => {
+                sheets.delete(name);
+                link.remove();
+                fail(new Error(`${name}.css cannot be fetched`));
+            });
+            document.head.append(link);
+        }));
+    return sheets.get(name);
+}
+
+export const setVariable = (element, name, value) => element.style.setProperty(name, value);
+
+// The shape that stands for a quality, the same in lists, cards and over the picture (overlay.js draws it there).
+const GLYPHS = {
+    good: ['circle', { r: 4.5 }],
+    uncertain: ['path', { d: 'M0-6 6 0 0 6-6 0z' }],
+    bad: ['path', { d: 'M-5-5h10v10h-10zM-2.5-2.5l5 5M2.5-2.5l-5 5' }],
+    none: ['circle', { r: 2.5 }],
+};
+export function glyph(quality) {
+    const [name, shape] = GLYPHS[quality] ?? GLYPHS.none;
+    return makeSvg('svg', { viewBox: '-8 -8 16 16', class: `glyph ${GLYPHS[quality] ? quality : 'none'}`, 'aria-hidden': 'true' },
+        makeSvg(name, { class: 'mark', ...shape }));
+}
+
+// What kind of alarm, in the colour of its priority; hollow once its cause has gone.
+export const limitFlag = ({ kind, priority, state }) =>
+    make('span', { class: `limit-flag p${priority}${isGone(state) ? ' hollow' : ''}` }, kind);
+
+export function icon(id) {
+    return makeSvg('svg', { 'aria-hidden': 'true' }, makeSvg('use', { href: `#${id}` }));
+}

@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The engineer's panel: sensors are placed, and proven; how the field is computed. Loaded when it is first opened.
+import { say } from '../../core/words.js';
+import { byId, make } from '../common/dom.js';
+import { Method } from './field_settings.js';
+import { closeButton } from '../common/widgets.js';
+import { Placing } from './placing.js';
+import { LoopCheck } from './loop_check.js';
+
+export class Engineer {
+    constructor(page) {
+        this.page = page;
+        this.button = byId('engineer-toggle');
+        this.parts = { place: new Placing(page), prove: new LoopCheck(page), method: new Method(page) };
+        const choice = (name) => make('label', {},
+            make('input', { type: 'radio', name: 'engineer-part', value: name, checked: name === 'place',
+                onchange: () => this.choose(name) }),
+            make('span', {}, say(`eng.${name}`)));
+        this.element = make('section', { class: 'engineer', id: 'engineer', hidden: true, 'aria-label': say('eng.title') },
+            make('header', {}, make('h2', {}, say('eng.title')), closeButton('eng.close', () => this.toggle())),
+            make('fieldset', { class: 'segments' }, make('legend', {}, say('eng.what')), choice('place'), choice('prove'),
+                choice('method')),
+            ...Object.values(this.parts).map(({ element }) => element));
+        byId('viewport').parentElement.append(this.element);
+        this.choose('place');
+        page.overlay.drawTried = (tag) => this.mark(tag);
+        page.overlay.isMarked = (tag) => this.isMarked(tag);
+        page.session.on('welcome', () => page.session.role !== 'engineer' && this.close());
+    }
+
+    get open() {
+        return !this.element.hidden;
+    }
+
+    close() {
+        if (this.open)
+            this.toggle();
+    }
+
+    toggle() {
+        const alarms = this.page.modules.there('alarms');
+        if (!this.open && alarms?.open)
+            alarms.setOpen(false); // they stand in the same place
+        this.element.hidden = this.open;
+        this.button.setAttribute('aria-expanded', this.open);
+        (this.open ? this.element.querySelector('input') : this.button).focus();
+        this.parts[this.part].show();
+        this.page.refresh();
+    }
+
+    choose(part) {
+        this.part = part;
+        for (const [name, { element }] of Object.entries(this.parts))
+            element.hidden = name !== part;
+        this.parts[part].show();
+        this.page.refresh();
+    }
+
+    // What is selected is another.
+    onSelection() {
+        if (this.part === 'method')
+            this.parts.method.show();
+    }
+
+    takesClick(x, y) {
+        return this.open && this.part === 'place' && this.parts.place.takesClick(x, y);
+    }
+
+    isAt(part, name, tag) {
+        return this.open && this.part === part && this.parts[part][name] === tag.name;
+    }
+
+    // Whether mark() draws anything: it is not left out where markers crowd.
+    isMarked(tag) {
+        return this.page.session.model.placed.has(tag.name) || this.isAt('place', 'tag', tag) || this.isAt('prove', 'stirred', tag);
+    }
+
+    // Over its marker: a dashed ring where it is tried out, a whole one where it is chosen, a double one where it moved.
+    mark(tag) {
+        const c = this.page.overlay.context, moved = this.page.session.model.placed.has(tag.name);
+        const stirred = this.isAt('prove', 'stirred', tag);
+        const ring = (radius, dash, width) => {
+            c.beginPath();
+            c.arc(0, 0, radius, 0, 2 * Math.PI);
+            c.lineWidth = width;
+            c.setLineDash(dash);
+            c.strokeStyle = '#1d252d';
+            c.stroke();
+            c.setLineDash([]);
+        };
+        if (moved)
+            ring(13, [4, 3], 2);
+        if (this.isAt('place', 'tag', tag))
+            ring(9, [], 2.5);
+        if (stirred)
+            [12, 16].forEach((radius) => ring(radius, [], 2.5));
+    }
+}

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// How the field is computed, for engineers: distance, interpolation, places without data, and factors of all sensors and of one.
+import { say } from '../../core/words.js';
+import { make, setText } from '../common/dom.js';
+import { distances, fills, interpolations, numberField, writeNumber } from '../common/number_fields.js';
+import { fillSegments, markSegment } from '../common/choices.js';
+
+const FACTORS = {
+    strength: [0, 100], decay: [0, 100], power: [0.5, 16], radius_m: [0, 1e6], reach_m: [1e-6, 1e6], // as the server takes them
+};
+const OWN = ['strength', 'decay'];
+const pairs = (all) => make('div', { class: 'pairs' }, ...all.map(([, { label }]) => label));
+
+export class Method {
+    constructor({ session, selection }) {
+        Object.assign(this, { session, selection });
+        this.choices = [this.choice('distance', say('bar.distance'), distances()),
+            this.choice('interpolation', say('bar.interpolation'), interpolations()), this.choice('fill', say('picture.fill'), fills())];
+        this.factors = Object.entries(FACTORS).map(([name, [min, max]]) => [name,
+            numberField(`factor-${name}`, say(`factor.${name}`), { min, max }, (value) => this.setFactor(name, value))]);
+        this.own = OWN.map((name) => [name, numberField(`own-${name}`, say(`factor.${name}`), { min: 0, max: 100 },
+            (value) => this.setOwn({ [name]: value ?? undefined }))]);
+        this.title = make('legend');
+        this.reset = make('button', { type: 'button', id: 'own-reset', onclick: () => session.setParams({ sensors: null }) });
+        this.element = make('div', { class: 'part method' }, ...this.choices.flatMap(({ fieldset, why }) => [fieldset, why]),
+            make('fieldset', {}, make('legend', {}, say('factor.title')), pairs(this.factors)),
+            make('fieldset', { id: 'own-factors' }, this.title, pairs(this.own), make('div', { class: 'line' }, this.reset)));
+        session.on('params', () => this.show());
+        session.on('welcome', () => this.show());
+    }
+
+    // What is chosen is explained beneath.
+    choice(name, words, all) {
+        const fieldset = make('fieldset', { class: 'segments', id: name }, make('legend', {}, words));
+        fillSegments(fieldset, name, all, (value) => this.session.setParams({ [name]: value }));
+        return { name, fieldset, all, why: make('p', { class: 'quiet' }) };
+    }
+
+    setFactor(name, value) {
+        if (value !== null || name === 'reach_m')
+            this.session.setParams({ [name]: value });
+    }
+
+    setOwn(change) {
+        const { tag } = this;
+        if (tag)
+            this.session.setParams({ sensors: { [tag.name]: { ...this.session.params.sensors?.[tag.name], ...change } } });
+    }
+
+    get tag() {
+        const { model, params } = this.session, tag = model?.tag(this.selection.tag);
+        return tag?.group === params.group ? tag : null;
+    }
+
+    show() {
+        const { session, tag } = this, { params } = session;
+        if (!session.model || this.element.offsetParent === null)
+            return;
+        for (const { name, fieldset, all, why } of this.choices) {
+            markSegment(fieldset, params[name]);
+            setText(why, all.find(([value]) => value === params[name])?.[2] ?? '');
+        }
+        for (const [name, f] of this.factors)
+            writeNumber(f, params[name]);
+        setText(this.title, tag ? say('factor.of', { tag: tag.name }) : say('factor.choose'));
+        for (const [name, f] of this.own) {
+            f.input.disabled = !tag;
+            writeNumber(f, tag && params.sensors?.[tag.name]?.[name]);
+        }
+        this.reset.disabled = Object.keys(params.sensors ?? {}).length === 0;
+        setText(this.reset, say('factor.reset', { count: Object.keys(params.sensors ?? {}).length }));
+    }
+}

@@ -1,0 +1,236 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Sensors are placed: chosen from a list, put onto the surface by a click or dragged there, and the list is saved.
+import { numberText } from '../../core/format.js';
+import { refusalText } from '../../core/refusals.js';
+import { askPick, tellAsEngineer } from '../../core/requests.js';
+import { say } from '../../core/words.js';
+import { make, setText } from '../common/dom.js';
+import { fill } from '../common/widgets.js';
+
+const SHOWN_TAGS = 60, GRAB_PX = { mouse: 14, pen: 18, touch: 26 };
+const metres = (m) => numberText(m, m < 1 ? 3 : 2);
+const along = ({ along: state = 'waiting' } = {}) => say(`eng.${state}`);
+const percent = (share) => numberText(100 * share, share > 0 && share < 0.1 ? 1 : 0);
+
+export class Placing {
+    constructor({ session, viewport, overlay, selection, selectTag, showTag, refresh }) {
+        Object.assign(this, { session, viewport, overlay, selection, selectTag, showTag, refresh });
+        this.moves = [];   // { tag, asset, position }
+        this.undone = [];  // what the moves were, step by step
+        this.tag = null;   // the one to be placed, by name
+        this.dragging = null;
+        this.build();
+        this.listen();
+    }
+
+    build() {
+        const button = (key, onclick) => make('button', { type: 'button', onclick }, say(key));
+        this.hint = make('p', { class: 'hint', role: 'status' });
+        this.find = make('input', { type: 'search', placeholder: say('eng.find'), 'aria-label': say('eng.find'),
+            oninput: () => this.showTags() });
+        this.list = make('ul', { class: 'tags' });
+        this.tried = make('ul', { class: 'moves' });
+        this.none = make('p', { class: 'quiet' }, say('eng.nomoves'));
+        this.undo = button('eng.undo', () => this.step());
+        this.back = button('eng.back', () => this.move([]));
+        this.save = button('eng.save', () => tellAsEngineer(this.session, 'save_tags'));
+        this.gaps = make('div', { class: 'gaps' });
+        this.note = make('p', { class: 'note', role: 'status' });
+        this.dialog = make('dialog', { class: 'help diff', 'aria-label': say('eng.save') });
+        this.element = make('div', { class: 'part' }, this.hint, this.find, this.list, make('h3', {}, say('eng.moves')), this.none,
+            this.tried,
+            make('div', { class: 'line' }, this.undo, this.back, button('eng.gaps', () => tellAsEngineer(this.session, 'gaps')), this.save),
+            this.note, this.gaps, this.dialog);
+    }
+
+    listen() {
+        const { session } = this;
+        session.on('picked', ({ purpose, asset, position }) => { if (purpose === 'place') this.put(asset, position); });
+        session.on('placed', () => this.show());
+        session.on('gaps', (message) => this.showGaps(message));
+        session.on('tags_diff', (message) => this.showDiff(message));
+        session.on('tags_saved', (message) => this.onSaved(message));
+        session.on('error', ({ about }) => { if (about === 'place') this.step(); }); // it stays where it was
+        session.on('welcome', () => this.onWelcome());
+        session.on('params', () => this.show());
+        const on = (name, f) => this.viewport.element.addEventListener(name, f, { capture: true });
+        on('pointerdown', (event) => this.grab(event));
+        on('pointermove', (event) => this.drag(event));
+        on('pointerup', (event) => this.drop(event));
+        on('pointercancel', (event) => this.drop(event));
+    }
+
+    // The plant was loaded anew: what was not saved is tried out on top of it.
+    onWelcome() {
+        if (this.saving)
+            return; // what became of it is on its way
+        const known = ({ tag, asset }) => this.session.model.tag(tag) && this.session.model.asset(asset);
+        this.moves = this.moves.filter(known);
+        this.undone = [];
+        if (this.moves.length > 0)
+            tellAsEngineer(this.session, 'place', { moves: this.moves });
+        this.show();
+    }
+
+    // --- moving
+
+    move(moves, keep = true) {
+        if (keep)
+            this.undone.push(this.moves);
+        this.moves = moves;
+        tellAsEngineer(this.session, 'place', { moves });
+        this.show();
+    }
+
+    step() {
+        if (this.undone.length > 0)
+            this.move(this.undone.pop(), false);
+    }
+
+    takesClick(x, y) {
+        if (!this.tag)
+            return false;
+        this.begin = this.moves;
+        askPick(this.session, this.viewport.pixelOf(x, y), 'place');
+        return true;
+    }
+
+    // At most one step back for each click or drag, however many places it went over.
+    put(asset, position) {
+        if (!this.tag)
+            return;
+        setText(this.note, asset ? '' : say('eng.missed'));
+        if (!asset)
+            return;
+        const first = this.begin !== null;
+        if (first)
+            this.undone.push(this.begin);
+        this.begin = null;
+        this.move([...this.moves.filter(({ tag }) => tag !== this.tag), { tag: this.tag, asset, position }], false);
+    }
+
+    grab(event) {
+        const box = this.viewport.element.getBoundingClientRect(), x = event.clientX - box.left, y = event.clientY - box.top;
+        const tag = this.session.model?.tag(this.tag), marker = tag && this.overlay.marker(tag);
+        const at = marker && this.overlay.placeOf(marker);
+        if (this.element.offsetParent === null || !at || event.target.closest('button, .card')
+            || Math.hypot(at.x - x, at.y - y) > (GRAB_PX[event.pointerType] ?? GRAB_PX.mouse))
+            return;
+        this.dragging = event.pointerId;
+        this.begin = this.moves;
+        this.viewport.element.setPointerCapture(event.pointerId);
+        event.stopPropagation();
+        event.preventDefault();
+    }
+
+    drag(event) {
+        if (event.pointerId !== this.dragging)
+            return;
+        event.stopPropagation();
+        const box = this.viewport.element.getBoundingClientRect();
+        this.at = [event.clientX - box.left, event.clientY - box.top];
+        this.frame ??= requestAnimationFrame(() => {
+            this.frame = null;
+            askPick(this.session, this.viewport.pixelOf(...this.at), 'place');
+        });
+    }
+
+    drop(event) {
+        if (event.pointerId !== this.dragging)
+            return;
+        event.stopPropagation();
+        this.dragging = null;
+    }
+
+    // --- what is shown
+
+    show() {
+        const { model } = this.session;
+        if (!model || this.element.offsetParent === null)
+            return;
+        setText(this.hint, this.tag ? say('eng.click', { tag: this.tag }) : say('eng.choose'));
+        this.undo.disabled = this.undone.length === 0;
+        this.back.disabled = this.save.disabled = this.moves.length === 0;
+        this.none.hidden = this.moves.length > 0;
+        fill(this.tried, ...this.moves.map(({ tag, asset, position }) => this.row(tag, asset, position, model.placed.get(tag))));
+        this.showTags();
+        this.refresh();
+    }
+
+    row(tag, asset, position, placed) {
+        const off = placed && placed.distance_m > placed.limit_m;
+        return make('li', {}, make('b', {}, tag), ` ${say('eng.on', { asset })} `,
+            make('span', { class: 'place' }, position.map((v) => numberText(v, 3)).join(' · ')),
+            make('span', { class: off ? 'along off' : 'along' },
+                off ? say('eng.off', { metres: metres(placed.distance_m) }) : along(placed)));
+    }
+
+    // Those that stand nowhere come first.
+    showTags() {
+        const { model, params } = this.session, wanted = this.find.value.trim().toLowerCase();
+        const fits = ({ name, description, group }) =>
+            group && (wanted ? `${name} ${description}`.toLowerCase().includes(wanted) : true);
+        const tags = model.tags.filter((tag) => fits(tag) && (wanted || !tag.position || tag.group === params.group));
+        tags.sort((a, b) => Boolean(a.position) - Boolean(b.position));
+        fill(this.list, ...tags.slice(0, SHOWN_TAGS).map((tag) => make('li', {}, make('button', {
+            type: 'button', 'aria-pressed': String(tag.name === this.tag), onclick: () => this.choose(tag),
+        }, make('b', {}, tag.name), ' ', tag.description ?? '', make('i', {},
+            tag.asset ? say('eng.on', { asset: tag.asset }) : say('eng.nowhere'))))));
+    }
+
+    choose(tag) {
+        this.tag = this.tag === tag.name ? null : tag.name;
+        if (this.tag)
+            this.showTag(tag);
+        this.selectTag(null); // its card would lie over the surface
+        this.show();
+    }
+
+    showGaps({ group, far, assets }) {
+        const { model } = this.session, { quantity } = model.group(group);
+        fill(this.gaps, make('h3', {}, say('eng.gaps.of', { quantity })),
+            ...(far.length > 0 ? far.map(([tag, asset, m, limit]) =>
+                make('p', { class: 'off' }, say('eng.gap.off', { tag, asset, metres: metres(m), limit: metres(limit) })))
+                : [make('p', {}, say('eng.gap.none'))]),
+            ...assets.map((of) => make('p', {}, make('b', {}, of.asset), ' ',
+                say('eng.gap', { metres: metres(of.farthest_m), far: percent(of.far_share), limit: metres(of.far_m),
+                    lost: percent(of.lost_share) }),
+                of.next ? ` ${say('eng.gap.next', { a: of.next[0], b: of.next[1], metres: metres(of.next_m) })}` : '')));
+    }
+
+    // --- saving
+
+    showDiff({ file, conflict, hash, lines, more }) {
+        if (this.saving)
+            return; // of the one that was confirmed
+        const close = () => this.dialog.close();
+        const change = ([number, before, after]) => make('div', { class: 'change' }, make('span', {}, say('eng.diff.line', { n: number })),
+            before === null ? null : make('pre', { class: 'before', 'aria-label': say('eng.diff.before') }, before),
+            after === null ? null : make('pre', { class: 'after', 'aria-label': say('eng.diff.after') }, after));
+        const confirm = make('button', { type: 'button', class: 'go', onclick: () => this.confirm(hash) }, say('eng.confirm'));
+        fill(this.dialog, make('h2', {}, say('eng.diff', { file })),
+            make('p', {}, conflict ? say('eng.diff.conflict', { file }) : say('eng.diff.note')),
+            make('div', { class: 'lines', tabindex: '0' }, ...lines.map(change)),
+            more > 0 ? make('p', {}, say('eng.diff.more', { count: more })) : null,
+            make('div', { class: 'line' }, make('button', { type: 'button', onclick: close }, say('eng.cancel')),
+                conflict ? null : confirm));
+        this.dialog.showModal();
+    }
+
+    confirm(hash) {
+        this.dialog.close();
+        this.saving = true;
+        setText(this.note, say('eng.saving'));
+        tellAsEngineer(this.session, 'save_tags', { confirm: hash });
+    }
+
+    onSaved({ saved, kept, errors }) {
+        this.saving = false;
+        setText(this.note, saved ? say('eng.saved', { kept }) : say('eng.unsaved', { text: errors.map(refusalText).join('; ') }));
+        if (saved) {
+            this.moves = this.undone = [];
+            this.tag = null;
+        }
+        this.onWelcome();
+    }
+}

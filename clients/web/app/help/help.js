@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The help: what hands and keys do, and what the markers mean. Made when it is first asked for.
+import { say } from '../../core/words.js';
+import { byId, make, makeSvg } from '../common/dom.js';
+import { closeButton } from '../common/widgets.js';
+
+// The name of a row, and the words or keys in its columns; '' where there is none.
+const ROWS = [
+    ['help.turn', 'help.turn.mouse', 'help.turn.touch', '[←] [→] [↑] [↓]'],
+    ['help.move', 'help.move.mouse', 'help.move.touch', '[W] [A] [S] [D]'],
+    ['help.look', 'help.look.mouse', 'help.look.touch', ''],
+    ['help.zoom', 'help.zoom.mouse', 'help.zoom.touch', '[+] [−]'],
+    ['help.fit', 'help.fit.mouse', 'help.fit.touch', '[F]'],
+    ['help.home', '', '', '[H]'],
+    ['help.back', '', '', '[⌫]'],
+    ['help.from', '', '', 'help.from.keys'],
+    ['help.what', 'help.what.mouse', 'help.what.touch', ''],
+    ['help.selected', '', '', 'help.selected.keys'],
+    ['bar.quantity', '', '', 'help.quantity.keys'],
+    ['assets.title', '', '', 'help.equipment.keys'],
+    ['alarms.title', '', '', '[E]'],
+    ['time.title', '', '', 'help.history.keys'],
+    ['timings', '', '', '[M]'],
+    ['bar.hold', '', '', '[␣]'],
+    ['bar.measure', '', '', '[R]'],
+    ['bar.snapshot', '', '', '[C]'],
+    ['bar.share', '', '', '[K]'],
+    ['bar.theme', '', '', '[Z]'],
+];
+const MARKS = [
+    ['help.mark.good', 'circle', { class: 'mark', r: 4.5 }],
+    ['help.mark.uncertain', 'path', { class: 'mark', d: 'M0-6 6 0 0 6-6 0z' }],
+    ['help.mark.bad', 'path', { class: 'mark', d: 'M-5-5h10v10h-10zM-2.5-2.5l5 5M2.5-2.5l-5 5' }],
+    ['help.mark.behind', 'circle', { class: 'mark hidden-mark', r: 2.5 }],
+    ['help.mark.alarm', 'circle', { class: 'ring p1', r: 9 }],
+    ['help.mark.acknowledged', 'circle', { class: 'ring p1 thin', r: 9 }],
+    ['help.mark.returned', 'path', { class: 'ring p1 thin', d: 'M0-10.5A10.5 10.5 0 1 0 .1-10.5zM0-7A7 7 0 1 0 .1-7z' }],
+];
+
+// A text with [keys] of the keyboard in it, as nodes.
+const withKeys = (text) => text.split(/(\[[^\]]+\])/).filter(Boolean).map((part) =>
+    (/^\[.+\]$/.test(part) ? make('kbd', {}, part.slice(1, -1)) : part));
+const cell = (text) => make('td', {}, ...withKeys(/^(help|bar)\./.test(text) ? say(text) : text));
+
+function build(dialog) {
+    const head = ['help.mouse', 'help.touch', 'help.keys'].map((key) => make('th', { scope: 'col' }, say(key)));
+    const rows = ROWS.map(([name, ...cells]) => make('tr', {}, make('th', { scope: 'row' }, say(name)), ...cells.map(cell)));
+    const marks = MARKS.map(([key, shape, attributes]) => {
+        const side = attributes.class.startsWith('ring') ? 12 : 8, viewBox = `${-side} ${-side} ${2 * side} ${2 * side}`;
+        return make('li', {}, makeSvg('svg', { viewBox, 'aria-hidden': 'true' }, makeSvg(shape, attributes)), say(key));
+    });
+    dialog.append(
+        make('h2', { id: 'help-title' }, say('help.title')),
+        closeButton('help.close', () => dialog.close()),
+        make('table', {}, make('thead', {}, make('tr', {}, make('td'), ...head)), make('tbody', {}, ...rows)),
+        make('h2', {}, say('help.markers')), make('ul', { class: 'marks' }, ...marks),
+        make('p', { class: 'note' }, say('help.crowd')));
+}
+
+export class Help {
+    constructor() {
+        const dialog = byId('help');
+        build(dialog);
+        dialog.addEventListener('click', (event) => event.target === dialog && dialog.close());
+    }
+
+    open() {
+        byId('help').showModal();
+    }
+}

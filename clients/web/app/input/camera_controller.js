@@ -1,0 +1,282 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Hands to camera: pointers, wheel and keys over the viewport, and flights between views.
+// Loaded when hands first come near (input.js).
+import { MIN_DISTANCE_M, same } from '../../core/camera.js';
+import { flight, FLIGHT_MS } from '../../core/camera_flight.js';
+import { Gestures, wheelZoom } from '../../core/gestures.js';
+import { HeldKeys, keyMeaning } from '../../core/keys.js';
+import { depthAt, depthOf, elevation, fit, lookAround, orbit, pan, sight, zoom } from '../../core/camera_moves.js';
+import { halfAt } from '../../core/nearest.js';
+import { askPick } from '../../core/requests.js';
+import { along, length, subtract } from '../../core/vector.js';
+import { Approach } from './approach.js';
+import { clock } from '../common/clock.js';
+import { probeCodecs } from '../startup.js';
+import { isOnPicture } from './input.js';
+
+const DEGREES_PER_HEIGHT = 180; // a drag over the whole height of the picture
+const DOUBLE_CLICK_MS = 350, DOUBLE_CLICK_PX = 24;
+const ANCHOR_MS = 600, ANCHOR_PX = 10; // a wheel that goes on, about the same place
+const LEAST_ARRIVAL_DEG = 15;   // nobody wants to arrive below the floor
+const MOST_BACK = 30;           // flights that can be taken back
+const WRITTEN = 'input:not([type="radio"], [type="checkbox"], [type="range"]), select, textarea'; // keys write there
+
+// The same but for rounding.
+const isNear = (a, b) => ['eye', 'target'].every((name) => length(subtract(a[name], b[name])) < 0.02 * length(subtract(b.eye, b.target)));
+
+export class CameraController {
+    // handlers: who is told what input means that moves no camera: { click(x, y, kind), point({ x, y } or null), command(name), group(index) }.
+    constructor({ viewport, session, handlers }) {
+        Object.assign(this, { viewport, session, handlers });
+        this.gestures = new Gestures();
+        this.keys = new HeldKeys();
+        this.fly = null;
+        this.before = [];   // { camera, ghosts }: from where flights began
+        this.approach = new Approach({ session, viewport });
+        this.lastTick = null;
+        this.lastClick = null;
+        this.anchor = null; // what a hand took hold of: { x, y, time, point }; the point as the boxes have it until the server says it
+        session.on('picked', ({ purpose, position }) => {
+            if (purpose === 'anchor' && this.anchor)
+                Object.assign(this.anchor, { point: position ?? this.anchor.point, sure: true });
+        });
+        window.addEventListener('blur', () => this.keys.clear());
+        new ResizeObserver(() => this.stayHome()).observe(viewport.element);
+        session.on('params', () => this.stayHome()); // a split view has halves of another shape
+        probeCodecs(); // there will be motion
+    }
+
+    // An event of input.js.
+    handle(event) {
+        this[event.type](event);
+    }
+
+    place(event) {
+        const box = this.viewport.element.getBoundingClientRect();
+        return { id: event.pointerId, x: event.clientX - box.left, y: event.clientY - box.top, time: event.timeStamp };
+    }
+
+    pointerdown(event) {
+        if (!isOnPicture(event))
+            return;
+        this.land();
+        const place = this.place(event);
+        if (!this.gestures.active)
+            this.takeHold(place);
+        this.gestures.down({ ...place, kind: event.pointerType, button: event.button, shift: event.shiftKey, ctrl: event.ctrlKey });
+    }
+
+    // What is under the pointer is what is turned about and zoomed to; of the sky, what was turned about before.
+    takeHold({ x, y, time }) {
+        const { camera } = this.session;
+        if (!camera || !this.session.model)
+            return;
+        const { half, at, depth } = this.under(camera, x, y);
+        const { origin, direction } = sight(camera, at, y, half.width, this.viewport.height);
+        this.anchor = { x, y, time, point: depth === null ? null : along(origin, direction, depth) };
+        askPick(this.session, this.viewport.pixelOf(x, y), 'anchor');
+    }
+
+    // depth: of the nearest box there; null: none.
+    under(camera, x, y) {
+        const half = halfAt(this.session.shown, this.viewport.width, x), at = x - half.left;
+        const boxes = this.session.model?.assets.map((asset) => asset.bounds) ?? [];
+        return { half, at, depth: depthAt(camera, at, y, half.width, this.viewport.height, boxes) };
+    }
+
+    pointermove(event) {
+        const place = this.place(event);
+        if (!this.gestures.active) {
+            this.handlers.point(isOnPicture(event) && event.pointerType !== 'touch' ? place : null);
+            return;
+        }
+        this.apply(this.gestures.move(place), event.timeStamp);
+        this.viewport.element.classList.toggle('moving', this.gestures.moved);
+        if (this.gestures.moved)
+            this.handlers.point(null);
+    }
+
+    pointerup(event) {
+        const moves = this.gestures.up(this.place(event));
+        this.viewport.element.classList.toggle('moving', this.gestures.active && this.gestures.moved);
+        for (const { click } of moves)
+            this.click(click, event);
+    }
+
+    pointercancel(event) {
+        this.gestures.cancel({ id: event.pointerId });
+    }
+
+    pointerleave() {
+        this.handlers.point(null);
+    }
+
+    click([x, y], event) {
+        const last = this.lastClick;
+        this.lastClick = { x, y, time: event.timeStamp };
+        if (last && event.timeStamp - last.time < DOUBLE_CLICK_MS && Math.hypot(x - last.x, y - last.y) < DOUBLE_CLICK_PX) {
+            this.lastClick = null;
+            this.handlers.command('fit');
+            return;
+        }
+        this.handlers.click(x, y, event.pointerType);
+    }
+
+    wheel(event) {
+        if (!isOnPicture(event))
+            return;
+        this.land();
+        const place = this.place(event), { x, y, time } = place, { anchor } = this;
+        if (!anchor || time - anchor.time > ANCHOR_MS || Math.hypot(x - anchor.x, y - anchor.y) > ANCHOR_PX)
+            this.takeHold(place);
+        else
+            anchor.time = time;
+        this.apply([{ zoom: wheelZoom(event), at: [x, y] }], event.timeStamp);
+    }
+
+    keydown(event) {
+        if (document.querySelector('dialog[open]') || event.target.closest(WRITTEN))
+            return;
+        const meaning = keyMeaning(event);
+        if (!meaning || (meaning.motion?.startsWith('Arrow') && event.target.closest('fieldset')))
+            return; // arrows inside a group of buttons choose among them
+        if (event.key === ' ' && event.target.closest('button, input, a'))
+            return; // it presses what has the focus
+        event.preventDefault();
+        if (meaning.motion) {
+            this.land();
+            this.apply(this.keys.press(meaning.motion), event.timeStamp);
+            this.viewport.invalidate();
+        } else if (meaning.command) {
+            this.handlers.command(meaning.command);
+        } else {
+            this.handlers.group(meaning.group);
+        }
+    }
+
+    keyup(event) {
+        this.keys.release(event);
+    }
+
+    apply(moves, time) {
+        const { width, height } = this.viewport;
+        let camera = this.session.camera;
+        if (!camera || moves.length === 0)
+            return;
+        for (const move of moves) {
+            if (move.orbit)
+                camera = orbit(camera, (-move.orbit[0] * DEGREES_PER_HEIGHT) / height, (move.orbit[1] * DEGREES_PER_HEIGHT) / height,
+                    this.anchor?.point ?? camera.target);
+            if (move.look)
+                camera = lookAround(camera, move.look[0], move.look[1], height);
+            if (move.orbitDeg)
+                camera = orbit(camera, move.orbitDeg[0], move.orbitDeg[1]);
+            if (move.pan)
+                camera = pan(camera, move.pan[0], move.pan[1], height, this.heldDepth(camera));
+            if (move.panHeights)
+                camera = pan(camera, -move.panHeights[0] * height, move.panHeights[1] * height, height);
+            if (move.zoom)
+                camera = this.zoomed(camera, move.zoom, move.at ?? [width / 2, height / 2]);
+        }
+        this.session.setCamera(camera, clock.of(time));
+    }
+
+    zoomed(camera, factor, [x, y]) {
+        const { anchor } = this, { half, at, depth } = this.under(camera, x, y);
+        const known = anchor && Math.hypot(x - anchor.x, y - anchor.y) < ANCHOR_PX ? this.heldDepth(camera) : undefined;
+        return zoom(camera, factor, at, y, half.width, this.viewport.height, known ?? depth ?? undefined);
+    }
+
+    // How far off that is which the hand holds; undefined: nothing.
+    heldDepth(camera) {
+        const depth = this.anchor?.point ? depthOf(camera, this.anchor.point) : 0;
+        return depth > MIN_DISTANCE_M ? depth : undefined;
+    }
+
+    // --- flights
+
+    get aspect() {
+        return halfAt(this.session.params, this.viewport.width, 0).width / this.viewport.height;
+    }
+
+    // A person takes over.
+    land() {
+        this.fly = null;
+        this.approach.stop();
+    }
+
+    flyTo(camera) {
+        this.approach.stop();
+        this.remember();
+        this.approach.setGhosts([]);
+        this.steer(camera);
+    }
+
+    steer(camera) {
+        const still = window.matchMedia('(prefers-reduced-motion: reduce)').matches;
+        this.fly = { path: flight(this.session.camera, camera, still ? 0 : FLIGHT_MS), start: null };
+        this.viewport.invalidate();
+    }
+
+    // Whoever is on the way somewhere comes back to where they began.
+    remember() {
+        if (!this.fly)
+            this.before = [...this.before.slice(1 - MOST_BACK), { camera: this.session.camera, ghosts: this.approach.ghosts }];
+    }
+
+    goBack() {
+        const last = this.before.pop();
+        if (!last)
+            return;
+        this.approach.stop();
+        this.approach.setGhosts(last.ghosts);
+        this.steer(last.camera);
+    }
+
+    get homeNow() {
+        const { width } = halfAt(this.session.params, this.viewport.width, 0);
+        return this.session.homeIn(width, this.viewport.height);
+    }
+
+    // Who looks at the whole plant goes on doing so in a picture of another shape.
+    stayHome() {
+        const { session } = this;
+        if (!session.model)
+            return;
+        const now = this.homeNow, was = this.lastHome ?? now;
+        this.lastHome = now;
+        if (session.leader === null && isNear(session.camera, was) && !same(now, was))
+            session.setCamera(now);
+    }
+
+    flyHome() {
+        this.flyTo(this.homeNow);
+    }
+
+    flyToTag(tag, asset) {
+        this.remember();
+        this.approach.go(tag, asset, (camera) => this.steer(camera));
+    }
+
+    flyToBox(box, margin) {
+        const camera = this.session.camera;
+        const rise = Math.max(0, LEAST_ARRIVAL_DEG - elevation(camera));
+        this.flyTo(fit(orbit(camera, 0, rise), box, this.aspect, margin));
+    }
+
+    tick(now) {
+        const seconds = this.lastTick === null ? 0 : Math.min(0.1, (now - this.lastTick) / 1000);
+        if (this.fly) {
+            this.fly.start = this.fly.start ?? now;
+            const camera = this.fly.path(now - this.fly.start);
+            if (camera === this.fly.path(Infinity))
+                this.fly = null;
+            this.session.setCamera(camera, clock.of(now));
+        }
+        if (this.keys.moving)
+            this.apply(this.keys.step(seconds), now);
+        this.lastTick = this.fly || this.keys.moving ? now : null;
+        if (this.lastTick !== null)
+            this.viewport.invalidate();
+    }
+}

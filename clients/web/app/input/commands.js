@@ -1,0 +1,199 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What clicks, keys and buttons do: the selection, the flight to what is chosen, and the parts of the page that they open. Loaded when
+// hands first come near.
+import { nearestMarker } from '../../core/nearest.js';
+import { travel } from '../../core/requests.js';
+import { byId } from '../common/dom.js';
+import { store } from '../common/storage.js';
+import { wear } from '../common/theme.js';
+import { bandsOf } from '../toolbar/toolbar.js';
+
+const ARRIVAL_MARGIN = 1.7; // around one piece of equipment
+const REACH_PX = { mouse: 14, pen: 18, touch: 26 };
+const HELD_US = 3.5e6;      // what is newer than that counts as now
+
+// Those of the shown group that stand somewhere and whose distances can be shown: not of single ones whose equipment was left whole.
+export function sensorsOf({ model, params }) {
+    const all = model.tags.filter(({ group, asset, position }) => group === params.group && asset && position);
+    const isAlone = (sensor) => !all.some((other) => other !== sensor && other.asset === sensor.asset);
+    return model.group(params.group)?.singles === 'whole' ? all.filter((sensor) => !isAlone(sensor)) : all;
+}
+
+export class Commands {
+    constructor(page) {
+        Object.assign(this, commandsOf(page));
+        this.point(page.pointed ?? null);
+    }
+}
+
+// Returns which it is now.
+function changeTheme() {
+    const theme = document.documentElement.dataset.theme === 'dark' ? 'light' : 'dark';
+    store('theme', theme);
+    return wear(theme);
+}
+
+// By name; those of the page, and those of keys (core/keys.js).
+function commandsOf({ session, modules, selection, overlay, saveAddress, refresh }) {
+    function selectTag(tag) {
+        selection.tag = tag?.name ?? null;
+        selection.hover = null;
+        if (tag) {
+            modules.get('card');
+        }
+        modules.there('assets')?.mark();
+        modules.there('engineer')?.onSelection();
+        saveAddress();
+        refresh();
+    }
+
+    function showTag(tag) {
+        if (tag.group && tag.group !== session.params.group)
+            session.setParams({ group: tag.group });
+        selectTag(tag);
+        if (!overlay.marker(tag) || overlay.marker(tag).occluded)
+            flyToTag(tag);
+    }
+
+    function flyToTag(tag) {
+        const asset = session.model.asset(tag.asset);
+        if (tag.position && asset)
+            modules.use('cameraController', (cameraController) => cameraController.flyToTag(tag, asset));
+    }
+
+    function selectAsset(asset) {
+        const again = session.params.selected === asset.id;
+        if (!again)
+            session.setParams({ selected: asset.id });
+        flyToAsset(asset);
+    }
+
+    const flyToAsset = ({ bounds }) => modules.use('cameraController', (cameraController) => cameraController.flyToBox(bounds, ARRIVAL_MARGIN));
+
+    function clearSelection() {
+        if (selection.tag)
+            selectTag(null);
+        else if (session.params.selected)
+            session.setParams({ selected: null });
+    }
+
+    function fitView() {
+        const chosen = session.model?.asset(session.params.selected);
+        if (chosen)
+            flyToAsset(chosen);
+        else if (session.model)
+            modules.use('cameraController', (cameraController) => cameraController.flyToBox(session.model.plant.bounds));
+    }
+
+    const opens = (name) => (event) => modules.use(name, (part) => part.toggle(event), 'toggle');
+    const ofViews = (f) => () => modules.use('views', f);
+
+    const tagAt = (x, y, kind) =>
+        nearestMarker(overlay.markers, x / overlay.unit, y / overlay.unit, REACH_PX[kind] ?? REACH_PX.mouse)?.tag ?? null;
+
+    function click(x, y, kind) {
+        if (modules.there('engineer')?.takesClick(x, y))
+            return;
+        if (modules.there('measure')?.on) {
+            modules.there('measure').click(x, y);
+            return;
+        }
+        const tag = tagAt(x, y, kind);
+        selectTag(tag);
+        if (tag)
+            modules.there('place')?.close();
+        else
+            openPlace(x, y, session.camera);
+    }
+
+    // By another camera something else would be there.
+    const openPlace = (x, y, camera) => modules.use('place', (place) => camera === session.camera && place.open(x, y));
+
+    function point(place) {
+        const tag = place ? tagAt(place.x, place.y, 'mouse') : null;
+        byId('viewport').classList.toggle('pointing', tag !== null);
+        if (tag !== selection.hover) {
+            selection.hover = tag;
+            if (tag)
+                modules.get('card');
+            refresh();
+        }
+    }
+
+    // What `show` needs besides: a sensor that is chosen, else the first of the group; the instant of now.
+    function showParams(show) {
+        const { model, params } = session;
+        const chosen = [selection.tag, params.sensor].map((name) => model.tag(name)).find((tag) => tag?.group === params.group);
+        const sensor = chosen ?? sensorsOf(session)[0];
+        if (show === 'distance')
+            return sensor ? { show, sensor: sensor.name } : {};
+        return show === 'difference' && !params.baseline ? { show, baseline: 'now' } : { show };
+    }
+
+    function rampParams(value) {
+        const breaks = value === 'chosen' ? session.params.breaks : bandsOf(session)[value];
+        return breaks ? { breaks, ramp_interval: 0 } : { ramp_interval: Number(value), breaks: null };
+    }
+
+    function group(index) {
+        const chosen = session.model?.groups[index];
+        if (chosen && chosen.id !== session.params.group)
+            session.setParams({ group: chosen.id });
+    }
+
+    return {
+        selectTag, showTag, flyToTag, selectAsset, fitView, click, point, group,
+        show: (value) => session.setParams(showParams(value)),
+        ramp: (value) => session.setParams(rampParams(value)),
+        showTrend: (tag) => modules.use('trends', (trends) => trends.only(tag)),
+        addTrend: (tag) => modules.use('trends', (trends) => trends.add(tag)),
+        showAsset: (how, asset) => modules.use('views', (views) => views.show(how, asset.id)),
+        engineer: opens('engineer'),
+        fit: fitView,
+        back: () => modules.there('cameraController')?.goBack(),
+        home: () => session.model && modules.use('cameraController', (cameraController) => cameraController.flyHome()),
+        help: () => modules.use('help', (help) => help.open()),
+        timings: opens('timings'),
+        alarms: opens('alarms'),
+        past: () => session.recorded && opens('timeline')(),
+        live: () => session.time.atUs !== null && travel(session, null),
+        assets: () => modules.use('assets', (assets) => assets.setOpen(!assets.open), 'toggle'),
+        search: () => modules.use('assets', (assets) => {
+            assets.setOpen(true);
+            assets.search.focus();
+            assets.search.select();
+        }),
+        top: ofViews((views) => views.lookFrom('top')),
+        corner: ofViews((views) => views.lookFrom('iso')),
+        projection: ofViews((views) => views.toggleProjection()),
+        views: opens('views'),
+        picture: opens('picture'),
+        hide: ofViews((views) => views.show('hide')),
+        ghost: ofViews((views) => views.show('ghost')),
+        only: ofViews((views) => views.show('only')),
+        showAll: ofViews((views) => views.showAll()),
+        hold: () => session.recorded && travel(session, session.time.atUs === null ? session.clockUs() - HELD_US : null),
+        display: (event) => modules.use('toolbarOverflow', ({ display }) => display.toggle(event), 'display'),
+        more: (event) => modules.use('toolbarOverflow', ({ more }) => more.toggle(event), 'more'),
+        measure: opens('measure'),
+        snapshot: () => modules.use('snapshot', (snapshot) => snapshot.save()),
+        share: () => modules.use('share', (share) => share.open()),
+        theme: () => session.setParams({ backdrop: changeTheme() }),
+        escape() {
+            modules.giveUp();
+            for (const one of ['display', 'more'])
+                modules.there('toolbarOverflow')?.[one].set(false);
+            for (const name of ['views', 'picture'])
+                modules.there(name)?.close();
+            const [alarms, measure, place] = ['alarms', 'measure', 'place'].map((name) => modules.there(name));
+            if (alarms?.open)
+                alarms.setOpen(false);
+            else if (measure?.on)
+                measure.setOn(false);
+            else if (place?.picked)
+                place.close();
+            else
+                clearSelection();
+        },
+    };
+}

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What hands do over the picture, and on the keyboard, is told to the camera controller. It is loaded when they first come near the page, and hears
+// then what they did meanwhile.
+const ON_PICTURE = ['pointerdown', 'pointermove', 'pointerup', 'pointercancel', 'pointerleave', 'wheel'];
+const ON_PAGE = ['keydown', 'keyup'];
+const NEAR = ['pointerover', 'focusin', 'keydown'];
+const STALE_MS = 2000; // what was done so long ago nobody means any more
+
+// Controls that lie over the picture keep their own clicks.
+export const isOnPicture = (event) => !event.target.closest('button, .card, .banner, .legend');
+
+// Who does that waits for something to happen.
+const isMeant = ({ type, key, target }) => type === 'pointerdown' || type === 'wheel' ||
+    (type === 'keydown' && /^(.|Arrow.*)$/.test(key) && !target.closest('input, select, textarea'));
+
+// What cannot wait for the camera controller.
+function takeAtOnce(event, element) {
+    if (event.type === 'wheel' || event.button === 1)
+        event.preventDefault(); // it would scroll
+    if (event.type === 'pointerdown' && isOnPicture(event)) {
+        element.setPointerCapture(event.pointerId);
+        element.focus({ preventScroll: true });
+    }
+}
+
+export function listenToInput(element, modules) {
+    let pending = [], drag = { from: Infinity, to: 0 }; // a drag is as fresh as its end
+
+    function handle(event) {
+        takeAtOnce(event, element);
+        const cameraController = modules.there('cameraController');
+        if (cameraController) {
+            cameraController.handle(event);
+            return;
+        }
+        const { type, timeStamp } = event;
+        pending = [...pending.filter(isFresh), event];
+        if (type === 'pointerdown' && drag.to < Infinity)
+            drag = { from: timeStamp, to: Infinity };
+        else if (/^pointer[uc]/.test(type))
+            drag.to = timeStamp;
+        (isMeant(event) ? modules.get('cameraController') : modules.prepare('cameraController')).then(flush);
+    }
+
+    function flush(cameraController) {
+        pending.filter(isFresh).forEach((event) => cameraController.handle(event));
+        pending = [];
+    }
+
+    const near = () => ['cameraController', 'commands'].forEach((name) => modules.prepare(name));
+    const isFresh = ({ timeStamp: at }) => performance.now() - (at >= drag.from ? Math.max(at, drag.to) : at) < STALE_MS;
+    const listen = (on, names) => names.forEach((name) => on.addEventListener(name, handle, { passive: false }));
+    listen(element, ON_PICTURE);
+    listen(document, ON_PAGE);
+    for (const name of ['contextmenu', 'auxclick'])
+        element.addEventListener(name, (event) => event.preventDefault());
+    for (const name of NEAR)
+        document.addEventListener(name, near, { once: true, capture: true, passive: true });
+}

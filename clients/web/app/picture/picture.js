@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The panel of the picture: what is compared with what, scale and range, the light, and the right half of a split view.
+import { quantityText, title, zoneClock } from '../../core/format.js';
+import { sunOf, sunText, towardsSun } from '../../core/sun.js';
+import { say, sayIfKnown } from '../../core/words.js';
+import { sensorsOf } from '../input/commands.js';
+import { byId, make, setText } from '../common/dom.js';
+import { distances, interpolations, Range } from '../common/number_fields.js';
+import { fillSegments, fillSelect, markSegment } from '../common/choices.js';
+import { collapsiblePanel } from '../common/collapsible.js';
+import { LOOKS, SHOWS } from '../toolbar/toolbar.js';
+
+const HALF = {
+    group: 'bar.quantity', show: 'bar.show', distance: 'bar.distance', interpolation: 'bar.interpolation', colormap: 'bar.colours',
+    look: 'bar.look',
+};
+const ENGINEERS_HALF = ['distance', 'interpolation'];
+
+export class Picture {
+    constructor({ session, selection }) {
+        Object.assign(this, { session, selection });
+        this.panel = byId('picture-panel');
+        Object.assign(this, collapsiblePanel(this.panel, byId('picture-toggle'), () => this.update()));
+        const scales = ['linear', 'log'].map((scale) => [scale, say(`scale.${scale}`)]);
+        fillSegments(byId('scale'), 'scale', scales, (scale) => session.setParams({ scale }));
+        byId('environment').addEventListener('change', ({ target }) => session.setParams({ environment: target.value }));
+        byId('sensor').addEventListener('change', ({ target }) => session.setParams({ show: 'distance', sensor: target.value }));
+        byId('baseline').addEventListener('change', ({ target }) => session.setParams({ show: 'difference', baseline: target.value }));
+        byId('baseline-now').addEventListener('click', () => session.setParams({ show: 'difference', baseline: 'now' }));
+        byId('baseline-keep').addEventListener('click', () => this.keep());
+        byId('baseline-name').addEventListener('keydown', (event) => event.key === 'Enter' && this.keep());
+        for (const id of ['sun-turn', 'sun-height'])
+            byId(id).addEventListener('input', () => this.moveSun());
+        this.addHalf();
+        this.range = new Range(this);
+        session.on('params', () => this.update());
+        session.on('welcome', () => this.update());
+    }
+
+    close() {
+        this.set(false);
+    }
+
+    keep() {
+        const name = byId('baseline-name').value.trim();
+        if (name)
+            this.session.setParams({ show: 'difference', baseline: { set: name } });
+        byId('baseline-name').value = '';
+    }
+
+    // --- light
+
+    get isYUp() {
+        const { up } = this.session.model.plant.home;
+        return up[1] > up[2];
+    }
+
+    // Once per animation frame: a slider speaks oftener.
+    moveSun() {
+        const sun = { turn: Number(byId('sun-turn').value), height: Number(byId('sun-height').value) };
+        setText(byId('sun-text'), say('picture.light', { where: sunText(sun) }));
+        if (!this.sun)
+            requestAnimationFrame(() => {
+                this.session.setParams({ light: towardsSun(this.sun, this.isYUp) });
+                this.sun = null;
+            });
+        this.sun = sun;
+    }
+
+    updateLight({ model, params }) {
+        const places = model.environments.map((name) => [name, sayIfKnown(`environment.${name}`, title(name))]);
+        fillSelect(byId('environment'), places, params.environment);
+        if (this.sun || !params.light)
+            return;
+        const sun = sunOf(params.light, this.isYUp);
+        byId('sun-turn').value = sun.turn;
+        byId('sun-height').value = sun.height;
+        setText(byId('sun-text'), say('picture.light', { where: sunText(sun) }));
+    }
+
+    // --- the right half
+
+    addHalf() {
+        const choose = (name) => ({ target }) => this.session.setParams({ split: { [name]: target.value } });
+        this.half = Object.fromEntries(Object.keys(HALF).map((name) =>
+            [name, make('select', { id: `right-${name}`, onchange: choose(name) })]));
+        const labels = Object.entries(HALF).map(([name, key]) =>
+            make('label', { class: 'choice' }, make('span', {}, say(key)), this.half[name]));
+        byId('right-half').append(make('div', { class: 'pairs' }, ...labels));
+        fillSegments(byId('split-on'), 'split-on', [['', say('split.one')], ['on', say('split.two')]], (value) =>
+            this.session.setParams({ split: value ? {} : null }));
+    }
+
+    updateHalf({ model, params }) {
+        markSegment(byId('split-on'), params.split ? 'on' : '');
+        byId('right-half').hidden = !params.split;
+        if (!params.split)
+            return;
+        const right = { ...params, ...params.split };
+        const plain = (choices) => choices.map(([value, text]) => [value, text]);
+        const needs = SHOWS.filter(([value]) => ['value', 'operator', right.show].includes(value) ||
+            (value === 'distance' && params.sensor) || (value === 'difference' && params.baseline));
+        const choices = {
+            group: model.groups.map((group) => [group.id, quantityText(group)]), show: plain(needs), distance: plain(distances()),
+            interpolation: plain(interpolations()), colormap: model.colormaps.map(({ name }) => [name, title(name)]), look: plain(LOOKS),
+        };
+        for (const name of Object.keys(HALF))
+            fillSelect(this.half[name], choices[name], right[name]);
+        for (const name of ENGINEERS_HALF)
+            this.half[name].parentElement.hidden = this.session.role !== 'engineer';
+    }
+
+    update() {
+        const { model, params } = this.session;
+        if (!model || !this.panel.classList.contains('open'))
+            return;
+        byId('from-sensor').hidden = params.show !== 'distance';
+        fillSelect(byId('sensor'), sensorsOf(this.session).map(({ name, asset }) => [name, `${name}, ${asset}`]), params.sensor ?? '');
+        byId('from-baseline').hidden = params.show !== 'difference';
+        const kept = (params.baselines ?? []).map(({ name }) => [name, name]), now = params.baseline?.name ?? '';
+        fillSelect(byId('baseline'), now ? kept : [['', this.instantText(params.baseline)], ...kept], now);
+        byId('scale').disabled = !(this.session.range[0] > 0) || params.show === 'operator';
+        markSegment(byId('scale'), params.scale ?? 'linear');
+        this.updateLight(this.session);
+        this.updateHalf(this.session);
+        this.range.update();
+    }
+
+    instantText(baseline) {
+        const timeZone = this.session.model.plant.time_zone;
+        return baseline?.time_us ? zoneClock(timeZone)(baseline.time_us / 1000).time : '–';
+    }
+}

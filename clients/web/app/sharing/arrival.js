@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Arriving by a link: it goes to the tag or the equipment that the link names, and says what of it is not in this plant.
+import { put, refusalText } from '../../core/refusals.js';
+
+const NOTE_MS = 20000;
+
+export class Arrival {
+    constructor(page) {
+        this.page = page;
+    }
+
+    // link: { camera, params, tag } that opened the page; null: not the first time. refused: what the server did not take of our view.
+    come(link, refused) {
+        const { session, selection, selectTag, tell } = this.page, { model } = session;
+        const why = refused.map((text) => refusalText(text)), unknown = selection.tag && !model.tag(selection.tag);
+        if (unknown) {
+            why.push(put('no', { name: selection.tag, kind: put('kind.tag') }));
+            selectTag(null);
+        }
+        if (link && !link.camera)
+            this.goTo(model.tag(link.tag), model.asset(link.params.selected));
+        if (why.length > 0)
+            tell(put(link ? 'link' : 'refused', { why: why.join('; '), text: why.join('; ') }), NOTE_MS);
+    }
+
+    goTo(tag, asset) {
+        const { session, flyToTag, fitView } = this.page;
+        if (tag?.group && tag.group !== session.params.group)
+            session.setParams({ group: tag.group });
+        if (tag)
+            flyToTag(tag);
+        else if (asset)
+            fitView();
+    }
+}

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The view of another: it keeps its shape, and says whose it is.
+import { say } from '../../core/words.js';
+import { byId, setText, setVariable } from '../common/dom.js';
+
+const ASK_MS = 3000;
+
+export class Following {
+    constructor({ session }) {
+        this.session = session;
+        session.on('following', () => this.show());
+        byId('following').querySelector('button').addEventListener('click', () => session.follow(null));
+        setInterval(() => this.ask(), ASK_MS);
+        this.show();
+    }
+
+    // Who is not there may come back: a page that is loaded anew, or a server.
+    ask() {
+        const { leader, following } = this.session;
+        if (leader !== null && !following)
+            this.session.post({ type: 'follow', session: leader });
+    }
+
+    title({ following, leader }) {
+        if (!following)
+            return leader === null ? '' : say('following.awaited', { session: leader });
+        return say(following.gone ? 'following.gone' : 'following.title', following);
+    }
+
+    show() {
+        const { following } = this.session, title = this.title(this.session), another = Boolean(following) && !following.gone;
+        byId('viewport').classList.toggle('following-another', another);
+        if (another)
+            setVariable(byId('viewport'), '--ratio', following.width / following.height);
+        byId('following').hidden = title === '';
+        setText(byId('following').querySelector('span'), title);
+    }
+}

@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Sharing: links to what is seen, with a code for the camera of a tablet; who follows this view, and giving the lead to one of them.
+import { shareLinks } from '../../core/links.js';
+import { giveLead } from '../../core/requests.js';
+import { say } from '../../core/words.js';
+import { byId, make, makeSvg, setText } from '../common/dom.js';
+import { fillSegments, markSegment } from '../common/choices.js';
+import { closeButton } from '../common/widgets.js';
+
+const QUIET_MODULES = 4; // of white around the code, as readers expect
+let library; // of codes: asked for with the first one
+
+export class Share {
+    constructor({ session, selection }) {
+        Object.assign(this, { session, selection, kind: 'view' });
+        this.build();
+        for (const name of ['followers', 'welcome'])
+            session.on(name, () => this.count());
+        this.count();
+        for (const name of ['followers', 'following', 'params', 'camera', 'welcome', 'time'])
+            session.on(name, () => this.dialog.open && this.show());
+    }
+
+    build() {
+        this.kinds = make('fieldset', { class: 'segments', id: 'share-kind' }, make('legend', {}, say('share.what')));
+        this.link = make('input', { id: 'share-link', readonly: true, 'aria-label': say('share.link'), onfocus: () => this.link.select() });
+        this.copied = make('button', { type: 'button', id: 'share-copy', onclick: () => this.copy() }, say('share.copy'));
+        this.code = make('div', { class: 'code', id: 'share-code' });
+        this.note = make('p', { class: 'note', id: 'share-note' });
+        this.people = make('section', { id: 'share-people', 'aria-label': say('share.people') });
+        this.dialog = make('dialog', { class: 'help ask share', id: 'share', 'aria-labelledby': 'share-title' },
+            make('h2', { id: 'share-title' }, say('share.title')), closeButton('close', () => this.dialog.close()), this.kinds,
+            make('div', { class: 'line' }, this.link, this.copied), this.code, this.note, this.people);
+        this.dialog.addEventListener('click', (event) => event.target === this.dialog && this.dialog.close());
+        document.body.append(this.dialog);
+    }
+
+    // How many look along is said by the button itself.
+    count() {
+        const { count } = this.session.followers;
+        byId('share-open').toggleAttribute('data-count', count > 0);
+        if (count > 0)
+            byId('share-open').dataset.count = count;
+    }
+
+    open() {
+        const { model } = this.session;
+        if (!model)
+            return;
+        this.kind = this.selection.tag ? 'tag' : 'view';
+        this.dialog.showModal();
+        this.show();
+    }
+
+    show() {
+        const links = shareLinks({ location, session: this.session, tag: this.selection.tag });
+        const kinds = Object.keys(links);
+        if (!links[this.kind])
+            this.kind = 'view';
+        fillSegments(this.kinds, 'share-kind', kinds.map((kind) => [kind, say(`share.${kind}`), say(`share.${kind}.why`)]), (kind) => {
+            this.kind = kind;
+            this.show();
+        });
+        markSegment(this.kinds, this.kind);
+        this.showLink(links[this.kind]);
+        this.showPeople();
+    }
+
+    showLink(link) {
+        if (this.link.value === link)
+            return;
+        this.link.value = link;
+        setText(this.copied, say('share.copy'));
+        this.drawCode(link);
+        const here = ['localhost', '127.0.0.1', '[::1]'].includes(location.hostname);
+        setText(this.note, here ? say('share.local') : say(`share.${this.kind}.why`));
+    }
+
+    async drawCode(link) {
+        library ??= import('../../vendor/uqr.js').catch(() => null);
+        const encode = (await library)?.encode;
+        if (this.link.value === link)
+            this.code.replaceChildren(encode ? codeOf(encode, link) : say('share.nocode'));
+    }
+
+    async copy() {
+        this.link.select();
+        try {
+            await navigator.clipboard.writeText(this.link.value);
+        } catch {
+            document.execCommand('copy'); // on plain http there is no clipboard
+        }
+        setText(this.copied, say('share.copied'));
+    }
+
+    showPeople() {
+        const { followers, following } = this.session;
+        const lead = (session) => () => giveLead(this.session, session);
+        const button = (session) => make('button', { type: 'button', 'data-session': session, onclick: lead(session) },
+            say('share.lead', { session }));
+        const words = following ? say('following.title', { session: following.session })
+            : say(followers.count > 0 ? 'share.followers' : 'share.alone', { count: followers.count, session: this.session.id });
+        this.people.replaceChildren(make('h3', {}, say('share.people')), make('p', {}, words),
+            make('div', { class: 'leads' }, ...(following ? [make('button', { type: 'button', onclick: () => this.session.follow(null) },
+                say('following.own'))] : followers.sessions.map(button))));
+    }
+}
+
+function codeOf(encode, link) {
+    const { data, size } = encode(link, { ecc: 'L', border: QUIET_MODULES });
+    const path = data.flatMap((row, y) => row.map((dark, x) => (dark ? `M${x} ${y}h1v1h-1z` : ''))).join('');
+    return makeSvg('svg', { viewBox: `0 0 ${size} ${size}`, role: 'img', 'aria-label': say('share.code'), 'shape-rendering': 'crispEdges' },
+        makeSvg('rect', { width: size, height: size, fill: '#fff' }), makeSvg('path', { d: path, fill: '#000' }));
+}

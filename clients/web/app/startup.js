@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What the first picture takes: connection, session and viewport. What is around them (main.js) comes meanwhile.
+import { Connection } from '../core/connection.js';
+import { browserDecoding } from '../core/decoding.js';
+import { Session } from '../core/session.js';
+import { language } from '../core/words.js';
+import { clock } from './common/clock.js';
+import { byId, sayAll, styled } from './common/dom.js';
+import { stored } from './common/storage.js';
+import { chooseTheme } from './common/theme.js';
+import { Viewport } from './viewport/viewport.js';
+
+const query = new URLSearchParams(location.search);
+export const page = { unit: 1, onUnit: () => {} };
+
+// What decides how large the picture is comes before it.
+document.documentElement.lang = language;
+sayAll(document);
+const backdrop = chooseTheme(query);
+export const narrow = window.matchMedia('(max-width: 1023px)'); // there the list of equipment lies over the picture
+const turned = window.matchMedia('(any-pointer: coarse)'); // in the hand, perhaps while there is no server
+const fold = () => (narrow.matches || turned.matches) && styled('common/narrow').catch(() => {});
+narrow.addEventListener('change', fold);
+document.querySelector('.stage').classList.toggle('without-assets', narrow.matches);
+await fold();
+if (query.has('wall'))
+    await (await import('./wall/wall.js')).hangOnWall(location.search, page);
+
+const named = location.hash.length > 1 ? (await import('../core/address.js')).readAddress(location.hash) : {};
+export const address = { camera: null, params: {}, tag: null, time: {}, ...named };
+
+// JPEG is shown at once; whether H.264 works here is found out when it pays, unless the address asks for it.
+const wantedCodec = query.get('codec') ?? 'auto';
+const decoding = browserDecoding();
+const codecs = () => decoding.codecs.filter((name) => name !== 'auto' || wantedCodec === 'auto');
+if (wantedCodec === 'h264')
+    await decoding.probe();
+let isProven = wantedCodec !== 'auto';
+export async function probeCodecs() {
+    if (isProven)
+        return;
+    isProven = true;
+    await decoding.probe();
+    if (codecs().length > session.codecs.length)
+        session.setCodecs(codecs());
+}
+
+const streamUrl = new URL('stream', location.href.replace(/^http/, 'ws').replace(/#.*$/, '')).href;
+export const connection = new Connection({ url: streamUrl, open: (url, protocol) => new WebSocket(url, protocol), clock });
+const wanted = { ...address, params: { ...address.params, backdrop } };
+export const session = new Session({ connection, now: clock.now, wanted, codecs: codecs() });
+session.token = stored('token');
+session.leader = Number(new URLSearchParams(location.hash.slice(1)).get('follow')) || null;
+// After a reload those who follow us find us again; of two tabs only one may have the secret, so it is kept between pages alone.
+session.resume = sessionStorage.getItem('resume');
+session.anew = session.resume !== null;
+sessionStorage.removeItem('resume');
+addEventListener('pagehide', () => session.resume && sessionStorage.setItem('resume', session.resume));
+session.legendLies = () => (query.has('wall') ? null : innerWidth < 720);
+session.wait();
+export const viewport = new Viewport({ element: byId('viewport'), canvas: byId('picture'), session, decoding });
+viewport.onDrawn = (newPicture) => {
+    if (newPicture)
+        byId('waiting').hidden = true;
+};
+session.on('hello', () => viewport.forget());
+session.on('welcome', fold); // where it could not be fetched before
+connection.start();
+Object.assign(page, { session, viewport, decoding });

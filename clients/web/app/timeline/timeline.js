@@ -1,0 +1,260 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The time bar: a slider over what was recorded, with gaps and the alarms that were raised, which lead to their instants; play, speed, a
+// date field, and the way back to now.
+import { ageText, zoneClock } from '../../core/format.js';
+import { arrowS, ask, clustered, nextTo, raised, ticks } from '../../core/history.js';
+import { fieldInstant, fieldText } from '../../core/instant.js';
+import { travel } from '../../core/requests.js';
+import { say } from '../../core/words.js';
+import { byId, makeSvg, setText } from '../common/dom.js';
+import { fillSelect } from '../common/choices.js';
+
+const SPANS = [[900, 'min', 15], [3600, 'h', 1], [28800, 'h', 8], [86400, 'h', 24], [604800, 'd', 7], [2592000, 'd', 30]];
+const SPEEDS = [1, 10, 60, 300, 600, 3600];
+const MARKS_MS = 15000, MARKS_MOST = 2000, HAND_MS = 400, NOW_US = 3.5e6; // what is newer than that counts as now
+const MARK_PX = 9, SEARCH_MOST = 10000, PAGES = 24, NAMED = 8; // the least between two marks; rows of the journal at once; as often at most
+
+export class Timeline {
+    // tell(text): to the person.
+    constructor({ session, tell }) {
+        Object.assign(this, { session, tell, open: false, toUs: null, marks: [], gaps: [], wanted: null, draggedAt: -Infinity });
+        this.slider = byId('time-slider');
+        fillSelect(byId('time-span'), SPANS.map(([seconds, unit, n]) => [seconds, say(`age.${unit}`, { n })]), 3600);
+        fillSelect(byId('time-speed'), SPEEDS.map((speed) => [speed, `${speed}×`]), 60);
+        byId('time-span').addEventListener('change', () => this.turnTo(this.atUs));
+        byId('time-speed').addEventListener('change', () => session.time.speed && travel(session, undefined, this.speed));
+        byId('time-play').addEventListener('click', () => this.play());
+        byId('time-live').addEventListener('click', () => travel(session, null));
+        this.slider.addEventListener('input', () => this.drag());
+        this.slider.addEventListener('keydown', (event) => this.press(event));
+        byId('time-before').addEventListener('click', () => this.goToAlarm(true));
+        byId('time-after').addEventListener('click', () => this.goToAlarm(false));
+        byId('time-date').addEventListener('change', () => this.goToDate());
+        session.greeted(() => { this.clock = zoneClock(session.model.plant.time_zone); });
+        session.on('time', () => this.hear());
+        this.hear();
+        setInterval(() => this.tick(), 500);
+        new ResizeObserver(() => this.draw()).observe(byId('time-track'));
+    }
+
+    get spanUs() {
+        return Number(byId('time-span').value) * 1e6;
+    }
+
+    get speed() {
+        return Number(byId('time-speed').value);
+    }
+
+    get atUs() {
+        return this.session.time.atUs;
+    }
+
+    toggle() {
+        this.setOpen(!this.open);
+    }
+
+    setOpen(open) {
+        this.open = open;
+        byId('timeline').hidden = !open;
+        byId('time-toggle').setAttribute('aria-expanded', open);
+        if (open)
+            this.turnTo(this.atUs);
+        else if (this.atUs !== null)
+            travel(this.session, null);
+    }
+
+    hear() {
+        if (this.atUs !== null && !this.open)
+            this.setOpen(true);
+        if (this.atUs !== null && this.toUs !== null && (this.atUs > this.toUs || this.atUs < this.toUs - this.spanUs))
+            this.turnTo(this.atUs);
+        this.showDate();
+        this.show();
+    }
+
+    // The slider spans the time up to now; around an instant where that does not hold it.
+    turnTo(atUs) {
+        const now = this.session.clockUs() ?? Date.now() * 1000;
+        const ends = atUs !== null && atUs < now - this.spanUs ? Math.min(now, atUs + this.spanUs / 2) : now;
+        this.toUs = ends;
+        this.slider.max = this.spanUs / 1e6; // by seconds
+        this.askMarks();
+        this.show();
+    }
+
+    tick() {
+        if (!this.open || !this.session.model)
+            return;
+        if (this.atUs === null)
+            this.toUs = this.session.clockUs() ?? this.toUs;
+        if (performance.now() - (this.askedAt ?? 0) > MARKS_MS)
+            this.askMarks();
+        this.show();
+    }
+
+    // Once for each picture of the page, however often the hand moves.
+    drag() {
+        const at = this.toUs - this.spanUs + Number(this.slider.value) * 1e6;
+        if (this.wanted === null)
+            requestAnimationFrame(() => {
+                this.go(this.wanted);
+                this.draw();
+                this.wanted = null;
+            });
+        this.wanted = at;
+        this.draggedAt = performance.now();
+        this.say(at);
+    }
+
+    go(us) {
+        travel(this.session, us > this.session.clockUs() - NOW_US ? null : us);
+    }
+
+    // From where it is: a small step, or, with the Page keys, a part of the span.
+    press(event) {
+        const steps = { ArrowLeft: -1, ArrowDown: -1, ArrowRight: 1, ArrowUp: 1 }[event.key];
+        const pages = { PageDown: -1, PageUp: 1 }[event.key];
+        if (!steps && !pages)
+            return;
+        event.preventDefault();
+        const us = steps ? steps * arrowS(this.spanUs / 1e6) * 1e6 : pages * this.spanUs / PAGES;
+        this.go((this.wanted ?? this.atUs ?? this.session.clockUs()) + us);
+    }
+
+    // --- by date, and from alarm to alarm
+
+    showDate() {
+        const field = byId('time-date');
+        if (document.activeElement !== field && this.clock)
+            field.value = this.atUs === null ? '' : fieldText(this.atUs, this.session.model.plant.time_zone);
+    }
+
+    goToDate() {
+        const us = fieldInstant(byId('time-date').value, this.session.model.plant.time_zone);
+        if (us !== null)
+            this.go(us);
+    }
+
+    async goToAlarm(backwards) {
+        const here = this.atUs ?? this.session.clockUs();
+        const found = await this.alarmFrom(here, backwards).catch(() => null);
+        if (found)
+            travel(this.session, found.us);
+        else
+            this.tell(say(backwards ? 'time.first' : 'time.last'));
+    }
+
+    // Rows of the journal come the newest first.
+    async alarmFrom(us, backwards) {
+        let before = null;
+        for (let i = 0; backwards && i < PAGES; i++) {
+            const { rows, next_before: next } = await this.journal({ to: us / 1e6, limit: SEARCH_MOST, ...(before ? { before } : {}) });
+            const found = nextTo(raised(rows), us, true);
+            if (found || next === null)
+                return found;
+            before = next;
+        }
+        const now = this.session.clockUs();
+        for (let from = us, length = this.spanUs / 8, i = 0; !backwards && from < now && i < 10 * PAGES; i++) {
+            const span = { from: from / 1e6, to: (from + length) / 1e6 };
+            const { rows, next_before: next } = await this.journal({ ...span, limit: SEARCH_MOST });
+            const found = next === null || length < 2e6 ? nextTo(raised(rows), us, false) : null;
+            if (found)
+                return found;
+            [from, length] = next === null ? [from + length, length * 4] : [from, length / 8]; // few enough rows
+        }
+        return null;
+    }
+
+    async journal(query) {
+        return (await ask('api/v1/alarms/journal', query, this.session.token)).json();
+    }
+
+    play() {
+        const { time } = this.session;
+        if (time.speed)
+            travel(this.session, undefined, 0);
+        else if (time.atUs !== null)
+            travel(this.session, undefined, this.speed);
+        else
+            travel(this.session, this.toUs - this.spanUs, this.speed);
+    }
+
+    async askMarks() {
+        this.askedAt = performance.now();
+        const span = { from: (this.toUs - this.spanUs) / 1e6, to: this.toUs / 1e6 }, { token } = this.session;
+        const [marks, gaps] = await Promise.all([
+            this.journal({ ...span, limit: MARKS_MOST }).then(({ rows }) => raised(rows)),
+            ask('api/v1/history/gaps', span, token).then((answer) => answer.json()).then((said) => said.gaps),
+        ].map((one) => one.catch(() => []))); // nothing of it, or not for us: the slider goes without
+        Object.assign(this, { marks, gaps });
+        this.draw();
+    }
+
+    say(us) {
+        const { date, time, offset } = this.clock(us / 1000);
+        const ago = ageText((this.session.clockUs() - us) / 1000);
+        this.slider.setAttribute('aria-valuetext', `${date} ${time} ${offset}`);
+        setText(byId('time-at'), say('time.ago', { instant: `${date} ${time} ${offset}`, age: ago }));
+    }
+
+    show() {
+        if (!this.open || !this.clock)
+            return;
+        const { atUs, speed } = this.session.time;
+        if (performance.now() - this.draggedAt > HAND_MS)
+            this.slider.value = Math.round((this.spanUs - (atUs === null ? 0 : this.toUs - atUs)) / 1e6);
+        if (atUs === null) {
+            setText(byId('time-at'), say('time.now'));
+            this.slider.setAttribute('aria-valuetext', say('time.now'));
+        } else if (this.wanted === null) {
+            this.say(atUs);
+        }
+        byId('timeline').classList.toggle('past', atUs !== null);
+        byId('time-live').disabled = atUs === null;
+        const verb = say(speed ? 'time.pause' : 'time.play');
+        byId('time-play').setAttribute('aria-label', verb);
+        byId('time-play').title = verb;
+        byId('time-play').querySelector('use').setAttribute('href', speed ? '#i-pause' : '#i-play');
+        this.draw();
+    }
+
+    // Marks, ticks, and where nothing was recorded, over the slider's own length.
+    draw() {
+        const track = byId('time-track'), width = track.clientWidth;
+        if (!this.open || !this.clock || width === 0)
+            return;
+        const from = this.toUs - this.spanUs, x = (us) => 9 + (width - 18) * (us - from) / this.spanUs;
+        const nodes = [], { fromUs } = this.session.time, begin = Math.max(from, fromUs ?? from);
+        const hatch = (begins, ends) => {
+            const left = x(Math.max(begins, from)), long = Math.max(2, Math.min(x(ends), width - 9) - left);
+            nodes.push(makeSvg('rect', { class: 'unrecorded', fill: 'url(#time-gap)', x: left, y: 15, width: long, height: 10 }));
+            if (long > 70)
+                nodes.push(makeSvg('text', { class: 'note', x: left + 3, y: 12 }, say('time.unrecorded')));
+        };
+        if (begin > from)
+            hatch(from, begin);
+        for (const [begins, ends] of this.gaps)
+            hatch(begins, ends);
+        const thumb = x(from + Number(this.slider.value) * 1e6); // what is hatched lies over the slider's own
+        if (nodes.some((node) => node.localName === 'rect'))
+            nodes.push(makeSvg('circle', { class: 'thumb', cx: thumb, cy: 20, r: 8 }));
+        for (const us of ticks(from, this.toUs, Math.max(2, width / 110))) {
+            const { day, time } = this.clock(us / 1000), text = this.spanUs > 2 * 86400e6 ? day : time.slice(0, 5);
+            nodes.push(makeSvg('path', { class: 'tick', d: `M${x(us)} 26v5` }));
+            if (x(us) > 30 && x(us) < width - 30)
+                nodes.push(makeSvg('text', { x: x(us), y: 42, 'text-anchor': 'middle' }, text));
+        }
+        const groups = clustered(this.marks, MARK_PX * this.spanUs / (width - 18)), words = ({ us, tag, kind }) =>
+            `${tag} ${kind}, ${this.clock(us / 1000).time}`;
+        for (const { us, priority, of } of groups.sort((a, b) => b.priority - a.priority)) { // the gravest on top
+            const all = of.slice(0, NAMED).map(words).concat(of.length > NAMED ? [say('alarms.more', { count: of.length - NAMED })] : []);
+            const look = { class: `alarm p${priority}`, d: `M${x(us)} 15l-5.5-11h11z` };
+            nodes.push(makeSvg('path', { ...look, onclick: () => travel(this.session, us) }, makeSvg('title', {}, all.join('\n'))));
+        }
+        track.replaceChildren(...nodes);
+        const here = this.marks.filter(({ us }) => us === this.atUs).map(({ tag, kind }) => `${tag} ${kind}`).join(', ');
+        setText(byId('time-alarms'), here || (this.marks.length > 0 ? say('time.raised', { count: this.marks.length }) : ''));
+    }
+}
+

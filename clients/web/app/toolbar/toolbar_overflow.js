@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What of the toolbar is folded away where there is no room for it: the settings of the display, and tools behind a button.
+import { byId } from '../common/dom.js';
+import { collapsiblePanel } from '../common/collapsible.js';
+
+export class ToolbarOverflow {
+    constructor() {
+        const fold = (name) => collapsiblePanel(byId(name), byId(`${name}-toggle`), () => {});
+        Object.assign(this, { display: fold('display'), more: fold('more') });
+        byId('more').addEventListener('click', () => this.more.set(false));
+    }
+}

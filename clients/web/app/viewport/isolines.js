@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Values on isolines, where nothing else is written. Loaded where there are isolines.
+import { decimalsFor, shortNumberText } from '../../core/format.js';
+import { INK } from './overlay.js';
+
+const SPACING_PX = 160; // between two of the same value
+
+export class Isolines {
+    constructor({ session, overlay, refresh }) {
+        Object.assign(this, { session, overlay });
+        overlay.isolines = this;
+        refresh();
+    }
+
+    draw(blocked) {
+        const { overlay } = this, { picture, shown } = this.session, c = overlay.context;
+        if (!picture || shown.show === 'operator')
+            return;
+        const { fullWidth, shownWidth, fullHeight } = picture, scale = [overlay.wide / shownWidth, overlay.high / fullHeight];
+        const [min, max] = this.session.range, taken = [...blocked];
+        overlay.setFont(600);
+        c.textBaseline = 'middle';
+        c.textAlign = 'center';
+        for (const { text, x, y } of (this.session.markersOf(picture.seq)?.isolines ?? []).map(([value, px, py]) => ({
+            text: shortNumberText(value, decimalsFor(max - min)), x: (px + (shownWidth - fullWidth) / 2) * scale[0], y: py * scale[1],
+        }))) {
+            const wide = c.measureText(text).width + 6, box = { left: x - wide / 2, right: x + wide / 2, top: y - 8, bottom: y + 8, text };
+            const meets = (o) => box.left < o.right && o.left < box.right && box.top < o.bottom && o.top < box.bottom;
+            const near = (o) => o.text === text && Math.hypot(o.left - box.left, o.top - box.top) < SPACING_PX;
+            if (taken.some((other) => meets(other) || near(other)))
+                continue;
+            taken.push(box);
+            c.fillStyle = 'rgb(255 255 255 / 0.75)';
+            c.fillRect(box.left, box.top, wide, 16);
+            c.fillStyle = INK;
+            c.fillText(text, x, y + 0.5);
+        }
+        c.textAlign = 'start';
+    }
+}

@@ -1,0 +1,225 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The legend: the colours as the server uses them, with units, limits, and the patterns for what is not known.
+import { decimalsFor, quantityText, shortNumberText, unitText, zoneClock } from '../../core/format.js';
+import { colourOf, edges, LIMIT_BANDS, placeOf, scaleTicks, spread, valueAt } from '../../core/legend.js';
+import { hatchAt, patternPeriodPx, ruleAt, stippleAt } from '../../core/patterns.js';
+import { say } from '../../core/words.js';
+import { make, makeSvg, setVariable } from '../common/dom.js';
+
+const BAR_TEXELS = 1024;
+const css = ([r, g, b]) => `rgb(${r} ${g} ${b})`;
+
+function swatch(width, height, draw) {
+    const canvas = make('canvas', {});
+    const ratio = window.devicePixelRatio;
+    canvas.width = Math.round(width * ratio);
+    canvas.height = Math.round(height * ratio);
+    draw(canvas.getContext('2d'), canvas.width, canvas.height);
+    return canvas;
+}
+
+const solid = (colour) => (c, width, height) => {
+    c.fillStyle = css(colour);
+    c.fillRect(0, 0, width, height);
+};
+
+// As the overlay draws the marker of a tag that is unproven.
+const brokenMark = (c, width, height) => {
+    const radius = 0.38 * height;
+    c.beginPath();
+    c.arc(width / 2, height / 2, radius, 0, 2 * Math.PI);
+    c.fillStyle = '#fff';
+    c.fill();
+    c.lineWidth = 0.11 * height;
+    c.strokeStyle = '#1d252d';
+    c.setLineDash([(2 * Math.PI * radius) / 12]);
+    c.stroke();
+};
+
+const pixels = (colourAt) => (c, width, height) => {
+    const image = c.createImageData(width, height);
+    for (let y = 0; y < height; y++) {
+        for (let x = 0; x < width; x++)
+            image.data.set([...colourAt(x, y, height), 255], 4 * (y * width + x));
+    }
+    c.putImageData(image, 0, 0);
+};
+
+function at(element, place) {
+    setVariable(element, '--at', `${100 * place}%`);
+    return element;
+}
+
+const LIMIT_PLACES = { LL: -2, L: -1, H: 1, HH: 2 };
+
+export class Legend {
+    // paramsOf: from the picture's parameters to those of the half that this legend is for; null: there is none.
+    constructor({ session, element, paramsOf, lying = window.matchMedia('(max-width: 719px)') }) {
+        Object.assign(this, { session, element, paramsOf, lying });
+        this.lying.addEventListener('change', () => this.show(true));
+        this.shown = '';
+        this.long = 240; // CSS pixels of the bar
+        new ResizeObserver(() => this.fit()).observe(element);
+        for (const name of ['params', 'shown', 'proofs'])
+            session.on(name, () => this.show());
+        window.matchMedia(`(resolution: ${window.devicePixelRatio}dppx)`).addEventListener('change', () => this.show(true));
+    }
+
+    // A bar of another length: what is written beside it stands as far apart in pixels.
+    fit() {
+        const bar = this.element.querySelector('.bar'), long = this.lying.matches ? bar?.clientWidth : bar?.clientHeight;
+        if (!long || long === this.long)
+            return;
+        this.long = long;
+        this.show(true);
+    }
+
+    apart(places, uprightPx, lyingPx) {
+        const gap = (this.lying.matches ? lyingPx : uprightPx) / this.long;
+        return spread(places, Math.min(gap, 1 / Math.max(1, places.length - 1)));
+    }
+
+    // What decides how it looks.
+    contents(params) {
+        const { group, show, sensor, colormap, ramp_interval, scale, breaks, isolines, look, unit } = params;
+        return JSON.stringify([group, show, sensor, this.since(params), colormap, ramp_interval, this.session.rangeOf(params), scale,
+            breaks, isolines, look, unit, this.unproven(params)]);
+    }
+
+    show(again = false) {
+        const { model } = this.session, params = model && this.paramsOf(this.session.shown);
+        const group = params && model.group(params.group);
+        this.element.hidden = !group || params.look === 'materials'; // no field, nothing to explain
+        if (!group)
+            return;
+        const range = this.session.rangeOf(params);
+        const { show, colormap, ramp_interval, scale, breaks, isolines, look } = params, wanted = this.contents(params);
+        if (wanted === this.shown && !again)
+            return;
+        this.shown = wanted;
+        const map = model.colormap(colormap);
+        const rule = { map, min: range[0], max: range[1], log: scale === 'log', interval: ramp_interval ?? 0, breaks };
+        const isOperator = show === 'operator';
+        this.element.replaceChildren(this.heading(group, params),
+            isOperator ? this.limitScale()
+                : this.scale(rule, isolines ?? [], show === 'value' ? group.limits : {}, show !== 'distance' || range[0] > 0),
+            this.keys(params, isOperator ? LIMIT_BANDS[2].colour : colourOf(rule, valueAt(rule, 0.5))));
+        for (const note of this.notes(params, map, isOperator))
+            this.element.append(make('p', { class: 'note' }, note));
+    }
+
+    notes({ look, scale }, map, isOperator) {
+        return [
+            isOperator && say('legend.operator'),
+            !isOperator && scale === 'log' && say('legend.log'),
+            !isOperator && map.safe === false && say('legend.unsafe'),
+            look === 'glossy' && say('legend.glossy'),
+        ].filter(Boolean);
+    }
+
+    heading(group, params) {
+        const { show, sensor, unit } = params, name = quantityText(group), since = this.since(params);
+        const text = { difference: `Δ ${name}`, distance: say('legend.distance', { tag: sensor ?? '–' }) }[show] ?? name;
+        return make('h2', {}, text, ' ', make('span', {}, show === 'operator' ? '' : unitText(unit ?? group.unit)),
+            since && make('span', { class: 'since' }, ` ${since}`));
+    }
+
+    // From when on a difference is: the name of what was kept, and the plant's time then; null: none is shown, or it is not known.
+    since({ show, baseline }) {
+        const { model } = this.session;
+        if (show !== 'difference' || !baseline?.time_us)
+            return null;
+        const clock = zoneClock(model.plant.time_zone), then = clock(baseline.time_us / 1000), now = clock(this.session.clockUs() / 1000);
+        const when = then.date === now.date ? then.time : `${then.day} ${then.time}`;
+        return say('legend.since', { when: baseline.name ? `${baseline.name}, ${when}` : when });
+    }
+
+    // below: whether there may be values below the range.
+    scale(rule, lines, limits, below) {
+        const { map, min, max } = rule;
+        const decimals = (value) => decimalsFor(rule.log ? value : max - min);
+        const text = (value) => shortNumberText(value, decimals(value));
+        const end = (name, colour, words) => [
+            make('div', { class: `end ${name}` }, swatch(18, 14, solid(colour))), make('div', { class: 'end-text' }, words),
+        ];
+        return make('div', { class: 'scale' },
+            ...end('above', map.above, `> ${text(max)}`),
+            this.limits(rule, limits ?? {}, text), this.bar(rule, lines, (place) => colourOf(rule, valueAt(rule, place))),
+            this.ticks(rule, lines, text),
+            ...(below ? end('below', map.below, `< ${text(min)}`) : []));
+    }
+
+    // Between limits there are no values: places from -3 to 3.
+    limitScale() {
+        const place = (value) => (value + 3) / 6, band = (p) => LIMIT_BANDS.find(({ to }) => p * 6 - 3 < to) ?? LIMIT_BANDS[4];
+        const names = Object.keys(LIMIT_PLACES), places = Object.values(LIMIT_PLACES).map(place);
+        return make('div', { class: 'scale' }, make('div', { class: 'limits' }),
+            this.bar({ min: -3, max: 3 }, Object.values(LIMIT_PLACES), (p) => band(p).colour), this.ticksAt(places, places, names));
+    }
+
+    // A texture along the bar, finer than any screen shows it, with a line at each value that has one.
+    bar(rule, lines, colourAt) {
+        const canvas = make('canvas', { class: 'bar', role: 'img', 'aria-label': say('legend.colours', { min: rule.min, max: rule.max }) });
+        const lying = this.lying.matches;
+        canvas.width = lying ? BAR_TEXELS : 1;
+        canvas.height = lying ? 1 : BAR_TEXELS;
+        const c = canvas.getContext('2d');
+        const fill = (i, texels) => c.fillRect(lying ? i : 0, lying ? 0 : BAR_TEXELS - i - texels, lying ? texels : 1, lying ? 1 : texels);
+        for (let i = 0; i < BAR_TEXELS; i++) {
+            c.fillStyle = css(colourAt((i + 0.5) / BAR_TEXELS));
+            fill(i, 1);
+        }
+        c.fillStyle = '#1d252d';
+        for (const value of [...edges(rule), ...lines])
+            fill(Math.round(placeOf(rule, value) * BAR_TEXELS) - 2, 4);
+        return canvas;
+    }
+
+    ticks(rule, lines, text) {
+        const values = scaleTicks(rule, lines, Math.min(9, Math.floor(this.long / (this.lying.matches ? 32 : 16)) + 1));
+        const places = values.map((value) => placeOf(rule, value));
+        return this.ticksAt(places, this.apart(places, 15, 32), values.map(text));
+    }
+
+    // Numbers beside the bar; where they had to move apart, the line from the bar leads to them.
+    ticksAt(from, to, texts) {
+        const lying = this.lying.matches, line = (a, b) => (lying ? { x1: 100 * a, y1: 0, x2: 100 * b, y2: 1 }
+            : { x1: 0, y1: 100 - 100 * a, x2: 1, y2: 100 - 100 * b });
+        const lines = from.map((place, i) => makeSvg('line', line(place, to[i])));
+        const viewBox = lying ? '0 0 100 1' : '0 0 1 100';
+        const svg = makeSvg('svg', { viewBox, preserveAspectRatio: 'none', 'aria-hidden': 'true' }, ...lines);
+        return make('div', { class: 'ticks' }, svg, ...texts.map((text, i) => at(make('span', {}, text), to[i])));
+    }
+
+    // A line at the limit itself, its name beside it.
+    limits(rule, limits, text) {
+        const { min, max } = rule;
+        const inside = Object.entries(limits).filter(([, value]) => value !== null && value >= min && value <= max);
+        inside.sort((a, b) => a[1] - b[1]);
+        const names = (inside.length - 1) * 15 > this.long ? [0, inside.length - 1] : [...inside.keys()]; // else over one another
+        const places = this.apart(inside.map(([, value]) => placeOf(rule, value)), 15, 27);
+        return make('div', { class: 'limits' }, ...inside.flatMap(([name, value], i) => [
+            at(make('i', {}), placeOf(rule, value)),
+            names.includes(i) ? at(make('span', { title: `${name} ${text(value)}` }, name), places[i]) : null,
+        ]));
+    }
+
+    unproven({ group }) {
+        const { model } = this.session;
+        return model.tags.some((tag) => tag.group === group && tag.position && model.unproven(tag));
+    }
+
+    // In small, the pattern is drawn no coarser than can be recognised.
+    keys(params, colour) {
+        const { show } = params;
+        const period = (height) => Math.min(height / 2, patternPeriodPx(this.session.size.height));
+        const noData = pixels((x, y, height) => hatchAt(x, y, height, period(height)));
+        const uncertain = pixels((x, y, height) => stippleAt(x, y, height, period(height), colour));
+        const noLimits = pixels((x, y, height) => ruleAt(y, height, period(height)));
+        return make('div', { class: 'keys' },
+            ...(show === 'operator' ? [swatch(18, 14, noLimits), make('span', {}, say('legend.nolimits'))] : []),
+            swatch(18, 14, noData), make('span', {}, say('legend.nodata')),
+            ...(show === 'distance' ? [] : [swatch(18, 14, uncertain), make('span', {}, say('legend.uncertain'))]),
+            ...(this.unproven(params) ? [swatch(18, 14, brokenMark), make('span', {}, say('proof.none'))] : []));
+    }
+}

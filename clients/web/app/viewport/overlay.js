@@ -1,0 +1,349 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Markers and labels, drawn crisply over the picture with the camera that the picture was drawn with.
+import { isGone } from '../../core/alarms.js';
+import { projector } from '../../core/camera.js';
+import { thinOut } from '../../core/declutter.js';
+import { changeText, decimalsFor, numberText, unitText } from '../../core/format.js';
+import { halves } from '../../core/split_view.js';
+import { FIRST_FAR, leaderLine, MOST_BAD, placeLabels, RANK_RING } from '../../core/labels.js';
+import { say } from '../../core/words.js';
+
+export const INK = '#1d252d';
+export const INK_2 = '#4d5964', ACCENT = '#2a5f8f';
+const ALARM_COLOURS = [['#c40d20', '#fff'], ['#e06a0a', '#1b0d00'], ['#f2bb0d', '#1b1300'], ['#1b93b5', '#00161d']]; // by priority
+export const LABEL_HEIGHT = 20;
+const PADDING = 6, NAMES_UP_TO = 24;
+
+const SHAPES = {
+    good: (c, r) => c.arc(0, 0, r, 0, 2 * Math.PI),
+    uncertain: (c, r) => polygon(c, [[0, -r - 1.5], [r + 1.5, 0], [0, r + 1.5], [-r - 1.5, 0]]),
+    bad: (c, r) => polygon(c, [[-r, -r], [r, -r], [r, r], [-r, r]]),
+};
+
+function polygon(c, points) {
+    points.forEach(([x, y], i) => (i === 0 ? c.moveTo(x, y) : c.lineTo(x, y)));
+    c.closePath();
+}
+
+// Smaller where they crowd, so that the plant is still seen.
+function markerRadius(markers) {
+    const xs = markers.map((marker) => marker.x), ys = markers.map((marker) => marker.y);
+    const area = (Math.max(...xs) - Math.min(...xs)) * (Math.max(...ys) - Math.min(...ys));
+    return markers.length < 2 ? 4.5 : Math.max(2.75, Math.min(4.5, 0.12 * Math.sqrt(area / markers.length)));
+}
+
+export class Overlay {
+    constructor({ canvas, viewport, session, selection }) {
+        Object.assign(this, { canvas, viewport, session, selection });
+        this.context = canvas.getContext('2d');
+        this.font = getComputedStyle(document.body).fontFamily;
+        this.unit = 1;     // CSS pixels: larger on a wall
+        this.all = [];     // { tag, x, y, depth, occluded, reading }, in units: of the shown group, and with alarms
+        this.markers = []; // those of them that are drawn
+        this.places = new Map();
+        this.widths = new Map();
+        this.onRings = () => {}; // there are several, or one without a label: call-outs are needed
+        this.dirty = true;
+        this.fresh = true; // false: the values are those of a lost connection
+    }
+
+    get wide() {
+        return this.viewport.width / this.unit;
+    }
+
+    get high() {
+        return this.viewport.height / this.unit;
+    }
+
+    // Sensors of the shown group, where the last drawn picture has them.
+    project() {
+        const { model, picture, shown } = this.session;
+        if (!model || !picture)
+            return [];
+        const known = this.session.markersOf(picture.seq);
+        return halves(shown, picture.shownWidth).flatMap((half, number) => this.projectHalf(half, number, known));
+    }
+
+    projectHalf({ params, left, width }, number, known) {
+        const { model, picture } = this.session;
+        const scale = [this.wide / picture.shownWidth, this.high / picture.fullHeight];
+        const rim = params.split ? 0 : 20; // what lies beyond would be seen in the other half
+        const project = projector(picture.camera, width, picture.fullHeight);
+        const markers = [];
+        for (const tag of model.tags) {
+            const alarm = model.alarms.gravest(tag.index), shown = tag.group === params.group;
+            const unsaid = known && shown ? undefined : { occluded: false, quality: null };
+            const said = (shown && known?.get(`${tag.index}/${number}`)) || (alarm ? { occluded: true, quality: null } : unsaid);
+            const place = said && (shown || alarm) && tag.position ? project(tag.position) : null;
+            if (!place || place[0] < -rim || place[1] < -rim || place[0] > width + rim || place[1] > picture.fullHeight + rim)
+                continue;
+            const newest = model.readings[tag.index];
+            const pictured = said.quality ? { ...newest, value: said.value, quality: said.quality } : newest; // as the picture has it
+            const difference = params.show === 'difference' && shown, away = params.show === 'distance' && shown;
+            markers.push({
+                tag, x: (left + place[0]) * scale[0], y: place[1] * scale[1], depth: place[2], half: number,
+                occluded: said.occluded, reading: difference || away ? newest : pictured, alarm,
+                change: difference && (said.quality === 'bad' ? null : said.value ?? null), // false: the reading itself is shown
+                distance_m: away && (said.value ?? null), // likewise; null: none, as on other equipment
+                origin: away && tag.name === params.sensor,
+            });
+        }
+        return markers;
+    }
+
+    marker(tag) {
+        return this.all.find((marker) => marker.tag === tag) ?? null;
+    }
+
+    // Each half for itself: those that are drawn, the farthest first.
+    thinned() {
+        const id = ({ tag, half }) => tag.index * 2 + half, { selected } = this.session.params;
+        const before = new Set(this.markers.filter(({ kept, held }) => held || !kept).map(id)); // not what was only kept
+        for (const marker of this.all) {
+            const { tag, alarm, origin, reading } = marker;
+            marker.kept = alarm || origin || reading.quality !== 'good' || tag.asset === selected || this.isChosen(tag) ||
+                this.isMarked?.(tag);
+            marker.held = before.has(id(marker));
+        }
+        const drawn = [0, 1].flatMap((number) => thinOut(this.all.filter(({ half }) => half === number)));
+        return drawn.sort((a, b) => b.depth - a.depth);
+    }
+
+    // CSS pixels of the viewport.
+    placeOf({ x, y }) {
+        return { x: x * this.unit, y: y * this.unit };
+    }
+
+    draw() {
+        this.dirty = false;
+        const { wide: width, high: height, unit } = this, ratio = window.devicePixelRatio * unit;
+        const c = this.context;
+        const pixels = [Math.round(width * ratio), Math.round(height * ratio)];
+        if (this.canvas.width !== pixels[0] || this.canvas.height !== pixels[1])
+            [this.canvas.width, this.canvas.height] = pixels;
+        c.setTransform(ratio, 0, 0, ratio, 0, 0);
+        c.clearRect(0, 0, width, height);
+        this.all = this.project();
+        this.markers = this.thinned();
+        this.radius = markerRadius(this.all.filter((marker) => !marker.occluded));
+        const labels = this.labels();
+        this.places = this.place(labels);
+        for (const marker of this.markers)
+            this.drawMarker(marker);
+        this.drawLabels(labels);
+        const boxes = labels.filter(({ id }) => this.places.has(id)).map(({ id, width: w, height: h }) => {
+            const { left, top, width: wide = w, height: high = h } = this.places.get(id);
+            return { left, top, right: left + wide, bottom: top + high };
+        });
+        const marks = this.markers.map(({ x, y }) => ({ left: x - 5, right: x + 5, top: y - 5, bottom: y + 5 }));
+        this.isolines?.draw([...this.blocked(), ...boxes, ...marks]);
+    }
+
+    // What lies over the picture already.
+    blocked() {
+        const origin = this.viewport.element.getBoundingClientRect();
+        const boxes = [...this.viewport.element.querySelectorAll('.legend, .banner, .card, .simulated-note, .chip')]
+            .map((e) => e.getBoundingClientRect());
+        const { unit } = this;
+        const own = boxes.filter((box) => box.width > 0).map((box) => ({
+            left: (box.left - origin.left) / unit, right: (box.right - origin.left) / unit,
+            top: (box.top - origin.top) / unit, bottom: (box.bottom - origin.top) / unit,
+        }));
+        const middle = this.wide / 2; // no label in both halves
+        return this.session.shown.split ? [...own, { left: middle - 1, right: middle + 1, top: 0, bottom: this.high }] : own;
+    }
+
+    isChosen(tag) {
+        return tag.name === this.selection.tag || tag === this.selection.hover;
+    }
+
+    // Each half for itself. Call-outs come when there are rings that may need them.
+    place(labels) {
+        const { shown } = this.session, { wide: width, high: height, callouts } = this, blocked = this.blocked();
+        const placed = halves(shown, width).map((half, number) => placeLabels(labels.filter((label) => label.half === number), {
+            area: { left: half.left, top: 0, right: half.left + half.width, bottom: height }, blocked,
+            rings: callouts?.place, measure: (members) => callouts.measure(members),
+        }));
+        const all = new Map(placed.flatMap((one) => [...one])), rings = labels.filter(({ rank }) => rank === RANK_RING);
+        if (!callouts && (rings.length > 1 || rings.some(({ id }) => !all.has(id))))
+            this.onRings();
+        return all;
+    }
+
+    // All marks in sight and all rings, in order of tags; the card speaks for the chosen.
+    labels() {
+        const marks = this.markers.filter((marker) => !marker.occluded || marker.alarm);
+        const inSight = marks.filter(({ occluded }) => !occluded);
+        marks.sort((a, b) => a.tag.index - b.tag.index || a.half - b.half);
+        const tooMany = inSight.filter(({ reading }) => reading.quality === 'bad').length > MOST_BAD;
+        const named = inSight.length <= NAMES_UP_TO;
+        return marks.map((marker) => {
+            const { tag, reading } = marker, id = `${tag.index}/${marker.half}`;
+            const { alarm } = marker;
+            const onSelected = tag.asset === this.session.params.selected;
+            const parts = this.parts(marker, named || onSelected || marker.origin || alarm !== null);
+            const width = this.lineWidth(parts);
+            const bad = reading.quality === 'bad', unseen = (marker.occluded || marker.distance_m === null) && !alarm;
+            const silent = unseen || this.isChosen(tag) || (bad && tooMany);
+            const rank = silent ? -1 : alarm ? RANK_RING : bad || marker.origin ? 2 : reading.quality !== 'good' || onSelected ? 1 : 0;
+            const { x, y, depth, half } = marker;
+            const { slot: held, callout } = this.places.get(id) ?? {}, ring = alarm !== null;
+            return { id, half, x, y, width, height: LABEL_HEIGHT, rank, depth, held, callout, parts, alarm, ring, tag };
+        });
+    }
+
+    // Pieces of a label: [text, weight, colour].
+    parts({ tag, reading, change, distance_m, alarm }, withName) {
+        const parts = withName ? [[tag.name, 400, INK_2]] : [];
+        const group = this.session.model.group(tag.group), decimals = decimalsFor(group.max - group.min);
+        if (distance_m !== false) {
+            if (distance_m !== null)
+                parts.push([`${numberText(distance_m, 2)}\u202fm`, 650, INK]);
+        } else if (change !== false && reading.quality !== 'bad') {
+            parts.push([changeText(change, decimals), ...(this.fresh ? [650, INK] : [400, INK_2])]);
+            parts.push([change === null ? '' : unitText(tag.unit || group.unit), 400, INK_2]);
+        } else if (reading.value === null || reading.quality === 'bad') {
+            parts.push([say('novalue'), 400, INK_2]);
+        } else {
+            parts.push([numberText(reading.value, decimals), ...(this.fresh ? [650, INK] : [400, INK_2])]);
+            parts.push([unitText(tag.unit || group.unit), 400, INK_2]);
+        }
+        if (alarm)
+            parts.push([alarm.kind, 700, null]);
+        return parts;
+    }
+
+    width([text, weight]) {
+        const key = weight + text.replace(/\d/g, '0'); // figures are equally wide
+        if (!this.widths.has(key)) {
+            this.setFont(weight);
+            this.widths.set(key, this.context.measureText(text.replace(/\d/g, '0')).width);
+        }
+        return this.widths.get(key);
+    }
+
+    setFont(weight) {
+        this.context.font = `${weight} 12.5px ${this.font}`;
+    }
+
+    // Its colour says the priority, its form the state: thick, and slowly blinking while nobody has acknowledged it; thin; hollow once its
+    // cause has gone.
+    drawAlarm({ priority, state, waiting }) {
+        const c = this.context, blinks = waiting && document.body.classList.contains('alarm-blink');
+        const wide = !waiting || blinks ? 2 : 4, colour = ALARM_COLOURS[priority - 1][0], solid = [[INK, wide + 2], [colour, wide]];
+        for (const [style, width] of isGone(state) ? [[INK, wide + 4.5], [colour, wide + 3], ['#fff', 2.5]] : solid) {
+            c.beginPath();
+            c.arc(0, 0, 10, 0, 2 * Math.PI);
+            c.lineWidth = width;
+            c.strokeStyle = style;
+            c.stroke();
+        }
+    }
+
+    drawMarker({ tag, x, y, occluded, reading, alarm, origin }) {
+        const c = this.context, chosen = this.isChosen(tag);
+        c.save();
+        c.translate(x, y);
+        if (alarm)
+            this.drawAlarm(alarm);
+        c.beginPath();
+        const unproven = this.session.model.unproven(tag), radius = occluded ? 2.5 : unproven ? Math.max(4, this.radius) : this.radius;
+        (SHAPES[reading.quality] ?? SHAPES.bad)(c, radius);
+        c.lineWidth = occluded ? 1.25 : 1.5;
+        if (unproven)
+            c.setLineDash([(2 * Math.PI * radius) / 10]);
+        if (occluded && !chosen) {
+            c.globalAlpha = 0.5;
+        } else {
+            c.fillStyle = '#fff';
+            c.fill();
+        }
+        c.strokeStyle = INK;
+        c.stroke();
+        c.setLineDash([]);
+        this.drawTried?.(tag);
+        if (reading.quality === 'bad' && !occluded) {
+            c.beginPath();
+            const arm = this.radius - 2;
+            for (const side of [-arm, arm]) {
+                c.moveTo(-arm, -side);
+                c.lineTo(arm, side);
+            }
+            c.stroke();
+        }
+        if (chosen || origin) {
+            c.beginPath();
+            c.arc(0, 0, alarm ? 14.5 : 9.5, 0, 2 * Math.PI);
+            c.lineWidth = 2.5;
+            c.strokeStyle = chosen ? ACCENT : INK;
+            c.stroke();
+        }
+        c.restore();
+    }
+
+    drawLabels(labels) {
+        const places = labels.map((label) => [label, this.places.get(label.id)]).filter(([, place]) => place);
+        for (const [label, place] of places) {
+            if (place.slot >= FIRST_FAR || place.callout !== undefined)
+                this.drawLeader(label, place);
+        }
+        for (const [label, place] of places) {
+            if (place.callout === undefined) {
+                this.drawPlate(place, label);
+                this.drawParts(label.parts, place, label.alarm);
+            } else if (place.callout === label.id) {
+                this.callouts.draw(places.filter((one) => one[1].callout === label.id).map(([member]) => member), place);
+            }
+        }
+    }
+
+    drawLeader(label, place) {
+        const c = this.context, [x1, y1, x2, y2] = leaderLine({ ...label, ...place }, place, label.ring ? 12 : this.radius);
+        c.beginPath();
+        c.moveTo(x1, y1);
+        c.lineTo(x2, y2);
+        c.lineWidth = 1;
+        c.strokeStyle = 'rgb(29 37 45 / 0.7)';
+        c.stroke();
+    }
+
+    drawPlate({ left, top }, { width, height }) {
+        const c = this.context;
+        c.beginPath();
+        c.roundRect(Math.round(left) + 0.5, Math.round(top) + 0.5, width - 1, height - 1, 4);
+        c.fillStyle = 'rgb(255 255 255 / 0.9)';
+        c.fill();
+        c.lineWidth = 1;
+        c.strokeStyle = 'rgb(29 37 45 / 0.3)';
+        c.stroke();
+    }
+
+    // A line of text.
+    drawParts(parts, { left, top }, alarm) {
+        const c = this.context, y = Math.round(top);
+        c.textBaseline = 'middle';
+        let at = Math.round(left) + PADDING;
+        for (const part of parts) {
+            const wide = this.width(part);
+            const flag = part[2] === null, hollow = flag && isGone(alarm.state);
+            const [ground, ink] = flag ? ALARM_COLOURS[alarm.priority - 1] : [];
+            if (hollow) {
+                c.strokeStyle = ground;
+                c.lineWidth = 2;
+                c.strokeRect(at - 2, y + 3.5, wide + 4, LABEL_HEIGHT - 7);
+            } else if (flag) {
+                c.fillStyle = ground;
+                c.fillRect(at - 3, y + 2.5, wide + 6, LABEL_HEIGHT - 5);
+            }
+            this.setFont(part[1]);
+            c.fillStyle = hollow ? INK : part[2] ?? ink;
+            c.fillText(part[0], at, y + LABEL_HEIGHT / 2 + 0.5);
+            at += wide + 5;
+        }
+    }
+
+    // As wide as a label with this text.
+    lineWidth(parts) {
+        return Math.ceil(parts.reduce((sum, part) => sum + this.width(part), 0) + 2 * PADDING + (parts.length - 1) * 5);
+    }
+}

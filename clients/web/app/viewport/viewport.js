@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The picture on the screen: asks for the right size, decodes, draws in step with the display, acknowledges what was drawn.
+import { DecodeQueue } from '../../core/decode_queue.js';
+import { isWhole, pictureSize } from '../../core/wire.js';
+
+const RESIZE_WAIT_MS = 100;
+// What the browser states exactly, unless it leaves out the page's zoom, as emulated screens do.
+function devicePixels(cssPx, exact) {
+    const px = Math.round(cssPx * window.devicePixelRatio);
+    return exact !== undefined && Math.abs(exact - px) <= 2 ? exact : px;
+}
+
+const sizeOf = (width, height) => ({ ...pictureSize(width, height), pixel_ratio: Math.min(8, Math.max(0.25, window.devicePixelRatio)) });
+
+export class Viewport {
+    // onTick(now): once per animation frame, before drawing. onDrawn(frame): after.
+    constructor({ element, canvas, session, decoding }) {
+        Object.assign(this, { element, canvas, session });
+        this.context = canvas.getContext('2d', { alpha: false });
+        this.decoded = []; // pictures, and parts of one that is not complete yet
+        this.scheduled = false;
+        this.onTick = this.onDrawn = () => {};
+        this.slot = new DecodeQueue({
+            decode: (frame) => decoding.decode(frame),
+            ready: (frame, picture, decodeMs) => this.ready(frame, picture, decodeMs),
+            failed: (frame, error) => {
+                console.warn(`frame ${frame.seq}: ${error.message}`);
+                session.passedOver(frame);
+            },
+            now: () => performance.now(),
+        });
+        decoding.onLost = () => session.askKeyFrame();
+        decoding.onCodecs = (codecs) => session.setCodecs(codecs);
+        session.on('frame', (frame) => this.slot.push(frame));
+        this.watchSize();
+    }
+
+    // CSS pixels.
+    get width() {
+        return this.element.clientWidth;
+    }
+
+    get height() {
+        return this.element.clientHeight;
+    }
+
+    // CSS pixels to those of the picture that was asked for.
+    pixelOf(x, y) {
+        const size = this.session.following ?? this.session.size;
+        return [(x * size.width) / this.width, (y * size.height) / this.height];
+    }
+
+    watchSize() {
+        const box = this.element.getBoundingClientRect();
+        this.session.resize(sizeOf(devicePixels(box.width), devicePixels(box.height)));
+        let timer;
+        const observer = new ResizeObserver(([entry]) => {
+            const exact = entry.devicePixelContentBoxSize?.[0];
+            const width = devicePixels(entry.contentRect.width, exact?.inlineSize);
+            const height = devicePixels(entry.contentRect.height, exact?.blockSize);
+            clearTimeout(timer);
+            timer = setTimeout(() => this.session.resize(sizeOf(width, height)), RESIZE_WAIT_MS);
+            this.invalidate();
+        });
+        try {
+            observer.observe(this.element, { box: 'device-pixel-content-box' });
+        } catch {
+            observer.observe(this.element); // Safari
+        }
+    }
+
+    ready(frame, picture, decodeMs) {
+        if (isWhole(frame)) {
+            for (const older of this.decoded)
+                older.picture.close();
+            this.decoded = [];
+        }
+        this.decoded.push({ frame, picture, decodeMs });
+        if (!frame.more)
+            this.invalidate();
+    }
+
+    // The connection is gone: what still waits belongs to its numbering.
+    forget() {
+        this.slot.clear();
+        for (const { picture } of this.decoded)
+            picture.close();
+        this.decoded = [];
+    }
+
+    invalidate() {
+        if (this.scheduled)
+            return;
+        this.scheduled = true;
+        requestAnimationFrame((now) => {
+            this.scheduled = false;
+            this.onTick(now);
+            this.session.flush();
+            this.draw();
+        });
+    }
+
+    // Parts of a picture wait for the rest of it. Until one of the place's shape comes, it is as high as that and not distorted;
+    // picture.shownWidth: what of it would be as wide.
+    draw() {
+        const complete = this.decoded.findLastIndex(({ frame }) => !frame.more) + 1, drawn = this.decoded.splice(0, complete);
+        for (const { frame, picture } of drawn) {
+            if (this.canvas.width !== frame.fullWidth || this.canvas.height !== frame.fullHeight) {
+                this.canvas.width = frame.fullWidth;
+                this.canvas.height = frame.fullHeight;
+            }
+            const { x, y, width, height } = frame; // a coded picture may be wider and higher by one
+            this.context.drawImage(picture, 0, 0, width, height, x, y, width, height);
+            picture.close();
+        }
+        let decodeMs = 0;
+        for (const { frame, decodeMs: ms } of drawn) {
+            decodeMs += ms;
+            if (frame.more)
+                continue;
+            this.session.drawn(frame, decodeMs);
+            decodeMs = 0;
+        }
+        const { picture, shown } = this.session;
+        if (picture)
+            picture.shownWidth = shown.split ? picture.fullWidth : (picture.fullHeight * this.width) / this.height;
+        this.onDrawn(drawn.length > 0);
+    }
+}

@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The panel of views: from where to look, in which projection, what is cut away and which equipment is shown.
+import { isParallel } from '../../core/camera.js';
+import { numberText } from '../../core/format.js';
+import { toParallel, toPerspective } from '../../core/camera_moves.js';
+import { askFit } from '../../core/requests.js';
+import { AXES, boxAround, cut, readBox, readCut, showAll, showAsset } from '../../core/section.js';
+import { say } from '../../core/words.js';
+import { byId, make, setText } from '../common/dom.js';
+import { fillSegments, markSegment } from '../common/choices.js';
+import { collapsiblePanel } from '../common/collapsible.js';
+
+const choices = (kind, ...values) => values.map((value) => [value, say(`${kind}.${value}`)]);
+const STEPS = 500, LARGEST_BOX = 2;
+
+export class Views {
+    constructor({ session, parts, viewport }) {
+        Object.assign(this, { session, viewport });
+        this.panel = byId('views');
+        this.at = byId('cut-at');
+        const sides = choices('side', 'top', 'front', 'right', 'back', 'left', 'iso');
+        byId('sides').append(make('div', { class: 'buttons' }, ...sides.map(([side, text]) =>
+            make('button', { type: 'button', onclick: () => this.lookFrom(side) }, text))));
+        const projections = choices('projection', 'perspective', 'parallel');
+        fillSegments(byId('projection'), 'projection', projections, (projection) => this.project(projection === 'parallel'));
+        const cuts = [...choices('cut', 'off'), ...AXES.map((axis) => [axis, axis.toUpperCase()]), ...choices('cut', 'box')];
+        fillSegments(byId('cut'), 'cut', cuts, (axis) => this.cutBy(axis));
+        byId('cut-turn').addEventListener('click', () => this.turn());
+        this.at.addEventListener('input', () => this.move());
+        const shows = choices('shown', 'hide', 'ghost', 'only');
+        byId('shows').append(make('div', { class: 'buttons' },
+            ...shows.map(([how, text]) => make('button', { type: 'button', 'data-how': how, onclick: () => this.show(how) }, text)),
+            make('button', { type: 'button', id: 'show-all', onclick: () => this.showAll() }, say('views.all'))));
+        Object.assign(this, collapsiblePanel(this.panel, byId('views-toggle'), () => this.update()));
+        session.on('fitted', (camera) => modules.use('cameraController', (cameraController) => cameraController.flyTo(camera)));
+        session.on('params', () => this.update());
+        session.on('camera', () => this.update());
+        session.on('welcome', () => this.update());
+    }
+
+    close() {
+        this.set(false);
+    }
+
+    lookFrom(side) {
+        askFit(this.session, { id: this.session.params.selected ?? null, side, projection: this.projection });
+    }
+
+    get projection() {
+        return this.session.camera && isParallel(this.session.camera) ? 'orthographic' : 'perspective';
+    }
+
+    project(parallel) {
+        const { camera } = this.session;
+        if (camera && isParallel(camera) !== parallel)
+            this.session.setCamera(parallel ? toParallel(camera) : toPerspective(camera));
+        this.viewport.invalidate();
+    }
+
+    toggleProjection() {
+        this.project(this.projection === 'perspective');
+    }
+
+    // --- the cut
+
+    range(axis) {
+        const { min, max } = this.session.model.plant.bounds;
+        const index = AXES.indexOf(axis);
+        return [min[index], max[index]];
+    }
+
+    // What a box is put around: the chosen equipment, else the plant.
+    get boxed() {
+        const { model, params } = this.session;
+        return (model.asset(params.selected) ?? model.plant).bounds;
+    }
+
+    cutBy(axis) {
+        if (axis === 'off' || axis === 'box') {
+            this.session.setParams({ clip: axis === 'box' ? boxAround(this.boxed, 1) : null });
+            return;
+        }
+        const [min, max] = this.range(axis);
+        this.session.setParams({ clip: cut(axis, (min + max) / 2, axis === 'z') }); // from above one looks into it
+    }
+
+    turn() {
+        const now = readCut(this.session.params.clip);
+        if (now)
+            this.session.setParams({ clip: cut(now.axis, now.at, !now.turned) });
+    }
+
+    // Once per animation frame: a slider speaks oftener.
+    move() {
+        if (this.moving)
+            return;
+        this.moving = true;
+        requestAnimationFrame(() => {
+            this.moving = false;
+            const { clip } = this.session.params, now = readCut(clip);
+            if (clip?.box)
+                this.session.setParams({ clip: boxAround(this.boxed, Math.max(1, this.at.value) * (LARGEST_BOX / STEPS)) });
+            if (!now)
+                return;
+            const [min, max] = this.range(now.axis);
+            this.session.setParams({ clip: cut(now.axis, min + ((max - min) * this.at.value) / STEPS, now.turned) });
+        });
+    }
+
+    // --- equipment
+
+    show(how, id = this.session.params.selected) {
+        if (id)
+            this.session.setParams(showAsset(this.session.params, how, id));
+    }
+
+    showAll() {
+        this.session.setParams(showAll(this.session.params));
+    }
+
+    update() {
+        const { model, params } = this.session;
+        if (!model || !this.panel.classList.contains('open'))
+            return;
+        markSegment(byId('projection'), this.projection === 'orthographic' ? 'parallel' : 'perspective');
+        const now = readCut(params.clip);
+        const part = readBox(params.clip, this.boxed);
+        const box = params.clip?.box;
+        markSegment(byId('cut'), now?.axis ?? (box ? 'box' : params.clip ? '' : 'off'));
+        byId('cut-place').hidden = !now && !box;
+        byId('cut-turn').hidden = !now;
+        this.at.hidden = box && part === null;
+        if (box && part === null)
+            setText(byId('cut-text'), `${box.max.map((high, i) => numberText(high - box.min[i], 1)).join(' × ')} m`);
+        if (part !== null) {
+            const what = model.asset(params.selected)?.tag || say('views.plant');
+            this.at.value = Math.round((part * STEPS) / LARGEST_BOX);
+            setText(byId('cut-text'), say('views.part', { percent: Math.round(100 * part), what }));
+        }
+        if (now) {
+            const [min, max] = this.range(now.axis);
+            this.at.max = STEPS;
+            if (document.activeElement !== this.at || !this.moving)
+                this.at.value = Math.round(((now.at - min) / (max - min)) * STEPS);
+            setText(byId('cut-text'), say('views.stays', {
+                axis: now.axis.toUpperCase(), sign: now.turned ? '≤' : '≥', at: numberText(now.at, 1) }));
+        }
+        const asset = model.asset(params.selected);
+        setText(byId('shows-what'), say('views.equipment', { what: asset ? asset.tag || asset.id : say('views.select') }));
+        for (const button of byId('shows').querySelectorAll('[data-how]'))
+            button.disabled = !asset;
+        byId('show-all').disabled = Object.keys(showAll(params)).length === 0;
+    }
+}

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The page on a control room's wall: larger, with nothing to press, and the screen stays on.
+import { learnWords, say } from '../../core/words.js';
+import { numberText } from '../../core/format.js';
+import { legendsLie, readWall, wallFit } from '../../core/wall.js';
+import { byId, make, setVariable, styled } from '../common/dom.js';
+
+const FAR_MS = 60000; // for who hangs it there
+const LEAST_PICTURE = 0.3; // of the window's height: rather than less, all is smaller
+const TIGHT = 620;    // units: narrower, there is no room for the day beside the hour
+
+// page.unit from now on: how large a unit of the page is; page.onUnit() where that changes. page.lying: whether legends lie, as a media
+// query says it. Legends have a place of their own, and so has what says that values are simulated: neither lies over a reading.
+export async function hangOnWall(search, page) {
+    const wall = readWall(search), hear = [], legends = make('div', { class: 'legends' }), { classList } = byId('viewport');
+    page.lying = { matches: false, addEventListener: (_, f) => hear.push(f) };
+    const hang = (scale) => {
+        const { innerWidth: width, innerHeight: height } = window;
+        const lies = legendsLie(width / scale, height / scale, classList.contains('split')), turned = lies !== page.lying.matches;
+        page.unit = scale;
+        page.lying.matches = lies;
+        setVariable(document.body, '--wall', scale);
+        document.body.classList.toggle('lying', lies);
+        document.body.classList.toggle('tight', width / scale < TIGHT);
+        if (turned)
+            hear.forEach((f) => f());
+    };
+    // Returns from how far it is read.
+    const fit = () => {
+        const { innerWidth: width, innerHeight: height } = window, { scale, metres } = wallFit(wall, window.screen, { width, height });
+        hang(scale);
+        while (byId('viewport').clientHeight < LEAST_PICTURE * height && page.unit > 0.5)
+            hang(page.unit * 0.95);
+        page.onUnit();
+        return (metres * page.unit) / scale;
+    };
+    await styled('wall/wall');
+    document.body.classList.add('wall');
+    legends.append(byId('legend'), byId('legend-right'));
+    byId('viewport').after(legends);
+    byId('status').before(byId('simulated'));
+    page.onTell = async (tell) => {
+        const metres = fit();
+        if (metres < wall.metres && await learnWords().then(() => true, () => false))
+            tell(say('wall.far', { metres: numberText(metres, 1), wanted: wall.metres }), FAR_MS);
+    };
+    window.addEventListener('resize', fit);
+    new MutationObserver(fit).observe(byId('viewport'), { attributeFilter: ['class'] });
+    const observer = new ResizeObserver(fit);
+    for (const element of [byId('simulated'), byId('status'), ...legends.children])
+        observer.observe(element);
+    fit();
+    const stayOn = () => !document.hidden && navigator.wakeLock?.request('screen').catch(() => {}); // where the browser lets us
+    document.addEventListener('visibilitychange', stayOn);
+    stayOn();
+}

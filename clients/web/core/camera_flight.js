@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A camera's flight from one view to another: the horizon level all the way, the turn by the shorter side.
+import { isParallel, valid } from './camera.js';
+import { distance, toParallel, toPerspective } from './camera_moves.js';
+import { add, cross, dot, mix, scale, subtract, unit } from './vector.js';
+
+export const FLIGHT_MS = 700;
+const ease = (t) => (t < 0.5 ? 4 * t * t * t : 1 - (2 - 2 * t) ** 3 / 2);
+
+function frame(up) {
+    const z = unit(up);
+    const x = unit(cross(Math.abs(z[0]) < 0.9 ? [1, 0, 0] : [0, 1, 0], z));
+    return { x, y: cross(z, x), z };
+}
+
+function angles(camera, axes) {
+    const v = unit(subtract(camera.eye, camera.target));
+    return { azimuth: Math.atan2(dot(v, axes.y), dot(v, axes.x)), elevation: Math.asin(Math.max(-1, Math.min(1, dot(v, axes.z)))) };
+}
+
+// Function from milliseconds since the start to the camera there; at and after `durationMs` exactly `to`.
+export function flight(start, to, durationMs = FLIGHT_MS) {
+    const from = isParallel(start) === isParallel(to) ? start : isParallel(to) ? toParallel(start) : toPerspective(start);
+    const axes = frame(to.up);
+    const a = angles(from, axes), b = angles(to, axes);
+    const turn = Math.atan2(Math.sin(b.azimuth - a.azimuth), Math.cos(b.azimuth - a.azimuth));
+    const near = distance(from), far = distance(to);
+    return (ms) => {
+        if (ms >= durationMs)
+            return to;
+        const t = ease(Math.max(0, ms) / durationMs);
+        const azimuth = a.azimuth + turn * t, tilt = a.elevation + (b.elevation - a.elevation) * t;
+        const flat = add(scale(axes.x, Math.cos(azimuth)), scale(axes.y, Math.sin(azimuth)));
+        const towards = add(scale(flat, Math.cos(tilt)), scale(axes.z, Math.sin(tilt)));
+        const target = mix(from.target, to.target, t);
+        const eye = add(target, scale(towards, near * (far / near) ** t));
+        const lens = isParallel(to) ? { height_m: from.height_m * (to.height_m / from.height_m) ** t } : {};
+        const camera = { eye, target, up: to.up, fov: from.fov + (to.fov - from.fov) * t, ...lens };
+        return valid(camera) ? camera : to;
+    };
+}

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Frames that wait to be decoded: one is being decoded, and of the others only the newest that stands alone and what came after it
+// are kept. Slow decoding makes pictures rarer, never later.
+
+export class DecodeQueue {
+    // decode(frame): promise of a picture. ready(frame, picture, decodeMs) in order. failed(frame, error). now(): milliseconds.
+    constructor({ decode, ready, failed, now }) {
+        Object.assign(this, { decode, ready, failed, now });
+        this.waiting = [];
+        this.busy = false;
+        this.dropped = 0;
+        this.generation = 0;
+    }
+
+    push(frame) {
+        if (frame.key) {
+            this.dropped += this.waiting.length;
+            this.waiting = [];
+        }
+        this.waiting.push(frame);
+        if (!this.busy)
+            this.run();
+    }
+
+    // Forgets all, also what is being decoded now: the connection it came from is gone.
+    clear() {
+        this.waiting = [];
+        this.generation++;
+    }
+
+    async run() {
+        this.busy = true;
+        while (this.waiting.length > 0) {
+            const frame = this.waiting.shift(), generation = this.generation, start = this.now();
+            let picture;
+            try {
+                picture = await this.decode(frame);
+            } catch (error) {
+                this.failed(frame, error);
+                continue;
+            }
+            if (generation === this.generation)
+                this.ready(frame, picture, this.now() - start);
+            else
+                picture.close?.();
+        }
+        this.busy = false;
+    }
+}

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The ways to decode H.264 that a browser may have: tried once and remembered, and given up when they fail. Loaded when H.264 pays.
+import { PLAIN } from './decoding.js';
+import { H264Decoder, whatIsWrong } from './h264.js';
+
+const ACCELERATIONS = ['no-preference', 'prefer-software']; // hardware first, if there is any
+const KEPT = 'plantcast.h264';
+
+// What was learnt of this very browser: a way, 'none', or null.
+function remembered({ store, agent }) {
+    try {
+        const known = JSON.parse(store?.getItem(KEPT) ?? 'null');
+        return known?.agent === agent ? known.way : null;
+    } catch {
+        return null; // a store that may not be read
+    }
+}
+
+function remember({ store, agent }, way) {
+    try {
+        store?.setItem(KEPT, JSON.stringify({ agent, way }));
+    } catch {
+        // it is tried again next time
+    }
+}
+
+// decoding: of decoding.js.
+export async function probe(decoding) {
+    const { env } = decoding, known = remembered(env);
+    if (known === 'none')
+        return;
+    for (const acceleration of ACCELERATIONS.slice(Math.max(0, ACCELERATIONS.indexOf(known)))) {
+        if (await (env.tryOut ?? whatIsWrong)(new H264Decoder({ acceleration, api: env.api })) === null) {
+            use(decoding, acceleration);
+            return;
+        }
+    }
+    remember(env, 'none');
+}
+
+function use(decoding, acceleration) {
+    const { env } = decoding;
+    const h264 = new H264Decoder({ acceleration, api: env.api });
+    Object.assign(decoding, { acceleration, h264, codecs: ['auto', 'h264', ...PLAIN] });
+    remember(env, acceleration);
+}
+
+// Hardware gives way to software, that to JPEG.
+export function demote(decoding) {
+    const next = ACCELERATIONS[ACCELERATIONS.indexOf(decoding.acceleration) + 1];
+    decoding.h264.close();
+    if (next) {
+        use(decoding, next);
+        decoding.onLost();
+        return;
+    }
+    Object.assign(decoding, { h264: null, codecs: PLAIN });
+    remember(decoding.env, 'none');
+    decoding.onCodecs(decoding.codecs);
+}

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Which tag moved when a transmitter was forced: the largest change since it was armed, against how much each tag moves by itself.
+
+const KEEP = 0.9;        // of what was known of a tag's noise, at each new value
+const FLOOR = 0.002;     // of a tag's span: less is no movement
+const LEAST_RATIO = 8;   // as many times its noise
+
+export class LoopCheckSession {
+    constructor() {
+        this.noise = new Map(); // by index: how far it goes from one value to the next
+        this.last = new Map();
+        this.base = null;       // by index: values when it was armed; null: it is not
+    }
+
+    // values: by index, number or null (no usable reading).
+    observe(values) {
+        values.forEach((value, index) => {
+            if (value === null)
+                return;
+            const before = this.last.get(index);
+            this.last.set(index, value);
+            if (before === undefined || this.base)
+                return; // what happens once it is armed is what is looked for
+            const step = Math.abs(value - before), known = this.noise.get(index);
+            this.noise.set(index, known === undefined ? step : Math.max(known * KEEP, KEEP * known + (1 - KEEP) * step, step / 2));
+        });
+    }
+
+    arm() {
+        this.base = new Map(this.last);
+    }
+
+    disarm() {
+        this.base = null;
+    }
+
+    // { index, by, ratio } of the one that moved most, or null. spanOf(index): of its scale.
+    stirred(spanOf) {
+        let most = null;
+        for (const [index, from] of this.base ?? []) {
+            const by = this.last.get(index) - from;
+            const ratio = Math.abs(by) / Math.max(this.noise.get(index) ?? 0, FLOOR * spanOf(index));
+            if (ratio >= LEAST_RATIO && ratio > (most?.ratio ?? 0))
+                most = { index, by, ratio };
+        }
+        return most;
+    }
+}
+
+// Expected values by name of tag out of a CSV; null: its columns are not there.
+export function readExpected(text) {
+    const lines = text.replace(/^\uFEFF/, '').split(/\r\n|\n|\r/).filter((line) => line.trim());
+    const separator = [',', ';', '\t'].reduce((a, b) => (lines[0]?.split(b).length > lines[0]?.split(a).length ? b : a), ',');
+    const cells = (line) => [...line.matchAll(separators(separator))].map(([, quoted, plain]) => (quoted?.replace(/""/g, '"')
+        ?? plain).trim());
+    const head = cells(lines[0] ?? '').map((name) => name.toLowerCase());
+    const [name, expected, tolerance] = ['tag name', 'expected', 'tolerance'].map((column) => head.indexOf(column));
+    if (name < 0 || expected < 0 || tolerance < 0)
+        return null;
+    const point = (cell) => (separator === ',' ? cell : cell.replace(',', '.')); // a decimal comma is a decimal point
+    const number = (cell) => (cell?.trim() ? Number(point(cell)) : NaN);
+    return new Map(lines.slice(1).map(cells).map((row) => [row[name], { expected: number(row[expected]),
+        tolerance: number(row[tolerance]) }])
+        .filter(([, of]) => Number.isFinite(of.expected) && of.tolerance >= 0));
+}
+
+const separators = (separator) => new RegExp(`(?:^|${separator})(?:\\s*"((?:[^"]|"")*)"\\s*|([^${separator}]*))`, 'g');

@@ -1,0 +1,112 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Slots of equal size in a file: a place, a checksum and a column in each. */
+#include "preprocess/cache/distance_cache.h"
+
+#include <fcntl.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+#include <xxhash.h>
+
+#include "base/mem.h"
+#include "preprocess/cache/file_io.h"
+#include "preprocess/cache/folder.h"
+
+struct slot { /* the column follows */
+    double place_m[3];
+    uint64_t checksum; /* XXH3-64 of the column, with key and place; torn or foreign slots have another */
+};
+
+static size_t slot_bytes(const struct distance_cache *cache)
+{
+    return sizeof(struct slot) + cache->length * sizeof(float);
+}
+
+static off_t slot_at(const struct distance_cache *cache, size_t slot)
+{
+    return (off_t)(slot * slot_bytes(cache));
+}
+
+static uint64_t checksum_of(const struct distance_cache *cache, size_t place, const float *distances_m)
+{
+    uint64_t seed = XXH3_64bits_withSeed(cache->places_m[place], sizeof(cache->places_m[place]), cache->key);
+    return XXH3_64bits_withSeed(distances_m, cache->length * sizeof(*distances_m), seed);
+}
+
+/* Which place each slot belongs to; the others get the free slots, and then new ones. */
+static void deal_slots(struct distance_cache *cache)
+{
+    struct stat st;
+    size_t there = fstat(cache->fd, &st) == 0 ? (size_t)st.st_size / slot_bytes(cache) : 0, next = 0;
+    char *taken = mem_array(there, 1);
+    for (size_t i = 0; i < there; i++) {
+        struct slot slot;
+        if (!file_read(cache->fd, &slot, sizeof(slot), slot_at(cache, i)))
+            continue;
+        for (size_t p = 0; p < cache->count && !taken[i]; p++)
+            if (cache->slots[p] == SIZE_MAX && memcmp(slot.place_m, cache->places_m[p], sizeof(slot.place_m)) == 0) {
+                cache->slots[p] = i;
+                taken[i] = 1;
+            }
+    }
+    for (size_t p = 0; p < cache->count; p++) {
+        if (cache->slots[p] != SIZE_MAX)
+            continue;
+        while (next < there && taken[next])
+            next++;
+        cache->slots[p] = next++;
+    }
+    mem_free(taken);
+}
+
+void distance_cache_open(struct distance_cache *cache, const char *folder, uint64_t key, size_t length, const double (*places_m)[3],
+                         size_t count)
+{
+    char *path = folder_path(folder, key, FOLDER_DISTANCES);
+    *cache = (struct distance_cache){ .key = key, .length = length, .places_m = places_m, .count = count };
+    cache->fd = open(path, O_RDWR | O_CREAT | O_CLOEXEC, 0666);
+    cache->may_write = cache->fd >= 0;
+    cache->slots = mem_array(count, sizeof(*cache->slots));
+    for (size_t p = 0; p < count; p++)
+        cache->slots[p] = SIZE_MAX;
+    deal_slots(cache); /* of a file that cannot be opened: none is there */
+    mem_free(path);
+}
+
+void distance_cache_close(struct distance_cache *cache)
+{
+    if (!cache->slots)
+        return;
+    if (cache->fd >= 0)
+        close(cache->fd);
+    mem_free(cache->slots);
+    *cache = (struct distance_cache){ 0 };
+}
+
+static bool fetch(void *arg, size_t source, float *distances_m)
+{
+    struct distance_cache *cache = arg;
+    struct slot slot;
+    off_t at = slot_at(cache, cache->slots[source]);
+    bool good = file_read(cache->fd, &slot, sizeof(slot), at) && memcmp(slot.place_m, cache->places_m[source], sizeof(slot.place_m)) == 0 &&
+                file_read(cache->fd, distances_m, cache->length * sizeof(*distances_m), at + (off_t)sizeof(slot)) &&
+                slot.checksum == checksum_of(cache, source, distances_m);
+    cache->kept += good;
+    return good;
+}
+
+static void keep(void *arg, size_t source, const float *distances_m)
+{
+    struct distance_cache *cache = arg;
+    struct slot slot = { .checksum = checksum_of(cache, source, distances_m) };
+    off_t at = slot_at(cache, cache->slots[source]);
+    memcpy(slot.place_m, cache->places_m[source], sizeof(slot.place_m));
+    if (!cache->may_write || !file_write(cache->fd, &slot, sizeof(slot), at) ||
+        !file_write(cache->fd, distances_m, cache->length * sizeof(*distances_m), at + (off_t)sizeof(slot)))
+        cache->may_write = false; /* what is there of it has another checksum */
+}
+
+struct surface_columns distance_cache_for_surface(struct distance_cache *cache)
+{
+    return (struct surface_columns){ fetch, keep, cache };
+}

@@ -1,0 +1,265 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Keeping the folder of prepared files. */
+#include "preprocess/cache/folder.h"
+
+#include <dirent.h>
+#include <errno.h>
+#include <fcntl.h>
+#include <inttypes.h>
+#include <jansson.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/file.h>
+#include <sys/mman.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "base/atomic_file.h"
+#include "base/mem.h"
+#include "base/text.h"
+
+#define KEY_DIGITS 16
+#define MANIFEST "manifest.json"
+#define LOCK "lock" /* the number of the process that has it, or had it last */
+#define AGAIN_US 50000
+#define ASSET ".asset"
+#define REPORT ".report.json"
+#define REPORT_MAX_BYTES ((size_t)1 << 20)
+#define MANIFEST_MAX_BYTES ((size_t)64 << 20)
+
+char *folder_file_name(uint64_t key)
+{
+    return mem_printf("%016" PRIx64 ASSET, key);
+}
+
+char *folder_path(const char *folder, uint64_t key, const char *ending)
+{
+    return mem_printf("%s/%016" PRIx64 "%s", folder, key, ending);
+}
+
+/* Of the file with the lock, if it says. */
+static long holder_of(int fd)
+{
+    char text[32] = "";
+    ssize_t got = pread(fd, text, sizeof(text) - 1, 0);
+    return got > 0 ? strtol(text, NULL, 10) : 0;
+}
+
+int folder_lock(const char *folder, struct log *log, const atomic_bool *stop)
+{
+    char *path = mem_printf("%s/" LOCK, folder), own[32];
+    int fd = open(path, O_RDWR | O_CREAT | O_CLOEXEC, 0666), status = fd < 0 ? -1 : flock(fd, LOCK_EX | LOCK_NB);
+    if (fd >= 0 && status != 0 && errno == EWOULDBLOCK)
+        log_warn(log, "%s: process %ld prepares into it; waiting until it is done", folder, holder_of(fd));
+    while (fd >= 0 && status != 0 && errno == EWOULDBLOCK && !(stop && atomic_load(stop))) {
+        usleep(AGAIN_US);
+        status = flock(fd, LOCK_EX | LOCK_NB);
+    }
+    int length = snprintf(own, sizeof(own), "%-10ld\n", (long)getpid());
+    if (status == 0 && pwrite(fd, own, (size_t)length, 0) != length)
+        log_warn(log, "%s: %s", path, strerror(errno));
+    if (fd >= 0 && status != 0) {
+        close(fd);
+        fd = -1;
+    }
+    mem_free(path);
+    return fd;
+}
+
+int folder_open(struct folder_file *file, const char *folder, uint64_t key, char why[200])
+{
+    struct stat st;
+    char *path = folder_path(folder, key, ASSET);
+    int fd = open(path, O_RDONLY | O_CLOEXEC), result = -1;
+    *file = (struct folder_file){ 0 };
+    mem_free(path);
+    if (fd < 0 && errno == ENOENT)
+        return 0;
+    if (fd < 0 || fstat(fd, &st) != 0) {
+        snprintf(why, 200, "%s", strerror(errno));
+        goto done;
+    }
+    if (!S_ISREG(st.st_mode) || st.st_size == 0) {
+        snprintf(why, 200, "%s", S_ISREG(st.st_mode) ? "truncated: 0 bytes" : "not a file");
+        goto done;
+    }
+    file->size = (size_t)st.st_size;
+    file->bytes = mmap(NULL, file->size, PROT_READ, MAP_PRIVATE, fd, 0);
+    if (file->bytes == MAP_FAILED) {
+        file->bytes = NULL;
+        snprintf(why, 200, "%s", strerror(errno));
+        goto done;
+    }
+    if (!asset_view_init(&file->view, file->bytes, file->size, why))
+        goto done;
+    if (file->view.header->key != key) {
+        snprintf(why, 200, "holds key %016" PRIx64, file->view.header->key);
+        goto done;
+    }
+    result = 1;
+done:
+    if (fd >= 0)
+        close(fd);
+    if (result < 0)
+        folder_close(file);
+    return result;
+}
+
+void folder_close(struct folder_file *file)
+{
+    if (file->bytes)
+        munmap(file->bytes, file->size);
+    *file = (struct folder_file){ 0 };
+}
+
+int folder_draft(struct folder_draft *draft, const char *folder, uint64_t key, size_t size)
+{
+    char *path = folder_path(folder, key, ASSET);
+    *draft = (struct folder_draft){ .size = size };
+    int status = -atomic_file_begin(&draft->file, path, 0666);
+    mem_free(path);
+    if (status == 0)
+        status = posix_fallocate(draft->file.fd, 0, (off_t)size);
+    if (status == 0) {
+        draft->bytes = mmap(NULL, size, PROT_READ | PROT_WRITE, MAP_SHARED, draft->file.fd, 0);
+        status = draft->bytes == MAP_FAILED ? errno : 0;
+        draft->bytes = status ? NULL : draft->bytes;
+    }
+    if (status != 0)
+        folder_draft_close(draft);
+    return -status;
+}
+
+void folder_draft_send(const struct folder_draft *draft)
+{
+    sync_file_range(draft->file.fd, 0, (off_t)draft->size, SYNC_FILE_RANGE_WRITE); /* where it cannot, all is written in folder_put */
+}
+
+int folder_put(struct folder_draft *draft, const char *folder, uint64_t key, const char *report)
+{
+    char *path = folder_path(folder, key, REPORT);
+    int status = report ? atomic_file_put(path, report, strlen(report)) : 0;
+    if (status == 0 && msync(draft->bytes, draft->size, MS_SYNC) != 0)
+        status = -errno;
+    if (status == 0)
+        status = atomic_file_commit(&draft->file, false);
+    mem_free(path);
+    return status;
+}
+
+void folder_draft_close(struct folder_draft *draft)
+{
+    if (draft->bytes)
+        munmap(draft->bytes, draft->size);
+    atomic_file_abandon(&draft->file);
+    *draft = (struct folder_draft){ 0 };
+}
+
+char *folder_report(const char *folder, uint64_t key)
+{
+    size_t size;
+    char *path = folder_path(folder, key, REPORT), *text = text_read_file(path, REPORT_MAX_BYTES, &size);
+    mem_free(path);
+    return text;
+}
+
+static void add_surface(json_t *asset, const char *folder, uint64_t key)
+{
+    char *path = folder_path(folder, key, FOLDER_SURFACE);
+    if (access(path, R_OK) == 0)
+        json_object_set_new(asset, "surface", json_string(strrchr(path, '/') + 1));
+    mem_free(path);
+}
+
+static char *manifest_text(const char *folder, const struct folder_entry *entries, size_t count)
+{
+    json_t *assets = json_array(), *root = json_pack("{s:i, s:o}", "format", 2, "assets", assets);
+    for (size_t i = 0; i < count; i++) {
+        char key[KEY_DIGITS + 1], recipe[KEY_DIGITS + 1], *file = folder_file_name(entries[i].key);
+        snprintf(key, sizeof(key), "%016" PRIx64, entries[i].key);
+        snprintf(recipe, sizeof(recipe), "%016" PRIx64, entries[i].recipe);
+        json_t *placement = json_array(), *tags = json_array();
+        for (size_t n = 0; n < 16; n++)
+            json_array_append_new(placement, json_real(entries[i].placement[n]));
+        for (size_t t = 0; t < entries[i].tag_count; t++)
+            json_array_append_new(tags, json_string(entries[i].tags[t]));
+        json_t *asset = json_pack("{s:s, s:s, s:s, s:s, s:o, s:o}", "id", entries[i].id, "file", file, "key", key, "recipe", recipe,
+                                  "placement", placement, "tags", tags);
+        json_t *missing = entries[i].missing ? json_string(entries[i].missing) : NULL;
+        if (entries[i].missing)
+            json_object_set_new(asset, "missing", missing ? missing : json_string("it cannot be prepared"));
+        add_surface(asset, folder, entries[i].geometry_key);
+        json_array_append_new(assets, asset);
+        mem_free(file);
+    }
+    char *text = json_dumps(root, JSON_COMPACT);
+    json_decref(root);
+    return text;
+}
+
+static const struct kind { /* of files, beside the manifest */
+    const char *ending;
+    size_t key; /* which one in an entry */
+} kinds[] = {
+    { ASSET, offsetof(struct folder_entry, key) },
+    { REPORT, offsetof(struct folder_entry, key) },
+    { FOLDER_GEOMETRY, offsetof(struct folder_entry, geometry_key) },
+    { FOLDER_SURFACE, offsetof(struct folder_entry, geometry_key) },
+    { FOLDER_SAMPLES, offsetof(struct folder_entry, geometry_key) },
+    { FOLDER_DISTANCES, offsetof(struct folder_entry, distances_key) },
+    { FOLDER_SUBDIVISION, offsetof(struct folder_entry, distances_key) },
+};
+
+static bool named(const char *name, const struct kind *kind, const struct folder_entry *entries, size_t count)
+{
+    uint64_t key = strtoull(name, NULL, 16);
+    for (size_t i = 0; i < count; i++)
+        if (*(const uint64_t *)((const char *)&entries[i] + kind->key) == key)
+            return true;
+    return false;
+}
+
+/* 16 hexadecimal digits and the ending; *whole: nothing behind, else what an interrupted write left. */
+static bool is_name(const char *name, const char *ending, bool *whole)
+{
+    if (strspn(name, "0123456789abcdef") != KEY_DIGITS || strncmp(name + KEY_DIGITS, ending, strlen(ending)) != 0)
+        return false;
+    const char *rest = name + KEY_DIGITS + strlen(ending);
+    *whole = rest[0] == 0;
+    return *whole || (strlen(rest) > 4 && strcmp(rest + strlen(rest) - 4, ".new") == 0);
+}
+
+static void remove_unnamed(const char *folder, const struct folder_entry *entries, size_t count, size_t *removed)
+{
+    DIR *dir = opendir(folder);
+    const struct dirent *entry;
+    while (dir && (entry = readdir(dir)) != NULL) {
+        size_t kind = 0;
+        bool whole;
+        while (kind < sizeof(kinds) / sizeof(*kinds) && !is_name(entry->d_name, kinds[kind].ending, &whole))
+            kind++;
+        if (kind == sizeof(kinds) / sizeof(*kinds) || (whole && named(entry->d_name, &kinds[kind], entries, count)))
+            continue;
+        if (unlinkat(dirfd(dir), entry->d_name, 0) == 0)
+            *removed += kind == 0;
+    }
+    if (dir)
+        closedir(dir);
+}
+
+int folder_finish(const char *folder, const struct folder_entry *entries, size_t count, size_t *removed)
+{
+    char *path = mem_printf("%s/" MANIFEST, folder), *text = manifest_text(folder, entries, count);
+    size_t size = 0;
+    char *old = text_read_file(path, MANIFEST_MAX_BYTES, &size);
+    int status = text ? 0 : -ENOMEM;
+    if (text && (!old || size != strlen(text) || memcmp(old, text, size) != 0))
+        status = atomic_file_put(path, text, strlen(text));
+    if (status == 0 && removed)
+        remove_unnamed(folder, entries, count, removed);
+    mem_free(old);
+    free(text);
+    mem_free(path);
+    return status;
+}

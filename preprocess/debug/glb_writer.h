@@ -1,0 +1,31 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* GLB files (glTF 2.0) of coloured triangles, lines and points, shown as they are coloured (KHR_materials_unlit). One thread per writer. */
+#ifndef PREPROCESS_DEBUG_GLB_WRITER_H
+#define PREPROCESS_DEBUG_GLB_WRITER_H
+#include <stdint.h>
+
+#include "base/text.h"
+
+enum glb_mode { GLB_POINTS = 0, GLB_LINES = 1, GLB_TRIANGLES = 4 };
+
+struct glb_shape { /* what one node shows; Y is up */
+    enum glb_mode mode;
+    const float (*positions)[3];
+    const uint16_t (*colors)[4]; /* linear, 65535 is 1; NULL: color is that of all */
+    const uint32_t *indices;     /* NULL: the positions as they come */
+    size_t vertex_count, index_count;
+    uint8_t color[3]; /* sRGB */
+};
+
+struct glb_writer;
+
+struct glb_writer *glb_writer_create(const char *name); /* of the node above all others */
+void glb_writer_destroy(struct glb_writer **writer);
+/* A shape without vertices adds nothing. */
+void glb_writer_add(struct glb_writer *writer, const char *name, const struct glb_shape *shape);
+/* 0 or -errno. */
+int glb_writer_save(struct glb_writer *writer, const char *path);
+
+uint16_t glb_linear(uint8_t srgb);
+
+#endif

@@ -1,0 +1,250 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Distances between surfaces, and the motion between equal ones. */
+#include "preprocess/diff/diff_shape.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "base/mem.h"
+#include "base/vec.h"
+#include "plant/transform.h"
+#include "surface/mesh/bvh.h"
+
+#define SPREAD 100.0     /* places on a triangle are so many to the diagonal */
+#define PLACES_MAX 64    /* along a side of one triangle */
+#define POWER_STEPS 2000 /* of the iteration that finds a turn */
+
+struct diff_shape {
+    struct trimesh mesh;
+    struct bvh *bvh;
+    double low[3], high[3];
+};
+
+/* In order, those that a triangle uses: of a prepared asset the others are of its coarser levels, and lie off the surface. */
+static void take_points(struct trimesh *mesh, const struct diff_side_shape *from)
+{
+    char *used = mem_array(from->vertex_count, 1);
+    uint32_t *number = mem_array(from->vertex_count, sizeof(*number));
+    for (size_t i = 0; i < from->index_count; i++)
+        used[from->indices[i]] = 1;
+    for (size_t v = 0; v < from->vertex_count; v++) {
+        if (!used[v])
+            continue;
+        for (int axis = 0; axis < 3; axis++)
+            mesh->points[mesh->point_count][axis] = (double)from->positions_m[v][axis];
+        number[v] = (uint32_t)mesh->point_count++;
+    }
+    for (size_t i = 0; i < from->index_count; i++)
+        mesh->tris[i / 3][i % 3] = number[from->indices[i]];
+    mem_free(used);
+    mem_free(number);
+}
+
+struct diff_shape *diff_shape_create(const struct diff_side_shape *from)
+{
+    struct diff_shape *shape = mem_new(sizeof(*shape));
+    struct trimesh *mesh = &shape->mesh;
+    mesh->points = mem_array(from->vertex_count, sizeof(*mesh->points));
+    mesh->tris = mem_array(from->index_count / 3, sizeof(*mesh->tris));
+    mesh->tri_count = from->index_count / 3;
+    take_points(mesh, from);
+    for (int axis = 0; axis < 3; axis++) {
+        shape->low[axis] = INFINITY;
+        shape->high[axis] = -INFINITY;
+        for (size_t v = 0; v < mesh->point_count; v++) {
+            shape->low[axis] = min_of(shape->low[axis], mesh->points[v][axis]);
+            shape->high[axis] = max_of(shape->high[axis], mesh->points[v][axis]);
+        }
+    }
+    shape->bvh = bvh_create(mesh);
+    return shape;
+}
+
+void diff_shape_destroy(struct diff_shape **shape)
+{
+    if (!*shape)
+        return;
+    bvh_destroy(&(*shape)->bvh);
+    trimesh_finish(&(*shape)->mesh);
+    mem_free(*shape);
+    *shape = NULL;
+}
+
+void diff_shape_box(const struct diff_shape *shape, double low_m[3], double high_m[3])
+{
+    memcpy(low_m, shape->low, sizeof(shape->low));
+    memcpy(high_m, shape->high, sizeof(shape->high));
+}
+
+double diff_shape_diagonal(const struct diff_shape *shape)
+{
+    return vec_distance(shape->low, shape->high);
+}
+
+double diff_shape_nearest(const struct diff_shape *shape, const double point_m[3], double place_m[3])
+{
+    struct bvh_place at;
+    bvh_nearest(shape->bvh, point_m, INFINITY, NULL, NULL, &at);
+    memcpy(place_m, at.point, sizeof(at.point));
+    return at.distance_m;
+}
+
+/* --- how far apart ---------------------------------------------------------------------------------------------------------------- */
+
+struct search {
+    const struct diff_shape *to;
+    const double *motion;
+    double worst_m, enough_m;
+};
+
+static bool try_place(struct search *search, const double p[3])
+{
+    struct bvh_place at;
+    double q[3];
+    transform_point(search->motion, p, q);
+    bvh_nearest(search->to->bvh, q, INFINITY, NULL, NULL, &at);
+    search->worst_m = max_of(search->worst_m, at.distance_m);
+    return search->enough_m > 0 && search->worst_m > search->enough_m;
+}
+
+/* Places in rows parallel to one side, the rows closer together the longer the triangle. True: enough. */
+static bool try_triangle(struct search *search, const double *a, const double *b, const double *c, double spacing_m)
+{
+    double longest_m = max_of(vec_distance(a, b), max_of(vec_distance(b, c), vec_distance(c, a)));
+    int n = (int)min_of(ceil(longest_m / spacing_m), PLACES_MAX);
+    for (int i = 0; i < n; i++)
+        for (int j = 0; i + j < n; j++) {
+            double p[3], u = (i + 1 / 3.0) / n, v = (j + 1 / 3.0) / n;
+            for (int axis = 0; axis < 3; axis++)
+                p[axis] = a[axis] + u * (b[axis] - a[axis]) + v * (c[axis] - a[axis]);
+            if (try_place(search, p))
+                return true;
+        }
+    return false;
+}
+
+static double one_way(const struct diff_shape *from, const struct diff_shape *to, const double motion[16], double enough_m)
+{
+    struct search search = { .to = to, .motion = motion, .enough_m = enough_m };
+    const struct trimesh *mesh = &from->mesh;
+    double spacing_m = max_of(diff_shape_diagonal(from) / SPREAD, 1e-9);
+    bool enough = false;
+    for (size_t v = 0; v < mesh->point_count && !enough; v++)
+        enough = try_place(&search, mesh->points[v]);
+    for (size_t t = 0; t < mesh->tri_count && !enough; t++)
+        enough = try_triangle(&search, mesh->points[mesh->tris[t][0]], mesh->points[mesh->tris[t][1]], mesh->points[mesh->tris[t][2]],
+                              spacing_m);
+    return search.worst_m;
+}
+
+double diff_shape_apart(const struct diff_shape *a, const struct diff_shape *b, const double b_to_a[16], double enough_m)
+{
+    double a_to_b[16], first_m = one_way(b, a, b_to_a, enough_m);
+    if ((enough_m > 0 && first_m > enough_m) || !transform_invert(b_to_a, a_to_b))
+        return first_m;
+    return max_of(first_m, one_way(a, b, a_to_b, enough_m));
+}
+
+/* --- motions ------------------------------------------------------------------------------------------------------------------------ */
+
+static void middle_of(const struct trimesh *mesh, double middle[3])
+{
+    memset(middle, 0, 3 * sizeof(*middle));
+    for (size_t v = 0; v < mesh->point_count; v++)
+        for (int axis = 0; axis < 3; axis++)
+            middle[axis] += mesh->points[v][axis] / (double)mesh->point_count;
+}
+
+/* Horn 1987: the turn that takes b's points to a's is the eigenvector of this matrix with the largest eigenvalue, as a quaternion. */
+static void horn_matrix(const struct trimesh *a, const struct trimesh *b, const double am[3], const double bm[3], double n[4][4])
+{
+    double s[3][3] = { { 0 } };
+    for (size_t v = 0; v < a->point_count; v++)
+        for (int i = 0; i < 3; i++)
+            for (int j = 0; j < 3; j++)
+                s[i][j] += (b->points[v][i] - bm[i]) * (a->points[v][j] - am[j]);
+    const double m[4][4] = {
+        { s[0][0] + s[1][1] + s[2][2], s[1][2] - s[2][1], s[2][0] - s[0][2], s[0][1] - s[1][0] },
+        { s[1][2] - s[2][1], s[0][0] - s[1][1] - s[2][2], s[0][1] + s[1][0], s[2][0] + s[0][2] },
+        { s[2][0] - s[0][2], s[0][1] + s[1][0], -s[0][0] + s[1][1] - s[2][2], s[1][2] + s[2][1] },
+        { s[0][1] - s[1][0], s[2][0] + s[0][2], s[1][2] + s[2][1], -s[0][0] - s[1][1] + s[2][2] },
+    };
+    memcpy(n, m, sizeof(m));
+}
+
+/* Power iteration; shifted, so that the largest eigenvalue is also the largest by amount. */
+static void largest_eigenvector(double n[4][4], double q[4])
+{
+    double shift = 0;
+    for (int i = 0; i < 4; i++)
+        for (int j = 0; j < 4; j++)
+            shift += fabs(n[i][j]);
+    for (int i = 0; i < 4; i++) {
+        n[i][i] += shift;
+        q[i] = 0.5 + 0.1 * i;
+    }
+    for (int step = 0; step < POWER_STEPS; step++) {
+        double next[4] = { 0 }, length = 0;
+        for (int i = 0; i < 4; i++) {
+            for (int j = 0; j < 4; j++)
+                next[i] += n[i][j] * q[j];
+            length += next[i] * next[i];
+        }
+        length = sqrt(length);
+        for (int i = 0; i < 4; i++)
+            q[i] = length > 0 ? next[i] / length : q[i];
+    }
+}
+
+bool diff_shape_motion(const struct diff_shape *a, const struct diff_shape *b, double b_to_a[16])
+{
+    double am[3], bm[3], n[4][4], q[4];
+    if (a->mesh.point_count != b->mesh.point_count || a->mesh.point_count == 0)
+        return false;
+    middle_of(&a->mesh, am);
+    middle_of(&b->mesh, bm);
+    horn_matrix(&a->mesh, &b->mesh, am, bm, n);
+    largest_eigenvector(n, q);
+    const double w = q[0], x = q[1], y = q[2], z = q[3];
+    const double turn[16] = { 1 - 2 * (y * y + z * z),
+                              2 * (x * y + w * z),
+                              2 * (x * z - w * y),
+                              0,
+                              2 * (x * y - w * z),
+                              1 - 2 * (x * x + z * z),
+                              2 * (y * z + w * x),
+                              0,
+                              2 * (x * z + w * y),
+                              2 * (y * z - w * x),
+                              1 - 2 * (x * x + y * y),
+                              0,
+                              0,
+                              0,
+                              0,
+                              1 };
+    double turned[3];
+    memcpy(b_to_a, turn, sizeof(turn));
+    transform_point(turn, bm, turned);
+    for (int axis = 0; axis < 3; axis++)
+        b_to_a[12 + axis] = am[axis] - turned[axis];
+    return true;
+}
+
+double diff_shape_moved(const struct diff_shape *shape, const double motion[16])
+{
+    double most_m = 0;
+    for (int corner = 0; corner < 8; corner++) {
+        double p[3], q[3];
+        for (int axis = 0; axis < 3; axis++)
+            p[axis] = corner >> axis & 1 ? shape->high[axis] : shape->low[axis];
+        transform_point(motion, p, q);
+        most_m = max_of(most_m, vec_distance(p, q));
+    }
+    return most_m;
+}
+
+double diff_turned_deg(const double motion[16])
+{
+    double cosine = (motion[0] + motion[5] + motion[10] - 1) / 2;
+    return acos(min_of(max_of(cosine, -1), 1)) * 180 / M_PI;
+}

@@ -1,0 +1,387 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Cutting an asset out of a model. */
+#include "preprocess/geometry/geometry.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/mem.h"
+#include "plant/nodes.h"
+#include "plant/transform.h"
+#include "preprocess/geometry/geometry_impl.h"
+
+#define MAX_TRIANGLES 50000000ull /* of one asset */
+#define MAX_SIZE_M 1e7
+#define SAME_PLACE_M 1e-3 /* nodes of one name that are no farther apart are as good as one */
+#define SHOWN_NODES 6
+#define MIN_SIZE_M 1e-6 /* smaller is a wrong unit; and squares of squares of lengths have to be numbers */
+
+/* --- which nodes --------------------------------------------------------------------------------------------------------- */
+
+/* The nodes as patterns see them. Free with mem_free. */
+static struct model_node *nodes_of(const struct gltf_model *model)
+{
+    struct model_node *nodes = mem_array(model->node_count, sizeof(*nodes));
+    for (uint32_t i = 0; i < model->node_count; i++) {
+        const struct gltf_node *node = &model->nodes[i];
+        bool instanced = node->mesh < 0 && i + 1 < node->end && node[1].number == node->number;
+        int mesh = instanced ? node[1].mesh : node->mesh;
+        nodes[i] = (struct model_node){ .name = node->name,
+                                        .mesh = mesh >= 0 && model->meshes[mesh].name ? model->meshes[mesh].name : "",
+                                        .parent = node->parent,
+                                        .end = node->end,
+                                        .number = node->number };
+    }
+    return nodes;
+}
+
+/* Which nodes belong to the asset. NULL: why says that a pattern matches none. Free with mem_free. */
+static bool *taken_nodes(const struct gltf_model *model, const char *patterns, char *why)
+{
+    struct model_node *nodes = nodes_of(model);
+    bool *taken = mem_array(model->node_count + 1u, sizeof(*taken));
+    if (!nodes_take(patterns, nodes, model->node_count, taken, why, MODEL_WHY_BYTES)) {
+        mem_free(taken);
+        taken = NULL;
+    }
+    mem_free(nodes);
+    return taken;
+}
+
+static int by_material(const void *a, const void *b)
+{
+    const struct node_primitive *p = a, *q = b;
+    if (p->blend != q->blend)
+        return p->blend - q->blend;
+    if (p->primitive->material != q->primitive->material)
+        return p->primitive->material < q->primitive->material ? -1 : 1;
+    return p->order < q->order ? -1 : 1;
+}
+
+static void add_parts(struct node_primitives *parts, struct geometry *geometry, const struct gltf_model *model,
+                      const struct gltf_node *node)
+{
+    const struct gltf_mesh *mesh = &model->meshes[node->mesh];
+    geometry->skipped_lines += mesh->skipped_lines;
+    geometry->skipped_points += mesh->skipped_points;
+    for (uint32_t i = 0; i < mesh->primitive_count; i++) {
+        const struct gltf_primitive *primitive = &model->primitives[mesh->first_primitive + i];
+        bool blend = primitive->material >= 0 && model->materials[primitive->material].alpha == ASSET_ALPHA_BLEND;
+        mem_grow(&parts->at, &parts->capacity, parts->count + 1, sizeof(*parts->at));
+        parts->at[parts->count] =
+            (struct node_primitive){ .node = node, .primitive = primitive, .order = (uint32_t)parts->count, .blend = blend };
+        parts->count++;
+    }
+}
+
+static bool no_triangles(const struct geometry *geometry, const char *pattern, char *why)
+{
+    return wrong(why, "%s%.120s%s has no triangles (%u primitives of lines and %u of points)", pattern ? "'" : "the model",
+                 pattern ? pattern : "", pattern ? "'" : "", geometry->skipped_lines, geometry->skipped_points);
+}
+
+static uint64_t count_triangles(const struct gltf_model *model, const bool *taken)
+{
+    uint64_t corners = 0;
+    for (uint32_t i = 0; i < model->node_count; i++)
+        corners += taken[i] && model->nodes[i].mesh >= 0 ? model->meshes[model->nodes[i].mesh].index_count : 0;
+    return corners / 3;
+}
+
+uint64_t geometry_triangles(const struct gltf_model *model, const struct geometry_params *params)
+{
+    char why[MODEL_WHY_BYTES];
+    bool *taken = taken_nodes(model, params->nodes, why);
+    uint64_t triangles = taken ? count_triangles(model, taken) : 0;
+    mem_free(taken);
+    return triangles;
+}
+
+bool node_primitives_find(struct node_primitives *parts, struct geometry *geometry, const struct gltf_model *model,
+                          const struct geometry_params *params, char *why)
+{
+    bool *taken = taken_nodes(model, params->nodes, why);
+    if (!taken)
+        return false;
+    uint64_t triangles = count_triangles(model, taken);
+    for (uint32_t i = 0; i < model->node_count && triangles <= MAX_TRIANGLES; i++) {
+        geometry->node_count += taken[i];
+        if (taken[i] && model->nodes[i].mesh >= 0)
+            add_parts(parts, geometry, model, &model->nodes[i]);
+    }
+    mem_free(taken);
+    if (triangles > MAX_TRIANGLES)
+        return wrong(why, "%llu triangles are more than %llu", (unsigned long long)triangles, MAX_TRIANGLES);
+    if (geometry->node_count == 0)
+        return wrong(why, model->node_count ? "no node is left" : "the scene has no node");
+    if (triangles == 0)
+        return no_triangles(geometry, params->nodes, why);
+    qsort(parts->at, parts->count, sizeof(*parts->at), by_material);
+    return true;
+}
+
+/* --- boxes --------------------------------------------------------------------------------------------------------------- */
+
+struct box {
+    double low[3], high[3];
+};
+
+static const struct box empty_box = { { INFINITY, INFINITY, INFINITY }, { -INFINITY, -INFINITY, -INFINITY } };
+
+static void box_add_primitive(struct box *box, const struct gltf_primitive *primitive, const double world[16])
+{
+    for (uint32_t i = 0; i < primitive->vertex_count; i++) { /* there is none that no triangle uses */
+        const float *p = primitive->positions[i];
+        double q[3];
+        transform_point(world, (const double[3]){ (double)p[0], (double)p[1], (double)p[2] }, q);
+        for (int axis = 0; axis < 3; axis++) {
+            box->low[axis] = fmin(box->low[axis], q[axis]);
+            box->high[axis] = fmax(box->high[axis], q[axis]);
+        }
+    }
+}
+
+static bool find_origin(struct geometry *geometry, const struct node_primitives *parts, const struct geometry_params *params, char *why)
+{
+    struct box box = empty_box;
+    for (size_t i = 0; i < parts->count; i++) {
+        double world[16];
+        primitive_world(params, parts->at[i].node, world);
+        box_add_primitive(&box, parts->at[i].primitive, world);
+    }
+    double size_m = 0;
+    for (int axis = 0; axis < 3; axis++) {
+        double side_m = box.high[axis] - box.low[axis];
+        geometry->origin_m[axis] = (box.low[axis] + box.high[axis]) / 2;
+        size_m = fmax(size_m, side_m);
+        if (!isfinite(geometry->origin_m[axis]) || side_m > MAX_SIZE_M)
+            return wrong(why, "its size is %g m along axis %d, more than %g m", side_m, axis, MAX_SIZE_M);
+    }
+    return size_m >= MIN_SIZE_M || wrong(why, "its size is %g m, less than %g m: is its unit right?", size_m, MIN_SIZE_M);
+}
+
+double (*geometry_node_boxes(const struct gltf_model *model, const struct geometry_params *params))[2][3]
+{
+    struct box *boxes = mem_array(model->node_count, sizeof(*boxes));
+    for (uint32_t i = model->node_count; i-- > 0;) {
+        const struct gltf_node *node = &model->nodes[i];
+        struct box own = empty_box;
+        double world[16];
+        primitive_world(params, node, world);
+        for (uint32_t p = 0; node->mesh >= 0 && p < model->meshes[node->mesh].primitive_count; p++)
+            box_add_primitive(&own, &model->primitives[model->meshes[node->mesh].first_primitive + p], world);
+        for (uint32_t child = i + 1; child < node->end; child = model->nodes[child].end)
+            for (int axis = 0; axis < 3; axis++) {
+                own.low[axis] = fmin(own.low[axis], boxes[child].low[axis]);
+                own.high[axis] = fmax(own.high[axis], boxes[child].high[axis]);
+            }
+        boxes[i] = own;
+    }
+    return (double(*)[2][3])boxes;
+}
+
+static void place_of_node(const struct gltf_model *model, const struct geometry_params *params, uint32_t found, double place_m[3])
+{
+    struct box box = empty_box;
+    double world[16];
+    for (uint32_t i = found; i < model->nodes[found].end; i++) {
+        const struct gltf_node *node = &model->nodes[i];
+        primitive_world(params, node, world);
+        for (uint32_t p = 0; node->mesh >= 0 && p < model->meshes[node->mesh].primitive_count; p++)
+            box_add_primitive(&box, &model->primitives[model->meshes[node->mesh].first_primitive + p], world);
+    }
+    primitive_world(params, &model->nodes[found], world);
+    for (int axis = 0; axis < 3; axis++)
+        place_m[axis] = box.low[axis] <= box.high[axis] ? (box.low[axis] + box.high[axis]) / 2 : world[12 + axis];
+}
+
+static bool several_places(const struct gltf_model *model, const char *pattern, const uint32_t *found, size_t count, char *why)
+{
+    char numbers[120] = "";
+    for (size_t i = 0, length = 0; i < count && i < SHOWN_NODES; i++)
+        length += (size_t)snprintf(numbers + length, sizeof(numbers) - length, "%s#%u", i ? ", " : "", model->nodes[found[i]].number);
+    return wrong(why, "the model has %zu nodes '%.200s', in different places (%s%s): name one of them by its number or its path", count,
+                 pattern, numbers, count > SHOWN_NODES ? ", ..." : "");
+}
+
+/* Those inside the asset, or all where none is. */
+static size_t prefer_own(const struct gltf_model *model, const struct geometry_params *params, uint32_t *found, size_t count)
+{
+    char why[MODEL_WHY_BYTES];
+    bool *taken = count > 1 ? taken_nodes(model, params->nodes, why) : NULL;
+    size_t own = 0;
+    for (size_t i = 0; taken && i < count; i++)
+        own += taken[found[i]];
+    for (size_t i = 0, next = 0; own > 0 && i < count; i++)
+        if (taken[found[i]])
+            found[next++] = found[i];
+    mem_free(taken);
+    return own > 0 ? own : count;
+}
+
+bool geometry_node_place(const struct gltf_model *model, const struct geometry_params *params, const char *pattern, double place_m[3],
+                         char why[MODEL_WHY_BYTES])
+{
+    struct model_node *nodes = nodes_of(model);
+    uint32_t *found = mem_array(model->node_count, sizeof(*found));
+    size_t count = nodes_find(pattern, nodes, model->node_count, found, why, MODEL_WHY_BYTES);
+    bool good = count > 0;
+    count = prefer_own(model, params, found, count);
+    if (good)
+        place_of_node(model, params, found[0], place_m);
+    for (size_t i = 1; good && i < count; i++) {
+        double other_m[3];
+        place_of_node(model, params, found[i], other_m);
+        for (int axis = 0; good && axis < 3; axis++)
+            if (!(fabs(other_m[axis] - place_m[axis]) <= SAME_PLACE_M))
+                good = several_places(model, pattern, found, count, why);
+    }
+    mem_free(found);
+    mem_free(nodes);
+    return good;
+}
+
+/* --- putting parts together ------------------------------------------------------------------------------------------------ */
+
+struct room { /* what the arrays of a geometry can hold */
+    size_t positions, normals, texcoords, second_texcoords, colors, indices, primitives;
+    float (*all_texcoords)[2], (*all_second_texcoords)[2];
+    uint8_t (*all_colors)[4];
+    bool any_texcoords, any_second_texcoords, any_colors;
+};
+
+static uint32_t add_name(struct geometry *geometry, const char *name)
+{
+    uint32_t at = (uint32_t)geometry->names.length;
+    text_add_bytes(&geometry->names, name, strlen(name) + 1);
+    return at;
+}
+
+static void append(struct geometry *geometry, struct room *room, const struct primitive_mesh *mesh, const struct node_primitive *part,
+                   uint32_t material, uint32_t name)
+{
+    size_t vertices = geometry->vertex_count + mesh->vertex_count;
+    mem_grow(&geometry->positions_m, &room->positions, vertices, sizeof(*geometry->positions_m));
+    mem_grow(&geometry->normals, &room->normals, vertices, sizeof(*geometry->normals));
+    mem_grow(&room->all_texcoords, &room->texcoords, vertices, sizeof(*room->all_texcoords));
+    mem_grow(&room->all_second_texcoords, &room->second_texcoords, vertices, sizeof(*room->all_second_texcoords));
+    mem_grow(&room->all_colors, &room->colors, vertices, sizeof(*room->all_colors));
+    mem_grow(&geometry->indices, &room->indices, geometry->index_count + mesh->index_count, sizeof(*geometry->indices));
+    mem_grow(&geometry->primitives, &room->primitives, geometry->primitive_count + 1u, sizeof(*geometry->primitives));
+    for (size_t i = 0; i < mesh->vertex_count; i++) {
+        const struct vertex *v = &mesh->vertices[i];
+        size_t at = geometry->vertex_count + i;
+        memcpy(geometry->positions_m[at], v->position, sizeof(v->position));
+        memcpy(geometry->normals[at], v->normal, sizeof(v->normal));
+        memcpy(room->all_texcoords[at], v->texcoord, sizeof(v->texcoord));
+        memcpy(room->all_second_texcoords[at], v->second_texcoord, sizeof(v->second_texcoord));
+        memcpy(room->all_colors[at], v->color, sizeof(v->color));
+    }
+    for (size_t i = 0; i < mesh->index_count; i++)
+        geometry->indices[geometry->index_count + i] = geometry->vertex_count + mesh->indices[i];
+    geometry->primitives[geometry->primitive_count++] = (struct asset_primitive){
+        .first_index = geometry->index_count, .index_count = (uint32_t)mesh->index_count, .material = material, .name = name
+    };
+    geometry->vertex_count = (uint32_t)vertices;
+    geometry->index_count += (uint32_t)mesh->index_count;
+    room->any_texcoords |= part->primitive->texcoords != NULL;
+    room->any_second_texcoords |= part->primitive->second_texcoords != NULL;
+    room->any_colors |= part->primitive->colors != NULL;
+}
+
+/* What a model without materials looks like: grey paint, seen from both sides since nobody vouches for its faces. */
+static const struct asset_material plain_material = {
+    .base_color = { 0.6f, 0.62f, 0.64f, 1 },
+    .roughness = 0.6f,
+    .normal_scale = 1,
+    .occlusion_strength = 1,
+    .alpha_cutoff = 0.5f,
+    .base_color_texture = ASSET_NO_TEXTURE,
+    .metallic_roughness_texture = ASSET_NO_TEXTURE,
+    .normal_texture = ASSET_NO_TEXTURE,
+    .occlusion_texture = ASSET_NO_TEXTURE,
+    .emissive_texture = ASSET_NO_TEXTURE,
+    .double_sided = 1,
+};
+
+/* The asset's number of a model's material: parts come sorted, so it is the last one or a new one. */
+static uint32_t material_number(struct geometry *geometry, const struct gltf_model *model, int material, int *last)
+{
+    if (geometry->material_count && *last == material)
+        return geometry->material_count - 1;
+    struct asset_material *to = &geometry->materials[geometry->material_count];
+    *to = material < 0 ? plain_material : model->materials[material];
+    to->name = add_name(geometry, material < 0 ? "" : model->material_names[material]);
+    *last = material;
+    return geometry->material_count++;
+}
+
+static void *kept_if(bool wanted, void *array)
+{
+    if (!wanted)
+        mem_free(array);
+    return wanted ? array : NULL;
+}
+
+static bool join_parts(struct geometry *geometry, const struct node_primitives *parts, const struct gltf_model *model,
+                       const struct geometry_params *params, char *why)
+{
+    struct room room = { 0 };
+    const struct gltf_node *named = NULL;
+    uint32_t name = 0;
+    int last = -2;
+    bool good = true;
+    geometry->materials = mem_array(model->material_count + 1u, sizeof(*geometry->materials));
+    for (size_t i = 0; good && i < parts->count; i++) {
+        const struct node_primitive *part = &parts->at[i];
+        struct primitive_mesh mesh = { 0 };
+        good = primitive_mesh(&mesh, part, params, geometry);
+        if (good && mesh.index_count) {
+            uint32_t material = material_number(geometry, model, part->primitive->material, &last);
+            if (named != part->node)
+                name = add_name(geometry, part->node->name);
+            named = part->node;
+            append(geometry, &room, &mesh, part, material, name);
+        }
+        primitive_mesh_finish(&mesh);
+    }
+    if (!good)
+        wrong(why, "out of memory");
+    else if (geometry->index_count == 0)
+        good = wrong(why, "none of its %u triangles has an area", geometry->degenerate_triangles);
+    geometry->texcoords = kept_if(room.any_texcoords, room.all_texcoords);
+    geometry->second_texcoords = kept_if(room.any_second_texcoords, room.all_second_texcoords);
+    geometry->colors = kept_if(room.any_colors, room.all_colors);
+    return good;
+}
+
+bool geometry_cut(struct geometry *geometry, const struct gltf_model *model, const struct geometry_params *params,
+                  char why[MODEL_WHY_BYTES])
+{
+    struct node_primitives parts = { 0 };
+    *geometry = (struct geometry){ 0 };
+    bool good = node_primitives_find(&parts, geometry, model, params, why) && find_origin(geometry, &parts, params, why) &&
+                join_parts(geometry, &parts, model, params, why) && geometry_join_textures(geometry, model, why);
+    mem_free(parts.at);
+    if (!good)
+        geometry_finish(geometry);
+    return good;
+}
+
+void geometry_finish(struct geometry *geometry)
+{
+    mem_free(geometry->positions_m);
+    mem_free(geometry->normals);
+    mem_free(geometry->texcoords);
+    mem_free(geometry->second_texcoords);
+    mem_free(geometry->colors);
+    mem_free(geometry->indices);
+    mem_free(geometry->primitives);
+    mem_free(geometry->materials);
+    mem_free(geometry->textures);
+    mem_free(geometry->texels);
+    text_finish(&geometry->names);
+    *geometry = (struct geometry){ 0 };
+}

@@ -1,0 +1,19 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Vertices that lie at one place, whatever their other attributes. */
+#ifndef PREPROCESS_GEOMETRY_WELDED_POSITIONS_H
+#define PREPROCESS_GEOMETRY_WELDED_POSITIONS_H
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+struct welded_positions {
+    uint32_t *of_vertex;
+    float (*positions_m)[3];
+    size_t count;
+};
+
+/* False: out of memory; nothing to finish. */
+bool welded_init(struct welded_positions *welded, const float (*positions_m)[3], size_t vertex_count);
+void welded_finish(struct welded_positions *welded);
+
+#endif

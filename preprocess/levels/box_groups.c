@@ -1,0 +1,146 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Space is halved until the boxes in a cell are few, are one group already, or one of them fills it: it meets all that reach in. A
+   sweep along one axis would compare every two boxes of a plate that stands across it. */
+#include "preprocess/levels/box_groups.h"
+
+#include <math.h>
+#include <stdbool.h>
+#include <string.h>
+
+#include "base/mem.h"
+#include "surface/mesh/trimesh.h"
+
+#define FEW 24        /* boxes that are compared each with each */
+#define MOST_DEPTH 96 /* halvings: 24 bits of each axis, and some */
+
+struct cell {
+    float low_m[3], high_m[3];
+};
+
+static bool meet(const struct box *a, const struct box *b)
+{
+    for (int axis = 0; axis < 3; axis++)
+        if (a->high_m[axis] < b->low_m[axis] || b->high_m[axis] < a->low_m[axis])
+            return false;
+    return true;
+}
+
+static void join_each(const struct box *boxes, const uint32_t *list, size_t count, uint32_t *parent)
+{
+    for (size_t i = 0; i < count; i++)
+        for (size_t j = i + 1; j < count; j++)
+            if (meet(&boxes[list[i]], &boxes[list[j]]))
+                trimesh_join(parent, boxes[list[i]].part, boxes[list[j]].part);
+}
+
+static bool are_one_group(const struct box *boxes, const uint32_t *list, size_t count, uint32_t *parent)
+{
+    uint32_t root = trimesh_root(parent, boxes[list[0]].part);
+    for (size_t i = 1; i < count; i++)
+        if (trimesh_root(parent, boxes[list[i]].part) != root)
+            return false;
+    return true;
+}
+
+/* The cell is no larger than what lies in it. */
+static void tighten(const struct box *boxes, const uint32_t *list, size_t count, struct cell *cell)
+{
+    for (int axis = 0; axis < 3; axis++) {
+        float low = INFINITY, high = -INFINITY;
+        for (size_t i = 0; i < count; i++) {
+            low = fminf(low, boxes[list[i]].low_m[axis]);
+            high = fmaxf(high, boxes[list[i]].high_m[axis]);
+        }
+        cell->low_m[axis] = fmaxf(cell->low_m[axis], low);
+        cell->high_m[axis] = fminf(cell->high_m[axis], high);
+    }
+}
+
+static bool holds(const struct box *box, const float low_m[3], const float high_m[3])
+{
+    for (int axis = 0; axis < 3; axis++)
+        if (box->low_m[axis] > low_m[axis] || box->high_m[axis] < high_m[axis])
+            return false;
+    return true;
+}
+
+/* What one box that fills the cell meets: all in it. Else those that have its middle in common. True: all. */
+static bool join_some(const struct box *boxes, const uint32_t *list, size_t count, const struct cell *cell, uint32_t *parent)
+{
+    float middle_m[3];
+    size_t filler = 0, first = count;
+    for (int axis = 0; axis < 3; axis++)
+        middle_m[axis] = 0.5f * (cell->low_m[axis] + cell->high_m[axis]);
+    while (filler < count && !holds(&boxes[list[filler]], cell->low_m, cell->high_m))
+        filler++;
+    for (size_t i = 0; i < count; i++) {
+        if (filler == count && !holds(&boxes[list[i]], middle_m, middle_m))
+            continue;
+        first = first == count ? i : first;
+        trimesh_join(parent, boxes[list[first]].part, boxes[list[i]].part);
+    }
+    return filler < count;
+}
+
+/* The axis across which halving leaves fewest boxes in both halves; -1: none is a gain. */
+static int best_axis(const struct box *boxes, const uint32_t *list, size_t count, const struct cell *cell)
+{
+    int best = -1;
+    size_t least = 2 * count;
+    for (int axis = 0; axis < 3; axis++) {
+        float middle = 0.5f * (cell->low_m[axis] + cell->high_m[axis]);
+        size_t both = 0;
+        if (!(middle > cell->low_m[axis] && middle < cell->high_m[axis]))
+            continue;
+        for (size_t i = 0; i < count; i++)
+            both += (size_t)(boxes[list[i]].low_m[axis] <= middle) + (size_t)(boxes[list[i]].high_m[axis] >= middle);
+        if (both < least) {
+            least = both;
+            best = axis;
+        }
+    }
+    return best;
+}
+
+static void join_in(const struct box *boxes, uint32_t *list, size_t count, struct cell cell, int depth, uint32_t *parent);
+
+static void join_half(const struct box *boxes, const uint32_t *list, size_t count, const struct cell *half, int axis, int depth,
+                      uint32_t *parent)
+{
+    uint32_t *inside = mem_array(count, sizeof(*inside));
+    size_t inside_count = 0;
+    for (size_t i = 0; i < count; i++)
+        if (boxes[list[i]].low_m[axis] <= half->high_m[axis] && boxes[list[i]].high_m[axis] >= half->low_m[axis])
+            inside[inside_count++] = list[i];
+    join_in(boxes, inside, inside_count, *half, depth + 1, parent);
+    mem_free(inside);
+}
+
+/* Two boxes that meet have a place in common, and so both reach into the half that it lies in. */
+static void join_in(const struct box *boxes, uint32_t *list, size_t count, struct cell cell, int depth, uint32_t *parent)
+{
+    if (count < 2 || are_one_group(boxes, list, count, parent))
+        return;
+    tighten(boxes, list, count, &cell);
+    if (join_some(boxes, list, count, &cell, parent) || are_one_group(boxes, list, count, parent))
+        return;
+    int axis = count <= FEW || depth >= MOST_DEPTH ? -1 : best_axis(boxes, list, count, &cell);
+    if (axis < 0) {
+        join_each(boxes, list, count, parent);
+        return;
+    }
+    struct cell lower = cell, upper = cell;
+    lower.high_m[axis] = upper.low_m[axis] = 0.5f * (cell.low_m[axis] + cell.high_m[axis]);
+    join_half(boxes, list, count, &lower, axis, depth, parent);
+    join_half(boxes, list, count, &upper, axis, depth, parent);
+}
+
+void box_groups_join(const struct box *boxes, size_t count, uint32_t *parent)
+{
+    struct cell all = { { -INFINITY, -INFINITY, -INFINITY }, { INFINITY, INFINITY, INFINITY } };
+    uint32_t *list = mem_array(count, sizeof(*list));
+    for (size_t i = 0; i < count; i++)
+        list[i] = (uint32_t)i;
+    join_in(boxes, list, count, all, 0, parent);
+    mem_free(list);
+}

@@ -1,0 +1,265 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Levels from versions: each part in the coarsest version that a level's error allows. */
+#include "preprocess/levels/levels.h"
+
+#include <math.h>
+#include <meshoptimizer.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/mem.h"
+#include "preprocess/levels/levels_impl.h"
+
+#define NEAR_WORTH 0.6      /* of the triangles of the level before, at most; */
+#define FAR_TRIANGLES 20000 /* of those with no more, many instances are drawn in one picture, so these lie closer together: */
+#define FAR_WORTH 0.85      /* likewise, */
+#define STEP 1.3            /* and at so many times its error, at least */
+#define WAIT 1.1            /* times the error, for what else comes until then */
+
+struct making {
+    struct workers *workers;
+    struct welds welds;
+    struct versions versions;
+    struct omission *omissions;
+    char *used;     /* vertices of the level before */
+    char *contrary; /* of each part */
+    /* so far: */
+    uint32_t *version; /* of each part; ABSENT: it is left out */
+    size_t tri_count;
+};
+
+#define ABSENT VERSIONS_MAX
+
+/* --- what happens as the error grows -------------------------------------------------------------------------------------- */
+
+struct event {
+    float error_m; /* that allows it */
+    uint32_t part, version;
+};
+
+static int smallest_first(const void *a, const void *b)
+{
+    const struct event *p = a, *q = b;
+    if (p->error_m != q->error_m)
+        return p->error_m < q->error_m ? -1 : 1;
+    return p->part != q->part ? (p->part < q->part ? -1 : 1) : p->version < q->version ? -1 : p->version > q->version;
+}
+
+static size_t list_events(const struct making *making, struct event *events)
+{
+    double most_m = LEVELS_FARTHEST * making->welds.whole_m;
+    size_t count = 0;
+    for (uint32_t p = 0; p < making->welds.part_count; p++) {
+        for (uint32_t v = 1; v < making->versions.count; v++)
+            if ((double)making->versions.at[v].error_m[p] <= most_m && making->versions.at[v].tris[p] < making->versions.at[v - 1].tris[p])
+                events[count++] = (struct event){ making->versions.at[v].error_m[p], p, v };
+        if ((double)making->omissions[p].from_m <= most_m)
+            events[count++] = (struct event){ making->omissions[p].from_m, p, ABSENT };
+    }
+    qsort(events, count, sizeof(*events), smallest_first);
+    return count;
+}
+
+static size_t tris_of(const struct making *making, uint32_t part)
+{
+    return making->version[part] == ABSENT ? 0 : making->versions.at[making->version[part]].tris[part];
+}
+
+static void let_happen(struct making *making, const struct event *event)
+{
+    if (making->version[event->part] >= event->version)
+        return;
+    making->tri_count -= tris_of(making, event->part);
+    making->version[event->part] = event->version;
+    making->tri_count += tris_of(making, event->part);
+}
+
+/* --- one level ------------------------------------------------------------------------------------------------------------ */
+
+/* From welds to vertices, primitive by primitive in the geometry's order. */
+static void write_level(struct making *making, struct level *level, const uint32_t *welds, size_t count)
+{
+    const struct geometry *g = making->welds.geometry;
+    uint32_t *fill = mem_array(g->primitive_count + 1u, sizeof(*fill));
+    level->indices = mem_array(count, sizeof(*level->indices));
+    level->primitives = mem_array(g->primitive_count, sizeof(*level->primitives));
+    level->index_count = (uint32_t)count;
+    level->whole_count = (uint32_t)count;
+    for (size_t i = 0; i < count; i += 3)
+        fill[making->welds.primitive[welds[i]] + 1] += 3;
+    for (uint32_t p = 0; p < g->primitive_count; p++) {
+        if (fill[p + 1])
+            level->primitives[level->primitive_count++] = (struct asset_primitive){
+                .first_index = fill[p], .index_count = fill[p + 1], .material = g->primitives[p].material, .name = g->primitives[p].name
+            };
+        fill[p + 1] += fill[p];
+    }
+    for (size_t i = 0; i < count; i += 3) {
+        float n[3];
+        uint32_t *at = &fill[making->welds.primitive[welds[i]]];
+        levels_normal(&making->welds, welds + i, n);
+        for (size_t c = 0; c < 3; c++)
+            level->indices[(*at)++] = levels_vertex(&making->welds, making->used, welds[i + c], n, false);
+    }
+    memset(making->used, 0, g->vertex_count);
+    for (uint32_t i = 0; i < level->index_count; i++)
+        making->used[level->indices[i]] = 1;
+    for (uint32_t p = 0; p < level->primitive_count; p++)
+        meshopt_optimizeVertexCache(level->indices + level->primitives[p].first_index, level->indices + level->primitives[p].first_index,
+                                    level->primitives[p].index_count, g->vertex_count);
+    mem_free(fill);
+}
+
+/* What of a part that is left out lay on others is seen in their place. */
+static float error_of_lost(const struct making *making, const uint32_t *welds, size_t count, double expected_m)
+{
+    const struct welds *of = &making->welds;
+    struct deviation level;
+    float *apart_m = mem_array(of->part_count, sizeof(*apart_m)), most_m = 0;
+    char *lost = mem_array(of->part_count, 1), any = 0;
+    for (uint32_t p = 0; p < of->part_count; p++)
+        any |= lost[p] = making->version[p] == ABSENT && !making->omissions[p].alone;
+    if (any) {
+        deviation_init(&level, (const float(*)[3])of->positions_m, of->first_there, of->part, of->part_count, welds, count / 3);
+        deviation_measure_lost(&making->versions.first, &level, lost, expected_m, apart_m, making->workers);
+        deviation_finish(&level);
+    }
+    for (uint32_t p = 0; p < of->part_count; p++)
+        most_m = fmaxf(most_m, apart_m[p]);
+    mem_free(apart_m);
+    mem_free(lost);
+    return most_m;
+}
+
+static float error_of(const struct making *making, const uint32_t *welds, size_t count)
+{
+    float most_m = 0;
+    for (uint32_t p = 0; p < making->welds.part_count; p++)
+        if (making->version[p] != ABSENT)
+            most_m = fmaxf(most_m, making->versions.at[making->version[p]].error_m[p]);
+        else if (making->omissions[p].alone)
+            most_m = fmaxf(most_m, making->omissions[p].from_m);
+    return fmaxf(most_m, error_of_lost(making, welds, count, (double)most_m));
+}
+
+/* Returns how far the parts err of which faces were moved. */
+static float face_parts(const struct making *making, uint32_t *welds, size_t count)
+{
+    const struct welds *of = &making->welds;
+    float *most_m = mem_array(of->part_count, sizeof(*most_m)), *apart_m = mem_array(of->part_count, sizeof(*apart_m)), error_m = 0;
+    char *moved = mem_array(of->part_count, 1);
+    for (uint32_t p = 0; p < of->part_count; p++)
+        most_m[p] = making->version[p] == ABSENT ? 0 : making->versions.at[making->version[p]].error_m[p];
+    if (levels_face(of, making->used, making->contrary, most_m, welds, count, moved)) {
+        struct deviation level;
+        const struct deviation *first = &making->versions.first;
+        deviation_init(&level, (const float(*)[3])of->positions_m, of->first_there, of->part, of->part_count, welds, count / 3);
+        for (uint32_t p = 0; p < of->part_count; p++)
+            error_m = fmaxf(error_m, moved[p] ? most_m[p] : 0);
+        deviation_measure(&level, first, moved, (double)error_m, apart_m, making->workers);
+        deviation_measure(first, &level, moved, (double)error_m, apart_m, making->workers);
+        deviation_finish(&level);
+        for (uint32_t p = 0; p < of->part_count; p++)
+            error_m = fmaxf(error_m, apart_m[p]);
+    }
+    mem_free(most_m);
+    mem_free(apart_m);
+    mem_free(moved);
+    return error_m;
+}
+
+static void add_level(struct making *making, struct levels *levels)
+{
+    uint32_t *welds = mem_array(3 * making->tri_count, sizeof(*welds));
+    size_t count = 0;
+    for (uint32_t v = 0; v < making->versions.count; v++) {
+        const struct version *version = &making->versions.at[v];
+        for (size_t i = 0; i < version->count; i += 3)
+            if (making->version[making->welds.part[version->welds[i]]] == v) {
+                memcpy(welds + count, version->welds + i, 3 * sizeof(*welds));
+                count += 3;
+            }
+    }
+    struct level *level = &levels->at[levels->count++];
+    float moved_m = face_parts(making, welds, count);
+    write_level(making, level, welds, count);
+    level->error_m = fmaxf(fmaxf(error_of(making, welds, count), moved_m), (level - 1)->error_m);
+    mem_free(welds);
+}
+
+/* --- all ------------------------------------------------------------------------------------------------------------------ */
+
+static void copy_finest(struct level *level, const struct geometry *g)
+{
+    *level = (struct level){ .index_count = g->index_count, .whole_count = g->index_count, .primitive_count = g->primitive_count };
+    level->indices = mem_array(g->index_count, sizeof(*level->indices));
+    level->primitives = mem_array(g->primitive_count, sizeof(*level->primitives));
+    memcpy(level->indices, g->indices, g->index_count * sizeof(*level->indices));
+    memcpy(level->primitives, g->primitives, g->primitive_count * sizeof(*level->primitives));
+}
+
+/* Whether what there is so far is a level that is worth its room after the last one. */
+static bool is_worth(const struct making *making, const struct level *last, float error_m)
+{
+    double before = (double)(last->index_count / 3), now = (double)making->tri_count;
+    return now <= NEAR_WORTH * before || (before <= FAR_TRIANGLES && now <= FAR_WORTH * before && error_m >= (float)STEP * last->error_m);
+}
+
+static void make_coarse(struct making *making, struct levels *levels)
+{
+    struct event *events = mem_array(making->welds.part_count * (making->versions.count + 1), sizeof(*events));
+    size_t count = list_events(making, events);
+    making->used = mem_array(making->welds.geometry->vertex_count, 1);
+    making->version = mem_array(making->welds.part_count, sizeof(*making->version));
+    memset(making->used, 1, making->welds.geometry->vertex_count);
+    making->contrary = mem_array(making->welds.part_count, 1);
+    levels_find_contrary(&making->welds, making->contrary);
+    for (size_t i = 0; i < count && levels->count < LEVELS_MAX;) {
+        let_happen(making, &events[i++]);
+        if (!is_worth(making, &levels->at[levels->count - 1], events[i - 1].error_m))
+            continue;
+        float until_m = (float)WAIT * events[i - 1].error_m;
+        while (i < count && events[i].error_m <= until_m)
+            let_happen(making, &events[i++]);
+        if (making->tri_count == 0)
+            break;
+        add_level(making, levels);
+    }
+    mem_free(events);
+}
+
+bool levels_make(struct levels *levels, const struct geometry *geometry, struct workers *workers)
+{
+    struct making making = { .workers = workers, .tri_count = geometry->index_count / 3 };
+    *levels = (struct levels){ .count = 1 };
+    bool good = welds_init(&making.welds, geometry);
+    if (good) {
+        copy_finest(&levels->at[0], geometry);
+        making.omissions = mem_array(making.welds.part_count, sizeof(*making.omissions));
+        versions_make(&making.versions, &making.welds, workers);
+        levels->repeated = making.tri_count - making.versions.first.mesh.tri_count;
+        omissions_find(making.omissions, &making.welds, workers);
+        make_coarse(&making, levels);
+    }
+    versions_finish(&making.versions);
+    welds_finish(&making.welds);
+    mem_free(making.omissions);
+    mem_free(making.used);
+    mem_free(making.contrary);
+    mem_free(making.version);
+    return good;
+}
+
+void level_finish(struct level *level)
+{
+    mem_free(level->indices);
+    mem_free(level->primitives);
+    *level = (struct level){ 0 };
+}
+
+void levels_finish(struct levels *levels)
+{
+    for (size_t i = 0; i < levels->count; i++)
+        level_finish(&levels->at[i]);
+    *levels = (struct levels){ 0 };
+}

@@ -1,0 +1,169 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Which parts far levels may leave out: bolts in a flange, and what is smaller than a pixel. */
+#include <math.h>
+#include <string.h>
+
+#include "base/mem.h"
+#include "base/vec.h"
+#include "preprocess/levels/box_groups.h"
+#include "preprocess/levels/levels_impl.h"
+#include "surface/mesh/bvh.h"
+
+#define MUCH_LARGER 4.0f /* times: a part that another may lie on */
+#define MOST_PX 8.0f     /* a part that lies on another is left out once it is no larger than so many pixels */
+#define OVER 1.1f        /* times as far as it is from those, it will about err: they err, too, and what comes out is measured */
+#define SMALL 0.1        /* of the whole: larger parts are never left out */
+#define AROUND 4.0f      /* sizes: parts so near to each other are looked at together */
+#define PROBES 4         /* on each edge of a part's triangles */
+
+struct search {
+    const struct welds *welds;
+    struct trimesh mesh;
+    struct bvh *bvh;
+    uint32_t *part;         /* of each triangle */
+    uint32_t *first, *tris; /* of each part: its triangles */
+    struct omission *omissions;
+};
+
+static void list_tris(struct search *search)
+{
+    const struct geometry *g = search->welds->geometry;
+    size_t tris = g->index_count / 3, parts = search->welds->part_count;
+    search->part = mem_array(tris, sizeof(*search->part));
+    search->tris = mem_array(tris, sizeof(*search->tris));
+    search->first = mem_array(parts + 2, sizeof(*search->first));
+    for (size_t k = 0; k < search->welds->count; k++) {
+        const float *p = search->welds->positions_m[k];
+        trimesh_add_point(&search->mesh, (const double[3]){ (double)p[0], (double)p[1], (double)p[2] });
+    }
+    for (uint32_t t = 0; t < tris; t++) {
+        const uint32_t *v = g->indices + 3 * (size_t)t, *of = search->welds->of_vertex;
+        trimesh_add_tri(&search->mesh, of[v[0]], of[v[1]], of[v[2]], t);
+        search->part[t] = search->welds->part[of[v[0]]];
+        search->first[search->part[t] + 2]++;
+    }
+    for (size_t p = 2; p < parts + 2; p++)
+        search->first[p] += search->first[p - 1];
+    for (uint32_t t = 0; t < tris; t++)
+        search->tris[search->first[search->part[t] + 1]++] = t;
+}
+
+/* --- on others ------------------------------------------------------------------------------------------------------------ */
+
+struct larger {
+    const struct search *search;
+    float than_m;
+};
+
+static bool is_larger(const void *arg, uint32_t tri)
+{
+    const struct larger *larger = arg;
+    return larger->search->welds->size_m[larger->search->part[tri]] > larger->than_m;
+}
+
+/* How far a triangle's edges are from larger parts, if that is more. INFINITY: beyond the limit. */
+static float look_from(const struct larger *larger, uint32_t tri, double limit_m, float apart_m)
+{
+    const struct search *search = larger->search;
+    const struct trimesh *mesh = &search->mesh;
+    for (int i = 0; i < 3 * PROBES && !isinf(apart_m); i++) {
+        const double *a = mesh->points[mesh->tris[tri][i / PROBES]], *b = mesh->points[mesh->tris[tri][(i / PROBES + 1) % 3]];
+        double t = (double)(i % PROBES) / PROBES, point[3];
+        struct bvh_place place;
+        for (int axis = 0; axis < 3; axis++)
+            point[axis] = a[axis] + t * (b[axis] - a[axis]);
+        bvh_nearest(search->bvh, point, limit_m, is_larger, larger, &place);
+        apart_m = place.tri == TRIMESH_NONE ? INFINITY : fmaxf(apart_m, (float)place.distance_m);
+    }
+    return apart_m;
+}
+
+static void look_for_larger(void *arg, size_t begin, size_t end)
+{
+    const struct search *search = arg;
+    for (size_t p = begin; p < end; p++) {
+        float size_m = search->welds->size_m[p], apart_m = 0;
+        struct larger larger = { search, MUCH_LARGER * size_m };
+        if ((double)size_m > SMALL * search->welds->whole_m)
+            continue;
+        for (uint32_t i = search->first[p]; i < search->first[p + 1] && !isinf(apart_m); i++)
+            apart_m = look_from(&larger, search->tris[i], (double)size_m / 2, apart_m);
+        if (!isinf(apart_m))
+            search->omissions[p].from_m = fmaxf(OVER * apart_m, size_m / MOST_PX);
+    }
+}
+
+/* --- alone ---------------------------------------------------------------------------------------------------------------- */
+
+/* The small parts that no larger one hides, each with room around it. */
+static size_t list_boxes(const struct search *search, struct box *boxes)
+{
+    const struct welds *welds = search->welds;
+    size_t count = 0;
+    for (uint32_t p = 0; p < welds->part_count; p++) {
+        struct box *box = &boxes[count];
+        if (!isinf(search->omissions[p].from_m) || (double)welds->size_m[p] > SMALL * welds->whole_m)
+            continue;
+        box->part = p;
+        for (int axis = 0; axis < 3; axis++) {
+            box->low_m[axis] = welds->low_m[p][axis] - AROUND / 2 * welds->size_m[p];
+            box->high_m[axis] = welds->high_m[p][axis] + AROUND / 2 * welds->size_m[p];
+        }
+        count++;
+    }
+    return count;
+}
+
+/* Crowds of small parts: their size together says when they are no more than a pixel. */
+static void look_for_lonely(const struct search *search)
+{
+    const struct welds *welds = search->welds;
+    struct box *boxes = mem_array(welds->part_count, sizeof(*boxes)), *crowds = mem_array(welds->part_count, sizeof(*crowds));
+    uint32_t *parent = mem_array(welds->part_count, sizeof(*parent));
+    size_t count = list_boxes(search, boxes);
+    for (uint32_t p = 0; p < welds->part_count; p++) {
+        parent[p] = p;
+        for (int axis = 0; axis < 3; axis++) {
+            crowds[p].low_m[axis] = welds->low_m[p][axis];
+            crowds[p].high_m[axis] = welds->high_m[p][axis];
+        }
+    }
+    box_groups_join(boxes, count, parent);
+    for (size_t i = 0; i < count; i++) {
+        struct box *crowd = &crowds[trimesh_root(parent, boxes[i].part)];
+        for (int axis = 0; axis < 3; axis++) {
+            crowd->low_m[axis] = fminf(crowd->low_m[axis], welds->low_m[boxes[i].part][axis]);
+            crowd->high_m[axis] = fmaxf(crowd->high_m[axis], welds->high_m[boxes[i].part][axis]);
+        }
+    }
+    for (size_t i = 0; i < count; i++) {
+        const struct box *crowd = &crowds[trimesh_root(parent, boxes[i].part)];
+        float size_m =
+            hypotf(crowd->high_m[0] - crowd->low_m[0], hypotf(crowd->high_m[1] - crowd->low_m[1], crowd->high_m[2] - crowd->low_m[2]));
+        search->omissions[boxes[i].part] = (struct omission){ .from_m = size_m, .alone = true };
+    }
+    mem_free(boxes);
+    mem_free(crowds);
+    mem_free(parent);
+}
+
+void omissions_find(struct omission *omissions, const struct welds *welds, struct workers *workers)
+{
+    struct search search = { .welds = welds, .omissions = omissions };
+    for (size_t p = 0; p < welds->part_count; p++)
+        omissions[p] = (struct omission){ .from_m = INFINITY };
+    if (welds->part_count < 2)
+        return;
+    list_tris(&search);
+    search.bvh = bvh_create(&search.mesh);
+    if (workers)
+        workers_for(workers, welds->part_count, 16, look_for_larger, &search);
+    else
+        look_for_larger(&search, 0, welds->part_count);
+    look_for_lonely(&search);
+    bvh_destroy(&search.bvh);
+    trimesh_finish(&search.mesh);
+    mem_free(search.part);
+    mem_free(search.first);
+    mem_free(search.tris);
+}

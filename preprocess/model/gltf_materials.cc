@@ -1,0 +1,192 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Materials, and which images their textures mean. */
+#include "preprocess/model/gltf_impl.hh"
+
+#include <cmath>
+
+namespace gltf
+{
+namespace
+{
+
+struct use { /* of a texture, by a material */
+    int texture, set;
+    const tinygltf::ExtensionMap *extensions;
+};
+
+template <typename Info> use use_of(const Info &info)
+{
+    return { info.index, info.texCoord, &info.extensions };
+}
+
+std::vector<use> uses_of(const tinygltf::Material &m)
+{
+    return { use_of(m.pbrMetallicRoughness.baseColorTexture), use_of(m.pbrMetallicRoughness.metallicRoughnessTexture),
+             use_of(m.normalTexture), use_of(m.occlusionTexture), use_of(m.emissiveTexture) };
+}
+
+bool wraps_alike(const tinygltf::Model &m, int texture)
+{
+    int number = m.textures.at(static_cast<size_t>(texture)).sampler;
+    if (number < 0)
+        return true;
+    const tinygltf::Sampler &sampler = m.samplers.at(static_cast<size_t>(number));
+    return sampler.wrapS == sampler.wrapT && sampler.wrapS != TINYGLTF_TEXTURE_WRAP_MIRRORED_REPEAT;
+}
+
+uv_transform transform_of(const tinygltf::Model &m, const use &use)
+{
+    uv_transform uv;
+    uv.set = use.set;
+    uv.bounded = !wraps_alike(m, use.texture);
+    auto found = use.extensions->find("KHR_texture_transform");
+    if (found == use.extensions->end())
+        return uv;
+    for (size_t i = 0; i < 2; i++) {
+        uv.offset[i] = number_in(found->second, "offset", i, 0);
+        uv.scale[i] = number_in(found->second, "scale", i, 1);
+    }
+    uv.rotation = number_in(found->second, "rotation", 0, 0);
+    uv.set = static_cast<int>(number_in(found->second, "texCoord", 0, uv.set));
+    return uv;
+}
+
+bool lie_alike(const uv_transform &a, const uv_transform &b)
+{
+    bool same = a.set == b.set && a.rotation == b.rotation;
+    for (int i = 0; i < 2; i++)
+        same = same && a.offset[i] == b.offset[i] && a.scale[i] == b.scale[i];
+    return same;
+}
+
+int image_of(const tinygltf::Texture &texture)
+{
+    auto webp = texture.extensions.find("EXT_texture_webp");
+    if (texture.source >= 0 || webp == texture.extensions.end())
+        return texture.source;
+    return static_cast<int>(number_in(webp->second, "source", 0, -1));
+}
+
+uint32_t texture_of(work *w, int texture, bool srgb, const std::string &what)
+{
+    gltf_model *model = w->model;
+    const tinygltf::Texture &t = w->parsed.textures.at(static_cast<size_t>(texture));
+    int image = image_of(t);
+    if (image < 0)
+        refuse("%s: texture %d: has no image in a format that can be read (PNG, JPEG, WebP)", what.c_str(), texture);
+    bool repeat = t.sampler < 0 || w->parsed.samplers.at(static_cast<size_t>(t.sampler)).wrapS != TINYGLTF_TEXTURE_WRAP_CLAMP_TO_EDGE;
+    gltf_texture wanted = { static_cast<uint32_t>(image), srgb, repeat };
+    for (uint32_t i = 0; i < model->texture_count; i++)
+        if (model->textures[i].image == wanted.image && model->textures[i].srgb == srgb && model->textures[i].wrap_repeat == repeat)
+            return i;
+    model->textures[model->texture_count] = wanted;
+    return model->texture_count++;
+}
+
+float unit(double value)
+{
+    return static_cast<float>(std::fmin(std::fmax(value, 0), 1));
+}
+
+float finite(double value, double otherwise)
+{
+    float out = static_cast<float>(value);
+    return std::isfinite(out) ? out : static_cast<float>(otherwise);
+}
+
+void leave_out(work *w, const std::string &what, size_t number, int set)
+{
+    static const char *const names[USE_COUNT] = { "base colour", "metallic-roughness", "normal", "occlusion", "emissive" };
+    std::string text =
+        what + ": its " + names[number] + " texture (TEXCOORD_" + std::to_string(set) + ") lies on the surface in a third way of its own";
+    w->model->left_out[w->model->left_out_textures++] = mem_strdup(text.c_str());
+}
+
+void read_textures(work *w, const tinygltf::Material &from, asset_material *to, int number, const std::string &what)
+{
+    uint32_t *const places[USE_COUNT] = { &to->base_color_texture, &to->metallic_roughness_texture, &to->normal_texture,
+                                          &to->occlusion_texture, &to->emissive_texture };
+    std::vector<use> uses = uses_of(from);
+    uv_lays lays = lays_of(w->parsed, number);
+    for (size_t i = 0; i < USE_COUNT; i++) {
+        *places[i] = ASSET_NO_TEXTURE;
+        if (uses[i].texture < 0)
+            continue;
+        if (lays.of[i] == 2) {
+            leave_out(w, what, i, transform_of(w->parsed, uses[i]).set);
+            continue;
+        }
+        *places[i] = texture_of(w, uses[i].texture, i == BASE_COLOR || i == EMISSIVE, what);
+        to->second |= static_cast<uint32_t>(lays.of[i]) << i;
+    }
+}
+
+void read_material(work *w, const tinygltf::Material &from, asset_material *to, int number, const std::string &what)
+{
+    const tinygltf::PbrMetallicRoughness &pbr = from.pbrMetallicRoughness;
+    for (size_t i = 0; i < 4; i++)
+        to->base_color[i] = pbr.baseColorFactor.size() == 4 ? unit(pbr.baseColorFactor[i]) : 1;
+    for (size_t i = 0; i < 3; i++)
+        to->emissive[i] = from.emissiveFactor.size() == 3 ? unit(from.emissiveFactor[i]) : 0;
+    to->metallic = unit(pbr.metallicFactor);
+    to->roughness = unit(pbr.roughnessFactor);
+    to->normal_scale = finite(from.normalTexture.scale, 1);
+    to->occlusion_strength = unit(from.occlusionTexture.strength);
+    to->alpha_cutoff = finite(from.alphaCutoff, 0.5);
+    if (from.alphaMode != "OPAQUE" && from.alphaMode != "MASK" && from.alphaMode != "BLEND")
+        refuse("%s: alphaMode '%.20s' is not of glTF 2.0", what.c_str(), from.alphaMode.c_str());
+    to->alpha = from.alphaMode == "MASK" ? ASSET_ALPHA_MASK : from.alphaMode == "BLEND" ? ASSET_ALPHA_BLEND : ASSET_ALPHA_OPAQUE;
+    to->double_sided = from.doubleSided;
+    read_textures(w, from, to, number, what);
+}
+
+} // namespace
+
+uv_lays lays_of(const tinygltf::Model &m, int material)
+{
+    uv_lays lays;
+    if (material < 0)
+        return lays;
+    std::vector<use> uses = uses_of(m.materials.at(static_cast<size_t>(material)));
+    for (size_t i = 0; i < USE_COUNT; i++) {
+        if (uses[i].texture < 0)
+            continue;
+        uv_transform own = transform_of(m, uses[i]);
+        size_t &lay = lays.of[i];
+        while (lay < lays.count && !lie_alike(lays.at[lay], own))
+            lay++;
+        if (lay == 2)
+            continue;
+        if (lay == lays.count)
+            lays.at[lays.count++] = own;
+        lays.at[lay].bounded = lays.at[lay].bounded || own.bounded;
+    }
+    return lays;
+}
+
+void read_materials(work *w)
+{
+    gltf_model *model = w->model;
+    const model_document *d = w->document;
+    model->images = new_array<gltf_image>(d->image_count + 1);
+    for (size_t i = 0; i < d->image_count; i++) {
+        gltf_image *out = &model->images[model->image_count++];
+        out->name = mem_strdup(d->images[i].name);
+        out->size = d->images[i].bytes.size;
+        out->bytes = new_array<unsigned char>(out->size + 1);
+        if (out->size)
+            memcpy(out->bytes, d->images[i].bytes.at, out->size);
+    }
+    model->materials = new_array<asset_material>(w->parsed.materials.size() + 1);
+    model->material_names = new_array<char *>(w->parsed.materials.size() + 1);
+    model->textures = new_array<gltf_texture>(USE_COUNT * w->parsed.materials.size() + 1);
+    model->left_out = new_array<char *>(USE_COUNT * w->parsed.materials.size() + 1);
+    for (const tinygltf::Material &material : w->parsed.materials) {
+        int number = static_cast<int>(model->material_count);
+        std::string what = "material " + std::to_string(number) + " '" + material.name.substr(0, 80) + "'";
+        model->material_names[model->material_count++] = mem_strdup(material.name.c_str());
+        read_material(w, material, &model->materials[number], number, what);
+    }
+}
+
+} // namespace gltf

@@ -1,0 +1,249 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Meshes: primitives as lists of triangles over just the vertices that these use. */
+#include "preprocess/model/gltf_impl.hh"
+
+#include <algorithm>
+#include <cmath>
+
+namespace gltf
+{
+namespace
+{
+
+/* Places in the vertex accessors, three per triangle. */
+std::vector<uint32_t> read_indices(work *w, const tinygltf::Primitive &p, size_t vertex_count, const std::string &what)
+{
+    std::vector<uint32_t> out;
+    if (p.indices < 0) {
+        take_elements(w, vertex_count, what);
+        out.resize(vertex_count);
+        for (size_t i = 0; i < vertex_count; i++)
+            out[i] = static_cast<uint32_t>(i);
+        return out;
+    }
+    accessor from(*w, p.indices, 0, what + ": indices");
+    int type = from.component_type();
+    if (type != TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE && type != TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT &&
+        type != TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT)
+        refuse("%s: indices: component type %d is no index", what.c_str(), type);
+    if (from.is_normalized())
+        refuse("%s: indices: normalized, which indices cannot be", what.c_str());
+    if (from.width() != 1)
+        refuse("%s: indices: %d components, expected 1", what.c_str(), from.width());
+    take_elements(w, from.count(), what + ": indices");
+    out.resize(from.count());
+    for (size_t i = 0; i < out.size(); i++) {
+        double index;
+        from.get(i, &index);
+        if (!(index < static_cast<double>(vertex_count)))
+            refuse("%s: indices: index %zu names vertex %.0f of %zu", what.c_str(), i, index, vertex_count);
+        out[i] = static_cast<uint32_t>(index);
+    }
+    return out;
+}
+
+std::vector<uint32_t> triangle_list(std::vector<uint32_t> in, int mode, const std::string &what)
+{
+    std::vector<uint32_t> out;
+    if (mode == TINYGLTF_MODE_TRIANGLES) {
+        if (in.size() % 3 != 0)
+            refuse("%s: %zu indices are not whole triangles", what.c_str(), in.size());
+        return in;
+    }
+    for (size_t i = 2; i < in.size(); i++) {
+        bool odd = mode == TINYGLTF_MODE_TRIANGLE_STRIP && i % 2 == 1;
+        uint32_t a = mode == TINYGLTF_MODE_TRIANGLE_FAN ? in[0] : in[i - 2];
+        out.push_back(odd ? in[i - 1] : a);
+        out.push_back(odd ? a : in[i - 1]);
+        out.push_back(in[i]);
+    }
+    return out;
+}
+
+/* The vertices that are used, in order; indices then name these. Exporters share one great buffer among many primitives. */
+std::vector<uint32_t> compact(std::vector<uint32_t> *indices)
+{
+    std::vector<uint32_t> used;
+    if (indices->empty())
+        return used;
+    auto ends = std::minmax_element(indices->begin(), indices->end());
+    uint32_t low = *ends.first, range = *ends.second - low + 1;
+    if (range / 8 > indices->size()) { /* few, and far apart */
+        used = *indices;
+        std::sort(used.begin(), used.end());
+        used.erase(std::unique(used.begin(), used.end()), used.end());
+        for (uint32_t &index : *indices)
+            index = static_cast<uint32_t>(std::lower_bound(used.begin(), used.end(), index) - used.begin());
+        return used;
+    }
+    std::vector<uint32_t> number(range, 0);
+    for (uint32_t index : *indices)
+        number[index - low] = 1;
+    for (uint32_t i = 0; i < range; i++)
+        if (number[i]) {
+            number[i] = static_cast<uint32_t>(used.size());
+            used.push_back(low + i);
+        }
+    for (uint32_t &index : *indices)
+        index = number[index - low];
+    return used;
+}
+
+struct attribute_reader {
+    const work &w;
+    const tinygltf::Primitive &primitive;
+    const std::vector<uint32_t> &used;
+    size_t vertex_count; /* of POSITION */
+    const std::string &what;
+
+    bool has(const std::string &name) const
+    {
+        return primitive.attributes.count(name) > 0;
+    }
+
+    accessor open(const std::string &name, int width) const
+    {
+        accessor a(w, primitive.attributes.at(name), width, what + ": " + name);
+        if (a.count() != vertex_count)
+            refuse("%s: %s: %zu elements, positions have %zu", what.c_str(), name.c_str(), a.count(), vertex_count);
+        return a;
+    }
+};
+
+float narrow(double value, const std::string &what)
+{
+    float out = static_cast<float>(value);
+    if (!std::isfinite(out))
+        refuse("%s: %g is too large", what.c_str(), value);
+    return out;
+}
+
+float (*read_vectors(const attribute_reader &reader, const std::string &name))[3]
+{
+    accessor from = reader.open(name, 3);
+    float(*out)[3] = reinterpret_cast<float(*)[3]>(new_array<float>(3 * reader.used.size() + 1));
+    double v[3];
+    try {
+        for (size_t i = 0; i < reader.used.size(); i++) {
+            from.get(reader.used[i], v);
+            for (int c = 0; c < 3; c++)
+                out[i][c] = static_cast<float>(v[c]);
+        }
+    } catch (...) {
+        mem_free(out);
+        throw;
+    }
+    return out;
+}
+
+/* None where the primitive has no such set. */
+void read_texcoords(const attribute_reader &reader, const uv_transform &uv, float (**out)[2])
+{
+    std::string name = "TEXCOORD_" + std::to_string(uv.set);
+    if (!reader.has(name))
+        return;
+    accessor from = reader.open(name, 2);
+    float(*texcoords)[2] = *out = reinterpret_cast<float(*)[2]>(new_array<float>(2 * reader.used.size() + 1));
+    double c = std::cos(uv.rotation), s = std::sin(uv.rotation), t[2];
+    for (size_t i = 0; i < reader.used.size(); i++) {
+        from.get(reader.used[i], t);
+        double u = t[0] * uv.scale[0], v = t[1] * uv.scale[1];
+        texcoords[i][0] = narrow(c * u + s * v + uv.offset[0], reader.what);
+        texcoords[i][1] = narrow(-s * u + c * v + uv.offset[1], reader.what);
+        if (uv.bounded && (std::fabs(texcoords[i][0] - 0.5f) > 0.501f || std::fabs(texcoords[i][1] - 0.5f) > 0.501f))
+            refuse("%s: %s: mirrored, or wrapped differently along u and v, which is not supported beyond 0..1", reader.what.c_str(),
+                   name.c_str());
+    }
+}
+
+void read_colors(const attribute_reader &reader, gltf_primitive *out)
+{
+    accessor from = reader.open("COLOR_0", 0);
+    if (from.width() != 3 && from.width() != 4)
+        refuse("%s: COLOR_0: %d components, expected 3 or 4", reader.what.c_str(), from.width());
+    out->colors = reinterpret_cast<uint8_t(*)[4]>(new_array<uint8_t>(4 * reader.used.size() + 1));
+    for (size_t i = 0; i < reader.used.size(); i++) {
+        double color[4] = { 1, 1, 1, 1 };
+        from.get(reader.used[i], color);
+        for (int c = 0; c < 4; c++)
+            out->colors[i][c] = static_cast<uint8_t>(std::lround(std::fmin(std::fmax(color[c], 0), 1) * 255));
+    }
+}
+
+void read_vertices(const attribute_reader &reader, gltf_primitive *out, int material)
+{
+    uv_lays lays = lays_of(reader.w.parsed, material);
+    out->positions = read_vectors(reader, "POSITION");
+    if (reader.has("NORMAL"))
+        out->normals = read_vectors(reader, "NORMAL");
+    read_texcoords(reader, lays.at[0], &out->texcoords);
+    if (lays.count > 1)
+        read_texcoords(reader, lays.at[1], &out->second_texcoords);
+    if (reader.has("COLOR_0"))
+        read_colors(reader, out);
+}
+
+void check_morphing(const std::vector<double> &weights, const std::string &what)
+{
+    for (double weight : weights)
+        if (weight != 0)
+            refuse("%s: its shape is morphed, which is not supported", what.c_str());
+}
+
+/* False: nothing to draw here (lines, points, no triangle). */
+bool read_primitive(work *w, const tinygltf::Primitive &p, gltf_primitive *out, gltf_mesh *mesh, const std::string &what)
+{
+    int mode = p.mode;
+    if (mode == TINYGLTF_MODE_POINTS || mode == TINYGLTF_MODE_LINE || mode == TINYGLTF_MODE_LINE_LOOP || mode == TINYGLTF_MODE_LINE_STRIP) {
+        (mode == TINYGLTF_MODE_POINTS ? mesh->skipped_points : mesh->skipped_lines)++;
+        return false;
+    }
+    if (mode < 0 || mode > TINYGLTF_MODE_TRIANGLE_FAN)
+        refuse("%s: mode %d is not of glTF 2.0", what.c_str(), mode);
+    auto position = p.attributes.find("POSITION");
+    if (position == p.attributes.end())
+        refuse("%s: has no POSITION", what.c_str());
+    size_t vertices = accessor(*w, position->second, 3, what + ": POSITION").count();
+    std::vector<uint32_t> indices = triangle_list(read_indices(w, p, vertices, what), mode, what), used = compact(&indices);
+    if (indices.empty())
+        return false;
+    take_elements(w, used.size() + indices.size(), what);
+    out->material = p.material;
+    out->vertex_count = static_cast<uint32_t>(used.size());
+    out->index_count = static_cast<uint32_t>(indices.size());
+    out->indices = new_array<uint32_t>(indices.size());
+    memcpy(out->indices, indices.data(), indices.size() * sizeof(uint32_t));
+    mesh->index_count += indices.size();
+    read_vertices({ *w, p, used, vertices, what }, out, p.material);
+    return true;
+}
+
+} // namespace
+
+void read_meshes(work *w)
+{
+    gltf_model *model = w->model;
+    size_t primitives = 0;
+    for (const tinygltf::Mesh &mesh : w->parsed.meshes)
+        primitives += mesh.primitives.size();
+    model->meshes = new_array<gltf_mesh>(w->parsed.meshes.size() + 1);
+    model->primitives = new_array<gltf_primitive>(primitives + 1);
+    for (const tinygltf::Mesh &mesh : w->parsed.meshes) {
+        std::string name = "mesh " + std::to_string(model->mesh_count) + (mesh.name.empty() ? "" : " '" + mesh.name.substr(0, 80) + "'");
+        gltf_mesh *out = &model->meshes[model->mesh_count++];
+        out->name = mem_strdup(mesh.name.c_str());
+        out->first_primitive = model->primitive_count;
+        check_morphing(mesh.weights, name);
+        for (size_t i = 0; i < mesh.primitives.size(); i++) {
+            gltf_primitive *primitive = &model->primitives[model->primitive_count];
+            model->primitive_count++; /* counted first, so that a half-read one is freed */
+            if (!read_primitive(w, mesh.primitives[i], primitive, out, name + ", primitive " + std::to_string(i)))
+                model->primitive_count--;
+        }
+        out->primitive_count = model->primitive_count - out->first_primitive;
+        model->skipped_lines += out->skipped_lines;
+        model->skipped_points += out->skipped_points;
+    }
+}
+
+} // namespace gltf

@@ -1,0 +1,209 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Nodes of the default scene, depth first, with their places; instances as nodes of their own. */
+#include "preprocess/model/gltf_impl.hh"
+
+#include <cmath>
+
+namespace gltf
+{
+namespace
+{
+
+constexpr uint32_t MAX_NODES = 4'000'000, MAX_DEPTH = 512, ELEMENTS_PER_INSTANCE = 16;
+constexpr double ROTATION_SLACK = 0.01, LEAST_ROTATION = 1e-6; /* in bytes, of instances, a rotation is off by 0.008 */
+
+void multiply(const double a[16], const double b[16], double out[16])
+{
+    for (int c = 0; c < 4; c++)
+        for (int r = 0; r < 4; r++) {
+            double sum = 0;
+            for (int k = 0; k < 4; k++)
+                sum += a[4 * k + r] * b[4 * c + k];
+            out[4 * c + r] = sum;
+        }
+}
+
+void compose(const double t[3], const double q[4], const double s[3], double out[16])
+{
+    double x = q[0], y = q[1], z = q[2], w = q[3], n = x * x + y * y + z * z + w * w, k = n > 0 ? 2 / n : 0;
+    const double r[9] = { 1 - k * (y * y + z * z), k * (x * y + w * z),     k * (x * z - w * y),
+                          k * (x * y - w * z),     1 - k * (x * x + z * z), k * (y * z + w * x),
+                          k * (x * z + w * y),     k * (y * z - w * x),     1 - k * (x * x + y * y) };
+    for (int c = 0; c < 3; c++)
+        for (int i = 0; i < 3; i++)
+            out[4 * c + i] = r[3 * c + i] * s[c];
+    out[3] = out[7] = out[11] = 0;
+    for (int i = 0; i < 3; i++)
+        out[12 + i] = t[i];
+    out[15] = 1;
+}
+
+/* A unit quaternion, says glTF. One of another length turns as it would with length 1, as elsewhere, and is counted; rounding is not. */
+void check_rotation(work *w, const double q[4], const std::string &what)
+{
+    double length = std::sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
+    if (!(length >= LEAST_ROTATION))
+        refuse("%s: its rotation [%g, %g, %g, %g] turns nowhere: its length is to be 1", what.c_str(), q[0], q[1], q[2], q[3]);
+    w->model->scaled_rotations += std::fabs(length - 1) > ROTATION_SLACK;
+}
+
+void check_affine(double m[16], const std::string &what)
+{
+    for (int i = 0; i < 16; i++)
+        if (!std::isfinite(m[i]) || std::fabs(m[i]) > 1e15)
+            refuse("%s: its place is not finite, or beyond 1e15", what.c_str());
+    for (int c = 0; c < 4; c++) {
+        if (std::fabs(m[4 * c + 3] - (c == 3)) > 1e-6)
+            refuse("%s: the last row of its matrix is not 0 0 0 1", what.c_str());
+        m[4 * c + 3] = c == 3;
+    }
+}
+
+void take(const std::vector<double> &from, size_t count, double *to)
+{
+    for (size_t i = 0; i < count && i < from.size(); i++)
+        to[i] = from[i];
+}
+
+void local_of(work *w, const tinygltf::Node &node, double out[16], const std::string &what)
+{
+    double t[3] = { 0, 0, 0 }, q[4] = { 0, 0, 0, 1 }, s[3] = { 1, 1, 1 };
+    take(node.translation, 3, t);
+    take(node.rotation, 4, q);
+    take(node.scale, 3, s);
+    check_rotation(w, q, what);
+    compose(t, q, s, out);
+    take(node.matrix, 16, out);
+    check_affine(out, what);
+}
+
+struct tree { /* nodes as they are put in order */
+    work *w;
+    std::vector<gltf_node> out;
+    std::vector<char> seen;
+};
+
+std::string node_what(const tinygltf::Model &m, int number)
+{
+    const std::string &name = m.nodes.at(static_cast<size_t>(number)).name;
+    return "node " + std::to_string(number) + (name.empty() ? "" : " '" + name.substr(0, 80) + "'");
+}
+
+void add(tree *tree, int number, int parent, int mesh, const double world[16])
+{
+    const std::string &name = tree->w->parsed.nodes[static_cast<size_t>(number)].name;
+    if (tree->out.size() >= MAX_NODES)
+        refuse("more than %u nodes", MAX_NODES);
+    gltf_node node = {};
+    node.parent = parent;
+    node.mesh = mesh;
+    node.number = static_cast<uint32_t>(number);
+    memcpy(node.world, world, sizeof(node.world));
+    tree->out.push_back(node);
+    tree->out.back().name = mem_strdup(name.c_str());
+    tree->out.back().end = static_cast<uint32_t>(tree->out.size());
+}
+
+/* EXT_mesh_gpu_instancing: the node's mesh once for each instance, as nodes of the same name below it. */
+void add_instances(tree *tree, int number, int parent, const tinygltf::Value &extension)
+{
+    const tinygltf::Node &node = tree->w->parsed.nodes[static_cast<size_t>(number)];
+    std::string what = node_what(tree->w->parsed, number) + ": EXT_mesh_gpu_instancing";
+    const tinygltf::Value none, &attributes = extension.IsObject() && extension.Has("attributes") ? extension.Get("attributes") : none;
+    const char *const names[3] = { "TRANSLATION", "ROTATION", "SCALE" };
+    const int widths[3] = { 3, 4, 3 };
+    std::vector<accessor> values;
+    int used[3] = { -1, -1, -1 };
+    for (int i = 0; i < 3; i++) {
+        double place = number_in(attributes, names[i], 0, -1);
+        if (place < 0)
+            continue;
+        used[i] = static_cast<int>(values.size());
+        values.emplace_back(*tree->w, static_cast<int>(place), widths[i], what + ": " + names[i]);
+        if (values.back().count() != values.front().count())
+            refuse("%s: %zu and %zu instances", what.c_str(), values.front().count(), values.back().count());
+    }
+    if (values.empty())
+        refuse("%s: has neither TRANSLATION, ROTATION nor SCALE", what.c_str());
+    take_elements(tree->w, values.front().count() * ELEMENTS_PER_INSTANCE, what);
+    for (size_t i = 0; i < values.front().count(); i++) {
+        double t[3] = { 0, 0, 0 }, q[4] = { 0, 0, 0, 1 }, s[3] = { 1, 1, 1 }, local[16], world[16];
+        double *const parts[3] = { t, q, s };
+        for (int p = 0; p < 3; p++)
+            if (used[p] >= 0)
+                values[static_cast<size_t>(used[p])].get(i, parts[p]);
+        check_rotation(tree->w, q, what);
+        compose(t, q, s, local);
+        multiply(tree->out[static_cast<size_t>(parent)].world, local, world);
+        check_affine(world, what);
+        add(tree, number, parent, node.mesh, world);
+    }
+}
+
+void walk(tree *tree, int number, int parent, const double parent_world[16], uint32_t depth)
+{
+    std::string what = node_what(tree->w->parsed, number);
+    if (tree->seen[static_cast<size_t>(number)])
+        refuse("%s is reached twice: a cycle, or two parents", what.c_str());
+    if (depth > MAX_DEPTH)
+        refuse("%s: nodes are nested deeper than %u levels", what.c_str(), MAX_DEPTH);
+    tree->seen[static_cast<size_t>(number)] = 1;
+    const tinygltf::Node &node = tree->w->parsed.nodes[static_cast<size_t>(number)];
+    if (node.skin >= 0 && node.mesh >= 0)
+        refuse("%s: its mesh is bent by a skin, which is not supported", what.c_str());
+    for (double weight : node.weights)
+        if (weight != 0)
+            refuse("%s: its mesh is morphed, which is not supported", what.c_str());
+    double local[16], world[16];
+    local_of(tree->w, node, local, what);
+    multiply(parent_world, local, world);
+    check_affine(world, what);
+    int self = static_cast<int>(tree->out.size());
+    auto instancing = node.extensions.find("EXT_mesh_gpu_instancing");
+    bool instanced = instancing != node.extensions.end() && node.mesh >= 0;
+    add(tree, number, parent, instanced ? -1 : node.mesh, world);
+    if (instanced)
+        add_instances(tree, number, self, instancing->second);
+    for (int child : node.children)
+        walk(tree, child, self, world, depth + 1);
+    tree->out[static_cast<size_t>(self)].end = static_cast<uint32_t>(tree->out.size());
+}
+
+std::vector<int> roots_of(const tinygltf::Model &m)
+{
+    if (!m.scenes.empty())
+        return m.scenes.at(m.defaultScene >= 0 ? static_cast<size_t>(m.defaultScene) : 0).nodes;
+    std::vector<char> child(m.nodes.size(), 0);
+    for (const tinygltf::Node &node : m.nodes)
+        for (int c : node.children)
+            child.at(static_cast<size_t>(c)) = 1;
+    std::vector<int> roots;
+    for (size_t i = 0; i < m.nodes.size(); i++)
+        if (!child[i])
+            roots.push_back(static_cast<int>(i));
+    if (roots.empty() && !m.nodes.empty())
+        refuse("every node is a child of another: a cycle");
+    return roots;
+}
+
+} // namespace
+
+void read_nodes(work *w)
+{
+    static const double identity[16] = { 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1 };
+    tree tree = { w, {}, std::vector<char>(w->parsed.nodes.size(), 0) };
+    try {
+        for (int root : roots_of(w->parsed))
+            walk(&tree, root, -1, identity, 0);
+        w->model->nodes = new_array<gltf_node>(tree.out.size() + 1);
+    } catch (...) {
+        for (gltf_node &node : tree.out)
+            mem_free(node.name);
+        throw;
+    }
+    w->model->node_count = static_cast<uint32_t>(tree.out.size());
+    if (!tree.out.empty())
+        memcpy(w->model->nodes, tree.out.data(), tree.out.size() * sizeof(gltf_node));
+}
+
+} // namespace gltf

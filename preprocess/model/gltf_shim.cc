@@ -1,0 +1,155 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* tinygltf behind plain C: it parses a document that was made plain before; what it yields is decoded into plain arrays. */
+#include "preprocess/model/gltf_shim.h"
+
+#include <cstdarg>
+#include <exception>
+#include <limits>
+
+#include "preprocess/model/gltf_impl.hh"
+
+namespace gltf
+{
+
+void refuse(const char *fmt, ...)
+{
+    char text[MODEL_WHY_BYTES];
+    va_list ap;
+    va_start(ap, fmt);
+    vsnprintf(text, sizeof(text), fmt, ap);
+    va_end(ap);
+    throw refusal(text);
+}
+
+} // namespace gltf
+
+namespace
+{
+
+using gltf::refuse;
+
+constexpr uint64_t FREE_ELEMENTS = 1 << 22, ELEMENTS_PER_BYTE = 16;
+
+/* There are no files left to open; were there one, it would not be. */
+bool file_absent(const std::string &, void *)
+{
+    return false;
+}
+
+std::string file_expand(const std::string &name, void *)
+{
+    return name;
+}
+
+bool file_unread(std::vector<unsigned char> *, std::string *, const std::string &, void *)
+{
+    return false;
+}
+
+bool file_unwritten(std::string *, const std::string &, const std::vector<unsigned char> &, void *)
+{
+    return false;
+}
+
+[[maybe_unused]] bool file_unmeasured(size_t *, std::string *, const std::string &, void *)
+{
+    return false;
+}
+
+/* tinygltf 2.9 wants it too. */
+template <typename Callbacks> auto set_measure(Callbacks *files, int) -> decltype(files->GetFileSizeInBytes = file_unmeasured, void())
+{
+    files->GetFileSizeInBytes = file_unmeasured;
+}
+
+template <typename Callbacks> void set_measure(Callbacks *, long)
+{
+}
+
+tinygltf::FsCallbacks no_files()
+{
+    tinygltf::FsCallbacks files = {};
+    files.FileExists = file_absent;
+    files.ExpandFilePath = file_expand;
+    files.ReadWholeFile = file_unread;
+    files.WriteWholeFile = file_unwritten;
+    set_measure(&files, 0);
+    return files;
+}
+
+void parse(gltf::work *w)
+{
+    tinygltf::TinyGLTF loader;
+    std::string error, warning;
+    loader.SetFsCallbacks(no_files());
+    if (w->document->json_bytes > std::numeric_limits<unsigned>::max())
+        refuse("%zu bytes of JSON are too much", w->document->json_bytes);
+    bool good =
+        loader.LoadASCIIFromString(&w->parsed, &error, &warning, w->document->json, static_cast<unsigned>(w->document->json_bytes), "");
+    while (!error.empty() && error.back() == '\n')
+        error.pop_back();
+    if (!good || !error.empty()) /* it drops what it cannot read, and says so */
+        refuse("%s", error.empty() ? "not a glTF file" : error.c_str());
+}
+
+} // namespace
+
+extern "C" bool gltf_load(struct gltf_model *model, const struct model_source *source, char why[MODEL_WHY_BYTES])
+{
+    struct model_document document;
+    bool good = false;
+    *model = {};
+    if (!model_document_open(&document, source, why))
+        return false;
+    try {
+        gltf::work w = { &document, {}, model, FREE_ELEMENTS + ELEMENTS_PER_BYTE * document.total_bytes };
+        parse(&w);
+        gltf::read_materials(&w);
+        gltf::read_nodes(&w);
+        gltf::read_meshes(&w);
+        good = true;
+    } catch (const std::bad_alloc &) {
+        snprintf(why, MODEL_WHY_BYTES, "out of memory");
+    } catch (const std::exception &e) {
+        snprintf(why, MODEL_WHY_BYTES, "%s", e.what());
+    } catch (...) {
+        snprintf(why, MODEL_WHY_BYTES, "the glTF library failed");
+    }
+    if (!good)
+        gltf_free(model);
+    model_document_finish(&document);
+    return good;
+}
+
+extern "C" void gltf_free(struct gltf_model *model)
+{
+    for (uint32_t i = 0; i < model->primitive_count; i++) {
+        mem_free(model->primitives[i].positions);
+        mem_free(model->primitives[i].normals);
+        mem_free(model->primitives[i].texcoords);
+        mem_free(model->primitives[i].second_texcoords);
+        mem_free(model->primitives[i].colors);
+        mem_free(model->primitives[i].indices);
+    }
+    for (uint32_t i = 0; i < model->mesh_count; i++)
+        mem_free(model->meshes[i].name);
+    for (uint32_t i = 0; i < model->node_count; i++)
+        mem_free(model->nodes[i].name);
+    for (uint32_t i = 0; i < model->material_count; i++)
+        mem_free(model->material_names[i]);
+    for (uint32_t i = 0; i < model->image_count; i++) {
+        mem_free(model->images[i].name);
+        mem_free(model->images[i].bytes);
+    }
+    for (uint32_t i = 0; i < model->left_out_textures; i++)
+        mem_free(model->left_out[i]);
+    mem_free(model->left_out);
+    mem_free(model->primitives);
+    mem_free(model->meshes);
+    mem_free(model->nodes);
+    mem_free(model->materials);
+    mem_free(model->material_names);
+    mem_free(model->textures);
+    mem_free(model->images);
+    *model = {};
+}

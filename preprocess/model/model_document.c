@@ -1,0 +1,276 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Making a model plain. */
+#include "preprocess/model/model_document_impl.h"
+
+#include <inttypes.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/mem.h"
+#include "preprocess/model/model_rules.h"
+#include "preprocess/model/model_uri.h"
+
+#define MAX_ZERO_BYTES ((uint64_t)64 << 20) /* of accessors without a buffer view, which cost a file nothing */
+
+static uint64_t number_of(const json_t *object, const char *key)
+{
+    return (uint64_t)json_integer_value(json_object_get(object, key));
+}
+
+/* --- buffers ------------------------------------------------------------------------------------------------------------- */
+
+static size_t add_buffer(struct document_work *work, struct document_bytes bytes)
+{
+    struct model_document *d = work->document;
+    mem_grow(&d->buffers, &work->buffer_room, d->buffer_count + 1, sizeof(*d->buffers));
+    d->buffers[d->buffer_count] = bytes;
+    d->total_bytes += bytes.size;
+    return d->buffer_count++;
+}
+
+size_t document_add_buffer(struct document_work *work, unsigned char *own, size_t size)
+{
+    return add_buffer(work, (struct document_bytes){ own, size, own });
+}
+
+static bool load_buffer(struct document_work *work, size_t number, const json_t *buffer)
+{
+    struct document_bytes bytes = { 0 };
+    char uri_why[MODEL_WHY_BYTES];
+    const char *uri = json_string_value(json_object_get(buffer, "uri"));
+    uint64_t length = number_of(buffer, "byteLength");
+    bool standin = /* of a compressed buffer, for programs that cannot read it */
+        json_is_true(json_object_get(json_object_get(json_object_get(buffer, "extensions"), "EXT_meshopt_compression"), "fallback"));
+    if (uri) {
+        bytes.at = bytes.own = model_uri_read(work->source->folder, uri, &bytes.size, uri_why);
+        if (!bytes.at)
+            return wrong(work->why, "buffer %zu: %s", number, uri_why);
+    } else if (number == 0 && work->binary.at && !standin) {
+        bytes = (struct document_bytes){ .at = work->binary.at, .size = work->binary.size };
+    } else if (!standin) {
+        return wrong(work->why, "buffer %zu: has no uri, and there is no binary chunk for it", number);
+    }
+    size_t has = bytes.size;
+    if (length < has)
+        bytes.size = (size_t)length;
+    add_buffer(work, bytes);
+    if (length > has && bytes.at)
+        return wrong(work->why, "buffer %zu: truncated: %zu bytes, it should have %" PRIu64, number, has, length);
+    return true;
+}
+
+static bool load_buffers(struct document_work *work)
+{
+    const json_t *buffers = json_object_get(work->root, "buffers");
+    for (size_t i = 0; i < json_array_size(buffers); i++)
+        if (!load_buffer(work, i, json_array_get(buffers, i)))
+            return false;
+    return true;
+}
+
+bool document_range(const struct document_work *work, size_t buffer, uint64_t offset, uint64_t length, const char *what,
+                    struct model_bytes *out)
+{
+    const struct document_bytes *b = &work->document->buffers[buffer];
+    if (length > 0 && !b->at)
+        return wrong(work->why, "%s: buffer %zu has no bytes of its own", what, buffer);
+    if (offset > b->size || length > b->size - offset)
+        return wrong(work->why, "%s: bytes %" PRIu64 "+%" PRIu64 " of a buffer of %zu", what, offset, length, b->size);
+    *out = (struct model_bytes){ length ? b->at + offset : NULL, (size_t)length };
+    return true;
+}
+
+static bool view_bytes(const struct document_work *work, size_t number, struct model_bytes *out)
+{
+    char what[40];
+    const json_t *view = json_array_get(json_object_get(work->root, "bufferViews"), number);
+    snprintf(what, sizeof(what), "bufferView %zu", number);
+    return document_range(work, (size_t)number_of(view, "buffer"), number_of(view, "byteOffset"), number_of(view, "byteLength"), what, out);
+}
+
+static bool views_good(const struct document_work *work)
+{
+    struct model_bytes bytes;
+    for (size_t i = 0; i < json_array_size(json_object_get(work->root, "bufferViews")); i++)
+        if (!view_bytes(work, i, &bytes))
+            return false;
+    return true;
+}
+
+/* --- accessors ----------------------------------------------------------------------------------------------------------- */
+
+size_t document_element_bytes(const json_t *accessor, int *component_type, int *width)
+{
+    static const char *const types[] = { "SCALAR", "VEC2", "VEC3", "VEC4", "MAT4" };
+    static const int widths[] = { 1, 2, 3, 4, 16 };
+    const char *type = json_string_value(json_object_get(accessor, "type"));
+    *component_type = (int)number_of(accessor, "componentType");
+    *width = 0;
+    for (size_t i = 0; type && i < sizeof(types) / sizeof(types[0]); i++)
+        if (strcmp(type, types[i]) == 0)
+            *width = widths[i];
+    switch (*component_type) {
+    case 5120:
+    case 5121: return (size_t)*width;
+    case 5122:
+    case 5123: return 2 * (size_t)*width;
+    case 5125:
+    case 5126: return 4 * (size_t)*width;
+    default: return 0;
+    }
+}
+
+void document_point_accessor(struct document_work *work, json_t *accessor, size_t buffer)
+{
+    json_t *views = json_object_get(work->root, "bufferViews");
+    if (!views) {
+        views = json_array();
+        json_object_set_new(work->root, "bufferViews", views);
+    }
+    json_array_append_new(views, json_pack("{s:I,s:I}", "buffer", (json_int_t)buffer, "byteLength",
+                                           (json_int_t)work->document->buffers[buffer].size));
+    json_object_set_new(accessor, "bufferView", json_integer((json_int_t)json_array_size(views) - 1));
+    json_object_del(accessor, "byteOffset");
+}
+
+/* An accessor without a buffer view is all zeros, but for what its sparse part says. */
+static bool fill_with_zeros(struct document_work *work, const json_t *number, uint64_t *zeros)
+{
+    json_t *accessor = json_array_get(json_object_get(work->root, "accessors"), (size_t)json_integer_value(number));
+    int component_type, width;
+    if (!accessor || json_object_get(accessor, "bufferView"))
+        return true;
+    uint64_t count = number_of(accessor, "count"), element = document_element_bytes(accessor, &component_type, &width);
+    if (count > MAX_ZERO_BYTES || (*zeros += count * element) > MAX_ZERO_BYTES)
+        return wrong(work->why, "accessor %lld: %" PRIu64 " elements, but not a byte of them in the file",
+                     (long long)json_integer_value(number), count);
+    unsigned char *own = mem_try_array(count * element + 1, 1);
+    if (!own)
+        return wrong(work->why, "out of memory for accessor %lld", (long long)json_integer_value(number));
+    document_point_accessor(work, accessor, document_add_buffer(work, own, (size_t)(count * element)));
+    work->document->total_bytes -= (size_t)(count * element);
+    return true;
+}
+
+static bool fill_attributes(struct document_work *work, json_t *attributes, uint64_t *zeros)
+{
+    const char *key;
+    json_t *number;
+    json_object_foreach(attributes, key, number)
+    {
+        if (!fill_with_zeros(work, number, zeros))
+            return false;
+    }
+    return true;
+}
+
+static bool fill_accessors(struct document_work *work)
+{
+    uint64_t zeros = 0;
+    const json_t *meshes = json_object_get(work->root, "meshes"), *nodes = json_object_get(work->root, "nodes");
+    for (size_t m = 0; m < json_array_size(meshes); m++) {
+        const json_t *primitives = json_object_get(json_array_get(meshes, m), "primitives");
+        for (size_t p = 0; p < json_array_size(primitives); p++) {
+            const json_t *primitive = json_array_get(primitives, p), *indices = json_object_get(primitive, "indices");
+            if (!fill_attributes(work, json_object_get(primitive, "attributes"), &zeros) ||
+                (indices && !fill_with_zeros(work, indices, &zeros)))
+                return false;
+        }
+    }
+    for (size_t n = 0; n < json_array_size(nodes); n++) {
+        const json_t *instancing = json_object_get(json_object_get(json_array_get(nodes, n), "extensions"), "EXT_mesh_gpu_instancing");
+        if (!fill_attributes(work, json_object_get(instancing, "attributes"), &zeros))
+            return false;
+    }
+    return true;
+}
+
+/* --- images -------------------------------------------------------------------------------------------------------------- */
+
+static bool load_image(struct document_work *work, size_t number, const json_t *from, struct document_image *image)
+{
+    const json_t *view = json_object_get(from, "bufferView");
+    const char *uri = json_string_value(json_object_get(from, "uri")), *name = json_string_value(json_object_get(from, "name"));
+    char uri_why[MODEL_WHY_BYTES];
+    image->name = mem_strdup(uri && !model_uri_is_data(uri) ? uri : name ? name : "");
+    if (view) {
+        struct model_bytes bytes;
+        if (!view_bytes(work, (size_t)json_integer_value(view), &bytes))
+            return false;
+        image->bytes = (struct document_bytes){ .at = bytes.at, .size = bytes.size };
+    } else if (uri) {
+        image->bytes.at = image->bytes.own = model_uri_read(work->source->folder, uri, &image->bytes.size, uri_why);
+        if (!image->bytes.at)
+            return wrong(work->why, "image %zu: %s", number, uri_why);
+    } else {
+        return wrong(work->why, "image %zu: has neither a uri nor a bufferView", number);
+    }
+    return true;
+}
+
+static bool load_images(struct document_work *work)
+{
+    const json_t *images = json_object_get(work->root, "images");
+    struct model_document *d = work->document;
+    d->images = mem_array(json_array_size(images) + 1, sizeof(*d->images));
+    for (size_t i = 0; i < json_array_size(images); i++)
+        if (!load_image(work, i, json_array_get(images, i), &d->images[d->image_count++]))
+            return false;
+    return true;
+}
+
+/* --- the whole ----------------------------------------------------------------------------------------------------------- */
+
+static void strip(json_t *root)
+{
+    static const char *const unused[] = { "buffers",    "images",         "animations",         "skins", "cameras",
+                                          "extensions", "extensionsUsed", "extensionsRequired", "extras" };
+    static const char *const lists[] = { "nodes", "meshes", "materials", "accessors", "bufferViews", "scenes" };
+    for (size_t i = 0; i < sizeof(unused) / sizeof(unused[0]); i++)
+        json_object_del(root, unused[i]);
+    for (size_t l = 0; l < sizeof(lists) / sizeof(lists[0]); l++) {
+        const json_t *list = json_object_get(root, lists[l]);
+        for (size_t i = 0; i < json_array_size(list); i++)
+            json_object_del(json_array_get(list, i), "extras");
+    }
+}
+
+static bool make_plain(struct document_work *work)
+{
+    if (!model_rules_check(work->root, work->why) || !load_buffers(work) || !document_expand_meshopt(work) || !views_good(work) ||
+        !document_expand_draco(work) || !fill_accessors(work) || !load_images(work))
+        return false;
+    strip(work->root);
+    work->document->json = json_dumps(work->root, JSON_COMPACT);
+    if (!work->document->json)
+        return wrong(work->why, "out of memory for its JSON");
+    work->document->json_bytes = strlen(work->document->json);
+    return true;
+}
+
+bool model_document_open(struct model_document *document, const struct model_source *source, char why[MODEL_WHY_BYTES])
+{
+    struct document_work work = { .source = source, .document = document, .why = why };
+    *document = (struct model_document){ 0 };
+    work.root = model_json_load(source, &work.binary, why);
+    bool good = work.root && make_plain(&work);
+    json_decref(work.root);
+    if (!good)
+        model_document_finish(document);
+    return good;
+}
+
+void model_document_finish(struct model_document *document)
+{
+    for (size_t i = 0; i < document->buffer_count; i++)
+        mem_free(document->buffers[i].own);
+    for (size_t i = 0; i < document->image_count; i++) {
+        mem_free(document->images[i].name);
+        mem_free(document->images[i].bytes.own);
+    }
+    mem_free(document->buffers);
+    mem_free(document->images);
+    free(document->json);
+    *document = (struct model_document){ 0 };
+}

@@ -1,0 +1,38 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* A model made plain: its JSON checked and rid of compression, files and data URIs, and its buffers and images beside it in memory. */
+#ifndef PREPROCESS_MODEL_DOCUMENT_H
+#define PREPROCESS_MODEL_DOCUMENT_H
+#include "preprocess/model/model_source.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+struct document_bytes {
+    const unsigned char *at; /* in `own`, the source's bytes, or another's */
+    size_t size;
+    unsigned char *own; /* NULL: somebody else's */
+};
+
+struct document_image {
+    char *name;
+    struct document_bytes bytes; /* as it lies in the file: PNG, JPEG, WebP */
+};
+
+struct model_document {
+    char *json; /* no buffers, images, skins or animations in it; every buffer view lies inside buffers[its buffer] */
+    size_t json_bytes;
+    struct document_bytes *buffers;
+    struct document_image *images;
+    size_t buffer_count, image_count;
+    size_t total_bytes; /* of the buffers, but for those that are all zeros */
+};
+
+/* The source must outlive it. False: why says what is wrong; nothing to finish. */
+bool model_document_open(struct model_document *document, const struct model_source *source, char why[MODEL_WHY_BYTES]);
+void model_document_finish(struct model_document *document);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,86 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Finding and parsing the JSON of a model file. */
+#include "preprocess/model/model_json.h"
+
+#include <string.h>
+
+#define MAX_LEVELS 64 /* of arrays and objects; glTF needs about ten, extras some more */
+
+static uint32_t read_u32(const unsigned char *at)
+{
+    return (uint32_t)at[0] | (uint32_t)at[1] << 8 | (uint32_t)at[2] << 16 | (uint32_t)at[3] << 24;
+}
+
+static bool glb_good(const struct model_source *source, struct model_bytes *json, struct model_bytes *binary, char *why)
+{
+    const unsigned char *b = source->bytes;
+    if (source->size < 20)
+        return wrong(why, "truncated GLB: %zu bytes", source->size);
+    uint32_t size = read_u32(b + 8), json_bytes = read_u32(b + 12);
+    if (read_u32(b + 4) != 2)
+        return wrong(why, "GLB version %u, expected 2", read_u32(b + 4));
+    if (size > source->size)
+        return wrong(why, "truncated GLB: %zu bytes of %u", source->size, size);
+    if (size < 20 || memcmp(b + 16, "JSON", 4) != 0 || json_bytes > size - 20)
+        return wrong(why, "GLB: the first chunk is not JSON, or is cut off");
+    *json = (struct model_bytes){ b + 20, json_bytes };
+    const unsigned char *next = b + 20 + json_bytes;
+    size_t left = size - 20 - json_bytes;
+    if (left < 8)
+        return true;
+    uint32_t bytes = read_u32(next);
+    if (bytes > left - 8)
+        return wrong(why, "GLB: the second chunk has %u bytes, but only %zu are left", bytes, left - 8);
+    if (memcmp(next + 4, "BIN\0", 4) == 0)
+        *binary = (struct model_bytes){ next + 8, bytes };
+    return true;
+}
+
+/* Parsers recurse. */
+static bool depth_good(struct model_bytes json, char *why)
+{
+    int depth = 0;
+    bool quoted = false;
+    for (size_t i = 0; i < json.size; i++) {
+        unsigned char c = json.at[i];
+        if (quoted) {
+            if (c == '\\')
+                i++;
+            else if (c == '"')
+                quoted = false;
+        } else if (c == '"') {
+            quoted = true;
+        } else if (c == '{' || c == '[') {
+            if (++depth > MAX_LEVELS)
+                return wrong(why, "JSON is nested deeper than %d levels", MAX_LEVELS);
+        } else if (c == '}' || c == ']') {
+            depth--;
+        }
+    }
+    return true;
+}
+
+json_t *model_json_load(const struct model_source *source, struct model_bytes *binary, char why[MODEL_WHY_BYTES])
+{
+    struct model_bytes json = { source->bytes, source->size };
+    json_error_t error;
+    *binary = (struct model_bytes){ 0 };
+    bool is_glb = source->size >= 4 && memcmp(source->bytes, "glTF", 4) == 0;
+    if (is_glb && !glb_good(source, &json, binary, why))
+        return NULL;
+    if (json.size >= 3 && memcmp(json.at, "\xEF\xBB\xBF", 3) == 0)
+        json = (struct model_bytes){ json.at + 3, json.size - 3 };
+    while (is_glb && json.size > 0 && json.at[json.size - 1] == 0) /* some writers pad with 0, not with blanks */
+        json.size--;
+    if (!depth_good(json, why))
+        return NULL;
+    json_t *root = json_loadb((const char *)json.at, json.size, 0, &error);
+    if (!root) {
+        wrong(why, "JSON: line %d, column %d: %s", error.line, error.column, error.text);
+    } else if (!json_is_object(root)) {
+        wrong(why, "JSON: the top is not an object");
+        json_decref(root);
+        root = NULL;
+    }
+    return root;
+}

@@ -1,0 +1,15 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Writing down why a model is refused. */
+#include "preprocess/model/refusal.h"
+
+#include <stdarg.h>
+#include <stdio.h>
+
+bool wrong(char why[MODEL_WHY_BYTES], const char *fmt, ...)
+{
+    va_list ap;
+    va_start(ap, fmt);
+    vsnprintf(why, MODEL_WHY_BYTES, fmt, ap);
+    va_end(ap);
+    return false;
+}

@@ -1,0 +1,442 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* One asset from a parsed model to the bytes of its file. */
+#include "preprocess/pipeline/build.h"
+
+#include <inttypes.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#define XXH_STATIC_LINKING_ONLY /* the hash state on the stack */
+#include <xxhash.h>
+
+#include "base/clock.h"
+#include "base/mem.h"
+#include "preprocess/levels/clusters.h"
+#include "preprocess/pipeline/sensor_distances.h"
+#include "preprocess/levels/vertex_order.h"
+#include "preprocess/subdivision/subdivide.h"
+#include "preprocess/pipeline/geometry_cache.h"
+#include "surface/surface_store.h"
+
+static void hash_text(XXH3_state_t *state, const char *text)
+{
+    XXH3_64bits_update(state, text ? text : "", text ? strlen(text) + 1 : 1);
+}
+
+static bool is_alone(const struct plant *plant, const struct plant_sensor *sensors, size_t count, size_t sensor)
+{
+    for (size_t i = 0; i < count; i++)
+        if (i != sensor && plant->tags[sensors[i].tag].group == plant->tags[sensors[sensor].tag].group)
+            return false;
+    return true;
+}
+
+/* What the splitting takes from the plant file. */
+static void hash_field(XXH3_state_t *state, const struct plant *plant, const struct plant_sensor *sensors, size_t count, size_t sensor)
+{
+    const struct plant_tag *tag = &plant->tags[sensors[sensor].tag];
+    const struct plant_group *group = &plant->groups[tag->group];
+    const double numbers[5] = { tag->group, tag->strength, tag->decay, group->power, group->radius_m };
+    XXH3_64bits_update(state, numbers, sizeof(numbers));
+    if (group->reach_m < INFINITY)
+        XXH3_64bits_update(state, &group->reach_m, sizeof(group->reach_m));
+    if (is_alone(plant, sensors, count, sensor) && !straight_looks_at_paper(group, 1))
+        XXH3_64bits_update(state, "s", 1);
+}
+
+uint64_t build_recipe(uint64_t model_hash, const struct geometry_params *geometry)
+{
+    XXH3_state_t state;
+    XXH3_INITSTATE(&state);
+    XXH3_64bits_reset(&state);
+    XXH3_64bits_update(&state, &(uint64_t){ build_geometry_key(model_hash, geometry) }, sizeof(uint64_t));
+    XXH3_64bits_update(&state, geometry->nodes ? "n" : "a", 1);
+    hash_text(&state, geometry->nodes);
+    return XXH3_64bits_digest(&state);
+}
+
+uint64_t build_geometry_key(uint64_t geometry_hash, const struct geometry_params *geometry)
+{
+    const uint32_t numbers[3] = { ASSET_VERSION, BUILD_REVISION, (uint32_t)geometry->up };
+    XXH3_state_t state;
+    XXH3_INITSTATE(&state);
+    XXH3_64bits_reset(&state);
+    XXH3_64bits_update(&state, numbers, sizeof(numbers));
+    XXH3_64bits_update(&state, &geometry_hash, sizeof(geometry_hash));
+    XXH3_64bits_update(&state, &geometry->unit_m, sizeof(geometry->unit_m));
+    if (geometry->tolerance_m > 0)
+        XXH3_64bits_update(&state, &geometry->tolerance_m, sizeof(geometry->tolerance_m));
+    return XXH3_64bits_digest(&state);
+}
+
+uint64_t build_key(uint64_t geometry_key, const struct plant *plant, const struct plant_sensor *sensors, size_t sensor_count)
+{
+    XXH3_state_t state;
+    XXH3_INITSTATE(&state);
+    XXH3_64bits_reset(&state);
+    XXH3_64bits_update(&state, &geometry_key, sizeof(geometry_key));
+    for (size_t i = 0; i < sensor_count; i++) {
+        hash_text(&state, sensors[i].node);
+        XXH3_64bits_update(&state, sensors[i].position_m, sizeof(sensors[i].position_m));
+        hash_field(&state, plant, sensors, sensor_count, i);
+    }
+    return XXH3_64bits_digest(&state);
+}
+
+static double seconds_since(int64_t *since_ns)
+{
+    int64_t now_ns = clock_mono_ns();
+    double seconds = (double)(now_ns - *since_ns) / NS_PER_S;
+    *since_ns = now_ns;
+    return seconds;
+}
+
+/* One asset in the making. */
+struct build {
+    struct log *log;
+    struct workers *workers;
+    const struct build_input *input;
+    struct build_output *output;
+    struct geometry geometry;
+    struct levels levels;
+    struct sensor_distances measured;
+    struct asset_level file[LEVELS_MAX]; /* the levels as the file has them */
+    struct text parts;                   /* of a stock, unless there is one */
+    struct distance_rows distances;      /* of the vertices, as they come to be numbered */
+    struct clusters_making *making[LEVELS_MAX];
+    size_t making_count;
+    bool keeps; /* what splitting found out */
+    struct subdiv_cache findings;
+    struct sample_cache sample_cache;
+    struct build_report stock_report;
+    struct workers_task *keeping;          /* writes what is kept for the next time */
+    struct workers_task *sending;          /* the asset's file to the disk */
+    void (*tasks[2])(struct build *build); /* side by side */
+    bool failed[2];
+    int write_error; /* errno; 0: none */
+    char *why;
+};
+
+static void run_task(void *arg, size_t begin, size_t end)
+{
+    struct build *build = arg;
+    for (size_t i = begin; i < end; i++)
+        if (build->tasks[i])
+            build->tasks[i](build);
+}
+
+static bool run_both(struct build *build, void (*first)(struct build *build), void (*second)(struct build *build))
+{
+    build->tasks[0] = first;
+    build->tasks[1] = second;
+    workers_for(build->workers, 2, 1, run_task, build);
+    return !build->failed[0] && !build->failed[1];
+}
+
+/* --- levels and distances need nothing of each other ------------------------------------------------------------------------- */
+
+static void make_levels(struct build *build)
+{
+    struct build_report *report = &build->output->report;
+    int64_t since_ns = clock_mono_ns();
+    build->failed[0] = !levels_make(&build->levels, &build->geometry, build->workers);
+    if (build->failed[0])
+        wrong(build->why, "out of memory for the levels of %u vertices", build->geometry.vertex_count);
+    report->repeated_triangles = (uint32_t)build->levels.repeated;
+    report->levels_s = seconds_since(&since_ns);
+}
+
+static void find_distances(struct build *build)
+{
+    char why[MODEL_WHY_BYTES];
+    build->failed[1] =
+        !sensor_distances_find(&build->measured, build->log, build->workers, build->input, &build->geometry, build->output, why);
+    if (build->failed[1])
+        memcpy(build->why, why, sizeof(why));
+}
+
+/* --- and so do splitting and the check ----------------------------------------------------------------------------------------- */
+
+/* One level while the next one is split: meshoptimizer works on one core. */
+static void begin_clusters(void *arg, const struct level *level)
+{
+    struct build *build = arg;
+    const struct geometry *g = &build->geometry;
+    build->making[build->making_count++] = clusters_begin(build->workers, level, (const float(*)[3])g->positions_m, g->vertex_count);
+}
+
+/* Before levels are put together. */
+static void end_clusters(struct build *build, struct clusters *clusters)
+{
+    uint32_t first_index = 0;
+    for (size_t l = 0; l < build->making_count; l++) {
+        clusters_end(&build->making[l], first_index, clusters);
+        first_index += build->levels.at[l].index_count;
+    }
+    build->making_count = 0;
+}
+
+static void split(struct build *build)
+{
+    const struct build_input *input = build->input;
+    struct sensor_distances *measured = &build->measured;
+    struct linear_error linear;
+    int64_t since_ns = clock_mono_ns();
+    float(*places)[3] = mem_array(input->sensor_count, sizeof(*places));
+    for (size_t i = 0; i < input->sensor_count; i++)
+        memcpy(places[i], measured->sensors[i].surface_m, sizeof(*places));
+    linear_error_init(&linear, input->plant, input->sensors, input->sensor_count, (const float(*)[3])places);
+    build->keeps = input->folder && build->geometry.index_count / 3 >= GEOMETRY_CACHE_TRIANGLES;
+    if (build->keeps) {
+        sample_cache_open(&build->sample_cache, input->folder, input->geometry_key);
+        subdiv_cache_open(&build->findings, input->folder, input->distances_key, &linear);
+    }
+    build->failed[0] = !subdivide_levels(&build->levels, &build->geometry,
+                                         &(struct subdiv_input){ .linear = &linear,
+                                                                 .surface = measured->surface,
+                                                                 .field = &measured->field,
+                                                                 .sensors = measured->sensors,
+                                                                 .workers = build->workers,
+                                                                 .cache = &build->findings,
+                                                                 .sample_cache = build->keeps ? &build->sample_cache : NULL,
+                                                                 .level_done = begin_clusters,
+                                                                 .arg = build },
+                                         &build->distances);
+    if (build->failed[0])
+        wrong(build->why, "out of memory for the levels of %u vertices", build->geometry.vertex_count);
+    build->output->report.split_measured = build->findings.measured_count;
+    build->output->report.split_kept = build->findings.kept_count;
+    linear_error_finish(&linear);
+    mem_free(places);
+    build->output->report.split_s = seconds_since(&since_ns);
+}
+
+static void check(struct build *build)
+{
+    struct sensor_distances *measured = &build->measured;
+    build->failed[1] = !surface_check(measured->surface, &measured->field);
+    if (build->failed[1])
+        wrong(build->why, "out of memory for the check of its distances");
+    build->output->report.surface = *surface_report(measured->surface);
+}
+
+/* --- what is kept for the next time ------------------------------------------------------------------------------------------ */
+
+/* Splitting is going to change them. */
+static void pack_parts(struct build *build)
+{
+    const struct build_input *input = build->input;
+    if (input->folder && !input->cache && build->geometry.index_count / 3 >= GEOMETRY_CACHE_TRIANGLES)
+        geometry_cache_pack(&build->parts, &build->geometry, &build->levels);
+}
+
+static bool write_surface(const struct build *build)
+{
+    const struct build_input *input = build->input;
+    struct text packed = { 0 };
+    char *path = folder_path(input->folder, input->geometry_key, FOLDER_SURFACE);
+    surface_pack(build->measured.surface, &packed);
+    bool good = cache_file_write(path, SURFACE_MAGIC, input->geometry_key, packed.at, packed.length) == 0;
+    text_finish(&packed);
+    mem_free(path);
+    return good;
+}
+
+/* If it cannot be written, the next time takes longer; that is all. */
+static void write_stock(const struct build *build)
+{
+    const struct build_input *input = build->input;
+    if (!input->cache && build->parts.length && write_surface(build))
+        geometry_cache_write(input->folder, input->geometry_key, build->parts.at, build->parts.length, &build->stock_report);
+}
+
+static void write_kept(void *arg)
+{
+    const struct build *build = arg;
+    const struct build_input *input = build->input;
+    if (build->keeps) {
+        subdiv_cache_write(&build->findings, input->folder, input->distances_key);
+        sample_cache_write(&build->sample_cache, input->folder, input->geometry_key);
+    }
+    write_stock(build);
+}
+
+/* Levels first, then each is split; so a level has no more vertices than it needs. */
+static bool put_in_order(struct build *build, uint32_t own)
+{
+    struct build_report *report = &build->output->report;
+    struct geometry *g = &build->geometry;
+    size_t sensors = build->input->sensor_count;
+    uint32_t *new_of = NULL;
+    bool good = vertex_order_apply(g, &build->levels, own, build->file, &new_of);
+    if (good && sensors)
+        distance_rows_renumber(&build->distances, new_of, g->vertex_count);
+    for (size_t s = 0; good && s < sensors; s++)
+        build->measured.sensors[s].nearest_vertex = new_of[build->measured.sensors[s].nearest_vertex];
+    report->level_count = build->levels.count;
+    report->levels_given_up = build->levels.given_up;
+    for (size_t i = 0; good && i < build->levels.count; i++) {
+        report->levels[i].triangles = build->levels.at[i].whole_count / 3;
+        report->levels[i].split_triangles = build->levels.at[i].index_count / 3;
+        report->levels[i].vertices = build->file[i].vertex_count;
+        report->levels[i].error_m = build->file[i].error_m;
+        memcpy(report->levels[i].left, build->levels.at[i].left, sizeof(report->levels[i].left));
+    }
+    mem_free(new_of);
+    return good || wrong(build->why, "out of memory for the levels of %u vertices", g->vertex_count);
+}
+
+static void send_file(void *arg)
+{
+    folder_draft_send(arg);
+}
+
+/* They are most of the file: while it is summed up and checked, it goes to the disk. */
+static void write_distances(void *arg, float *geodesic_m)
+{
+    struct build *build = arg;
+    struct folder_draft *file = &build->output->file;
+    off_t at = (char *)geodesic_m - (char *)file->bytes;
+    build->write_error = distance_rows_write(&build->distances, build->workers, file->file.fd, at);
+    build->sending = workers_begin(build->workers, send_file, &build->output->file);
+}
+
+static void *make_file(void *arg, size_t bytes)
+{
+    struct build *build = arg;
+    int status = folder_draft(&build->output->file, build->input->folder, build->input->key, bytes);
+    if (status != 0)
+        wrong(build->why, "its file of %zu bytes cannot be written into %s: %s", bytes, build->input->folder, strerror(-status));
+    return build->output->file.bytes;
+}
+
+static bool lay_out(struct build *build, const struct clusters *clusters)
+{
+    const struct build_input *input = build->input;
+    const struct geometry *g = &build->geometry;
+    struct build_output *output = build->output;
+    struct asset_parts parts = {
+        .key = input->key,
+        .positions_m = (const float(*)[3])g->positions_m,
+        .normals = (const float(*)[3])g->normals,
+        .texcoords = (const float(*)[2])g->texcoords,
+        .second_texcoords = (const float(*)[2])g->second_texcoords,
+        .colors = (const uint8_t(*)[4])g->colors,
+        .indices = g->indices,
+        .primitives = g->primitives,
+        .levels = build->file,
+        .level_count = (uint32_t)output->report.level_count,
+        .clusters = clusters->at,
+        .cluster_count = clusters->count,
+        .materials = g->materials,
+        .textures = g->textures,
+        .texels = g->texels,
+        .sensors = build->measured.sensors,
+        .write_geodesic = write_distances,
+        .write_arg = build,
+        .make_room = make_file,
+        .room_arg = build,
+        .names = g->names.at,
+        .vertex_count = g->vertex_count,
+        .index_count = g->index_count,
+        .primitive_count = g->primitive_count,
+        .material_count = g->material_count,
+        .texture_count = g->texture_count,
+        .sensor_count = (uint32_t)input->sensor_count,
+        .texel_bytes = g->texel_bytes,
+        .name_bytes = g->names.length,
+    };
+    char view_why[200];
+    memcpy(parts.origin_m, g->origin_m, sizeof(parts.origin_m));
+    size_t size;
+    wrong(build->why, "out of memory for its file"); /* unless make_file says something else */
+    void *bytes = asset_build(&parts, &size);
+    if (bytes && build->write_error)
+        return wrong(build->why, "its distances cannot be written into %s: %s", input->folder, strerror(build->write_error));
+    if (!bytes)
+        return false;
+    return asset_view_fresh(&output->view, bytes, size, view_why) || /* what a reader would refuse is not put in its place */
+           wrong(build->why, "its file would be wrong: %s", view_why);
+}
+
+static bool build_file(struct build *build)
+{
+    const struct build_input *input = build->input;
+    struct clusters clusters = { 0 };
+    bool any = input->sensor_count > 0;
+    uint32_t own = build->geometry.vertex_count;
+    if (!run_both(build, input->cache ? NULL : make_levels, any ? find_distances : NULL))
+        return false;
+    if (any) {
+        pack_parts(build);
+        if (!run_both(build, split, input->cache ? NULL : check))
+            return false;
+        build->stock_report = build->output->report;
+        build->keeping = workers_begin(build->workers, write_kept, build);
+        surface_field_finish(&build->measured.field); /* it is large */
+    }
+    for (size_t l = 0; l < build->levels.count && !any; l++)
+        begin_clusters(build, &build->levels.at[l]);
+    end_clusters(build, &clusters);
+    bool good = put_in_order(build, own) && lay_out(build, &clusters);
+    clusters_finish(&clusters);
+    return good;
+}
+
+/* Out of the model, or out of the stock, which has levels and surface too. */
+static bool begin(struct build *build)
+{
+    const struct build_input *input = build->input;
+    const struct geometry *g = &build->geometry;
+    struct build_report *report = &build->output->report;
+    int64_t since_ns = clock_mono_ns();
+    if (!input->cache && !geometry_cut(&build->geometry, input->model, &input->geometry, build->why))
+        return false;
+    if (input->cache &&
+        !geometry_cache_unpack(input->cache, build->log, build->workers, &build->geometry, &build->levels, &build->measured.surface))
+        return wrong(build->why, "%016" PRIx64 ".surface is no good, or out of memory: delete it", input->geometry_key);
+    *report = (struct build_report){ .nodes = g->node_count,
+                                     .triangles = g->index_count / 3,
+                                     .vertices = g->vertex_count,
+                                     .primitives = g->primitive_count,
+                                     .materials = g->material_count,
+                                     .textures = g->texture_count,
+                                     .degenerate_triangles = g->degenerate_triangles,
+                                     .computed_normals = g->computed_normals,
+                                     .skipped_lines = g->skipped_lines,
+                                     .skipped_points = g->skipped_points,
+                                     .stocked = input->cache != NULL,
+                                     .read_s = seconds_since(&since_ns) };
+    if (input->cache) {
+        struct surface_report *surface = &report->surface;
+        report->repeated_triangles = input->cache->report.repeated_triangles;
+        *surface = input->cache->report.surface;
+        surface->weld_s = surface->bridge_s = surface->sample_s = surface->laplacian_s = surface->factor_s = surface->check_s = 0;
+    }
+    return true;
+}
+
+bool build_asset(struct log *log, struct workers *workers, const struct build_input *input, struct build_output *output,
+                 char why[MODEL_WHY_BYTES])
+{
+    struct build build = { .log = log, .workers = workers, .input = input, .output = output, .why = why };
+    *output = (struct build_output){ 0 };
+    struct clusters left = { 0 };
+    bool good = begin(&build) && build_file(&build);
+    workers_end(&build.keeping);
+    workers_end(&build.sending);
+    end_clusters(&build, &left);
+    clusters_finish(&left);
+    subdiv_cache_close(&build.findings);
+    if (build.keeps)
+        sample_cache_close(&build.sample_cache);
+    sensor_distances_finish(&build.measured);
+    levels_finish(&build.levels);
+    geometry_finish(&build.geometry);
+    text_finish(&build.parts);
+    distance_rows_finish(&build.distances);
+    if (!good)
+        folder_draft_close(&output->file);
+    return good;
+}

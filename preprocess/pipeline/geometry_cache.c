@@ -1,0 +1,189 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Keeping what does not depend on sensors. */
+#include "preprocess/pipeline/geometry_cache.h"
+
+#include <string.h>
+
+#include "base/mem.h"
+#include "preprocess/cache/folder.h"
+#include "surface/surface_store.h"
+
+#define MAGIC "PLCSTOCK"
+
+/* --- reading ------------------------------------------------------------------------------------------------------------------ */
+
+/* The parts come first, and how long they are before them. */
+static const void *cached_parts(const struct geometry_cache *cache, size_t *size)
+{
+    uint64_t bytes;
+    memcpy(&bytes, cache->parts.bytes, sizeof(bytes));
+    *size = bytes;
+    return cache->parts.bytes + sizeof(bytes);
+}
+
+static bool read_rest(struct geometry_cache *cache)
+{
+    size_t size, most = cache->parts.count - sizeof(uint64_t);
+    const char *parts = cache->parts.count < sizeof(uint64_t) ? NULL : cached_parts(cache, &size);
+    if (!parts || size > most)
+        return false;
+    struct unpack rest = { parts + size, most - size, false };
+    unpack_into(&rest, &cache->report, 1, sizeof(cache->report));
+    return !rest.bad;
+}
+
+bool geometry_cache_open(struct geometry_cache *cache, const char *folder, uint64_t key)
+{
+    char *path = folder_path(folder, key, FOLDER_GEOMETRY), *surface = folder_path(folder, key, FOLDER_SURFACE);
+    *cache = (struct geometry_cache){ 0 };
+    bool good = cache_file_open(&cache->parts, path, MAGIC, key) && cache_file_open(&cache->surface, surface, SURFACE_MAGIC, key) &&
+                read_rest(cache);
+    mem_free(path);
+    mem_free(surface);
+    if (!good)
+        geometry_cache_close(cache);
+    return good;
+}
+
+void geometry_cache_close(struct geometry_cache *cache)
+{
+    cache_file_close(&cache->parts);
+    cache_file_close(&cache->surface);
+    *cache = (struct geometry_cache){ 0 };
+}
+
+/* --- the parts ---------------------------------------------------------------------------------------------------------------- */
+
+struct geometry_numbers {
+    double origin_m[3];
+    uint32_t node_count, degenerate_triangles, computed_normals, skipped_lines, skipped_points;
+};
+
+static void pack_geometry(struct text *to, const struct geometry *g)
+{
+    const struct geometry_numbers numbers = { { g->origin_m[0], g->origin_m[1], g->origin_m[2] },
+                                              g->node_count,
+                                              g->degenerate_triangles,
+                                              g->computed_normals,
+                                              g->skipped_lines,
+                                              g->skipped_points };
+    pack_array(to, &numbers, 1, sizeof(numbers));
+    pack_array(to, g->positions_m, g->vertex_count, sizeof(*g->positions_m));
+    pack_array(to, g->normals, g->vertex_count, sizeof(*g->normals));
+    pack_array(to, g->texcoords, g->texcoords ? g->vertex_count : 0, sizeof(*g->texcoords));
+    pack_array(to, g->second_texcoords, g->second_texcoords ? g->vertex_count : 0, sizeof(*g->second_texcoords));
+    pack_array(to, g->colors, g->colors ? g->vertex_count : 0, sizeof(*g->colors));
+    pack_array(to, g->indices, g->index_count, sizeof(*g->indices));
+    pack_array(to, g->primitives, g->primitive_count, sizeof(*g->primitives));
+    pack_array(to, g->materials, g->material_count, sizeof(*g->materials));
+    pack_array(to, g->textures, g->texture_count, sizeof(*g->textures));
+    pack_array(to, g->texels, g->texel_bytes, 1);
+    pack_array(to, g->names.at, g->names.length, 1);
+}
+
+/* Its numbers of elements are 32 bits wide: anything else is no good. */
+static uint32_t narrow(struct unpack *from, size_t count)
+{
+    from->bad |= count > UINT32_MAX;
+    return (uint32_t)count;
+}
+
+static void unpack_geometry(struct unpack *from, struct geometry *g)
+{
+    struct geometry_numbers numbers = { 0 };
+    size_t positions, normals, texcoords, second_texcoords, colors, indices, primitives, materials, textures, name_bytes;
+    unpack_into(from, &numbers, 1, sizeof(numbers));
+    *g = (struct geometry){ .node_count = numbers.node_count,
+                            .degenerate_triangles = numbers.degenerate_triangles,
+                            .computed_normals = numbers.computed_normals,
+                            .skipped_lines = numbers.skipped_lines,
+                            .skipped_points = numbers.skipped_points };
+    memcpy(g->origin_m, numbers.origin_m, sizeof(g->origin_m));
+    g->positions_m = unpack_array(from, &positions, sizeof(*g->positions_m));
+    g->normals = unpack_array(from, &normals, sizeof(*g->normals));
+    g->texcoords = unpack_array(from, &texcoords, sizeof(*g->texcoords));
+    g->second_texcoords = unpack_array(from, &second_texcoords, sizeof(*g->second_texcoords));
+    g->colors = unpack_array(from, &colors, sizeof(*g->colors));
+    g->indices = unpack_array(from, &indices, sizeof(*g->indices));
+    g->primitives = unpack_array(from, &primitives, sizeof(*g->primitives));
+    g->materials = unpack_array(from, &materials, sizeof(*g->materials));
+    g->textures = unpack_array(from, &textures, sizeof(*g->textures));
+    g->texels = unpack_array(from, &g->texel_bytes, 1);
+    char *names = unpack_array(from, &name_bytes, 1);
+    if (name_bytes)
+        text_add_bytes(&g->names, names, name_bytes);
+    mem_free(names);
+    g->vertex_count = narrow(from, positions);
+    g->index_count = narrow(from, indices);
+    g->primitive_count = narrow(from, primitives);
+    g->material_count = narrow(from, materials);
+    g->texture_count = narrow(from, textures);
+    from->bad |= normals != positions || (texcoords && texcoords != positions) || (second_texcoords && second_texcoords != positions) ||
+                 (colors && colors != positions);
+}
+
+static void pack_levels(struct text *to, const struct levels *levels)
+{
+    float errors_m[LEVELS_MAX] = { 0 };
+    for (size_t i = 0; i < levels->count; i++)
+        errors_m[i] = levels->at[i].error_m;
+    pack_array(to, errors_m, levels->count, sizeof(*errors_m));
+    for (size_t i = 0; i < levels->count; i++) {
+        pack_array(to, levels->at[i].indices, levels->at[i].index_count, sizeof(*levels->at[i].indices));
+        pack_array(to, levels->at[i].primitives, levels->at[i].primitive_count, sizeof(*levels->at[i].primitives));
+    }
+}
+
+static void unpack_levels(struct unpack *from, struct levels *levels)
+{
+    size_t indices, primitives;
+    *levels = (struct levels){ 0 };
+    float *errors_m = unpack_array(from, &levels->count, sizeof(*errors_m));
+    from->bad |= levels->count > LEVELS_MAX;
+    levels->count = from->bad ? 0 : levels->count;
+    for (size_t i = 0; i < levels->count; i++) {
+        struct level *level = &levels->at[i];
+        level->error_m = errors_m[i];
+        level->indices = unpack_array(from, &indices, sizeof(*level->indices));
+        level->primitives = unpack_array(from, &primitives, sizeof(*level->primitives));
+        level->index_count = level->whole_count = narrow(from, indices);
+        level->primitive_count = narrow(from, primitives);
+    }
+    mem_free(errors_m);
+}
+
+void geometry_cache_pack(struct text *parts, const struct geometry *geometry, const struct levels *levels)
+{
+    pack_geometry(parts, geometry);
+    pack_levels(parts, levels);
+}
+
+bool geometry_cache_unpack(const struct geometry_cache *cache, struct log *log, struct workers *workers, struct geometry *geometry,
+                           struct levels *levels, struct surface **surface)
+{
+    struct unpack from = { 0 }, surface_from = { cache->surface.bytes, cache->surface.count, false };
+    from.at = cached_parts(cache, &from.left);
+    unpack_geometry(&from, geometry);
+    unpack_levels(&from, levels);
+    *surface = from.bad ? NULL : surface_unpack(&surface_from, log, workers);
+    if (*surface)
+        return true;
+    levels_finish(levels);
+    geometry_finish(geometry);
+    return false;
+}
+
+/* --- writing ------------------------------------------------------------------------------------------------------------------ */
+
+int geometry_cache_write(const char *folder, uint64_t key, const void *parts, size_t size, const struct build_report *report)
+{
+    struct text file = { 0 };
+    char *path = folder_path(folder, key, FOLDER_GEOMETRY);
+    text_add_bytes(&file, &(uint64_t){ size }, sizeof(uint64_t));
+    text_add_bytes(&file, parts, size);
+    pack_array(&file, report, 1, sizeof(*report));
+    int status = cache_file_write(path, MAGIC, key, file.at, file.length);
+    text_finish(&file);
+    mem_free(path);
+    return status;
+}

@@ -1,0 +1,571 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* All assets of a plant: keys, what is there already, and building the rest, a batch of models at a time. */
+#include "preprocess/pipeline/prepare.h"
+
+#include <errno.h>
+#include <math.h>
+#include <pthread.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+#include <xxhash.h>
+
+#include "base/clock.h"
+#include "base/mem.h"
+#include "plant/recipe.h"
+#include "preprocess/cache/model_cache.h"
+#include "preprocess/cache/folder.h"
+#include "preprocess/pipeline/progress.h"
+#include "preprocess/pipeline/build_report_json.h"
+
+#define FAR_M 0.25       /* a sensor farther from its surface than this, */
+#define FAR_OF_SIZE 0.05 /* or than this share of the asset, is worth a warning */
+
+#define BATCH_TRIANGLES 4e6 /* models are parsed until so many triangles wait, then their assets are built */
+#define ALONE_TRIANGLES 1e6 /* an asset as large has all cores for itself: two at once would take twice the memory */
+#define SENSORS_WORK 6e4    /* what an asset's first sensor costs, in triangles, for the progress: measured */
+
+struct run {
+    struct prepare *prepare;
+    struct log *log;
+    struct workers *workers;
+    const struct prepare_params *params;
+    size_t *todo; /* assets to build, by model */
+    size_t todo_count, batch_begin, batch_end;
+    struct model_cache known, cuts; /* of the last time, and of this one */
+    double parsed_triangles;        /* of models that were parsed for their keys and wait for their assets to be built */
+    pthread_mutex_t lock;
+    /* --- below: under lock */
+    struct diag *diag;
+    struct progress progress;
+    bool failed, unusable; /* unusable: also what is not to blame on a model */
+};
+
+struct geometry_params prepare_geometry(const struct plant_asset *asset)
+{
+    return (struct geometry_params){ .nodes = asset->nodes, .unit_m = asset->unit_m, .up = asset->up, .tolerance_m = asset->tolerance_m };
+}
+
+double prepare_far_m(double diagonal_m)
+{
+    return fmin(FAR_M, FAR_OF_SIZE * diagonal_m);
+}
+
+static void fail(struct run *run, const char *file, int line, const char *fmt, ...) __attribute__((format(printf, 4, 5)));
+static void fail(struct run *run, const char *file, int line, const char *fmt, ...)
+{
+    va_list ap;
+    char text[MODEL_WHY_BYTES + 200];
+    va_start(ap, fmt);
+    vsnprintf(text, sizeof(text), fmt, ap);
+    va_end(ap);
+    diag_error(run->diag, file, line, 0, "%s", text);
+    run->failed = true;
+}
+
+static void fail_asset(struct run *run, const struct prepare_asset *asset, const char *why)
+{
+    fail(run, run->prepare->plant->path, asset->plant->line, "asset %s: %s: %s", asset->plant->id, asset->plant->model, why);
+}
+
+/* Its model is no good, or has not what the plant asks of it. */
+static void lose(struct prepare_asset *asset, const char *why)
+{
+    asset->state = PREPARE_FAILED;
+    asset->missing = mem_strdup(why);
+}
+
+static bool is_stopped(const struct run *run)
+{
+    return run->params->stop && atomic_load(run->params->stop);
+}
+
+/* --- keys ------------------------------------------------------------------------------------------------------------------- */
+
+static bool is_possible(const struct run *run, const struct prepare_asset *asset)
+{
+    return asset->wanted && asset->state != PREPARE_FAILED && asset->model < run->prepare->models.count;
+}
+
+static size_t first_with_key(const struct run *run, size_t i)
+{
+    const struct prepare_asset *assets = run->prepare->assets;
+    for (size_t j = 0; j < i; j++)
+        if (assets[j].key == assets[i].key && is_possible(run, &assets[j]))
+            return j;
+    return i;
+}
+
+/* Of an asset whose model was read before, with the nodes that its sensors stand on. False: it is to be read. */
+static bool recall_cut(struct run *run, struct prepare_asset *asset, uint64_t *geometry)
+{
+    bool known = model_cache_find(&run->known, asset->recipe, geometry);
+    for (size_t s = 0; s < asset->sensor_count && known; s++)
+        if (asset->sensors[s].node)
+            known = model_cache_find_node(&run->known, asset->recipe, asset->sensors[s].node_hash, asset->sensors[s].position_m);
+    return known;
+}
+
+static double all_triangles(const struct gltf_model *model)
+{
+    double corners = 0;
+    for (uint32_t p = 0; p < model->primitive_count; p++)
+        corners += (double)model->primitives[p].index_count;
+    return corners / 3;
+}
+
+/* False: the model cannot be parsed, which is said once. */
+static bool have_parsed(struct run *run, struct model_file *model)
+{
+    if (model->is_parsed || !model->good)
+        return model->good;
+    if (!model_file_parse(model)) {
+        model->good = false;
+        fail(run, run->prepare->plant->path, model->line, "%s: %s", model->path, model->why);
+    }
+    return model->good;
+}
+
+static bool look_up_cut(struct run *run, struct prepare_asset *asset, uint64_t *geometry)
+{
+    struct model_file *model = &run->prepare->models.at[asset->model];
+    struct geometry_params params = prepare_geometry(asset->plant);
+    char why[MODEL_WHY_BYTES];
+    if (!have_parsed(run, model)) {
+        lose(asset, model->why);
+        return false;
+    }
+    if (!geometry_hash(geometry, &model->parsed, &params, why)) {
+        fail_asset(run, asset, why);
+        lose(asset, why);
+        return false;
+    }
+    for (size_t s = 0; s < asset->sensor_count; s++) {
+        struct plant_sensor *sensor = &asset->sensors[s];
+        const struct plant_tag *tag = &run->prepare->plant->tags[sensor->tag];
+        if (!sensor->node || geometry_node_place(&model->parsed, &params, sensor->node, sensor->position_m, why))
+            continue;
+        fail(run, run->prepare->plant->tags_path, tag->line, "tag %s: asset %s: %s", tag->name, asset->plant->id, why);
+        if (!asset->missing)
+            lose(asset, why);
+    }
+    return asset->state != PREPARE_FAILED;
+}
+
+static void take_cut(struct run *run, struct prepare_asset *asset, uint64_t geometry)
+{
+    struct geometry_params params = prepare_geometry(asset->plant);
+    asset->geometry_key = build_geometry_key(geometry, &params);
+    asset->key = build_key(asset->geometry_key, run->prepare->plant, asset->sensors, asset->sensor_count);
+    asset->distances_key = XXH3_64bits_withSeed(asset->plant->id, strlen(asset->plant->id), asset->geometry_key);
+    model_cache_add(&run->cuts, asset->recipe, geometry);
+    for (size_t s = 0; s < asset->sensor_count; s++)
+        if (asset->sensors[s].node)
+            model_cache_add_node(&run->cuts, asset->recipe, asset->sensors[s].node_hash, asset->sensors[s].position_m);
+}
+
+/* Of the wanted assets of one model. What it takes to parse it is not spent twice unless its triangles take too much room. */
+static void find_keys_of_model(struct run *run, size_t number)
+{
+    struct model_file *model = &run->prepare->models.at[number];
+    for (size_t i = 0; i < run->prepare->asset_count && !is_stopped(run); i++) {
+        struct prepare_asset *asset = &run->prepare->assets[i];
+        struct geometry_params params = prepare_geometry(asset->plant);
+        uint64_t geometry = 0;
+        if (!asset->wanted || asset->model != number || !model->good)
+            continue;
+        asset->recipe = build_recipe(model->hash, &params);
+        if (recall_cut(run, asset, &geometry) || look_up_cut(run, asset, &geometry))
+            take_cut(run, asset, geometry);
+    }
+    if (!model->is_parsed)
+        return;
+    double triangles = all_triangles(&model->parsed);
+    if (run->parsed_triangles + triangles > BATCH_TRIANGLES)
+        model_file_release(model);
+    else
+        run->parsed_triangles += triangles;
+}
+
+static void find_keys(struct run *run)
+{
+    struct prepare *prepare = run->prepare;
+    for (size_t i = 0; i < prepare->asset_count && !is_stopped(run); i++) {
+        struct prepare_asset *asset = &prepare->assets[i];
+        size_t known = prepare->models.count;
+        if (!asset->wanted)
+            continue;
+        asset->model = model_files_add(&prepare->models, asset->plant);
+        const struct model_file *model = &prepare->models.at[asset->model];
+        asset->sensor_count = plant_sensors(prepare->plant, (int)i, &asset->sensors);
+        if (!model->good && prepare->models.count > known)
+            fail_asset(run, asset, model->why);
+        if (!model->good)
+            lose(asset, model->why);
+    }
+    for (size_t m = 0; m < prepare->models.count && !is_stopped(run); m++)
+        find_keys_of_model(run, m);
+    for (size_t i = 0; i < prepare->asset_count && !is_stopped(run); i++) {
+        struct prepare_asset *asset = &prepare->assets[i];
+        if (asset->wanted && asset->state != PREPARE_FAILED && !prepare->models.at[asset->model].good)
+            lose(asset, prepare->models.at[asset->model].why);
+        asset->same_as = first_with_key(run, i);
+    }
+}
+
+/* --- what is in the folder -------------------------------------------------------------------------------------------------- */
+
+/* Takes from a checked file what the report and the warnings need. */
+static void take_file(struct prepare_asset *asset, const struct asset_view *view)
+{
+    const struct asset_level *finest = &view->levels[0];
+    double size2 = 0;
+    asset->vertices = view->header->vertex_count;
+    asset->triangles = 0;
+    for (uint32_t p = 0; p < finest->primitive_count; p++)
+        asset->triangles += view->primitives[finest->first_primitive + p].index_count / 3;
+    for (int axis = 0; axis < 3; axis++) {
+        double side = (double)view->header->bounds_max_m[axis] - (double)view->header->bounds_min_m[axis];
+        size2 += side * side;
+        asset->size_m[axis] = side;
+    }
+    asset->far_m = prepare_far_m(sqrt(size2));
+    asset->surface_distances_m = mem_array(asset->sensor_count, sizeof(*asset->surface_distances_m));
+    for (size_t s = 0; s < asset->sensor_count && s < view->header->sensor_count; s++)
+        asset->surface_distances_m[s] = view->sensors[s].surface_distance_m;
+}
+
+static void take_report(struct prepare_asset *asset, const char *folder)
+{
+    char *text = folder_report(folder, asset->key);
+    json_t *numbers = text ? json_loads(text, 0, NULL) : NULL;
+    asset->reported = numbers && build_report_from_json(numbers, &asset->report);
+    json_decref(numbers);
+    mem_free(text);
+}
+
+static void look_at_some(void *arg, size_t begin, size_t end)
+{
+    struct run *run = arg;
+    for (size_t i = begin; i < end && !is_stopped(run); i++) {
+        struct prepare_asset *asset = &run->prepare->assets[i];
+        struct folder_file file;
+        char why[200];
+        if (!is_possible(run, asset) || asset->same_as != i)
+            continue;
+        int found = folder_open(&file, run->params->folder, asset->key, why);
+        if (found < 0)
+            asset->rebuilt_because = mem_strdup(why);
+        if (found != 1)
+            continue;
+        take_file(asset, &file.view);
+        take_report(asset, run->params->folder);
+        asset->state = PREPARE_UNCHANGED;
+        folder_close(&file);
+    }
+}
+
+/* What is there already, and what is to be built: the assets of one model one after another. */
+static void sort_out(struct run *run)
+{
+    struct prepare *prepare = run->prepare;
+    size_t own = 0;
+    workers_for(run->workers, prepare->asset_count, 1, look_at_some, run);
+    for (size_t m = 0; m < prepare->models.count; m++)
+        for (size_t i = 0; i < prepare->asset_count; i++) {
+            const struct prepare_asset *asset = &prepare->assets[i];
+            if (!is_possible(run, asset) || asset->model != m || asset->same_as != i)
+                continue;
+            own++;
+            if (asset->state != PREPARE_UNCHANGED)
+                run->todo[run->todo_count++] = i;
+        }
+    progress_begin(&run->progress, run->params->progress, own, own - run->todo_count, clock_mono_ns());
+}
+
+/* --- building --------------------------------------------------------------------------------------------------------------- */
+
+static int write_file(const struct run *run, const struct prepare_asset *asset, struct build_output *output)
+{
+    json_t *numbers = build_report_to_json(&output->report);
+    char *report = numbers ? json_dumps(numbers, JSON_COMPACT | JSON_REAL_PRECISION(9)) : NULL;
+    int status = folder_put(&output->file, run->params->folder, asset->key, report);
+    free(report);
+    json_decref(numbers);
+    return status;
+}
+
+/* False: failed, and said so. Under lock. */
+static bool is_built(struct run *run, const struct prepare_asset *asset, bool good, int status, const char *why)
+{
+    if (!good)
+        fail_asset(run, asset, why);
+    else if (status != 0)
+        fail(run, run->prepare->plant->path, asset->plant->line, "asset %s: %s cannot be written: %s", asset->plant->id,
+             run->params->folder, strerror(-status));
+    return good && status == 0;
+}
+
+static void build_one(struct run *run, struct prepare_asset *asset)
+{
+    struct build_input input = { .model = &run->prepare->models.at[asset->model].parsed,
+                                 .geometry = prepare_geometry(asset->plant),
+                                 .plant = run->prepare->plant,
+                                 .sensors = asset->sensors,
+                                 .sensor_count = asset->sensor_count,
+                                 .key = asset->key,
+                                 .cache = asset->cache.parts.bytes ? &asset->cache : NULL,
+                                 .folder = run->params->folder,
+                                 .geometry_key = asset->geometry_key,
+                                 .distances_key = asset->distances_key };
+    struct build_output output;
+    char why[MODEL_WHY_BYTES];
+    int64_t start_ns = clock_mono_ns();
+    bool good = build_asset(run->log, run->workers, &input, &output, why);
+    int status = good ? write_file(run, asset, &output) : 0;
+    if (good)
+        take_file(asset, &output.view);
+    folder_draft_close(&output.file);
+    geometry_cache_close(&asset->cache);
+    asset->reported = good;
+    asset->report = output.report;
+    asset->seconds = (double)(clock_mono_ns() - start_ns) / NS_PER_S;
+    pthread_mutex_lock(&run->lock);
+    asset->state = is_built(run, asset, good, status, why) ? PREPARE_BUILT : PREPARE_FAILED;
+    run->unusable |= good && status != 0;
+    if (!good)
+        asset->missing = mem_strdup(why);
+    progress_step(&run->progress, asset->work, clock_mono_ns());
+    pthread_mutex_unlock(&run->lock);
+}
+
+static void build_some(void *arg, size_t begin, size_t end)
+{
+    struct run *run = arg;
+    for (size_t i = begin; i < end; i++) {
+        if (!is_stopped(run))
+            build_one(run, &run->prepare->assets[run->todo[run->batch_begin + i]]);
+    }
+}
+
+static int heavier_first(const void *a, const void *b, void *arg)
+{
+    const struct run *run = arg;
+    size_t i = *(const size_t *)a, j = *(const size_t *)b;
+    double p = run->prepare->assets[i].work, q = run->prepare->assets[j].work;
+    return p == q ? (i < j ? -1 : 1) : p > q ? -1 : 1;
+}
+
+/* False: its model has to be read. */
+static bool find_stock(const struct run *run, struct prepare_asset *asset)
+{
+    return asset->sensor_count > 0 && geometry_cache_open(&asset->cache, run->params->folder, asset->geometry_key);
+}
+
+static double own_triangles(const struct prepare_asset *asset, const struct model_file *model)
+{
+    struct geometry_params geometry = prepare_geometry(asset->plant);
+    return asset->cache.parts.bytes ? asset->cache.report.triangles : (double)geometry_triangles(&model->parsed, &geometry);
+}
+
+/* Parses the models of todo from batch_begin on, and weighs their assets, until there is enough to do. What cannot be parsed is left:
+   its assets fail. */
+static void parse_batch(struct run *run)
+{
+    struct prepare *prepare = run->prepare;
+    double triangles = 0;
+    run->batch_end = run->batch_begin;
+    while (run->batch_end < run->todo_count && !is_stopped(run)) {
+        struct prepare_asset *asset = &prepare->assets[run->todo[run->batch_end]];
+        struct model_file *model = &prepare->models.at[asset->model];
+        bool fresh = run->batch_end == 0 || prepare->assets[run->todo[run->batch_end - 1]].model != asset->model;
+        if (fresh && triangles > BATCH_TRIANGLES)
+            break;
+        if (!find_stock(run, asset))
+            have_parsed(run, model);
+        if (!model->good) {
+            lose(asset, model->why);
+        } else {
+            double own = own_triangles(asset, model);
+            asset->work = own + (asset->sensor_count ? SENSORS_WORK : 0);
+            triangles += own;
+        }
+        progress_expect(&run->progress, asset->work);
+        run->batch_end++;
+    }
+}
+
+/* Leaves those out whose model is no good; those that are heavy are built one after the other, the rest side by side. */
+static void build_batch(struct run *run)
+{
+    struct prepare *prepare = run->prepare;
+    size_t *todo = run->todo + run->batch_begin, count = 0;
+    for (size_t i = run->batch_begin; i < run->batch_end; i++)
+        if (prepare->models.at[prepare->assets[run->todo[i]].model].good)
+            todo[count++] = run->todo[i];
+    qsort_r(todo, count, sizeof(*todo), heavier_first, run);
+    size_t alone = 0, begin = run->batch_begin;
+    while (alone < count && prepare->assets[todo[alone]].work > ALONE_TRIANGLES)
+        alone++;
+    for (size_t i = 0; i < alone; i++)
+        build_some(run, i, i + 1);
+    run->batch_begin += alone;
+    workers_for(run->workers, count - alone, 1, build_some, run);
+    run->batch_begin = begin;
+    for (size_t i = 0; i < count; i++)
+        model_file_release(&prepare->models.at[prepare->assets[todo[i]].model]);
+}
+
+static void build_all(struct run *run)
+{
+    for (run->batch_begin = 0; run->batch_begin < run->todo_count; run->batch_begin = run->batch_end) {
+        parse_batch(run);
+        if (run->batch_end == run->batch_begin)
+            break;
+        build_batch(run);
+    }
+    progress_end(&run->progress);
+}
+
+/* --- the end ---------------------------------------------------------------------------------------------------------------- */
+
+static void share(struct run *run)
+{
+    const struct prepare *prepare = run->prepare;
+    for (size_t i = 0; i < prepare->asset_count; i++) {
+        struct prepare_asset *asset = &prepare->assets[i];
+        const struct prepare_asset *first = &prepare->assets[asset->same_as];
+        if (!is_possible(run, asset) || first == asset)
+            continue;
+        asset->state = first->state == PREPARE_FAILED || first->state == PREPARE_LEFT ? first->state : PREPARE_SHARED;
+        if (first->missing && !asset->missing)
+            asset->missing = mem_strdup(first->missing);
+        if (!first->surface_distances_m)
+            continue;
+        asset->triangles = first->triangles;
+        asset->vertices = first->vertices;
+        asset->far_m = first->far_m;
+        memcpy(asset->size_m, first->size_m, sizeof(asset->size_m));
+        asset->reported = first->reported;
+        asset->report = first->report;
+        asset->surface_distances_m = mem_array(asset->sensor_count, sizeof(*asset->surface_distances_m));
+        for (size_t s = 0; s < asset->sensor_count; s++) /* equal keys: equal sensors */
+            asset->surface_distances_m[s] = first->surface_distances_m[s];
+    }
+}
+
+static void warn(struct run *run, const struct prepare_asset *asset)
+{
+    const struct plant *plant = run->prepare->plant;
+    if (asset->rebuilt_because)
+        diag_warning(run->diag, plant->path, asset->plant->line, 0, "asset %s: the file that was there was no good (%s) and is made anew",
+                     asset->plant->id, asset->rebuilt_because);
+    for (size_t s = 0; asset->surface_distances_m && s < asset->sensor_count; s++) {
+        const struct plant_tag *tag = &plant->tags[asset->sensors[s].tag];
+        double distance_m = (double)asset->surface_distances_m[s];
+        if (distance_m > asset->far_m)
+            diag_warning(run->diag, plant->tags_path, tag->line, 0, "tag %s: %.3f m from the surface of asset %s (more than %.3f m)",
+                         tag->name, distance_m, asset->plant->id, asset->far_m);
+    }
+}
+
+/* Those of other assets are kept where these were not asked for. If it cannot be written, the next time takes longer; that is all. */
+static void write_cuts(struct run *run)
+{
+    bool all = !run->params->only && !run->prepare->interrupted;
+    for (size_t i = 0; i < run->known.count && !all; i++)
+        model_cache_add(&run->cuts, run->known.at[i].recipe, run->known.at[i].geometry);
+    for (size_t i = 0; i < run->known.node_count && !all; i++)
+        model_cache_add_node(&run->cuts, run->known.nodes[i].recipe, run->known.nodes[i].node_hash, run->known.nodes[i].place_m);
+    if (!model_cache_same(&run->cuts, &run->known))
+        model_cache_write(&run->cuts, run->params->folder);
+}
+
+static bool any_good(const struct prepare *prepare)
+{
+    for (size_t i = 0; i < prepare->asset_count; i++)
+        if (prepare->assets[i].state != PREPARE_FAILED)
+            return true;
+    return false;
+}
+
+static void write_manifest(struct run *run)
+{
+    struct prepare *prepare = run->prepare;
+    struct folder_entry *entries = mem_array(prepare->asset_count, sizeof(*entries));
+    const char **tags = mem_array(prepare->plant->tag_count, sizeof(*tags)), **next = tags; /* a tag is a sensor of one asset at most */
+    for (size_t i = 0; i < prepare->asset_count; i++) {
+        const struct prepare_asset *asset = &prepare->assets[i];
+        for (size_t s = 0; s < asset->sensor_count; s++)
+            next[s] = prepare->plant->tags[asset->sensors[s].tag].name;
+        entries[i] = (struct folder_entry){ .id = asset->plant->id,
+                                            .key = asset->key,
+                                            .geometry_key = asset->geometry_key,
+                                            .distances_key = asset->distances_key,
+                                            .recipe = plant_recipe(asset->plant, prepare->models.at[asset->model].file_hash),
+                                            .placement = asset->plant->placement,
+                                            .missing = asset->missing,
+                                            .tags = next,
+                                            .tag_count = asset->sensor_count };
+        next += asset->sensor_count;
+    }
+    int status = folder_finish(run->params->folder, entries, prepare->asset_count, run->failed ? NULL : &prepare->removed);
+    if (status != 0)
+        fail(run, prepare->plant->path, 0, "%s: the manifest cannot be written: %s", run->params->folder, strerror(-status));
+    mem_free(entries);
+    mem_free(tags);
+}
+
+bool prepare_run(struct prepare *prepare, struct log *log, struct workers *workers, const struct plant *plant,
+                 const struct prepare_params *params, struct diag *diag)
+{
+    struct run run = { .prepare = prepare, .log = log, .workers = workers, .params = params, .diag = diag };
+    int64_t start_ns = clock_mono_ns();
+    *prepare = (struct prepare){ .plant = plant, .asset_count = plant->asset_count };
+    prepare->assets = mem_array(plant->asset_count, sizeof(*prepare->assets));
+    run.todo = mem_array(plant->asset_count, sizeof(*run.todo));
+    pthread_mutex_init(&run.lock, NULL);
+    for (size_t i = 0; i < plant->asset_count; i++)
+        prepare->assets[i] =
+            (struct prepare_asset){ .plant = &plant->assets[i], .wanted = !params->only || strcmp(plant->assets[i].id, params->only) == 0 };
+    if (mkdir(params->folder, 0777) != 0 && errno != EEXIST)
+        fail(&run, plant->path, 0, "%s: cannot be made: %s", params->folder, strerror(errno));
+    int lock = run.failed ? -1 : folder_lock(params->folder, log, params->stop);
+    if (!run.failed) {
+        model_cache_read(&run.known, params->folder);
+        find_keys(&run);
+        sort_out(&run);
+        build_all(&run);
+        share(&run);
+        for (size_t i = 0; i < prepare->asset_count; i++)
+            warn(&run, &prepare->assets[i]);
+    }
+    prepare->interrupted = is_stopped(&run);
+    if (lock >= 0)
+        write_cuts(&run);
+    if (lock >= 0 && !run.unusable && !params->only && !prepare->interrupted && any_good(prepare))
+        write_manifest(&run);
+    model_cache_finish(&run.known);
+    model_cache_finish(&run.cuts);
+    if (lock >= 0)
+        close(lock);
+    prepare->seconds = (double)(clock_mono_ns() - start_ns) / NS_PER_S;
+    pthread_mutex_destroy(&run.lock);
+    mem_free(run.todo);
+    return !run.failed && !prepare->interrupted;
+}
+
+void prepare_finish(struct prepare *prepare)
+{
+    for (size_t i = 0; i < prepare->asset_count; i++) {
+        geometry_cache_close(&prepare->assets[i].cache);
+        mem_free(prepare->assets[i].sensors);
+        mem_free(prepare->assets[i].surface_distances_m);
+        mem_free(prepare->assets[i].rebuilt_because);
+        mem_free(prepare->assets[i].missing);
+    }
+    mem_free(prepare->assets);
+    model_files_finish(&prepare->models);
+    *prepare = (struct prepare){ 0 };
+}

@@ -1,0 +1,20 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The sensors of an asset on its surface, and how far they are from everywhere. */
+#ifndef PREPROCESS_PIPELINE_SENSOR_DISTANCES_H
+#define PREPROCESS_PIPELINE_SENSOR_DISTANCES_H
+#include "preprocess/pipeline/build.h"
+
+struct sensor_distances {
+    struct surface *surface;
+    struct surface_field field;
+    struct asset_sensor *sensors;
+    double (*places_m)[3]; /* less the origin */
+};
+
+/* measured is zero-initialised, or has its surface already. Fills in what the report says about it. False: why says what is wrong; finish
+   all the same. */
+bool sensor_distances_find(struct sensor_distances *measured, struct log *log, struct workers *workers, const struct build_input *input,
+                           const struct geometry *geometry, struct build_output *output, char why[MODEL_WHY_BYTES]);
+void sensor_distances_finish(struct sensor_distances *measured);
+
+#endif

@@ -1,0 +1,65 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* One sensor's distances as a table. */
+#include "preprocess/report/distances.h"
+
+#include <math.h>
+
+#include "plant/transform.h"
+#include "preprocess/cache/folder.h"
+
+static int column_of(const struct prepare_asset *asset, int tag)
+{
+    for (size_t i = 0; i < asset->sensor_count; i++)
+        if (asset->sensors[i].tag == tag)
+            return (int)i;
+    return -1;
+}
+
+static void to_plant(const struct asset_view *view, const double placement[16], const float position[3], double out[3])
+{
+    double p[3];
+    for (int axis = 0; axis < 3; axis++)
+        p[axis] = view->header->origin_m[axis] + (double)position[axis];
+    transform_point(placement, p, out);
+}
+
+/* Vertices of the model itself, not those that preparing added. */
+static bool is_own(const struct asset_view *view, uint32_t vertex)
+{
+    uint32_t level = 0;
+    while (level + 1 < view->header->level_count && vertex < view->levels[level + 1].vertex_count)
+        level++;
+    return vertex < view->levels[level].vertex_count - view->levels[level].added_count;
+}
+
+bool distances_print(const struct prepare *prepare, const char *folder, int asset_number, int tag, FILE *out, struct diag *diag)
+{
+    const struct prepare_asset *asset = &prepare->assets[asset_number];
+    int column = column_of(asset, tag);
+    struct folder_file file;
+    char why[200] = "there is none";
+    if (column < 0) {
+        diag_error(diag, prepare->plant->tags_path, prepare->plant->tags[tag].line, 0, "tag %s is no sensor of asset %s",
+                   prepare->plant->tags[tag].name, asset->plant->id);
+        return false;
+    }
+    if (folder_open(&file, folder, asset->key, why) != 1) {
+        diag_error(diag, prepare->plant->path, asset->plant->line, 0, "asset %s: its file in %s: %s", asset->plant->id, folder, why);
+        return false;
+    }
+    const struct asset_view *view = &file.view;
+    uint32_t vertices = view->header->vertex_count;
+    double source[3];
+    to_plant(view, asset->plant->placement, view->sensors[column].surface_m, source);
+    fprintf(out, "x,y,z,geodesic_m,euclidean_m\n");
+    for (uint32_t v = 0; v < vertices; v++) {
+        double p[3];
+        if (!is_own(view, v))
+            continue;
+        to_plant(view, asset->plant->placement, view->positions_m[v], p);
+        double euclidean_m = sqrt(pow(p[0] - source[0], 2) + pow(p[1] - source[1], 2) + pow(p[2] - source[2], 2));
+        fprintf(out, "%.9g,%.9g,%.9g,%.7g,%.7g\n", p[0], p[1], p[2], (double)view->geodesic_m[(size_t)column * vertices + v], euclidean_m);
+    }
+    folder_close(&file);
+    return true;
+}

@@ -1,0 +1,114 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What in a report is worth a look. */
+#include <stdlib.h>
+
+#include "base/mem.h"
+#include "plant/asset_size.h"
+#include "preprocess/report/report.h"
+#include "preprocess/subdivision/subdivide.h"
+#include "preprocess/report/text_table.h"
+
+#define METHODS_DIFFER 0.05 /* root mean square, of the largest distance: more than what the heat method smooths */
+#define FIELD_SLACK 1.05    /* float rounding in what splitting reached */
+
+const char *const report_states[] = { "left", "failed", "unchanged", "shared", "built" };
+
+uint32_t report_added(const struct prepare_asset *asset)
+{
+    return asset->vertices > asset->report.vertices ? asset->vertices - asset->report.vertices : 0;
+}
+
+struct concerns {
+    struct report_concern *at;
+    size_t count, capacity;
+};
+
+static void add(struct concerns *concerns, const struct prepare_asset *asset, double weight, char *text)
+{
+    mem_grow(&concerns->at, &concerns->capacity, concerns->count + 1, sizeof(*concerns->at));
+    concerns->at[concerns->count++] = (struct report_concern){ .asset = asset, .text = text, .weight = weight };
+}
+
+static void add_sensors(struct concerns *concerns, const struct prepare *prepare, const struct prepare_asset *asset)
+{
+    for (size_t s = 0; asset->surface_distances_m && s < asset->sensor_count; s++) {
+        double distance_m = (double)asset->surface_distances_m[s];
+        if (distance_m > asset->far_m)
+            add(concerns, asset, 1000 + distance_m / asset->far_m,
+                mem_printf("%s is %.3f m from its surface (more than %.3f m)", prepare->plant->tags[asset->sensors[s].tag].name, distance_m,
+                           asset->far_m));
+    }
+}
+
+static void add_numbers(struct concerns *concerns, const struct prepare_asset *asset)
+{
+    const struct build_report *r = &asset->report;
+    if (r->unreachable_vertices > r->surface.hidden_vertices) {
+        double share = (double)r->unreachable_vertices / (double)(r->vertices ? r->vertices : 1);
+        add(concerns, asset, 100 * (1 + share),
+            mem_printf("no sensor reaches %s of its %s vertices (%.1f %%); it is in %zu pieces",
+                       text_table_number(r->unreachable_vertices).text, text_table_number(r->vertices).text, 100 * share,
+                       r->surface.components_after));
+    }
+    if (r->surface.heat_disagreement > METHODS_DIFFER)
+        add(concerns, asset, 10 * (1 + r->surface.heat_disagreement),
+            mem_printf("two ways to find its distances differ by %.1f %%: it may not hang together as it looks",
+                       100 * r->surface.heat_disagreement));
+    const struct level_left *left = &r->levels[0].left[LEVEL_LIMIT_TRIANGLES];
+    if (r->level_count && (double)left->steps > FIELD_SLACK)
+        add(concerns, asset, 1 + (double)left->steps / 255,
+            mem_printf("close to, its field errs by up to %.1f steps of colour (1/255 of the range) along %s edges: it may not have more "
+                       "triangles",
+                       (double)left->steps, text_table_number(left->edges).text));
+}
+
+/* Also of those that were not built in this run: wrong units do not become right. */
+static void add_sizes(struct concerns *concerns, const struct prepare *prepare)
+{
+    double *longest_m = mem_array(prepare->asset_count, sizeof(*longest_m));
+    size_t count = 0;
+    for (size_t i = 0; i < prepare->asset_count; i++)
+        if (asset_longest_m(prepare->assets[i].size_m) > 0)
+            longest_m[count++] = asset_longest_m(prepare->assets[i].size_m);
+    double median_m = asset_median_m(longest_m, count);
+    for (size_t i = 0; i < prepare->asset_count; i++) {
+        const struct prepare_asset *asset = &prepare->assets[i];
+        char why[SIZE_WHY_BYTES];
+        if (asset_longest_m(asset->size_m) > 0 && asset_size_doubtful(asset->plant, asset->size_m, median_m, why))
+            add(concerns, asset, 1e6, mem_strdup(why));
+    }
+    mem_free(longest_m);
+}
+
+static int worst_first(const void *a, const void *b)
+{
+    const struct report_concern *p = a, *q = b;
+    if (p->weight != q->weight)
+        return p->weight > q->weight ? -1 : 1;
+    return p->asset < q->asset ? -1 : p->asset > q->asset;
+}
+
+struct report_concern *report_concerns(const struct prepare *prepare, size_t *count)
+{
+    struct concerns concerns = { 0 };
+    for (size_t i = 0; i < prepare->asset_count; i++) {
+        const struct prepare_asset *asset = &prepare->assets[i];
+        if (asset->wanted && asset->state == PREPARE_FAILED)
+            add(&concerns, asset, 1e9, mem_strdup("could not be prepared: see the errors"));
+        add_sensors(&concerns, prepare, asset);
+        if (asset->reported && asset->state != PREPARE_SHARED)
+            add_numbers(&concerns, asset);
+    }
+    add_sizes(&concerns, prepare);
+    if (concerns.count)
+        qsort(concerns.at, concerns.count, sizeof(*concerns.at), worst_first);
+    *count = concerns.count;
+    return concerns.at;
+}
+
+void report_concerns_free(struct report_concern *concerns, size_t count)
+{
+    for (size_t i = 0; i < count; i++)
+        mem_free(concerns[i].text);
+    mem_free(concerns);
+}

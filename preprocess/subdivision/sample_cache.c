@@ -1,0 +1,92 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* A table of numbers of triangles by keys of points: eight bytes each, as they lie in the file. */
+#include "preprocess/subdivision/sample_cache.h"
+
+#include <string.h>
+
+#include "base/mem.h"
+#include "preprocess/cache/folder.h"
+#include "surface/mesh/trimesh.h"
+
+#define MAGIC "PLCSPOTS"
+#define TRI_BITS 24 /* one more than the triangle's number; the key's lower bits before it, its higher ones say where it stands */
+#define NOWHERE ((1u << TRI_BITS) - 1)
+#define FULL 0.85
+#define WORTH 0.5 /* of what is asked for is known, or it is written anew */
+
+void sample_cache_open(struct sample_cache *sample_cache, const char *folder, uint64_t key)
+{
+    char *path = folder_path(folder, key, FOLDER_SAMPLES);
+    *sample_cache = (struct sample_cache){ 0 };
+    pthread_mutex_init(&sample_cache->lock, NULL);
+    if (cache_file_open(&sample_cache->file, path, MAGIC, key)) {
+        sample_cache->known = (const uint64_t *)(const void *)sample_cache->file.bytes;
+        sample_cache->slot_count = sample_cache->file.count / sizeof(*sample_cache->known);
+    }
+    mem_free(path);
+}
+
+void sample_cache_close(struct sample_cache *sample_cache)
+{
+    cache_file_close(&sample_cache->file);
+    mem_free(sample_cache->asked);
+    pthread_mutex_destroy(&sample_cache->lock);
+    *sample_cache = (struct sample_cache){ 0 };
+}
+
+/* Where the key stands in the table, or would. */
+static size_t slot_of(const uint64_t *table, size_t count, uint64_t key)
+{
+    size_t slot = (size_t)((key >> 32) * count >> 32);
+    for (size_t tries = 0; tries < count && table[slot] && table[slot] >> TRI_BITS != key << TRI_BITS >> TRI_BITS; tries++)
+        slot = slot + 1 < count ? slot + 1 : 0;
+    return slot;
+}
+
+bool sample_cache_find(const struct sample_cache *sample_cache, uint64_t key, uint32_t *tri)
+{
+    uint64_t found = sample_cache->slot_count ? sample_cache->known[slot_of(sample_cache->known, sample_cache->slot_count, key)] : 0;
+    if (!found || found >> TRI_BITS != key << TRI_BITS >> TRI_BITS)
+        return false;
+    *tri = (found & NOWHERE) == NOWHERE ? TRIMESH_NONE : (uint32_t)(found & NOWHERE) - 1;
+    return true;
+}
+
+void sample_cache_note(struct sample_cache *sample_cache, struct sample_cache_notes *notes, uint64_t key, uint32_t tri, bool known)
+{
+    if (notes->count == SAMPLE_CACHE_NOTES)
+        sample_cache_hand_over(sample_cache, notes);
+    notes->at[notes->count++] = (struct sample_cache_asked){ key, tri };
+    notes->missed += !known;
+}
+
+void sample_cache_hand_over(struct sample_cache *sample_cache, struct sample_cache_notes *notes)
+{
+    if (notes->count == 0)
+        return;
+    pthread_mutex_lock(&sample_cache->lock);
+    mem_grow(&sample_cache->asked, &sample_cache->asked_capacity, sample_cache->asked_count + notes->count, sizeof(*sample_cache->asked));
+    memcpy(sample_cache->asked + sample_cache->asked_count, notes->at, notes->count * sizeof(*notes->at));
+    sample_cache->asked_count += notes->count;
+    sample_cache->missed_count += notes->missed;
+    pthread_mutex_unlock(&sample_cache->lock);
+    notes->count = notes->missed = 0;
+}
+
+void sample_cache_write(const struct sample_cache *sample_cache, const char *folder, uint64_t key)
+{
+    const size_t count = 16 + (size_t)((double)sample_cache->asked_count / FULL);
+    if ((double)sample_cache->missed_count <= (1 - WORTH) * (double)sample_cache->asked_count)
+        return;
+    uint64_t *table = mem_array(count, sizeof(*table));
+    for (size_t i = 0; i < sample_cache->asked_count; i++) {
+        const struct sample_cache_asked *asked = &sample_cache->asked[i];
+        if (asked->tri != TRIMESH_NONE && asked->tri >= NOWHERE - 1)
+            continue;
+        table[slot_of(table, count, asked->key)] = asked->key << TRI_BITS | (asked->tri == TRIMESH_NONE ? NOWHERE : asked->tri + 1);
+    }
+    char *path = folder_path(folder, key, FOLDER_SAMPLES);
+    cache_file_write(path, MAGIC, key, table, count * sizeof(*table));
+    mem_free(path);
+    mem_free(table);
+}

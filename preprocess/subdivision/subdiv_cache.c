@@ -1,0 +1,300 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Findings by the places of the corners that they are about, and whether they still hold. */
+#include "preprocess/subdivision/subdiv_cache.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <xxhash.h>
+
+#include "base/atomic_file.h"
+#include "base/mem.h"
+#include "preprocess/cache/folder.h"
+#include "preprocess/subdivision/subdiv_impl.h"
+
+#define MAGIC "PLCSPLIT"
+#define MOST_CHANGES 16   /* sensors */
+#define FEW 16            /* changes must be fewer than one in so many sensors */
+#define MOST_DOUBT 0.05f  /* then, of edges that err by about a step, one in a thousand errs by a tenth of a step more or less: measured */
+#define MOST_SETTLED 0.5f /* doubt, where the error is so far from what matters that it cannot have come there */
+#define LITTLE 0.4f       /* of the error that matters: what errs by less at its middle was not looked at elsewhere */
+
+struct subdiv_cache_entry {
+    uint64_t key;
+    float error, share, barred, doubt, off;
+    uint32_t jumps;
+};
+
+struct sensor { /* all that its shares depend on */
+    float place_m[3], strength, power;
+    uint32_t group;
+};
+
+struct head {
+    uint64_t sensors, findings;       /* how many follow */
+    uint64_t given_up, changes_since; /* split_kept.h */
+};
+
+/* --- sensors ---------------------------------------------------------------------------------------------------------------------- */
+
+static bool is_local(const struct linear_error_group *group)
+{
+    for (size_t i = 0; i < group->count; i++)
+        if (!(group->of.strength[i] > 0) || group->of.strength[i] != group->of.strength[0])
+            return false;
+    return !group->papers && !(group->of.reach_m < INFINITY);
+}
+
+static int compare_sensors(const void *a, const void *b)
+{
+    return memcmp(a, b, sizeof(struct sensor));
+}
+
+static void list_sensors(const struct linear_error *linear, struct text *list)
+{
+    for (uint32_t g = 0; g < linear->group_count; g++) {
+        const struct linear_error_group *group = &linear->groups[g];
+        for (size_t i = 0; i < group->count; i++) {
+            struct sensor sensor = { .strength = group->of.strength[i], .power = group->of.power, .group = g };
+            for (int axis = 0; axis < 3; axis++)
+                sensor.place_m[axis] = linear->axes_m[axis][group->columns[i]];
+            text_add_bytes(list, &sensor, sizeof(sensor));
+        }
+    }
+    qsort(list->at, list->length / sizeof(struct sensor), sizeof(struct sensor), compare_sensors);
+}
+
+static uint32_t column_of(const struct linear_error *linear, const struct sensor *sensor)
+{
+    const struct linear_error_group *group = &linear->groups[sensor->group];
+    for (size_t i = 0; i < group->count; i++) {
+        const float place_m[3] = { linear->axes_m[0][group->columns[i]], linear->axes_m[1][group->columns[i]],
+                                   linear->axes_m[2][group->columns[i]] };
+        if (memcmp(place_m, sensor->place_m, sizeof(place_m)) == 0)
+            return group->columns[i];
+    }
+    return UINT32_MAX;
+}
+
+/* Those that only one of two sorted lists has. False: too many, or of a group that is no more. */
+static bool find_changes(struct subdiv_cache *cache, const struct linear_error *linear, const struct sensor *old, size_t old_count)
+{
+    const struct sensor *now = (const struct sensor *)(const void *)cache->sensors.at;
+    size_t count = cache->sensors.length / sizeof(*now), i = 0, j = 0;
+    cache->changes = mem_array(MOST_CHANGES, sizeof(*cache->changes));
+    while (i < old_count || j < count) {
+        int order = i == old_count ? 1 : j == count ? -1 : compare_sensors(&old[i], &now[j]);
+        const struct sensor *changed = order < 0 ? &old[i] : &now[j];
+        i += order <= 0;
+        j += order >= 0;
+        if (order == 0)
+            continue;
+        if (cache->change_count == MOST_CHANGES || FEW * cache->change_count >= count || changed->group >= linear->group_count)
+            return false;
+        struct subdiv_sensor_change *change = &cache->changes[cache->change_count++];
+        *change = (struct subdiv_sensor_change){ .power = changed->power, .group = changed->group, .column = UINT32_MAX };
+        memcpy(change->place_m, changed->place_m, sizeof(change->place_m));
+        if (order > 0)
+            change->column = column_of(linear, changed);
+    }
+    return true;
+}
+
+/* --- the file --------------------------------------------------------------------------------------------------------------------- */
+
+static void index_findings(struct subdiv_cache *cache, size_t count)
+{
+    cache->finding_count = count;
+    cache->mask = 15;
+    while (cache->mask < 2 * count)
+        cache->mask = cache->mask * 2 + 1;
+    cache->slots = mem_array(cache->mask + 1, sizeof(*cache->slots));
+    for (uint32_t i = 0; i < count; i++) {
+        size_t slot = cache->findings[i].key & cache->mask;
+        while (cache->slots[slot])
+            slot = (slot + 1) & cache->mask;
+        cache->slots[slot] = i + 1;
+    }
+}
+
+static void read_file(struct subdiv_cache *cache, const struct linear_error *linear)
+{
+    struct head head = { 0 };
+    if (cache->file.count < sizeof(head))
+        return;
+    memcpy(&head, cache->file.bytes, sizeof(head));
+    size_t left = cache->file.count - sizeof(head);
+    if (head.sensors > left / sizeof(struct sensor) || head.findings > UINT32_MAX / 2 ||
+        left != head.sensors * sizeof(struct sensor) + head.findings * sizeof(struct subdiv_cache_entry))
+        return;
+    const char *sensors = cache->file.bytes + sizeof(head), *findings = sensors + head.sensors * sizeof(struct sensor);
+    if (!find_changes(cache, linear, (const struct sensor *)(const void *)sensors, head.sensors))
+        return;
+    cache->findings = (const struct subdiv_cache_entry *)(const void *)findings;
+    index_findings(cache, head.findings);
+    if (FEW * (head.changes_since + cache->change_count) < cache->sensors.length / sizeof(struct sensor)) {
+        cache->hopeless = head.given_up;
+        cache->changes_since = head.changes_since + cache->change_count;
+    }
+}
+
+void subdiv_cache_open(struct subdiv_cache *cache, const char *folder, uint64_t key, const struct linear_error *linear)
+{
+    char *path = folder_path(folder, key, FOLDER_SUBDIVISION);
+    *cache = (struct subdiv_cache){ .applies = true };
+    for (size_t g = 0; g < linear->group_count; g++)
+        cache->applies &= is_local(&linear->groups[g]);
+    if (cache->applies)
+        list_sensors(linear, &cache->sensors);
+    if (cache->applies && cache_file_open(&cache->file, path, MAGIC, key))
+        read_file(cache, linear);
+    mem_free(path);
+}
+
+void subdiv_cache_close(struct subdiv_cache *cache)
+{
+    cache_file_close(&cache->file);
+    mem_free(cache->slots);
+    mem_free(cache->changes);
+    text_finish(&cache->sensors);
+    text_finish(&cache->found);
+    *cache = (struct subdiv_cache){ 0 };
+}
+
+void subdiv_cache_write(const struct subdiv_cache *cache, const char *folder, uint64_t key)
+{
+    const struct head head = { cache->sensors.length / sizeof(struct sensor), cache->found.length / sizeof(struct subdiv_cache_entry),
+                               cache->given_up, cache->changes_since };
+    const struct atomic_file_part parts[] = { { &head, sizeof(head) },
+                                              { cache->sensors.at, cache->sensors.length },
+                                              { cache->found.at, cache->found.length } };
+    if (!cache->applies)
+        return;
+    char *path = folder_path(folder, key, FOLDER_SUBDIVISION);
+    cache_file_write_parts(path, MAGIC, key, parts, sizeof(parts) / sizeof(*parts));
+    mem_free(path);
+}
+
+/* --- findings --------------------------------------------------------------------------------------------------------------------- */
+
+/* The same for every order of the corners. */
+static uint64_t key_of(const struct subdiv *subdiv, const uint32_t *corners, size_t count)
+{
+    float places_m[3][3];
+    for (size_t c = 0; c < count; c++) {
+        const float *place_m = subdiv_position(subdiv, corners[c]);
+        size_t at = c;
+        for (; at > 0 && memcmp(places_m[at - 1], place_m, sizeof(*places_m)) > 0; at--)
+            memcpy(places_m[at], places_m[at - 1], sizeof(*places_m));
+        memcpy(places_m[at], place_m, sizeof(*places_m));
+    }
+    return XXH3_64bits_withSeed(places_m, count * sizeof(*places_m), subdiv->level);
+}
+
+/* How far from straight the share of a new sensor is between these corners, at most: since it bends, and since its distance along the
+   surface may have a kink there, where two ways round are equally long; on an edge, where it does not grow as fast as it can. */
+static float bend_of(const struct subdiv *subdiv, const struct subdiv_sensor_change *change, const uint32_t *corners, size_t count,
+                     double wide_m, double near_m, double far_m, double share)
+{
+    const double p = (double)change->power, near = wide_m / fmax(near_m, 1e-9), far = wide_m / far_m;
+    double low_m = INFINITY, high_m = 0;
+    for (size_t c = 0; c < count; c++) {
+        double m = (double)subdiv->geodesic_m[subdiv->mesh.welded.of_vertex[corners[c]] * subdiv->sensors + change->column];
+        low_m = fmin(low_m, m);
+        high_m = fmax(high_m, m);
+    }
+    double kink_m = high_m < INFINITY ? wide_m - (count == 2 ? (high_m - low_m) / 2 : 0) : 0, round_m = fmax(low_m - wide_m, far_m);
+    double kink = pow(fmin(1, (near_m + wide_m) / round_m), p) * p * fmax(kink_m, 0) / round_m;
+    return (float)(share * (p * (p - 1) / 2 * near * near + p * p * near * far + p * (p + 1) / 2 * far * far) + kink);
+}
+
+/* The most that the sensors that are new or gone have, together, of a value between these corners. A distance along the surface is no
+   shorter than the straight one. */
+static float share_of_changes(const struct subdiv *subdiv, const uint32_t *corners, size_t count, float *off)
+{
+    const struct subdiv_cache *cache = subdiv->in->cache;
+    float middle[3] = { 0 }, share = 0;
+    double wide_m = 0;
+    *off = 0;
+    for (size_t c = 0; c < count; c++)
+        for (int axis = 0; axis < 3; axis++)
+            middle[axis] += subdiv_position(subdiv, corners[c])[axis] / (float)count;
+    for (size_t c = 0; c < count; c++)
+        wide_m = fmax(wide_m, subdiv_length(middle, subdiv_position(subdiv, corners[c])));
+    for (size_t i = 0; i < cache->change_count; i++) {
+        const struct subdiv_sensor_change *change = &cache->changes[i];
+        double near_m = 0, far_m = fmax(1e-9, subdiv_length(middle, change->place_m) - wide_m - subdiv->on_surface_m);
+        for (size_t c = 0; c < count; c++) {
+            uint32_t place = subdiv->mesh.welded.of_vertex[corners[c]];
+            near_m = fmax(near_m, (double)subdiv->norms[place * subdiv->norm_count + change->group].near_m);
+        }
+        double ratio = (near_m + wide_m) / far_m;
+        float own = ratio < 1 ? powf((float)ratio, change->power) : 1;
+        share += own;
+        if (change->column != UINT32_MAX && own < MOST_SETTLED)
+            *off += bend_of(subdiv, change, corners, count, wide_m, near_m, far_m, (double)own);
+    }
+    return share;
+}
+
+/* So far from the error that matters that it is sure to stay on its side. */
+static bool is_settled(const struct subdiv_cache_entry *old, float doubt, float off)
+{
+    const float matters = (float)SUBDIV_AIM, error = fmaxf(old->error, old->barred);
+    float most = error / (1 - doubt) + off, least = error * (1 - 2 * doubt) - off;
+    return doubt <= MOST_SETTLED && (most <= LITTLE * matters || (error > LITTLE * matters && most <= matters) || least > matters);
+}
+
+/* Most come in the order that they had the last time. */
+static const struct subdiv_cache_entry *find(const struct subdiv_cache *cache, uint64_t key, uint32_t *next)
+{
+    if (*next >= cache->finding_count || cache->findings[*next].key != key) {
+        size_t slot = key & cache->mask;
+        while (cache->slots[slot] && cache->findings[cache->slots[slot] - 1].key != key)
+            slot = (slot + 1) & cache->mask;
+        if (!cache->slots[slot])
+            return NULL;
+        *next = cache->slots[slot] - 1;
+    }
+    return &cache->findings[(*next)++];
+}
+
+bool subdiv_cache_find(const struct subdiv *subdiv, const uint32_t *corners, size_t count, uint32_t *next, struct subdiv_finding *finding)
+{
+    const struct subdiv_cache *cache = subdiv->in->cache;
+    const struct subdiv_cache_entry *old = cache && cache->findings ? find(cache, key_of(subdiv, corners, count), next) : NULL;
+    if (!old)
+        return false;
+    float off, doubt = old->doubt + share_of_changes(subdiv, corners, count, &off);
+    off += old->off;
+    if (!(doubt <= MOST_DOUBT) && !is_settled(old, doubt, off))
+        return false;
+    *finding = (struct subdiv_finding){ .number = finding->number,
+                                        .error = old->error,
+                                        .share = old->share,
+                                        .barred = old->barred,
+                                        .jumps = old->jumps != 0,
+                                        .is_cached = true,
+                                        .doubt = doubt,
+                                        .off = off };
+    return true;
+}
+
+void subdiv_cache_add(struct subdiv *subdiv, const uint32_t *corners, size_t count, const struct subdiv_finding *finding)
+{
+    struct subdiv_cache *cache = subdiv->in->cache;
+    if (!cache)
+        return;
+    cache->measured_count += !finding->is_cached;
+    cache->kept_count += finding->is_cached;
+    if (!cache->applies)
+        return;
+    const struct subdiv_cache_entry found = { .key = key_of(subdiv, corners, count),
+                                              .error = finding->error,
+                                              .share = finding->share,
+                                              .barred = finding->barred,
+                                              .doubt = finding->doubt,
+                                              .off = finding->off,
+                                              .jumps = finding->jumps };
+    text_add_bytes(&cache->found, &found, sizeof(found));
+}

@@ -1,0 +1,148 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Edges that run the other way between two triangles: where that helps as much as a cut, it costs no triangle. */
+#include <math.h>
+#include <string.h>
+
+#include "base/mem.h"
+#include "base/vec.h"
+#include "preprocess/subdivision/subdiv_impl.h"
+
+#define MOST_TURNS 4       /* in a row */
+#define FLAT_OF_ERROR 0.02 /* the surface may move so far, of the level's error */
+#define GAIN 0.7           /* of the error, at most, is left */
+#define CROSSING 0.02      /* of either edge: they cross at least so far from its ends */
+
+struct turn {
+    uint32_t edge, tris[2], across;
+};
+
+/* Those that err by more than the limit, of triangles that were made from `first` on in their list. */
+static void list_edges(struct subdiv *subdiv, double limit, size_t first, struct subdiv_list *edges)
+{
+    const struct subdiv_mesh *mesh = &subdiv->mesh;
+    for (size_t m = first; m < mesh->made.count; m++)
+        for (int i = 0; i < 3; i++) {
+            uint32_t e = mesh->tris[mesh->made.at[m]].e[i];
+            if ((double)mesh->cuts[e].error > limit)
+                subdiv_mesh_list(edges, e);
+        }
+    subdiv_mesh_sort(edges);
+}
+
+/* False: it is not part of two triangles, no more and no fewer. */
+static bool find_tris(const struct subdiv_mesh *mesh, uint32_t edge, uint32_t tris[2])
+{
+    uint32_t first = mesh->cuts[edge].corner, second = first == TRIMESH_NONE ? first : mesh->next[first];
+    if (second == TRIMESH_NONE || mesh->next[second] != TRIMESH_NONE)
+        return false;
+    tris[0] = (first < second ? first : second) / 3;
+    tris[1] = (first < second ? second : first) / 3;
+    return true;
+}
+
+/* --- turning one ------------------------------------------------------------------------------------------------------------- */
+
+static void position_of(const struct subdiv *subdiv, uint32_t vertex, double at[3])
+{
+    for (int i = 0; i < 3; i++)
+        at[i] = (double)subdiv_position(subdiv, vertex)[i];
+}
+
+/* Where the edges come nearest to each other lies within both, and there they nearly touch. */
+static bool cross(const double a[3], const double b[3], const double c[3], const double d[3], double apart_m)
+{
+    double ab[3], cd[3], ac[3], normal[3], side[3];
+    vec_sub(b, a, ab);
+    vec_sub(d, c, cd);
+    vec_sub(c, a, ac);
+    vec_cross(ab, cd, normal);
+    double square = vec_dot(normal, normal);
+    if (!(square > 0) || fabs(vec_dot(ac, normal)) > apart_m * sqrt(square))
+        return false;
+    vec_cross(ac, cd, side);
+    double along_ab = vec_dot(side, normal) / square;
+    vec_cross(ac, ab, side);
+    double along_cd = vec_dot(side, normal) / square;
+    return along_ab > CROSSING && along_ab < 1 - CROSSING && along_cd > CROSSING && along_cd < 1 - CROSSING;
+}
+
+static bool may_turn(const struct subdiv *subdiv, const struct turn *turn)
+{
+    const struct subdiv_edge *from = &subdiv->mesh.cuts[turn->edge], *to = &subdiv->mesh.cuts[turn->across];
+    double a[3], b[3], c[3], d[3];
+    position_of(subdiv, from->a, a);
+    position_of(subdiv, from->b, b);
+    position_of(subdiv, to->a, c);
+    position_of(subdiv, to->b, d);
+    return cross(a, b, c, d, FLAT_OF_ERROR * subdiv->error_m);
+}
+
+static size_t list_turns(struct subdiv *subdiv, const struct subdiv_list *edges, struct turn *turns)
+{
+    struct subdiv_mesh *mesh = &subdiv->mesh;
+    size_t count = 0;
+    for (size_t i = 0; i < edges->count; i++) {
+        struct turn turn = { .edge = edges->at[i] };
+        if (!find_tris(mesh, turn.edge, turn.tris) || mesh->tris[turn.tris[0]].primitive != mesh->tris[turn.tris[1]].primitive)
+            continue;
+        turn.across = subdiv_mesh_opposite_edge(mesh, turn.tris, turn.edge);
+        if (turn.across != TRIMESH_NONE && mesh->cuts[turn.across].corner == TRIMESH_NONE && may_turn(subdiv, &turn))
+            turns[count++] = turn;
+    }
+    return count;
+}
+
+static void measure_across(struct subdiv *subdiv, const struct turn *turns, size_t count)
+{
+    struct subdiv_mesh *mesh = &subdiv->mesh;
+    struct subdiv_finding *findings = mem_array(count, sizeof(*findings));
+    size_t new_count = 0;
+    for (size_t i = 0; i < count; i++) {
+        struct subdiv_edge *edge = &mesh->cuts[turns[i].across];
+        if (edge->error < 0 || edge->unasked)
+            findings[new_count++].number = turns[i].across;
+        edge->error = fmaxf(edge->error, 0);
+    }
+    subdiv_measure_new_edges(subdiv, findings, new_count);
+    mem_free(findings);
+}
+
+static float error_of(const struct subdiv_edge *edge)
+{
+    return fmaxf(edge->error, edge->barred);
+}
+
+/* Each triangle once. */
+static size_t turn_better(struct subdiv *subdiv, const struct turn *turns, size_t count)
+{
+    struct subdiv_mesh *mesh = &subdiv->mesh;
+    char *turned = mem_array(mesh->tri_count, 1);
+    size_t done = 0;
+    for (size_t i = 0; i < count; i++) {
+        const uint32_t *tris = turns[i].tris;
+        if (turned[tris[0]] || turned[tris[1]] ||
+            (double)error_of(&mesh->cuts[turns[i].across]) > GAIN * (double)error_of(&mesh->cuts[turns[i].edge]))
+            continue;
+        subdiv_mesh_flip_edge(mesh, tris, turns[i].edge);
+        turned[tris[0]] = turned[tris[1]] = 1;
+        done++;
+    }
+    mem_free(turned);
+    return done;
+}
+
+void subdiv_flip_edges(struct subdiv *subdiv, double limit)
+{
+    struct subdiv_list edges = { 0 };
+    size_t done = 1, listed = 0;
+    for (int i = 0; i < MOST_TURNS && done > 0; i++) {
+        list_edges(subdiv, limit, listed, &edges);
+        listed = subdiv->mesh.made.count;
+        struct turn *turns = mem_array(edges.count, sizeof(*turns));
+        size_t count = list_turns(subdiv, &edges, turns);
+        measure_across(subdiv, turns, count);
+        done = turn_better(subdiv, turns, count);
+        mem_free(turns);
+    }
+    mem_free(edges.at);
+}

@@ -1,0 +1,618 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What the field is between the vertices, how far that is from straight, and where an edge is best cut. */
+#include <math.h>
+#include <string.h>
+#include <xxhash.h>
+
+#include "base/mem.h"
+#include "base/vec.h"
+#include "preprocess/subdivision/subdiv_impl.h"
+#include "surface/mesh/bvh.h"
+
+#define PROBABLE 0.4  /* of an error that would matter: if an edge errs by less at its middle, it does so everywhere */
+#define CLOSE 0.5     /* of the way to the nearest sensor: only of shorter edges that is true */
+#define WIDE 0.3      /* likewise: longer edges are cut in the middle, so that cuts of neighbours lie side by side */
+#define GRAIN 256     /* edges, triangles or places, at least: half a millisecond */
+#define POINTS 16     /* of an edge that are looked at, at most */
+#define CORNERS 61    /* whose shares are at hand */
+#define STEPS 2       /* in which the best place for a cut is narrowed down */
+#define NO_GAIN 0.5   /* of the error, left by the best cut: a bend leaves a quarter, a kink nothing */
+#define ROUNDING 1e-9 /* of a distance, more than it is off by */
+#define JUMP 1.5      /* times the way gone: a distance cannot grow by more, unless the surface does not hang together there */
+
+void subdiv_mix(const float a[3], const float b[3], double t, float out[3])
+{
+    for (int i = 0; i < 3; i++)
+        out[i] = (float)((double)a[i] + t * ((double)b[i] - (double)a[i]));
+}
+
+double subdiv_length(const float a[3], const float b[3])
+{
+    double x = (double)b[0] - (double)a[0], y = (double)b[1] - (double)a[1], z = (double)b[2] - (double)a[2];
+    return sqrt(x * x + y * y + z * z);
+}
+
+bool subdiv_is_short(const struct subdiv *subdiv, double length_m)
+{
+    return length_m < 2 * subdiv->shortest_m;
+}
+
+const float *subdiv_position(const struct subdiv *subdiv, uint32_t vertex)
+{
+    return subdiv->mesh.geometry->positions_m[vertex];
+}
+
+static uint32_t place_of(const struct subdiv *subdiv, uint32_t vertex)
+{
+    return subdiv->mesh.welded.of_vertex[vertex];
+}
+
+/* --- which piece of the surface a point belongs to -------------------------------------------------------------------------- */
+
+static bool list_faces(struct subdiv *subdiv)
+{
+    const struct geometry *g = subdiv->mesh.geometry;
+    subdiv->faces = mem_try_array(g->index_count / 3, sizeof(*subdiv->faces));
+    for (uint32_t t = 0; subdiv->faces && t < g->index_count / 3; t++) {
+        const uint32_t *v = subdiv->model + 3 * (size_t)t;
+        const float *a = subdiv_position(subdiv, v[0]), *b = subdiv_position(subdiv, v[1]), *c = subdiv_position(subdiv, v[2]);
+        vecf_normal(a, b, c, subdiv->faces[t].normal);
+        subdiv->faces[t].part = subdiv->part[place_of(subdiv, v[0])];
+    }
+    return subdiv->faces != NULL;
+}
+
+bool subdiv_find_parts(struct subdiv *subdiv)
+{
+    const struct geometry *g = subdiv->mesh.geometry;
+    size_t count = subdiv->mesh.welded.count;
+    subdiv->part = mem_try_array(count, sizeof(*subdiv->part));
+    subdiv->part_capacity = count;
+    if (!subdiv->part)
+        return false;
+    for (uint32_t p = 0; p < count; p++)
+        subdiv->part[p] = p;
+    for (uint32_t i = 0; i < g->index_count; i += 3)
+        for (uint32_t c = 1; c < 3; c++)
+            trimesh_join(subdiv->part, place_of(subdiv, subdiv->model[i]), place_of(subdiv, subdiv->model[i + c]));
+    for (uint32_t p = 0; p < count; p++)
+        subdiv->part[p] = trimesh_root(subdiv->part, p);
+    return list_faces(subdiv);
+}
+
+struct sight { /* which triangles of the model a point may lie on */
+    const struct subdiv *subdiv;
+    uint32_t origin[2]; /* in the finest level, these */
+    uint32_t part;      /* in a coarser one, those of that part which look the same way */
+    double normal[3];
+    struct sample_cache_notes *notes; /* the thread's */
+};
+
+static bool is_in_sight(const void *arg, uint32_t triangle)
+{
+    const struct sight *sight = arg;
+    const struct subdiv_face *face = &sight->subdiv->faces[triangle];
+    return face->part == sight->part && vec_dot(face->normal, sight->normal) > 0;
+}
+
+static struct sight sight_of_edge(const struct subdiv *subdiv, const struct subdiv_edge *edge, struct sample_cache_notes *notes)
+{
+    struct sight sight = {
+        subdiv, { edge->origin[0], edge->origin[edge->origin[1] != TRIMESH_NONE] }, subdiv->part[place_of(subdiv, edge->a)], { 0 }, notes
+    };
+    subdiv_mesh_normal(&subdiv->mesh, edge, sight.normal);
+    return sight;
+}
+
+static struct sight sight_of_tri(const struct subdiv *subdiv, const struct subdiv_tri *tri, struct sample_cache_notes *notes)
+{
+    struct sight sight = { subdiv, { tri->origin, tri->origin }, subdiv->part[place_of(subdiv, tri->v[0])], { 0 }, notes };
+    for (int c = 0; c < 3; c++)
+        for (int i = 0; i < 3; i++)
+            sight.normal[i] += (double)subdiv->mesh.geometry->normals[tri->v[c]][i];
+    return sight;
+}
+
+static void to_doubles(const float point[3], double at[3])
+{
+    for (int i = 0; i < 3; i++)
+        at[i] = (double)point[i];
+}
+
+/* Where a coarser level's point is: on its own part, or else on another one that hides that, out of which it may stand. */
+static bool search(const struct sight *sight, const double at[3], struct surface_point *spot)
+{
+    const struct subdiv *subdiv = sight->subdiv;
+    if (subdiv->finest)
+        return surface_find_point_on(subdiv->in->surface, at, subdiv->on_surface_m, sight->origin, spot);
+    if (surface_find_point_among(subdiv->in->surface, at, subdiv->on_surface_m, is_in_sight, sight, spot))
+        return true;
+    return surface_find_point_within(subdiv->in->surface, at, sight->normal, subdiv->on_surface_m, spot);
+}
+
+/* All that the place of a point depends on, but for the surface. */
+static uint64_t key_of(const struct sight *sight, const float point[3])
+{
+    struct {
+        float point[3];
+        uint32_t level, of[2];
+        double normal[3];
+    } all = { .level = sight->subdiv->level };
+    memcpy(all.point, point, sizeof(all.point));
+    if (sight->subdiv->finest)
+        memcpy(all.of, sight->origin, sizeof(all.of));
+    else
+        memcpy(all.normal, sight->normal, sizeof(all.normal));
+    all.of[0] = sight->subdiv->finest ? all.of[0] : sight->part;
+    return XXH3_64bits(&all, sizeof(all));
+}
+
+/* Where it was found the last time, if it is known. */
+static bool find_spot(const struct sight *sight, const float point[3], const double at[3], struct surface_point *spot)
+{
+    const struct subdiv *subdiv = sight->subdiv;
+    struct sample_cache *sample_cache = subdiv->in->sample_cache;
+    uint64_t key = sample_cache ? key_of(sight, point) : 0;
+    uint32_t tri;
+    bool known = sample_cache && sample_cache_find(sample_cache, key, &tri), seen = false;
+    if (known && tri != TRIMESH_NONE)
+        known = seen = surface_point_on(subdiv->in->surface, at, subdiv->on_surface_m, tri, spot);
+    if (!known)
+        seen = search(sight, at, spot);
+    if (sample_cache)
+        sample_cache_note(sample_cache, sight->notes, key, seen ? spot->tri : TRIMESH_NONE, known);
+    return seen;
+}
+
+/* Where a triangle is seen, nearest to a place in it that is not: large ones stand out of other parts. *spot: what was found from another
+   place, or none; what is found from this one, though it be too far to count; none: nothing of the triangle is seen. */
+static bool find_seen(const struct sight *sight, const double corners[3][3], const double from[3], double weights[3],
+                      struct surface_point *spot)
+{
+    const struct subdiv *subdiv = sight->subdiv;
+    double at[3], reach_m = 0;
+    for (int c = 0; c < 3; c++)
+        reach_m = max_of(reach_m, vec_distance(from, corners[c]));
+    double limit_m = reach_m + subdiv->on_surface_m;
+    if (spot->tri != TRIMESH_NONE)
+        limit_m = min_of(limit_m, vec_distance(from, spot->point_m) * (1 + ROUNDING));
+    if (subdiv->finest ? !surface_find_point_on(subdiv->in->surface, from, limit_m, sight->origin, spot)
+                       : !surface_find_point_among(subdiv->in->surface, from, limit_m, is_in_sight, sight, spot)) {
+        spot->tri = TRIMESH_NONE;
+        return false;
+    }
+    if (vec_distance2(from, spot->point_m) > reach_m * reach_m)
+        return false;
+    triangle_nearest(spot->point_m, corners[0], corners[1], corners[2], weights);
+    for (int i = 0; i < 3; i++)
+        at[i] = weights[0] * corners[0][i] + weights[1] * corners[1][i] + weights[2] * corners[2][i];
+    return vec_distance(at, spot->point_m) <= subdiv->on_surface_m;
+}
+
+/* Distances along the surface, where it is nearest to a coarser level's point. False: the point is hidden deep inside another part, and
+   nobody sees an error. */
+static bool measure(const struct sight *sight, const float point[3], float *geodesic_m)
+{
+    const struct subdiv *subdiv = sight->subdiv;
+    struct surface_point spot;
+    double at[3];
+    to_doubles(point, at);
+    if (!find_spot(sight, point, at, &spot))
+        return false;
+    surface_field_at_point(subdiv->in->field, subdiv->in->surface, &spot, geodesic_m);
+    return true;
+}
+
+/* The same; at a hidden point, those of the nearest one that is seen. */
+static void measure_always(const struct sight *sight, const float point[3], float *geodesic_m)
+{
+    struct surface_point spot;
+    double at[3];
+    if (measure(sight, point, geodesic_m))
+        return;
+    to_doubles(point, at);
+    surface_find_point(sight->subdiv->in->surface, at, sight->normal, &spot);
+    surface_field_at_point(sight->subdiv->in->field, sight->subdiv->in->surface, &spot, geodesic_m);
+}
+
+/* --- edges ------------------------------------------------------------------------------------------------------------------ */
+
+struct line { /* points along an edge, from one end to the other */
+    const struct subdiv *subdiv;
+    const float *a, *b; /* positions of the ends */
+    double length_m;
+    struct sight sight;
+    double t[POINTS];
+    const float *interp[POINTS], *geodesic_m[POINTS];
+    int count;
+    float *room; /* for as many points more */
+    struct interp_norm *norms;
+};
+
+/* Of a point, against a line between two others. */
+static double error_at(const struct line *line, enum linear_error_modes modes, int from, int to, int point)
+{
+    double t = (line->t[point] - line->t[from]) / (line->t[to] - line->t[from]);
+    return linear_error_on_edge(line->subdiv->in->linear, modes, line->interp[from], line->interp[to], t, line->interp[point],
+                                line->length_m, line->subdiv->slack_m);
+}
+
+/* A point more, if it is seen; its error against a line between the ends. */
+static double add_point(struct line *line, double t)
+{
+    const struct linear_error *linear = line->subdiv->in->linear;
+    float *geodesic_m = line->room, *interp = geodesic_m + line->subdiv->sensors, point[3];
+    int i = line->count;
+    subdiv_mix(line->a, line->b, t, point);
+    if (line->count == POINTS || !measure(&line->sight, point, geodesic_m))
+        return 0;
+    linear_error_weights(linear, point, geodesic_m, line->subdiv->slack_m > 0, interp, line->norms);
+    for (; line->t[i - 1] > t; i--) {
+        line->t[i] = line->t[i - 1];
+        line->interp[i] = line->interp[i - 1];
+        line->geodesic_m[i] = line->geodesic_m[i - 1];
+    }
+    line->t[i] = t;
+    line->interp[i] = interp;
+    line->geodesic_m[i] = geodesic_m;
+    line->count++;
+    line->room = interp + line->subdiv->samples;
+    return error_at(line, LINEAR_ERROR_BOTH, 0, line->count - 1, i);
+}
+
+static bool jumps(const struct line *line, double length_m)
+{
+    for (int i = 1; i < line->count; i++)
+        for (size_t s = 0; s < line->subdiv->sensors; s++) {
+            double step_m = fabs((double)line->geodesic_m[i][s] - (double)line->geodesic_m[i - 1][s]);
+            if (step_m > JUMP * (line->t[i] - line->t[i - 1]) * length_m)
+                return true;
+        }
+    return false;
+}
+
+/* What is left if the edge is cut at one of its points. */
+static double left_after(const struct line *line, int cut)
+{
+    double most = 0;
+    for (int i = 1; i < line->count - 1; i++) {
+        int from = i < cut ? 0 : cut, to = i < cut ? cut : line->count - 1;
+        if (i != cut)
+            most = max_of(most, error_at(line, LINEAR_ERROR_BOTH, from, to, i));
+    }
+    return most;
+}
+
+/* Of the points looked at; the middle one where that is about as good. */
+static int best_cut(const struct line *line, double *left)
+{
+    int best = 0;
+    *left = INFINITY;
+    for (int i = 1; i < line->count - 1; i++) {
+        double error = left_after(line, i) * (1 + 0.2 * fabs(line->t[i] - 0.5));
+        if (error < *left) {
+            *left = error;
+            best = i;
+        }
+    }
+    return best;
+}
+
+static void add_eighths(struct line *line, struct subdiv_finding *finding)
+{
+    for (int i = 1; i < 8; i += 2)
+        finding->error = fmaxf(finding->error, (float)add_point(line, i / 8.0));
+}
+
+/* A field bends evenly, then the middle is best; or it has a kink, where two ways round are equally long, and straight pieces beside it.
+   Where it jumps, no cut mends anything, and only halves come to an end: they close in on it. */
+static void find_cut(struct line *line, double length_m, double enough, struct subdiv_finding *finding)
+{
+    double left;
+    int best = best_cut(line, &left);
+    if (left > NO_GAIN * (double)finding->error && jumps(line, length_m))
+        return;
+    for (double step = 1 / 16.0; step > 1 / 16.0 / (1 << STEPS) && left > enough; step /= 2) {
+        double t = line->t[best];
+        add_point(line, t - step);
+        add_point(line, t + step);
+        best = best_cut(line, &left);
+    }
+    finding->share = (float)line->t[best];
+}
+
+/* --- jobs ------------------------------------------------------------------------------------------------------------------- */
+
+struct job {
+    struct subdiv *subdiv;
+    struct subdiv_finding *findings;
+    const uint32_t *edges;
+    uint32_t first;
+    double enough;
+};
+
+/* A thread's room: for points, and for the shares at corners last looked at, since the next edge likely has some of them too. */
+struct room {
+    float *points, *corners;
+    struct interp_norm *norms; /* of the point last looked at */
+    uint32_t of[CORNERS + 3];  /* which place's, by the place's number; then those for which that is taken */
+    uint32_t taken[3];         /* by the corners in hand */
+    struct sample_cache_notes notes;
+};
+
+static void room_init(struct room *room, const struct subdiv *subdiv, size_t points)
+{
+    room->notes.count = room->notes.missed = 0;
+    room->points = mem_array(points * (subdiv->samples + subdiv->sensors), sizeof(float));
+    room->corners = subdiv->interp ? NULL : mem_array((CORNERS + 3) * subdiv->samples, sizeof(float));
+    room->norms = mem_array(subdiv->norm_count, sizeof(*room->norms));
+    memset(room->of, 0xff, sizeof(room->of));
+}
+
+static void room_finish(struct room *room, const struct subdiv *subdiv)
+{
+    if (subdiv->in->sample_cache)
+        sample_cache_hand_over(subdiv->in->sample_cache, &room->notes);
+    mem_free(room->points);
+    mem_free(room->corners);
+    mem_free(room->norms);
+}
+
+/* Of a corner of the edge or triangle in hand. Kept by place while they are few. */
+static const float *shares_at(const struct subdiv *subdiv, uint32_t vertex, uint32_t corner, struct room *room)
+{
+    uint32_t place = place_of(subdiv, vertex), number = place % CORNERS;
+    if (subdiv->interp)
+        return subdiv->interp + place * subdiv->samples;
+    for (uint32_t c = 0; c < corner; c++)
+        if (room->taken[c] == number && room->of[number] != place)
+            number = CORNERS + corner;
+    room->taken[corner] = number;
+    float *interp = room->corners + number * subdiv->samples;
+    if (room->of[number] != place)
+        linear_error_weights_again(subdiv->in->linear, subdiv->mesh.welded.positions_m[place], subdiv->geodesic_m + place * subdiv->sensors,
+                                   subdiv->norms + place * subdiv->norm_count, interp);
+    room->of[number] = place;
+    return interp;
+}
+
+static void bar_short(struct subdiv_finding *finding)
+{
+    finding->barred = finding->error;
+    finding->error = 0;
+}
+
+/* Straight distances do not jump. */
+static void bar_jump(struct subdiv_finding *finding, const struct line *line)
+{
+    finding->jumps = true;
+    finding->error = 0;
+    for (int i = 1; i < line->count - 1; i++) {
+        finding->error = fmaxf(finding->error, (float)error_at(line, LINEAR_ERROR_EUCLIDEAN, 0, line->count - 1, i));
+        finding->barred = fmaxf(finding->barred, (float)error_at(line, LINEAR_ERROR_GEODESIC, 0, line->count - 1, i));
+    }
+}
+
+/* Of which the middle was looked at last. */
+static double nearest_to_middle(const struct line *line, uint32_t end)
+{
+    const struct linear_error *linear = line->subdiv->in->linear;
+    float middle[3];
+    if (line->count == 3)
+        return linear_error_nearest_of(linear, line->norms);
+    subdiv_mix(line->a, line->b, 0.5, middle);
+    return min_of(linear_error_nearest(linear, middle),
+                  linear_error_rim_of(linear, line->subdiv->norms + place_of(line->subdiv, end) * line->subdiv->norm_count));
+}
+
+static void try_edge(const struct job *job, struct subdiv_finding *finding, struct room *room)
+{
+    const struct subdiv *subdiv = job->subdiv;
+    const struct subdiv_edge *edge = &subdiv->mesh.cuts[finding->number];
+    const float *pa = subdiv_position(subdiv, edge->a), *pb = subdiv_position(subdiv, edge->b);
+    double length_m = subdiv_length(pa, pb);
+    *finding = (struct subdiv_finding){ .number = finding->number, .share = 0.5f };
+    struct line line = { .subdiv = subdiv,
+                         .a = pa,
+                         .b = pb,
+                         .length_m = length_m,
+                         .sight = sight_of_edge(subdiv, edge, &room->notes),
+                         .t = { 0, 1 },
+                         .count = 2,
+                         .interp = { shares_at(subdiv, edge->a, 0, room) },
+                         .geodesic_m = { subdiv->geodesic_m + place_of(subdiv, edge->a) * subdiv->sensors,
+                                         subdiv->geodesic_m + place_of(subdiv, edge->b) * subdiv->sensors },
+                         .room = room->points,
+                         .norms = room->norms };
+    line.interp[1] = shares_at(subdiv, edge->b, 1, room);
+    finding->error = (float)add_point(&line, 0.5);
+    double nearest_m = nearest_to_middle(&line, edge->a);
+    if (subdiv_is_short(subdiv, length_m)) {
+        bar_short(finding);
+        return;
+    }
+    if ((double)finding->error < PROBABLE * job->enough && length_m < CLOSE * nearest_m && line.count == 3)
+        return;
+    if ((double)finding->error <= job->enough || length_m < WIDE * nearest_m)
+        finding->error = fmaxf(finding->error, (float)max_of(add_point(&line, 0.25), add_point(&line, 0.75)));
+    bool partly_seen = line.count < 5 && (double)finding->error <= job->enough;
+    if (partly_seen)
+        add_eighths(&line, finding);
+    if ((double)finding->error > job->enough && length_m < WIDE * nearest_m) {
+        if (!partly_seen)
+            add_eighths(&line, finding);
+        find_cut(&line, length_m, job->enough, finding);
+    }
+    if (length_m < subdiv->jump_m && jumps(&line, length_m))
+        bar_jump(finding, &line);
+    double margin = min_of(0.5, subdiv->shortest_m / length_m);
+    finding->share = (float)min_of(1 - margin, max_of(margin, (double)finding->share));
+}
+
+static bool recall_edge(const struct subdiv *subdiv, uint32_t *next, struct subdiv_finding *finding)
+{
+    const struct subdiv_edge *edge = &subdiv->mesh.cuts[finding->number];
+    return subdiv_cache_find(subdiv, (const uint32_t[2]){ edge->a, edge->b }, 2, next, finding);
+}
+
+static void try_edges(void *arg, size_t begin, size_t end)
+{
+    const struct job *job = arg;
+    struct room room;
+    uint32_t next = 0;
+    room_init(&room, job->subdiv, POINTS);
+    for (size_t i = begin; i < end; i++)
+        if (!recall_edge(job->subdiv, &next, &job->findings[i]))
+            try_edge(job, &job->findings[i], &room);
+    room_finish(&room, job->subdiv);
+}
+
+/* From the middle to a corner, in a triangle in which no cut would mend that. */
+static bool jumps_inside(const struct subdiv *subdiv, const struct subdiv_tri *tri, const float middle[3], const float *geodesic_m)
+{
+    for (int c = 0; c < 3; c++) {
+        const float *corner_m = subdiv->geodesic_m + place_of(subdiv, tri->v[c]) * subdiv->sensors;
+        double most_m = JUMP * subdiv_length(middle, subdiv_position(subdiv, tri->v[c]));
+        if (subdiv_length(subdiv_position(subdiv, tri->v[c]), subdiv_position(subdiv, tri->v[(c + 1) % 3])) > subdiv->jump_m)
+            return false;
+        for (size_t s = 0; s < subdiv->sensors; s++)
+            if (fabs((double)geodesic_m[s] - (double)corner_m[s]) > most_m)
+                return true;
+    }
+    return false;
+}
+
+struct inside { /* a triangle, looked at inside */
+    struct sight sight;
+    const struct subdiv_tri *tri;
+    const float *interp[3]; /* at its corners */
+    double corners[3][3];
+    float *points; /* room for one */
+    struct interp_norm *norms;
+};
+
+static void place_in(const struct inside *inside, const double weights[3], double at[3])
+{
+    for (int i = 0; i < 3; i++)
+        at[i] = weights[0] * inside->corners[0][i] + weights[1] * inside->corners[1][i] + weights[2] * inside->corners[2][i];
+}
+
+/* At a place with these weights, where the surface is there. */
+static double error_inside(const struct inside *inside, const double weights[3], const struct surface_point *spot)
+{
+    const struct subdiv *subdiv = inside->sight.subdiv;
+    const struct linear_error *linear = subdiv->in->linear;
+    float *geodesic_m = inside->points, *interp = geodesic_m + subdiv->sensors;
+    double at[3];
+    place_in(inside, weights, at);
+    const float point[3] = { (float)at[0], (float)at[1], (float)at[2] };
+    surface_field_at_point(subdiv->in->field, subdiv->in->surface, spot, geodesic_m);
+    linear_error_weights(linear, point, geodesic_m, subdiv->slack_m > 0, interp, inside->norms);
+    enum linear_error_modes modes = jumps_inside(subdiv, inside->tri, point, geodesic_m) ? LINEAR_ERROR_EUCLIDEAN : LINEAR_ERROR_BOTH;
+    double wide_m = 0;
+    for (int c = 0; c < 3; c++)
+        wide_m = max_of(wide_m, vec_distance(at, inside->corners[c]));
+    return linear_error_in_triangle(linear, modes, inside->interp, weights, interp, wide_m, subdiv->slack_m);
+}
+
+/* At the middle; where that is not seen, at what is seen nearest to it and to places beside the corners. */
+static void try_inside(const struct subdiv *subdiv, struct subdiv_finding *finding, struct room *room)
+{
+    static const double places[4][3] = {
+        { 1 / 3.0, 1 / 3.0, 1 / 3.0 }, { 2 / 3.0, 1 / 6.0, 1 / 6.0 }, { 1 / 6.0, 2 / 3.0, 1 / 6.0 }, { 1 / 6.0, 1 / 6.0, 2 / 3.0 }
+    };
+    const struct subdiv_tri *tri = &subdiv->mesh.tris[finding->number];
+    struct inside inside = { .sight = sight_of_tri(subdiv, tri, &room->notes), .tri = tri, .points = room->points, .norms = room->norms };
+    struct surface_point spot;
+    double at[3], weights[3];
+    for (uint32_t c = 0; c < 3; c++) {
+        inside.interp[c] = shares_at(subdiv, tri->v[c], c, room);
+        to_doubles(subdiv_position(subdiv, tri->v[c]), inside.corners[c]);
+    }
+    *finding = (struct subdiv_finding){ .number = finding->number };
+    place_in(&inside, places[0], at);
+    bool middle_seen = find_spot(&inside.sight, (const float[3]){ (float)at[0], (float)at[1], (float)at[2] }, at, &spot);
+    if (middle_seen)
+        finding->error = (float)error_inside(&inside, places[0], &spot);
+    spot.tri = TRIMESH_NONE;
+    for (int p = 0; p < 4 && !middle_seen && (p == 0 || spot.tri != TRIMESH_NONE); p++) {
+        place_in(&inside, places[p], at);
+        if (find_seen(&inside.sight, (const double(*)[3])inside.corners, at, weights, &spot))
+            finding->error = fmaxf(finding->error, (float)error_inside(&inside, weights, &spot));
+    }
+}
+
+static void try_insides(void *arg, size_t begin, size_t end)
+{
+    const struct job *job = arg;
+    struct room room;
+    uint32_t next = 0;
+    room_init(&room, job->subdiv, 1);
+    for (size_t i = begin; i < end; i++)
+        if (!subdiv_cache_find(job->subdiv, job->subdiv->mesh.tris[job->findings[i].number].v, 3, &next, &job->findings[i]))
+            try_inside(job->subdiv, &job->findings[i], &room);
+    room_finish(&room, job->subdiv);
+}
+
+static void measure_places(void *arg, size_t begin, size_t end)
+{
+    const struct job *job = arg;
+    const struct subdiv *subdiv = job->subdiv;
+    struct sample_cache_notes notes;
+    notes.count = notes.missed = 0;
+    for (size_t i = begin; i < end; i++) {
+        uint32_t place = job->first + (uint32_t)i;
+        const float *point = subdiv->mesh.welded.positions_m[place];
+        float *geodesic_m = subdiv->geodesic_m + place * subdiv->sensors;
+        if (job->edges) {
+            struct sight sight = sight_of_edge(subdiv, &subdiv->mesh.cuts[job->edges[i]], &notes);
+            measure_always(&sight, point, geodesic_m);
+        }
+        struct interp_norm *norms = subdiv->norms + place * subdiv->norm_count;
+        if (subdiv->interp)
+            linear_error_weights(subdiv->in->linear, point, geodesic_m, false, subdiv->interp + place * subdiv->samples, norms);
+        else
+            linear_error_norms(subdiv->in->linear, point, geodesic_m, norms);
+    }
+    if (subdiv->in->sample_cache)
+        sample_cache_hand_over(subdiv->in->sample_cache, &notes);
+}
+
+void subdiv_parallel(const struct subdiv *subdiv, size_t count, size_t grain, void (*body)(void *arg, size_t begin, size_t end), void *arg)
+{
+    if (subdiv->in->workers)
+        workers_for(subdiv->in->workers, count, grain, body, arg);
+    else
+        body(arg, 0, count);
+}
+
+void subdiv_measure_edges(struct subdiv *subdiv, struct subdiv_finding *findings, size_t count, double enough)
+{
+    subdiv_parallel(subdiv, count, GRAIN, try_edges, &(struct job){ .subdiv = subdiv, .findings = findings, .enough = enough });
+    for (size_t i = 0; i < count; i++) {
+        const struct subdiv_edge *edge = &subdiv->mesh.cuts[findings[i].number];
+        subdiv_cache_add(subdiv, (const uint32_t[2]){ edge->a, edge->b }, 2, &findings[i]);
+    }
+}
+
+void subdiv_measure_insides(struct subdiv *subdiv, struct subdiv_finding *findings, size_t count)
+{
+    subdiv_parallel(subdiv, count, GRAIN, try_insides, &(struct job){ .subdiv = subdiv, .findings = findings });
+    for (size_t i = 0; i < count; i++)
+        subdiv_cache_add(subdiv, subdiv->mesh.tris[findings[i].number].v, 3, &findings[i]);
+}
+
+void subdiv_measure_places(struct subdiv *subdiv, uint32_t first, const uint32_t *edges, size_t count)
+{
+    subdiv_parallel(subdiv, count, GRAIN, measure_places, &(struct job){ .subdiv = subdiv, .edges = edges, .first = first });
+}
+
+void subdiv_add_place(struct subdiv *subdiv, uint32_t place, uint32_t part)
+{
+    mem_grow(&subdiv->geodesic_m, &subdiv->geodesic_capacity, (place + 1) * subdiv->sensors, sizeof(*subdiv->geodesic_m));
+    if (subdiv->interp)
+        mem_grow(&subdiv->interp, &subdiv->share_capacity, (place + 1) * subdiv->samples, sizeof(*subdiv->interp));
+    mem_grow(&subdiv->norms, &subdiv->norm_capacity, (place + 1) * subdiv->norm_count, sizeof(*subdiv->norms));
+    mem_grow(&subdiv->part, &subdiv->part_capacity, place + 1, sizeof(*subdiv->part));
+    subdiv->part[place] = part;
+}

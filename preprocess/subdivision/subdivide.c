@@ -1,0 +1,542 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Finds the edges along which the field is not straight, and cuts them where that helps most, until it is: those that err most first. */
+#include "preprocess/subdivision/subdivide.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/mem.h"
+#include "base/vec.h"
+#include "preprocess/subdivision/subdiv_impl.h"
+
+#define MOST_ROUNDS 16
+#define GRAIN 2048          /* triangles: a few tenths of a millisecond */
+#define MOST_KEPT 512       /* shares of a place */
+#define LARGE 0.25          /* of the way to the nearest sensor */
+#define LIKELY 1.0          /* errors of the edges together, in limits: with less, one of 500 large triangles errs more inside */
+#define INSIDE_LEAST 2.0    /* shortest pieces: smaller triangles are not looked at inside */
+#define FLAT 1e-3           /* a triangle's longest edge is no more than that shorter than the way round over the corner across */
+#define ASIDE 0.1           /* of the edge, at least, that corner is from its ends */
+#define LINE_OF_SIZE 2.5e-7 /* a triangle no higher than that, a few units of the last place, is a line */
+#define MORE_PLACES 12.0    /* room for places, in those that the model has */
+#define MOST_ASKED 2000     /* short edges of a coarser level that are looked at for what is told of it */
+#define FULL 2e-4           /* a level that may grow by less than that is done: each round takes half of what is left */
+
+/* How many triangles the finest level may get more: so much of its own, or so many, whichever is more. */
+#define FINEST_GROWTH 2.0
+#define FINEST_GROWTH_TRIS 100000.0
+#define WORTH 0.85          /* a coarser level that would get more than so much of the next finer one is of no use */
+#define SAMPLE_WORTH 9000   /* levels of so many triangles or more are first tried on a sample: those of fewer hang on too few of them */
+#define SAMPLE_ROUNDS 4     /* of cuts, then it is known or never will be */
+#define SHORTEST_NEAR 0.125 /* pieces of the finest level, of the tolerance: sensors may stand side by side */
+#define SHORTEST 1.0        /* pieces of coarser levels, of their error: two pixels */
+#define JUMP_WIDTH 8        /* tolerances, or errors */
+#define ON_SURFACE 0.25     /* tolerances: so far apart places may be said to be the same */
+#define SLACK 0.7           /* how far away a coarser level may show what the field is, likewise */
+
+/* --- cutting -------------------------------------------------------------------------------------------------------------- */
+
+#define BINS (1u << 16)
+static uint32_t bin_of(float error) /* errors are not negative: their bits have their order */
+{
+    uint32_t bits;
+    memcpy(&bits, &error, sizeof(bits));
+    return bits >> 16;
+}
+
+/* Keeps the `most` worst ones, in the order that they have; of about the last error, the first ones. Returns how many that are. */
+static size_t keep_worst(struct subdiv_finding *findings, size_t count, size_t most)
+{
+    if (count <= most)
+        return count;
+    size_t *bins = mem_array(BINS, sizeof(*bins)), above = 0, kept = 0;
+    uint32_t last = BINS - 1;
+    for (size_t i = 0; i < count; i++)
+        bins[bin_of(findings[i].error)]++;
+    for (; last > 0 && above + bins[last] <= most; last--)
+        above += bins[last];
+    for (size_t i = 0; i < count; i++) {
+        uint32_t bin = bin_of(findings[i].error);
+        above += bin == last;
+        if (bin > last || (bin == last && above <= most))
+            findings[kept++] = findings[i];
+    }
+    mem_free(bins);
+    return kept;
+}
+
+/* It has no width that a picture could show. */
+static bool is_line(const struct subdiv *subdiv, const struct subdiv_tri *tri)
+{
+    double p[3][3], normal[3], longest_m = 0;
+    for (int c = 0; c < 3; c++)
+        for (int axis = 0; axis < 3; axis++)
+            p[c][axis] = (double)subdiv_position(subdiv, tri->v[c])[axis];
+    for (int c = 0; c < 3; c++)
+        longest_m = max_of(longest_m, vec_distance(p[c], p[(c + 1) % 3]));
+    vec_normal(p[0], p[1], p[2], normal);
+    return vec_length(normal) <= LINE_OF_SIZE * subdiv->size_m * longest_m;
+}
+
+void subdiv_measure_new_edges(struct subdiv *subdiv, struct subdiv_finding *findings, size_t count)
+{
+    subdiv_measure_edges(subdiv, findings, count, SUBDIV_AIM);
+    for (size_t i = 0; i < count; i++) {
+        struct subdiv_edge *edge = &subdiv->mesh.cuts[findings[i].number];
+        edge->error = findings[i].error;
+        edge->barred = findings[i].barred;
+        edge->jumps = findings[i].jumps;
+        edge->unasked = false;
+        edge->proven = findings[i].error <= (float)SUBDIV_AIM && findings[i].barred <= (float)SUBDIV_AIM;
+        if (edge->middle == TRIMESH_NONE)
+            edge->share = findings[i].share;
+    }
+}
+
+/* In a coarser level: it stays as it is, whatever it errs by. */
+static bool is_too_short(const struct subdiv *subdiv, const struct subdiv_edge *edge)
+{
+    return !subdiv->finest && subdiv_is_short(subdiv, subdiv_length(subdiv_position(subdiv, edge->a), subdiv_position(subdiv, edge->b)));
+}
+
+/* Measures edges that are new. One that only lines have is not seen; were it cut, they would become ever more. Half of the edges of coarser
+   levels are too short to be cut: what they err by does not matter. */
+static void measure_edges(struct subdiv *subdiv)
+{
+    struct subdiv_mesh *mesh = &subdiv->mesh;
+    size_t count = 0;
+    subdiv_mesh_sort(&mesh->made);
+    struct subdiv_finding *findings = mem_array(3 * mesh->made.count, sizeof(*findings));
+    for (size_t m = 0; m < mesh->made.count; m++) {
+        const struct subdiv_tri *tri = &mesh->tris[mesh->made.at[m]];
+        bool any_new = mesh->cuts[tri->e[0]].error < 0 || mesh->cuts[tri->e[1]].error < 0 || mesh->cuts[tri->e[2]].error < 0;
+        bool asks = any_new && !is_line(subdiv, tri);
+        for (int i = 0; i < 3 && asks; i++) {
+            struct subdiv_edge *edge = &mesh->cuts[tri->e[i]];
+            if (edge->error >= 0)
+                continue;
+            edge->error = edge->barred = 0;
+            edge->unasked = is_too_short(subdiv, edge);
+            if (!edge->unasked)
+                findings[count++].number = tri->e[i];
+        }
+    }
+    for (size_t m = 0; m < mesh->made.count; m++)
+        for (int i = 0; i < 3; i++) {
+            struct subdiv_edge *edge = &mesh->cuts[mesh->tris[mesh->made.at[m]].e[i]];
+            if (edge->error < 0)
+                edge->error = edge->barred = 0;
+        }
+    subdiv_measure_new_edges(subdiv, findings, count);
+    mem_free(findings);
+}
+
+static int longest_edge(const struct subdiv *subdiv, const struct subdiv_tri *tri)
+{
+    int longest = 0;
+    double most = 0;
+    for (int i = 0; i < 3; i++) {
+        double l = subdiv_length(subdiv_position(subdiv, tri->v[i]), subdiv_position(subdiv, tri->v[(i + 1) % 3]));
+        if (l > most) {
+            most = l;
+            longest = i;
+        }
+    }
+    return longest;
+}
+
+/* Where a field bends evenly, it errs at the middle by 4/9 of what it errs along the three edges together. In a triangle that is large
+   beside the way to the nearest sensor, anything may happen: but before the last limit the few are left for later that err by more than the
+   limit though their edges do not. */
+static bool inside_may_err(const struct subdiv *subdiv, const struct subdiv_tri *tri, double limit)
+{
+    const struct subdiv_mesh *mesh = &subdiv->mesh;
+    double sum = 0;
+    int i = longest_edge(subdiv, tri);
+    const float *a = subdiv_position(subdiv, tri->v[i]), *b = subdiv_position(subdiv, tri->v[(i + 1) % 3]);
+    double length_m = subdiv_length(a, b);
+    for (int e = 0; e < 3; e++)
+        sum += (double)mesh->cuts[tri->e[e]].error;
+    if (length_m <= INSIDE_LEAST * subdiv->shortest_m)
+        return false;
+    bool any_error = sum > LIKELY * limit || limit <= SUBDIV_AIM;
+    const struct interp_norm *norms = subdiv->norms + mesh->welded.of_vertex[tri->v[i]] * subdiv->norm_count;
+    return sum > 9 / 4.0 * limit || (any_error && length_m > LARGE * linear_error_nearest_of(subdiv->in->linear, norms));
+}
+
+struct insides {
+    const struct subdiv *subdiv;
+    double limit;
+    char *asked; /* of the triangles made */
+};
+
+static void choose_insides(void *arg, size_t begin, size_t end)
+{
+    const struct insides *insides = arg;
+    const struct subdiv_mesh *mesh = &insides->subdiv->mesh;
+    for (size_t m = begin; m < end; m++) {
+        const struct subdiv_tri *tri = &mesh->tris[mesh->made.at[m]];
+        double most = 0;
+        for (int i = 0; i < 3; i++)
+            most = max_of(most, (double)mesh->cuts[tri->e[i]].error);
+        insides->asked[m] = !tri->good && most <= insides->limit && inside_may_err(insides->subdiv, tri, insides->limit);
+    }
+}
+
+/* Measures new triangles whose edges are good: has those that err inside cut at the longest edge. */
+static void measure_insides(struct subdiv *subdiv, double limit)
+{
+    struct subdiv_mesh *mesh = &subdiv->mesh;
+    size_t count = 0;
+    subdiv_mesh_sort(&mesh->made);
+    struct insides insides = { subdiv, limit, mem_array(mesh->made.count, 1) };
+    subdiv_parallel(subdiv, mesh->made.count, GRAIN, choose_insides, &insides);
+    for (size_t m = 0; m < mesh->made.count; m++)
+        count += insides.asked[m] != 0;
+    struct subdiv_finding *findings = mem_array(count, sizeof(*findings));
+    count = 0;
+    for (size_t m = 0; m < mesh->made.count; m++)
+        if (insides.asked[m]) {
+            mesh->tris[mesh->made.at[m]].good = true;
+            findings[count++].number = mesh->made.at[m];
+        }
+    mem_free(insides.asked);
+    subdiv_measure_insides(subdiv, findings, count);
+    for (size_t i = 0; i < count; i++)
+        if ((double)findings[i].error > SUBDIV_AIM) {
+            const struct subdiv_tri *tri = &mesh->tris[findings[i].number];
+            struct subdiv_edge *edge = &mesh->cuts[tri->e[longest_edge(subdiv, tri)]];
+            edge->error = fmaxf(edge->error, findings[i].error);
+            edge->proven = false;
+        }
+    mem_free(findings);
+}
+
+static void cut_edges(struct subdiv *subdiv, const struct subdiv_finding *findings, size_t count)
+{
+    struct subdiv_mesh *mesh = &subdiv->mesh;
+    uint32_t *edges = mem_array(count, sizeof(*edges)), first = (uint32_t)mesh->welded.count;
+    size_t new_count = 0;
+    for (size_t i = 0; i < count; i++) {
+        uint32_t e = findings[i].number;
+        float point[3];
+        if (subdiv_mesh_is_split(mesh, e))
+            continue;
+        subdiv_mix(subdiv_position(subdiv, mesh->cuts[e].a), subdiv_position(subdiv, mesh->cuts[e].b), (double)mesh->cuts[e].share, point);
+        if (!subdiv_mesh_split_edge(mesh, e, point))
+            continue;
+        subdiv_add_place(subdiv, mesh->cuts[e].middle, subdiv->part[mesh->welded.of_vertex[mesh->cuts[e].a]]);
+        edges[new_count++] = e;
+    }
+    subdiv_measure_places(subdiv, first, edges, new_count);
+    mem_free(edges);
+}
+
+/* In a flat triangle the longest edge runs beside the corner across: where it is to be cut, it is cut there. True: so it should be. */
+static bool aim_at_corner(struct subdiv *subdiv, const struct subdiv_tri *tri, uint32_t *edge)
+{
+    const struct subdiv_mesh *mesh = &subdiv->mesh;
+    int i = longest_edge(subdiv, tri);
+    uint32_t v[3] = { tri->v[i], tri->v[(i + 1) % 3], tri->v[(i + 2) % 3] };
+    double ab = subdiv_length(subdiv_position(subdiv, v[0]), subdiv_position(subdiv, v[1])),
+           ca = subdiv_length(subdiv_position(subdiv, v[2]), subdiv_position(subdiv, v[0])),
+           cb = subdiv_length(subdiv_position(subdiv, v[2]), subdiv_position(subdiv, v[1]));
+    struct subdiv_edge *at = &mesh->cuts[tri->e[i]];
+    *edge = tri->e[i];
+    if (min_of(ca, cb) < max_of(subdiv->shortest_m, ASIDE * ab) || ca + cb > ab * (1 + FLAT))
+        return false;
+    if (at->middle == TRIMESH_NONE)
+        at->share = (float)((mesh->welded.of_vertex[v[0]] == mesh->welded.of_vertex[at->a] ? ca : cb) / (ca + cb));
+    return true;
+}
+
+/* Edges beside corners at which other edges are cut, or the pieces would stay as long as they are. */
+static void cut_beside_corners(struct subdiv *subdiv)
+{
+    struct subdiv_mesh *mesh = &subdiv->mesh;
+    size_t count = 0;
+    subdiv_mesh_sort(&mesh->open);
+    struct subdiv_finding *findings = mem_array(mesh->open.count, sizeof(*findings));
+    for (size_t m = 0; m < mesh->open.count; m++) {
+        const struct subdiv_tri *tri = &mesh->tris[mesh->open.at[m]];
+        bool others_cut =
+            subdiv_mesh_is_split(mesh, tri->e[0]) || subdiv_mesh_is_split(mesh, tri->e[1]) || subdiv_mesh_is_split(mesh, tri->e[2]);
+        if (others_cut && !is_line(subdiv, tri) && aim_at_corner(subdiv, tri, &findings[count].number) &&
+            !subdiv_mesh_is_split(mesh, findings[count].number))
+            count++;
+    }
+    cut_edges(subdiv, findings, count);
+    mem_free(findings);
+}
+
+/* Edges that err too much, each as often as triangles have it, in the order of these. */
+static struct subdiv_finding *list_errors(const struct subdiv *subdiv, double limit, size_t *count)
+{
+    const struct subdiv_mesh *mesh = &subdiv->mesh;
+    struct subdiv_list corners = { 0 };
+    for (size_t m = 0; m < mesh->made.count; m++)
+        for (int i = 0; i < 3; i++) {
+            const struct subdiv_edge *edge = &mesh->cuts[mesh->tris[mesh->made.at[m]].e[i]];
+            for (uint32_t corner = edge->corner; corner != TRIMESH_NONE && (double)edge->error > limit; corner = mesh->next[corner])
+                subdiv_mesh_list(&corners, corner);
+        }
+    subdiv_mesh_sort(&corners);
+    struct subdiv_finding *findings = mem_array(corners.count, sizeof(*findings));
+    for (*count = 0; *count < corners.count; ++*count) {
+        uint32_t e = mesh->tris[corners.at[*count] / 3].e[corners.at[*count] % 3];
+        findings[*count] = (struct subdiv_finding){ .number = e, .error = mesh->cuts[e].error };
+    }
+    mem_free(corners.at);
+    return findings;
+}
+
+/* Cuts the edges that err too much, the worst ones first, as long as the level may grow. False: nothing to do. */
+static bool cut_worst(struct subdiv *subdiv, double limit)
+{
+    struct subdiv_mesh *mesh = &subdiv->mesh;
+    size_t listed, room = subdiv->most_tris > mesh->tri_count ? (subdiv->most_tris - mesh->tri_count) / 2 : 0;
+    subdiv_mesh_sort(&mesh->made);
+    struct subdiv_finding *findings = list_errors(subdiv, limit, &listed);
+    for (size_t m = 0; m < mesh->made.count; m++) {
+        struct subdiv_tri *tri = &mesh->tris[mesh->made.at[m]];
+        if (!tri->aimed)
+            aim_at_corner(subdiv, tri, &(uint32_t){ 0 });
+        tri->aimed = true;
+    }
+    subdiv->full = (double)room < FULL * (double)mesh->tri_count;
+    size_t count = keep_worst(findings, listed, room);
+    cut_edges(subdiv, findings, count);
+    cut_beside_corners(subdiv);
+    mem_free(findings);
+    mesh->made.count = 0;
+    bool any = count > 0 && subdiv_mesh_apply(mesh) > 0 && !subdiv->full;
+    if (count < listed)
+        subdiv_mesh_list_all(mesh);
+    return any;
+}
+
+/* --- all ------------------------------------------------------------------------------------------------------------------ */
+
+static void note_left(struct level *level, enum level_limit limit, float error, uint32_t edges)
+{
+    if ((double)error <= SUBDIV_ERROR)
+        return;
+    level->left[limit].edges += edges;
+    level->left[limit].steps = fmaxf(level->left[limit].steps, error / (float)SUBDIV_ERROR);
+}
+
+/* Of those that were too short to be asked for, some; the rest errs as they do. Returns how many each of these stands for. */
+static uint32_t ask_some(struct subdiv *subdiv)
+{
+    struct subdiv_mesh *mesh = &subdiv->mesh;
+    struct subdiv_finding *findings = mem_array(mesh->edges.count, sizeof(*findings));
+    size_t count = 0, asked = 0;
+    for (uint32_t e = 0; e < mesh->edges.count; e++)
+        if (mesh->cuts[e].unasked && mesh->cuts[e].corner != TRIMESH_NONE)
+            findings[count++].number = e;
+    const size_t of = 1 + count / MOST_ASKED;
+    for (size_t i = 0; i < count; i += of)
+        findings[asked++].number = findings[i].number;
+    subdiv_measure_new_edges(subdiv, findings, asked);
+    for (size_t i = 0; i < asked; i++)
+        mesh->cuts[findings[i].number].unasked = true;
+    mem_free(findings);
+    return (uint32_t)of;
+}
+
+static void tell_left(struct subdiv *subdiv, struct level *level)
+{
+    const struct subdiv_mesh *mesh = &subdiv->mesh;
+    const uint32_t of = ask_some(subdiv);
+    char *told = mem_array(mesh->edges.count, 1);
+    for (size_t t = 0; t < mesh->tri_count; t++)
+        for (int i = 0; i < 3; i++) {
+            const struct subdiv_edge *edge = &mesh->cuts[mesh->tris[t].e[i]];
+            if (told[edge - mesh->cuts])
+                continue;
+            told[edge - mesh->cuts] = 1;
+            note_left(level, LEVEL_LIMIT_TRIANGLES, edge->error, 1);
+            note_left(level, edge->jumps ? LEVEL_LIMIT_JUMP : LEVEL_LIMIT_LENGTH, edge->barred, edge->unasked ? of : 1);
+        }
+    mem_free(told);
+}
+
+/* Until no edge errs by more than the limit. */
+static void cut_to(struct subdiv *subdiv, double limit)
+{
+    int rounds = subdiv->sample_blocks ? SAMPLE_ROUNDS : MOST_ROUNDS;
+    for (int round = 0; round < rounds; round++) {
+        if (round == 0)
+            subdiv_mesh_list_all(&subdiv->mesh);
+        measure_edges(subdiv);
+        if (!subdiv->finest)
+            subdiv_flip_edges(subdiv, limit);
+        subdiv->full = subdiv_will_exceed_bound(subdiv);
+        if (subdiv->full)
+            break;
+        measure_insides(subdiv, limit);
+        if (!cut_worst(subdiv, limit))
+            break;
+    }
+}
+
+/* What becomes of a sample when large errors are cut says that the level is no use: most of the work for such levels is saved. */
+static bool is_hopeless(struct subdiv *subdiv, const struct level *level, double large)
+{
+    struct level sample;
+    if (level->index_count / 3 < SAMPLE_WORTH)
+        return false;
+    subdiv->sample_blocks = subdiv_take_sample(&sample, level);
+    subdiv->full = false;
+    if (subdiv->sample_blocks > 1) {
+        subdiv->sample_of = (double)level->index_count / (double)sample.index_count;
+        subdiv_mesh_load(&subdiv->mesh, &sample);
+        subdiv_place_sensors(subdiv, subdiv->error_m);
+        cut_to(subdiv, large);
+    }
+    subdiv->sample_blocks = 0;
+    level_finish(&sample);
+    return subdiv->full;
+}
+
+static bool is_known_hopeless(const struct subdiv *subdiv)
+{
+    return subdiv->in->cache && subdiv->in->cache->hopeless >> subdiv->level & 1;
+}
+
+/* Large errors go first: should the level come to its bound, the smaller ones are what is left. */
+static void subdivide_level(struct subdiv *subdiv, struct level *level, size_t finer_tris)
+{
+    static const double limits[] = { 16 * SUBDIV_AIM, 4 * SUBDIV_AIM, 2 * SUBDIV_AIM, SUBDIV_AIM };
+    double error_m = (double)level->error_m, tolerance_m = surface_report(subdiv->in->surface)->tolerance_m;
+    subdiv->finest = finer_tris == 0;
+    subdiv->error_m = error_m;
+    subdiv->on_surface_m = subdiv->finest ? ON_SURFACE * tolerance_m : max_of(ON_SURFACE * tolerance_m, 1.5 * error_m);
+    subdiv->slack_m = SLACK * error_m;
+    subdiv->shortest_m = subdiv->finest ? SHORTEST_NEAR * tolerance_m : max_of(tolerance_m, SHORTEST * error_m);
+    subdiv->jump_m = JUMP_WIDTH * max_of(tolerance_m, SHORTEST * error_m);
+    double tris = (double)(level->index_count / 3);
+    subdiv->most_tris = (size_t)(subdiv->finest ? tris + max_of(FINEST_GROWTH * tris, FINEST_GROWTH_TRIS) : WORTH * (double)finer_tris);
+    subdiv->full = !subdiv->finest && (is_known_hopeless(subdiv) || is_hopeless(subdiv, level, limits[0]));
+    if (subdiv->full)
+        return;
+    subdiv_mesh_load(&subdiv->mesh, level);
+    subdiv_place_sensors(subdiv, error_m);
+    subdiv->full = subdiv->mesh.tri_count >= subdiv->most_tris;
+    for (size_t l = 0; l < sizeof(limits) / sizeof(*limits) && !subdiv->full; l++)
+        cut_to(subdiv, limits[l]);
+    if (subdiv->full && !subdiv->finest)
+        return;
+    measure_edges(subdiv);
+    tell_left(subdiv, level);
+    subdiv_mesh_store(&subdiv->mesh, level);
+}
+
+/* A coarser level that came to its bound is given up: the next finer one is no dearer. */
+static void subdivide_all(struct subdiv *subdiv, struct levels *levels)
+{
+    size_t kept = 0, finer_tris = 0;
+    for (size_t l = 0; l < levels->count; l++) {
+        struct level *level = &levels->at[l];
+        subdiv->level = (uint32_t)l;
+        subdivide_level(subdiv, level, finer_tris);
+        if (finer_tris > 0 && subdiv->full) {
+            if (subdiv->in->cache)
+                subdiv->in->cache->given_up |= 1ull << l;
+            level_finish(level);
+            continue;
+        }
+        finer_tris = subdiv->mesh.tri_count;
+        levels->at[kept++] = *level;
+        if (subdiv->in->level_done)
+            subdiv->in->level_done(subdiv->in->arg, &levels->at[kept - 1]);
+    }
+    levels->given_up = levels->count - kept;
+    levels->count = kept;
+}
+
+static void set_radii(struct subdiv *subdiv)
+{
+    const struct welded_positions *places = &subdiv->mesh.welded;
+    size_t padded = interp_padded(subdiv->sensors);
+    float *largest_m[2] = { mem_array(padded, sizeof(float)), mem_array(padded, sizeof(float)) };
+    float *straight_m = mem_array(padded, sizeof(*straight_m));
+    for (size_t p = 0; p < places->count; p++) {
+        const float *geodesic_m = subdiv->geodesic_m + p * subdiv->sensors;
+        interp_euclidean(places->positions_m[p], (const float *const *)subdiv->in->linear->axes_m, padded, straight_m);
+        for (size_t s = 0; s < subdiv->sensors; s++) {
+            float geodesic = geodesic_m[s] < INFINITY ? geodesic_m[s] : 0;
+            largest_m[DISTANCE_GEODESIC][s] = geodesic > largest_m[DISTANCE_GEODESIC][s] ? geodesic : largest_m[DISTANCE_GEODESIC][s];
+            largest_m[DISTANCE_EUCLIDEAN][s] =
+                straight_m[s] > largest_m[DISTANCE_EUCLIDEAN][s] ? straight_m[s] : largest_m[DISTANCE_EUCLIDEAN][s];
+        }
+    }
+    linear_error_set_radius(subdiv->in->linear, (const float *const *)largest_m);
+    mem_free(straight_m);
+    mem_free(largest_m[0]);
+    mem_free(largest_m[1]);
+}
+
+static bool start(struct subdiv *subdiv, struct geometry *geometry)
+{
+    float low[3] = { INFINITY, INFINITY, INFINITY }, high[3] = { -INFINITY, -INFINITY, -INFINITY };
+    subdiv->model = geometry->indices;
+    if (!subdiv_mesh_init(&subdiv->mesh, geometry) || !subdiv_find_parts(subdiv))
+        return false;
+    size_t places = subdiv->mesh.welded.count;
+    subdiv->geodesic_capacity = (size_t)(MORE_PLACES * (double)places) * subdiv->sensors; /* memory is taken as it is used */
+    subdiv->geodesic_m = mem_try_array(subdiv->geodesic_capacity, sizeof(*subdiv->geodesic_m));
+    if (subdiv->samples <= MOST_KEPT) {
+        subdiv->share_capacity = places * subdiv->samples;
+        subdiv->interp = mem_try_array(subdiv->share_capacity, sizeof(*subdiv->interp));
+    }
+    subdiv->norm_capacity = places * subdiv->norm_count;
+    subdiv->norms = mem_array(subdiv->norm_capacity, sizeof(*subdiv->norms));
+    if (!subdiv->geodesic_m || (subdiv->samples <= MOST_KEPT && !subdiv->interp))
+        return false;
+    for (uint32_t v = 0; v < geometry->vertex_count; v++)
+        surface_field_at_vertex(subdiv->in->field, subdiv->in->surface, v,
+                                subdiv->geodesic_m + subdiv->mesh.welded.of_vertex[v] * subdiv->sensors);
+    for (uint32_t v = 0; v < geometry->vertex_count; v++)
+        for (int axis = 0; axis < 3; axis++) {
+            low[axis] = fminf(low[axis], geometry->positions_m[v][axis]);
+            high[axis] = fmaxf(high[axis], geometry->positions_m[v][axis]);
+        }
+    subdiv->size_m = subdiv_length(low, high);
+    set_radii(subdiv);
+    subdiv_measure_places(subdiv, 0, NULL, places);
+    return true;
+}
+
+/* Taken out of what is then done with. */
+static void take_rows(struct subdiv *subdiv, struct distance_rows *rows)
+{
+    *rows = (struct distance_rows){ .distances_m = subdiv->geodesic_m,
+                                    .place_of = subdiv->mesh.welded.of_vertex,
+                                    .sensor_count = subdiv->sensors,
+                                    .vertex_count = subdiv->mesh.geometry->vertex_count };
+    subdiv->geodesic_m = NULL;
+    subdiv->mesh.welded.of_vertex = NULL;
+}
+
+bool subdivide_levels(struct levels *levels, struct geometry *geometry, const struct subdiv_input *input, struct distance_rows *distances)
+{
+    struct subdiv subdiv = { .in = input,
+                             .sensors = input->linear->sensor_count,
+                             .samples = linear_error_sample_count(input->linear),
+                             .norm_count = 2 * input->linear->group_count };
+    bool good = start(&subdiv, geometry);
+    *distances = (struct distance_rows){ 0 };
+    if (good) {
+        subdivide_all(&subdiv, levels);
+        take_rows(&subdiv, distances);
+    }
+    subdiv_mesh_finish(&subdiv.mesh);
+    mem_free(subdiv.geodesic_m);
+    mem_free(subdiv.interp);
+    mem_free(subdiv.norms);
+    mem_free(subdiv.part);
+    mem_free(subdiv.faces);
+    return good;
+}

@@ -1,0 +1,147 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Who may do what. */
+#include "access/access.h"
+
+#include <arpa/inet.h>
+#include <ctype.h>
+#include <string.h>
+#include <strings.h>
+
+#include "base/text.h"
+
+bool access_allowed_at(const struct access_params *params, bool loopback, const char **why)
+{
+    bool tls = params->tls_cert_path && params->tls_key_path;
+    if (params->behind_proxy && !params->tokens_path && !params->open_viewers)
+        *why = "--behind-proxy: who comes through the proxy needs a token (--tokens FILE), or --open-viewers";
+    else if (params->behind_proxy && params->host_count == 0)
+        *why = "--behind-proxy: --host NAME says by which name the proxy is asked for";
+    else if (params->behind_proxy && params->trust_local)
+        *why = "--trust-local: with --behind-proxy everyone would look like somebody on this machine";
+    else if ((params->tls_cert_path != NULL) != (params->tls_key_path != NULL))
+        *why = "--tls-cert and --tls-key belong together";
+    else if (!loopback && !params->open_viewers && !(tls && params->tokens_path))
+        *why = "everyone who reaches that address could look in, and listen. Only loopback addresses are served without\n"
+               "TLS and tokens (--tls-cert, --tls-key and --tokens); --open-viewers serves pictures, and nothing else, to anyone";
+    else
+        return true;
+    return false;
+}
+
+/* --- names and pages -------------------------------------------------------------------------------------------------------- */
+
+bool access_host_name(const char *host, char *out, size_t size)
+{
+    bool six = host[0] == '[';
+    const char *begin = host + six, *end = begin + strcspn(begin, six ? "]" : ":"), *rest = end + (six && *end == ']');
+    size_t n = (size_t)(end - begin);
+    bool port = *rest == ':';
+    if (n == 0 || n >= size || (six && *end != ']') || (*rest && !port) || rest[port + strspn(rest + port, "0123456789")])
+        return false;
+    for (size_t i = 0; i < n; i++) {
+        unsigned char c = (unsigned char)begin[i];
+        if ((!isalnum(c) && !strchr(six ? ":." : "-._", c)) || (c == '.' && (i == 0 || begin[i - 1] == '.')))
+            return false;
+        out[i] = (char)tolower(c);
+    }
+    out[n] = 0;
+    if (n > 1 && out[n - 1] == '.') /* a name may end in the root's dot */
+        out[n - 1] = 0;
+    return true;
+}
+
+bool access_name_is_local(const char *name)
+{
+    struct in_addr four;
+    return !strcmp(name, "localhost") || !strcmp(name, "::1") || (inet_pton(AF_INET, name, &four) == 1 && ntohl(four.s_addr) >> 24 == 127);
+}
+
+bool access_name_is_address(const char *name)
+{
+    struct in6_addr any;
+    return inet_pton(AF_INET, name, &any) == 1 || inet_pton(AF_INET6, name, &any) == 1;
+}
+
+bool access_origin(const struct access_params *params, const char *origin, const char *host, bool secure)
+{
+    const char *name = strstr(origin, "://");
+    if (!origin[0])
+        return true;
+    for (int i = 0; i < params->origin_count; i++)
+        if (!strcasecmp(params->origins[i], origin))
+            return true;
+    return name && !strcasecmp(name + 3, host) && (!secure || !strncasecmp(origin, "https://", 8));
+}
+
+char *access_content_policy(const struct access_params *params)
+{
+    struct text text = { 0 };
+    text_add(&text, "default-src 'self'; connect-src 'self'; img-src 'self' data: blob:; worker-src 'self' blob:; object-src 'none'; "
+                    "base-uri 'none'; form-action 'none'; frame-ancestors 'self'");
+    for (int i = 0; i < params->origin_count; i++)
+        text_add(&text, " %s", params->origins[i]);
+    return text.at;
+}
+
+/* --- lists in headers ---------------------------------------------------------------------------------------------------------- */
+
+/* The next word of a list with commas: *n bytes from what is returned. NULL: there is none. */
+static const char *next_word(const char **at, size_t *n)
+{
+    *at += strspn(*at, " ,\t");
+    const char *word = *at;
+    *n = strcspn(word, " ,\t");
+    *at += *n;
+    return *n ? word : NULL;
+}
+
+bool access_list_has(const char *list, const char *word)
+{
+    size_t n;
+    for (const char *at; (at = next_word(&list, &n));)
+        if (n == strlen(word) && !strncmp(at, word, n))
+            return true;
+    return false;
+}
+
+bool access_list_rest(const char *list, const char *prefix, char *out, size_t size)
+{
+    size_t n, skip = strlen(prefix);
+    for (const char *at; (at = next_word(&list, &n));) {
+        if (n <= skip || strncmp(at, prefix, skip) != 0 || n - skip >= size)
+            continue;
+        memcpy(out, at + skip, n - skip);
+        out[n - skip] = 0;
+        return true;
+    }
+    return false;
+}
+
+bool access_forwarded(const char *list, char *out, size_t size)
+{
+    size_t n;
+    bool found = false;
+    for (const char *at; (at = next_word(&list, &n));) {
+        char word[64];
+        if (n >= sizeof(word))
+            continue;
+        memcpy(word, at, n);
+        word[n] = 0;
+        /* An address of version 6 has colons, with or without brackets; one of version 4 may have a port. */
+        bool bare = access_name_is_address(word) && n < size;
+        if (bare)
+            strcpy(out, word);
+        found = bare || (access_host_name(word, out, size) && access_name_is_address(out));
+    }
+    return found;
+}
+
+bool access_argument_is_token(const char *argument)
+{
+    static const char *const names[] = { "token", "access_token", "authorization", "bearer", "auth" };
+    size_t n = strcspn(argument, "=");
+    for (size_t i = 0; i < sizeof(names) / sizeof(names[0]); i++)
+        if (strlen(names[i]) == n && !strncasecmp(names[i], argument, n))
+            return true;
+    return false;
+}

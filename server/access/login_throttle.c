@@ -1,0 +1,141 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Login throttle. */
+#include "access/login_throttle.h"
+
+#include <string.h>
+
+#include "base/clock.h"
+#include "base/mem.h"
+
+static const int64_t WINDOW_NS = 60 * NS_PER_S, WAIT_NS = LOGIN_WAIT_S * NS_PER_S, NEWS_NS = 600 * NS_PER_S;
+enum { KNOWN = 8 };
+
+struct known { /* a token that was let in from there */
+    uint8_t hash[TOKEN_HASH_BYTES];
+    int64_t said_ns;
+};
+
+struct entry {
+    uint8_t address[16];
+    int64_t heard_ns;
+    int64_t failed_ns[LOGIN_FAILURES]; /* a ring */
+    int64_t failures;                  /* ever: the ring's place */
+    int64_t slowed_until_ns, next_try_ns;
+    struct known known[KNOWN]; /* the last ones, a ring too */
+    int known_count;
+};
+
+struct login_throttle {
+    struct entry *entries;
+    size_t count, capacity;
+};
+
+struct login_throttle *login_throttle_create(void)
+{
+    return mem_new(sizeof(struct login_throttle));
+}
+
+void login_throttle_destroy(struct login_throttle **logins_ptr)
+{
+    struct login_throttle *logins = *logins_ptr;
+    if (!logins)
+        return;
+    mem_free(logins->entries);
+    mem_free(logins);
+    *logins_ptr = NULL;
+}
+
+static struct entry *find(const struct login_throttle *logins, const uint8_t address[16])
+{
+    for (size_t i = 0; i < logins->count; i++)
+        if (!memcmp(logins->entries[i].address, address, sizeof(logins->entries[i].address)))
+            return &logins->entries[i];
+    return NULL;
+}
+
+static struct entry *find_or_make(struct login_throttle *logins, const uint8_t address[16])
+{
+    struct entry *entry = find(logins, address);
+    if (entry)
+        return entry;
+    if (logins->count < LOGIN_ADDRESSES) {
+        mem_grow(&logins->entries, &logins->capacity, logins->count + 1, sizeof(*logins->entries));
+        entry = &logins->entries[logins->count++];
+    } else {
+        entry = logins->entries;
+        for (size_t i = 1; i < logins->count; i++)
+            if (logins->entries[i].heard_ns < entry->heard_ns)
+                entry = &logins->entries[i];
+    }
+    *entry = (struct entry){ .failures = 0 };
+    memcpy(entry->address, address, sizeof(entry->address));
+    return entry;
+}
+
+static struct known *find_known(struct entry *entry, const uint8_t *hash)
+{
+    int count = entry->known_count < KNOWN ? entry->known_count : KNOWN;
+    for (int i = 0; i < count; i++)
+        if (!memcmp(entry->known[i].hash, hash, TOKEN_HASH_BYTES))
+            return &entry->known[i];
+    return NULL;
+}
+
+static enum login let_in(struct entry *entry, const uint8_t *hash, int64_t now_ns)
+{
+    struct known *known = find_known(entry, hash);
+    if (known && now_ns - known->said_ns < NEWS_NS)
+        return LOGIN_GOOD;
+    if (!known) {
+        known = &entry->known[entry->known_count++ % KNOWN];
+        memcpy(known->hash, hash, TOKEN_HASH_BYTES);
+    }
+    known->said_ns = now_ns;
+    return LOGIN_GOOD_NEW;
+}
+
+static int failures(const struct entry *entry, int64_t now_ns)
+{
+    int count = 0;
+    for (int i = 0; i < LOGIN_FAILURES && i < entry->failures; i++)
+        count += now_ns - entry->failed_ns[i] < WINDOW_NS;
+    return count;
+}
+
+static enum login fail(struct entry *entry, int64_t now_ns)
+{
+    bool was_slowed = now_ns < entry->slowed_until_ns;
+    entry->failed_ns[entry->failures++ % LOGIN_FAILURES] = now_ns;
+    if (!was_slowed && failures(entry, now_ns) < LOGIN_FAILURES)
+        return LOGIN_WRONG;
+    entry->slowed_until_ns = now_ns + WINDOW_NS;
+    if (!was_slowed)
+        entry->next_try_ns = now_ns + WAIT_NS;
+    return was_slowed ? LOGIN_WRONG : LOGIN_WRONG_SLOWS;
+}
+
+enum login login_throttle_judge(struct login_throttle *logins, const uint8_t address[16], const uint8_t *hash, int64_t now_ns)
+{
+    struct entry *entry = find_or_make(logins, address);
+    entry->heard_ns = now_ns;
+    if (now_ns < entry->slowed_until_ns && !(hash && find_known(entry, hash))) {
+        if (now_ns < entry->next_try_ns)
+            return LOGIN_HELD;
+        entry->next_try_ns = now_ns + WAIT_NS;
+    }
+    return hash ? let_in(entry, hash, now_ns) : fail(entry, now_ns);
+}
+
+int login_throttle_failures(const struct login_throttle *logins, const uint8_t address[16], int64_t now_ns)
+{
+    const struct entry *entry = find(logins, address);
+    return entry ? failures(entry, now_ns) : 0;
+}
+
+int logins_slowed(const struct login_throttle *logins, int64_t now_ns)
+{
+    int count = 0;
+    for (size_t i = 0; i < logins->count; i++)
+        count += now_ns < logins->entries[i].slowed_until_ns;
+    return count;
+}

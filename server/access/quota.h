@@ -1,0 +1,41 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* How much clients may have, in numbers that the command line can change (--limit NAME=N). Pure. */
+#ifndef ACCESS_QUOTA_H
+#define ACCESS_QUOTA_H
+#include <stdbool.h>
+#include <stdint.h>
+#include <stdio.h>
+
+enum quota {
+    QUOTA_CONNECTIONS,
+    QUOTA_ADDRESS_CONNECTIONS,
+    QUOTA_SESSIONS,
+    QUOTA_ADDRESS_SESSIONS,
+    QUOTA_PIXELS,
+    QUOTA_ADDRESS_PIXELS,
+    QUOTA_SESSION_PIXELS,
+    QUOTA_MESSAGE_BYTES,
+    QUOTA_MESSAGES,
+    QUOTA_ADDRESS_MESSAGES,
+    QUOTA_SNAPSHOTS,
+    QUOTA_ADDRESS_SNAPSHOTS,
+    QUOTA_QUESTIONS,
+    QUOTA_ADDRESS_QUESTIONS,
+    QUOTA_ANSWER_BYTES,
+    QUOTA_ADDRESS_ANSWER_BYTES,
+    QUOTA_LEAST_FPS,
+    QUOTA_PATIENCE_S,
+    QUOTA_COUNT
+};
+
+struct quotas {
+    int64_t at[QUOTA_COUNT];
+    bool given[QUOTA_COUNT]; /* by somebody; limits of an address then hold for this machine's own too */
+};
+
+struct quotas quotas_default(void);
+/* NAME=N. False: there is no such limit, or N is out of its range. */
+bool quotas_parse(struct quotas *quotas, const char *text);
+void quotas_print(FILE *out); /* names, defaults and meaning, for --help */
+
+#endif

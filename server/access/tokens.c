@@ -1,0 +1,252 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The file of tokens. */
+#include "access/tokens.h"
+
+#include <ctype.h>
+#include <errno.h>
+#include <fcntl.h>
+#include <openssl/crypto.h>
+#include <openssl/evp.h>
+#include <openssl/rand.h>
+#include <stdio.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <time.h>
+#include <unistd.h>
+
+#include "base/clock.h"
+#include "base/mem.h"
+#include "access/file_watch.h"
+#include "message/names.h"
+
+enum { MAX_FILE_BYTES = 1024 * 1024, RANDOM_BYTES = 32 };
+
+struct tokens {
+    struct log *log;
+    char *path;
+    struct token_holder *holders;
+    size_t count, capacity;
+    struct file_watch watch;
+};
+
+/* --- single tokens ------------------------------------------------------------------------------------------------------------- */
+
+void tokens_hash(const char *token, uint8_t hash[TOKEN_HASH_BYTES])
+{
+    if (EVP_Digest(token, strlen(token), hash, NULL, EVP_sha256(), NULL) != 1)
+        memset(hash, 0, TOKEN_HASH_BYTES);
+}
+
+/* The prefix tells a token from its hash, for people and for programs that look for secrets. */
+bool tokens_make(char token[TOKEN_MAX_CHARS + 1])
+{
+    uint8_t bytes[RANDOM_BYTES];
+    if (RAND_bytes(bytes, RANDOM_BYTES) != 1)
+        return false;
+    strcpy(token, "pc_");
+    for (int i = 0; i < RANDOM_BYTES; i++)
+        snprintf(token + 3 + 2 * i, 3, "%02x", bytes[i]);
+    OPENSSL_cleanse(bytes, sizeof(bytes));
+    return true;
+}
+
+bool tokens_name_valid(const char *name)
+{
+    size_t n = strlen(name);
+    for (size_t i = 0; i < n; i++)
+        if (!isalnum((unsigned char)name[i]) && !strchr("-_.@", name[i]))
+            return false;
+    return n > 0 && n < TOKEN_NAME_BYTES;
+}
+
+bool tokens_parse_day(const char *text, int64_t *until_utc_ns)
+{
+    struct tm day = { 0 };
+    const char *end = strptime(text, "%Y-%m-%d", &day);
+    int said = day.tm_mday;
+    if (!end || *end || day.tm_year < 1970 - 1900 || day.tm_year > 2200 - 1900)
+        return false;
+    int64_t begin_s = timegm(&day);
+    *until_utc_ns = (begin_s + 24 * 3600) * NS_PER_S;
+    return day.tm_mday == said; /* there is no 30 February */
+}
+
+static bool parse_hash(const char *text, uint8_t hash[TOKEN_HASH_BYTES])
+{
+    static const char digits[] = "0123456789abcdef";
+    if (strlen(text) != 2 * TOKEN_HASH_BYTES)
+        return false;
+    for (int i = 0; i < 2 * TOKEN_HASH_BYTES; i++) {
+        const char *at = strchr(digits, tolower((unsigned char)text[i]));
+        if (!at)
+            return false;
+        hash[i / 2] = (uint8_t)(hash[i / 2] << 4 | (at - digits));
+    }
+    return true;
+}
+
+int tokens_parse_line(const char *line, struct token_holder *out, const char **why)
+{
+    enum { WORDS = 5 };
+    char copy[512], *rest = copy, *words[WORDS + 1] = { NULL };
+    int count = 0;
+    *out = (struct token_holder){ .until_utc_ns = INT64_MAX };
+    if (strcspn(line, "\r\n#") >= sizeof(copy)) {
+        *why = "it is too long";
+        return -1;
+    }
+    snprintf(copy, strcspn(line, "\r\n#") + 1, "%s", line);
+    for (char *word; count <= WORDS && (word = strsep(&rest, " \t"));)
+        if (*word)
+            words[count++] = word;
+    if (count == 0)
+        return 0;
+    int role = name_find(names_role, words[0]);
+    if (role < ROLE_VIEWER)
+        *why = "the role is viewer, operator or engineer";
+    else if (count != 3 && count != WORDS)
+        *why = "ROLE NAME SHA-256 [until YYYY-MM-DD] is expected";
+    else if (!tokens_name_valid(words[1]))
+        *why = "a name is made of letters, digits and -_.@";
+    else if (!parse_hash(words[2], out->hash))
+        *why = "a SHA-256 is 64 hexadecimal digits";
+    else if (count == WORDS && (strcmp(words[3], "until") != 0 || !tokens_parse_day(words[4], &out->until_utc_ns)))
+        *why = "until YYYY-MM-DD is expected";
+    else {
+        out->role = (enum role)role;
+        strcpy(out->name, words[1]);
+        return 1;
+    }
+    return -1;
+}
+
+void tokens_print_line(struct text *out, const struct token_holder *holder)
+{
+    text_add(out, "%s %s ", name_of(names_role, (int)holder->role), holder->name);
+    for (int i = 0; i < TOKEN_HASH_BYTES; i++)
+        text_add(out, "%02x", holder->hash[i]);
+    if (holder->until_utc_ns != INT64_MAX) {
+        time_t last_s = (time_t)(holder->until_utc_ns / NS_PER_S - 1);
+        struct tm day;
+        char text[32];
+        strftime(text, sizeof(text), "%Y-%m-%d", gmtime_r(&last_s, &day));
+        text_add(out, " until %s", text);
+    }
+    text_add(out, "\n");
+}
+
+/* --- the file --------------------------------------------------------------------------------------------------------------------- */
+
+/* NULL: it may be used. */
+static const char *fault_of(const struct stat *st)
+{
+    if (!S_ISREG(st->st_mode))
+        return "it is not a file";
+    if (st->st_uid != 0 && st->st_uid != geteuid())
+        return "it belongs neither to root nor to the daemon's user";
+    if (st->st_mode & (S_IWGRP | S_IWOTH | S_IROTH))
+        return "others may read it, or write it: chmod 640 or less";
+    return st->st_size > MAX_FILE_BYTES ? "it is too large" : NULL;
+}
+
+static void take_line(struct tokens *tokens, const char *line, int number)
+{
+    struct token_holder holder;
+    const char *why;
+    int found = tokens_parse_line(line, &holder, &why);
+    if (found < 0)
+        log_err(tokens->log, "%s:%d: %s; that token is not let in", tokens->path, number, why);
+    if (found <= 0)
+        return;
+    mem_grow(&tokens->holders, &tokens->capacity, tokens->count + 1, sizeof(*tokens->holders));
+    tokens->holders[tokens->count++] = holder;
+}
+
+static void take_lines(struct tokens *tokens, char *text)
+{
+    int number = 0;
+    for (char *line; (line = strsep(&text, "\n"));)
+        take_line(tokens, line, ++number);
+}
+
+/* What is checked is what is read. False: logged. */
+static bool read_file(struct tokens *tokens)
+{
+    struct stat st = { 0 };
+    int fd = open(tokens->path, O_RDONLY | O_CLOEXEC | O_NONBLOCK);
+    bool there = fd >= 0 && fstat(fd, &st) == 0;
+    const char *fault = there ? fault_of(&st) : strerror(errno);
+    tokens->count = 0;
+    file_watch_read(&tokens->watch, there ? &st : NULL);
+    if (!fault) {
+        char *text = mem_array((size_t)st.st_size + 1, 1);
+        ssize_t n = read(fd, text, (size_t)st.st_size);
+        text[n > 0 ? n : 0] = 0;
+        take_lines(tokens, text);
+        mem_free(text);
+    } else {
+        log_err(tokens->log, "tokens %s: %s; nobody's token is let in", tokens->path, fault);
+    }
+    if (fd >= 0)
+        close(fd);
+    return !fault;
+}
+
+struct tokens *tokens_create(struct log *log, const char *path)
+{
+    struct tokens *tokens = mem_new(sizeof(*tokens));
+    *tokens = (struct tokens){ .log = log, .path = mem_strdup(path) };
+    if (!read_file(tokens))
+        tokens_destroy(&tokens);
+    return tokens;
+}
+
+void tokens_destroy(struct tokens **tokens_ptr)
+{
+    struct tokens *tokens = *tokens_ptr;
+    if (!tokens)
+        return;
+    mem_free(tokens->holders);
+    mem_free(tokens->path);
+    mem_free(tokens);
+    *tokens_ptr = NULL;
+}
+
+bool tokens_look(struct tokens *tokens)
+{
+    if (!file_watch_changed(&tokens->watch, tokens->path))
+        return false;
+    if (read_file(tokens))
+        log_info(tokens->log, "tokens %s: %zu", tokens->path, tokens->count);
+    return true;
+}
+
+size_t tokens_count(const struct tokens *tokens)
+{
+    return tokens->count;
+}
+
+/* Whose it is, also where its time is over, if nobody else has it. Takes as long for every hash. */
+static const struct token_holder *find(const struct tokens *tokens, const uint8_t hash[TOKEN_HASH_BYTES], int64_t now_utc_ns)
+{
+    const struct token_holder *found = NULL;
+    for (size_t i = 0; i < tokens->count; i++)
+        if (CRYPTO_memcmp(tokens->holders[i].hash, hash, TOKEN_HASH_BYTES) == 0 && (!found || now_utc_ns < tokens->holders[i].until_utc_ns))
+            found = &tokens->holders[i];
+    return found;
+}
+
+bool tokens_find(const struct tokens *tokens, const char *token, int64_t now_utc_ns, struct token_holder *out)
+{
+    uint8_t hash[TOKEN_HASH_BYTES];
+    tokens_hash(token, hash);
+    const struct token_holder *found = find(tokens, hash, now_utc_ns);
+    *out = found ? *found : (struct token_holder){ .role = ROLE_NOBODY };
+    return found && now_utc_ns < found->until_utc_ns;
+}
+
+enum role tokens_role(const struct tokens *tokens, const struct token_holder *holder, int64_t now_utc_ns)
+{
+    const struct token_holder *found = find(tokens, holder->hash, now_utc_ns);
+    return found && now_utc_ns < found->until_utc_ns ? found->role : ROLE_NOBODY;
+}

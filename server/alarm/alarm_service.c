@@ -1,0 +1,329 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The thread of alarms. */
+#include "alarm/alarm_service.h"
+
+#include <errno.h>
+#include <pthread.h>
+#include <stdatomic.h>
+#include <string.h>
+#include <time.h>
+
+#include "alarm/journal.h"
+#include "base/clock.h"
+#include "base/mem.h"
+
+enum { QUEUE_MAX = 1000000 /* samples that a tenth of a second may bring */, RATE_SLOTS = 60 };
+static const int64_t TICK_NS = NS_PER_S / 10, RATE_NS = 600 * NS_PER_S;
+
+struct event_queue {
+    struct sample_event *at;
+    size_t count, capacity, lost;
+};
+
+struct alarm_service {
+    struct alarm_service_params params;
+    struct journal *journal;
+    struct {
+        counter *statuses[ALARM_STATUSES], *active, *standing, *chattering, *held, *rate, *raised, *lost;
+    } counters;
+    pthread_t thread;
+    _Atomic bool started;
+    _Atomic uint64_t number;
+    /* --- below: of the thread */
+    struct event_queue taken;
+    struct snapshot *snapshot;
+    int64_t counted_ns;
+    int raised[RATE_SLOTS]; /* a ring of stretches of RATE_NS / RATE_SLOTS */
+    int64_t slot;
+    pthread_mutex_t queue_lock; /* taken under the store's */
+    /* --- below: under queue_lock */
+    struct event_queue queue;
+    pthread_mutex_t lock; /* the store's is taken under it */
+    pthread_cond_t wake;
+    /* --- below: under lock */
+    struct alarms *alarms;
+    int raised_now;
+    bool stopping;
+};
+
+/* --- from and to the store -------------------------------------------------------------------------------------------------- */
+
+static void on_sample(void *arg, const struct sample_event *event)
+{
+    struct alarm_service *service = arg;
+    pthread_mutex_lock(&service->queue_lock);
+    struct event_queue *queue = &service->queue;
+    if (queue->count < QUEUE_MAX) {
+        mem_grow(&queue->at, &queue->capacity, queue->count + 1, sizeof(*queue->at));
+        queue->at[queue->count++] = *event;
+    } else {
+        queue->lost++;
+    }
+    pthread_mutex_unlock(&service->queue_lock);
+}
+
+static void on_change(void *arg, const struct alarm_change *change)
+{
+    struct alarm_service *service = arg;
+    service->raised_now += change->event == ALARM_RAISE && alarm_status_is_annunciated(change->after);
+    if (service->journal)
+        journal_add(service->journal, change, change->alarm->name);
+}
+
+static void on_tag(void *arg, int tag, enum alarm_kind kind, enum alarm_status status)
+{
+    struct alarm_service *service = arg;
+    store_set_alarm(service->params.store, tag, (int)kind, (int)status);
+}
+
+/* --- the thread ------------------------------------------------------------------------------------------------------------- */
+
+static void take_events(struct alarm_service *service)
+{
+    pthread_mutex_lock(&service->queue_lock);
+    struct event_queue taken = service->queue;
+    service->queue = service->taken;
+    pthread_mutex_unlock(&service->queue_lock);
+    service->taken = taken;
+    if (taken.lost) {
+        counter_inc(service->counters.lost, (int64_t)taken.lost);
+        log_err(service->params.log, "alarms: %zu samples in a tenth of a second were too many and are lost", taken.lost);
+    }
+}
+
+/* Raised within the last ten minutes. */
+static int rate(struct alarm_service *service, int64_t now_ns, int raised)
+{
+    int64_t slot = now_ns / (RATE_NS / RATE_SLOTS);
+    int all = 0;
+    if (slot - service->slot > RATE_SLOTS)
+        service->slot = slot - RATE_SLOTS;
+    while (service->slot < slot)
+        service->raised[++service->slot % RATE_SLOTS] = 0;
+    service->raised[slot % RATE_SLOTS] += raised;
+    for (int i = 0; i < RATE_SLOTS; i++)
+        all += service->raised[i];
+    return all;
+}
+
+static void count(struct alarm_service *service, const struct alarm_counts *counts)
+{
+    for (int i = 0; i < ALARM_STATUSES; i++)
+        counter_set(service->counters.statuses[i], counts->statuses[i]);
+    counter_set(service->counters.active, counts->active);
+    counter_set(service->counters.standing, counts->standing);
+    counter_set(service->counters.chattering, counts->chattering);
+    counter_set(service->counters.held, counts->held);
+}
+
+static void keep_all(struct alarm_service *service)
+{
+    for (int i = alarms_newest(service->alarms); i >= 0; i = alarms_at(service->alarms, i)->older) {
+        const struct alarm *alarm = alarms_at(service->alarms, i);
+        if (alarm_status_of(alarm) != ALARM_NORMAL)
+            journal_keep(service->journal, alarm, alarm->name);
+    }
+}
+
+static void tick(struct alarm_service *service)
+{
+    struct alarm_counts counts;
+    int64_t now_ns = clock_mono_ns();
+    bool due = now_ns - service->counted_ns >= NS_PER_S;
+    take_events(service);
+    store_snapshot(service->params.store, now_ns, clock_utc_ns(), service->snapshot);
+    bool asks = service->journal && journal_asks(service->journal);
+    pthread_mutex_lock(&service->lock);
+    alarms_put(service->alarms, service->taken.at, service->taken.count);
+    alarms_tick(service->alarms, service->snapshot);
+    uint64_t number = alarms_number(service->alarms);
+    int raised = service->raised_now;
+    service->raised_now = 0;
+    if (due)
+        alarms_counts(service->alarms, now_ns, &counts);
+    if (asks)
+        keep_all(service);
+    pthread_mutex_unlock(&service->lock);
+    service->taken.count = service->taken.lost = 0;
+    counter_inc(service->counters.raised, raised);
+    counter_set(service->counters.rate, rate(service, now_ns, raised));
+    if (due) {
+        service->counted_ns = now_ns;
+        count(service, &counts);
+    }
+    if (atomic_exchange(&service->number, number) != number && service->params.notify)
+        service->params.notify(service->params.notify_arg);
+}
+
+static bool wait_for_tick(struct alarm_service *service, int64_t *next_ns)
+{
+    int64_t now_ns = clock_mono_ns();
+    *next_ns = *next_ns + TICK_NS < now_ns ? now_ns : *next_ns + TICK_NS;
+    struct timespec until = { *next_ns / NS_PER_S, *next_ns % NS_PER_S };
+    pthread_mutex_lock(&service->lock);
+    while (!service->stopping && pthread_cond_timedwait(&service->wake, &service->lock, &until) != ETIMEDOUT)
+        continue;
+    bool stopping = service->stopping;
+    pthread_mutex_unlock(&service->lock);
+    return !stopping;
+}
+
+static void *run(void *arg)
+{
+    struct alarm_service *service = arg;
+    int64_t next_ns = clock_mono_ns();
+    do
+        tick(service);
+    while (wait_for_tick(service, &next_ns));
+    tick(service);
+    return NULL;
+}
+
+/* --- life ------------------------------------------------------------------------------------------------------------------- */
+
+static void add_counters(struct alarm_service *service)
+{
+    struct counters *c = service->params.counters;
+    for (int i = 0; i < ALARM_STATUSES; i++) {
+        char *name = mem_printf("plantcast_alarms{state=\"%s\"}", alarm_status_name((enum alarm_status)i));
+        service->counters.statuses[i] = counters_add(c, name, "gauge", "Alarms by their state.");
+        mem_free(name);
+    }
+    service->counters.active = counters_add(c, "plantcast_alarms_active", "gauge", "Alarms that are to be seen and whose cause is there.");
+    service->counters.standing = counters_add(c, "plantcast_alarms_standing", "gauge", "Of these, there for more than a day.");
+    service->counters.chattering =
+        counters_add(c, "plantcast_alarms_chattering", "gauge", "Alarms raised three times or more within the last minute.");
+    service->counters.held = counters_add(c, "plantcast_alarms_held", "gauge", "Of the active ones, those whose measurement is bad.");
+    service->counters.rate = counters_add(c, "plantcast_alarms_per_10_minutes", "gauge", "Alarms raised within the last ten minutes.");
+    service->counters.raised = counters_add(c, "plantcast_alarms_raised_total", "counter", "Alarms raised.");
+    service->counters.lost = counters_add(c, "plantcast_alarm_samples_lost_total", "counter", "Samples too many to be looked at.");
+}
+
+static bool start_journal(struct alarm_service *service)
+{
+    const struct alarm_service_params *params = &service->params;
+    const struct journal_params journal = {
+        .log = params->log, .counters = params->counters, .folder = params->folder, .keep_days = params->keep_days
+    };
+    const struct instant now = { clock_mono_ns(), clock_utc_ns() };
+    return !params->folder || (service->journal = journal_start(&journal, service->alarms, now));
+}
+
+static bool start_thread(struct alarm_service *service)
+{
+    int error = pthread_create(&service->thread, NULL, run, service);
+    atomic_store(&service->started, !error);
+    if (error)
+        log_err(service->params.log, "alarms: no thread: %s", strerror(error));
+    return !error;
+}
+
+static void adopt(struct alarm_service *service, struct alarm_service *before)
+{
+    pthread_mutex_lock(&before->lock);
+    alarms_adopt(service->alarms, before->alarms);
+    memcpy(service->raised, before->raised, sizeof(service->raised));
+    service->slot = before->slot;
+    pthread_mutex_unlock(&before->lock);
+}
+
+struct alarm_service *alarm_service_start(const struct alarm_service_params *params)
+{
+    struct alarm_service *service = mem_new(sizeof(*service));
+    const struct alarms_listener listener = { on_change, on_tag, service };
+    pthread_condattr_t attributes;
+    pthread_condattr_init(&attributes);
+    pthread_condattr_setclock(&attributes, CLOCK_MONOTONIC);
+    pthread_cond_init(&service->wake, &attributes);
+    pthread_condattr_destroy(&attributes);
+    pthread_mutex_init(&service->lock, NULL);
+    pthread_mutex_init(&service->queue_lock, NULL);
+    service->params = *params;
+    service->snapshot = snapshot_create(params->plant->tag_count);
+    service->alarms = alarms_create(params->plant, &listener);
+    add_counters(service);
+    store_listen(params->store, on_sample, service);
+    bool good = start_journal(service);
+    if (params->before)
+        adopt(service, params->before);
+    service->params.before = NULL;
+    if (!good || !start_thread(service))
+        alarm_service_stop(&service);
+    return service;
+}
+
+void alarm_service_halt(struct alarm_service *service)
+{
+    store_unlisten(service->params.store, on_sample, service);
+    pthread_mutex_lock(&service->lock);
+    service->stopping = true;
+    pthread_cond_signal(&service->wake);
+    pthread_mutex_unlock(&service->lock);
+    if (service->started)
+        pthread_join(service->thread, NULL);
+    service->started = false;
+    journal_stop(&service->journal);
+}
+
+void alarm_service_stop(struct alarm_service **pointer)
+{
+    struct alarm_service *service = *pointer;
+    if (!service)
+        return;
+    alarm_service_halt(service);
+    alarms_destroy(&service->alarms);
+    snapshot_destroy(&service->snapshot);
+    mem_free(service->queue.at);
+    mem_free(service->taken.at);
+    pthread_cond_destroy(&service->wake);
+    pthread_mutex_destroy(&service->lock);
+    pthread_mutex_destroy(&service->queue_lock);
+    mem_free(service);
+    *pointer = NULL;
+}
+
+/* --- asking ----------------------------------------------------------------------------------------------------------------- */
+
+uint64_t alarm_service_number(const struct alarm_service *service)
+{
+    return atomic_load(&service->number);
+}
+
+uint64_t alarm_service_changes(struct alarm_service *service, uint64_t since, void (*each)(void *arg, const struct alarm *alarm), void *arg)
+{
+    pthread_mutex_lock(&service->lock);
+    const struct alarms *alarms = service->alarms;
+    uint64_t number = alarms_number(alarms);
+    for (int i = alarms_newest(alarms); i >= 0; i = alarms_at(alarms, i)->older) {
+        const struct alarm *alarm = alarms_at(alarms, i);
+        if (alarm->number <= since)
+            break;
+        if (since || alarm_status_of(alarm) != ALARM_NORMAL)
+            each(arg, alarm);
+    }
+    pthread_mutex_unlock(&service->lock);
+    return number;
+}
+
+const char *alarm_service_act(struct alarm_service *service, const char *name, enum alarm_kind kind, const struct alarm_act *act)
+{
+    const char *why = "there is no such alarm";
+    if (!service->started)
+        return "the plant is being loaded anew; try again";
+    pthread_mutex_lock(&service->lock);
+    int index = alarms_find_named(service->alarms, name, kind);
+    if (index >= 0)
+        why = alarms_act(service->alarms, index, act, (struct instant){ clock_mono_ns(), clock_utc_ns() });
+    uint64_t number = alarms_number(service->alarms);
+    pthread_mutex_unlock(&service->lock);
+    if (atomic_exchange(&service->number, number) != number && service->params.notify)
+        service->params.notify(service->params.notify_arg);
+    return why;
+}
+
+void alarm_service_counts(struct alarm_service *service, struct alarm_counts *out)
+{
+    pthread_mutex_lock(&service->lock);
+    alarms_counts(service->alarms, clock_mono_ns(), out);
+    pthread_mutex_unlock(&service->lock);
+}

@@ -1,0 +1,108 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Alarms from before: of an earlier run, or of the plant as it was before a reload. And what there is of them, in numbers. */
+#include <string.h>
+
+#include "alarm/alarms_impl.h"
+
+/* In a mode without acknowledgements nobody could end what is set aside by hand. */
+static void fit_to_rule(struct alarm *alarm, bool by_hand)
+{
+    if (!alarm->rule.acknowledges)
+        alarm->state.unacknowledged = false;
+    if (!alarm->rule.latches)
+        alarm->state.latched = false;
+    if (!by_hand)
+        alarm->state.aside &= ALARM_ASIDE_SUPPRESSED | ALARM_ASIDE_CARRIED;
+    if (!(alarm->state.aside & ALARM_ASIDE_SHELVED))
+        alarm->until = (struct instant){ 0 };
+}
+
+static void take(struct alarms *alarms, int index, const struct alarm *from)
+{
+    struct alarm *alarm = &alarms->list[index];
+    alarm->state = from->state;
+    alarm->value = from->value;
+    alarm->raised_utc_ns = from->raised_utc_ns;
+    alarm->changed_utc_ns = from->changed_utc_ns;
+    alarm->until = from->until;
+    memcpy(alarm->who, from->who, sizeof(alarm->who));
+    memcpy(alarm->reason, from->reason, sizeof(alarm->reason));
+    fit_to_rule(alarm, alarms->plant->alarms == ALARMS_LOCAL);
+    if ((alarm->tag < 0 || alarms->plant->tags[alarm->tag].suppressed_by < 0) && alarm->state.aside & ALARM_ASIDE_SUPPRESSED)
+        alarm_state_step(&alarm->state, &alarm->rule, ALARM_UNSUPPRESS);
+    if (alarm->kind != ALARM_BAD || alarms->devices->of_tag[alarm->tag] < 0)
+        alarm_state_step(&alarm->state, &alarm->rule, ALARM_CALL);
+    alarms->carried += (alarm->state.aside & ALARM_ASIDE_CARRIED) != 0;
+    alarm->condition.active = alarm->state.active;
+    if (alarm_status_of(alarm) != ALARM_NORMAL)
+        alarms_touch(alarms, index);
+    alarms_watch(alarms, index);
+}
+
+void alarms_restore(struct alarms *alarms, int index, const struct alarm *saved, struct instant now)
+{
+    struct alarm from = *saved;
+    if (from.until.utc_ns) /* at once, where its time is over */
+        from.until.mono_ns = now.mono_ns + (from.until.utc_ns > now.utc_ns ? from.until.utc_ns - now.utc_ns : 1);
+    alarms->list[index].held = alarms->list[index].kind != ALARM_BAD && alarms->list[index].kind != ALARM_LINK; /* until its next sample */
+    alarms->list[index].raised_mono_ns = now.mono_ns - (from.raised_utc_ns ? now.utc_ns - from.raised_utc_ns : 0);
+    take(alarms, index, &from);
+}
+
+static bool same_limit(const struct alarm *a, const struct alarm *b)
+{
+    return !memcmp(&a->limit, &b->limit, sizeof(a->limit)) && !memcmp(&a->delays, &b->delays, sizeof(a->delays));
+}
+
+/* What was known of tags, and so of their devices. */
+static void adopt_seen(struct alarms *alarms, const struct alarms *before)
+{
+    for (size_t i = 0; i < before->plant->tag_count; i++) {
+        int tag = plant_find_tag(alarms->plant, before->plant->tags[i].name), of = before->devices->of_tag[i];
+        if (tag < 0)
+            continue;
+        alarms->seen[tag] = before->seen[i];
+        devices_put(alarms->devices, tag, (enum device_status)before->devices->statuses[i], of < 0 ? 0 : before->devices->list[of].back_ns);
+    }
+}
+
+void alarms_adopt(struct alarms *alarms, const struct alarms *before)
+{
+    alarms->begun_ns = before->begun_ns;
+    adopt_seen(alarms, before);
+    for (size_t i = 0; i < before->count; i++) {
+        const struct alarm *from = &before->list[i];
+        int index = alarms_find_named(alarms, from->name, from->kind);
+        if (index < 0)
+            continue;
+        struct alarm *alarm = &alarms->list[index];
+        alarm->held = from->held;
+        alarm->raised_mono_ns = from->raised_mono_ns;
+        memcpy(alarm->recent_ns, from->recent_ns, sizeof(alarm->recent_ns));
+        alarm->raised_count = from->raised_count;
+        if (same_limit(alarm, from))
+            alarm->condition = from->condition;
+        take(alarms, index, from);
+    }
+}
+
+static bool chatters(const struct alarm *alarm, int64_t now_mono_ns)
+{
+    return alarm->raised_count >= ALARM_RECENT && now_mono_ns - alarm->recent_ns[alarm->raised_count % ALARM_RECENT] < ALARM_CHATTERING_NS;
+}
+
+void alarms_counts(const struct alarms *alarms, int64_t now_mono_ns, struct alarm_counts *out)
+{
+    *out = (struct alarm_counts){ .statuses[ALARM_NORMAL] = (int)alarms->count };
+    for (int i = alarms->newest; i >= 0; i = alarms->list[i].older) {
+        const struct alarm *alarm = &alarms->list[i];
+        enum alarm_status status = alarm_status_of(alarm);
+        bool calls = alarm_status_is_annunciated(status);
+        out->statuses[ALARM_NORMAL]--;
+        out->statuses[status]++;
+        out->active += calls && !alarm_status_is_cleared(status);
+        out->held += calls && alarm->held;
+        out->standing += calls && alarm->state.active && now_mono_ns - alarm->raised_mono_ns >= ALARM_STANDING_NS;
+        out->chattering += chatters(alarm, now_mono_ns);
+    }
+}

@@ -1,0 +1,259 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* A growing file of what was proven, and the last word on each tag. */
+#include "loopcheck/loop_checks.h"
+
+#include <errno.h>
+#include <inttypes.h>
+#include <math.h>
+#include <stdatomic.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <time.h>
+#include <unistd.h>
+#define XXH_INLINE_ALL
+#include <xxhash.h>
+
+#include "base/mem.h"
+#include "plant/csv.h"
+
+const char *const loop_check_state_names[] = {
+    [LOOP_CHECK_NONE] = "none", [LOOP_CHECK_PASSED] = "pass", [LOOP_CHECK_FAILED] = "fail", [LOOP_CHECK_CHANGED] = "changed"
+};
+static const char head[] = "Time,Tag Name,Result,Value,Unit,Expected,Tolerance,By,Remark,Fingerprint\n";
+
+struct loop_checks {
+    struct log *log;
+    const struct plant *plant;
+    char *folder, *path;
+    struct loop_check *at; /* by tag */
+    uint64_t *numbers;     /* likewise */
+    uint64_t number;
+    bool begun;
+    atomic_bool *unproven; /* by tag */
+};
+
+/* --- what a loop check is of ------------------------------------------------------------------------------------------------------- */
+
+uint64_t loop_check_fingerprint(const struct plant *plant, int index)
+{
+    const struct plant_tag *tag = &plant->tags[index];
+    struct text text = { 0 };
+    text_add(&text, "%s|%s|%d|%d|%d|%d|%d|%d|", tag->source >= 0 ? plant->sources[tag->source].id : "", tag->address ? tag->address : "",
+             tag->modbus_unit, (int)tag->table, tag->register_index, tag->bit, (int)tag->type, (int)tag->byte_order);
+    text_add(&text, "%d|%.17g|%.17g|%.17g|%.17g|%d|", (int)tag->scaling, tag->raw_low, tag->raw_high, tag->scaled_low, tag->scaled_high,
+             tag->negate);
+    text_add(&text, "%s|%s|%.17g|%.17g|%.17g", tag->asset >= 0 ? plant->assets[tag->asset].id : "", tag->node ? tag->node : "",
+             tag->position_m[0], tag->position_m[1], tag->position_m[2]);
+    if (tag->change.converts)
+        text_add(&text, "|%.17g|%.17g", tag->change.factor, tag->change.offset);
+    uint64_t hash = XXH3_64bits(text.at, text.length);
+    text_finish(&text);
+    return hash;
+}
+
+/* --- the file ------------------------------------------------------------------------------------------------------------------ */
+
+static void add_text(struct text *out, const char *text)
+{
+    text_add(out, text_is_formula(text) ? ",\"'" : ",\"");
+    for (; *text; text++)
+        text_add(out, *text == '"' ? "\"\"" : "%c", (unsigned char)*text < 32 ? ' ' : *text);
+    text_add(out, "\"");
+}
+
+static void add_number(struct text *out, double number)
+{
+    if (isfinite(number))
+        text_add(out, ",%.9g", number);
+    else
+        text_add(out, ",");
+}
+
+static void add_row(struct text *out, const struct plant *plant, int index, const struct loop_check *check)
+{
+    const struct plant_tag *tag = &plant->tags[index];
+    char when[32] = "";
+    time_t seconds = (time_t)(check->time_us / 1000000);
+    struct tm utc;
+    if (check->time_us > 0 && gmtime_r(&seconds, &utc))
+        strftime(when, sizeof(when), "%Y-%m-%dT%H:%M:%SZ", &utc);
+    text_add(out, "%s", when);
+    add_text(out, tag->name);
+    text_add(out, ",%s", loop_check_state_names[check->state]);
+    add_number(out, check->value);
+    add_text(out, tag->unit ? tag->unit : "");
+    add_number(out, check->expected);
+    add_number(out, check->tolerance);
+    add_text(out, check->who);
+    add_text(out, check->remark);
+    text_add(out, ",%016" PRIx64 "\n", loop_check_fingerprint(plant, index));
+}
+
+static double number_of(const struct csv *csv, int column)
+{
+    const char *text = csv_text(csv, column);
+    char *end;
+    double number = strtod(text, &end);
+    return *text && !*end ? number : NAN;
+}
+
+/* 0: no time. */
+static int64_t time_of(const char *text)
+{
+    struct tm utc = { 0 };
+    char *end = strptime(text, "%Y-%m-%dT%H:%M:%SZ", &utc);
+    return end && !*end ? (int64_t)timegm(&utc) * 1000000 : 0;
+}
+
+static void read_row(struct loop_checks *loop_checks, const struct csv *csv)
+{
+    enum { TIME, NAME, RESULT, VALUE, UNIT, EXPECTED, TOLERANCE, BY, REMARK, FINGERPRINT };
+    int tag = plant_find_tag(loop_checks->plant, text_cell_read(csv_text(csv, NAME)));
+    const char *fingerprint = csv_text(csv, FINGERPRINT), *result = csv_text(csv, RESULT);
+    bool passed = !strcmp(result, loop_check_state_names[LOOP_CHECK_PASSED]);
+    if (strlen(fingerprint) != 16 ||
+        (!passed && strcmp(result, loop_check_state_names[LOOP_CHECK_FAILED]) != 0)) /* cut off as it was written */
+        return;
+    loop_checks->begun = true;
+    if (tag < 0)
+        return;
+    struct loop_check *check = &loop_checks->at[tag];
+    bool same = strtoull(fingerprint, NULL, 16) == loop_check_fingerprint(loop_checks->plant, tag);
+    *check = (struct loop_check){ .state = !same    ? LOOP_CHECK_CHANGED
+                                           : passed ? LOOP_CHECK_PASSED
+                                                    : LOOP_CHECK_FAILED,
+                                  .time_us = time_of(csv_text(csv, TIME)),
+                                  .value = number_of(csv, VALUE),
+                                  .expected = number_of(csv, EXPECTED),
+                                  .tolerance = number_of(csv, TOLERANCE) };
+    snprintf(check->who, sizeof(check->who), "%s", text_cell_read(csv_text(csv, BY)));
+    snprintf(check->remark, sizeof(check->remark), "%s", text_cell_read(csv_text(csv, REMARK)));
+}
+
+static void mark_unproven(struct loop_checks *loop_checks)
+{
+    for (size_t i = 0; i < loop_checks->plant->tag_count; i++)
+        atomic_store(&loop_checks->unproven[i],
+                     loop_checks->begun && loop_checks->plant->tags[i].source >= 0 && loop_checks->at[i].state != LOOP_CHECK_PASSED);
+}
+
+static void read_all(struct loop_checks *loop_checks)
+{
+    struct diag diag = { 0 };
+    struct csv csv;
+    if (csv_open(&csv, loop_checks->path, &diag)) {
+        while (csv_next(&csv))
+            read_row(loop_checks, &csv);
+        csv_close(&csv);
+    }
+    for (size_t i = 0; i < diag.count; i++)
+        log_warn(loop_checks->log, "%s:%d: %s", diag.items[i].file, diag.items[i].line, diag.items[i].text);
+    diag_finish(&diag);
+}
+
+struct loop_checks *loop_checks_open(struct log *log, const struct plant *plant, const char *folder)
+{
+    struct loop_checks *loop_checks = mem_new(sizeof(*loop_checks));
+    loop_checks->log = log;
+    loop_checks->plant = plant;
+    loop_checks->folder = mem_strdup(folder);
+    loop_checks->path = mem_printf("%s/" LOOP_CHECKS_FILE, folder);
+    loop_checks->at = mem_array(plant->tag_count, sizeof(*loop_checks->at));
+    loop_checks->numbers = mem_array(plant->tag_count, sizeof(*loop_checks->numbers));
+    for (size_t i = 0; i < plant->tag_count; i++)
+        loop_checks->at[i] = (struct loop_check){ .value = NAN, .expected = NAN, .tolerance = NAN };
+    loop_checks->unproven = mem_array(plant->tag_count, sizeof(*loop_checks->unproven));
+    if (access(loop_checks->path, F_OK) == 0)
+        read_all(loop_checks);
+    mark_unproven(loop_checks);
+    return loop_checks;
+}
+
+void loop_checks_close(struct loop_checks **pointer)
+{
+    struct loop_checks *loop_checks = *pointer;
+    if (!loop_checks)
+        return;
+    mem_free(loop_checks->folder);
+    mem_free(loop_checks->path);
+    mem_free(loop_checks->at);
+    mem_free(loop_checks->numbers);
+    mem_free(loop_checks->unproven);
+    mem_free(loop_checks);
+    *pointer = NULL;
+}
+
+/* A line that was cut off, by a power cut say, is ended first. The historian makes the folder too, on a thread of its own, and may not
+ * have come to it yet. */
+static bool append(const char *folder, const char *path, const struct text *row)
+{
+    mkdir(folder, 0777); /* where it cannot be made, opening says why */
+    FILE *file = fopen(path, "a+b");
+    if (!file)
+        return false;
+    bool good = fseek(file, 0, SEEK_END) == 0;
+    long size = good ? ftell(file) : -1;
+    if (size == 0)
+        good = fputs(head, file) >= 0;
+    else if (good && size > 0 && fseek(file, -1, SEEK_END) == 0 && fgetc(file) != '\n')
+        good = fseek(file, 0, SEEK_END) == 0 && fputc('\n', file) != EOF;
+    good = good && fwrite(row->at, 1, row->length, file) == row->length && fflush(file) == 0 && fsync(fileno(file)) == 0;
+    int error = errno;
+    fclose(file);
+    errno = error;
+    return good;
+}
+
+const char *loop_checks_add(struct loop_checks *loop_checks, int tag, const struct loop_check *check)
+{
+    struct text row = { 0 };
+    add_row(&row, loop_checks->plant, tag, check);
+    bool good = append(loop_checks->folder, loop_checks->path, &row);
+    text_finish(&row);
+    if (!good) {
+        log_err(loop_checks->log, "%s: %s: %s", loop_checks->path, loop_checks->plant->tags[tag].name, strerror(errno));
+        return "it could not be kept on disk; the log says why";
+    }
+    loop_checks->at[tag] = *check;
+    loop_checks->numbers[tag] = ++loop_checks->number;
+    loop_checks->begun = true;
+    mark_unproven(loop_checks);
+    return NULL;
+}
+
+/* --- what there is ---------------------------------------------------------------------------------------------------------------- */
+
+const struct loop_check *loop_checks_of(const struct loop_checks *loop_checks, int tag)
+{
+    return &loop_checks->at[tag];
+}
+
+bool loop_checks_begun(const struct loop_checks *loop_checks)
+{
+    return loop_checks->begun;
+}
+
+bool loop_checks_unproven(const struct loop_checks *loop_checks, int tag)
+{
+    return atomic_load(&loop_checks->unproven[tag]);
+}
+
+uint64_t loop_checks_number(const struct loop_checks *loop_checks)
+{
+    return loop_checks->number;
+}
+
+uint64_t loop_checks_number_of(const struct loop_checks *loop_checks, int tag)
+{
+    return loop_checks->numbers[tag];
+}
+
+void loop_checks_print(const struct loop_checks *loop_checks, struct text *out)
+{
+    text_add(out, "%s", head);
+    for (size_t i = 0; i < loop_checks->plant->tag_count; i++)
+        if (loop_checks->plant->tags[i].source >= 0)
+            add_row(out, loop_checks->plant, (int)i, &loop_checks->at[i]);
+}

@@ -1,0 +1,103 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Cameras by what is to be seen. */
+#include "message/fit_message.h"
+
+#include <math.h>
+
+#include "message/json_fields.h"
+#include "render/overlay/overlay.h"
+
+bool fit_parse(const struct plant *plant, const json_t *o, struct fit *out, struct message_error *error)
+{
+    const json_t *id = json_object_get(o, "id");
+    int side = SIDE_NOW;
+    bool given;
+    char quote[48];
+    *out = (struct fit){ .projection = PROJECTION_AS_IT_IS };
+    if (!framing_find(plant, json_string_value(id), &out->framing) || (id && !json_is_string(id) && !json_is_null(id))) {
+        message_fail(error, "bad_field", "id: '%s' is no asset of this plant, and no tag that stands on one",
+                     json_is_string(id) ? quoted(json_string_value(id), quote) : "(not a text)");
+        return false;
+    }
+    if (!may_name(o, "side", names_side, &side, &given, error) ||
+        !may_name(o, "projection", names_projection, &out->projection, &given, error))
+        return false;
+    out->framing.side = (enum side)side;
+    return true;
+}
+
+void fit_apply(const struct scene *scene, const struct fit *fit, const struct view *view, struct camera *camera)
+{
+    struct view half;
+    view_half(view, 0, &half);
+    if (fit->projection != PROJECTION_AS_IT_IS)
+        camera->height_m = fit->projection == PROJECTION_ORTHOGRAPHIC;
+    framing_look(scene, &fit->framing, (double)half.width_px / half.height_px, camera);
+}
+
+static json_t *vector(const double v[3])
+{
+    return json_pack("[f,f,f]", v[0], v[1], v[2]);
+}
+
+/* The plant's own camera, as a client would ask for it. */
+static json_t *camera_json(const struct camera *camera)
+{
+    return json_pack("{s:o,s:o,s:o,s:f}", "eye", vector(camera->eye_m), "target", vector(camera->target_m), "up", vector(camera->up), "fov",
+                     camera->fov_deg);
+}
+
+static json_t *given_json(const json_t *list, struct message_error *error)
+{
+    size_t count = json_array_size(list);
+    double n[7] = { 0 };
+    if (count != 6 && count != 7) {
+        message_fail(error, "bad_field", "camera: ex,ey,ez,tx,ty,tz or ex,ey,ez,tx,ty,tz,fov expected");
+        return NULL;
+    }
+    for (size_t i = 0; i < count; i++)
+        n[i] = json_number_value(json_array_get(list, i));
+    json_t *camera = json_pack("{s:o,s:o}", "eye", vector(n), "target", vector(n + 3));
+    if (count == 7)
+        json_object_set_new(camera, "fov", json_real(n[6]));
+    return camera;
+}
+
+/* lens: its projection too. */
+static bool parse_given(const json_t *o, bool lens, struct view *view, struct message_error *error)
+{
+    const json_t *list = json_object_get(o, "camera"), *height = json_object_get(o, "height_m");
+    json_t *projection = json_object_get(o, "projection"), *camera = list ? given_json(list, error) : camera_json(&view->camera);
+    if (!camera)
+        return false;
+    if (lens && projection)
+        json_object_set(camera, "projection", projection);
+    if (lens && height)
+        json_object_set_new(camera, "height_m", json_real(json_number_value(height)));
+    bool good = camera_parse(camera, &view->camera, error);
+    json_decref(camera);
+    return good;
+}
+
+/* Nothing says where to look from, nor does the plant. */
+static bool shows_all(const struct plant *plant, const json_t *o)
+{
+    return !plant->view.set && !json_object_get(o, "camera") && !json_object_get(o, "projection") && !json_object_get(o, "height_m");
+}
+
+bool view_query_camera(const struct scene *scene, const json_t *o, bool bare, struct view *view, struct message_error *error)
+{
+    json_t *fit_o = json_object();
+    struct fit fit;
+    bool fits = json_object_get(o, "fit") || json_object_get(o, "side") || shows_all(scene->plant, o);
+    json_object_set(fit_o, "id", json_object_get(o, "fit"));
+    json_object_set(fit_o, "side", json_object_get(o, "side"));
+    json_object_set(fit_o, "projection", json_object_get(o, "projection"));
+    bool good = fit_parse(scene->plant, fit_o, &fit, error) && parse_given(o, !fits, view, error);
+    if (good && fits && !bare)
+        overlay_window(scene, view, &fit.framing.window);
+    if (good && fits)
+        fit_apply(scene, &fit, view, &view->camera);
+    json_decref(fit_o);
+    return good;
+}

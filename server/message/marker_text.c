@@ -1,0 +1,187 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Markers as JSON. */
+#include "message/marker_text.h"
+
+#include <jansson.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/mem.h"
+#include "base/text.h"
+#include "message/json_number.h"
+#include "value/quality.h"
+
+enum { DIGITS = 7 };
+static const float SAME_PX = 0.05f;
+
+static json_t *tenths(double px)
+{
+    return number(round(px * 10) / 10);
+}
+
+static json_t *value_of(const struct frame *frame, const struct frame_marker *marker)
+{
+    const struct field_params *params = frame->view.split && marker->half ? &frame->view.right.field : &frame->view.field;
+    bool lost = quality_is_bad(marker->quality) && params->show != SHOW_DISTANCE;
+    return lost ? json_null() : number(marker->value);
+}
+
+static int class_of(const struct frame_marker *marker)
+{
+    return quality_is_bad(marker->quality) ? 2 : quality_is_uncertain(marker->quality);
+}
+
+static bool is_placed(const struct frame_marker *marker)
+{
+    return isfinite(marker->x_px) && isfinite(marker->y_px);
+}
+
+static bool same_place(const struct frame_marker *a, const struct frame_marker *b)
+{
+    return a->tag == b->tag && a->half == b->half && a->occluded == b->occluded && fabsf(a->x_px - b->x_px) < SAME_PX &&
+           fabsf(a->y_px - b->y_px) < SAME_PX;
+}
+
+static bool same_places(const struct frame *frame, const struct known_markers *said)
+{
+    if (!said->any || frame->marker_count != said->marker_count)
+        return false;
+    for (size_t i = 0; i < frame->marker_count; i++)
+        if (!same_place(&frame->markers[i], &said->markers[i]))
+            return false;
+    return true;
+}
+
+static bool same_labels(const struct frame *frame, const struct known_markers *said)
+{
+    if (!said->any || frame->label_count != said->label_count)
+        return false;
+    for (size_t i = 0; i < frame->label_count; i++) {
+        const struct frame_label *a = &frame->labels[i], *b = &said->labels[i];
+        if (a->value != b->value || a->half != b->half || !(fabsf(a->x_px - b->x_px) < SAME_PX) || !(fabsf(a->y_px - b->y_px) < SAME_PX))
+            return false;
+    }
+    return true;
+}
+
+static json_t *all_markers(const struct frame *frame)
+{
+    json_t *list = json_array();
+    for (size_t i = 0; i < frame->marker_count; i++) {
+        const struct frame_marker *m = &frame->markers[i];
+        if (is_placed(m))
+            json_array_append_new(list, json_pack("[i,o,o,i,i,o,i]", m->tag, tenths(m->x_px), tenths(m->y_px), m->occluded, m->half,
+                                                  value_of(frame, m), class_of(m)));
+    }
+    return list;
+}
+
+/* Those whose places are as said. */
+static json_t *changed_values(const struct frame *frame, const struct known_markers *said)
+{
+    json_t *list = json_array();
+    for (size_t i = 0; i < frame->marker_count; i++) {
+        const struct frame_marker *m = &frame->markers[i], *before = &said->markers[i];
+        if (!is_placed(m) || (m->value == before->value && m->quality == before->quality))
+            continue;
+        json_t *row = json_pack("[i,i,o]", m->tag, m->half, value_of(frame, m));
+        if (class_of(m) != 0)
+            json_array_append_new(row, json_integer(class_of(m)));
+        json_array_append_new(list, row);
+    }
+    return list;
+}
+
+static json_t *all_labels(const struct frame *frame)
+{
+    json_t *list = json_array();
+    for (size_t i = 0; i < frame->label_count; i++) {
+        const struct frame_label *l = &frame->labels[i];
+        json_array_append_new(list, json_pack("[f,o,o,i]", l->value, tenths(l->x_px), tenths(l->y_px), l->half));
+    }
+    return list;
+}
+
+static void remember(struct known_markers *said, const struct frame *frame)
+{
+    mem_grow(&said->markers, &said->marker_capacity, frame->marker_count, sizeof(*said->markers));
+    mem_grow(&said->labels, &said->label_capacity, frame->label_count, sizeof(*said->labels));
+    if (frame->marker_count)
+        memcpy(said->markers, frame->markers, frame->marker_count * sizeof(*said->markers));
+    if (frame->label_count)
+        memcpy(said->labels, frame->labels, frame->label_count * sizeof(*said->labels));
+    said->marker_count = frame->marker_count;
+    said->label_count = frame->label_count;
+    said->any = true;
+}
+
+static char *dumped(json_t *list)
+{
+    char *text = json_dumps(list, JSON_COMPACT | JSON_REAL_PRECISION(DIGITS)), *copy = mem_strdup(text ? text : "[]");
+    free(text);
+    json_decref(list);
+    return copy;
+}
+
+void marker_text_cache_finish(struct marker_text_cache *lists)
+{
+    frame_unref(&lists->frame);
+    mem_free(lists->markers);
+    mem_free(lists->labels);
+    *lists = (struct marker_text_cache){ 0 };
+}
+
+static void list_frame(struct marker_text_cache *lists, struct frame *frame)
+{
+    if (lists->frame == frame)
+        return;
+    marker_text_cache_finish(lists);
+    lists->frame = frame_ref(frame);
+}
+
+static void add_list(struct text *text, const char *name, const char *list)
+{
+    text_add(text, ",\"%s\":", name);
+    text_add_bytes(text, list, strlen(list));
+}
+
+/* What is new of the markers: all, or values only. */
+static void add_markers(struct text *text, struct frame *frame, const struct known_markers *said, struct marker_text_cache *lists)
+{
+    if (!same_places(frame, said)) {
+        lists->markers = lists->markers ? lists->markers : dumped(all_markers(frame));
+        add_list(text, "markers", lists->markers);
+        return;
+    }
+    char *values = dumped(changed_values(frame, said));
+    if (strcmp(values, "[]") != 0)
+        add_list(text, "values", values);
+    mem_free(values);
+}
+
+char *marker_text(struct frame *frame, uint32_t seq, struct known_markers *said, struct marker_text_cache *lists)
+{
+    struct text text = { 0 };
+    list_frame(lists, frame);
+    text_add(&text, "{\"type\":\"markers\",\"seq\":%u", seq);
+    size_t head = text.length;
+    add_markers(&text, frame, said, lists);
+    if (!same_labels(frame, said)) {
+        lists->labels = lists->labels ? lists->labels : dumped(all_labels(frame));
+        add_list(&text, "isolines", lists->labels);
+    }
+    remember(said, frame);
+    if (text.length == head)
+        text_finish(&text);
+    else
+        text_add(&text, "}");
+    return text.at;
+}
+
+void known_markers_finish(struct known_markers *said)
+{
+    mem_free(said->markers);
+    mem_free(said->labels);
+    *said = (struct known_markers){ 0 };
+}

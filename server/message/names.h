@@ -1,0 +1,21 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* How the choices of a view are called in messages (PROTOCOL.md). */
+#ifndef MESSAGE_NAMES_H
+#define MESSAGE_NAMES_H
+#include "protocol/wire.h"
+
+struct name {
+    const char *text;
+    int value;
+};
+
+enum projection { PROJECTION_AS_IT_IS = -1, PROJECTION_PERSPECTIVE, PROJECTION_ORTHOGRAPHIC };
+
+extern const struct name names_backdrop[], names_interpolation[], names_distance[], names_fill[], names_show[], names_scale[], names_look[],
+    names_codec[], names_projection[], names_side[], names_pick[], names_role[]; /* each ends with NULL */
+
+/* The value of a name, or -1. */
+int name_find(const struct name *names, const char *text);
+const char *name_of(const struct name *names, int value);
+
+#endif

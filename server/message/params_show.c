@@ -1,0 +1,241 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What a client may say of what is shown: values, the distance from a sensor, the difference from a baseline; and single sensors. */
+#include <string.h>
+
+#include "field/colormap.h"
+#include "message/json_fields.h"
+#include "plant/singles.h"
+
+static const char *const NOW = "now";
+
+/* --- reading --------------------------------------------------------------------------------------------------------------- */
+
+/* -1: *error. */
+static int find_tag(const struct plant *plant, const char *field, const char *tag, struct message_error *error)
+{
+    char name[48];
+    int found = plant_find_tag(plant, tag);
+    if (found < 0)
+        message_fail(error, "bad_field", "%s: '%s' is no tag of this plant", field, quoted(tag, name));
+    return found;
+}
+
+static bool parse_sensor(const struct plant *plant, const json_t *o, struct params_change *out, struct message_error *error)
+{
+    const json_t *value = json_object_get(o, "sensor");
+    out->field.sensor = -1;
+    if (!value)
+        return true;
+    out->given |= GIVEN_SENSOR;
+    if (json_is_null(value))
+        return true;
+    if (!json_is_string(value)) {
+        message_fail(error, "bad_field", "sensor: a tag or null expected");
+        return false;
+    }
+    out->field.sensor = find_tag(plant, "sensor", json_string_value(value), error);
+    return out->field.sensor >= 0;
+}
+
+static bool may_factor(const json_t *o, const char *name, float *out, struct message_error *error)
+{
+    double value;
+    bool given;
+    if (!may_number(o, name, 0, 100, &value, &given, error))
+        return false;
+    *out = given ? (float)value : FIELD_AS_CONFIGURED;
+    return true;
+}
+
+static bool parse_override(const struct plant *plant, const char *tag, const json_t *value, struct params_change *out,
+                           struct message_error *error)
+{
+    struct field_override override = { .tag = find_tag(plant, "sensors", tag, error) };
+    if (override.tag < 0)
+        return false;
+    if (out->field.override_count == FIELD_OVERRIDES) {
+        message_fail(error, "bad_field", "sensors: at most %d expected", FIELD_OVERRIDES);
+        return false;
+    }
+    if (!json_is_object(value) && !json_is_null(value)) {
+        message_fail(error, "bad_field", "sensors: {\"strength\", \"decay\"} or null expected for each tag");
+        return false;
+    }
+    if (!may_factor(value, "strength", &override.strength, error) || !may_factor(value, "decay", &override.decay, error))
+        return false;
+    out->field.overrides[out->field.override_count++] = override;
+    return true;
+}
+
+static bool parse_sensors(const struct plant *plant, const json_t *o, struct params_change *out, struct message_error *error)
+{
+    json_t *all = json_object_get(o, "sensors"), *value;
+    const char *tag;
+    if (!all)
+        return true;
+    out->given |= GIVEN_SENSORS;
+    out->only_these_sensors = json_is_null(all);
+    if (!json_is_object(all) && !json_is_null(all)) {
+        message_fail(error, "bad_field", "sensors: an object of tags, or null expected");
+        return false;
+    }
+    json_object_foreach(all, tag, value) if (!parse_override(plant, tag, value, out, error)) return false;
+    return true;
+}
+
+static bool take_name(const json_t *value, enum baseline_change wish, struct params_change *out, struct message_error *error)
+{
+    const char *name = json_string_value(value);
+    out->baseline = wish;
+    if (name && name[0] && strlen(name) < sizeof(out->baseline_name) && !has_controls(name) &&
+        !(wish == BASELINE_SET && !strcmp(name, NOW))) {
+        strcpy(out->baseline_name, name);
+        return true;
+    }
+    message_fail(error, "bad_field", "baseline: a name of 1 to %zu bytes, without control characters, other than 'now', expected",
+                 sizeof(out->baseline_name) - 1);
+    return false;
+}
+
+static bool parse_baseline(const json_t *o, struct params_change *out, struct message_error *error)
+{
+    const json_t *value = json_object_get(o, "baseline"), *set = json_object_get(value, "set"), *remove = json_object_get(value, "remove");
+    if (!value)
+        return true;
+    if (json_is_null(value))
+        out->baseline = BASELINE_NONE;
+    else if (json_is_string(value) && !strcmp(json_string_value(value), NOW))
+        out->baseline = BASELINE_NOW;
+    else if (json_is_string(value))
+        return take_name(value, BASELINE_NAMED, out, error);
+    else if (set && !remove)
+        return take_name(set, BASELINE_SET, out, error);
+    else if (remove && !set)
+        return take_name(remove, BASELINE_REMOVE, out, error);
+    else
+        message_fail(error, "bad_field", "baseline: a name, 'now', {\"set\": name}, {\"remove\": name} or null expected");
+    return out->baseline != BASELINE_STAYS;
+}
+
+bool params_parse_show(const struct plant *plant, const json_t *o, struct params_change *out, struct message_error *error)
+{
+    int show = SHOW_VALUE;
+    bool given;
+    if (!may_name(o, "show", names_show, &show, &given, error))
+        return false;
+    out->field.show = (enum field_show)show;
+    out->given |= given ? GIVEN_SHOW : 0;
+    return parse_sensor(plant, o, out, error) && parse_sensors(plant, o, out, error) && parse_baseline(o, out, error);
+}
+
+/* --- applying -------------------------------------------------------------------------------------------------------------- */
+
+static bool apply_sensors(const struct params_change *change, struct field_params *field, struct message_error *error)
+{
+    if (change->only_these_sensors) {
+        memset(field->overrides, 0, sizeof(field->overrides));
+        field->override_count = 0;
+    }
+    for (size_t i = 0; i < change->field.override_count; i++)
+        if (!field_params_override(field, change->field.overrides[i])) {
+            message_fail(error, "bad_field", "sensors: at most %d may be overridden together", FIELD_OVERRIDES);
+            return false;
+        }
+    return true;
+}
+
+/* What it is called now; a new one gets its number when all else is good. */
+static bool find_baseline(const struct params_context *world, const struct params_change *change, struct field_params *field,
+                          struct message_error *error)
+{
+    char name[48];
+    bool keeps = change->baseline == BASELINE_NOW || change->baseline == BASELINE_SET;
+    if (change->baseline == BASELINE_NONE)
+        field->baseline = 0;
+    if (change->baseline <= BASELINE_NONE)
+        return true;
+    if (!world->baselines || (change->baseline != BASELINE_NAMED && !world->snapshot)) {
+        message_fail(error, "bad_field", "baseline: none can be kept here");
+        return false;
+    }
+    if (change->baseline == BASELINE_SET && !baselines_may_set(world->baselines, change->baseline_name)) {
+        message_fail(error, "bad_field", "baseline: %d are kept already; remove one", BASELINES_NAMED);
+        return false;
+    }
+    uint32_t found = keeps ? UINT32_MAX : baselines_find(world->baselines, change->baseline_name);
+    if (!found) {
+        message_fail(error, "bad_field", "baseline: '%s' is unknown", quoted(change->baseline_name, name));
+        return false;
+    }
+    if (change->baseline != BASELINE_REMOVE)
+        field->baseline = found;
+    return true;
+}
+
+/* Another quantity brings its own range and colours. */
+static void take_quantity(const struct params_context *world, const struct field_params *before, struct view *view)
+{
+    const struct field_params *now = &view->field;
+    bool other = now->show != before->show;
+    bool other_distance = now->show == SHOW_DISTANCE && (now->sensor != before->sensor || now->distance != before->distance);
+    if (!other && !other_distance)
+        return;
+    view_default_scale(world->scene, view);
+    if (now->show == SHOW_DIFFERENCE || before->show == SHOW_DIFFERENCE)
+        view->colormap = now->show == SHOW_DIFFERENCE ? colormap_find("diverging") : 0;
+}
+
+/* Where triangles were left whole for single sensors, only what is constant is drawn truly. */
+static bool may_show(const struct plant *plant, const struct field_params *field, struct message_error *error)
+{
+    char group[48], asset[48];
+    int first;
+    const struct plant_group *of = &plant->groups[field->group];
+    if (plant_cuts_singles(of))
+        return true;
+    size_t count = field->interpolation == INTERPOLATION_PAPER ? plant_singles(plant, field->group, &first) : 0;
+    if (count > 0)
+        message_fail(error, "bad_field",
+                     "interpolation: 'paper' is not prepared where '%s' has one sensor (%zu of %zu assets, first '%s'); "
+                     "write 'singles: cut' at that group in the plant file",
+                     quoted(of->id, group), count, plant->asset_count, quoted(plant->assets[first].id, asset));
+    else if (field->show == SHOW_DISTANCE && plant_is_single(plant, field->sensor))
+        message_fail(error, "bad_field",
+                     "sensor: distances are not prepared where '%s' has one sensor, as on '%s'; "
+                     "write 'singles: cut' at that group in the plant file",
+                     quoted(of->id, group), quoted(plant->assets[plant->tags[field->sensor].asset].id, asset));
+    else
+        return true;
+    return false;
+}
+
+bool params_apply_show(const struct params_context *world, const struct params_change *change, const struct view *before, struct view *view,
+                       struct message_error *error)
+{
+    struct field_params *field = &view->field;
+    if (change->given & GIVEN_SHOW)
+        field->show = change->field.show;
+    if (change->given & GIVEN_SENSOR)
+        field->sensor = change->field.sensor;
+    if (!apply_sensors(change, field, error) || !find_baseline(world, change, field, error))
+        return false;
+    const char *wrong = field_params_wrong(world->scene->plant, field);
+    if (wrong) {
+        message_fail(error, "bad_field", "%s", wrong);
+        return false;
+    }
+    if (!may_show(world->scene->plant, field, error))
+        return false;
+    take_quantity(world, &before->field, view);
+    return true;
+}
+
+void params_apply_baseline(const struct params_context *world, const struct params_change *change, struct view *view)
+{
+    if (change->baseline == BASELINE_NOW)
+        view->field.baseline = baselines_keep(world->baselines, world->snapshot);
+    if (change->baseline == BASELINE_SET)
+        view->field.baseline = baselines_set(world->baselines, change->baseline_name, world->snapshot);
+    if (change->baseline == BASELINE_REMOVE)
+        baselines_remove(world->baselines, change->baseline_name);
+}

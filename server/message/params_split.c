@@ -1,0 +1,54 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The second set of parameters of a split view. */
+#include <string.h>
+
+#include "message/json_fields.h"
+
+/* What both halves have in common is said outside. */
+static const char *const common[] = { "light", "environment", "backdrop", "selected", "hidden", "isolate", "ghost", "clip", "split" };
+
+bool split_parse(const struct plant *plant, const json_t *o, struct split_change *out, struct message_error *error)
+{
+    const json_t *value = json_object_get(o, "split");
+    char text[sizeof(error->text)];
+    memset(out, 0, sizeof(*out));
+    if (!value)
+        return true;
+    out->wish = json_is_null(value) ? SPLIT_OFF : SPLIT_ON;
+    if (out->wish == SPLIT_OFF)
+        return true;
+    if (!json_is_object(value)) {
+        message_fail(error, "bad_field", "split: parameters of the right half, or null expected");
+        return false;
+    }
+    for (size_t i = 0; i < sizeof(common) / sizeof(*common); i++)
+        if (json_object_get(value, common[i])) {
+            message_fail(error, "bad_field", "split: both halves have the same '%s'", common[i]);
+            return false;
+        }
+    if (params_parse(plant, value, &out->right, error))
+        return true;
+    memcpy(text, error->text, sizeof(text));
+    message_fail(error, "bad_field", "split: %.*s", (int)sizeof(text) - 10, text);
+    return false;
+}
+
+bool split_apply(const struct params_context *world, const struct split_change *change, struct view *view, struct message_error *error)
+{
+    struct view right;
+    if (change->wish == SPLIT_OFF) {
+        view->split = false;
+        memset(&view->right, 0, sizeof(view->right));
+    }
+    if (change->wish != SPLIT_ON)
+        return true;
+    if (view->width_px < VIEW_SPLIT_LEAST_PX) {
+        message_fail(error, "bad_field", "split: %d pixels are too narrow for two pictures", view->width_px);
+        return false;
+    }
+    view_half(view, 1, &right); /* where it was not split, the right half begins as the left one is */
+    if (!params_apply(world, &change->right, &right, error))
+        return false;
+    view_split(view, &right);
+    return true;
+}

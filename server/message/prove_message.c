@@ -1,0 +1,80 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* A tag is judged by what arrives here, not by what somebody says. */
+#include "message/prove_message.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "base/mem.h"
+#include "message/json_fields.h"
+#include "message/json_number.h"
+#include "value/quality.h"
+
+bool prove_parse(const struct plant *plant, const json_t *o, struct message *out, struct message_error *error)
+{
+    struct prove_request *prove = &out->prove;
+    const char *tag = json_string_value(json_object_get(o, "tag"));
+    const json_t *fail = json_object_get(o, "fail");
+    char name[48];
+    prove->tag = tag ? plant_find_tag(plant, tag) : -1;
+    prove->fail = json_is_true(fail);
+    if (prove->tag < 0)
+        message_fail(error, "bad_field", "tag: there is no tag '%s'", quoted(tag ? tag : "", name));
+    else if (plant->tags[prove->tag].source < 0)
+        message_fail(error, "bad_field", "tag: %s is computed from others; prove those", quoted(tag, name));
+    else if (fail && !json_is_boolean(fail))
+        message_fail(error, "bad_field", "fail: true or false expected");
+    else
+        return need_seq(o, &out->seq, error) && need_number(o, "expected", -1e30, 1e30, &prove->expected, error) &&
+               need_number(o, "tolerance", 0, 1e30, &prove->tolerance, error) &&
+               need_words(o, "remark", false, prove->remark, sizeof(prove->remark), error);
+    return false;
+}
+
+static char *print(json_t *object)
+{
+    char *dumped = json_dumps(object, JSON_COMPACT | JSON_REAL_PRECISION(9)), *text = mem_strdup(dumped ? dumped : "{}");
+    free(dumped);
+    json_decref(object);
+    return text;
+}
+
+char *prove_do(struct loop_checks *loop_checks, const struct plant *plant, const struct snapshot *now, const struct message *message,
+               const char *who)
+{
+    const struct prove_request *prove = &message->prove;
+    const struct reading *reading = &now->readings[prove->tag];
+    bool good = !quality_is_bad(reading->quality) && !quality_is_uncertain(reading->quality) && isfinite(reading->value);
+    bool near = good && fabs(reading->value - prove->expected) <= prove->tolerance;
+    struct loop_check check = { .state = near && !prove->fail ? LOOP_CHECK_PASSED : LOOP_CHECK_FAILED,
+                                .time_us = now->taken_utc_ns / 1000,
+                                .value = good ? reading->value : NAN,
+                                .expected = prove->expected,
+                                .tolerance = prove->tolerance };
+    snprintf(check.who, sizeof(check.who), "%s", who);
+    snprintf(check.remark, sizeof(check.remark), "%s", prove->remark);
+    const char *why = loop_checks_add(loop_checks, prove->tag, &check);
+    const char *because = why    ? why
+                          : near ? (prove->fail ? "said to have failed" : "")
+                          : good ? "the value is beyond the tolerance"
+                                 : "the reading is not good";
+    return print(json_pack("{s:s,s:I,s:s,s:b,s:b,s:o,s:s}", "type", "proved", "seq", (json_int_t)message->seq, "tag",
+                           plant->tags[prove->tag].name, "kept", !why, "passed", check.state == LOOP_CHECK_PASSED && !why, "value",
+                           number(check.value), "why", because));
+}
+
+char *loop_checks_text(const struct loop_checks *loop_checks, const struct plant *plant, uint64_t since, bool all)
+{
+    json_t *list = json_array();
+    for (size_t i = 0; i < plant->tag_count; i++) {
+        const struct loop_check *check = loop_checks_of(loop_checks, (int)i);
+        if (check->state == LOOP_CHECK_NONE || (!all && loop_checks_number_of(loop_checks, (int)i) <= since))
+            continue;
+        json_t *row =
+            json_pack("[i,s,I,o,o,o,o,o]", (int)i, loop_check_state_names[check->state], (json_int_t)check->time_us, number(check->value),
+                      number(check->expected), number(check->tolerance), json_string(check->who), json_string(check->remark));
+        json_array_append_new(list, row ? row : json_array());
+    }
+    return print(json_pack("{s:s,s:b,s:b,s:o}", "type", "proofs", "all", all, "begun", loop_checks_begun(loop_checks), "tags", list));
+}

@@ -1,0 +1,55 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Which messages each role may send. */
+#include "message/role.h"
+
+#include "message/names.h"
+
+/* How the field is computed: each set of these costs the server a field of its own, and takes somebody who knows. */
+static const unsigned ENGINEERS = GIVEN_FILL | GIVEN_STRENGTH | GIVEN_DECAY | GIVEN_POWER | GIVEN_RADIUS | GIVEN_REACH | GIVEN_SENSORS;
+
+static bool params_allowed(enum role role, const struct params_change *change, struct message_error *error)
+{
+    bool shared = change->baseline == BASELINE_SET || change->baseline == BASELINE_REMOVE || change->baseline == BASELINE_NOW;
+    if (role < ROLE_OPERATOR && shared) {
+        message_fail(error, "not_allowed", "baseline: to keep or forget one takes the role operator, not %s", name_of(names_role, role));
+        return false;
+    }
+    if (role < ROLE_ENGINEER && (change->given & ENGINEERS)) {
+        message_fail(error, "not_allowed",
+                     "fill, strength, decay, power, radius_m, reach_m, sensors: to change them takes the role engineer, not %s",
+                     name_of(names_role, role));
+        return false;
+    }
+    return true;
+}
+
+static bool alarm_allowed(enum role role, const struct message *message, struct message_error *error)
+{
+    bool service = message->alarm.action == ALARM_TAKE_OUT || message->alarm.action == ALARM_PUT_BACK;
+    if (role >= (service ? ROLE_ENGINEER : ROLE_OPERATOR))
+        return true;
+    message_fail(error, "not_allowed", "%s takes the role %s, not %s", alarm_event_name((enum alarm_event)message->alarm.action),
+                 service ? "engineer" : "operator", name_of(names_role, role));
+    return false;
+}
+
+bool role_may_send(enum role role, const struct message *message, struct message_error *error)
+{
+    if (message->type == MESSAGE_PING)
+        return true;
+    if (role == ROLE_NOBODY) {
+        message_fail(error, "token_needed", "a token is needed: in hello, as `token`");
+        return false;
+    }
+    if (message->type == MESSAGE_ALARM)
+        return alarm_allowed(role, message, error);
+    bool engineers = message->type == MESSAGE_PLACE || message->type == MESSAGE_GAPS || message->type == MESSAGE_SAVE_TAGS ||
+                     message->type == MESSAGE_PROVE;
+    if (engineers && role < ROLE_ENGINEER) {
+        message_fail(error, "not_allowed", "to place or prove sensors takes the role engineer, not %s", name_of(names_role, role));
+        return false;
+    }
+    if (message->type != MESSAGE_PARAMS && !message->has_params)
+        return true;
+    return params_allowed(role, &message->params, error) && params_allowed(role, &message->split.right, error);
+}

@@ -1,0 +1,18 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The roles of clients, and which messages each may send. PROTOCOL.md holds the table for readers. Pure; any thread. */
+#ifndef MESSAGE_ROLE_H
+#define MESSAGE_ROLE_H
+#include "message/message.h"
+
+enum role {
+    ROLE_NOBODY, /* has yet to say who it is */
+    ROLE_OPEN,   /* anyone, under --open-viewers */
+    ROLE_VIEWER,
+    ROLE_OPERATOR,
+    ROLE_ENGINEER, /* also whoever is on the daemon's own machine */
+};
+
+/* Returns whether a client of that role may send the message. If not, fills *error with the refusal to answer. */
+bool role_may_send(enum role role, const struct message *message, struct message_error *error);
+
+#endif

@@ -1,0 +1,251 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Who is at the other end of a connection. */
+#include "net/connection.h"
+
+#include <string.h>
+#include <strings.h>
+#include <unistd.h>
+
+#include "base/clock.h"
+#include "base/mem.h"
+#include "message/names.h"
+#include "net/tls.h"
+
+static const struct refusal WRONG_HOST = { 403, "this server is not asked for by that name (Host); --host NAME lets it\n" };
+static const struct refusal LOCAL_ONLY = { 403, "this server answers to localhost, 127.0.0.1 and [::1] only\n" };
+static const struct refusal PROXY = { 403, "a proxy speaks for somebody here; the server needs --behind-proxy for that\n" };
+static const struct refusal IN_QUERY = { 400, "a token does not belong in a URL, where logs and histories keep it: send it as "
+                                              "Authorization: Bearer, in the subprotocol list, or in hello\n" };
+static const struct refusal BAD_TOKEN = { 401, "this token is not, or no longer, let in\n" };
+static const struct refusal HELD = { 429, "too many wrong tokens came from this address; try again in 5 s\n" };
+static const struct refusal TOO_LONG = { 431, "a header is too long\n" };
+static const struct refusal TOO_MANY = { 503, "this address has as many connections as one may have; try again later\n" };
+
+/* --- connections ---------------------------------------------------------------------------------------------------------------- */
+
+static bool count_refusal(struct server_context *hub, bool good)
+{
+    if (!good)
+        counter_inc(hub->counters.refused, 1);
+    return good;
+}
+
+bool connection_may_open(struct server_context *hub, int fd)
+{
+    char address[64] = "";
+    if (hub->connection_count >= hub->quotas->at[QUOTA_CONNECTIONS])
+        return count_refusal(hub, false);
+    if (hub->params.access.behind_proxy) /* all come from one address there; sessions are counted by what it says */
+        return true;
+    lws_get_peer_simple_fd(fd, address, sizeof(address));
+    struct address_usage *peer = address_limits_ref(hub->peers, address);
+    bool good = address_limits_may_connect(hub->peers, peer);
+    address_limits_unref(hub->peers, &peer);
+    return count_refusal(hub, good);
+}
+
+void connection_open(struct server_context *hub, struct lws *wsi)
+{
+    char address[64] = "";
+    struct connection *visitor = mem_new(sizeof(*visitor));
+    lws_get_peer_simple(wsi, address, sizeof(address));
+    visitor->peer = address_limits_ref(hub->peers, address);
+    visitor->peer->connections++;
+    hub->connection_count++;
+    lws_set_opaque_user_data(wsi, visitor);
+}
+
+static void leave_client(struct server_context *hub, struct connection *visitor)
+{
+    if (visitor->client)
+        visitor->client->named--;
+    address_limits_unref(hub->peers, &visitor->client);
+}
+
+void connection_close(struct server_context *hub, struct lws *wsi)
+{
+    struct connection *visitor = connection_of(wsi);
+    if (!visitor)
+        return;
+    visitor->peer->connections--;
+    hub->connection_count--;
+    leave_client(hub, visitor);
+    address_limits_unref(hub->peers, &visitor->peer);
+    mem_free(visitor);
+    lws_set_opaque_user_data(wsi, NULL);
+}
+
+struct connection *connection_of(struct lws *wsi)
+{
+    return lws_get_opaque_user_data(wsi);
+}
+
+/* --- requests ----------------------------------------------------------------------------------------------------------------------- */
+
+bool connection_header(struct lws *wsi, enum lws_token_indexes token, char *out, int size)
+{
+    out[0] = 0;
+    return lws_hdr_total_length(wsi, token) == 0 || lws_hdr_copy(wsi, out, size, token) >= 0;
+}
+
+void connection_learn_host_name(struct server_context *hub)
+{
+    char name[sizeof(hub->machine)] = "";
+    if (gethostname(name, sizeof(name) - 1) != 0 || !access_host_name(name, hub->machine, sizeof(hub->machine)))
+        hub->machine[0] = 0;
+}
+
+static bool is_named(const struct access_params *params, const char *name)
+{
+    for (int i = 0; i < params->host_count; i++)
+        if (!strcasecmp(params->hosts[i], name))
+            return true;
+    return false;
+}
+
+/* A page of a foreign name that leads here (DNS rebinding) may not ask; addresses cannot be led elsewhere. */
+static bool is_ours(const struct server_context *hub, const char *name)
+{
+    const struct access_params *params = &hub->params.access;
+    if (access_name_is_local(name) || is_named(params, name))
+        return true;
+    if (hub->local_only || params->behind_proxy)
+        return false;
+    return access_name_is_address(name) || (hub->machine[0] && !strcmp(name, hub->machine)) || (hub->tls && tls_is_called(hub->tls, name));
+}
+
+/* What a proxy adds to the requests of others. lws knows some of these names, and those it does not find among the custom ones. */
+static bool has_forwarding(struct lws *wsi)
+{
+    static const enum lws_token_indexes known[] = { WSI_TOKEN_X_FORWARDED_FOR, WSI_TOKEN_HTTP_X_REAL_IP, WSI_TOKEN_HTTP_VIA };
+    static const char *const custom[] = { "forwarded:", "x-forwarded-host:", "x-forwarded-proto:" };
+    for (size_t i = 0; i < sizeof(known) / sizeof(known[0]); i++)
+        if (lws_hdr_total_length(wsi, known[i]) > 0)
+            return true;
+    for (size_t i = 0; i < sizeof(custom) / sizeof(custom[0]); i++)
+        if (lws_hdr_custom_length(wsi, custom[i], (int)strlen(custom[i])) >= 0)
+            return true;
+    return false;
+}
+
+/* Behind a proxy its connections are those of whom it names. False: *refusal. */
+static bool find_client(struct server_context *hub, struct lws *wsi, struct connection *visitor, struct refusal *refusal)
+{
+    bool proxied = hub->params.access.behind_proxy && visitor->peer->local;
+    char list[512] = "", *address = visitor->address;
+    leave_client(hub, visitor);
+    if (proxied && !connection_header(wsi, WSI_TOKEN_X_FORWARDED_FOR, list, sizeof(list)))
+        *refusal = TOO_LONG;
+    if (!list[0] || !access_forwarded(list, address, sizeof(visitor->address)))
+        lws_get_peer_simple(wsi, address, sizeof(visitor->address));
+    visitor->client = address_limits_ref(hub->peers, address);
+    if (proxied && !refusal->status && !address_limits_may_be_named(hub->peers, visitor->client))
+        *refusal = TOO_MANY;
+    visitor->client->named++;
+    return !refusal->status;
+}
+
+static bool has_token_in_query(struct lws *wsi)
+{
+    char argument[4096]; /* more than lws keeps of all headers together */
+    for (int i = 0; lws_hdr_fragment_length(wsi, WSI_TOKEN_HTTP_URI_ARGS, i) > 0; i++)
+        if (lws_hdr_copy_fragment(wsi, argument, sizeof(argument), WSI_TOKEN_HTTP_URI_ARGS, i) > 0 && access_argument_is_token(argument))
+            return true;
+    return false;
+}
+
+/* False: a header is too long. "": there is no token. */
+static bool find_token(struct lws *wsi, char token[TOKEN_MAX_CHARS + 1])
+{
+    char text[512];
+    token[0] = 0;
+    if (!connection_header(wsi, WSI_TOKEN_HTTP_AUTHORIZATION, text, sizeof(text)))
+        return false;
+    if (!strncasecmp(text, "Bearer ", 7) && strlen(text) - 7 <= TOKEN_MAX_CHARS) {
+        strcpy(token, text + 7);
+        return true;
+    }
+    if (!connection_header(wsi, WSI_TOKEN_PROTOCOL, text, sizeof(text)))
+        return false;
+    access_list_rest(text, "Authorization-Bearer.", token, TOKEN_MAX_CHARS + 1);
+    return true;
+}
+
+void connection_log_login(struct server_context *hub, struct lws *wsi, const char *way, const struct token_holder *holder, enum login login)
+{
+    const struct connection *visitor = connection_of(wsi);
+    struct log *log = hub->params.log;
+    bool known = holder->role != ROLE_NOBODY;
+    const char *role = known ? name_of(names_role, (int)holder->role) : "none", *name = holder->name[0] ? holder->name : "(none)";
+    int failures = login_throttle_failures(hub->logins, visitor->client->address, clock_mono_ns());
+    if (login == LOGIN_NONE || login == LOGIN_GOOD_NEW)
+        log_info(log, "login from %s by %s: token %s, role %s: let in", visitor->address, way, name, role);
+    if (login == LOGIN_HELD)
+        counter_inc(hub->counters.logins_held, 1);
+    if (login != LOGIN_WRONG && login != LOGIN_WRONG_SLOWS)
+        return;
+    counter_inc(hub->counters.logins_wrong, 1);
+    log_warn(log, "login from %s by %s: token %s, role %s: refused, %s (%d within a minute)", visitor->address, way,
+             known ? holder->name : "(unknown)", role, known ? "its time is over" : "nobody's", failures);
+    if (login == LOGIN_WRONG_SLOWS)
+        log_warn(log, "login from %s: slowed, to one token in %d s, until there was no wrong one for a minute", visitor->address,
+                 LOGIN_WAIT_S);
+}
+
+/* NULL: it is let in, and visitor->holder is whose it is. */
+static const struct refusal *judge_token(struct server_context *hub, struct lws *wsi, const char *token)
+{
+    struct connection *visitor = connection_of(wsi);
+    struct token_holder holder;
+    bool good = tokens_find(hub->tokens, token, clock_utc_ns(), &holder);
+    bool stream = lws_hdr_total_length(wsi, WSI_TOKEN_UPGRADE) > 0; /* one that is let in is noted at its hello */
+    enum login login = login_throttle_judge(hub->logins, visitor->client->address, good ? holder.hash : NULL, clock_mono_ns());
+    if (!stream || !login_is_good(login))
+        connection_log_login(hub, wsi, stream ? "stream" : "HTTP", &holder, login);
+    if (login_is_good(login))
+        visitor->holder = holder;
+    return login_is_good(login) ? NULL : login == LOGIN_HELD ? &HELD : &BAD_TOKEN;
+}
+
+/* Somebody on this machine, who asks for it by a local name, and whom no token is wanted from. */
+static bool is_trusted(const struct server_context *hub, const struct connection *visitor, const char *name)
+{
+    const struct access_params *params = &hub->params.access;
+    if (!visitor->peer->local || params->behind_proxy || (hub->tokens && !params->trust_local))
+        return false;
+    return !name[0] || access_name_is_local(name) || (params->trust_local && is_named(params, name));
+}
+
+bool connection_identify(struct server_context *hub, struct lws *wsi, struct refusal *refusal)
+{
+    const struct access_params *params = &hub->params.access;
+    struct connection *visitor = connection_of(wsi);
+    char host[256], name[256] = "", token[TOKEN_MAX_CHARS + 1];
+    bool has_host = lws_hdr_total_length(wsi, WSI_TOKEN_HOST) > 0;
+    const struct refusal *bad_token;
+    *refusal = (struct refusal){ 0 };
+    visitor->holder = (struct token_holder){ 0 };
+    visitor->role = ROLE_NOBODY;
+    if (!find_client(hub, wsi, visitor, refusal))
+        return false;
+    if (has_host &&
+        (!connection_header(wsi, WSI_TOKEN_HOST, host, sizeof(host)) || !access_host_name(host, name, sizeof(name)) || !is_ours(hub, name)))
+        *refusal = hub->local_only ? LOCAL_ONLY : WRONG_HOST;
+    else if (visitor->peer->local && !params->behind_proxy && has_forwarding(wsi))
+        *refusal = PROXY;
+    else if (has_token_in_query(wsi))
+        *refusal = IN_QUERY;
+    else if (!find_token(wsi, token))
+        *refusal = TOO_LONG;
+    else if (token[0] && hub->tokens && (bad_token = judge_token(hub, wsi, token)))
+        *refusal = *bad_token;
+    if (refusal->status)
+        return false;
+    if (visitor->holder.role != ROLE_NOBODY)
+        visitor->role = visitor->holder.role;
+    else if (is_trusted(hub, visitor, name))
+        visitor->role = ROLE_ENGINEER;
+    else if (params->open_viewers)
+        visitor->role = ROLE_OPEN;
+    return true;
+}

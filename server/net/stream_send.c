@@ -1,0 +1,277 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What goes to one client: texts and pictures, one write per writeable callback, so that lws never has to keep what a socket does
+   not take. */
+#include <string.h>
+
+#include "base/clock.h"
+#include "base/mem.h"
+#include "session/reply.h"
+#include "net/stream.h"
+
+static const int64_t PING_NS = 2 * NS_PER_S;
+
+static bool write_text(struct stream *stream, char *at, size_t length)
+{
+    return lws_write(stream->wsi, (unsigned char *)at, length, LWS_WRITE_TEXT) >= (int)length;
+}
+
+static const struct text *padded(struct text *text)
+{
+    static const char pre[LWS_PRE];
+    text_add_bytes(text, pre, sizeof(pre));
+    return text;
+}
+
+/* False: the connection is gone. *wrote: there was something to say. */
+static bool write_markers(struct server_context *hub, struct stream *stream, bool *wrote)
+{
+    struct text text = { 0 };
+    bool open = session_is_open(stream->session);
+    char *markers = open ? NULL : marker_text(stream->sending->packet->frame, stream->seq, &stream->said, &hub->marker_lists);
+    *wrote = markers != NULL;
+    if (!markers)
+        return true;
+    padded(&text);
+    text_add_bytes(&text, markers, strlen(markers));
+    bool good = write_text(stream, text.at + LWS_PRE, text.length - LWS_PRE);
+    text_finish(&text);
+    mem_free(markers);
+    return good;
+}
+
+static uint32_t us_of(int64_t ns)
+{
+    return ns <= 0 ? 0 : ns / 1000 > UINT32_MAX ? UINT32_MAX : (uint32_t)(ns / 1000);
+}
+
+static void camera_to_wire(const struct camera *camera, struct wire_frame *header_out)
+{
+    for (int i = 0; i < 3; i++) {
+        header_out->eye_m[i] = (float)camera->eye_m[i];
+        header_out->target_m[i] = (float)camera->target_m[i];
+        header_out->up[i] = (float)camera->up[i];
+    }
+    header_out->fov_deg = camera->height_m > 0 ? 0 : (float)camera->fov_deg;
+    header_out->height_m = (float)camera->height_m;
+}
+
+/* --- the packets of a picture, and the parts of each ------------------------------------------------------------------------- */
+
+static const struct packet *packet_now(const struct stream *stream)
+{
+    const struct encoded_frame *picture = stream->sending;
+    return stream->packet < picture->earlier_count ? picture->earlier[stream->packet] : picture->packet;
+}
+
+static bool is_last_part(const struct stream *stream)
+{
+    return stream->packet == stream->sending->earlier_count && stream->part == stream->sending->packet->part_count - 1;
+}
+
+static void next_part(struct stream *stream)
+{
+    stream->sent = 0;
+    stream->step = SEND_HEADER;
+    if (++stream->part < packet_now(stream)->part_count)
+        return;
+    stream->packet++;
+    stream->part = 0;
+}
+
+static uint16_t flags_of(const struct stream *stream)
+{
+    const struct packet *packet = packet_now(stream);
+    bool last = is_last_part(stream), live = packet->frame->oldest_age_ns != INT64_MAX;
+    bool still = last && packet->frame->view.tier == TIER_REFINED;
+    return (uint16_t)((packet->key ? WIRE_FLAG_KEY : 0) | (still ? WIRE_FLAG_STILL : 0) | (live ? 0 : WIRE_FLAG_NO_LIVE_DATA) |
+                      (last ? 0 : WIRE_FLAG_MORE) | (stream->sending->wish.of_data ? WIRE_FLAG_DATA : 0) |
+                      (packet->frame->view.at_us ? WIRE_FLAG_PAST : 0));
+}
+
+static struct wire_frame frame_header(const struct stream *stream)
+{
+    const struct encoded_frame *picture = stream->sending;
+    const struct packet *packet = packet_now(stream);
+    const struct packet_part *part = &packet->parts[stream->part];
+    const struct frame *frame = packet->frame;
+    struct wire_frame out = {
+        .type = WIRE_TYPE_FRAME,
+        .codec = (uint8_t)packet->codec,
+        .payload_bytes = (uint32_t)part->count,
+        .seq = stream->seq,
+        .flags = flags_of(stream),
+        .camera_seq = picture->wish.view.camera_seq,
+        .params_seq = picture->wish.view.params_seq,
+        .oldest_age_ms = frame->oldest_age_ns == INT64_MAX ? WIRE_NO_AGE : us_of(frame->oldest_age_ns / 1000),
+        .data_time_us = (uint64_t)(frame->data_utc_ns / 1000),
+        .sent_time_us = (uint64_t)(clock_utc_ns() / 1000),
+        .wait_us = us_of(picture->wait_ns),
+        .field_us = us_of(frame->field_ns),
+        .render_us = us_of(frame->render_ns + frame->readback_ns),
+        .encode_us = us_of(packet->encode_ns),
+        .x_px = (uint16_t)part->x_px,
+        .y_px = (uint16_t)part->y_px,
+        .width_px = (uint16_t)part->width_px,
+        .height_px = (uint16_t)part->height_px,
+        .full_width_px = (uint16_t)frame->width_px,
+        .full_height_px = (uint16_t)frame->height_px,
+    };
+    camera_to_wire(&frame->view.camera, &out);
+    return out;
+}
+
+static void part_sent(struct server_context *hub, struct stream *stream)
+{
+    if (!is_last_part(stream)) {
+        next_part(stream);
+        return;
+    }
+    counter_inc(hub->counters.frames, 1);
+    encoded_frame_destroy(&stream->sending);
+}
+
+/* The header goes with the first of the payload: each write is a call of the kernel, and a packet of its own. */
+static size_t put_header(struct stream *stream, uint8_t *bytes)
+{
+    struct wire_frame head = frame_header(stream);
+    wire_put_frame(&head, bytes);
+    stream->step = SEND_PAYLOAD;
+    return WIRE_FRAME_HEADER_BYTES;
+}
+
+static bool write_slice(struct server_context *hub, struct stream *stream)
+{
+    const struct packet *packet = packet_now(stream);
+    const struct packet_part *part = &packet->parts[stream->part];
+    uint8_t *out = hub->out + LWS_PRE;
+    enum lws_write_protocol how = stream->step == SEND_HEADER ? LWS_WRITE_BINARY : LWS_WRITE_CONTINUATION;
+    size_t head = stream->step == SEND_HEADER ? put_header(stream, out) : 0;
+    size_t left = part->count - stream->sent, slice = left < SLICE_BYTES - head ? left : SLICE_BYTES - head;
+    if (slice < left)
+        how |= LWS_WRITE_NO_FIN;
+    memcpy(out + head, packet->bytes + part->begin + stream->sent, slice);
+    bool good = lws_write(stream->wsi, out, head + slice, how) >= (int)(head + slice);
+    stream->sent += slice;
+    stream->sent_all += slice;
+    session_wrote(stream->session, slice == left && is_last_part(stream), clock_mono_ns());
+    counter_inc(hub->counters.frame_bytes, (int64_t)(head + slice));
+    if (slice == left)
+        part_sent(hub, stream);
+    return good;
+}
+
+static bool write_picture(struct server_context *hub, struct stream *stream)
+{
+    if (stream->step == SEND_MARKERS) {
+        bool wrote, good = write_markers(hub, stream, &wrote);
+        stream->step = SEND_HEADER;
+        if (wrote)
+            return good;
+    }
+    return write_slice(hub, stream);
+}
+
+/* --- pictures that are not sent to their end ------------------------------------------------------------------------------- */
+
+void stream_give_up(struct server_context *hub, struct stream *stream, int64_t now_ns)
+{
+    if (!stream->sending || stream->step != SEND_PAYLOAD ||
+        !session_gives_up(stream->session, stream->sending, encoded_frame_bytes(stream->sending) - stream->sent_all, now_ns))
+        return;
+    session_gave_up(stream->session);
+    counter_inc(hub->counters.given_up, 1);
+    stream->cut = true;
+    encoded_frame_destroy(&stream->sending);
+}
+
+/* The message ends before its header says. */
+static bool write_end(struct server_context *hub, struct stream *stream)
+{
+    stream->cut = false;
+    session_wrote(stream->session, true, clock_mono_ns());
+    return net_write(hub, stream->wsi, "", 0, LWS_WRITE_CONTINUATION);
+}
+
+/* --- round trips ------------------------------------------------------------------------------------------------------------- */
+
+/* While pictures go, and none is under way: a pong behind one would tell its transfer, not the round trip. */
+static bool ping_due(const struct stream *stream, int64_t now_ns)
+{
+    const struct pacer *pacer = &stream->session->pacer;
+    bool first = stream->first == FIRST_TEXTS && stream->first_bytes > 0 && !session_has_text(stream->session, now_ns);
+    if (stream->sending || stream->ping != stream->pong || pacer->flight_count > 0)
+        return false;
+    return stream->ping == 0 || first || (pacer->acked.sent_ns > stream->ping_ns && now_ns - stream->ping_ns >= PING_NS);
+}
+
+static bool write_ping(struct server_context *hub, struct stream *stream, int64_t now_ns)
+{
+    stream->ping++;
+    if (stream->first == FIRST_TEXTS && stream->first_bytes > 0)
+        stream->first = FIRST_PING;
+    stream->ping_ns = now_ns;
+    return net_write(hub, stream->wsi, &stream->ping, sizeof(stream->ping), LWS_WRITE_PING);
+}
+
+void stream_on_pong(struct stream *stream, const void *bytes, size_t count)
+{
+    uint64_t number;
+    int64_t now_ns = clock_mono_ns();
+    if (count != sizeof(number))
+        return;
+    memcpy(&number, bytes, sizeof(number));
+    if (number != stream->ping || stream->pong == stream->ping)
+        return;
+    stream->pong = stream->ping;
+    if (stream->first == FIRST_PING) {
+        session_begin(stream->session, stream->first_bytes, now_ns - stream->first_ns);
+        stream->first = FIRST_DONE;
+    } else {
+        session_on_pong(stream->session, now_ns - stream->ping_ns, now_ns);
+    }
+}
+
+/* --- all of it ----------------------------------------------------------------------------------------------------------------- */
+
+bool stream_has_output(const struct stream *stream, int64_t now_ns)
+{
+    return stream->sending || stream->cut || stream->session->ready || session_has_text(stream->session, now_ns) ||
+           ping_due(stream, now_ns);
+}
+
+static void note_first(struct stream *stream, size_t bytes, int64_t now_ns)
+{
+    if (!stream->first_bytes)
+        stream->first_ns = now_ns;
+    if (stream->first == FIRST_TEXTS)
+        stream->first_bytes += bytes;
+}
+
+/* Texts go between pictures, never into one. */
+bool stream_send(struct server_context *hub, struct stream *stream)
+{
+    struct session *session = stream->session;
+    struct text text = { 0 };
+    bool good = true;
+    int64_t now_ns = clock_mono_ns();
+    stream_give_up(hub, stream, now_ns);
+    if (stream->cut)
+        return write_end(hub, stream);
+    if (stream->sending)
+        return write_picture(hub, stream);
+    if (ping_due(stream, now_ns))
+        return write_ping(hub, stream, now_ns);
+    padded(&text);
+    if (session_next_text(session, now_ns, clock_utc_ns(), &text)) {
+        note_first(stream, text.length, now_ns);
+        good = write_text(stream, text.at + LWS_PRE, text.length - LWS_PRE);
+    } else if ((stream->sending = session_next_frame(session, now_ns, &stream->seq))) {
+        latency_stages_sent(&hub->stages, stream->sending, now_ns);
+        stream->step = SEND_MARKERS;
+        stream->sent = stream->sent_all = 0;
+        stream->packet = stream->part = 0;
+        good = write_picture(hub, stream);
+    }
+    text_finish(&text);
+    return good;
+}

@@ -1,0 +1,210 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Labels by rank, distance and room. */
+#include "render/overlay/labels_impl.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+#include "base/mem.h"
+
+enum { PASSES = 3 };
+static const double SPACINGS[PASSES] = { 0.16, 0.08, 0 }, HELD = 0.8;
+static const double MARK = 5, RING = 13, NEAR_GAP = 8, FAR_GAP = 22, ROOM = 0.06, CELL = 96;
+
+static bool is_held(const struct label_item *item)
+{
+    return item->held != LABEL_NONE;
+}
+
+static double order_depth(const struct label_item *item)
+{
+    return item->depth_m * (is_held(item) ? HELD : 1);
+}
+
+static int by_importance(const void *a, const void *b, void *arg)
+{
+    const struct label_item *items = arg;
+    int i = *(const int *)a, k = *(const int *)b;
+    double depth_i = order_depth(&items[i]), depth_k = order_depth(&items[k]);
+    if (items[i].rank != items[k].rank)
+        return items[i].rank > items[k].rank ? -1 : 1;
+    if (depth_i != depth_k)
+        return depth_i < depth_k ? -1 : 1;
+    return i < k ? -1 : 1;
+}
+
+/* --- what is taken ---------------------------------------------------------------------------------------------------------- */
+
+static int clamp(double value, int count)
+{
+    return value < 0 ? 0 : value >= count ? count - 1 : (int)value;
+}
+
+/* The cells of a box: first and last column and row. */
+static void cells_of(const struct layout *layout, const struct box *box, int range[4])
+{
+    double cell = CELL * layout->area->unit, x = box->x - layout->area->box.x, y = box->y - layout->area->box.y;
+    range[0] = clamp(x / cell, layout->columns);
+    range[1] = clamp((x + box->width) / cell, layout->columns);
+    range[2] = clamp(y / cell, layout->rows);
+    range[3] = clamp((y + box->height) / cell, layout->rows);
+}
+
+static void take(struct layout *layout, const struct box *box, int owner, enum label_over kind)
+{
+    int range[4];
+    cells_of(layout, box, range);
+    for (int column = range[0]; column <= range[1]; column++)
+        for (int row = range[2]; row <= range[3]; row++) {
+            int *head = &layout->heads[row * layout->columns + column];
+            mem_grow(&layout->entries, &layout->entry_capacity, layout->entry_count + 1, sizeof(*layout->entries));
+            layout->entries[layout->entry_count] = (struct cell_entry){ .box = *box, .owner = owner, .next = *head, .kind = kind };
+            *head = (int)layout->entry_count++;
+        }
+}
+
+bool layout_is_free(const struct layout *layout, const struct box *box, int owner, enum label_over over)
+{
+    int range[4];
+    cells_of(layout, box, range);
+    for (int column = range[0]; column <= range[1]; column++)
+        for (int row = range[2]; row <= range[3]; row++)
+            for (int i = layout->heads[row * layout->columns + column]; i >= 0; i = layout->entries[i].next) {
+                const struct box *other = &layout->entries[i].box;
+                bool counts = layout->entries[i].owner != owner && layout->entries[i].kind > over;
+                if (counts && box->x < other->x + other->width && other->x < box->x + box->width && box->y < other->y + other->height &&
+                    other->y < box->y + box->height)
+                    return false;
+            }
+    return true;
+}
+
+/* --- one label -------------------------------------------------------------------------------------------------------------- */
+
+struct box layout_box(const struct label_item *item, int slot, double unit, double across, double down)
+{
+    static const double places[LABEL_SLOTS][2] = { { 1, -0.5 }, { -1, -0.5 }, { 1, -1.3 }, { 1, 0.3 }, { -1, -1.3 }, { -1, 0.3 },
+                                                   { 0, -1.9 }, { 0, 0.9 },   { 1, -2 },   { -1, -2 }, { 1, 1 },     { -1, 1 },
+                                                   { 1, -3.2 }, { -1, -3.2 }, { 1, 2.2 },  { -1, 2.2 } };
+    double side = places[slot][0], gap = (slot < LABEL_FIRST_FAR ? NEAR_GAP : FAR_GAP) * unit;
+    double above = places[slot][1] < -0.5 ? -1 : places[slot][1] > -0.5 ? 1 : 0, more = item->ring ? (RING - MARK) * unit : 0;
+    double beside = across + gap + more;
+    double x = side > 0 ? item->x + beside : side < 0 ? item->x - beside - item->width : item->x - item->width / 2;
+    double y = item->y + places[slot][1] * item->height + (side == 0 ? above * (more + down) : 0);
+    return (struct box){ x, y, item->width, item->height };
+}
+
+static struct box box_of(const struct label_item *item, int slot, double unit)
+{
+    return layout_box(item, slot, unit, 0, 0);
+}
+
+bool layout_is_inside(const struct layout *layout, const struct box *box)
+{
+    const struct box *area = &layout->area->box;
+    return box->x >= area->x && box->y >= area->y && box->x + box->width <= area->x + area->width &&
+           box->y + box->height <= area->y + area->height;
+}
+
+static bool fits(const struct layout *layout, int index, int slot)
+{
+    const struct label_item *item = &layout->items[index];
+    struct box box = box_of(item, slot, layout->area->unit);
+    double more = slot == item->held ? 0 : LABEL_CLEARANCE * layout->area->unit;
+    struct box grown = { box.x - more, box.y - more, box.width + 2 * more, box.height + 2 * more };
+    return layout_is_inside(layout, &box) && layout_is_free(layout, &grown, index, OVER_NOTHING);
+}
+
+static void place(struct layout *layout, int index)
+{
+    const struct label_item *item = &layout->items[index];
+    for (int n = is_held(item) && item->held < LABEL_SLOTS ? -1 : 0; n < LABEL_SLOTS; n++) { /* not where a call-out was */
+        int slot = n < 0 ? item->held : n;
+        if (!fits(layout, index, slot))
+            continue;
+        struct box box = box_of(item, slot, layout->area->unit);
+        take(layout, &box, index, OVER_ALL);
+        layout->places[index] = (struct label_place){ box, slot, LABEL_NONE };
+        layout->labelled[layout->labelled_count++] = index;
+        layout->used += item->width * item->height;
+        return;
+    }
+}
+
+static bool is_apart(const struct layout *layout, const struct label_item *item, double least)
+{
+    for (int i = 0; i < layout->labelled_count; i++) {
+        const struct label_item *other = &layout->items[layout->labelled[i]];
+        if (hypot(other->x - item->x, other->y - item->y) < least)
+            return false;
+    }
+    return true;
+}
+
+static void place_rank(struct layout *layout, const int *order, size_t count)
+{
+    const struct box *area = &layout->area->box;
+    for (int pass = 0; pass < PASSES; pass++)
+        for (size_t i = 0; i < count; i++) {
+            const struct label_item *item = &layout->items[order[i]];
+            bool room = item->rank >= LABEL_BAD || layout->used < ROOM * area->width * area->height;
+            double least = SPACINGS[pass] * area->width * (is_held(item) ? HELD : 1);
+            if (room && layout->places[order[i]].slot == LABEL_NONE && is_apart(layout, item, least))
+                place(layout, order[i]);
+        }
+}
+
+void layout_set(struct layout *layout, const int *members, size_t count, const struct box *box, int slot)
+{
+    take(layout, box, members[0], OVER_ALL);
+    for (size_t i = 0; i < count; i++) {
+        layout->places[members[i]] = (struct label_place){ *box, slot, count > 1 ? members[0] : LABEL_NONE };
+        layout->labelled[layout->labelled_count++] = members[i];
+    }
+    layout->used += box->width * box->height;
+}
+
+static void layout_init(struct layout *layout, const struct label_item *items, size_t count, const struct label_area *area,
+                        struct label_place *places)
+{
+    double cell = CELL * area->unit;
+    *layout = (struct layout){ .items = items, .area = area, .places = places };
+    layout->columns = (int)(area->box.width / cell) + 1;
+    layout->rows = (int)(area->box.height / cell) + 1;
+    layout->heads = mem_array((size_t)layout->columns * (size_t)layout->rows, sizeof(*layout->heads));
+    layout->labelled = mem_array(count, sizeof(*layout->labelled));
+    for (int i = 0; i < layout->columns * layout->rows; i++)
+        layout->heads[i] = -1;
+    for (size_t i = 0; i < area->blocked_count; i++)
+        take(layout, &area->blocked[i], -1, OVER_ALL);
+    for (size_t i = 0; i < count; i++) {
+        double radius = (items[i].ring ? RING : MARK) * area->unit;
+        struct box mark = { items[i].x - radius, items[i].y - radius, 2 * radius, 2 * radius };
+        take(layout, &mark, (int)i, items[i].ring ? OVER_RINGS : OVER_MARKS);
+        places[i] = (struct label_place){ .slot = LABEL_NONE, .callout = LABEL_NONE };
+    }
+}
+
+void labels_place(const struct label_item *items, size_t count, const struct label_area *area, struct label_place *places)
+{
+    struct layout layout;
+    int *order = mem_array(count, sizeof(*order));
+    size_t wanted = 0, rings = 0;
+    layout_init(&layout, items, count, area, places);
+    for (size_t i = 0; i < count; i++)
+        if (items[i].rank != LABEL_NOT_WANTED)
+            order[wanted++] = (int)i;
+    qsort_r(order, wanted, sizeof(*order), by_importance, (void *)items);
+    while (rings < wanted && items[order[rings]].rank == LABEL_BEYOND)
+        rings++;
+    layout_place_rings(&layout, order, rings);
+    for (size_t begin = rings, end; begin < wanted; begin = end) {
+        for (end = begin; end < wanted && items[order[end]].rank == items[order[begin]].rank;)
+            end++;
+        place_rank(&layout, order + begin, end - begin);
+    }
+    mem_free(layout.heads);
+    mem_free(layout.entries);
+    mem_free(layout.labelled);
+    mem_free(order);
+}

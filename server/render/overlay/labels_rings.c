@@ -1,0 +1,272 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Rings of alarms: each in a label of its own, or in a call-out together with those close to it. */
+#include <math.h>
+#include <stdlib.h>
+
+#include "base/mem.h"
+#include "render/overlay/labels_impl.h"
+
+static const double CLOSE = 26, STILL_CLOSE = 34; /* units between rings that share a call-out; that did in the picture before */
+static const double FARTHER = 1.25;               /* both grow by, until there are no more labels of rings than: */
+enum { MOST_GROUPS = 24 };
+static const double FARTHEST = 170; /* units, unless there is no other label to join */
+/* Where else a label may be, from the middle of its rings; steps in units. */
+enum { STEP_X = 24, STEP_Y = 15, STEPS = 60, SIDE = 2 * STEPS + 1, OFFSETS = SIDE * SIDE, NOWHERE = -2, FORCED = 1000000 };
+
+struct offset {
+    int x, y, squared, index;
+};
+
+struct group {              /* rings that share a label */
+    struct label_item item; /* in the middle between them; the size of their label */
+    double across, down;    /* from there to the outermost */
+    int *members;           /* indices of items, by importance; in rings.members */
+    size_t count;
+    struct box box;
+    int slot, mate; /* mate: the group that it joins, since there was no room */
+};
+
+struct rings {
+    struct layout *layout;
+    const int *order;
+    size_t count, group_count;
+    double least; /* a unit, or more where many rings are close together */
+    struct group *groups;
+    int *group_of;          /* by place in `order` */
+    int *members;           /* of all groups, one after the other */
+    struct offset *offsets; /* the nearest first */
+};
+
+static int by_distance(const void *a, const void *b)
+{
+    const struct offset *i = a, *k = b;
+    return i->squared != k->squared ? (i->squared > k->squared) - (i->squared < k->squared) : i->index - k->index;
+}
+
+static struct offset *make_offsets(void)
+{
+    struct offset *offsets = mem_array(OFFSETS, sizeof(*offsets));
+    for (int i = 0; i < OFFSETS; i++) {
+        int x = (i % SIDE - STEPS) * STEP_X, y = (i / SIDE - STEPS) * STEP_Y;
+        offsets[i] = (struct offset){ x, y, x * x + y * y, i };
+    }
+    qsort(offsets, OFFSETS, sizeof(*offsets), by_distance);
+    return offsets;
+}
+
+/* --- who belongs together ---------------------------------------------------------------------------------------------------- */
+
+static const struct label_item *ring_at(const struct rings *rings, size_t i)
+{
+    return &rings->layout->items[rings->order[i]];
+}
+
+static bool are_close(const struct rings *rings, size_t i, size_t k)
+{
+    const struct label_item *a = ring_at(rings, i), *b = ring_at(rings, k);
+    bool did = a->callout != LABEL_NONE && a->callout == b->callout;
+    double least = (did ? STILL_CLOSE : CLOSE) * rings->least, dx = a->x - b->x, dy = a->y - b->y;
+    return dx * dx + dy * dy < least * least;
+}
+
+static int root_of(int *first, int i)
+{
+    while (first[i] != i)
+        i = first[i] = first[first[i]];
+    return i;
+}
+
+static void join(int *first, int i, int k)
+{
+    int a = root_of(first, i), b = root_of(first, k);
+    first[a > b ? a : b] = a < b ? a : b;
+}
+
+/* Returns how many groups there are. */
+static size_t join_close(const struct rings *rings, int *first)
+{
+    size_t groups = 0;
+    for (size_t i = 0; i < rings->count; i++) {
+        first[i] = (int)i;
+        for (size_t k = 0; k < i; k++)
+            if (are_close(rings, i, k))
+                join(first, (int)i, (int)k);
+    }
+    for (size_t i = 0; i < rings->count; i++)
+        groups += first[i] == (int)i;
+    return groups;
+}
+
+/* A group's place and size, and what it had in the picture before. */
+static void measure(struct rings *rings, struct group *group)
+{
+    const struct label_area *area = rings->layout->area;
+    const struct label_item *items = rings->layout->items, *one = &items[group->members[0]];
+    double left = INFINITY, right = -INFINITY, top = INFINITY, bottom = -INFINITY, size[2] = { one->width, one->height };
+    group->item.held = LABEL_NONE;
+    for (size_t i = group->count; i-- > 0;) {
+        const struct label_item *item = &items[group->members[i]];
+        left = fmin(left, item->x);
+        right = fmax(right, item->x);
+        top = fmin(top, item->y);
+        bottom = fmax(bottom, item->y);
+        if ((item->callout == LABEL_NONE) == (group->count == 1)) /* it had such a label, or another kind */
+            group->item.held = item->held;
+    }
+    if (group->count > 1)
+        area->measure(area->arg, group->members, group->count, size);
+    group->item.x = (left + right) / 2;
+    group->item.y = (top + bottom) / 2;
+    group->item.width = size[0];
+    group->item.height = size[1];
+    group->item.ring = true;
+    group->across = (right - left) / 2;
+    group->down = (bottom - top) / 2;
+}
+
+/* first: by place in `order`, the roots of who belongs together. */
+static void make_groups(struct rings *rings, int *first)
+{
+    int *next = rings->members;
+    rings->group_count = 0;
+    for (size_t i = 0; i < rings->count; i++) {
+        int root = root_of(first, (int)i), index = root == (int)i ? (int)rings->group_count++ : rings->group_of[root];
+        if (root == (int)i)
+            rings->groups[index] = (struct group){ .count = 0 };
+        rings->group_of[i] = index;
+        rings->groups[index].count++;
+    }
+    for (size_t i = 0; i < rings->group_count; i++) {
+        rings->groups[i].members = next;
+        next += rings->groups[i].count;
+        rings->groups[i].count = 0;
+    }
+    for (size_t i = 0; i < rings->count; i++) {
+        struct group *group = &rings->groups[rings->group_of[i]];
+        group->members[group->count++] = rings->order[i];
+    }
+    for (size_t i = 0; i < rings->group_count; i++)
+        measure(rings, &rings->groups[i]);
+}
+
+/* --- where their labels lie -------------------------------------------------------------------------------------------------- */
+
+static struct box box_at(const struct rings *rings, const struct group *group, int slot)
+{
+    const struct label_item *item = &group->item;
+    double unit = rings->layout->area->unit;
+    if (slot < LABEL_SLOTS)
+        return layout_box(item, slot, unit, group->across, group->down);
+    const struct offset *offset = &rings->offsets[slot - LABEL_SLOTS];
+    return (struct box){ item->x + offset->x * unit - item->width / 2, item->y + offset->y * unit - item->height / 2, item->width,
+                         item->height };
+}
+
+/* before: groups whose labels stand already, as far as they do. */
+static bool is_free(const struct rings *rings, const struct group *group, int slot, double more, enum label_over over)
+{
+    struct box box = box_at(rings, group, slot);
+    struct box grown = { box.x - more, box.y - more, box.width + 2 * more, box.height + 2 * more };
+    int owner = slot < LABEL_SLOTS && group->count == 1 ? group->members[0] : LABEL_NONE - 1;
+    if (!layout_is_inside(rings->layout, &box) || !layout_is_free(rings->layout, &grown, owner, over))
+        return false;
+    for (const struct group *other = rings->groups; other < group; other++)
+        if (other->slot != NOWHERE && grown.x < other->box.x + other->box.width && other->box.x < grown.x + grown.width &&
+            grown.y < other->box.y + other->box.height && other->box.y < grown.y + grown.height)
+            return false;
+    return true;
+}
+
+static int find_slot(const struct rings *rings, const struct group *group)
+{
+    int held = group->item.held;
+    bool alone = rings->group_count == 1;
+    double clearance = LABEL_CLEARANCE * rings->layout->area->unit;
+    if (held >= 0 && held < LABEL_SLOTS + OFFSETS && is_free(rings, group, held, 0, OVER_MARKS))
+        return held;
+    for (int i = 0; i < 2 * LABEL_SLOTS; i++)
+        if (is_free(rings, group, i % LABEL_SLOTS, clearance, i < LABEL_SLOTS ? OVER_NOTHING : OVER_MARKS))
+            return i % LABEL_SLOTS;
+    for (int over = OVER_MARKS; over <= (alone ? OVER_RINGS : OVER_MARKS); over++) /* at last over its own rings */
+        for (int i = 0; i < OFFSETS && (alone || rings->offsets[i].squared <= FARTHEST * FARTHEST); i++)
+            if (is_free(rings, group, LABEL_SLOTS + i, clearance, (enum label_over)over))
+                return LABEL_SLOTS + i;
+    return alone ? FORCED : NOWHERE;
+}
+
+/* Over other things, but within the area. */
+static struct box forced_box(const struct rings *rings, const struct group *group)
+{
+    const struct box *area = &rings->layout->area->box;
+    double width = group->item.width, height = group->item.height;
+    return (struct box){ fmax(area->x, fmin(area->x + area->width - width, group->item.x - width / 2)),
+                         fmax(area->y, fmin(area->y + area->height - height, group->item.y - height / 2)), width, height };
+}
+
+static double squared(double x)
+{
+    return x * x;
+}
+
+static int nearest_to(const struct rings *rings, int index)
+{
+    const struct group *a = &rings->groups[index];
+    double least = INFINITY;
+    int nearest = -1;
+    for (int i = 0; i < (int)rings->group_count; i++) {
+        const struct group *b = &rings->groups[i];
+        double apart = squared(fmax(0, fabs(a->item.x - b->item.x) - a->across - b->across)) +
+                       squared(fmax(0, fabs(a->item.y - b->item.y) - a->down - b->down));
+        if (i != index && apart < least) {
+            least = apart;
+            nearest = i;
+        }
+    }
+    return nearest;
+}
+
+/* False: some groups found no room; each has chosen one to join. */
+static bool place_groups(struct rings *rings)
+{
+    bool all = true;
+    for (size_t i = 0; i < rings->group_count; i++) {
+        struct group *group = &rings->groups[i];
+        group->slot = find_slot(rings, group);
+        group->mate = group->slot == NOWHERE ? nearest_to(rings, (int)i) : LABEL_NONE;
+        all = all && group->slot != NOWHERE;
+        if (group->slot != NOWHERE)
+            group->box = group->slot == FORCED ? forced_box(rings, group) : box_at(rings, group, group->slot);
+    }
+    return all;
+}
+
+void layout_place_rings(struct layout *layout, const int *order, size_t count)
+{
+    struct rings rings = { .layout = layout, .order = order, .count = count };
+    int *first = mem_array(count, sizeof(*first));
+    rings.groups = mem_array(count, sizeof(*rings.groups));
+    rings.group_of = mem_array(count, sizeof(*rings.group_of));
+    rings.members = mem_array(count, sizeof(*rings.members));
+    rings.offsets = count ? make_offsets() : NULL;
+    for (rings.least = layout->area->unit; join_close(&rings, first) > MOST_GROUPS; rings.least *= FARTHER) {
+    }
+    make_groups(&rings, first);
+    while (count && !place_groups(&rings)) {
+        for (size_t i = 0; i < count; i++) {
+            int mate = rings.groups[rings.group_of[i]].mate;
+            for (size_t k = 0; k < count && mate != LABEL_NONE; k++)
+                if (rings.group_of[k] == mate) {
+                    join(first, (int)i, (int)k);
+                    mate = LABEL_NONE;
+                }
+        }
+        make_groups(&rings, first);
+    }
+    for (size_t i = 0; i < rings.group_count; i++)
+        layout_set(layout, rings.groups[i].members, rings.groups[i].count, &rings.groups[i].box, rings.groups[i].slot);
+    mem_free(rings.groups);
+    mem_free(rings.group_of);
+    mem_free(rings.members);
+    mem_free(rings.offsets);
+    mem_free(first);
+}

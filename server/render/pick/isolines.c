@@ -1,0 +1,221 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Crossings of triangle edges with isolines, thinned out. */
+#include "render/pick/isolines.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "base/mem.h"
+#include "render/pick/markers.h"
+
+enum { POINTS_PER_LINE = 16, POINTS_MOST = 2048, LABELS_MOST = 128 };
+static const double SPACING = 0.1, COARSE = 0.01; /* of an asset's size: between points; error of the level that is searched */
+static const double SAME_LINE = 4;                /* times as far apart as labels of different lines */
+
+void isolines_init(struct isolines *isolines, size_t asset_count)
+{
+    isolines->sets = mem_array(asset_count, sizeof(*isolines->sets));
+    isolines->asset_count = asset_count;
+}
+
+void isolines_finish(struct isolines *isolines)
+{
+    for (size_t i = 0; i < isolines->asset_count; i++)
+        mem_free(isolines->sets[i].points);
+    mem_free(isolines->sets);
+}
+
+/* --- points on lines --------------------------------------------------------------------------------------------------------- */
+
+/* One asset being searched. */
+struct search {
+    const struct scene_asset *asset;
+    const struct fields_entry *field;
+    struct isoline_set *set;
+    double size_m;
+    float slack_m;
+    int counts[VIEW_ALL_LINES];
+};
+
+static bool is_apart(const struct search *search, double value, const double place_m[3])
+{
+    double least_m = SPACING * search->size_m;
+    for (size_t i = search->set->count; i-- > 0;) {
+        const struct isoline_point *point = &search->set->points[i];
+        double square = 0;
+        for (int c = 0; c < 3; c++)
+            square += (point->place_m[c] - place_m[c]) * (point->place_m[c] - place_m[c]);
+        if (point->value == value && square < least_m * least_m)
+            return false;
+    }
+    return true;
+}
+
+static void add_point(struct search *search, int line, uint32_t a, uint32_t b)
+{
+    const struct asset_view *view = &search->asset->file->view;
+    const struct scalar *values = search->field->shown;
+    double value = search->set->lines[line], span = (double)values[b].value - (double)values[a].value, file_m[3], place_m[3];
+    double part = (value - (double)values[a].value) / span;
+    const double *m = search->asset->placement;
+    for (int c = 0; c < 3; c++)
+        file_m[c] = (double)view->positions_m[a][c] + part * (double)(view->positions_m[b][c] - view->positions_m[a][c]);
+    for (int c = 0; c < 3; c++)
+        place_m[c] = m[c] * file_m[0] + m[4 + c] * file_m[1] + m[8 + c] * file_m[2] + m[12 + c];
+    if (!is_apart(search, value, place_m))
+        return;
+    struct isoline_set *set = search->set;
+    mem_grow(&set->points, &set->capacity, set->count + 1, sizeof(*set->points));
+    set->points[set->count++] =
+        (struct isoline_point){ .value = value, .place_m = { place_m[0], place_m[1], place_m[2] }, .slack_m = search->slack_m };
+    search->counts[line]++;
+}
+
+static void search_edge(struct search *search, uint32_t a, uint32_t b)
+{
+    const struct scalar *values = search->field->shown;
+    double low = fminf(values[a].value, values[b].value), high = fmaxf(values[a].value, values[b].value);
+    if (values[a].no_data || values[b].no_data || !(high > low))
+        return;
+    for (int i = 0; i < search->set->line_count; i++)
+        if (search->set->lines[i] > low && search->set->lines[i] <= high && search->counts[i] < POINTS_PER_LINE)
+            add_point(search, i, a, b);
+}
+
+static const struct asset_level *coarse_level(const struct asset_view *view, double error_m)
+{
+    uint32_t level = 0;
+    while (level + 1 < view->header->level_count && (double)view->levels[level + 1].error_m <= error_m)
+        level++;
+    return &view->levels[level];
+}
+
+static double size_of(const struct scene_asset *asset)
+{
+    double size_m = 0;
+    for (int c = 0; c < 3; c++)
+        size_m = fmax(size_m, asset->bounds_max_m[c] - asset->bounds_min_m[c]);
+    return size_m;
+}
+
+size_t isolines_vertex_count(const struct scene_asset *asset)
+{
+    return coarse_level(&asset->file->view, COARSE * size_of(asset))->vertex_count;
+}
+
+static void search_asset(struct search *search)
+{
+    const struct asset_view *view = &search->asset->file->view;
+    search->size_m = size_of(search->asset);
+    const struct asset_level *level = coarse_level(view, COARSE * search->size_m);
+    search->slack_m = (float)fmax(1.5 * (double)level->error_m, 0.01 * search->size_m);
+    search->set->count = 0;
+    for (uint32_t p = 0; p < level->primitive_count; p++) {
+        const struct asset_primitive *primitive = &view->primitives[level->first_primitive + p];
+        const uint32_t *corner = view->indices + primitive->first_index;
+        for (uint32_t i = 0; i < primitive->index_count; i += 3) {
+            search_edge(search, corner[i], corner[i + 1]);
+            search_edge(search, corner[i + 1], corner[i + 2]);
+        }
+    }
+}
+
+static void update_set(struct isoline_set *set, const struct scene_asset *asset, const struct fields_entry *field, const double *lines,
+                       int line_count)
+{
+    size_t bytes = (size_t)line_count * sizeof(*lines);
+    if (set->content == field->content && set->line_count == line_count && memcmp(set->lines, lines, bytes) == 0)
+        return;
+    set->content = field->content;
+    set->line_count = line_count;
+    memcpy(set->lines, lines, bytes);
+    search_asset(&(struct search){ .asset = asset, .field = field, .set = set });
+}
+
+/* --- which of them are seen -------------------------------------------------------------------------------------------------- */
+
+void isolines_collect(struct isolines *isolines, const struct frame_context *context, struct isoline_points *out)
+{
+    double lines[VIEW_ALL_LINES];
+    int line_count = view_lines(context->view, lines);
+    for (size_t i = 0; line_count > 0 && i < context->visible_count; i++) {
+        int asset = context->visible[i];
+        struct isoline_set *set = &isolines->sets[asset];
+        if (!context->fields[asset] || !context->fields[asset]->slice)
+            continue;
+        update_set(set, &context->gpu_scene->scene->assets[asset], context->fields[asset], lines, line_count);
+        if (set->count == 0)
+            continue;
+        if (out->count + set->count > POINTS_MOST)
+            break;
+        mem_grow(&out->at, &out->capacity, out->count + set->count, sizeof(*out->at));
+        for (size_t p = 0; p < set->count; p++)
+            if (clip_keeps(&context->view->visibility.clip, set->points[p].place_m))
+                out->at[out->count++] = set->points[p];
+    }
+}
+
+/* Eye space, and slack. */
+static void fill_places(const struct frame_context *context, const struct isoline_points *points, float (*places)[4])
+{
+    for (size_t i = 0; i < points->count; i++) {
+        for (int c = 0; c < 3; c++)
+            places[i][c] = (float)(points->at[i].place_m[c] - context->constants.eye_m[c]);
+        places[i][3] = points->at[i].slack_m;
+    }
+}
+
+bool isolines_start(struct point_visibility *queries, const struct frame_context *context, const struct isoline_points *points)
+{
+    size_t count = points->count;
+    if (count == 0)
+        return true;
+    float(*places)[4] = point_visibility_reserve(queries, context->gpu_scene->gl, count);
+    if (!places)
+        return false;
+    fill_places(context, points, places);
+    return point_visibility_start(queries, context, count);
+}
+
+/* A message goes with each frame: no more places than a picture has room for, and few of one line. */
+static bool has_room(const struct frame *frame, const float place[4], double value)
+{
+    double least_px = fmax(40, frame->width_px / 32.0);
+    for (size_t i = 0; i < frame->label_count; i++) {
+        const struct frame_label *label = &frame->labels[i];
+        double away_px = hypot((double)(label->x_px - place[0]), (double)(label->y_px - place[1]));
+        if (away_px < (label->value == value ? SAME_LINE * least_px : least_px))
+            return false;
+    }
+    return frame->label_count < LABELS_MOST;
+}
+
+/* places: x, y in pixels, hidden. */
+static void give(const struct isoline_points *points, float (*places)[4], struct frame *frame)
+{
+    frame->labels = mem_array(points->count, sizeof(*frame->labels));
+    for (size_t i = 0; i < points->count; i++)
+        if (places[i][2] < 0.5f && has_room(frame, places[i], points->at[i].value))
+            frame->labels[frame->label_count++] = (struct frame_label){ .value = points->at[i].value,
+                                                                        .x_px = roundf(10 * places[i][0]) / 10,
+                                                                        .y_px = roundf(10 * places[i][1]) / 10 };
+}
+
+void isolines_get(const struct point_visibility *queries, const struct isoline_points *points, struct frame *frame)
+{
+    if (points->count > 0)
+        give(points, queries->places, frame);
+}
+
+void isolines_find(const struct frame_context *context, const struct isoline_points *points, const float *depth, size_t pitch_px,
+                   struct frame *frame)
+{
+    if (points->count == 0)
+        return;
+    float(*places)[4] = mem_array(points->count, sizeof(*places));
+    fill_places(context, points, places);
+    for (size_t i = 0; i < points->count; i++)
+        markers_look(context, depth, pitch_px, places[i]);
+    give(points, places, frame);
+    mem_free(places);
+}

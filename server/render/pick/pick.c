@@ -1,0 +1,212 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* A ray, the triangle that it meets, and the field between its corners, as it is drawn. */
+#include "render/pick/pick.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "base/mem.h"
+#include "render/pick/markers.h"
+#include "scene/raycast.h"
+#include "value/quality.h"
+
+static const double MARKER_PX = 9;                       /* so near, the marker is meant */
+static const double MEASURED_PX = 3, MEASURED_M = 0.005; /* so near a sensor, its reading is what is seen */
+
+struct spot { /* one pick */
+    const struct scene *scene;
+    const struct view *view; /* a whole one */
+    const struct snapshot *snapshot;
+    struct raycast_hit hit;
+    double meter_per_pixel; /* at the hit */
+};
+
+/* --- which sensor's marker --------------------------------------------------------------------------------------------------- */
+
+struct lens {
+    double right[3], up[3], forward[3], pixel_per_unit; /* per metre, at 1 m in perspective */
+};
+
+static void lens_init(struct lens *lens, const struct view *view)
+{
+    const struct camera *camera = &view->camera;
+    camera_basis(camera, lens->right, lens->up, lens->forward);
+    lens->pixel_per_unit =
+        camera->height_m > 0 ? view->height_px / camera->height_m : view->height_px / (2 * tan(camera->fov_deg * M_PI / 360));
+}
+
+/* Pixels and depth of a place. False: behind the eye. */
+static bool lens_project(const struct lens *lens, const struct view *view, const double place_m[3], double *x_px, double *y_px)
+{
+    double right = 0, up = 0, ahead = 0;
+    for (int i = 0; i < 3; i++) {
+        double from_eye = place_m[i] - view->camera.eye_m[i];
+        right += from_eye * lens->right[i];
+        up += from_eye * lens->up[i];
+        ahead += from_eye * lens->forward[i];
+    }
+    double scale = view->camera.height_m > 0 ? lens->pixel_per_unit : lens->pixel_per_unit / ahead;
+    *x_px = view->width_px / 2.0 + right * scale;
+    *y_px = view->height_px / 2.0 - up * scale;
+    return view->camera.height_m > 0 || ahead > 0;
+}
+
+static void ray_through(const struct view *view, double x_px, double y_px, struct ray *ray)
+{
+    ray_init(ray, &view->camera, (double)view->width_px / view->height_px, 2 * x_px / view->width_px - 1, 1 - 2 * y_px / view->height_px);
+}
+
+/* A ray towards it meets nothing before. */
+static bool in_sight(const struct spot *spot, const struct marker_place *place, double x_px, double y_px)
+{
+    struct ray ray;
+    struct raycast_hit hit;
+    double ahead = 0, square = 0;
+    ray_through(spot->view, x_px, y_px, &ray);
+    raycast(spot->scene, &spot->view->visibility, &ray, &hit);
+    for (int i = 0; i < 3; i++) {
+        ahead += (place->surface_m[i] - ray.origin[i]) * ray.direction[i];
+        square += ray.direction[i] * ray.direction[i];
+    }
+    return hit.asset < 0 || hit.t * sqrt(square) > ahead / sqrt(square) - markers_slack_m(&spot->scene->assets[place->asset]);
+}
+
+static void find_sensor(const struct spot *spot, const struct trial *trial, double x_px, double y_px, struct pick *out)
+{
+    struct marker_iterator iterator = { .scene = spot->scene, .trial = trial };
+    struct marker_place place;
+    struct lens lens;
+    double near_px = MARKER_PX * (spot->view->pixel_ratio > 0 ? spot->view->pixel_ratio : 1);
+    double least[2] = { near_px, near_px }; /* in sight, and not */
+    lens_init(&lens, spot->view);
+    while (marker_next(&iterator, &place)) {
+        double x, y;
+        if (!marker_is_shown(spot->scene, spot->view, &place) || !lens_project(&lens, spot->view, place.surface_m, &x, &y))
+            continue;
+        double away = hypot(x - x_px, y - y_px);
+        if (away >= least[0])
+            continue;
+        bool occluded = !in_sight(spot, &place, x, y);
+        if (away >= least[occluded] || (occluded && least[0] < near_px))
+            continue;
+        least[occluded] = away;
+        out->sensor = place.tag;
+        out->sensor_occluded = occluded;
+    }
+}
+
+/* --- what the field says ----------------------------------------------------------------------------------------------------- */
+
+/* As the picture interpolates it. */
+static void read_field(const struct spot *spot, const struct scalars *scalars, struct pick *out)
+{
+    double value = 0, no_data = 0, uncertain = 0;
+    for (int k = 0; k < 3; k++) {
+        const struct scalar *at = &scalars->at[spot->hit.corners[k]];
+        double weight = spot->hit.weights[k];
+        value += weight * (double)at->value;
+        no_data += weight * at->lacking / 255;
+        uncertain += weight * at->uncertain / 255;
+    }
+    out->state = no_data > 0.5 ? PICK_NO_DATA : PICK_BETWEEN;
+    out->uncertain = uncertain > 0.5;
+    out->value = value;
+}
+
+static double distance_of(const struct spot *spot, const struct field_sensor *sensor, const double place_file_m[3])
+{
+    const float *distances = sensor->along_m;
+    double sum = 0;
+    if (spot->view->field.distance == DISTANCE_EUCLIDEAN || !distances) {
+        for (int i = 0; i < 3; i++)
+            sum += pow(place_file_m[i] - (double)sensor->surface_m[i], 2);
+        return sqrt(sum);
+    }
+    for (int k = 0; k < 3; k++)
+        if (spot->hit.weights[k] != 0)
+            sum += spot->hit.weights[k] * (double)distances[spot->hit.corners[k]];
+    return sum;
+}
+
+static void insert(struct pick *out, const struct pick_sensor *sensor)
+{
+    int at = out->nearest_count;
+    while (at > 0 && sensor->distance_m < out->nearest[at - 1].distance_m)
+        at--;
+    if (at == PICK_NEAREST)
+        return;
+    int last = out->nearest_count < PICK_NEAREST ? out->nearest_count++ : PICK_NEAREST - 1;
+    memmove(&out->nearest[at + 1], &out->nearest[at], (size_t)(last - at) * sizeof(*sensor));
+    out->nearest[at] = *sensor;
+}
+
+static void read_sensors(const struct spot *spot, struct field *field, const struct field_params *params, struct pick *out)
+{
+    const struct scene_asset *asset = &spot->scene->assets[spot->hit.asset];
+    struct field_sensor *sensors = NULL;
+    double place_m[3] = { 0 };
+    float radius_m;
+    for (int k = 0; k < 3; k++)
+        for (int i = 0; i < 3; i++)
+            place_m[i] += spot->hit.weights[k] * (double)asset->file->view.positions_m[spot->hit.corners[k]][i];
+    size_t count = field_sensors(field, spot->hit.asset, params, &sensors, &radius_m);
+    for (size_t i = 0; i < count; i++) {
+        int tag = sensors[i].tag;
+        const struct reading *reading = &spot->snapshot->readings[tag];
+        double distance_m = distance_of(spot, &sensors[i], place_m);
+        if (sensors[i].usable && distance_m <= params->reach_m && isfinite(distance_m))
+            insert(out,
+                   &(struct pick_sensor){ .tag = tag, .distance_m = distance_m, .value = reading->value, .quality = reading->quality });
+    }
+    mem_free(sensors);
+}
+
+static bool is_measured(const struct spot *spot, const struct field_params *params, const struct pick *pick)
+{
+    return pick->state == PICK_BETWEEN && params->interpolation == INTERPOLATION_SHEPARD && params->show != SHOW_DISTANCE &&
+           pick->nearest_count > 0 && pick->nearest[0].distance_m <= fmax(MEASURED_M, MEASURED_PX * spot->meter_per_pixel);
+}
+
+static void read_place(struct spot *spot, struct field *field, struct pick *out)
+{
+    struct field_params params = spot->view->field;
+    if (params.show == SHOW_OPERATOR)
+        params.show = SHOW_VALUE;
+    const struct scalars *scalars = out->inside ? NULL : field_scalars(field, out->asset, &params, spot->snapshot);
+    if (!scalars)
+        return;
+    read_field(spot, scalars, out);
+    read_sensors(spot, field, &params, out);
+    if (is_measured(spot, &params, out))
+        out->state = PICK_MEASURED;
+}
+
+void pick_at(const struct scene *scene, struct field *field, const struct view *view, const struct snapshot *snapshot, double x_px,
+             double y_px, struct pick *out)
+{
+    struct view half;
+    bool right = view->split && x_px >= view_left_px(view);
+    view_half(view, right, &half);
+    x_px -= right ? view_left_px(view) : 0;
+    struct spot spot = { .scene = scene, .view = &half, .snapshot = snapshot };
+    struct ray ray;
+    *out = (struct pick){ .asset = -1, .sensor = -1, .value = NAN, .data_utc_ns = snapshot->taken_utc_ns };
+    if (x_px < 0 || y_px < 0 || x_px >= half.width_px || y_px >= half.height_px)
+        return;
+    const struct trial *trial = field_take_trial(field, &half.field);
+    find_sensor(&spot, trial, x_px, y_px, out);
+    field_give_trial(field, &trial);
+    ray_through(&half, x_px, y_px, &ray);
+    raycast(scene, &half.visibility, &ray, &spot.hit);
+    if (spot.hit.asset < 0)
+        return;
+    out->asset = spot.hit.asset;
+    out->inside = spot.hit.inside;
+    memcpy(out->normal, spot.hit.normal, sizeof(out->normal));
+    for (int i = 0; i < 3; i++)
+        out->position_m[i] = ray.origin[i] + spot.hit.t * ray.direction[i];
+    bool parallel = half.camera.height_m > 0;
+    double high_m = parallel ? half.camera.height_m : 2 * tan(half.camera.fov_deg * M_PI / 360) * spot.hit.t;
+    spot.meter_per_pixel = high_m / half.height_px;
+    read_place(&spot, field, out);
+}

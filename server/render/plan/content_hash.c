@@ -1,0 +1,100 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Hashes a view field by field, since structs have padding. */
+#include "render/plan/content_hash.h"
+
+#define XXH_INLINE_ALL
+#include <xxhash.h>
+
+static void add(XXH3_state_t *state, const void *bytes, size_t count)
+{
+    XXH3_64bits_update(state, bytes, count);
+}
+
+static void add_field_params(XXH3_state_t *state, const struct field_params *params)
+{
+    int32_t choices[] = { params->group, (int32_t)params->show,     params->sensor,        params->interpolation, params->distance,
+                          params->fill,  (int32_t)params->baseline, (int32_t)params->trial };
+    double numbers[] = { params->strength, params->decay, params->power, params->radius_m, params->reach_m };
+    add(state, choices, sizeof(choices));
+    add(state, numbers, sizeof(numbers));
+    add(state, params->overrides, params->override_count * sizeof(*params->overrides));
+}
+
+static void add_color_scale(XXH3_state_t *state, const struct color_scale *color_scale)
+{
+    int32_t choices[] = { color_scale->log, color_scale->break_count, color_scale->line_count };
+    add(state, choices, sizeof(choices));
+    add(state, color_scale->breaks, (size_t)color_scale->break_count * sizeof(*color_scale->breaks));
+    add(state, color_scale->lines, (size_t)color_scale->line_count * sizeof(*color_scale->lines));
+}
+
+/* What is hidden throws no shadow either, wherever it stands: all assets count. */
+static void add_visibility(XXH3_state_t *state, const struct frame_context *context)
+{
+    const struct visibility *visibility = &context->view->visibility;
+    size_t planes = (size_t)visibility->clip.plane_count;
+    if (visibility->hidden.count + visibility->isolated.count + visibility->ghosts.count > 0)
+        for (size_t i = 0; i < context->gpu_scene->scene->asset_count; i++) {
+            uint8_t look = (uint8_t)visibility_of(visibility, (int)i);
+            add(state, &look, sizeof(look));
+        }
+    add(state, visibility->clip.planes, planes * sizeof(visibility->clip.planes[0]));
+}
+
+/* All but the field and its colours. */
+static void add_shape(XXH3_state_t *state, const struct frame_context *context)
+{
+    const struct view *view = context->view;
+    int32_t choices[] = { view->width_px,       view->height_px,   (int32_t)view->look,        (int32_t)view->tier,
+                          view->selected_asset, view->environment, (int32_t)view->field.trial, view->dark };
+    double numbers[] = { view->camera.fov_deg, view->camera.height_m };
+    add(state, choices, sizeof(choices));
+    add(state, numbers, sizeof(numbers));
+    add(state, view->camera.eye_m, sizeof(view->camera.eye_m));
+    add(state, view->camera.target_m, sizeof(view->camera.target_m));
+    add(state, view->camera.up, sizeof(view->camera.up));
+    add(state, view->light_dir, sizeof(view->light_dir));
+    add(state, context->lit_by.towards, sizeof(context->lit_by.towards));
+    add(state, &context->lit_by.environment, sizeof(context->lit_by.environment));
+    add(state, &context->lit_by.rough, sizeof(context->lit_by.rough));
+    bool own_shadows = visibility_equal(&context->lit_by.shown, &view->visibility);
+    add(state, &own_shadows, sizeof(own_shadows));
+    add_visibility(state, context);
+}
+
+static void add_colors(XXH3_state_t *state, const struct view *view)
+{
+    double numbers[] = { view->colormap, view->ramp_interval, view->range_min, view->range_max };
+    add(state, numbers, sizeof(numbers));
+    add(state, &view->at_us, sizeof(view->at_us)); /* the same picture of another instant says another time */
+    add_field_params(state, &view->field);
+    add_color_scale(state, &view->color_scale);
+}
+
+uint64_t content_hash(const struct frame_context *context)
+{
+    XXH3_state_t state;
+    XXH3_INITSTATE(&state);
+    XXH3_64bits_reset(&state);
+    add_shape(&state, context);
+    add_colors(&state, context->view);
+    for (size_t i = 0; i < context->visible_count; i++) {
+        int asset = context->visible[i];
+        uint64_t one[2] = { (uint64_t)asset, context->fields[asset] ? context->fields[asset]->content : 0 };
+        add(&state, one, sizeof(one));
+    }
+    return XXH3_64bits_digest(&state);
+}
+
+uint64_t content_shape_hash(const struct frame_context *context)
+{
+    XXH3_state_t state;
+    XXH3_INITSTATE(&state);
+    XXH3_64bits_reset(&state);
+    add_shape(&state, context);
+    for (size_t i = 0; i < context->visible_count; i++) {
+        int one[2] = { context->visible[i], context->fields[context->visible[i]] != NULL };
+        add(&state, one, sizeof(one));
+    }
+    return XXH3_64bits_digest(&state);
+}

@@ -1,0 +1,263 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Keeps scalars on the GPU up to date, as far as one can see. */
+#include "render/plan/fields.h"
+
+#include <math.h>
+#include <string.h>
+
+#define XXH_INLINE_ALL
+#include <xxhash.h>
+
+#include "base/mem.h"
+#include "render/reference/reference.h"
+
+static const uint64_t LOST = 0x6c6f7374;             /* content that no other has */
+static const size_t BOUND_BYTES = (size_t)384 << 20; /* on the GPU, and as much again here: some 700 assets of 66,000 vertices */
+
+void fields_init(struct fields *fields, struct log *log, struct field *field)
+{
+    *fields = (struct fields){
+        .log = log, .field = field, .lost = { .asset = -1, .content = LOST, .oldest_age_ns = INT64_MAX }, .bound_bytes = BOUND_BYTES
+    };
+    fields->pool = pool_create(log, "field", GL_RG32UI, sizeof(struct scalar), GL_DYNAMIC_STORAGE_BIT);
+}
+
+static void entry_destroy(struct fields *fields, struct fields_entry *entry)
+{
+    fields->bytes -= entry->count * sizeof(*entry->shown);
+    pool_unref(&entry->slice);
+    glDeleteBuffers(1, &entry->sensors);
+    mem_free(entry->shown);
+    mem_free(entry);
+}
+
+void fields_drop(struct fields *fields)
+{
+    while (fields->count > 0)
+        entry_destroy(fields, fields->entries[--fields->count]);
+}
+
+void fields_finish(struct fields *fields)
+{
+    fields_drop(fields);
+    mem_free(fields->entries);
+    pool_destroy(&fields->pool);
+    *fields = (struct fields){ 0 };
+}
+
+static struct fields_entry *entry_find(const struct fields *fields, int asset, const struct field_params *params, double step)
+{
+    for (size_t i = 0; i < fields->count; i++) {
+        struct fields_entry *entry = fields->entries[i];
+        if (entry->asset == asset && entry->step == step && field_params_equal(&entry->params, params))
+            return entry;
+    }
+    return NULL;
+}
+
+static struct fields_entry *entry_create(struct fields *fields, int asset, const struct field_params *params, double step, size_t count)
+{
+    size_t bytes = count * sizeof(struct scalar);
+    struct fields_entry *entry = mem_new(sizeof(*entry));
+    *entry = (struct fields_entry){ .asset = asset, .params = *params, .step = step, .count = count };
+    entry->shown = mem_try_array(count, sizeof(*entry->shown));
+    fields->bytes += bytes;
+    if (!entry->shown) {
+        log_err(fields->log, "field of asset %d: no room for %zu vertices; shown as no data", asset, count);
+        entry_destroy(fields, entry);
+        return NULL;
+    }
+    mem_grow(&fields->entries, &fields->capacity, fields->count + 1, sizeof(*fields->entries));
+    fields->entries[fields->count++] = entry;
+    return entry;
+}
+
+/* False: there is none, logged; the entry is gone. */
+static bool take_slice(struct fields *fields, struct fields_entry *entry)
+{
+    size_t at = 0;
+    if (!entry->slice)
+        entry->slice = pool_take(fields->pool, entry->count);
+    if (entry->slice)
+        return true;
+    log_err(fields->log, "field of asset %d: no room for %zu vertices; shown as no data", entry->asset, entry->count);
+    while (fields->entries[at] != entry)
+        at++;
+    fields->entries[at] = fields->entries[--fields->count];
+    entry_destroy(fields, entry);
+    return false;
+}
+
+/* How far the values have moved from what is shown; no farther than is enough. */
+static double error_of(const struct fields_entry *entry, const struct scalars *now, double enough)
+{
+    float most = 0;
+    size_t ready = entry->ready < now->ready ? entry->ready : now->ready;
+    for (size_t i = 0; i < ready && (double)most < enough; i++) {
+        float error = fabsf(now->at[i].value - entry->shown[i].value);
+        most = error > most ? error : most;
+    }
+    return most;
+}
+
+/* Less than half a colour step is not shown. Most of the time the field's own bound tells; else every value is compared. */
+static bool can_be_seen(struct fields_entry *entry, const struct scalars *now)
+{
+    double half = 0.5 * entry->step;
+    if (now->flags_version != entry->flags_version)
+        return true;
+    if (now->travel - entry->travel < half)
+        return false;
+    double error = error_of(entry, now, half);
+    entry->travel = now->travel - error;
+    return error >= half;
+}
+
+/* Any thread. */
+static void show(struct fields_entry *entry)
+{
+    const struct scalars *now = entry->behind;
+    if (now) {
+        entry->ready = now->ready;
+        memcpy(entry->shown, now->at, now->ready * sizeof(*entry->shown));
+        entry->uploaded = false;
+        entry->hashed = 0;
+        entry->flags_version = now->flags_version;
+        entry->travel = now->travel;
+        entry->behind = NULL;
+    }
+    if (entry->hashed != entry->wanted) {
+        entry->content = XXH3_64bits(entry->shown, entry->wanted * sizeof(*entry->shown));
+        entry->hashed = entry->wanted;
+    }
+}
+
+/* What a picture under way shows stays as it is. False: there is no room for another, logged. */
+static bool upload(struct fields *fields, struct fields_entry *entry)
+{
+    if (entry->slice->holds > 1) {
+        struct pool_slice *fresh = pool_take(fields->pool, entry->count);
+        pool_unref(&entry->slice);
+        entry->slice = fresh;
+    }
+    if (!entry->slice)
+        return false;
+    glNamedBufferSubData(entry->slice->page->buffer, (GLintptr)pool_offset(entry->slice),
+                         (GLsizeiptr)(entry->ready * sizeof(*entry->shown)), entry->shown);
+    return entry->uploaded = true;
+}
+
+/* What there is to show of one asset, and whether it is behind. NULL: nothing. */
+static struct fields_entry *look(struct fields *fields, const struct fields_ask *ask, int asset, size_t count)
+{
+    struct field_params room;
+    const struct field_params *params = field_params_of(fields->field, asset, ask->params, &room);
+    const struct scalars *scalars = field_scalars_of(fields->field, asset, params, ask->snapshot, count);
+    if (!scalars && !field_covers(fields->field, asset, params))
+        return NULL;
+    if (!scalars) {
+        log_err(fields->log, "field of asset %d: out of memory; shown as no data", asset);
+        return &fields->lost;
+    }
+    struct fields_entry *entry = entry_find(fields, asset, params, ask->step);
+    bool fresh = !entry;
+    if (fresh)
+        entry = entry_create(fields, asset, params, ask->step, scalars->count);
+    if (!entry)
+        return &fields->lost;
+    if (fresh || entry->ready < count || can_be_seen(entry, scalars)) {
+        entry->behind = scalars;
+        if (entry->sensors)
+            glDeleteBuffers(1, &entry->sensors);
+        entry->sensors = 0;
+    }
+    entry->wanted = count;
+    entry->oldest_age_ns = scalars->oldest_age_ns;
+    entry->used = ++fields->uses;
+    return entry;
+}
+
+/* Those that have no place yet shall lie together. */
+static void make_room(struct fields *fields, const struct fields_ask *ask, const struct fields_entry **entries)
+{
+    size_t texels = 0, slices = 0;
+    for (size_t i = 0; i < ask->asset_count; i++) {
+        const struct fields_entry *entry = entries[ask->assets[i]];
+        bool without = entry && entry != &fields->lost && !entry->slice;
+        texels += without ? entry->count : 0;
+        slices += without;
+    }
+    pool_expect(fields->pool, texels, slices);
+    for (size_t i = 0; i < ask->asset_count && slices > 0; i++) {
+        struct fields_entry *entry = (struct fields_entry *)entries[ask->assets[i]];
+        if (entry && entry != &fields->lost && !take_slice(fields, entry))
+            entries[ask->assets[i]] = &fields->lost;
+    }
+}
+
+struct showing {
+    struct fields_entry **entries;
+};
+
+static void show_some(void *arg, size_t begin, size_t end)
+{
+    const struct showing *showing = arg;
+    for (size_t i = begin; i < end; i++)
+        show(showing->entries[i]);
+}
+
+/* False: it is shown as no data, for now. */
+static bool to_gpu(struct fields *fields, struct fields_entry *entry)
+{
+    if (!entry->uploaded && !fields->without_gl && !upload(fields, entry))
+        return false;
+    if (fields->reference && !entry->sensors)
+        entry->sensors = reference_sensors(fields->reference, entry->asset, &entry->params);
+    return true;
+}
+
+/* Fields of one set of parameters stay where they are while others of it are asked for, however little room there is; of a trial, each
+   asset may have its own set, so these are not put off. */
+void fields_get(struct fields *fields, const struct fields_ask *ask, const struct fields_entry **entries)
+{
+    struct fields_entry **changed = mem_array(ask->asset_count, sizeof(*changed));
+    struct showing showing = { changed };
+    size_t count = 0;
+    field_update_all(fields->field, ask->assets, ask->counts, ask->asset_count, ask->params, ask->snapshot);
+    for (size_t i = 0; i < ask->asset_count; i++) {
+        struct fields_entry *entry = look(fields, ask, ask->assets[i], ask->counts[i]);
+        entries[ask->assets[i]] = entry;
+        if (!entry || entry == &fields->lost || (!entry->behind && entry->hashed == entry->wanted))
+            continue;
+        if (!ask->params->trial) {
+            changed[count++] = entry;
+            continue;
+        }
+        show(entry);
+        if (!take_slice(fields, entry) || !to_gpu(fields, entry))
+            entries[ask->assets[i]] = &fields->lost;
+    }
+    workers_for(field_workers(fields->field), count, 1, show_some, &showing);
+    mem_free(changed);
+    make_room(fields, ask, entries);
+    for (size_t i = 0; i < ask->asset_count; i++)
+        if (entries[ask->assets[i]] && entries[ask->assets[i]] != &fields->lost &&
+            !to_gpu(fields, (struct fields_entry *)entries[ask->assets[i]]))
+            entries[ask->assets[i]] = &fields->lost;
+}
+
+/* Not what the last picture showed, which is what the next one shows, mostly: it would be worked out anew for each. */
+void fields_trim(struct fields *fields)
+{
+    while (fields->bytes > fields->bound_bytes && fields->count > 0) {
+        size_t oldest = 0;
+        for (size_t i = 1; i < fields->count; i++)
+            if (fields->entries[i]->used < fields->entries[oldest]->used)
+                oldest = i;
+        if (fields->entries[oldest]->used > fields->trimmed)
+            break;
+        entry_destroy(fields, fields->entries[oldest]);
+        fields->entries[oldest] = fields->entries[--fields->count];
+    }
+    fields->trimmed = fields->uses;
+}

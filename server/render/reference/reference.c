@@ -1,0 +1,149 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Buffers for shaders/reference.glsl. */
+#include "render/reference/reference.h"
+
+#include <string.h>
+
+#include "base/mem.h"
+#include "gpu/mesh.h"
+
+enum { BIND_SENSORS = 5, BIND_CORNERS = 6, BIND_POSITIONS = 7, UNIT_DISTANCES = 14, FIRST_TRIANGLE = 8 };
+enum { LANES = 4, CONFIGURED = 1, USABLE = 2, UNCERTAIN = 4 };
+
+struct sensors_head { /* std430, as in the shader */
+    float power, radius_m, reach_m, empty;
+    float range, vertices, unused[2];
+    int32_t paper, geodesic, fill, show;
+};
+struct sensor_block {
+    float place_m[3], strength;
+    float decay, value;
+    uint32_t column, state;
+};
+
+void reference_init(struct reference *reference, const struct gpu_scene *gpu_scene, struct field *field)
+{
+    *reference = (struct reference){ .gpu_scene = gpu_scene, .field = field };
+    reference->models = mem_array(gpu_scene->model_count, sizeof(*reference->models));
+}
+
+static void model_finish_reference(struct reference_model *model)
+{
+    GLuint buffers[] = { model->corners, model->positions, model->distances };
+    glDeleteTextures(1, &model->distance_texture);
+    glDeleteBuffers(sizeof(buffers) / sizeof(buffers[0]), buffers);
+    *model = (struct reference_model){ 0 };
+}
+
+void reference_finish(struct reference *reference)
+{
+    for (size_t i = 0; reference->models && i < reference->gpu_scene->model_count; i++)
+        model_finish_reference(&reference->models[i]);
+    mem_free(reference->models);
+    *reference = (struct reference){ 0 };
+}
+
+/* --- sensors --------------------------------------------------------------------------------------------------------------- */
+
+static struct sensors_head head_of(const struct reference *reference, int asset, const struct field_params *params, float radius_m)
+{
+    const struct plant_group *group = &reference->gpu_scene->scene->plant->groups[params->group];
+    bool places = params->show == SHOW_OPERATOR, around_0 = places || params->show == SHOW_DIFFERENCE;
+    return (struct sensors_head){
+        .power = (float)params->power,
+        .radius_m = radius_m,
+        .reach_m = (float)params->reach_m,
+        .empty = around_0 ? 0 : (float)group->min,
+        .range = places ? 1 : (float)(group->max - group->min),
+        .vertices = (float)reference->gpu_scene->of_asset[asset]->file->view.header->vertex_count,
+        .paper = params->interpolation == INTERPOLATION_PAPER,
+        .geodesic = params->distance == DISTANCE_GEODESIC,
+        .fill = params->fill == FILL_NEIGHBOURS,
+        .show = (int32_t)params->show,
+    };
+}
+
+GLuint reference_sensors(const struct reference *reference, int asset, const struct field_params *params)
+{
+    struct field_sensor *sensors = NULL;
+    float radius_m = 1;
+    size_t count = field_sensors(reference->field, asset, params, &sensors, &radius_m);
+    size_t bytes = sizeof(struct sensors_head) + count * sizeof(struct sensor_block);
+    struct sensors_head *head = mem_array(1, bytes);
+    struct sensor_block *blocks = (struct sensor_block *)(head + 1);
+    *head = head_of(reference, asset, params, radius_m);
+    for (size_t i = 0; i < count; i++) {
+        const struct field_sensor *from = &sensors[i];
+        blocks[i] = (struct sensor_block){ .strength = from->strength, .decay = from->decay, .value = from->value, .column = from->column };
+        memcpy(blocks[i].place_m, from->surface_m, sizeof(from->surface_m));
+        /* One that is tried out has no column, and no say here. */
+        bool has_column = from->column < reference->gpu_scene->scene->assets[asset].file->view.header->sensor_count;
+        blocks[i].state = (from->configured ? CONFIGURED : 0) | (from->usable ? USABLE : 0) | (from->uncertain ? UNCERTAIN : 0);
+        blocks[i].state = has_column ? blocks[i].state : 0;
+    }
+    GLuint buffer = count ? mesh_buffer(reference->gpu_scene->gl->log, "sensors", bytes, head, 0) : 0;
+    mem_free(head);
+    mem_free(sensors);
+    return buffer;
+}
+
+/* --- distances ------------------------------------------------------------------------------------------------------------- */
+
+/* Four sensors to a texel, so that a plant of thousands fits into one texture. */
+static GLuint upload_distances(struct log *log, const struct asset_view *view)
+{
+    size_t vertices = view->header->vertex_count, sensors = view->header->sensor_count, groups = (sensors + LANES - 1) / LANES;
+    GLint limit = 0;
+    glGetIntegerv(GL_MAX_TEXTURE_BUFFER_SIZE, &limit);
+    if (groups * vertices > (size_t)limit) {
+        log_err(log, "per-fragment field: %zu sensors at %zu vertices do not fit into one buffer texture", sensors, vertices);
+        return 0;
+    }
+    float(*texels)[LANES] = mem_try_array(groups * vertices, sizeof(*texels));
+    if (!texels) {
+        log_err(log, "per-fragment field: out of memory for %zu sensors at %zu vertices", sensors, vertices);
+        return 0;
+    }
+    for (size_t i = 0; i < sensors; i++)
+        for (size_t j = 0; j < vertices; j++)
+            texels[i / LANES * vertices + j][i % LANES] = view->geodesic_m[i * vertices + j];
+    GLuint buffer = mesh_buffer(log, "distances", groups * vertices * sizeof(*texels), texels, 0);
+    mem_free(texels);
+    return buffer;
+}
+
+static bool model_init_reference(struct reference_model *model, struct log *log, const struct asset_view *view)
+{
+    model->corners = mesh_buffer(log, "corners", view->header->index_count * sizeof(*view->indices), view->indices, 0);
+    model->positions = mesh_buffer(log, "places", view->header->vertex_count * sizeof(*view->positions_m), view->positions_m, 0);
+    model->distances = upload_distances(log, view);
+    if (!model->corners || !model->positions || !model->distances)
+        return false;
+    glCreateTextures(GL_TEXTURE_BUFFER, 1, &model->distance_texture);
+    glTextureBuffer(model->distance_texture, GL_RGBA32F, model->distances);
+    return true;
+}
+
+bool reference_bind(struct reference *reference, int asset, GLuint sensors)
+{
+    const struct model *of = reference->gpu_scene->of_asset[asset];
+    struct reference_model *model = &reference->models[of - reference->gpu_scene->models];
+    if (!model->distance_texture && !model_init_reference(model, reference->gpu_scene->gl->log, &of->file->view)) {
+        model_finish_reference(model);
+        return false;
+    }
+    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, BIND_SENSORS, sensors);
+    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, BIND_CORNERS, model->corners);
+    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, BIND_POSITIONS, model->positions);
+    glBindTextureUnit(UNIT_DISTANCES, model->distance_texture);
+    return true;
+}
+
+void reference_draw(const struct draw_command *commands, size_t count)
+{
+    for (size_t i = 0; i < count; i++) {
+        glUniform1i(FIRST_TRIANGLE, (GLint)(commands[i].first_index / 3));
+        glDrawElementsInstancedBaseInstance(GL_TRIANGLES, (GLsizei)commands[i].count, GL_UNSIGNED_INT,
+                                            (const void *)((uintptr_t)commands[i].first_index * 4), 1, commands[i].base_instance);
+    }
+}

@@ -1,0 +1,33 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Scales as textures: what a pixel looks up. In the default look shading adds to CIELAB L* and touches neither hue nor chroma, so that
+   it cannot be read as a value. Thread: the one of the GL context. */
+#ifndef RENDER_SHADED_COLORMAP_H
+#define RENDER_SHADED_COLORMAP_H
+#include <stdint.h>
+
+#include <glad/gl.h>
+
+#include "render/view.h"
+
+enum { COLORMAP_ROWS = 65 }; /* steps of light; odd: the middle one leaves the colour alone */
+/* Columns of the texture, as in shaders/field.glsl: COLORMAP_PLACES along the scale, what is outside at their ends, patterns behind. */
+enum { COLORMAP_PLACES = 1024, COLORMAP_BELOW = 0, COLORMAP_ABOVE = COLORMAP_PLACES + 1, COLORMAP_PATTERNS };
+enum colormap_pattern { PATTERN_HATCH_LIGHT, PATTERN_HATCH_DARK, PATTERN_STIPPLE, PATTERN_PLAIN_LIGHT, PATTERN_PLAIN_DARK, PATTERN_COUNT };
+enum { COLORMAP_COLUMNS = COLORMAP_PATTERNS + PATTERN_COUNT };
+
+extern const uint8_t colormap_no_data[2][3];   /* sRGB of the two stripes that mean no data */
+extern const uint8_t colormap_no_limits[2][3]; /* of field and lines that mean a tag without limits */
+extern const uint8_t colormap_uncertain[3];    /* sRGB of the dots that mean uncertain */
+
+/* A colour map's own colours, then below and above, then the patterns, each in every step of light. */
+enum { SHADES_BELOW = 256, SHADES_ABOVE, SHADES_PATTERNS, SHADES_COLORS = SHADES_PATTERNS + PATTERN_COUNT };
+struct colormap_shades {
+    uint8_t rgb[COLORMAP_ROWS][SHADES_COLORS][3];
+};
+void colormap_shades_init(const struct colormap *map, struct colormap_shades *out);
+/* Colours by place and light; 0: out of memory. */
+GLuint shaded_colormap_create(const struct scale *scale, const struct colormap_shades *shades);
+/* For each place of the scale the nearest place that has a line (R32F). */
+GLuint shaded_colormap_create_lines(const struct scale *scale, const double *lines, int count);
+
+#endif

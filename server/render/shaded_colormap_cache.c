@@ -1,0 +1,86 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Palettes by what they show; the least recently used one makes room. */
+#include "render/shaded_colormap_cache.h"
+
+#include <string.h>
+
+#include "base/mem.h"
+#include "gpu/gl.h"
+
+static bool same_numbers(const double *a, int a_count, const double *b, int b_count)
+{
+    return a_count == b_count && memcmp(a, b, (size_t)a_count * sizeof(*a)) == 0;
+}
+
+static bool same_scale(const struct scale *a, const struct scale *b)
+{
+    return a->map == b->map && a->min == b->min && a->max == b->max && a->log == b->log && a->interval == b->interval &&
+           same_numbers(a->breaks, a->break_count, b->breaks, b->break_count);
+}
+
+static const struct colormap_shades *shades_of(struct shaded_colormap_cache *colormaps, const struct view *view, const struct colormap *map)
+{
+    size_t number = view_is_operator(view) ? colormap_count() : (size_t)view->colormap;
+    if (!colormaps->shades)
+        colormaps->shades = mem_array(colormap_count() + 1, sizeof(struct colormap_shades *));
+    if (!colormaps->shades[number]) {
+        colormaps->shades[number] = mem_new(sizeof(struct colormap_shades));
+        colormap_shades_init(map, colormaps->shades[number]);
+    }
+    return colormaps->shades[number];
+}
+
+static void entry_finish(struct shaded_colormap_cache_entry *entry)
+{
+    glDeleteTextures(1, &entry->colormap.colors);
+    glDeleteTextures(1, &entry->colormap.lines);
+}
+
+/* A free one, or the one that was used longest ago. */
+static struct shaded_colormap_cache_entry *make_room(struct shaded_colormap_cache *colormaps)
+{
+    if (colormaps->count < SHADED_COLORMAPS)
+        return &colormaps->at[colormaps->count++];
+    struct shaded_colormap_cache_entry *oldest = &colormaps->at[0];
+    for (int i = 1; i < SHADED_COLORMAPS; i++)
+        if (colormaps->at[i].used < oldest->used)
+            oldest = &colormaps->at[i];
+    entry_finish(oldest);
+    return oldest;
+}
+
+struct shaded_colormap shaded_colormap_cache_get(struct shaded_colormap_cache *colormaps, const struct view *view)
+{
+    struct shaded_colormap_cache_entry wanted = { .used = ++colormaps->uses };
+    view_scale(view, &wanted.scale);
+    wanted.line_count = view_lines(view, wanted.lines);
+    for (int i = 0; i < colormaps->count; i++) {
+        struct shaded_colormap_cache_entry *entry = &colormaps->at[i];
+        if (!same_scale(&entry->scale, &wanted.scale) || !same_numbers(entry->lines, entry->line_count, wanted.lines, wanted.line_count))
+            continue;
+        entry->used = colormaps->uses;
+        return entry->colormap;
+    }
+    gl_clear_errors();
+    wanted.colormap.colors = shaded_colormap_create(&wanted.scale, shades_of(colormaps, view, wanted.scale.map));
+    wanted.colormap.version = colormaps->uses;
+    if (wanted.line_count > 0)
+        wanted.colormap.lines = shaded_colormap_create_lines(&wanted.scale, wanted.lines, wanted.line_count);
+    if (!gl_no_errors()) {
+        entry_finish(&wanted);
+        return (struct shaded_colormap){ 0 };
+    }
+    struct shaded_colormap_cache_entry *entry = make_room(colormaps);
+    *entry = wanted;
+    return entry->colormap;
+}
+
+void shaded_colormap_cache_finish(struct shaded_colormap_cache *colormaps)
+{
+    for (int i = 0; i < colormaps->count; i++)
+        entry_finish(&colormaps->at[i]);
+    for (size_t i = 0; colormaps->shades && i <= colormap_count(); i++)
+        mem_free(colormaps->shades[i]);
+    mem_free(colormaps->shades);
+    *colormaps = (struct shaded_colormap_cache){ 0 };
+}

@@ -1,0 +1,33 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Palettes that were used lately. Thread: the one of the GL context. */
+#ifndef RENDER_SHADED_COLORMAP_CACHE_H
+#define RENDER_SHADED_COLORMAP_CACHE_H
+#include "render/shaded_colormap.h"
+
+struct shaded_colormap {
+    GLuint colors;    /* shaded_colormap_create */
+    GLuint lines;     /* shaded_colormap_create_lines; 0: the picture has no lines */
+    uint64_t version; /* another one for each that was made, from 1 */
+};
+
+struct shaded_colormap_cache_entry {
+    struct scale scale;
+    double lines[VIEW_ALL_LINES];
+    int line_count;
+    struct shaded_colormap colormap;
+    uint64_t used;
+};
+
+enum { SHADED_COLORMAPS = 16 };
+struct shaded_colormap_cache {       /* zero-initialise */
+    struct colormap_shades **shades; /* by colour map, then the operator's; NULL: not made yet */
+    struct shaded_colormap_cache_entry at[SHADED_COLORMAPS];
+    int count;
+    uint64_t uses;
+};
+
+/* Valid until SHADED_COLORMAPS others were asked for. Nothing in it: out of GPU memory. */
+struct shaded_colormap shaded_colormap_cache_get(struct shaded_colormap_cache *colormaps, const struct view *view);
+void shaded_colormap_cache_finish(struct shaded_colormap_cache *colormaps);
+
+#endif

@@ -1,0 +1,212 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Draws the halves one after the other and lays them side by side. */
+#include "render/split_view.h"
+
+#include <string.h>
+
+#include "base/mem.h"
+
+enum { DIVIDER_PX = 2 };
+static const uint8_t divider_bgrx[4] = { 48, 40, 34, 255 };
+
+struct split_view {
+    struct view view;
+    int half_count, done; /* halves; those that need no more steps */
+    struct render_job *jobs[2];
+};
+
+static int count_halves(const struct view *view)
+{
+    return view->split ? 2 : 1;
+}
+
+bool split_view_prepare(struct renderer *renderer, const struct view *view, const struct snapshot *snapshot, int64_t budget_ns)
+{
+    bool ready = true;
+    for (int half = 0; half < count_halves(view) && ready; half++) {
+        struct view one;
+        view_half(view, half, &one);
+        ready = renderer_prepare(renderer, &one, snapshot, budget_ns);
+    }
+    return ready;
+}
+
+uint64_t split_view_content(struct renderer *renderer, const struct view *view, const struct snapshot *snapshot)
+{
+    uint64_t content = 0;
+    for (int half = 0; half < count_halves(view); half++) {
+        struct view one;
+        view_half(view, half, &one);
+        content = content * 0x9e3779b97f4a7c15u + renderer_content(renderer, &one, snapshot);
+    }
+    return content;
+}
+
+bool split_view_is_quick(struct renderer *renderer, const struct view *view, const struct snapshot *snapshot)
+{
+    bool quick = true;
+    for (int half = 0; half < count_halves(view) && quick; half++) {
+        struct view one;
+        view_half(view, half, &one);
+        quick = renderer_is_quick(renderer, &one, snapshot);
+    }
+    return quick;
+}
+
+static void copy_pixels(struct frame *whole, const struct frame *part, int x_px)
+{
+    for (int y = 0; y < part->height_px; y++)
+        memcpy(whole->bgrx + (size_t)y * (size_t)whole->stride_bytes + (size_t)x_px * 4,
+               part->bgrx + (size_t)y * (size_t)part->stride_bytes, (size_t)part->width_px * 4);
+}
+
+static void draw_divider(struct frame *frame, int x_px)
+{
+    for (int y = 0; y < frame->height_px; y++)
+        for (int x = x_px - DIVIDER_PX / 2; x < x_px + DIVIDER_PX / 2; x++)
+            memcpy(frame->bgrx + (size_t)y * (size_t)frame->stride_bytes + (size_t)x * 4, divider_bgrx, 4);
+}
+
+/* x_px: where the half begins. What lies outside it would be seen in the other one. */
+static void copy_markers(struct frame *whole, const struct frame *part, int half, int x_px)
+{
+    size_t capacity = whole->marker_count;
+    mem_grow(&whole->markers, &capacity, whole->marker_count + part->marker_count, sizeof(*whole->markers));
+    for (size_t i = 0; i < part->marker_count; i++) {
+        struct frame_marker marker = part->markers[i];
+        if (marker.x_px < 0 || marker.x_px >= (float)part->width_px)
+            continue;
+        marker.half = (uint8_t)half;
+        marker.x_px += (float)x_px;
+        whole->markers[whole->marker_count++] = marker;
+    }
+}
+
+static void copy_labels(struct frame *whole, const struct frame *part, int half, int x_px)
+{
+    size_t capacity = whole->label_count;
+    mem_grow(&whole->labels, &capacity, whole->label_count + part->label_count, sizeof(*whole->labels));
+    for (size_t i = 0; i < part->label_count; i++) {
+        struct frame_label label = part->labels[i];
+        label.half = (uint8_t)half;
+        label.x_px += (float)x_px;
+        whole->labels[whole->label_count++] = label;
+    }
+}
+
+static void add_meaning(struct frame *whole, const struct frame *part, int half)
+{
+    whole->data_utc_ns = part->data_utc_ns;
+    if (half == 0 || whole->oldest_age_ns == INT64_MAX)
+        whole->oldest_age_ns = part->oldest_age_ns;
+    else if (part->oldest_age_ns != INT64_MAX && part->oldest_age_ns > whole->oldest_age_ns)
+        whole->oldest_age_ns = part->oldest_age_ns;
+    if (!whole->baseline.id)
+        whole->baseline = part->baseline;
+    whole->field_ns += part->field_ns;
+    whole->render_ns += part->render_ns;
+    whole->readback_ns += part->readback_ns;
+    whole->content = whole->content * 0x9e3779b97f4a7c15u + part->content;
+    whole->triangles += part->triangles;
+}
+
+/* Takes both frames. */
+static struct frame *join(const struct view *view, struct frame *parts[2])
+{
+    struct frame *whole = parts[0] && parts[1] ? frame_create(view->width_px, view->height_px) : NULL;
+    for (int half = 0; half < 2 && whole; half++) {
+        int x_px = half ? view_left_px(view) : 0;
+        copy_pixels(whole, parts[half], x_px);
+        copy_markers(whole, parts[half], half, x_px);
+        copy_labels(whole, parts[half], half, x_px);
+        add_meaning(whole, parts[half], half);
+    }
+    if (whole) {
+        whole->view = *view;
+        draw_divider(whole, view_left_px(view));
+    }
+    frame_unref(&parts[0]);
+    frame_unref(&parts[1]);
+    return whole;
+}
+
+struct frame *split_view_draw(struct renderer *renderer, const struct view *view, const struct snapshot *snapshot)
+{
+    struct frame *parts[2] = { NULL };
+    if (!view->split)
+        return renderer_draw(renderer, view, snapshot);
+    for (int half = 0; half < 2; half++) {
+        struct view one;
+        view_half(view, half, &one);
+        parts[half] = renderer_draw(renderer, &one, snapshot);
+    }
+    return join(view, parts);
+}
+
+typedef struct render_job *begin_fn(struct renderer *renderer, const struct view *view, const struct snapshot *snapshot);
+
+static struct split_view *begin(struct renderer *renderer, const struct view *view, const struct snapshot *snapshot, begin_fn *begin_half)
+{
+    struct split_view *split = mem_new(sizeof(*split));
+    split->view = *view;
+    split->half_count = count_halves(view);
+    for (int half = 0; half < split->half_count; half++) {
+        struct view one;
+        view_half(view, half, &one);
+        split->jobs[half] = begin_half(renderer, &one, snapshot);
+        if (!split->jobs[half]) {
+            split_view_abandon(renderer, &split);
+            return NULL;
+        }
+    }
+    return split;
+}
+
+struct split_view *split_view_begin(struct renderer *renderer, const struct view *view, const struct snapshot *snapshot)
+{
+    return begin(renderer, view, snapshot, renderer_begin);
+}
+
+struct split_view *split_view_submit(struct renderer *renderer, const struct view *view, const struct snapshot *snapshot)
+{
+    return begin(renderer, view, snapshot, renderer_submit);
+}
+
+bool split_view_is_complete(const struct split_view *split)
+{
+    return renderer_is_complete(split->jobs[0]) && (split->half_count == 1 || renderer_is_complete(split->jobs[1]));
+}
+
+bool split_view_keeps(const struct split_view *split)
+{
+    return renderer_keeps(split->jobs[0]) && (split->half_count == 1 || renderer_keeps(split->jobs[1]));
+}
+
+bool split_view_step(struct renderer *renderer, struct split_view *split, int64_t budget_ns)
+{
+    if (split->done < split->half_count && renderer_step(renderer, split->jobs[split->done], budget_ns))
+        split->done++;
+    return split->done == split->half_count;
+}
+
+struct frame *split_view_end(struct renderer *renderer, struct split_view **split_ptr)
+{
+    struct split_view *split = *split_ptr;
+    struct frame *parts[2] = { NULL }, *frame;
+    for (int half = 0; half < split->half_count; half++)
+        parts[half] = renderer_end(renderer, &split->jobs[half]);
+    frame = split->half_count == 2 ? join(&split->view, parts) : parts[0];
+    split_view_abandon(renderer, split_ptr);
+    return frame;
+}
+
+void split_view_abandon(struct renderer *renderer, struct split_view **split_ptr)
+{
+    struct split_view *split = *split_ptr;
+    if (!split)
+        return;
+    for (int half = 0; half < split->half_count; half++)
+        renderer_abandon(renderer, &split->jobs[half]);
+    mem_free(split);
+    *split_ptr = NULL;
+}

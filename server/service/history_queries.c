@@ -1,0 +1,341 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The threads that read history for those who ask. */
+#include "service/history_queries.h"
+
+#include <pthread.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/clock.h"
+#include "base/mem.h"
+#include "base/text.h"
+#include "history/history.h"
+#include "history/series_text.h"
+
+enum { THREADS = 2 };                            /* one address takes one at a time: what it asks does not hold up another's question */
+static const size_t PIECE_BYTES = 256 * 1024;    /* a piece ends with the tag that makes it as long, */
+static const int64_t PIECE_NS = 100 * NS_PER_MS; /* or that took as long */
+
+struct question {
+    struct history_query order;
+    int next_tag; /* to be read */
+    bool buckets; /* as the last line of a CSV file that names columns says */
+    bool wanted;  /* its next piece is */
+    bool forgotten;
+    uint64_t served; /* when its newest piece was begun; 0: it has none */
+    struct question *next;
+};
+
+struct history_queries {
+    struct log *log;
+    const struct plant *plant;
+    char *folder;
+    void (*notify)(void *arg);
+    void *notify_arg;
+    pthread_t threads[THREADS];
+    int thread_count;
+    pthread_mutex_t lock;
+    pthread_cond_t wake;
+    /* --- below: under lock */
+    struct question *questions; /* newest first; one that a thread is at is not among them */
+    uint64_t at_work[THREADS];  /* payers; 0: none */
+    struct question *working[THREADS];
+    uint64_t served; /* pieces begun */
+    int count;       /* of questions, those at work too */
+    struct history_answer *answers, **last;
+    bool stopping;
+};
+
+/* --- a piece of an answer ------------------------------------------------------------------------------------------------------ */
+
+static void print_csv(struct question *question, const struct plant_tag *tag, const struct history_series *series, struct text *out)
+{
+    bool buckets = series->bucket_us > 0;
+    if (question->next_tag == 0 || buckets != question->buckets)
+        series_text_csv_head(out, buckets);
+    question->buckets = buckets;
+    series_text_csv(out, tag->name, tag->unit ? tag->unit : "", series);
+}
+
+static void print_json(const struct question *question, const struct plant_tag *tag, const struct history_series *series, struct text *out)
+{
+    const struct history_query *order = &question->order;
+    if (question->next_tag == 0)
+        text_add(out, "{\"from_us\":%lld,\"to_us\":%lld,\"series\":[", (long long)order->from_us, (long long)order->to_us);
+    else
+        text_add(out, ",");
+    series_text_json(out, tag->name, tag->unit ? tag->unit : "", series);
+    if (question->next_tag + 1 == order->tag_count)
+        text_add(out, "]}\n");
+}
+
+/* The next tag of it. False: history could not be read. */
+static bool read_tag(struct history_queries *recall, struct history_reader *reader, struct question *question, struct text *out)
+{
+    const struct history_query *order = &question->order;
+    const struct plant_tag *tag = &recall->plant->tags[order->tags[question->next_tag]];
+    struct history_series series;
+    bool good = history_series(reader, tag->name, order->from_us, order->to_us, order->max_points, &series) == 0;
+    if (good && order->csv)
+        print_csv(question, tag, &series, out);
+    else if (good)
+        print_json(question, tag, &series, out);
+    history_series_finish(&series);
+    question->next_tag++;
+    return good;
+}
+
+static bool print_gaps(struct history_reader *reader, const struct history_query *order, struct text *out)
+{
+    struct history_gaps gaps;
+    if (history_gaps(reader, order->from_us, order->to_us, &gaps))
+        return false;
+    text_add(out, "{\"from_us\":%lld,\"to_us\":%lld,\"gaps\":[", (long long)order->from_us, (long long)order->to_us);
+    for (size_t i = 0; i < gaps.count; i++)
+        text_add(out, "%s[%lld,%lld]", i ? "," : "", (long long)gaps.at[i].from_us, (long long)gaps.at[i].to_us);
+    text_add(out, "]}\n");
+    mem_free(gaps.at);
+    return true;
+}
+
+static struct history_answer *read_piece(struct history_queries *recall, struct history_reader *reader, struct question *question)
+{
+    const struct history_query *order = &question->order;
+    struct history_answer *piece = mem_new(sizeof(*piece));
+    struct text text = { 0 };
+    int64_t begin_ns = clock_mono_ns();
+    bool series = !order->journal && !order->gaps, good = true;
+    *piece = (struct history_answer){ .client = order->client, .csv = order->journal ? order->alarms.csv : order->csv };
+    piece->first = question->next_tag == 0;
+    if (order->journal)
+        alarms_journal_text(recall->log, recall->folder, &order->alarms, &text);
+    else if (order->gaps)
+        good = print_gaps(reader, order, &text);
+    while (good && series && question->next_tag < order->tag_count && text.length < PIECE_BYTES &&
+           (text.length == 0 || clock_mono_ns() - begin_ns < PIECE_NS))
+        good = read_tag(recall, reader, question, &text);
+    piece->last = !good || !series || question->next_tag == order->tag_count;
+    if (good && text.length > 0) { /* a text that grew has room to spare, and it may lie there for long */
+        piece->text = mem_array(text.length + 1, 1);
+        piece->length = text.length;
+        memcpy(piece->text, text.at, text.length);
+    }
+    text_finish(&text);
+    return piece;
+}
+
+/* --- whose turn it is ---------------------------------------------------------------------------------------------------------- */
+
+/* Under lock. */
+static bool is_at_work(const struct history_queries *recall, uint64_t payer)
+{
+    bool any = false;
+    for (int i = 0; i < THREADS; i++)
+        any |= payer && recall->at_work[i] == payer;
+    return any;
+}
+
+/* Under lock. When the newest piece for its address was begun. */
+static uint64_t served_of(const struct history_queries *recall, const struct question *question)
+{
+    uint64_t served = question->served;
+    for (const struct question *other = recall->questions; other; other = other->next)
+        if (question->order.payer && other->order.payer == question->order.payer && other->served > served)
+            served = other->served;
+    return served;
+}
+
+static bool goes_before(const struct history_queries *recall, const struct question *a, const struct question *b)
+{
+    uint64_t a_served = served_of(recall, a), b_served = served_of(recall, b);
+    return a_served < b_served || (a_served == b_served && a->served <= b->served); /* the older one comes later in the list */
+}
+
+/* Under lock. Taken out of the list; NULL: there is nothing to do. */
+static struct question *take_next(struct history_queries *recall)
+{
+    struct question **best = NULL;
+    for (struct question **at = &recall->questions; *at; at = &(*at)->next)
+        if ((*at)->wanted && !is_at_work(recall, (*at)->order.payer) && (!best || goes_before(recall, *at, *best)))
+            best = at;
+    struct question *question = best ? *best : NULL;
+    if (question)
+        *best = question->next;
+    return question;
+}
+
+/* Under lock. The piece is there. */
+static void give(struct history_queries *recall, struct question *question, struct history_answer *piece)
+{
+    bool last = piece->last;
+    if (question->forgotten) {
+        history_answer_free(&piece);
+    } else {
+        *recall->last = piece;
+        recall->last = &piece->next;
+    }
+    if (question->forgotten || last) {
+        recall->count--;
+        mem_free(question);
+        return;
+    }
+    question->next = recall->questions;
+    recall->questions = question;
+}
+
+struct worker {
+    struct history_queries *recall;
+    int index;
+};
+
+static void *run(void *arg)
+{
+    struct worker *worker = arg;
+    struct history_queries *recall = worker->recall;
+    struct history_reader *reader = history_reader_create(recall->log, recall->folder);
+    int index = worker->index;
+    history_reader_show_by(reader, recall->plant);
+    mem_free(worker);
+    pthread_mutex_lock(&recall->lock);
+    while (!recall->stopping) {
+        struct question *question = take_next(recall);
+        if (!question) {
+            pthread_cond_wait(&recall->wake, &recall->lock);
+            continue;
+        }
+        question->wanted = false;
+        question->served = ++recall->served;
+        recall->at_work[index] = question->order.payer;
+        recall->working[index] = question;
+        pthread_mutex_unlock(&recall->lock);
+        struct history_answer *piece = read_piece(recall, reader, question);
+        pthread_mutex_lock(&recall->lock);
+        recall->at_work[index] = 0;
+        recall->working[index] = NULL;
+        give(recall, question, piece);
+        pthread_cond_broadcast(&recall->wake); /* another of that address may be read by the other thread */
+        pthread_mutex_unlock(&recall->lock);
+        recall->notify(recall->notify_arg);
+        pthread_mutex_lock(&recall->lock);
+    }
+    pthread_mutex_unlock(&recall->lock);
+    history_reader_destroy(&reader);
+    return NULL;
+}
+
+/* --- life ---------------------------------------------------------------------------------------------------------------------- */
+
+struct history_queries *history_queries_create(struct log *log, const struct plant *plant, const char *folder, void (*notify)(void *arg),
+                                               void *arg)
+{
+    struct history_queries *recall = mem_new(sizeof(*recall));
+    pthread_mutex_init(&recall->lock, NULL);
+    pthread_cond_init(&recall->wake, NULL);
+    recall->log = log;
+    recall->plant = plant;
+    recall->folder = mem_strdup(folder);
+    recall->notify = notify;
+    recall->notify_arg = arg;
+    recall->last = &recall->answers;
+    for (int i = 0, error = 0; i < THREADS && !error; i++) {
+        struct worker *worker = mem_new(sizeof(*worker));
+        *worker = (struct worker){ recall, i };
+        error = pthread_create(&recall->threads[i], NULL, run, worker);
+        recall->thread_count += !error;
+        if (!error)
+            continue;
+        mem_free(worker);
+        log_err(log, "history: no thread to read it: %s", strerror(error));
+    }
+    if (recall->thread_count < THREADS)
+        history_queries_destroy(&recall);
+    return recall;
+}
+
+void history_answer_free(struct history_answer **answer)
+{
+    mem_free((*answer)->text);
+    mem_free(*answer);
+    *answer = NULL;
+}
+
+void history_queries_destroy(struct history_queries **pointer)
+{
+    struct history_queries *recall = *pointer;
+    if (!recall)
+        return;
+    pthread_mutex_lock(&recall->lock);
+    recall->stopping = true;
+    pthread_cond_broadcast(&recall->wake);
+    pthread_mutex_unlock(&recall->lock);
+    for (int i = 0; i < recall->thread_count; i++)
+        pthread_join(recall->threads[i], NULL);
+    for (struct history_answer *answer = recall->answers, *next; answer; answer = next) {
+        next = answer->next;
+        history_answer_free(&answer);
+    }
+    for (struct question *question = recall->questions, *next; question; question = next) {
+        next = question->next;
+        mem_free(question);
+    }
+    mem_free(recall->folder);
+    pthread_cond_destroy(&recall->wake);
+    pthread_mutex_destroy(&recall->lock);
+    mem_free(recall);
+    *pointer = NULL;
+}
+
+/* --- for the loop -------------------------------------------------------------------------------------------------------------- */
+
+bool history_queries_ask(struct history_queries *recall, const struct history_query *order)
+{
+    pthread_mutex_lock(&recall->lock);
+    bool room = recall->count < HISTORY_QUERIES_MOST;
+    if (room) {
+        struct question *question = mem_new(sizeof(*question));
+        *question = (struct question){ .order = *order, .wanted = true, .next = recall->questions };
+        recall->questions = question;
+        recall->count++;
+        pthread_cond_broadcast(&recall->wake);
+    }
+    pthread_mutex_unlock(&recall->lock);
+    return room;
+}
+
+void history_queries_continue(struct history_queries *recall, uint64_t client)
+{
+    pthread_mutex_lock(&recall->lock);
+    for (struct question *question = recall->questions; question; question = question->next)
+        question->wanted |= question->order.client == client;
+    pthread_cond_broadcast(&recall->wake);
+    pthread_mutex_unlock(&recall->lock);
+}
+
+void history_queries_forget(struct history_queries *recall, uint64_t client)
+{
+    pthread_mutex_lock(&recall->lock);
+    for (int i = 0; i < THREADS; i++)
+        if (recall->working[i] && recall->working[i]->order.client == client)
+            recall->working[i]->forgotten = true;
+    for (struct question **at = &recall->questions; *at;) {
+        struct question *question = *at;
+        if (question->order.client != client) {
+            at = &question->next;
+            continue;
+        }
+        *at = question->next;
+        recall->count--;
+        mem_free(question);
+    }
+    pthread_mutex_unlock(&recall->lock);
+}
+
+struct history_answer *history_queries_collect(struct history_queries *recall)
+{
+    pthread_mutex_lock(&recall->lock);
+    struct history_answer *answers = recall->answers;
+    recall->answers = NULL;
+    recall->last = &recall->answers;
+    pthread_mutex_unlock(&recall->lock);
+    return answers;
+}

@@ -1,0 +1,117 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* A session whose plant is another from now on: its view goes on by names, as far as they are still there. */
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/mem.h"
+#include "session/reply.h"
+#include "session/session_impl.h"
+
+char *session_carry(struct session *session)
+{
+    session_time_leave(session);
+    session_place_leave(session);
+    session_drop_ready(session);
+    return session->hello ? reply_params_text(session->world, &session->view, 0, false) : NULL;
+}
+
+/* What `params` of the server says, as a client would ask for it. */
+static json_t *wish_of(const char *carried)
+{
+    static const char *const said_only[] = { "type", "seq", "baselines", "unit" };
+    json_t *o = json_loads(carried, 0, NULL), *baseline = json_object_get(o, "baseline");
+    for (size_t i = 0; i < sizeof(said_only) / sizeof(said_only[0]); i++)
+        json_object_del(o, said_only[i]);
+    json_t *name = json_incref(json_object_get(baseline, "name"));
+    if (json_is_string(name))
+        json_object_set(o, "baseline", name);
+    else
+        json_object_del(o, "baseline");
+    json_decref(name);
+    return o;
+}
+
+static bool apply(struct session *session, const json_t *wish)
+{
+    struct message message = { .type = MESSAGE_PARAMS };
+    struct message_error error = { 0 };
+    return params_parse(session->world->plant, wish, &message.params, &error) &&
+           split_parse(session->world->plant, wish, &message.split, &error) &&
+           session_apply_params(session, &message, &session->view, &error);
+}
+
+/* Assets that are gone are not in its lists any more; the others stay hidden, or ghosts. */
+static void forget_gone(const struct plant *plant, json_t *o)
+{
+    static const char *const sets[] = { "hidden", "isolate", "ghost" };
+    for (size_t i = 0; i < sizeof(sets) / sizeof(sets[0]); i++) {
+        json_t *list = json_object_get(o, sets[i]);
+        for (size_t n = json_array_size(list); n-- > 0;)
+            if (plant_find_asset(plant, json_string_value(json_array_get(list, n))) < 0)
+                json_array_remove(list, n);
+    }
+}
+
+/* All of it, or each that still means something. */
+static void apply_carried(struct session *session, const char *carried)
+{
+    json_t *o = wish_of(carried), *value;
+    const char *key;
+    forget_gone(session->world->plant, o);
+    if (o && !apply(session, o)) {
+        json_t *group = json_pack("{s:O}", "group", json_object_get(o, "group"));
+        apply(session, group);
+        json_decref(group);
+        json_object_del(o, "group");
+        json_object_foreach(o, key, value)
+        {
+            json_t *one = json_pack("{s:O}", key, value);
+            apply(session, one);
+            json_decref(one);
+        }
+    }
+    json_decref(o);
+}
+
+static void look_again(struct session *session, const struct view *before, const char *carried)
+{
+    view_default(session->world->scene, before->width_px, before->height_px, &session->view);
+    session->view.camera = before->camera;
+    session->view.camera_seq = before->camera_seq;
+    session->view.params_seq = before->params_seq;
+    apply_carried(session, carried);
+}
+
+void session_view_in(const struct session *session, const struct session_context *world, struct view *out)
+{
+    const struct view *view = session_view(session);
+    struct session *other = session_create(world, session->id, 0);
+    char *carried = reply_params_text(session->world, view, 0, false);
+    look_again(other, view, carried);
+    *out = other->view;
+    mem_free(carried);
+    session_destroy(&other);
+}
+
+void session_take_plant(struct session *session, const char *carried)
+{
+    const struct view before = session->view;
+    mem_free(session->tag_changes);
+    session->tag_changes = mem_array(session->world->plant->tag_count, sizeof(*session->tag_changes));
+    session->newest_number = 0;
+    session->pick_pending = false;
+    session->alarms_said = false;
+    session->alarms_number = 0;
+    session->loop_checks_said = 0;
+    session->refined = REFINED_NOT;
+    while (session->pacer.asked > 0) /* what was asked for does not come */
+        pacer_dropped(&session->pacer);
+    if (!session->hello)
+        return;
+    session->owes_following |= session->left != 0;
+    session->left = 0; /* what is beneath is of the plant before */
+    look_again(session, &before, carried);
+    session->owes_welcome = session->owes_tags_all = session->owes_status = session->always_pending = true;
+    session->owes_params = false;
+    session->owes_loop_checks = true;
+}

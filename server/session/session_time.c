@@ -1,0 +1,187 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* A session that travels in time: where it goes, how it plays, and how it comes back. */
+#include <math.h>
+
+#include "base/clock.h"
+#include "history/history.h"
+#include "session/session_impl.h"
+
+static const int64_t STEP_NS = 100 * NS_PER_MS;      /* of play, at most so often */
+static const int64_t SLOW_STEP_NS = 500 * NS_PER_MS; /* likewise, where little happens in so little time */
+static const double SLOW_SPEED = 10;
+
+const struct snapshot *session_snapshot(const struct session *session)
+{
+    const struct session *seen = session->leader ? session->leader : session;
+    return seen->travel.historical ? &seen->travel.historical->snapshot : session->world->snapshot;
+}
+
+void session_tell_time(struct session *session)
+{
+    int64_t at_us = session_view(session)->at_us;
+    session->owes_time = true;
+    session->owes_tags = true;
+    session->owes_tags_all |= (at_us != 0) != (session->told_at_us != 0); /* changes are counted otherwise */
+    session->told_at_us = at_us;
+}
+
+static void show(struct session *session, const struct historical_snapshot *historical, int64_t now_ns)
+{
+    struct travel *travel = &session->travel;
+    if (travel->historical)
+        snapshot_cache_give(session->world->snapshot_cache, &travel->historical);
+    travel->historical = historical;
+    travel->first = false;
+    view_set_instant(&session->view, historical ? historical->at_us : 0, historical ? historical->slot : 0);
+    session_tell_time(session);
+    session_on_input(session, now_ns);
+}
+
+static void come_back(struct session *session, int64_t now_ns)
+{
+    session->travel.wanted_us = 0;
+    session->travel.asked = false;
+    session->travel.speed = 0;
+    show(session, NULL, now_ns);
+}
+
+static void go(struct session *session, int64_t at_us)
+{
+    session->travel.wanted_us = at_us;
+    session->travel.asked = false;
+}
+
+static void play(struct session *session, double speed, int64_t from_us, int64_t now_ns)
+{
+    session->travel.speed = speed;
+    session->travel.from_us = from_us;
+    session->travel.from_ns = session->travel.stepped_ns = now_ns;
+    session->owes_time = true;
+}
+
+void session_time_begin(struct session *session, int64_t at_us, double speed)
+{
+    if (at_us == 0 || !session->world->snapshot_cache)
+        return;
+    session->travel.first = true;
+    session->travel.speed = speed;
+    go(session, at_us);
+}
+
+void session_time_leave(struct session *session)
+{
+    session_time_end(session);
+    session->travel = (struct travel){ .historical = NULL };
+    view_set_instant(&session->view, 0, 0);
+    session_tell_time(session);
+}
+
+void session_time_end(struct session *session)
+{
+    if (session->travel.historical)
+        snapshot_cache_give(session->world->snapshot_cache, &session->travel.historical);
+}
+
+void session_time_inherit(struct session *heir, const struct session *session)
+{
+    struct travel *travel = &heir->travel;
+    const struct historical_snapshot *historical =
+        session->travel.historical ? snapshot_cache_take(session->world->snapshot_cache, session->view.at_us) : NULL;
+    session_time_end(heir);
+    *travel = session->travel;
+    travel->historical = historical;
+    travel->asked = travel->first = false;
+    view_set_instant(&heir->view, historical ? historical->at_us : 0, historical ? historical->slot : 0);
+    session_tell_time(heir);
+}
+
+bool session_on_time(struct session *session, const struct time_request *wish, int64_t now_ns, int64_t now_utc_ns,
+                     struct message_error *error)
+{
+    struct travel *travel = &session->travel;
+    int64_t newest_us = now_utc_ns / 1000 - HISTORY_SETTLED_US, here_us = travel->wanted_us ? travel->wanted_us : session->view.at_us;
+    if (wish->has_at && wish->at_us == 0) {
+        come_back(session, now_ns);
+        return true;
+    }
+    if (!session->world->snapshot_cache) {
+        message_fail(error, "no_history", "this daemon records nothing (history: record: no)");
+        return false;
+    }
+    if (!wish->has_at && here_us == 0) {
+        message_fail(error, "bad_field", "speed: only in the past; at_us says from when");
+        return false;
+    }
+    int64_t at_us = wish->has_at ? wish->at_us : here_us;
+    if (at_us > newest_us) {
+        come_back(session, now_ns);
+        return true;
+    }
+    play(session, wish->speed, at_us, now_ns);
+    if (wish->has_at)
+        go(session, at_us);
+    return true;
+}
+
+/* False: it has come back to the present. */
+static bool step(struct session *session, int64_t now_ns, int64_t now_utc_ns)
+{
+    struct travel *travel = &session->travel;
+    int64_t at_us = travel->from_us + (int64_t)((double)(now_ns - travel->from_ns) / 1000 * travel->speed);
+    travel->stepped_ns = now_ns;
+    if (at_us > now_utc_ns / 1000 - HISTORY_SETTLED_US) {
+        come_back(session, now_ns);
+        return false;
+    }
+    if (travel->speed < 0 && at_us <= session->world->history_first_us) {
+        at_us = session->world->history_first_us;
+        travel->speed = 0;
+    }
+    go(session, at_us);
+    return true;
+}
+
+bool session_wants_historical_snapshot(struct session *session, int64_t now_ns, int64_t now_utc_ns, int64_t *at_us)
+{
+    struct travel *travel = &session->travel;
+    int64_t step_ns = fabs(travel->speed) < SLOW_SPEED ? SLOW_STEP_NS : STEP_NS;
+    bool due = travel->speed != 0 && travel->historical && !travel->wanted_us && !session->hidden && now_ns - travel->stepped_ns >= step_ns;
+    if (due && !step(session, now_ns, now_utc_ns))
+        return false;
+    if (!travel->wanted_us || travel->asked)
+        return false;
+    travel->asked = true;
+    *at_us = travel->wanted_us;
+    return true;
+}
+
+static void on_failure(struct session *session)
+{
+    struct message_error error = { .about = "time" };
+    message_fail(&error, "no_history", "history cannot be read; the server's log says why");
+    session_reply_error(session, &error);
+    session->travel.wanted_us = 0;
+    session->travel.asked = session->travel.first = false;
+    session->travel.speed = 0;
+    session->owes_time = true;
+}
+
+/* One that was asked for before, on the way to another, is shown too: who drags a slider sees something all the way. */
+void session_on_historical_snapshot(struct session *session, int64_t at_us, bool good, int64_t now_ns)
+{
+    struct travel *travel = &session->travel;
+    if (!travel->wanted_us)
+        return;
+    const struct historical_snapshot *historical = good ? snapshot_cache_take(session->world->snapshot_cache, at_us) : NULL;
+    if (!historical) {
+        on_failure(session);
+        return;
+    }
+    if (at_us == travel->wanted_us) {
+        travel->wanted_us = 0;
+        travel->asked = false;
+        if (travel->speed != 0 && travel->first)
+            play(session, travel->speed, at_us, now_ns);
+    }
+    show(session, historical, now_ns);
+}

@@ -1,0 +1,230 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Gluing triangles into patches, and flipping edges to Delaunay. */
+#include "surface/geodesic/intrinsic.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "base/mem.h"
+#include "base/vec.h"
+
+#define MOLLIFY 1e-4
+#define FLIPS_PER_EDGE 50u /* never met; ends what rounding could keep going */
+
+void intrinsic_finish(struct intrinsic *in)
+{
+    mem_free(in->points);
+    mem_free(in->lengths);
+    mem_free(in->glue);
+    *in = (struct intrinsic){ 0 };
+}
+
+static void turn(struct intrinsic *in, uint32_t (*other)[3], uint32_t t)
+{
+    uint32_t swap = in->points[t][1];
+    in->points[t][1] = in->points[t][2];
+    in->points[t][2] = swap;
+    swap = other[t][0];
+    other[t][0] = other[t][2];
+    other[t][2] = swap;
+}
+
+/* For each side the other triangle at an edge of exactly two, else TRIMESH_NONE. */
+static void find_neighbours(const struct trimesh *mesh, uint32_t (*other)[3])
+{
+    struct edge_table edges;
+    edge_table_init(&edges, mesh->tri_count * 3 / 2);
+    uint32_t(*faces)[2] = mem_array(mesh->tri_count * 3, sizeof(*faces));
+    uint32_t *counts = mem_array(mesh->tri_count * 3, sizeof(*counts));
+    for (uint32_t t = 0; t < mesh->tri_count; t++)
+        for (int i = 0; i < 3; i++) {
+            uint32_t e = edge_table_add(&edges, mesh->tris[t][i], mesh->tris[t][(i + 1) % 3]);
+            if (counts[e] < 2)
+                faces[e][counts[e]] = t;
+            counts[e]++;
+        }
+    for (uint32_t t = 0; t < mesh->tri_count; t++)
+        for (int i = 0; i < 3; i++) {
+            uint32_t e = edge_table_find(&edges, mesh->tris[t][i], mesh->tris[t][(i + 1) % 3]);
+            other[t][i] = counts[e] == 2 ? faces[e][faces[e][0] == t] : TRIMESH_NONE;
+        }
+    edge_table_finish(&edges);
+    mem_free(faces);
+    mem_free(counts);
+}
+
+static int side_with(const uint32_t points[3], uint32_t a, uint32_t b, bool *same_way)
+{
+    for (int i = 0; i < 3; i++) {
+        uint32_t p = points[i], q = points[(i + 1) % 3];
+        if ((p == a && q == b) || (p == b && q == a)) {
+            *same_way = p == a;
+            return i;
+        }
+    }
+    return -1;
+}
+
+/* Turns the triangles of each patch the same way round, by walking over it. */
+static void orient(struct intrinsic *in, uint32_t (*other)[3])
+{
+    char *seen = mem_array(in->tri_count, 1);
+    uint32_t *stack = mem_array(in->tri_count, sizeof(*stack));
+    for (uint32_t start = 0; start < in->tri_count; start++) {
+        size_t depth = 0;
+        if (seen[start])
+            continue;
+        seen[start] = 1;
+        stack[depth++] = start;
+        while (depth) {
+            uint32_t t = stack[--depth];
+            for (int i = 0; i < 3; i++) {
+                uint32_t u = other[t][i];
+                bool same_way = false;
+                if (u == TRIMESH_NONE || seen[u])
+                    continue;
+                side_with(in->points[u], in->points[t][i], in->points[t][(i + 1) % 3], &same_way);
+                if (same_way)
+                    turn(in, other, u);
+                seen[u] = 1;
+                stack[depth++] = u;
+            }
+        }
+    }
+    mem_free(seen);
+    mem_free(stack);
+}
+
+/* Two sides are glued where they run opposite ways; where they do not (a Moebius band) the edge stays as it is. */
+static void glue_sides(struct intrinsic *in, uint32_t (*other)[3])
+{
+    for (uint32_t t = 0; t < in->tri_count; t++)
+        for (int i = 0; i < 3; i++) {
+            uint32_t u = other[t][i];
+            bool same_way = true;
+            int side = u == TRIMESH_NONE ? -1 : side_with(in->points[u], in->points[t][i], in->points[t][(i + 1) % 3], &same_way);
+            in->glue[t][i] = side < 0 || same_way ? TRIMESH_NONE : 3 * u + (uint32_t)side;
+        }
+}
+
+void intrinsic_layout(const double lengths[3], double *x, double *y)
+{
+    double a = lengths[0], b = lengths[1], c = lengths[2]; /* corners 0-1, 1-2, 2-0 */
+    *x = (a * a + c * c - b * b) / (2 * a);
+    *y = sqrt(max_of(c * c - *x * *x, 0));
+}
+
+static double cotangent_opposite(const double lengths[3], int side)
+{
+    double a = lengths[side], b = lengths[(side + 1) % 3], c = lengths[(side + 2) % 3], s = (a + b + c) / 2;
+    double area2 = 4 * s * (s - a) * (s - b) * (s - c); /* (2 area)^2 */
+    return (b * b + c * c - a * a) / (2 * sqrt(max_of(area2, 1e-300)));
+}
+
+/* Flips the edge between two triangles of one patch. False: it cannot be (both sides of one triangle, or not convex). */
+static bool flip(struct intrinsic *in, uint32_t t, int i)
+{
+    uint32_t u = in->glue[t][i] / 3;
+    int j = (int)(in->glue[t][i] % 3);
+    if (u == t)
+        return false;
+    /* t = (p, q, r) with side pq; u = (q, p, s). */
+    const double *lt = in->lengths[t], *lu = in->lengths[u];
+    double pq = lt[i], qr = lt[(i + 1) % 3], rp = lt[(i + 2) % 3], ps = lu[(j + 1) % 3], sq = lu[(j + 2) % 3];
+    double rx = (pq * pq + rp * rp - qr * qr) / (2 * pq), ry = sqrt(max_of(rp * rp - rx * rx, 0));
+    double sx = (pq * pq + ps * ps - sq * sq) / (2 * pq), sy = -sqrt(max_of(ps * ps - sx * sx, 0));
+    double cut = ry - sy > 0 ? rx + (sx - rx) * ry / (ry - sy) : -1; /* where the new edge crosses the old one */
+    if (cut <= 0 || cut >= pq)
+        return false;
+    double rs = hypot(rx - sx, ry - sy);
+    uint32_t p = in->points[t][i], q = in->points[t][(i + 1) % 3], r = in->points[t][(i + 2) % 3], s = in->points[u][(j + 2) % 3];
+    uint32_t g_qr = in->glue[t][(i + 1) % 3], g_rp = in->glue[t][(i + 2) % 3], g_ps = in->glue[u][(j + 1) % 3],
+             g_sq = in->glue[u][(j + 2) % 3];
+    memcpy(in->points[t], (const uint32_t[3]){ s, r, p }, sizeof(in->points[t]));
+    memcpy(in->points[u], (const uint32_t[3]){ r, s, q }, sizeof(in->points[u]));
+    memcpy(in->lengths[t], (const double[3]){ rs, rp, ps }, sizeof(in->lengths[t]));
+    memcpy(in->lengths[u], (const double[3]){ rs, sq, qr }, sizeof(in->lengths[u]));
+    /* A side may be glued to a side of the same pair; rename those before they are written back. */
+    uint32_t outer[4] = { g_rp, g_ps, g_sq, g_qr };
+    const uint32_t was[4] = { 3 * t + (uint32_t)((i + 2) % 3), 3 * u + (uint32_t)((j + 1) % 3), 3 * u + (uint32_t)((j + 2) % 3),
+                              3 * t + (uint32_t)((i + 1) % 3) };
+    const uint32_t is[4] = { 3 * t + 1, 3 * t + 2, 3 * u + 1, 3 * u + 2 };
+    for (int k = 0; k < 4; k++)
+        for (int m = 0; m < 4; m++)
+            if (outer[k] == was[m]) {
+                outer[k] = is[m];
+                break;
+            }
+    for (int k = 0; k < 4; k++) {
+        in->glue[is[k] / 3][is[k] % 3] = outer[k];
+        if (outer[k] != TRIMESH_NONE)
+            in->glue[outer[k] / 3][outer[k] % 3] = is[k];
+    }
+    in->glue[t][0] = 3 * u;
+    in->glue[u][0] = 3 * t;
+    in->flips++;
+    return true;
+}
+
+/* Lengthens all sides by the same little, so that no triangle is flatter than MOLLIFY mean edges (Sharp & Crane 2020, section 4.5). */
+static void mollify(struct intrinsic *in)
+{
+    double sum = 0, lack = 0;
+    for (size_t t = 0; t < in->tri_count; t++)
+        sum += in->lengths[t][0] + in->lengths[t][1] + in->lengths[t][2];
+    double margin = MOLLIFY * sum / (3.0 * (double)in->tri_count);
+    for (size_t t = 0; t < in->tri_count; t++)
+        for (int i = 0; i < 3; i++)
+            lack = max_of(lack, margin + in->lengths[t][i] - in->lengths[t][(i + 1) % 3] - in->lengths[t][(i + 2) % 3]);
+    for (size_t t = 0; t < in->tri_count; t++)
+        for (int i = 0; i < 3; i++)
+            in->lengths[t][i] += lack;
+}
+
+static void push(uint32_t **stack, size_t *depth, size_t *capacity, uint32_t side)
+{
+    mem_grow(stack, capacity, *depth + 1, sizeof(**stack));
+    (*stack)[(*depth)++] = side;
+}
+
+static void make_delaunay(struct intrinsic *in)
+{
+    uint32_t *stack = NULL;
+    size_t depth = 0, capacity = 0, limit = in->tri_count * FLIPS_PER_EDGE;
+    for (uint32_t side = 0; side < 3 * in->tri_count; side++)
+        if (in->glue[side / 3][side % 3] != TRIMESH_NONE)
+            push(&stack, &depth, &capacity, side);
+    while (depth && in->flips < limit) {
+        uint32_t side = stack[--depth], t = side / 3, other = in->glue[t][side % 3];
+        if (other == TRIMESH_NONE)
+            continue;
+        uint32_t u = other / 3;
+        double weight = cotangent_opposite(in->lengths[t], (int)(side % 3)) + cotangent_opposite(in->lengths[u], (int)(other % 3));
+        if (weight >= -1e-9 || !flip(in, t, (int)(side % 3)))
+            continue;
+        for (uint32_t i = 1; i < 3; i++) {
+            push(&stack, &depth, &capacity, 3 * t + i);
+            push(&stack, &depth, &capacity, 3 * u + i);
+        }
+    }
+    mem_free(stack);
+}
+
+void intrinsic_init(struct intrinsic *in, const struct trimesh *mesh)
+{
+    *in = (struct intrinsic){ .tri_count = mesh->tri_count, .point_count = mesh->point_count };
+    in->points = mem_array(mesh->tri_count, sizeof(*in->points));
+    in->lengths = mem_array(mesh->tri_count, sizeof(*in->lengths));
+    in->glue = mem_array(mesh->tri_count, sizeof(*in->glue));
+    uint32_t(*other)[3] = mem_array(mesh->tri_count, sizeof(*other));
+    memcpy(in->points, mesh->tris, mesh->tri_count * sizeof(*in->points));
+    find_neighbours(mesh, other);
+    orient(in, other);
+    glue_sides(in, other);
+    for (size_t t = 0; t < mesh->tri_count; t++)
+        for (int i = 0; i < 3; i++)
+            in->lengths[t][i] = vec_distance(mesh->points[in->points[t][i]], mesh->points[in->points[t][(i + 1) % 3]]);
+    mollify(in);
+    make_delaunay(in);
+    mem_free(other);
+}

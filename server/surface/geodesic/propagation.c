@@ -1,0 +1,207 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What meets at each point of a mesh, ready for distances to be unfolded over it. */
+#include "surface/geodesic/propagation.h"
+
+#include <string.h>
+
+#include "base/mem.h"
+#include "base/vec.h"
+
+#define STEPS_PER_EDGE 32.0 /* buckets to a mean edge: points in one bucket are taken in any order */
+#define NEAR_EDGES 5.0
+#define MAX_BUCKETS (1u << 16)
+#define MOST_TRIED 64 /* triangles at a point that may be the next one round it; else a row ends */
+
+/* The corners of the t-th triangle walked over, and its sides from corner i to corner i + 1. */
+static const uint32_t *tri_points(const struct propagation *propagation, const struct intrinsic *in, size_t t)
+{
+    return t < in->tri_count ? in->points[t] : propagation->mesh->tris[t];
+}
+
+static void tri_sides(const struct propagation *propagation, const struct intrinsic *in, size_t t, double sides[3])
+{
+    const uint32_t *v = tri_points(propagation, in, t);
+    for (int i = 0; i < 3; i++)
+        sides[i] = t < in->tri_count ? in->lengths[t][i]
+                                     : vec_distance(propagation->mesh->points[v[i]], propagation->mesh->points[v[(i + 1) % 3]]);
+}
+
+/* --- fans ---------------------------------------------------------------------------------------------------------------------- */
+
+struct end { /* of a side that leaves the point in hand */
+    uint32_t to;
+    float length_m; /* as in a fan */
+};
+
+struct wedge { /* a triangle at the point */
+    struct end ends[2];
+    float cosine, sine;
+};
+
+static struct wedge wedge_of(const struct propagation *propagation, const struct intrinsic *in, size_t t, int corner)
+{
+    const uint32_t *v = tri_points(propagation, in, t);
+    bool inside = t >= in->tri_count;
+    double sides[3];
+    tri_sides(propagation, in, t, sides);
+    double to_a = sides[corner], to_b = sides[(corner + 2) % 3], across = sides[(corner + 1) % 3];
+    double cosine = min_of(max_of((to_a * to_a + to_b * to_b - across * across) / (2 * to_a * to_b), -1), 1);
+    uint32_t a = v[(corner + 1) % 3], b = v[(corner + 2) % 3];
+    return (struct wedge){ { { a, (float)(inside && !propagation->hidden[a] ? -to_a : to_a) },
+                             { b, (float)(inside && !propagation->hidden[b] ? -to_b : to_b) } },
+                           (float)cosine,
+                           (float)sqrt(1 - cosine * cosine) };
+}
+
+static void turn_round(struct wedge *wedge)
+{
+    struct end swap = wedge->ends[0];
+    wedge->ends[0] = wedge->ends[1];
+    wedge->ends[1] = swap;
+}
+
+/* Puts wedges that follow one another after the first `count` ones, as many as there are. Returns how many that makes. */
+static size_t extend(struct wedge *wedges, size_t count, size_t all)
+{
+    for (size_t i = count; i < all && i < count + MOST_TRIED; i++)
+        for (int end = 0; end < 2; end++) {
+            const struct end *last = &wedges[count - 1].ends[1];
+            if (wedges[i].ends[end].to != last->to || wedges[i].ends[end].length_m != last->length_m)
+                continue;
+            struct wedge next = wedges[i];
+            wedges[i] = wedges[count];
+            wedges[count] = next;
+            if (end == 1)
+                turn_round(&wedges[count]);
+            i = count++;
+            break;
+        }
+    return count;
+}
+
+static void reverse(struct wedge *wedges, size_t count)
+{
+    for (size_t i = 0; i < (count + 1) / 2; i++) {
+        struct wedge swap = wedges[i];
+        wedges[i] = wedges[count - 1 - i];
+        wedges[count - 1 - i] = swap;
+    }
+    for (size_t i = 0; i < count; i++)
+        turn_round(&wedges[i]);
+}
+
+static struct propagation_fan *add_fan(struct propagation *propagation, uint32_t point)
+{
+    mem_grow(&propagation->fans, &propagation->fan_capacity, propagation->fan_count + 1, sizeof(*propagation->fans));
+    struct propagation_fan *fan = &propagation->fans[propagation->fan_count++];
+    for (int i = 0; i < PROPAGATION_FAN; i++) {
+        fan->to[i] = point;
+        fan->length_m[i] = INFINITY;
+        fan->cosine[i] = fan->sine[i] = 0;
+    }
+    return fan;
+}
+
+/* Ends of wedges in a row, and the wedges in between. What is cut by a fan's end begins the next one too. Returns the lanes in use. */
+static int add_row(struct propagation *propagation, uint32_t point, const struct wedge *row, size_t count, int lane)
+{
+    for (size_t i = 0; i <= count; i++) {
+        const struct end *end = i < count ? &row[i].ends[0] : &row[count - 1].ends[1];
+        for (bool again = true; again;) {
+            struct propagation_fan *fan =
+                lane == PROPAGATION_FAN ? add_fan(propagation, point) : &propagation->fans[propagation->fan_count - 1];
+            lane = lane == PROPAGATION_FAN ? 0 : lane;
+            again = lane == PROPAGATION_FAN - 1 && i < count;
+            fan->to[lane] = end->to;
+            fan->length_m[lane] = end->length_m;
+            fan->cosine[lane] = i < count && !again ? row[i].cosine : 0;
+            fan->sine[lane++] = i < count && !again ? row[i].sine : 0;
+        }
+    }
+    return lane;
+}
+
+static void add_fans(struct propagation *propagation, uint32_t point, struct wedge *wedges, size_t count)
+{
+    int lane = PROPAGATION_FAN;
+    for (size_t begin = 0, row; begin < count; begin += row) {
+        row = extend(wedges + begin, 1, count - begin);
+        reverse(wedges + begin, row);
+        row = extend(wedges + begin, row, count - begin);
+        lane = add_row(propagation, point, wedges + begin, row, lane);
+    }
+}
+
+/* Where the corners at each point begin; one more at the end. */
+static uint32_t *count_corners(const struct propagation *propagation, const struct intrinsic *in)
+{
+    size_t points = propagation->mesh->point_count;
+    uint32_t *first = mem_array(points + 2, sizeof(*first));
+    for (size_t t = 0; t < propagation->mesh->tri_count; t++)
+        for (int i = 0; i < 3; i++)
+            first[tri_points(propagation, in, t)[i] + 2]++;
+    for (size_t p = 2; p < points + 2; p++)
+        first[p] += first[p - 1];
+    return first;
+}
+
+static void make_fans(struct propagation *propagation, const struct intrinsic *in)
+{
+    size_t points = propagation->mesh->point_count, tris = propagation->mesh->tri_count, most = 0;
+    uint32_t *first = count_corners(propagation, in), *corners = mem_array(3 * tris, sizeof(*corners));
+    for (uint32_t t = 0; t < tris; t++)
+        for (uint32_t i = 0; i < 3; i++)
+            corners[first[tri_points(propagation, in, t)[i] + 1]++] = 3 * t + i;
+    for (size_t p = 0; p < points; p++)
+        most = first[p + 1] - first[p] > most ? first[p + 1] - first[p] : most;
+    struct wedge *wedges = mem_array(most, sizeof(*wedges));
+    for (uint32_t p = 0; p < points; p++) {
+        size_t count = first[p + 1] - first[p];
+        for (size_t i = 0; i < count; i++)
+            wedges[i] = wedge_of(propagation, in, corners[first[p] + i] / 3, (int)(corners[first[p] + i] % 3));
+        propagation->first[p] = (uint32_t)propagation->fan_count;
+        add_fans(propagation, p, wedges, count);
+    }
+    propagation->first[points] = (uint32_t)propagation->fan_count;
+    mem_free(wedges);
+    mem_free(corners);
+    mem_free(first);
+}
+
+/* The ring of buckets must span the longest edge, and what is near: an offer is never farther ahead than that. */
+static void choose_buckets(struct propagation *propagation, const struct intrinsic *in)
+{
+    double sum = 0, longest = 0, sides[3];
+    for (size_t t = 0; t < propagation->mesh->tri_count; t++) {
+        tri_sides(propagation, in, t, sides);
+        sum += sides[0] + sides[1] + sides[2];
+        longest = max_of(longest, max_of(sides[0], max_of(sides[1], sides[2])));
+    }
+    double step_m = max_of(sum / (3 * (double)propagation->mesh->tri_count * STEPS_PER_EDGE), longest / (MAX_BUCKETS - 4));
+    propagation->steps_per_m = (float)(1 / step_m);
+    propagation->bucket_count = 8;
+    propagation->near_m = NEAR_EDGES * sum / (3 * (double)propagation->mesh->tri_count);
+    while (propagation->bucket_count < max_of(longest, propagation->near_m) / step_m + 4)
+        propagation->bucket_count *= 2;
+}
+
+void propagation_init(struct propagation *propagation, const struct trimesh *mesh, size_t visible_count, const struct intrinsic *in)
+{
+    *propagation = (struct propagation){ .mesh = mesh, .in = in };
+    propagation->hidden = mem_array(mesh->point_count, 1);
+    propagation->first = mem_array(mesh->point_count + 1, sizeof(*propagation->first));
+    memset(propagation->hidden, 1, mesh->point_count);
+    for (size_t t = 0; t < visible_count; t++)
+        for (int i = 0; i < 3; i++)
+            propagation->hidden[mesh->tris[t][i]] = 0;
+    make_fans(propagation, in);
+    choose_buckets(propagation, in);
+}
+
+void propagation_finish(struct propagation *propagation)
+{
+    mem_free(propagation->first);
+    mem_free(propagation->fans);
+    mem_free(propagation->hidden);
+    *propagation = (struct propagation){ 0 };
+}

@@ -1,0 +1,54 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Distances from a source, unfolded triangle by triangle (Novotni & Klein 2002): exact where the surface is flat or unrolls. */
+#ifndef SURFACE_GEODESIC_PROPAGATION_H
+#define SURFACE_GEODESIC_PROPAGATION_H
+#include "surface/geodesic/intrinsic.h"
+
+#define PROPAGATION_FAN 8 /* points around one that are looked at side by side, a lane of a vector register each */
+
+struct propagation { /* what meets at each point; shared by all walks */
+    const struct trimesh *mesh;
+    const struct intrinsic *in;
+    uint32_t *first;                     /* of each point in fans; one more at the end */
+    struct propagation_fan {             /* seen from a point, others in order, and the triangle between each and the next */
+        uint32_t to[PROPAGATION_FAN];    /* the point itself where there is no more */
+        float length_m[PROPAGATION_FAN]; /* < 0: not to be reached through these triangles; INFINITY: none */
+        float cosine[PROPAGATION_FAN], sine[PROPAGATION_FAN]; /* of the angle to the next; sine 0: no triangle in between */
+    } * fans;
+    size_t fan_count, fan_capacity;
+    char *hidden;      /* of each point: it has no visible triangle */
+    float steps_per_m; /* buckets of a walk */
+    double near_m;     /* so far points are looked for straight from the source */
+    uint32_t bucket_count;
+};
+/* Visible triangles are walked over as the intrinsic triangulation has them, which leaves few obtuse ones; from there on the walk goes into
+   the mesh's triangles from visible_count on, which are hidden inside another part, so that a triangle that passes through a surface has a
+   distance at its hidden end too; but never back. mesh and in must outlive it. */
+void propagation_init(struct propagation *propagation, const struct trimesh *mesh, size_t visible_count, const struct intrinsic *in);
+void propagation_finish(struct propagation *propagation);
+
+struct propagation_front { /* one thread's; zero-initialise, used again and again */
+    float *distance_m;     /* of all points; INFINITY where no way leads */
+    float *straight_m;     /* and as the crow flies */
+    char *settled;
+    uint32_t *buckets;
+    struct propagation_item {
+        uint32_t point, next;
+    } * items;
+    uint64_t at; /* the bucket in hand */
+    double source_m[3];
+    size_t item_count, item_capacity;
+};
+void propagation_front_finish(struct propagation_front *walk);
+
+#define PROPAGATION_ABREAST 2 /* walks that one thread takes at once, at most: it waits less for each */
+struct propagation_source {
+    uint32_t tri;
+    const double *weights; /* of its corners */
+};
+/* Distances of all points from each source, in the walk of its number; the same whatever others are walked beside it. False: out of
+   memory. */
+bool propagation_run(const struct propagation *propagation, struct propagation_front *walks, const struct propagation_source *sources,
+                     size_t count);
+
+#endif

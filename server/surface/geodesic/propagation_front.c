@@ -1,0 +1,457 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Unfolding distances outwards from a source, nearer points first. */
+#include <math.h>
+#include <string.h>
+
+#include "base/mem.h"
+#include "base/simd.h"
+#include "base/vec.h"
+#include "surface/geodesic/propagation.h"
+
+#define INSIDE 1e-6      /* least weight of a corner: the source is a little inside its triangle */
+#define ASIDE 1e-3       /* of the way to the side across: a place beside a corner */
+#define ANY_ORDER 2      /* buckets within which a point may be taken before a nearer one */
+#define DEEPEST 32       /* triangles that a straight line near the source passes through */
+#define NO_LENGTH 1e-300 /* only so that nothing is divided by 0 */
+
+typedef float lanes __attribute__((vector_size(4 * PROPAGATION_FAN)));
+typedef int32_t mask __attribute__((vector_size(4 * PROPAGATION_FAN))); /* of each lane all bits, or none */
+
+void propagation_front_finish(struct propagation_front *walk)
+{
+    mem_free(walk->distance_m);
+    mem_free(walk->straight_m);
+    mem_free(walk->settled);
+    mem_free(walk->buckets);
+    mem_free(walk->items);
+    *walk = (struct propagation_front){ 0 };
+}
+
+static bool clear(const struct propagation *propagation, struct propagation_front *walk)
+{
+    size_t count = propagation->mesh->point_count;
+    if (!walk->distance_m) {
+        walk->distance_m = mem_try_array(count, sizeof(*walk->distance_m));
+        walk->straight_m = mem_try_array(count, sizeof(*walk->straight_m));
+        walk->settled = mem_try_array(count, 1);
+        walk->buckets = mem_try_array(propagation->bucket_count, sizeof(*walk->buckets));
+        if (!walk->distance_m || !walk->straight_m || !walk->settled || !walk->buckets)
+            return false;
+        memset(walk->buckets, 0xff, propagation->bucket_count * sizeof(*walk->buckets)); /* a walk leaves them empty */
+    }
+    for (size_t i = 0; i < count; i++)
+        walk->distance_m[i] = INFINITY;
+    memset(walk->settled, 0, count);
+    walk->item_count = walk->at = 0;
+    return true;
+}
+
+/* Its turn comes soon, and memory is slow. */
+static inline void fetch_fans(const struct propagation *propagation, uint32_t point)
+{
+    const char *from = (const char *)&propagation->fans[propagation->first[point]],
+               *to = (const char *)&propagation->fans[propagation->first[point + 1]];
+    for (; from < to; from += 64)
+        __builtin_prefetch(from);
+}
+
+/* No way is shorter than the straight line. What is offered may be: an edge's two ends have their distances by ways round a fold, or round
+   a rod, and a source that is laid out to fit both is nearer than either. */
+static inline void offer(const struct propagation *propagation, struct propagation_front *walk, uint32_t point, float offered_m)
+{
+    float distance_m = offered_m < walk->straight_m[point] ? walk->straight_m[point] : offered_m;
+    if (!(distance_m < walk->distance_m[point]))
+        return;
+    if (walk->distance_m[point] == INFINITY)
+        fetch_fans(propagation, point);
+    walk->distance_m[point] = distance_m;
+    if (walk->settled[point])
+        return; /* nothing goes out from a point twice, or small corrections would run over the whole surface again and again */
+    if (walk->item_count == walk->item_capacity)
+        mem_grow(&walk->items, &walk->item_capacity, walk->item_count + 1, sizeof(*walk->items));
+    uint64_t number = (uint64_t)(int64_t)(distance_m * propagation->steps_per_m); /* not negative, but so it is one instruction */
+    uint32_t *bucket = &walk->buckets[(number > walk->at ? number : walk->at) & (propagation->bucket_count - 1)];
+    walk->items[walk->item_count] = (struct propagation_item){ point, *bucket };
+    *bucket = (uint32_t)walk->item_count++;
+}
+
+SIMD_BODY void root(lanes *x)
+{
+    for (int i = 0; i < PROPAGATION_FAN; i++)
+        (*x)[i] = sqrtf((*x)[i]);
+}
+
+/* A bit for each lane. */
+SIMD_BODY uint32_t bits_of(const mask *which)
+{
+    const mask bits = { 1, 2, 4, 8, 16, 32, 64, 128 }, left = *which & bits;
+    uint64_t words[4], all;
+    memcpy(words, &left, sizeof(words));
+    all = (words[0] | words[1]) | (words[2] | words[3]);
+    return (uint32_t)(all | all >> 32);
+}
+
+SIMD_BODY void choose(const mask *which, const lanes *x, const lanes *otherwise, lanes *out)
+{
+    *out = (lanes)((*which & (mask)*x) | (~*which & (mask)*otherwise));
+}
+
+/* What the edge from p (at d) to b (at db, pb away) offers to c, pc away from p: the source is laid out in the triangle's plane on the
+   other side of the edge. INFINITY where its ray to c does not pass between p and b, or b is farther than `reached`. */
+SIMD_BODY void through_edge(const lanes *d_of_p, const lanes *reached, const lanes *d_of_b, const lanes *p_to_b, const lanes *p_to_c,
+                            const lanes *cosine, const lanes *sine, lanes *out)
+{
+    const lanes zero = { 0 }, infinite = zero + INFINITY, d = *d_of_p, db = *d_of_b, pb = *p_to_b, pc = *p_to_c;
+    lanes sx = (d - db) * (d + db) / (2 * pb) + 0.5f * pb, sy2 = (d - sx) * (d + sx);
+    mask seen = (sy2 >= zero) & (db <= *reached);
+    lanes sy = (lanes)(seen & (mask)sy2), cx = pc * *cosine, cy = pc * *sine;
+    root(&sy);
+    lanes x = cx - sx, height = cy + sy, cut = sx * cy + cx * sy; /* where the ray cuts the edge, times the height */
+    seen &= (cy > zero) & (cut >= zero) & (cut <= pb * height);
+    lanes straight = x * x + height * height;
+    root(&straight);
+    choose(&seen, &straight, &infinite, out);
+}
+
+/* To each of a fan's points: along the edge from p (at d), or through the triangle that it has with the point before or after it, if that
+   one is nearer. */
+SIMD_BODY void offers_of(const lanes *d_of_p, const lanes *reached, const lanes *d_of_each, const lanes *length_m, const lanes *cosine,
+                         const lanes *sine, lanes *out)
+{
+    const lanes infinite = (lanes){ 0 } + INFINITY, here = *d_of_each, length = *length_m;
+    lanes next = __builtin_shufflevector(here, here, 1, 2, 3, 4, 5, 6, 7, 7);
+    lanes next_length = __builtin_shufflevector(length, length, 1, 2, 3, 4, 5, 6, 7, 7);
+    mask to_here = here > next;
+    lanes near, near_length, far_length, through, to_this, to_next;
+    choose(&to_here, &next, &here, &near);
+    choose(&to_here, &next_length, &length, &near_length);
+    choose(&to_here, &length, &next_length, &far_length);
+    through_edge(d_of_p, reached, &near, &near_length, &far_length, cosine, sine, &through);
+    choose(&to_here, &through, &infinite, &to_this);
+    choose(&to_here, &infinite, &through, &to_next);
+    to_next = __builtin_shufflevector(to_next, infinite, 8, 0, 1, 2, 3, 4, 5, 6);
+    mask less = to_next < to_this;
+    choose(&less, &to_next, &to_this, &through);
+    lanes along = *d_of_p + length;
+    less = through < along;
+    choose(&less, &through, &along, out);
+}
+
+/* Where a walk is. */
+struct front {
+    struct propagation_front *walk;
+    const struct propagation_fan *fan, *end; /* the fan in hand; the end of its point's */
+    lanes d, reached;                        /* of the point */
+    uint32_t empty;                          /* buckets in a row */
+    float offered_m[PROPAGATION_FAN];        /* to the fan's points */
+    uint32_t takes;                          /* a bit for each of those that may take it */
+};
+
+/* Takes the next point in hand. False: there is none left. */
+SIMD_BODY bool next_point(const struct propagation *propagation, struct front *front)
+{
+    struct propagation_front *walk = front->walk;
+    for (; front->empty < propagation->bucket_count; walk->at++) {
+        uint32_t *bucket = &walk->buckets[walk->at & (propagation->bucket_count - 1)];
+        front->empty = *bucket == TRIMESH_NONE ? front->empty + 1 : 0;
+        while (*bucket != TRIMESH_NONE) {
+            struct propagation_item item = walk->items[*bucket];
+            *bucket = item.next;
+            if (walk->settled[item.point]) /* it was reached by a shorter way */
+                continue;
+            walk->settled[item.point] = 1;
+            front->d = walk->distance_m[item.point] - (lanes){ 0 };
+            front->reached = front->d + ANY_ORDER / propagation->steps_per_m;
+            front->fan = propagation->fans + propagation->first[item.point];
+            front->end = propagation->fans + propagation->first[item.point + 1];
+            if (front->fan < front->end)
+                return true;
+        }
+    }
+    return false;
+}
+
+/* What the point in hand offers to those of its fan: no branches, so that those of several walks are under way at once. */
+SIMD_BODY void look_round(struct front *front)
+{
+    const lanes zero = { 0 };
+    const struct propagation_fan *fan = front->fan;
+    lanes each, length, cosine, sine, offers;
+    for (int i = 0; i < PROPAGATION_FAN; i++)
+        each[i] = front->walk->distance_m[fan->to[i]];
+    memcpy(&length, fan->length_m, sizeof(length));
+    memcpy(&cosine, fan->cosine, sizeof(cosine));
+    memcpy(&sine, fan->sine, sizeof(sine));
+    mask takes = (each > front->d) & (length >= zero);
+    length = (lanes)((mask)length & INT32_MAX);
+    offers_of(&front->d, &front->reached, &each, &length, &cosine, &sine, &offers);
+    takes &= offers < each;
+    memcpy(front->offered_m, &offers, sizeof(offers));
+    front->takes = bits_of(&takes);
+}
+
+SIMD_BODY void hand_out(const struct propagation *propagation, struct front *front)
+{
+    for (uint32_t left = front->takes; left; left &= left - 1) {
+        int i = __builtin_ctz(left);
+        offer(propagation, front->walk, front->fan->to[i], front->offered_m[i]);
+    }
+}
+
+/* --- near the source ------------------------------------------------------------------------------------------------------------ */
+
+/* What the source, at (0, 0), sees through an edge in its plane: the edge from l to r, turning left, and the directions low to high. */
+struct window {
+    double l[2], r[2], low[2], high[2];
+    uint32_t entered; /* 3 * triangle + side: the triangle beyond, in which that side runs from r to l */
+};
+
+static double cross(const double a[2], const double b[2])
+{
+    return a[0] * b[1] - a[1] * b[0];
+}
+
+/* The third corner of the triangle beyond. An edge is taken as long as it is, however short: with another length the corner would not lie
+   beyond it but on it, inside every window, and 2^DEEPEST windows would be looked through. */
+static void lay_out_apex(const struct window *window, double to_l_m, double to_r_m, double apex[2])
+{
+    double e[2] = { window->r[0] - window->l[0], window->r[1] - window->l[1] }, length = max_of(hypot(e[0], e[1]), NO_LENGTH);
+    double along = (to_l_m * to_l_m - to_r_m * to_r_m + length * length) / (2 * length);
+    double off = sqrt(max_of(to_l_m * to_l_m - along * along, 0));
+    apex[0] = window->l[0] + (along * e[0] + off * e[1]) / length;
+    apex[1] = window->l[1] + (along * e[1] - off * e[0]) / length;
+}
+
+static void look_through(const struct propagation *propagation, struct propagation_front *walk, const struct window *window, int depth)
+{
+    const struct intrinsic *in = propagation->in;
+    uint32_t t = window->entered / 3, side = window->entered % 3;
+    double apex[2];
+    if (!(min_of(hypot(window->l[0], window->l[1]), hypot(window->r[0], window->r[1])) < propagation->near_m))
+        return;
+    lay_out_apex(window, in->lengths[t][(side + 1) % 3], in->lengths[t][(side + 2) % 3], apex);
+    double distance_m = hypot(apex[0], apex[1]);
+    bool after_low = cross(window->low, apex) >= 0, before_high = cross(apex, window->high) >= 0;
+    if (!after_low && !before_high) /* a corner beyond an edge is not behind the source: its place is no number, and windows stay wide */
+        return;
+    if (after_low && before_high && distance_m < propagation->near_m)
+        offer(propagation, walk, in->points[t][(side + 2) % 3], (float)distance_m);
+    for (uint32_t i = 0; i < 2; i++) {
+        struct window next = *window;
+        next.entered = in->glue[t][(side + 1 + i) % 3];
+        memcpy(i ? next.l : next.r, apex, sizeof(apex));
+        if (i ? after_low : before_high)
+            memcpy(i ? next.low : next.high, apex, sizeof(apex));
+        if (next.entered != TRIMESH_NONE && cross(next.low, next.high) > 0 && depth < DEEPEST)
+            look_through(propagation, walk, &next, depth + 1);
+    }
+}
+
+/* A triangle laid out in a plane, the source at (0, 0). */
+struct laid {
+    uint32_t tri; /* of the intrinsic triangulation */
+    double corners[3][2];
+};
+
+/* False: an edge of the triangle was flipped. */
+static bool lay_out_kept(const struct intrinsic *in, const uint32_t given[3], uint32_t tri, const double weights[3], struct laid *laid)
+{
+    const uint32_t *v = in->points[tri];
+    double source[2] = { 0 };
+    *laid = (struct laid){ tri, { { 0, 0 }, { in->lengths[tri][0], 0 } } };
+    intrinsic_layout(in->lengths[tri], &laid->corners[2][0], &laid->corners[2][1]);
+    for (int i = 0; i < 3; i++) {
+        int same = v[i] == given[0] ? 0 : v[i] == given[1] ? 1 : v[i] == given[2] ? 2 : -1;
+        if (same < 0)
+            return false;
+        source[0] += weights[same] * laid->corners[i][0];
+        source[1] += weights[same] * laid->corners[i][1];
+    }
+    for (int i = 0; i < 3; i++)
+        for (int axis = 0; axis < 2; axis++)
+            laid->corners[i][axis] -= source[axis];
+    return true;
+}
+
+/* Straight on from the middle of the window's edge to a place beyond, triangle by triangle; the window is then that through which the last
+   one was entered. False: the surface ends before. */
+static bool walk_to(const struct intrinsic *in, const double to[2], struct window *window, double apex[2])
+{
+    const double from[2] = { (window->l[0] + window->r[0]) / 2, (window->l[1] + window->r[1]) / 2 };
+    const double way[2] = { to[0] - from[0], to[1] - from[1] };
+    for (int depth = 0; depth < DEEPEST; depth++) {
+        uint32_t t = window->entered / 3, side = window->entered % 3;
+        lay_out_apex(window, in->lengths[t][(side + 1) % 3], in->lengths[t][(side + 2) % 3], apex);
+        bool passes_l = cross(way, (const double[2]){ apex[0] - from[0], apex[1] - from[1] }) > 0;
+        const double *end = passes_l ? window->l : window->r; /* of the side that the way is bound for */
+        double along[2] = { apex[0] - end[0], apex[1] - end[1] }, beyond[2] = { to[0] - end[0], to[1] - end[1] };
+        if (passes_l ? cross(along, beyond) >= 0 : cross(beyond, along) >= 0)
+            return true;
+        window->entered = in->glue[t][(side + (passes_l ? 1 : 2)) % 3];
+        memcpy(passes_l ? window->r : window->l, apex, sizeof(window->r));
+        if (window->entered == TRIMESH_NONE)
+            return false;
+    }
+    return false;
+}
+
+/* Where a place is with r at (0, 0), l at (side, 0) and the rest above. */
+static void place_above(double side, double to_r_m, double to_l_m, double out[2])
+{
+    intrinsic_layout((const double[3]){ side, to_l_m, to_r_m }, &out[0], &out[1]);
+}
+
+/* In the triangles that lie beyond a side that was not flipped, if these are the flipped triangle's: its third corner is among them, and
+   where it is to be; round an end of the side they may have it, too. */
+static bool lay_out_beyond(const struct propagation *propagation, uint32_t entered, uint32_t third, const double source[3],
+                           struct laid *laid)
+{
+    const struct intrinsic *in = propagation->in;
+    const double(*points)[3] = (const double(*)[3])propagation->mesh->points;
+    uint32_t t = entered / 3, side = entered % 3, r = in->points[t][side], l = in->points[t][(side + 1) % 3];
+    const struct window first = { .l = { in->lengths[t][side], 0 }, .entered = entered };
+    double at[2], corner[2], beside[2], apex[2];
+    place_above(first.l[0], vec_distance(points[r], points[third]), vec_distance(points[l], points[third]), corner);
+    place_above(first.l[0], vec_distance(points[r], source), vec_distance(points[l], source), at);
+    beside[0] = corner[0] + ASIDE * (first.l[0] / 2 - corner[0]);
+    beside[1] = corner[1] - ASIDE * corner[1];
+    struct window window = first;
+    if (!walk_to(in, beside, &window, apex) || in->points[window.entered / 3][(window.entered + 2) % 3] != third ||
+        hypot(apex[0] - corner[0], apex[1] - corner[1]) > ASIDE * first.l[0])
+        return false;
+    window = first;
+    if (!walk_to(in, at, &window, apex))
+        return false;
+    laid->tri = window.entered / 3;
+    side = window.entered % 3;
+    for (int axis = 0; axis < 2; axis++) {
+        laid->corners[side][axis] = window.r[axis] - at[axis];
+        laid->corners[(side + 1) % 3][axis] = window.l[axis] - at[axis];
+        laid->corners[(side + 2) % 3][axis] = apex[axis] - at[axis];
+    }
+    return true;
+}
+
+static bool lay_out_flipped(const struct propagation *propagation, const uint32_t given[3], const double weights[3], struct laid *laid)
+{
+    const struct intrinsic *in = propagation->in;
+    double source[3] = { 0 };
+    for (int i = 0; i < 3; i++)
+        for (int axis = 0; axis < 3; axis++)
+            source[axis] += weights[i] * propagation->mesh->points[given[i]][axis];
+    for (uint32_t t = 0; t < in->tri_count; t++)
+        for (uint32_t side = 0; side < 3; side++) {
+            uint32_t p = in->points[t][side], q = in->points[t][(side + 1) % 3], third = TRIMESH_NONE;
+            for (int i = 0; i < 3; i++)
+                if ((p == given[i] && q == given[(i + 1) % 3]) || (q == given[i] && p == given[(i + 1) % 3]))
+                    third = given[(i + 2) % 3];
+            if (third != TRIMESH_NONE && lay_out_beyond(propagation, 3 * t + side, third, source, laid))
+                return true;
+        }
+    return false;
+}
+
+/* Points that the source sees in a straight line have that distance, though its ray may pass between points that are farther away than
+   they are: the order from near to far, which is right elsewhere, is wrong so near to it. */
+static void look_around(const struct propagation *propagation, struct propagation_front *walk, uint32_t tri, const double weights[3])
+{
+    const struct intrinsic *in = propagation->in;
+    const uint32_t *given = propagation->mesh->tris[tri];
+    double inside[3], sum = 0;
+    struct laid laid;
+    for (int i = 0; i < 3; i++)
+        sum += max_of(weights[i], INSIDE);
+    for (int i = 0; i < 3; i++)
+        inside[i] = max_of(weights[i], INSIDE) / sum;
+    if (!lay_out_kept(in, given, tri, inside, &laid) && !lay_out_flipped(propagation, given, inside, &laid))
+        return;
+    for (int i = 0; i < 3; i++) {
+        struct window window = { .entered = in->glue[laid.tri][i] };
+        offer(propagation, walk, in->points[laid.tri][i], (float)hypot(laid.corners[i][0], laid.corners[i][1]));
+        memcpy(window.l, laid.corners[i], sizeof(window.l));
+        memcpy(window.r, laid.corners[(i + 1) % 3], sizeof(window.r));
+        memcpy(window.low, window.l, sizeof(window.low));
+        memcpy(window.high, window.r, sizeof(window.high));
+        if (window.entered != TRIMESH_NONE)
+            look_through(propagation, walk, &window, 0);
+    }
+}
+
+/* From the source to all points: one after another, since places of points that offers go to lie all over the memory. */
+SIMD_BODY void measure_straight(const struct trimesh *mesh, struct propagation_front *walk)
+{
+    const double q[3] = { walk->source_m[0], walk->source_m[1], walk->source_m[2] }, (*points)[3] = (const double(*)[3])mesh->points;
+    float *restrict straight_m = walk->straight_m;
+    for (size_t i = 0; i < mesh->point_count; i++) {
+        double x = points[i][0] - q[0], y = points[i][1] - q[1], z = points[i][2] - q[2];
+        straight_m[i] = (float)sqrt(x * x + y * y + z * z);
+    }
+}
+
+/* From what is in the buckets outwards: the walks take turns, a fan each. A walk's next fan hangs on what the last one's came to, and the
+   processor would wait for that; walks know nothing of each other. */
+SIMD_BODY void go_on(const struct propagation *propagation, struct propagation_front *walks, size_t count)
+{
+    struct front fronts[PROPAGATION_ABREAST] = { { 0 } };
+    size_t left = 0;
+    for (size_t i = 0; i < count; i++) {
+        fronts[left].walk = &walks[i];
+        fronts[left].empty = 0;
+        left += next_point(propagation, &fronts[left]);
+    }
+    while (left > 0) {
+        for (size_t i = 0; i < left; i++)
+            look_round(&fronts[i]);
+        for (size_t i = left; i-- > 0;) {
+            hand_out(propagation, &fronts[i]);
+            if (++fronts[i].fan == fronts[i].end && !next_point(propagation, &fronts[i]))
+                fronts[i] = fronts[--left];
+        }
+    }
+}
+
+static void measure_straight_plain(const struct trimesh *mesh, struct propagation_front *walk)
+{
+    measure_straight(mesh, walk);
+}
+
+SIMD_AVX2 static void measure_straight_wide(const struct trimesh *mesh, struct propagation_front *walk)
+{
+    measure_straight(mesh, walk);
+}
+
+static void go_on_plain(const struct propagation *propagation, struct propagation_front *walks, size_t count)
+{
+    go_on(propagation, walks, count);
+}
+
+SIMD_AVX2 static void go_on_wide(const struct propagation *propagation, struct propagation_front *walks, size_t count)
+{
+    go_on(propagation, walks, count);
+}
+
+static bool set_out(const struct propagation *propagation, struct propagation_front *walk, uint32_t tri, const double weights[3])
+{
+    const struct trimesh *mesh = propagation->mesh;
+    const uint32_t *v = mesh->tris[tri];
+    if (!clear(propagation, walk))
+        return false;
+    for (int axis = 0; axis < 3; axis++)
+        walk->source_m[axis] =
+            weights[0] * mesh->points[v[0]][axis] + weights[1] * mesh->points[v[1]][axis] + weights[2] * mesh->points[v[2]][axis];
+    (simd_has_avx2() ? measure_straight_wide : measure_straight_plain)(mesh, walk);
+    for (int i = 0; i < 3; i++)
+        offer(propagation, walk, v[i], (float)vec_distance(walk->source_m, mesh->points[v[i]]));
+    look_around(propagation, walk, tri, weights);
+    return true;
+}
+
+bool propagation_run(const struct propagation *propagation, struct propagation_front *walks, const struct propagation_source *sources,
+                     size_t count)
+{
+    for (size_t i = 0; i < count; i++)
+        if (!set_out(propagation, &walks[i], sources[i].tri, sources[i].weights))
+            return false;
+    (simd_has_avx2() ? go_on_wide : go_on_plain)(propagation, walks, count);
+    return true;
+}

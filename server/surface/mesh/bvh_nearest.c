@@ -1,0 +1,300 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The nearest place on triangles: eight boxes are looked at side by side. */
+#include <float.h>
+#include <string.h>
+#if defined(__x86_64__)
+#include <immintrin.h>
+#endif
+
+#include "base/mem.h"
+#include "base/simd.h"
+#include "base/vec.h"
+#include "surface/mesh/bvh_impl.h"
+
+#define IS_TRIANGLE 0x80000000u
+#define STACK 256         /* seven of each node on the way down wait, and there are 10 or less */
+#define BOX_MARGIN 2.4e-7 /* of the largest coordinate, four roundings of it: a point in the box is in it in floats too */
+#define MARGIN 1e-5       /* of a square in floats, many times what it is off by */
+
+static void weights_on_edge(const double p[3], const double a[3], const double b[3], double *wa, double *wb)
+{
+    double ab[3], ap[3];
+    vec_sub(b, a, ab);
+    vec_sub(p, a, ap);
+    double length2 = vec_dot(ab, ab), t = length2 > 0 ? vec_dot(ap, ab) / length2 : 0;
+    *wb = min_of(max_of(t, 0), 1);
+    *wa = 1 - *wb;
+}
+
+/* Inside the prism over the triangle: barycentric weights; else the best of its three edges. */
+void triangle_nearest(const double p[3], const double a[3], const double b[3], const double c[3], double weights[3])
+{
+    double ab[3], ac[3], ap[3];
+    vec_sub(b, a, ab);
+    vec_sub(c, a, ac);
+    vec_sub(p, a, ap);
+    double d00 = vec_dot(ab, ab), d01 = vec_dot(ab, ac), d11 = vec_dot(ac, ac), d20 = vec_dot(ap, ab), d21 = vec_dot(ap, ac);
+    double det = d00 * d11 - d01 * d01;
+    if (det > 0) {
+        weights[1] = (d11 * d20 - d01 * d21) / det;
+        weights[2] = (d00 * d21 - d01 * d20) / det;
+        weights[0] = 1 - weights[1] - weights[2];
+        if (weights[0] >= 0 && weights[1] >= 0 && weights[2] >= 0)
+            return;
+    }
+    const double *corners[3] = { a, b, c };
+    double best = INFINITY;
+    for (int i = 0; i < 3; i++) {
+        int j = (i + 1) % 3;
+        double w[3] = { 0 }, q[3];
+        weights_on_edge(p, corners[i], corners[j], &w[i], &w[j]);
+        vec_mix(corners[i], corners[j], w[j], q);
+        double d2 = vec_distance2(p, q);
+        if (d2 < best) {
+            best = d2;
+            memcpy(weights, w, sizeof(w));
+        }
+    }
+}
+
+/* Most triangles in a box that p is in are. */
+static bool plane_is_farther(const double p[3], const double a[3], const double b[3], const double c[3], double distance2)
+{
+    double ab[3], ac[3], ap[3], n[3];
+    vec_sub(b, a, ab);
+    vec_sub(c, a, ac);
+    vec_sub(p, a, ap);
+    vec_cross(ab, ac, n);
+    double height = vec_dot(ap, n), length2 = vec_dot(n, n);
+    return height * height > distance2 * length2 * (1 + 1e-9);
+}
+
+bool triangle_is_farther(const double p[3], const double a[3], const double b[3], const double c[3], double distance_m)
+{
+    for (int i = 0; i < 3; i++)
+        if (p[i] < min_of(a[i], min_of(b[i], c[i])) - distance_m || p[i] > max_of(a[i], max_of(b[i], c[i])) + distance_m)
+            return true;
+    return plane_is_farther(p, a, b, c, distance_m * distance_m);
+}
+
+static void try_tri(const struct bvh *bvh, uint32_t tri, const double p[3], double *best2, struct bvh_place *place)
+{
+    const uint32_t *v = bvh->mesh->tris[tri];
+    const double *a = bvh->mesh->points[v[0]], *b = bvh->mesh->points[v[1]], *c = bvh->mesh->points[v[2]];
+    double w[3], q[3];
+    if (plane_is_farther(p, a, b, c, *best2))
+        return;
+    triangle_nearest(p, a, b, c, w);
+    for (int axis = 0; axis < 3; axis++)
+        q[axis] = w[0] * a[axis] + w[1] * b[axis] + w[2] * c[axis];
+    double d2 = vec_distance2(p, q);
+    if (d2 > *best2 || (d2 == *best2 && tri > place->tri))
+        return;
+    *best2 = d2;
+    place->tri = tri;
+    memcpy(place->weights, w, sizeof(w));
+    memcpy(place->point, q, sizeof(q));
+}
+
+/* --- eight boxes at a time -------------------------------------------------------------------------------------------------------- */
+
+struct box {
+    float low[3], high[3];
+};
+
+static struct box box_of_tri(const struct trimesh *mesh, uint32_t tri, double margin)
+{
+    struct box box;
+    const double *a = mesh->points[mesh->tris[tri][0]], *b = mesh->points[mesh->tris[tri][1]], *c = mesh->points[mesh->tris[tri][2]];
+    for (int axis = 0; axis < 3; axis++) {
+        box.low[axis] = (float)(min_of(a[axis], min_of(b[axis], c[axis])) - margin);
+        box.high[axis] = (float)(max_of(a[axis], max_of(b[axis], c[axis])) + margin);
+    }
+    return box;
+}
+
+/* Triangles of so many in order, halved so often that single ones, or eight times fewer and so on, are left: all but the root are full. */
+static struct box build_wide(struct bvh *bvh, uint32_t first, uint32_t count, int halvings, double margin)
+{
+    uint32_t firsts[BVH_WIDE + 1] = { first, first + count };
+    size_t lanes = 1;
+    int own = halvings ? (halvings - 1) % 3 + 1 : 3;
+    struct bvh_wide node;
+    struct box all = { { INFINITY, INFINITY, INFINITY }, { -INFINITY, -INFINITY, -INFINITY } };
+    for (; own > 0 && halvings; own--, lanes *= 2)
+        for (size_t i = lanes; i-- > 0;) {
+            uint32_t at = firsts[i], end = firsts[i + 1];
+            firsts[2 * i + 2] = end;
+            firsts[2 * i + 1] = at + (end - at) / 2;
+            firsts[2 * i] = at;
+        }
+    for (size_t i = 0; i < BVH_WIDE; i++) {
+        struct box box = { { INFINITY, INFINITY, INFINITY }, { -INFINITY, -INFINITY, -INFINITY } };
+        if (!halvings && i < count) {
+            node.child[i] = bvh->order[first + i] | IS_TRIANGLE;
+            box = box_of_tri(bvh->mesh, bvh->order[first + i], margin);
+        } else if (halvings && i < lanes) {
+            box = build_wide(bvh, firsts[i], firsts[i + 1] - firsts[i], halvings - ((halvings - 1) % 3 + 1), margin);
+            node.child[i] = (uint32_t)bvh->wide_count - 1;
+        } else {
+            node.child[i] = 0;
+        }
+        for (int axis = 0; axis < 3; axis++) {
+            node.low[axis][i] = box.low[axis];
+            node.high[axis][i] = box.high[axis];
+            all.low[axis] = box.low[axis] < all.low[axis] ? box.low[axis] : all.low[axis];
+            all.high[axis] = box.high[axis] > all.high[axis] ? box.high[axis] : all.high[axis];
+        }
+    }
+    mem_grow(&bvh->wide, &bvh->wide_capacity, bvh->wide_count + 1, sizeof(*bvh->wide));
+    bvh->wide[bvh->wide_count++] = node;
+    return all;
+}
+
+void bvh_build_wide(struct bvh *bvh)
+{
+    const struct trimesh *mesh = bvh->mesh;
+    double largest = 0;
+    int halvings = 0;
+    for (size_t p = 0; p < mesh->point_count; p++)
+        for (int axis = 0; axis < 3; axis++)
+            largest = max_of(largest, fabs(mesh->points[p][axis]));
+    while ((mesh->tri_count + ((size_t)1 << halvings) - 1) >> halvings > BVH_WIDE)
+        halvings++;
+    if (mesh->tri_count)
+        build_wide(bvh, 0, (uint32_t)mesh->tri_count, halvings, BOX_MARGIN * largest);
+}
+
+struct search {
+    const struct bvh *bvh;
+    const double *point;
+    bool (*allowed)(const void *arg, uint32_t tri);
+    const void *arg;
+    bool any; /* the first place will do */
+    double best2;
+    struct bvh_place *place;
+};
+
+/* No square in floats of what is as near is larger. */
+static inline float in_floats(double best2)
+{
+    double most = best2 * (1 + MARGIN) + (double)FLT_MIN;
+    return most < (double)FLT_MAX ? (float)most : FLT_MAX;
+}
+
+/* The squares of the distances of a node's boxes, and which of them are no larger than the limit, by bits. */
+typedef unsigned look(const struct bvh_wide *node, const float p[3], float limit2, float distance2[BVH_WIDE]);
+
+static unsigned look_plain(const struct bvh_wide *node, const float p[3], float limit2, float distance2[BVH_WIDE])
+{
+    unsigned near = 0;
+    for (int i = 0; i < BVH_WIDE; i++) {
+        float sum = 0;
+        for (int axis = 0; axis < 3; axis++) {
+            float below = node->low[axis][i] - p[axis], above = p[axis] - node->high[axis][i], d = below > above ? below : above;
+            d = d > 0 ? d : 0;
+            sum += d * d;
+        }
+        distance2[i] = sum;
+        near |= (unsigned)(sum <= limit2) << i;
+    }
+    return near;
+}
+
+#if defined(__x86_64__)
+SIMD_AVX2 static unsigned look_wide(const struct bvh_wide *node, const float p[3], float limit2, float distance2[BVH_WIDE])
+{
+    __m256 sum = _mm256_setzero_ps();
+    for (int axis = 0; axis < 3; axis++) {
+        __m256 at = _mm256_set1_ps(p[axis]);
+        __m256 below = _mm256_sub_ps(_mm256_loadu_ps(node->low[axis]), at), above = _mm256_sub_ps(at, _mm256_loadu_ps(node->high[axis]));
+        __m256 d = _mm256_max_ps(_mm256_max_ps(below, above), _mm256_setzero_ps());
+        sum = _mm256_add_ps(sum, _mm256_mul_ps(d, d));
+    }
+    _mm256_storeu_ps(distance2, sum);
+    return (unsigned)_mm256_movemask_ps(_mm256_cmp_ps(sum, _mm256_set1_ps(limit2), _CMP_LE_OQ));
+}
+#else
+#define look_wide look_plain
+#endif
+
+/* Puts those boxes of a node on the stack that are near enough, the nearest on top: squares of distances, which are not negative and have
+   their order as bits too, above numbers of children. Returns how many. */
+SIMD_BODY size_t push_near(look *look_at, const struct bvh_wide *node, const float p[3], float limit2, uint64_t *stack)
+{
+    float distance2[BVH_WIDE];
+    size_t count = 0;
+    for (unsigned near = look_at(node, p, limit2, distance2); near; near &= near - 1, count++) {
+        const int i = __builtin_ctz(near);
+        uint32_t bits;
+        memcpy(&bits, &distance2[i], sizeof(bits));
+        uint64_t own = (uint64_t)bits << 32 | node->child[i];
+        size_t at = count;
+        for (; at > 0 && stack[at - 1] < own; at--)
+            stack[at] = stack[at - 1];
+        stack[at] = own;
+    }
+    return count;
+}
+
+SIMD_BODY void search(struct search *s, look *look_at)
+{
+    const float p[3] = { (float)s->point[0], (float)s->point[1], (float)s->point[2] };
+    const struct bvh_wide *wide = s->bvh->wide;
+    uint64_t stack[STACK];
+    float limit2 = in_floats(s->best2);
+    size_t depth = s->bvh->wide_count ? push_near(look_at, &wide[s->bvh->wide_count - 1], p, limit2, stack) : 0;
+    while (depth) {
+        uint64_t top = stack[--depth];
+        uint32_t child = (uint32_t)top, bits = (uint32_t)(top >> 32);
+        float distance2;
+        memcpy(&distance2, &bits, sizeof(bits));
+        if (distance2 > limit2)
+            continue;
+        if (!(child & IS_TRIANGLE)) {
+            depth += push_near(look_at, &wide[child], p, limit2, stack + depth);
+            continue;
+        }
+        child &= ~IS_TRIANGLE;
+        if (s->allowed && !s->allowed(s->arg, child))
+            continue;
+        try_tri(s->bvh, child, s->point, &s->best2, s->place);
+        if (s->any && s->place->tri != TRIMESH_NONE)
+            return;
+        limit2 = in_floats(s->best2);
+    }
+}
+
+static void search_plain(struct search *s)
+{
+    search(s, look_plain);
+}
+
+SIMD_AVX2 static void search_wide(struct search *s)
+{
+    search(s, look_wide);
+}
+
+void bvh_nearest(const struct bvh *bvh, const double point[3], double limit_m, bool (*allowed)(const void *arg, uint32_t tri),
+                 const void *arg, struct bvh_place *place)
+{
+    struct search s = { bvh, point, allowed, arg, false, limit_m * limit_m, place };
+    *place = (struct bvh_place){ .tri = TRIMESH_NONE, .distance_m = INFINITY };
+    (simd_has_avx2() ? search_wide : search_plain)(&s);
+    if (place->tri != TRIMESH_NONE)
+        place->distance_m = sqrt(s.best2);
+}
+
+bool bvh_any_within(const struct bvh *bvh, const double point[3], double limit_m, bool (*allowed)(const void *arg, uint32_t tri),
+                    const void *arg, uint32_t *tri)
+{
+    struct bvh_place place = { .tri = TRIMESH_NONE };
+    struct search s = { bvh, point, allowed, arg, true, limit_m * limit_m, &place };
+    if (*tri != TRIMESH_NONE && (!allowed || allowed(arg, *tri)))
+        try_tri(bvh, *tri, point, &s.best2, &place);
+    if (place.tri == TRIMESH_NONE)
+        (simd_has_avx2() ? search_wide : search_plain)(&s);
+    if (place.tri != TRIMESH_NONE)
+        *tri = place.tri;
+    return place.tri != TRIMESH_NONE;
+}

@@ -1,0 +1,23 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Open edges and the points on them. */
+#ifndef SURFACE_REPAIR_BORDERS_H
+#define SURFACE_REPAIR_BORDERS_H
+#include "surface/repair/parts.h"
+
+struct borders {
+    uint32_t (*edges)[2], *edge_tri; /* open edges and their one triangle */
+    size_t edge_count;
+    uint32_t *points; /* points on them */
+    size_t point_count;
+    uint32_t *slot;       /* point -> place in points, or TRIMESH_NONE */
+    double *shortest_m;   /* of each point in points: the shortest edge of any triangle at it */
+    uint32_t *first, *at; /* open edges at each point in points */
+    double *reach_m;      /* of each point in points: the least of its parts; NULL: not asked for */
+};
+
+void borders_init(struct borders *borders, const struct trimesh *mesh);
+/* Those edges only that are open because the other faces at them are hidden; with the reach of their parts. */
+void borders_init_rims(struct borders *borders, const struct trimesh *seen, const struct trimesh *hidden, const struct parts *parts);
+void borders_finish(struct borders *borders);
+
+#endif

@@ -1,0 +1,124 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Whether surfaces look at each other. */
+#include "surface/repair/line_of_sight.h"
+
+#include <math.h>
+
+#include "base/mem.h"
+#include "base/vec.h"
+
+#define LOOKS 0.5    /* cosine between a face's normal and the way to what it looks at, at least */
+#define NEXT_TO 1e-3 /* of the way */
+
+static void list_triangles(struct line_of_sight *sight)
+{
+    const struct trimesh *mesh = sight->mesh;
+    sight->first = mem_array(mesh->point_count + 2, sizeof(*sight->first));
+    sight->at = mem_array(3 * mesh->tri_count, sizeof(*sight->at));
+    for (size_t t = 0; t < mesh->tri_count; t++)
+        for (int i = 0; i < 3; i++)
+            sight->first[mesh->tris[t][i] + 2]++;
+    for (size_t p = 2; p < mesh->point_count + 2; p++)
+        sight->first[p] += sight->first[p - 1];
+    for (uint32_t t = 0; t < mesh->tri_count; t++)
+        for (int i = 0; i < 3; i++)
+            sight->at[sight->first[mesh->tris[t][i] + 1]++] = t;
+}
+
+void line_of_sight_init(struct line_of_sight *sight, const struct trimesh *mesh, const struct parts *parts, const uint32_t *body,
+                        const struct bvh *bvh)
+{
+    bool any_thin = false;
+    *sight = (struct line_of_sight){ .mesh = mesh, .parts = parts, .body = body, .bvh = bvh };
+    for (size_t p = 0; p < parts->count; p++)
+        any_thin = any_thin || parts->thin[p];
+    if (any_thin)
+        list_triangles(sight);
+}
+
+void line_of_sight_finish(struct line_of_sight *sight)
+{
+    mem_free(sight->first);
+    mem_free(sight->at);
+}
+
+/* Of an open part: who knows which way is outwards? */
+static bool looks_both_ways(const struct line_of_sight *sight, uint32_t tri)
+{
+    return !sight->parts->closed[sight->parts->of_source[sight->mesh->tri_source[tri]]];
+}
+
+/* Outwards, of length 1, or 0: it bounds nothing, and looks nowhere. */
+static void find_normal(const struct line_of_sight *sight, uint32_t tri, double n[3])
+{
+    const struct trimesh *mesh = sight->mesh;
+    trimesh_normal(mesh, tri, n);
+    double length = vec_length(n);
+    for (int axis = 0; axis < 3; axis++)
+        n[axis] *= length > 0 ? sight->parts->side_of_source[mesh->tri_source[tri]] / length : 0;
+}
+
+struct looking {
+    const struct line_of_sight *sight;
+    const double *from;
+    uint32_t own;
+};
+
+static bool looks_back(const void *arg, uint32_t tri)
+{
+    const struct looking *looking = arg;
+    const struct trimesh *mesh = looking->sight->mesh;
+    double n[3], up[3];
+    if (looking->sight->body[tri] == looking->own)
+        return false;
+    if (looks_both_ways(looking->sight, tri))
+        return true;
+    find_normal(looking->sight, tri, n);
+    vec_sub(looking->from, mesh->points[mesh->tris[tri][0]], up);
+    return vec_dot(up, n) > 0;
+}
+
+static bool looks_at(const struct line_of_sight *sight, uint32_t point, const double way[3], double distance_m)
+{
+    double n[3];
+    for (uint32_t i = sight->first[point]; i < sight->first[point + 1]; i++) {
+        find_normal(sight, sight->at[i], n);
+        if (looks_both_ways(sight, sight->at[i]) || vec_dot(n, way) > LOOKS * distance_m)
+            return true;
+    }
+    return false;
+}
+
+struct ray {
+    const struct line_of_sight *sight;
+    uint32_t own;
+    bool is_blocked;
+};
+
+static void block(void *arg, uint32_t tri, double t)
+{
+    struct ray *ray = arg;
+    ray->is_blocked = ray->is_blocked || (t > NEXT_TO && t < 1 + NEXT_TO && ray->sight->body[tri] == ray->own);
+}
+
+/* By its own body: a wall between two bodies that are one part looks at what is behind one of them. */
+static bool is_blocked(const struct line_of_sight *sight, const double from[3], const double way[3], uint32_t own)
+{
+    struct ray ray = { sight, own, false };
+    bvh_ray(sight->bvh, from, way, block, &ray);
+    return ray.is_blocked;
+}
+
+bool line_of_sight_find(const struct line_of_sight *sight, uint32_t point, uint32_t own, struct bvh_place *place)
+{
+    const double *from = sight->mesh->points[point];
+    const struct looking looking = { sight, from, own };
+    double way[3];
+    if (!sight->first)
+        return false;
+    bvh_nearest(sight->bvh, from, sight->parts->tolerance_m, looks_back, &looking, place);
+    if (place->tri == TRIMESH_NONE)
+        return false;
+    vec_sub(place->point, from, way);
+    return looks_at(sight, point, way, place->distance_m) && !is_blocked(sight, from, way, own);
+}

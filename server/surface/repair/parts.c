@@ -1,0 +1,190 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Which faces of a body look the same way, and which are walls within it. */
+#include "surface/repair/parts.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "base/mem.h"
+#include "base/vec.h"
+#include "surface/repair/parts_impl.h"
+
+#define DOUBLES 0.75 /* of a wall's area, at least: slits that stay in one layer leave single pieces at a wall */
+#define OF_THICKNESS 0.5
+#define REACH_LEAST 0.05 /* tolerances */
+
+/* --- which way patches face ----------------------------------------------------------------------------------------------- */
+
+static bool runs(const uint32_t tri[3], uint32_t from, uint32_t to)
+{
+    return (tri[0] == from && tri[1] == to) || (tri[1] == from && tri[2] == to) || (tri[2] == from && tri[0] == to);
+}
+
+/* From one triangle to its neighbours: they run along a common edge in opposite ways, or one of them is turned. */
+static void face_one_way(struct parts_finding *f)
+{
+    const struct trimesh *mesh = &f->parts->solid;
+    signed char *side = f->parts->side;
+    uint32_t *todo = mem_array(mesh->tri_count, sizeof(*todo));
+    for (uint32_t start = 0; start < mesh->tri_count; start++) {
+        size_t count = 0;
+        if (side[start])
+            continue;
+        side[start] = 1;
+        for (todo[count++] = start; count;) {
+            uint32_t t = todo[--count];
+            for (int i = 0; i < 3; i++) {
+                const struct edge_use *use = use_of(f, t, i);
+                uint32_t other = use->tris[use->tris[0] == t];
+                if (use->faces != 2 || side[other])
+                    continue;
+                bool same = runs(mesh->tris[other], mesh->tris[t][(i + 1) % 3], mesh->tris[t][i]);
+                side[other] = (signed char)(same ? side[t] : -side[t]);
+                todo[count++] = other;
+            }
+        }
+    }
+    mem_free(todo);
+}
+
+/* Turns patches whose volume, seen from their middle, is negative: outwards is the same side for all. */
+static void face_outwards(struct parts_finding *f)
+{
+    const struct trimesh *mesh = &f->parts->solid;
+    signed char *side = f->parts->side;
+    struct vote {
+        double middle[3], volume;
+        size_t corners;
+    } *votes = mem_array(mesh->tri_count, sizeof(*votes));
+    for (size_t t = 0; t < mesh->tri_count; t++)
+        for (int i = 0; i < 3; i++) {
+            struct vote *vote = &votes[f->patch[t]];
+            for (int axis = 0; axis < 3; axis++)
+                vote->middle[axis] += mesh->points[mesh->tris[t][i]][axis];
+            vote->corners++;
+        }
+    for (size_t t = 0; t < mesh->tri_count; t++) {
+        struct vote *vote = &votes[f->patch[t]];
+        double from[3], n[3];
+        for (int axis = 0; axis < 3; axis++)
+            from[axis] = mesh->points[mesh->tris[t][0]][axis] - vote->middle[axis] / (double)vote->corners;
+        trimesh_normal(mesh, t, n);
+        vote->volume += side[t] * vec_dot(from, n);
+    }
+    for (size_t t = 0; t < mesh->tri_count; t++)
+        if (votes[f->patch[t]].volume < 0)
+            side[t] = (signed char)-side[t];
+    mem_free(votes);
+}
+
+/* Where two bodies touch with the same vertices, welding left one face of two: it is a wall between them. A patch that ends at edges of
+   three faces or more, and whose triangles are there twice as often as others of its part, is such a wall. What stands on a surface,
+   like a fin, bounds nothing either. */
+static void drop_walls(struct parts_finding *f, const uint32_t *times)
+{
+    struct parts *parts = f->parts;
+    const struct trimesh *mesh = &parts->solid;
+    uint32_t *least = mem_array(parts->count, sizeof(*least));
+    for (size_t t = 0; t < mesh->tri_count; t++) {
+        uint32_t *low = &least[parts->of_tri[t]];
+        *low = !*low || times[t] < *low ? times[t] : *low;
+    }
+    for (size_t t = 0; t < mesh->tri_count; t++) {
+        struct patch *patch = &f->patches[f->patch[t]];
+        double n[3];
+        trimesh_normal(mesh, t, n);
+        patch->doubles_m2 += times[t] >= 2 * least[parts->of_tri[t]] ? vec_length(n) / 2 : 0;
+    }
+    for (size_t t = 0; t < mesh->tri_count; t++) {
+        const struct patch *patch = &f->patches[f->patch[t]];
+        bool fin = patch->open_m > patch->branching_m, wall = patch->doubles_m2 > DOUBLES * patch->area_m2;
+        if (patch->loose || (patch->branching_m > 0 && (fin || wall)))
+            parts->side[t] = 0;
+    }
+    mem_free(least);
+}
+
+/* --- how near is touching --------------------------------------------------------------------------------------------------- */
+
+/* A plate's thickness is twice its volume by its area; other bodies are thicker than that. */
+static void limit_reach(struct parts *parts, double tolerance_m)
+{
+    const struct trimesh *mesh = &parts->solid;
+    double *area_m2 = mem_array(parts->count, sizeof(*area_m2)), *volume_m3 = mem_array(parts->count, sizeof(*volume_m3));
+    uint32_t *first = mem_array(parts->count, sizeof(*first));
+    for (size_t t = mesh->tri_count; t-- > 0;)
+        first[parts->of_tri[t]] = mesh->tris[t][0];
+    for (size_t t = 0; t < mesh->tri_count; t++) {
+        uint32_t part = parts->of_tri[t];
+        double from[3], n[3];
+        trimesh_normal(mesh, t, n);
+        vec_sub(mesh->points[mesh->tris[t][0]], mesh->points[first[part]], from);
+        area_m2[part] += vec_length(n) / 2;
+        volume_m3[part] += parts->side[t] * vec_dot(from, n) / 6;
+    }
+    for (size_t p = 0; p < parts->count; p++)
+        if (parts->closed[p]) {
+            double thickness_m = 2 * fabs(volume_m3[p]) / area_m2[p];
+            parts->reach_m[p] = min_of(tolerance_m, max_of(OF_THICKNESS * thickness_m, REACH_LEAST * tolerance_m));
+            parts->thin[p] = parts->reach_m[p] < tolerance_m;
+        }
+    mem_free(area_m2);
+    mem_free(volume_m3);
+    mem_free(first);
+}
+
+/* --- all ------------------------------------------------------------------------------------------------------------------ */
+
+void parts_init(struct parts *parts, const struct trimesh *mesh, size_t source_count, double tolerance_m, bool is_chosen)
+{
+    struct parts_finding f = { .parts = parts };
+    *parts = (struct parts){ 0 };
+    trimesh_copy(&parts->solid, mesh);
+    parts->of_tri = mem_array(mesh->tri_count, sizeof(*parts->of_tri));
+    parts->side = mem_array(mesh->tri_count, 1);
+    parts->of_source = mem_array(source_count, sizeof(*parts->of_source));
+    parts->body_of_source = mem_array(source_count, sizeof(*parts->body_of_source));
+    f.patch = mem_array(mesh->tri_count, sizeof(*f.patch));
+    f.patches = mem_array(mesh->tri_count, sizeof(*f.patches));
+    parts_number(&f, mesh);
+    face_one_way(&f);
+    face_outwards(&f);
+    drop_walls(&f, mesh->tri_times);
+    parts->reach_m = mem_array(parts->count, sizeof(*parts->reach_m));
+    parts->thin = mem_array(parts->count, 1);
+    for (size_t p = 0; p < parts->count; p++)
+        parts->reach_m[p] = tolerance_m;
+    if (is_chosen)
+        limit_reach(parts, tolerance_m);
+    parts->tolerance_m = tolerance_m;
+    parts->side_of_source = mem_array(source_count, 1);
+    for (size_t t = 0; t < mesh->tri_count; t++)
+        parts->side_of_source[mesh->tri_source[t]] = parts->side[t];
+    mem_free(f.uses);
+    mem_free(f.edge);
+    mem_free(f.patch);
+    mem_free(f.patches);
+}
+
+void parts_finish(struct parts *parts)
+{
+    trimesh_finish(&parts->solid);
+    mem_free(parts->of_tri);
+    mem_free(parts->side);
+    mem_free(parts->of_source);
+    mem_free(parts->body_of_source);
+    mem_free(parts->side_of_source);
+    mem_free(parts->closed);
+    mem_free(parts->tangled);
+    mem_free(parts->crossed);
+    mem_free(parts->thin);
+    mem_free(parts->reach_m);
+}
+
+uint32_t *parts_spread(const struct trimesh *mesh, const uint32_t *of_source)
+{
+    uint32_t *of = mem_array(mesh->tri_count, sizeof(*of));
+    for (size_t t = 0; t < mesh->tri_count; t++)
+        of[t] = of_source[mesh->tri_source[t]];
+    return of;
+}

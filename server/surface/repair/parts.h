@@ -1,0 +1,34 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The bodies that a surface is made of, as they were before they were cut up and joined. */
+#ifndef SURFACE_REPAIR_PARTS_H
+#define SURFACE_REPAIR_PARTS_H
+#include "surface/mesh/trimesh.h"
+
+/* A part is what hangs together by edges (a point in common is not enough: a corner may touch anything), a patch what does so by edges with
+   two faces. Where one patch has two faces at an edge with more, the others only stand on it, like a fin: that does not make two closed
+   bodies one part. */
+struct parts {
+    struct trimesh solid;
+    uint32_t *of_tri;                     /* of the solid's triangles: part */
+    signed char *side;                    /* likewise: +1 or -1, by which each patch faces the same way throughout; 0: it bounds nothing */
+    uint32_t *of_source, *body_of_source; /* of the model's triangles: part; body, mostly the part */
+    signed char *side_of_source;          /* likewise: side */
+    char *closed;                         /* of each part: its open edges are short against its size */
+    char *tangled;                        /* likewise: it has edges with three faces or more, or passes through itself */
+    char *crossed;                        /* likewise: it passes through itself; set by repair_contacts */
+    char *thin;                           /* likewise: it is closed, and its reach is less than the tolerance */
+    double *reach_m;                      /* likewise: what is nearer touches it */
+    double tolerance_m;                   /* the longest reach */
+    size_t count;
+};
+
+/* mesh: the model's triangles (source_count of them), welded, seams closed, and still counted. tolerance_m is every part's reach; if it is
+   the program's choice, that of a closed part is at most half of its thickness, or what touches a thin plate's one side would touch its
+   other side too; beyond that it is joined to what it looks at (sight.h). */
+void parts_init(struct parts *parts, const struct trimesh *mesh, size_t source_count, double tolerance_m, bool is_chosen);
+void parts_finish(struct parts *parts);
+
+/* of_source for each triangle of the mesh as it is now; mem_free. */
+uint32_t *parts_spread(const struct trimesh *mesh, const uint32_t *of_source);
+
+#endif

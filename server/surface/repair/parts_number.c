@@ -1,0 +1,228 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Which triangles make up a body: patches, what stands on them, and how they hang together. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/mem.h"
+#include "base/vec.h"
+#include "surface/repair/parts_impl.h"
+
+#define OPEN_OF_SIZE 0.05 /* open edges together, in roots of the area: a hair gap's leftovers, not a pipe's end */
+#define ALONE 0.5         /* likewise, of a patch and all edges that it ends at */
+
+static double edge_length(const struct trimesh *mesh, size_t t, int i)
+{
+    return vec_distance(mesh->points[mesh->tris[t][i]], mesh->points[mesh->tris[t][(i + 1) % 3]]);
+}
+
+static void list_edges(struct parts_finding *f)
+{
+    const struct trimesh *mesh = &f->parts->solid;
+    struct edge_table edges;
+    edge_table_init(&edges, mesh->tri_count * 3 / 2);
+    f->uses = mem_array(3 * mesh->tri_count, sizeof(*f->uses));
+    f->edge = mem_array(mesh->tri_count, sizeof(*f->edge));
+    for (uint32_t t = 0; t < mesh->tri_count; t++)
+        for (int i = 0; i < 3; i++) {
+            f->edge[t][i] = edge_table_add(&edges, mesh->tris[t][i], mesh->tris[t][(i + 1) % 3]);
+            struct edge_use *use = &f->uses[f->edge[t][i]];
+            if (use->faces < 2)
+                use->tris[use->faces] = t;
+            use->faces++;
+        }
+    edge_table_finish(&edges);
+}
+
+static void find_patches(struct parts_finding *f)
+{
+    const struct trimesh *mesh = &f->parts->solid;
+    for (uint32_t t = 0; t < mesh->tri_count; t++)
+        f->patch[t] = t;
+    for (uint32_t t = 0; t < mesh->tri_count; t++)
+        for (int i = 0; i < 3; i++)
+            if (use_of(f, t, i)->faces == 2)
+                trimesh_join(f->patch, t, use_of(f, t, i)->tris[0]);
+    for (uint32_t t = 0; t < mesh->tri_count; t++)
+        f->patch[t] = trimesh_root(f->patch, t);
+}
+
+/* --- what hangs together ------------------------------------------------------------------------------------------------------ */
+
+/* Faces at edges with three or more, edge by edge and there patch by patch: one patch with so many faces. A patch with two of them runs
+   through there, and the others only stand on it, as a fin does. */
+struct branches {
+    struct branch {
+        uint32_t edge, patch, faces;
+        bool runs_through; /* some patch does at this edge */
+        double length_m;
+    } * at;
+    size_t count;
+};
+
+static int compare_branches(const void *a, const void *b)
+{
+    const struct branch *x = a, *y = b;
+    if (x->edge != y->edge)
+        return x->edge < y->edge ? -1 : 1;
+    return (x->patch > y->patch) - (x->patch < y->patch);
+}
+
+static void branches_init(struct branches *b, const struct parts_finding *f)
+{
+    size_t capacity = 0, count = 0;
+    *b = (struct branches){ 0 };
+    for (size_t t = 0; t < f->parts->solid.tri_count; t++)
+        for (int i = 0; i < 3; i++) {
+            if (use_of(f, t, i)->faces < 3)
+                continue;
+            mem_grow(&b->at, &capacity, b->count + 1, sizeof(*b->at));
+            b->at[b->count++] = (struct branch){ f->edge[t][i], f->patch[t], 1, false, edge_length(&f->parts->solid, t, i) };
+        }
+    if (b->count)
+        qsort(b->at, b->count, sizeof(*b->at), compare_branches);
+    for (size_t i = 0; i < b->count; i++)
+        if (count && !compare_branches(&b->at[count - 1], &b->at[i]))
+            b->at[count - 1].faces++;
+        else
+            b->at[count++] = b->at[i];
+    b->count = count;
+    for (size_t first = 0, end; first < b->count; first = end) {
+        bool through = false;
+        for (end = first; end < b->count && b->at[end].edge == b->at[first].edge; end++)
+            through = through || b->at[end].faces > 1;
+        for (size_t i = first; i < end; i++)
+            b->at[i].runs_through = through;
+    }
+}
+
+static void measure_patches(struct parts_finding *f, const struct branches *b)
+{
+    const struct trimesh *mesh = &f->parts->solid;
+    for (size_t t = 0; t < mesh->tri_count; t++) {
+        struct patch *patch = &f->patches[f->patch[t]];
+        double n[3];
+        trimesh_normal(mesh, t, n);
+        patch->area_m2 += vec_length(n) / 2;
+        for (int i = 0; i < 3; i++)
+            patch->open_m += use_of(f, t, i)->faces == 1 ? edge_length(mesh, t, i) : 0;
+    }
+    for (size_t i = 0; i < b->count; i++)
+        f->patches[b->at[i].patch].branching_m += b->at[i].faces == 1 ? b->at[i].length_m : 0;
+}
+
+static bool stands(const struct branch *branch)
+{
+    return branch->runs_through && branch->faces == 1;
+}
+
+struct core { /* patches that hang together otherwise than by standing on each other; by its lowest triangle */
+    double open_m, area_m2;
+    bool stands;
+};
+
+static bool is_closed(double open_m, double area_m2)
+{
+    return open_m <= OPEN_OF_SIZE * sqrt(area_m2);
+}
+
+/* Patches at each other's edges are one part, but not two closed ones where one only stands on the other, or on something that does: fins
+   of two bodies, joined by a seam, do not make the bodies one. of: of each triangle, its patch; becomes its part, by the lowest one. */
+static void join_patches(struct parts_finding *f, const struct branches *b, uint32_t *of)
+{
+    size_t tri_count = f->parts->solid.tri_count;
+    struct core *cores = mem_array(tri_count, sizeof(*cores));
+    char *holds = mem_array(tri_count, 1); /* of a part, by its root: it has a closed core */
+    for (size_t i = 1; i < b->count; i++)
+        if (b->at[i].edge == b->at[i - 1].edge && !b->at[i].runs_through)
+            trimesh_join(of, b->at[i - 1].patch, b->at[i].patch);
+    for (uint32_t t = 0; t < tri_count; t++) {
+        struct core *core = &cores[trimesh_root(of, t)];
+        core->open_m += f->patches[t].open_m;
+        core->area_m2 += f->patches[t].area_m2;
+    }
+    for (size_t i = 0; i < b->count; i++)
+        cores[trimesh_root(of, b->at[i].patch)].stands |= stands(&b->at[i]);
+    for (uint32_t t = 0; t < tri_count; t++) {
+        const struct core *core = &cores[trimesh_root(of, t)];
+        f->patches[t].loose = core->stands && !is_closed(core->open_m, core->area_m2);
+        holds[t] = trimesh_root(of, t) == t && is_closed(core->open_m, core->area_m2);
+    }
+    for (size_t i = 1; i < b->count; i++) {
+        uint32_t one = trimesh_root(of, b->at[i - 1].patch), other = trimesh_root(of, b->at[i].patch);
+        if (b->at[i].edge != b->at[i - 1].edge || one == other || (holds[one] && holds[other]))
+            continue;
+        trimesh_join(of, one, other);
+        holds[trimesh_root(of, one)] = holds[one] || holds[other];
+    }
+    mem_free(cores);
+    mem_free(holds);
+}
+
+/* Numbers parts from 0, in the order of their first triangles. */
+static void number_parts(struct parts_finding *f, const struct branches *b)
+{
+    struct parts *parts = f->parts;
+    size_t tri_count = parts->solid.tri_count;
+    uint32_t *number = mem_array(tri_count, sizeof(*number)), *part = parts->of_tri;
+    memcpy(part, f->patch, tri_count * sizeof(*part));
+    join_patches(f, b, part);
+    for (uint32_t t = 0; t < tri_count; t++) /* the root is the lowest, so it is numbered before the others ask for it */
+        number[t] = trimesh_root(part, t) == t ? (uint32_t)parts->count++ : number[trimesh_root(part, t)];
+    memcpy(part, number, tri_count * sizeof(*part));
+    mem_free(number);
+}
+
+static void find_closed(struct parts_finding *f)
+{
+    struct parts *parts = f->parts;
+    const struct trimesh *mesh = &parts->solid;
+    double *area_m2 = mem_array(parts->count, sizeof(*area_m2)), *open_m = mem_array(parts->count, sizeof(*open_m));
+    for (size_t t = 0; t < mesh->tri_count; t++) {
+        double n[3], open = 0;
+        bool fin = f->patches[f->patch[t]].loose; /* so is what stands on an edge that is closed without it */
+        trimesh_normal(mesh, t, n);
+        area_m2[parts->of_tri[t]] += vec_length(n) / 2;
+        for (int i = 0; i < 3; i++) {
+            const struct edge_use *use = use_of(f, t, i);
+            open += use->faces == 1 ? edge_length(mesh, t, i) : 0;
+            fin = fin || use->faces > 2;
+            parts->tangled[parts->of_tri[t]] |= use->faces > 2;
+        }
+        open_m[parts->of_tri[t]] += fin ? 0 : open;
+    }
+    for (size_t p = 0; p < parts->count; p++)
+        parts->closed[p] = is_closed(open_m[p], area_m2[p]);
+    mem_free(area_m2);
+    mem_free(open_m);
+}
+
+/* Bodies that a few edges join to others by mistake are told from them: such a patch is nearly closed by itself. */
+static void find_bodies(struct parts_finding *f, const struct trimesh *mesh)
+{
+    struct parts *parts = f->parts;
+    for (size_t t = 0; t < mesh->tri_count; t++) {
+        const struct patch *patch = &f->patches[f->patch[t]];
+        bool alone = patch->branching_m > 0 && patch->open_m + patch->branching_m < ALONE * sqrt(patch->area_m2);
+        parts->body_of_source[mesh->tri_source[t]] = alone ? (uint32_t)parts->count + f->patch[t] : parts->of_tri[t];
+    }
+}
+
+void parts_number(struct parts_finding *f, const struct trimesh *mesh)
+{
+    struct parts *parts = f->parts;
+    struct branches branches;
+    list_edges(f);
+    find_patches(f);
+    branches_init(&branches, f);
+    measure_patches(f, &branches);
+    number_parts(f, &branches);
+    mem_free(branches.at);
+    for (size_t t = 0; t < mesh->tri_count; t++)
+        parts->of_source[mesh->tri_source[t]] = parts->of_tri[t];
+    parts->closed = mem_array(parts->count, 1);
+    parts->tangled = mem_array(parts->count, 1);
+    parts->crossed = mem_array(parts->count, 1);
+    find_closed(f);
+    find_bodies(f, mesh);
+}

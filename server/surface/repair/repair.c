@@ -1,0 +1,287 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Bridging what is broken: seams along open edges, and along those that hiding opened. */
+#include "surface/repair/repair.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "base/mem.h"
+#include "base/vec.h"
+#include "surface/repair/mesh_edit.h"
+#include "surface/repair/borders.h"
+#include "surface/mesh/bvh.h"
+#include "surface/mesh/point_cloud.h"
+#include "surface/repair/repair_impl.h"
+
+#define GAP_OF_EDGE 0.45 /* two points become one only if they are nearer than this share of the shortest edge at either */
+#define EXACT_OF_TOLERANCE 0.01
+#define STRAIGHT 0.1 /* of that: a straight border is no straighter, and points are no nearer to each other, once they are welded */
+#define FLUSH 0.99   /* cosine between faces that lie on each other, at least; between edges that run along each other */
+
+/* --- seams: one round joins points, the next sets points into edges ---------------------------------------------------------- */
+
+struct seams {
+    const struct trimesh *mesh;
+    const struct borders *borders;
+    struct mesh_edit *edit;
+    double tolerance_m, end_m; /* places nearer to the end of an edge than end_m are left to the joining of points */
+    bool fits;                 /* only what fits exactly */
+    struct nearest {           /* of each border point: the best place found on an open edge that is not its own */
+        double distance_m, t;
+        uint32_t edge;
+    } * nearest;
+};
+
+static void outwards(const struct seams *s, uint32_t e, uint32_t p, double along[3])
+{
+    const uint32_t *edge = s->borders->edges[e];
+    vec_sub(s->mesh->points[edge[edge[0] == p]], s->mesh->points[p], along);
+}
+
+/* Of two edges that run along each other: do their faces lie on each other? */
+static bool lie_on_each_other(const struct seams *s, uint32_t e, uint32_t f)
+{
+    const uint32_t edges[2] = { e, f };
+    double side[2][3];
+    for (int i = 0; i < 2; i++) {
+        const uint32_t *edge = s->borders->edges[edges[i]], *v = s->mesh->tris[s->borders->edge_tri[edges[i]]];
+        uint32_t apex = v[0] ^ v[1] ^ v[2] ^ edge[0] ^ edge[1];
+        double along[3];
+        outwards(s, edges[i], edge[0], along);
+        vec_sub(s->mesh->points[apex], s->mesh->points[edge[0]], side[i]);
+        double share = vec_dot(side[i], along) / vec_dot(along, along);
+        for (int axis = 0; axis < 3; axis++)
+            side[i][axis] -= share * along[axis];
+    }
+    return vec_dot(side[0], side[1]) > FLUSH * sqrt(vec_dot(side[0], side[0]) * vec_dot(side[1], side[1]));
+}
+
+/* Would two points, become one, close an edge of the one's against an edge of the other's though their faces lie on each other? Such faces
+   are of bodies that touch, and what is across the gap would be left with nothing to close with. */
+static bool would_fold(const struct seams *s, size_t i, size_t j)
+{
+    const struct borders *b = s->borders;
+    for (uint32_t n = b->first[i]; n < b->first[i + 1]; n++)
+        for (uint32_t m = b->first[j]; m < b->first[j + 1]; m++) {
+            double one[3], other[3];
+            outwards(s, b->at[n], b->points[i], one);
+            outwards(s, b->at[m], b->points[j], other);
+            if (vec_dot(one, other) > FLUSH * sqrt(vec_dot(one, one) * vec_dot(other, other)) && lie_on_each_other(s, b->at[n], b->at[m]))
+                return true;
+        }
+    return false;
+}
+
+static double limit_of(const struct seams *s, size_t i, size_t j)
+{
+    const double *reach_m = s->borders->reach_m;
+    return reach_m ? min_of(reach_m[i], reach_m[j]) : s->tolerance_m;
+}
+
+static void join_near(void *arg, size_t i, size_t j, double distance_m)
+{
+    struct seams *s = arg;
+    const struct borders *b = s->borders;
+    if (i < j && distance_m <= limit_of(s, i, j) && distance_m < GAP_OF_EDGE * min_of(b->shortest_m[i], b->shortest_m[j]) &&
+        !(s->fits && would_fold(s, i, j)))
+        mesh_edit_merge_points(s->edit, b->points[i], b->points[j], distance_m);
+}
+
+/* The other end of the edge with this place in the list of those at a point. */
+static uint32_t beyond(const struct seams *s, uint32_t n, uint32_t p)
+{
+    const uint32_t *edge = s->borders->edges[s->borders->at[n]];
+    return edge[edge[0] == p];
+}
+
+/* Whether the border at a point runs along the edge: its next point is on the edge's line as well. With cracks everywhere, points lie just
+   on edges that they are not of. towards: the way along the edge that is meant; NULL: either. */
+static bool runs_along(const struct seams *s, uint32_t p, uint32_t e, const double towards[3], double within_m)
+{
+    const struct borders *b = s->borders;
+    const double *a = s->mesh->points[b->edges[e][0]];
+    double along[3];
+    outwards(s, e, b->edges[e][0], along);
+    for (uint32_t n = b->first[b->slot[p]]; n < b->first[b->slot[p] + 1]; n++) {
+        double from[3], across[3], next[3];
+        vec_sub(s->mesh->points[beyond(s, n, p)], a, from);
+        vec_cross(from, along, across);
+        outwards(s, b->at[n], p, next);
+        if (vec_dot(across, across) <= within_m * within_m * vec_dot(along, along) && (!towards || vec_dot(next, towards) > 0))
+            return true;
+    }
+    return false;
+}
+
+/* Does the border run straight through a point, along the edge? Then it hangs there; gaps seldom run as straight. */
+static bool hangs(const struct seams *s, uint32_t p, uint32_t e)
+{
+    double forth[3], back[3], within_m = STRAIGHT * s->tolerance_m;
+    outwards(s, e, s->borders->edges[e][0], forth);
+    outwards(s, e, s->borders->edges[e][1], back);
+    return s->fits && runs_along(s, p, e, forth, within_m) && runs_along(s, p, e, back, within_m);
+}
+
+static bool have_an_edge(const struct seams *s, uint32_t p, uint32_t q)
+{
+    const struct borders *b = s->borders;
+    for (uint32_t n = b->first[b->slot[p]]; n < b->first[b->slot[p] + 1]; n++)
+        if (beyond(s, n, p) == q)
+            return true;
+    return false;
+}
+
+/* Is p, so far from an end of an edge, at that end? Points that hang in one line are apart, however near they are. */
+static bool is_at_end(const struct seams *s, uint32_t p, uint32_t e, uint32_t end, double distance_m, double length_m)
+{
+    if (distance_m > max_of(REPAIR_AT_END * length_m, s->end_m))
+        return false;
+    bool apart = s->fits && distance_m > STRAIGHT * s->tolerance_m;
+    return !(apart && (have_an_edge(s, p, end) || (hangs(s, p, e) && hangs(s, end, e))));
+}
+
+/* What fits is set into all edges that run there: set into the nearest only, points of several edges close some of them with each other,
+   and what is left of the others stays open. */
+static void try_edge(struct seams *s, size_t i, uint32_t e)
+{
+    const struct borders *b = s->borders;
+    uint32_t p = b->points[i], u = b->edges[e][0], v = b->edges[e][1];
+    if (repair_tri_has(s->mesh, b->edge_tri[e], p))
+        return;
+    const double *a = s->mesh->points[u], *c = s->mesh->points[v], *q = s->mesh->points[p];
+    double ac[3], aq[3], at[3], length2;
+    vec_sub(c, a, ac);
+    vec_sub(q, a, aq);
+    length2 = vec_dot(ac, ac);
+    double length_m = sqrt(length2), t = length2 > 0 ? vec_dot(aq, ac) / length2 : 0;
+    if (t <= 0 || t >= 1 || is_at_end(s, p, e, u, t * length_m, length_m) || is_at_end(s, p, e, v, (1 - t) * length_m, length_m))
+        return;
+    vec_mix(a, c, t, at);
+    double distance_m = vec_distance(at, q);
+    if (distance_m > limit_of(s, i, b->slot[u]) || (s->fits && !runs_along(s, p, e, NULL, s->tolerance_m)))
+        return;
+    if (hangs(s, p, e))
+        mesh_edit_insert_in_edge(s->edit, p, u, v, t, distance_m);
+    else if (distance_m < s->nearest[i].distance_m)
+        s->nearest[i] = (struct nearest){ .distance_m = distance_m, .t = t, .edge = e };
+}
+
+struct edge_search {
+    struct seams *seams;
+    size_t point;
+};
+
+static void visit_border_tri(void *arg, uint32_t tri)
+{
+    struct edge_search *search = arg;
+    const struct borders *b = search->seams->borders;
+    for (int i = 0; i < 3; i++) {
+        uint32_t corner = search->seams->mesh->tris[tri][i], s = b->slot[corner];
+        for (uint32_t n = s == TRIMESH_NONE ? 0 : b->first[s]; s != TRIMESH_NONE && n < b->first[s + 1]; n++)
+            if (b->edge_tri[b->at[n]] == tri && b->edges[b->at[n]][0] == corner)
+                try_edge(search->seams, search->point, b->at[n]);
+    }
+}
+
+static void set_into_edges(struct seams *s)
+{
+    const struct borders *b = s->borders;
+    struct bvh *bvh = bvh_create(s->mesh);
+    s->nearest = mem_array(b->point_count, sizeof(*s->nearest));
+    for (size_t i = 0; i < b->point_count; i++) {
+        struct edge_search search = { .seams = s, .point = i };
+        const double *p = s->mesh->points[b->points[i]];
+        s->nearest[i].distance_m = INFINITY;
+        bvh_overlaps(bvh, p, p, s->tolerance_m, visit_border_tri, &search);
+        const struct nearest *n = &s->nearest[i];
+        if (n->distance_m < INFINITY)
+            mesh_edit_insert_in_edge(s->edit, b->points[i], b->edges[n->edge][0], b->edges[n->edge][1], n->t, n->distance_m);
+    }
+    bvh_destroy(&bvh);
+    mem_free(s->nearest);
+}
+
+/* Joins points on open edges, or sets them into open edges, where they are within tolerance_m. */
+static void seam_round(struct trimesh *mesh, const struct borders *borders, double tolerance_m, double end_m, bool fits, bool into_edges,
+                       uint32_t *target, size_t target_count, struct repair_report *report)
+{
+    struct mesh_edit edit;
+    struct seams seams = { .mesh = mesh, .borders = borders, .edit = &edit, .tolerance_m = tolerance_m, .end_m = end_m, .fits = fits };
+    mesh_edit_init(&edit);
+    if (into_edges) {
+        set_into_edges(&seams);
+    } else {
+        double(*cloud)[3] = mem_array(borders->point_count, sizeof(*cloud));
+        for (size_t i = 0; i < borders->point_count; i++)
+            memcpy(cloud[i], mesh->points[borders->points[i]], sizeof(*cloud));
+        int k = point_cloud_neighbours((const double(*)[3])cloud, borders->point_count, tolerance_m, join_near, &seams);
+        report->k = k < 0 || report->k < 0 ? -1 : k > report->k ? k : report->k;
+        mem_free(cloud);
+    }
+    repair_apply(&edit, mesh, target, target_count, 0, report);
+}
+
+void repair_seams(struct trimesh *mesh, double tolerance_m, uint32_t *target, struct repair_report *report)
+{
+    const double tolerances_m[2] = { EXACT_OF_TOLERANCE * tolerance_m, tolerance_m };
+    size_t target_count = mesh->point_count;
+    for (uint32_t i = 0; i < target_count; i++)
+        target[i] = i;
+    /* What fits exactly first: it is no border any more when gaps are closed, and is not drawn to a neighbour. A point that lies on an edge
+       by chance does not fit: pieces of that edge too short to be closed would keep its own gap open. */
+    for (int round = 0; round < 4; round++) {
+        struct borders borders;
+        borders_init(&borders, mesh);
+        if (round == 1)
+            repair_hanging(mesh, &borders, tolerances_m[0], target, target_count, report);
+        seam_round(mesh, &borders, tolerances_m[round / 2], round == 1 ? tolerance_m : 0, round < 2, round % 2 == 1, target, target_count,
+                   report);
+        borders_finish(&borders);
+    }
+}
+
+/* --- rims ------------------------------------------------------------------------------------------------------------------- */
+
+/* Takes the triangles with hidden[tri] == which. */
+static void take(struct trimesh *to, const struct trimesh *from, const char *hidden, char which)
+{
+    *to = (struct trimesh){ .points = from->points, .point_count = from->point_count };
+    for (size_t t = 0; t < from->tri_count; t++)
+        if (hidden[t] == which)
+            trimesh_add_tri(to, from->tris[t][0], from->tris[t][1], from->tris[t][2], from->tri_source[t]);
+}
+
+size_t repair_rims(struct trimesh *mesh, const char *hidden, const struct parts *parts, uint32_t *target, struct repair_report *report)
+{
+    struct trimesh seen, rest;
+    double widest_m = 0;
+    for (uint32_t i = 0; i < mesh->point_count; i++)
+        target[i] = i;
+    for (size_t p = 0; p < parts->count; p++)
+        widest_m = max_of(widest_m, parts->reach_m[p]);
+    take(&seen, mesh, hidden, 0);
+    take(&rest, mesh, hidden, 1);
+    for (int round = 0; round < 2 && rest.tri_count; round++) {
+        struct borders borders;
+        size_t degenerate = 0, repeated = 0;
+        uint32_t *then = mem_array(mesh->point_count, sizeof(*then));
+        for (uint32_t i = 0; i < mesh->point_count; i++)
+            then[i] = i;
+        borders_init_rims(&borders, &seen, &rest, parts);
+        seam_round(&seen, &borders, widest_m, 0, false, round == 1, then, mesh->point_count, report);
+        borders_finish(&borders);
+        trimesh_rename(&rest, then, &degenerate, &repeated);
+        for (uint32_t i = 0; i < mesh->point_count; i++)
+            target[i] = then[target[i]];
+        mem_free(then);
+    }
+    size_t seen_count = seen.tri_count;
+    for (size_t t = 0; t < rest.tri_count; t++)
+        trimesh_add_tri(&seen, rest.tris[t][0], rest.tris[t][1], rest.tris[t][2], rest.tri_source[t]);
+    rest.points = mesh->points = NULL;
+    trimesh_finish(&rest);
+    seen.point_capacity = mesh->point_capacity;
+    trimesh_finish(mesh);
+    *mesh = seen;
+    return seen_count;
+}

@@ -1,0 +1,391 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Bridging what is broken: parts that touch or cross. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/mem.h"
+#include "base/vec.h"
+#include "surface/repair/mesh_edit.h"
+#include "surface/mesh/bvh.h"
+#include "surface/repair/line_of_sight.h"
+#include "surface/repair/repair.h"
+#include "surface/repair/repair_impl.h"
+
+#define CLEAR 0.05    /* of the reach */
+#define PARALLEL 1e-4 /* squared sine of the angle between edges */
+
+struct contacts {
+    struct trimesh *mesh;
+    struct parts *parts;
+    const uint32_t *part, *body; /* of its triangles, as they are now */
+    const struct bvh *bvh;
+    struct mesh_edit *edit;
+    uint32_t own;   /* of the edge's triangle: its part; of the point's: its body */
+    double reach_m; /* of the point's part, or of the rim's */
+    uint32_t edge[2];
+    uint32_t *touched; /* of each point: the body that it touches, or TRIMESH_NONE */
+    struct crossing {
+        uint32_t tri, a, b, c, d; /* edge a-b through tri, or, if that is TRIMESH_NONE, over the edge c-d */
+        uint32_t point;           /* there, once it is set */
+        double t, s, weights[3];
+        bool own; /* within one part */
+    } * crossings;
+    size_t crossing_count, crossing_capacity;
+};
+
+static struct crossing *add_crossing(struct contacts *c)
+{
+    mem_grow(&c->crossings, &c->crossing_capacity, c->crossing_count + 1, sizeof(*c->crossings));
+    return &c->crossings[c->crossing_count++];
+}
+
+static double reach_of(const struct contacts *c, uint32_t tri)
+{
+    return c->parts->reach_m[c->part[tri]];
+}
+
+/* Both ends stand clear of the triangle's plane: faces of one part that lie on each other do not count as crossing. */
+static bool stands_clear(const struct contacts *c, const uint32_t *v)
+{
+    double n[3], up[3];
+    vec_normal(c->mesh->points[v[0]], c->mesh->points[v[1]], c->mesh->points[v[2]], n);
+    for (int i = 0; i < 2; i++) {
+        vec_sub(c->mesh->points[c->edge[i]], c->mesh->points[v[0]], up);
+        if (fabs(vec_dot(up, n)) < CLEAR * c->parts->reach_m[c->own] * vec_length(n))
+            return false;
+    }
+    return true;
+}
+
+static void visit_crossed(void *arg, uint32_t tri)
+{
+    struct contacts *c = arg;
+    const uint32_t *v = c->mesh->tris[tri];
+    double t, w[3];
+    bool own = c->part[tri] == c->own;
+    if (own && (repair_tri_has(c->mesh, tri, c->edge[0]) || repair_tri_has(c->mesh, tri, c->edge[1])))
+        return;
+    const double *p = c->mesh->points[c->edge[0]], *q = c->mesh->points[c->edge[1]];
+    if (!triangle_crossed(p, q, c->mesh->points[v[0]], c->mesh->points[v[1]], c->mesh->points[v[2]], &t, w))
+        return;
+    double length = vec_distance(p, q), reach_m = min_of(c->parts->reach_m[c->own], reach_of(c, tri));
+    if (t * length < reach_m || (1 - t) * length < reach_m || (own && !stands_clear(c, v)))
+        return; /* the end of the edge touches; that is found by points */
+    struct crossing *found = add_crossing(c);
+    *found = (struct crossing){ .tri = tri, .a = c->edge[0], .b = c->edge[1], .t = t, .own = own };
+    memcpy(found->weights, w, sizeof(w));
+    if (own)
+        c->parts->crossed[c->own] = c->parts->tangled[c->own] = 1;
+}
+
+/* Sets a point into the face tri at the place with these weights: into the side it is on, or made one with the corner it is at. */
+static void set_into_face(const struct contacts *c, uint32_t point, uint32_t tri, const double w[3], double distance_m)
+{
+    const uint32_t *v = c->mesh->tris[tri];
+    for (int i = 0; i < 3; i++)
+        if (w[i] > 1 - REPAIR_AT_END) {
+            mesh_edit_merge_points(c->edit, point, v[i], distance_m);
+            return;
+        }
+    for (int i = 0; i < 3; i++)
+        if (w[i] < REPAIR_AT_END) {
+            uint32_t a = v[(i + 1) % 3], b = v[(i + 2) % 3];
+            mesh_edit_insert_in_edge(c->edit, point, a, b, w[(i + 2) % 3] / (w[(i + 1) % 3] + w[(i + 2) % 3]), distance_m);
+            return;
+        }
+    mesh_edit_insert_in_tri(c->edit, point, tri, distance_m);
+}
+
+/* Triangles near the edge in hand. */
+static void look_around(struct contacts *c, void (*visit)(void *arg, uint32_t tri), double margin_m)
+{
+    const double *p = c->mesh->points[c->edge[0]], *q = c->mesh->points[c->edge[1]];
+    double low[3], high[3];
+    for (int axis = 0; axis < 3; axis++) {
+        low[axis] = min_of(p[axis], q[axis]);
+        high[axis] = max_of(p[axis], q[axis]);
+    }
+    bvh_overlaps(c->bvh, low, high, margin_m, visit, c);
+}
+
+static void find_crossings(struct contacts *c)
+{
+    struct edge_table edges;
+    edge_table_init(&edges, c->mesh->tri_count * 3 / 2);
+    for (uint32_t t = 0; t < c->mesh->tri_count; t++)
+        for (int i = 0; i < 3; i++) {
+            size_t before = edges.count;
+            c->edge[0] = c->mesh->tris[t][i];
+            c->edge[1] = c->mesh->tris[t][(i + 1) % 3];
+            edge_table_add(&edges, c->edge[0], c->edge[1]);
+            if (edges.count == before)
+                continue;
+            c->own = c->part[t];
+            look_around(c, visit_crossed, 0);
+        }
+    edge_table_finish(&edges);
+}
+
+static bool other_body(const void *arg, uint32_t tri)
+{
+    const struct contacts *c = arg;
+    return c->body[tri] != c->own;
+}
+
+static bool other_body_as_far(const void *arg, uint32_t tri)
+{
+    const struct contacts *c = arg;
+    return c->body[tri] != c->own && reach_of(c, tri) >= c->reach_m;
+}
+
+/* The nearest place of another body, within the reach of both. */
+static void find_touch(const struct contacts *c, const double point_m[3], struct bvh_place *place)
+{
+    bvh_nearest(c->bvh, point_m, c->reach_m, other_body, c, place);
+    if (place->tri != TRIMESH_NONE && place->distance_m > reach_of(c, place->tri))
+        bvh_nearest(c->bvh, point_m, c->reach_m, other_body_as_far, c, place);
+}
+
+/* What is nearer to a thin part than half its thickness touches it, from whichever side; what is farther must be looked at. That is a gap
+   to be bridged, not one in which anything were hidden: rims and the lines of crossing faces go by the reach alone. */
+static void find_touches(struct contacts *c)
+{
+    struct line_of_sight sight;
+    line_of_sight_init(&sight, c->mesh, c->parts, c->body, c->bvh);
+    char *seen = mem_array(c->mesh->point_count, 1);
+    memset(c->touched, 0xff, c->mesh->point_count * sizeof(*c->touched));
+    for (uint32_t t = 0; t < c->mesh->tri_count; t++)
+        for (int i = 0; i < 3; i++) {
+            uint32_t p = c->mesh->tris[t][i];
+            struct bvh_place place;
+            if (seen[p])
+                continue;
+            seen[p] = 1;
+            c->own = c->body[t];
+            c->reach_m = reach_of(c, t);
+            find_touch(c, c->mesh->points[p], &place);
+            if (place.tri != TRIMESH_NONE)
+                c->touched[p] = c->body[place.tri];
+            else if (!line_of_sight_find(&sight, p, c->own, &place))
+                continue;
+            if (!repair_tri_has(c->mesh, place.tri, p))
+                set_into_face(c, p, place.tri, place.weights, place.distance_m);
+        }
+    line_of_sight_finish(&sight);
+    mem_free(seen);
+}
+
+/* --- the rim of a contact ----------------------------------------------------------------------------------------------------- */
+
+/* Where two edges that are not parallel come nearest to each other: shares of the way. */
+static bool edges_meet(const double a[3], const double b[3], const double c[3], const double d[3], double *t, double *s)
+{
+    double ab[3], cd[3], ac[3];
+    vec_sub(b, a, ab);
+    vec_sub(d, c, cd);
+    vec_sub(c, a, ac);
+    double aa = vec_dot(ab, ab), cc = vec_dot(cd, cd), both = vec_dot(ab, cd), det = aa * cc - both * both;
+    if (!(det > PARALLEL * aa * cc))
+        return false;
+    *t = (vec_dot(ac, ab) * cc - vec_dot(ac, cd) * both) / det;
+    *s = (vec_dot(ac, ab) * both - vec_dot(ac, cd) * aa) / det;
+    return *t > 0 && *t < 1 && *s > 0 && *s < 1;
+}
+
+static bool is_known(const struct contacts *c, uint32_t u, uint32_t v)
+{
+    for (size_t i = c->crossing_count; i-- > 0;) {
+        const struct crossing *x = &c->crossings[i];
+        if (x->tri != TRIMESH_NONE || x->a != c->edge[0] || x->b != c->edge[1])
+            return false;
+        if ((x->c == u && x->d == v) || (x->c == v && x->d == u))
+            return true;
+    }
+    return false;
+}
+
+static void visit_rim(void *arg, uint32_t tri)
+{
+    struct contacts *c = arg;
+    if (c->body[tri] != c->touched[c->edge[0]])
+        return;
+    for (int i = 0; i < 3; i++) {
+        uint32_t u = c->mesh->tris[tri][i], v = c->mesh->tris[tri][(i + 1) % 3];
+        const double *p = c->mesh->points[c->edge[0]], *q = c->mesh->points[c->edge[1]], *a = c->mesh->points[u], *b = c->mesh->points[v];
+        double t, s, at[3], beside[3], end = min_of(c->reach_m, reach_of(c, tri));
+        if (!edges_meet(p, q, a, b, &t, &s) || is_known(c, u, v))
+            continue;
+        double length = vec_distance(p, q), other = vec_distance(a, b);
+        vec_mix(p, q, t, at);
+        vec_mix(a, b, s, beside);
+        if (vec_distance(at, beside) <= end && fmin(t, 1 - t) * length > end && fmin(s, 1 - s) * other > end)
+            *add_crossing(c) = (struct crossing){ .tri = TRIMESH_NONE, .a = c->edge[0], .b = c->edge[1], .c = u, .d = v, .t = t, .s = s };
+    }
+}
+
+/* Edges both of whose ends touch another body, while a face at them leaves it: that body is cut along them. */
+static void find_rims(struct contacts *c)
+{
+    for (uint32_t t = 0; t < c->mesh->tri_count; t++)
+        for (int i = 0; i < 3; i++) {
+            const uint32_t *v = c->mesh->tris[t];
+            uint32_t p = v[i], q = v[(i + 1) % 3], apex = v[(i + 2) % 3], body = c->touched[p];
+            if (body == TRIMESH_NONE || body != c->touched[q] || body == c->touched[apex])
+                continue;
+            c->edge[0] = p;
+            c->edge[1] = q;
+            c->reach_m = reach_of(c, t);
+            look_around(c, visit_rim, c->reach_m);
+        }
+}
+
+/* Points are added only when all is found: the searches look at the array that they are in. */
+static void set_crossings(struct contacts *c, struct repair_report *report)
+{
+    for (size_t i = 0; i < c->crossing_count; i++) {
+        struct crossing *x = &c->crossings[i];
+        double place[3];
+        vec_mix(c->mesh->points[x->a], c->mesh->points[x->b], x->t, place);
+        x->point = trimesh_add_point(c->mesh, place);
+        mesh_edit_insert_in_edge(c->edit, x->point, x->a, x->b, x->t, 0);
+        if (x->tri == TRIMESH_NONE)
+            mesh_edit_insert_in_edge(c->edit, x->point, x->c, x->d, x->s, 0);
+        else
+            set_into_face(c, x->point, x->tri, x->weights, 0);
+        if (!x->own)
+            continue;
+        mem_grow(&report->crossings, &report->crossing_capacity, report->crossing_count + 1, sizeof(*report->crossings));
+        report->crossings[report->crossing_count++] = x->point;
+    }
+}
+
+/* --- the lines along which faces cross ---------------------------------------------------------------------------------------- */
+
+struct meeting {             /* of two triangles, at a point of the line along which they cross */
+    uint32_t tris[2], point; /* the lower one first */
+};
+
+struct meetings {
+    struct meeting *at;
+    size_t count, capacity;
+};
+
+static int compare_meetings(const void *a, const void *b)
+{
+    const struct meeting *x = a, *y = b;
+    for (int i = 0; i < 2; i++)
+        if (x->tris[i] != y->tris[i])
+            return x->tris[i] < y->tris[i] ? -1 : 1;
+    return (x->point > y->point) - (x->point < y->point);
+}
+
+/* An edge that passes through a triangle belongs to others: each of them meets it there. */
+static void find_meetings(const struct contacts *c, struct meetings *meetings)
+{
+    struct edge_table edges;
+    uint32_t *number = mem_array(c->crossing_count, sizeof(*number)), *first = mem_array(c->crossing_count + 2, sizeof(*first));
+    edge_table_init(&edges, c->crossing_count);
+    for (size_t i = 0; i < c->crossing_count; i++) {
+        number[i] = edge_table_add(&edges, c->crossings[i].a, c->crossings[i].b);
+        first[number[i] + 2]++;
+    }
+    for (size_t e = 2; e < edges.count + 2; e++)
+        first[e] += first[e - 1];
+    uint32_t *of_edge = mem_array(c->crossing_count, sizeof(*of_edge));
+    for (uint32_t i = 0; i < c->crossing_count; i++)
+        of_edge[first[number[i] + 1]++] = i;
+    for (uint32_t t = 0; t < c->mesh->tri_count; t++)
+        for (int i = 0; i < 3; i++) {
+            uint32_t e = edge_table_find(&edges, c->mesh->tris[t][i], c->mesh->tris[t][(i + 1) % 3]);
+            for (uint32_t n = e == TRIMESH_NONE ? 0 : first[e]; e != TRIMESH_NONE && n < first[e + 1]; n++) {
+                const struct crossing *x = &c->crossings[of_edge[n]];
+                if (x->tri == TRIMESH_NONE || x->tri == t)
+                    continue;
+                mem_grow(&meetings->at, &meetings->capacity, meetings->count + 1, sizeof(*meetings->at));
+                meetings->at[meetings->count++] = (struct meeting){ { t < x->tri ? t : x->tri, t < x->tri ? x->tri : t }, x->point };
+            }
+        }
+    edge_table_finish(&edges);
+    mem_free(number);
+    mem_free(first);
+    mem_free(of_edge);
+}
+
+/* The line ends at a corner of the one that touches the other. */
+static void join_corners(const struct contacts *c, uint32_t point, uint32_t tri, uint32_t other)
+{
+    const uint32_t *v = c->mesh->tris[tri], *u = c->mesh->tris[other];
+    double w[3], at[3];
+    for (int i = 0; i < 3; i++) {
+        if (c->touched[v[i]] != c->body[other])
+            continue;
+        const double *p = c->mesh->points[v[i]];
+        triangle_nearest(p, c->mesh->points[u[0]], c->mesh->points[u[1]], c->mesh->points[u[2]], w);
+        for (int axis = 0; axis < 3; axis++)
+            at[axis] = w[0] * c->mesh->points[u[0]][axis] + w[1] * c->mesh->points[u[1]][axis] + w[2] * c->mesh->points[u[2]][axis];
+        if (vec_distance(p, at) <= min_of(reach_of(c, tri), reach_of(c, other)))
+            mesh_edit_connect(c->edit, point, v[i]);
+    }
+}
+
+/* Two triangles cross along a line with two ends; near a corner some may be found twice. */
+static void join_meetings(const struct contacts *c, const struct meeting *meetings, size_t count)
+{
+    size_t far = 0;
+    const double *from = c->mesh->points[meetings[0].point];
+    for (size_t i = 1; i < count; i++)
+        if (vec_distance2(from, c->mesh->points[meetings[i].point]) > vec_distance2(from, c->mesh->points[meetings[far].point]))
+            far = i;
+    for (size_t i = 0; i < count; i++)
+        if (i != far)
+            mesh_edit_connect(c->edit, meetings[i].point, meetings[far].point);
+    if (count == 1)
+        for (int i = 0; i < 2; i++)
+            join_corners(c, meetings[0].point, meetings[0].tris[i], meetings[0].tris[1 - i]);
+}
+
+/* Both faces are cut along it: what is to either side of it can be told apart then. */
+static void cut_along(struct contacts *c)
+{
+    struct meetings meetings = { 0 };
+    find_meetings(c, &meetings);
+    if (meetings.count)
+        qsort(meetings.at, meetings.count, sizeof(*meetings.at), compare_meetings);
+    for (size_t first = 0, end; first < meetings.count; first = end) {
+        const struct meeting *m = &meetings.at[first];
+        for (end = first + 1; end < meetings.count && meetings.at[end].tris[0] == m->tris[0] && meetings.at[end].tris[1] == m->tris[1];)
+            end++;
+        join_meetings(c, m, end - first);
+    }
+    mem_free(meetings.at);
+}
+
+void repair_contacts(struct trimesh *mesh, struct parts *parts, uint32_t *target, struct repair_report *report)
+{
+    struct mesh_edit edit;
+    struct bvh *bvh = bvh_create(mesh);
+    uint32_t *part = parts_spread(mesh, parts->of_source), *body = parts_spread(mesh, parts->body_of_source);
+    size_t target_count = mesh->point_count;
+    struct contacts contacts = { .mesh = mesh,
+                                 .parts = parts,
+                                 .part = part,
+                                 .body = body,
+                                 .bvh = bvh,
+                                 .edit = &edit,
+                                 .touched = mem_array(target_count, sizeof(*contacts.touched)) };
+    mesh_edit_init(&edit);
+    for (uint32_t i = 0; i < target_count; i++)
+        target[i] = i;
+    find_touches(&contacts);
+    find_crossings(&contacts);
+    find_rims(&contacts);
+    bvh_destroy(&bvh);
+    set_crossings(&contacts, report);
+    cut_along(&contacts);
+    repair_apply(&edit, mesh, target, target_count, contacts.crossing_count, report);
+    mem_free(contacts.crossings);
+    mem_free(contacts.touched);
+    mem_free(part);
+    mem_free(body);
+}

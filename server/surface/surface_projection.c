@@ -1,0 +1,130 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Dropping points onto a surface. */
+#include <math.h>
+#include <string.h>
+
+#include "base/vec.h"
+#include "surface/surface_state.h"
+
+#define SPOT_ON_SURFACE 1e-3 /* mean edges: nearer than that, a point lies on its triangle */
+#define ON_PIECE 1e-5        /* likewise: no nearer piece is looked for */
+#define FEW_PIECES 24        /* of a triangle of the model are tried one by one */
+#define SPOT_PATIENCE 4.0    /* how much farther than the nearest a triangle may be that faces the right way */
+#define ROUNDING 1e-9        /* of a distance, more than it is off by */
+
+void surface_nearest(const struct surface *surface, const double point_m[3], struct surface_place *place)
+{
+    struct bvh_place at;
+    bvh_nearest(surface->bvh, point_m, INFINITY, NULL, NULL, &at);
+    memcpy(place->position_m, at.point, sizeof(at.point));
+    place->distance_m = at.distance_m;
+    double best2 = INFINITY;
+    for (size_t v = 0; v < surface->vertex_count; v++) {
+        double d2 = vec_distance2(surface->mesh.points[surface->vertex_point[v]], at.point);
+        if (d2 < best2) {
+            best2 = d2;
+            place->vertex = (uint32_t)v;
+        }
+    }
+}
+
+bool surface_faces(const void *arg, uint32_t tri)
+{
+    const struct surface_facing *facing = arg;
+    double n[3];
+    trimesh_normal(facing->mesh, tri, n);
+    return vec_dot(n, facing->normal) > 0;
+}
+
+bool surface_find_point_within(const struct surface *surface, const double point_m[3], const double normal[3], double limit_m,
+                               struct surface_point *spot)
+{
+    struct bvh_place any, facing = { .tri = TRIMESH_NONE };
+    bvh_nearest(surface->bvh, point_m, limit_m * (1 + ROUNDING), NULL, NULL, &any);
+    if (normal && any.tri != TRIMESH_NONE && any.distance_m > surface->edge_m * SPOT_ON_SURFACE)
+        bvh_nearest(surface->bvh, point_m, any.distance_m * SPOT_PATIENCE, surface_faces,
+                    &(struct surface_facing){ &surface->visible, normal }, &facing);
+    const struct bvh_place *at = facing.tri == TRIMESH_NONE ? &any : &facing;
+    spot->tri = at->tri;
+    spot->distance_m = at->distance_m;
+    memcpy(spot->point_m, at->point, sizeof(spot->point_m));
+    memcpy(spot->weights, at->weights, sizeof(spot->weights));
+    return spot->tri != TRIMESH_NONE && spot->distance_m <= limit_m;
+}
+
+void surface_find_point(const struct surface *surface, const double point_m[3], const double normal[3], struct surface_point *spot)
+{
+    surface_find_point_within(surface, point_m, normal, INFINITY, spot);
+}
+
+bool surface_point_on(const struct surface *surface, const double point_m[3], double limit_m, uint32_t tri, struct surface_point *spot)
+{
+    if (tri >= surface->visible.tri_count)
+        return false;
+    const uint32_t *v = surface->visible.tris[tri];
+    const double(*points)[3] = (const double(*)[3])surface->visible.points;
+    spot->tri = tri;
+    triangle_nearest(point_m, points[v[0]], points[v[1]], points[v[2]], spot->weights);
+    for (int axis = 0; axis < 3; axis++)
+        spot->point_m[axis] =
+            spot->weights[0] * points[v[0]][axis] + spot->weights[1] * points[v[1]][axis] + spot->weights[2] * points[v[2]][axis];
+    spot->distance_m = vec_distance(spot->point_m, point_m);
+    return spot->distance_m <= limit_m;
+}
+
+struct among {
+    const uint32_t *source;
+    bool (*allowed)(const void *arg, uint32_t triangle);
+    const void *arg;
+};
+
+static bool is_among(const void *arg, uint32_t tri)
+{
+    const struct among *among = arg;
+    return among->allowed(among->arg, among->source[tri]);
+}
+
+bool surface_find_point_among(const struct surface *surface, const double point_m[3], double limit_m,
+                              bool (*allowed)(const void *arg, uint32_t triangle), const void *arg, struct surface_point *spot)
+{
+    const struct among among = { surface->visible.tri_source, allowed, arg };
+    struct bvh_place at;
+    bvh_nearest(surface->bvh, point_m, limit_m, is_among, &among, &at);
+    return surface_point_on(surface, point_m, INFINITY, at.tri, spot);
+}
+
+struct planes {
+    const uint32_t *of;
+    uint32_t at[2];
+};
+
+static bool is_in_one_of(const void *arg, uint32_t triangle)
+{
+    const struct planes *planes = arg;
+    return planes->of[triangle] == planes->at[0] || planes->of[triangle] == planes->at[1];
+}
+
+static void try_piece(const struct surface *surface, const double point_m[3], uint32_t tri, struct surface_point *spot)
+{
+    struct surface_point at;
+    if (surface_point_on(surface, point_m, spot->distance_m, tri, &at))
+        *spot = at;
+}
+
+bool surface_find_point_on(const struct surface *surface, const double point_m[3], double limit_m, const uint32_t triangles[2],
+                           struct surface_point *spot)
+{
+    const uint32_t *first = surface->piece_first;
+    const struct planes planes = { surface->plane, { surface->plane[triangles[0]], surface->plane[triangles[1]] } };
+    size_t count = planes.at[0] == planes.at[1] ? 1 : 2, pieces = 0;
+    *spot = (struct surface_point){ .tri = TRIMESH_NONE, .distance_m = limit_m };
+    for (size_t i = 0; i < count; i++)
+        pieces += first[planes.at[i] + 1] - first[planes.at[i]];
+    if (pieces > FEW_PIECES)
+        return surface_find_point_among(surface, point_m, limit_m, is_in_one_of, &planes, spot);
+    double enough_m = fmin(surface->edge_m * ON_PIECE, limit_m / 2);
+    for (size_t i = 0; i < count; i++)
+        for (uint32_t p = first[planes.at[i]]; p < first[planes.at[i] + 1] && spot->distance_m > enough_m; p++)
+            try_piece(surface, point_m, surface->pieces[p], spot);
+    return spot->tri != TRIMESH_NONE;
+}

@@ -1,0 +1,170 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Finding vertices on a surface by their place. */
+#include "surface/vertex_embedding.h"
+
+#include <math.h>
+#include <string.h>
+#include <xxhash.h>
+
+#include "base/mem.h"
+#include "base/vec.h"
+#include "surface/surface_state.h"
+
+#define GRAIN 512
+#define ON_SURFACE 1e-3 /* mean edges: as near, a vertex lies on a face */
+
+struct anchor {
+    uint32_t point; /* of the surface, or TRIMESH_NONE: spot */
+    struct surface_point spot;
+};
+
+struct vertex_embedding {
+    const struct surface *surface;
+    size_t count;
+    struct anchor *at;
+};
+
+struct table { /* points that have triangles, by place */
+    const struct trimesh *mesh;
+    uint32_t *points;
+    size_t mask;
+};
+
+static size_t hash_of(const struct table *table, const double place_m[3])
+{
+    return XXH3_64bits(place_m, 3 * sizeof(*place_m)) & table->mask;
+}
+
+/* The slot that has the place, or the free one where it would be. */
+static size_t slot_of(const struct table *table, const double place_m[3])
+{
+    size_t slot = hash_of(table, place_m);
+    while (table->points[slot] != TRIMESH_NONE &&
+           memcmp(table->mesh->points[table->points[slot]], place_m, sizeof(*table->mesh->points)) != 0)
+        slot = (slot + 1) & table->mask;
+    return slot;
+}
+
+static bool table_init(struct table *table, const struct trimesh *mesh)
+{
+    size_t size = 16;
+    while (size < 2 * mesh->point_count)
+        size *= 2;
+    *table = (struct table){ mesh, mem_try_array(size, sizeof(*table->points)), size - 1 };
+    if (!table->points)
+        return false;
+    memset(table->points, 0xff, size * sizeof(*table->points));
+    for (size_t t = 0; t < mesh->tri_count; t++)
+        for (int i = 0; i < 3; i++)
+            table->points[slot_of(table, mesh->points[mesh->tris[t][i]])] = mesh->tris[t][i];
+    return true;
+}
+
+struct job {
+    struct vertex_embedding *embedding;
+    struct table table;
+    const float (*positions_m)[3];
+    double (*normals)[3]; /* of no certain length */
+    char *is_off;         /* no triangle of the finest level has it: it may be nearer to another side than to its own */
+};
+
+static bool find_normals(struct job *job, const float (*normals)[3], const uint32_t *triangles, size_t triangle_count)
+{
+    const size_t count = job->embedding->count;
+    job->normals = mem_try_array(count, sizeof(*job->normals));
+    job->is_off = mem_try_array(count, 1);
+    if (!job->normals || !job->is_off)
+        return false;
+    memset(job->is_off, 1, count);
+    for (size_t t = 0; t < triangle_count; t++) {
+        const uint32_t *v = triangles + 3 * t;
+        double p[3][3], n[3];
+        for (int i = 0; i < 3; i++)
+            for (int axis = 0; axis < 3; axis++)
+                p[i][axis] = (double)job->positions_m[v[i]][axis];
+        vec_normal(p[0], p[1], p[2], n);
+        for (int i = 0; i < 3; i++) {
+            job->is_off[v[i]] = 0;
+            for (int axis = 0; axis < 3; axis++)
+                job->normals[v[i]][axis] += n[axis];
+        }
+    }
+    for (size_t v = 0; v < count && normals; v++)
+        for (int axis = 0; axis < 3 && job->is_off[v]; axis++)
+            job->normals[v][axis] = (double)normals[v][axis];
+    return true;
+}
+
+static void find_spot(const struct surface *surface, const double place_m[3], const double normal[3], bool is_off,
+                      struct surface_point *spot)
+{
+    struct bvh_place at;
+    const struct surface_facing facing = { &surface->visible, normal };
+    bvh_nearest(surface->bvh, place_m, is_off ? INFINITY : ON_SURFACE * surface->edge_m, surface_faces, &facing, &at);
+    if (at.tri == TRIMESH_NONE) {
+        surface_find_point(surface, place_m, normal, spot);
+        return;
+    }
+    *spot = (struct surface_point){ .tri = at.tri, .distance_m = at.distance_m };
+    memcpy(spot->point_m, at.point, sizeof(spot->point_m));
+    memcpy(spot->weights, at.weights, sizeof(spot->weights));
+}
+
+static void find_some(void *arg, size_t begin, size_t end)
+{
+    struct job *job = arg;
+    for (size_t v = begin; v < end; v++) {
+        const float *p = job->positions_m[v];
+        const double place_m[3] = { (double)p[0], (double)p[1], (double)p[2] };
+        struct anchor *anchor = &job->embedding->at[v];
+        anchor->point = job->table.points[slot_of(&job->table, place_m)];
+        if (anchor->point == TRIMESH_NONE)
+            find_spot(job->embedding->surface, place_m, job->normals[v], job->is_off[v], &anchor->spot);
+    }
+}
+
+struct vertex_embedding *vertex_embedding_create(const struct surface *surface, const float (*positions_m)[3], const float (*normals)[3],
+                                                 size_t count, const uint32_t *triangles, size_t triangle_count)
+{
+    struct vertex_embedding *embedding = mem_new(sizeof(*embedding));
+    struct job job = { .embedding = embedding, .positions_m = positions_m };
+    *embedding = (struct vertex_embedding){ surface, count, mem_try_array(count, sizeof(*embedding->at)) };
+    if (!embedding->at || !table_init(&job.table, &surface->mesh) || !find_normals(&job, normals, triangles, triangle_count)) {
+        log_err(surface->log, "surface of %zu points: out of memory for %zu vertices on it", surface->mesh.point_count, count);
+        vertex_embedding_destroy(&embedding);
+    } else if (surface->workers) {
+        workers_for(surface->workers, count, GRAIN, find_some, &job);
+    } else {
+        find_some(&job, 0, count);
+    }
+    mem_free(job.table.points);
+    mem_free(job.normals);
+    mem_free(job.is_off);
+    return embedding;
+}
+
+void vertex_embedding_destroy(struct vertex_embedding **embedding)
+{
+    if (!*embedding)
+        return;
+    mem_free((*embedding)->at);
+    mem_free(*embedding);
+    *embedding = NULL;
+}
+
+bool vertex_embedding_distances(const struct vertex_embedding *embedding, const double point_m[3], float *out)
+{
+    const struct surface *surface = embedding->surface;
+    struct surface_field field;
+    if (!surface_field_init(&field, surface, (const double(*)[3])point_m, 1, NULL))
+        return false;
+    for (size_t v = 0; v < embedding->count; v++) {
+        const struct anchor *anchor = &embedding->at[v];
+        if (anchor->point != TRIMESH_NONE)
+            out[v] = field.distances_m[anchor->point];
+        else
+            surface_field_at_point(&field, surface, &anchor->spot, &out[v]);
+    }
+    surface_field_finish(&field);
+    return true;
+}

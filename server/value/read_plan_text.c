@@ -1,0 +1,94 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* A read plan in words and numbers. */
+#include "value/read_plan_text.h"
+
+#include <string.h>
+
+#include "plant/address.h"
+#include "value/decode.h"
+#include "value/read_plan.h"
+
+static const struct {
+    const char *prefix;
+    int function;
+} tables[] = { [TABLE_COIL] = { "co", 1 }, [TABLE_DISCRETE] = { "di", 2 }, [TABLE_INPUT] = { "ir", 4 }, [TABLE_HOLDING] = { "hr", 3 } };
+
+static const char *order_name(enum byte_order order)
+{
+    static const char *const names[] = { "", "ABCD", "CDAB", "BADC", "DCBA" };
+    return names[order];
+}
+
+static bool of_bits(const struct read_plan_block *block)
+{
+    return block->table == TABLE_COIL || block->table == TABLE_DISCRETE;
+}
+
+/* Question and answer, as they go over the wire. */
+static double bytes_of(const struct plant_source *source, const struct read_plan_block *block)
+{
+    int values = of_bits(block) ? (block->count + 7) / 8 : 2 * block->count;
+    return source->transport == TRANSPORT_TCP ? 12 + 9 + values : 8 + 5 + values;
+}
+
+static void add_way(struct text *out, const struct plant_source *source)
+{
+    text_add(out, "source %s: ", source->id);
+    if (source->transport == TRANSPORT_RTU)
+        text_add(out, "%s, %d baud, parity %c, %d stop bit%s", source->device, source->baud, source->parity, source->stop_bits,
+                 source->stop_bits == 1 ? "" : "s");
+    for (int i = 0; i < source->host_count; i++)
+        text_add(out, "%s%s:%d%s", i ? ", else " : "", source->hosts[i], source->port,
+                 source->transport == TRANSPORT_RTU_TCP ? " (RTU over TCP)" : "");
+}
+
+static void add_block(struct text *out, const struct read_plan *plan, const struct plant *plant, const struct read_plan_block *block)
+{
+    text_add(out, "  unit %d, function %d, %s:%d to %d: %d %s%s each %d ms, %zu tag%s\n", block->unit, tables[block->table].function,
+             tables[block->table].prefix, block->first, block->first + block->count - 1, block->count, of_bits(block) ? "bit" : "register",
+             block->count == 1 ? "" : "s", block->scan_ms, block->tag_count, block->tag_count == 1 ? "" : "s");
+    for (size_t i = 0; i < block->tag_count; i++) {
+        const struct plant_tag *tag = &plant->tags[plan->tags[block->first_tag + i]];
+        text_add(out, "    %s:%d", tables[tag->table].prefix, tag->register_index);
+        if (tag->bit >= 0)
+            text_add(out, ".%d", tag->bit);
+        text_add(out, " %s%s%s %s\n", data_type_name(tag->type), tag->byte_order ? " " : "", order_name(tag->byte_order), tag->name);
+    }
+}
+
+static void add_load(struct text *out, const struct read_plan *plan, const struct plant_source *source)
+{
+    double requests = 0, values = 0, bytes = 0;
+    for (size_t i = 0; i < plan->block_count; i++) {
+        const struct read_plan_block *block = &plan->blocks[i];
+        double per_s = 1000.0 / block->scan_ms;
+        requests += per_s;
+        values += per_s * (double)block->tag_count;
+        bytes += per_s * bytes_of(source, block);
+    }
+    text_add(out, "  load: %.4g requests, %.4g values and %.4g bytes in a second", requests, values, bytes);
+    if (source->pause_ms > 0)
+        text_add(out, "; the pauses take %.3g %% of the time", requests * source->pause_ms / 10);
+    if (source->transport == TRANSPORT_RTU) { /* a byte is 11 bits with start, parity and stop; 3.5 of them part two frames */
+        double bits = 1 + 8 + (source->parity != 'N') + source->stop_bits, part = (bytes + 7 * requests) * bits / source->baud;
+        text_add(out, "; %.3g %% of what the line can carry%s", part * 100, part > 1 ? ": TOO MUCH, scans will be late" : "");
+    }
+    text_add(out, "\n");
+}
+
+void read_plan_text(struct text *out, const struct plant *plant, int source_index)
+{
+    const struct plant_source *source = &plant->sources[source_index];
+    struct read_plan plan;
+    if (strcmp(source->kind, "modbus") != 0) {
+        text_add(out, "source %s: %s, nothing to ask\n", source->id, source->kind);
+        return;
+    }
+    read_plan_init(&plan, plant, source_index);
+    add_way(out, source);
+    text_add(out, ": %zu tags in %zu request%s\n", plan.tag_count, plan.block_count, plan.block_count == 1 ? "" : "s");
+    for (size_t i = 0; i < plan.block_count; i++)
+        add_block(out, &plan, plant, &plan.blocks[i]);
+    add_load(out, &plan, source);
+    read_plan_finish(&plan);
+}

@@ -1,0 +1,142 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* A short list of counted snapshots. */
+#include "value/snapshot_cache.h"
+
+#include <pthread.h>
+#include <stdbool.h>
+
+#define XXH_INLINE_ALL
+#include <xxhash.h>
+
+#include "base/mem.h"
+
+struct entry { /* the snapshot comes first: it is what others hold */
+    struct historical_snapshot historical;
+    int users;
+    uint64_t used;
+};
+
+struct snapshot_cache {
+    pthread_mutex_t lock;
+    /* --- below: under lock */
+    struct entry **entries;
+    size_t count, capacity;
+    uint64_t uses;
+};
+
+struct snapshot_cache *snapshot_cache_create(void)
+{
+    struct snapshot_cache *snapshot_cache = mem_new(sizeof(*snapshot_cache));
+    pthread_mutex_init(&snapshot_cache->lock, NULL);
+    return snapshot_cache;
+}
+
+static void entry_destroy(struct entry *entry)
+{
+    mem_free(entry->historical.snapshot.readings);
+    mem_free(entry);
+}
+
+void snapshot_cache_destroy(struct snapshot_cache **cache_ptr)
+{
+    struct snapshot_cache *snapshot_cache = *cache_ptr;
+    if (!snapshot_cache)
+        return;
+    for (size_t i = 0; i < snapshot_cache->count; i++)
+        entry_destroy(snapshot_cache->entries[i]);
+    mem_free(snapshot_cache->entries);
+    pthread_mutex_destroy(&snapshot_cache->lock);
+    mem_free(snapshot_cache);
+    *cache_ptr = NULL;
+}
+
+/* Under lock. NULL: none. */
+static struct entry *find(const struct snapshot_cache *snapshot_cache, int64_t at_us)
+{
+    for (size_t i = 0; i < snapshot_cache->count; i++)
+        if (snapshot_cache->entries[i]->historical.at_us == at_us)
+            return snapshot_cache->entries[i];
+    return NULL;
+}
+
+/* Under lock. The least that no other has that is held. */
+static int free_slot(const struct snapshot_cache *snapshot_cache)
+{
+    for (int slot = 1;; slot++) {
+        bool taken = false;
+        for (size_t i = 0; i < snapshot_cache->count && !taken; i++)
+            taken = snapshot_cache->entries[i]->users > 0 && snapshot_cache->entries[i]->historical.slot == slot;
+        if (!taken)
+            return slot;
+    }
+}
+
+/* Under lock. */
+static void drop_spare(struct snapshot_cache *snapshot_cache)
+{
+    size_t spare = 0, oldest = 0;
+    for (size_t i = 0; i < snapshot_cache->count; i++) {
+        const struct entry *entry = snapshot_cache->entries[i];
+        if (entry->users > 0)
+            continue;
+        if (spare++ == 0 || entry->used < snapshot_cache->entries[oldest]->used)
+            oldest = i;
+    }
+    if (spare <= SNAPSHOT_CACHE_SPARE)
+        return;
+    entry_destroy(snapshot_cache->entries[oldest]);
+    snapshot_cache->entries[oldest] = snapshot_cache->entries[--snapshot_cache->count];
+}
+
+static void number_changes(struct snapshot *snapshot)
+{
+    for (size_t i = 0; i < snapshot->count; i++) {
+        struct reading *reading = &snapshot->readings[i];
+        struct {
+            double value;
+            uint32_t quality, alarm;
+        } what = { reading->value, reading->quality, 0 };
+        what.alarm = (uint32_t)reading->alarm << 8 | reading->alarm_status;
+        reading->changes = (uint32_t)XXH3_64bits(&what, sizeof(what));
+    }
+}
+
+void snapshot_cache_add(struct snapshot_cache *snapshot_cache, int64_t at_us, struct snapshot *snapshot)
+{
+    number_changes(snapshot);
+    pthread_mutex_lock(&snapshot_cache->lock);
+    if (!find(snapshot_cache, at_us)) {
+        struct entry *entry = mem_new(sizeof(*entry));
+        *entry = (struct entry){ .historical = { .snapshot = *snapshot, .at_us = at_us }, .used = ++snapshot_cache->uses };
+        *snapshot = (struct snapshot){ 0 };
+        mem_grow(&snapshot_cache->entries, &snapshot_cache->capacity, snapshot_cache->count + 1, sizeof(*snapshot_cache->entries));
+        snapshot_cache->entries[snapshot_cache->count++] = entry;
+        drop_spare(snapshot_cache);
+    }
+    pthread_mutex_unlock(&snapshot_cache->lock);
+}
+
+const struct historical_snapshot *snapshot_cache_take(struct snapshot_cache *snapshot_cache, int64_t at_us)
+{
+    pthread_mutex_lock(&snapshot_cache->lock);
+    struct entry *entry = find(snapshot_cache, at_us);
+    if (entry) {
+        if (entry->users == 0)
+            entry->historical.slot = free_slot(snapshot_cache);
+        entry->users++;
+        entry->used = ++snapshot_cache->uses;
+    }
+    pthread_mutex_unlock(&snapshot_cache->lock);
+    return entry ? &entry->historical : NULL;
+}
+
+void snapshot_cache_give(struct snapshot_cache *snapshot_cache, const struct historical_snapshot **historical)
+{
+    if (!*historical)
+        return;
+    pthread_mutex_lock(&snapshot_cache->lock);
+    ((struct entry *)*historical)->users--;
+    drop_spare(snapshot_cache);
+    pthread_mutex_unlock(&snapshot_cache->lock);
+    *historical = NULL;
+}

@@ -1,0 +1,750 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The render thread itself: who moves is served while another is refined; who moves on gets no more of what it wanted. */
+#include <pthread.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdatomic.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <sys/resource.h>
+#include <time.h>
+#include <unistd.h>
+
+#include <cmocka.h>
+
+#include "base/clock.h"
+#include "base/mem.h"
+#include "service/render_service.h"
+#include "tests/support/sleep.h"
+#include "tests/support/toy.h"
+#include "value/quality.h"
+
+#define ENCODES "plantcast_encodes_total{codec=\"jpeg\"}"
+enum { REFINER = 1, MOVER = 2, PICKER = 3, VIEWERS = 100 };
+static const int64_t RECENT_NS = 600 * NS_PER_MS;  /* pictures that are older are not handed to others */
+static const int64_t PATIENCE_NS = 100 * NS_PER_S; /* far beyond any picture, under sanitizers too */
+
+static struct toy *toy;
+static struct log *logger;
+static struct workers *workers;
+static struct counters *counters;
+static struct store *store;
+static struct render_service *painter;
+static pthread_mutex_t lock = PTHREAD_MUTEX_INITIALIZER;
+static pthread_cond_t came = PTHREAD_COND_INITIALIZER;
+static int notices;
+static bool hardware; /* draws a refined picture in one step */
+
+static void on_pictures(void *arg)
+{
+    (void)arg;
+    pthread_mutex_lock(&lock);
+    notices++;
+    pthread_cond_signal(&came);
+    pthread_mutex_unlock(&lock);
+}
+
+/* The next picture; the caller owns it. */
+static struct encoded_frame *next(void)
+{
+    static struct encoded_frame *waiting;
+    int64_t until_ns = clock_utc_ns() + PATIENCE_NS;
+    struct timespec until = { .tv_sec = until_ns / NS_PER_S };
+    pthread_mutex_lock(&lock);
+    while (!waiting) {
+        while (notices == 0)
+            if (pthread_cond_timedwait(&came, &lock, &until) != 0)
+                fail_msg("no picture came");
+        notices--;
+        waiting = render_service_collect(painter);
+    }
+    pthread_mutex_unlock(&lock);
+    struct encoded_frame *picture = waiting;
+    waiting = picture->next;
+    return picture;
+}
+
+static void ask_sized(uint64_t client, enum urgency urgency, double turn, int width_px, int height_px)
+{
+    int64_t now_ns = clock_mono_ns();
+    struct frame_request wish = {
+        .codec = WIRE_CODEC_JPEG, .quality = { .quality = 80 }, .urgency = urgency, .asked_ns = now_ns, .always = true
+    };
+    view_default(&toy->scene, width_px, height_px, &wish.view);
+    wish.view.tier = urgency == URGENCY_REFINE ? TIER_REFINED : TIER_PREVIEW;
+    wish.view.camera.eye_m[0] += turn;
+    wish.view.input_ns = now_ns;
+    assert_int_equal(render_service_request(painter, client, &wish), REQUEST_ADDED);
+    render_service_wake(painter);
+}
+
+/* turn: of the camera. */
+static void ask(uint64_t client, enum urgency urgency, double turn)
+{
+    bool still = urgency == URGENCY_REFINE;
+    ask_sized(client, urgency, turn, still ? 2400 : 320, still ? 1600 : 180);
+}
+
+/* The value of a counter now. */
+static int64_t count_of(const char *name)
+{
+    return *counters_add(counters, name, "counter", "");
+}
+
+static void await_step(int64_t steps)
+{
+    int64_t end_ns = clock_mono_ns() + PATIENCE_NS;
+    while (count_of("plantcast_render_steps_total") < steps) {
+        if (clock_mono_ns() > end_ns)
+            fail_msg("no refinement was begun");
+        nanosleep(&(struct timespec){ .tv_nsec = 100000 }, NULL);
+    }
+}
+
+static void test_mover_is_served_during_a_refinement(void **state)
+{
+    (void)state;
+    if (hardware)
+        skip();
+    int64_t steps = count_of("plantcast_render_steps_total");
+    ask(REFINER, URGENCY_REFINE, 0);
+    await_step(steps + 1);
+    for (int i = 1; i <= 8; i++) {
+        ask(MOVER, URGENCY_INPUT, 0.1 * i);
+        struct encoded_frame *picture = next();
+        assert_int_equal(picture->client, MOVER);
+        assert_true(picture->packet != NULL);
+        encoded_frame_destroy(&picture);
+    }
+    struct encoded_frame *refined = next();
+    assert_int_equal(refined->client, REFINER);
+    assert_true(refined->packet && refined->packet->frame->view.tier == TIER_REFINED);
+    assert_true(refined->packet->frame->width_px == 2400);
+    encoded_frame_destroy(&refined);
+    assert_true(count_of("plantcast_render_steps_total") > steps + 4);
+}
+
+/* A small picture of another address does not wait for the end of a large one. */
+static void test_a_small_picture_overtakes_a_large_one_of_another(void **state)
+{
+    (void)state;
+    if (hardware)
+        skip();
+    int64_t steps = count_of("plantcast_render_steps_total");
+    struct frame_request wish = { .codec = WIRE_CODEC_JPEG, .quality = { .quality = 80 }, .urgency = URGENCY_SNAPSHOT, .always = true };
+    const struct {
+        uint64_t client, payer;
+        int width_px, height_px;
+    } asked[] = { { REFINER, 1, 2400, 1600 }, { PICKER, 1, 320, 200 }, { MOVER, 2, 320, 200 } };
+    for (int i = 0; i < 3; i++) {
+        wish.asked_ns = clock_mono_ns();
+        wish.payer = asked[i].payer;
+        view_default(&toy->scene, asked[i].width_px, asked[i].height_px, &wish.view);
+        wish.view.tier = TIER_REFINED;
+        wish.view.camera.eye_m[0] += 7 + i;
+        assert_int_equal(render_service_request(painter, asked[i].client, &wish), REQUEST_ADDED);
+        render_service_wake(painter);
+        if (i == 0)
+            await_step(steps + 2);
+    }
+    static const uint64_t order[] = { MOVER, REFINER, PICKER };
+    for (int i = 0; i < 3; i++) {
+        struct encoded_frame *picture = next();
+        assert_true(picture->packet && picture->client == order[i]);
+        encoded_frame_destroy(&picture);
+    }
+    for (int i = 0; i < 3; i++)
+        render_service_forget(painter, asked[i].client);
+}
+
+static void test_mover_gives_its_own_refinement_up(void **state)
+{
+    (void)state;
+    if (hardware)
+        skip();
+    int64_t steps = count_of("plantcast_render_steps_total"), abandoned = count_of("plantcast_renders_abandoned_total");
+    ask(REFINER, URGENCY_REFINE, 1);
+    await_step(steps + 1);
+    ask(REFINER, URGENCY_INPUT, 2);
+    int empty = 0, moving = 0;
+    for (int i = 0; i < 2; i++) {
+        struct encoded_frame *picture = next();
+        assert_int_equal(picture->client, REFINER);
+        assert_false(picture->failed);
+        empty += picture->packet == NULL && picture->wish.urgency == URGENCY_REFINE;
+        moving += picture->packet != NULL && picture->wish.urgency == URGENCY_INPUT;
+        encoded_frame_destroy(&picture);
+    }
+    assert_true(empty == 1 && moving == 1);
+    assert_true(count_of("plantcast_renders_abandoned_total") == abandoned + 1);
+}
+
+static void test_refinement_ends_while_others_go_on_moving(void **state)
+{
+    (void)state;
+    int moved = 0;
+    ask(REFINER, URGENCY_REFINE, 3);
+    ask(MOVER, URGENCY_INPUT, -1);
+    for (bool refined = false; !refined;) {
+        struct encoded_frame *picture = next();
+        assert_true(picture->packet != NULL);
+        refined = picture->client == REFINER;
+        encoded_frame_destroy(&picture);
+        if (!refined)
+            ask(MOVER, URGENCY_INPUT, -1 - 0.01 * ++moved);
+    }
+    assert_true(moved > 8);
+    struct encoded_frame *last = next();
+    assert_int_equal(last->client, MOVER);
+    encoded_frame_destroy(&last);
+}
+
+/* True: while one was refined, another got its pictures as when it is alone, but for a step in between now and then. */
+static bool refining_costs_little(int attempt)
+{
+    enum { PICTURES = 40 };
+    int64_t took_ns[2], steps = 0;
+    bool refined = false;
+    for (int with = 0; with < 2; with++) {
+        if (with) {
+            steps = count_of("plantcast_render_steps_total");
+            ask(REFINER, URGENCY_REFINE, 11 + 0.1 * attempt);
+            await_step(++steps);
+        }
+        int64_t begin_ns = clock_mono_ns();
+        for (int i = 0; i < PICTURES;) {
+            ask(MOVER, URGENCY_INPUT, 20 + 2 * attempt + with + 0.01 * i);
+            for (bool moved = false; !moved;) {
+                struct encoded_frame *picture = next();
+                moved = picture->client == MOVER;
+                refined |= !moved;
+                i += moved;
+                encoded_frame_destroy(&picture);
+            }
+        }
+        took_ns[with] = clock_mono_ns() - begin_ns;
+    }
+    print_message("# %d pictures: %.1f ms alone, %.1f ms beside a refinement\n", PICTURES, (double)took_ns[0] / NS_PER_MS,
+                  (double)took_ns[1] / NS_PER_MS);
+    /* A step is drawn where there was no moving picture for 150 ms, and at most one between two of them. */
+    bool little = count_of("plantcast_render_steps_total") - steps <= 2 + took_ns[1] / (150 * NS_PER_MS);
+    while (!refined) {
+        struct encoded_frame *picture = next();
+        refined = picture->client == REFINER && picture->packet;
+        encoded_frame_destroy(&picture);
+    }
+    return little;
+}
+
+/* Where this thread is kept from asking for 150 ms the steps have their turn: once more. */
+static void test_refining_one_costs_a_mover_little(void **state)
+{
+    (void)state;
+    if (hardware)
+        skip();
+    bool little = false;
+    for (int attempt = 0; attempt < 5 && !little; attempt++)
+        little = refining_costs_little(attempt);
+    assert_true(little);
+}
+
+/* All at one moment, then each after the one before has its picture, in two qualities. */
+static void test_a_hundred_viewers_cost_one_picture(void **state)
+{
+    (void)state;
+    int64_t renders = count_of("plantcast_renders_total"), encodes = count_of(ENCODES);
+    const struct packet *shared = NULL;
+    struct frame_request wish = {
+        .codec = WIRE_CODEC_JPEG, .quality = { .quality = 80 }, .urgency = URGENCY_INPUT, .asked_ns = clock_mono_ns()
+    };
+    view_default(&toy->scene, 640, 360, &wish.view);
+    wish.view.camera.eye_m[0] += 30;
+    for (int i = 0; i < VIEWERS / 2; i++)
+        render_service_request(painter, 1000 + (uint64_t)i, &wish);
+    render_service_wake(painter);
+    for (int i = 0; i < VIEWERS; i++) {
+        if (i >= VIEWERS / 2) {
+            render_service_request(painter, 1000 + (uint64_t)i, &wish);
+            render_service_wake(painter);
+        }
+        struct encoded_frame *picture = next();
+        assert_non_null(picture->packet);
+        assert_true(!shared || picture->packet == shared);
+        shared = picture->packet;
+        encoded_frame_destroy(&picture);
+    }
+    assert_int_equal(count_of("plantcast_renders_total") - renders, 1);
+    assert_int_equal(count_of(ENCODES) - encodes, 1);
+    wish.quality.quality = 42; /* of other quality: shares the render */
+    wish.always = true;
+    render_service_request(painter, 1000, &wish);
+    render_service_wake(painter);
+    struct encoded_frame *poorer = next();
+    assert_true(poorer->packet && poorer->packet != shared);
+    assert_int_equal(count_of("plantcast_renders_total") - renders, 1);
+    assert_int_equal(count_of(ENCODES) - encodes, 2);
+    encoded_frame_destroy(&poorer);
+    for (uint64_t i = 0; i < VIEWERS; i++)
+        render_service_forget(painter, 1000 + i);
+}
+
+/* One draws pictures that cost many times what another's do. True: the other got many more of them. */
+static bool shares_time(void)
+{
+    enum { LARGE = 2000, SMALL = 2001, LARGES = 5, PICTURES = 5000 };
+    int counts[2] = { 0, 0 };
+    ask_sized(LARGE, URGENCY_INPUT, 40, 2560, 1440);
+    ask_sized(SMALL, URGENCY_INPUT, 50, 320, 180);
+    for (int i = 0; i < PICTURES && counts[0] < LARGES; i++) {
+        struct encoded_frame *picture = next();
+        int which = picture->client == SMALL;
+        counts[which]++;
+        ask_sized(picture->client, URGENCY_INPUT, (which ? 50 : 40) + 0.01 * i, which ? 320 : 2560, which ? 180 : 1440);
+        encoded_frame_destroy(&picture);
+    }
+    for (int i = 0; i < 2; i++) {
+        struct encoded_frame *picture = next();
+        encoded_frame_destroy(&picture);
+    }
+    assert_int_equal(counts[0], LARGES);
+    print_message("# %d large pictures, %d small ones\n", counts[0], counts[1]);
+    return counts[1] > 2 * counts[0];
+}
+
+/* Both get the same time, not the same number. Where this thread is kept from asking for the small ones in time, once more. */
+static void test_time_is_shared_not_pictures(void **state)
+{
+    (void)state;
+    bool shared = false;
+    for (int attempt = 0; attempt < 5 && !shared; attempt++)
+        shared = shares_time();
+    assert_true(shared);
+}
+
+static void assert_same_bytes(const struct packet *a, const struct packet *b)
+{
+    assert_int_equal(a->count, b->count);
+    assert_memory_equal(a->bytes, b->bytes, a->count);
+}
+
+/* The picture that this client gets for this camera. */
+static struct encoded_frame *picture_of(uint64_t client, enum urgency urgency, double turn)
+{
+    ask(client, urgency, turn);
+    struct encoded_frame *picture = next();
+    assert_int_equal(picture->client, client);
+    assert_true(picture->packet != NULL);
+    return picture;
+}
+
+/* The real context goes, again and again, in the middle of pictures that take long and of short ones: nobody's is lost, and all are
+   what they were before. */
+static void test_lost_context_is_made_again_under_load(void **state)
+{
+    (void)state;
+    enum { LOSSES = 3, MOVES = 4 };
+    int64_t losses = count_of("plantcast_gl_losses_total"), failures = count_of("plantcast_render_failures_total");
+    struct encoded_frame *refined[LOSSES], *moved[MOVES];
+    for (int i = 0; i < LOSSES; i++) /* another each time: the same again would be quick */
+        refined[i] = picture_of(REFINER, URGENCY_REFINE, 5 + 0.1 * i);
+    for (int i = 0; i < MOVES; i++)
+        moved[i] = picture_of(MOVER, URGENCY_INPUT, 6 + i);
+    for (int loss = 0; loss < LOSSES; loss++) {
+        sleep_ns(RECENT_NS);
+        int64_t steps = count_of("plantcast_render_steps_total");
+        int refinements = 0;
+        ask(REFINER, URGENCY_REFINE, 5 + 0.1 * loss);
+        if (loss > 0)
+            await_step(steps + 1);
+        render_service_lose_context(painter);
+        for (int i = 0; i < MOVES;) {
+            ask(MOVER, URGENCY_INPUT, 6 + i);
+            for (bool answered = false; !answered;) {
+                struct encoded_frame *picture = next();
+                assert_true(picture->packet && !picture->failed);
+                answered = picture->client == MOVER;
+                refinements += !answered;
+                assert_same_bytes(picture->packet, answered ? moved[i++]->packet : refined[loss]->packet);
+                encoded_frame_destroy(&picture);
+            }
+        }
+        if (refinements == 0) {
+            struct encoded_frame *picture = next();
+            assert_true(picture->client == REFINER && picture->packet);
+            assert_same_bytes(picture->packet, refined[loss]->packet);
+            encoded_frame_destroy(&picture);
+        }
+        assert_true(render_service_ready(painter));
+    }
+    assert_true(count_of("plantcast_gl_losses_total") == losses + LOSSES);
+    assert_true(count_of("plantcast_render_failures_total") == failures);
+    for (int i = 0; i < LOSSES; i++)
+        encoded_frame_destroy(&refined[i]);
+    for (int i = 0; i < MOVES; i++)
+        encoded_frame_destroy(&moved[i]);
+}
+
+static size_t address_space_bytes(void)
+{
+    unsigned long pages = 0;
+    FILE *file = fopen("/proc/self/statm", "r");
+    assert_true(file && fscanf(file, "%lu", &pages) == 1);
+    fclose(file);
+    return pages * (size_t)sysconf(_SC_PAGESIZE);
+}
+
+/* There is room for one more frame in memory, but not for the samples that it is drawn from. */
+static void test_no_memory_fails_that_picture_alone(void **state)
+{
+    (void)state;
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+    skip(); /* they end the program where there is no memory */
+#endif
+    enum { BIG_PX = 4096, ROOM_BYTES = 160 << 20 };
+    struct rlimit all, tight;
+    struct encoded_frame *before = picture_of(MOVER, URGENCY_INPUT, 7);
+    int64_t failures = count_of("plantcast_render_failures_total");
+    getrlimit(RLIMIT_AS, &all);
+    tight = (struct rlimit){ .rlim_cur = address_space_bytes() + ROOM_BYTES, .rlim_max = all.rlim_max };
+    assert_int_equal(setrlimit(RLIMIT_AS, &tight), 0);
+    ask_sized(REFINER, URGENCY_REFINE, 0, BIG_PX, BIG_PX);
+    struct encoded_frame *failed = next();
+    setrlimit(RLIMIT_AS, &all);
+    assert_true(failed->client == REFINER && failed->failed && !failed->packet);
+    assert_true(count_of("plantcast_render_failures_total") == failures + 1);
+    struct encoded_frame *after = picture_of(MOVER, URGENCY_INPUT, 7);
+    assert_same_bytes(after->packet, before->packet);
+    encoded_frame_destroy(&before);
+    encoded_frame_destroy(&failed);
+    encoded_frame_destroy(&after);
+}
+
+static struct pick_answer *next_pick(void)
+{
+    int64_t until_ns = clock_utc_ns() + PATIENCE_NS;
+    struct timespec until = { .tv_sec = until_ns / NS_PER_S };
+    struct pick_answer *answer;
+    pthread_mutex_lock(&lock);
+    while (!(answer = render_service_collect_picks(painter)))
+        if (pthread_cond_timedwait(&came, &lock, &until) != 0)
+            fail_msg("no answer came");
+    pthread_mutex_unlock(&lock);
+    return answer;
+}
+
+/* A question about a pixel does not wait for a picture that takes long, nor hold it up for more than a step. */
+static void test_picks_are_answered_between_steps(void **state)
+{
+    (void)state;
+    if (hardware)
+        skip();
+    struct pick_query order = { .client = PICKER, .x_px = 320, .y_px = 180 };
+    view_default(&toy->scene, 640, 360, &order.view);
+    int64_t steps = count_of("plantcast_render_steps_total");
+    ask(REFINER, URGENCY_REFINE, 2);
+    await_step(steps + 1);
+    for (uint32_t i = 1; i <= 20; i++) {
+        order.seq = i;
+        render_service_pick(painter, &order);
+        struct pick_answer *answer = next_pick();
+        assert_int_equal(answer->order.seq, i);
+        assert_true(answer->pick.asset >= 0 && !answer->next);
+        mem_free(answer);
+    }
+    render_service_forget(painter, PICKER);
+    struct encoded_frame *refined = next();
+    assert_true(refined->client == REFINER && refined->packet);
+    encoded_frame_destroy(&refined);
+}
+
+/* Of those that wait only the newest is answered. */
+static void test_newest_pick_wins(void **state)
+{
+    (void)state;
+    struct pick_query order = { .client = PICKER, .x_px = 320, .y_px = 180 };
+    view_default(&toy->scene, 640, 360, &order.view);
+    uint32_t last = 0;
+    int answers = 0;
+    for (order.seq = 1; order.seq <= 500; order.seq++)
+        render_service_pick(painter, &order);
+    while (last < 500) {
+        for (struct pick_answer *answer = next_pick(), *after; answer; answer = after) {
+            after = answer->next;
+            assert_true(answer->order.seq > last);
+            last = answer->order.seq;
+            answers++;
+            mem_free(answer);
+        }
+    }
+    print_message("# %d of 500 answered\n", answers);
+}
+
+static void change_readings(double value)
+{
+    for (int tag = 0; tag < (int)toy->plant.tag_count; tag++) {
+        struct sample sample = { .tag = tag, .value = value + tag, .quality = QUALITY_GOOD };
+        store_write(store, &sample, 1, clock_mono_ns(), clock_utc_ns());
+    }
+    render_service_on_data(painter);
+}
+
+/* As a session does that looks at a refined picture when a reading changes. Returns how many more pictures will come. */
+static int ask_for_data(uint64_t client, double turn)
+{
+    struct frame_request wish = { .codec = WIRE_CODEC_JPEG,
+                                  .quality = { .quality = 80 },
+                                  .moving_quality = { .quality = 80 },
+                                  .urgency = URGENCY_DATA,
+                                  .or_moving = true,
+                                  .of_data = true,
+                                  .asked_ns = clock_mono_ns() };
+    view_default(&toy->scene, 2400, 1600, &wish.view);
+    wish.view.tier = TIER_REFINED;
+    wish.view.camera.eye_m[0] += turn;
+    enum request_outcome answer = render_service_request(painter, client, &wish);
+    render_service_wake(painter);
+    return answer == REQUEST_ADDED;
+}
+
+/* Readings change all the time: the refined picture comes all the same, with the newest of them, and stays. */
+static void test_changing_readings_leave_refined_pictures(void **state)
+{
+    (void)state;
+    int64_t steps = count_of("plantcast_render_steps_total"), abandoned = count_of("plantcast_renders_abandoned_total");
+    bool refined = false;
+    int owed = 1;
+    change_readings(20);
+    ask(REFINER, URGENCY_REFINE, 0.05);
+    if (!hardware)
+        await_step(steps + 1);
+    for (int i = 0; i < 8 || !refined; i++, owed--) {
+        change_readings(30 + i % 40);
+        owed += ask_for_data(REFINER, 0.05);
+        struct encoded_frame *picture = next();
+        assert_true(picture->client == REFINER && !picture->failed);
+        refined |= picture->packet && picture->packet->frame->view.tier == TIER_REFINED;
+        encoded_frame_destroy(&picture);
+    }
+    for (; owed > 0; owed--) {
+        struct encoded_frame *last = next();
+        encoded_frame_destroy(&last);
+    }
+    assert_int_equal(count_of("plantcast_renders_abandoned_total"), abandoned);
+    steps = count_of("plantcast_render_steps_total");
+    for (int i = 0; i < 8; i++) {
+        change_readings(80 - 5 * i);
+        assert_int_equal(ask_for_data(REFINER, 0.05), 1);
+        struct encoded_frame *picture = next();
+        assert_true(picture->packet && picture->packet->frame->view.tier == TIER_REFINED && picture->packet->frame->width_px == 2400);
+        encoded_frame_destroy(&picture);
+    }
+    assert_int_equal(count_of("plantcast_render_steps_total"), steps);
+}
+
+/* Bands, which are not quick to colour again: the refined picture is drawn anew, and comes. */
+static void test_readings_change_pictures_that_are_not_quick(void **state)
+{
+    (void)state;
+    int64_t abandoned = count_of("plantcast_renders_abandoned_total");
+    for (int i = 0; i < 4; i++) {
+        struct frame_request wish = {
+            .codec = WIRE_CODEC_JPEG, .quality = { .quality = 80 }, .of_data = i > 0, .asked_ns = clock_mono_ns()
+        };
+        change_readings(20 + 15 * i);
+        wish.urgency = i ? URGENCY_DATA : URGENCY_REFINE;
+        view_default(&toy->scene, 640, 480, &wish.view);
+        wish.view.tier = TIER_REFINED;
+        wish.view.ramp_interval = 10;
+        assert_int_equal(render_service_request(painter, REFINER, &wish), REQUEST_ADDED);
+        render_service_wake(painter);
+        struct encoded_frame *picture = next();
+        assert_true(picture->client == REFINER && picture->packet);
+        assert_int_equal(picture->packet->frame->view.tier, TIER_REFINED);
+        encoded_frame_destroy(&picture);
+    }
+    assert_int_equal(count_of("plantcast_renders_abandoned_total"), abandoned);
+}
+
+/* The daemon goes down in the midst of it. */
+static void test_stop_waits_for_no_refinement(void **state)
+{
+    (void)state;
+    if (hardware)
+        skip();
+    int64_t steps = count_of("plantcast_render_steps_total"), renders = count_of("plantcast_renders_total");
+    ask(REFINER, URGENCY_REFINE, 4);
+    await_step(steps + 1);
+    render_service_destroy(&painter);
+    assert_true(count_of("plantcast_renders_total") == renders);
+}
+
+static bool make_painter(bool by_gl)
+{
+    const char *name = getenv("PLANTCAST_GL");
+    enum gl_kind kind = GL_EGL_SURFACELESS;
+    if (name && !gl_kind_parse(name, &kind))
+        abort();
+    struct gl *gl = gl_create(logger, kind, NULL);
+    hardware = gl && !gl->software;
+    gl_destroy(&gl);
+    painter = render_service_create(&(struct render_service_params){ .log = logger,
+                                                                     .gl = kind,
+                                                                     .scene = &toy->scene,
+                                                                     .store = store,
+                                                                     .workers = workers,
+                                                                     .counters = counters,
+                                                                     .notify = on_pictures,
+                                                                     .by_gl = by_gl });
+    if (!painter)
+        printf("TAP version 13\n1..1\nok 1 - render_service_test # SKIP no %s context on this machine\n", gl_kind_name(kind));
+    return painter != NULL;
+}
+
+/* With a GPU, or as if there were one: pictures are given to it before others have come. Every one comes, to whom it is for, and shows
+   what was asked for; who asks for the same meanwhile shares it; and a context that is lost meanwhile costs none. */
+static void test_pictures_fly(void **state)
+{
+    (void)state;
+    enum { CLIENTS = 8, ROUNDS = 6, FIRST = 100 };
+    int64_t renders = count_of("plantcast_renders_total"), losses = count_of("plantcast_gl_losses_total");
+    render_service_destroy(&painter);
+    make_painter(true);
+    assert_non_null(painter);
+    int most = ROUNDS * CLIENTS * 3 / 4;
+    for (int round = 0; round < ROUNDS; round++) {
+        bool came_for[CLIENTS] = { false };
+        int64_t begin_ns = clock_mono_ns();
+        if (round == ROUNDS / 2)
+            render_service_lose_context(painter);
+        for (int i = 0; i < CLIENTS; i++)
+            ask((uint64_t)(FIRST + i), URGENCY_INPUT, round + 0.1 * (i % 4));
+        for (int i = 0; i < CLIENTS; i++) {
+            struct encoded_frame *picture = next();
+            int client = (int)picture->client - FIRST;
+            assert_true(client >= 0 && client < CLIENTS && !came_for[client] && picture->packet);
+            assert_true(picture->packet->frame->view.camera.eye_m[0] == picture->wish.view.camera.eye_m[0]);
+            came_for[client] = true;
+            encoded_frame_destroy(&picture);
+        }
+        if (clock_mono_ns() - begin_ns > RECENT_NS / 2)
+            most += CLIENTS / 4; /* what it drew may have been too old to be handed on */
+    }
+    assert_in_range(count_of("plantcast_renders_total") - renders, ROUNDS * CLIENTS / 2, most);
+    assert_int_equal(count_of("plantcast_gl_losses_total"), losses + 1);
+    struct encoded_frame *by_gl = picture_of(MOVER, URGENCY_INPUT, 7);
+    assert_true(by_gl->packet->frame->marker_count > 0);
+    encoded_frame_destroy(&by_gl);
+    render_service_destroy(&painter);
+    make_painter(false);
+    assert_non_null(painter);
+}
+
+/* Another painter, while the first is at work, in one process and on one driver. */
+struct making {
+    struct view first;
+    struct render_service *made;
+    _Atomic bool done;
+};
+
+static void *make_another(void *arg)
+{
+    struct making *making = arg;
+    making->made = render_service_create(&(struct render_service_params){ .log = logger,
+                                                                          .scene = &toy->scene,
+                                                                          .store = store,
+                                                                          .workers = workers,
+                                                                          .counters = counters,
+                                                                          .notify = on_pictures,
+                                                                          .first = &making->first,
+                                                                          .first_count = 1 });
+    making->done = true;
+    return NULL;
+}
+
+static void *unmake(void *arg)
+{
+    render_service_destroy(arg);
+    return NULL;
+}
+
+static int move_while(const _Atomic bool *done, pthread_t thread)
+{
+    int drawn = 0;
+    for (; !done || !*done || drawn == 0; drawn++) {
+        struct encoded_frame *picture = picture_of(MOVER, URGENCY_INPUT, 0.05 * (drawn % 20));
+        encoded_frame_destroy(&picture);
+        if (!done && drawn == 20)
+            break;
+    }
+    pthread_join(thread, NULL);
+    return drawn;
+}
+
+static void test_another_is_made_and_the_first_destroyed_beside_it(void **state)
+{
+    (void)state;
+    struct making making = { .made = NULL };
+    struct render_service *first = painter;
+    pthread_t thread;
+    view_default(&toy->scene, 320, 180, &making.first);
+    assert_int_equal(pthread_create(&thread, NULL, make_another, &making), 0);
+    assert_true(move_while(&making.done, thread) > 0);
+    assert_non_null(making.made);
+    painter = making.made;
+    struct encoded_frame *by_other = picture_of(MOVER, URGENCY_INPUT, 3);
+    assert_true(by_other->packet->frame->marker_count > 0);
+    encoded_frame_destroy(&by_other);
+    assert_int_equal(pthread_create(&thread, NULL, unmake, &first), 0);
+    move_while(NULL, thread);
+    assert_null(first);
+}
+
+static bool start(void)
+{
+    toy = toy_unit();
+    logger = log_create(LOG_INFO);
+    workers = workers_create(2);
+    counters = counters_create();
+    for (size_t i = 0; i < toy->plant.tag_count; i++)
+        toy->plant.tags[i].stale_s = 3600;
+    store = store_create(&toy->plant);
+    return make_painter(false);
+}
+
+static void stop(void)
+{
+    render_service_destroy(&painter);
+    store_destroy(&store);
+    counters_destroy(&counters);
+    workers_destroy(&workers);
+    log_destroy(&logger);
+    toy_destroy(&toy);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_mover_is_served_during_a_refinement),
+        cmocka_unit_test(test_a_small_picture_overtakes_a_large_one_of_another),
+        cmocka_unit_test(test_mover_gives_its_own_refinement_up),
+        cmocka_unit_test(test_refinement_ends_while_others_go_on_moving),
+        cmocka_unit_test(test_refining_one_costs_a_mover_little),
+        cmocka_unit_test(test_a_hundred_viewers_cost_one_picture),
+        cmocka_unit_test(test_time_is_shared_not_pictures),
+        cmocka_unit_test(test_lost_context_is_made_again_under_load),
+        cmocka_unit_test(test_no_memory_fails_that_picture_alone),
+        cmocka_unit_test(test_picks_are_answered_between_steps),
+        cmocka_unit_test(test_newest_pick_wins),
+        cmocka_unit_test(test_changing_readings_leave_refined_pictures),
+        cmocka_unit_test(test_readings_change_pictures_that_are_not_quick),
+        cmocka_unit_test(test_pictures_fly),
+        cmocka_unit_test(test_another_is_made_and_the_first_destroyed_beside_it),
+        cmocka_unit_test(test_stop_waits_for_no_refinement),
+    };
+    cmocka_set_message_output(CM_OUTPUT_TAP);
+    int failed = start() ? cmocka_run_group_tests(tests, NULL, NULL) : 0;
+    stop();
+    return failed;
+}

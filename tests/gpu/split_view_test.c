@@ -1,0 +1,195 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Split views: each half is the picture that it would be by itself, markers and labels stand in their own half, and what is drawn bit by
+   bit is what is drawn at once. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "base/clock.h"
+#include "render/split_view.h"
+#include "render/overlay/overlay.h"
+#include "tests/support/rig.h"
+#include "value/quality.h"
+
+enum { WIDTH = 401, HEIGHT = 180, LEFT = 200, DIVIDER_PX = 2 };
+static struct rig rig;
+static struct stand stand;
+
+static int set_up(void **state)
+{
+    (void)state;
+    stand_init(&stand, &rig, toy_unit());
+    for (int i = 0; i < 8; i++)
+        toy_set(stand.snapshot, i, 12.0 * i, QUALITY_GOOD);
+    return 0;
+}
+
+static int tear_down(void **state)
+{
+    (void)state;
+    stand_finish(&stand);
+    return 0;
+}
+
+/* Values to the left, bands and isolines in other colours to the right. */
+static void make_view(struct view *view)
+{
+    struct view right;
+    view_default(&stand.toy->scene, WIDTH, HEIGHT, view);
+    right = *view;
+    right.colormap = colormap_find("viridis");
+    right.look = LOOK_FLAT;
+    memcpy(right.color_scale.lines, (double[]){ 20, 40, 60 }, 3 * sizeof(double));
+    right.color_scale.line_count = 3;
+    view_split(view, &right);
+}
+
+static bool same_row(const struct frame *whole, const struct frame *part, int y, int from_px, int part_from_px, int count_px)
+{
+    return memcmp(frame_pixel(whole, from_px, y), frame_pixel(part, part_from_px, y), (size_t)count_px * 4) == 0;
+}
+
+static void test_halves_are_pictures(void **state)
+{
+    struct view view, half;
+    (void)state;
+    make_view(&view);
+    for (int tier = TIER_PREVIEW; tier <= TIER_REFINED; tier++) {
+        view.tier = (enum tier)tier;
+        struct frame *whole = split_view_draw(stand.renderer, &view, stand.snapshot), *parts[2];
+        assert_true(whole->width_px == WIDTH && whole->height_px == HEIGHT && whole->view.split);
+        size_t markers = 0;
+        for (int i = 0; i < 2; i++) {
+            view_half(&view, i, &half);
+            parts[i] = stand_draw(&stand, &half);
+            assert_int_equal(parts[i]->width_px, i ? WIDTH - LEFT : LEFT);
+            markers += parts[i]->marker_count;
+        }
+        for (int y = 0; y < HEIGHT; y++) {
+            assert_true(same_row(whole, parts[0], y, 0, 0, LEFT - DIVIDER_PX / 2));
+            assert_true(same_row(whole, parts[1], y, LEFT + DIVIDER_PX / 2, DIVIDER_PX / 2, WIDTH - LEFT - DIVIDER_PX / 2));
+        }
+        assert_true(memcmp(parts[0]->bgrx, parts[1]->bgrx, (size_t)LEFT * 4 * HEIGHT) != 0);
+        assert_in_range(whole->marker_count, 8, markers); /* those outside their half are left out */
+        for (size_t i = 0; i < whole->marker_count; i++)
+            assert_true(whole->markers[i].half == (whole->markers[i].x_px >= LEFT));
+        assert_true(whole->label_count > 0 && whole->label_count == parts[1]->label_count);
+        for (size_t i = 0; i < whole->label_count; i++)
+            assert_true(whole->labels[i].half == 1 && whole->labels[i].x_px == parts[1]->labels[i].x_px + LEFT);
+        assert_true(whole->content == split_view_content(stand.renderer, &view, stand.snapshot));
+        frame_read_markers(whole, stand.snapshot, NULL);
+        overlay_draw(whole, &stand.toy->scene, stand.snapshot, NULL); /* two legends; that it ends is what can be said here */
+        frame_unref(&parts[0]);
+        frame_unref(&parts[1]);
+        frame_unref(&whole);
+    }
+}
+
+static void test_bit_by_bit(void **state)
+{
+    struct view view;
+    (void)state;
+    make_view(&view);
+    struct split_view *canvas = split_view_begin(stand.renderer, &view, stand.snapshot);
+    int steps = 1;
+    while (!split_view_step(stand.renderer, canvas, NS_PER_MS))
+        steps++;
+    assert_true(steps >= 2);
+    struct frame *frame = split_view_end(stand.renderer, &canvas), *once = split_view_draw(stand.renderer, &view, stand.snapshot);
+    assert_null(canvas);
+    assert_memory_equal(frame->bgrx, once->bgrx, (size_t)HEIGHT * (size_t)frame->stride_bytes);
+    assert_true(frame->content == once->content && frame->marker_count == once->marker_count && frame->label_count == once->label_count);
+    frame_unref(&frame);
+    frame_unref(&once);
+    canvas = split_view_begin(stand.renderer, &view, stand.snapshot);
+    split_view_step(stand.renderer, canvas, 1);
+    split_view_abandon(stand.renderer, &canvas);
+    assert_null(canvas);
+}
+
+/* Two of them at once come as each does alone. */
+static void test_launched_together(void **state)
+{
+    struct view views[2];
+    struct split_view *canvases[2];
+    (void)state;
+    for (int i = 0; i < 2; i++)
+        make_view(&views[i]);
+    renderer_use_gl(stand.renderer, true);
+    assert_true(renderer_submits(stand.renderer));
+    views[1].tier = TIER_REFINED;
+    for (int i = 0; i < 2; i++) {
+        views[i].camera.eye_m[0] += i;
+        canvases[i] = split_view_submit(stand.renderer, &views[i], stand.snapshot);
+        assert_non_null(canvases[i]);
+    }
+    while (!split_view_is_complete(canvases[1])) {
+    }
+    assert_true(split_view_is_complete(canvases[0]));
+    for (int i = 0; i < 2; i++) {
+        struct frame *frame = split_view_end(stand.renderer, &canvases[i]),
+                     *once = split_view_draw(stand.renderer, &views[i], stand.snapshot);
+        assert_memory_equal(frame->bgrx, once->bgrx, (size_t)HEIGHT * (size_t)frame->stride_bytes);
+        assert_true(frame->content == once->content && frame->marker_count == once->marker_count && frame->label_count > 0);
+        assert_memory_equal(frame->markers, once->markers, frame->marker_count * sizeof(*frame->markers));
+        frame_unref(&frame);
+        frame_unref(&once);
+    }
+    canvases[0] = split_view_submit(stand.renderer, &views[0], stand.snapshot);
+    split_view_abandon(stand.renderer, &canvases[0]);
+    renderer_use_gl(stand.renderer, false);
+}
+
+/* A view that was split may become narrow. */
+static void test_narrow(void **state)
+{
+    struct view view;
+    (void)state;
+    make_view(&view);
+    for (view.width_px = 16; view.width_px < 20; view.width_px++) {
+        struct frame *frame = split_view_draw(stand.renderer, &view, stand.snapshot);
+        assert_int_equal(frame->width_px, view.width_px);
+        frame_read_markers(frame, stand.snapshot, NULL);
+        overlay_draw(frame, &stand.toy->scene, stand.snapshot, NULL);
+        frame_unref(&frame);
+    }
+}
+
+static void test_what_is_not_split_stays_as_it_is(void **state)
+{
+    struct view view;
+    (void)state;
+    view_default(&stand.toy->scene, WIDTH, HEIGHT, &view);
+    struct frame *whole = split_view_draw(stand.renderer, &view, stand.snapshot), *plain = stand_draw(&stand, &view);
+    assert_memory_equal(whole->bgrx, plain->bgrx, (size_t)HEIGHT * (size_t)whole->stride_bytes);
+    assert_true(whole->content == plain->content && split_view_content(stand.renderer, &view, stand.snapshot) == plain->content);
+    struct view split;
+    make_view(&split);
+    assert_true(split_view_content(stand.renderer, &split, stand.snapshot) != plain->content);
+    frame_unref(&whole);
+    frame_unref(&plain);
+}
+
+#define each(test) cmocka_unit_test_setup_teardown(test, set_up, tear_down)
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        each(test_halves_are_pictures),
+        each(test_bit_by_bit),
+        each(test_launched_together),
+        each(test_narrow),
+        each(test_what_is_not_split_stays_as_it_is),
+    };
+    cmocka_set_message_output(CM_OUTPUT_TAP);
+    if (!rig_init(&rig, "split_view_test"))
+        return 0;
+    int failed = cmocka_run_group_tests(tests, NULL, NULL);
+    rig_finish(&rig);
+    return failed;
+}

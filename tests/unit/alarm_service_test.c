@@ -1,0 +1,286 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Alarms of a running store: journalled, taken up after kill -9, and when the journal was damaged. */
+#include <math.h>
+#include <setjmp.h>
+#include <signal.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/wait.h>
+#include <unistd.h>
+#include <cmocka.h>
+
+#include "alarm/alarm_service.h"
+#include "alarm/journal.h"
+#include "alarm/alarms_at_instant.h"
+#include "base/clock.h"
+#include "base/mem.h"
+#include "history/month.h"
+#include "tests/support/plant_by_hand.h"
+#include "tests/support/sleep.h"
+#include "tests/support/temp.h"
+#include "value/quality.h"
+
+enum { TAGS = 1000 };
+
+struct setup {
+    char *folder;
+    struct log *log;
+    struct counters *counters;
+    struct plant *plant;
+    struct store *store;
+    struct alarm_service *alarm_service;
+};
+
+static int set_up(void **state)
+{
+    static struct setup s;
+    s = (struct setup){ .folder = temp_folder_create(), .log = log_create(LOG_ERROR), .counters = counters_create() };
+    s.plant = plant_by_hand_create(TAGS);
+    s.plant->alarms = ALARMS_LOCAL;
+    s.plant->tags_by_name = mem_array(TAGS, sizeof(int));
+    plant_by_hand_source(s.plant, "plc", 502);
+    for (int i = 0; i < TAGS; i++) {
+        char name[16];
+        snprintf(name, sizeof(name), "T-%04d", i);
+        plant_by_hand_tag(s.plant, name, TABLE_HOLDING, i, DATA_INT16)->limits[LIMIT_H] = 80;
+        s.plant->tags_by_name[i] = i;
+    }
+    s.store = store_create(s.plant);
+    *state = &s;
+    return 0;
+}
+
+static void start(struct setup *s)
+{
+    const struct alarm_service_params params = {
+        .log = s->log, .counters = s->counters, .plant = s->plant, .store = s->store, .folder = s->folder, .keep_days = 400
+    };
+    s->alarm_service = alarm_service_start(&params);
+    assert_non_null(s->alarm_service);
+}
+
+static int tear_down(void **state)
+{
+    struct setup *s = *state;
+    alarm_service_stop(&s->alarm_service);
+    store_destroy(&s->store);
+    mem_free(s->plant->tags_by_name);
+    s->plant->tags_by_name = NULL;
+    plant_by_hand_destroy(&s->plant);
+    counters_destroy(&s->counters);
+    log_destroy(&s->log);
+    temp_folder_destroy(&s->folder);
+    return 0;
+}
+
+static void give_all(struct setup *s, double value)
+{
+    struct sample samples[TAGS];
+    for (int i = 0; i < TAGS; i++)
+        samples[i] = (struct sample){ i, value, QUALITY_GOOD };
+    store_write(s->store, samples, TAGS, clock_mono_ns(), clock_utc_ns());
+}
+
+struct rows {
+    int count, unacknowledged;
+    int64_t smallest_id;
+    char last[400];
+};
+
+static void count_row(void *arg, const struct journal_row *row)
+{
+    struct rows *rows = arg;
+    rows->count++;
+    rows->unacknowledged += !strcmp(row->after, "unacknowledged");
+    rows->smallest_id = row->id;
+    snprintf(rows->last, sizeof(rows->last), "%s %s %s %s %d %g %s %s", row->tag, row->kind, row->event, row->after, row->priority,
+             row->value, row->who, row->reason);
+}
+
+static struct rows read_rows(struct setup *s, const char *tag, int limit, int64_t before_id)
+{
+    struct rows rows = { 0 };
+    const struct journal_query query = { INT64_MIN, INT64_MAX, before_id, tag, limit };
+    assert_int_equal(journal_read(s->log, s->folder, &query, count_row, &rows), 0);
+    return rows;
+}
+
+static void count_alarm(void *arg, const struct alarm *alarm)
+{
+    ((int *)arg)[alarm_status_of(alarm)]++;
+}
+
+static int wait_for(struct setup *s, enum alarm_status word, int wanted)
+{
+    int64_t end_ns = clock_mono_ns() + 5 * NS_PER_S;
+    for (;;) {
+        int words[ALARM_STATUSES] = { 0 };
+        alarm_service_changes(s->alarm_service, 0, count_alarm, words);
+        if (words[word] == wanted || clock_mono_ns() > end_ns)
+            return words[word];
+        sleep_ns(10 * NS_PER_MS);
+    }
+}
+
+static void a_thousand_at_once_are_all_written(void **state)
+{
+    struct setup *s = *state;
+    start(s);
+    give_all(s, 90);
+    assert_int_equal(wait_for(s, ALARM_UNACKNOWLEDGED, TAGS), TAGS);
+    const struct alarm_act shelve = { ALARM_SHELVE, NS_PER_S * 3600, "kim", "filter is being changed" };
+    assert_null(alarm_service_act(s->alarm_service, "T-0007", ALARM_H, &shelve));
+    assert_string_equal(alarm_service_act(s->alarm_service, "T-0007", ALARM_LL, &shelve), "there is no such alarm");
+    assert_string_equal(alarm_service_act(s->alarm_service, "nothing", ALARM_H, &shelve), "there is no such alarm");
+    struct snapshot *now = snapshot_create(TAGS);
+    store_snapshot(s->store, clock_mono_ns(), clock_utc_ns(), now);
+    assert_int_equal(now->readings[6].alarm, ALARM_H);
+    assert_int_equal(now->readings[6].alarm_status, ALARM_UNACKNOWLEDGED);
+    assert_int_equal(now->readings[7].alarm, ALARM_NONE);
+    snapshot_destroy(&now);
+    int64_t between_us = clock_utc_ns() / 1000;
+    give_all(s, 20);
+    assert_int_equal(wait_for(s, ALARM_RETURNED, TAGS - 1), TAGS - 1);
+    alarm_service_stop(&s->alarm_service);
+    struct rows all = read_rows(s, NULL, 100000, INT64_MAX), page = read_rows(s, NULL, 500, INT64_MAX);
+    assert_int_equal(all.count, 2 * TAGS + 1);
+    assert_int_equal(page.count, 500);
+    assert_int_equal(read_rows(s, NULL, 100000, page.smallest_id).count, 2 * TAGS + 1 - 500);
+    struct rows one = read_rows(s, "T-0007", 2, INT64_MAX); /* the second newest of it */
+    assert_string_equal(one.last, "T-0007 H shelve shelved 3 nan kim filter is being changed");
+    struct rows then = { 0 };
+    assert_int_equal(journal_at(s->log, s->folder, between_us, count_row, &then), 0);
+    assert_int_equal(then.count, TAGS);
+    assert_int_equal(then.unacknowledged, TAGS - 1);
+}
+
+static int alarms_of(struct setup *s, struct history_reader *reader, int64_t at_us)
+{
+    struct snapshot *then = snapshot_create(TAGS);
+    int count = 0;
+    then->taken_utc_ns = at_us * 1000;
+    assert_int_equal(alarms_at_instant(s->log, reader, s->folder, s->plant, then), 0);
+    for (int i = 0; i < TAGS; i++)
+        count += then->readings[i].alarm != ALARM_NONE;
+    snapshot_destroy(&then);
+    return count;
+}
+
+/* What was there when recording ended: nobody knows how long it lasted. */
+static void while_nothing_was_recorded_no_alarm_is_known(void **state)
+{
+    struct setup *s = *state;
+    int error;
+    start(s);
+    give_all(s, 90);
+    assert_int_equal(wait_for(s, ALARM_UNACKNOWLEDGED, TAGS), TAGS);
+    alarm_service_stop(&s->alarm_service);
+    int64_t ended_us = clock_utc_ns() / 1000;
+    struct history_tag *tags = history_tags(s->plant);
+    struct month_file *file = month_file_open(s->log, s->folder, month_of(ended_us), tags, TAGS, &error);
+    assert_int_equal(month_file_note(file, ended_us, "gap", "not recorded for 60 s"), 0);
+    month_file_close(&file);
+    mem_free(tags);
+    struct history_reader *reader = history_reader_create(s->log, s->folder);
+    assert_int_equal(alarms_of(s, reader, ended_us - 1000), TAGS);
+    assert_int_equal(alarms_of(s, reader, ended_us + 30 * US_PER_S), 0);
+    assert_int_equal(alarms_of(s, reader, ended_us + 61 * US_PER_S), TAGS);
+    history_reader_destroy(&reader);
+}
+
+/* What was told a second before outlives a kill; what follows goes on from it. */
+static void killed_at_any_moment_it_goes_on(void **state)
+{
+    struct setup *s = *state;
+    pid_t child = fork();
+    if (child == 0) {
+        start(s);
+        give_all(s, 90);
+        wait_for(s, ALARM_UNACKNOWLEDGED, TAGS);
+        const struct alarm_act act = { ALARM_ACKNOWLEDGE, 0, "kim", "" };
+        for (int i = 0; i < 400; i++) {
+            char name[16];
+            snprintf(name, sizeof(name), "T-%04d", i);
+            alarm_service_act(s->alarm_service, name, ALARM_H, &act);
+        }
+        for (;;)
+            pause();
+    }
+    int64_t end_ns = clock_mono_ns() + 10 * NS_PER_S;
+    while (read_rows(s, NULL, 100000, INT64_MAX).count < TAGS + 400 && clock_mono_ns() < end_ns)
+        sleep_ns(20 * NS_PER_MS);
+    kill(child, SIGKILL);
+    waitpid(child, NULL, 0);
+    start(s);
+    assert_int_equal(wait_for(s, ALARM_ACKNOWLEDGED, 400), 400);
+    assert_int_equal(wait_for(s, ALARM_UNACKNOWLEDGED, TAGS - 400), TAGS - 400);
+    give_all(s, 90);
+    sleep_ns(400 * NS_PER_MS);
+    alarm_service_stop(&s->alarm_service);
+    assert_int_equal(read_rows(s, NULL, 100000, INT64_MAX).count, TAGS + 400); /* still there is nothing new */
+}
+
+static double counted(struct setup *s, const char *name)
+{
+    return (double)*counters_add(s->counters, name, "counter", "");
+}
+
+/* A thousand tags whose device does not answer: each is journalled, and one is to be acknowledged. */
+static void a_lost_device_is_no_flood(void **state)
+{
+    struct setup *s = *state;
+    for (int i = 0; i < TAGS; i++)
+        s->plant->tags[i].stale_s = 600;
+    store_destroy(&s->store);
+    s->store = store_create(s->plant);
+    start(s);
+    store_link_lost(s->store, 0, clock_mono_ns());
+    assert_int_equal(wait_for(s, ALARM_SUPPRESSED, TAGS), TAGS);
+    assert_int_equal(wait_for(s, ALARM_UNACKNOWLEDGED, 1), 1);
+    struct alarm_counts counts;
+    alarm_service_counts(s->alarm_service, &counts);
+    assert_int_equal(counts.active, 1);
+    const struct alarm_act act = { ALARM_ACKNOWLEDGE, 0, "kim", "" };
+    assert_null(alarm_service_act(s->alarm_service, "plc", ALARM_LINK, &act));
+    assert_string_equal(alarm_service_act(s->alarm_service, "T-0001", ALARM_LINK, &act), "there is no such alarm");
+    give_all(s, 50);
+    assert_int_equal(wait_for(s, ALARM_SUPPRESSED, 0), 0);
+    alarm_service_stop(&s->alarm_service);
+    assert_int_equal((int)counted(s, "plantcast_alarms_raised_total"), 1);
+    struct rows one = read_rows(s, "T-0007", 2, INT64_MAX), device = read_rows(s, "plc", 10, INT64_MAX);
+    assert_int_equal(one.count, 2);
+    assert_string_equal(one.last, "T-0007 BAD raise suppressed 4 nan  plc");
+    assert_int_equal(device.count, 3);
+    assert_string_equal(device.last, "plc LINK raise unacknowledged 3 nan  ");
+}
+
+static void a_damaged_journal_is_set_aside(void **state)
+{
+    struct setup *s = *state;
+    char garbage[8192];
+    memset(garbage, 'x', sizeof(garbage));
+    char *path = temp_write(s->folder, JOURNAL_FILE, garbage, sizeof(garbage));
+    start(s);
+    give_all(s, 90);
+    assert_int_equal(wait_for(s, ALARM_UNACKNOWLEDGED, TAGS), TAGS);
+    alarm_service_stop(&s->alarm_service); /* writes what there is */
+    assert_int_equal(read_rows(s, NULL, 100000, INT64_MAX).count, TAGS);
+    mem_free(path);
+}
+
+int main(void)
+{
+    cmocka_set_message_output(CM_OUTPUT_TAP);
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test_setup_teardown(a_thousand_at_once_are_all_written, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(while_nothing_was_recorded_no_alarm_is_known, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(killed_at_any_moment_it_goes_on, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(a_lost_device_is_no_flood, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(a_damaged_journal_is_set_aside, set_up, tear_down),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,120 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Which bodies are closed. */
+#include "scene/closed_bodies.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "tests/support/shape.h"
+#include "tests/support/toy.h"
+
+enum { BOX = 192 }; /* triangles of shape_box */
+static const double low[3] = { -1, -1, -1 }, high[3] = { 1, 1, 1 };
+
+/* Takes the shape. How many of its triangles bound closed bodies. */
+static uint32_t closed_triangles(struct shape *shape)
+{
+    struct toy *toy = toy_create();
+    int asset = toy_add(toy, "A", shape, (double[3]){ 0 }, NULL, 0);
+    const struct closed_bodies *closed = asset_closed(toy->scene.assets[asset].file, 0);
+    uint32_t indices = 0, end = 0;
+    for (size_t i = 0; i < closed->run_count; i++) {
+        assert_true(closed->runs[i].index_count > 0 && (i == 0 || closed->runs[i].first_index > end)); /* as few runs as can be */
+        end = closed->runs[i].first_index + closed->runs[i].index_count;
+        indices += closed->runs[i].index_count;
+    }
+    assert_ptr_equal(closed, asset_closed(toy->scene.assets[asset].file, 0)); /* found once */
+    toy_destroy(&toy);
+    return indices / 3;
+}
+
+static void test_a_box_is_closed(void **state)
+{
+    struct shape shape = { 0 };
+    (void)state;
+    shape_box(&shape, TOY_STEEL, low, high); /* each side has vertices of its own */
+    assert_int_equal(closed_triangles(&shape), BOX);
+}
+
+static void test_what_has_a_hole_is_not(void **state)
+{
+    (void)state;
+    for (uint32_t gone = 0; gone < BOX; gone += 17) {
+        struct shape shape = { 0 };
+        shape_box(&shape, TOY_STEEL, low, high);
+        memmove(shape.indices + 3 * gone, shape.indices + 3 * gone + 3, (3 * (BOX - 1) - 3 * gone) * sizeof(*shape.indices));
+        shape.index_count -= 3;
+        shape.primitives[0].index_count -= 3;
+        assert_int_equal(closed_triangles(&shape), 0);
+    }
+}
+
+/* By rounding, seams lie a little apart. */
+static void test_seams_may_gape_by_rounding(void **state)
+{
+    (void)state;
+    for (int wide = 0; wide < 2; wide++) {
+        struct shape shape = { 0 };
+        shape_box(&shape, TOY_STEEL, low, high);
+        for (size_t i = 0; i < shape.vertex_count; i++)
+            for (int c = 0; c < 3; c++)
+                shape.positions[i][c] += (wide ? 1e-3f : 4e-6f) * (float)((i * 7 + (size_t)c * 3) % 3);
+        assert_int_equal(closed_triangles(&shape), wide ? 0 : BOX);
+    }
+}
+
+static void test_what_is_turned_round_in_part_is_not(void **state)
+{
+    struct shape shape = { 0 };
+    (void)state;
+    shape_box(&shape, TOY_STEEL, low, high);
+    uint32_t first = shape.indices[0];
+    shape.indices[0] = shape.indices[1];
+    shape.indices[1] = first;
+    assert_int_equal(closed_triangles(&shape), 0);
+}
+
+static void test_bodies_are_judged_one_by_one(void **state)
+{
+    struct shape shape = { 0 };
+    (void)state;
+    shape_box(&shape, TOY_STEEL, low, high);
+    shape_plate(&shape, TOY_BLUE, (double[3]){ 3, 3, 3 }, (double[3]){ 1, 0, 0 }, (double[3]){ 0, 1, 0 }, 2);
+    shape_box(&shape, TOY_CONCRETE, (double[3]){ 5, 5, 5 }, (double[3]){ 6, 6, 6 });
+    shape_box(&shape, TOY_CONCRETE, (double[3]){ 1, -1, -1 }, (double[3]){ 2, 1, 1 }); /* touches the first one along a whole side */
+    assert_int_equal(closed_triangles(&shape), 3 * BOX);
+}
+
+static void test_glass_bounds_nothing(void **state)
+{
+    const struct asset_material glass = { .base_color = { 1, 1, 1, 0.3f },
+                                          .alpha = ASSET_ALPHA_BLEND,
+                                          .base_color_texture = ASSET_NO_TEXTURE,
+                                          .metallic_roughness_texture = ASSET_NO_TEXTURE,
+                                          .normal_texture = ASSET_NO_TEXTURE,
+                                          .occlusion_texture = ASSET_NO_TEXTURE,
+                                          .emissive_texture = ASSET_NO_TEXTURE };
+    struct shape shape = { .materials = &glass, .material_count = 1 };
+    (void)state;
+    shape_box(&shape, 0, low, high);
+    assert_int_equal(closed_triangles(&shape), 0);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_a_box_is_closed),
+        cmocka_unit_test(test_what_has_a_hole_is_not),
+        cmocka_unit_test(test_seams_may_gape_by_rounding),
+        cmocka_unit_test(test_what_is_turned_round_in_part_is_not),
+        cmocka_unit_test(test_bodies_are_judged_one_by_one),
+        cmocka_unit_test(test_glass_bounds_nothing),
+    };
+    cmocka_set_message_output(CM_OUTPUT_TAP);
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

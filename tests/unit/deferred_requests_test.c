@@ -1,0 +1,98 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Pictures that wait come back in their order, none is lost, and others get every second turn. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "service/deferred_requests.h"
+
+static void fill(struct request_group *batch, uint64_t first, int count)
+{
+    batch->count = 0;
+    for (int i = 0; i < count; i++)
+        request_group_add(batch, &(struct request_ticket){ .client = first + (uint64_t)i });
+}
+
+static void assert_batch(const struct request_group *batch, uint64_t first, size_t count)
+{
+    assert_int_equal(batch->count, count);
+    for (size_t i = 0; i < count; i++)
+        assert_int_equal(batch->orders[i].client, first + i);
+}
+
+static void test_the_oldest_comes_first(void **state)
+{
+    struct deferred_requests held = { 0 };
+    struct request_group batch = { 0 };
+    (void)state;
+    for (uint64_t round = 0; round < 50; round++) {
+        for (uint64_t i = 0; i < 3; i++) {
+            fill(&batch, 100 * round + 10 * i, 1 + (int)((round + i) % 4));
+            assert_true(deferred_requests_push(&held, &batch));
+            assert_int_equal(batch.count, 0);
+        }
+        for (uint64_t i = 0; i < 3; i++) {
+            fill(&batch, 7, 2); /* what was there goes */
+            deferred_requests_pop(&held, &batch);
+            assert_batch(&batch, 100 * round + 10 * i, 1 + (round + i) % 4);
+        }
+    }
+    request_group_finish(&batch);
+    deferred_requests_finish(&held);
+}
+
+static void test_a_full_list_takes_no_more(void **state)
+{
+    struct deferred_requests held = { 0 };
+    struct request_group batch = { 0 };
+    (void)state;
+    for (uint64_t i = 0; i < HELD; i++) {
+        fill(&batch, 10 * i, 2);
+        assert_true(deferred_requests_push(&held, &batch));
+    }
+    fill(&batch, 5000, 3);
+    assert_false(deferred_requests_push(&held, &batch));
+    assert_batch(&batch, 5000, 3);
+    deferred_requests_pop(&held, &batch);
+    assert_batch(&batch, 0, 2);
+    assert_true(deferred_requests_push(&held, &batch));
+    for (uint64_t i = 1; i <= HELD; i++) {
+        deferred_requests_pop(&held, &batch);
+        assert_batch(&batch, 10 * (i % HELD), 2);
+    }
+    assert_int_equal(held.count, 0);
+    request_group_finish(&batch);
+    deferred_requests_finish(&held);
+}
+
+static void test_turns(void **state)
+{
+    struct deferred_requests held = { 0 };
+    struct request_group batch = { 0 };
+    (void)state;
+    assert_false(deferred_requests_due(&held, true));
+    assert_false(deferred_requests_due(&held, false));
+    fill(&batch, 1, 1);
+    assert_true(deferred_requests_push(&held, &batch));
+    bool last = deferred_requests_due(&held, true);
+    for (int i = 0; i < 10; i++, last = !last)
+        assert_true(deferred_requests_due(&held, true) == !last);
+    assert_true(deferred_requests_due(&held, false) && deferred_requests_due(&held, false));
+    request_group_finish(&batch);
+    deferred_requests_finish(&held);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_the_oldest_comes_first),
+        cmocka_unit_test(test_a_full_list_takes_no_more),
+        cmocka_unit_test(test_turns),
+    };
+    cmocka_set_message_output(CM_OUTPUT_TAP);
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,117 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Rectangles around what changed: none missing, none at odds with each other, few. */
+#include "encode/dirty_rects.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+#include <cmocka.h>
+
+#include "base/mem.h"
+
+static struct frame *grey(int width_px, int height_px)
+{
+    struct frame *frame = frame_create(width_px, height_px);
+    memset(frame->bgrx, 128, (size_t)height_px * (size_t)frame->stride_bytes);
+    return frame;
+}
+
+static void dot(struct frame *frame, int x_px, int y_px)
+{
+    frame->bgrx[(size_t)y_px * (size_t)frame->stride_bytes + (size_t)x_px * 4 + 1] ^= 1;
+}
+
+static bool covers(const struct dirty_rect *change, int x_px, int y_px)
+{
+    return x_px >= change->x_px && x_px < change->x_px + change->width_px && y_px >= change->y_px &&
+           y_px < change->y_px + change->height_px;
+}
+
+static void check_shape(const struct frame *frame, const struct dirty_rect *rects, int count)
+{
+    assert_in_range(count, 0, DIRTY_RECTS_MAX);
+    for (int i = 0; i < count; i++) {
+        const struct dirty_rect *c = &rects[i];
+        int right = c->x_px + c->width_px, low = c->y_px + c->height_px;
+        assert_true(c->x_px >= 0 && c->y_px >= 0 && c->width_px > 0 && c->height_px > 0 && right <= frame->width_px &&
+                    low <= frame->height_px);
+        assert_true(c->x_px % DIRTY_RECTS_TILE_PX == 0 && c->y_px % DIRTY_RECTS_TILE_PX == 0);
+        assert_true(right % DIRTY_RECTS_TILE_PX == 0 || right == frame->width_px);
+        assert_true(low % DIRTY_RECTS_TILE_PX == 0 || low == frame->height_px);
+        for (int j = 0; j < i; j++) {
+            const struct dirty_rect *d = &rects[j];
+            assert_true(c->x_px >= d->x_px + d->width_px || d->x_px >= right || c->y_px >= d->y_px + d->height_px || d->y_px >= low);
+        }
+    }
+}
+
+static void equal_pictures_have_none(void **state)
+{
+    (void)state;
+    struct frame *a = grey(333, 77), *b = grey(333, 77);
+    struct dirty_rect rects[DIRTY_RECTS_MAX];
+    assert_int_equal(dirty_rects_find(a, b, rects), 0);
+    assert_true(dirty_rects_none(a, b));
+    dot(b, 332, 76);
+    assert_false(dirty_rects_none(a, b));
+    assert_int_equal(dirty_rects_find(a, b, rects), 1);
+    assert_true(rects[0].x_px == 320 && rects[0].y_px == 64 && rects[0].width_px == 13 && rects[0].height_px == 13);
+    frame_unref(&a);
+    frame_unref(&b);
+}
+
+static void two_far_places_are_two_small_rectangles(void **state)
+{
+    (void)state;
+    struct frame *a = grey(1920, 1080), *b = grey(1920, 1080);
+    struct dirty_rect rects[DIRTY_RECTS_MAX];
+    dot(b, 5, 5);
+    dot(b, 1900, 1070);
+    assert_int_equal(dirty_rects_find(a, b, rects), 2);
+    check_shape(b, rects, 2);
+    assert_true(dirty_rects_share(b, rects, 2) < 0.002);
+    frame_unref(&a);
+    frame_unref(&b);
+}
+
+static void every_changed_pixel_is_inside(void **state)
+{
+    (void)state;
+    unsigned seed = (unsigned)time(NULL);
+    print_message("# seed %u\n", seed);
+    srand(seed);
+    for (int round = 0; round < 60; round++) {
+        int w = 16 + rand() % 700, h = 16 + rand() % 400, dots = 1 + rand() % (round < 30 ? 6 : 400), xs[400], ys[400];
+        struct frame *a = grey(w, h), *b = grey(w, h);
+        struct dirty_rect rects[DIRTY_RECTS_MAX];
+        for (int i = 0; i < dots; i++) {
+            xs[i] = rand() % w;
+            ys[i] = rand() % h;
+            b->bgrx[(size_t)ys[i] * (size_t)b->stride_bytes + (size_t)xs[i] * 4] = 7;
+        }
+        int count = dirty_rects_find(a, b, rects);
+        check_shape(b, rects, count);
+        for (int i = 0; i < dots; i++) {
+            int inside = 0;
+            for (int c = 0; c < count; c++)
+                inside += covers(&rects[c], xs[i], ys[i]);
+            assert_int_equal(inside, 1);
+        }
+        frame_unref(&a);
+        frame_unref(&b);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(equal_pictures_have_none),
+        cmocka_unit_test(two_far_places_are_two_small_rectangles),
+        cmocka_unit_test(every_changed_pixel_is_inside),
+    };
+    cmocka_set_message_output(CM_OUTPUT_TAP);
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,285 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Who gets which packets, by a model: each client decodes what it is given, and a packet is good only right after the one it needs. */
+#include "service/encode_streams.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+#include <cmocka.h>
+
+#include "base/clock.h"
+#include "base/mem.h"
+
+enum { CLIENTS = 12, WIDTH = 64, HEIGHT = 36 };
+static const int64_t MS = NS_PER_MS;
+
+/* Bytes of a packet here: the number of the state that it needs, and of that which it leaves. */
+struct state {
+    uint64_t needs, leaves;
+};
+
+struct fixture {
+    struct encode_streams chains;
+    struct encode_plan plan;
+    struct request_group rest;
+    uint64_t shown[CLIENTS]; /* what each client's decoder holds */
+    uint64_t last_state;
+    int64_t now_ns;
+    int encodes, keys;
+    enum wire_codec codec;
+};
+
+struct head { /* of a chain: what its clients show */
+    uint64_t state;
+};
+
+static int set_up(void **state)
+{
+    struct fixture *f = mem_new(sizeof(*f));
+    f->now_ns = 1000 * NS_PER_S;
+    f->codec = WIRE_CODEC_H264;
+    *state = f;
+    return 0;
+}
+
+static bool never_busy(const struct encode_stream *chain)
+{
+    (void)chain;
+    return false;
+}
+
+static void sweep(struct fixture *f)
+{
+    for (struct encode_stream *chain; (chain = encode_streams_take_empty(&f->chains, never_busy));) {
+        mem_free(chain->work);
+        encode_stream_destroy(&chain);
+    }
+}
+
+static int tear_down(void **state)
+{
+    struct fixture *f = *state;
+    for (uint64_t client = 0; client < CLIENTS; client++)
+        encode_streams_forget(&f->chains, client);
+    sweep(f);
+    assert_null(f->chains.first);
+    mem_free(f->chains.links);
+    mem_free(f->plan.from);
+    request_group_finish(&f->rest);
+    mem_free(f);
+    return 0;
+}
+
+static struct request_ticket order_of(const struct fixture *f, uint64_t client, const struct view *view)
+{
+    struct request_ticket order = { .client = client, .wish = { .view = *view, .codec = f->codec, .quality = { .quality = 80 } } };
+    return order;
+}
+
+/* What the encoder would make. */
+static struct packet *encode(struct fixture *f, struct encode_stream *chain, const struct frame *frame, bool key)
+{
+    struct head *head = chain->work ? chain->work : (chain->work = mem_new(sizeof(*head)));
+    struct state made = { .needs = key ? 0 : head->state, .leaves = ++f->last_state };
+    uint8_t bytes[512] = { 0 };
+    memcpy(bytes, &made, sizeof(made));
+    head->state = made.leaves;
+    f->encodes++;
+    f->keys += key;
+    return packet_create(frame, f->codec, key, bytes, key ? sizeof(bytes) : 64);
+}
+
+static void decode(struct fixture *f, uint64_t client, const struct packet *packet)
+{
+    struct state made;
+    memcpy(&made, packet->bytes, sizeof(made));
+    if (made.needs)
+        assert_int_equal(f->shown[client], made.needs);
+    f->shown[client] = made.leaves;
+}
+
+static uint64_t least_needed(const struct fixture *f, const struct request_group *orders)
+{
+    uint64_t least = UINT64_MAX;
+    for (size_t i = 0; i < orders->count; i++)
+        least = f->plan.from[i] < least ? f->plan.from[i] : least;
+    return least;
+}
+
+static void deliver(struct fixture *f, const struct request_group *orders)
+{
+    struct packet *run[ENCODE_STREAM_KEPT];
+    const struct head *head = f->plan.chain->work;
+    for (size_t i = 0; i < orders->count; i++) {
+        int count = encode_stream_catch_up(f->plan.chain, f->plan.from[i], f->plan.number, run);
+        assert_true(count >= 0);
+        for (int p = 0; p < count; p++)
+            decode(f, orders->orders[i].client, run[p]);
+        assert_int_equal(f->shown[orders->orders[i].client], head->state);
+    }
+}
+
+/* One frame for these clients (a bit each); all of them show it after. */
+static void show(struct fixture *f, unsigned clients, int view_number, uint64_t content, bool alone)
+{
+    struct frame *frame = frame_create(WIDTH, HEIGHT);
+    struct request_group orders = { 0 };
+    frame->view = (struct view){ .width_px = WIDTH, .height_px = HEIGHT, .camera = { .fov_deg = 30 + view_number } };
+    frame->content = content;
+    for (uint64_t client = 0; client < CLIENTS; client++)
+        if (clients & 1u << client) {
+            struct request_ticket order = order_of(f, client, &frame->view);
+            order.wish.always = order.wish.alone = alone;
+            request_group_add(&orders, &order);
+        }
+    while (orders.count > 0) {
+        encode_streams_plan(&f->chains, frame, &orders, f->now_ns, &f->plan, &f->rest);
+        if (f->plan.encode) {
+            struct packet *packet = encode(f, f->plan.chain, frame, f->plan.key);
+            encode_stream_keep(f->plan.chain, packet, least_needed(f, &orders));
+            packet_unref(&packet);
+        }
+        deliver(f, &orders);
+        struct request_group done = orders;
+        orders = f->rest;
+        f->rest = (struct request_group){ 0 };
+        request_group_finish(&done);
+    }
+    request_group_finish(&orders);
+    frame_unref(&frame);
+    sweep(f);
+    f->now_ns += 50 * MS;
+}
+
+static size_t chain_count(const struct fixture *f)
+{
+    size_t count = 0;
+    for (const struct encode_stream *chain = f->chains.first; chain; chain = chain->next)
+        count++;
+    return count;
+}
+
+static void one_client_has_one_key_frame(void **state)
+{
+    struct fixture *f = *state;
+    for (int i = 0; i < 100; i++)
+        show(f, 1, i, (uint64_t)i + 1, false);
+    assert_true(f->encodes == 100 && f->keys == 1 && chain_count(f) == 1);
+    show(f, 1, 99, 100, true); /* its decoder was reset */
+    assert_true(f->keys <= 2);
+}
+
+static void viewers_of_one_view_cost_one_encode(void **state)
+{
+    struct fixture *f = *state;
+    for (int i = 0; i < 20; i++)
+        show(f, 0xfff, i, (uint64_t)i + 1, false);
+    assert_true(f->encodes == 20 && f->keys == 1 && chain_count(f) == 1);
+}
+
+static void who_joins_a_still_view_is_given_what_is_there(void **state)
+{
+    struct fixture *f = *state;
+    show(f, 1, 0, 1, false);
+    show(f, 1, 0, 2, false);
+    for (unsigned client = 1; client < CLIENTS; client++)
+        show(f, 1u << client, 0, 2, true);
+    assert_true(f->encodes == 2 && f->keys == 1 && chain_count(f) == 1);
+    show(f, 0xfff, 0, 3, false);
+    assert_true(f->encodes == 3 && f->keys == 1);
+}
+
+static void who_missed_some_catches_up_without_a_key_frame(void **state)
+{
+    struct fixture *f = *state;
+    for (int i = 0; i < 12; i++)
+        show(f, i % 4 == 3 ? 0xfff : 0xffe, 0, (uint64_t)i + 1, false);
+    assert_true(f->encodes == 12 && f->keys == 1 && chain_count(f) == 1);
+}
+
+static void who_looks_elsewhere_gets_a_stream_of_its_own(void **state)
+{
+    struct fixture *f = *state;
+    show(f, 0xfff, 0, 1, false);
+    show(f, 1, 1, 2, false);
+    show(f, 0xffe, 0, 3, false);
+    show(f, 1, 2, 4, false);
+    assert_true(f->encodes == 4 && f->keys == 2 && chain_count(f) == 2);
+    show(f, 0xfff, 0, 5, false); /* and comes back */
+    assert_true(chain_count(f) <= 2);
+}
+
+static void a_slow_one_does_not_cost_the_others_key_frames(void **state)
+{
+    struct fixture *f = *state;
+    int before = 0;
+    for (int i = 0; i < 2000; i++) { /* 100 s, one key frame after the other */
+        show(f, i % 50 == 49 ? 0xfff : 0xffe, i, (uint64_t)i + 1, false);
+        before = i == 999 ? f->keys : before;
+    }
+    assert_in_range(f->keys - before, 0, 24); /* its own: one at each of its 20 pictures */
+    assert_in_range(chain_count(f), 1, 2);
+}
+
+/* As the acknowledgements of hundreds come in: some ask for the next view while the others still wait for the one before. */
+static void whole_pictures_are_made_once_however_it_is_asked_for(void **state)
+{
+    struct fixture *f = *state;
+    f->codec = WIRE_CODEC_JPEG;
+    show(f, 0xfff, 0, 1, false);
+    for (int i = 1; i < 50; i++) {
+        unsigned first = i % 3 == 0 ? 0x001u : i % 3 == 1 ? 0x807u : 0x0ffu;
+        show(f, first, i, (uint64_t)i + 1, false);
+        show(f, 0xfffu & ~first, i, (uint64_t)i + 1, false);
+    }
+    assert_int_equal(f->encodes, 50);
+}
+
+static void what_broke_starts_anew(void **state)
+{
+    struct fixture *f = *state;
+    show(f, 3, 0, 1, false);
+    struct encode_stream *chain = f->chains.first;
+    chain->planned++; /* a picture that could not be made */
+    encode_stream_break(chain);
+    show(f, 3, 0, 9, false);
+    assert_int_equal(f->keys, 2);
+}
+
+static void whoever_asks_whenever_decodes_it(void **state)
+{
+    struct fixture *f = *state;
+    unsigned seed = (unsigned)time(NULL);
+    print_message("# seed %u\n", seed);
+    srand(seed);
+    for (int i = 0; i < 20000; i++) {
+        unsigned clients = (unsigned)rand() & (rand() % 3 ? 0xfffu : 0x00fu);
+        if (rand() % 40 == 0)
+            encode_streams_forget(&f->chains, (uint64_t)(rand() % CLIENTS));
+        if (rand() % 100 == 0)
+            f->now_ns += 3 * NS_PER_S;
+        show(f, clients, rand() % 4, (uint64_t)(rand() % 6) + 1, rand() % 30 == 0);
+        assert_in_range(chain_count(f), 0, CLIENTS);
+    }
+}
+
+int main(void)
+{
+#define TEST(name) cmocka_unit_test_setup_teardown(name, set_up, tear_down)
+    const struct CMUnitTest tests[] = {
+        TEST(one_client_has_one_key_frame),
+        TEST(viewers_of_one_view_cost_one_encode),
+        TEST(who_joins_a_still_view_is_given_what_is_there),
+        TEST(who_missed_some_catches_up_without_a_key_frame),
+        TEST(who_looks_elsewhere_gets_a_stream_of_its_own),
+        TEST(a_slow_one_does_not_cost_the_others_key_frames),
+        TEST(whole_pictures_are_made_once_however_it_is_asked_for),
+        TEST(what_broke_starts_anew),
+        TEST(whoever_asks_whenever_decodes_it),
+    };
+    cmocka_set_message_output(CM_OUTPUT_TAP);
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

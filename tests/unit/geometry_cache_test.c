@@ -1,0 +1,550 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What plantcast-prep keeps for the next time: a changed sensor gives the file that preparing all anew gives, to the last bit, without the
+   model being read; among very many sensors, one that shows the field as well. What is damaged is not used; killed midway, it goes on. */
+#include <fcntl.h>
+#include <jansson.h>
+#include <math.h>
+#include <setjmp.h>
+#include <signal.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/resource.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
+#include <cmocka.h>
+
+#include "base/atomic_file.h"
+#include "base/mem.h"
+#include "preprocess/cache/folder.h"
+#include "preprocess/pipeline/geometry_cache.h"
+#include "surface/mesh/bvh.h"
+#include "surface/surface_store.h"
+#include "tests/support/cad.h"
+#include "tests/support/model_maker.h"
+#include "tests/support/prep_case.h"
+#include "tests/support/temp.h"
+
+#define AROUND 104 /* enough triangles to be kept */
+#define TUBE 50
+
+static const char plant_text[] = "plant: { name: Stock test }\n"
+                                 "assets: [{ id: A, model: model.glb, nodes: torus, up: z }]\n"
+                                 "groups: [{ id: t, unit: K, min: 0, max: 1 }, { id: p, unit: bar, min: 0, max: 1, power: 3 }]\n"
+                                 "tags: tags.csv\n";
+static const char first_tags[] = "a,,,,t,A,,1.3,0,0\nb,,,,t,A,,-1.3,0,0\nc,,,,p,A,,0,1,0.3\nd,,,,t,A,TT-1,,,\n";
+
+static int set_up(void **state)
+{
+    struct cad torus = { 0 };
+    struct cad_random chance = { 3 };
+    struct maker maker;
+    size_t size;
+    prep_case_set_up(state);
+    struct prep_case *c = *state;
+    cad_torus(&torus, &chance, AROUND, TUBE, 0.3, 0.4);
+    assert_true(torus.triangle_count >= GEOMETRY_CACHE_TRIANGLES);
+    maker_init(&maker);
+    int positions =
+        maker_numbers(&maker, torus.positions, torus.vertex_count * sizeof(*torus.positions), FLOAT, torus.vertex_count, "VEC3");
+    int indices = maker_numbers(&maker, torus.triangles, torus.triangle_count * 3 * sizeof(*torus.triangles), UINT,
+                                torus.triangle_count * 3, "SCALAR");
+    int mesh = maker_mesh(&maker, json_pack("{s:{s:i},s:i}", "attributes", "POSITION", positions, "indices", indices));
+    maker_node(&maker, "torus", mesh, NULL);
+    maker_node(&maker, "TT-1", -1, json_pack("{s:[f,f,f]}", "translation", 0.0, -1.3, 0.0));
+    maker_node(&maker, "TT-2", -1, json_pack("{s:[f,f,f]}", "translation", 0.9, -0.9, 0.1));
+    char *glb = maker_glb(&maker, &size);
+    mem_free(temp_write(c->folder, "model.glb", glb, size));
+    mem_free(glb);
+    maker_finish(&maker);
+    cad_finish(&torus);
+    prep_case_plant(c, plant_text);
+    return 0;
+}
+
+/* Prepares with these tags into FOLDER/`into`. The asset's report. */
+static json_t *prepare(struct prep_case *c, const char *tags, const char *into, bool *model_read)
+{
+    char *arguments = mem_printf("$PLANT --report json --output $FOLDER/%s", into);
+    prep_case_tags(c, tags);
+    prep_case_expect(c, arguments, 0);
+    mem_free(arguments);
+    json_t *report = prep_case_json(&c->out), *asset = json_incref(json_array_get(json_object_get(report, "assets"), 0));
+    *model_read = json_is_true(json_object_get(json_array_get(json_object_get(report, "models"), 0), "read"));
+    assert_string_equal(json_string_value(json_object_get(asset, "state")), "built");
+    json_decref(report);
+    return asset;
+}
+
+static char *path_of(const struct prep_case *c, const char *folder, const json_t *asset)
+{
+    return mem_printf("%s/%s/%s", c->folder, folder, json_string_value(json_object_get(asset, "file")));
+}
+
+/* Into a folder where nothing is, the same bytes come; nothing of what the levels and the surface are in the report differs either. */
+static void assert_as_fresh(struct prep_case *c, const char *tags, const json_t *found)
+{
+    bool model_read;
+    size_t sizes[2];
+    json_t *fresh = prepare(c, tags, "fresh", &model_read);
+    assert_true(model_read);
+    char *paths[2] = { path_of(c, "fresh", fresh), path_of(c, "kept", found) }, *bytes[2];
+    for (int i = 0; i < 2; i++) {
+        bytes[i] = text_read_file(paths[i], (size_t)1 << 30, &sizes[i]);
+        assert_non_null(bytes[i]);
+    }
+    assert_int_equal(sizes[0], sizes[1]);
+    assert_memory_equal(bytes[0], bytes[1], sizes[0]);
+    assert_true(json_equal(json_object_get(fresh, "levels"), json_object_get(found, "levels")));
+    for (int i = 0; i < 2; i++) {
+        mem_free(bytes[i]);
+        mem_free(paths[i]);
+    }
+    json_decref(fresh);
+    char *folder = temp_path(c->folder, "fresh"), *remove = mem_printf("rm -r '%s'", folder);
+    assert_int_equal(system(remove), 0);
+    mem_free(remove);
+    mem_free(folder);
+}
+
+static int number(const json_t *asset, const char *name)
+{
+    return (int)json_integer_value(json_object_get(asset, name));
+}
+
+static void a_changed_sensor_costs_its_own_distances(void **state)
+{
+    static const struct {
+        const char *tags;
+        int kept;
+        bool model_read;
+    } changes[] = {
+        { first_tags, 0, true },
+        { "a,,,,t,A,,1.3,0,0.02\nb,,,,t,A,,-1.3,0,0\nc,,,,p,A,,0,1,0.3\nd,,,,t,A,TT-1,,,\n", 3, false },  /* moved */
+        { "b,,,,t,A,,-1.3,0,0\nc,,,,p,A,,0,1,0.3\nd,,,,t,A,TT-1,,,\n", 3, false },                        /* removed */
+        { "e,,,,t,A,,0.8,0.8,0\nb,,,,t,A,,-1.3,0,0\nc,,,,p,A,,0,1,0.3\nd,,,,t,A,TT-1,,,\n", 3, false },   /* added */
+        { "e,,,,t,A,,0.8,0.8,0\nb,,,,t,A,,-1.3,0,0\nc,,,,t,A,,0,1,0.3\nd,,,,t,A,TT-1,,,\n", 4, false },   /* of another group */
+        { "e,,,,t,A,,0.8,0.8,0\nb,,,,t,A,,-1.3,0,0\nc,,,,t,A,TT-2,,,\nd,,,,t,A,TT-1,,,\n", 3, true },     /* on a node nobody asked for */
+        { "d,,,,t,A,TT-1,,,\nc,,,,t,A,TT-2,,,\ne,,,,t,A,,0.8,0.8,0\nb,,,,t,A,,-1.3,0,0.01\n", 3, false }, /* in another order */
+    };
+    struct prep_case *c = *state;
+    for (size_t i = 0; i < sizeof(changes) / sizeof(*changes); i++) {
+        bool model_read;
+        json_t *asset = prepare(c, changes[i].tags, "kept", &model_read);
+        print_message("# change %zu: %d of the distances were there\n", i, number(asset, "kept_sensors"));
+        assert_int_equal(number(asset, "kept_sensors"), changes[i].kept);
+        assert_int_equal(number(asset, "stocked"), i > 0);
+        assert_true(model_read == changes[i].model_read);
+        if (i % 2 || i == 6)
+            assert_as_fresh(c, changes[i].tags, asset);
+        json_decref(asset);
+    }
+}
+
+/* The one file of the folder with this ending. */
+static char *kept_file(const struct prep_case *c, const char *ending)
+{
+    char path[400] = "", *command = mem_printf("ls '%s'/kept/*%s", c->folder, ending);
+    FILE *names = popen(command, "r");
+    assert_non_null(names);
+    assert_non_null(fgets(path, sizeof(path), names));
+    assert_true(feof(names) || fgetc(names) == EOF);
+    pclose(names);
+    mem_free(command);
+    path[strcspn(path, "\n")] = 0;
+    return mem_strdup(path);
+}
+
+static void damage(const char *path, bool cut)
+{
+    size_t size;
+    char *bytes = text_read_file(path, (size_t)1 << 30, &size);
+    assert_non_null(bytes);
+    for (size_t i = size / 8; i < size; i += size / 8) /* all columns, and every part of the stock */
+        bytes[i] ^= 4;
+    assert_int_equal(atomic_file_put(path, bytes, cut ? size / 3 : size), 0);
+    mem_free(bytes);
+}
+
+static void what_is_damaged_is_made_anew(void **state)
+{
+    struct prep_case *c = *state;
+    for (int cut = 0; cut < 2; cut++) {
+        char *tags = mem_printf("a,,,,t,A,,1.3,0,0.0%d\nb,,,,t,A,,-1.3,0,0\nc,,,,p,A,,0,1,0.3\nd,,,,t,A,TT-1,,,\n", 2 + cut);
+        bool model_read;
+        json_decref(prepare(c, first_tags, "kept", &model_read));
+        char *stock = kept_file(c, cut ? ".surface" : ".stock"), *columns = kept_file(c, ".columns");
+        damage(stock, cut);
+        damage(columns, cut);
+        json_t *asset = prepare(c, tags, "kept", &model_read);
+        assert_true(model_read);
+        assert_int_equal(number(asset, "stocked"), 0);
+        assert_in_range(number(asset, "kept_sensors"), 0, cut ? 1 : 0);
+        assert_as_fresh(c, tags, asset);
+        json_decref(asset);
+        mem_free(stock);
+        mem_free(columns);
+        mem_free(tags);
+    }
+}
+
+static ino_t file_number(const char *path)
+{
+    struct stat st;
+    assert_int_equal(stat(path, &st), 0);
+    return st.st_ino;
+}
+
+/* Where points lie is taken from the last time, and is written again only where little of it was known. */
+static void points_are_found_once(void **state)
+{
+    static const char *const places[] = { "1.3,0,0.02", "1.3,0,0.05", "0.8,0.8,0" };
+    struct prep_case *c = *state;
+    bool model_read;
+    json_decref(prepare(c, first_tags, "kept", &model_read));
+    char *spots = kept_file(c, ".spots");
+    for (int i = 0; i < 3; i++) {
+        char *tags = mem_printf("a,,,,t,A,,%s\nb,,,,t,A,,-1.3,0,0\nc,,,,p,A,,0,1,0.3\nd,,,,t,A,TT-1,,,\n", places[i]);
+        if (i)
+            damage(spots, i == 2);
+        ino_t before = file_number(spots); /* of a file that is there while another one is written */
+        json_t *asset = prepare(c, tags, "kept", &model_read);
+        assert_false(model_read);
+        assert_true((file_number(spots) == before) == (i == 0));
+        assert_as_fresh(c, tags, asset);
+        json_decref(asset);
+        mem_free(tags);
+    }
+    mem_free(spots);
+}
+
+/* --- killed midway ------------------------------------------------------------------------------------------------------------ */
+
+/* Prepares into FOLDER/kept; where it would write behind so many bytes of a file, it is killed by the system, or told. Its status. */
+static int prepare_limited(struct prep_case *c, const char *tags, size_t bytes, bool told)
+{
+    char *program = prep_case_program(), *folder = temp_path(c->folder, "kept"), *said = temp_path(c->folder, "said");
+    int status;
+    prep_case_tags(c, tags);
+    pid_t pid = fork();
+    if (pid == 0) {
+        const struct rlimit most = { bytes, bytes }, none = { 0, 0 };
+        int nothing = open("/dev/null", O_WRONLY);
+        dup2(nothing, STDOUT_FILENO);
+        dup2(told ? open(said, O_WRONLY | O_CREAT | O_TRUNC, 0600) : nothing, STDERR_FILENO);
+        setrlimit(RLIMIT_CORE, &none);
+        setrlimit(RLIMIT_FSIZE, &most);
+        signal(SIGXFSZ, told ? SIG_IGN : SIG_DFL);
+        execl(program, program, c->plant, "--output", folder, (char *)NULL);
+        _exit(127);
+    }
+    assert_true(pid > 0);
+    assert_int_equal(waitpid(pid, &status, 0), pid);
+    mem_free(program);
+    mem_free(folder);
+    mem_free(said);
+    return status;
+}
+
+static void prepare_killed_at(struct prep_case *c, const char *tags, size_t bytes)
+{
+    int status = prepare_limited(c, tags, bytes, false);
+    assert_true(WIFSIGNALED(status) && WTERMSIG(status) == SIGXFSZ);
+}
+
+static size_t bytes_of(const char *path)
+{
+    struct stat st;
+    assert_int_equal(stat(path, &st), 0);
+    return (size_t)st.st_size;
+}
+
+/* In a column, in the file: what was there before stays, also for who has it mapped, and the next time gives what preparing anew gives. */
+static void killed_midway_it_goes_on(void **state)
+{
+    struct prep_case *c = *state;
+    bool model_read;
+    json_t *first = prepare(c, first_tags, "kept", &model_read);
+    char *before = path_of(c, "kept", first), *columns = kept_file(c, ".columns"), *folder = temp_path(c->folder, "kept"), why[200];
+    const size_t limits[] = { bytes_of(columns) - bytes_of(columns) / 8, bytes_of(before) / 2 };
+    struct folder_file mapped;
+    struct asset_view view;
+    uint64_t key = strtoull(json_string_value(json_object_get(first, "file")), NULL, 16);
+    assert_true(limits[1] > bytes_of(columns));
+    assert_int_equal(folder_open(&mapped, folder, key, why), 1);
+    for (int i = 0; i < 2; i++) {
+        char *tags = mem_printf("a,,,,t,A,,1.3,0,0\nb,,,,t,A,,-1.3,0,0\nc,,,,p,A,,0,1,0.3\nd,,,,t,A,,0.%d,-1.2,0\n", 1 + i);
+        if (i)
+            json_decref(prepare(c, first_tags, "kept", &model_read));
+        prepare_killed_at(c, tags, limits[i]);
+        struct folder_file old;
+        assert_int_equal(folder_open(&old, folder, key, why), 1);
+        folder_close(&old);
+        json_t *asset = prepare(c, tags, "kept", &model_read);
+        print_message("# killed at %zu bytes, then %d of the distances were there\n", limits[i], number(asset, "kept_sensors"));
+        assert_false(model_read);
+        assert_int_equal(number(asset, "kept_sensors"), i ? 4 : 3);
+        assert_as_fresh(c, tags, asset);
+        assert_true(asset_view_init(&view, mapped.bytes, mapped.size, why));
+        json_decref(asset);
+        mem_free(tags);
+    }
+    folder_close(&mapped);
+    json_decref(first);
+    mem_free(before);
+    mem_free(columns);
+    mem_free(folder);
+}
+
+/* A file that there is no room for is not begun: the old one stays, nothing lies about, and with room it is made. */
+static void without_room_the_old_file_stays(void **state)
+{
+    static const char tags[] = "a,,,,t,A,,1.3,0,0\nb,,,,t,A,,-1.3,0,0\nc,,,,p,A,,0,1,0.3\nd,,,,t,A,,0.1,-1.2,0\n";
+    struct prep_case *c = *state;
+    bool model_read;
+    json_t *first = prepare(c, first_tags, "kept", &model_read);
+    char *before = path_of(c, "kept", first), *columns = kept_file(c, ".columns");
+    char *drafts = mem_printf("ls '%s'/kept | grep -q asset.*new", c->folder);
+    char *names_folder = mem_printf("grep -q 'cannot be written into %s/kept: File too large' '%s'/said", c->folder, c->folder);
+    size_t size = bytes_of(before);
+    assert_true(size / 2 > bytes_of(columns));
+    int status = prepare_limited(c, tags, size / 2, true);
+    assert_true(WIFEXITED(status) && WEXITSTATUS(status) == 1);
+    assert_int_equal(bytes_of(before), size);
+    assert_int_not_equal(system(drafts), 0);
+    assert_int_equal(system(names_folder), 0);
+    json_t *asset = prepare(c, tags, "kept", &model_read);
+    assert_as_fresh(c, tags, asset);
+    json_decref(asset);
+    json_decref(first);
+    mem_free(before);
+    mem_free(columns);
+    mem_free(drafts);
+    mem_free(names_folder);
+}
+
+static void what_nothing_needs_any_more_is_removed(void **state)
+{
+    struct prep_case *c = *state;
+    bool model_read;
+    json_decref(prepare(c, first_tags, "kept", &model_read));
+    char *stock = kept_file(c, ".stock"), *surface = kept_file(c, ".surface"), *columns = kept_file(c, ".columns");
+    char *spots = kept_file(c, ".spots");
+    char *other = mem_strdup(plant_text);
+    memcpy(strstr(other, "up: z"), "up: y", 5);
+    prep_case_plant(c, other);
+    json_decref(prepare(c, "a,,,,t,A,,1.3,0,0\n", "kept", &model_read));
+    assert_true(model_read);
+    assert_int_not_equal(access(stock, F_OK), 0);
+    assert_int_not_equal(access(surface, F_OK), 0);
+    assert_int_not_equal(access(columns, F_OK), 0);
+    assert_int_not_equal(access(spots, F_OK), 0);
+    mem_free(spots);
+    mem_free(surface);
+    mem_free(stock);
+    mem_free(columns);
+    mem_free(other);
+}
+
+/* --- among many sensors ------------------------------------------------------------------------------------------------------- */
+
+#define MANY 65
+#define STEP (1 / 255.0)
+
+/* Of one group, all round the ring; the first one, numbered so, stands elsewhere each time. */
+static char *many_tags(int first)
+{
+    struct text rows = { 0 };
+    for (int i = 0; i < MANY; i++) {
+        double a = 2.4 * (i ? i : MANY + first), b = 1.7 * (i ? i : first), r = 1 + 0.4 * cos(b);
+        char *row = mem_printf("s%d,,,,t,A,,%.4f,%.4f,%.4f\n", i, r * cos(a), r * sin(a), 0.4 * sin(b));
+        text_add_bytes(&rows, row, strlen(row));
+        mem_free(row);
+    }
+    text_add_bytes(&rows, "", 1);
+    return rows.at;
+}
+
+struct prepared {
+    struct folder_file file;
+    struct trimesh mesh; /* of the finest level */
+    struct bvh *bvh;
+    float *values; /* of its vertices, for some readings */
+};
+
+static float value_at(const struct asset_view *view, uint32_t vertex)
+{
+    double sum = 0, weights = 0;
+    for (uint32_t s = 0; s < view->header->sensor_count; s++) {
+        double d = fmax(1e-5, (double)view->geodesic_m[(size_t)s * view->header->vertex_count + vertex]), weight = 1 / (d * d);
+        sum += (s * 7 % 3 == 0) * weight;
+        weights += weight;
+    }
+    return (float)(sum / weights);
+}
+
+static void open_prepared(struct prepared *at, const struct prep_case *c, const char *into, const json_t *asset)
+{
+    char why[200], *folder = temp_path(c->folder, into);
+    *at = (struct prepared){ 0 };
+    assert_int_equal(folder_open(&at->file, folder, strtoull(json_string_value(json_object_get(asset, "file")), NULL, 16), why), 1);
+    const struct asset_view *view = &at->file.view;
+    at->values = mem_array(view->header->vertex_count, sizeof(*at->values));
+    for (uint32_t v = 0; v < view->header->vertex_count; v++) {
+        const float *p = view->positions_m[v];
+        trimesh_add_point(&at->mesh, (const double[3]){ (double)p[0], (double)p[1], (double)p[2] });
+        at->values[v] = value_at(view, v);
+    }
+    const struct asset_level *finest = &view->levels[0];
+    for (uint32_t p = finest->first_primitive; p < finest->first_primitive + finest->primitive_count; p++)
+        for (uint32_t i = 0; i < view->primitives[p].index_count; i += 3) {
+            const uint32_t *v = view->indices + view->primitives[p].first_index + i;
+            trimesh_add_tri(&at->mesh, v[0], v[1], v[2], 0);
+        }
+    at->bvh = bvh_create(&at->mesh);
+    mem_free(folder);
+}
+
+static void close_prepared(struct prepared *at)
+{
+    bvh_destroy(&at->bvh);
+    trimesh_finish(&at->mesh);
+    mem_free(at->values);
+    folder_close(&at->file);
+}
+
+static int by_size(const void *a, const void *b)
+{
+    float p = *(const float *)a, q = *(const float *)b;
+    return (p > q) - (p < q);
+}
+
+/* What one shows at corners of the other's triangles, where that has the field as it is solved. */
+static void assert_shows(const struct prepared *at, const struct prepared *other, const char *name)
+{
+    size_t count = other->mesh.tri_count;
+    float *errors = mem_array(count, sizeof(*errors));
+    for (size_t t = 0; t < count; t++) {
+        struct bvh_place place;
+        uint32_t v = other->mesh.tris[t][t % 3];
+        double value = 0;
+        bvh_nearest(at->bvh, other->mesh.points[v], INFINITY, NULL, NULL, &place);
+        for (int c = 0; c < 3; c++)
+            value += place.weights[c] * (double)at->values[at->mesh.tris[place.tri][c]];
+        errors[t] = fabsf((float)value - other->values[v]);
+    }
+    qsort(errors, count, sizeof(*errors), by_size);
+    print_message("# %s, %zu triangles, at %zu places: %.2f steps (99.9 %%), %.2f at most\n", name, at->mesh.tri_count, count,
+                  (double)errors[count * 999 / 1000] / STEP, (double)errors[count - 1] / STEP);
+    assert_true((double)errors[count * 999 / 1000] <= STEP);
+    assert_true((double)errors[count - 1] <= 12 * STEP);
+    mem_free(errors);
+}
+
+static void assert_on_vertices(const struct prepared *at)
+{
+    const struct asset_view *view = &at->file.view;
+    assert_int_equal(view->header->sensor_count, MANY);
+    for (uint32_t s = 0; s < MANY; s++) {
+        uint32_t v = view->sensors[s].nearest_vertex;
+        assert_memory_equal(view->positions_m[v], view->sensors[s].surface_m, sizeof(float[3]));
+        assert_true(view->geodesic_m[(size_t)s * view->header->vertex_count + v] == 0);
+    }
+}
+
+static void one_of_many_sensors_is_split_for_alone(void **state)
+{
+    struct prep_case *c = *state;
+    struct prepared moved, anew;
+    bool model_read;
+    int first_found = 0;
+    for (int move = 0; move < 4; move++) {
+        char *tags = many_tags(move == 3 ? 1 : move), *findings = move == 3 ? kept_file(c, ".splitting") : NULL;
+        if (findings)
+            damage(findings, false);
+        if (move == 1) { /* as if nothing had been */
+            char *kept = kept_file(c, ".splitting");
+            prepare_killed_at(c, tags, bytes_of(kept) / 2);
+            mem_free(kept);
+        }
+        json_t *found = prepare(c, tags, "kept", &model_read), *fresh = move == 2 ? prepare(c, tags, "fresh", &model_read) : NULL;
+        int measured = number(found, "split_measured"), kept = number(found, "split_kept");
+        print_message("# move %d: %d findings, %d of them kept\n", move, measured + kept, kept);
+        first_found = move == 0 ? measured + kept : first_found;
+        assert_true(measured > 0);
+        if (move == 1 || move == 2) /* levels that were no use then are not tried again */
+            assert_true(measured + kept < 0.97 * first_found);
+        assert_true(move == 0 || move == 3 ? kept == 0 : kept > measured / 2);
+        if (fresh) { /* the doubts of two moves have added up */
+            assert_int_equal(number(fresh, "split_kept"), 0);
+            open_prepared(&moved, c, "kept", found);
+            open_prepared(&anew, c, "fresh", fresh);
+            assert_on_vertices(&moved);
+            assert_shows(&anew, &moved, "prepared anew");
+            assert_shows(&moved, &anew, "moved");
+            assert_true(moved.mesh.tri_count < anew.mesh.tri_count * 11 / 10);
+            close_prepared(&moved);
+            close_prepared(&anew);
+            json_decref(fresh);
+        }
+        json_decref(found);
+        mem_free(findings);
+        mem_free(tags);
+    }
+}
+
+/* --- the surface alone --------------------------------------------------------------------------------------------------------- */
+
+static void a_surface_comes_back_whole(void **state)
+{
+    struct cad torus = { 0 };
+    struct cad_random chance = { 9 };
+    struct text packed = { 0 };
+    const double source[1][3] = { { 1.2, 0.3, 0.1 } };
+    (void)state;
+    cad_torus(&torus, &chance, 40, 20, 0.3, 0.5);
+    torus.triangles[3] = torus.triangles[4]; /* a triangle without area */
+    struct surface *surface = surface_create(NULL, NULL, (const float(*)[3])torus.positions, torus.vertex_count, torus.triangles,
+                                             torus.triangle_count, &(struct surface_params){ 0 });
+    float *before_m = mem_array(torus.vertex_count, sizeof(*before_m)), *after_m = mem_array(torus.vertex_count, sizeof(*after_m));
+    assert_true(surface_distances(surface, source, 1, before_m));
+    surface_pack(surface, &packed);
+    struct unpack from = { packed.at, packed.length, false };
+    struct surface *back = surface_unpack(&from, NULL, NULL);
+    assert_non_null(back);
+    assert_int_equal(from.left, 0);
+    assert_true(surface_distances(back, source, 1, after_m));
+    assert_memory_equal(before_m, after_m, torus.vertex_count * sizeof(*before_m));
+    assert_memory_equal(surface_report(surface), surface_report(back), sizeof(struct surface_report));
+    surface_destroy(&back);
+    for (size_t cut = 1; cut < packed.length; cut += packed.length / 37) {
+        from = (struct unpack){ packed.at, packed.length - cut, false };
+        assert_null(surface_unpack(&from, NULL, NULL));
+    }
+    surface_destroy(&surface);
+    text_finish(&packed);
+    mem_free(before_m);
+    mem_free(after_m);
+    cad_finish(&torus);
+}
+
+#define WITH_PLANT(test) cmocka_unit_test_setup_teardown(test, set_up, prep_case_tear_down)
+
+int main(void)
+{
+    cmocka_set_message_output(CM_OUTPUT_TAP);
+    const struct CMUnitTest tests[] = {
+        WITH_PLANT(a_changed_sensor_costs_its_own_distances),
+        WITH_PLANT(what_is_damaged_is_made_anew),
+        WITH_PLANT(points_are_found_once),
+        WITH_PLANT(killed_midway_it_goes_on),
+        WITH_PLANT(without_room_the_old_file_stays),
+        WITH_PLANT(what_nothing_needs_any_more_is_removed),
+        WITH_PLANT(one_of_many_sensors_is_split_for_alone),
+        cmocka_unit_test(a_surface_comes_back_whole),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,139 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The thread that reads instants: what it gives back is what was recorded; the newest wish of a client counts. */
+#include "service/history_loader.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdio.h>
+
+#include <cmocka.h>
+
+#include "base/clock.h"
+#include "base/mem.h"
+#include "history/history.h"
+#include "history/month.h"
+#include "tests/support/plant_by_hand.h"
+#include "tests/support/sleep.h"
+#include "tests/support/temp.h"
+#include "value/quality.h"
+
+static const int64_t BEGIN = INT64_C(1793500000) * US_PER_S;
+
+struct setup {
+    char *folder;
+    struct log *log;
+    struct plant *plant;
+    struct snapshot_cache *snapshot_cache;
+    struct history_loader *past;
+    _Atomic int notified;
+};
+
+static void on_answer(void *arg)
+{
+    struct setup *s = arg;
+    s->notified++;
+}
+
+/* A tag that rises by 1 each second for 50 s, and has no value for the 10 s after that. */
+static void record(struct setup *s)
+{
+    struct history_tag *tags = history_tags(s->plant);
+    struct history_point points[52];
+    int error;
+    struct month_file *file = month_file_open(s->log, s->folder, month_of(BEGIN), tags, 1, &error);
+    for (int i = 0; i <= 50; i++)
+        points[i] = (struct history_point){ BEGIN + i * US_PER_S, i, QUALITY_GOOD };
+    points[51] = (struct history_point){ BEGIN + 51 * US_PER_S, NAN, QUALITY_BAD_COMMUNICATION_ERROR };
+    assert_int_equal(month_file_import(file, 0, points, 52), 0);
+    month_file_close(&file);
+    mem_free(tags);
+}
+
+static int set_up(void **state)
+{
+    static struct setup s;
+    s = (struct setup){ .folder = temp_folder_create(), .log = log_create(LOG_ERROR), .plant = plant_by_hand_create(1) };
+    plant_by_hand_source(s.plant, "plc", 502);
+    plant_by_hand_tag(s.plant, "A", TABLE_HOLDING, 0, DATA_FLOAT32)->deadband = 0;
+    record(&s);
+    s.snapshot_cache = snapshot_cache_create();
+    const struct history_loader_params params = { s.log, s.plant, s.folder, s.snapshot_cache, on_answer, &s };
+    s.past = history_loader_create(&params);
+    *state = &s;
+    return 0;
+}
+
+static int tear_down(void **state)
+{
+    struct setup *s = *state;
+    history_loader_destroy(&s->past);
+    snapshot_cache_destroy(&s->snapshot_cache);
+    plant_by_hand_destroy(&s->plant);
+    log_destroy(&s->log);
+    temp_folder_destroy(&s->folder);
+    return 0;
+}
+
+/* What was read of the tag at that time. */
+static struct reading read_at(struct setup *s, int64_t at_us)
+{
+    int before = s->notified;
+    history_loader_ask(s->past, 7, at_us);
+    for (int i = 0; i < 1000 && s->notified == before; i++)
+        sleep_ns(10 * NS_PER_MS);
+    struct history_loader_answer *answer = history_loader_collect(s->past);
+    assert_non_null(answer);
+    assert_true(answer->good && answer->client == 7 && answer->at_us == at_us && !answer->next);
+    const struct historical_snapshot *historical = snapshot_cache_take(s->snapshot_cache, at_us);
+    assert_non_null(historical);
+    assert_true(historical->snapshot.taken_utc_ns == at_us * 1000);
+    struct reading reading = historical->snapshot.readings[0];
+    snapshot_cache_give(s->snapshot_cache, &historical);
+    mem_free(answer);
+    return reading;
+}
+
+static void test_an_instant_is_as_it_was(void **state)
+{
+    struct setup *s = *state;
+    struct reading middle = read_at(s, BEGIN + 20500000), gap = read_at(s, BEGIN + 55 * US_PER_S), before = read_at(s, BEGIN - 1);
+    assert_true(middle.quality == QUALITY_GOOD && fabs(middle.value - 20.5) < 1e-9);
+    assert_true(gap.quality == QUALITY_BAD_COMMUNICATION_ERROR && gap.age_ns == 4 * NS_PER_S);
+    assert_true(before.quality == QUALITY_BAD_WAITING);
+    assert_true(read_at(s, BEGIN + 20500000).value == middle.value);
+    assert_true(history_loader_first_us(s->past) == BEGIN);
+}
+
+static void test_only_the_newest_wish_of_a_client_counts(void **state)
+{
+    struct setup *s = *state;
+    enum { WISHES = 2000 };
+    for (int i = 1; i <= WISHES; i++)
+        history_loader_ask(s->past, 7, BEGIN + i);
+    history_loader_ask(s->past, 8, BEGIN + 5);
+    history_loader_forget(s->past, 9);
+    int64_t last_us = 0;
+    bool other = false;
+    int count = 0;
+    for (int i = 0; i < 1000 && !(other && last_us == BEGIN + WISHES); i++) {
+        for (struct history_loader_answer *answer = history_loader_collect(s->past), *next; answer; answer = next) {
+            next = answer->next;
+            other |= answer->client == 8;
+            last_us = answer->client == 7 ? answer->at_us : last_us;
+            count++;
+            mem_free(answer);
+        }
+        sleep_ns(5 * NS_PER_MS);
+    }
+    assert_true(other && last_us == BEGIN + WISHES && count < WISHES);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test_setup_teardown(test_an_instant_is_as_it_was, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(test_only_the_newest_wish_of_a_client_counts, set_up, tear_down),
+    };
+    cmocka_set_message_output(CM_OUTPUT_TAP);
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,273 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Questions about the past: what may be asked, and that answers come, in order, with the points that were recorded. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <string.h>
+#include <cmocka.h>
+#include <jansson.h>
+
+#include "base/clock.h"
+#include "base/mem.h"
+#include "base/text.h"
+#include "history/history.h"
+#include "history/month.h"
+#include "service/history_queries.h"
+#include "tests/support/plant_by_hand.h"
+#include "tests/support/sleep.h"
+#include "tests/support/temp.h"
+
+static const int64_t NOW = INT64_C(1793500000) * US_PER_S;
+
+struct setup {
+    char *folder;
+    struct log *log;
+    struct plant *plant;
+    struct history_queries *recall;
+    _Atomic int notified;
+};
+
+static void on_answer(void *arg)
+{
+    struct setup *s = arg;
+    s->notified++;
+}
+
+static int set_up(void **state)
+{
+    static struct setup s;
+    static int order[2] = { 0, 1 };
+    s.folder = temp_folder_create();
+    s.log = log_create(LOG_ERROR);
+    s.plant = plant_by_hand_create(2);
+    s.notified = 0;
+    plant_by_hand_source(s.plant, "plc", 502);
+    plant_by_hand_tag(s.plant, "A \"1\"", TABLE_HOLDING, 0, DATA_FLOAT32)->deadband = 0;
+    plant_by_hand_tag(s.plant, "B,2", TABLE_HOLDING, 2, DATA_FLOAT32)->deadband = 0;
+    s.plant->tags_by_name = order;
+    struct history_tag *tags = history_tags(s.plant);
+    int error;
+    struct month_file *file = month_file_open(s.log, s.folder, month_of(NOW), tags, 2, &error);
+    for (int i = 0; i < 50; i++)
+        assert_int_equal(month_file_import(file, 0, &(struct history_point){ NOW - (50 - i) * US_PER_S, i, 0 }, 1), 0);
+    month_file_close(&file);
+    mem_free(tags);
+    s.recall = history_queries_create(s.log, s.plant, s.folder, on_answer, &s);
+    *state = &s;
+    return 0;
+}
+
+static int tear_down(void **state)
+{
+    struct setup *s = *state;
+    history_queries_destroy(&s->recall);
+    s->plant->tags_by_name = NULL;
+    plant_by_hand_destroy(&s->plant);
+    log_destroy(&s->log);
+    temp_folder_destroy(&s->folder);
+    return 0;
+}
+
+static bool parse(struct setup *s, const char *const *args, size_t count, struct history_query *order, struct message_error *error)
+{
+    return history_query_parse(s->plant, args, count, NOW, order, error);
+}
+
+static void queries_are_judged(void **state)
+{
+    struct setup *s = *state;
+    static const struct {
+        const char *args[3], *says;
+    } bad[] = {
+        { { "from=-1h" }, "tags: expected the names" },
+        { { "tags=A \"1\",C" }, "tags: there is no tag 'C'" },
+        { { "tags=A \"1\"", "from=2026-10-25T02:30:00" }, "from: expected an instant" },
+        { { "tags=A \"1\"", "to=x" }, "to: expected an instant" },
+        { { "tags=A \"1\"", "from=-1h", "to=-2h" }, "from: expected an earlier instant" },
+        { { "tags=A \"1\"", "points=1" }, "points: expected a number from 2" },
+        { { "tags=A \"1\"", "points=1e9" }, "points: expected a number from 2" },
+        { { "tags=A \"1\"", "format=xml" }, "format: expected json or csv" },
+        { { "tags=A \"1\",A \"1\"" }, "is named twice" },
+        { { "tag=A \"1\"" }, "there is no argument 'tag'" },
+        { { "tags" }, "tags: expected the names" },
+    };
+    struct history_query order;
+    for (size_t i = 0; i < sizeof(bad) / sizeof(bad[0]); i++) {
+        struct message_error error = { 0 };
+        size_t count = 0;
+        while (count < 3 && bad[i].args[count])
+            count++;
+        if (parse(s, bad[i].args, count, &order, &error) || !strstr(error.text, bad[i].says))
+            fail_msg("'%s': '%s' is not '%s'", bad[i].args[0], error.text, bad[i].says);
+    }
+    struct message_error error = { 0 };
+    const char *const good[] = { "tags=A \"1\"", "from=-30m", "points=7", "format=csv" };
+    assert_true(parse(s, good, 4, &order, &error));
+    assert_true(order.tag_count == 1 && order.tags[0] == 0 && order.max_points == 7 && order.csv);
+    assert_true(order.from_us == NOW - 1800 * US_PER_S && order.to_us == NOW);
+}
+
+static void gaps_are_asked_by_time_alone(void **state)
+{
+    (void)state;
+    struct history_query order;
+    struct message_error error = { 0 };
+    assert_true(history_query_parse_gaps((const char *const[]){ "from=-8h", "to=-1h" }, 2, NOW, &order, &error));
+    assert_true(order.gaps && order.from_us == NOW - 8 * 3600 * US_PER_S && order.to_us == NOW - 3600 * US_PER_S);
+    assert_false(history_query_parse_gaps((const char *const[]){ "tags=A" }, 1, NOW, &order, &error));
+    assert_false(history_query_parse_gaps((const char *const[]){ "to" }, 1, NOW, &order, &error));
+    assert_false(history_query_parse_gaps((const char *const[]){ "from=noon" }, 1, NOW, &order, &error));
+    assert_false(history_query_parse_gaps((const char *const[]){ "from=-1h", "to=-2h" }, 2, NOW, &order, &error));
+}
+
+static struct history_answer *wait_for(struct setup *s, int count)
+{
+    for (int i = 0; i < 1000 && s->notified < count; i++)
+        sleep_ns(10 * NS_PER_MS);
+    assert_int_equal(s->notified, count);
+    return history_queries_collect(s->recall);
+}
+
+static void answers_hold_what_was_recorded(void **state)
+{
+    struct setup *s = *state;
+    struct history_query order = { .client = 7, .tags = { 0, 1 }, .tag_count = 2, .max_points = 100 };
+    order.from_us = NOW - 20 * US_PER_S;
+    order.to_us = NOW;
+    assert_true(history_queries_ask(s->recall, &order));
+    struct history_answer *answer = wait_for(s, 1);
+    assert_int_equal(answer->client, 7);
+    json_t *root = json_loads(answer->text, 0, NULL);
+    assert_non_null(root);
+    json_t *series = json_object_get(root, "series"), *first = json_array_get(series, 0);
+    assert_int_equal(json_array_size(series), 2);
+    assert_string_equal(json_string_value(json_object_get(first, "tag")), "A \"1\"");
+    json_t *points = json_object_get(first, "points");
+    assert_int_equal(json_array_size(points), 20);
+    for (size_t i = 0; i < 20; i++) {
+        assert_true(json_integer_value(json_array_get(json_array_get(points, i), 0)) == NOW - (20 - (int64_t)i) * US_PER_S);
+        assert_true(json_number_value(json_array_get(json_array_get(points, i), 1)) == 30.0 + (double)i);
+    }
+    assert_int_equal(json_array_size(json_object_get(json_array_get(series, 1), "points")), 0);
+    json_decref(root);
+    assert_true(answer->first && answer->last);
+    history_answer_free(&answer);
+}
+
+static void csv_has_quotes_where_it_needs_them(void **state)
+{
+    struct setup *s = *state;
+    struct history_query order = { .tags = { 0 }, .tag_count = 1, .max_points = 100, .csv = true };
+    order.from_us = NOW - 2 * US_PER_S;
+    order.to_us = NOW;
+    assert_true(history_queries_ask(s->recall, &order));
+    struct history_answer *answer = wait_for(s, 1);
+    assert_string_equal(answer->text, "Tag,Time,Value,Quality,Unit\r\n"
+                                      "\"A \"\"1\"\"\",2026-11-01T02:26:38.000Z,48,0x00000000,\r\n"
+                                      "\"A \"\"1\"\"\",2026-11-01T02:26:39.000Z,49,0x00000000,\r\n");
+    history_answer_free(&answer);
+}
+
+/* 20,000 points of each tag: more than goes into one piece. */
+static void record_much(struct setup *s)
+{
+    struct history_tag *tags = history_tags(s->plant);
+    int error;
+    struct month_file *file = month_file_open(s->log, s->folder, month_of(NOW), tags, 2, &error);
+    static struct history_point points[20000];
+    for (int tag = 0; tag < 2; tag++) {
+        for (int i = 0; i < 20000; i++)
+            points[i] = (struct history_point){ NOW + i * US_PER_S / 10, i / 7.0, 0 };
+        assert_int_equal(month_file_import(file, tag, points, 20000), 0);
+    }
+    month_file_close(&file);
+    mem_free(tags);
+}
+
+/* Who does not read has one piece, others have their turn, and the pieces are one answer. */
+static void long_answers_come_in_pieces(void **state)
+{
+    struct setup *s = *state;
+    struct history_query order = { .client = 7, .payer = 1, .tags = { 0, 1 }, .tag_count = 2, .max_points = 20000 };
+    struct text all = { 0 };
+    int pieces = 0;
+    record_much(s);
+    order.from_us = NOW;
+    order.to_us = NOW + 3000 * US_PER_S;
+    assert_true(history_queries_ask(s->recall, &order));
+    struct history_answer *answer = wait_for(s, ++pieces);
+    assert_true(answer->first && !answer->last && answer->length > 256 * 1024);
+    sleep_ns(50 * NS_PER_MS);
+    assert_null(history_queries_collect(s->recall)); /* nothing more before it is wanted */
+    for (;;) {
+        bool last = answer->last;
+        text_add_bytes(&all, answer->text, answer->length);
+        history_answer_free(&answer);
+        if (last)
+            break;
+        history_queries_continue(s->recall, 7);
+        answer = wait_for(s, ++pieces);
+        assert_false(answer->first);
+    }
+    json_t *root = json_loads(all.at, 0, NULL);
+    assert_int_equal(json_array_size(json_object_get(json_array_get(json_object_get(root, "series"), 1), "points")), 20000);
+    assert_int_equal(pieces, 2);
+    json_decref(root);
+    text_finish(&all);
+}
+
+static void who_is_forgotten_leaves_room(void **state)
+{
+    struct setup *s = *state;
+    struct history_query order = { .payer = 1, .tags = { 0, 1 }, .tag_count = 2, .max_points = 20000, .from_us = NOW };
+    record_much(s);
+    order.to_us = NOW + 3000 * US_PER_S;
+    for (int i = 0; i < 4 * HISTORY_QUERIES_MOST; i++) {
+        order.client = (uint64_t)i + 1;
+        assert_true(history_queries_ask(s->recall, &order));
+        if (i >= HISTORY_QUERIES_MOST - 2) /* at work, waiting, or with a piece that nobody took */
+            history_queries_forget(s->recall, order.client - HISTORY_QUERIES_MOST + 2);
+        for (struct history_answer *answer = history_queries_collect(s->recall), *next; answer; answer = next) {
+            next = answer->next;
+            history_answer_free(&answer);
+        }
+        sleep_ns(NS_PER_MS);
+    }
+}
+
+static void too_many_are_refused(void **state)
+{
+    struct setup *s = *state;
+    struct history_query order = { .tags = { 0 }, .tag_count = 1, .max_points = 100 };
+    order.from_us = NOW - 20 * US_PER_S;
+    order.to_us = NOW;
+    int taken = 0;
+    for (int i = 0; i < 10000; i++) {
+        order.client = (uint64_t)i;
+        taken += history_queries_ask(s->recall, &order);
+        if (i % 2)
+            history_queries_forget(s->recall, (uint64_t)i);
+    }
+    assert_true(taken < 10000);
+    for (struct history_answer *answer = history_queries_collect(s->recall), *next; answer; answer = next) {
+        next = answer->next;
+        history_answer_free(&answer);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test_setup_teardown(queries_are_judged, set_up, tear_down),
+        cmocka_unit_test(gaps_are_asked_by_time_alone),
+        cmocka_unit_test_setup_teardown(answers_hold_what_was_recorded, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(csv_has_quotes_where_it_needs_them, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(long_answers_come_in_pieces, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(who_is_forgotten_leaves_room, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(too_many_are_refused, set_up, tear_down),
+    };
+    cmocka_set_message_output(CM_OUTPUT_TAP);
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

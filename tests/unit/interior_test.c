@@ -1,0 +1,44 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Triangles that stand across a thin part: inside it, unless they alone join what is seen. */
+#include "surface/repair/interior.h"
+
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <cmocka.h>
+
+/* A ring of four quadrangles. One stands across a thin part: without it the others hang together, so it is inside. Of two, facing each
+   other, each joins what else does not, so they are seen. */
+static void what_alone_joins_is_seen(void **state)
+{
+    enum { AROUND = 4 };
+    (void)state;
+    for (int across = 1; across <= 2; across++) {
+        struct trimesh ring = { 0 };
+        char hidden[2 * AROUND] = { 0 };
+        for (int i = 0; i < 2 * AROUND; i++)
+            trimesh_add_point(&ring, (const double[3]){ cos(i / 2 * M_PI / 2), sin(i / 2 * M_PI / 2), i % 2 });
+        for (uint32_t i = 0; i < AROUND; i++) {
+            uint32_t low = 2 * i, next = 2 * ((i + 1) % AROUND);
+            trimesh_add_tri(&ring, low, next, low + 1, 0);
+            trimesh_add_tri(&ring, next, next + 1, low + 1, 0);
+        }
+        for (int i = 0; i < across; i++)
+            hidden[4 * i] = hidden[4 * i + 1] = INTERIOR_ACROSS;
+        interior_resolve_across(&ring, hidden);
+        for (int t = 0; t < 2 * AROUND; t++)
+            assert_int_equal(hidden[t], across == 1 && t < 2 ? INTERIOR_INSIDE : INTERIOR_NOT);
+        trimesh_finish(&ring);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(what_alone_joins_is_seen),
+    };
+    cmocka_set_message_output(CM_OUTPUT_TAP);
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

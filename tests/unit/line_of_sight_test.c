@@ -1,0 +1,174 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Rods near thin sheets: joined to the side that looks at them, as far as the tolerance, and never through the sheet. */
+#include "surface/repair/line_of_sight.h"
+
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <string.h>
+#include <cmocka.h>
+
+#include "base/mem.h"
+#include "surface/surface.h"
+#include "tests/support/surface_case.h"
+
+#define ACROSS 40
+#define UP 24
+#define CELL 0.025
+#define WIDE (ACROSS * CELL) /* of the sheet, m */
+#define HIGH (UP * CELL)
+#define TOLERANCE 5.5e-4    /* m: what is chosen for these, at least; */
+#define TOLERANCE_MOST 1e-3 /* as they are turned */
+#define ALONG 16            /* cells of the rod */
+#define OFF 0.02            /* m, of half a metre and more: on the wrong side it is that */
+
+struct pair { /* a sheet in z from 0 up, and a rod along x, over it or beside it */
+    struct cad cad;
+    size_t sheet_count; /* vertices; the rest is the rod's */
+    double thick, rod, source[3];
+};
+
+static void stretch(struct cad *cad, size_t from, double x, double y, double z, const double low[3])
+{
+    const double by[3] = { x, y, z };
+    for (size_t v = from; v < cad->vertex_count; v++)
+        for (int axis = 0; axis < 3; axis++)
+            cad->positions[v][axis] = (float)((double)cad->positions[v][axis] * by[axis] + low[axis]);
+}
+
+/* low: the rod's lowest corner. The source is in the middle of the side that looks away from the sheet. */
+static void make_pair(struct pair *pair, double thick, double rod, const double low[3], const double source[3])
+{
+    *pair = (struct pair){ .thick = thick, .rod = rod };
+    cad_box(&pair->cad, &chance, ACROSS, UP, 1, CELL);
+    stretch(&pair->cad, 0, 1, 1, thick / CELL, (const double[3]){ 0, 0, 0 });
+    pair->sheet_count = pair->cad.vertex_count;
+    struct cad bar = { 0 };
+    cad_box(&bar, &chance, ALONG, 1, 1, CELL);
+    stretch(&bar, 0, 1, rod / CELL, rod / CELL, low);
+    struct cad *both = &pair->cad;
+    mem_grow(&both->positions, &both->position_capacity, both->vertex_count + bar.vertex_count, sizeof(*both->positions));
+    mem_grow(&both->triangles, &both->index_capacity, 3 * (both->triangle_count + bar.triangle_count), sizeof(*both->triangles));
+    memcpy(both->positions + both->vertex_count, bar.positions, bar.vertex_count * sizeof(*bar.positions));
+    for (size_t i = 0; i < 3 * bar.triangle_count; i++)
+        both->triangles[3 * both->triangle_count + i] = (uint32_t)both->vertex_count + bar.triangles[i];
+    both->vertex_count += bar.vertex_count;
+    both->triangle_count += bar.triangle_count;
+    memcpy(pair->source, source, sizeof(pair->source));
+    cad_finish(&bar);
+}
+
+/* From p on one side of the sheet to q on its other side, over the nearest of its rims. */
+static double way_round(const struct pair *pair, const double p[3], const double q[3])
+{
+    double least = INFINITY;
+    for (int axis = 0; axis < 2; axis++)
+        for (int end = 0; end < 2; end++) {
+            double size = axis ? HIGH : WIDE, a = end ? size - p[axis] : p[axis], b = end ? size - q[axis] : q[axis];
+            least = fmin(least, hypot(a + b + pair->thick, p[!axis] - q[!axis]));
+        }
+    return least;
+}
+
+/* What distances there are to the sheet's sides, in one piece; or none, if it hangs apart. beside: the rod lies along a rim. */
+static void test_pair(const char *name, const struct pair *pair, bool below, bool beside, size_t pieces)
+{
+    static const enum cad_fault faults[] = { CAD_CLEAN, CAD_SOUP, CAD_REPEATED }; /* gaps are as wide as the sheet is thick */
+    for (size_t i = 0; i < sizeof(faults) / sizeof(faults[0]); i++) {
+        struct cad broken;
+        struct cad_place place;
+        uint32_t *vertex_of = mem_array(pair->cad.vertex_count, sizeof(*vertex_of));
+        double source[1][3], worst[2] = { 0, 0 };
+        cad_random_place(&place, &chance);
+        for (int axis = 0; axis < 3; axis++) {
+            const double *row = place.rotation + 3 * axis, *p = pair->source;
+            source[0][axis] = place.scale * (row[0] * p[0] + row[1] * p[1] + row[2] * p[2]) + place.move[axis];
+        }
+        cad_break(&broken, &pair->cad, faults[i], &chance, vertex_of);
+        cad_put(&broken, &place);
+        struct surface *surface = surface_create(the_log, workers, (const float(*)[3])broken.positions, broken.vertex_count,
+                                                 broken.triangles, broken.triangle_count, &(struct surface_params){ 0 });
+        float *found = mem_array(broken.vertex_count, sizeof(*found));
+        assert_non_null(surface);
+        assert_true(surface_distances(surface, (const double(*)[3])source, 1, found));
+        double tolerance = surface_report(surface)->tolerance_m / place.scale;
+        assert_true(tolerance > TOLERANCE && tolerance < TOLERANCE_MOST);
+        for (size_t v = 0; v < pair->sheet_count; v++) {
+            const float *p = pair->cad.positions[v];
+            const double q[3] = { (double)p[0], (double)p[1], (double)p[2] }, off = hypot(q[0] - pair->source[0], q[1] - pair->source[1]);
+            bool far_side = !beside && (q[2] > pair->thick / 2) == below;
+            double truth = far_side ? way_round(pair, pair->source, q) : off, metres = (double)found[vertex_of[v]] / place.scale;
+            if (pieces == 1)
+                worst[far_side] = fmax(worst[far_side], fabs(metres - truth));
+            else
+                assert_false(isfinite(metres));
+        }
+        print_message("# %-30s %-17s %zu pieces, near side errs by %.4f m at most, far side by %.4f m\n", name, cad_fault_names[faults[i]],
+                      surface_report(surface)->components_after, worst[0], worst[1]);
+        assert_int_equal(surface_report(surface)->components_after, pieces);
+        assert_true(worst[0] < 2 * pair->rod + OFF && worst[1] < 2 * pair->rod + OFF);
+        surface_destroy(&surface);
+        cad_finish(&broken);
+        mem_free(found);
+        mem_free(vertex_of);
+    }
+}
+
+/* Half the sheet's thickness is less than the gap; to its far side, too, it is less than the tolerance. */
+static void a_rod_is_joined_to_the_side_that_looks_at_it(void **state)
+{
+    static const double gaps[] = { 0, 0.4, 0.6 }; /* tolerances */
+    (void)state;
+    for (int i = 0; i < 12; i++) {
+        struct pair pair;
+        bool below = i % 2, thin = i / 2 % 2;
+        double thick = 0.3 * TOLERANCE, rod = (thin ? 0.8 : 6) * TOLERANCE, gap = gaps[i / 4] * TOLERANCE;
+        double x = 0.25 + 0.1 * cad_random(&chance), y = 0.3 + 0.05 * cad_random(&chance), z = below ? -gap - rod : thick + gap;
+        char name[64];
+        make_pair(&pair, thick, rod, (const double[3]){ x, y, z },
+                  (const double[3]){ x + ALONG * CELL / 2, y + rod / 2, below ? z : z + rod });
+        snprintf(name, sizeof(name), "%s rod %s, gap %.2f mm", thin ? "thin" : "thick", below ? "below" : "above", 1000 * gap);
+        test_pair(name, &pair, below, false, 1);
+        cad_finish(&pair.cad);
+    }
+}
+
+static void a_rod_farther_than_the_tolerance_hangs_apart(void **state)
+{
+    (void)state;
+    for (int below = 0; below < 2; below++) {
+        struct pair pair;
+        double thick = 0.3 * TOLERANCE, rod = 6 * TOLERANCE, z = below ? -1.2 * TOLERANCE_MOST - rod : thick + 1.2 * TOLERANCE_MOST;
+        make_pair(&pair, thick, rod, (const double[3]){ 0.3, 0.3, z }, (const double[3]){ 0.45, 0.3 + rod / 2, below ? z : z + rod });
+        test_pair("rod too far off", &pair, below, false, 2);
+        cad_finish(&pair.cad);
+    }
+}
+
+/* From there both sides are as near. */
+static void a_rod_is_joined_to_the_rim(void **state)
+{
+    static const double gaps[] = { 0, 0.4, 0.8 };
+    (void)state;
+    for (int i = 0; i < 3; i++) {
+        struct pair pair;
+        double thick = 0.3 * TOLERANCE, rod = 4 * TOLERANCE, x = 0.3 + 0.1 * cad_random(&chance), y = -gaps[i] * TOLERANCE - rod;
+        make_pair(&pair, thick, rod, (const double[3]){ x, y, (thick - rod) / 2 }, (const double[3]){ x + ALONG * CELL / 2, y, thick / 2 });
+        test_pair("rod beside the rim", &pair, false, true, 1);
+        cad_finish(&pair.cad);
+    }
+}
+
+int main(void)
+{
+    cmocka_set_message_output(CM_OUTPUT_TAP);
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_rod_is_joined_to_the_side_that_looks_at_it),
+        cmocka_unit_test(a_rod_farther_than_the_tolerance_hangs_apart),
+        cmocka_unit_test(a_rod_is_joined_to_the_rim),
+    };
+    return cmocka_run_group_tests(tests, surface_case_set_up, surface_case_tear_down);
+}

@@ -1,0 +1,106 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The login throttle: when an address is slowed, for how long, and whom that does not touch. */
+#include "access/login_throttle.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "base/clock.h"
+
+static const uint8_t HERE[16] = { [10] = 0xff, 0xff, 203, 0, 113, 7 }, THERE[16] = { [10] = 0xff, 0xff, 203, 0, 113, 8 };
+static const uint8_t WALL[TOKEN_HASH_BYTES] = { 1 }, DESK[TOKEN_HASH_BYTES] = { 2 };
+static const int64_t S = NS_PER_S;
+
+static int set_up(void **state)
+{
+    *state = login_throttle_create();
+    return 0;
+}
+
+static int tear_down(void **state)
+{
+    struct login_throttle *logins = *state;
+    login_throttle_destroy(&logins);
+    return 0;
+}
+
+static void ten_wrong_tokens_within_a_minute_slow_an_address(void **state)
+{
+    struct login_throttle *logins = *state;
+    for (int i = 0; i < 9; i++)
+        assert_int_equal(login_throttle_judge(logins, HERE, NULL, i * 6 * S), LOGIN_WRONG);
+    assert_int_equal(login_throttle_failures(logins, HERE, 49 * S), 9);
+    assert_int_equal(logins_slowed(logins, 49 * S), 0);
+    assert_int_equal(login_throttle_judge(logins, HERE, NULL, 54 * S), LOGIN_WRONG_SLOWS);
+    assert_int_equal(logins_slowed(logins, 54 * S), 1);
+    assert_int_equal(login_throttle_judge(logins, HERE, NULL, 55 * S), LOGIN_HELD);
+    assert_int_equal(login_throttle_judge(logins, HERE, DESK, 58 * S), LOGIN_HELD);  /* nor is a good one told apart from a wrong one */
+    assert_int_equal(login_throttle_judge(logins, HERE, NULL, 59 * S), LOGIN_WRONG); /* one in five seconds */
+    assert_int_equal(login_throttle_judge(logins, HERE, NULL, 60 * S), LOGIN_HELD);
+    assert_int_equal(login_throttle_judge(logins, THERE, NULL, 60 * S), LOGIN_WRONG);
+    assert_int_equal(login_throttle_judge(logins, HERE, DESK, 64 * S), LOGIN_GOOD_NEW);
+    assert_int_equal(logins_slowed(logins, 118 * S), 1); /* a minute after the last wrong one */
+    assert_int_equal(logins_slowed(logins, 119 * S), 0);
+    assert_int_equal(login_throttle_judge(logins, HERE, NULL, 119 * S), LOGIN_WRONG);
+}
+
+static void ten_in_more_than_a_minute_do_not(void **state)
+{
+    struct login_throttle *logins = *state;
+    for (int i = 0; i < 100; i++)
+        assert_int_equal(login_throttle_judge(logins, HERE, NULL, i * 7 * S), LOGIN_WRONG);
+}
+
+static void who_was_let_in_before_is_not_held_up(void **state)
+{
+    struct login_throttle *logins = *state;
+    assert_int_equal(login_throttle_judge(logins, HERE, WALL, 0), LOGIN_GOOD_NEW);
+    for (int i = 0; i < 12; i++)
+        login_throttle_judge(logins, HERE, NULL, S);
+    assert_int_equal(login_throttle_judge(logins, HERE, WALL, 2 * S), LOGIN_GOOD);
+    assert_int_equal(login_throttle_judge(logins, HERE, DESK, 2 * S), LOGIN_HELD);
+    assert_int_equal(login_throttle_judge(logins, THERE, DESK, 2 * S), LOGIN_GOOD_NEW);
+}
+
+static void a_login_is_news_every_ten_minutes(void **state)
+{
+    struct login_throttle *logins = *state;
+    assert_int_equal(login_throttle_judge(logins, HERE, WALL, 0), LOGIN_GOOD_NEW);
+    assert_int_equal(login_throttle_judge(logins, HERE, DESK, S), LOGIN_GOOD_NEW);
+    assert_int_equal(login_throttle_judge(logins, HERE, WALL, 599 * S), LOGIN_GOOD);
+    assert_int_equal(login_throttle_judge(logins, HERE, WALL, 600 * S), LOGIN_GOOD_NEW);
+    assert_int_equal(login_throttle_judge(logins, HERE, WALL, 601 * S), LOGIN_GOOD);
+}
+
+/* Memory is bounded, and who is wrong now is not forgotten for those of long ago. */
+static void as_many_addresses_as_there_is_room_for(void **state)
+{
+    struct login_throttle *logins = *state;
+    uint8_t other[16] = { 0x20, 0x01 };
+    for (int i = 0; i < 3 * LOGIN_ADDRESSES; i++) {
+        other[6] = (uint8_t)(i >> 8);
+        other[7] = (uint8_t)i;
+        assert_int_equal(login_throttle_judge(logins, other, NULL, i * S / 1000), LOGIN_WRONG);
+        if (i % 300 == 0)
+            login_throttle_judge(logins, HERE, NULL, i * S / 1000);
+    }
+    assert_int_equal(logins_slowed(logins, 4 * S), 1);
+}
+
+int main(void)
+{
+    cmocka_set_message_output(CM_OUTPUT_TAP);
+#define TEST(name) cmocka_unit_test_setup_teardown(name, set_up, tear_down)
+    const struct CMUnitTest tests[] = {
+        TEST(ten_wrong_tokens_within_a_minute_slow_an_address),
+        TEST(ten_in_more_than_a_minute_do_not),
+        TEST(who_was_let_in_before_is_not_held_up),
+        TEST(a_login_is_news_every_ten_minutes),
+        TEST(as_many_addresses_as_there_is_room_for),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,226 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What was proven outlives the daemon, is void once the tag is another, and no line of it is ever lost. */
+#include "loopcheck/loop_checks.h"
+
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cmocka.h>
+
+#include "base/mem.h"
+#include "tests/support/plant_by_hand.h"
+#include "tests/support/temp.h"
+
+enum { TAGS = 3, COMPUTED = 2, NOBODY = 65534 };
+struct fixture {
+    struct log *log;
+    struct plant *plant;
+    char *folder;
+    struct loop_checks *loop_checks;
+};
+
+static int set_up(void **state)
+{
+    struct fixture *f = mem_new(sizeof(*f));
+    f->log = log_create(LOG_ERROR);
+    f->plant = plant_by_hand_create(TAGS);
+    plant_by_hand_source(f->plant, "plc", 502);
+    plant_by_hand_tag(f->plant, "TI-1", TABLE_HOLDING, 0, DATA_FLOAT32);
+    plant_by_hand_tag(f->plant, "TI-2", TABLE_HOLDING, 2, DATA_FLOAT32);
+    plant_by_hand_tag(f->plant, "SUM", TABLE_HOLDING, 4, DATA_FLOAT32)->source = -1;
+    for (int i = 0; i < TAGS; i++)
+        f->plant->tags[i].asset = -1;
+    f->plant->tags_by_name = mem_array(TAGS, sizeof(*f->plant->tags_by_name));
+    memcpy(f->plant->tags_by_name, (int[TAGS]){ COMPUTED, 0, 1 }, TAGS * sizeof(int));
+    f->folder = temp_folder_create();
+    f->loop_checks = loop_checks_open(f->log, f->plant, f->folder);
+    *state = f;
+    return 0;
+}
+
+static int tear_down(void **state)
+{
+    struct fixture *f = *state;
+    loop_checks_close(&f->loop_checks);
+    temp_folder_destroy(&f->folder);
+    mem_free(f->plant->tags_by_name);
+    plant_by_hand_destroy(&f->plant);
+    log_destroy(&f->log);
+    mem_free(f);
+    return 0;
+}
+
+static void open_again(struct fixture *f)
+{
+    loop_checks_close(&f->loop_checks);
+    f->loop_checks = loop_checks_open(f->log, f->plant, f->folder);
+}
+
+static const struct loop_check passed = { .state = LOOP_CHECK_PASSED,
+                                          .time_us = 1700000000 * INT64_C(1000000),
+                                          .value = 42,
+                                          .expected = 42.3,
+                                          .tolerance = 0.5,
+                                          .who = "Kim, \"field\"",
+                                          .remark = "calibrator 7\nline 2" };
+
+static void expect_unproven(const struct fixture *f, bool first, bool second)
+{
+    assert_int_equal(loop_checks_unproven(f->loop_checks, 0), first);
+    assert_int_equal(loop_checks_unproven(f->loop_checks, 1), second);
+    assert_false(loop_checks_unproven(f->loop_checks, COMPUTED));
+}
+
+static void test_unproven_is_said_only_once_somebody_began(void **state)
+{
+    struct fixture *f = *state;
+    assert_false(loop_checks_begun(f->loop_checks));
+    expect_unproven(f, false, false);
+    struct loop_check failed = passed;
+    failed.state = LOOP_CHECK_FAILED;
+    assert_null(loop_checks_add(f->loop_checks, 0, &failed));
+    assert_true(loop_checks_begun(f->loop_checks));
+    expect_unproven(f, true, true);
+    assert_null(loop_checks_add(f->loop_checks, 0, &passed));
+    expect_unproven(f, false, true);
+    assert_int_equal(loop_checks_number(f->loop_checks), 2);
+    assert_int_equal(loop_checks_number_of(f->loop_checks, 0), 2);
+    assert_int_equal(loop_checks_number_of(f->loop_checks, 1), 0);
+}
+
+static void test_a_proof_outlives_the_daemon(void **state)
+{
+    struct fixture *f = *state;
+    assert_null(loop_checks_add(f->loop_checks, 0, &passed));
+    open_again(f);
+    const struct loop_check *check = loop_checks_of(f->loop_checks, 0);
+    assert_int_equal(check->state, LOOP_CHECK_PASSED);
+    assert_true(check->time_us == passed.time_us);
+    assert_true(check->value == 42 && check->expected == 42.3 && check->tolerance == 0.5);
+    assert_string_equal(check->who, "Kim, \"field\"");
+    assert_string_equal(check->remark, "calibrator 7 line 2");
+    assert_int_equal(loop_checks_of(f->loop_checks, 1)->state, LOOP_CHECK_NONE);
+    expect_unproven(f, false, true);
+}
+
+static void test_a_tag_that_is_another_is_unproven_again(void **state)
+{
+    struct fixture *f = *state;
+    struct plant_tag *tag = &f->plant->tags[0], was = *tag;
+    assert_null(loop_checks_add(f->loop_checks, 0, &passed));
+    uint64_t before = loop_check_fingerprint(f->plant, 0);
+    for (int change = 0; change < 6; change++) {
+        *tag = was;
+        switch (change) {
+        case 0: tag->register_index++; break;
+        case 1: tag->byte_order = (enum byte_order)(tag->byte_order + 1); break;
+        case 2: tag->scaled_high += 1; break;
+        case 3: tag->negate = !tag->negate; break;
+        case 4: tag->position_m[1] += 0.25; break;
+        default: tag->modbus_unit++; break;
+        }
+        assert_true(loop_check_fingerprint(f->plant, 0) != before);
+        open_again(f);
+        assert_int_equal(loop_checks_of(f->loop_checks, 0)->state, LOOP_CHECK_CHANGED);
+        assert_true(loop_checks_unproven(f->loop_checks, 0));
+    }
+    *tag = was;
+    tag->strength = 3; /* how it is drawn is not what it measures */
+    open_again(f);
+    assert_int_equal(loop_checks_of(f->loop_checks, 0)->state, LOOP_CHECK_PASSED);
+}
+
+static char *read_file(const struct fixture *f)
+{
+    char *path = temp_path(f->folder, LOOP_CHECKS_FILE);
+    size_t bytes;
+    char *text = text_read_file(path, 1 << 20, &bytes);
+    assert_non_null(text);
+    mem_free(path);
+    return text;
+}
+
+static void test_a_line_that_was_cut_off_spoils_no_other(void **state)
+{
+    struct fixture *f = *state;
+    assert_null(loop_checks_add(f->loop_checks, 0, &passed));
+    char *path = temp_path(f->folder, LOOP_CHECKS_FILE), *whole = read_file(f);
+    size_t length = strlen(whole);
+    assert_null(loop_checks_add(f->loop_checks, 1, &passed));
+    char *both = read_file(f);
+    size_t end = strlen(both);
+    for (size_t cut = length; cut < end - 1; cut++) { /* at every byte of the second line */
+        assert_int_equal(truncate(path, (off_t)cut), 0);
+        open_again(f);
+        assert_int_equal(loop_checks_of(f->loop_checks, 0)->state, LOOP_CHECK_PASSED);
+        assert_int_equal(loop_checks_of(f->loop_checks, 1)->state, LOOP_CHECK_NONE);
+        assert_null(loop_checks_add(f->loop_checks, 1, &passed));
+        open_again(f);
+        assert_int_equal(loop_checks_of(f->loop_checks, 0)->state, LOOP_CHECK_PASSED);
+        assert_int_equal(loop_checks_of(f->loop_checks, 1)->state, LOOP_CHECK_PASSED);
+    }
+    mem_free(both);
+    mem_free(whole);
+    mem_free(path);
+}
+
+static void test_what_cannot_be_kept_is_refused_and_counts_for_nothing(void **state)
+{
+    struct fixture *f = *state;
+    bool root = geteuid() == 0;
+    assert_int_equal(chmod(f->folder, 0555), 0);
+    if (root)
+        assert_int_equal(seteuid(NOBODY), 0);
+    const char *why = loop_checks_add(f->loop_checks, 0, &passed);
+    if (root)
+        assert_int_equal(seteuid(0), 0);
+    assert_int_equal(chmod(f->folder, 0755), 0);
+    assert_string_equal(why, "it could not be kept on disk; the log says why");
+    assert_int_equal(loop_checks_of(f->loop_checks, 0)->state, LOOP_CHECK_NONE);
+    assert_false(loop_checks_begun(f->loop_checks));
+}
+
+static void test_the_folder_is_made_where_nobody_has_yet(void **state)
+{
+    struct fixture *f = *state;
+    assert_int_equal(rmdir(f->folder), 0);
+    assert_null(loop_checks_add(f->loop_checks, 0, &passed));
+    open_again(f);
+    assert_int_equal(loop_checks_of(f->loop_checks, 0)->state, LOOP_CHECK_PASSED);
+}
+
+static void test_all_tags_with_a_source_are_told(void **state)
+{
+    struct fixture *f = *state;
+    struct text text = { 0 };
+    assert_null(loop_checks_add(f->loop_checks, 0, &passed));
+    loop_checks_print(f->loop_checks, &text);
+    assert_int_equal(strncmp(text.at, "Time,Tag Name,Result,", 21), 0);
+    assert_non_null(strstr(text.at, "\n2023-11-14T22:13:20Z,\"TI-1\",pass,42,\"\",42.3,0.5,"
+                                    "\"Kim, \"\"field\"\"\",\"calibrator 7 line 2\","));
+    assert_non_null(strstr(text.at, "\n,\"TI-2\",none,,\"\",,,\"\",\"\","));
+    assert_null(strstr(text.at, "SUM"));
+    text_finish(&text);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test_setup_teardown(test_unproven_is_said_only_once_somebody_began, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(test_a_proof_outlives_the_daemon, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(test_a_tag_that_is_another_is_unproven_again, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(test_a_line_that_was_cut_off_spoils_no_other, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(test_what_cannot_be_kept_is_refused_and_counts_for_nothing, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(test_the_folder_is_made_where_nobody_has_yet, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(test_all_tags_with_a_source_are_told, set_up, tear_down),
+    };
+    cmocka_set_message_output(CM_OUTPUT_TAP);
+    return cmocka_run_group_tests_name("proofs", tests, NULL, NULL);
+}

@@ -1,0 +1,504 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Sensors moved on a loaded asset: the distances that plantcast-prep would store, each ask answered once, and what is refused. */
+#include "surface/relocation.h"
+
+#include <math.h>
+#include <pthread.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdatomic.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+#include <cmocka.h>
+
+#include "base/clock.h"
+#include "base/cache_file.h"
+#include "base/mem.h"
+#include "scene/asset.h"
+#include "surface/surface_store.h"
+#include "tests/support/cad.h"
+#include "tests/support/prep_case.h"
+#include "tests/support/sleep.h"
+#include "tests/support/temp.h"
+
+#define FAR 3e-3  /* of the largest distance */
+#define ON 1e-3   /* m: bridges move the surface by less */
+#define SEEN 1e-5 /* m: from the surface that is seen */
+#define NEAR 0.05 /* m: likewise, for what only coarser levels have */
+
+struct box { /* where a result comes to */
+    pthread_mutex_t lock;
+    pthread_cond_t came;
+    struct relocation_result result;
+    int count, done_count;
+};
+
+static void box_init(struct box *box)
+{
+    *box = (struct box){ .lock = PTHREAD_MUTEX_INITIALIZER, .came = PTHREAD_COND_INITIALIZER };
+}
+
+static void put_into_box(void *arg, struct relocation_result *result)
+{
+    struct box *box = arg;
+    pthread_mutex_lock(&box->lock);
+    mem_free(box->result.geodesic_m);
+    box->result = *result;
+    box->done_count += result->status == RELOCATION_DONE;
+    box->count++;
+    pthread_cond_broadcast(&box->came);
+    pthread_mutex_unlock(&box->lock);
+}
+
+static void wait_for(struct box *box, int count)
+{
+    pthread_mutex_lock(&box->lock);
+    while (box->count < count)
+        pthread_cond_wait(&box->came, &box->lock);
+    pthread_mutex_unlock(&box->lock);
+}
+
+static struct log *the_log;
+static struct workers *workers;
+
+static int set_up(void **state)
+{
+    the_log = log_create(LOG_ERROR);
+    workers = workers_create(2);
+    return prep_case_set_up(state);
+}
+
+static int tear_down(void **state)
+{
+    workers_destroy(&workers);
+    log_destroy(&the_log);
+    return prep_case_tear_down(state);
+}
+
+/* --- against plantcast-prep --------------------------------------------------------------------------------------------------- */
+
+static struct relocation_shape finest_of(const struct asset *asset)
+{
+    const struct asset_view *view = &asset->view;
+    const struct asset_level *finest = &view->levels[0];
+    const struct asset_primitive *first = &view->primitives[finest->first_primitive], *last = first + finest->primitive_count - 1;
+    return (struct relocation_shape){ .positions_m = view->positions_m,
+                                      .normals = view->normals,
+                                      .vertex_count = finest->vertex_count,
+                                      .triangles = view->indices + first->first_index,
+                                      .triangle_count = (last->first_index + last->index_count - first->first_index) / 3 };
+}
+
+static struct asset *prepared(struct prep_case *c)
+{
+    char *model = realpath("build/demo/plant.glb", NULL);
+    if (!model) {
+        print_message("# skipped: there is no build/demo/plant.glb\n");
+        skip();
+    }
+    char *yaml = mem_printf("plant: { name: Moved }\n"
+                            "assets: [{ id: E-101, model: %s, nodes: E-101, up: y }]\n"
+                            "groups: [{ id: t, unit: K, min: 0, max: 1 }]\n"
+                            "tags: tags.csv\n",
+                            model);
+    prep_case_plant(c, yaml);
+    prep_case_tags(c, "a,,,,t,E-101,,-15.83,-8.68,2.09\n"
+                      "b,,,,t,E-101,,-16.0,-7.53,2.18\n"
+                      "c,,,,t,E-101,,-16.26,-3.7057,1.1497\n");
+    prep_case_expect(c, "$PLANT --report json", 0);
+    json_t *report = prep_case_json(&c->out);
+    const char *file = json_string_value(json_object_get(json_array_get(json_object_get(report, "assets"), 0), "file"));
+    assert_non_null(file);
+    char *path = mem_printf("%s/plant.prepared/%s", c->folder, file);
+    struct asset *asset = asset_open(the_log, path);
+    assert_non_null(asset);
+    json_decref(report);
+    mem_free(path);
+    mem_free(yaml);
+    free(model);
+    return asset;
+}
+
+struct most {                      /* that distances may differ, of the largest one */
+    double mean, worst, far_share; /* far: by more than 0.3 % */
+};
+
+enum sight { UNSEEN, SEEN_FINEST, SEEN_COARSE };
+
+/* Of each vertex: what the finest level has, and what only coarser ones have, which err. Vertices on what nobody sees, inside another
+   part, are left out: plantcast-prep gives them what is near, and that is not one thing. */
+static enum sight *sights_of(const struct relocation_shape *shape)
+{
+    struct cache_file kept;
+    assert_true(cache_file_open(&kept, shape->surface_path, SURFACE_MAGIC, shape->surface_key));
+    struct surface *surface = surface_unpack(&(struct unpack){ kept.bytes, kept.count, false }, the_log, workers);
+    assert_non_null(surface);
+    enum sight *sights = mem_array(shape->vertex_count, sizeof(*sights));
+    size_t of_finest = 0, hidden = 0;
+    for (size_t i = 0; i < 3 * shape->triangle_count; i++)
+        sights[shape->triangles[i]] = SEEN_FINEST;
+    for (size_t v = 0; v < shape->vertex_count; v++) {
+        const float *p = shape->positions_m[v];
+        struct surface_point spot;
+        bool finest = sights[v] == SEEN_FINEST;
+        surface_find_point(surface, (const double[3]){ (double)p[0], (double)p[1], (double)p[2] }, NULL, &spot);
+        sights[v] = spot.distance_m >= (finest ? SEEN : NEAR) ? UNSEEN : finest ? SEEN_FINEST : SEEN_COARSE;
+        of_finest += finest;
+        hidden += finest && !sights[v];
+    }
+    print_message("# of %zu vertices of the finest level, %zu are inside another part; %zu only of others\n", of_finest, hidden,
+                  shape->vertex_count - of_finest);
+    assert_true(hidden < of_finest / 20);
+    surface_destroy(&surface);
+    cache_file_close(&kept);
+    return sights;
+}
+
+static void compare(const struct asset *asset, size_t sensor, const struct relocation_result *result, const enum sight *sights,
+                    enum sight which, const struct most *most)
+{
+    const struct asset_view *view = &asset->view;
+    const float *stored = view->geodesic_m + sensor * view->header->vertex_count;
+    double largest = 0, worst = 0, sum = 0, count = 0, far = 0;
+    for (size_t v = 0; v < view->levels[0].vertex_count; v++) {
+        assert_true(isfinite(stored[v]) == isfinite(result->geodesic_m[v]));
+        if (isfinite(stored[v]))
+            largest = fmax(largest, (double)stored[v]);
+    }
+    for (size_t v = 0; v < view->levels[0].vertex_count; v++) {
+        double error = fabs((double)stored[v] - (double)result->geodesic_m[v]);
+        if (!isfinite(stored[v]) || sights[v] != which)
+            continue;
+        worst = fmax(worst, error);
+        sum += error;
+        far += error > FAR * largest;
+        count++;
+    }
+    print_message("# sensor %zu: differs from the stored distances by %.4f %% on average, %.4f %% at most; by over %g %% at %.2f %%\n",
+                  sensor, 100 * sum / count / largest, 100 * worst / largest, 100 * FAR, 100 * far / count);
+    assert_true(sum / count < most->mean * largest);
+    assert_true(worst < most->worst * largest);
+    assert_true(far <= most->far_share * count);
+}
+
+static double distance(const float p[3], const double q[3])
+{
+    return hypot(hypot((double)p[0] - q[0], (double)p[1] - q[1]), (double)p[2] - q[2]);
+}
+
+static void try_sensors(const struct asset *asset, const struct relocation_shape *from, const enum sight *sights, const struct most most[2])
+{
+    struct relocation_shape shape = *from;
+    struct relocation *relocation = relocation_create(the_log, workers, &shape);
+    float *euclidean_m = mem_array(shape.vertex_count, sizeof(*euclidean_m));
+    struct relocation_place cold;
+    assert_true(relocation_place(relocation, (const double[3]){ 0, 0, 0 }, &cold, euclidean_m));
+    for (size_t v = 0; v < shape.vertex_count; v++)
+        assert_float_equal(euclidean_m[v], distance(shape.positions_m[v], cold.surface_m), 1e-5);
+    while (relocation_state(relocation) == RELOCATION_WARMING)
+        sleep_ns(NS_PER_MS);
+    for (size_t s = 0; s < asset->view.header->sensor_count; s++) {
+        const struct asset_sensor *sensor = &asset->view.sensors[s];
+        const double point[3] = { (double)sensor->position_m[0], (double)sensor->position_m[1], (double)sensor->position_m[2] };
+        struct relocation_place place;
+        struct box box;
+        box_init(&box);
+        assert_true(relocation_place(relocation, point, &place, euclidean_m));
+        for (int axis = 0; axis < 3; axis++)
+            assert_float_equal(place.surface_m[axis], sensor->surface_m[axis], ON);
+        assert_float_equal(place.distance_m, sensor->surface_distance_m, ON);
+        assert_float_equal(euclidean_m[sensor->nearest_vertex], 0, ON);
+        uint64_t ticket = relocation_request(relocation, point, put_into_box, &box);
+        assert_true(ticket > 0);
+        wait_for(&box, 1);
+        assert_int_equal(box.result.status, RELOCATION_DONE);
+        assert_int_equal(box.result.ticket, ticket);
+        assert_int_equal(relocation_state(relocation), RELOCATION_WARM);
+        compare(asset, s, &box.result, sights, SEEN_FINEST, &most[0]);
+        compare(asset, s, &box.result, sights, SEEN_COARSE, &most[1]);
+        mem_free(box.result.geodesic_m);
+    }
+    mem_free(euclidean_m);
+    relocation_destroy(&relocation);
+    assert_null(relocation);
+}
+
+static void a_moved_sensor_has_the_distances_that_would_be_stored(void **state)
+{
+    static const struct most as_stored[] = { { 2e-4, 0.02, 2e-3 }, { 1e-3, 0.07, 0.03 } }; /* at most where two parts lie in each other */
+    static const struct most as_made_anew[] = { { 5e-4, 0.05, 0.015 }, { 2e-3, 0.08, 0.06 } };
+    struct asset *asset = prepared(*state);
+    struct relocation_shape shape = finest_of(asset);
+    char *path = prep_case_file(*state, ".surface", &shape.surface_key);
+    shape.surface_path = path;
+    enum sight *sights = sights_of(&shape);
+    try_sensors(asset, &shape, sights, as_stored);
+    shape.surface_key++; /* another asset's, so it is not used */
+    try_sensors(asset, &shape, sights, as_made_anew);
+    mem_free(sights);
+    mem_free(path);
+    asset_unref(&asset);
+}
+
+/* --- refused, cancelled, broken ----------------------------------------------------------------------------------------------- */
+
+static struct relocation_shape shape_of(const struct cad *cad)
+{
+    return (struct relocation_shape){ .positions_m = (const float(*)[3])cad->positions,
+                                      .vertex_count = cad->vertex_count,
+                                      .triangles = cad->triangles,
+                                      .triangle_count = cad->triangle_count };
+}
+
+static void a_point_that_is_far_away_is_refused(void **state)
+{
+    struct cad plate = { 0 };
+    struct cad_random chance = { 5 };
+    struct relocation_place place;
+    struct box box;
+    (void)state;
+    box_init(&box);
+    cad_plate(&plate, &chance, 20, 20, 1, 1, 0);
+    struct relocation_shape shape = shape_of(&plate);
+    struct relocation *relocation = relocation_create(the_log, workers, &shape);
+    assert_true(relocation_place(relocation, (const double[3]){ 0.3, 0.6, 1.2 }, &place, NULL));
+    assert_float_equal(place.distance_m, 1.2, 1e-6);
+    assert_false(relocation_place(relocation, (const double[3]){ 0.3, 0.6, 1.5 }, &place, NULL)); /* the plate's diagonal is 1.41 m */
+    assert_int_equal(relocation_request(relocation, (const double[3]){ 0.3, 0.6, 1.5 }, put_into_box, &box), 0);
+    assert_int_equal(relocation_request(relocation, (const double[3]){ 0.3, NAN, 0 }, put_into_box, &box), 0);
+    assert_int_equal(relocation_request(relocation, (const double[3]){ 0.3, INFINITY, 0 }, put_into_box, &box), 0);
+    relocation_destroy(&relocation);
+    assert_int_equal(box.count, 0);
+    cad_finish(&plate);
+}
+
+static void an_asset_without_surface_is_said_to_be_broken(void **state)
+{
+    const float line[3][3] = { { 0, 0, 0 }, { 1, 0, 0 }, { 2, 0, 0 } };
+    const uint32_t flat[3] = { 0, 1, 2 };
+    struct relocation_shape shapes[2] = { { .positions_m = line, .vertex_count = 3, .triangles = flat, .triangle_count = 1 },
+                                          { .positions_m = line, .vertex_count = 3, .triangles = flat } };
+    struct relocation_place place;
+    (void)state;
+    for (int i = 0; i < 2; i++) {
+        struct box box;
+        box_init(&box);
+        struct relocation *relocation = relocation_create(the_log, workers, &shapes[i]);
+        uint64_t ticket = relocation_request(relocation, (const double[3]){ 0.5, 0.1, 0 }, put_into_box, &box);
+        assert_true((ticket > 0) == (i == 0)); /* a triangle without area is a place all the same */
+        assert_true(relocation_place(relocation, (const double[3]){ 0.5, 0.1, 0 }, &place, NULL) == (i == 0));
+        if (ticket) {
+            wait_for(&box, 1);
+            assert_int_equal(box.result.status, RELOCATION_NO_SURFACE);
+            assert_null(box.result.geodesic_m);
+            assert_int_equal(relocation_state(relocation), RELOCATION_BROKEN);
+        }
+        relocation_destroy(&relocation);
+    }
+}
+
+/* --- where memory runs out ----------------------------------------------------------------------------------------------------- */
+
+static atomic_int until_fault; /* the so-manyth array that may fail does; 0: none */
+void *__real_mem_try_array(size_t count, size_t bytes_each);
+void *__wrap_mem_try_array(size_t count, size_t bytes_each);
+void *__wrap_mem_try_array(size_t count, size_t bytes_each)
+{
+    int before = atomic_load(&until_fault);
+    while (before > 0 && !atomic_compare_exchange_weak(&until_fault, &before, before - 1))
+        ;
+    return before == 1 ? NULL : __real_mem_try_array(count, bytes_each);
+}
+
+static void wait_until_warm(struct relocation *relocation)
+{
+    while (relocation_state(relocation) == RELOCATION_WARMING)
+        sleep_ns(NS_PER_MS);
+}
+
+static void ask_and_wait(struct relocation *relocation, struct box *box)
+{
+    box_init(box);
+    assert_true(relocation_request(relocation, (const double[3]){ 0.25, 0.5, 0 }, put_into_box, box) > 0);
+    wait_for(box, 1);
+}
+
+/* Each array of a walk fails once; then the next ask is answered as ever. */
+static void try_walks_without_memory(struct relocation *relocation, const struct cad *plate)
+{
+    int failed = 0;
+    for (int n = 1;; n++) {
+        struct box box;
+        atomic_store(&until_fault, n);
+        ask_and_wait(relocation, &box);
+        bool reached = atomic_exchange(&until_fault, 0) == 0;
+        assert_int_equal(relocation_state(relocation), RELOCATION_WARM);
+        assert_int_equal(box.result.status, reached ? RELOCATION_NO_MEMORY : RELOCATION_DONE);
+        assert_true((box.result.geodesic_m != NULL) == !reached);
+        for (size_t v = 0; !reached && v < plate->vertex_count; v++)
+            assert_float_equal(box.result.geodesic_m[v], hypot((double)plate->positions[v][0] - 0.25, (double)plate->positions[v][1] - 0.5),
+                               1e-4);
+        mem_free(box.result.geodesic_m);
+        if (!reached)
+            break;
+        failed++;
+    }
+    print_message("# a walk asks for memory %d times, and survives each that fails\n", failed);
+    assert_true(failed >= 3);
+}
+
+static void without_memory_it_says_so_and_goes_on(void **state)
+{
+    struct prep_case *c = *state;
+    struct cad plate = { 0 };
+    struct cad_random chance = { 8 };
+    struct text packed = { 0 };
+    struct log *quiet = log_create(LOG_ERROR + 1);
+    cad_plate(&plate, &chance, 20, 20, 1, 1, 0);
+    struct relocation_shape shape = shape_of(&plate);
+    struct surface *surface = surface_create(quiet, NULL, shape.positions_m, shape.vertex_count, shape.triangles, shape.triangle_count,
+                                             &(struct surface_params){ 0 });
+    char *path = temp_path(c->folder, "plate.surface");
+    surface_pack(surface, &packed);
+    assert_int_equal(cache_file_write(path, SURFACE_MAGIC, 7, packed.at, packed.length), 0);
+    for (int kept = 0; kept < 2; kept++) {
+        int broken = 0, warm = 0;
+        shape.surface_path = kept ? path : NULL;
+        shape.surface_key = 7;
+        for (bool reached = true; reached;) {
+            struct box box;
+            atomic_store(&until_fault, broken + warm + 1);
+            struct relocation *relocation = relocation_create(quiet, workers, &shape);
+            wait_until_warm(relocation);
+            reached = atomic_exchange(&until_fault, 0) == 0;
+            ask_and_wait(relocation, &box);
+            assert_int_equal(box.result.status, relocation_state(relocation) == RELOCATION_WARM ? RELOCATION_DONE : RELOCATION_NO_SURFACE);
+            assert_true(reached || relocation_state(relocation) == RELOCATION_WARM);
+            broken += reached && relocation_state(relocation) == RELOCATION_BROKEN;
+            warm += reached && relocation_state(relocation) == RELOCATION_WARM; /* the kept surface was too large: it is made anew */
+            mem_free(box.result.geodesic_m);
+            if (!reached)
+                try_walks_without_memory(relocation, &plate);
+            relocation_destroy(&relocation);
+        }
+        print_message("# getting warm asks for memory %d times: broken %d times without\n", broken + warm, broken);
+        assert_true(kept ? warm >= 10 : broken >= 1);
+    }
+    surface_destroy(&surface);
+    text_finish(&packed);
+    mem_free(path);
+    cad_finish(&plate);
+    log_destroy(&quiet);
+}
+
+static void hold(void *arg)
+{
+    pthread_mutex_lock(arg);
+    pthread_mutex_unlock(arg);
+}
+
+static void what_waits_is_cancelled(void **state)
+{
+    struct cad plate = { 0 };
+    struct cad_random chance = { 6 };
+    struct box kept, cancelled, dropped;
+    pthread_mutex_t gate = PTHREAD_MUTEX_INITIALIZER;
+    (void)state;
+    box_init(&kept);
+    box_init(&cancelled);
+    box_init(&dropped);
+    cad_plate(&plate, &chance, 40, 40, 1, 1, 0);
+    struct relocation_shape shape = shape_of(&plate);
+    struct workers *one = workers_create(1);
+    pthread_mutex_lock(&gate);
+    workers_submit(one, hold, &gate); /* nothing gets warm as long as the gate is shut */
+    struct relocation *relocation = relocation_create(the_log, one, &shape);
+    uint64_t first = relocation_request(relocation, (const double[3]){ 0.5, 0.5, 0 }, put_into_box, &cancelled);
+    relocation_request(relocation, (const double[3]){ 0.25, 0.5, 0 }, put_into_box, &kept);
+    assert_int_equal(relocation_state(relocation), RELOCATION_WARMING);
+    relocation_cancel(relocation, first);
+    assert_int_equal(cancelled.count, 1);
+    assert_int_equal(cancelled.result.status, RELOCATION_CANCELLED);
+    relocation_cancel(relocation, first); /* once more: nothing */
+    relocation_cancel(relocation, 77);
+    pthread_mutex_unlock(&gate);
+    wait_for(&kept, 1);
+    assert_int_equal(kept.result.status, RELOCATION_DONE);
+    for (size_t v = 0; v < plate.vertex_count; v++)
+        assert_float_equal(kept.result.geodesic_m[v], hypot((double)plate.positions[v][0] - 0.25, (double)plate.positions[v][1] - 0.5),
+                           1e-4);
+    pthread_mutex_lock(&gate);
+    workers_submit(one, hold, &gate);
+    relocation_request(relocation, (const double[3]){ 0.5, 0.5, 0 }, put_into_box, &dropped);
+    pthread_mutex_unlock(&gate);
+    relocation_destroy(&relocation); /* answers before it returns, one way or the other */
+    assert_int_equal(dropped.count, 1);
+    assert_int_equal(cancelled.count, 1);
+    workers_destroy(&one);
+    mem_free(kept.result.geodesic_m);
+    mem_free(dropped.result.geodesic_m);
+    cad_finish(&plate);
+}
+
+struct crowd {
+    struct relocation *relocation;
+    struct box *box;
+    uint64_t seed;
+};
+
+static void *drag(void *arg)
+{
+    struct crowd *crowd = arg;
+    struct cad_random chance = { crowd->seed };
+    for (int i = 0; i < 50; i++) {
+        const double point[3] = { cad_random(&chance), cad_random(&chance), 0 };
+        uint64_t ticket = relocation_request(crowd->relocation, point, put_into_box, crowd->box);
+        assert_true(ticket > 0);
+        if (i % 3 == 0)
+            relocation_cancel(crowd->relocation, ticket);
+    }
+    return NULL;
+}
+
+static void every_ask_is_answered_once(void **state)
+{
+    struct cad plate = { 0 };
+    struct cad_random chance = { 7 };
+    struct box box;
+    pthread_t threads[3];
+    struct crowd crowds[3];
+    (void)state;
+    box_init(&box);
+    cad_plate(&plate, &chance, 30, 30, 1, 1, 0);
+    struct relocation_shape shape = shape_of(&plate);
+    struct relocation *relocation = relocation_create(the_log, workers, &shape);
+    for (int i = 0; i < 3; i++) {
+        crowds[i] = (struct crowd){ relocation, &box, 11 + (uint64_t)i };
+        assert_int_equal(pthread_create(&threads[i], NULL, drag, &crowds[i]), 0);
+    }
+    for (int i = 0; i < 3; i++)
+        pthread_join(threads[i], NULL);
+    wait_for(&box, 150);
+    relocation_destroy(&relocation);
+    assert_int_equal(box.count, 150);
+    assert_true(box.done_count >= 150 - 3 * 17);
+    mem_free(box.result.geodesic_m);
+    cad_finish(&plate);
+}
+
+int main(void)
+{
+    cmocka_set_message_output(CM_OUTPUT_TAP);
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_moved_sensor_has_the_distances_that_would_be_stored),
+        cmocka_unit_test(a_point_that_is_far_away_is_refused),
+        cmocka_unit_test(an_asset_without_surface_is_said_to_be_broken),
+        cmocka_unit_test(without_memory_it_says_so_and_goes_on),
+        cmocka_unit_test(what_waits_is_cancelled),
+        cmocka_unit_test(every_ask_is_answered_once),
+    };
+    return cmocka_run_group_tests(tests, set_up, tear_down);
+}

@@ -1,0 +1,121 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Seams between faces that have gaps: each gap is closed with what is across it, and not with what it runs over. */
+#include "surface/repair/repair.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <string.h>
+#include <cmocka.h>
+
+#include "base/mem.h"
+
+#define GAP_M 0.0002f
+#define TOLERANCE_M 0.001
+
+enum { QUADS = 6, BELOW = 2 }; /* two of a sheet, and four of one that lies on it */
+
+static size_t open_edges(const struct trimesh *mesh)
+{
+    size_t open = 0;
+    for (size_t t = 0; t < mesh->tri_count; t++)
+        for (int i = 0; i < 3; i++) {
+            uint32_t a = mesh->tris[t][i], b = mesh->tris[t][(i + 1) % 3], faces = 0;
+            for (size_t u = 0; u < mesh->tri_count; u++)
+                for (int j = 0; j < 3; j++) {
+                    uint32_t c = mesh->tris[u][j], d = mesh->tris[u][(j + 1) % 3];
+                    faces += (a == c && b == d) || (a == d && b == c);
+                }
+            open += faces == 1;
+        }
+    return open;
+}
+
+/* Whether a point of the lower sheet is one of the upper sheet as well. */
+static bool sheets_share(const struct trimesh *mesh)
+{
+    bool share = false;
+    for (size_t t = 0; t < 3 * mesh->tri_count; t++)
+        for (size_t u = 0; u < 3 * mesh->tri_count; u++)
+            share = share || (mesh->tri_source[t / 3] < 2 * BELOW && mesh->tri_source[u / 3] >= 2 * BELOW &&
+                              mesh->tris[t / 3][t % 3] == mesh->tris[u / 3][u % 3]);
+    return share;
+}
+
+/* Below, a gap runs up, its left side at x = 0. Above, two gaps cross, and two of the four corners there lie just on that side. */
+static void a_gap_is_not_set_into_one_that_it_runs_over(void **state)
+{
+    static const float corners[QUADS][8] = {
+        { -2, -3, 0, -3, 0, 3, -2, 3 },                        /* below: left */
+        { GAP_M, -3, 2, -3, 2, 3, GAP_M, 3 },                  /* right */
+        { -1, -1, -0.5f, -1, 0, 0, -1, 0 },                    /* above: left, near */
+        { -1, GAP_M, 0, GAP_M, 0.5f, 1, -1, 1 },               /* left, far */
+        { -0.5f + GAP_M, -1, 1, -1, 1, 0, 2 * GAP_M, 0 },      /* right, near */
+        { 2 * GAP_M, GAP_M, 1, GAP_M, 1, 1, 0.5f + GAP_M, 1 }, /* right, far */
+    };
+    float positions[4 * QUADS][3] = { { 0 } };
+    uint32_t triangles[6 * QUADS], vertex_point[4 * QUADS], target[4 * QUADS];
+    struct trimesh mesh = { 0 };
+    struct repair_report report = { 0 };
+    size_t degenerate = 0, repeated = 0;
+    (void)state;
+    for (int i = 0; i < 4 * QUADS; i++)
+        memcpy(positions[i], corners[i / 4] + 2 * (i % 4), 2 * sizeof(float));
+    for (uint32_t i = 0; i < 6 * QUADS; i++)
+        triangles[i] = 4 * (i / 6) + (const uint32_t[6]){ 0, 1, 2, 0, 2, 3 }[i % 6];
+    assert_true(
+        trimesh_weld(&mesh, (const float(*)[3])positions, 4 * QUADS, triangles, 2 * QUADS, 1e-6, vertex_point, &degenerate, &repeated));
+    repair_seams(&mesh, TOLERANCE_M, target, &report);
+    assert_false(sheets_share(&mesh));
+    assert_int_equal(open_edges(&mesh), 6 + 8);
+    mem_free(report.made);
+    trimesh_finish(&mesh);
+}
+
+/* Two faces at a gap along x = 0, and two just on them that fit those to the left, all cut along the gap: left closes with right, not with
+   what lies on it. */
+static void a_gap_is_closed_across_not_with_what_lies_on_it(void **state)
+{
+    static const float corners[4][8] = {
+        { -1, 0, 0, 0, 0, 1, -1, 1 },
+        { GAP_M, 0, 1, 0, 1, 1, GAP_M, 1 },
+        { -1, 0, 0, 0, 0, 1, -1, 1 },
+        { GAP_M, 0, 1, 0, 1, 1, GAP_M, 1 },
+    };
+    float positions[16][3] = { { 0 } };
+    uint32_t triangles[24], vertex_point[16], target[16];
+    struct trimesh mesh = { 0 };
+    struct repair_report report = { 0 };
+    size_t degenerate = 0, repeated = 0;
+    (void)state;
+    for (uint32_t q = 0; q < 4; q++) {
+        static const uint32_t turned[2][6] = { { 0, 1, 2, 0, 2, 3 }, { 0, 1, 3, 1, 2, 3 } };
+        for (int i = 0; i < 8; i++)
+            positions[4 * q + (uint32_t)i / 2][i % 2] = corners[q][i];
+        for (int i = 0; i < 4 && q >= 2; i++)
+            positions[4 * q + (uint32_t)i][2] = (float)(0.005 * TOLERANCE_M); /* it "fits exactly" */
+        for (int i = 0; i < 6; i++)
+            triangles[6 * q + (uint32_t)i] = 4 * q + turned[q / 2][i];
+    }
+    assert_true(trimesh_weld(&mesh, (const float(*)[3])positions, 16, triangles, 8, 1e-9, vertex_point, &degenerate, &repeated));
+    repair_seams(&mesh, TOLERANCE_M, target, &report);
+    for (int i = 0; i < 2; i++) { /* what is at the gap's ends is one */
+        static const uint32_t ends[2][4] = { { 1, 4, 9, 12 }, { 2, 7, 10, 15 } };
+        for (int j = 1; j < 4; j++)
+            assert_int_equal(target[vertex_point[ends[i][j]]], target[vertex_point[ends[i][0]]]);
+    }
+    assert_int_equal(open_edges(&mesh), 0);
+    mem_free(report.made);
+    trimesh_finish(&mesh);
+}
+
+int main(void)
+{
+    cmocka_set_message_output(CM_OUTPUT_TAP);
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_gap_is_not_set_into_one_that_it_runs_over),
+        cmocka_unit_test(a_gap_is_closed_across_not_with_what_lies_on_it),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,141 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Gaps on a plate whose distances and areas can be counted by hand, and against a plain sum over its vertices. */
+#include "placing/sensor_coverage.h"
+
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "tests/support/toy.h"
+
+enum { CELLS = 40, SENSORS = 3 };
+static const double side_m = 4, sensors[SENSORS][3] = { { 0, 0, 0 }, { 4, 0, 0 }, { 4, 1.1, 0 } };
+
+static int set_up(void **state)
+{
+    struct toy *toy = toy_create();
+    struct shape shape = { 0 };
+    shape_plate(&shape, TOY_STEEL, (double[3]){ 0, 0, 0 }, (double[3]){ side_m, 0, 0 }, (double[3]){ 0, side_m, 0 }, CELLS);
+    toy_add(toy, "PLATE", &shape, (double[3]){ 100, 0, 7 }, sensors, SENSORS);
+    shape_plate(&shape, TOY_STEEL, (double[3]){ 0, 0, 0 }, (double[3]){ 1, 0, 0 }, (double[3]){ 0, 1, 0 }, 2);
+    toy_add(toy, "BARE", &shape, (double[3]){ 200, 0, 0 }, NULL, 0);
+    *state = toy;
+    return 0;
+}
+
+static int tear_down(void **state)
+{
+    struct toy *toy = *state;
+    toy_destroy(&toy);
+    return 0;
+}
+
+static struct sensor_coverage find(const struct toy *toy, double reach_m, double far_m, const uint8_t good[SENSORS])
+{
+    struct sensor_coverage gaps;
+    assert_true(sensor_coverage_find(
+        &(struct sensor_coverage_query){
+            .scene = &toy->scene, .mode = DISTANCE_EUCLIDEAN, .reach_m = reach_m, .far_m = far_m, .good = good },
+        &gaps));
+    return gaps;
+}
+
+/* The share of the plate for which f holds: each vertex for its part of the square metres. */
+static double share_of(bool (*f)(const double nearest[2], double limit_m), double limit_m)
+{
+    double hit = 0, all = 0;
+    for (int i = 0; i <= CELLS; i++)
+        for (int j = 0; j <= CELLS; j++) {
+            double x = side_m * i / CELLS, y = side_m * j / CELLS, nearest[2] = { INFINITY, 0 };
+            int inside = (i > 0 && i < CELLS) + (j > 0 && j < CELLS);
+            double triangles = inside ? 3 * inside : 1.5; /* a corner has one or two */
+            for (int s = 0; s < SENSORS; s++) {
+                double m = hypot(x - sensors[s][0], y - sensors[s][1]);
+                if (m <= nearest[0]) { /* of two as near, one that can be used */
+                    nearest[0] = m;
+                    nearest[1] = s;
+                }
+            }
+            all += triangles;
+            hit += f(nearest, limit_m) ? triangles : 0;
+        }
+    return hit / all;
+}
+
+static bool is_far(const double nearest[2], double limit_m)
+{
+    return nearest[0] > limit_m + 1e-6;
+}
+
+static bool is_lost(const double nearest[2], double limit_m)
+{
+    return nearest[0] > limit_m + 1e-6 || nearest[1] == 0;
+}
+
+static void test_the_farthest_place_and_the_next_sensor(void **state)
+{
+    struct sensor_coverage gaps = find(*state, INFINITY, 0, (uint8_t[SENSORS]){ 1, 1, 1 });
+    assert_int_equal(gaps.sensors, SENSORS);
+    assert_true(fabs(gaps.farthest_m - hypot(1, 4)) < 1e-6); /* of (1, 4), from the first; the third is hardly farther */
+    assert_true(fabs(gaps.farthest_at_m[0] - 101) < 1e-5 && fabs(gaps.farthest_at_m[1] - 4) < 1e-5);
+    assert_true(fabs(gaps.farthest_at_m[2] - 7) < 1e-5);
+    assert_true(fabs(gaps.next_m - 4) < 1e-6); /* the first from the second; those two are 1.1 m apart */
+    assert_int_equal(gaps.next_tags[0], 0);
+    assert_int_equal(gaps.next_tags[1], 1);
+    assert_true(fabs(gaps.far_m - side_m * sqrt(2) / 5) < 1e-6); /* a fifth of its size */
+    assert_true(gaps.lost_share == 0);
+}
+
+static void test_shares_are_of_the_area(void **state)
+{
+    static const double limits_m[] = { 0.53, 1.03, 2.27, 3.73 };
+    for (int i = 0; i < 4; i++) {
+        struct sensor_coverage gaps = find(*state, INFINITY, limits_m[i], (uint8_t[SENSORS]){ 1, 1, 1 });
+        assert_true(fabs(gaps.far_share - share_of(is_far, limits_m[i])) < 1e-3);
+        assert_true(gaps.far_m == limits_m[i]);
+        gaps = find(*state, limits_m[i], 0, (uint8_t[SENSORS]){ 0, 1, 1 });
+        assert_true(fabs(gaps.lost_share - share_of(is_lost, limits_m[i])) < 1e-3);
+        assert_true(fabs(gaps.far_m - limits_m[i] / 2) < 1e-12); /* half of the reach */
+    }
+    assert_true(find(*state, INFINITY, 0, (uint8_t[SENSORS]){ 0 }).lost_share == 1);
+}
+
+static void test_a_sensor_that_is_tried_out_counts(void **state)
+{
+    struct toy *toy = *state;
+    struct trial trial = { .id = 1, .count = 1, .sensors = { { .tag = 2, .asset = 0, .surface_m = { 0, 4, 0 }, .number = 1 } } };
+    struct sensor_coverage_query order = {
+        .scene = &toy->scene, .trial = &trial, .mode = DISTANCE_EUCLIDEAN, .reach_m = INFINITY, .good = (uint8_t[SENSORS]){ 1, 1, 1 }
+    };
+    struct sensor_coverage gaps;
+    trial.sensors[0].vertex = CELLS * (CELLS + 1);
+    trial.sensors[0].place_m[0] = 100;
+    assert_true(sensor_coverage_find(&order, &gaps));
+    assert_true(fabs(gaps.farthest_m - 4) < 1e-6 && fabs(gaps.farthest_at_m[0] - 104) < 1e-5); /* the corner that nobody has now */
+    trial.sensors[0].asset = 1; /* it goes to the other one, which has none of its own */
+    order.asset = 1;
+    trial.sensors[0].vertex = 0;
+    memset(trial.sensors[0].surface_m, 0, sizeof(trial.sensors[0].surface_m));
+    assert_true(sensor_coverage_find(&order, &gaps));
+    assert_int_equal(gaps.sensors, 1);
+    assert_int_equal(gaps.next_tags[0], -1);
+    order.trial = NULL;
+    assert_false(sensor_coverage_find(&order, &gaps));
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test_setup_teardown(test_the_farthest_place_and_the_next_sensor, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(test_shares_are_of_the_area, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(test_a_sensor_that_is_tried_out_counts, set_up, tear_down),
+    };
+    cmocka_set_message_output(CM_OUTPUT_TAP);
+    return cmocka_run_group_tests_name("gaps", tests, NULL, NULL);
+}

@@ -1,0 +1,153 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What a sample of a level's triangles says about how many it will need. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <cmocka.h>
+
+#include "base/mem.h"
+#include "preprocess/subdivision/subdiv_impl.h"
+#include "tests/support/cad.h"
+
+#define BLOCK 8u
+#define TRIANGLES 24000u
+#define PARTS 3u
+
+static struct cad_random chance;
+
+static int set_up(void **state)
+{
+    (void)state;
+    cad_random_start(&chance);
+    return 0;
+}
+
+/* Triangle t has the vertices 3 t to 3 t + 2. */
+static void make_level(struct level *level)
+{
+    *level = (struct level){ .index_count = 3 * TRIANGLES, .primitive_count = PARTS };
+    level->indices = mem_array(level->index_count, sizeof(*level->indices));
+    level->primitives = mem_array(PARTS, sizeof(*level->primitives));
+    for (uint32_t i = 0; i < level->index_count; i++)
+        level->indices[i] = i;
+    for (uint32_t p = 0; p < PARTS; p++) {
+        uint32_t first = p * (TRIANGLES / PARTS) + (p ? 3 : 0), end = p + 1 == PARTS ? TRIANGLES : (p + 1) * (TRIANGLES / PARTS) + 3;
+        level->primitives[p] = (struct asset_primitive){ .first_index = 3 * first, .index_count = 3 * (end - first), .material = p };
+    }
+}
+
+static void a_sample_is_some_neighbours_of_every_part(void **state)
+{
+    struct level level, sample;
+    (void)state;
+    make_level(&level);
+    size_t blocks = subdiv_take_sample(&sample, &level);
+    assert_int_equal(sample.index_count, 3 * BLOCK * blocks);
+    assert_in_range(blocks, TRIANGLES / BLOCK / 11, TRIANGLES / BLOCK / 6);
+    assert_int_equal(sample.primitive_count, PARTS);
+    for (uint32_t p = 0; p < PARTS; p++) {
+        const struct asset_primitive *of = &level.primitives[p], *from = &sample.primitives[p];
+        assert_int_equal(from->material, p);
+        assert_in_range(from->index_count, of->index_count / 14, of->index_count / 5);
+        for (uint32_t i = 0; i < from->index_count; i++) {
+            uint32_t v = sample.indices[from->first_index + i];
+            assert_in_range(v, of->first_index, of->first_index + of->index_count - 1);
+            assert_true(i % (3 * BLOCK) == 0 || v == sample.indices[from->first_index + i - 1] + 1);
+        }
+    }
+    level_finish(&level);
+    level_finish(&sample);
+}
+
+/* With an edge for each corner that errs so often as much as it may; [triangle of the level]. */
+static void take_in_hand(struct subdiv *split, const struct level *level, const float *errors)
+{
+    size_t count = level->index_count / 3;
+    split->mesh.tri_count = count;
+    split->mesh.tris = mem_array(count, sizeof(*split->mesh.tris));
+    split->mesh.cuts = mem_array(3 * count, sizeof(*split->mesh.cuts));
+    for (uint32_t t = 0; t < count; t++) {
+        split->mesh.tris[t].origin = t;
+        for (uint32_t i = 0; i < 3; i++) {
+            split->mesh.tris[t].e[i] = 3 * t + i;
+            split->mesh.cuts[3 * t + i].error = (float)SUBDIV_AIM * errors[level->indices[3 * t] / 3];
+        }
+    }
+}
+
+static bool comes_to(struct subdiv *split, double most)
+{
+    split->most_tris = (size_t)most;
+    return subdiv_will_exceed_bound(split);
+}
+
+static void release(struct subdiv *split)
+{
+    mem_free(split->mesh.tris);
+    mem_free(split->mesh.cuts);
+}
+
+/* An edge that errs e times too much needs the logarithm of e to base 4 cuts, rounded up. */
+static void a_sample_says_what_the_level_needs(void **state)
+{
+    struct level level, sample;
+    float *errors = mem_array(TRIANGLES, sizeof(*errors));
+    double needed = 0;
+    (void)state;
+    make_level(&level);
+    for (uint32_t t = 0; t < TRIANGLES; t++) {
+        errors[t] = (float)exp(7 * cad_random(&chance) - 2);
+        needed += 1 + 3 * (errors[t] > 1 ? ceil(log((double)errors[t]) / log(4)) : 0);
+    }
+    size_t blocks = subdiv_take_sample(&sample, &level);
+    const struct subdiv_input alone = { .workers = NULL };
+    struct subdiv whole = { .in = &alone }, part = { .sample_blocks = blocks, .sample_of = (double)level.index_count / sample.index_count };
+    take_in_hand(&whole, &level, errors);
+    take_in_hand(&part, &sample, errors);
+    assert_true(comes_to(&whole, needed - 100));
+    assert_false(comes_to(&whole, needed + 100));
+    assert_true(comes_to(&part, 0.85 * needed)); /* some of it is for chance */
+    assert_false(comes_to(&part, 1.1 * needed));
+    whole.finest = true;
+    assert_false(comes_to(&whole, needed - 100));
+    release(&whole);
+    release(&part);
+    level_finish(&level);
+    level_finish(&sample);
+    mem_free(errors);
+}
+
+/* One triangle says nothing about the others, however much it needs: the level is not given up for it. */
+static void a_sample_is_not_sure_of_what_one_triangle_needs(void **state)
+{
+    struct level level, sample;
+    float *errors = mem_array(TRIANGLES, sizeof(*errors));
+    (void)state;
+    make_level(&level);
+    size_t blocks = subdiv_take_sample(&sample, &level);
+    struct subdiv part = { .sample_blocks = blocks, .sample_of = (double)level.index_count / sample.index_count };
+    take_in_hand(&part, &sample, errors);
+    assert_true(comes_to(&part, 0.9 * TRIANGLES));
+    release(&part);
+    take_in_hand(&part, &sample, errors);
+    for (uint32_t t = 0; t < part.mesh.tri_count; t++)
+        part.mesh.tris[t].origin = 0; /* all are pieces of it */
+    assert_false(comes_to(&part, 0.9 * TRIANGLES));
+    release(&part);
+    level_finish(&level);
+    level_finish(&sample);
+    mem_free(errors);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_sample_is_some_neighbours_of_every_part),
+        cmocka_unit_test(a_sample_says_what_the_level_needs),
+        cmocka_unit_test(a_sample_is_not_sure_of_what_one_triangle_needs),
+    };
+    cmocka_set_message_output(CM_OUTPUT_TAP);
+    return cmocka_run_group_tests(tests, set_up, NULL);
+}
