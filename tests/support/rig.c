@@ -5,6 +5,7 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 bool rig_init(struct rig *rig, const char *test)
 {
@@ -129,12 +130,21 @@ int map_index_nearest(const struct colormap *map, const uint8_t *bgrx, bool deut
     static const struct colormap *known;
     static bool known_deuteranope;
     static double labs[256][3];
+    static struct {
+        uint32_t color; /* with a bit that says that there is one */
+        int nearest;
+    } found[1 << 16];
     double lab[3], least = INFINITY;
     int nearest = -1;
+    if (known != map || known_deuteranope != deuteranope)
+        memset(found, 0, sizeof(found));
     for (int i = 0; i < 256 && (known != map || known_deuteranope != deuteranope); i++)
         lab_of(map->rgb[i][0], map->rgb[i][1], map->rgb[i][2], deuteranope, labs[i]);
     known = map;
     known_deuteranope = deuteranope;
+    uint32_t color = 1u << 24 | (uint32_t)bgrx[2] << 16 | (uint32_t)bgrx[1] << 8 | bgrx[0], slot = color * 2654435761u >> 16;
+    if (found[slot].color == color)
+        return found[slot].nearest;
     lab_of(bgrx[2], bgrx[1], bgrx[0], deuteranope, lab);
     for (int i = 0; i < 256; i++) {
         double square = 0;
@@ -145,5 +155,7 @@ int map_index_nearest(const struct colormap *map, const uint8_t *bgrx, bool deut
             nearest = i;
         }
     }
+    found[slot].color = color;
+    found[slot].nearest = nearest;
     return nearest;
 }
