@@ -13,8 +13,8 @@ const KEYS = /^(Arrow(Up|Down|Left|Right)|Home|End|Page(Up|Down)|Enter| )$/; // 
 const keyOf = ({ kind, id }) => `${kind}/${id}`;
 
 export class Assets {
-    constructor({ session, selection, parts }) {
-        Object.assign(this, { session, selection, parts, found: null });
+    constructor({ session, selection, modules }) {
+        Object.assign(this, { session, selection, modules, found: null });
         this.search = byId('assets-search');
         this.setOpen(!narrow.matches);
         this.list = new LongList({

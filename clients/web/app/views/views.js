@@ -14,7 +14,7 @@ const choices = (kind, ...values) => values.map((value) => [value, say(`${kind}.
 const STEPS = 500, LARGEST_BOX = 2;
 
 export class Views {
-    constructor({ session, parts, viewport }) {
+    constructor({ session, modules, viewport }) {
         Object.assign(this, { session, viewport });
         this.panel = byId('views');
         this.at = byId('cut-at');
