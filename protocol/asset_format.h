@@ -112,15 +112,15 @@ struct asset_view {
     const char *names;
 };
 
-/* Checks everything: magic, version, size, checksum, section bounds, every index, finiteness. False: why[] says what is wrong
-   (with numbers), the view is not usable. bytes must be aligned to ASSET_ALIGN. */
+/* Checks an asset file completely (magic, version, size, checksum, section bounds, every index, finiteness) and makes a view of it. bytes
+   must be aligned to ASSET_ALIGN and outlive the view. Returns false if it is invalid, with the reason in why. */
 bool asset_view_init(struct asset_view *view, const void *bytes, size_t size, char why[200]);
-/* Likewise, of what asset_build has just made: the checksum is taken for right. */
+/* The same for bytes that asset_build() has just made: does not check the checksum. */
 bool asset_view_fresh(struct asset_view *view, const void *bytes, size_t size, char why[200]);
 
-/* The cluster's box and cone, from its indices. */
+/* Computes the bounding box and the normal cone of a cluster from its triangles. */
 void asset_cluster_measure(struct asset_cluster *cluster, const float (*positions_m)[3], const uint32_t *indices);
-/* An eye there (less origin_m) sees only the backs of its triangles, by their winding. */
+/* Returns whether an eye at eye_m (relative to origin_m) sees only back faces of the cluster. */
 bool asset_cluster_turned_away(const struct asset_cluster *cluster, const float eye_m[3]);
 
 /* What an asset file is made of. Pointers are only read. Zero-initialise. */
@@ -141,17 +141,17 @@ struct asset_parts {
     const uint8_t *texels;
     const struct asset_sensor *sensors;
     const float *geodesic_m;
-    void (*write_geodesic)(void *arg, float *geodesic_m); /* instead of geodesic_m, which may be large: to where it belongs */
+    void (*write_geodesic)(void *arg, float *geodesic_m); /* writes the distances in place, instead of geodesic_m */
     void *write_arg;
-    void *(*make_room)(void *arg, size_t bytes); /* for the bytes, aligned to ASSET_ALIGN; it may be a file's. NULL: aligned_alloc */
+    void *(*make_room)(void *arg, size_t bytes); /* allocates the bytes, aligned to ASSET_ALIGN. NULL: aligned_alloc() */
     void *room_arg;
     const char *names; /* NULL: one empty name */
     uint32_t vertex_count, index_count, primitive_count, level_count, material_count, texture_count, sensor_count, cluster_count;
     size_t texel_bytes, name_bytes;
 };
 
-/* The file's bytes, aligned to ASSET_ALIGN: sections laid out, bounds and checksum computed. Contents are not checked; that is
-   asset_view_init's. NULL: out of memory. Free with free(), unless there is make_room. */
+/* Builds an asset file in memory: lays out the sections and computes bounds and checksum, without checking the contents. Returns the bytes,
+   aligned to ASSET_ALIGN, to be freed with free() unless make_room made them; NULL if out of memory. */
 void *asset_build(const struct asset_parts *parts, size_t *bytes);
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The binary frame header of plantcast.v1 (PROTOCOL.md): bytes to struct and back. No I/O, no clock. */
+/* Encodes and decodes the binary frame header of plantcast.v1 (PROTOCOL.md). Pure. Thread: any. */
 #ifndef PROTOCOL_WIRE_H
 #define PROTOCOL_WIRE_H
 #include <stdbool.h>
@@ -29,8 +29,8 @@ struct wire_frame { /* in the order of the bytes */
     uint16_t flags;
     uint32_t payload_bytes;
     uint32_t seq;
-    uint32_t camera_seq, params_seq;  /* echo: the newest of the client's that this picture shows */
-    uint32_t oldest_age_ms;           /* of the readings that take part; WIRE_NO_AGE: none does */
+    uint32_t camera_seq, params_seq;  /* the client's newest camera and parameters that this picture shows */
+    uint32_t oldest_age_ms;           /* of the readings that the field is computed from; WIRE_NO_AGE: none */
     uint64_t data_time_us, sent_time_us; /* UTC since 1970, server's clock */
     uint32_t wait_us, field_us, render_us, encode_us; /* input to start of render, then the stages */
     uint16_t x_px, y_px, width_px, height_px;  /* the part of the picture that the payload holds */
@@ -40,9 +40,10 @@ struct wire_frame { /* in the order of the bytes */
     float height_m;                     /* 0 in perspective */
 };
 
+/* Writes a header. */
 void wire_put_frame(const struct wire_frame *frame, uint8_t out[WIRE_FRAME_HEADER_BYTES]);
-/* bytes: the whole message, header and payload. Checks length, ranges and finiteness; unknown flags pass. False: not a frame of this
-   protocol; *frame is then undefined. */
+/* Reads the header of a message; bytes: the whole message, header and payload. Checks length, ranges and finiteness; accepts unknown flags.
+   Returns false if it is no frame of this protocol; *frame is then undefined. */
 bool wire_get_frame(const uint8_t *bytes, size_t count, struct wire_frame *frame);
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The simulated devices of a plant: one for each port that its Modbus sources name. Thread: one. */
+/* The simulated Modbus devices of a plant: one for each port that its sources name. Thread: one. */
 #ifndef DEMO_SIM_H
 #define DEMO_SIM_H
 #include "sim_modbus.h"
@@ -20,16 +20,16 @@ struct sim {
     bool quit;
 };
 
-/* Devices and registers for all tags of Modbus sources. port > 0: the first device is served there, the others after it. False:
-   nothing to serve, or no memory; said on stderr. */
+/* Makes devices with registers for all tags of Modbus sources. port > 0: the first device listens there, the others on the ports after it.
+   Returns false if there is nothing to serve, or no memory (printed to stderr). */
 bool sim_init(struct sim *sim, const struct plant *plant, struct sim_values *values, int port);
 void sim_finish(struct sim *sim);
-/* Puts the present values of all tags into the registers. */
+/* Writes the present values of all tags to the registers. */
 void sim_update(struct sim *sim);
-/* The device and unit that serve a tag; NULL: it is not on Modbus. */
+/* Returns the device of a tag, and its unit; NULL if the tag is not on Modbus. */
 struct sim_device *sim_device_of(const struct sim *sim, const struct plant_tag *tag, int *unit);
 
-/* The control port's lines; arg: struct sim. */
+/* Executes a line of the control port; arg: struct sim. */
 sim_take sim_control_take;
 extern const char sim_control_help[];
 

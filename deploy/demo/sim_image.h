@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The registers of one simulated device: those exist that some tag names, in each of its units. Thread: one. */
+/* The registers of one simulated device, in each of its units. Only registers that some tag names exist. Thread: one. */
 #ifndef DEMO_SIM_IMAGE_H
 #define DEMO_SIM_IMAGE_H
 #include <modbus.h>
@@ -10,18 +10,19 @@
 
 struct sim_unit;
 struct sim_image { /* zero-initialise */
-    struct sim_unit *units[256]; /* NULL: nobody there */
+    struct sim_unit *units[256]; /* NULL: no such unit */
 };
 
 void sim_image_finish(struct sim_image *image);
-/* Makes the registers of the tag exist. */
+/* Adds the registers of a tag. */
 void sim_image_add(struct sim_image *image, int unit, const struct plant_tag *tag);
-/* Puts a value there. False: the type cannot hold it. */
+/* Writes the value of a tag. Returns false if its type cannot hold it. */
 bool sim_image_set(struct sim_image *image, int unit, const struct plant_tag *tag, double value);
-/* A device that refuses a request which touches the tag. */
+/* Makes the device refuse, or no longer refuse, requests that include the tag. */
 void sim_image_fail(struct sim_image *image, int unit, const struct plant_tag *tag, bool failing);
-/* 0, or the exception that a request for these earns. */
+/* Returns 0, or the exception code with which a request for these registers is refused. */
 int sim_image_refusal(const struct sim_image *image, int unit, enum register_table table, int first, int count);
+/* Returns the registers of a unit for libmodbus; NULL if there is no such unit. */
 modbus_mapping_t *sim_image_mapping(struct sim_image *image, int unit);
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Which recorded series feeds which tag: from `--map` arguments and map files. Thread: one. */
+/* Maps recorded series to tags, by `--map` arguments and map files. Thread: one. */
 #ifndef DEMO_SIM_MAP_H
 #define DEMO_SIM_MAP_H
 #include <stdbool.h>
@@ -10,7 +10,7 @@
 struct sim_map_entry {
     char *tag, *series;
     double scale, offset;
-    const char *file; /* where it was said, for messages; as long as the map */
+    const char *file; /* where it is stated, for messages; owned by the map */
     int line;
 };
 
@@ -21,14 +21,14 @@ struct sim_map { /* zero-initialise */
     size_t file_count, file_capacity;
     char **map_files;
     size_t map_file_count, map_file_capacity;
-    double speed;      /* 0: not said */
+    double speed;      /* 0: not stated */
     bool loop;
 };
 
-/* `TAG=SERIES`, `TAG=SERIES*SCALE`, `TAG=SERIES*SCALE+OFFSET` (or -OFFSET). Errors go to diag. */
+/* Adds an entry: `TAG=SERIES`, `TAG=SERIES*SCALE`, `TAG=SERIES*SCALE+OFFSET` (or -OFFSET). Errors go to diag. */
 void sim_map_add(struct sim_map *map, const char *text, const char *file, int line, struct diag *diag);
 void sim_map_add_file(struct sim_map *map, const char *path);
-/* A map file: lines as above, `values PATH` (relative to the map file), `speed X`, `loop`, and # comments. */
+/* Reads a map file: lines as above, `values PATH` (relative to the map file), `speed X`, `loop`, and # comments. */
 void sim_map_read(struct sim_map *map, const char *path, struct diag *diag);
 void sim_map_finish(struct sim_map *map);
 

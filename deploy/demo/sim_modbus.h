@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Answers Modbus TCP requests from an image. It is read only: what would write is refused and counted. Thread: one. */
+/* Answers Modbus TCP requests from the registers of a simulated device. Write requests are refused and counted. Thread: one. */
 #ifndef DEMO_SIM_MODBUS_H
 #define DEMO_SIM_MODBUS_H
 #include "sim_image.h"
@@ -12,9 +12,9 @@ struct sim_modbus {
     long reads, refusals, writes_refused;
 };
 
-/* False: libmodbus has no memory. */
+/* Returns false if out of memory. */
 bool sim_modbus_init(struct sim_modbus *device);
 void sim_modbus_finish(struct sim_modbus *device);
-sim_take sim_modbus_take; /* arg: struct sim_modbus */
+sim_take sim_modbus_take; /* answers a request; arg: struct sim_modbus */
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A listening TCP port with its clients, whose bytes are collected until a whole message is there. Thread: one. */
+/* A listening TCP port and its clients. Collects the bytes of each client until they are a complete message. Thread: one. */
 #ifndef DEMO_SIM_PORT_H
 #define DEMO_SIM_PORT_H
 #include <stddef.h>
@@ -14,7 +14,7 @@ struct sim_client {
     size_t count;
 };
 
-/* Takes one message from the start of bytes: its length, 0 when it is not whole yet, or -1 to close the connection. */
+/* Handles the message at the start of bytes. Returns its length, 0 if it is not complete yet, or -1 to close the connection. */
 typedef ssize_t sim_take(void *arg, int fd, const uint8_t *bytes, size_t count);
 
 struct sim_port {
@@ -25,10 +25,10 @@ struct sim_port {
     size_t client_count;
 };
 
-/* 0, or -errno: cannot listen there. */
+/* Opens a port. Returns 0, or -errno if it cannot listen there. */
 int sim_port_open(struct sim_port *port, const char *address, int number, sim_take *take, void *arg);
 void sim_port_close(struct sim_port *port);
-/* Serves all ports until timeout_ms has passed or extra_fd is readable; then 1, else 0. */
+/* Serves all ports until timeout_ms has passed or extra_fd is readable. Returns 1 in the latter case, else 0. */
 int sim_ports_serve(struct sim_port *ports, size_t count, int extra_fd, int timeout_ms);
 
 #endif

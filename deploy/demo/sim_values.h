@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The present value of every tag: forced from the control port, replayed from a series, or from the process. Thread: one. */
+/* The present value of every tag: forced through the control port, replayed from a series, or from the simulated process. Thread: one. */
 #ifndef DEMO_SIM_VALUES_H
 #define DEMO_SIM_VALUES_H
 #include "base/diag.h"
@@ -16,7 +16,7 @@ void sim_values_step(struct sim_values *values, double dt_s);
 double sim_values_at(const struct sim_values *values, size_t tag);
 void sim_values_force(struct sim_values *values, size_t tag, double value);
 void sim_values_release(struct sim_values *values, size_t tag);
-/* As process_upset. */
+/* The same as process_upset(). */
 double sim_values_upset(const struct sim_values *values, const char **name);
 
 #endif

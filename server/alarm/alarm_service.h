@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The alarms of a running plant: a thread that hears the store, ten times a second; the store is told what to show. Who is asked or
-   asks never waits for the disk. Thread: any. */
+/* The alarm service of a running plant. Its thread evaluates the samples of the store ten times a second, writes the journal, and sets the
+   alarm of each tag in the store. No call waits for the disk. Thread: any. */
 #ifndef ALARM_ALARM_SERVICE_H
 #define ALARM_ALARM_SERVICE_H
 #include "alarm/alarms.h"
@@ -11,25 +11,32 @@ struct alarm_service_params {
     struct log *log;
     struct counters *counters;
     const struct plant *plant;
-    struct store *store; /* both outlive it */
-    const char *folder;  /* of the journal; NULL: there is none, and nothing outlives the daemon */
+    struct store *store;  /* plant and store must outlive the service */
+    const char *folder;   /* of the journal; NULL: no journal, states are lost when the daemon ends */
     double keep_days;
-    struct alarm_service *before; /* of the plant as it was, whose alarms are taken over: halted. NULL: none */
-    void (*notify)(void *arg);    /* when something changed; on the thread, or that of alarm_service_act. NULL: nobody */
+    struct alarm_service *before; /* the halted service of the plant before a reload, whose alarm states are taken over; NULL: none */
+    void (*notify)(void *arg); /* called when an alarm changed, by the thread or within alarm_service_act(); may be NULL */
     void *notify_arg;
 };
 
 struct alarm_service;
-struct alarm_service *alarm_service_start(const struct alarm_service_params *params); /* NULL: no thread; logged */
-void alarm_service_halt(struct alarm_service *service);  /* hears nothing more, and changes nothing; can still be asked */
-void alarm_service_stop(struct alarm_service **service); /* writes what there is; &NULL is fine; leaves NULL */
+/* Starts the service. Returns NULL if there is no thread (logged). */
+struct alarm_service *alarm_service_start(const struct alarm_service_params *params);
+/* Ends the thread; alarms do not change any more, but can still be queried. */
+void alarm_service_halt(struct alarm_service *service);
+/* Writes what is pending to the journal, ends the thread and frees the service. &NULL is fine; leaves NULL. */
+void alarm_service_stop(struct alarm_service **service);
 
-uint64_t alarm_service_number(const struct alarm_service *service); /* of the last change of any alarm */
-/* Under the lock: those that changed after `since`, the newest first; since 0: all that are not normal. Returns alarm_service_number. */
+/* Returns the number of the last change of any alarm; it increases with each change. */
+uint64_t alarm_service_number(const struct alarm_service *service);
+/* Calls each, under the lock, for every alarm that changed after the change `since`, newest first; since 0: for every alarm that is not
+   normal. Returns alarm_service_number(). */
 uint64_t alarm_service_changes(struct alarm_service *service, uint64_t since, void (*each)(void *arg, const struct alarm *alarm),
                                void *arg);
-/* name: of a tag, or for ALARM_LINK of a device. NULL: it was done; else why not (static). */
+/* Does what an operator asks for: acknowledges, shelves and so on. name: of a tag, or for ALARM_LINK of a device. Returns NULL, or why it
+   was refused (static). */
 const char *alarm_service_act(struct alarm_service *service, const char *name, enum alarm_kind kind, const struct alarm_act *act);
+/* Counts alarms by state. */
 void alarm_service_counts(struct alarm_service *service, struct alarm_counts *out);
 
 #endif

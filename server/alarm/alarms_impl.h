@@ -6,17 +6,17 @@
 #include "alarm/devices.h"
 
 enum feed_role { FEED_VALUE, FEED_BIT, FEED_BADNESS, FEED_ACKNOWLEDGED, FEED_SUPPRESSES };
-struct feed { /* which samples an alarm hears, and as what */
+struct feed { /* a tag whose samples an alarm depends on, and their meaning for it */
     int tag, alarm;
     enum feed_role role;
 };
 
-struct seen { /* of a tag */
+struct seen { /* the last sample of a tag */
     double value;
     bool sampled, bad;
 };
 
-struct gravest {
+struct gravest { /* the alarm that is shown for a tag, and its state */
     uint8_t kind, status;
 };
 
@@ -27,21 +27,21 @@ struct alarms {
     size_t count, capacity;
     struct feed *feeds; /* by tag */
     size_t feed_count, feed_capacity;
-    int *by_tag;                   /* indices of alarms, by tag */
+    int *by_tag;        /* indices of alarms, by tag */
     int *first_feed, *first_alarm; /* by tag, and one more: in feeds, by_tag */
     struct seen *seen;
     struct devices *devices;
     struct sample_event *noticed; /* room for what alarms_tick finds out; by tag */
     struct gravest *gravest;
-    int *timed; /* alarms with a delay or a shelf that runs */
+    int *timed;         /* alarms with a running delay, and shelved ones */
     size_t timed_count, timed_capacity;
-    int carried; /* alarms that those of their devices stand for */
+    int carried;        /* how many alarms are suppressed by that of their device */
     uint64_t number;
     int newest;
-    int64_t begun_ns; /* monotonic, of the first tick */
+    int64_t begun_ns;   /* monotonic, of the first tick */
 };
 
-void alarms_touch(struct alarms *alarms, int index);
-void alarms_watch(struct alarms *alarms, int index); /* in timed, if time can change it */
+void alarms_touch(struct alarms *alarms, int index); /* gives the alarm the number of a new change */
+void alarms_watch(struct alarms *alarms, int index); /* adds the alarm to timed, if time can change it */
 
 #endif

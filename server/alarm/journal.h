@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What became of alarms, one row each, and how each alarm is now: alarms.sqlite beside the history. It is written by a thread of its
-   own, at most 0.25 s after; what cannot be written is kept up to a bound and tried again. ALARMS.md describes the tables. */
+/* The alarm journal, alarms.sqlite beside the history: one row for each change of an alarm, and the present state of each. A thread of its
+   own writes it within 0.25 s; what cannot be written stays in memory up to a limit and is retried. ALARMS.md describes the tables. */
 #ifndef ALARM_JOURNAL_H
 #define ALARM_JOURNAL_H
 #include "alarm/alarms.h"
@@ -17,13 +17,15 @@ struct journal_params {
     double keep_days;
 };
 
-/* Takes back how alarms were into those of `alarms`. A file that is damaged is set aside. NULL: no thread; logged. */
+/* Opens the journal, restores the states of `alarms` from it, and starts the thread. A damaged file is renamed. Returns NULL if there is no
+   thread (logged). */
 struct journal *journal_start(const struct journal_params *params, struct alarms *alarms, struct instant now);
-void journal_stop(struct journal **journal); /* writes what there is; &NULL is fine; leaves NULL */
-/* Does not wait. Names are copied. */
+void journal_stop(struct journal **journal); /* writes what is pending and ends; &NULL is fine; leaves NULL */
+/* Queues a change to be written. Does not wait; names are copied. */
 void journal_add(struct journal *journal, const struct alarm_change *change, const char *tag);
-/* True, once, after the file was begun anew: journal_keep is due for each alarm that is not normal. */
+/* Returns true, once, after a new file was begun: the caller then passes each alarm that is not normal to journal_keep(). */
 bool journal_asks(struct journal *journal);
+/* Queues the present state of an alarm to be written. */
 void journal_keep(struct journal *journal, const struct alarm *alarm, const char *tag);
 
 /* --- reading; thread: one per reader --- */
@@ -35,14 +37,14 @@ struct journal_row {
 };
 struct journal_query {
     int64_t from_us, to_us;
-    int64_t before_id; /* only rows of a smaller id; INT64_MAX: all */
+    int64_t before_id; /* only rows with a smaller id; INT64_MAX: all */
     const char *tag;   /* NULL: all */
-    int limit;         /* at most so many, the newest first */
+    int limit;         /* at most this many, the newest first */
 };
-/* 0 or -errno, logged. A folder without a journal has no rows. */
+/* Calls each for the rows that match. Returns 0 or -errno (logged); a folder without a journal has no rows. */
 int journal_read(struct log *log, const char *folder, const struct journal_query *query,
                  void (*each)(void *arg, const struct journal_row *row), void *arg);
-/* How each alarm was at t: its last row until then, where that is not normal. */
+/* Calls each for every alarm that was not normal at t_us, with its last row until then. Returns 0 or -errno (logged). */
 int journal_at(struct log *log, const char *folder, int64_t t_us, void (*each)(void *arg, const struct journal_row *row), void *arg);
 
 #endif

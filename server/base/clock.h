@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The clocks. Only server.c, main files, net/ and the source threads read them; everything else is handed the time. */
+/* Clocks. Only the threads and main files read them; all other code takes the time as an argument. Thread: any. */
 #ifndef BASE_CLOCK_H
 #define BASE_CLOCK_H
 #include <pthread.h>
@@ -9,10 +9,10 @@
 #define NS_PER_S 1000000000LL
 #define NS_PER_MS 1000000LL
 
-int64_t clock_mono_ns(void); /* monotonic: ages, deadlines */
-int64_t clock_utc_ns(void);  /* since 1970: what is shown and stored */
-bool clock_utc_is_set(void);  /* somebody keeps it right (NTP, PTP): the kernel says so */
-void clock_cond_init(pthread_cond_t *cond); /* timed waits on it are by clock_mono_ns */
-int64_t clock_work_ns(void); /* of all threads of this process, on all cores */
+int64_t clock_mono_ns(void); /* returns monotonic time, for ages and deadlines */
+int64_t clock_utc_ns(void);  /* returns UTC since 1970, for what is shown and stored */
+bool clock_utc_is_set(void); /* returns whether NTP or PTP synchronizes the clock, according to the kernel */
+void clock_cond_init(pthread_cond_t *cond); /* initializes a condition variable whose timed waits use clock_mono_ns() */
+int64_t clock_work_ns(void); /* returns the CPU time of this process, of all threads */
 
 #endif

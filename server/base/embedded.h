@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The shaders and colour maps that are built into the program, by name relative to shaders/. Immutable. */
+/* Shaders and colour maps that are embedded in the program, by name relative to shaders/. Immutable. Thread: any. */
 #ifndef BASE_EMBEDDED_H
 #define BASE_EMBEDDED_H
 
@@ -8,6 +8,6 @@ struct embedded_file {
 };
 extern const struct embedded_file embedded_files[]; /* ends with { 0, 0 }; made at build by deploy/embed */
 
-const char *embedded_find(const char *name); /* the text, or NULL */
+const char *embedded_find(const char *name); /* returns the text (static), or NULL */
 
 #endif

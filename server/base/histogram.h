@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Durations counted by how long they were, in Prometheus' form. Thread: any; a bucket is one atomic. */
+/* A histogram of durations, in the form of Prometheus. Thread: any; each bucket is one atomic. */
 #ifndef BASE_HISTOGRAM_H
 #define BASE_HISTOGRAM_H
 #include "base/counters.h"
@@ -10,7 +10,7 @@ struct histogram {
     counter sum_us;
 };
 
-void histogram_add(struct histogram *histogram, int64_t duration_ns); /* negative counts as 0 */
+void histogram_add(struct histogram *histogram, int64_t duration_ns); /* counts a duration; a negative one counts as 0 */
 /* name: with or without labels, as in counters_add. */
 void histogram_print(struct histogram *histogram, const char *name, struct text *out);
 

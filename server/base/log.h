@@ -1,14 +1,14 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* One line per event, to stderr: time, level, text. Thread: any. Repeated lines are counted and said once a second. */
+/* Writes log lines to stderr: time, level, text. Repeated lines are counted and logged once a second. Thread: any. */
 #ifndef BASE_LOG_H
 #define BASE_LOG_H
 enum log_level { LOG_ERROR, LOG_WARN, LOG_INFO, LOG_DEBUG };
 
 struct log;
 
-/* Never NULL. Lines above `level` are dropped. */
+/* Creates a log that drops lines above `level`. Never returns NULL. */
 struct log *log_create(enum log_level level);
-/* Says what repeats were still held back. &NULL is fine; leaves NULL. */
+/* Writes the repeated lines still held back, and frees the log. &NULL is fine; leaves NULL. */
 void log_destroy(struct log **log);
 
 void log_at(struct log *log, enum log_level level, const char *fmt, ...) __attribute__((format(printf, 3, 4)));

@@ -1,21 +1,23 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Arrays one after another in bytes, for files that only this program on this kind of machine reads again. Thread: any. */
+/* Serializes arrays into bytes, for files that only this program reads, on the same kind of machine. Thread: any. */
 #ifndef BASE_PACK_H
 #define BASE_PACK_H
 #include <stdbool.h>
 
 #include "base/text.h"
 
+/* Appends an array with its length. */
 void pack_array(struct text *to, const void *array, size_t count, size_t bytes_each);
 
-struct unpack { /* bytes that are not yet read; they belong to the caller */
+struct unpack { /* the bytes not read yet; they belong to the caller */
     const char *at;
     size_t left;
-    bool bad; /* something was asked for that is not there; from then on nothing is */
+    bool bad; /* reading failed; all further reads fail as well */
 };
-/* Free with mem_free. NULL where it is empty, and where it is not there: no such array of elements of that size, or out of memory. */
+/* Reads the next array; free with mem_free(). Returns NULL if it is empty, has elements of another size, or memory is out; from->bad tells
+   errors from an empty array. */
 void *unpack_array(struct unpack *from, size_t *count, size_t bytes_each);
-/* The same into what the caller has, which must be as long. */
+/* Reads the next array into memory of the caller; it must have exactly that length. */
 void unpack_into(struct unpack *from, void *to, size_t count, size_t bytes_each);
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A growing string, and a whole file as bytes. */
+/* A growing string, cells of CSV files, and reading whole files. Thread: one per text. */
 #ifndef BASE_TEXT_H
 #define BASE_TEXT_H
 #include <stdarg.h>
@@ -14,16 +14,16 @@ struct text { /* zero-initialise; .at is NULL until the first byte, then always 
 void text_add(struct text *text, const char *fmt, ...) __attribute__((format(printf, 2, 3)));
 void text_add_v(struct text *text, const char *fmt, va_list ap) __attribute__((format(printf, 2, 0)));
 void text_add_bytes(struct text *text, const void *bytes, size_t count);
-void text_add_quoted(struct text *text, const char *cell); /* as CSV quotes: those inside twice */
-/* A cell of a CSV file, quoted where one of `special` is in it. What a spreadsheet would take for a formula has a ' before it;
-   text_cell_read: without. */
+void text_add_quoted(struct text *text, const char *cell); /* appends it in quotes, as in CSV: inner quotes doubled */
+/* Appends a cell of a CSV file, quoted if it contains one of the characters `special`. Puts a ' before text that a spreadsheet would take
+   for a formula (text_is_formula()); text_cell_read() returns such a cell without it. */
 void text_add_cell(struct text *text, const char *cell, const char *special);
 bool text_is_formula(const char *cell);
 const char *text_cell_read(const char *cell);
 void text_finish(struct text *text); /* frees; leaves it empty */
 
-/* Reads a whole file of at most max_bytes; one 0 byte follows the content. NULL on failure: errno says why (EFBIG: too large).
-   Free with mem_free. */
+/* Reads a whole file of at most max_bytes and returns its content, followed by a 0 byte; free with mem_free(). Returns NULL on failure,
+   with errno (EFBIG: too large). */
 char *text_read_file(const char *path, size_t max_bytes, size_t *out_bytes);
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A fixed pool of threads: single jobs in the background, and loops cut over all cores. Thread: any. */
+/* Thread pool of fixed size: runs background jobs, and loops in parallel on all cores. Thread: any. */
 #ifndef BASE_WORKERS_H
 #define BASE_WORKERS_H
 #include <stddef.h>
@@ -7,19 +7,20 @@
 struct workers;
 
 struct workers *workers_create(int threads); /* 0: one per core. Never NULL. */
-/* Runs what was submitted, then ends. &NULL is fine; leaves NULL. */
+/* Waits for the submitted jobs and ends the threads. &NULL is fine; leaves NULL. */
 void workers_destroy(struct workers **workers);
 int workers_count(const struct workers *workers);
 
-/* Runs job(arg) on some worker, later. Jobs start in order of submission. */
+/* Queues job(arg) to run on some worker. Jobs start in order of submission. */
 void workers_submit(struct workers *workers, void (*job)(void *arg), void *arg);
-/* Runs body(arg, begin, end) over [0, count) in pieces of about `grain`, on the caller's thread and on idle workers, until
-   all is done. May be called from a job. */
+/* Runs body(arg, begin, end) over [0, count) in pieces of about `grain`, on the calling thread and idle workers, and returns when all is
+   done. May be called from a job. */
 void workers_for(struct workers *workers, size_t count, size_t grain, void (*body)(void *arg, size_t begin, size_t end), void *arg);
 
-/* Runs body(arg) on an idle worker beside what the caller does, or else in workers_end. workers may be NULL. May be called from a job. */
+/* Runs body(arg) on an idle worker beside the caller; if none is idle, workers_end() runs it. workers may be NULL. May be called from a
+   job. */
 struct workers_task;
 struct workers_task *workers_begin(struct workers *workers, void (*body)(void *arg), void *arg);
-void workers_end(struct workers_task **task); /* returns when it is done. &NULL is fine; leaves NULL */
+void workers_end(struct workers_task **task); /* waits until it is done; &NULL is fine; leaves NULL */
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Turns frames into packets. Thread: one at a time per encoder (a worker). */
+/* Encoders: turn frames into packets. Thread: one at a time per encoder (a worker). */
 #ifndef ENCODE_ENCODER_H
 #define ENCODE_ENCODER_H
 #include "base/log.h"
@@ -12,22 +12,23 @@ struct encoder;
 struct encoder_params {
     int quality;          /* 1..100, for codecs that have one */
     bool full_chroma;     /* 4:4:4 instead of 4:2:0, for codecs that have both */
-    bool key;             /* the packet must stand alone */
-    struct workers *workers; /* that may help; NULL: none */
-    struct frame *before; /* what the peer shows, in this quality; NULL: unknown. What equals it need not be sent */
+    bool key;             /* make a key frame: the packet must not depend on earlier ones */
+    struct workers *workers; /* to encode in parallel; may be NULL */
+    struct frame *before; /* what the client shows, in this quality; NULL: unknown. What equals it need not be sent */
 };
 
-/* name: "jpeg", "png" or, unless it was left out of the build, "h264"; that one's packets build on one another: one encoder for each
-   stream. library: of H.264, an encoder of libavcodec. NULL on failure, already logged. */
+/* Creates an encoder. name: "jpeg", "png" or, unless left out of the build, "h264", whose packets depend on each other, so each stream has
+   an encoder of its own. library: the libavcodec encoder for H.264. Returns NULL on failure (logged). */
 struct encoder *encoder_create(struct log *log, const char *name, const char *library);
 void encoder_destroy(struct encoder **encoder); /* &NULL is fine; leaves NULL */
-/* 0, or -EAGAIN: call encoder_receive() first. Other < 0: logged, this frame cannot be encoded. */
+/* Encodes a frame. Returns 0; -EAGAIN: call encoder_receive() first; other < 0: the frame cannot be encoded (logged). */
 int encoder_send(struct encoder *encoder, struct frame *frame, const struct encoder_params *params);
-/* 0: the caller owns *out (packet_unref). -EAGAIN: nothing ready, or the last frame differs in nothing from params.before. */
+/* Gets the next packet. Returns 0, and the caller owns *out (packet_unref()); -EAGAIN: nothing is ready, or the last frame equals
+   params.before. */
 int encoder_receive(struct encoder *encoder, struct packet **out);
-/* Each packet of it but those with `key` needs the one before. */
+/* Returns whether packets of this codec depend on the ones before, except key frames. */
 bool encoder_is_stream(const char *name);
-/* Encodes a small picture, to know whether it works on this machine. Why not is logged, unless it is not in this build. */
+/* Returns whether a codec works on this machine, by encoding a small frame. A failure is logged, unless the codec is not in this build. */
 bool encoder_works(struct log *log, const char *name, const char *library);
 
 #endif

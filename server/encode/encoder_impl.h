@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What one codec supplies: a line in the table of encoder.c. Private to encode/. */
+/* The interface that each codec implements, with a line in the table of encoder.c. Private to encode/. */
 #ifndef ENCODE_ENCODER_IMPL_H
 #define ENCODE_ENCODER_IMPL_H
 #include "encode/dirty_rects.h"
@@ -9,8 +9,8 @@ struct encoder_impl {
     const char *name;
     bool is_stream;
     struct encoder *(*create)(struct log *log, const char *library);
-    /* Leaves encoder->ready. changes: none for the whole picture, else the only rectangles that differ from params->before; a codec
-       may send more than those. */
+    /* Encodes a frame and leaves the packet in encoder->ready. count 0: encode the whole frame; else the rectangles are all that differs
+       from params->before, and the codec may encode more than those. */
     int (*send)(struct encoder *encoder, struct frame *frame, const struct encoder_params *params, const struct dirty_rect *rects,
                 int count);
     void (*destroy)(struct encoder *encoder);

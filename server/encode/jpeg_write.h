@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* One picture after another as baseline JPEG, by libjpeg, with tables of our own for chroma: a field's colours differ by chroma, and the
-   standard ones, made for photographs, drop most of it within a few pixels. Measured at quality 80 on parts a few pixels wide: 3.9 % of
+/* Writes baseline JPEG by libjpeg, with its own chroma quantization tables: the colours of a field differ by chroma, and the standard
+   tables, made for photographs, lose most of it within a few pixels. Measured at quality 80 on parts a few pixels wide: 3.9 % of
    the range misread, 4.7 % by deuteranopes; with these 2.3 and 2.7 %, for 8 % more bytes of the demo plant at 1920x1080 (up to 30 % of one
-   vessel close to). So where a picture is to be read at all, chroma may lose a fifth of what luma may if it is halved, and half if it is
-   whole. Private to jpeg.c. Thread: one at a time per writer. */
+   vessel close to). So from JPEG_READ_QUALITY up, chroma loses at most a fifth of what luma may if it is subsampled, and half if it
+   is not. Private to jpeg.c. Thread: one at a time per writer. */
 #ifndef ENCODE_JPEG_WRITE_H
 #define ENCODE_JPEG_WRITE_H
 #include <stdbool.h>
@@ -17,10 +17,12 @@ enum { JPEG_READ_QUALITY = 75 }; /* below, all tables are the standard ones: the
 struct jpeg_writer;
 struct jpeg_writer *jpeg_writer_create(void); /* NULL: out of memory */
 void jpeg_writer_destroy(struct jpeg_writer **writer); /* &NULL is fine; leaves NULL */
-/* Into `to`, which has room for `capacity` bytes. Returns how many were written; 0: jpeg_writer_why says what is wrong. */
+/* Both functions write to `to`, which has room for `capacity` bytes, and return how many were written; 0 on failure, and jpeg_writer_why()
+   says why. */
+/* Encodes pixels with full chroma. */
 size_t jpeg_write_whole(struct jpeg_writer *writer, const uint8_t *bgrx, int stride_bytes, int width_px, int height_px, int quality,
                         unsigned char *to, size_t capacity);
-/* Halved chroma; rows of planes are padded to JPEG_PAD_PX (chroma: half of that) with what stands at their edge. */
+/* Encodes planes with subsampled chroma. Their rows are padded to JPEG_PAD_PX (chroma: half of that) with the pixels of the edge. */
 enum { JPEG_PAD_PX = 16 };
 size_t jpeg_write_halved(struct jpeg_writer *writer, const struct planes *planes, int quality, unsigned char *to, size_t capacity);
 const char *jpeg_writer_why(const struct jpeg_writer *writer);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* An encoded picture. Immutable; counted; one packet may be on its way to many sessions. Thread: any. */
+/* An encoded frame. Immutable and reference-counted; one packet may be sent to many sessions. Thread: any. */
 #ifndef ENCODE_PACKET_H
 #define ENCODE_PACKET_H
 #include <stdatomic.h>
@@ -16,9 +16,9 @@ struct packet_part { /* a rectangle of the picture, and its bytes */
 
 struct packet {
     _Atomic int refs;
-    struct frame *frame; /* what it shows, without pixels (frame->bgrx is NULL) */
+    struct frame *frame; /* what it shows, without the pixels (frame->bgrx is NULL) */
     enum wire_codec codec;
-    bool key; /* stands alone; else it changes the picture that the packet before it left */
+    bool key; /* does not depend on the packet before */
     uint8_t *bytes;
     size_t count;
     struct packet_part parts[PACKET_PARTS];
@@ -26,9 +26,9 @@ struct packet {
     int64_t encode_ns;
 };
 
-/* The whole picture. Copies bytes and what the frame says. NULL: out of memory. */
+/* Creates a packet of the whole frame. Copies bytes, and the frame without its pixels. Returns NULL if out of memory. */
 struct packet *packet_create(const struct frame *frame, enum wire_codec codec, bool key, const void *bytes, size_t count);
-/* 1..PACKET_PARTS rectangles whose bytes lie one after the other. */
+/* Creates a packet of 1..PACKET_PARTS rectangles, whose bytes are one after the other. Returns NULL if out of memory. */
 struct packet *packet_create_parts(const struct frame *frame, enum wire_codec codec, const void *bytes, const struct packet_part *parts,
                                    int part_count);
 struct packet *packet_ref(struct packet *packet);

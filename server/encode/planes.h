@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Pictures as luma and halved chroma (BT.601, full range), as JPEG and H.264 take them. Where a colour ends, it keeps to its rim: the plain
-   mean of four pixels mixes a field's colour with the grey beside it, which reads as another value. So pixels weigh as much as they are
-   coloured. Thread: any; bands of one picture at once. */
+/* Converts pictures to luma and subsampled chroma (4:2:0, BT.601, full range) for JPEG and H.264. The mean chroma of four pixels is
+   weighted by their saturation: a plain mean mixes a field's colour at its edge with the grey beside it, which reads as another value.
+   Thread: any; bands of one picture may be converted at once. */
 #ifndef ENCODE_PLANES_H
 #define ENCODE_PLANES_H
 #include <stddef.h>
@@ -15,7 +15,7 @@ struct planes {
 };
 
 enum { PLANES_BAND_PX = 16 }; /* rows of one band */
-size_t planes_bands(int height_px);
-void planes_convert(const struct planes *planes, size_t begin, size_t end); /* bands */
+size_t planes_bands(int height_px); /* returns the number of bands */
+void planes_convert(const struct planes *planes, size_t begin, size_t end); /* converts the bands [begin, end) */
 
 #endif

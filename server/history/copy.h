@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Databases copied while somebody writes to them (SQLite's online backup), and the check that a copy is whole. Thread: any. */
+/* Copies of databases that may be written to meanwhile (SQLite's online backup), and of files; checks that a copy is whole. Thread: any. */
 #ifndef HISTORY_COPY_H
 #define HISTORY_COPY_H
 #include <stdbool.h>
@@ -8,14 +8,14 @@
 
 enum { COPY_HASH_BYTES = 33 }; /* 32 hexadecimal digits and a 0 */
 
-/* Neither follows a link, nor reads what belongs to somebody else than its folder does (or us): root may copy out of a folder of the
-   daemon's. `to` is new, has the folder's owner if root makes it, and is read by nobody but that one and his group.
+/* Both functions follow no symbolic link and read no file whose owner is neither that of its folder nor the caller, so root can copy out of
+   a folder of the daemon's. `to` must not exist; if root makes it, it gets the owner of its folder, and only that owner and group read it.
 
    One state of `from`, as of one moment, as a single file; checked, and on the disk. False: logged; `to` is removed. */
 bool copy_database(struct log *log, const char *from, const char *to);
-/* Bytes as they are, likewise. */
+/* Copies a file byte for byte. Returns false on failure (logged); `to` is then removed. */
 bool copy_file(struct log *log, const char *from, const char *to);
-/* XXH3, 128 bits, of the whole file. False: it cannot be read (logged). */
+/* Computes the XXH3 hash (128 bits) and the size of a file. Returns false if it cannot be read (logged). */
 bool copy_hash(struct log *log, const char *path, char hash[COPY_HASH_BYTES], long long *bytes);
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The historian keeps one file for each month of UTC: history-2026-11.sqlite. */
+/* Months of UTC and the names of their history files, such as history-2026-11.sqlite. Thread: any. */
 #ifndef HISTORY_MONTH_H
 #define HISTORY_MONTH_H
 #include <stdbool.h>
@@ -8,13 +8,13 @@
 
 #define US_PER_S 1000000LL
 
-/* Months since January 1970; negative before. */
+/* Returns the number of months from January 1970 to the month of a time; negative before. */
 int month_of(int64_t t_us);
-int64_t month_begin_us(int month);
+int64_t month_begin_us(int month); /* returns the first instant of a month */
 enum { MONTH_NAME_BYTES = 32 };
-void month_name(int month, char name[MONTH_NAME_BYTES]);
-bool month_parse(const char *name, int *month); /* false: not the name of such a file */
-/* The months that a folder has files of, ascending. Free with mem_free. A folder that cannot be read has none. */
+void month_name(int month, char name[MONTH_NAME_BYTES]); /* writes the name of its file */
+bool month_parse(const char *name, int *month); /* returns false if it is not the name of such a file */
+/* Lists the months that a folder has files of, ascending; none if it cannot be read. Free with mem_free(). */
 int *month_list(const char *folder, size_t *count);
 
 #endif

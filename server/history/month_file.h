@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* One month of history in one SQLite file: what is written to it and read from it. HISTORY.md describes its tables.
-   Thread: one at a time; readers have a handle of their own. Functions that return int: 0 or -errno, already logged once. */
+/* One month of history in one SQLite file: writing to it and reading from it. HISTORY.md describes its tables. Functions that return int
+   return 0 or -errno, already logged. Thread: one at a time per handle; readers have handles of their own. */
 #ifndef HISTORY_MONTH_FILE_H
 #define HISTORY_MONTH_FILE_H
 #include <stddef.h>
@@ -17,7 +17,7 @@ extern const int64_t history_level_us[LEVEL_COUNT];
 struct history_tag {
     const char *name, *unit;
     bool step;     /* a switch: values hold until the next */
-    double within; /* what is given back is within this of what was read */
+    double within; /* the recorded line is within this of every reading */
 };
 
 struct history_row {
@@ -37,43 +37,44 @@ struct history_buckets { /* likewise */
 
 struct month_file;
 
-/* To write, made where it is missing; a damaged one is renamed (history-2026-11.damaged-TIME.sqlite), said so, and a new one is begun.
-   One of an older version is brought up to this one, with all that is in it. tags must outlive it. NULL: *error says why. */
+/* Opens the file of a month for writing, and makes it if it is missing. A damaged file is renamed (history-2026-11.damaged-TIME.sqlite,
+   logged) and a new one is begun; a file of an older version is converted. tags must outlive it. Returns NULL on failure, with *error. */
 struct month_file *month_file_open(struct log *log, const char *folder, int month, const struct history_tag *tags, size_t tag_count,
                                    int *error);
-/* Of a month that has a file already, of any version until this one, to read. -ENOENT: it has none. */
+/* Opens the file of a month for reading, of any version up to this one. Returns NULL on failure; *error is -ENOENT if there is no file. */
 struct month_file *month_file_read(struct log *log, const char *folder, int month, int *error);
-/* Points and buckets are given in the units in which this plant shows its tags, whatever they were then. plant outlives the file. */
+/* Converts points and buckets from now on to the units in which this plant shows its tags. plant must outlive the file. */
 void month_file_show_by(struct month_file *file, const struct plant *plant);
 void month_file_close(struct month_file **file); /* &NULL is fine; leaves NULL */
-/* Found damaged while in use: closes it and puts it out of the way. */
+/* Closes a file that turned out to be damaged and renames it, as above. */
 void month_file_set_aside(struct month_file **file);
 int month_file_month(const struct month_file *file);
-bool month_file_is_there(const struct month_file *file); /* false: deleted or set aside by somebody else, or replaced */
+/* Returns whether the open file is still that of its name: it was not deleted, renamed or replaced meanwhile. */
+bool month_file_is_there(const struct month_file *file);
 
-/* All of it or nothing, on disk when it returns. held: the newest sample of tags whose door is open, in place of the one before.
-   -ENOSPC: full; -EROFS; -EBADMSG: damaged (open again). */
+/* Writes rows in one transaction, which is on disk when this returns. held: newest samples that are not recorded yet; they replace those of
+   the last call. Returns -ENOSPC if the disk is full, -EROFS, or -EBADMSG if the file is damaged (open it again). */
 int month_file_write(struct month_file *file, const struct history_row *rows, size_t count, const struct history_row *held,
                      size_t held_count);
-/* Brings what was written into the order of tags, and rolls it up. How many rows wait for it: month_file_waiting. */
+/* Sorts the rows that were written by tag and makes rollups of them. month_file_waiting() returns how many rows wait for that. */
 int month_file_tidy(struct month_file *file);
 size_t month_file_waiting(const struct month_file *file);
-/* Points of any time, of one tag, ascending; rolls up what they change. */
+/* Writes points of one tag, ascending, of any time of the month, and updates the rollups. */
 int month_file_import(struct month_file *file, int tag, const struct history_point *points, size_t count);
-/* What was held when the last writer ended becomes part of the line, and a gap is set behind it; *ended_us: when it ended. */
+/* Recovers from a writer that did not end properly: records its newest samples, each followed by a gap. *ended_us: when it ended. */
 int month_file_recover(struct month_file *file, uint32_t gap_quality, int64_t *ended_us);
-int month_file_clear_held(struct month_file *file); /* all that was held is written: the month is over */
-int month_file_note(struct month_file *file, int64_t t_us, const char *kind, const char *text); /* in the table of events */
+int month_file_clear_held(struct month_file *file); /* deletes the newest samples: all are recorded, the month is over */
+int month_file_note(struct month_file *file, int64_t t_us, const char *kind, const char *text); /* writes a row of the table of events */
 
-/* What is read between these two is of one moment, whatever is written meanwhile. */
+/* Begin and end a read transaction: all that is read between is consistent, whatever is written meanwhile. */
 int month_file_begin_read(struct month_file *file);
 void month_file_end_read(struct month_file *file);
-/* Appends the points in from..to, with the last before and the first after where the file has them. Ascending. */
+/* Appends the points of a tag between two times, ascending, with the last point before and the first after if the file has them. */
 int month_file_points(struct month_file *file, const char *tag, int64_t from_us, int64_t to_us, struct history_points *out);
-/* Appends what is rolled up of whole or part buckets in from..to; *until_us: where that ends. */
+/* Appends the rollup buckets of a tag that overlap from..to; *until_us: up to when there are rollups. */
 int month_file_buckets(struct month_file *file, const char *tag, enum history_level level, int64_t from_us, int64_t to_us,
                        struct history_buckets *out, int64_t *until_us);
-/* Appends the times when nothing was recorded at all, of which this file tells: nobody did, or the clock was set forward. In no order. */
+/* A time when nothing was recorded: the daemon did not run, or the clock was set forward. */
 struct history_gap {
     int64_t from_us, to_us;
 };
@@ -81,16 +82,17 @@ struct history_gaps {
     struct history_gap *at; /* mem_free */
     size_t count, capacity;
 };
+/* Appends the gaps that this file knows of, in no order. */
 int month_file_gaps(struct month_file *file, struct history_gaps *out);
-/* When the first and the last of its points were; left as they are where it has none. */
+/* Finds the times of the first and the last point. Leaves both as they are if there is none. */
 int month_file_span(struct month_file *file, int64_t *first_us, int64_t *last_us);
-/* Of each tag, what lies before or at t, and after; t_us INT64_MIN in a point that is not there. Only those are looked for: the month
-   of t is asked before its neighbours. */
+/* The points of a tag around a time: the last one before or at it, and the first one after; t_us is INT64_MIN in a point not found yet. */
 struct history_pair {
     struct history_point before, after;
     bool step;
     struct unit_change change; /* from the unit of the file that was read last */
 };
+/* Finds the points of all tags around t_us. Looks only for those not found yet, so the month of t_us is read before its neighbours. */
 int month_file_at(struct month_file *file, int64_t t_us, const struct history_tag *tags, size_t count, struct history_pair *pairs);
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What the files about a month's file share. Only for them. */
+/* What the files month_file*.c share. Private to them. */
 #ifndef HISTORY_MONTH_FILE_IMPL_H
 #define HISTORY_MONTH_FILE_IMPL_H
 #include <sys/types.h>
@@ -24,7 +24,7 @@ struct month_file {
     struct database db;
     int month;
     ino_t inode;
-    const struct plant *shown_by; /* in whose units its values are given; NULL: as they are there */
+    const struct plant *shown_by; /* values are converted to its units; NULL: not converted */
     const struct history_tag *tags;
     size_t tag_count, waiting;
     int64_t *ids;                  /* of tags; 0: not known yet */

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What the historian keeps of one tag: points in time, joined by straight lines (by steps where the tag is a switch). */
+/* A recorded point of a tag. Points are joined by straight lines, or by steps where the tag is a switch. Pure functions. Thread: any. */
 #ifndef HISTORY_POINT_H
 #define HISTORY_POINT_H
 #include <math.h>
@@ -12,23 +12,23 @@ struct history_point {
     uint32_t quality; /* OPC UA; from here until the next point */
 };
 
-/* Has a value that may be drawn. */
+/* Returns whether the point has a value that may be drawn. */
 static inline bool history_point_usable(const struct history_point *p)
 {
     return (p->quality >> 30) < 2 && !isnan(p->value);
 }
-/* Of what lies between two points that follow each other, where it is not a step. Both are usable. */
+/* Returns the value at t_us on the line between two usable points that follow each other. */
 static inline double history_point_between(const struct history_point *a, const struct history_point *b, int64_t t_us)
 {
     return a->value + (b->value - a->value) * ((double)(t_us - a->t_us) / (double)(b->t_us - a->t_us));
 }
-/* The line from a to b shows values between them; else a's value holds until b. */
+/* Returns whether a line joins a to b; else the value of a holds until b. */
 static inline bool history_point_joined(const struct history_point *a, const struct history_point *b, bool step)
 {
     return !step && history_point_usable(a) && history_point_usable(b) && a->quality == b->quality;
 }
 
-/* What events of a month's file say, with the seconds. */
+/* Texts of the events in a month's file; the number is in seconds. */
 #define HISTORY_GAP_TEXT "not recorded for %.0f s"
 #define HISTORY_FORWARD_TEXT "the clock was set forward by %.1f s"
 #define HISTORY_BACK_TEXT "the clock was set back by %.1f s"

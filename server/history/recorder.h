@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What of a stream of samples is to be written: each tag's through its own door. Pure; thread: one. */
+/* Selects which samples are written: one swinging-door filter for each tag. Pure. Thread: one. */
 #ifndef HISTORY_RECORDER_H
 #define HISTORY_RECORDER_H
 #include "history/month_file.h"
@@ -13,13 +13,14 @@ struct recorder_rows { /* zero-initialise; free at with mem_free */
 struct recorder;
 struct recorder *recorder_create(const struct plant *plant);
 void recorder_destroy(struct recorder **recorder); /* &NULL is fine; leaves NULL */
-/* Appends what must be kept because of it. */
+/* Adds a sample of a tag and appends the rows that must be written because of it. */
 void recorder_put(struct recorder *recorder, int tag, const struct history_point *sample, struct recorder_rows *kept);
-uint32_t recorder_quality(const struct recorder *recorder, int tag); /* of its newest sample; Bad_WaitingForInitialData: none yet */
-/* Appends what is held of the tags that had a sample since the last call. */
-/* It could not be written: the next call appends all that is held. */
-void recorder_hold_again(struct recorder *recorder);
+/* Returns the quality of a tag's newest sample; Bad_WaitingForInitialData if it has none yet. */
+uint32_t recorder_quality(const struct recorder *recorder, int tag);
+/* Appends the newest samples that are not recorded yet, of tags that had a sample since the last call. */
 void recorder_held(struct recorder *recorder, struct recorder_rows *held);
-void recorder_end(struct recorder *recorder, struct recorder_rows *kept); /* closes all doors */
+/* Makes the next recorder_held() append those of all tags, because the last ones could not be written. */
+void recorder_hold_again(struct recorder *recorder);
+void recorder_end(struct recorder *recorder, struct recorder_rows *kept); /* appends the last rows of all tags */
 
 #endif

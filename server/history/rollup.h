@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What one tag did in a stretch of time: its lowest, highest, mean and last value, and how long it had none. Pure.
-   Only stretches with a kept point in them come out: between two that do, the line goes on straight, from `last` to `first`. */
+/* Rollups: minimum, maximum, mean and last value of a tag in intervals of equal length (buckets), and for how long it had no value. Pure.
+   Only intervals that contain a recorded point make a bucket; between two buckets the line is straight, from `last` to `first`. */
 #ifndef HISTORY_ROLLUP_H
 #define HISTORY_ROLLUP_H
 #include <stddef.h>
@@ -26,11 +26,12 @@ struct rollup { /* zero-initialise, then set length_us and step */
     double area; /* value times microseconds */
 };
 
-/* The next point, in order of time (one that is not is taken as if it came at the time of the last). True: *closed is whole. */
+/* Adds the next point in order of time; an older one counts as if it were at the time of the last. Returns true if this completes a
+   bucket, *closed. */
 bool rollup_put(struct rollup *rollup, const struct history_point *point, struct history_bucket *closed);
-/* The bucket that is still open, up to the last point. False: there is none. */
+/* Gets the incomplete bucket, up to the last point. Returns false if there is none. */
 bool rollup_rest(const struct rollup *rollup, struct history_bucket *out);
-/* Puts buckets of a shorter length together: b follows a within the same longer one. */
+/* Adds bucket b to bucket a; b follows a within the same longer bucket. */
 void rollup_merge(struct history_bucket *a, const struct history_bucket *b);
 /* Adds to `into` what lies between from_us and to_us of the line from the end of a, at end_us, to the beginning of b. */
 void rollup_bridge(struct history_bucket *into, const struct history_bucket *a, int64_t end_us, const struct history_bucket *b,

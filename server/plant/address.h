@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Modbus addresses, data types and byte orders as tag lists write them (PLANT.md). Thread: any. */
+/* Parses Modbus addresses, data types and byte orders as tag lists write them (PLANT.md). Thread: any. */
 #ifndef PLANT_ADDRESS_H
 #define PLANT_ADDRESS_H
 #include <stdbool.h>
@@ -14,14 +14,15 @@ struct modbus_address {
     enum byte_order byte_order; /* NONE: not stated */
 };
 
-/* address_base: what the first register is called in plain addresses, 0 or 1. False: why[] says what was expected. */
+/* Parses an address. address_base: the number of the first register in plain addresses, 0 or 1. Returns false on errors, with what was
+   expected in why. */
 bool address_parse(const char *text, int address_base, struct modbus_address *out, char why[200]);
 
-bool data_type_parse(const char *text, enum data_type *out); /* ours and Kepware's names; not "Default" */
+bool data_type_parse(const char *text, enum data_type *out); /* accepts our names and those of Kepware, not "Default" */
 extern const char data_type_all[];                           /* "bool, int16, ...", for messages */
-const char *data_type_suggest(const char *text);             /* the nearest name, or NULL */
-const char *data_type_name(enum data_type type);             /* ours: "int16", "float32", ... */
-int data_type_registers(enum data_type type);                /* 1, 2 or 4 */
+const char *data_type_suggest(const char *text);             /* returns the most similar name, or NULL */
+const char *data_type_name(enum data_type type);             /* returns our name: "int16", "float32", ... */
+int data_type_registers(enum data_type type);                /* returns how many registers it takes: 1, 2 or 4 */
 bool byte_order_parse(const char *text, enum byte_order *out);
 
 #endif

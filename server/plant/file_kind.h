@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What a file is that somebody named by mistake, by how it begins. Pure. Thread: any. */
+/* Recognizes what kind of file somebody named by mistake, from its first bytes. Thread: any. */
 #ifndef PLANT_FILE_KIND_H
 #define PLANT_FILE_KIND_H
 
-/* Tells what a file is: "a STEP file", "a model (GLB)", ... Returns NULL for what is not known, text for instance, and for a file that
-   cannot be read. */
+/* Returns what a file is: "a STEP file", "a model (GLB)", ... Returns NULL if it is not known, text for instance, or cannot be
+   read. */
 const char *file_kind_of(const char *path);
 
 #endif

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A colour map out of an image: the row of pixels along its longest axis, through its middle; from left to right, or from the bottom up.
-   The colours are taken as they stand in the file (sRGB), those between pixels interpolated likewise, as a texture's are. Thread: any. */
+/* Makes a colour map from an image: from the middle row of pixels along its longer side, left to right or bottom to top. Colours are used
+   and interpolated as they are in the file (sRGB), as with a texture. Thread: any. */
 #ifndef PLANT_IMAGE_RAMP_H
 #define PLANT_IMAGE_RAMP_H
 #include <stdbool.h>
@@ -8,7 +8,7 @@
 
 #include "base/image.h"
 
-/* False: why says what is wrong with the file. */
+/* Reads the map. Returns false if it cannot, with the reason in why. */
 bool image_ramp(const char *path, uint8_t rgb[256][3], char why[IMAGE_WHY_BYTES]);
 
 #endif

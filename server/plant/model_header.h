@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What a model says of itself before its vertices are read: its nodes and their boxes, out of the JSON of a glTF file. For --check, which
-   has no time for more; plantcast-prep reads models with gltf_shim.h and finds what is not seen here. Thread: any. */
+/* Reads the nodes of a glTF file and their bounding boxes from its JSON, without the vertices, for --check, which must be fast. Thread:
+   any. */
 #ifndef PLANT_MODEL_HEADER_H
 #define PLANT_MODEL_HEADER_H
 #include "plant/nodes.h"
@@ -11,17 +11,18 @@ struct model_box { /* low > high: empty */
 
 struct model_header {
     struct model_node *nodes; /* of the scene, depth first */
-    struct model_box *boxes;  /* of each node's own mesh, in the model's units and axes, where the scene has it */
+    struct model_box *boxes;  /* of each node's own mesh, in the model's units and axes, placed as in the scene */
     size_t count;
-    bool partial;             /* boxes are smaller than the model: instances, or accessors that do not say their range */
-    void *json;               /* the names are in it */
+    bool partial;             /* boxes may be too small: there are instances, or accessors without min and max */
+    void *json;               /* owns the names */
 };
 
-/* False: why says what is wrong with the file; nothing to finish. */
+/* Reads a file. Returns false if it cannot, with the reason in why; then there is nothing to finish. */
 bool model_header_read(struct model_header *header, const char *path, char *why, size_t why_bytes);
 void model_header_finish(struct model_header *header);
 
 extern const struct model_box model_box_empty;
+/* Grows a box to contain another one. */
 void model_box_add(struct model_box *box, const struct model_box *other);
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Which nodes of a model a plant file means: patterns of an asset's `nodes`, and of a tag's `Node` (PLANT.md). Thread: any. */
+/* Matches the node patterns of a plant file, an asset's `nodes` and a tag's `Node` (PLANT.md), with the nodes of a model. Thread: any. */
 #ifndef PLANT_NODES_H
 #define PLANT_NODES_H
 #include <stdbool.h>
@@ -15,11 +15,12 @@ struct model_node { /* depth first: a node's sub-tree are the nodes [node, end) 
 
 #define NODES_SEPARATOR '\n' /* between the patterns of an asset */
 
-/* Sets taken[i] for each node that the patterns take, with the sub-trees; those that begin with ! leave theirs out. NULL: all. False: why
-   names the pattern that no node matches. */
+/* Sets taken[i] for each node that a pattern matches and for its sub-tree; patterns that begin with ! exclude theirs. patterns NULL: all
+   nodes. Returns false if a pattern matches no node, and names it in why. */
 bool nodes_take(const char *patterns, const struct model_node *nodes, size_t count, bool *taken, char *why, size_t why_bytes);
 
-/* The nodes that one pattern names, each alone, without its sub-tree. found: room for count numbers. 0: why says that there is none. */
+/* Finds the nodes that a pattern matches, without their sub-trees. found: room for count numbers. Returns how many there are; if there is
+   none, why says so. */
 size_t nodes_find(const char *pattern, const struct model_node *nodes, size_t count, uint32_t *found, char *why, size_t why_bytes);
 
 #endif

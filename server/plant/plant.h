@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A plant as its people wrote it: the plant file (YAML) and its tag list (CSV), checked for syntax and meaning.
-   Immutable once loaded. Thread: any may read. Used by plantcastd, plantcast-prep and plantcast-sim alike. */
+/* A plant, as loaded from its plant file (YAML) and tag list (CSV) and checked for syntax and meaning. Immutable once loaded. Thread: any.
+   plantcastd, plantcast-prep and plantcast-sim all use it. */
 #ifndef PLANT_PLANT_H
 #define PLANT_PLANT_H
 #include <stdbool.h>
@@ -240,20 +240,21 @@ struct plant {
     size_t derived_count;
 };
 
-/* Reads the plant file and its tag list. Every finding goes to diag. NULL if there was any error. */
+/* Loads a plant file and its tag list. Findings go to diag. Returns NULL if there was any error. */
 struct plant *plant_load(const char *path, struct diag *diag);
-struct plant *plant_load_or_print(const char *path); /* errors go to standard error */
-/* The same, but a tag may name an asset that is not there: it has no asset then, and its lost_asset is set. */
+struct plant *plant_load_or_print(const char *path); /* the same; prints findings to standard error */
+/* The same, but accepts tags that name an asset that does not exist: they have no asset, and lost_asset is set. */
 struct plant *plant_load_with_orphans(const char *path, struct diag *diag);
 void plant_destroy(struct plant **plant); /* &NULL is fine; leaves NULL */
 
-int plant_find_asset(const struct plant *plant, const char *id); /* index or -1; so below */
+int plant_find_asset(const struct plant *plant, const char *id); /* returns an index or -1, as all below */
 int plant_find_group(const struct plant *plant, const char *id);
 int plant_find_environment(const struct plant *plant, const char *name); /* 0: "sky", 1: the first of the plant's own, ... */
 int plant_find_tag(const struct plant *plant, const char *name);
-bool plant_tag_simulated(const struct plant *plant, int tag); /* its source is, or that of something that it is computed from */
-/* Where prepared asset files of this plant are kept: FOLDER/NAME.prepared beside NAME.yaml. Free with mem_free. */
+/* Returns whether readings of a tag are simulated: its source is, or that of a tag that it is computed from. */
+bool plant_tag_simulated(const struct plant *plant, int tag);
+/* Returns the folder of the prepared asset files: FOLDER/NAME.prepared beside NAME.yaml. Free with mem_free(). */
 char *plant_prepared_folder(const struct plant *plant);
-char *plant_history_folder(const struct plant *plant); /* likewise what was recorded, unless the plant file names another */
+char *plant_history_folder(const struct plant *plant); /* likewise of the history, unless the plant file names another one */
 
 #endif

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The sensors of one asset as its prepared file must hold them. plantcast-prep writes this list and scene_create compares with
-   it, so both call this. Thread: any. */
+/* Lists the sensors of an asset as its prepared file must contain them: plantcast-prep writes this list, and scene_create() compares the
+   file with it. Thread: any. */
 #ifndef PLANT_SENSORS_H
 #define PLANT_SENSORS_H
 #include <stdint.h>
@@ -14,7 +14,7 @@ struct plant_sensor {
     double position_m[3];  /* asset frame (metres, Z up); 0 where node is set */
 };
 
-/* Tags with this asset and a group, in the order of the tag list. *out: free with mem_free. */
+/* Returns the number of tags that have this asset and a group, and lists them in the order of the tag list; free *out with mem_free(). */
 size_t plant_sensors(const struct plant *plant, int asset, struct plant_sensor **out);
 
 #endif

@@ -24,18 +24,18 @@ struct tag_columns {
     int at[COL_COUNT]; /* column of the file, or -1 */
 };
 
-/* Opens the list and finds its columns; unknown and doubled ones are reported. False: it cannot be read (reported). */
+/* Opens the list and finds its columns; unknown and duplicate ones are reported. Returns false if it cannot be read (reported). */
 bool tag_columns_open(struct tag_columns *columns, const char *path, struct diag *diag);
-void tag_columns_need(struct tag_columns *columns, enum tag_column column); /* reports it when the header lacks it */
+void tag_columns_need(struct tag_columns *columns, enum tag_column column); /* reports a column that is missing */
 const char *tag_column_name(enum tag_column column);
 
-/* Of the current row. */
+/* Returns the text of a cell of the current row. */
 const char *cell_text(const struct tag_columns *columns, enum tag_column column);
-bool cell_given(const struct tag_columns *columns, enum tag_column column); /* not blank */
-/* A number in [low, high] (both 0: any that is finite). False, and *out as it was: blank, or wrong (reported). */
+bool cell_given(const struct tag_columns *columns, enum tag_column column); /* returns whether the cell is not blank */
+/* Reads a number in [low, high] (both 0: any finite one). Returns false, with *out unchanged, if the cell is blank or wrong (reported). */
 bool cell_number(struct tag_columns *columns, enum tag_column column, double low, double high, double *out);
-bool cell_flag(struct tag_columns *columns, enum tag_column column); /* 1, true, yes; 0, false, no, blank */
-/* Index of the thing that the cell names; each of them begins with its id. -1: blank, or unknown (reported). */
+bool cell_flag(struct tag_columns *columns, enum tag_column column); /* reads 1, true, yes; 0, false, no or blank */
+/* Returns the index of the thing that the cell names; things are records that begin with their id. -1: blank, or unknown (reported). */
 int cell_reference(struct tag_columns *columns, enum tag_column column, const char *what, const void *things, size_t count, size_t stride);
 #define cell_error(columns, c, ...) csv_error(&(columns)->csv, (columns)->at[c], __VA_ARGS__)
 #define cell_warning(columns, c, ...) csv_warning(&(columns)->csv, (columns)->at[c], __VA_ARGS__)

@@ -6,11 +6,11 @@
 
 extern const double transform_identity[16];
 
-/* out = a * b; out may be neither. */
+/* Multiplies: out = a * b. out must be neither a nor b. */
 void transform_multiply(const double a[16], const double b[16], double out[16]);
-/* Translate * Rz * Ry * Rx: turned about x, then y, then z. */
+/* Composes translate * Rz * Ry * Rx: rotates about x, then y, then z, then translates. */
 void transform_compose(const double translate[3], const double rotate_deg[3], double out[16]);
-/* Of an affine transform (last row 0 0 0 1). False: it has no inverse. */
+/* Inverts an affine transform (last row 0 0 0 1). Returns false if it has no inverse. */
 bool transform_invert(const double m[16], double out[16]);
 void transform_point(const double m[16], const double point[3], double out[3]);
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Reads YAML mappings into structs by tables of keys. Every finding goes to diag with its place. Thread: one. */
+/* Reads YAML mappings into structs, by tables of keys. Findings go to diag with line and column. Thread: one. */
 #ifndef PLANT_YAML_READER_H
 #define PLANT_YAML_READER_H
 #include <stdbool.h>
@@ -53,31 +53,32 @@ struct yaml_map { /* where things were, and whether they were good */
     bool good[YAML_MAP_MAX_KEYS]; /* given, and read without an error */
 };
 
-/* False: reported (unreadable, not text, not YAML), and reader needs no yaml_reader_close. path is copied; diag must outlive reader. */
+/* Parses a file. Returns false if it is unreadable, no text or no YAML (reported); yaml_reader_close() is not needed then. path is copied;
+   diag must outlive the reader. */
 bool yaml_reader_open(struct yaml_reader *reader, const char *path, struct diag *diag);
 void yaml_reader_close(struct yaml_reader *reader);
 
 struct place yaml_place(const yaml_node_t *node);
 void yaml_error(struct yaml_reader *reader, struct place place, const char *fmt, ...) __attribute__((format(printf, 3, 4)));
-/* `name: expected ..., found ...` at the node. */
+/* Reports `name: expected ..., found ...` at a node. */
 void yaml_expected(struct yaml_reader *reader, const yaml_node_t *node, const char *name, const char *expected);
-/* A plain scalar with nothing in it, `~` or `null`. */
+/* Returns whether a node is null: an empty plain scalar, `~` or `null`. */
 bool yaml_is_null(const yaml_node_t *node);
-/* The text of a scalar; NULL for lists and mappings. */
+/* Returns the text of a scalar; NULL for lists and mappings. */
 const char *yaml_text(const yaml_node_t *node);
-/* A finite number in [low, high]; else reported. */
+/* Reads a finite number in [low, high]. Returns false if it is none (reported). */
 bool yaml_number(struct yaml_reader *reader, const yaml_node_t *node, const char *name, double low, double high, double *out);
 
-/* Reads a mapping into record. Keys that are absent or null leave it as it is. what names the mapping in messages ("a group").
-   False: not a mapping at all. */
+/* Reads a mapping into record; members whose key is absent or null stay unchanged. what names the mapping in messages ("a group"). Returns
+   false if it is no mapping. */
 bool yaml_map_read(struct yaml_reader *reader, yaml_node_t *node, const char *what, const struct key *keys, void *record,
                    struct yaml_map *map);
-bool yaml_map_good(const struct yaml_map *map, const char *name);
-bool yaml_map_has(const struct yaml_map *map, const char *name); /* the key is there, whatever its value */
-/* Of the value; of the mapping where the key is absent. */
+bool yaml_map_good(const struct yaml_map *map, const char *name); /* returns whether the key was given and read without an error */
+bool yaml_map_has(const struct yaml_map *map, const char *name); /* returns whether the key is present, whatever its value */
+/* Returns the place of a value; of the mapping if the key is absent. */
 struct place yaml_map_place(const struct yaml_map *map, const char *name);
 
-/* Number of items; -1: not a list (reported). */
+/* Returns the number of items; -1 if it is no list (reported). */
 int yaml_list_count(struct yaml_reader *reader, const yaml_node_t *node, const char *name);
 yaml_node_t *yaml_list_item(struct yaml_reader *reader, const yaml_node_t *node, int index);
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Which registers to ask for together: the tags of a Modbus source, coalesced into blocks. No I/O, no clock. Thread: one. */
+/* Read plan of a Modbus source: its tags, grouped into blocks that are read by one request each. No I/O, no clock. Thread: one. */
 #ifndef VALUE_READ_PLAN_H
 #define VALUE_READ_PLAN_H
 #include <stddef.h>
@@ -9,30 +9,31 @@
 
 enum { READ_PLAN_MAX_REGISTERS = 125, READ_PLAN_MAX_BITS = 2000 }; /* one request, Modbus Application Protocol 6.1-6.4 */
 
-struct read_plan_block { /* one request: no tag in two blocks; between its tags at most the source's max_gap registers that nobody wants */
-    int unit;            /* Modbus unit identifier */
+struct read_plan_block { /* one request; each tag is in one block, gaps between tags are at most the source's max_gap registers */
+    int unit;                  /* Modbus unit identifier */
     enum register_table table;
     int scan_ms;
-    int first, count;            /* registers or bits */
-    size_t first_tag, tag_count; /* in plan.tags */
-    int64_t due_ns;              /* for the reader; 0 in a new plan, copied by read_plan_split */
-    int busy_count;              /* likewise: answers in a row that said "busy" */
-    int refused_count;           /* likewise: how often in a row it was refused, alone */
-    bool answered;               /* likewise: by its last answer */
+    int first, count;          /* registers or bits */
+    size_t first_tag, tag_count; /* in read_plan.tags */
+    int64_t due_ns;            /* for the reader; 0 in a new plan, copied by read_plan_split() */
+    int busy_count;            /* likewise: answers in a row that said "busy" */
+    int refused_count;         /* likewise: how often in a row a block of one tag was refused */
+    bool answered;             /* likewise: the last request was answered */
 };
 
 struct read_plan { /* zero-initialise */
-    int *tags;     /* indices in plant->tags, in the order of their registers */
+    int *tags;                 /* indices in plant->tags, in the order of their registers */
     size_t tag_count;
     struct read_plan_block *blocks;
     size_t block_count, block_capacity;
-    int *units; /* every unit that is asked, once */
+    int *units;                /* every Modbus unit in the plan, once */
     size_t unit_count;
 };
 
+/* Makes the plan of one of the plant's sources. */
 void read_plan_init(struct read_plan *plan, const struct plant *plant, int source);
 void read_plan_finish(struct read_plan *plan);
-/* Cuts a block of at least two tags between two of them: the second half becomes block index + 1. */
+/* Splits a block of at least two tags between two of them; the second half becomes block index + 1. */
 void read_plan_split(struct read_plan *plan, const struct plant *plant, size_t index);
 
 #endif

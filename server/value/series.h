@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Recorded series from CSV files, by time since the start of the file. Three forms are known:
+/* Reads recorded series from CSV files; times count from the start of the file. Three forms are supported:
    wide: a header line, one column is the time, the others are series by their names. The time is in a column whose name ends in _ms, _s,
      _min or _h, or it is a date and time (base/timestamp.h) in a column called Time, Timestamp, UTC, DateTime or Date, or in the first one;
    values: a header line with Tag, Time and Value, perhaps Unit: one value a line, as `plantcast history export` prints it;
@@ -12,25 +12,26 @@
 
 struct series {
     char *name;
-    char *unit;             /* as its lines say; NULL: nothing does */
-    double *time_s, *value; /* times rise; 0 is the first line of the file */
+    char *unit;               /* as stated in its lines; NULL: not stated */
+    double *time_s, *value;   /* times rise; 0 is the first line of the file */
     size_t count, capacity, value_capacity;
-    double length_s; /* of the whole file, one step after its last line: when a loop starts again */
+    double length_s;          /* of the whole file, one step after its last line: when a loop starts again */
 };
 
-/* Reads the named series. False: why (200 bytes) says so: which file and line. *found tells "no such series here" from an error. */
+/* Reads the named series. Returns false if it cannot, with file and line in why; *found tells whether the series is there at all. Free with
+   series_finish(). */
 bool series_read(struct series *series, const char *path, const char *name, bool *found, char why[200]);
 void series_finish(struct series *series);
-/* The last value recorded at or before time_s; the first one before that. loop: starts again at length_s. */
+/* Returns the last value recorded at or before time_s, or the first value if time_s is before it. loop: repeats after length_s. */
 double series_at(const struct series *series, double time_s, bool loop);
 
 struct series_names {
     char **at;
     size_t count, capacity;
-    bool whole; /* else the file is longer than what was read */
+    bool whole; /* all of the file was read */
 };
 
-/* What the file has, by its head. False: why. */
+/* Lists the series of a file, by reading its beginning. Returns false if it cannot, with the reason in why. */
 bool series_list(struct series_names *names, const char *path, char why[200]);
 void series_names_finish(struct series_names *names);
 

@@ -1,9 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Do the files of a plant's replays hold what its tags want? Heads are read, not whole files. Thread: one. */
+/* Checks that the files of a plant's replay sources contain the series that its tags name; reads only the beginning of each file.
+   Thread: one. */
 #ifndef VALUE_SERIES_CHECK_H
 #define VALUE_SERIES_CHECK_H
 #include "plant/plant.h"
 
+/* Adds a finding to diag for each file that cannot be read and each series that is missing. */
 void series_check(const struct plant *plant, struct diag *diag);
 
 #endif

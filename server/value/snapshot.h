@@ -1,17 +1,17 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* All readings at one instant: what the field is computed from. A plain copy; belongs to whoever took it. */
+/* The readings of all tags at one instant, from which the field is computed. A plain copy, owned by whoever took it. */
 #ifndef VALUE_SNAPSHOT_H
 #define VALUE_SNAPSHOT_H
 #include <stddef.h>
 #include <stdint.h>
 
 struct reading {
-    double value;                /* engineering units; never NaN while quality is not Bad */
-    uint32_t quality;            /* OPC UA, staleness already applied */
-    uint32_t changes;            /* counts every change of value, quality or alarm: equal means nothing to do */
-    uint8_t alarm, alarm_status; /* its gravest (enum alarm_kind) of those that are to be seen, and how that is (enum alarm_status) */
-    int64_t received_utc_ns;     /* when the value came in; 0 = never */
-    int64_t age_ns;              /* at the snapshot, by the monotonic clock; INT64_MAX = never */
+    double value;             /* engineering units; never NaN while quality is not Bad */
+    uint32_t quality;         /* OPC UA, staleness already applied */
+    uint32_t changes;         /* increases with every change of value, quality or alarm */
+    uint8_t alarm, alarm_status; /* the alarm that is shown for the tag (enum alarm_kind), and its state (enum alarm_status) */
+    int64_t received_utc_ns;  /* when the value came in; 0 = never */
+    int64_t age_ns;           /* at the snapshot, by the monotonic clock; INT64_MAX = never */
 };
 
 struct snapshot {
@@ -20,7 +20,7 @@ struct snapshot {
     struct reading *readings; /* by tag index */
 };
 
-struct snapshot *snapshot_create(size_t tag_count); /* all Bad_WaitingForInitialData */
+struct snapshot *snapshot_create(size_t tag_count); /* never NULL; all readings are Bad_WaitingForInitialData */
 void snapshot_destroy(struct snapshot **snapshot);
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Where values come from: one thread per source, which writes to the store and to nothing else. */
+/* Sources of readings. Each has one thread, which writes to the store and to nothing else. */
 #ifndef VALUE_SOURCE_H
 #define VALUE_SOURCE_H
 #include "base/counters.h"
@@ -19,8 +19,10 @@ struct source {
     const struct source_impl *impl;
 };
 
-/* NULL: logged (unknown kind, no thread). A device that does not answer is not a failure: it is tried for ever. */
+/* Starts the thread of one of the plant's sources. A device that does not answer is no error: it is retried for ever. Returns NULL (logged)
+   if the kind is unknown or there is no thread. */
 struct source *source_start(struct log *log, const struct plant *plant, int source, struct store *store, struct counters *counters);
-void source_stop(struct source **source); /* &NULL is fine; leaves NULL; returns within 2 s */
+/* Ends the thread within 2 s and frees the source. &NULL is fine; leaves NULL. */
+void source_stop(struct source **source);
 
 #endif

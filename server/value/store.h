@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The latest reading of every tag. Sources write, anyone takes snapshots; the newest sample wins. Thread: any.
-   A quality is the worst of: the sample's own and its age; Uncertain_SensorNotAccurate once its value has been the same for flatline_s;
-   what its quality tag says; Bad_DeviceFailure once the heartbeat of its source has stopped. */
+/* The store holds the newest sample of every tag. Sources write, anyone takes snapshots. Thread: any.
+   The quality of a reading is the worst of: that of the sample; that which follows from its age; Uncertain_SensorNotAccurate once the value
+   has not changed for flatline_s; that of its quality tag; Bad_DeviceFailure once the heartbeat of its source has stopped. */
 #ifndef VALUE_STORE_H
 #define VALUE_STORE_H
 #include <stdbool.h>
@@ -12,15 +12,15 @@
 
 struct store;
 
-/* What a source says of one tag. */
+/* One value of one tag, as a source writes it. */
 struct sample {
-    int tag;      /* index in plant->tags */
-    double value; /* engineering units; not used while quality is Bad. NaN or infinite becomes Bad_SensorFailure */
+    int tag;          /* index in plant->tags */
+    double value;     /* engineering units; not used while quality is Bad. NaN or infinite becomes Bad_SensorFailure */
     uint32_t quality;
 };
 
-/* Hears every sample and every link that is lost, in their order, under the store's lock: it copies and returns. value: NaN if Bad.
-   What is lost before the first sample of all is not told, as its UTC is not known: a snapshot has it. */
+/* What listeners are called with, for every sample and every lost link, in order and under the store's lock: a listener copies the event
+   and returns. A link that is lost before the first sample of all makes no event, since the UTC time is not known; snapshots show it. */
 struct sample_event {
     int tag;
     double value;
@@ -32,23 +32,25 @@ enum { STORE_LISTENERS = 4 };
 
 struct store *store_create(const struct plant *plant); /* plant must outlive it */
 void store_destroy(struct store **store);
-/* Readings of tags, and links of sources, that go by the same name in another store: as they are there. Before anybody listens. */
+/* Copies readings and link states from another store, for tags and sources of the same name. To be called before anybody listens. */
 void store_adopt(struct store *store, struct store *before);
-void store_listen(struct store *store, store_listener *listener, void *arg);   /* at most STORE_LISTENERS of them */
-void store_unlisten(struct store *store, store_listener *listener, void *arg); /* hears nothing more once this has returned */
-/* Times are of arrival. A failed read is not a sample: see store_link_lost. */
+/* Adds a listener; at most STORE_LISTENERS. */
+void store_listen(struct store *store, store_listener *listener, void *arg);
+/* Removes a listener; it is not called any more once this has returned. */
+void store_unlisten(struct store *store, store_listener *listener, void *arg);
+/* Writes samples that arrived at the given time. A failed read is no sample: see store_link_lost(). */
 void store_write(struct store *store, const struct sample *samples, size_t count, int64_t now_mono_ns, int64_t now_utc_ns);
-/* The source cannot be read since now. Its tags keep their last values: Uncertain_NoCommunicationLastUsableValue until
-   stale_s has passed since they arrived, then Bad_CommunicationError; those that never had one are Bad_NoCommunication. */
+/* Records that a source cannot be read from now on. Its tags keep their last values: Uncertain_NoCommunicationLastUsableValue until
+   stale_s after they arrived, then Bad_CommunicationError. Tags that never had a value are Bad_NoCommunication. */
 void store_link_lost(struct store *store, int source, int64_t now_mono_ns);
-/* The same for some tags only: one unit behind a gateway is gone while others still answer. */
+/* The same for some tags only: one unit behind a gateway fails while others still answer. */
 void store_tags_lost(struct store *store, const int *tags, size_t count, int64_t now_mono_ns);
-/* Tags become usable again one by one, with their next sample. */
+/* Records that a source can be read again. Its tags become usable one by one, each with its next sample. */
 void store_link_up(struct store *store, int source, int64_t now_mono_ns);
-/* What readings say of alarms from now on: a tag's gravest (enum alarm_kind), and how that is (enum alarm_status). */
+/* Sets the alarm that a tag's readings carry from now on (enum alarm_kind) and its state (enum alarm_status). */
 void store_set_alarm(struct store *store, int tag, int alarm, int status);
 bool store_link_is_up(const struct store *store, int source);
-/* Applies staleness as of now. `into` was made for the same plant. */
+/* Copies all readings, with their qualities as of now, into a snapshot that was made for the same plant. */
 void store_snapshot(struct store *store, int64_t now_mono_ns, int64_t now_utc_ns, struct snapshot *into);
 
 #endif

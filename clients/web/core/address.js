@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The view in the address of the page (what follows #), so that a reload or a shared link shows the same.
+// Writes the view to the fragment of the page's URL (after #) and reads it, so that a reload or a shared link shows the same.
 import { valid } from './camera.js';
 import { clipText, numbersText, readNumbers, readSensors, sensorsText } from './query.js';
 
@@ -14,7 +14,7 @@ const FACTORS = { strength: 1, decay: 1, power: null, radius: 0, reach: null }; 
 const PARAMS = { radius: 'radius_m', reach: 'reach_m' };
 const HALF = ['group', 'show', 'distance', 'interpolation', 'colormap', 'look'];
 
-// own: parameters that need not be said, such as a group's own.
+// Returns the fragment for a view. own: values of parameters that are left out because they are the default, such as those of a group.
 export function writeAddress({ camera, params = {}, tag = null, time = null, own = {} }) {
     const parts = [], differs = (name) => JSON.stringify(params[name]) !== JSON.stringify(own[name]);
     const put = (name, value) => parts.push(`${name}=${encodeURIComponent(value).replace(/%2C|%3A|%3B/g, decodeURIComponent)}`);
@@ -84,8 +84,8 @@ function readCamera(text) {
     return (n.length === 10 || n.length === 11) && valid(camera) ? camera : null;
 }
 
-// { camera or null, params (only what the address names), tag or null, time: { atUs } where it names an instant }. What makes no sense is
-// left out.
+// Reads a fragment. Returns { camera or null, params (only those that are given), tag or null, time: { atUs } if one is given }, without
+// what is invalid.
 export function readAddress(hash) {
     const fields = new URLSearchParams(hash.replace(/^#/, ''));
     const params = {};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What can be done about alarms, and those that somebody has set aside.
+// Actions on alarms by role and state, and the list of shelved, suppressed and out-of-service alarms.
 import { calls, isGone } from './alarms.js';
 
 const ACTIONS = { // by state; what can be done where the site keeps its own alarms
@@ -9,35 +9,36 @@ const ACTIONS = { // by state; what can be done where the site keeps its own ala
 };
 const ROLES = { in_service: ['engineer'] };
 
-// mode: of the site; role: of who asks.
+// Returns the actions that a role may do to an alarm in this state. mode: the plant's alarm mode.
 export function actionsFor({ state }, mode, role) {
     const may = (action) => (ROLES[action] ?? ['operator', 'engineer']).includes(role);
     return mode === 'local' ? (ACTIONS[state] ?? []).filter(may) : [];
 }
 
+// Returns the alarms that are shelved, suppressed or out of service, in the order of the tag list.
 export const asideOf = ({ rows }) =>
     [...rows.values()].filter(({ state }) => !calls(state)).sort((a, b) => (a.tag.index ?? -1) - (b.tag.index ?? -1));
 
-// A row of the list stands for all alarms of its tag: the gravest, and its others.
+// Returns all alarms that a row of the list stands for: the one that is shown for the tag, and its others.
 export const allOf = (row) => [row, ...(row.others ?? [])];
 
-// Those of a row to which an action can be done.
+// Returns those alarms of a row that an action applies to.
 export const targetsOf = (row, action, mode, role) => allOf(row).filter((alarm) => actionsFor(alarm, mode, role).includes(action));
 
-// What can be done about a row, each action once.
+// Returns the actions that apply to a row, each once.
 export const rowActions = (row, mode, role) => [...new Set(allOf(row).flatMap((alarm) => actionsFor(alarm, mode, role)))];
 
 const IS = { // by choice of the filter
     all: () => true, waiting: ({ waiting }) => waiting, active: ({ state }) => !isGone(state), gone: ({ state }) => isGone(state),
 };
 
-// Whether a filter lets a row through. which: a name of IS, or a priority; words: all of them are in the text of the row.
+// Returns whether a row passes the filter. which: a key of IS, or a priority; words: all of them must be in the text of the row.
 export function passes(row, text, { which, words }) {
     const is = IS[which] ?? (({ priority }) => priority === Number(which)), lower = text.toLowerCase();
     return is(row) && words.toLowerCase().split(/\s+/).every((word) => lower.includes(word));
 }
 
-// Of several at once, as many messages as it takes.
+// Splits alarms into lists that are small enough for one message each.
 const MOST_AT_ONCE = 256;
 export function inMessages(alarms) {
     const out = [];

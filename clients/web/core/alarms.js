@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The alarms that are not normal, as the server tells them: what is to be seen, one for each tag, and in what order.
+// The alarms that are not normal, as the server sends them; which of them are annunciated, one for each tag, and in what order.
 
 const CALLS = ['unacknowledged', 'active', 'returned', 'latched', 'acknowledged']; // what is to be seen
 
@@ -10,7 +10,7 @@ export const isGone = (state) => state === 'returned' || state === 'latched'; //
 const deviceOf = (name) => ({ name, index: null, group: null, asset: null, description: '' });
 
 const isOuter = ({ kind }) => kind === 'HH' || kind === 'LL';
-// What is there goes before what has gone, then the more urgent, then the outer limit, which holds the inner one.
+// Compares two alarms for sorting: active before cleared, then the more urgent, then the outer limit, which implies the inner one.
 export const graver = (a, b) => isGone(a.state) - isGone(b.state) || a.priority - b.priority || isOuter(b) - isOuter(a) ||
     isWaiting(b.state) - isWaiting(a.state) || b.raisedUs - a.raisedUs;
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// From where a sensor is looked at: cameras to try, the best first.
+// Cameras from which a sensor is looked at, to be tried in order, the best first.
 import { face, orbit } from './camera_moves.js';
 import { subtract } from './vector.js';
 
@@ -9,13 +9,14 @@ const TURNS = [ // degrees: about the vertical, up
     [180, 0], [70, 30], [-70, 30], [180, 30], [50, -20], [-50, -20], [0, -45], [90, -45], [-90, -45], [180, -45],
 ];
 
-// So far off that what it stands on is recognised: by the middle one of its box's sides, since a pipe or a column is long.
+// Returns the distance from which equipment with these bounds can be recognised: by the second longest side, since pipes and columns are
+// long.
 export function approachDistance({ min, max }) {
     const [, middle] = subtract(max, min).sort((a, b) => a - b);
     return Math.max(LEAST_M, Math.min(MOST_M, PART * middle));
 }
 
-// Of a point of something with these bounds.
+// Returns the cameras for a point of equipment with these bounds.
 export function approaches(camera, point, bounds) {
     const first = face(camera, point, bounds, approachDistance(bounds));
     return TURNS.map(([azimuth, rise]) => orbit(first, azimuth, rise));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The list of equipment as rows: areas, assets, their tags, and tags that belong to nothing; and what of it is open.
+// The tree of equipment as rows: areas, assets, their tags, and tags without an asset; and which of them are expanded.
 
 // Rows: { kind: area | asset | tag, level, id, open (areas and assets), item (asset or tag), text (of an area), setSize, place }.
 export class Tree {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Rings of alarms: each in a label of its own, or in a call-out together with those close to it: the rule of protocol/LABELS.md.
+// Places the labels of alarm rings: each by itself, or several that are close together in one call-out (protocol/LABELS.md).
 import { boxAt, CLEARANCE, meets, SLOTS } from './labels.js';
 
 const CLOSE = 26, STILL_CLOSE = 34;         // units between rings that share a call-out; between those that did in the picture before
@@ -54,7 +54,7 @@ function boxOf(one, slot, unit) {
 }
 
 // order: items with rings, the most important first; measure(members): { width, height } of their call-out; taken: of labels.js.
-// Returns [{ members, box, slot }, ...]: every item is in one of them.
+// Returns [{ members, box, slot }, ...]; every item is a member of one of them.
 export function placeRings(order, { area, unit, taken, measure }) {
     let lists, least = unit;
     const close = (i, k) => {

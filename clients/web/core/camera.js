@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The camera of one viewer (camera_moves.js moves it). A camera is { eye, target, up, fov }: metres in the plant frame, fov vertical in
-// degrees; target is what it turns about. One that has height_m, what its picture is high, is orthographic; fov is then kept for
+// Cameras (camera_moves.js moves them). A camera is { eye, target, up, fov }: metres in the plant frame, fov vertical in degrees; target is
+// the point that it orbits. One that has height_m, what its picture is high, is orthographic; fov is then kept for
 // later. Every function returns a new camera. Picture places are pixels from the top left.
 import { along, cross, dot, finite, length, middle, scale, subtract, unit } from './vector.js';
 
@@ -11,6 +11,7 @@ const MAX_COORDINATE_M = 1e7; // what the server accepts
 const MIN_HEIGHT_M = 1e-3;
 export const USUAL_FOV = 45;
 
+// Returns whether the server accepts the camera.
 export function valid(camera) {
     if (!camera || !finite(camera.eye) || !finite(camera.target) || !finite(camera.up) || !Number.isFinite(camera.fov))
         return false;
@@ -22,34 +23,37 @@ export function valid(camera) {
     return length(view) > 1e-9 && length(camera.up) > 1e-9 && length(cross(unit(view), unit(camera.up))) > 1e-6;
 }
 
+// Returns whether two cameras are equal.
 export function same(a, b) {
     const sameLens = !!a && !!b && a.fov === b.fov && a.height_m === b.height_m;
     return a === b || (sameLens && ['eye', 'target', 'up'].every((k) => a[k].every((x, i) => x === b[k][i])));
 }
 
-// Unit vectors of the picture: forward into it, right, and up within it (camera.up is the vertical of the plant).
+// Returns the unit vectors of the picture: forward into it, right, and up in it (camera.up is the vertical of the plant).
 export function basis(camera) {
     const forward = unit(subtract(camera.target, camera.eye));
     const right = unit(cross(forward, camera.up));
     return { forward, right, up: cross(right, forward) };
 }
 
+// Returns whether the camera is orthographic.
 export const isParallel = (camera) => camera.height_m !== undefined;
 
+// Return the height of the picture in metres, and metres per pixel, at a depth.
 export const heightAt = (camera, depth) => camera.height_m ?? 2 * depth * Math.tan((camera.fov * RADIANS) / 2);
 export const metresPerPixel = (camera, heightPx, depth) => heightAt(camera, depth) / heightPx;
 
-// As plantcast.v1 says it.
+// Converts a camera to a message of plantcast.v1.
 export function cameraMessage({ eye, target, up, fov, height_m }) {
     return { eye, target, up, ...(height_m === undefined ? { fov } : { projection: 'orthographic', height_m }) };
 }
 
-// The other way round.
+// Converts a message to a camera.
 export function cameraOfMessage({ eye, target, up, fov, height_m }) {
     return { eye, target, up, fov: fov ?? USUAL_FOV, ...(height_m === undefined ? {} : { height_m }) };
 }
 
-// Function from a point in the plant to [x, y, depth in metres] in the picture; null: behind the eye.
+// Returns a function that projects a point of the plant to [x, y, depth in metres] in the picture; null: it is behind the eye.
 export function projector(camera, widthPx, heightPx) {
     const { forward, right, up } = basis(camera);
     const perMetre = 1 / metresPerPixel(camera, heightPx, 1), parallel = isParallel(camera);
@@ -61,13 +65,13 @@ export function projector(camera, widthPx, heightPx) {
     };
 }
 
-// What a legend leaves free, each way from -1 to 1; title: its letters. In a low picture its keys stand beside its bar.
+// Returns the part of the picture that the legend leaves free, in coordinates from -1 to 1. title: size of its letters.
 export const besideLegend = (width, height, lies, title = 14) => (lies ? { top: 1 - 2 * Math.min(0.4, 130 / height) }
     : { right: 1 - 2 * Math.min(0.4, (Math.max(128, 7.6 * title + 24) + (height <= 320 ? 110 : 28)) / width) });
 
 const FIT = 1.08; // leaves a rim
 
-// Looks the same way, in perspective, from just so far that all points are within the window.
+// Returns a perspective camera that looks the same way, just far enough away that all points are within the window.
 export function fitPoints(camera, points, aspect, { left = -1, right = 1, bottom = -1, top = 1 }) {
     const axes = basis(camera), tall = Math.tan((camera.fov * RADIANS) / 2);
     const centre = middle(...[Math.min, Math.max].map((f) => [0, 1, 2].map((i) => f(...points.map((p) => p[i])))));
@@ -83,7 +87,8 @@ export function fitPoints(camera, points, aspect, { left = -1, right = 1, bottom
     return { ...camera, eye: along(target, axes.forward, -back), target };
 }
 
-// The whole plant. A view of the plant file stays as it is where all that is seen in it at 16:9 is seen here, else it steps back.
+// Returns the camera of the home view, which shows the whole plant. A view from the plant file is used as it is if all that it shows at
+// 16:9 is visible here; else it is moved back.
 export function home({ home: { given, ...view }, outline }, width, height, window = {}) {
     const aspect = width / height, sees = (shape, { right = 1, top = 1 }) => {
         const project = projector(view, 2 * shape, 2);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// How the camera of camera.js moves: turns, goes and looks elsewhere. Every function returns a new camera. Picture places are pixels from
-// the top left.
+// Camera moves: orbit, pan, zoom, look around, fit. Every function that moves returns a new camera. Positions in the picture are pixels
+// from the top left.
 import { basis, heightAt, isParallel, MAX_DISTANCE_M, metresPerPixel, MIN_DISTANCE_M, RADIANS, USUAL_FOV } from './camera.js';
 import { add, along, cross, dot, length, middle, scale, subtract, unit } from './vector.js';
 
@@ -22,7 +22,7 @@ function fitParallel(camera, box, aspect, margin) {
     return { ...camera, height_m, eye: along(centre, forward, -(2 * reach(forward) + height_m)), target: centre };
 }
 
-// Looks the same way at the middle of a box, from just so far that all of it is inside the picture with a margin around.
+// Fits a box into the picture with a margin, looking the same way at its centre.
 export function fit(camera, box, aspect, margin = 1.08) {
     const { forward, right, up } = basis(camera);
     const centre = middle(box.min, box.max);
@@ -37,14 +37,15 @@ export function fit(camera, box, aspect, margin = 1.08) {
     return { ...camera, eye: along(centre, forward, -Math.min(far, MAX_DISTANCE_M)), target: centre };
 }
 
+// Returns the distance from the eye to the target.
 export const distance = (camera) => length(subtract(camera.target, camera.eye));
 
-// How far above the target the eye stands, degrees.
+// Returns the elevation of the eye above the target, in degrees.
 export function elevation(camera) {
     return Math.asin(Math.max(-1, Math.min(1, -dot(basis(camera).forward, unit(camera.up))))) / RADIANS;
 }
 
-// Turns about the vertical through `pivot`, then tilts about the picture's horizontal, so the horizon stays level.
+// Orbits about the vertical through `pivot`, then about the picture's horizontal, so the horizon stays level.
 export function orbit(camera, azimuthDeg, elevationDeg, pivot = camera.target) {
     const vertical = unit(camera.up);
     const before = elevation(camera);
@@ -58,16 +59,16 @@ export function orbit(camera, azimuthDeg, elevationDeg, pivot = camera.target) {
     return { ...camera, eye: move(camera.eye), target: move(camera.target) };
 }
 
-// The eye stays and looks elsewhere: what is seen follows the pointer. In parallel there is no eye to stay, and it turns instead.
+// Turns the view around the eye, as the pointer drags it; an orthographic camera, which has no eye to turn around, orbits instead.
 export function lookAround(camera, dxPx, dyPx, heightPx) {
     const degrees = (isParallel(camera) ? -USUAL_FOV : camera.fov) / heightPx;
     return orbit(camera, dxPx * degrees, -dyPx * degrees, isParallel(camera) ? camera.target : camera.eye);
 }
 
-// How far off a point lies, along the line of sight.
+// Returns the depth of a point along the viewing direction.
 export const depthOf = (camera, point) => dot(subtract(point, camera.eye), basis(camera).forward);
 
-// The same at the target's depth, by the other projection.
+// Return the camera with the other projection, showing the same at the depth of the target.
 export function toParallel(camera) {
     return { ...camera, height_m: heightAt(camera, distance(camera)) };
 }
@@ -79,7 +80,7 @@ export function toPerspective(camera) {
     return { ...rest, fov, eye: along(rest.target, basis(camera).forward, -back) };
 }
 
-// What lies at that depth follows the pointer exactly.
+// Pans so that what is at that depth follows the pointer exactly.
 export function pan(camera, dxPx, dyPx, heightPx, depth = distance(camera)) {
     const { right, up } = basis(camera);
     const step = metresPerPixel(camera, heightPx, depth);
@@ -87,7 +88,7 @@ export function pan(camera, dxPx, dyPx, heightPx, depth = distance(camera)) {
     return { ...camera, eye: add(camera.eye, move), target: add(camera.target, move) };
 }
 
-// The line of sight through a place of the picture: where it begins, and its direction, one metre deep along `forward` per unit.
+// Returns the viewing ray through a pixel: { origin, direction }, the direction one metre deep along `forward`.
 export function sight(camera, xPx, yPx, widthPx, heightPx) {
     const { forward, right, up } = basis(camera);
     const step = metresPerPixel(camera, heightPx, 1);
@@ -104,8 +105,8 @@ function zoomParallel(camera, factor, xPx, yPx, widthPx, heightPx) {
     return { ...zoomed, eye: add(camera.eye, move), target: add(camera.target, move) };
 }
 
-// Factor < 1 goes nearer. What is under (xPx, yPx) stays there at any depth; `depth` says how far off it is, and the target
-// is brought to that depth, so that the next turn is about what was looked at.
+// Zooms; factor < 1 goes nearer. What is under (xPx, yPx) stays there; the target moves to its depth, so that the next orbit is about what
+// was looked at.
 export function zoom(camera, factor, xPx, yPx, widthPx, heightPx, depth = distance(camera)) {
     if (isParallel(camera))
         return zoomParallel(camera, factor, xPx, yPx, widthPx, heightPx);
@@ -114,7 +115,7 @@ export function zoom(camera, factor, xPx, yPx, widthPx, heightPx, depth = distan
     return { ...camera, eye, target: along(eye, basis(camera).forward, wanted) };
 }
 
-// Where a line enters a box, in units of the direction; null: it misses, or starts inside.
+// Returns where a ray enters a box, in units of its direction; null if it misses or starts inside.
 export function enterBox(origin, direction, box) {
     let near = -Infinity, far = Infinity;
     for (let i = 0; i < 3; i++) {
@@ -127,7 +128,7 @@ export function enterBox(origin, direction, box) {
     return near <= far && near > 0 ? near : null;
 }
 
-// The depth of the nearest box under a place of the picture; null: none is there.
+// Returns the depth of the nearest box under a pixel; null if there is none.
 export function depthAt(camera, xPx, yPx, widthPx, heightPx, boxes) {
     const { origin, direction } = sight(camera, xPx, yPx, widthPx, heightPx);
     let depth = Infinity;
@@ -136,7 +137,7 @@ export function depthAt(camera, xPx, yPx, widthPx, heightPx, boxes) {
     return Number.isFinite(depth) && depth > MIN_DISTANCE_M ? depth : null;
 }
 
-// Looks at a point of something from its own side, a little from above: along the normal of the ellipsoid in its box.
+// Looks at a point of equipment from its side, slightly from above: along the normal of the ellipsoid in its bounding box.
 export function face(camera, point, box, distanceM, elevationDeg = 20) {
     const vertical = unit(camera.up), centre = middle(box.min, box.max);
     const outwards = point.map((x, i) => (x - centre[i]) / Math.max(1e-6, (box.max[i] - box.min[i]) ** 2));

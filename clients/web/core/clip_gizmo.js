@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Grips of what is cut away: one for each plane, one for each side of a box and one for all of it; where they are, and where a hand takes
-// them.
+// Geometry of the clip gizmo: the grips of a clip, one for each plane, one for each side of a box and one for the whole box; where they are
+// and where dragging takes them.
 import { basis, isParallel } from './camera.js';
 import { AXES } from './section.js';
 import { add, along, cross, dot, length, middle, mix, scale, subtract, unit } from './vector.js';
@@ -58,14 +58,15 @@ function sideGrip(box, index, high, bounds) {
         high: high ? Math.max(bounds.max[index] + more, box.max[index]) : box.max[index] - LEAST_BOX_M };
 }
 
-// [{ id, axis (null: oblique), turned (what is smaller stays), direction (unit vector), at, low, high (metres along it), corners }].
+// Returns the grips of a clip: [{ id, axis (null: oblique), turned (the smaller side stays), direction (unit vector), at, low, high (metres
+// along it), corners }].
 export function gripsOf(clip, bounds) {
     if (clip?.planes)
         return clip.planes.map((plane, index) => planeGrip(plane, index, bounds));
     return clip?.box ? [0, 1, 2].flatMap((i) => [false, true].map((high) => sideGrip(clip.box, i, high, bounds))) : [];
 }
 
-// The clip with that grip at another place, as far as it goes.
+// Returns the clip with a grip moved, within its limits.
 export function moveGrip(clip, { index, size, turned, direction, low, high }, to) {
     const at = Math.max(low, Math.min(high, to));
     if (clip.planes) {
@@ -77,24 +78,24 @@ export function moveGrip(clip, { index, size, turned, direction, low, high }, to
     return { box };
 }
 
-// Of a box as a whole, in its middle; null: there is no box.
+// Returns the grip of a whole box, at its centre; null if the clip is no box.
 export const wholeOf = (clip) => clip?.box
     ? { id: 'whole', corners: [middle(clip.box.min, clip.box.max)], direction: [0, 0, 0], low: 0, high: 0 } : null;
 
-// All of the box moved by so much; its middle stays inside the plant.
+// Returns the clip with the whole box moved; its centre stays inside the plant.
 export function moveBox({ box }, by, bounds) {
     const at = middle(box.min, box.max);
     const way = by.map((m, i) => Math.max(bounds.min[i] - at[i], Math.min(bounds.max[i] - at[i], m)));
     return { box: { min: add(box.min, way), max: add(box.max, way) } };
 }
 
-// Where a line of sight passes through the plane that faces the camera in a point.
+// Returns where a viewing ray meets the plane through a point that faces the camera.
 export function facing(camera, point, { origin, direction }) {
     const { forward } = basis(camera);
     return along(origin, direction, dot(subtract(point, origin), forward) / dot(direction, forward));
 }
 
-// Where on its plane a grip may stand: the middle first.
+// Returns the positions on its plane where a grip may be drawn, the centre first.
 export function spotsOf({ corners }) {
     if (corners.length === 0)
         return [];
@@ -103,7 +104,7 @@ export function spotsOf({ corners }) {
     return [middle, ...[0.3, 0.6, 0.9].flatMap((part) => around.map((p) => mix(middle, p, part)))];
 }
 
-// Metres from `point` along `direction` to where a line of sight passes nearest; null: it does not say.
+// Returns how far along `direction` from `point` a viewing ray passes nearest, in metres; null if they are almost parallel.
 export function alongSight(point, direction, { origin, direction: towards }) {
     const w = subtract(point, origin), c = dot(towards, towards), b = dot(direction, towards), sine2 = 1 - (b * b) / c;
     if (sine2 < STEEP)
@@ -112,7 +113,7 @@ export function alongSight(point, direction, { origin, direction: towards }) {
     return ahead > 0 ? (b * dot(w, towards) - c * dot(w, direction)) / (c * sine2) : null;
 }
 
-// What of a line lies before the eye; null: nothing.
+// Clips a line to what is in front of the eye; null if nothing is.
 export function beforeEye(camera, a, b) {
     if (isParallel(camera))
         return [a, b];

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A WebSocket that comes back: waits between tries, notices a peer that has fallen silent, and says what state it is in.
+// A WebSocket that reconnects: with pauses between tries, a check that the server still answers, and its state for the page.
 import { SUBPROTOCOL } from './wire.js';
 import { say } from './words.js';
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Which markers are drawn where many crowd: the rule of protocol/LABELS.md.
+// Decides which markers are drawn where there are many (protocol/LABELS.md).
 
 const MOST = 6, NEAR = 30, HELD = 0.8; // within so many units, of which so much counts for what was drawn in the picture before
 
-// items: { x, y, depth, occluded, kept (drawn in any case), held (drawn in the picture before) }. Returns those drawn, in their order.
+// items: { x, y, depth, occluded, kept (always drawn), held (drawn in the picture before) }. Returns those to draw, in their order.
 export function thinOut(items, unit = 1) {
     const cell = NEAR * unit, cells = new Map(), drawn = new Set(items.filter(({ kept }) => kept));
     const key = ({ x, y }) => Math.floor(x / cell) * 65536 + Math.floor(y / cell);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Frames that wait to be decoded: one is being decoded, and of the others only the newest that stands alone and what came after it
-// are kept. Slow decoding makes pictures rarer, never later.
+// Queue of frames to decode: one is being decoded; of the others only the newest key frame and those after it are kept. A slow decoder
+// makes pictures rarer, never later.
 
 export class DecodeQueue {
     // decode(frame): promise of a picture. ready(frame, picture, decodeMs) in order. failed(frame, error). now(): milliseconds.

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The ways to decode H.264 that a browser may have: tried once and remembered, and given up when they fail. Loaded when H.264 pays.
+// Chooses how H.264 is decoded, in hardware or software: tested once and remembered, with a fallback when it fails. Loaded when H.264 is
+// worth it.
 import { PLAIN } from './decoding.js';
 import { H264Decoder, whatIsWrong } from './h264.js';
 
@@ -24,7 +25,7 @@ function remember({ store, agent }, way) {
     }
 }
 
-// decoding: of decoding.js.
+// Tests the decoders and sets the first that works. decoding: see decoding.js.
 export async function probe(decoding) {
     const { env } = decoding, known = remembered(env);
     if (known === 'none')
@@ -45,7 +46,7 @@ function use(decoding, acceleration) {
     remember(env, acceleration);
 }
 
-// Hardware gives way to software, that to JPEG.
+// Falls back from hardware to software decoding, and from that to JPEG.
 export function demote(decoding) {
     const next = ACCELERATIONS[ACCELERATIONS.indexOf(decoding.acceleration) + 1];
     decoding.h264.close();

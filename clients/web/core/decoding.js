@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Pictures of frames: JPEG and PNG by the browser itself, H.264 once it has been found (decoder_fallback.js) to work here.
+// Decodes frames: JPEG and PNG by the browser itself, H.264 once decoder_fallback.js has found that it works.
 
 export const PLAIN = ['jpeg', 'png'];
 const MIME = { jpeg: 'image/jpeg', png: 'image/png' };
 const AGAIN_MS = 10000; // two failures within so long: it does not work
 
-// Frames to pictures that can be drawn. onCodecs(list): what to ask the server for from now on. onLost(): a key frame is needed.
+// Turns frames into pictures that can be drawn. onCodecs(list): the codecs to ask the server for from now on. onLost(): a key frame is
+// needed.
 export class Decoding {
     // env: { api (with VideoDecoder, or without), store, agent, now, makeBitmap(blob), tryOut(decoder) where not the usual one }.
     constructor(env) {

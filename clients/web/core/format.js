@@ -1,15 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Numbers, units, times and qualities in the words that the screen shows.
+// Formats numbers, units, times and qualities for the screen.
 
 import { locale, say, sayIfKnown } from './words.js';
 
 const UNITS = { degC: '°C', degF: '°F', 'deg C': '°C', 'deg F': '°F', C: '°C' };
 
+// Returns a unit as it is written on the screen.
 export function unitText(unit) {
     return UNITS[unit] ?? (unit ?? '').replace(/\^?2\b/, '²').replace(/\^?3\b/, '³').replace(/\bu(?=m\b)/, 'µ');
 }
 
-// As many decimals as an instrument of this range has: 0..160 one, 0..16 two.
+// Returns the number of decimals for a range: one for 0..160, two for 0..16.
 export function decimalsFor(range) {
     return range > 0 && Number.isFinite(range) ? Math.max(0, Math.min(6, 2 - Math.floor(Math.log10(range / 4)))) : 2;
 }
@@ -24,14 +25,14 @@ function plainText(value, decimals) {
     return Number(text) === 0 ? text.replace('-', '') : text;
 }
 
-// In the reader's own way, without marks between thousands: they would be somebody else's decimal mark.
+// Formats a number in the reader's locale, without thousands separators, which others read as decimal marks.
 export const numberText = (value, decimals) => (known(value) ? inLocale(plainText(value, decimals)) : '–');
 
-// Without the zeros at the end of its decimals.
+// The same without trailing zeros.
 export const shortNumberText = (value, decimals) =>
     (known(value) ? inLocale(plainText(value, decimals).replace(/(\.\d*?)0+$/, '$1').replace(/\.$/, '')) : '–');
 
-// A difference, with its sign.
+// Formats a difference, with its sign.
 export function changeText(value, decimals) {
     const text = numberText(value, decimals);
     return text === '–' ? 'Δ –' : `Δ ${/[1-9]/.test(text) && value > 0 ? '+' : ''}${text}`;

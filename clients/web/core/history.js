@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What /api/v1/history and the alarms' journal say, made into what a chart and a slider draw. Pure, but for the one request.
+// Converts responses of /api/v1/history and of the alarm journal to what charts and the time bar draw. Pure, except for ask().
 import { calls } from './alarms.js';
 import { refusalText } from './refusals.js';
 import { say } from './words.js';
@@ -7,7 +7,7 @@ import { say } from './words.js';
 export const BAD = 2, UNCERTAIN = 1; // the two top bits of a status code
 const severity = (quality) => Math.min(BAD, quality >>> 30);
 
-// headers: with a token where one is needed.
+// Requests a path with a query, and with the token if there is one. Returns a promise of the JSON.
 export async function ask(path, query, token, fetcher = fetch) {
     const headers = token ? { Authorization: `Bearer ${token}` } : {};
     const text = new URLSearchParams(query).toString();
@@ -19,7 +19,8 @@ export async function ask(path, query, token, fetcher = fetch) {
     return response;
 }
 
-// Seconds and values for a chart, from one series: null breaks the line. Spikes stay: of a stretch its first, lowest, highest and last.
+// Converts a series to seconds and values for a chart; null breaks the line. Spikes are kept: a bucket gives its first, lowest, highest and
+// last value.
 export function line(series, fromUs, toUs) {
     const xs = [], ys = [];
     const put = (us, value) => {
@@ -63,7 +64,7 @@ function putStretch(put, [us, low, high, , first, last, badUs], lengthUs) {
         put(us + lengthUs - 2, last ?? high);
 }
 
-// [{ from, to (seconds), severity }]: when there was no value, or one that is uncertain.
+// Returns the times without a value, or with an uncertain one: [{ from, to (seconds), severity }].
 export function gaps(series, fromUs, toUs) {
     const out = [];
     const add = (from, to, grade) => {
@@ -90,8 +91,8 @@ export function gaps(series, fromUs, toUs) {
     return out;
 }
 
-// The limits of some tags, each once: [{ scale, name, value, tags }], where scaleOf(tag) says by which axis; tags: those that have it, or
-// none where all have, by one axis.
+// Returns the limits of some tags, each once: [{ scale, name, value, tags }]. scaleOf(tag): its axis; tags: those that have the limit,
+// empty if all have it on one axis.
 export function limitLines(tags, scaleOf) {
     const lines = new Map();
     for (const tag of tags) {
@@ -105,18 +106,18 @@ export function limitLines(tags, scaleOf) {
     return [...lines.values()].map((line) => (line.tags.length === tags.length ? { ...line, tags: [] } : line));
 }
 
-// Rows of the journal that raise an alarm which is to be seen: [{ us, tag, kind, priority }], oldest first.
+// Returns the rows of the journal that raise an annunciated alarm: [{ us, tag, kind, priority }], oldest first.
 export function raised(rows) {
     return rows.filter(({ event, state }) => event === 'raise' && calls(state))
         .map(({ time_us: us, tag, kind, priority }) => ({ us, tag, kind, priority }))
         .sort((a, b) => a.us - b.us);
 }
 
-// The next of such rows after an instant, or, backwards, before it; null: none is there.
+// Returns the next such row after a time or, backwards, before it; null if there is none.
 export const nextTo = (marks, us, backwards) =>
     (backwards ? marks.findLast((mark) => mark.us < us) : marks.find((mark) => mark.us > us)) ?? null;
 
-// Marks that lie nearer to each other than that are drawn as one: { us (of the gravest), priority, of: all of them }.
+// Groups marks that are closer together than nearUs: { us (of the gravest), priority, of: all of them }.
 export function clustered(marks, nearUs) {
     const out = [];
     for (const mark of marks) {
@@ -129,10 +130,10 @@ export function clustered(marks, nearUs) {
     return out.map(({ of }) => ({ ...of.reduce((gravest, mark) => (mark.priority < gravest.priority ? mark : gravest)), of }));
 }
 
-// What an arrow key moves a slider of so many seconds by: at most a minute.
+// Returns by how many seconds an arrow key moves a slider of that span: at most a minute.
 export const arrowS = (spanS) => Math.max(1, Math.min(60, Math.round(spanS / 900)));
 
-// Round instants between two, at most so many: [us].
+// Returns round times between two, at most `most`: [us].
 export function ticks(fromUs, toUs, most, offsetUs = 0) {
     const steps = [1, 5, 10, 30, 60, 300, 600, 1800, 3600, 7200, 14400, 28800, 43200, 86400, 172800, 604800].map((s) => s * 1e6);
     const step = steps.find((one) => (toUs - fromUs) / one <= most) ?? steps.at(-1);

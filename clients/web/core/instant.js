@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Instants as a date field has them: by the clock of the plant's zone, without saying which zone.
+// Converts times to and from the text of a date field, in the plant's time zone.
 import { zoneClock } from './format.js';
 
 function offsetMs(clock, utcMs) {
@@ -7,13 +7,14 @@ function offsetMs(clock, utcMs) {
     return sign ? (sign === '+' ? 1 : -1) * ((Number(hours) * 60 + Number(minutes)) * 60 + Number(seconds ?? 0)) * 1000 : 0;
 }
 
-// 2026-11-22T07:27:02
+// Returns the text, such as 2026-11-22T07:27:02.
 export function fieldText(us, timeZone) {
     const utcMs = Math.floor(us / 1e6) * 1000;
     return new Date(utcMs + offsetMs(zoneClock(timeZone), utcMs)).toISOString().slice(0, 19);
 }
 
-// Microseconds of UTC; null: that is no date. Of an hour that comes twice the first; one that is left out is the one after it.
+// Returns microseconds of UTC; null if the text is no date. Of an hour that occurs twice takes the first; an hour that is skipped counts as
+// the one after it.
 export function fieldInstant(text, timeZone) {
     const [, date, time = '00:00', seconds = ''] = text.trim().match(/^(\d{4}-\d\d-\d\d)(?:[T ](\d\d:\d\d)(:\d\d)?(?:\.\d+)?)?$/) ?? [];
     const asUtc = date ? Date.parse(`${date}T${time}${seconds || ':00'}Z`) : NaN, clock = zoneClock(timeZone);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The keyboard: which key does what, and steady motion while a key is held.
+// Keyboard: the meaning of keys, and steady motion while a key is held.
 
 const MOTIONS = { // per second: [orbit right, orbit up] degrees, [pan right, pan up] in heights of the picture, zoom in natural logarithm
     ArrowLeft: { orbit: [-45, 0] }, ArrowRight: { orbit: [45, 0] }, ArrowUp: { orbit: [0, 45] }, ArrowDown: { orbit: [0, -45] },
@@ -25,7 +25,8 @@ function motionName({ key, code, shiftKey }) {
     return MOTIONS[code] ? code : null;
 }
 
-// { motion } or { command } or { group: index from 0 } or null. Keys with ctrl, alt or meta belong to the browser.
+// Returns the meaning of a key: { motion }, { command }, { group: index from 0 } or null. Keys with ctrl, alt or meta are left to the
+// browser.
 export function keyMeaning(event) {
     if (event.ctrlKey || event.altKey || event.metaKey)
         return null;

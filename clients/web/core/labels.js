@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Which labels are shown beside their markers, and where: the rule of protocol/LABELS.md.
+// Decides which labels are shown beside their markers, and where (protocol/LABELS.md).
 
 const SPACINGS = [0.16, 0.08, 0], HELD = 0.8; // of the area's width; what is held counts so much
 const MARK = 5, RING = 13, NEAR_GAP = 8, FAR_GAP = 22; // units
@@ -44,7 +44,7 @@ class Taken {
     }
 }
 
-// across, down: from the middle of several markers to the outermost.
+// Returns the box of a label in a slot. across, down: from the centre of several markers to the outermost.
 export function boxAt({ x, y, width, height, ring, across = 0, down = 0 }, slot, unit) {
     const [side, edge] = SLOTS[slot];
     const gap = (slot < FIRST_FAR ? NEAR_GAP : FAR_GAP) * unit;
@@ -115,7 +115,7 @@ export function placeLabels(items, { area, unit = 1, blocked = [], rings = null,
     return placed;
 }
 
-// From the rim of a marker to the nearest point of its label: [x1, y1, x2, y2].
+// Returns the line from the edge of a marker to the nearest point of its label: [x1, y1, x2, y2].
 export function leaderLine({ x, y, width, height }, { left, top }, radius) {
     const to = [Math.max(left, Math.min(left + width, x)), Math.max(top, Math.min(top + height, y))];
     const away = Math.hypot(to[0] - x, to[1] - y) || 1;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The legend's arithmetic: ticks, ramps, and the colour of a value by the server's own rule (server/field/colormap.c).
+// Arithmetic of the legend: ticks, ramps, and the colour of a value, computed as on the server (server/field/colormap.c).
 
-// Steps of 1, 2 or 5 times a power of ten, at most `most` of them over the range.
+// Returns a step of 1, 2 or 5 times a power of ten, at most `most` of which cover the range.
 export function niceStep(range, most) {
     const power = 10 ** Math.floor(Math.log10(range / most));
     return power * [1, 2, 5, 10].find((m) => range / (m * power) <= most * (1 + 1e-9));
@@ -14,7 +14,7 @@ export function multiples(min, max, step) {
     return list;
 }
 
-// Round values within [min, max], with both ends, which push away what would touch them.
+// Returns round values within [min, max] and both ends; values too close to an end are left out.
 export function ticks(min, max, most = 6) {
     if (!(max > min))
         return [];
@@ -24,7 +24,7 @@ export function ticks(min, max, most = 6) {
 }
 
 
-// Moves places along a bar (0..1, ascending) apart, so that what is written there can be read; none leaves the bar.
+// Moves ascending positions along a bar (0..1) apart so that their labels do not overlap; all stay on the bar.
 export function spread(places, gap) {
     const out = [...places];
     for (let i = 1; i < out.length; i++)
@@ -34,7 +34,7 @@ export function spread(places, gap) {
     return out;
 }
 
-// What to offer as ramp intervals: between 4 and 25 steps over the range.
+// Returns the ramp intervals to offer: those that give 4 to 25 steps over the range.
 export function rampChoices(min, max) {
     if (!(max > min))
         return [];
@@ -54,7 +54,7 @@ export function valueAt({ min, max, log }, place) {
 
 const inside = ({ min, max, breaks }) => (breaks ?? []).filter((value) => value > min && value < max);
 
-// Where bands meet.
+// Returns the values where bands meet.
 export function edges(scale) {
     const { min, max, interval } = scale;
     if (scale.breaks?.length > 0)
@@ -75,7 +75,7 @@ function bandPlace(scale, value) {
     return (placeOf(scale, begin) + placeOf(scale, Math.min(begin + interval, max))) / 2;
 }
 
-// [r, g, b].
+// Returns the colour of a value: [r, g, b].
 export function colourOf(scale, value) {
     const { map, min, max } = scale;
     if (value < min)
@@ -87,7 +87,7 @@ export function colourOf(scale, value) {
     return [map.rgb[i], map.rgb[i + 1], map.rgb[i + 2]];
 }
 
-// What to write beside a scale: what has a line, with both ends, if that can be read; else round values.
+// Returns the values to label: those with an isoline and both ends if there is room for them, else round values.
 export function scaleTicks(scale, lines, most = 9) {
     const { min, max } = scale;
     const within = [...new Set([...edges(scale), ...lines])].filter((value) => value > min && value < max).sort((a, b) => a - b);

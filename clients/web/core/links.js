@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Links that open the page elsewhere, at what is seen here.
+// Links that open the page on another device with the present view.
 import { writeAddress } from './address.js';
 
-// { view, follow, tag (where one is chosen), asset (likewise) }: whole addresses. A code of fewer modules is easier to read, so that those
-// to tag and equipment say nothing else.
+// Returns URLs: { view, follow, tag and asset (if one is selected) }. Those of tag and asset contain nothing else, since QR codes with
+// fewer modules are easier to scan.
 export function shareLinks({ location, session, tag }) {
     const { camera, params, time, ownParams: own } = session, page = `${location.origin}${location.pathname}`;
     const asset = params.selected;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Which tag moved when a transmitter was forced: the largest change since it was armed, against how much each tag moves by itself.
+// Loop check: finds the tag that moved when a transmitter was forced, by the largest change since arming compared with each tag's noise.
 
 const KEEP = 0.9;        // of what was known of a tag's noise, at each new value
 const FLOOR = 0.002;     // of a tag's span: less is no movement
@@ -47,7 +47,7 @@ export class LoopCheckSession {
     }
 }
 
-// Expected values by name of tag out of a CSV; null: its columns are not there.
+// Reads expected values from CSV text, by tag name; null if its columns are missing.
 export function readExpected(text) {
     const lines = text.replace(/^\uFEFF/, '').split(/\r\n|\n|\r/).filter((line) => line.trim());
     const separator = [',', ';', '\t'].reduce((a, b) => (lines[0]?.split(b).length > lines[0]?.split(a).length ? b : a), ',');

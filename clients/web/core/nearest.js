@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a pointer is at: a half of the picture, a marker.
+// Finds what is under the pointer: a half of the picture, a marker.
 import { halves } from './split_view.js';
 
-// The half in which a place of the picture lies.
+// Returns the half of a split view that contains a position.
 export function halfAt(params, width, x) {
     const all = halves(params, width);
     return all.find((half) => x < half.left + half.width) ?? all[all.length - 1];
 }
 
-// The marker nearest to a place, within reach; null: none. Those in sight come before those behind something.
+// Returns the marker nearest to a position within reachPx, or null. Visible markers are preferred to occluded ones.
 export function nearestMarker(markers, x, y, reachPx) {
     let best = null, bestRank = Infinity;
     for (const marker of markers) {

@@ -6,7 +6,7 @@ const fract = (x) => x - Math.floor(x);
 const clamp = (x) => Math.max(0, Math.min(1, x));
 const mix = (a, b, t) => a.map((x, i) => Math.round(x + (b[i] - x) * t));
 
-// Size of the pattern in a picture of that height.
+// Returns the period of the pattern in a picture of that height.
 export const patternPeriodPx = (heightPx) => Math.max(6, heightPx / 90);
 
 // Coverage of the pattern at the middle of a pixel; y upwards, as GL has it.
@@ -17,12 +17,12 @@ function stipple(x, y, period) {
     return clamp((0.26 - Math.hypot(fract(column) - 0.5, fract(row) - 0.5)) * period + 0.5);
 }
 
-// [r, g, b] of a pixel; row 0 is the top one.
+// Returns the colour of a pixel, [r, g, b]; row 0 is at the top.
 export function hatchAt(x, row, heightPx, period) {
     return mix(HATCH[0], HATCH[1], hatch(x + 0.5, heightPx - row - 0.5, period));
 }
 
-// A tag without limits, in the operator's view.
+// The same for the pattern of tags without limits in the operator's view.
 export function ruleAt(row, heightPx, period) {
     return mix(RULE[0], RULE[1], clamp((Math.abs(fract((heightPx - row - 0.5) / period) - 0.5) - 0.36) * period + 0.5));
 }

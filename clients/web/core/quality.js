@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a status code says of a reading, in words.
+// Describes a status code in words.
 import { qualityText } from './format.js';
 import { say, sayIfKnown } from './words.js';
 
-// "bad", "Bad_SensorFailure" -> "Bad: sensor failure". What has no words of ours is told as it is spelt.
+// "bad", "Bad_SensorFailure" -> "Bad: sensor failure". A code that has no words is shown as it is spelt.
 export function statusText(quality, name = '') {
     const code = String(name ?? '').replace(/^(good|uncertain|bad)[_ :]*/i, '');
     const spelt = code.replace(/_/g, ' ').replace(/([a-z])([A-Z])/g, '$1 $2').trim().toLowerCase(), word = qualityText(quality);

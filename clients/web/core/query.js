@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Parameters as text, by the grammar of /snapshot.png (protocol/PROTOCOL.md): what the page's address and a snapshot's query have.
+// Parameters as text for the page's URL and for snapshot queries, in the grammar of /snapshot.png (protocol/PROTOCOL.md).
 
 const round = (x) => Number(x.toFixed(4)) + 0;
 export const numbersText = (list) => list.map(round).join(',');
 
-// null: that is no list of numbers, or not of that many.
+// Reads a list of numbers; null if it is none, or not of that length.
 export function readNumbers(text, count = null) {
     const list = (text ?? '').split(',').map((part) => (part.trim() === '' ? NaN : Number(part)));
     return list.every(Number.isFinite) && (count === null || list.length === count) ? list : null;
 }
 
-// { tag: { strength, decay } } as TAG=STRENGTH[:DECAY],...
+// Writes { tag: { strength, decay } } as TAG=STRENGTH[:DECAY],...
 export function sensorsText(sensors) {
     const factors = ({ strength = null, decay = null }) => `${strength ?? ''}${decay === null ? '' : `:${decay}`}`;
     return Object.entries(sensors).filter(([, own]) => own).map(([tag, own]) => `${tag}=${factors(own)}`).join(',');
@@ -47,7 +47,7 @@ function text(name, value) {
 const isSaid = ([name, value]) => !APART.includes(name) && value !== null && value !== undefined &&
     !(Array.isArray(value) && value.length === 0 && !NAMES.includes(name));
 
-// The query of one picture of what a session shows. carried: its parameters, as after a reconnect.
+// Returns the query for a picture of what a session shows. carried: its parameters, as sent after a reconnect.
 export function snapshotQuery({ carried, camera, size, time }) {
     const query = { width: size.width, height: size.height };
     for (const [name, value] of Object.entries(carried).filter(isSaid))

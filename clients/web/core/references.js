@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Where else one reads about assets and tags: links by the plant's templates.
+// Links to other systems about assets and tags, by the templates of the plant file.
 
-// The address of a link for an asset or a tag; null: it is not one to follow.
+// Returns the URL of a link for an asset or a tag; null if it is not safe to follow.
 export function linkUrl({ of, url }, item) {
     const fields = of === 'tag' ? { name: item.name, asset: item.asset, group: item.group } :
         { id: item.id, tag: item.tag, area: item.area };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the server refuses, in the reader's language: its own words are English, and stay where they are about what no person does here.
+// Translates the server's refusals to the reader's language; those that no action of a person causes stay in English.
 import { language, phrase, readWords } from './words.js';
 
 const words = readWords((await import(`../words/refused.${language}.js`)).default);
@@ -52,7 +52,7 @@ const FIELDS = ['baseline', 'breaks', 'colormap', 'decay', 'environment', 'ghost
     'strength', 'tag'];
 const FIELD = new RegExp(`^((?:${FIELDS.join('|')}): )+`);
 
-// code: where the server said one.
+// Returns the text to show for a refusal. code: that of the server, if there is one.
 export function refusalText(text, code) {
     const bare = text.replace(FIELD, '');
     for (const [pattern, key, values = () => ({})] of KNOWN) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a viewer asks of the server now and then, beside what session.js says all the time.
+// Occasional requests to the server; session.js sends what is needed all the time.
 import { cameraMessage } from './camera.js';
 import { asAsked } from './session.js';
 
@@ -8,15 +8,15 @@ export function askFit(session, { id = null, side = 'now', projection } = {}) {
     session.post({ type: 'fit', seq: ++session.fitSeq, id, side, ...(projection ? { projection } : {}) });
 }
 
-// Goes to an instant (null: to now; undefined: stays where it is) and plays from there.
+// Goes to a time (null: now; undefined: unchanged) and plays from there.
 export function travel(session, atUs, speed = 0) {
     if (session.leader !== null)
         session.follow(null);
     session.post({ type: 'time', ...(atUs === undefined ? {} : { at_us: atUs && Math.round(atUs) }), speed });
 }
 
-// Asks what is at a pixel of the picture on the screen, or of another camera's; the event `picked` answers the newest question, and says
-// its purpose.
+// Asks what is at a pixel of the picture on the screen, or of that of another camera; the event `picked` has the answer to the newest
+// question, with its purpose.
 export function askPick(session, [x, y], purpose, camera = null) {
     if (!session.welcomed || !session.picture)
         return;
@@ -25,12 +25,13 @@ export function askPick(session, [x, y], purpose, camera = null) {
     session.connection.send({ type: 'pick', seq: ++session.pickSeq, x, y, camera: cameraMessage(from) });
 }
 
-// alarms: [[tag, kind], ...]; answered by the event `alarmed`.
+// Does an action to alarms, [[tag, kind], ...]; answered by the event `alarmed`.
 export function actOnAlarm(session, action, alarms, more = {}) {
     session.post({ type: 'alarm', seq: ++session.alarmSeq, action, alarms, ...more });
 }
 
-// What engineers say: place, gaps, save_tags, prove; each answer comes as the event of its type. Its number; 0: nobody listens.
+// Sends a message of the engineer's panel: place, gaps, save_tags or prove; answered by the event of its type. Returns its number; 0 if not
+// connected.
 export function tellAsEngineer(session, type, fields = {}) {
     if (!session.welcomed)
         return 0;
@@ -38,7 +39,7 @@ export function tellAsEngineer(session, type, fields = {}) {
     return session.toldSeq;
 }
 
-// One of those who follow us leads from now on; the event `following` says that it does.
+// Hands the lead to a session that follows this one; confirmed by the event `following`.
 export function giveLead(session, other) {
     session.post({ type: 'lead', session: other });
 }

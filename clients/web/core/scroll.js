@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Where a long list (list_window.js) is scrolled to.
+// Scroll position of a virtual list (list_window.js).
 
-// Where to scroll so that a row is wholly seen; unchanged where it is.
+// Returns the scroll position at which a row is completely visible; unchanged if it is already.
 export function scrollTo(tops, row, scrollTop, height) {
     if (tops[row] < scrollTop)
         return tops[row];

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a search finds in the list of equipment.
+// Search in the list of equipment.
 
 const known = new WeakMap(); // of assets and tags: what a search looks in
 function textOf(item, ...texts) {
@@ -8,8 +8,8 @@ function textOf(item, ...texts) {
     return known.get(item);
 }
 
-// For the rows of a tree: from an asset to { asset, tags to list, byTag: it is there for its tags }, or to null. Each word of the search
-// must be found in an asset, which then comes with all its tags, or in a tag. null: nothing is searched for.
+// Returns a function that filters assets for the rows of the tree: to { asset, tags to list, byTag: it is listed because of its tags }, or
+// to null. All words must be found in the asset, which is then listed with all its tags, or in a tag. Returns null if the search is empty.
 export function search(wanted) {
     const words = wanted.toLowerCase().split(/\s+/).filter(Boolean);
     return words.length === 0 ? null : (asset) => {

@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What of the plant is shown: one plane across an axis that cuts it, and assets that are hidden, ghosts, or shown alone.
+// Section cuts along an axis, and which assets are hidden, transparent or isolated.
 
 export const AXES = ['x', 'y', 'z'];
 
-// at: metres along the axis. What lies beyond stays; turned, what lies before.
+// Returns the clip that cuts across an axis at a position in metres and keeps what is beyond; turned: what is before.
 export function cut(axis, at, turned) {
     const plane = [0, 0, 0, turned ? at : -at];
     plane[AXES.indexOf(axis)] = turned ? -1 : 1;
     return { planes: [plane] };
 }
 
-// The other way round. null: nothing is cut, or not like that.
+// Returns the cut of such a clip; null if the clip is none or another one.
 export function readCut(clip) {
     const plane = clip?.planes?.length === 1 ? clip.planes[0] : null;
     const index = plane ? plane.slice(0, 3).findIndex((n) => Math.abs(n) === 1) : -1;
