@@ -8,7 +8,6 @@
 #include <string.h>
 #include <time.h>
 
-#include "alarm/journal_file.h"
 #include "base/clock.h"
 #include "base/mem.h"
 

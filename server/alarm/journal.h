@@ -3,12 +3,9 @@
    own writes it within 0.25 s; what cannot be written stays in memory up to a limit and is retried. ALARMS.md describes the tables. */
 #ifndef ALARM_JOURNAL_H
 #define ALARM_JOURNAL_H
-#include "alarm/alarms.h"
+#include "alarm/journal_file.h"
 #include "base/counters.h"
 #include "base/log.h"
-
-#define JOURNAL_FILE "alarms.sqlite"
-enum { JOURNAL_VERSION = 1 };
 
 struct journal_params {
     struct log *log;
@@ -29,18 +26,6 @@ bool journal_asks(struct journal *journal);
 void journal_keep(struct journal *journal, const struct alarm *alarm, const char *tag);
 
 /* --- reading; thread: one per reader --- */
-struct journal_row {
-    int64_t id, t_us;
-    const char *tag, *kind, *event, *before, *after, *who, *reason; /* valid until the next */
-    int priority;
-    double limit, value; /* NaN: none */
-};
-struct journal_query {
-    int64_t from_us, to_us;
-    int64_t before_id; /* only rows with a smaller id; INT64_MAX: all */
-    const char *tag;   /* NULL: all */
-    int limit;         /* at most this many, the newest first */
-};
 /* Calls each for the rows that match. Returns 0 or -errno (logged); a folder without a journal has no rows. */
 int journal_read(struct log *log, const char *folder, const struct journal_query *query,
                  void (*each)(void *arg, const struct journal_row *row), void *arg);

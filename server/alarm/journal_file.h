@@ -2,7 +2,11 @@
 /* The journal as a file. Functions that return int: 0 or -errno, already logged. Thread: one per file. */
 #ifndef ALARM_JOURNAL_FILE_H
 #define ALARM_JOURNAL_FILE_H
-#include "alarm/journal.h"
+#include "alarm/alarms.h"
+#include "base/log.h"
+
+#define JOURNAL_FILE "alarms.sqlite"
+enum { JOURNAL_VERSION = 1 };
 
 struct journal_entry {
     struct alarm alarm; /* as it was then */
@@ -12,6 +16,19 @@ struct journal_entry {
     int64_t utc_ns;
     double value;
     char tag[256], who[ALARM_NAME_BYTES], reason[ALARM_REASON_BYTES];
+};
+
+struct journal_row {
+    int64_t id, t_us;
+    const char *tag, *kind, *event, *before, *after, *who, *reason; /* valid until the next */
+    int priority;
+    double limit, value; /* NaN: none */
+};
+struct journal_query {
+    int64_t from_us, to_us;
+    int64_t before_id; /* only rows with a smaller id; INT64_MAX: all */
+    const char *tag;   /* NULL: all */
+    int limit;         /* at most this many, the newest first */
 };
 
 struct journal_file;

@@ -7,7 +7,6 @@
 #include <stdbool.h>
 #include <string.h>
 
-#include "base/histogram.h"
 #include "base/mem.h"
 
 struct entry {

@@ -2,13 +2,11 @@
 /* Registry of metrics: named numbers and histograms, printed for /metrics in the text format of Prometheus. Thread: any. */
 #ifndef BASE_COUNTERS_H
 #define BASE_COUNTERS_H
-#include <stdatomic.h>
-#include <stdint.h>
-
+#include "base/counter.h"
+#include "base/histogram.h"
 #include "base/text.h"
 
 struct counters;
-typedef _Atomic int64_t counter;
 
 struct counters *counters_create(void);
 void counters_destroy(struct counters **counters);
@@ -19,14 +17,5 @@ counter *counters_add(struct counters *counters, const char *name, const char *t
 struct histogram *counters_add_histogram(struct counters *counters, const char *name, const char *help);
 /* Appends all metrics in the text format of Prometheus. */
 void counters_print(struct counters *counters, struct text *out);
-
-static inline void counter_inc(counter *c, int64_t by)
-{
-    atomic_fetch_add_explicit(c, by, memory_order_relaxed);
-}
-static inline void counter_set(counter *c, int64_t to)
-{
-    atomic_store_explicit(c, to, memory_order_relaxed);
-}
 
 #endif

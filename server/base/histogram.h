@@ -2,7 +2,8 @@
 /* A histogram of durations, in the form of Prometheus. Thread: any; each bucket is one atomic. */
 #ifndef BASE_HISTOGRAM_H
 #define BASE_HISTOGRAM_H
-#include "base/counters.h"
+#include "base/counter.h"
+#include "base/text.h"
 
 enum { HISTOGRAM_BUCKETS = 16 };
 struct histogram {

@@ -9,7 +9,7 @@
 #include "base/mem.h"
 #include "base/text.h"
 #include "plant/expression.h"
-#include "plant/plant_parts.h"
+#include "plant/plant_impl.h"
 
 enum { MAX_FILE_BYTES = 1 << 28 };
 

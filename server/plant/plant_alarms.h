@@ -2,7 +2,7 @@
 /* What the plant file and the tag list say of alarms. Only for the files of this folder. */
 #ifndef PLANT_PLANT_ALARMS_H
 #define PLANT_PLANT_ALARMS_H
-#include "plant/plant_parts.h"
+#include "plant/plant_impl.h"
 #include "plant/tag_columns.h"
 
 /* Tags that rows name, which may come in later rows. Zero-initialise. */

@@ -5,7 +5,7 @@
 #include "base/embedded.h"
 #include "base/mem.h"
 #include "plant/image_ramp.h"
-#include "plant/plant_parts.h"
+#include "plant/plant_impl.h"
 
 struct record {
     char *name, *image;

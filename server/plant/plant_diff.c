@@ -8,7 +8,7 @@
 #include <string.h>
 
 #include "base/mem.h"
-#include "plant/plant_parts.h"
+#include "plant/plant_impl.h"
 
 static void __attribute__((format(printf, 2, 3))) say(struct plant_diff *diff, const char *fmt, ...)
 {

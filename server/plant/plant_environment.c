@@ -4,7 +4,7 @@
 
 #include "base/image.h"
 #include "base/mem.h"
-#include "plant/plant_parts.h"
+#include "plant/plant_impl.h"
 
 static char *name_of(const char *path)
 {

@@ -10,7 +10,7 @@
 
 #include "base/mem.h"
 #include "plant/plant_alarms.h"
-#include "plant/plant_parts.h"
+#include "plant/plant_impl.h"
 #include "plant/transform.h"
 #include "plant/yaml_reader.h"
 

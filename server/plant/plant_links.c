@@ -3,7 +3,7 @@
 #include <ctype.h>
 #include <string.h>
 
-#include "plant/plant_parts.h"
+#include "plant/plant_impl.h"
 
 static const struct choice of_choices[] = { { "asset", 0 }, { "tag", 1 }, { 0 } };
 

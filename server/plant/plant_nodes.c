@@ -5,7 +5,7 @@
 #include "base/mem.h"
 #include "base/text.h"
 #include "plant/nodes.h"
-#include "plant/plant_parts.h"
+#include "plant/plant_impl.h"
 
 static void add_pattern(struct yaml_reader *reader, const yaml_node_t *node, struct text *patterns)
 {

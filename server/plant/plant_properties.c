@@ -3,7 +3,7 @@
 #include <string.h>
 
 #include "base/mem.h"
-#include "plant/plant_parts.h"
+#include "plant/plant_impl.h"
 
 enum { NAME_BYTES = 63, TEXT_BYTES = 400 };
 

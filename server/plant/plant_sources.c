@@ -5,7 +5,7 @@
 #include <unistd.h>
 
 #include "base/mem.h"
-#include "plant/plant_parts.h"
+#include "plant/plant_impl.h"
 
 enum { BY_SOCKET = 1, BY_LINE = 2, MODBUS = BY_SOCKET | BY_LINE, REPLAY = 4 };
 

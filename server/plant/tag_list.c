@@ -7,7 +7,7 @@
 
 #include "base/mem.h"
 #include "plant/plant_alarms.h"
-#include "plant/plant_parts.h"
+#include "plant/plant_impl.h"
 #include "plant/tag_columns.h"
 #include "plant/tag_links.h"
 #include "plant/tag_wire.h"

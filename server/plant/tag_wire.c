@@ -10,7 +10,7 @@
 #include "base/mem.h"
 #include "plant/address.h"
 #include "plant/number.h"
-#include "plant/plant_parts.h"
+#include "plant/plant_impl.h"
 #include "plant/tag_links.h"
 
 struct tag_wire {

@@ -14,6 +14,7 @@
 #include "plant/expression.h"
 #include "value/lookup.h"
 #include "value/quality.h"
+#include "value/source_impl.h"
 
 static const int64_t ROUND_NS = 200 * NS_PER_MS;
 

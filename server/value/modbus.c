@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A Modbus source: asks each block of its plan when it is due, and finds out again and again who answers. */
-#include "value/modbus.h"
+#include "value/modbus_impl.h"
 
 #include <errno.h>
 #include <stdio.h>
@@ -11,7 +11,6 @@
 #include "base/clock.h"
 #include "base/mem.h"
 #include "value/lookup.h"
-#include "value/modbus_impl.h"
 
 static bool stopping(const struct modbus_source *modbus)
 {

@@ -8,7 +8,7 @@
 #include "value/backoff.h"
 #include "value/modbus_link.h"
 #include "value/read_plan.h"
-#include "value/source.h"
+#include "value/source_impl.h"
 
 enum unit_state { UNIT_UNKNOWN, UNIT_UP, UNIT_DOWN };
 

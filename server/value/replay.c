@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Recorded series, given to the store when their times have come. */
-#include "value/replay.h"
+#include "value/source_impl.h"
 
 #include <errno.h>
 #include <pthread.h>

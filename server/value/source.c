@@ -4,8 +4,7 @@
 
 #include <string.h>
 
-#include "value/modbus.h"
-#include "value/replay.h"
+#include "value/source_impl.h"
 
 static const struct source_impl *const table[] = { &modbus_impl, &replay_impl };
 

@@ -9,16 +9,6 @@
 
 struct source;
 
-struct source_impl { /* one line in the table of source.c for each kind */
-    const char *kind;
-    struct source *(*start)(struct log *log, const struct plant *plant, int source, struct store *store, struct counters *counters);
-    void (*stop)(struct source *source); /* ends the thread and frees */
-};
-
-struct source {
-    const struct source_impl *impl;
-};
-
 /* Starts the thread of one of the plant's sources. A device that does not answer is no error: it is retried for ever. Returns NULL (logged)
    if the kind is unknown or there is no thread. */
 struct source *source_start(struct log *log, const struct plant *plant, int source, struct store *store, struct counters *counters);

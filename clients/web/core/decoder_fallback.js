@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Chooses how H.264 is decoded, in hardware or software: tested once and remembered, with a fallback when it fails. Loaded when H.264 is
 // worth it.
-import { PLAIN } from './decoding.js';
 import { H264Decoder, whatIsWrong } from './h264.js';
 
 const ACCELERATIONS = ['no-preference', 'prefer-software']; // hardware first, if there is any
@@ -42,7 +41,7 @@ export async function probe(decoding) {
 function use(decoding, acceleration) {
     const { env } = decoding;
     const h264 = new H264Decoder({ acceleration, api: env.api });
-    Object.assign(decoding, { acceleration, h264, codecs: ['auto', 'h264', ...PLAIN] });
+    Object.assign(decoding, { acceleration, h264, codecs: ['auto', 'h264', ...decoding.plain] });
     remember(env, acceleration);
 }
 
@@ -55,7 +54,7 @@ export function demote(decoding) {
         decoding.onLost();
         return;
     }
-    Object.assign(decoding, { h264: null, codecs: PLAIN });
+    Object.assign(decoding, { h264: null, codecs: decoding.plain });
     remember(decoding.env, 'none');
     decoding.onCodecs(decoding.codecs);
 }

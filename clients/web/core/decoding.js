@@ -11,7 +11,7 @@ export class Decoding {
     // env: { api (with VideoDecoder, or without), store, agent, now, makeBitmap(blob), tryOut(decoder) where not the usual one }.
     constructor(env) {
         Object.assign(this, { env, h264: null, lost: false, failedAt: -Infinity });
-        this.codecs = PLAIN;
+        this.codecs = this.plain = PLAIN; // plain: those that need no decoder of ours
         this.onCodecs = this.onLost = () => {};
     }
 
