@@ -22,8 +22,8 @@ bool plant_properties_same(const struct plant_asset *a, const struct plant_asset
 /* Reads the list `sources`. */
 void plant_sources_read(struct yaml_reader *reader, yaml_node_t *node, struct plant *plant);
 
-/* For lists of records that begin with `char *id`. Allocates records for the items of a list and sets *count; returns NULL if it is no list,
-   or too long (reported). */
+/* For lists of records that begin with `char *id`. Allocates records for the items of a list and sets *count; returns NULL if it is no
+   list, or too long (reported). */
 void *plant_list_make(struct yaml_reader *reader, yaml_node_t *node, const char *name, int least, size_t bytes_each, int *count);
 /* Reports an id that occurs twice; the last record was just read. */
 void plant_list_check_id(struct yaml_reader *reader, const struct yaml_map *map, const char *what, const void *things, size_t count,

@@ -58,7 +58,8 @@ test('files are kept as they are used, parts too', options, async () => {
     await page.locator('#views.open').waitFor();
     const { [version]: files, ...others } = await kept();
     assert.deepEqual(others, {});
-    for (const path of ['/', '/app/startup.js', '/app/main.js', '/app/style.css', '/words/en.js', '/app/views/views.js', '/app/views/views.html'])
+    for (const path of ['/', '/app/startup.js', '/app/main.js', '/app/style.css', '/words/en.js', '/app/views/views.js',
+        '/app/views/views.html'])
         assert.ok(files.includes(path), path);
 });
 

@@ -74,7 +74,8 @@ test('no key that is asked for is missing', () => {
 });
 
 test('what the page says before any of its parts is loaded is in the first file, and nothing else', async () => {
-    const wordless = [...read('app/lazy_modules.js').matchAll(/^    \w+: \{ file: '([^']+)'.*wordless: true/gm)].map(([, file]) => `app/${file}.js`);
+    const wordless = [...read('app/lazy_modules.js')
+        .matchAll(/^    \w+: \{ file: '([^']+)'.*wordless: true/gm)].map(([, file]) => `app/${file}.js`);
     const paths = new Set(['app/main.js', ...wordless].flatMap((path) => [...graph(path)]));
     const first = await tableOf(filesOf('en')[0]), modules = read(...paths);
     const all = asked(modules, read('index.html'));

@@ -205,5 +205,5 @@ session.listen();
 refresh();
 
 // For the console and for tests of the whole.
-globalThis.plantcast = { ...page, legend, get cameraController() { return modules.there('cameraController'); }, get trends() { return modules.there('trends'); },
-    get assets() { return modules.there('assets'); } };
+globalThis.plantcast = { ...page, legend, get cameraController() { return modules.there('cameraController'); },
+    get trends() { return modules.there('trends'); }, get assets() { return modules.there('assets'); } };

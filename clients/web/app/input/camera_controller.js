@@ -25,7 +25,7 @@ const WRITTEN = 'input:not([type="radio"], [type="checkbox"], [type="range"]), s
 const isNear = (a, b) => ['eye', 'target'].every((name) => length(subtract(a[name], b[name])) < 0.02 * length(subtract(b.eye, b.target)));
 
 export class CameraController {
-    // handlers: who is told what input means that moves no camera: { click(x, y, kind), point({ x, y } or null), command(name), group(index) }.
+    // handlers: called for input that moves no camera: { click(x, y, kind), point({ x, y } or null), command(name), group(index) }.
     constructor({ viewport, session, handlers }) {
         Object.assign(this, { viewport, session, handlers });
         this.gestures = new Gestures();

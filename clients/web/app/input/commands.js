@@ -68,7 +68,7 @@ function commandsOf({ session, modules, selection, overlay, saveAddress, refresh
         flyToAsset(asset);
     }
 
-    const flyToAsset = ({ bounds }) => modules.use('cameraController', (cameraController) => cameraController.flyToBox(bounds, ARRIVAL_MARGIN));
+    const flyToAsset = ({ bounds }) => modules.use('cameraController', (controller) => controller.flyToBox(bounds, ARRIVAL_MARGIN));
 
     function clearSelection() {
         if (selection.tag)

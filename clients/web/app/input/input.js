@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What hands do over the picture, and on the keyboard, is told to the camera controller. It is loaded when they first come near the page, and hears
-// then what they did meanwhile.
+// Passes pointer and keyboard input to the camera controller, which is loaded when a pointer or a key is first used; input from before that
+// is kept and passed on then.
 const ON_PICTURE = ['pointerdown', 'pointermove', 'pointerup', 'pointercancel', 'pointerleave', 'wheel'];
 const ON_PAGE = ['keydown', 'keyup'];
 const NEAR = ['pointerover', 'focusin', 'keydown'];
