@@ -304,6 +304,39 @@ test('while the daemon did not run nothing looks recorded: hatched, without data
     await other.close();
 });
 
+test('while a PLC was lost the bar is hatched, and says whose; not while one of its sensors failed', options, async () => {
+    await plant.sim.stop();
+    const stopped = Date.now() * 1e3;
+    await new Promise((done) => setTimeout(done, 6000));
+    await plant.startSim();
+    const then = new Date(stopped / 1e3 + 4000).toISOString();
+    const { page: own, errors, close } = await openPage(`http://127.0.0.1:${plant.port}/#at=${then}`);
+    await waitForPicture(own);
+    await own.waitForFunction(() => globalThis.plantcast.session.picture.past);
+    const strips = (of) => own.evaluate((name) => [...document.querySelectorAll(`#time-track .${name}`)].map((rect) => {
+        const { toUs, spanUs } = globalThis.plantcast.modules.there('timeline');
+        const perPx = spanUs / (document.getElementById('time-track').clientWidth - 18);
+        const [from, long] = ['x', 'width'].map((key) => Number(rect.getAttribute(key)) * perPx);
+        return [toUs - spanUs + from - 9 * perPx, toUs - spanUs + from + long - 9 * perPx, rect.textContent];
+    }), of);
+    const holds = (at) => ([from, to]) => from <= at && at <= to;
+    await own.locator('#time-span').selectOption('900');
+    for (const end = performance.now() + 40000; !(await strips('lost')).some(holds(stopped + 4e6));) {
+        assert.ok(performance.now() < end, JSON.stringify([stopped, await strips('lost')]));
+        await own.waitForTimeout(300);
+    }
+    assert.equal((await strips('lost')).find(holds(stopped + 4e6))[2], 'plc1: lost');
+    await own.evaluate(() => globalThis.plantcast.modules.there('timeline').askMarks());
+    await settle(own);
+    await shoot(own, 'past-lost');
+    await own.locator('#time-span').selectOption('28800');
+    await own.waitForFunction(() => document.querySelectorAll('#time-track .lost').length > 0);
+    await own.evaluate(() => globalThis.plantcast.modules.there('timeline').askMarks());
+    assert.ok(!(await strips('lost')).some(holds((BEGIN_S + 1350) * 1e6)), 'TI-1 alone was bad');
+    assert.deepEqual(errors, []);
+    await close();
+});
+
 test('on a phone the bar fits', options, async () => {
     const phone = await openPage(`http://127.0.0.1:${plant.port}/#at=${new Date((BEGIN_S + 600) * 1000).toISOString()}`, PHONE);
     await waitForPicture(phone.page);

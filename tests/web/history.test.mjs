@@ -3,7 +3,9 @@
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import { readAddress, writeAddress } from '../../clients/web/core/address.js';
-import { arrowS, ask, BAD, clustered, gaps, limitLines, line, nextTo, raised, ticks, UNCERTAIN } from '../../clients/web/core/history.js';
+import {
+    arrowS, ask, BAD, clustered, gaps, limitLines, line, lost, nextTo, raised, ticks, UNCERTAIN, witnesses,
+} from '../../clients/web/core/history.js';
 import { fieldInstant, fieldText } from '../../clients/web/core/instant.js';
 
 const GOOD_CODE = 0, UNCERTAIN_CODE = 0x408f0000, BAD_CODE = 0x80050000;
@@ -39,6 +41,18 @@ test('gaps are when there was no value; uncertain ones are told apart', () => {
     const found = gaps(series, 0, 6e6).map(({ from, to, severity }) => [from, to, severity]);
     assert.deepEqual(found, [[0, 1, BAD], [2, 4, BAD], [4, 5, UNCERTAIN]]);
     assert.deepEqual(gaps(points(), 0, 6e6), [{ from: 0, to: 6, severity: BAD }]);
+});
+
+test('a source is lost while none of those that speak for it has a value', () => {
+    const tags = ['A', 'B', 'C'].map((name) => ({ name, source: 'plc1' }));
+    assert.deepEqual(witnesses([...tags, { name: 'X', source: null }, { name: 'D', source: 'plc2' }]),
+        [{ source: 'plc1', tags: ['A', 'C'] }, { source: 'plc2', tags: ['D'] }]);
+    const a = points([0, 5, GOOD_CODE], [2e6, null, BAD_CODE], [4e6, 7, UNCERTAIN_CODE], [5e6, null, BAD_CODE], [8e6, 7, GOOD_CODE]);
+    const c = points([0, 5, GOOD_CODE], [3e6, null, BAD_CODE], [7e6, 7, GOOD_CODE]);
+    assert.deepEqual(lost([a, c], 0, 9e6), [[3e6, 4e6], [5e6, 7e6]]);
+    assert.deepEqual(lost([a], 0, 9e6), [[2e6, 4e6], [5e6, 8e6]]);
+    assert.deepEqual(lost([a, points([0, 1, GOOD_CODE])], 0, 9e6), [], 'one fault is none of the source');
+    assert.deepEqual(lost([], 0, 9e6), []);
 });
 
 test('alarms are marked when they were raised', () => {

@@ -91,6 +91,25 @@ export function gaps(series, fromUs, toUs) {
     return out;
 }
 
+// Returns the tags that speak for each source, its first and its last: [{ source, tags: [name] }], of `most` sources at most.
+export function witnesses(tags, most = 16) {
+    const names = new Map();
+    for (const { source, name } of tags.filter((tag) => tag.source))
+        names.set(source, [...(names.get(source) ?? []), name]);
+    return [...names].slice(0, most).map(([source, all]) => ({ source, tags: [...new Set([all[0], all.at(-1)])] }));
+}
+
+// Returns when none of these had a value: [[from, to]], in microseconds.
+export function lost(all, fromUs, toUs) {
+    let common = [[fromUs, toUs]];
+    for (const series of all) {
+        const bad = gaps(series, fromUs, toUs).filter(({ severity: grade }) => grade === BAD);
+        common = common.flatMap(([begin, end]) => bad.map(({ from, to }) => [Math.max(begin, from * 1e6), Math.min(end, to * 1e6)]))
+            .filter(([begin, end]) => begin < end);
+    }
+    return all.length > 0 ? common : [];
+}
+
 // Returns the limits of some tags, each once: [{ scale, name, value, tags }]. scaleOf(tag): its axis; tags: those that have the limit,
 // empty if all have it on one axis.
 export function limitLines(tags, scaleOf) {

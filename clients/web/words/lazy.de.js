@@ -239,6 +239,7 @@ slider: Gezeigter Zeitpunkt
 live: Zurück zu jetzt
 now: Jetzt
 ago: {instant} · vor {age}
+lost: {source}: ausgefallen
 unrecorded: nicht aufgezeichnet
 raised(one): {count} Alarm gekommen
 raised(other): {count} Alarme gekommen

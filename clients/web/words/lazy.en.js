@@ -239,6 +239,7 @@ slider: Instant that is shown
 live: Back to live
 now: Now
 ago: {instant} · {age} ago
+lost: {source}: lost
 unrecorded: not recorded
 raised(one): {count} alarm raised
 raised(other): {count} alarms raised

@@ -238,6 +238,7 @@ slider: 표시하는 시점
 live: 실시간으로
 now: 지금
 ago: {instant} · {age} 전
+lost: {source}: 끊김
 unrecorded: 기록 없음
 raised(other): 알람 {count}건 발생
 

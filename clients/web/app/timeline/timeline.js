@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The time bar: a slider over what was recorded, with gaps and the alarms that were raised, which lead to their instants; play, speed, a
-// date field, and the way back to now.
+// The time bar: a slider over what was recorded, with gaps, sources that were lost, and the alarms that were raised, which lead to their
+// instants; play, speed, a date field, and the way back to now.
 import { ageText, zoneClock } from '../../core/format.js';
-import { arrowS, ask, clustered, nextTo, raised, ticks } from '../../core/history.js';
+import { arrowS, ask, clustered, lost, nextTo, raised, ticks, witnesses } from '../../core/history.js';
 import { fieldInstant, fieldText } from '../../core/instant.js';
 import { travel } from '../../core/requests.js';
 import { say } from '../../core/words.js';
@@ -12,12 +12,13 @@ import { fillSelect } from '../common/choices.js';
 const SPANS = [[900, 'min', 15], [3600, 'h', 1], [28800, 'h', 8], [86400, 'h', 24], [604800, 'd', 7], [2592000, 'd', 30]];
 const SPEEDS = [1, 10, 60, 300, 600, 3600];
 const MARKS_MS = 15000, MARKS_MOST = 2000, HAND_MS = 400, NOW_US = 3.5e6; // what is newer than that counts as now
+const TRACK = { top: 15, height: 10 }, LOST_POINTS = 300; // of a tag's history, to see when its source was lost
 const MARK_PX = 9, SEARCH_MOST = 10000, PAGES = 24, NAMED = 8; // the least between two marks; rows of the journal at once; as often at most
 
 export class Timeline {
     // tell(text): to the person.
     constructor({ session, tell }) {
-        Object.assign(this, { session, tell, open: false, toUs: null, marks: [], gaps: [], wanted: null, draggedAt: -Infinity });
+        Object.assign(this, { session, tell, open: false, toUs: null, marks: [], gaps: [], lost: [], wanted: null, draggedAt: -Infinity });
         this.slider = byId('time-slider');
         fillSelect(byId('time-span'), SPANS.map(([seconds, unit, n]) => [seconds, say(`age.${unit}`, { n })]), 3600);
         fillSelect(byId('time-speed'), SPEEDS.map((speed) => [speed, `${speed}×`]), 60);
@@ -183,12 +184,24 @@ export class Timeline {
     async askMarks() {
         this.askedAt = performance.now();
         const span = { from: (this.toUs - this.spanUs) / 1e6, to: this.toUs / 1e6 }, { token } = this.session;
-        const [marks, gaps] = await Promise.all([
+        const [marks, gaps, all] = await Promise.all([
             this.journal({ ...span, limit: MARKS_MOST }).then(({ rows }) => raised(rows)),
             ask('api/v1/history/gaps', span, token).then((answer) => answer.json()).then((said) => said.gaps),
+            this.askLost(span),
         ].map((one) => one.catch(() => []))); // nothing of it, or not for us: the slider goes without
-        Object.assign(this, { marks, gaps });
+        Object.assign(this, { marks, gaps, lost: all });
         this.draw();
+    }
+
+    // [{ source, spans }]
+    async askLost(span) {
+        const sources = witnesses(this.session.model?.tags ?? []), tags = sources.flatMap((one) => one.tags);
+        if (tags.length === 0)
+            return [];
+        const query = { ...span, tags: tags.join(','), points: LOST_POINTS };
+        const { series } = await (await ask('api/v1/history', query, this.session.token)).json();
+        return sources.map((one) => ({ source: one.source, spans: lost(series.filter(({ tag }) => one.tags.includes(tag)),
+            span.from * 1e6, span.to * 1e6) }));
     }
 
     say(us) {
@@ -219,16 +232,26 @@ export class Timeline {
         this.draw();
     }
 
-    // Marks, ticks, and where nothing was recorded, over the slider's own length.
+    // Marks, ticks, and where nothing was recorded or sources were lost (each has a row), over the slider's own length.
     draw() {
         const track = byId('time-track'), width = track.clientWidth;
         if (!this.open || !this.clock || width === 0)
             return;
         const from = this.toUs - this.spanUs, x = (us) => 9 + (width - 18) * (us - from) / this.spanUs;
         const nodes = [], { fromUs } = this.session.time, begin = Math.max(from, fromUs ?? from);
-        const hatch = (begins, ends) => {
+        const strip = (begins, ends, place, ...more) => {
             const left = x(Math.max(begins, from)), long = Math.max(2, Math.min(x(ends), width - 9) - left);
-            nodes.push(makeSvg('rect', { class: 'unrecorded', fill: 'url(#time-gap)', x: left, y: 15, width: long, height: 10 }));
+            nodes.push(makeSvg('rect', { fill: 'url(#time-gap)', x: left, width: long, ...place }, ...more));
+            return [left, long];
+        };
+        const row = TRACK.height / Math.max(1, this.lost.length);
+        this.lost.forEach(({ source, spans }, i) => {
+            for (const [begins, ends] of spans.filter((one) => one[1] > from))
+                strip(begins, ends, { class: 'lost', y: TRACK.top + i * row, height: row },
+                    makeSvg('title', {}, say('time.lost', { source })));
+        });
+        const hatch = (begins, ends) => {
+            const [left, long] = strip(begins, ends, { class: 'unrecorded', y: TRACK.top, height: TRACK.height });
             if (long > 70)
                 nodes.push(makeSvg('text', { class: 'note', x: left + 3, y: 12 }, say('time.unrecorded')));
         };
