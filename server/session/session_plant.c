@@ -7,15 +7,31 @@
 #include "session/reply.h"
 #include "session/session_impl.h"
 
+/* What is seen, by names, as `params` of the server says it; `start`: of assets that start otherwise than shown, how. */
+static char *carried_of(const struct session_context *world, const struct view *view)
+{
+    char *said = reply_params_text(world, view, 0, false);
+    json_t *o = json_loads(said, 0, NULL), *start = json_object();
+    for (size_t i = 0; i < world->plant->asset_count; i++)
+        if (world->plant->assets[i].start != PLANT_START_SHOWN)
+            json_object_set_new(start, world->plant->assets[i].id, json_integer(world->plant->assets[i].start));
+    json_object_set_new(o, "start", start);
+    char *dumped = json_dumps(o, JSON_COMPACT), *carried = mem_strdup(dumped);
+    free(dumped);
+    json_decref(o);
+    mem_free(said);
+    return carried;
+}
+
 char *session_carry(struct session *session)
 {
     session_time_leave(session);
     session_place_leave(session);
     session_drop_ready(session);
-    return session->hello ? reply_params_text(session->world, &session->view, 0, false) : NULL;
+    return session->hello ? carried_of(session->world, &session->view) : NULL;
 }
 
-/* What `params` of the server says, as a client would ask for it. */
+/* The same as a client would ask for it. */
 static json_t *wish_of(const char *carried)
 {
     static const char *const said_only[] = { "type", "seq", "baselines", "unit" };
@@ -52,12 +68,45 @@ static void forget_gone(const struct plant *plant, json_t *o)
     }
 }
 
+static size_t place_in(const json_t *list, const char *id)
+{
+    size_t n = 0;
+    while (n < json_array_size(list) && strcmp(json_string_value(json_array_get(list, n)), id) != 0)
+        n++;
+    return n;
+}
+
+/* Who left an asset as it started before sees it as it starts now; an asset that is new was shown to nobody. */
+static void start_anew(const struct plant *plant, json_t *o)
+{
+    static const char *const sets[] = { [PLANT_START_SHOWN] = "", [PLANT_START_GHOST] = "ghost", [PLANT_START_HIDDEN] = "hidden" };
+    json_t *before = json_incref(json_object_get(o, "start"));
+    json_object_del(o, "start");
+    for (size_t i = 0; i < plant->asset_count && i < PLANT_STARTS; i++) {
+        const char *id = plant->assets[i].id;
+        enum plant_start was = (enum plant_start)json_integer_value(json_object_get(before, id)), now = plant->assets[i].start;
+        bool as_it_was = now != was;
+        for (int set = PLANT_START_GHOST; as_it_was && set <= PLANT_START_HIDDEN; set++) {
+            const json_t *list = json_object_get(o, sets[set]);
+            as_it_was = (place_in(list, id) < json_array_size(list)) == (set == (int)was);
+        }
+        if (!as_it_was)
+            continue;
+        if (was != PLANT_START_SHOWN)
+            json_array_remove(json_object_get(o, sets[was]), place_in(json_object_get(o, sets[was]), id));
+        if (now != PLANT_START_SHOWN)
+            json_array_append_new(json_object_get(o, sets[now]), json_string(id));
+    }
+    json_decref(before);
+}
+
 /* All of it, or each that still means something. */
 static void apply_carried(struct session *session, const char *carried)
 {
     json_t *o = wish_of(carried), *value;
     const char *key;
     forget_gone(session->world->plant, o);
+    start_anew(session->world->plant, o);
     if (o && !apply(session, o)) {
         json_t *group = json_pack("{s:O}", "group", json_object_get(o, "group"));
         apply(session, group);
@@ -86,7 +135,7 @@ void session_view_in(const struct session *session, const struct session_context
 {
     const struct view *view = session_view(session);
     struct session *other = session_create(world, session->id, 0);
-    char *carried = reply_params_text(session->world, view, 0, false);
+    char *carried = carried_of(session->world, view);
     look_again(other, view, carried);
     *out = other->view;
     mem_free(carried);

@@ -70,12 +70,19 @@ test('a plant may begin with less than all of it; whoever asks for the rest keep
         const { changes } = await (await fetch(`${url}api/v1/reload`, { method: 'POST' })).json();
         assert.deepEqual(changes, ['asset HOUSE removed', 'asset ROOF added']);
         await page.waitForFunction((was) => globalThis.plantcast.session.model.plant.configuration !== was, before);
-        assert.deepEqual(await sets(), { ...NONE, hidden: ['E-101'] }, 'who is there keeps what he sees');
+        assert.deepEqual(await sets(), { ...NONE, hidden: ['E-101'], ghost: ['ROOF'] },
+            'who is there keeps what he asked for, and sees what is new as it starts');
+        const ghosts = () => page.evaluate(() => globalThis.plantcast.session.confirmed.ghost);
+        write('ROOF', 'hidden');
+        assert.equal(tiny.prepare().code, 0);
+        assert.equal((await fetch(`${url}api/v1/reload`, { method: 'POST' })).status, 200);
+        await page.waitForFunction(() => globalThis.plantcast.session.confirmed.hidden.includes('ROOF'));
+        assert.deepEqual(await ghosts(), [], 'nobody had asked for it as a ghost');
         await page.goto(`${url}?again`);
         await waitForPicture(page);
         await sign();
-        assert.deepEqual(await sets(), { hidden: [], isolate: [], ghost: ['P-101A', 'ROOF'] });
-        assert.equal(await page.locator('#shown span').textContent(), '2 see-through');
+        assert.deepEqual(await sets(), { hidden: ['ROOF'], isolate: [], ghost: ['P-101A'] });
+        assert.equal(await page.locator('#shown span').textContent(), '1 of 3 hidden, 1 see-through');
         assert.deepEqual(own.errors, []);
     } finally {
         await own.close();
