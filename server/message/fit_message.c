@@ -79,17 +79,28 @@ static bool parse_given(const json_t *o, bool lens, struct view *view, struct me
     return good;
 }
 
-/* Nothing says where to look from, nor does the plant. */
-static bool shows_all(const struct plant *plant, const json_t *o)
+/* Says where to look from. */
+static bool has_camera(const json_t *o)
 {
-    return !plant->view.set && !json_object_get(o, "camera") && !json_object_get(o, "projection") && !json_object_get(o, "height_m");
+    return json_object_get(o, "camera") || json_object_get(o, "projection") || json_object_get(o, "height_m");
+}
+
+/* The plant's own view, in either half. */
+static void keep_whole(const struct scene *scene, bool bare, struct view *view)
+{
+    struct camera_window window = { 0 };
+    struct view half;
+    view_half(view, 0, &half);
+    if (!bare)
+        overlay_window(scene, view, &window);
+    framing_keep(scene, (double)half.width_px / half.height_px, &window, &view->camera);
 }
 
 bool view_query_camera(const struct scene *scene, const json_t *o, bool bare, struct view *view, struct message_error *error)
 {
     json_t *fit_o = json_object();
     struct fit fit;
-    bool fits = json_object_get(o, "fit") || json_object_get(o, "side") || shows_all(scene->plant, o);
+    bool fits = json_object_get(o, "fit") || json_object_get(o, "side") || (!scene->plant->view.set && !has_camera(o));
     json_object_set(fit_o, "id", json_object_get(o, "fit"));
     json_object_set(fit_o, "side", json_object_get(o, "side"));
     json_object_set(fit_o, "projection", json_object_get(o, "projection"));
@@ -98,6 +109,8 @@ bool view_query_camera(const struct scene *scene, const json_t *o, bool bare, st
         overlay_window(scene, view, &fit.framing.window);
     if (good && fits)
         fit_apply(scene, &fit, view, &view->camera);
+    if (good && !fits && view->split && !has_camera(o))
+        keep_whole(scene, bare, view);
     json_decref(fit_o);
     return good;
 }

@@ -5,8 +5,11 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/mem.h"
+
 /* Straight down, north has no direction: so much beside it, up stays the plant's own, and hands go on turning the same way. */
 static const double BESIDE_VERTICAL = 1e-3;
+static const double USUAL_ASPECT = 16 / 9.0; /* of the pictures that a plant file's view is chosen in */
 static const double SENSOR_PART = 0.35;                      /* of the asset's size is shown around a sensor, */
 static const double SENSOR_LEAST_M = 0.3, SENSOR_MOST_M = 3; /* but no less and no more */
 static const double SENSOR_RISE = 0.36;                      /* seen from that much above, as a tangent */
@@ -111,4 +114,44 @@ void framing_look(const struct scene *scene, const struct framing *framing, doub
         camera_fit_points(camera, forward, (const double(*)[3])scene->extremes_m, scene->extreme_count, aspect, &framing->window);
     else
         camera_fit_along(camera, forward, min_m, max_m, aspect, &framing->window);
+}
+
+/* In a part of a picture. */
+static bool sees(const struct camera *camera, double aspect, const struct camera_window *window, const double point_m[3])
+{
+    static const struct camera_window whole = { -1, 1, -1, 1 };
+    double right[3], up[3], forward[3], x = 0, y = 0, depth_m = 0, tall = tan(camera->fov_deg * M_PI / 360);
+    if (!(window->left < window->right && window->bottom < window->top))
+        window = &whole;
+    camera_basis(camera, right, up, forward);
+    for (int i = 0; i < 3; i++) {
+        double from_m = point_m[i] - camera->eye_m[i];
+        x += right[i] * from_m;
+        y += up[i] * from_m;
+        depth_m += forward[i] * from_m;
+    }
+    x /= depth_m * tall * aspect;
+    y /= depth_m * tall;
+    return depth_m > 0 && x >= window->left && x <= window->right && y >= window->bottom && y <= window->top;
+}
+
+void framing_keep(const struct scene *scene, double aspect, const struct camera_window *window, struct camera *camera)
+{
+    size_t count = scene->extreme_count > 0 ? scene->extreme_count : 8, held = 0, seen = 0;
+    double(*points_m)[3] = mem_array(count, sizeof(*points_m)), forward[3];
+    for (size_t n = 0; n < count; n++) {
+        double corner_m[3];
+        for (int i = 0; i < 3; i++)
+            corner_m[i] = n >> i & 1 ? scene->bounds_max_m[i] : scene->bounds_min_m[i];
+        const double *point_m = scene->extreme_count > 0 ? scene->extremes_m[n] : corner_m;
+        if (!sees(camera, USUAL_ASPECT, &(struct camera_window){ 0 }, point_m))
+            continue;
+        memcpy(points_m[held++], point_m, sizeof(*points_m));
+        seen += sees(camera, aspect, window, point_m);
+    }
+    for (int i = 0; i < 3; i++)
+        forward[i] = camera->target_m[i] - camera->eye_m[i];
+    if (seen < held)
+        camera_fit_points(camera, forward, (const double(*)[3])points_m, held, aspect, window);
+    mem_free(points_m);
 }

@@ -407,6 +407,36 @@ static void what_is_fitted_lies_beside_the_legend(void **state)
     assert_true(view.camera.target_m[0] > 0.2 && view.camera.eye_m[1] < 1.5 * whole.camera.eye_m[1]);
 }
 
+/* The plant file's view is chosen for a wide picture; halves would cut the plant off. */
+static void halves_show_what_the_plants_own_view_does(void **state)
+{
+    (void)state;
+    static const char *const args[] = { "split=colormap=viridis", "camera=0,-9,3,0,0,0,40" };
+    struct plant *plant = (struct plant *)small_scene()->plant;
+    const struct params_context bare = { .scene = small_scene(), .bare = true };
+    struct message_error error = { 0 };
+    struct view own, one, halves, given;
+    assert_true(view_query_parse(&bare, ROLE_ENGINEER, NULL, 0, &one, NULL, &error));
+    plant->view = (struct plant_view){ .set = true, .fov_deg = one.camera.fov_deg };
+    memcpy(plant->view.eye_m, one.camera.eye_m, sizeof(one.camera.eye_m));
+    memcpy(plant->view.target_m, one.camera.target_m, sizeof(one.camera.target_m));
+    assert_true(query(NULL, 0, &own, &error));
+    assert_memory_equal(own.camera.eye_m, one.camera.eye_m, sizeof(own.camera.eye_m)); /* whole, it stays as it is */
+    assert_true(view_query_parse(&bare, ROLE_ENGINEER, args, 1, &halves, NULL, &error));
+    double nearer = 0, farther = 0, before[3], after[3];
+    for (int i = 0; i < 3; i++) {
+        before[i] = own.camera.target_m[i] - own.camera.eye_m[i];
+        after[i] = halves.camera.target_m[i] - halves.camera.eye_m[i];
+        nearer += before[i] * before[i];
+        farther += after[i] * after[i];
+    }
+    assert_true(farther > 1.5 * nearer); /* it steps back */
+    for (int i = 0; i < 3; i++)          /* and looks the same way */
+        assert_float_equal(after[i] / sqrt(farther), before[i] / sqrt(nearer), 1e-6);
+    assert_true(query(args, 2, &given, &error) && given.camera.eye_m[1] == -9); /* who says where to look from is not moved */
+    plant->view = (struct plant_view){ 0 };
+}
+
 static void bad_queries_are_named(void **state)
 {
     (void)state;
@@ -650,6 +680,7 @@ int main(void)
         cmocka_unit_test(a_view_splits),
         cmocka_unit_test(what_is_not_drawn_truly_on_whole_triangles_is_refused),
         cmocka_unit_test(what_is_fitted_lies_beside_the_legend),
+        cmocka_unit_test(halves_show_what_the_plants_own_view_does),
         cmocka_unit_test(queries_make_views),
         cmocka_unit_test(bad_queries_are_named),
         cmocka_unit_test(a_refused_number_is_told_why),
