@@ -56,9 +56,10 @@ sim_sources      := $(filter-out %/generate.c,$(wildcard deploy/demo/*.c))
 generate_sources := $(wildcard deploy/demo/generate*.c deploy/demo/generate/*.c)
 sim_sources      := $(filter-out $(generate_sources),$(sim_sources))
 sim_archive      := $(if $(sim_sources),$(out)/lib/sim.a)
-prep_sources     := $(filter-out %/main.c %/image_lazy.c,$(wildcard preprocess/*.c preprocess/*/*.c preprocess/*/*.cc))
+import_sources   := $(wildcard preprocess/import/*.c)
+prep_sources     := $(filter-out %/main.c %/image_lazy.c $(import_sources),$(wildcard preprocess/*.c preprocess/*/*.c preprocess/*/*.cc))
 programs := $(if $(wildcard server/main.c),$(bin)/plantcastd) $(if $(wildcard preprocess/main.c),$(bin)/plantcast-prep) \
-            $(if $(wildcard clients/cli/main.c),$(bin)/plantcast) $(if $(sim_sources),$(bin)/plantcast-sim) \
+            $(if $(wildcard clients/cli/main.c),$(bin)/plantcast) $(if $(import_sources),$(bin)/plantcast-import) $(if $(sim_sources),$(bin)/plantcast-sim) \
             $(if $(generate_sources),$(bin)/plantcast-demo)
 modules  := $(bin)/plantcast-images.so
 
@@ -77,6 +78,9 @@ $(bin)/plantcastd: $(call objects,$(wildcard server/*.c)) $(archives)
 	$(link)
 $(bin)/plantcast-prep: $(call objects,preprocess/main.c preprocess/image_lazy.c) $(out)/lib/prep.a $(archives) | $(modules)
 	$(link)
+# Reads what strangers' programs wrote: neither the daemon nor plantcast-prep links it.
+$(bin)/plantcast-import: $(call objects,preprocess/import/main.c) $(out)/lib/import.a $(archives)
+	$(link) -lGLU
 $(bin)/plantcast-images.so: $(patsubst %,$(out)/obj/server/base/%.pic.o,image_shim mem)
 	@mkdir -p $(@D); echo "  LINK $@"; $(CXX) $(ldflags) -shared -o $@ $^ $(pkg_libs)
 cli_sources := $(if $(filter h264,$(CODECS)),,clients/cli/video.c)
@@ -101,6 +105,7 @@ wide_objects := $(foreach w,wide widest,$(patsubst %.c,$(out)/obj/%.$(w).o,$(wid
 $(out)/lib/render.a: $(if $(filter x86_64%,$(shell $(CC) -dumpmachine 2>/dev/null)),$(wide_objects))
 $(out)/lib/protocol.a: $(call objects,$(wildcard protocol/*.c))
 $(out)/lib/prep.a: $(call objects,$(prep_sources))
+$(out)/lib/import.a: $(call objects,$(filter-out %/main.c,$(import_sources)))
 $(out)/lib/sim.a: $(call objects,$(filter-out %/sim.c,$(sim_sources)))
 $(out)/lib/%.a:
 	@mkdir -p $(@D); rm -f $@; $(AR) rcs $@ $^
@@ -150,6 +155,8 @@ support    := $(call objects,$(wildcard tests/support/*.c tests/support/*.cc))
 # The exact solver that distances are held against, by CGAL.
 $(out)/tests/unit/accuracy_test $(out)/tests/unit/contact_test: $(call objects,$(wildcard tests/oracle/*.cc))
 $(out)/tests/unit/accuracy_test $(out)/tests/unit/contact_test: pkg_libs += -lgmp -lmpfr
+$(out)/tests/unit/rvm_test: $(out)/lib/import.a
+$(out)/tests/unit/rvm_test: pkg_libs += -lGLU
 $(out)/tests/%: $(out)/obj/tests/%.o $(support) $(archives) $(out)/lib/prep.a $(sim_archive)
 	$(link) -lcmocka
 # Draws as the command line does.

@@ -4,43 +4,12 @@
 
 #include <errno.h>
 #include <stdbool.h>
-#include <stdint.h>
 #include <string.h>
 
 #include "base/mem.h"
 #include "base/text.h"
+#include "base/utf8.h"
 #include "plant/file_kind.h"
-
-/* Bytes of the UTF-8 character at p (Unicode table 3-7), 0 if it is not one. */
-static size_t character_bytes(const unsigned char *p, size_t left)
-{
-    unsigned char first = p[0], low = 0x80, high = 0xBF;
-    size_t count;
-    if (first < 0x80)
-        return first != 0;
-    if (first >= 0xC2 && first <= 0xDF)
-        count = 2;
-    else if (first >= 0xE0 && first <= 0xEF)
-        count = 3;
-    else if (first >= 0xF0 && first <= 0xF4)
-        count = 4;
-    else
-        return 0;
-    if (first == 0xE0)
-        low = 0xA0;
-    else if (first == 0xED)
-        high = 0x9F;
-    else if (first == 0xF0)
-        low = 0x90;
-    else if (first == 0xF4)
-        high = 0x8F;
-    if (count > left || p[1] < low || p[1] > high)
-        return 0;
-    for (size_t i = 2; i < count; i++)
-        if (p[i] < 0x80 || p[i] > 0xBF)
-            return 0;
-    return count;
-}
 
 enum { REPORTED_LINES = 10, TEXT_AT_LEAST = 10 /* characters for each byte that is none */ };
 
@@ -49,14 +18,14 @@ static bool check_characters(char *text, size_t bytes, const char *path, struct 
 {
     size_t wrong = 0;
     for (size_t i = 0, count; i < bytes; i += count ? count : 1) {
-        count = character_bytes((unsigned char *)text + i, bytes - i);
+        count = utf8_length(text + i, bytes - i);
         wrong += count == 0;
     }
     if (wrong > REPORTED_LINES && wrong > bytes / TEXT_AT_LEAST)
         return false;
     int line = 1, column = 1, reported_line = 0, reported = 0;
     for (size_t i = 0; i < bytes && wrong > 0;) {
-        size_t count = character_bytes((unsigned char *)text + i, bytes - i);
+        size_t count = utf8_length(text + i, bytes - i);
         if (count == 0) {
             if (reported_line != line && ++reported <= REPORTED_LINES)
                 diag_error(diag, path, line, column, "byte 0x%02X is not UTF-8 text; save the file as UTF-8", (unsigned char)text[i]);

@@ -1,0 +1,62 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* A model as a CAD system exports it, before it is written as glTF: a tree of named nodes with attributes, triangles and lines. Readers of
+ * formats (rvm.h) fill it, cad_glb.h writes it. One thread per model. Lengths are metres, Z is up, positions are those of the plant. */
+#ifndef PREPROCESS_IMPORT_CAD_MODEL_H
+#define PREPROCESS_IMPORT_CAD_MODEL_H
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+struct cad_vertex {
+    double position_m[3];
+    float normal[3]; /* of length 1 */
+};
+
+struct cad_attribute {
+    char *name, *value; /* UTF-8 */
+};
+
+struct cad_node {
+    char *name; /* UTF-8; "" where the file has none */
+    int parent; /* an index before its own; -1: a root */
+    uint32_t material;
+    struct cad_vertex *vertices;
+    uint32_t (*triangles)[3];
+    double (*lines_m)[2][3];
+    struct cad_attribute *attributes;
+    size_t vertex_count, vertex_room, triangle_count, triangle_room, line_count, line_room, attribute_count, attribute_room;
+};
+
+struct cad_color {
+    uint32_t material;
+    uint8_t rgb[3]; /* sRGB */
+};
+
+struct cad_model {
+    struct cad_node *nodes; /* parents before children, siblings in the order of the file */
+    struct cad_color *colors;
+    size_t node_count, node_room, color_count, color_room;
+};
+
+/* Creates an empty model. The caller owns it: cad_model_destroy. */
+struct cad_model *cad_model_create(void);
+/* Frees the model and all it holds. &NULL is fine; leaves NULL. */
+void cad_model_destroy(struct cad_model **model);
+
+/* Appends a node below `parent` (-1: a root) and returns its index. `name` is copied. */
+int cad_model_add_node(struct cad_model *model, int parent, const char *name);
+/* Appends a vertex and returns its index in the node. `normal` may have any length. */
+uint32_t cad_node_add_vertex(struct cad_node *node, const double position_m[3], const double normal[3]);
+void cad_node_add_triangle(struct cad_node *node, uint32_t a, uint32_t b, uint32_t c);
+void cad_node_add_line(struct cad_node *node, const double from_m[3], const double to_m[3]);
+/* Appends an attribute; both texts are copied. */
+void cad_node_add_attribute(struct cad_node *node, const char *name, const char *value);
+void cad_model_add_color(struct cad_model *model, uint32_t material, const uint8_t rgb[3]);
+
+/* Returns the value of the first attribute of this name, or NULL. */
+const char *cad_node_attribute(const struct cad_node *node, const char *name);
+
+/* The sum of the areas of a node's triangles, in square metres. */
+double cad_node_area_m2(const struct cad_node *node);
+
+#endif

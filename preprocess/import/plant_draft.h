@@ -1,0 +1,21 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The first plant.yaml of an imported plant: the models, with an asset for each element that people would call by its name. */
+#ifndef PREPROCESS_IMPORT_PLANT_DRAFT_H
+#define PREPROCESS_IMPORT_PLANT_DRAFT_H
+#include "preprocess/import/cad_model.h"
+
+struct plant_draft_model {
+    char *file; /* its name in the folder */
+    const struct cad_model *model;
+};
+
+struct plant_draft {
+    const char *name, *folder;
+    struct plant_draft_model *models;
+    size_t count;
+};
+
+/* Writes FOLDER/plant.yaml, unless it is there: then a person may have changed it, and it stays. Returns 0 or -errno. */
+int plant_draft_write(const struct plant_draft *draft);
+
+#endif

@@ -1,0 +1,400 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Two passes: chunks to primitives; then, once it is known which of their faces lie on each other, primitives to triangles. */
+#include "preprocess/import/rvm.h"
+
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/mem.h"
+#include "preprocess/import/encoding.h"
+#include "preprocess/import/rvm_shape.h"
+
+enum { MAX_DEPTH = 1000, HEADER = 24, MAX_NAME = 4096 };
+
+struct primitive {
+    struct rvm_shape shape;
+    int node;
+    size_t first_contour, first_point; /* while the arrays grow */
+};
+
+struct face {
+    struct rvm_face flat;
+    int axis[3]; /* the direction of its plane, in hundredths */
+    double offset_m;
+    size_t primitive;
+    int number;
+};
+
+struct reader {
+    const uint8_t *bytes;
+    size_t count, at, chunk_end;
+    struct cad_model *model;
+    struct rvm_counts *counts;
+    struct primitive *primitives;
+    struct rvm_contour *contours;
+    double (*points)[3];
+    struct face *faces;
+    size_t primitive_count, primitive_room, contour_count, contour_room, point_count, point_room, face_count, face_room;
+    int stack[MAX_DEPTH], depth;
+    bool utf8;
+    char *why;
+    size_t why_bytes;
+};
+
+static bool fail(struct reader *r, const char *fmt, ...) __attribute__((format(printf, 2, 3)));
+static bool fail(struct reader *r, const char *fmt, ...)
+{
+    char text[160];
+    va_list ap;
+    va_start(ap, fmt);
+    vsnprintf(text, sizeof(text), fmt, ap);
+    va_end(ap);
+    if (r->why[0] == 0)
+        snprintf(r->why, r->why_bytes, "byte %zu: %s", r->at, text);
+    return false;
+}
+
+static bool need(struct reader *r, size_t bytes)
+{
+    return bytes <= r->chunk_end - r->at ? true : fail(r, "the chunk ends in the middle of what it should hold");
+}
+
+static uint32_t peek_word(const uint8_t *at)
+{
+    return (uint32_t)at[0] << 24 | (uint32_t)at[1] << 16 | (uint32_t)at[2] << 8 | at[3];
+}
+
+static bool read_word(struct reader *r, uint32_t *word)
+{
+    if (!need(r, 4))
+        return false;
+    *word = peek_word(r->bytes + r->at);
+    r->at += 4;
+    return true;
+}
+
+static bool read_float(struct reader *r, double *out)
+{
+    uint32_t word;
+    float value;
+    if (!read_word(r, &word))
+        return false;
+    memcpy(&value, &word, sizeof(value));
+    *out = (double)value;
+    return true;
+}
+
+/* A number of words, then that many words of text that ends with the first 0. */
+static bool read_text(struct reader *r, char *out, size_t out_bytes)
+{
+    uint32_t words;
+    if (!read_word(r, &words))
+        return false;
+    if (words > (r->chunk_end - r->at) / 4)
+        return fail(r, "a text of %u bytes is longer than its chunk", words * 4U);
+    size_t length = strnlen((const char *)r->bytes + r->at, words * 4UL);
+    char *text = encoding_to_utf8((const char *)r->bytes + r->at, length, !r->utf8);
+    snprintf(out, out_bytes, "%s", text);
+    mem_free(text);
+    r->at += words * 4UL;
+    return true;
+}
+
+/* --- chunks ----------------------------------------------------------------------------------------------------------------------- */
+
+static bool read_head(struct reader *r)
+{
+    uint32_t version;
+    char info[256], date[64], user[64], encoding[64] = "";
+    if (!read_word(r, &version) || !read_text(r, info, sizeof(info)) || !read_text(r, r->counts->note, sizeof(r->counts->note)) ||
+        !read_text(r, date, sizeof(date)) || !read_text(r, user, sizeof(user)) ||
+        (version >= 2 && !read_text(r, encoding, sizeof(encoding))))
+        return false;
+    if (r->counts->note[0] == 0)
+        snprintf(r->counts->note, sizeof(r->counts->note), "%s", info);
+    r->utf8 = strstr(encoding, "UTF8") || strstr(encoding, "UTF-8") || strstr(encoding, "Unicode");
+    return true;
+}
+
+static bool read_color(struct reader *r)
+{
+    uint32_t kind, index;
+    if (!read_word(r, &kind) || !read_word(r, &index) || !need(r, 4))
+        return false;
+    cad_model_add_color(r->model, index, r->bytes + r->at);
+    return true;
+}
+
+static bool begin_group(struct reader *r)
+{
+    uint32_t version, material;
+    double reference_mm; /* a point near by; primitives do not depend on it */
+    char name[MAX_NAME];
+    if (!read_word(r, &version) || !read_text(r, name, sizeof(name)))
+        return false;
+    for (int axis = 0; axis < 3; axis++)
+        if (!read_float(r, &reference_mm))
+            return false;
+    if (!read_word(r, &material))
+        return false;
+    if (r->depth == MAX_DEPTH)
+        return fail(r, "groups are nested more than %d deep", MAX_DEPTH);
+    int node = cad_model_add_node(r->model, r->depth > 0 ? r->stack[r->depth - 1] : -1, name);
+    r->model->nodes[node].material = material;
+    r->stack[r->depth++] = node;
+    r->counts->groups++;
+    return true;
+}
+
+static bool read_facets(struct reader *r, struct primitive *primitive)
+{
+    uint32_t polygons, contours, points;
+    primitive->first_contour = r->contour_count;
+    primitive->first_point = r->point_count;
+    if (!read_word(r, &polygons))
+        return false;
+    for (uint32_t p = 0; p < polygons; p++) {
+        if (!read_word(r, &contours))
+            return false;
+        for (uint32_t c = 0; c < contours; c++) {
+            if (!read_word(r, &points))
+                return false;
+            if (points > (r->chunk_end - r->at) / HEADER)
+                return fail(r, "a contour of %u points is longer than its chunk", points);
+            mem_grow(&r->contours, &r->contour_room, r->contour_count + 1, sizeof(*r->contours));
+            mem_grow(&r->points, &r->point_room, r->point_count + points, sizeof(*r->points));
+            r->contours[r->contour_count++] = (struct rvm_contour){ r->point_count - primitive->first_point, points, c == 0 };
+            for (uint32_t i = 0; i < points; i++, r->point_count++) {
+                for (int axis = 0; axis < 3; axis++)
+                    if (!read_float(r, &r->points[r->point_count][axis]))
+                        return false;
+                r->at += 12; /* a normal: ours are the polygon's */
+            }
+        }
+    }
+    primitive->shape.contour_count = r->contour_count - primitive->first_contour;
+    return true;
+}
+
+static bool read_primitive(struct reader *r, bool transparency)
+{
+    uint32_t version, kind, ignored;
+    double box;
+    struct primitive primitive = { 0 };
+    if (r->depth == 0)
+        return fail(r, "a primitive stands outside of every group");
+    if (!read_word(r, &version) || !read_word(r, &kind))
+        return false;
+    for (int i = 0; i < 12; i++)
+        if (!read_float(r, &primitive.shape.to_plant[i]))
+            return false;
+    for (int i = 0; i < 6; i++)
+        if (!read_float(r, &box))
+            return false;
+    if (transparency && !read_word(r, &ignored))
+        return false;
+    if (kind < RVM_PYRAMID || kind > RVM_FACETS) {
+        r->counts->unknown_kinds++;
+        return true;
+    }
+    primitive.node = r->stack[r->depth - 1];
+    primitive.shape.kind = (enum rvm_kind)kind;
+    for (int i = 0; i < rvm_numbers[kind]; i++)
+        if (!read_float(r, &primitive.shape.numbers[i]))
+            return false;
+    if (kind == RVM_FACETS && !read_facets(r, &primitive))
+        return false;
+    mem_grow(&r->primitives, &r->primitive_room, r->primitive_count + 1, sizeof(*r->primitives));
+    r->primitives[r->primitive_count++] = primitive;
+    r->counts->primitives++;
+    return true;
+}
+
+static bool read_chunk(struct reader *r, const char *id, bool *ended)
+{
+    if (!strcmp(id, "HEAD"))
+        return read_head(r);
+    if (!strcmp(id, "COLR"))
+        return read_color(r);
+    if (!strcmp(id, "CNTB"))
+        return begin_group(r);
+    if (!strcmp(id, "CNTE")) { /* one too many is seen at the end of files by AVEVA Marine */
+        r->depth -= r->depth > 0;
+        return true;
+    }
+    if (!strcmp(id, "PRIM"))
+        return read_primitive(r, false);
+    if (!strcmp(id, "OBST"))
+        r->counts->obstructions++;
+    else if (!strcmp(id, "INSU"))
+        r->counts->insulations++;
+    else if (!strcmp(id, "END:"))
+        *ended = true;
+    else if (strcmp(id, "MODL") != 0)
+        r->counts->unknown_chunks++;
+    return true;
+}
+
+static bool chunk_id(const uint8_t *at, char id[5])
+{
+    for (int i = 0; i < 4; i++) {
+        if (at[4 * i] || at[4 * i + 1] || at[4 * i + 2] || at[4 * i + 3] < 32 || at[4 * i + 3] > 126)
+            return false;
+        id[i] = (char)at[4 * i + 3];
+    }
+    id[4] = 0;
+    return true;
+}
+
+bool rvm_is(const void *bytes, size_t count)
+{
+    char id[5];
+    return count >= HEADER && chunk_id(bytes, id) && !strcmp(id, "HEAD");
+}
+
+static bool read_chunks(struct reader *r)
+{
+    for (bool ended = false; !ended && r->at < r->count;) {
+        char id[5];
+        size_t from = r->at;
+        if (r->count - from < 16 || !chunk_id(r->bytes + from, id))
+            return fail(r, "no chunk begins here");
+        if (!strcmp(id, "END:")) /* some files leave out what would follow */
+            return true;
+        if (r->count - from < HEADER)
+            return fail(r, "the file ends within chunk %s", id);
+        uint32_t next = peek_word(r->bytes + from + 16);
+        if (next > r->count)
+            return fail(r, "the file ends within chunk %s, which goes on to byte %u of %zu", id, next, r->count);
+        if (next < from + HEADER)
+            return fail(r, "chunk %s says that it ends at byte %u, before itself", id, next);
+        r->at = from + HEADER;
+        r->chunk_end = next;
+        if (!read_chunk(r, id, &ended))
+            return false;
+        r->at = next;
+    }
+    return true;
+}
+
+/* --- faces that meet --------------------------------------------------------------------------------------------------------------- */
+
+static const double near_m = 0.001;
+
+/* By plane: parallel planes are neighbours in the order of their distance from the origin. */
+static int by_plane(const void *a, const void *b)
+{
+    const struct face *x = a, *y = b;
+    for (int axis = 0; axis < 3; axis++)
+        if (x->axis[axis] != y->axis[axis])
+            return x->axis[axis] < y->axis[axis] ? -1 : 1;
+    return (x->offset_m > y->offset_m) - (x->offset_m < y->offset_m);
+}
+
+static double along(const double a[3], const double b[3])
+{
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+static bool contains(const struct rvm_face *face, const double point[3])
+{
+    double d[3], square = 0;
+    for (int axis = 0; axis < 3; axis++) {
+        d[axis] = point[axis] - face->centre_m[axis];
+        square += d[axis] * d[axis];
+    }
+    if (face->radius_m > 0)
+        return square <= (face->radius_m + near_m / 10) * (face->radius_m + near_m / 10);
+    return fabs(along(d, face->directions[0])) <= face->half_m[0] + near_m / 10 &&
+           fabs(along(d, face->directions[1])) <= face->half_m[1] + near_m / 10;
+}
+
+/* Both lie in one plane and look at each other, and all of `face` is in `cover`. */
+static bool covers(const struct rvm_face *cover, const struct rvm_face *face)
+{
+    double d[3], between2 = 0;
+    for (int axis = 0; axis < 3; axis++) {
+        d[axis] = face->centre_m[axis] - cover->centre_m[axis];
+        between2 += d[axis] * d[axis];
+    }
+    if (along(cover->outward, face->outward) > -0.9999 || fabs(along(d, cover->outward)) > near_m)
+        return false;
+    if (face->radius_m > 0 && cover->radius_m > 0)
+        return sqrt(between2) + face->radius_m <= cover->radius_m + near_m;
+    if (face->radius_m > 0)
+        return fabs(along(d, cover->directions[0])) + face->radius_m <= cover->half_m[0] + near_m &&
+               fabs(along(d, cover->directions[1])) + face->radius_m <= cover->half_m[1] + near_m;
+    for (int corner = 0; corner < 4; corner++) {
+        double at[3];
+        for (int axis = 0; axis < 3; axis++)
+            at[axis] = face->centre_m[axis] + (corner & 1 ? 1 : -1) * face->half_m[0] * face->directions[0][axis] +
+                       (corner & 2 ? 1 : -1) * face->half_m[1] * face->directions[1][axis];
+        if (!contains(cover, at))
+            return false;
+    }
+    return true;
+}
+
+static void add_faces(struct reader *r, size_t primitive)
+{
+    struct rvm_face found[RVM_MAX_FACES];
+    int count = rvm_shape_faces(&r->primitives[primitive].shape, found);
+    for (int i = 0; i < count; i++) {
+        const double *n = found[i].outward;
+        double first = fabs(n[0]) > 1e-3 ? n[0] : fabs(n[1]) > 1e-3 ? n[1] : n[2], sign = first < 0 ? -1 : 1;
+        mem_grow(&r->faces, &r->face_room, r->face_count + 1, sizeof(*r->faces));
+        struct face *face = &r->faces[r->face_count++];
+        *face = (struct face){ .flat = found[i], .primitive = primitive, .number = i, .offset_m = sign * along(n, found[i].centre_m) };
+        for (int axis = 0; axis < 3; axis++)
+            face->axis[axis] = (int)lround(sign * n[axis] * 100);
+    }
+}
+
+/* What lies between two primitives is inside of both: neither light nor heat gets there. A plane whose direction is on the border between two
+ * hundredths may be missed; then both faces stay, which is no error. */
+static void leave_out_covered_faces(struct reader *r)
+{
+    for (size_t p = 0; p < r->primitive_count; p++)
+        add_faces(r, p);
+    if (r->face_count > 0)
+        qsort(r->faces, r->face_count, sizeof(*r->faces), by_plane);
+    for (size_t i = 0; i < r->face_count; i++)
+        for (size_t k = i + 1; k < r->face_count && !memcmp(r->faces[i].axis, r->faces[k].axis, sizeof(r->faces[i].axis)) &&
+                               r->faces[k].offset_m - r->faces[i].offset_m <= near_m;
+             k++)
+            for (int way = 0; way < 2; way++) {
+                const struct face *face = &r->faces[way ? k : i], *cover = &r->faces[way ? i : k];
+                uint32_t bit = 1U << face->number, *open = &r->primitives[face->primitive].shape.open_faces;
+                if (!(*open & bit) && face->primitive != cover->primitive && covers(&cover->flat, &face->flat)) {
+                    *open |= bit;
+                    r->counts->covered_faces++;
+                }
+            }
+}
+
+bool rvm_read(struct cad_model *model, const void *bytes, size_t count, double chord_m, struct rvm_counts *counts, char *why,
+              size_t why_bytes)
+{
+    struct reader *r = mem_new(sizeof(*r));
+    *r = (struct reader){ .bytes = bytes, .count = count, .model = model, .counts = counts, .why = why, .why_bytes = why_bytes };
+    *counts = (struct rvm_counts){ 0 };
+    why[0] = 0;
+    bool good = rvm_is(bytes, count) ? read_chunks(r) : fail(r, "not an RVM file: it does not begin with HEAD");
+    for (size_t i = 0; i < r->primitive_count; i++)
+        if (r->primitives[i].shape.kind == RVM_FACETS) {
+            r->primitives[i].shape.contours = r->contours + r->primitives[i].first_contour;
+            r->primitives[i].shape.points = (const double(*)[3])(r->points + r->primitives[i].first_point);
+        }
+    leave_out_covered_faces(r);
+    for (size_t i = 0; good && i < r->primitive_count; i++)
+        counts->empty += !rvm_shape_tessellate(&r->primitives[i].shape, chord_m, &model->nodes[r->primitives[i].node]);
+    mem_free(r->primitives);
+    mem_free(r->contours);
+    mem_free(r->points);
+    mem_free(r->faces);
+    mem_free(r);
+    return good;
+}

@@ -1,0 +1,25 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Reads RVM files, as AVEVA PDMS, E3D and Marine export them: binary, big-endian, a chain of chunks (HEAD, MODL, COLR, CNTB with
+ * primitives and CNTE, END:). There is no published specification; the layout is as open readers describe it. Thread: any. */
+#ifndef PREPROCESS_IMPORT_RVM_H
+#define PREPROCESS_IMPORT_RVM_H
+#include "preprocess/import/cad_model.h"
+
+struct rvm_counts {
+    size_t groups, primitives;
+    size_t covered_faces;                 /* lie on a neighbour's face: left out */
+    size_t empty;                         /* primitives without extent, or with numbers that are not finite: left out */
+    size_t obstructions, insulations;     /* left out: volumes kept free, and lagging */
+    size_t unknown_chunks, unknown_kinds; /* skipped */
+    char note[256];                       /* who exported it, as the file says */
+};
+
+/* Appends the file's groups and their triangles, no chord further than chord_m from the surface, to the model. `bytes` is the whole file.
+ * Returns false if the file is broken: `why` says what is wrong and at which byte, and the model may hold a part of it. */
+bool rvm_read(struct cad_model *model, const void *bytes, size_t count, double chord_m, struct rvm_counts *counts, char *why,
+              size_t why_bytes);
+
+/* Whether the bytes begin as an RVM file does. */
+bool rvm_is(const void *bytes, size_t count);
+
+#endif

@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A plant as its CAD system exports it, brought in by `plantcast import`: held against what another program made of the same files.
+import assert from 'node:assert/strict';
+import { spawnSync } from 'node:child_process';
+import { existsSync, mkdtempSync, readdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
+import { tmpdir } from 'node:os';
+import { join } from 'node:path';
+import { test } from 'node:test';
+import { BIN, missing } from './support/tiny_plant.mjs';
+
+const absent = missing();
+const DATA = join(import.meta.dirname, '../../../shared/data');
+const notBuilt = absent.length > 0 ? `not built: ${absent.join(', ')}` : false;
+const skip = notBuilt || (existsSync(join(DATA, 'cad')) ? false : 'no ../shared/data/cad');
+const run = (program, ...args) => spawnSync(join(BIN, program), args, { encoding: 'utf8', timeout: 120000 });
+
+async function inFolder(f) {
+    const folder = mkdtempSync(join(tmpdir(), 'plantcast-import-'));
+    try {
+        await f(folder);
+    } finally {
+        rmSync(folder, { recursive: true });
+    }
+}
+
+function readGlb(path) {
+    const bytes = readFileSync(path), length = bytes.readUInt32LE(12);
+    const json = JSON.parse(bytes.subarray(20, 20 + length)), buffer = bytes.subarray(28 + length);
+    const numbers = (index) => {
+        const { bufferView, byteOffset = 0, componentType, count, type } = json.accessors[index];
+        const at = (json.bufferViews[bufferView].byteOffset ?? 0) + byteOffset, each = { SCALAR: 1, VEC3: 3 }[type];
+        const read = { 5126: (i) => buffer.readFloatLE(at + 4 * i), 5125: (i) => buffer.readUInt32LE(at + 4 * i),
+            5123: (i) => buffer.readUInt16LE(at + 2 * i) }[componentType];
+        return Array.from({ length: count * each }, (_, i) => read(i));
+    };
+    return { json, numbers };
+}
+
+const rotated = ([x, y, z, w], [a, b, c]) => {
+    const t = [2 * (y * c - z * b), 2 * (z * a - x * c), 2 * (x * b - y * a)];
+    return [a + w * t[0] + y * t[2] - z * t[1], b + w * t[1] + z * t[0] - x * t[2], c + w * t[2] + x * t[1] - y * t[0]];
+};
+
+// Of each node with triangles, by name: its box in the scene, and its area.
+function shapes(path) {
+    const { json, numbers } = readGlb(path), found = new Map();
+    const walk = (index, place) => {
+        const { name = '', mesh, children = [], translation: [x, y, z] = [0, 0, 0], rotation, scale = [1, 1, 1],
+            matrix: m } = json.nodes[index];
+        const here = (p) => {
+            if (m)
+                return place([0, 1, 2].map((k) => m[k] * p[0] + m[4 + k] * p[1] + m[8 + k] * p[2] + m[12 + k]));
+            const scaled = p.map((v, k) => v * scale[k]), [a, b, c] = rotation ? rotated(rotation, scaled) : scaled;
+            return place([a + x, b + y, c + z]);
+        };
+        for (const { attributes, indices, mode = 4 } of mesh === undefined ? [] : json.meshes[mesh].primitives) {
+            if (mode !== 4)
+                continue;
+            const flat = numbers(attributes.POSITION), corners = numbers(indices), points = [];
+            for (let i = 0; i < flat.length; i += 3)
+                points.push(here(flat.slice(i, i + 3)));
+            const shape = found.get(name) ?? { low: [Infinity, Infinity, Infinity], high: [-Infinity, -Infinity, -Infinity], area: 0 };
+            for (let i = 0; i < corners.length; i += 3) {
+                const [p, q, r] = corners.slice(i, i + 3).map((corner) => points[corner]), u = q.map((v, k) => v - p[k]), w = r.map((v, k) => v - p[k]);
+                shape.area += Math.hypot(u[1] * w[2] - u[2] * w[1], u[2] * w[0] - u[0] * w[2], u[0] * w[1] - u[1] * w[0]) / 2;
+                for (const point of [p, q, r])
+                    for (let k = 0; k < 3; k++) {
+                        shape.low[k] = Math.min(shape.low[k], point[k]);
+                        shape.high[k] = Math.max(shape.high[k], point[k]);
+                    }
+            }
+            found.set(name, shape);
+        }
+        for (const child of children)
+            walk(child, here);
+    };
+    for (const root of json.scenes[0].nodes)
+        walk(root, (p) => p);
+    return found;
+}
+
+const median = (list) => list.sort((a, b) => a - b)[list.length >> 1];
+
+// The other program had its own chord errors, and moved the models to the origin.
+for (const { file, as, chordMm, nodes, assets } of [
+    { file: 'plm-sample', as: 'plm_plant_hierarchy', chordMm: 2, nodes: 315, assets: 19 },
+    { file: 'huldra_WD1-PSUP', as: 'huldra_wd1_psup', chordMm: 5, nodes: 4084, assets: 321 },
+])
+    test(`${file}.rvm: names, boxes, areas and attributes`, { skip }, () => inFolder((folder) => {
+        const out = join(folder, 'plant'), said = run('plantcast', 'import', join(DATA, `cad/${file}.rvm`), '-o', out, '--chord', String(chordMm));
+        assert.equal(said.status, 0, said.stderr);
+        assert.match(said.stdout, new RegExp(`: ${nodes} nodes, 0 unnamed`));
+        assert.match(said.stdout, new RegExp(`: ${assets} assets`));
+        const ours = shapes(join(out, `${file}.glb`)), theirs = shapes(join(DATA, `models/${as}.glb`));
+        const common = [...theirs.keys()].filter((name) => ours.has(name));
+        assert.deepEqual([...theirs.keys()].filter((name) => name && !ours.has(name)), [], 'names that we do not have');
+        const shift = [0, 1, 2].map((k) => median(common.map((name) => theirs.get(name).low[k] - ours.get(name).low[k])));
+        let areas = [0, 0], off = 0;
+        for (const name of common) {
+            const [a, b] = [ours.get(name), theirs.get(name)];
+            areas = [areas[0] + a.area, areas[1] + b.area];
+            const size = Math.max(...b.high.map((v, k) => v - b.low[k])), bound = Math.max(0.005 * size, chordMm / 1000);
+            off += [0, 1, 2].some((k) => Math.abs(a.low[k] + shift[k] - b.low[k]) > bound || Math.abs(a.high[k] + shift[k] - b.high[k]) > bound);
+        }
+        console.log(`# ${common.length} shapes, ${off} boxes differ; area ${areas[0].toFixed(2)} m2 for ${areas[1].toFixed(2)}`);
+        assert.equal(off, 0, 'boxes that differ');
+        assert.ok(Math.abs(areas[0] / areas[1] - 1) < 0.011, 'we leave out more of the faces that lie on each other');
+        const { json } = readGlb(join(out, `${file}.glb`));
+        assert.ok(json.nodes.filter(({ extras }) => extras?.Type).length >= nodes - 1, 'attributes');
+        const check = run('plantcastd', '--check', join(out, 'plant.yaml'));
+        assert.equal(check.status, 0, check.stderr);
+        const again = run('plantcast', 'import', join(DATA, `cad/${file}.rvm`), '-o', out, '--chord', String(chordMm));
+        assert.match(again.stdout, /plant\.yaml: stays as it is/);
+    }));
+
+test('what cannot be read is one line, and leaves nothing behind', { skip: notBuilt }, () => inFolder((folder) => {
+    const out = join(folder, 'plant');
+    const cases = [['empty.rvm', '', 'byte 0: not an RVM file'], ['text.rvm', 'ISO-10303-21;', 'byte 0: not an RVM file'],
+        ['short.rvm', Buffer.from('\0\0\0H\0\0\0E\0\0\0A\0\0\0D\0\0\x01\0\0\0\0\x01', 'latin1'), 'the file ends within chunk HEAD']];
+    for (const [name, bytes, why] of cases) {
+        writeFileSync(join(folder, name), bytes);
+        const said = run('plantcast', 'import', join(folder, name), '-o', out);
+        assert.equal(said.status, 1);
+        assert.equal(said.stderr.trim().split('\n').length, 1);
+        assert.ok(said.stderr.includes(join(folder, name)) && said.stderr.includes(why), said.stderr);
+    }
+    const twice = run('plantcast', 'import', join(folder, 'empty.rvm'), join(folder, '../empty.rvm'), '-o', out);
+    assert.match(twice.stderr, /would both be empty\.glb; rename one of them/);
+    assert.deepEqual(readdirSync(folder).sort(), cases.map(([name]) => name).sort());
+    assert.equal(run('plantcast', 'import', '-o', out).status, 2);
+}));
