@@ -95,8 +95,9 @@ for (const hardware of [true, false]) {
         const clients = await Promise.all(SIZES.map((size, i) => look(plant, size, i === 1 ? { group: 'pressure' } : {})));
         const movers = MOVERS.map((i) => clients[i]), expected = {}, known = {};
         for (const value of WARM) {
-            const since = await setWarm(plant, value), moving = movers.map(move);
-            await sleep(1500);
+            const since = await setWarm(plant, value), moving = movers.map(move), begun = performance.now();
+            while (moving.some((one) => one.count() < 2 * ROUNDS * EYES.length) && performance.now() < begun + PATIENCE_MS)
+                await sleep(20);
             known[value] = await Promise.all(moving.map((one) => one.stop()));
             expected[value] = await rest(clients, since);
         }
