@@ -67,9 +67,10 @@ for (const [name, language, screen] of PAGES)
         }
     });
 
+const DESK = { viewport: { width: 1280, height: 800 } };
 // A page of its own that shows the plant.
 async function withPage(f, arrange) {
-    const browser = await openPage(`${url}?lang=en`, undefined, null, arrange);
+    const browser = await openPage(`${url}?lang=en`, DESK, null, arrange);
     try {
         await waitForPicture(browser.page);
         await waitForHealth(browser.page, 'live');
