@@ -84,9 +84,21 @@ void render_service_answer_without_frame(struct render_service *painter, const s
     announce(painter);
 }
 
+/* What could not be encoded was not shown: the next that asks for it is not told that it has it. */
+static void forget_content(struct render_service *painter, uint64_t id)
+{
+    pthread_mutex_lock(&painter->lock);
+    struct render_client *client = render_service_find(painter, id);
+    if (client)
+        client->has_content = false;
+    pthread_mutex_unlock(&painter->lock);
+}
+
 static void on_encoded(void *arg, const struct request_ticket *order, struct packet *const *packets, int count, bool failed)
 {
     struct encoded_frame *picture = encoded_frame_create(order, failed);
+    if (failed)
+        forget_content(arg, order->client);
     if (count > 0)
         picture->packet = packet_ref(packets[count - 1]);
     if (count > 1)
