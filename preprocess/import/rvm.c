@@ -384,9 +384,10 @@ bool rvm_read(struct cad_model *model, const void *bytes, size_t count, double c
     why[0] = 0;
     bool good = rvm_is(bytes, count) ? read_chunks(r) : fail(r, "not an RVM file: it does not begin with HEAD");
     for (size_t i = 0; i < r->primitive_count; i++)
-        if (r->primitives[i].shape.kind == RVM_FACETS) {
+        if (r->primitives[i].shape.contour_count > 0) {
             r->primitives[i].shape.contours = r->contours + r->primitives[i].first_contour;
-            r->primitives[i].shape.points = (const double(*)[3])(r->points + r->primitives[i].first_point);
+            if (r->points) /* else its contours have none */
+                r->primitives[i].shape.points = (const double(*)[3])(r->points + r->primitives[i].first_point);
         }
     leave_out_covered_faces(r);
     for (size_t i = 0; good && i < r->primitive_count; i++)

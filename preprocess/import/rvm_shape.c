@@ -509,14 +509,19 @@ static bool add_facets(struct cad_node *node, const struct frame *frame, const s
 
 /* --- what readers call ------------------------------------------------------------------------------------------------------------ */
 
+static bool is_turn(double angle)
+{
+    return angle != 0 && fabs(angle) <= 2 * M_PI + 1e-3;
+}
+
 static bool has_extent(const struct rvm_shape *shape)
 {
     const double *n = shape->numbers;
     switch (shape->kind) {
     case RVM_PYRAMID: return n[0] >= 0 && n[1] >= 0 && n[2] >= 0 && n[3] >= 0 && n[0] + n[2] > 0 && n[1] + n[3] > 0;
     case RVM_BOX: return n[0] >= 0 && n[1] >= 0 && n[2] >= 0;
-    case RVM_RECTANGULAR_TORUS: return n[0] >= 0 && n[1] > n[0] && n[2] >= 0 && n[3] != 0;
-    case RVM_CIRCULAR_TORUS: return n[0] >= 0 && n[1] > 0 && n[2] != 0;
+    case RVM_RECTANGULAR_TORUS: return n[0] >= 0 && n[1] > n[0] && n[2] >= 0 && is_turn(n[3]);
+    case RVM_CIRCULAR_TORUS: return n[0] >= 0 && n[1] > 0 && is_turn(n[2]);
     case RVM_ELLIPTICAL_DISH:
     case RVM_SPHERICAL_DISH: return n[0] > 0 && n[1] > 0;
     case RVM_SNOUT: return n[0] >= 0 && n[1] >= 0 && n[0] + n[1] > 0 && fabs(cos(n[5]) * cos(n[6]) * cos(n[7]) * cos(n[8])) > 1e-3;
