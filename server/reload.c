@@ -8,13 +8,13 @@
 #include <pthread.h>
 #include <signal.h>
 #include <spawn.h>
-#include <stdlib.h>
 #include <string.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include "base/clock.h"
+#include "base/json_text.h"
 #include "base/mem.h"
 #include "plant/plant_diff.h"
 
@@ -60,13 +60,6 @@ static void say(void *arg)
         net_report_save(verdict->net, verdict->client, verdict->saved);
 }
 
-static char *print(const json_t *object)
-{
-    char *dumped = json_dumps(object, JSON_COMPACT), *text = mem_strdup(dumped ? dumped : "{}");
-    free(dumped);
-    return text;
-}
-
 /* The same for who saved a list. */
 static char *saved_text(const struct reload *reload, bool good, const json_t *object)
 {
@@ -77,21 +70,19 @@ static char *saved_text(const struct reload *reload, bool good, const json_t *ob
             json_object_set(said, names[i], json_object_get(object, names[i]));
     if (good)
         json_object_set_new(said, "kept", json_string(strrchr(reload->kept, '/') + 1));
-    char *text = print(said);
-    json_decref(said);
-    return text;
+    return json_text(said, 0);
 }
 
 /* Takes the object. */
 static void answer(struct reload *reload, bool good, json_t *object)
 {
-    char *text = print(object);
-    struct verdict verdict = { reload->net, good, mem_printf("%s\n", text), 0, NULL };
+    struct verdict verdict = { reload->net, good, NULL, 0, NULL };
     if (reload->saving) {
         verdict.client = reload->saving->client;
         verdict.saved = saved_text(reload, good, object);
     }
-    json_decref(object);
+    char *text = json_text(object, 0);
+    verdict.text = mem_printf("%s\n", text);
     net_call(reload->net, say, &verdict);
     mem_free(verdict.text);
     mem_free(verdict.saved);

@@ -4,6 +4,10 @@
 
 #include <cmath>
 
+extern "C" {
+#include "plant/transform.h"
+}
+
 namespace gltf
 {
 namespace
@@ -11,32 +15,6 @@ namespace
 
 constexpr uint32_t MAX_NODES = 4'000'000, MAX_DEPTH = 512, ELEMENTS_PER_INSTANCE = 16;
 constexpr double ROTATION_SLACK = 0.01, LEAST_ROTATION = 1e-6; /* in bytes, of instances, a rotation is off by 0.008 */
-
-void multiply(const double a[16], const double b[16], double out[16])
-{
-    for (int c = 0; c < 4; c++)
-        for (int r = 0; r < 4; r++) {
-            double sum = 0;
-            for (int k = 0; k < 4; k++)
-                sum += a[4 * k + r] * b[4 * c + k];
-            out[4 * c + r] = sum;
-        }
-}
-
-void compose(const double t[3], const double q[4], const double s[3], double out[16])
-{
-    double x = q[0], y = q[1], z = q[2], w = q[3], n = x * x + y * y + z * z + w * w, k = n > 0 ? 2 / n : 0;
-    const double r[9] = { 1 - k * (y * y + z * z), k * (x * y + w * z),     k * (x * z - w * y),
-                          k * (x * y - w * z),     1 - k * (x * x + z * z), k * (y * z + w * x),
-                          k * (x * z + w * y),     k * (y * z - w * x),     1 - k * (x * x + y * y) };
-    for (int c = 0; c < 3; c++)
-        for (int i = 0; i < 3; i++)
-            out[4 * c + i] = r[3 * c + i] * s[c];
-    out[3] = out[7] = out[11] = 0;
-    for (int i = 0; i < 3; i++)
-        out[12 + i] = t[i];
-    out[15] = 1;
-}
 
 /* A unit quaternion, says glTF. One of another length turns as it would with length 1, as elsewhere, and is counted; rounding is not. */
 void check_rotation(work *w, const double q[4], const std::string &what)
@@ -72,7 +50,7 @@ void local_of(work *w, const tinygltf::Node &node, double out[16], const std::st
     take(node.rotation, 4, q);
     take(node.scale, 3, s);
     check_rotation(w, q, what);
-    compose(t, q, s, out);
+    transform_compose_quaternion(t, q, s, out);
     take(node.matrix, 16, out);
     check_affine(out, what);
 }
@@ -133,8 +111,8 @@ void add_instances(tree *tree, int number, int parent, const tinygltf::Value &ex
             if (used[p] >= 0)
                 values[static_cast<size_t>(used[p])].get(i, parts[p]);
         check_rotation(tree->w, q, what);
-        compose(t, q, s, local);
-        multiply(tree->out[static_cast<size_t>(parent)].world, local, world);
+        transform_compose_quaternion(t, q, s, local);
+        transform_multiply(tree->out[static_cast<size_t>(parent)].world, local, world);
         check_affine(world, what);
         add(tree, number, parent, node.mesh, world);
     }
@@ -156,7 +134,7 @@ void walk(tree *tree, int number, int parent, const double parent_world[16], uin
             refuse("%s: its mesh is morphed, which is not supported", what.c_str());
     double local[16], world[16];
     local_of(tree->w, node, local, what);
-    multiply(parent_world, local, world);
+    transform_multiply(parent_world, local, world);
     check_affine(world, what);
     int self = static_cast<int>(tree->out.size());
     auto instancing = node.extensions.find("EXT_mesh_gpu_instancing");

@@ -3,10 +3,10 @@
 #include "message/alarm_message.h"
 
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "alarm/devices.h"
+#include "base/json_text.h"
 #include "base/mem.h"
 #include "message/json_fields.h"
 
@@ -84,10 +84,8 @@ char *alarm_do(struct alarm_service *alarm_service, const struct plant *plant, c
             json_array_append_new(refused, json_pack("[s,s,s]", name, alarm_kind_name(kind), why));
     }
     int done = request->count - (int)json_array_size(refused);
-    json_t *object = json_pack("{s:s,s:I,s:i,s:o}", "type", "alarmed", "seq", (json_int_t)message->seq, "done", done, "refused", refused);
-    char *dumped = json_dumps(object, JSON_COMPACT), *text = mem_strdup(dumped ? dumped : "{}");
-    free(dumped);
-    json_decref(object);
+    char *text =
+        json_text(json_pack("{s:s,s:I,s:i,s:o}", "type", "alarmed", "seq", (json_int_t)message->seq, "done", done, "refused", refused), 0);
     mem_free(person);
     devices_destroy(&devices);
     return text;

@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "alarm/devices.h"
+#include "base/json_text.h"
 #include "base/mem.h"
 #include "base/timestamp.h"
 #include "message/json_number.h"
@@ -29,16 +30,6 @@ static json_t *string(const char *text)
 static json_t *instant(int64_t utc_ns)
 {
     return utc_ns ? json_integer(utc_ns / 1000) : json_null();
-}
-
-/* Takes the object. */
-static char *print(json_t *object)
-{
-    char *dumped = json_dumps(object, JSON_COMPACT | JSON_REAL_PRECISION(DIGITS));
-    char *text = mem_strdup(dumped ? dumped : "{}");
-    free(dumped);
-    json_decref(object);
-    return text;
 }
 
 /* --- to sessions ------------------------------------------------------------------------------------------------------------- */
@@ -72,8 +63,9 @@ char *alarms_text(struct alarm_text_cache *said, struct alarm_service *alarm_ser
     }
     json_t *rows = json_array();
     *number_out = alarm_service_changes(alarm_service, since, add_row, rows);
-    char *text = print(json_pack("{s:s,s:s,s:b,s:I,s:o}", "type", "alarms", "mode", mode_name(plant->alarms), "all", since == 0, "time_us",
-                                 (json_int_t)(now_utc_ns / 1000), "alarms", rows));
+    char *text = json_text(json_pack("{s:s,s:s,s:b,s:I,s:o}", "type", "alarms", "mode", mode_name(plant->alarms), "all", since == 0,
+                                     "time_us", (json_int_t)(now_utc_ns / 1000), "alarms", rows),
+                           DIGITS);
     if (said) {
         alarm_text_cache_finish(said);
         *said = (struct alarm_text_cache){ mem_strdup(text), since, *number_out };
@@ -100,14 +92,6 @@ static bool take_count(const char *name, const char *text, int64_t low, int64_t 
     }
     *out = value;
     return true;
-}
-
-static bool take_when(const char *name, const char *text, int64_t now_us, int64_t *out, struct message_error *error)
-{
-    if (timestamp_parse(text, now_us, out))
-        return true;
-    message_fail(error, "bad_field", "%s: expected " TIMESTAMP_FORMS ", found '%.60s'", name, text);
-    return false;
 }
 
 static bool is_device(const struct plant *plant, const char *name)
@@ -146,9 +130,9 @@ static bool take(const struct plant *plant, bool journal, const char *arg, int64
     if (IS("before") && journal)
         return take_count("before", value, 1, INT64_MAX, &query->before_id, error);
     if (IS("from") && journal)
-        return take_when("from", value, now_us, &query->from_us, error);
+        return message_take_time("from", value, now_us, &query->from_us, error);
     if (IS("to") && journal)
-        return take_when("to", value, now_us, &query->to_us, error);
+        return message_take_time("to", value, now_us, &query->to_us, error);
     if (IS("format") && (!strcmp(value, "csv") || !strcmp(value, "json"))) {
         query->csv = value[0] == 'c';
         return true;
@@ -257,9 +241,10 @@ char *alarms_api_text(struct alarm_service *alarm_service, const struct plant *p
     }
     text_finish(&listing.csv);
     int64_t next = query->offset + listing.count;
-    return print(json_pack("{s:s,s:I,s:o,s:I,s:o,s:o}", "mode", mode_name(plant->alarms), "time_us", (json_int_t)(now_utc_ns / 1000),
-                           "counts", counts(alarm_service), "total", (json_int_t)listing.total, "alarms", listing.rows, "next_offset",
-                           next < listing.total ? json_integer(next) : json_null()));
+    return json_text(json_pack("{s:s,s:I,s:o,s:I,s:o,s:o}", "mode", mode_name(plant->alarms), "time_us", (json_int_t)(now_utc_ns / 1000),
+                               "counts", counts(alarm_service), "total", (json_int_t)listing.total, "alarms", listing.rows, "next_offset",
+                               next < listing.total ? json_integer(next) : json_null()),
+                     DIGITS);
 }
 
 /* --- the journal ------------------------------------------------------------------------------------------------------------ */
@@ -320,8 +305,9 @@ bool alarms_journal_text(struct log *log, const char *folder, const struct alarm
         json_decref(paging.rows);
         return good;
     }
-    char *text = print(json_pack("{s:o,s:o}", "rows", paging.rows, "next_before",
-                                 paging.count == query->limit ? json_integer(paging.last_id) : json_null()));
+    char *text = json_text(json_pack("{s:o,s:o}", "rows", paging.rows, "next_before",
+                                     paging.count == query->limit ? json_integer(paging.last_id) : json_null()),
+                           DIGITS);
     text_add(out, "%s", text);
     mem_free(text);
     return true;

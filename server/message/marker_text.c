@@ -4,9 +4,9 @@
 
 #include <jansson.h>
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
+#include "base/json_text.h"
 #include "base/mem.h"
 #include "base/text.h"
 #include "message/json_number.h"
@@ -116,14 +116,6 @@ static void remember(struct known_markers *said, const struct frame *frame)
     said->any = true;
 }
 
-static char *dumped(json_t *list)
-{
-    char *text = json_dumps(list, JSON_COMPACT | JSON_REAL_PRECISION(DIGITS)), *copy = mem_strdup(text ? text : "[]");
-    free(text);
-    json_decref(list);
-    return copy;
-}
-
 void marker_text_cache_finish(struct marker_text_cache *lists)
 {
     frame_unref(&lists->frame);
@@ -150,11 +142,11 @@ static void add_list(struct text *text, const char *name, const char *list)
 static void add_markers(struct text *text, struct frame *frame, const struct known_markers *said, struct marker_text_cache *lists)
 {
     if (!same_places(frame, said)) {
-        lists->markers = lists->markers ? lists->markers : dumped(all_markers(frame));
+        lists->markers = lists->markers ? lists->markers : json_text(all_markers(frame), DIGITS);
         add_list(text, "markers", lists->markers);
         return;
     }
-    char *values = dumped(changed_values(frame, said));
+    char *values = json_text(changed_values(frame, said), DIGITS);
     if (strcmp(values, "[]") != 0)
         add_list(text, "values", values);
     mem_free(values);
@@ -168,7 +160,7 @@ char *marker_text(struct frame *frame, uint32_t seq, struct known_markers *said,
     size_t head = text.length;
     add_markers(&text, frame, said, lists);
     if (!same_labels(frame, said)) {
-        lists->labels = lists->labels ? lists->labels : dumped(all_labels(frame));
+        lists->labels = lists->labels ? lists->labels : json_text(all_labels(frame), DIGITS);
         add_list(&text, "isolines", lists->labels);
     }
     remember(said, frame);

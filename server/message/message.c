@@ -7,6 +7,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "base/timestamp.h"
 #include "message/alarm_message.h"
 #include "message/json_fields.h"
 #include "message/fit_message.h"
@@ -20,6 +21,14 @@ void message_fail(struct message_error *error, const char *code, const char *fmt
     error->code = code;
     vsnprintf(error->text, sizeof(error->text), fmt, ap);
     va_end(ap);
+}
+
+bool message_take_time(const char *name, const char *text, int64_t now_us, int64_t *out, struct message_error *error)
+{
+    if (timestamp_parse(text, now_us, out))
+        return true;
+    message_fail(error, "bad_field", "%s: expected " TIMESTAMP_FORMS ", found '%.60s'", name, text);
+    return false;
 }
 
 bool view_size_valid(double w, double h)

@@ -183,6 +183,8 @@ struct message {
 /* False: *error is what to answer. text need not end in 0. */
 bool message_parse(const struct plant *plant, const char *text, size_t count, struct message *out, struct message_error *error);
 void message_fail(struct message_error *error, const char *code, const char *fmt, ...) __attribute__((format(printf, 3, 4)));
+/* Reads an instant (base/timestamp.h) of the field `name`. Returns false, with *error set, for any other text. */
+bool message_take_time(const char *name, const char *text, int64_t now_us, int64_t *out, struct message_error *error);
 
 /* Reads the fields of a params message from an object that may hold others. False: *error names the field. */
 bool params_parse(const struct plant *plant, const json_t *object, struct params_change *out, struct message_error *error);

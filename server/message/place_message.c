@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/json_text.h"
 #include "base/mem.h"
 #include "message/json_fields.h"
 #include "plant/tag_edit.h"
@@ -66,14 +67,6 @@ bool save_tags_parse(const struct plant *plant, const json_t *o, struct message 
 
 /* --- what is answered ---------------------------------------------------------------------------------------------------------- */
 
-static char *print(json_t *object)
-{
-    char *dumped = json_dumps(object, JSON_COMPACT | JSON_REAL_PRECISION(9)), *text = mem_strdup(dumped ? dumped : "{}");
-    free(dumped);
-    json_decref(object);
-    return text;
-}
-
 static json_t *vector(const double v[3])
 {
     return json_pack("[f,f,f]", v[0], v[1], v[2]);
@@ -90,7 +83,7 @@ char *placed_text(const struct plant *plant, const struct place_set *set, uint32
                                                  plant->assets[placed[i].move.asset].id, "position", vector(placed[i].move.position_m),
                                                  "surface", vector(placed[i].surface_m), "distance_m", placed[i].distance_m, "limit_m",
                                                  placed[i].limit_m, "along", states[placed[i].state]));
-    return print(json_pack("{s:s,s:I,s:o}", "type", "placed", "seq", (json_int_t)seq, "sensors", sensors));
+    return json_text(json_pack("{s:s,s:I,s:o}", "type", "placed", "seq", (json_int_t)seq, "sensors", sensors), 9);
 }
 
 static void add_far(json_t *list, const struct plant *plant, int tag, int asset, double distance_m, double limit_m)
@@ -134,8 +127,9 @@ char *gaps_text(const struct scene *scene, const struct place_set *set, const st
                                                gaps->next_m, "next", next));
         json_array_append_new(assets, said);
     }
-    return print(json_pack("{s:s,s:I,s:s,s:o,s:o}", "type", "gaps", "seq", (json_int_t)answer->seq, "group",
-                           plant->groups[answer->group].id, "far", far_list(scene, set, answer->group), "assets", assets));
+    return json_text(json_pack("{s:s,s:I,s:s,s:o,s:o}", "type", "gaps", "seq", (json_int_t)answer->seq, "group",
+                               plant->groups[answer->group].id, "far", far_list(scene, set, answer->group), "assets", assets),
+                     9);
 }
 
 /* --- the tag list --------------------------------------------------------------------------------------------------------------- */
@@ -185,15 +179,16 @@ static const char *base_name(const char *path)
 
 char *tags_saved_text(uint32_t seq, bool saved, const char *why)
 {
-    return print(json_pack("{s:s,s:I,s:b,s:[s]}", "type", "tags_saved", "seq", (json_int_t)seq, "saved", saved, "errors", why));
+    return json_text(json_pack("{s:s,s:I,s:b,s:[s]}", "type", "tags_saved", "seq", (json_int_t)seq, "saved", saved, "errors", why), 9);
 }
 
 static char *conflict_text(const struct plant *plant, const struct message *message, const char *before, const char *now)
 {
     size_t more;
     json_t *lines = lines_of(before, now, &more);
-    return print(json_pack("{s:s,s:I,s:s,s:b,s:n,s:o,s:I}", "type", "tags_diff", "seq", (json_int_t)message->seq, "file",
-                           base_name(plant->tags_path), "conflict", true, "hash", "lines", lines, "more", (json_int_t)more));
+    return json_text(json_pack("{s:s,s:I,s:s,s:b,s:n,s:o,s:I}", "type", "tags_diff", "seq", (json_int_t)message->seq, "file",
+                               base_name(plant->tags_path), "conflict", true, "hash", "lines", lines, "more", (json_int_t)more),
+                     9);
 }
 
 char *tags_diff_text(const struct plant *plant, const char *before, const struct place_set *set, const struct message *message,
@@ -209,8 +204,9 @@ char *tags_diff_text(const struct plant *plant, const char *before, const struct
         size_t more;
         json_t *lines = lines_of(before, after, &more);
         tag_file_hash(after, hash);
-        text = print(json_pack("{s:s,s:I,s:s,s:b,s:s,s:o,s:I}", "type", "tags_diff", "seq", (json_int_t)message->seq, "file",
-                               base_name(plant->tags_path), "conflict", false, "hash", hash, "lines", lines, "more", (json_int_t)more));
+        text = json_text(json_pack("{s:s,s:I,s:s,s:b,s:s,s:o,s:I}", "type", "tags_diff", "seq", (json_int_t)message->seq, "file",
+                                   base_name(plant->tags_path), "conflict", false, "hash", hash, "lines", lines, "more", (json_int_t)more),
+                         9);
     }
     if (after && message->confirm[0] && !strcmp(message->confirm, hash)) {
         *order = mem_new(sizeof(**order));

@@ -4,8 +4,8 @@
 
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
 
+#include "base/json_text.h"
 #include "base/mem.h"
 #include "message/json_fields.h"
 #include "message/json_number.h"
@@ -32,14 +32,6 @@ bool prove_parse(const struct plant *plant, const json_t *o, struct message *out
     return false;
 }
 
-static char *print(json_t *object)
-{
-    char *dumped = json_dumps(object, JSON_COMPACT | JSON_REAL_PRECISION(9)), *text = mem_strdup(dumped ? dumped : "{}");
-    free(dumped);
-    json_decref(object);
-    return text;
-}
-
 char *prove_do(struct loop_checks *loop_checks, const struct plant *plant, const struct snapshot *now, const struct message *message,
                const char *who)
 {
@@ -59,9 +51,10 @@ char *prove_do(struct loop_checks *loop_checks, const struct plant *plant, const
                           : near ? (prove->fail ? "said to have failed" : "")
                           : good ? "the value is beyond the tolerance"
                                  : "the reading is not good";
-    return print(json_pack("{s:s,s:I,s:s,s:b,s:b,s:o,s:s}", "type", "proved", "seq", (json_int_t)message->seq, "tag",
-                           plant->tags[prove->tag].name, "kept", !why, "passed", check.state == LOOP_CHECK_PASSED && !why, "value",
-                           number(check.value), "why", because));
+    return json_text(json_pack("{s:s,s:I,s:s,s:b,s:b,s:o,s:s}", "type", "proved", "seq", (json_int_t)message->seq, "tag",
+                               plant->tags[prove->tag].name, "kept", !why, "passed", check.state == LOOP_CHECK_PASSED && !why, "value",
+                               number(check.value), "why", because),
+                     9);
 }
 
 char *loop_checks_text(const struct loop_checks *loop_checks, const struct plant *plant, uint64_t since, bool all)
@@ -76,5 +69,6 @@ char *loop_checks_text(const struct loop_checks *loop_checks, const struct plant
                       number(check->expected), number(check->tolerance), json_string(check->who), json_string(check->remark));
         json_array_append_new(list, row ? row : json_array());
     }
-    return print(json_pack("{s:s,s:b,s:b,s:o}", "type", "proofs", "all", all, "begun", loop_checks_begun(loop_checks), "tags", list));
+    return json_text(json_pack("{s:s,s:b,s:b,s:o}", "type", "proofs", "all", all, "begun", loop_checks_begun(loop_checks), "tags", list),
+                     9);
 }

@@ -180,16 +180,7 @@ static void local_of(const json_t *node, double out[16])
     numbers_of(node, "translation", 3, t);
     numbers_of(node, "rotation", 4, q);
     numbers_of(node, "scale", 3, s);
-    double x = q[0], y = q[1], z = q[2], w = q[3], n = x * x + y * y + z * z + w * w, k = n > 0 ? 2 / n : 0;
-    const double r[9] = { 1 - k * (y * y + z * z), k * (x * y + w * z),     k * (x * z - w * y),
-                          k * (x * y - w * z),     1 - k * (x * x + z * z), k * (y * z + w * x),
-                          k * (x * z + w * y),     k * (y * z - w * x),     1 - k * (x * x + y * y) };
-    for (int c = 0; c < 3; c++)
-        for (int i = 0; i < 3; i++)
-            out[4 * c + i] = r[3 * c + i] * s[c];
-    out[3] = out[7] = out[11] = 0;
-    memcpy(out + 12, t, sizeof(t));
-    out[15] = 1;
+    transform_compose_quaternion(t, q, s, out);
 }
 
 static const char *name_of(const json_t *object)

@@ -49,6 +49,21 @@ void transform_compose(const double translate[3], const double rotate_deg[3], do
     memcpy(out, m, sizeof(m));
 }
 
+void transform_compose_quaternion(const double t[3], const double q[4], const double s[3], double out[16])
+{
+    double x = q[0], y = q[1], z = q[2], w = q[3], n = x * x + y * y + z * z + w * w, k = n > 0 ? 2 / n : 0;
+    const double r[9] = { 1 - k * (y * y + z * z), k * (x * y + w * z),     k * (x * z - w * y),
+                          k * (x * y - w * z),     1 - k * (x * x + z * z), k * (y * z + w * x),
+                          k * (x * z + w * y),     k * (y * z - w * x),     1 - k * (x * x + y * y) };
+    for (int c = 0; c < 3; c++)
+        for (int i = 0; i < 3; i++)
+            out[4 * c + i] = r[3 * c + i] * s[c];
+    out[3] = out[7] = out[11] = 0;
+    for (int i = 0; i < 3; i++)
+        out[12 + i] = t[i];
+    out[15] = 1;
+}
+
 bool transform_invert(const double m[16], double out[16])
 {
     double a = m[5] * m[10] - m[9] * m[6], b = m[9] * m[2] - m[1] * m[10], c = m[1] * m[6] - m[5] * m[2];

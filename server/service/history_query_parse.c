@@ -41,14 +41,6 @@ static bool take_tags(const struct plant *plant, const char *list, struct histor
     return true;
 }
 
-static bool take_when(const char *name, const char *text, int64_t now_us, int64_t *out, struct message_error *error)
-{
-    if (timestamp_parse(text, now_us, out))
-        return true;
-    message_fail(error, "bad_field", "%s: expected " TIMESTAMP_FORMS ", found '%.60s'", name, text);
-    return false;
-}
-
 static bool take_points(const char *text, struct history_query *order, struct message_error *error)
 {
     char *end;
@@ -77,9 +69,9 @@ static bool take(const struct plant *plant, const char *arg, int64_t now_us, str
     if (n == 4 && !memcmp(arg, "tags", n))
         return take_tags(plant, value, order, error);
     if (n == 4 && !memcmp(arg, "from", n))
-        return take_when("from", value, now_us, &order->from_us, error);
+        return message_take_time("from", value, now_us, &order->from_us, error);
     if (n == 2 && !memcmp(arg, "to", n))
-        return take_when("to", value, now_us, &order->to_us, error);
+        return message_take_time("to", value, now_us, &order->to_us, error);
     if (n == 6 && !memcmp(arg, "points", n))
         return take_points(value, order, error);
     if (n == 6 && !memcmp(arg, "format", n))
@@ -116,7 +108,7 @@ bool history_query_parse_gaps(const char *const *args, size_t count, int64_t now
             message_fail(error, "unknown_field", "there is no argument '%.60s'; from and to are", args[i]);
             return false;
         }
-        if (!take_when(from ? "from" : "to", strchr(args[i], '=') + 1, now_us, from ? &order->from_us : &order->to_us, error))
+        if (!message_take_time(from ? "from" : "to", strchr(args[i], '=') + 1, now_us, from ? &order->from_us : &order->to_us, error))
             return false;
     }
     if (order->from_us == INT64_MIN)

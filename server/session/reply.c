@@ -3,9 +3,9 @@
 #include "session/reply.h"
 
 #include <libwebsockets.h>
-#include <stdlib.h>
 #include <string.h>
 
+#include "base/json_text.h"
 #include "base/mem.h"
 #include "field/colormap.h"
 #include "message/names.h"
@@ -16,16 +16,6 @@
 #include "value/quality.h"
 
 enum { VALUE_DIGITS = 7, DIGITS = 9, EXACT_DIGITS = 17 };
-
-/* Takes the object. */
-static char *print(json_t *object, int digits)
-{
-    char *dumped = json_dumps(object, JSON_COMPACT | JSON_REAL_PRECISION(digits));
-    char *text = mem_strdup(dumped ? dumped : "{}");
-    free(dumped);
-    json_decref(object);
-    return text;
-}
 
 static json_t *string(const char *text)
 {
@@ -330,7 +320,7 @@ static char *lists_text(const struct session_context *world, bool open)
 {
     json_t *object = json_object();
     set_lists(object, world, open);
-    return print(object, DIGITS);
+    return json_text(object, DIGITS);
 }
 
 /* One object of both; takes them. */
@@ -365,14 +355,14 @@ char *reply_welcome_text(const struct session *session, int64_t now_utc_ns)
     set_home(object, session->world, view->width_px, view->height_px);
     set_params_for(params, session->world, view, session_is_open(session));
     json_object_set_new(object, "view", params);
-    return join(print(object, DIGITS), lists_said(session->world, session_is_open(session)));
+    return join(json_text(object, DIGITS), lists_said(session->world, session_is_open(session)));
 }
 
 char *reply_params_text(const struct session_context *world, const struct view *view, uint32_t seq, bool open)
 {
     json_t *object = json_pack("{s:s,s:I}", "type", "params", "seq", (json_int_t)seq);
     set_params_for(object, world, view, open);
-    return print(object, DIGITS);
+    return json_text(object, DIGITS);
 }
 
 char *reply_following_text(const struct session *session)
@@ -385,7 +375,7 @@ char *reply_following_text(const struct session *session)
     if (session->left)
         json_object_set_new(object, "gone", json_true());
     set_params_for(object, session->world, view, session_is_open(session));
-    return print(object, DIGITS);
+    return json_text(object, DIGITS);
 }
 
 char *reply_followers_text(const uint64_t *sessions, size_t count)
@@ -393,7 +383,7 @@ char *reply_followers_text(const uint64_t *sessions, size_t count)
     json_t *list = json_array();
     for (size_t i = 0; i < count && i < REPLY_FOLLOWERS; i++)
         json_array_append_new(list, json_integer((json_int_t)sessions[i]));
-    return print(json_pack("{s:s,s:I,s:o}", "type", "followers", "count", (json_int_t)count, "sessions", list), DIGITS);
+    return json_text(json_pack("{s:s,s:I,s:o}", "type", "followers", "count", (json_int_t)count, "sessions", list), DIGITS);
 }
 
 static json_t *age_ms(const struct reading *reading)
@@ -446,7 +436,7 @@ char *reply_tags_text(const struct plant *plant, const struct snapshot *snapshot
     }
     json_t *object = json_pack("{s:s,s:I,s:I,s:o}", "type", "tags", "time_us", us(snapshot->taken_utc_ns), "age_ms",
                                (json_int_t)(oldest_ns / 1000000), "values", values);
-    return print(object, VALUE_DIGITS);
+    return json_text(object, VALUE_DIGITS);
 }
 
 char *reply_status_text(const struct session_context *world, int64_t now_utc_ns)
@@ -459,9 +449,9 @@ char *reply_status_text(const struct session_context *world, int64_t now_utc_ns)
             json_object_set_new(link, "simulated", json_true());
         json_array_append_new(links, link);
     }
-    return print(json_pack("{s:s,s:o,s:I,s:b,s:b}", "type", "status", "links", links, "time_us", us(now_utc_ns), "live", world->live,
-                           "clock_set", world->clock_is_set),
-                 DIGITS);
+    return json_text(json_pack("{s:s,s:o,s:I,s:b,s:b}", "type", "status", "links", links, "time_us", us(now_utc_ns), "live", world->live,
+                               "clock_set", world->clock_is_set),
+                     DIGITS);
 }
 
 /* Of the readings that are not bad; null: all are. */
@@ -478,9 +468,9 @@ static json_t *oldest_age_ms(const struct snapshot *snapshot)
 
 char *reply_pong_text(const struct snapshot *snapshot, double t, int64_t now_utc_ns)
 {
-    return print(json_pack("{s:s,s:f,s:I,s:o}", "type", "pong", "t", t, "time_us", us(now_utc_ns), "oldest_age_ms",
-                           oldest_age_ms(snapshot)),
-                 EXACT_DIGITS);
+    return json_text(json_pack("{s:s,s:f,s:I,s:o}", "type", "pong", "t", t, "time_us", us(now_utc_ns), "oldest_age_ms",
+                               oldest_age_ms(snapshot)),
+                     EXACT_DIGITS);
 }
 
 static json_t *instant(int64_t at_us)
@@ -491,9 +481,9 @@ static json_t *instant(int64_t at_us)
 char *reply_time_text(const struct session *session)
 {
     const struct travel *travel = session->leader ? &session->leader->travel : &session->travel;
-    return print(json_pack("{s:s,s:o,s:f,s:o}", "type", "time", "at_us", instant(session_view(session)->at_us), "speed", travel->speed,
-                           "from_us", instant(session->world->history_first_us)),
-                 DIGITS);
+    return json_text(json_pack("{s:s,s:o,s:f,s:o}", "type", "time", "at_us", instant(session_view(session)->at_us), "speed", travel->speed,
+                               "from_us", instant(session->world->history_first_us)),
+                     DIGITS);
 }
 
 char *reply_camera_text(const struct camera *camera, uint32_t seq)
@@ -506,7 +496,7 @@ char *reply_camera_text(const struct camera *camera, uint32_t seq)
     } else {
         json_object_set_new(object, "fov", number(camera->fov_deg));
     }
-    return print(object, DIGITS);
+    return json_text(object, DIGITS);
 }
 
 static json_t *nearest(const struct plant *plant, const struct pick *pick)
@@ -540,7 +530,7 @@ char *reply_picked_text(const struct plant *plant, const struct pick_answer *ans
     json_object_set_new(object, "nearest", nearest(plant, pick));
     json_object_set_new(object, "sensor", pick->sensor < 0 ? json_null() : string(plant->tags[pick->sensor].name));
     json_object_set_new(object, "occluded", json_boolean(pick->sensor >= 0 && pick->sensor_occluded));
-    return print(object, DIGITS);
+    return json_text(object, DIGITS);
 }
 
 char *reply_error_text(const struct message_error *error)
@@ -549,14 +539,14 @@ char *reply_error_text(const struct message_error *error)
                                error->about[0] ? string(error->about) : json_null());
     if (error->retry_after_s > 0)
         json_object_set_new(object, "retry_after_s", json_integer(error->retry_after_s));
-    return print(object, DIGITS);
+    return json_text(object, DIGITS);
 }
 
 char *reply_api_plant_text(const struct session_context *world)
 {
     json_t *object = json_object();
     set_home(object, world, 1920, 1080);
-    return join(print(object, DIGITS), lists_said(world, false));
+    return join(json_text(object, DIGITS), lists_said(world, false));
 }
 
 char *reply_api_tags_text(const struct session_context *world, size_t first, size_t count)
@@ -576,5 +566,5 @@ char *reply_api_tags_text(const struct session_context *world, size_t first, siz
     }
     json_t *page = json_pack("{s:I,s:I,s:I,s:o}", "time_us", us(world->snapshot->taken_utc_ns), "total", (json_int_t)plant->tag_count,
                              "first", (json_int_t)first, "tags", list);
-    return print(page, DIGITS);
+    return json_text(page, DIGITS);
 }
