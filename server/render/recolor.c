@@ -34,6 +34,7 @@ void recolor_destroy(struct recolor **recolor_ptr)
     for (int i = 0; i < recolor->band_count; i++) {
         mem_free(recolor->bands[i].triangles);
         mem_free(recolor->bands[i].corners);
+        mem_free(recolor->bands[i].slopes);
         mem_free(recolor->bands[i].parts);
         mem_free(recolor->bands[i].mixed);
     }
@@ -43,6 +44,8 @@ void recolor_destroy(struct recolor **recolor_ptr)
     mem_free(recolor->weights);
     mem_free(recolor->rows);
     mem_free(recolor->ink);
+    mem_free(recolor->veil);
+    mem_free(recolor->depth);
     mem_free(recolor->vertices);
     mem_free(recolor->carried);
     mem_free(recolor->plain);
@@ -55,11 +58,13 @@ void recolor_destroy(struct recolor **recolor_ptr)
 size_t recolor_bytes(const struct recolor *recolor)
 {
     size_t pixels = (size_t)recolor->width_px * (size_t)recolor->height_px;
-    size_t bytes = pixels * (sizeof(*recolor->surfaces) + sizeof(*recolor->weights) + 2);
+    size_t bytes = pixels * (sizeof(*recolor->surfaces) + sizeof(*recolor->weights) + 2 + (recolor->veil ? 1 : 0) +
+                             (recolor->depth ? sizeof(*recolor->depth) : 0));
     bytes += recolor->vertex_count *
              (sizeof(*recolor->vertices) + sizeof(*recolor->carried) + sizeof(*recolor->plain) + sizeof(*recolor->flags));
     for (int i = 0; i < recolor->band_count; i++) {
         const struct recolor_band *band = &recolor->bands[i];
+        bytes += band->slope_capacity * sizeof(*band->slopes);
         bytes += band->triangle_capacity * (sizeof(*band->triangles) + sizeof(*band->corners)) +
                  band->part_capacity * sizeof(*band->parts) + band->mixed_capacity * sizeof(*band->mixed);
     }
@@ -73,6 +78,23 @@ uint32_t recolor_triangle(struct recolor_band *band, const uint32_t vertices[3])
     mem_grow(&band->triangles, &band->triangle_capacity, band->triangle_count + 1, sizeof(*band->triangles));
     memcpy(band->triangles[band->triangle_count], vertices, sizeof(*band->triangles));
     return (uint32_t)band->triangle_count++;
+}
+
+void recolor_add_slopes(struct recolor_band *band, const double weights[3][3])
+{
+    double sum[3];
+    for (int c = 0; c < 3; c++)
+        sum[c] = weights[0][c] + weights[1][c] + weights[2][c];
+    mem_grow(&band->slopes, &band->slope_capacity, band->triangle_count, sizeof(*band->slopes));
+    band->slopes[band->triangle_count - 1] = (struct recolor_slopes){
+        .w1_x = (float)weights[1][0],
+        .w1_y = (float)weights[1][1],
+        .w2_x = (float)weights[2][0],
+        .w2_y = (float)weights[2][1],
+        .sum_x = (float)sum[0],
+        .sum_y = (float)sum[1],
+        .sum = (float)sum[2],
+    };
 }
 
 void recolor_add_mesh(struct recolor *recolor, const struct recolor_mesh *mesh)
@@ -91,9 +113,11 @@ struct settling {
 static void settle_inks(struct recolor *recolor, size_t begin, size_t end)
 {
     for (size_t at = begin; at < end; at++)
-        if (recolor->ink[at] && recolor->surfaces[at] & RECOLOR_FIXED) {
-            recolor->surfaces[at] = RECOLOR_FIXED | inked(recolor->surfaces[at] & ~RECOLOR_FIXED, recolor->ink[at]);
+        if (has_ink(recolor, at) && recolor->surfaces[at] & RECOLOR_FIXED) {
+            recolor->surfaces[at] = RECOLOR_FIXED | inked(recolor, at, recolor->surfaces[at] & ~RECOLOR_FIXED);
             recolor->ink[at] = 0;
+            if (recolor->veil)
+                recolor->veil[at] = 0;
         }
 }
 
@@ -193,7 +217,7 @@ static void read_vertices(void *arg, size_t begin, size_t end)
     for (size_t at = job->first_vertex + begin; at < job->first_vertex + end; at++) {
         const struct scalar *scalar = job->scalars ? &job->scalars[recolor->vertices[at]] : &nothing;
         float carried = job->scalars ? carried_of(scalar, job->scale) : 0;
-        uint16_t flags = (uint16_t)draft_flags(scalar);
+        uint32_t flags = draft_flags(scalar);
         bool patterned = (flags & DRAFT_PATTERNS) != 0;
         recolor->flags[at] = flags;
         recolor->plain[at] = carried;

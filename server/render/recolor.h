@@ -29,13 +29,19 @@ struct recolor_mixed {
     uint8_t part_count;
 };
 
-struct recolor_band {         /* of rows; written by one worker */
-    uint32_t (*triangles)[3]; /* vertices of the picture; once it is settled, of what is kept */
-    float (*corners)[4];      /* of what these carry now: the first corner's; by how much the second's is more, and the third's */
+/* How weights change over the picture: those of the second and the third corner are w1/sum and w2/sum, all three planes over it. */
+struct recolor_slopes {
+    float w1_x, w1_y, w2_x, w2_y, sum_x, sum_y, sum;
+};
+
+struct recolor_band {              /* of rows; written by one worker */
+    uint32_t (*triangles)[3];      /* vertices of the picture; once it is settled, of what is kept */
+    float (*corners)[4];           /* of what these carry now: the first corner's; by how much the second's is more, and the third's */
+    struct recolor_slopes *slopes; /* likewise, where there are isolines */
     struct recolor_part *parts;
     struct recolor_mixed *mixed;
     size_t triangle_count, part_count, mixed_count;
-    size_t triangle_capacity, corner_capacity, part_capacity, mixed_capacity;
+    size_t triangle_capacity, corner_capacity, slope_capacity, part_capacity, mixed_capacity;
 };
 
 struct recolor_mesh { /* an asset with a field */
@@ -50,7 +56,11 @@ struct recolor {
     uint32_t *surfaces; /* per pixel, as above */
     uint32_t *weights;  /* of the triangle's second and third corner, 16 bits each */
     uint8_t *rows;      /* of the colormap */
-    uint8_t *ink;       /* once it is settled: not of what is fixed, which has it */
+    uint8_t *ink;       /* once it is settled: not of what is fixed, which has it; and below */
+    uint8_t *veil;      /* so much of ghosts' lines, of 255. NULL: there are none */
+    uint8_t veil_bgr[3];
+    bool lined;   /* it can be drawn with isolines */
+    float *depth; /* for their labels, rows of width_px. NULL: there are none */
     struct recolor_band *bands;
     struct recolor_mesh *meshes;
     size_t mesh_count, mesh_capacity, vertex_count;
@@ -58,7 +68,7 @@ struct recolor {
     uint32_t *vertices;           /* those that are kept, by mesh: which of the asset's */
     float *carried;               /* per vertex: column of the colormap (on a logarithmic scale: the value); NAN: look at flags */
     float *plain;                 /* the same without NAN */
-    uint16_t *flags;              /* as draft_flags */
+    uint32_t *flags;              /* as draft_flags */
     struct frame_marker *markers; /* places, and whether they are hidden */
     size_t marker_count;
 };
@@ -66,6 +76,12 @@ struct recolor {
 struct recolor *recolor_create(int width_px, int height_px, int band_rows); /* NULL: out of memory */
 void recolor_destroy(struct recolor **recolor);                             /* &NULL is fine; leaves NULL */
 size_t recolor_bytes(const struct recolor *recolor);
+/* The isolines of a picture. None: line_px is 0. */
+struct recolor_lines {
+    float line_px;
+    const float *nearest; /* COLORMAP_PLACES: of shaded_colormap_create_lines */
+};
+
 /* On a worker: number of that triangle in the band. */
 uint32_t recolor_triangle(struct recolor_band *band, const uint32_t vertices[3]);
 void recolor_add_mesh(struct recolor *recolor, const struct recolor_mesh *mesh);
@@ -74,8 +90,10 @@ bool recolor_settle(struct recolor *recolor, struct workers *workers);
 
 /* The fields of the picture, into what vertices carry. */
 void recolor_read(struct recolor *recolor, const struct frame_context *context, struct workers *workers);
+/* On a worker, of the triangle that recolor_triangle gave last: weights of its corners over the picture, as planes, up to a factor. */
+void recolor_add_slopes(struct recolor_band *band, const double weights[3][3]);
 /* Colours of those bands. colormap: COLORMAP_ROWS x COLORMAP_COLUMNS, as it comes from the GPU. pattern_px: size of its cells. */
-void recolor_draw(const struct recolor *recolor, const uint32_t *colormap, float pattern_px, struct workers *workers, int first, int count,
-                  struct frame *frame);
+void recolor_draw(const struct recolor *recolor, const uint32_t *colormap, const struct recolor_lines *lines, float pattern_px,
+                  struct workers *workers, int first, int count, struct frame *frame);
 
 #endif

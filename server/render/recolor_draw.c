@@ -8,8 +8,9 @@
 struct coloring {
     const struct recolor *recolor;
     const uint32_t *colormap;
+    struct recolor_lines lines;
     float pattern_px;
-    bool log;
+    bool log, rich; /* rich: there are lines, or the scale is logarithmic */
     struct frame *frame;
     size_t first_band;
 };
@@ -39,32 +40,78 @@ static float stipple(float x, float y, float pattern_px)
     return (0.26f - hypotf(column - floorf(column) - 0.5f, row - floorf(row) - 0.5f)) * pattern_px + 0.5f;
 }
 
-static inline int column_at(const struct coloring *coloring, float carried)
+/* Over 0.5 on the lines. */
+static float rule(float y, float pattern_px)
 {
-    if (coloring->log)
-        carried = column_of(lanes_log2((lanes){ 0 } + carried)[0], coloring->recolor->scale);
-    return (int)clamped(carried, 0, COLORMAP_PLACES + 1);
+    float at = y / pattern_px;
+    return (fabsf(at - floorf(at) - 0.5f) - 0.36f) * pattern_px + 0.5f;
 }
 
-/* Where a corner has flags. */
-static uint32_t flagged_color(const struct coloring *coloring, const uint32_t vertices[3], uint32_t weights, uint8_t row, float x, float y)
+/* --- isolines: field_color in shaders/field.glsl once more ----------------------------------------------------------------------- */
+
+static const float LEAST_SLOPE = 1e-7f, MOST_LINE = 0.8f;
+
+/* By how much the place on the scale changes from pixel to pixel. carried: of the corners; here: at the pixel. */
+static float slope_at(const struct coloring *coloring, const struct recolor_slopes *slopes, const float carried[3], float w1, float w2,
+                      float here, float x, float y)
+{
+    float over = 1 / (slopes->sum_x * x + slopes->sum_y * y + slopes->sum), d1 = carried[1] - carried[0], d2 = carried[2] - carried[0];
+    float by_x = d1 * (slopes->w1_x - w1 * slopes->sum_x) + d2 * (slopes->w2_x - w2 * slopes->sum_x);
+    float by_y = d1 * (slopes->w1_y - w1 * slopes->sum_y) + d2 * (slopes->w2_y - w2 * slopes->sum_y);
+    float slope = hypotf(by_x, by_y) * fabsf(over);
+    if (coloring->log)
+        return here > 1e-30f ? slope * coloring->recolor->scale[1] * 1.44269504f / here : 0;
+    return slope * (1 / COLUMNS_OF_RANGE);
+}
+
+/* How much of a line there is. column: with its part. */
+static float line_part(const struct coloring *coloring, float column, float slope)
+{
+    float place = (column - (1 + SLACK * COLUMNS_OF_RANGE)) * (1 / COLUMNS_OF_RANGE);
+    float nearest = coloring->lines.nearest[(int)clamped(column - 1, 0, COLORMAP_PLACES - 1)];
+    return slope > LEAST_SLOPE ? clamped(0.5f * coloring->lines.line_px + 0.5f - fabsf(place - nearest) / slope, 0, 1) : 0;
+}
+
+static uint32_t lined(uint32_t color, float part)
+{
+    float blue = (float)(color & 0xff), green = (float)(color >> 8 & 0xff), red = (float)(color >> 16 & 0xff);
+    bool bright = 0.30f * red + 0.59f * green + 0.11f * blue > 0.32f * 255;
+    return mix(color, bright ? 0x12171f : 0xededed, MOST_LINE * part);
+}
+
+static inline float column_of_carried(const struct coloring *coloring, float carried)
+{
+    return coloring->log ? column_of(lanes_log2((lanes){ 0 } + carried)[0], coloring->recolor->scale) : carried;
+}
+
+/* Where a corner has flags, or a line may run. */
+static uint32_t flagged_color(const struct coloring *coloring, const struct recolor_band *band, uint32_t triangle, uint32_t weights,
+                              uint8_t row, float x, float y)
 {
     const struct recolor *recolor = coloring->recolor;
-    const uint32_t *colors = coloring->colormap + row * COLORMAP_COLUMNS;
+    const uint32_t *colors = coloring->colormap + row * COLORMAP_COLUMNS, *vertices = band->triangles[triangle];
     float w1 = (float)(weights & 0xffff) * WEIGHT, w2 = (float)(weights >> 16) * WEIGHT, w[3] = { 1 - w1 - w2, w1, w2 };
-    float carried = 0, none = 0, little = 0;
+    float at[3], carried = 0, none = 0, little = 0, free = 0;
     for (int i = 0; i < 3; i++) {
-        carried += w[i] * recolor->plain[vertices[i]];
+        at[i] = recolor->plain[vertices[i]];
+        carried += w[i] * at[i];
         none += w[i] * draft_lacking(recolor->flags[vertices[i]]);
         little += w[i] * draft_uncertain(recolor->flags[vertices[i]]);
+        free += w[i] * draft_no_limits(recolor->flags[vertices[i]]);
     }
     if (none > 0.5f)
         return mix(colors[COLORMAP_PATTERNS + PATTERN_HATCH_LIGHT], colors[COLORMAP_PATTERNS + PATTERN_HATCH_DARK],
                    clamped(hatch(x, y, coloring->pattern_px), 0, 1));
-    uint32_t color = colors[column_at(coloring, carried)];
-    if (little <= 0.5f)
+    if (coloring->rich && free > 0.5f)
+        return mix(colors[COLORMAP_PATTERNS + PATTERN_PLAIN_LIGHT], colors[COLORMAP_PATTERNS + PATTERN_PLAIN_DARK],
+                   clamped(rule(y, coloring->pattern_px), 0, 1));
+    float column = column_of_carried(coloring, carried);
+    uint32_t color = colors[(int)clamped(column, 0, COLORMAP_PLACES + 1)];
+    if (little > 0.5f)
+        color = mix(color, colors[COLORMAP_PATTERNS + PATTERN_STIPPLE], clamped(stipple(x, y, coloring->pattern_px), 0, 1));
+    if (!(coloring->lines.line_px > 0))
         return color;
-    return mix(color, colors[COLORMAP_PATTERNS + PATTERN_STIPPLE], clamped(stipple(x, y, coloring->pattern_px), 0, 1));
+    return lined(color, line_part(coloring, column, slope_at(coloring, &band->slopes[triangle], at, w1, w2, carried, x, y)));
 }
 
 /* Four rows of four, the first three columns of them. */
@@ -99,6 +146,43 @@ DRAFT_INLINE lanes carried_by(const struct recolor_band *band, lanes_int triangl
 DRAFT_INLINE lanes columns_of_logs(lanes values, const float *scale)
 {
     return (lanes_log2(values) - scale[0]) * scale[1] * COLUMNS_OF_RANGE + (1 + SLACK * COLUMNS_OF_RANGE);
+}
+
+/* Which of eight pixels a line may cover some of, by how fast the field changes there. */
+DRAFT_INLINE lanes_int may_be_lined(const struct coloring *coloring, const struct recolor_band *band, lanes_int triangles,
+                                    lanes_int weights, int x, int y)
+{
+    float by[7][LANES], d1[LANES], d2[LANES];
+    lanes carried = carried_by(band, triangles, weights), none = { 0 };
+    for (int i = 0; i < LANES; i++) {
+        const struct recolor_slopes *slopes = &band->slopes[triangles[i]];
+        const float all[7] = { slopes->w1_x, slopes->w1_y, slopes->w2_x, slopes->w2_y, slopes->sum_x, slopes->sum_y, slopes->sum };
+        for (int k = 0; k < 7; k++)
+            by[k][i] = all[k];
+        d1[i] = band->corners[triangles[i]][1];
+        d2[i] = band->corners[triangles[i]][2];
+    }
+#define BY(k) (*(const lanes *)by[k])
+    lanes w1 = __builtin_convertvector(weights & 0xffff, lanes) * WEIGHT;
+    lanes w2 = __builtin_convertvector((lanes_int)((lanes_uint)weights >> 16), lanes) * WEIGHT;
+    lanes over = 1.0f / (BY(4) * (LANES_IOTA + ((float)x + 0.5f)) + BY(5) * ((float)y + 0.5f) + BY(6));
+    lanes by_x = *(const lanes *)d1 * (BY(0) - w1 * BY(4)) + *(const lanes *)d2 * (BY(2) - w2 * BY(4));
+    lanes by_y = *(const lanes *)d1 * (BY(1) - w1 * BY(5)) + *(const lanes *)d2 * (BY(3) - w2 * BY(5));
+#undef BY
+    lanes slope = lanes_root((by_x * by_x + by_y * by_y) * over * over), column = carried;
+    if (coloring->log) {
+        lanes_int counts = carried > 1e-30f;
+        slope *= coloring->recolor->scale[1] * 1.44269504f;
+        slope = lanes_choose(counts, slope / lanes_choose(counts, carried, none + 1.0f), none);
+        column = columns_of_logs(carried, coloring->recolor->scale);
+    } else {
+        slope *= 1 / COLUMNS_OF_RANGE;
+    }
+    lanes place = (column - (1 + SLACK * COLUMNS_OF_RANGE)) * (1 / COLUMNS_OF_RANGE), nearest;
+    lanes_int at = lanes_whole(lanes_clamp(lanes_choose(column == column, column, none) - 1.0f, 0, COLORMAP_PLACES - 1));
+    nearest = lanes_look_up(coloring->lines.nearest, at);
+    lanes away = lanes_most(place - nearest, nearest - place);
+    return ~(away > slope * (0.5f * coloring->lines.line_px + 0.51f));
 }
 
 /* Colours of eight places of the field. known: false where a corner has flags. */
@@ -163,7 +247,7 @@ DRAFT_INLINE void color_parts(const struct coloring *coloring, const struct reco
     }
     ahead->first = first;
     ahead->end = first + count;
-    ahead->all_known = !lanes_any(~all_known);
+    ahead->all_known = !lanes_any(~all_known) && !(coloring->lines.line_px > 0);
 }
 
 static uint64_t flagged_sum(const struct coloring *coloring, const struct recolor_band *band, const struct recolor_mixed *mixed,
@@ -172,10 +256,10 @@ static uint64_t flagged_sum(const struct coloring *coloring, const struct recolo
     uint64_t sum = 0;
     for (size_t i = mixed->first_part; i < (size_t)mixed->first_part + mixed->part_count; i++) {
         const struct recolor_part *part = &band->parts[i];
-        if (ahead->known[i - ahead->first])
+        if (ahead->known[i - ahead->first] && !(coloring->lines.line_px > 0))
             sum += ahead->colors[i - ahead->first];
         else
-            sum += spread(flagged_color(coloring, band->triangles[part->triangle], part->weights, part->row, x, y)) * part->share;
+            sum += spread(flagged_color(coloring, band, part->triangle, part->weights, part->row, x, y)) * part->share;
     }
     return sum;
 }
@@ -196,10 +280,10 @@ DRAFT_INLINE void color_mixed(const struct coloring *coloring, const struct reco
             sum = flagged_sum(coloring, band, mixed, &ahead, (float)mixed->x + 0.5f, (float)(top + mixed->row) + 0.5f);
         sum = (sum + half + mixed->blue_red + ((uint64_t)mixed->green << 32)) / RECOLOR_SHARES;
         uint32_t color = (uint32_t)(sum & 0xff00ff) | (uint32_t)(sum >> 24 & 0xff00);
-        size_t row = (size_t)(top + mixed->row);
+        size_t row = (size_t)(top + mixed->row), pixel = row * (size_t)coloring->recolor->width_px + mixed->x;
         uint8_t *line = coloring->frame->bgrx + row * (size_t)coloring->frame->stride_bytes;
-        uint8_t ink = coloring->recolor->ink[row * (size_t)coloring->recolor->width_px + mixed->x];
-        ((uint32_t *)(void *)line)[mixed->x] = (ink ? inked(color, ink) : color) | 0xff000000;
+        bool ink = has_ink(coloring->recolor, pixel);
+        ((uint32_t *)(void *)line)[mixed->x] = (ink ? inked(coloring->recolor, pixel, color) : color) | 0xff000000;
     }
 }
 
@@ -221,16 +305,23 @@ DRAFT_INLINE lanes_int color_lanes(const struct coloring *coloring, const struct
         return surfaces;
     uint64_t inks, rows;
     memcpy(&inks, recolor->ink + at, sizeof(inks));
+    if (recolor->veil) {
+        uint64_t veils;
+        memcpy(&veils, recolor->veil + at, sizeof(veils));
+        inks |= veils;
+    }
     memcpy(&rows, recolor->rows + at, sizeof(rows));
     lanes_int colors = field_colors(coloring, band, surfaces & field, *(const lanes_int *)(recolor->weights + at), rows, &known);
+    if (coloring->lines.line_px > 0)
+        known &= ~may_be_lined(coloring, band, surfaces & field, *(const lanes_int *)(recolor->weights + at), x, y);
     colors = lanes_choose_int(field, colors, surfaces);
     for (uint32_t left = lanes_bits(field) & (lanes_bits(~known) | bits_of_bytes(inks)); left; left &= left - 1) {
         size_t i = (size_t)__builtin_ctz(left), pixel = at + i;
         uint32_t color = (uint32_t)colors[i];
         if (!known[i])
-            color = flagged_color(coloring, band->triangles[recolor->surfaces[pixel]], recolor->weights[pixel], recolor->rows[pixel],
+            color = flagged_color(coloring, band, recolor->surfaces[pixel], recolor->weights[pixel], recolor->rows[pixel],
                                   (float)(x + (int)i) + 0.5f, (float)y + 0.5f);
-        colors[i] = (int32_t)(recolor->ink[pixel] ? inked(color, recolor->ink[pixel]) : color);
+        colors[i] = (int32_t)(has_ink(recolor, pixel) ? inked(recolor, pixel, color) : color);
     }
     return colors;
 }
@@ -260,9 +351,10 @@ static void color_bands(void *arg, size_t begin, size_t end)
         color_band(coloring, (int)(coloring->first_band + band));
 }
 
-void recolor_draw(const struct recolor *recolor, const uint32_t *colormap, float pattern_px, struct workers *workers, int first, int count,
-                  struct frame *frame)
+void recolor_draw(const struct recolor *recolor, const uint32_t *colormap, const struct recolor_lines *lines, float pattern_px,
+                  struct workers *workers, int first, int count, struct frame *frame)
 {
-    struct coloring coloring = { recolor, colormap, pattern_px, is_log(recolor->scale), frame, (size_t)first };
+    bool log = is_log(recolor->scale);
+    struct coloring coloring = { recolor, colormap, *lines, pattern_px, log, log || lines->line_px > 0, frame, (size_t)first };
     workers_for(workers, (size_t)count, 2, color_bands, &coloring);
 }

@@ -28,21 +28,33 @@ static inline bool is_log(const float *scale)
     return scale[2] > 0.5f;
 }
 
-/* A line or a rim over a pixel. */
-static inline uint32_t inked(uint32_t color, uint8_t ink)
+static inline bool has_ink(const struct recolor *recolor, size_t pixel)
+{
+    return recolor->ink[pixel] || (recolor->veil && recolor->veil[pixel]);
+}
+
+/* A line, ghosts or a rim over a pixel. */
+static inline uint32_t inked(const struct recolor *recolor, size_t pixel, uint32_t color)
 {
     typedef uint8_t octets __attribute__((vector_size(4)));
     static const quad rim_dark_bgr = { 41, 23, 13 }, ink_bgr = { 0.14f * 255, 0.10f * 255, 0.08f * 255 };
     static const float most_ink = 0.5f; /* as shaders/edges.frag */
-    octets was_bytes;
-    memcpy(&was_bytes, &color, sizeof(color));
-    quad was = __builtin_convertvector(was_bytes, quad), now = was + (ink_bgr - was) * (most_ink / RECOLOR_INK) * (float)ink;
+    uint8_t ink = recolor->ink[pixel];
+    octets bytes;
+    memcpy(&bytes, &color, sizeof(color));
+    quad now = __builtin_convertvector(bytes, quad);
+    if (ink <= RECOLOR_INK)
+        now += (ink_bgr - now) * (most_ink / RECOLOR_INK) * (float)ink;
+    if (recolor->veil && recolor->veil[pixel]) {
+        quad veil_bgr = { recolor->veil_bgr[0], recolor->veil_bgr[1], recolor->veil_bgr[2] };
+        now += (veil_bgr - now) * (1 / 255.0f) * (float)recolor->veil[pixel];
+    }
     if (ink == RECOLOR_RIM_DARK)
         now = rim_dark_bgr;
     if (ink == RECOLOR_RIM_LIGHT)
-        now = 0.1f * was + 229.5f;
-    was_bytes = __builtin_convertvector(__builtin_convertvector(now + 0.5f, quad_int), octets);
-    memcpy(&color, &was_bytes, sizeof(color));
+        now = 0.1f * now + 229.5f;
+    bytes = __builtin_convertvector(__builtin_convertvector(now + 0.5f, quad_int), octets);
+    memcpy(&color, &bytes, sizeof(color));
     return color;
 }
 

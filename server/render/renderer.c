@@ -343,10 +343,13 @@ static struct frame *draw_again(struct renderer *renderer, const struct view *vi
     int64_t start_ns = clock_mono_ns();
     context.light = light_get(&renderer->light, &context.lit_by);
     context.colormap = shaded_colormap_cache_get(&renderer->colormaps, view);
-    if (!context.light || !context.colormap.colors || !plates_recolor(renderer->plates, &context, frame))
+    struct isoline_points points = { 0 };
+    isolines_collect(&renderer->isolines, &context, &points);
+    if (!context.light || !context.colormap.colors || !plates_recolor(renderer->plates, &context, &points, frame))
         frame_unref(&frame);
     else
         frame->render_ns = clock_mono_ns() - start_ns;
+    mem_free(points.at);
     return frame;
 }
 

@@ -36,8 +36,7 @@ static struct render_job *begin(struct renderer *renderer, const struct view *vi
     struct render_job *job = mem_new(sizeof(*job));
     render_job_init(job, &context, &target, frame, whole);
     job->plate = plate;
-    if (!plate)
-        isolines_collect(&renderer->isolines, &context, &job->isolines);
+    isolines_collect(&renderer->isolines, &context, &job->isolines);
     return job;
 }
 
@@ -182,7 +181,7 @@ static struct frame *end_plate(struct renderer *renderer, struct render_job *job
         return NULL;
     while (!plate_step(job->plate, &job->context, &renderer->light, frame)) {
     }
-    if (!plates_keep(renderer->plates, job->plate, &job->context, frame))
+    if (!plates_keep(renderer->plates, job->plate, &job->context, &job->isolines, frame))
         return NULL;
     frame->render_ns += clock_mono_ns() - start_ns;
     job->frame = NULL;

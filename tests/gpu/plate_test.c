@@ -61,7 +61,10 @@ static void assert_like_gl(const struct view *view, double may_differ)
         print_message("# %d of %d pixels differ by more than 8, all by %.2f on average\n", far, pixels, sum / pixels);
     assert_true(far <= may_differ * pixels && sum <= (1 + 20 * may_differ) * pixels);
     assert_int_equal(plate->marker_count, gl->marker_count);
-    assert_true(plate->marker_count > 0);
+    assert_true(plate->marker_count > 0 || view->visibility.clip.plane_count > 0);
+    assert_int_equal(plate->label_count, gl->label_count);
+    for (size_t i = 0; i < gl->label_count; i++)
+        assert_true(plate->labels[i].value == gl->labels[i].value && fabsf(plate->labels[i].x_px - gl->labels[i].x_px) < 0.11f);
     for (size_t i = 0; i < gl->marker_count; i++) {
         assert_int_equal(plate->markers[i].tag, gl->markers[i].tag);
         assert_int_equal(plate->markers[i].occluded, gl->markers[i].occluded);
@@ -126,6 +129,100 @@ static void test_orthographic(void **state)
         start_view(&view, 320, 240);
         stand_look(&stand, i, &view);
         view.camera.height_m = i % 3 ? 6 : 1.5;
+        assert_like_gl(&view, 0.02);
+    }
+}
+
+static void draw_lines_every(struct view *view, double step)
+{
+    for (double line = step; line < 100 && view->color_scale.line_count < VIEW_LINES; line += step)
+        view->color_scale.lines[view->color_scale.line_count++] = line;
+}
+
+/* Lines, bands and logarithms. Rims of lines differ by the way slopes are measured. */
+static void test_lines_and_scales(void **state)
+{
+    (void)state;
+    for (int i = 0; i < 8; i++) {
+        struct view view;
+        start_view(&view, 400, 300);
+        stand_look(&stand, i, &view);
+        view.camera.height_m = i == 7 ? 6 : 0;
+        if (i % 4 != 1)
+            draw_lines_every(&view, 10);
+        view.ramp_interval = i % 4 == 1 ? 20 : 0;
+        if (i % 4 == 2) {
+            view.range_min = 10;
+            view.color_scale.log = true;
+        }
+        view.look = i % 4 == 3 ? LOOK_FLAT : LOOK_DEFAULT;
+        assert_like_gl(&view, 0.02);
+    }
+}
+
+static void set_limits(bool set)
+{
+    struct plant *plant = &stand.toy->plant;
+    const double limits[LIMIT_COUNT] = { 0, 20, 70, 90 };
+    for (size_t tag = 0; tag < plant->tag_count; tag++)
+        for (int i = 0; i < LIMIT_COUNT; i++)
+            plant->tags[tag].limits[i] = set && tag != 2 ? limits[i] : NAN;
+}
+
+/* One tag without limits: what is near it is plain. What has no field is grey. */
+static void test_operator(void **state)
+{
+    struct view view;
+    (void)state;
+    set_limits(true);
+    start_view(&view, 400, 300);
+    view.field.show = SHOW_OPERATOR;
+    view_default_scale(&stand.toy->scene, &view);
+    for (int camera = 0; camera < 6; camera++) {
+        assert_like_gl(&view, 0.02);
+        stand_look(&stand, 2 * camera, &view);
+    }
+    set_limits(false);
+}
+
+static void cut_at(struct view *view, double x, double y, double z, double d)
+{
+    memcpy(view->visibility.clip.planes[0], (double[4]){ x, y, z, d }, 4 * sizeof(double));
+    view->visibility.clip.plane_count = 1;
+}
+
+/* Bodies that are closed have caps, the inner side of others shows. */
+static void test_cuts(void **state)
+{
+    (void)state;
+    for (int i = 0; i < 12; i++) {
+        struct view view;
+        start_view(&view, 320, 240);
+        stand_look(&stand, i, &view);
+        view.camera.height_m = i % 5 == 4 ? 6 : 0;
+        if (i % 3 == 0)
+            cut_at(&view, 0, 0, -1, 0.2 + 0.1 * i);
+        if (i % 3 == 1)
+            cut_at(&view, 0.6, 0.64, -0.48, 0.3);
+        if (i % 3 == 2)
+            clip_box(&view.visibility.clip, (double[3]){ -0.8, -0.5, -0.2 }, (double[3]){ 2.1, 0.3, 1.1 });
+        assert_like_gl(&view, 0.02);
+    }
+}
+
+static void test_ghosts(void **state)
+{
+    (void)state;
+    for (int i = 0; i < 8; i++) {
+        struct view view;
+        start_view(&view, 320, 240);
+        stand_look(&stand, i, &view);
+        view.dark = i % 2;
+        view.camera.height_m = i == 6 ? 6 : 0;
+        asset_set_add(&view.visibility.ghosts, i % 4);
+        asset_set_add(&view.visibility.ghosts, 1);
+        if (i == 5)
+            cut_at(&view, 0.6, 0.64, -0.48, 0.3);
         assert_like_gl(&view, 0.02);
     }
 }
@@ -284,6 +381,9 @@ static void assert_same_anew(const struct view *view)
     struct frame *again = stand_draw(&stand, view), *anew = draw_anew(view);
     assert_memory_equal(again->bgrx, anew->bgrx, (size_t)again->height_px * (size_t)again->stride_bytes);
     assert_int_equal(again->content, anew->content);
+    assert_int_equal(again->label_count, anew->label_count);
+    for (size_t i = 0; i < anew->label_count; i++)
+        assert_true(again->labels[i].x_px == anew->labels[i].x_px && again->labels[i].value == anew->labels[i].value);
     assert_int_equal(again->marker_count, anew->marker_count);
     for (size_t i = 0; i < anew->marker_count; i++) {
         assert_int_equal(again->markers[i].tag, anew->markers[i].tag);
@@ -314,6 +414,30 @@ static void test_new_readings_are_a_new_picture(void **state)
     assert_memory_equal(first->bgrx, last->bgrx, (size_t)first->height_px * (size_t)first->stride_bytes);
     frame_unref(&first);
     frame_unref(&last);
+}
+
+/* With isolines, their labels, ghosts and a cut. */
+static void test_lines_again(void **state)
+{
+    struct view view;
+    (void)state;
+    start_view(&view, 501, 300);
+    draw_lines_every(&view, 10);
+    asset_set_add(&view.visibility.ghosts, 2);
+    cut_at(&view, 0, 0, -1, 1.2);
+    struct frame *first = draw_anew(&view);
+    assert_true(first->label_count > 0);
+    frame_unref(&first);
+    toy_set(stand.snapshot, 0, 75, QUALITY_GOOD);
+    toy_set(stand.snapshot, 3, 20, QUALITY_UNCERTAIN_LAST_USABLE);
+    assert_same_anew(&view);
+    view.color_scale.lines[2] += 5;
+    assert_same_anew(&view);
+    view.color_scale.line_count = 0;
+    assert_same_anew(&view);
+    draw_lines_every(&view, 20);
+    assert_false(is_quick(&view)); /* that last picture had none */
+    toy_fill(stand.snapshot, 0);
 }
 
 static void test_new_colors_too(void **state)
@@ -382,6 +506,10 @@ int main(void)
         cmocka_unit_test(test_sizes),
         cmocka_unit_test(test_cameras),
         cmocka_unit_test(test_orthographic),
+        cmocka_unit_test(test_lines_and_scales),
+        cmocka_unit_test(test_operator),
+        cmocka_unit_test(test_cuts),
+        cmocka_unit_test(test_ghosts),
         cmocka_unit_test(test_suns),
         cmocka_unit_test(test_outlines),
         cmocka_unit_test(test_hidden_assets),
@@ -389,6 +517,7 @@ int main(void)
         cmocka_unit_test(test_shadows_on_slivers),
         cmocka_unit_test(test_thin_poles_have_no_beads),
         cmocka_unit_test(test_new_readings_are_a_new_picture),
+        cmocka_unit_test(test_lines_again),
         cmocka_unit_test(test_new_colors_too),
         cmocka_unit_test(test_what_else_changes_is_drawn),
         cmocka_unit_test(test_few_large_ones_are_kept),

@@ -2,6 +2,8 @@
 /* The steps of a draft, and what it keeps between pictures. */
 #include "render/draft/draft.h"
 
+#include <string.h>
+
 #include "base/mem.h"
 #include "render/plan/content_hash.h"
 #include "render/draft/draft_kernels.h"
@@ -43,7 +45,8 @@ void draft_destroy(struct draft **draft_ptr)
         return;
     draft_rest(draft);
     mem_free(draft->parts);
-    mem_free(draft->ramps);
+    mem_free(draft->muted_ramps);
+    mem_free(draft->own_ramps);
     mem_free(draft->ramp_of_model);
     mem_free(draft->backdrops);
     mem_free(draft->colormap);
@@ -55,8 +58,7 @@ void draft_destroy(struct draft **draft_ptr)
 /* Holes need textures; what is see-through is another pass's work. */
 bool draft_can(const struct draft *draft, const struct view *view)
 {
-    return view->tier == TIER_PREVIEW && view->look != LOOK_GLOSSY && view->look != LOOK_MATERIALS && view->visibility.ghosts.count == 0 &&
-           draft->ramp_count <= MOST_RAMPS && !draft->has_holes;
+    return view->tier == TIER_PREVIEW && draft->ramp_count <= MOST_RAMPS && !draft->has_holes;
 }
 
 /* Lines are worked out with the triangles: such a picture is drawn anew each time. */
@@ -116,10 +118,30 @@ static bool draw_selected(struct draft *draft, struct recolor *recolor)
         return true;
     if (!draft_find_only(draft, draft->context->view->selected_asset))
         return complain(draft);
-    draft_tiles(draft, false);
+    draft_tiles(draft, DRAFT_DEPTH);
     if (recolor)
         draft_keep_rim(draft, recolor);
     draft_outline(draft);
+    return true;
+}
+
+static bool draw_ghosts(struct draft *draft, struct recolor *recolor)
+{
+    uint8_t bgr[3], *veil;
+    if (!draft_has_ghosts(draft))
+        return true;
+    veil = mem_try_array((size_t)draft->width_px * (size_t)draft->height_px, 1);
+    if (!veil || !draft_ghosts(draft, veil, bgr)) {
+        mem_free(veil);
+        return complain(draft);
+    }
+    draft_paint_ghosts(draft, veil, bgr);
+    if (recolor) {
+        recolor->veil = veil;
+        memcpy(recolor->veil_bgr, bgr, sizeof(bgr));
+    } else {
+        mem_free(veil);
+    }
     return true;
 }
 
@@ -129,7 +151,7 @@ static bool draw_all(struct draft *draft, struct isolines *isolines, struct fram
     struct isoline_points points = { 0 };
     if (keep)
         draft->ids = mem_try_array((size_t)draft->pitch_px * (size_t)draft->height_px, sizeof(*draft->ids));
-    draft_tiles(draft, true);
+    draft_tiles(draft, DRAFT_COLORS);
     struct recolor *recolor = draft->ids ? draft_keep(draft) : NULL;
     mem_free(draft->ids);
     draft->ids = NULL;
@@ -137,7 +159,7 @@ static bool draw_all(struct draft *draft, struct isolines *isolines, struct fram
     isolines_collect(isolines, draft->context, &points);
     isolines_find(draft->context, &points, draft->depth, (size_t)draft->pitch_px, frame);
     mem_free(points.at);
-    bool good = draw_selected(draft, recolor);
+    bool good = draw_ghosts(draft, recolor) && draw_selected(draft, recolor);
     if (recolor && good && recolor_settle(recolor, draft->workers))
         draft_give(&draft->kept, draft->context, recolor, frame);
     else
@@ -149,16 +171,21 @@ bool draft_draw(struct draft *draft, const struct frame_context *context, const 
                 struct frame *frame)
 {
     bool lined = has_lines(context);
-    if (!lined && draft_recolor(draft, &draft->kept, context, frame))
+    if (!lined && draft_recolor(draft, &draft->kept, context, NULL, frame))
         return true;
     draft->context = context;
     draft->light = draft_get_light(draft, context->light);
     if (!draft->light)
         return false;
-    draft_read_palette(draft, &context->colormap);
+    draft_read_palette(draft, &context->colormap, context->view->look == LOOK_GLOSSY);
     if (!draft_make_room(draft, frame, BAND_ROWS))
         return complain(draft);
     frame_uniforms_fill(&draft->block, context);
+    if (context->view->look == LOOK_GLOSSY) { /* rows are steps of light */
+        draft->block.shade[0] = COLORMAP_ROWS - 1;
+        draft->block.shade[1] = 0.5f;
+    }
+    draft->ramps = context->view->look == LOOK_MATERIALS ? draft->own_ramps : draft->muted_ramps;
     draft->greys = view_is_operator(context->view);
     draft->out = frame->bgrx;
     draft->out_stride_bytes = (size_t)frame->stride_bytes;

@@ -122,7 +122,7 @@ void draft_aim_cuts(struct draft *draft)
             out[0] = plane[0] / half[0];
             out[1] = -plane[1] / half[1];
             out[2] = plane[2];
-            out[3] = plane[3] - plane[0] + plane[1];
+            out[3] = plane[3] - plane[0] + plane[1] + out[0] * draft->shift_px[0] + out[1] * draft->shift_px[1];
             draft->cut_count++;
         }
         if (!leave)

@@ -30,8 +30,8 @@ void draft_fill_mesh(struct draft *draft, struct draft_mesh *mesh, int index, co
     matrix_multiply(context->constants.clip_from_plant, asset->placement, clip);
     view_constants_bring_forward(&context->constants, asset, clip);
     for (int c = 0; c < 4; c++) {
-        mesh->place[c][0] = (float)(half[0] * (clip[4 * c + 3] + clip[4 * c]));
-        mesh->place[c][1] = (float)(half[1] * (clip[4 * c + 3] - clip[4 * c + 1]));
+        mesh->place[c][0] = (float)(half[0] * (clip[4 * c + 3] + clip[4 * c]) - (double)draft->shift_px[0] * clip[4 * c + 3]);
+        mesh->place[c][1] = (float)(half[1] * (clip[4 * c + 3] - clip[4 * c + 1]) - (double)draft->shift_px[1] * clip[4 * c + 3]);
         mesh->place[c][2] = (float)clip[4 * c + 2];
         mesh->place[c][3] = (float)clip[4 * c + 3];
     }

@@ -123,11 +123,9 @@ static void find_eye(const struct draft *draft, double eye_m[3])
                                                   : constants->eye_m[c];
 }
 
-static bool add_asset(struct draft *draft, int asset, bool both_sides)
+static bool add_asset(struct draft *draft, int asset, const struct model_level *level, bool both_sides)
 {
-    const struct frame_context *context = draft->context;
     const struct model *model = draft->gpu_scene->of_asset[asset];
-    const struct model_level *level = surface_pass_level(context, asset);
     double file_from_plant[16], eye_m[3], eye[4];
     mem_grow(&draft->meshes, &draft->mesh_capacity, draft->mesh_count + 1, sizeof(*draft->meshes));
     mem_grow(&draft->found, &draft->found_capacity, draft->mesh_count + 1, sizeof(*draft->found));
@@ -155,7 +153,7 @@ bool draft_find(struct draft *draft)
     draft->mesh_count = draft->vertex_count = 0;
     draft->counts_bodies = draft->cut_count > 0;
     for (size_t i = 0; i < context->visible_count && good; i++)
-        good = add_asset(draft, context->visible[i], false);
+        good = add_asset(draft, context->visible[i], surface_pass_level(context, context->visible[i]), false);
     if (!good)
         return false;
     workers_for(draft->workers, draft->mesh_count, 1, find_meshes, draft);
@@ -171,8 +169,34 @@ bool draft_find_only(struct draft *draft, int asset)
 {
     draft->mesh_count = draft->vertex_count = 0;
     draft->counts_bodies = false;
-    if (!add_asset(draft, asset, true))
+    if (!add_asset(draft, asset, surface_pass_level(draft->context, asset), true))
         return false;
     find_meshes(draft, 0, 1);
+    return true;
+}
+
+static bool is_ghost(const struct draft *draft, size_t asset)
+{
+    const struct frame_context *context = draft->context;
+    return visibility_of(&context->view->visibility, (int)asset) == ASSET_GHOST &&
+           view_constants_sees(&context->constants, &draft->gpu_scene->scene->assets[asset]);
+}
+
+bool draft_has_ghosts(const struct draft *draft)
+{
+    for (size_t i = 0; i < draft->gpu_scene->scene->asset_count && draft->context->view->visibility.ghosts.count > 0; i++)
+        if (is_ghost(draft, i))
+            return true;
+    return false;
+}
+
+bool draft_find_ghosts(struct draft *draft)
+{
+    draft->mesh_count = draft->vertex_count = 0;
+    draft->counts_bodies = false;
+    for (size_t i = 0; i < draft->gpu_scene->scene->asset_count; i++)
+        if (is_ghost(draft, i) && !add_asset(draft, (int)i, gpu_scene_level(draft->gpu_scene, &draft->context->constants, (int)i, 1), true))
+            return false;
+    workers_for(draft->workers, draft->mesh_count, 1, find_meshes, draft);
     return true;
 }

@@ -127,13 +127,14 @@ struct draft {
     struct workers *workers;
     const struct draft_kernels *kernels;
     const struct gpu_scene *gpu_scene;
-    uint32_t *ramps, *ramp_of_model; /* colours, RAMP_STEPS to a row; first row, by number of the model */
+    uint32_t *muted_ramps, *own_ramps, *ramp_of_model; /* colours, RAMP_STEPS to a row; first row, by number of the model */
     size_t ramp_count;
     bool has_holes;      /* some material cuts them by a texture */
     uint32_t *backdrops; /* as render/light/sky.c makes them */
     uint32_t *colormap;
     float *lines; /* by place of the scale: the nearest place that has a line */
     uint64_t palette_version;
+    bool palette_glossy; /* rows of it: colours in a light */
     struct draft_light lights[DRAFT_LIGHTS];
     uint64_t uses;
     struct visibility_buffers kept; /* struct recolor, of cameras that stand still */
@@ -143,6 +144,7 @@ struct draft {
     /* --- of the picture being drawn */
     const struct frame_context *context;
     const struct draft_light *light;
+    const uint32_t *ramps; /* the picture's */
     struct frame_uniforms block;
     struct draft_mesh *meshes;
     struct draft_found *found; /* by mesh */
@@ -163,6 +165,7 @@ struct draft {
     size_t out_stride_bytes;
     float cuts[CLIP_MAX_PLANES][4]; /* planes that cut, of x w, y w in pixels, z, w; those that rays come in by first */
     int cut_count, entry_count;
+    float shift_px[2];  /* pixels are looked at so far from their middles */
     bool counts_bodies; /* planes that cut show which bodies are solid (draft_caps.c) */
     bool has_ground;
     bool greys;                                                                /* context has no colours */
@@ -174,7 +177,7 @@ struct draft {
 bool draft_read_textures(struct draft *draft, const struct sky *sky);
 const struct draft_light *draft_get_light(struct draft *draft, const struct light_set *set);
 void draft_free_light(const struct draft *draft, struct draft_light *light);
-void draft_read_palette(struct draft *draft, const struct shaded_colormap *colormap);
+void draft_read_palette(struct draft *draft, const struct shaded_colormap *colormap, bool glossy);
 /* The steps. */
 void draft_aim(struct draft *draft, const struct light *light);                  /* the matrices from pixels */
 void draft_aim_cuts(struct draft *draft);                                        /* before all that follows */
@@ -189,7 +192,12 @@ bool draft_collect(struct draft *draft); /* meshes, draws and chunks: what may b
 void draft_fill_mesh(struct draft *draft, struct draft_mesh *mesh, int asset, const struct model_level *level);
 bool draft_find(struct draft *draft);                 /* meshes, and which of their parts may be seen. False: out of memory */
 bool draft_find_only(struct draft *draft, int asset); /* the same of one, from both sides */
-void draft_tiles(struct draft *draft, bool color);    /* depth and marks of what was found; and colours, or not */
+bool draft_has_ghosts(const struct draft *draft);
+bool draft_find_ghosts(struct draft *draft); /* of what is only hinted at; and below, how much of a line each pixel has, of 255 */
+bool draft_ghosts(struct draft *draft, uint8_t *veil, uint8_t bgr[3]); /* rows of width_px; marks are lost. False: out of memory */
+void draft_paint_ghosts(const struct draft *draft, const uint8_t *veil, const uint8_t bgr[3]);
+enum draft_output { DRAFT_CAPS, DRAFT_DEPTH, DRAFT_COLORS };                         /* only marks of caps; marks and depth; and colours */
+void draft_tiles(struct draft *draft, enum draft_output output);                     /* of what was found */
 bool draft_make_room(struct draft *draft, const struct frame *frame, int band_rows); /* false: out of memory */
 void draft_place(struct draft *draft, size_t begin, size_t end);                     /* vertices */
 void draft_sort(struct draft *draft, size_t begin, size_t end);                      /* triangles of chunks into bands */
@@ -201,8 +209,11 @@ struct recolor *draft_keep(struct draft *draft);
 void draft_keep_rim(const struct draft *draft, struct recolor *recolor); /* likewise: depth is lost */
 /* Hands it over to a store, with the frame's markers. */
 void draft_give(struct visibility_buffers *store, const struct frame_context *context, struct recolor *recolor, const struct frame *frame);
-/* Pixels and markers, if the store has such a picture. False: it has not. */
-bool draft_recolor(struct draft *draft, struct visibility_buffers *store, const struct frame_context *context, struct frame *frame);
+/* Pixels, markers and labels, if the store has such a picture. points: of its isolines. False: it has not. */
+bool draft_recolor(struct draft *draft, struct visibility_buffers *store, const struct frame_context *context,
+                   const struct isoline_points *points, struct frame *frame);
+/* Of the corners of a triangle (vertices of the file), planes over the picture: up to a factor, the parts that they have of a place. */
+void draft_weights(const struct draft_mesh *mesh, const uint32_t vertices[3], double weights[3][3]);
 void draft_outline(const struct draft *draft); /* of all that has a mark; depth is lost */
 
 #endif

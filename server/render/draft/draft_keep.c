@@ -31,10 +31,9 @@ static size_t mesh_of(const struct draft *draft, uint32_t id)
     return low;
 }
 
-/* Of a point on the triangle, as seen from the eye: x w, y w, w. */
-static void find_weights(struct spot *spot, const struct draft_mesh *mesh, const uint32_t vertices[3])
+void draft_weights(const struct draft_mesh *mesh, const uint32_t vertices[3], double weights[3][3])
 {
-    double at[3][3];
+    double at[3][3]; /* x w, y w, w */
     static const int rows[3] = { 0, 1, 3 };
     for (int i = 0; i < 3; i++) {
         const float *p = mesh->file->positions_m[vertices[i]];
@@ -46,7 +45,7 @@ static void find_weights(struct spot *spot, const struct draft_mesh *mesh, const
     for (int i = 0; i < 3; i++) {
         const double *q = at[(i + 1) % 3], *r = at[(i + 2) % 3];
         for (int c = 0; c < 3; c++)
-            spot->weights[i][c] = q[(c + 1) % 3] * r[(c + 2) % 3] - q[(c + 2) % 3] * r[(c + 1) % 3];
+            weights[i][c] = q[(c + 1) % 3] * r[(c + 2) % 3] - q[(c + 2) % 3] * r[(c + 1) % 3];
     }
 }
 
@@ -66,7 +65,7 @@ static void find_spot(const struct keeping *keeping, struct recolor_band *band, 
     }
     spot->id = id;
     spot->number = recolor_triangle(band, of_picture);
-    find_weights(spot, mesh, vertices);
+    draft_weights(mesh, vertices, spot->weights);
 }
 
 static uint32_t weights_at(const struct spot *spot, double x, double y)
@@ -162,16 +161,20 @@ void draft_give(struct visibility_buffers *store, const struct frame_context *co
     visibility_buffers_give(store, content_shape_hash(context), recolor, recolor_bytes(recolor), forget);
 }
 
-bool draft_recolor(struct draft *draft, struct visibility_buffers *store, const struct frame_context *context, struct frame *frame)
+bool draft_recolor(struct draft *draft, struct visibility_buffers *store, const struct frame_context *context,
+                   const struct isoline_points *points, struct frame *frame)
 {
     struct recolor *recolor = visibility_buffers_find(store, content_shape_hash(context));
     struct frame_uniforms block;
-    if (!recolor)
+    if (!recolor || (context->colormap.lines && !recolor->lined))
         return false;
     frame_uniforms_fill(&block, context);
-    draft_read_palette(draft, &context->colormap);
+    draft_read_palette(draft, &context->colormap, context->view->look == LOOK_GLOSSY);
     recolor_read(recolor, context, draft->workers);
-    recolor_draw(recolor, draft->colormap, block.scale[3], draft->workers, 0, recolor->band_count, frame);
+    recolor_draw(recolor, draft->colormap, &(struct recolor_lines){ block.lines[0], draft->lines }, block.scale[3], draft->workers, 0,
+                 recolor->band_count, frame);
+    if (context->colormap.lines)
+        isolines_find(context, points, recolor->depth, (size_t)recolor->width_px, frame);
     frame->markers = mem_array(recolor->marker_count, sizeof(*frame->markers));
     frame->marker_count = recolor->marker_count;
     memcpy(frame->markers, recolor->markers, recolor->marker_count * sizeof(*recolor->markers));

@@ -31,10 +31,13 @@ bool draft_read_textures(struct draft *draft, const struct sky *sky)
             draft->has_holes |= gpu_scene->models[m].materials[i].masked;
     }
     draft->ramp_count = rows;
-    draft->ramps = mem_array(rows * RAMP_STEPS, sizeof(*draft->ramps));
-    for (size_t m = 0; m < gpu_scene->model_count; m++)
-        read_colors(gpu_scene->models[m].ramps, draft->ramps + (size_t)draft->ramp_of_model[m] * RAMP_STEPS,
-                    gpu_scene->models[m].material_count * RAMP_STEPS);
+    draft->muted_ramps = mem_array(rows * RAMP_STEPS, sizeof(*draft->muted_ramps));
+    draft->own_ramps = mem_array(rows * RAMP_STEPS, sizeof(*draft->own_ramps));
+    for (size_t m = 0; m < gpu_scene->model_count; m++) {
+        size_t first = (size_t)draft->ramp_of_model[m] * RAMP_STEPS, texels = gpu_scene->models[m].material_count * RAMP_STEPS;
+        read_colors(gpu_scene->models[m].ramps, draft->muted_ramps + first, texels);
+        read_colors(gpu_scene->models[m].own_ramps, draft->own_ramps + first, texels);
+    }
     draft->colormap = mem_array(COLORMAP_ROWS * COLORMAP_COLUMNS, sizeof(*draft->colormap));
     draft->lines = mem_array(COLORMAP_PLACES, sizeof(*draft->lines));
     draft->backdrops = mem_array(backdrops, sizeof(*draft->backdrops));
@@ -42,14 +45,59 @@ bool draft_read_textures(struct draft *draft, const struct sky *sky)
     return glGetError() == GL_NO_ERROR;
 }
 
-void draft_read_palette(struct draft *draft, const struct shaded_colormap *colormap)
+static double linear_from_srgb(double c)
 {
-    if (draft->palette_version == colormap->version)
+    return c <= 0.04045 ? c / 12.92 : pow((c + 0.055) / 1.055, 2.4);
+}
+
+static double srgb_from_linear(double c)
+{
+    c = fmin(fmax(c, 0), 1);
+    return c <= 0.0031308 ? c * 12.92 : 1.055 * pow(c, 1 / 2.4) - 0.055;
+}
+
+/* As tone_map in shaders/light.glsl. */
+static void tone_map(double c[3])
+{
+    const double start = 0.8 - 0.04, desaturation = 0.15, d = 1 - start;
+    double x = fmin(c[0], fmin(c[1], c[2])), off = x < 0.08 ? x - 6.25 * x * x : 0.04;
+    for (int i = 0; i < 3; i++)
+        c[i] -= off;
+    double peak = fmax(c[0], fmax(c[1], c[2])), rolled = 1 - d * d / (peak + d - start);
+    double part = 1 - 1 / (desaturation * (peak - rolled) + 1);
+    for (int i = 0; i < 3 && peak >= start; i++)
+        c[i] = c[i] * rolled / peak + (rolled - c[i] * rolled / peak) * part;
+}
+
+/* The colours that the middle row has, in each step of light: GLOSSY in shaders/preview.frag. */
+static void make_glossy(uint32_t *colormap)
+{
+    for (int column = 0; column < COLORMAP_COLUMNS; column++) {
+        uint32_t color = colormap[COLORMAP_ROWS / 2 * COLORMAP_COLUMNS + column];
+        for (int row = 0; row < COLORMAP_ROWS; row++) {
+            double c[3];
+            for (int i = 0; i < 3; i++)
+                c[i] = linear_from_srgb((color >> (8 * i) & 0xff) / 255.0) * (0.22 + (double)row / (COLORMAP_ROWS - 1));
+            tone_map(c);
+            uint32_t out = 0xff000000;
+            for (int i = 0; i < 3; i++)
+                out |= (uint32_t)(255 * srgb_from_linear(c[i]) + 0.5) << (8 * i);
+            colormap[row * COLORMAP_COLUMNS + column] = out;
+        }
+    }
+}
+
+void draft_read_palette(struct draft *draft, const struct shaded_colormap *colormap, bool glossy)
+{
+    if (draft->palette_version == colormap->version && draft->palette_glossy == glossy)
         return;
     read_colors(colormap->colors, draft->colormap, COLORMAP_ROWS * COLORMAP_COLUMNS);
     if (colormap->lines)
         glGetTextureImage(colormap->lines, 0, GL_RED, GL_FLOAT, COLORMAP_PLACES * sizeof(*draft->lines), draft->lines);
     draft->palette_version = colormap->version;
+    draft->palette_glossy = glossy;
+    if (glossy)
+        make_glossy(draft->colormap);
 }
 
 /* --- light ------------------------------------------------------------------------------------------------------------------ */

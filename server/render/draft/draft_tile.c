@@ -7,7 +7,7 @@
 
 #include "base/mem.h"
 
-struct entry { /* of a tile's list */
+struct entry {      /* of a tile's list */
     uint64_t order; /* nearest first; then as found */
     uint32_t mesh, item;
 };
@@ -154,7 +154,7 @@ static int columns_of(const struct draft *draft)
     return (draft->pitch_px + TILE_WIDTH_PX - 1) / TILE_WIDTH_PX;
 }
 
-static void draw_tile(const struct draft *draft, int number, struct list *list)
+static void draw_tile(const struct draft *draft, int number, enum draft_output output, struct list *list)
 {
     struct draft_tile tile; /* not set to anything: corners and faces are large, and few are used */
     int left = number % columns_of(draft) * TILE_WIDTH_PX, top = number / columns_of(draft) * TILE_HEIGHT_PX;
@@ -169,7 +169,7 @@ static void draw_tile(const struct draft *draft, int number, struct list *list)
     fill_list(&tile, list);
     if (draft->counts_bodies)
         draw_caps(&tile, list);
-    for (size_t i = 0; i < list->count; i++) {
+    for (size_t i = 0; i < list->count && output != DRAFT_CAPS; i++) {
         const struct draft_found *found = &draft->found[list->entries[i].mesh];
         const struct draft_item *item = &found->items[list->entries[i].item];
         begin_part(&tile, found, item, draft->cut_count);
@@ -179,7 +179,7 @@ static void draw_tile(const struct draft *draft, int number, struct list *list)
 
 struct drawing {
     const struct draft *draft;
-    bool color;
+    enum draft_output output;
 };
 
 static void draw_tiles(void *arg, size_t begin, size_t end)
@@ -189,8 +189,8 @@ static void draw_tiles(void *arg, size_t begin, size_t end)
     struct list list = { 0 };
     for (size_t t = begin; t < end; t++) {
         list.count = 0;
-        draw_tile(draft, (int)t, &list);
-        if (drawing->color) {
+        draw_tile(draft, (int)t, drawing->output, &list);
+        if (drawing->output == DRAFT_COLORS) {
             int left = (int)t % columns_of(draft) * TILE_WIDTH_PX, top = (int)t / columns_of(draft) * TILE_HEIGHT_PX;
             int right = left + TILE_WIDTH_PX < draft->width_px ? left + TILE_WIDTH_PX : draft->width_px;
             int bottom = top + TILE_HEIGHT_PX < draft->height_px ? top + TILE_HEIGHT_PX : draft->height_px;
@@ -200,9 +200,9 @@ static void draw_tiles(void *arg, size_t begin, size_t end)
     mem_free(list.entries);
 }
 
-void draft_tiles(struct draft *draft, bool color)
+void draft_tiles(struct draft *draft, enum draft_output output)
 {
-    struct drawing drawing = { draft, color };
+    struct drawing drawing = { draft, output };
     int rows = (draft->height_px + TILE_HEIGHT_PX - 1) / TILE_HEIGHT_PX;
     workers_for(draft->workers, (size_t)(columns_of(draft) * rows), 1, draw_tiles, &drawing);
 }

@@ -64,6 +64,7 @@ static void destroy(struct plate **plate_ptr)
     mem_free(plate->normals);
     mem_free(plate->draws);
     mem_free(plate->attributes);
+    mem_free(plate->caps);
     mem_free(plate);
     *plate_ptr = NULL;
 }
@@ -124,9 +125,7 @@ void plates_rest(struct plates *plates)
 bool plates_can(const struct plates *plates, const struct frame_context *context)
 {
     const struct view *view = context->view;
-    double lines[VIEW_ALL_LINES];
-    if (view->tier != TIER_REFINED || view->look == LOOK_GLOSSY || view_lines(view, lines) > 0 || view_is_operator(view) ||
-        view->visibility.ghosts.count > 0 || view->visibility.clip.plane_count > 0 || context->reference)
+    if (view->tier != TIER_REFINED || view->look == LOOK_GLOSSY || context->reference)
         return false;
     for (size_t i = 0; i < context->visible_count; i++) {
         int asset = context->visible[i];
@@ -161,7 +160,9 @@ void plate_end(struct plates *plates, struct plate **plate_ptr)
         return;
     *plate_ptr = NULL;
     recolor_destroy(&plate->recolor);
-    plate->step = PLATE_COLLECT;
+    mem_free(plate->caps);
+    plate->caps = NULL;
+    plate->step = PLATE_CAPS;
     plate->at = 0;
     plate->failed = false;
     if (plates->spare)
@@ -211,12 +212,12 @@ static bool take_up(struct plate *plate, const struct frame_context *context, st
     if (!draft->light || !plate_read_light(plate->plates, context->light) ||
         !plate_read_surroundings(plate->plates, context->lit_by.environment))
         return false;
-    draft_read_palette(draft, &context->colormap);
+    draft_read_palette(draft, &context->colormap, false);
     frame_uniforms_fill(&draft->block, context);
     draft_aim_cuts(draft);
     draft->out = frame->bgrx;
     draft->out_stride_bytes = (size_t)frame->stride_bytes;
-    if (plate->step > PLATE_COLLECT && plate->step < PLATE_INK)
+    if (plate->step > PLATE_COLLECT && plate->step < PLATE_INK) /* those of its caps are gone by then */
         for (size_t m = 0; m < draft->mesh_count; m++)
             draft->meshes[m].baked = (const uint8_t(*)[4])draft->light->baked[draft->meshes[m].asset];
     return true;
@@ -250,7 +251,7 @@ static void note_meshes(struct plate *plate)
         const struct model *model = gpu_scene->of_asset[draft->meshes[draw->mesh].asset];
         bool field = draw->mark == MARK_FIELD;
         size_t row = draw->mark >> 16 & (MOST_RAMPS - 1), material = row - draft->ramp_of_model[model - gpu_scene->models];
-        plate->draws[d] = (struct plate_draw){ .mesh = draw->mesh, .field = field };
+        plate->draws[d] = (struct plate_draw){ .mesh = draw->mesh, .field = field, .cut = draft->meshes[draw->mesh].cut };
         if (!field)
             plate->draws[d].material = material_of(&model->file->view.materials[material]);
         draw->mark = (uint32_t)d;
@@ -264,7 +265,10 @@ static bool collect(struct plate *plate, const struct frame *frame, const struct
     draft->reach_px = 0.5f;
     if (!draft_make_room(draft, frame, PLATE_ROWS))
         return false;
+    draft_aim_cuts(draft);
     plate->recolor = recolor_create(frame->width_px, frame->height_px, PLATE_ROWS);
+    if (plate->recolor)
+        plate->recolor->lined = plate->context->colormap.lines != 0;
     if (!plate->recolor || !draft_collect(draft) || draft->chunk_count > ID_NOTHING >> ID_BITS)
         return false;
     note_meshes(plate);
@@ -275,6 +279,53 @@ static bool collect(struct plate *plate, const struct frame *frame, const struct
         plate->attribute_capacity = plate->attributes ? draft->vertex_capacity : 0;
     }
     return plate->attributes;
+}
+
+/* Which samples of each pixel a body that is cut open covers: those of one number, by a picture that is moved so far. */
+static bool find_caps(struct plate *plate, const struct frame *frame, size_t sample)
+{
+    struct draft *draft = plate->draft;
+    size_t pitch, rows = (size_t)frame->height_px;
+    memcpy(draft->shift_px, plate_samples[sample], sizeof(draft->shift_px));
+    bool good = draft_make_room(draft, frame, BAND_ROWS);
+    draft_aim_cuts(draft);
+    good = good && draft_find(draft);
+    memset(draft->shift_px, 0, sizeof(draft->shift_px));
+    if (!good)
+        return false;
+    pitch = (size_t)draft->pitch_px;
+    if (!plate->caps)
+        plate->caps = mem_try_array(pitch, rows);
+    if (!plate->caps)
+        return false;
+    draft_tiles(draft, DRAFT_CAPS);
+    for (size_t i = 0; i < pitch * rows; i++)
+        plate->caps[i] |= (uint8_t)((draft->marks[i] == MARK_CAP) << sample);
+    return true;
+}
+
+/* For labels of isolines. */
+static bool keep_depth(struct plate *plate)
+{
+    const struct draft *draft = plate->draft;
+    struct recolor *recolor = plate->recolor;
+    size_t row = (size_t)recolor->width_px;
+    if (!recolor->lined)
+        return true;
+    recolor->depth = mem_try_array(row * (size_t)recolor->height_px, sizeof(*recolor->depth));
+    for (size_t y = 0; y < (size_t)recolor->height_px && recolor->depth; y++)
+        memcpy(recolor->depth + y * row, draft->depth + y * (size_t)draft->pitch_px, row * sizeof(*recolor->depth));
+    return recolor->depth != NULL;
+}
+
+static bool find_ghosts(struct plate *plate, const struct frame *frame)
+{
+    struct draft *draft = plate->draft;
+    struct recolor *recolor = plate->recolor;
+    if (!draft_has_ghosts(draft))
+        return true;
+    recolor->veil = mem_try_array((size_t)recolor->width_px * (size_t)recolor->height_px, 1);
+    return recolor->veil && draft_make_room(draft, frame, BAND_ROWS) && draft_ghosts(draft, recolor->veil, recolor->veil_bgr);
 }
 
 static void place_mesh(const struct plate *plate, size_t m, size_t begin, size_t end)
@@ -352,7 +403,7 @@ static bool mark(struct plate *plate, const struct frame *frame)
     struct draft *draft = plate->draft;
     if (!draft_make_room(draft, frame, BAND_ROWS) || !draft_find_only(draft, plate->context->view->selected_asset))
         return false;
-    draft_tiles(draft, false);
+    draft_tiles(draft, DRAFT_DEPTH);
     return true;
 }
 
@@ -376,6 +427,15 @@ bool plate_step(struct plate *plate, const struct frame_context *context, const 
     if (!take_up(plate, context, frame))
         return complain(plate);
     switch (plate->step) {
+    case PLATE_CAPS:
+        if (context->view->visibility.clip.plane_count == 0)
+            break;
+        begin = plate->at++;
+        done = plate->at == SAMPLES;
+        if (!find_caps(plate, frame, begin))
+            return complain(plate);
+        plate->at %= SAMPLES;
+        break;
     case PLATE_COLLECT:
         if (!collect(plate, frame, light))
             return complain(plate);
@@ -403,6 +463,12 @@ bool plate_step(struct plate *plate, const struct frame_context *context, const 
         workers_for(workers, end - begin, 1, ink_some, &piece);
         if (done)
             markers_find(context, draft->depth, (size_t)draft->pitch_px, frame);
+        if (done && !keep_depth(plate))
+            return complain(plate);
+        break;
+    case PLATE_GHOSTS:
+        if (!find_ghosts(plate, frame))
+            return complain(plate);
         break;
     case PLATE_MARK:
         if (is_selected_shown(context) && !mark(plate, frame))
@@ -419,7 +485,8 @@ bool plate_step(struct plate *plate, const struct frame_context *context, const 
         break;
     case PLATE_COLOR:
         done = advance(plate, bands, BANDS, &begin, &end);
-        recolor_draw(plate->recolor, draft->colormap, draft->block.scale[3], workers, (int)begin, (int)(end - begin), frame);
+        recolor_draw(plate->recolor, draft->colormap, &(struct recolor_lines){ draft->block.lines[0], draft->lines }, draft->block.scale[3],
+                     workers, (int)begin, (int)(end - begin), frame);
         break;
     case PLATE_DONE: return true;
     }
@@ -430,22 +497,28 @@ bool plate_step(struct plate *plate, const struct frame_context *context, const 
 
 /* --- once more --------------------------------------------------------------------------------------------------------------- */
 
-bool plates_keep(struct plates *plates, struct plate *plate, const struct frame_context *context, const struct frame *frame)
+bool plates_keep(struct plates *plates, struct plate *plate, const struct frame_context *context, const struct isoline_points *points,
+                 struct frame *frame)
 {
     struct recolor *recolor = plate->recolor;
     if (plate->failed)
         return false;
     plate->recolor = NULL;
+    if (recolor->lined)
+        isolines_find(context, points, recolor->depth, (size_t)recolor->width_px, frame);
     draft_give(&plates->kept, context, recolor, frame);
     return true;
 }
 
 bool plates_know(struct plates *plates, const struct frame_context *context)
 {
-    return plates_can(plates, context) && visibility_buffers_find(&plates->kept, content_shape_hash(context));
+    double lines[VIEW_ALL_LINES];
+    const struct recolor *recolor =
+        plates_can(plates, context) ? visibility_buffers_find(&plates->kept, content_shape_hash(context)) : NULL;
+    return recolor && (recolor->lined || view_lines(context->view, lines) == 0);
 }
 
-bool plates_recolor(struct plates *plates, const struct frame_context *context, struct frame *frame)
+bool plates_recolor(struct plates *plates, const struct frame_context *context, const struct isoline_points *points, struct frame *frame)
 {
-    return plates_can(plates, context) && draft_recolor(plates->draft, &plates->kept, context, frame);
+    return plates_can(plates, context) && draft_recolor(plates->draft, &plates->kept, context, points, frame);
 }

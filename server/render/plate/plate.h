@@ -22,9 +22,10 @@ bool plates_can(const struct plates *plates, const struct frame_context *context
 struct plate *plate_begin(struct plates *plates);
 /* A bit of it. picture: the same at each step, with its light and colormap. True: nothing is left to do. */
 bool plate_step(struct plate *plate, const struct frame_context *context, const struct light *light, struct frame *frame);
-/* When nothing is left to do: keeps what it takes to colour the picture again. False: the picture failed, for want of memory, or the
-   GL context is lost; logged. */
-bool plates_keep(struct plates *plates, struct plate *plate, const struct frame_context *context, const struct frame *frame);
+/* When nothing is left to do: labels its isolines, whose points these are, and keeps what it takes to colour the picture again. False: the
+   picture failed, for want of memory, or the GL context is lost; logged. */
+bool plates_keep(struct plates *plates, struct plate *plate, const struct frame_context *context, const struct isoline_points *points,
+                 struct frame *frame);
 void plate_end(struct plates *plates, struct plate **plate); /* &NULL is fine; leaves NULL */
 
 void plates_bound(struct plates *plates, size_t bytes); /* of what is kept to colour pictures again */
@@ -36,7 +37,7 @@ void plates_rest(struct plates *plates);                /* all three */
 
 /* A picture that differs in values and colours only was drawn, and is kept. */
 bool plates_know(struct plates *plates, const struct frame_context *context);
-/* Colours it again: picture with its colormap. False: it is not kept. */
-bool plates_recolor(struct plates *plates, const struct frame_context *context, struct frame *frame);
+/* Colours it again: picture with its colormap, points of its isolines. False: it is not kept. */
+bool plates_recolor(struct plates *plates, const struct frame_context *context, const struct isoline_points *points, struct frame *frame);
 
 #endif

@@ -15,6 +15,7 @@ extern const float plate_samples[SAMPLES][2];
 /* Samples: number of the chunk and of the triangle in it. */
 enum { ID_BITS = 12 };
 #define ID_NOTHING 0xffffffffu
+#define ID_CAP 0xfffffffeu    /* a body that is cut open */
 #define MARK_BACK 0x80000000u /* | number of the draw; a triangle that looks away */
 
 enum { NORMAL_X, NORMAL_Y, NORMAL_Z, AMBIENT, OPEN, TINT }; /* of a vertex, in `lanes`: eight numbers */
@@ -23,7 +24,7 @@ enum { BASE, METALLIC = 3, ROUGHNESS, EMISSIVE };           /* of a material, li
 struct plate_draw {
     lanes material;
     uint32_t mesh;
-    bool field;
+    bool field, cut; /* cut: triangles that look away show the inner side */
 };
 
 struct plate_light { /* what drafts do not have of it */
@@ -57,11 +58,13 @@ struct plate {
     struct plates *plates;
     struct draft *draft; /* vertices, triangles, depth */
     enum {
+        PLATE_CAPS,
         PLATE_COLLECT,
         PLATE_PLACE,
         PLATE_SORT,
         PLATE_SHADE,
         PLATE_INK,
+        PLATE_GHOSTS,
         PLATE_MARK,
         PLATE_RIM,
         PLATE_SETTLE,
@@ -74,6 +77,7 @@ struct plate {
     struct plate_draw *draws;
     lanes *attributes; /* per vertex */
     size_t mesh_capacity, draw_capacity, attribute_capacity;
+    uint8_t *caps; /* per pixel, rows of pitch_px: a bit for each sample. NULL: nothing is cut */
     struct recolor *recolor;
     /* --- of the picture, worked out anew at each step */
     const struct frame_context *context;

@@ -10,6 +10,22 @@ static uint32_t pack_weights(float w1, float w2)
     return (uint32_t)(w1 * 65535 + 0.5f) | (uint32_t)(w2 * 65535 + 0.5f) << 16;
 }
 
+/* In the band. */
+static uint32_t number_triangle(const struct plate *plate, struct recolor_band *band, const struct item *item, const uint32_t vertices[3])
+{
+    size_t before = band->triangle_count;
+    uint32_t number = recolor_triangle(band, vertices);
+    if (!plate->recolor->lined || band->triangle_count == before)
+        return number;
+    const struct plate_draw *draw = &plate->draws[plate_triangle(plate->draft, item->id)->mark & ~MARK_BACK];
+    const struct draft_mesh *mesh = &plate->draft->meshes[draw->mesh];
+    double weights[3][3];
+    uint32_t first = mesh->first_vertex, of_file[3] = { vertices[0] - first, vertices[1] - first, vertices[2] - first };
+    draft_weights(mesh, of_file, weights);
+    recolor_add_slopes(band, weights);
+    return number;
+}
+
 DRAFT_KERNEL void plate_shade_field(const struct plate *plate, struct recolor_band *band, const struct item *items, size_t count,
                                     const struct shaded_items *out)
 {
@@ -25,7 +41,7 @@ DRAFT_KERNEL void plate_shade_field(const struct plate *plate, struct recolor_ba
         lanes light = lanes_clamp(0.52f * spot.attributes[AMBIENT] + 0.48f * sun, 0, 1);
         lanes_int row = lanes_whole(lanes_clamp(light * shade[0] + shade[1], 0, shade[2]));
         for (size_t i = 0; i < some; i++) {
-            out->triangles[first + i] = recolor_triangle(band, spot.vertices[i]);
+            out->triangles[first + i] = number_triangle(plate, band, &items[first + i], spot.vertices[i]);
             out->weights[first + i] = pack_weights(spot.weights[1][i], spot.weights[2][i]);
             out->rows[first + i] = (uint8_t)row[i];
         }

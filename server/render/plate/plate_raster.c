@@ -152,6 +152,23 @@ static void clear(const struct samples *samples, size_t pixels)
     }
 }
 
+/* They hide what is behind them. */
+static void draw_caps(const struct plate *plate, const struct band *band)
+{
+    for (int row = band->top_px; row <= band->bottom_px; row++) {
+        const uint8_t *caps = plate->caps + (size_t)row * (size_t)band->pitch_px;
+        size_t start = (size_t)(row - band->top_px) * (size_t)band->pitch_px;
+        for (int column = 0; column < plate->draft->width_px; column++)
+            for (int s = 0; s < SAMPLES && caps[column]; s++) {
+                float x = (float)column + 0.5f + plate_samples[s][0], y = (float)row + 0.5f + plate_samples[s][1];
+                if (!(caps[column] >> s & 1))
+                    continue;
+                band->samples->depth[s][start + (size_t)column] = draft_entry_depth(plate->draft, x, y);
+                band->samples->ids[s][start + (size_t)column] = ID_CAP;
+            }
+    }
+}
+
 DRAFT_KERNEL void plate_raster_band(const struct plate *plate, int number, const struct samples *samples)
 {
     const struct draft *draft = plate->draft;
@@ -164,6 +181,8 @@ DRAFT_KERNEL void plate_raster_band(const struct plate *plate, int number, const
         .tile_count = (draft->pitch_px + TILE_PX - 1) / TILE_PX,
     };
     clear(samples, (size_t)(band.bottom_px - band.top_px + 1) * (size_t)draft->pitch_px);
+    if (plate->caps)
+        draw_caps(plate, &band);
     for (size_t c = 0; c < draft->chunk_count; c++) {
         const struct draft_chunk *chunk = &draft->chunks[c];
         for (uint32_t i = chunk->starts[number]; i < chunk->starts[number + 1]; i++) {

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "base/mem.h"
+#include "render/draft/draft_section.h"
 #include "render/plate/plate_impl.h"
 
 struct group { /* samples of a pixel that show one surface */
@@ -14,7 +15,7 @@ struct group { /* samples of a pixel that show one surface */
 
 struct mixed { /* a pixel with several surfaces: its items in the row */
     int column;
-    uint8_t sky, field_count, surface_count;
+    uint8_t sky, cap, field_count, surface_count;
     uint32_t first_field, first_surface;
 };
 
@@ -22,9 +23,10 @@ struct row { /* of pixels; all arrays hold SAMPLES for each */
     struct item *field, *surfaces;
     int *field_columns, *surface_columns; /* of pixels that show nothing else; -1: of a mixed one */
     struct mixed *mixed;
-    uint8_t *sky; /* per pixel: some of it is seen */
+    uint8_t *sky;  /* per pixel: some of it is seen */
+    uint8_t *caps; /* per pixel: all samples show one */
     size_t field_count, surface_count, mixed_count;
-    bool any_sky;
+    bool any_sky, any_cap;
     uint32_t *triangles, *weights, *colors, *sky_colors;
     uint8_t *rows;
     void *memory;
@@ -34,7 +36,7 @@ static bool row_init(struct row *row, int pitch_px)
 {
     size_t pixels = (size_t)pitch_px, most = pixels * SAMPLES;
     size_t bytes = most * (2 * sizeof(struct item) + 2 * sizeof(int) + 3 * sizeof(uint32_t) + 1) +
-                   pixels * (sizeof(struct mixed) + 1 + sizeof(uint32_t)) + 64;
+                   pixels * (sizeof(struct mixed) + 2 + sizeof(uint32_t)) + 64;
     *row = (struct row){ .memory = mem_try_array(bytes, 1) };
     uint8_t *at = row->memory;
     if (!at)
@@ -51,6 +53,7 @@ static bool row_init(struct row *row, int pitch_px)
     TAKE(sky_colors, pixels);
     TAKE(rows, most);
     TAKE(sky, pixels);
+    TAKE(caps, pixels);
 #undef TAKE
     return true;
 }
@@ -70,7 +73,7 @@ static int group_samples(const struct draft *draft, const struct samples *sample
     for (int s = 0; s < SAMPLES; s++) {
         uint32_t id = samples->ids[s][at];
         int g = 0;
-        if (id == ID_NOTHING)
+        if (id == ID_NOTHING || id == ID_CAP)
             continue;
         while (g < count && groups[g].id != id && !share_edge(draft, groups[g].id, id))
             g++;
@@ -86,7 +89,9 @@ static int group_samples(const struct draft *draft, const struct samples *sample
 static void add_item(const struct plate *plate, struct row *row, const struct item *item, int column)
 {
     const struct draft_triangle *triangle = plate_triangle(plate->draft, item->id);
-    if (plate->draws[triangle->mark & ~MARK_BACK].field) {
+    const struct plate_draw *draw = &plate->draws[triangle->mark & ~MARK_BACK];
+    bool inside = draw->cut && triangle->mark & MARK_BACK;
+    if (draw->field && !inside) {
         row->field_columns[row->field_count] = column;
         row->field[row->field_count++] = *item;
     } else {
@@ -115,7 +120,9 @@ static void add_mixed(const struct plate *plate, struct row *row, const struct s
     }
     mixed->field_count = (uint8_t)(row->field_count - mixed->first_field);
     mixed->surface_count = (uint8_t)(row->surface_count - mixed->first_surface);
-    mixed->sky = (uint8_t)(SAMPLES - covered);
+    for (int s = 0; s < SAMPLES; s++)
+        mixed->cap += samples->ids[s][at] == ID_CAP;
+    mixed->sky = (uint8_t)(SAMPLES - covered - mixed->cap);
     row->sky[column] = mixed->sky > 0;
     row->any_sky |= mixed->sky > 0;
 }
@@ -123,14 +130,18 @@ static void add_mixed(const struct plate *plate, struct row *row, const struct s
 static void sort_row(const struct plate *plate, struct row *row, const struct samples *samples, size_t start, int y)
 {
     row->field_count = row->surface_count = row->mixed_count = 0;
-    row->any_sky = false;
+    row->any_sky = row->any_cap = false;
     memset(row->sky, 0, (size_t)plate->draft->pitch_px);
+    memset(row->caps, 0, (size_t)plate->draft->pitch_px);
     for (int column = 0; column < plate->draft->width_px; column++) {
         size_t at = start + (size_t)column;
         uint32_t first = samples->ids[0][at];
         bool alike = first == samples->ids[1][at] && first == samples->ids[2][at] && first == samples->ids[3][at];
         if (!alike) {
             add_mixed(plate, row, samples, at, column, y);
+        } else if (first == ID_CAP) {
+            row->caps[column] = 1;
+            row->any_cap = true;
         } else if (first == ID_NOTHING) {
             row->sky[column] = 1;
             row->any_sky = true;
@@ -146,7 +157,12 @@ static void add_color(struct recolor_mixed *mixed, uint32_t color, unsigned shar
     mixed->green = (uint16_t)(mixed->green + (color >> 8 & 0xff) * share);
 }
 
-static uint32_t keep_mixed(struct recolor_band *band, const struct row *row, const struct mixed *from, int y)
+static uint32_t cap_at(const struct plate *plate, int column, int y)
+{
+    return (uint32_t)cap_color((lanes){ 0 } + ((float)column + 0.5f), (float)y + 0.5f, plate->draft->block.scale[3])[0];
+}
+
+static uint32_t keep_mixed(const struct plate *plate, struct recolor_band *band, const struct row *row, const struct mixed *from, int y)
 {
     struct recolor_mixed mixed = {
         .part_count = from->field_count,
@@ -156,6 +172,8 @@ static uint32_t keep_mixed(struct recolor_band *band, const struct row *row, con
     };
     if (from->sky)
         add_color(&mixed, row->sky_colors[from->column], from->sky);
+    if (from->cap)
+        add_color(&mixed, cap_at(plate, from->column, y), from->cap);
     for (uint32_t i = from->first_surface; i < from->first_surface + from->surface_count; i++)
         add_color(&mixed, row->colors[i], row->surfaces[i].share);
     if (mixed.part_count == 0)
@@ -177,6 +195,9 @@ static void keep_row(const struct plate *plate, struct recolor_band *band, const
     for (int column = 0; column < recolor->width_px && row->any_sky; column++)
         if (row->sky[column])
             surfaces[column] = RECOLOR_FIXED | row->sky_colors[column];
+    for (int column = 0; column < recolor->width_px && row->any_cap; column++)
+        if (row->caps[column])
+            surfaces[column] = RECOLOR_FIXED | cap_at(plate, column, y);
     for (size_t i = 0; i < row->surface_count; i++)
         if (row->surface_columns[i] >= 0)
             surfaces[row->surface_columns[i]] = RECOLOR_FIXED | row->colors[i];
@@ -189,7 +210,7 @@ static void keep_row(const struct plate *plate, struct recolor_band *band, const
         recolor->rows[start + (size_t)column] = row->rows[i];
     }
     for (size_t i = 0; i < row->mixed_count; i++)
-        surfaces[row->mixed[i].column] = keep_mixed(band, row, &row->mixed[i], y);
+        surfaces[row->mixed[i].column] = keep_mixed(plate, band, row, &row->mixed[i], y);
 }
 
 static void shade_rows(const struct plate *plate, int number, const struct samples *samples, struct row *row)

@@ -19,6 +19,7 @@ struct spot {            /* eight of them */
     lanes weights[3];
     uint32_t vertices[LANES][3];
     lanes_int back; /* -1: looks away */
+    lanes_int cut;  /* with the material: -1: what looks away shows the inner side of what is cut */
     vec normal;
 };
 
@@ -200,8 +201,10 @@ DRAFT_INLINE void look(const struct plate *plate, const struct item *items, size
         spot->y[i] = item->y;
         uint32_t mark = plate_triangle(plate->draft, item->id)->mark;
         spot->back[i] = mark & MARK_BACK ? -1 : 0;
-        if (with_material)
+        if (with_material) {
             memcpy(materials[i], &plate->draws[mark & ~MARK_BACK].material, sizeof(lanes));
+            spot->cut[i] = plate->draws[mark & ~MARK_BACK].cut ? -1 : 0;
+        }
     }
     weigh(spot, &corners);
     for (int i = 0; i < LANES; i++) {

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Light on surfaces without a field, eight at a time: shaders/refined.frag, light.glsl, pbr.glsl and environment.glsl once more. */
+#include "render/draft/draft_section.h"
 #include "render/plate/plate_spot.h"
 
 static const float OPEN_BEHIND = 0.7f; /* as in shaders/refined.frag */
@@ -196,6 +197,11 @@ DRAFT_KERNEL void plate_shade_surfaces(const struct plate *plate, const struct i
         c = greys ? grey(grey_of(c)) : c;
         lanes_int red = lanes_whole(c.x * 255.0f + 0.5f), green = lanes_whole(c.y * 255.0f + 0.5f);
         lanes_int packed = lanes_whole(c.z * 255.0f + 0.5f) | green << 8 | red << 16;
+        if (lanes_any(spot.back & spot.cut)) {
+            lanes_int inside = inside_color((lanes[3]){ v.x, v.y, v.z }, (lanes[3]){ spot.normal.x, spot.normal.y, spot.normal.z },
+                                            plate->draft->block.up);
+            packed = lanes_choose_int(spot.back & spot.cut, inside, packed);
+        }
         for (size_t i = 0; i < some; i++)
             colors[first + i] = (uint32_t)packed[i];
     }

@@ -1,0 +1,82 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Assets that are only hinted at: lines where their depth breaks or bends, and thin level ones: shaders/ghost.frag once more. */
+#include <math.h>
+#include <string.h>
+
+#include "base/mem.h"
+#include "render/draft/draft_impl.h"
+
+static const uint8_t ghost_bgr[2][3] = { { 84, 66, 51 }, { 184, 163, 143 } }; /* by backdrop: light, dark */
+enum { LEVEL_PX = 10 };
+
+struct hinting {
+    const struct draft *draft;
+    const float *ghosts; /* their depth */
+    uint8_t *veil;
+};
+
+static float at(const struct hinting *hinting, int x, int y)
+{
+    const struct draft *draft = hinting->draft;
+    x = x < 0 ? 0 : x < draft->width_px ? x : draft->width_px - 1;
+    y = y < 0 ? 0 : y < draft->height_px ? y : draft->height_px - 1;
+    return hinting->ghosts[(size_t)y * (size_t)draft->pitch_px + (size_t)x];
+}
+
+static float smooth_step(float low, float high, float x)
+{
+    float t = fminf(fmaxf((x - low) / (high - low), 0), 1);
+    return t * t * (3 - 2 * t);
+}
+
+static float line_at(const struct hinting *hinting, int x, int y, float here)
+{
+    float orthographic = hinting->draft->block.back[3], scale = orthographic > 0 ? orthographic : 1 / here, falls = 0, bends = 0;
+    for (int axis = 0; axis < 2; axis++) {
+        float a = at(hinting, x - !axis, y - axis), b = at(hinting, x + !axis, y + axis);
+        falls = fmaxf(falls, (here - fminf(a, b) - fmaxf(fmaxf(a, b) - here, 0)) * scale);
+        bends = fmaxf(bends, fabsf(a + b - 2 * here) * scale);
+    }
+    float line = fmaxf(0.9f * smooth_step(0.004f, 0.012f, falls), 0.55f * smooth_step(0.0003f, 0.0009f, bends));
+    bool level = y % LEVEL_PX == 0;
+    return line < 0.05f && !level ? 0 : fmaxf(line, level ? 0.4f : 0);
+}
+
+static void hint_rows(void *arg, size_t begin, size_t end)
+{
+    const struct hinting *hinting = arg;
+    const struct draft *draft = hinting->draft;
+    for (size_t y = begin; y < end; y++) {
+        const float *ghosts = hinting->ghosts + y * (size_t)draft->pitch_px, *depth = draft->depth + y * (size_t)draft->pitch_px;
+        uint8_t *veil = hinting->veil + y * (size_t)draft->width_px;
+        for (int x = 0; x < draft->width_px; x++)
+            veil[x] = ghosts[x] > 0 && ghosts[x] >= depth[x] ? (uint8_t)(255 * line_at(hinting, x, (int)y, ghosts[x]) + 0.5f) : 0;
+    }
+}
+
+bool draft_ghosts(struct draft *draft, uint8_t *veil, uint8_t bgr[3])
+{
+    float *depth = draft->depth, *ghosts = mem_try_array((size_t)draft->pitch_px * (size_t)draft->height_px, sizeof(*ghosts));
+    if (!ghosts || !draft_find_ghosts(draft)) {
+        mem_free(ghosts);
+        return false;
+    }
+    draft->depth = ghosts;
+    draft_tiles(draft, DRAFT_DEPTH);
+    draft->depth = depth;
+    struct hinting hinting = { draft, ghosts, veil };
+    workers_for(draft->workers, (size_t)draft->height_px, 16, hint_rows, &hinting);
+    memcpy(bgr, ghost_bgr[draft->context->view->dark], 3);
+    mem_free(ghosts);
+    return true;
+}
+
+void draft_paint_ghosts(const struct draft *draft, const uint8_t *veil, const uint8_t bgr[3])
+{
+    for (int y = 0; y < draft->height_px; y++) {
+        uint8_t *out = draft->out + (size_t)y * draft->out_stride_bytes;
+        for (int x = 0; x < draft->width_px; x++, veil++)
+            for (int c = 0; c < 3 && *veil; c++)
+                out[4 * x + c] = (uint8_t)(out[4 * x + c] + (bgr[c] - out[4 * x + c]) * *veil / 255.0 + 0.5);
+    }
+}
