@@ -7,6 +7,7 @@
 #include "base/mem.h"
 #include "scene/far_sensors.h"
 #include "field/colormap.h"
+#include "scene/scene_create.h"
 
 /* --- what lies on disk ----------------------------------------------------------------------------------------------------- */
 

@@ -7,7 +7,7 @@
 #include "history/historian.h"
 #include "net/net.h"
 #include "placing/placing.h"
-#include "server.h"
+#include "server_params.h"
 #include "value/derived.h"
 #include "value/source.h"
 

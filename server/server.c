@@ -21,6 +21,7 @@
 #include "plant_runtime.h"
 #include "reload.h"
 #include "plant/model_check.h"
+#include "scene/scene_create.h"
 #include "value/read_plan_text.h"
 #include "value/series_check.h"
 #include "version.h"

@@ -2,27 +2,7 @@
 /* The daemon as a whole: builds the layers in order, serves, takes them down again. */
 #ifndef SERVER_SERVER_H
 #define SERVER_SERVER_H
-#include "base/log.h"
-#include "gpu/gl.h"
-#include "access/access.h"
-
-struct server_params {
-    const char *plant_path;
-    const char *address; /* to listen on; numeric */
-    int port;            /* 0: any that is free */
-    enum gl_kind gl;
-    struct gl_device gl_device;
-    bool has_gl_device;
-    const char *prepared; /* NULL: beside the plant file */
-    const char *history;  /* NULL: as the plant file says */
-    const char *web;      /* NULL: found from where the program is */
-    enum log_level log_level;
-    const char *h264;    /* an encoder of libavcodec, or "off"; NULL: the usual one */
-    size_t memory_bytes; /* 0: what suits the machine */
-    int threads;         /* workers; 0: one per core */
-    struct access_params access;
-    bool per_fragment; /* the field anew at each fragment; for comparison */
-};
+#include "server_params.h"
 
 /* They return the exit code: 0 good, 1 anything wrong, said on stderr. */
 int server_run(const struct server_params *params);       /* until SIGINT or SIGTERM */

@@ -17,6 +17,7 @@
 #include "message/view_query.h"
 #include "plant/image_ramp.h"
 #include "render/overlay/overlay.h"
+#include "scene/scene_create.h"
 #include "value/alarm.h"
 #include "values.h"
 

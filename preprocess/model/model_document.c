@@ -253,7 +253,7 @@ bool model_document_open(struct model_document *document, const struct model_sou
 {
     struct document_work work = { .source = source, .document = document, .why = why };
     *document = (struct model_document){ 0 };
-    work.root = model_json_load(source, &work.binary, why);
+    work.root = model_json_load((struct model_bytes){ source->bytes, source->size }, &work.binary, why);
     bool good = work.root && make_plain(&work);
     json_decref(work.root);
     if (!good)

@@ -11,16 +11,16 @@ static uint32_t read_u32(const unsigned char *at)
     return (uint32_t)at[0] | (uint32_t)at[1] << 8 | (uint32_t)at[2] << 16 | (uint32_t)at[3] << 24;
 }
 
-static bool glb_good(const struct model_source *source, struct model_bytes *json, struct model_bytes *binary, char *why)
+static bool glb_good(struct model_bytes file, struct model_bytes *json, struct model_bytes *binary, char *why)
 {
-    const unsigned char *b = source->bytes;
-    if (source->size < 20)
-        return wrong(why, "truncated GLB: %zu bytes", source->size);
+    const unsigned char *b = file.at;
+    if (file.size < 20)
+        return wrong(why, "truncated GLB: %zu bytes", file.size);
     uint32_t size = read_u32(b + 8), json_bytes = read_u32(b + 12);
     if (read_u32(b + 4) != 2)
         return wrong(why, "GLB version %u, expected 2", read_u32(b + 4));
-    if (size > source->size)
-        return wrong(why, "truncated GLB: %zu bytes of %u", source->size, size);
+    if (size > file.size)
+        return wrong(why, "truncated GLB: %zu bytes of %u", file.size, size);
     if (size < 20 || memcmp(b + 16, "JSON", 4) != 0 || json_bytes > size - 20)
         return wrong(why, "GLB: the first chunk is not JSON, or is cut off");
     *json = (struct model_bytes){ b + 20, json_bytes };
@@ -60,13 +60,13 @@ static bool depth_good(struct model_bytes json, char *why)
     return true;
 }
 
-json_t *model_json_load(const struct model_source *source, struct model_bytes *binary, char why[MODEL_WHY_BYTES])
+json_t *model_json_load(struct model_bytes file, struct model_bytes *binary, char why[MODEL_WHY_BYTES])
 {
-    struct model_bytes json = { source->bytes, source->size };
+    struct model_bytes json = file;
     json_error_t error;
     *binary = (struct model_bytes){ 0 };
-    bool is_glb = source->size >= 4 && memcmp(source->bytes, "glTF", 4) == 0;
-    if (is_glb && !glb_good(source, &json, binary, why))
+    bool is_glb = file.size >= 4 && memcmp(file.at, "glTF", 4) == 0;
+    if (is_glb && !glb_good(file, &json, binary, why))
         return NULL;
     if (json.size >= 3 && memcmp(json.at, "\xEF\xBB\xBF", 3) == 0)
         json = (struct model_bytes){ json.at + 3, json.size - 3 };

@@ -3,16 +3,17 @@
 #ifndef PREPROCESS_MODEL_JSON_H
 #define PREPROCESS_MODEL_JSON_H
 #include <jansson.h>
+#include <stdint.h>
 
-#include "preprocess/model/model_source.h"
+#include "preprocess/model/refusal.h"
 
 struct model_bytes { /* in somebody else's memory */
     const unsigned char *at;
     size_t size;
 };
 
-/* An object, to be released with json_decref. binary->at is NULL where there is no binary chunk. NULL: why says what is wrong with the
-   chunks, the syntax, or the depth. */
-json_t *model_json_load(const struct model_source *source, struct model_bytes *binary, char why[MODEL_WHY_BYTES]);
+/* Parses the JSON of a model file and returns the object, to be released with json_decref(); *binary is the binary chunk, NULL if there is
+   none. Returns NULL if the chunks, the syntax or the depth are wrong, with the reason in why. */
+json_t *model_json_load(struct model_bytes file, struct model_bytes *binary, char why[MODEL_WHY_BYTES]);
 
 #endif

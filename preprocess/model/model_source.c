@@ -59,7 +59,7 @@ bool model_source_open(struct model_source *source, const char *path, char why[M
         wrong(why, "%s", strerror(errno));
         goto error;
     }
-    json_t *root = model_json_load(source, &binary, why);
+    json_t *root = model_json_load((struct model_bytes){ source->bytes, source->size }, &binary, why);
     bool good = root && hash_all(source, root, why);
     json_decref(root);
     if (!good)

@@ -11,8 +11,6 @@
 extern "C" {
 #endif
 
-#define MODEL_MAX_BYTES ((size_t)4 << 30)
-
 struct model_source {
     char *path, *folder; /* folder: as realpath names it */
     unsigned char *bytes;

@@ -9,7 +9,6 @@
 
 #include "base/mem.h"
 #include "base/text.h"
-#include "preprocess/model/model_source.h"
 
 /* --- files --------------------------------------------------------------------------------------------------------------- */
 

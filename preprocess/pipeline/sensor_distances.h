@@ -2,7 +2,9 @@
 /* The sensors of an asset on its surface, and how far they are from everywhere. */
 #ifndef PREPROCESS_PIPELINE_SENSOR_DISTANCES_H
 #define PREPROCESS_PIPELINE_SENSOR_DISTANCES_H
-#include "preprocess/pipeline/build.h"
+#include "base/log.h"
+#include "base/workers.h"
+#include "preprocess/pipeline/build_io.h"
 
 struct sensor_distances {
     struct surface *surface;

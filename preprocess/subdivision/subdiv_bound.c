@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "base/mem.h"
-#include "preprocess/subdivision/subdiv_impl.h"
+#include "preprocess/subdivision/subdivide_impl.h"
 
 #define SAMPLE_OF 8 /* blocks of triangles, of which one is taken: a power of 2 */
 #define BLOCK 8     /* triangles */

@@ -10,7 +10,7 @@
 #include "base/atomic_file.h"
 #include "base/mem.h"
 #include "preprocess/cache/folder.h"
-#include "preprocess/subdivision/subdiv_impl.h"
+#include "preprocess/subdivision/subdivide_impl.h"
 
 #define MAGIC "PLCSPLIT"
 #define MOST_CHANGES 16   /* sensors */

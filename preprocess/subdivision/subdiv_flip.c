@@ -5,7 +5,7 @@
 
 #include "base/mem.h"
 #include "base/vec.h"
-#include "preprocess/subdivision/subdiv_impl.h"
+#include "preprocess/subdivision/subdivide_impl.h"
 
 #define MOST_TURNS 4       /* in a row */
 #define FLAT_OF_ERROR 0.02 /* the surface may move so far, of the level's error */

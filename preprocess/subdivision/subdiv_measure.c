@@ -6,7 +6,7 @@
 
 #include "base/mem.h"
 #include "base/vec.h"
-#include "preprocess/subdivision/subdiv_impl.h"
+#include "preprocess/subdivision/subdivide_impl.h"
 #include "surface/mesh/bvh.h"
 
 #define PROBABLE 0.4  /* of an error that would matter: if an edge errs by less at its middle, it does so everywhere */

@@ -5,7 +5,7 @@
 
 #include "base/mem.h"
 #include "base/vec.h"
-#include "preprocess/subdivision/subdiv_impl.h"
+#include "preprocess/subdivision/subdivide_impl.h"
 #include "surface/mesh/bvh.h"
 
 #define ON_OF_SIZE 1e-5 /* a sensor as near to a vertex or an edge stands on it */

@@ -8,7 +8,7 @@
 
 #include "base/mem.h"
 #include "base/vec.h"
-#include "preprocess/subdivision/subdiv_impl.h"
+#include "preprocess/subdivision/subdivide_impl.h"
 
 #define MOST_ROUNDS 16
 #define GRAIN 2048          /* triangles: a few tenths of a millisecond */

@@ -56,6 +56,7 @@ static void state_remove(struct field *field, struct state **link)
     *link = state->next;
     weights_release(state);
     field->bytes -= state_bytes(state);
+    update_forget(state);
     state_destroy(&state);
 }
 

@@ -1,5 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What a session may choose: defaults from the group, overrides of single sensors, and the ranges. */
+#include "field/params.h"
+
 #include <math.h>
 #include <stddef.h>
 #include <stdlib.h>

@@ -8,8 +8,6 @@
 
 #include "base/mem.h"
 #include "field/limits.h"
-#include "field/scalars.h"
-#include "field/update.h"
 #include "value/quality.h"
 
 #define FLAG 255
@@ -37,7 +35,6 @@ void state_destroy(struct state **state_ptr)
     struct state *state = *state_ptr;
     if (!state)
         return;
-    update_forget(state);
     mem_free(state->at);
     mem_free(state->sums);
     mem_free(state->now);

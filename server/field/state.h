@@ -3,7 +3,9 @@
 #ifndef FIELD_STATE_H
 #define FIELD_STATE_H
 #include "base/workers.h"
+#include "field/scalars.h"
 #include "field/weights.h"
+#include "value/snapshot.h"
 
 struct update; /* update.h */
 
@@ -35,7 +37,7 @@ struct state {
 };
 
 struct state *state_create(int asset, struct layout *layout, const struct field_params *params); /* without room for vertices */
-void state_destroy(struct state **state); /* &NULL is fine; leaves NULL */
+void state_destroy(struct state **state); /* no update may be under way (update_forget()); &NULL is fine; leaves NULL */
 size_t state_bytes(const struct state *state);
 /* Room for the first `count` vertices: a far asset needs few of them. False: out of memory, nothing has changed. state_more_bytes: by how
    much state_bytes would grow. */

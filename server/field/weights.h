@@ -5,7 +5,7 @@
    different vertices at once. */
 #ifndef FIELD_WEIGHTS_H
 #define FIELD_WEIGHTS_H
-#include "field/field.h"
+#include "field/params.h"
 #include "field/kernels.h"
 #include "field/layout.h"
 

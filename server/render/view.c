@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What a session sees before it asks for anything. */
 #include "render/view.h"
+#include "scene/scene_create.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -4,7 +4,6 @@
 #define SCENE_SCENE_H
 #include <stddef.h>
 
-#include "base/log.h"
 #include "plant/plant.h"
 #include "scene/asset.h"
 #include "scene/camera.h"
@@ -36,13 +35,5 @@ struct scene {
     double (*extremes_m)[3]; /* outermost places of what a view of the whole has to hold: scene/extremes.h */
     size_t extreme_count;    /* 0: not known */
 };
-
-/* Opens the prepared files of the plant (folder: as plant_prepared_folder). Refuses files that do not fit the plant as it is
-   written now, naming asset and reason. An asset of which plantcast-prep says why it could not be prepared is missing, with a warning, and
-   the others are there. NULL on failure, everything wrong is logged. plant must outlive it. */
-struct scene *scene_create(struct log *log, const struct plant *plant, const char *prepared_folder);
-void scene_destroy(struct scene **scene);
-/* Where a client starts: the plant file's view, else the whole plant from a raised corner. */
-void scene_home(const struct scene *scene, double aspect, struct camera *camera);
 
 #endif

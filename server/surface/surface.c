@@ -14,7 +14,7 @@
 #include "surface/mesh/spatial_order.h"
 #include "surface/repair/parts.h"
 #include "surface/repair/repair.h"
-#include "surface/surface_state.h"
+#include "surface/surface_impl.h"
 #include "surface/mesh/decimate.h"
 
 #define WELD_OF_SIZE 1e-6 /* vertices this near are one: float positions are no finer */

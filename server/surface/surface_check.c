@@ -7,7 +7,7 @@
 #include "base/mem.h"
 #include "base/vec.h"
 #include "surface/geodesic/heat.h"
-#include "surface/surface_state.h"
+#include "surface/surface_impl.h"
 
 #define TIME_OF_SPACING 3.0 /* t in mean edge lengths squared */
 #define LONGEST_DECAY 500.0 /* the farthest point is no more than this many roots of t away, so that its heat is a number */

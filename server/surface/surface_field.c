@@ -6,7 +6,7 @@
 #include "base/mem.h"
 #include "base/simd.h"
 #include "base/vec.h"
-#include "surface/surface_state.h"
+#include "surface/surface_impl.h"
 
 #define BLOCK 16 /* sources walked one after another by one thread, then written side by side */
 

@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "base/vec.h"
-#include "surface/surface_state.h"
+#include "surface/surface_impl.h"
 
 #define SPOT_ON_SURFACE 1e-3 /* mean edges: nearer than that, a point lies on its triangle */
 #define ON_PIECE 1e-5        /* likewise: no nearer piece is looked for */

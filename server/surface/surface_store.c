@@ -3,7 +3,7 @@
 #include "surface/surface_store.h"
 
 #include "base/mem.h"
-#include "surface/surface_state.h"
+#include "surface/surface_impl.h"
 
 struct numbers {
     size_t vertex_count, visible_count, flips;

@@ -8,7 +8,7 @@
 
 #include "base/mem.h"
 #include "base/vec.h"
-#include "surface/surface_state.h"
+#include "surface/surface_impl.h"
 
 #define GRAIN 512
 #define ON_SURFACE 1e-3 /* mean edges: as near, a vertex lies on a face */

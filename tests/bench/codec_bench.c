@@ -12,6 +12,7 @@
 #include "deploy/demo/sim_values.h"
 #include "encode/encoder.h"
 #include "render/renderer.h"
+#include "scene/scene_create.h"
 #include "value/quality.h"
 
 #define DEMO "build/demo/plant.yaml"

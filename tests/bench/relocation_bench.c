@@ -8,7 +8,7 @@
 #include "base/clock.h"
 #include "base/mem.h"
 #include "scene/manifest.h"
-#include "scene/scene.h"
+#include "scene/scene_create.h"
 #include "surface/relocation.h"
 #include "tests/support/sleep.h"
 

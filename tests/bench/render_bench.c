@@ -9,6 +9,7 @@
 #include "base/clock.h"
 #include "base/mem.h"
 #include "render/renderer.h"
+#include "scene/scene_create.h"
 #include "value/quality.h"
 
 #define DEMO "build/demo/plant.yaml"

@@ -18,6 +18,7 @@
 
 #include "base/mem.h"
 #include "scene/framing.h"
+#include "scene/scene_create.h"
 #include "tests/support/rig.h"
 #include "tests/support/synthetic.h"
 #include "value/quality.h"

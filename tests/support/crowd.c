@@ -14,6 +14,7 @@
 #include "base/mem.h"
 #include "base/text.h"
 #include "preprocess/pipeline/prepare.h"
+#include "scene/scene_create.h"
 #include "tests/support/synthetic.h"
 #include "value/quality.h"
 

@@ -10,6 +10,7 @@
 #include <unistd.h>
 
 #include "base/mem.h"
+#include "scene/scene_create.h"
 #include "tests/support/synthetic.h"
 
 bool site_is_there(const char *model)

@@ -11,6 +11,7 @@
 
 #include <cmocka.h>
 
+#include "scene/scene_create.h"
 #include "tests/support/small_scene.h"
 
 /* The part of the picture, -1 to 1 each way, that a box takes. */

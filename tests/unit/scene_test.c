@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Scenes from real plant and asset files: everything in its place, and files of another plant refused with the reason. */
-#include "scene/scene.h"
+#include "scene/scene_create.h"
 
 #include <inttypes.h>
 #include <math.h>

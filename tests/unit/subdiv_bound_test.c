@@ -8,7 +8,7 @@
 #include <cmocka.h>
 
 #include "base/mem.h"
-#include "preprocess/subdivision/subdiv_impl.h"
+#include "preprocess/subdivision/subdivide_impl.h"
 #include "tests/support/cad.h"
 
 #define BLOCK 8u

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Shared by the files that make a surface and measure on it. */
-#ifndef SURFACE_SURFACE_STATE_H
-#define SURFACE_SURFACE_STATE_H
+#ifndef SURFACE_SURFACE_IMPL_H
+#define SURFACE_SURFACE_IMPL_H
 #include "surface/mesh/bvh.h"
 #include "surface/repair/repair.h"
 #include "surface/surface.h"

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Puts the prepared assets into the plant, after checking that they are of this plant. */
-#include "scene/scene.h"
+#include "scene/scene_create.h"
 
 #include <errno.h>
 #include <math.h>

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What the files of the splitting share. */
-#ifndef PREPROCESS_SUBDIVISION_SUBDIV_IMPL_H
-#define PREPROCESS_SUBDIVISION_SUBDIV_IMPL_H
+#ifndef PREPROCESS_SUBDIVISION_SUBDIVIDE_IMPL_H
+#define PREPROCESS_SUBDIVISION_SUBDIVIDE_IMPL_H
 #include "preprocess/subdivision/subdiv_mesh.h"
 #include "preprocess/subdivision/subdivide.h"
 

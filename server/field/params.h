@@ -1,0 +1,46 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The parameters of a field: what a session may choose of how it is computed, and what of it is shown. Thread: any. */
+#ifndef FIELD_PARAMS_H
+#define FIELD_PARAMS_H
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include "plant/plant.h"
+
+enum field_show { SHOW_VALUE, SHOW_DISTANCE, SHOW_DIFFERENCE, SHOW_OPERATOR };
+
+struct field_override { /* of one sensor, in place of what the tag list says */
+    int tag;
+    float strength, decay; /* FIELD_AS_CONFIGURED: not overridden */
+};
+#define FIELD_AS_CONFIGURED (-1.0f)
+enum { FIELD_OVERRIDES = 256 };
+
+/* What a session may choose. Compared byte for byte: zero-initialise, then field_params_default. */
+struct field_params {
+    int group;
+    enum field_show show;
+    int sensor;        /* tag whose distance is shown; -1: none */
+    uint32_t baseline; /* id of what the difference is from; 0: none */
+    uint32_t trial;    /* places of sensors that are tried out (field/trials.h); 0: none */
+    int slot;          /* of the instant that the readings are of (value/snapshot_cache.h): its fields are kept apart; 0: now */
+    enum interpolation interpolation;
+    enum distance_mode distance;
+    enum fill_mode fill;
+    double strength, decay; /* factors on each sensor's own; 1 = as configured */
+    double power;           /* shepard's p */
+    double radius_m;        /* paper's R; 0 = the largest distance on the asset over all its configured sensors */
+    double reach_m;         /* INFINITY: no limit */
+    size_t override_count;
+    struct field_override overrides[FIELD_OVERRIDES]; /* in order of tags; 0 beyond the count */
+};
+void field_params_default(const struct plant *plant, int group, struct field_params *params);
+bool field_params_equal(const struct field_params *a, const struct field_params *b);
+/* Ranges: 0 <= strength, decay <= 100; 0.5 <= power <= 16; radius 0 or 1e-3..1e6 m; reach > 0. NULL if good, else what is wrong. */
+const char *field_params_wrong(const struct plant *plant, const struct field_params *params);
+/* Sets (or, with both as configured, drops) the override of one sensor. False: there is no room. */
+bool field_params_override(struct field_params *params, struct field_override override);
+const struct field_override *field_params_override_of(const struct field_params *params, int tag); /* NULL: none */
+
+#endif

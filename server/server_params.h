@@ -1,0 +1,30 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What the command line of the daemon says. */
+#ifndef SERVER_SERVER_PARAMS_H
+#define SERVER_SERVER_PARAMS_H
+#include <stdbool.h>
+#include <stddef.h>
+
+#include "access/access.h"
+#include "base/log.h"
+#include "gpu/gl.h"
+
+struct server_params {
+    const char *plant_path;
+    const char *address; /* to listen on; numeric */
+    int port;            /* 0: any that is free */
+    enum gl_kind gl;
+    struct gl_device gl_device;
+    bool has_gl_device;
+    const char *prepared; /* NULL: beside the plant file */
+    const char *history;  /* NULL: as the plant file says */
+    const char *web;      /* NULL: found from where the program is */
+    enum log_level log_level;
+    const char *h264;    /* an encoder of libavcodec, or "off"; NULL: the usual one */
+    size_t memory_bytes; /* 0: what suits the machine */
+    int threads;         /* workers; 0: one per core */
+    struct access_params access;
+    bool per_fragment; /* the field anew at each fragment; for comparison */
+};
+
+#endif
