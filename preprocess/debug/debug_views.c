@@ -10,6 +10,7 @@
 #include "base/mem.h"
 #include "preprocess/debug/debug_view.h"
 #include "preprocess/pipeline/prepare.h"
+#include "preprocess/pipeline/sensor_distances.h"
 
 struct views {
     struct log *log;

@@ -12,6 +12,7 @@
 
 #include "base/mem.h"
 #include "preprocess/pipeline/prepare.h"
+#include "preprocess/pipeline/sensor_distances.h"
 
 #define MANIFEST_MAX_BYTES ((size_t)64 << 20)
 

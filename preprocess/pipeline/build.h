@@ -13,10 +13,6 @@
 bool build_asset(struct log *log, struct workers *workers, const struct build_input *input, struct build_output *output,
                  char why[MODEL_WHY_BYTES]);
 
-/* In the asset frame. False: why says that its node is not in the model, or not the only one. */
-bool build_sensor_place(const struct gltf_model *model, const struct geometry_params *geometry, const struct plant_sensor *sensor,
-                        double place_m[3], char why[MODEL_WHY_BYTES]);
-
 /* Of a model and the way in which an asset is cut out of it: where it is known, so is what comes out. */
 uint64_t build_recipe(uint64_t model_hash, const struct geometry_params *geometry);
 /* The key of all that no sensor has a part in. geometry_hash: what geometry_hash says. */

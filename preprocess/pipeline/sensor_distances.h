@@ -19,4 +19,8 @@ bool sensor_distances_find(struct sensor_distances *measured, struct log *log, s
                            const struct geometry *geometry, struct build_output *output, char why[MODEL_WHY_BYTES]);
 void sensor_distances_finish(struct sensor_distances *measured);
 
+/* Finds the place of a sensor in the asset frame. Returns false if its node is not in the model, or not unique, with the reason in why. */
+bool build_sensor_place(const struct gltf_model *model, const struct geometry_params *geometry, const struct plant_sensor *sensor,
+                        double place_m[3], char why[MODEL_WHY_BYTES]);
+
 #endif

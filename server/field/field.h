@@ -35,10 +35,6 @@
 #include "value/baselines.h"
 #include "value/snapshot.h"
 
-/* The values that the colour map spans when nobody says otherwise: the group's MIN and MAX; 0 to the largest distance, rounded up; a
-   quarter of the range below and above 0; all places between limits. */
-void field_default_range(const struct scene *scene, const struct field_params *params, double *min, double *max);
-
 struct field;
 struct field *field_create(struct workers *workers, const struct scene *scene); /* both must outlive it */
 void field_destroy(struct field **field);                                       /* &NULL is fine; leaves NULL */

@@ -7,7 +7,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "field/field.h"
 #include "field/kernels.h"
 #include "field/limits.h"
 

@@ -7,6 +7,7 @@
 #include <stdint.h>
 
 #include "plant/plant.h"
+#include "scene/scene.h"
 
 enum field_show { SHOW_VALUE, SHOW_DISTANCE, SHOW_DIFFERENCE, SHOW_OPERATOR };
 
@@ -42,5 +43,8 @@ const char *field_params_wrong(const struct plant *plant, const struct field_par
 /* Sets (or, with both as configured, drops) the override of one sensor. False: there is no room. */
 bool field_params_override(struct field_params *params, struct field_override override);
 const struct field_override *field_params_override_of(const struct field_params *params, int tag); /* NULL: none */
+/* The values that the colour map spans when nobody says otherwise: the group's MIN and MAX; 0 to the largest distance, rounded up; a
+   quarter of the range below and above 0; all places between limits. */
+void field_default_range(const struct scene *scene, const struct field_params *params, double *min, double *max);
 
 #endif
