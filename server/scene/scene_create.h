@@ -5,8 +5,8 @@
 #include "base/log.h"
 #include "scene/scene.h"
 
-/* Opens the prepared files of a plant and makes its scene. prepared_folder: as plant_prepared_folder() returns it. Refuses files that do not
-   fit the plant as it is now, and names asset and reason in the log. An asset that plantcast-prep could not prepare is missing, with a
+/* Opens the prepared files of a plant and makes its scene. prepared_folder: as plant_prepared_folder() returns it. Refuses files that do
+   not fit the plant as it is now, and names asset and reason in the log. An asset that plantcast-prep could not prepare is missing, with a
    warning. Returns NULL on failure, all errors logged. plant must outlive the scene. */
 struct scene *scene_create(struct log *log, const struct plant *plant, const char *prepared_folder);
 void scene_destroy(struct scene **scene); /* &NULL is fine; leaves NULL */
