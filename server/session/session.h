@@ -122,7 +122,7 @@ struct session {
     bool owes_welcome, owes_params, owes_following, owes_tags_all, owes_tags, owes_status, owes_time;
     bool told_beginning;                     /* of what is recorded: in the last time that was told */
     uint32_t params_seq;                     /* to be answered */
-    int64_t tags_ns, tags_all_ns, status_ns; /* last sent */
+    int64_t tags_ns;                         /* when values were last sent */
     uint32_t *tag_changes;                   /* reading.changes as last sent, by tag */
     uint64_t alarms_number;                  /* of the last change that was said */
     bool alarms_said;                        /* at least once */
