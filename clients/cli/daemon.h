@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Reaching a daemon: its URL, and HTTP requests to it. */
+/* Connects to a daemon: its URL, TLS and token, and HTTP requests to it. */
 #ifndef CLI_DAEMON_H
 #define CLI_DAEMON_H
 #include <libwebsockets.h>
@@ -13,19 +13,23 @@ struct daemon_url {
     bool tls;
 };
 
-/* Takes --token-file and --ca, which all commands share, out of the command line. False: the reason is printed. Before any thread. */
+/* Removes --token-file and --ca, which all commands share, from the command line and remembers them. Returns false with the reason printed.
+   Before any thread starts. */
 bool daemon_take_options(int *argc, char **argv);
 
-/* http://HOST[:PORT][/], https:// (also ws://, wss://). False: the reason is printed. */
+/* Parses http://HOST[:PORT][/] or https:// (also ws://, wss://). Returns false with the reason printed. */
 bool daemon_url_parse(const char *text, struct daemon_url *url);
-/* GET path. Returns the HTTP status; 0: no answer, the reason is printed. body: zero-initialised; free with text_finish. */
+/* Requests GET path and appends the response body to *body (zero-initialised; free with text_finish()). Returns the HTTP status, or 0 if
+   there was no answer, with the reason printed. */
 int daemon_get(const struct daemon_url *url, const char *path, struct text *body);
-const char *daemon_authorization(void); /* the header's value; NULL: there is none */
+/* Returns the value of the Authorization header, or NULL if there is no token. Static. */
+const char *daemon_authorization(void);
 
-/* What a client of libwebsockets needs for it: before its context is made, */
+/* Sets what a libwebsockets client needs for this URL (TLS, CA) in the parameters of its context. */
 void daemon_prepare_context(const struct daemon_url *url, struct lws_context_creation_info *info);
+/* Sets host, port and TLS in the parameters of a connection. */
 void daemon_prepare_connection(const struct daemon_url *url, struct lws_client_connect_info *info);
-/* and for LWS_CALLBACK_CLIENT_APPEND_HANDSHAKE_HEADER. 0, or -1: the headers do not fit. */
+/* Adds the token's header; to be called for LWS_CALLBACK_CLIENT_APPEND_HANDSHAKE_HEADER. Returns 0, or -1 if the headers do not fit. */
 int daemon_add_token(struct lws *wsi, void *in, size_t len);
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Decodes what a session sends. Thread: one at a time. */
+/* Decodes the frames that a session sends. Thread: one at a time. */
 #ifndef CLI_DECODER_H
 #define CLI_DECODER_H
 #include <stdbool.h>
@@ -7,10 +7,13 @@
 #include "protocol/wire.h"
 
 struct decoder;
-struct decoder *decoder_create(void); /* NULL: out of memory */
+/* Creates a decoder for all codecs of this build. NULL: out of memory. The caller destroys it. */
+struct decoder *decoder_create(void);
+/* Frees the decoder. &NULL is fine; leaves NULL. */
 void decoder_destroy(struct decoder **decoder);
-/* False: this is no such picture, or of a codec that is not in this build. */
+/* Decodes one frame. Returns false if its bytes are not valid or its codec is not in this build. */
 bool decoder_decode(struct decoder *decoder, const struct wire_frame *frame, const uint8_t *payload);
+/* Returns whether this build decodes the codec. */
 bool decoder_has(enum wire_codec codec);
 
 #endif

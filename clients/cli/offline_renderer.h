@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* All that draws pictures of a prepared plant without a daemon. */
+/* Offline renderer: everything that draws pictures of a prepared plant without a daemon. Thread: one. */
 #ifndef CLI_OFFLINE_RENDERER_H
 #define CLI_OFFLINE_RENDERER_H
 #include "history/history.h"
@@ -24,18 +24,24 @@ struct offline_renderer { /* freed in the opposite order */
     int64_t first_us, last_us; /* what was recorded lies between them */
 };
 
-/* The plant, its files, values and baseline, and the view of options->args. 0, else the exit code; the reason is printed. */
+/* Opens the plant, its files, values and baseline, and sets *view from options->args. Returns 0, or the exit code with the reason printed.
+   Close in both cases. */
 int offline_renderer_open(struct offline_renderer *offline, struct snapshot_options *options, struct view *view);
-/* The same plant, drawn by the same renderer, with other values, baseline and view: as offline_renderer_open. */
+/* As offline_renderer_open(), for the same plant and renderer with other values, baseline and view. */
 int offline_renderer_reopen(struct offline_renderer *offline, struct snapshot_options *options, struct view *view);
-bool offline_renderer_open_gl(struct offline_renderer *offline, const struct snapshot_options *options); /* false: logged */
+/* Creates the GL context and the renderer. Returns false if it cannot, logged. */
+bool offline_renderer_open_gl(struct offline_renderer *offline, const struct snapshot_options *options);
+/* Opens the plant's recorded history. Returns false if there is none, with the reason printed. */
 bool offline_renderer_open_history(struct offline_renderer *offline,
-                                   const struct snapshot_options *options); /* false: there is none; said */
-/* Studio and view go to an instant of the past. False: it cannot be read (logged), or nothing was recorded by then (said). */
+                                   const struct snapshot_options *options);
+/* Sets the readings and the view to an instant of recorded history. Returns false if it cannot be read (logged) or nothing was recorded by
+   then (printed). */
 bool offline_renderer_seek(struct offline_renderer *offline, int64_t at_us, struct view *view);
-/* NULL: logged. frame_unref. */
+/* Draws the view. Returns the frame, which the caller releases (frame_unref), or NULL, logged. */
 struct frame *offline_renderer_draw(struct offline_renderer *offline, const struct snapshot_options *options, struct view *view);
-bool offline_renderer_save(struct offline_renderer *offline, struct frame *frame, const char *path); /* as PNG. False: logged */
+/* Writes the frame as PNG. Returns false if it cannot, logged. */
+bool offline_renderer_save(struct offline_renderer *offline, struct frame *frame, const char *path);
+/* Frees everything. One that was opened only in part is fine. */
 void offline_renderer_close(struct offline_renderer *offline);
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What a probe is to do, and its report. */
+/* `plantcast probe`: what it is to do, and its report. */
 #ifndef CLI_PROBE_H
 #define CLI_PROBE_H
 #include "viewer.h"
@@ -18,7 +18,8 @@ struct probe {
 
 extern const char *const probe_motions[MOTION_COUNT];
 
-/* Of viewers that are done. False: something failed, or nothing came; said. */
+/* Prints the results of viewers that have ended, as a table or JSON. Returns false if something failed or no frame came, with the reason
+   printed. */
 bool probe_report(const struct probe *probe);
 
 #endif

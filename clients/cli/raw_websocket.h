@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The client's side of one WebSocket over plain TCP, for viewers that do not decode: of a binary message only the first bytes are read, the
-   rest is dropped in the kernel. libwebsockets looks at each byte by itself, 0.3 ms for a frame of 40 kB; that is what hundreds of viewers
-   on the daemon's own machine would measure. Thread: one. */
+/* Raw WebSocket client over plain TCP, for viewers that do not decode: of a binary message only the first bytes are read, the rest is
+   dropped in the kernel. libwebsockets looks at every byte, 0.3 ms for a frame of 40 kB; hundreds of viewers on the daemon's own machine
+   would measure that instead. Thread: one. */
 #ifndef CLI_RAW_WEBSOCKET_H
 #define CLI_RAW_WEBSOCKET_H
 #include "base/text.h"
@@ -15,15 +15,18 @@ struct raw_websocket_message {
 enum { RAW_WEBSOCKET_KEPT_BYTES = 128 };
 
 struct raw_websocket;
-/* Begins to connect to /stream. NULL: it cannot; *why says so. */
+/* Begins to connect to /stream. Returns the connection, which the caller destroys, or NULL with the reason in *why. */
 struct raw_websocket *raw_websocket_connect(const struct daemon_url *url, const char **why);
-void raw_websocket_destroy(struct raw_websocket **raw); /* says goodbye if it can; &NULL is fine; leaves NULL */
+/* Sends a close frame if it can, and frees the connection. &NULL is fine; leaves NULL. */
+void raw_websocket_destroy(struct raw_websocket **raw);
+/* Returns the socket, for polling. */
 int raw_websocket_fd(const struct raw_websocket *raw);
-bool raw_websocket_is_open(const struct raw_websocket *raw); /* the server has agreed: messages may be sent */
-/* The socket is ready. 1: *message is there, until the next call: call again; 0: nothing more for now; negative: it is over, *why says
-   so. */
+/* Returns whether the server has accepted the handshake, so that messages may be sent. */
+bool raw_websocket_is_open(const struct raw_websocket *raw);
+/* Reads from the socket when it is ready. Returns 1 with *message set until the next call (call again), 0 if there is nothing more for now,
+   or a negative number with the reason in *why if the connection is over. */
 int raw_websocket_read(struct raw_websocket *raw, struct raw_websocket_message *message, const char **why);
-/* One text. False: the connection is gone, or takes nothing. */
+/* Sends one text message. Returns false if the connection is gone or takes nothing. */
 bool raw_websocket_send(struct raw_websocket *raw, const char *text, size_t count);
 
 #endif

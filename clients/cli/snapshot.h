@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What `plantcast snapshot` or `plantcast clip` was asked for. */
+/* Command line of `plantcast snapshot` and `plantcast clip`. */
 #ifndef CLI_SNAPSHOT_H
 #define CLI_SNAPSHOT_H
 #include <stdbool.h>
@@ -32,12 +32,16 @@ struct snapshot_options {
     bool per_fragment, moving, no_overlay, offline_only; /* offline_only: something was asked for that a daemon does not offer */
 };
 
-/* Exit code, or -1: go on. */
+/* Parses the command line into *options. Returns -1 to go on, or an exit code. Finish the options in both cases. */
 int snapshot_parse(int argc, char **argv, bool clip, struct snapshot_options *options);
+/* Frees what the options own. */
 void snapshot_options_finish(struct snapshot_options *options);
-/* `&name=value...`, encoded, as a daemon is asked. False: it cannot be; said why. */
+/* Appends `&name=value...`, URL-encoded, as a daemon is asked. Returns false if the options ask for what a daemon does not offer, with the
+   reason printed. */
 bool snapshot_query(struct snapshot_options *options, struct text *query);
-bool snapshot_add_arg(struct snapshot_options *options, const char *name, const char *value); /* false: too many */
-int snapshot_offline(struct snapshot_options *options);                                       /* exit code */
+/* Adds a name=value argument. Returns false if there are too many. */
+bool snapshot_add_arg(struct snapshot_options *options, const char *name, const char *value);
+/* Draws the picture without a daemon. Returns the exit code. */
+int snapshot_offline(struct snapshot_options *options);
 
 #endif

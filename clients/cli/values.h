@@ -9,7 +9,7 @@
 #include "plant/plant.h"
 #include "value/snapshot.h"
 
-/* Sets the readings of the tags that the file names. False: everything wrong is in diag. */
+/* Reads the file and sets the readings of the tags that it names in the snapshot. Returns false with every error in diag. */
 bool values_read(const struct plant *plant, const char *path, struct snapshot *snapshot, struct diag *diag);
 
 #endif

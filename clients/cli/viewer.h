@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A client without a screen: connects, moves its camera, decodes every frame before it acknowledges it, and keeps the times.
-   Thread: the one that services its context (crew.h). */
+/* A viewer without a screen: connects, moves its camera, decodes every frame before it acknowledges it, and measures latencies. Thread: the
+   one that services its context (viewer_threads.h). */
 #ifndef CLI_VIEWER_H
 #define CLI_VIEWER_H
 #include <libwebsockets.h>
@@ -61,14 +61,19 @@ struct viewer_result {
 };
 
 struct viewer;
-struct viewer *viewer_create(const struct viewer_params *params); /* NULL: out of memory */
-/* From then on it is driven by the context's thread, until params.seconds after the first frame, or failure. */
+/* Creates a viewer that is not connected. NULL: out of memory. The caller destroys it. */
+struct viewer *viewer_create(const struct viewer_params *params);
+/* Connects. From then on the context's thread drives it, until params.seconds after the first frame or until it fails. */
 void viewer_connect(struct viewer *viewer, struct lws_context *context);
+/* Returns whether it has ended. */
 bool viewer_done(const struct viewer *viewer);
+/* Returns what it measured. Belongs to the viewer. */
 const struct viewer_result *viewer_result(const struct viewer *viewer);
-void viewer_destroy(struct viewer **viewer); /* after its context; &NULL is fine; leaves NULL */
+/* Frees the viewer; after its context. &NULL is fine; leaves NULL. */
+void viewer_destroy(struct viewer **viewer);
 
 extern const struct lws_protocols viewer_protocols[];
+/* Sets what the viewer needs in the parameters of its libwebsockets context. */
 void viewer_prepare_context(const struct viewer *viewer, struct lws_context_creation_info *info);
 
 #endif

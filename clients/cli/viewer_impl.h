@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What the halves of a viewer share: what comes and how long it lives (viewer.c), what it says (viewer_send.c). Private to them. */
+/* Shared by the two halves of a viewer: receiving and lifetime (viewer.c), sending (viewer_send.c). */
 #ifndef CLI_VIEWER_IMPL_H
 #define CLI_VIEWER_IMPL_H
 #include "raw_websocket.h"
@@ -35,15 +35,17 @@ struct viewer {
     int ack_count;
 };
 
-void viewer_fail(struct viewer *viewer, const char *why); /* the first reason stands */
-/* Sends the next of what is due. Negative: the connection is gone. */
+/* Ends the viewer with this reason; the first one stands. */
+void viewer_fail(struct viewer *viewer, const char *why);
+/* Sends the next message that is due. Returns a negative number if the connection is gone. */
 int viewer_send(struct viewer *viewer);
+/* Returns whether a message is due. */
 bool viewer_has_output(const struct viewer *viewer);
-/* Notes what is due by now. */
+/* Marks the messages that are due by now_ns. */
 void viewer_schedule(struct viewer *viewer, int64_t now_ns);
-/* A whole message is in viewer->in. */
+/* Handles the complete message in viewer->in. */
 void viewer_on_message(struct viewer *viewer, bool binary);
-/* As often as its cameras go. */
+/* Handles the timer, which fires as often as the viewer's cameras go. */
 void viewer_on_time(struct viewer *viewer, int64_t now_ns);
 
 #endif

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Distances that were found before, by the place that they start from: KEY.columns beside the asset files. Safe to delete; columns that
-   are no good count as none. It grows to the most sensors that the asset ever had at once. */
+/* Cache of geodesic distances, by the position of the sensor that they start from: the file KEY.columns in the folder of prepared files.
+   One entry is a column: the distances of all surface points from one sensor. Safe to delete; a damaged entry counts as absent. The file
+   grows to the largest number of sensors that the asset ever had at once. */
 #ifndef PREPROCESS_CACHE_DISTANCE_CACHE_H
 #define PREPROCESS_CACHE_DISTANCE_CACHE_H
 #include <stdatomic.h>
@@ -19,10 +20,14 @@ struct distance_cache {
     atomic_size_t kept; /* places whose column was there */
 };
 
-/* places_m: where distances are wanted from; they must outlive it. Never fails: what cannot be read or written is not kept. */
+/* Opens or creates FOLDER/KEY.columns and looks up which of the `count` sensor positions places_m (asset frame, metres; must outlive the
+   cache) have an entry there. length: numbers in a column. Never fails: a file that cannot be opened or written is an empty cache. */
 void distance_cache_open(struct distance_cache *cache, const char *folder, uint64_t key, size_t length, const double (*places_m)[3],
                          size_t count);
+/* Closes the file and frees what the cache holds. A zeroed cache is fine. */
 void distance_cache_close(struct distance_cache *cache);
+/* Returns the cache as callbacks for surface_field_init(), which fetches known columns and stores new ones. Valid until
+   distance_cache_close(). Thread: the callbacks may run on any thread, each on a source of its own. */
 struct surface_columns distance_cache_for_surface(struct distance_cache *cache);
 
 #endif

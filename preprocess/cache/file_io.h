@@ -1,13 +1,15 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Bytes at a place of a file, all of them, however few the system takes at once. Several threads may, in places of their own. */
+/* Reads and writes whole byte ranges at given file offsets, however few bytes the system takes at once. Thread: any; concurrent calls are
+   fine on ranges that do not overlap. */
 #ifndef PREPROCESS_CACHE_FILE_IO_H
 #define PREPROCESS_CACHE_FILE_IO_H
 #include <stdbool.h>
 #include <stddef.h>
 #include <sys/types.h>
 
-/* False: errno says why; EIO where the file ends, or takes no more. */
+/* Reads exactly `bytes` bytes from offset `at` of fd into `to`. Returns false with errno set; EIO where the file ends early. */
 bool file_read(int fd, void *to, size_t bytes, off_t at);
+/* Writes exactly `bytes` bytes from `from` to offset `at` of fd. Returns false with errno set; EIO where the file takes no more. */
 bool file_write(int fd, const void *from, size_t bytes, off_t at);
 
 #endif

@@ -1,9 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* How distances were found on one asset, as a GLB for any viewer. What its nodes show: REPORT.md. Thread: any, one per call. */
+/* Writes a GLB file that shows how distances were computed on one asset, for any 3D viewer: surface, distances, sensors, bridges. REPORT.md
+   says what its nodes show. Thread: any, one per call. */
 #ifndef PREPROCESS_DEBUG_VIEW_H
 #define PREPROCESS_DEBUG_VIEW_H
 #include "surface/surface.h"
 
+/* What to show. Everything is borrowed for the call. */
 struct debug_view {
     const char *name;              /* of the asset */
     const struct surface *surface; /* Z up */
@@ -13,7 +15,7 @@ struct debug_view {
     size_t sensor_count, chosen;
 };
 
-/* 0 or -errno. */
+/* Writes the view to `path` as GLB. Returns 0 or -errno. */
 int debug_view_save(const struct debug_view *view, const char *path);
 
 #endif

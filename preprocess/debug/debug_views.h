@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Debug views of a plant's assets, one GLB each. */
+/* Writes debug views of a plant's assets, one GLB file each (`plantcast-prep --debug-view`). Thread: one. */
 #ifndef PREPROCESS_DEBUG_VIEWS_H
 #define PREPROCESS_DEBUG_VIEWS_H
 #include <stdio.h>
@@ -16,11 +16,12 @@ struct debug_views_params {
     FILE *say;          /* what was written; NULL: silent */
 };
 
-/* Findings go to diag. False: some view could not be written. */
+/* Reads the plant's models, computes distances and writes a GLB for each asset that params select. Errors go to diag. Returns false if any
+   view could not be written. */
 bool debug_views_write(struct log *log, struct workers *workers, const struct plant *plant, const struct debug_views_params *params,
                        struct diag *diag);
 
-/* NAME.debug beside NAME.yaml. Free with mem_free. */
+/* Returns the default folder: NAME.debug beside NAME.yaml. The caller frees it (mem_free). */
 char *debug_views_folder(const struct plant *plant);
 
 #endif

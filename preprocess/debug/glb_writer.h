@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* GLB files (glTF 2.0) of coloured triangles, lines and points, shown as they are coloured (KHR_materials_unlit). One thread per writer. */
+/* Writes GLB files (glTF 2.0) of coloured triangles, lines and points, unlit (KHR_materials_unlit). Thread: one per writer. */
 #ifndef PREPROCESS_DEBUG_GLB_WRITER_H
 #define PREPROCESS_DEBUG_GLB_WRITER_H
 #include <stdint.h>
@@ -19,13 +19,16 @@ struct glb_shape { /* what one node shows; Y is up */
 
 struct glb_writer;
 
-struct glb_writer *glb_writer_create(const char *name); /* of the node above all others */
+/* Creates an empty scene whose root node has this name. The caller destroys it. */
+struct glb_writer *glb_writer_create(const char *name);
+/* Frees the writer. &NULL is fine; leaves NULL. */
 void glb_writer_destroy(struct glb_writer **writer);
-/* A shape without vertices adds nothing. */
+/* Copies a shape into the scene as a node of this name below the root. A shape without vertices adds nothing. */
 void glb_writer_add(struct glb_writer *writer, const char *name, const struct glb_shape *shape);
-/* 0 or -errno. */
+/* Writes the scene to `path`. Returns 0 or -errno. */
 int glb_writer_save(struct glb_writer *writer, const char *path);
 
+/* Converts an 8-bit sRGB component to linear, 65535 being 1. */
 uint16_t glb_linear(uint8_t srgb);
 
 #endif

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What a new revision of a plant changes: assets, the surface under sensors, and tags that lose their place. Thread: one. */
+/* Compares two revisions of a plant (`plantcast-prep --diff`): which assets changed, how far the surface moved under each sensor, and which
+   tags lost their place. Thread: one. */
 #ifndef PREPROCESS_DIFF_H
 #define PREPROCESS_DIFF_H
 #include <stdatomic.h>
@@ -46,12 +47,15 @@ struct diff {
     size_t asset_room, sensor_room, orphan_room, added_room, removed_room;
 };
 
-/* tolerance_m 0: 10 mm, or 1 % of the asset's diagonal if that is less. False: one of the two cannot be read, and diag says why. Finish in
-   both cases. */
+/* Reads both plants and compares them into *diff. tolerance_m: changes below it count as none; 0 means 10 mm, or 1 % of the asset's
+   diagonal if that is less. Returns false if a plant cannot be read; diag says why. Call diff_finish() in both cases. */
 bool diff_run(struct diff *diff, const char *old_path, const char *new_path, double tolerance_m, struct diag *diag);
+/* Frees what diff_run() filled in. */
 void diff_finish(struct diff *diff);
 
+/* Prints the comparison as text for a person. */
 void diff_text(const struct diff *diff, FILE *out);
-bool diff_json(const struct diff *diff, FILE *out); /* false: out of memory */
+/* Prints the comparison as one JSON object. Returns false if out of memory. */
+bool diff_json(const struct diff *diff, FILE *out);
 
 #endif

@@ -1,28 +1,34 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Two shapes held against each other. Thread: any. */
+/* Measures two triangle shapes against each other: distance, rigid motion, nearest points. Thread: any. */
 #ifndef PREPROCESS_DIFF_SHAPE_H
 #define PREPROCESS_DIFF_SHAPE_H
 #include "preprocess/diff/diff_side.h"
 
-struct diff_shape; /* with a tree of boxes around its triangles */
+/* A shape with a bounding volume hierarchy over its triangles. */
+struct diff_shape;
 
+/* Builds a shape from an asset's triangles, which must outlive it. The caller destroys it. */
 struct diff_shape *diff_shape_create(const struct diff_side_shape *shape);
+/* Frees the shape. &NULL is fine; leaves NULL. */
 void diff_shape_destroy(struct diff_shape **shape);
+/* Writes the shape's bounding box, metres. */
 void diff_shape_box(const struct diff_shape *shape, double low_m[3], double high_m[3]);
-double diff_shape_diagonal(const struct diff_shape *shape); /* m */
+/* Returns the diagonal of the shape's bounding box, metres. */
+double diff_shape_diagonal(const struct diff_shape *shape);
 
-/* The place on the surface nearest to a point, and how far. */
+/* Finds the point of the surface nearest to point_m, writes it to place_m and returns its distance in metres. */
 double diff_shape_nearest(const struct diff_shape *shape, const double point_m[3], double place_m[3]);
 
-/* How far the two surfaces are apart at most, either way, where b has been moved by b_to_a: at corners and at places spread over the
-   triangles. No more exact than it takes to say that it is beyond enough_m, where that is not 0. */
+/* Returns the largest distance between the two surfaces (both directions), with b moved by the matrix b_to_a, probed at corners and at
+   points spread over the triangles. If enough_m is not 0, stops as soon as the distance is known to exceed it. */
 double diff_shape_apart(const struct diff_shape *a, const struct diff_shape *b, const double b_to_a[16], double enough_m);
 
-/* The motion that takes b's corners to a's, if there are as many and they come in the same order. False: there are not. */
+/* Finds the rigid motion that takes b's vertices to a's, if both have as many vertices in the same order. Returns false if they do not. */
 bool diff_shape_motion(const struct diff_shape *a, const struct diff_shape *b, double b_to_a[16]);
 
-/* How far this motion moves any corner of the shape's box; its angle. */
+/* Returns the largest distance that `motion` moves any corner of the shape's bounding box, metres. */
 double diff_shape_moved(const struct diff_shape *shape, const double motion[16]);
+/* Returns the rotation angle of a rigid motion in degrees. */
 double diff_turned_deg(const double motion[16]);
 
 #endif

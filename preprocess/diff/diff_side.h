@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* One of the two plants that are compared: a plant file with its models, or a folder of prepared files. Thread: one. */
+/* One of the two plants that a comparison reads: a plant file with its models, or a folder of prepared files. Thread: one. */
 #ifndef PREPROCESS_DIFF_SIDE_H
 #define PREPROCESS_DIFF_SIDE_H
 #include "base/diag.h"
@@ -37,10 +37,13 @@ struct diff_side {
     void *root;
 };
 
-/* False: said to diag. Finish in both cases. */
+/* Opens a plant file or a folder of prepared files and lists its assets and tags. Returns false with the reason in diag. Call
+   diff_side_finish() in both cases. */
 bool diff_side_open(struct diff_side *side, const char *path, struct diag *diag);
+/* Frees the lists and releases a model that is still in memory. */
 void diff_side_finish(struct diff_side *side);
-const struct diff_side_tag *diff_side_find_tag(const struct diff_side *side, const char *name); /* or NULL */
+/* Returns the tag of this name, or NULL. Belongs to the side. */
+const struct diff_side_tag *diff_side_find_tag(const struct diff_side *side, const char *name);
 
 struct diff_side_shape { /* an asset's triangles, and where its sensors are; less origin_m, asset frame */
     double origin_m[3];
@@ -53,18 +56,22 @@ struct diff_side_shape { /* an asset's triangles, and where its sensors are; les
     bool own; /* the arrays are a geometry's */
     struct folder_file file;
 };
-/* False: why says why there is no such asset in this plant. */
+/* Reads an asset's triangles and sensor positions into *shape. Returns false if the plant does not have them, with the reason in why; else
+   finish it with diff_side_shape_finish(). */
 bool diff_side_shape(struct diff_side *side, const struct diff_side_asset *asset, struct diff_side_shape *shape, char why[MODEL_WHY_BYTES]);
-/* Of a plant file's model: the first node from *node on whose sub-tree has this box in the asset's frame, to tolerance_m, and what it is
-   called: 'name', or its number where there is none or several have it. False: none, or a folder. */
+/* A bounding box in the asset frame, metres. */
 struct diff_side_box {
     double low_m[3], high_m[3];
 };
+/* Searches the asset's model, from *node on, for a node whose sub-tree has this bounding box (asset frame) to tolerance_m. Writes its
+   number to *node and its quoted name, or its number where the name is not unique, to name. Returns false if there is none, or if the side
+   is a folder. */
 bool diff_side_node_in_box(struct diff_side *side, const struct diff_side_asset *asset, const struct diff_side_box *box, double tolerance_m,
                            uint32_t *node, char *name, size_t name_bytes);
-/* As diff_side_shape, without sensors, of that node in place of the asset's own. */
+/* As diff_side_shape(), for the triangles of model node `node` in place of the asset's own, without sensors. */
 bool diff_side_shape_of_node(struct diff_side *side, const struct diff_side_asset *asset, uint32_t node, struct diff_side_shape *shape,
                              char why[MODEL_WHY_BYTES]);
+/* Frees or unmaps what the shape holds. */
 void diff_side_shape_finish(struct diff_side_shape *shape);
 
 #endif

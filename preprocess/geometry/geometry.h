@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* One asset cut out of a model: the nodes that a pattern names with their sub-trees, in the asset frame, ready to be drawn. */
+/* One asset's mesh cut out of a model: the sub-trees of the nodes that a pattern names, in the asset frame, ready to be drawn. Thread: any;
+   a geometry is changed by one thread at a time. */
 #ifndef PREPROCESS_GEOMETRY_H
 #define PREPROCESS_GEOMETRY_H
 #include "base/text.h"
@@ -32,22 +33,27 @@ struct geometry_params {
     double tolerance_m; /* not for cutting: gaps up to this are closed when distances are found; 0: chosen from the model */
 };
 
-/* False: why says what is wrong; nothing to finish. */
+/* Builds the asset's mesh from the model. Returns false with the reason in why, and then there is nothing to finish. */
 bool geometry_cut(struct geometry *geometry, const struct gltf_model *model, const struct geometry_params *params,
                   char why[MODEL_WHY_BYTES]);
+/* Frees the mesh. */
 void geometry_finish(struct geometry *geometry);
 
-/* A hash of all that geometry_cut would take from the model, whatever else is in it; not of params. False: as geometry_cut. */
+/* Computes a hash of everything that geometry_cut() would take from the model (not of params), so that a changed model whose asset is
+   unchanged gives the same hash. Returns false as geometry_cut() does. */
 bool geometry_hash(uint64_t *out, const struct gltf_model *model, const struct geometry_params *params, char why[MODEL_WHY_BYTES]);
 
-/* How many triangles that would take, before those without area are left out. 0 where geometry_cut would find nothing. */
+/* Returns how many triangles geometry_cut() would read, including those without area; 0 where it would find nothing. Quick: for estimating
+   work. */
 uint64_t geometry_triangles(const struct gltf_model *model, const struct geometry_params *params);
 
-/* Of each node: the box around its sub-tree's meshes in the asset frame, low and high; infinite where there is none. Free with mem_free. */
+/* Returns, for each node of the model, the bounding box of its sub-tree's meshes in the asset frame (low, high); infinite where it has
+   none. The caller frees it (mem_free). */
 double (*geometry_node_boxes(const struct gltf_model *model, const struct geometry_params *params))[2][3];
 
-/* The place of the node that a pattern names, in the asset frame: the middle of the box around its sub-tree's meshes, else its origin.
-   Nodes inside the asset are preferred to others. False: why says that there is none, or that several stand in different places. */
+/* Finds the position, in the asset frame, of the node that `pattern` names: the centre of its sub-tree's bounding box, or its origin if it
+   has no mesh. Nodes inside the asset are preferred. Returns false with the reason in why if there is none, or several in different
+   positions. */
 bool geometry_node_place(const struct gltf_model *model, const struct geometry_params *params, const char *pattern, double place_m[3],
                          char why[MODEL_WHY_BYTES]);
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Shared by the files that cut an asset out of a model (geometry*.c). */
+/* Shared by the files that cut an asset's mesh out of a model (geometry*.c). */
 #ifndef PREPROCESS_GEOMETRY_IMPL_H
 #define PREPROCESS_GEOMETRY_IMPL_H
 #include "preprocess/geometry/geometry.h"
@@ -15,12 +15,13 @@ struct node_primitives {
     struct node_primitive *at; /* sorted by material, blended ones last */
     size_t count, capacity;
 };
-/* Of the nodes that params take; counts of nodes and of what is skipped go to geometry. False: why says what is wrong. mem_free(parts->at)
-   in both cases. */
+/* Lists the glTF primitives of the nodes that params select. Adds counts of nodes and of skipped lines and points to geometry. Returns
+   false with the reason in why. The caller frees parts->at (mem_free) in both cases. */
 bool node_primitives_find(struct node_primitives *parts, struct geometry *geometry, const struct gltf_model *model,
                           const struct geometry_params *params, char *why);
 
-struct vertex { /* every attribute, so that vertices are welded only where all agree */
+/* A vertex with all its attributes: vertices are welded only where all of them are equal. */
+struct vertex {
     float position[3], normal[3], texcoord[2], second_texcoord[2];
     uint8_t color[4];
 };
@@ -31,16 +32,18 @@ struct primitive_mesh {
     size_t vertex_count, index_count;
 };
 
-/* The asset frame from a node's own: units, axes and the node's place. */
+/* Writes the transform from the node's own frame to the asset frame: the node's world matrix, then units and up axis. */
 void primitive_world(const struct geometry_params *params, const struct gltf_node *node, double out[16]);
 
-/* Its triangles in the asset frame, less the origin, welded and in an order that suits a vertex cache. False: out of memory. Finish in
-   both cases. */
+/* Builds the primitive's triangles in the asset frame, relative to the geometry's origin, welded and ordered for a vertex cache. Returns
+   false if out of memory. Call primitive_mesh_finish() in both cases. */
 bool primitive_mesh(struct primitive_mesh *mesh, const struct node_primitive *part, const struct geometry_params *params,
                     struct geometry *geometry);
+/* Frees the mesh's arrays. */
 void primitive_mesh_finish(struct primitive_mesh *mesh);
 
-/* Decodes the textures that the geometry's materials use, and renumbers these; false: why says what is wrong. */
+/* Decodes the textures that the geometry's materials use into geometry->texels, and renumbers the materials' references. Returns false with
+   the reason in why. */
 bool geometry_join_textures(struct geometry *geometry, const struct gltf_model *model, char *why);
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Vertices that lie at one place, whatever their other attributes. */
+/* Maps vertices to distinct positions: vertices with bitwise equal positions share one, whatever their other attributes. */
 #ifndef PREPROCESS_GEOMETRY_WELDED_POSITIONS_H
 #define PREPROCESS_GEOMETRY_WELDED_POSITIONS_H
 #include <stdbool.h>
@@ -12,8 +12,9 @@ struct welded_positions {
     size_t count;
 };
 
-/* False: out of memory; nothing to finish. */
+/* Builds the map from vertices to distinct positions. Returns false if out of memory, and then there is nothing to finish. */
 bool welded_init(struct welded_positions *welded, const float (*positions_m)[3], size_t vertex_count);
+/* Frees the map's arrays. */
 void welded_finish(struct welded_positions *welded);
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Which boxes hang together: those that meet, and what meets these. Thread: any. */
+/* Groups axis-aligned boxes that overlap or touch, directly or through others. Thread: any. */
 #ifndef PREPROCESS_LEVELS_BOX_GROUPS_H
 #define PREPROCESS_LEVELS_BOX_GROUPS_H
 #include <stddef.h>
@@ -10,7 +10,8 @@ struct box {
     uint32_t part;
 };
 
-/* Joins (trimesh_join) the parts of boxes that meet, in time that grows little faster than their number, however they lie. */
+/* Joins, in the union-find forest `parent` (trimesh_join()), the parts of all boxes that overlap or touch. Takes time that grows little
+   faster than the number of boxes, however they lie. */
 void box_groups_join(const struct box *boxes, size_t count, uint32_t *parent);
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* How far two triangle surfaces are apart, part by part, measured. */
+/* Measures how far two triangle surfaces are apart, for each part separately. Thread: any. */
 #ifndef PREPROCESS_LEVELS_DEVIATION_H
 #define PREPROCESS_LEVELS_DEVIATION_H
 #include "base/workers.h"
@@ -16,19 +16,21 @@ struct deviation { /* a surface to measure against, and where it is probed */
     size_t known_mask;
 };
 
-/* Positions and triangles (indices, 3 each) are copied, part (by index) is only pointed to. first_there, by index: the first one at the
-   same place, which is of the same part. Of triangles with the same three places one is taken: of a hundred copies of a plate in one
-   place each would be looked at from each of their corners. Surfaces that are compared share their positions and their parts. */
+/* Builds a surface to be measured: copies positions and triangles (3 indices each), removes duplicate triangles, and builds a bounding
+   volume hierarchy. part (by vertex) is borrowed. first_there, by vertex: the first vertex of the same part at the same position. Surfaces
+   that are compared must share positions and parts. */
 void deviation_init(struct deviation *surface, const float (*positions_m)[3], const uint32_t *first_there, const uint32_t *part,
                     size_t part_count, const uint32_t *triangles, size_t triangle_count);
+/* Frees the surface. */
 void deviation_finish(struct deviation *surface);
 
-/* Raises apart_m[part] to the largest distance from points of `from` to the same part of `to`: from its corners, and from inner points of
-   triangles larger than the distances that matter, but for what both have. INFINITY where `to` has nothing of that part. only: by part, or
-   NULL: all. expected_m: about what is hoped for. workers may be NULL. */
+/* Raises apart_m[part] to the largest distance from the surface `from` to the same part of `to`, probed at vertices and inside large
+   triangles, except triangles that both have. INFINITY where `to` has nothing of the part. only: parts to measure (NULL: all). expected_m:
+   about the distance hoped for, which steers how densely triangles are probed. workers may be NULL. */
 void deviation_measure(const struct deviation *from, const struct deviation *to, const char *only, double expected_m, float *apart_m,
                        struct workers *workers);
-/* The same of parts that are lost, to whatever of `to` is nearest: where they lay on others, those are seen in their place. */
+/* As deviation_measure(), for the parts that `lost` marks, but to the nearest triangle of any part: where they lay on others, those are
+   seen in their place. */
 void deviation_measure_lost(const struct deviation *from, const struct deviation *to, const char *lost, double expected_m, float *apart_m,
                             struct workers *workers);
 

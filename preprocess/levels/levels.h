@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Coarser versions of an asset's triangles, each made from the one before, so that their vertices are nested. */
+/* Levels of detail: coarser versions of an asset's triangles, each simplified from the one before, over one set of vertices. */
 #ifndef PREPROCESS_LEVELS_H
 #define PREPROCESS_LEVELS_H
 #include "base/workers.h"
@@ -34,13 +34,15 @@ struct levels {
     size_t repeated; /* triangles of the finest with the same three corners as one before; 0 once it comes out of a stock */
 };
 
-/* Each level has at most 0.6 of the triangles of the one before, far ones 0.85: many instances are drawn with these. Borders between
-   materials, texture seams and vertex colours stay where they are, within the error. Parts that lie on much larger ones are left out of
-   levels that err by a tenth more than they stand out (bolts in a flange); so are small parts that no others are near, from where they
-   are no larger than the error: a pixel. For those alone, no point of the level is near their points. False: out of memory; nothing to
-   finish. */
+/* Simplifies the geometry into levels, finest first. Each has at most 0.6 of the triangles of the one before (0.85 for far levels, which
+   many instances are drawn with). Borders between materials, texture seams and vertex colours stay in place within the error. Parts that
+   lie on much larger ones (bolts on a flange) are left out of levels whose error exceeds their height by a tenth; small isolated parts,
+   of levels whose error is no less than their size. Returns false if out of memory, and then there is nothing to finish. workers may be
+   NULL. */
 bool levels_make(struct levels *levels, const struct geometry *geometry, struct workers *workers);
+/* Frees one level's arrays. */
 void level_finish(struct level *level);
+/* Frees all levels. */
 void levels_finish(struct levels *levels);
 
 #endif

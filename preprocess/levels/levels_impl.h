@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What the files of the simplifying share. */
+/* Shared by the files that simplify an asset into levels (levels*.c). */
 #ifndef PREPROCESS_LEVELS_IMPL_H
 #define PREPROCESS_LEVELS_IMPL_H
 #include "preprocess/levels/deviation.h"
@@ -9,7 +9,8 @@
 
 /* --- welds and parts (levels_knots.c) --- */
 
-/* Vertices that the simplifier takes for one: equal in all that it has to keep. Welds hang together in parts, by place. */
+/* Groups of vertices that the simplifier treats as one: equal in all attributes that it must keep. Welds hang together in parts (connected
+   components, by position). */
 struct welds {
     const struct geometry *geometry;
     size_t count, part_count;
@@ -23,7 +24,9 @@ struct welds {
     double whole_m;                           /* of them all */
 };
 
-bool welds_init(struct welds *welds, const struct geometry *geometry); /* false: out of memory; finish copes */
+/* Groups the geometry's vertices into welds and parts. Returns false if out of memory; call welds_finish() in both cases. */
+bool welds_init(struct welds *welds, const struct geometry *geometry);
+/* Frees the arrays. */
 void welds_finish(struct welds *welds);
 
 /* --- versions (levels_versions.c) --- */
@@ -43,7 +46,9 @@ struct versions {
     struct deviation first; /* its surface */
 };
 
+/* Simplifies the asset step by step, each version from the one before, and measures the error of each part. workers may be NULL. */
 void versions_make(struct versions *versions, const struct welds *welds, struct workers *workers);
+/* Frees all versions. */
 void versions_finish(struct versions *versions);
 
 /* --- parts that far levels leave out (levels_parts.c) --- */
@@ -53,21 +58,22 @@ struct omission {
     bool alone;   /* no others are near; it is no larger than from_m */
 };
 
-/* Of each part. A part may be left out where it lies on others that are much larger, and where it is no more than a pixel large, and so are
-   all others of its kind around it together. */
+/* Decides for each part from which level error on it may be left out: where it lies on much larger parts, or is smaller than a pixel
+   together with others of its kind around it. workers may be NULL. */
 void omissions_find(struct omission *omissions, const struct welds *welds, struct workers *workers);
 
 /* --- faces of what has no thickness any more (levels_facing.c) --- */
 
-/* Unit length, or 0. */
+/* Writes the unit normal of the triangle of three welds, or 0 if it has no area. */
 void levels_normal(const struct welds *welds, const uint32_t corners[3], float n[3]);
-/* Of a weld's used vertices the one whose normal suits a face best, also where it is wound the wrong way; one_side: whose normal looks
-   its way most. UINT32_MAX: none is used. */
+/* Returns, of a weld's vertices marked in `used`, the one whose normal fits the face normal n best, also if the face is wound the wrong
+   way; with one_side, the one whose normal points most along n. UINT32_MAX if none is used. */
 uint32_t levels_vertex(const struct welds *welds, const char *used, uint32_t weld, const float n[3], bool one_side);
-/* By part: some face of the model looks the other way than its vertices. */
+/* Marks the parts that have a face in the model pointing against its vertices' normals. */
 void levels_find_contrary(const struct welds *welds, char *contrary);
-/* Moves corners of faces (welds, three each) that have no used vertex of their side to a weld beside that has one, if it is no farther than
-   most_m, by part. Welds that had corners still have some. moved: by part. False: nothing was moved. */
+/* Where a thin part has lost its thickness, moves corners of faces (welds, three each) that have no used vertex on their side to a
+   neighbouring weld that has one, no farther than most_m (by part). Marks the parts that changed in `moved`. Returns false if nothing was
+   moved. */
 bool levels_face(const struct welds *welds, const char *used, const char *contrary, const float *most_m, uint32_t *corners, size_t count,
                  char *moved);
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Draco's decoder behind plain C. */
+/* Decodes Draco-compressed meshes (KHR_draco_mesh_compression) behind a plain C interface. Thread: any, one per mesh. */
 #ifndef PREPROCESS_MODEL_DRACO_SHIM_H
 #define PREPROCESS_MODEL_DRACO_SHIM_H
 #include <stddef.h>
@@ -13,15 +13,20 @@ extern "C" {
 
 struct draco_mesh;
 
-/* NULL: why says what is wrong. */
+/* Decodes a Draco buffer. Returns the mesh, which the caller destroys, or NULL with the reason in why. */
 struct draco_mesh *draco_mesh_decode(const void *bytes, size_t size, char why[MODEL_WHY_BYTES]);
+/* Frees the mesh. &NULL is fine; leaves NULL. */
 void draco_mesh_destroy(struct draco_mesh **mesh);
 
+/* Returns the number of vertices. */
 uint32_t draco_mesh_vertex_count(const struct draco_mesh *mesh);
+/* Returns the number of triangles. */
 uint32_t draco_mesh_triangle_count(const struct draco_mesh *mesh);
-void draco_mesh_indices(const struct draco_mesh *mesh, uint32_t *out); /* three per triangle */
+/* Writes three vertex indices per triangle to out. */
+void draco_mesh_indices(const struct draco_mesh *mesh, uint32_t *out);
 
-/* `width` numbers of each vertex, as glTF's component type, tightly packed. False: there is no such attribute, or it is narrower. */
+/* Writes the attribute unique_id of all vertices to out, `width` components each of a glTF component type, tightly packed. Returns false if
+   there is no such attribute or it has fewer components. */
 bool draco_mesh_attribute(const struct draco_mesh *mesh, uint32_t unique_id, int component_type, int width, void *out);
 
 #ifdef __cplusplus

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A glTF model as plain arrays: every number checked, nothing of the library left. tinygltf stays behind this header. */
+/* Reads a glTF model into plain C arrays in which every number was checked. tinygltf stays behind this header. Thread: any, one per
+   model. */
 #ifndef PREPROCESS_MODEL_GLTF_SHIM_H
 #define PREPROCESS_MODEL_GLTF_SHIM_H
 #include "preprocess/model/model_source.h"
@@ -61,8 +62,9 @@ struct gltf_model {
     uint32_t left_out_textures;
 };
 
-/* Parses and decodes. False: why says what is wrong, by name and number; nothing to free. */
+/* Parses and decodes a model file. Returns false with the reason, by object name and number, in why; then there is nothing to free. */
 bool gltf_load(struct gltf_model *model, const struct model_source *source, char why[MODEL_WHY_BYTES]);
+/* Frees the model. */
 void gltf_free(struct gltf_model *model);
 
 #ifdef __cplusplus

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A model made plain: its JSON checked and rid of compression, files and data URIs, and its buffers and images beside it in memory. */
+/* A glTF document reduced to its plain form: JSON checked and without compression, external files or data URIs; buffers and images are in
+   memory beside it. */
 #ifndef PREPROCESS_MODEL_DOCUMENT_H
 #define PREPROCESS_MODEL_DOCUMENT_H
 #include "preprocess/model/model_source.h"
@@ -28,8 +29,10 @@ struct model_document {
     size_t total_bytes; /* of the buffers, but for those that are all zeros */
 };
 
-/* The source must outlive it. False: why says what is wrong; nothing to finish. */
+/* Builds the plain document of a source file, which must outlive it. Returns false with the reason in why, and then there is nothing to
+   finish. */
 bool model_document_open(struct model_document *document, const struct model_source *source, char why[MODEL_WHY_BYTES]);
+/* Frees the document. */
 void model_document_finish(struct model_document *document);
 
 #ifdef __cplusplus

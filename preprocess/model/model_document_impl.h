@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Shared by the files that make a model plain (model_document*.c). */
+/* Shared by the files that reduce a glTF document to its plain form (model_document*.c). */
 #ifndef PREPROCESS_MODEL_DOCUMENT_IMPL_H
 #define PREPROCESS_MODEL_DOCUMENT_IMPL_H
 #include "preprocess/model/model_document.h"
@@ -14,20 +14,24 @@ struct document_work { /* a document in the making; root's types and references 
     char *why;
 };
 
-/* Takes `own`, also on failure. The buffer's number. */
+/* Appends a buffer and takes ownership of its bytes, also on failure. Returns the buffer's number. */
 size_t document_add_buffer(struct document_work *work, unsigned char *own, size_t size);
-/* Appends a buffer view of that buffer and makes the accessor use it. */
+/* Appends a buffer view over the whole of a buffer and makes the accessor read from it. */
 void document_point_accessor(struct document_work *work, json_t *accessor, size_t buffer);
-/* Bytes of a buffer, if they are there; `what` begins the reason. */
+/* Finds `length` bytes at `offset` of a buffer and writes where they are to *out. Returns false if the buffer is too short; `what` begins
+   the reason in work->why. */
 bool document_range(const struct document_work *work, size_t buffer, uint64_t offset, uint64_t length, const char *what,
                     struct model_bytes *out);
 
-/* Bytes of one element of an accessor. 0: its type is not of glTF 2.0. */
+/* Returns the size in bytes of one element of an accessor, and its component type and number of components. 0: its type is not one of glTF
+   2.0. */
 size_t document_element_bytes(const json_t *accessor, int *component_type, int *width);
 
-/* EXT_meshopt_compression: views become plain ones, of buffers of their own. */
+/* Decodes EXT_meshopt_compression: each compressed buffer view becomes a plain one over a new buffer. Returns false with the reason in
+   work->why. */
 bool document_expand_meshopt(struct document_work *work);
-/* KHR_draco_mesh_compression: primitives get plain accessors. */
+/* Decodes KHR_draco_mesh_compression: compressed primitives get plain accessors over new buffers. Returns false with the reason in
+   work->why. */
 bool document_expand_draco(struct document_work *work);
 
 #endif

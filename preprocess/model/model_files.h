@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The model files that a plant names, each once: hashed first, and parsed only while assets are cut out of it. Thread: one. */
+/* The model files that a plant names, each once: hashed at first, parsed only while assets are cut out of them. Thread: one. */
 #ifndef PREPROCESS_MODEL_FILES_H
 #define PREPROCESS_MODEL_FILES_H
 #include "plant/plant.h"
@@ -24,12 +24,16 @@ struct model_files {
     size_t count, capacity;
 };
 
-/* The number of this asset's model, which is read and hashed if it is new. */
+/* Adds the asset's model file to the list, reading and hashing it if it is new. Returns its number in the list; at[number].good says
+   whether it could be read. */
 size_t model_files_add(struct model_files *files, const struct plant_asset *asset);
+/* Releases all models and frees the list. */
 void model_files_finish(struct model_files *files);
 
-/* False: why says what is wrong; also where the file is no longer the one that was hashed. */
+/* Parses the file into file->parsed, until model_file_release(). Returns false with the reason in file->why, also if the file has changed
+   since it was hashed. */
 bool model_file_parse(struct model_file *file);
+/* Frees the parsed model. One that is not parsed is fine. */
 void model_file_release(struct model_file *file);
 
 #endif

@@ -1,16 +1,16 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The types and references of a glTF document: what the glTF library takes as it comes, or drops without a word. */
+/* Validates the types and references of a glTF document, which the glTF library accepts unchecked or drops silently. Thread: any. */
 #ifndef PREPROCESS_MODEL_RULES_H
 #define PREPROCESS_MODEL_RULES_H
 #include <jansson.h>
 
 #include "preprocess/model/refusal.h"
 
-/* Version, required extensions, the type and range of every property that is read later, and that every index names something that is
-   there. Whole numbers that are written as 3.0 become 3. */
+/* Checks the version, required extensions, the type and range of every property that is read later, and that every index names an existing
+   object. Rewrites whole numbers written as 3.0 to 3. Returns false with the reason in why. */
 bool model_rules_check(json_t *root, char why[MODEL_WHY_BYTES]);
 
-/* "mesh 3 'pump', primitive 0": for messages. primitive < 0: without. */
+/* Writes a name for messages, such as "mesh 3 'pump', primitive 0"; without the primitive if that is negative. */
 void model_rules_name(const json_t *root, const char *list, size_t number, int primitive, char *out, size_t bytes);
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A model file as it lies on disk: its bytes, and a hash over it and every file it names. */
+/* A model file as it lies on disk: its bytes, and one hash over it and every file that its URIs name. Thread: any, one per source. */
 #ifndef PREPROCESS_MODEL_SOURCE_H
 #define PREPROCESS_MODEL_SOURCE_H
 #include <stddef.h>
@@ -18,9 +18,10 @@ struct model_source {
     uint64_t hash; /* XXH3-64 over the file and the files its URIs name */
 };
 
-/* False: why says what is wrong; nothing to finish. Checked so far: a GLB's lengths, JSON's syntax and depth, and that every file it names
-   is there, inside the folder. */
+/* Reads the file at `path` and hashes it with the files that it names. Checks a GLB's chunk lengths, JSON syntax and depth, and that every
+   named file exists inside the model's folder. Returns false with the reason in why, and then there is nothing to finish. */
 bool model_source_open(struct model_source *source, const char *path, char why[MODEL_WHY_BYTES]);
+/* Frees the bytes. */
 void model_source_finish(struct model_source *source);
 
 #ifdef __cplusplus

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Why a model is refused: one line of text, with the object's name and the numbers. */
+/* The reason why a model is refused: one line of text that names the object and the numbers. Thread: any. */
 #ifndef PREPROCESS_MODEL_REFUSAL_H
 #define PREPROCESS_MODEL_REFUSAL_H
 #include <stdbool.h>
@@ -10,7 +10,7 @@ extern "C" {
 
 #define MODEL_WHY_BYTES 400
 
-/* Writes the reason; always false, for `return wrong(why, ...)`. */
+/* Formats the reason into why. Always returns false, so that callers can write `return wrong(why, ...)`. */
 bool wrong(char why[MODEL_WHY_BYTES], const char *fmt, ...) __attribute__((format(printf, 2, 3)));
 
 #ifdef __cplusplus

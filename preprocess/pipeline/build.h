@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* One asset from a parsed model: geometry, sensors dropped onto it, distances, bytes of its file. */
+/* Builds one asset from a parsed model, or from the geometry cache: mesh, levels, sensor distances, and the bytes of its file. */
 #ifndef PREPROCESS_PIPELINE_BUILD_H
 #define PREPROCESS_PIPELINE_BUILD_H
 #include "base/log.h"
@@ -8,16 +8,16 @@
 
 #define BUILD_REVISION 43u /* grows when the same input shall give another file */
 
-/* output->file is to be put in its place, and closed. False: why says what is wrong, and there is none. Thread: any; work is spread over
-   workers. */
+/* Builds the asset into output->file, a draft that the caller names (folder_put()) and closes. Spreads its work over workers. Returns false
+   with the reason in why, and then there is no file. Thread: any. */
 bool build_asset(struct log *log, struct workers *workers, const struct build_input *input, struct build_output *output,
                  char why[MODEL_WHY_BYTES]);
 
-/* Of a model and the way in which an asset is cut out of it: where it is known, so is what comes out. */
+/* Returns a key for a model together with the parameters by which an asset is cut out of it: equal recipes give equal geometry. */
 uint64_t build_recipe(uint64_t model_hash, const struct geometry_params *geometry);
-/* The key of all that no sensor has a part in. geometry_hash: what geometry_hash says. */
+/* Returns the key of everything in the asset that does not depend on sensors. hash: of the geometry (geometry_hash()). */
 uint64_t build_geometry_key(uint64_t geometry_hash, const struct geometry_params *geometry);
-/* The key of a file that would be made of this. */
+/* Returns the key of the asset file that would be built from this geometry, plant and sensors. */
 uint64_t build_key(uint64_t geometry_key, const struct plant *plant, const struct plant_sensor *sensors, size_t sensor_count);
 
 #endif

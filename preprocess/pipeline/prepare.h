@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* All assets of a plant: what is there already stays, the rest is built. Each finished asset is on disk at once, so whatever interrupts the
-   work, the next run goes on from there. */
+/* Prepares all assets of a plant: files that are up to date stay, the rest is built. Each finished asset is on disk at once, so an
+   interrupted run is continued by the next one. Thread: one. */
 #ifndef PREPROCESS_PIPELINE_PREPARE_H
 #define PREPROCESS_PIPELINE_PREPARE_H
 #include <stdatomic.h>
@@ -51,16 +51,18 @@ struct prepare_params {
     const atomic_bool *stop; /* no asset is begun any more once it is true. NULL: never */
 };
 
-/* One process at a time prepares into a folder; another one waits. Findings go to diag (errors by the plant file's or tag list's line).
-   False: something failed or it was interrupted; what is good was written. The manifest is as it was unless the models alone are to blame:
-   then it has what is good, and says of the rest why it is missing. Finish in both cases. */
+/* Prepares the plant's assets into params->folder, one process at a time per folder. Errors go to diag, by line of the plant file or tag
+   list. Returns false if something failed or was interrupted; what is good was written. The manifest stays as it was, unless only models
+   are to blame: then it lists what is good and says why the rest is missing. Call prepare_finish() in both cases. */
 bool prepare_run(struct prepare *prepare, struct log *log, struct workers *workers, const struct plant *plant,
                  const struct prepare_params *params, struct diag *diag);
+/* Frees the results. */
 void prepare_finish(struct prepare *prepare);
 
-/* How its assets are cut out. */
+/* Returns the parameters by which this asset is cut out of its model. */
 struct geometry_params prepare_geometry(const struct plant_asset *asset);
-/* The limit for sensors of an asset whose box has this diagonal. */
+/* Returns the distance from the surface, in metres, beyond which a sensor is worth a warning, for an asset whose bounding box has this
+   diagonal. */
 double prepare_far_m(double diagonal_m);
 
 #endif

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* How far preparing has come, and how long it will still take: one line that changes on a terminal, else a line now and then.
-   Time is handed in. Thread: one at a time. */
+/* Prints how far preparing has come and how long it will still take: one line that is rewritten on a terminal, else a line now and then.
+   Time is passed in. Thread: one at a time. */
 #ifndef PREPROCESS_PIPELINE_PROGRESS_H
 #define PREPROCESS_PIPELINE_PROGRESS_H
 #include <stdbool.h>
@@ -19,14 +19,16 @@ struct progress { /* zero-initialise; out NULL: silent */
     double work_known, work_done;
 };
 
+/* Starts counting: `total` assets, of which `there` need no work. out NULL: prints nothing. */
 void progress_begin(struct progress *progress, FILE *out, size_t total, size_t there, int64_t now_ns);
-/* An asset's work, in whatever unit, becomes known before it is done. */
+/* Adds an asset's amount of work, in any unit, as soon as it is known and before it is done. */
 void progress_expect(struct progress *progress, double work);
+/* Counts an asset of this amount of work as finished, and prints if it is time to. */
 void progress_step(struct progress *progress, double work, int64_t now_ns);
-/* Leaves the terminal's line empty. */
+/* Clears the terminal's line. */
 void progress_end(struct progress *progress);
 
-/* Seconds that the rest will take at the rate so far; negative: nothing is done yet. */
+/* Returns the estimated seconds for the rest at the rate so far; negative if nothing is done yet. */
 double progress_left_s(const struct progress *progress, int64_t now_ns);
 
 #endif

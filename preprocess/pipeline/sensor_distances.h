@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The sensors of an asset on its surface, and how far they are from everywhere. */
+/* Projects an asset's sensors onto its surface and computes the distances of every surface point from them. */
 #ifndef PREPROCESS_PIPELINE_SENSOR_DISTANCES_H
 #define PREPROCESS_PIPELINE_SENSOR_DISTANCES_H
 #include "base/log.h"
@@ -13,13 +13,16 @@ struct sensor_distances {
     double (*places_m)[3]; /* less the origin */
 };
 
-/* measured is zero-initialised, or has its surface already. Fills in what the report says about it. False: why says what is wrong; finish
-   all the same. */
+/* Builds the surface unless `measured` has one, projects the sensors onto it and computes their distances, taking known ones from the
+   distance cache. Fills in the report's part about it. Returns false with the reason in why. Call sensor_distances_finish() in both
+   cases. */
 bool sensor_distances_find(struct sensor_distances *measured, struct log *log, struct workers *workers, const struct build_input *input,
                            const struct geometry *geometry, struct build_output *output, char why[MODEL_WHY_BYTES]);
+/* Frees surface, distances and sensors. */
 void sensor_distances_finish(struct sensor_distances *measured);
 
-/* Finds the place of a sensor in the asset frame. Returns false if its node is not in the model, or not unique, with the reason in why. */
+/* Finds a sensor's position in the asset frame: its own, or its node's. Returns false with the reason in why if the node is not in the
+   model, or not unique. */
 bool build_sensor_place(const struct gltf_model *model, const struct geometry_params *geometry, const struct plant_sensor *sensor,
                         double place_m[3], char why[MODEL_WHY_BYTES]);
 

@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* `plantcast-prep distances`: one sensor's distances as a table. */
+/* `plantcast-prep distances`: prints one sensor's distances as a table. Thread: one. */
 #ifndef PREPROCESS_REPORT_DISTANCES_H
 #define PREPROCESS_REPORT_DISTANCES_H
 #include "preprocess/pipeline/prepare.h"
 
-/* CSV x,y,z,geodesic_m,euclidean_m at the vertices of a prepared asset, plant frame, both distances from the sensor's place on the
-   surface; `inf` where no way leads. False: said in diag. */
+/* Prints CSV x,y,z,geodesic_m,euclidean_m for the vertices of a prepared asset (plant frame), measured from the sensor's point on the
+   surface; `inf` where the surface does not connect them. Returns false with the reason in diag. */
 bool distances_print(const struct prepare *prepare, const char *folder, int asset, int tag, FILE *out, struct diag *diag);
 
 #endif

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What was done and what is worth a look, for people and for programs. What each number means: REPORT.md. Thread: one. */
+/* Reports what preparing did and what is worth a look, as text for people and JSON for programs. Meanings of the numbers: REPORT.md.
+   Thread: one. */
 #ifndef PREPROCESS_REPORT_H
 #define PREPROCESS_REPORT_H
 #include "preprocess/pipeline/prepare.h"
@@ -10,16 +11,18 @@ struct report_concern {
     char *text;
     double weight; /* the worst is the highest */
 };
-/* Worst first; free with report_concerns_free. */
+/* Lists what a person should look at, worst first, and their *count. The caller frees it with report_concerns_free(). */
 struct report_concern *report_concerns(const struct prepare *prepare, size_t *count);
+/* Frees such a list. */
 void report_concerns_free(struct report_concern *concerns, size_t count);
 
-/* Tables of what was built, each cut after some rows; all: of every asset, whole. */
+/* Prints tables of what was built, each shortened to some rows unless `all`. */
 void report_text(const struct prepare *prepare, bool all, FILE *out);
-/* One JSON object. False: out of memory. */
+/* Prints the report as one JSON object. Returns false if out of memory. */
 bool report_json(const struct prepare *prepare, FILE *out);
 
 extern const char *const report_states[];                 /* of enum prepare_state */
-uint32_t report_added(const struct prepare_asset *asset); /* vertices that preparing added to the model's own */
+/* Returns how many vertices preparing added to the model's own. */
+uint32_t report_added(const struct prepare_asset *asset);
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Tables of text for a terminal: columns as wide as what is in them, numbers to the right. Thread: one. */
+/* Text tables for a terminal: columns as wide as their contents, numbers aligned to the right. Thread: one. */
 #ifndef PREPROCESS_REPORT_TEXT_TABLE_H
 #define PREPROCESS_REPORT_TEXT_TABLE_H
 #include <stdio.h>
@@ -18,16 +18,18 @@ struct text_table { /* columns belong to the caller; else zero-initialise */
     size_t cell_count, capacity;
 };
 
-/* The next cell; a row is full when it has as many as there are columns. */
+/* Formats the next cell; a row is full once it has as many cells as there are columns. */
 void text_table_add(struct text_table *table, const char *fmt, ...) __attribute__((format(printf, 2, 3)));
-/* With its titles, and without columns that are empty throughout; at most `rows` rows, then how many are left out. */
+/* Prints the titles and at most `rows` rows, then how many were left out; columns that are empty throughout are dropped. */
 void text_table_print(const struct text_table *table, size_t rows, FILE *out);
+/* Frees the cells. */
 void text_table_finish(struct text_table *table);
 
-/* 62653 as 62,653. */
+/* A number as text, by value. */
 struct text_table_number {
     char text[32];
 };
+/* Returns the number as text with thousands separators: 62,653. */
 struct text_table_number text_table_number(unsigned long long number);
 
 #endif

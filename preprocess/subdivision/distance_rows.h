@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Distances place by place, as splitting finds them; turned into columns vertex by vertex, as an asset file has them. */
+/* Distances computed during subdivision, stored as one row of sensors per position; written to the asset file transposed, as one column of
+   vertices per sensor. */
 #ifndef PREPROCESS_SUBDIVISION_DISTANCE_ROWS_H
 #define PREPROCESS_SUBDIVISION_DISTANCE_ROWS_H
 #include <stddef.h>
@@ -15,11 +16,12 @@ struct distance_rows {
     uint32_t vertex_count;
 };
 
-void distance_rows_finish(struct distance_rows *rows); /* a zeroed one is fine */
-/* Vertices follow to their new numbers; those without one (TRIMESH_NONE) are dropped, and `kept` are left. */
+/* Frees the arrays. A zeroed one is fine. */
+void distance_rows_finish(struct distance_rows *rows);
+/* Renumbers the vertices by new_of (TRIMESH_NONE: dropped), after which there are `kept` of them. */
 void distance_rows_renumber(struct distance_rows *rows, const uint32_t *new_of, uint32_t kept);
-/* Columns, [sensor][vertex], into a file from `at` on: where a mapped one is stored to instead, each page costs as much again. workers may
-   be NULL. Returns 0, or the errno of what could not be written. */
+/* Writes the transposed matrix, [sensor][vertex], to fd from offset `at` on. It writes rather than storing through a mapping, which would
+   cost as much again for each page. workers may be NULL. Returns 0 or an errno. */
 int distance_rows_write(const struct distance_rows *rows, struct workers *workers, int fd, off_t at);
 
 #endif

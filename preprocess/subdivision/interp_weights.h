@@ -1,19 +1,22 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The sums behind the sensors' shares, for eight sensors at a time. Thread: any. */
+/* Computes the sensors' interpolation weights at a point as server/field does, eight sensors at a time (SIMD). Weights at a point add up to
+   1. Thread: any. */
 #ifndef PREPROCESS_SUBDIVISION_INTERP_WEIGHTS_H
 #define PREPROCESS_SUBDIVISION_INTERP_WEIGHTS_H
 #include <stdbool.h>
 #include <stddef.h>
 
-/* Counts are multiples of this; where there is no sensor, the distance is INFINITY, strength 0 and decay 1. Then the share is 0. */
+/* Counts are multiples of this; padding has distance INFINITY, strength 0 and decay 1, which gives weight 0. */
 #define INTERP_LANES 8
+/* Returns `count` rounded up to a multiple of INTERP_LANES. */
 static inline size_t interp_padded(size_t count)
 {
     return (count + INTERP_LANES - 1) / INTERP_LANES * INTERP_LANES;
 }
 
-/* Metres from the point to places, whose x, y and z lie apart. */
+/* Writes the straight-line distances from the point to `count` positions, whose x, y and z are separate arrays. */
 void interp_euclidean(const float point_m[3], const float *const places_m[3], size_t count, float *distance_m);
+/* Returns the smallest of the values. */
 float interp_least(const float *values, size_t count);
 
 struct interp_group {
@@ -22,18 +25,23 @@ struct interp_group {
     float power, reach_m; /* INFINITY: no limit; where nobody reaches, the nearest has all of a value */
     size_t count;
 };
-struct interp_norm {   /* what makes shares of shepard's weights: these are parts of the nearest sensor's */
+/* What turns Shepard weights relative to the nearest sensor's into weights that add up to 1. */
+struct interp_norm {
     float near_m, per; /* INFINITY: there is none within reach */
 };
-/* They return the most that a value changes over a metre there, whatever the readings: unless `slopes`, 0. */
+/* Writes the inverse-distance (Shepard) weights of a group's sensors to `interp`, and their normalisation to *norm. Returns, if `slopes`,
+   the largest change of the interpolated value per metre there, for any readings within the range; else 0. */
 float interp_shepard(const struct interp_group *group, const float *distance_m, bool slopes, float *interp, struct interp_norm *norm);
+/* As interp_shepard(), by Algorithm 1 of the paper with radius radius_m. */
 float interp_paper(const struct interp_group *group, float radius_m, const float *distance_m, float *interp);
 
-void interp_shepard_norm(const struct interp_group *group, const float *distance_m, struct interp_norm *norm); /* it alone */
-/* The same shares, in less than half the time. */
+/* Computes only the normalisation of Shepard weights. */
+void interp_shepard_norm(const struct interp_group *group, const float *distance_m, struct interp_norm *norm);
+/* Writes the same weights as interp_shepard(), given their normalisation, in less than half the time. */
 void interp_shepard_again(const struct interp_group *group, const float *distance_m, const struct interp_norm *norm, float *interp);
 
-/* Shares at a point against those at corners, weighted: the sum of what is more, or of what is less, whichever is larger. */
+/* Compares weights at a point with the combination of those at corners: returns the sum of positive differences or of negative ones,
+   whichever is larger. That is the largest error of a linear interpolation, in parts of the range. */
 float interp_error(const float *const *corners, const float *weights, size_t corner_count, const float *sample, size_t count);
 
 #endif

@@ -1,13 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* How far the field between two points is from a straight line: what a triangle's edge would show wrongly.
+/* Linear interpolation error: by how much a triangle or edge that interpolates the field linearly between its corners can be wrong.
 
-   Whatever the readings (within MIN and MAX), a value is the sum of readings times the sensors' shares there. So the worst error at a point
-   between two others is the sum of the shares that are larger than the line says, or of those that are smaller, in parts of the range. It
-   is looked for over every group with sensors on the asset, in both interpolations and on both distances, with the parameters that the
-   plant file gives. Where a group has a single sensor, paper is looked at only if plant_cuts_singles says so: by shepard its field is
-   constant.
+   Whatever the readings (within MIN and MAX), a value is the sum of readings times the sensors' interpolation weights. So the largest
+   error at a point between two others is the sum of the weights that are larger than interpolation says, or of those that are smaller, in
+   parts of the range. It is taken over every group with sensors on the asset, both interpolations and both kinds of distance, with the
+   plant file's parameters.
 
-   Where no sensor of a group reaches, there is no data, and the nearest's value is carried on. */
+   Where no sensor of a group reaches, there is no data, and the nearest sensor's value is carried on. Thread: any, once initialised. */
 #ifndef PREPROCESS_SUBDIVISION_LINEAR_ERROR_H
 #define PREPROCESS_SUBDIVISION_LINEAR_ERROR_H
 #include "plant/plant.h"
@@ -33,29 +32,36 @@ struct linear_error {
 /* Tells whether a group with so many sensors on an asset is looked at in paper, too. */
 bool straight_looks_at_paper(const struct plant_group *group, size_t sensor_count);
 
-/* places_m: of the sensors, on the surface. Radii that the plant file leaves open are to be set by linear_error_set_radius. */
+/* Prepares the error measure for a plant's groups and an asset's sensors, whose positions on the surface are places_m (copied). Radii that
+   the plant file leaves open must be set by linear_error_set_radius(). Finish with linear_error_finish(). */
 void linear_error_init(struct linear_error *linear, const struct plant *plant, const struct plant_sensor *sensors, size_t sensor_count,
                        const float (*places_m)[3]);
+/* Frees the arrays. */
 void linear_error_finish(struct linear_error *linear);
-/* largest_m[mode][column]: of each sensor over all vertices. */
+/* Sets the radii of Algorithm 1 that the plant file leaves open. largest_m[mode][column]: each sensor's largest distance over all
+   vertices. */
 void linear_error_set_radius(struct linear_error *linear, const float *const largest_m[2]);
 
-/* The sensors' shares at a point: share_count numbers, for geodesic distances and then for straight ones: group by group, shepard's and
-   then paper's (of groups with few sensors). Then, in that order, the most that a value may change there over a metre. geodesic_m: by
-   column; INFINITY: not reached. */
-size_t linear_error_sample_count(const struct linear_error *linear); /* numbers that linear_error_weights makes */
-/* norms: two of each group, for geodesic distances and then for straight ones. Without `slopes` what shepard may change is left 0. */
+/* Returns how many numbers one sample (linear_error_weights()) has. */
+size_t linear_error_sample_count(const struct linear_error *linear);
+/* Computes a sample at a point: the sensors' interpolation weights for geodesic and then for straight-line distances, group by group,
+   Shepard's and then Algorithm 1's; then, in that order, the largest change of a value per metre (0 for Shepard without `slopes`).
+   geodesic_m: by sensor column; INFINITY: not connected. norms: receives two normalisations per group. */
 void linear_error_weights(const struct linear_error *linear, const float point_m[3], const float *geodesic_m, bool slopes, float *interp,
                           struct interp_norm *norms);
+/* Computes only the normalisations of a sample. */
 void linear_error_norms(const struct linear_error *linear, const float point_m[3], const float *geodesic_m, struct interp_norm *norms);
-/* The same shares, in less time where paper is not looked at; nothing after them. */
+/* Computes the sample's weights, given its normalisations, in less time where Algorithm 1 is not used; the changes per metre are not
+   written. */
 void linear_error_weights_again(const struct linear_error *linear, const float point_m[3], const float *geodesic_m,
                                 const struct interp_norm *norms, float *interp);
-/* From norms: metres to where a group's data end, at least. Where reaches of two sensors end at once, its field peaks. */
+/* Returns, from a sample's normalisations, a lower bound of the distance in metres to where some group's data end. Where the reaches of two
+   sensors end at once, the field has a peak. */
 double linear_error_rim_of(const struct linear_error *linear, const struct interp_norm *norms);
-/* And metres to the nearest sensor, as the crow flies, or to there, whichever is less. */
+/* Returns, from a sample's normalisations, the distance in metres to the nearest sensor (straight line) or to where data end, whichever is
+   less. */
 double linear_error_nearest_of(const struct linear_error *linear, const struct interp_norm *norms);
-/* In parts of the range: samples at a point against a line between two others, at share t of the way; against the plane
+/* Errors in parts of the range: a sample at a point against the line between two others, at fraction t; against the plane
    through three corners, with these weights.
    modes: on which distances. Less what a value may change over slack_m, up to two steps of colour. Farther than wide_m from where a group
    has data, it does not err; nearer, what is shown there goes into what is shown of the data, if the edge or triangle is so wide. */
@@ -68,7 +74,7 @@ double linear_error_on_edge(const struct linear_error *linear, enum linear_error
                             const float *between, double wide_m, double slack_m);
 double linear_error_in_triangle(const struct linear_error *linear, enum linear_error_modes modes, const float *const corners[3],
                                 const double weights[3], const float *inside, double wide_m, double slack_m);
-/* Metres from the point to the nearest sensor, as the crow flies. */
+/* Returns the straight-line distance in metres from the point to the nearest sensor. */
 double linear_error_nearest(const struct linear_error *linear, const float point_m[3]);
 
 #endif

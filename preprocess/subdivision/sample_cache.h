@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Where on the surface the points lie that splitting looks at, for the next time: KEY.spots beside the asset files. No sensor has a part in
-   that, and finding it is half of the work. Safe to delete; one that is no good counts as none. It holds what was asked the last time that
-   it was written, which is when it knew less than half of that. */
+/* Cache of the surface triangles that sample points were projected onto: KEY.spots in the folder of prepared files. Projections do not
+   depend on sensors, and are half of the work of subdivision. Safe to delete; a damaged file counts as absent. It holds what was asked for
+   when it was last written, and is written anew when less than half of what was asked for was in it. */
 #ifndef PREPROCESS_SUBDIVISION_SAMPLE_CACHE_H
 #define PREPROCESS_SUBDIVISION_SAMPLE_CACHE_H
 #include <pthread.h>
@@ -27,16 +27,20 @@ struct sample_cache_notes { /* of one thread, zeroed at first */
     size_t count, missed;
 };
 
+/* Opens the cache of this key; a missing file gives an empty cache. Close with sample_cache_close(). */
 void sample_cache_open(struct sample_cache *sample_cache, const char *folder, uint64_t key);
+/* Unmaps the file and frees the notes. */
 void sample_cache_close(struct sample_cache *sample_cache);
-/* If it is worth it. What cannot be written is not kept. */
+/* Writes what was asked for in this run, if that is worth it. Errors are ignored: then nothing is cached. */
 void sample_cache_write(const struct sample_cache *sample_cache, const char *folder, uint64_t key);
 
-/* The triangle that a point was found on; TRIMESH_NONE: nowhere. Key: a hash of all that this depends on, but for the surface. False: it is
-   not known. Thread: any. */
+/* Looks up the triangle that a sample point projects onto; *tri is TRIMESH_NONE if it projects nowhere. key: a hash of all that the
+   projection depends on, except the surface. Returns false if it is not cached. Thread: any. */
 bool sample_cache_find(const struct sample_cache *sample_cache, uint64_t key, uint32_t *tri);
-/* What was asked for, whether it was known, and whether not. Notes are handed over now and then; in the end, by sample_cache_hand_over. */
+/* Records in the calling thread's notes that this point was asked for, its triangle, and whether it was cached. Full notes are handed over.
+   Thread: any, one per notes. */
 void sample_cache_note(struct sample_cache *sample_cache, struct sample_cache_notes *notes, uint64_t key, uint32_t tri, bool known);
+/* Moves a thread's notes into the cache, for sample_cache_write(). Thread: any. */
 void sample_cache_hand_over(struct sample_cache *sample_cache, struct sample_cache_notes *notes);
 
 #endif

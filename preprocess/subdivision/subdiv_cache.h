@@ -1,15 +1,15 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What splitting found out about edges and triangles, for the next time: KEY.splitting beside the asset files. Where few of many sensors
-   have changed, it still holds everywhere but near these, and only there is measured anew.
+/* Cache of the errors measured at edges and triangles: KEY.splitting in the folder of prepared files. Where few of many sensors have
+   changed since, these findings still hold everywhere except near those sensors, and only there is measured again.
 
-   A sensor that has at most the share x of a value changes what the field errs along an edge by about x times as much as it errs, and so
-   does one that is gone. Such shares add up from one time to the next (doubt) until an edge is measured again; what they may be together
-   is far below the tenth of a step of colour by which the splitting keeps within SUBDIV_ERROR. Where doubts are larger, a finding still
-   holds if it is so far from what matters that no such change brings it there. That is so for shepard with one strength for
-   all sensors of a group. In paper every sensor has a share everywhere, and with a reach shares bend where it ends: nothing is kept for an
-   asset with a group that is looked at in paper, or that has a reach.
-   Coarser levels that were given up are not tried again before as many sensors have changed as findings may outlive at once.
-   Safe to delete; one that is no good counts as none. */
+   A sensor that has at most the fraction x of a value changes an edge's error by about x times that error, and so does one that is
+   removed. Such fractions add up from run to run (doubt) until the edge is measured again; together they stay far below the tenth of a
+   colour step that subdivision keeps in reserve (SUBDIV_AIM). With larger doubt a finding still holds if its error is far from any limit.
+   This is so for Shepard interpolation with one strength for all sensors of a group. Under Algorithm 1 every sensor counts everywhere, and
+   a reach bends the weights where it ends: an asset with such a group is not cached.
+
+   Coarser levels that were given up are not tried again before as many sensors have changed as findings may outlive at once. Safe to
+   delete; a damaged file counts as absent. Thread: one, except where a function says otherwise. */
 #ifndef PREPROCESS_SUBDIVISION_SUBDIV_CACHE_H
 #define PREPROCESS_SUBDIVISION_SUBDIV_CACHE_H
 #include "base/cache_file.h"
@@ -34,10 +34,12 @@ struct subdiv_cache {
     size_t measured_count, kept_count;
 };
 
-/* Never fails. straight must outlive it. */
+/* Opens the findings of the last run under this key and works out which sensors have changed since. Never fails: without a usable file the
+   cache is empty. linear must outlive it. */
 void subdiv_cache_open(struct subdiv_cache *cache, const char *folder, uint64_t key, const struct linear_error *linear);
-void subdiv_cache_close(struct subdiv_cache *cache); /* a zeroed one is fine */
-/* After splitting. What cannot be written is not kept. */
+/* Unmaps and frees the cache. A zeroed one is fine. */
+void subdiv_cache_close(struct subdiv_cache *cache);
+/* Writes this run's findings, after subdivision. Errors are ignored: then nothing is cached. */
 void subdiv_cache_write(const struct subdiv_cache *cache, const char *folder, uint64_t key);
 
 #endif

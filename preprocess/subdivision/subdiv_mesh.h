@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A geometry whose edges are being cut: new places, new vertices at them, and the triangles of one level. */
+/* The mesh that subdivision works on: a geometry whose edges are cut at new vertices, and the triangles of one level at a time. Cuts are
+   shared by all levels. */
 #ifndef PREPROCESS_SUBDIVISION_SUBDIV_MESH_H
 #define PREPROCESS_SUBDIVISION_SUBDIV_MESH_H
 #include "preprocess/levels/levels.h"
@@ -51,37 +52,43 @@ struct subdiv_mesh {
     struct subdiv_list open; /* with edges that are cut, or that were when they were listed */
 };
 
-bool subdiv_mesh_init(struct subdiv_mesh *mesh, struct geometry *geometry); /* false: out of memory; finish copes */
+/* Builds the mesh over a geometry, to which vertices will be added. Returns false if out of memory; call subdiv_mesh_finish() in both
+   cases. */
+bool subdiv_mesh_init(struct subdiv_mesh *mesh, struct geometry *geometry);
+/* Frees the mesh; the geometry stays. */
 void subdiv_mesh_finish(struct subdiv_mesh *mesh);
 
-/* Takes a level's triangles in hand; gives them back, primitive by primitive. */
+/* Makes a level's triangles the current ones. */
 void subdiv_mesh_load(struct subdiv_mesh *mesh, const struct level *level);
+/* Writes the current triangles back to the level, primitive by primitive. */
 void subdiv_mesh_store(const struct subdiv_mesh *mesh, struct level *level);
 
+/* Returns whether this edge is cut in the current level. */
 static inline bool subdiv_mesh_is_split(const struct subdiv_mesh *mesh, uint32_t edge) /* in the level in hand */
 {
     return mesh->cuts[edge].load == mesh->loads;
 }
-/* Cuts an edge at its share of the way; the triangles stay as they are until subdiv_mesh_apply. True: at a new place
-   (cuts[edge].middle). False: where another level cut it. */
+/* Cuts an edge at its stored fraction, at position_m; triangles change only in subdiv_mesh_apply(). Returns true if the position is new
+   (cuts[edge].middle), false if another level had cut the edge already. */
 bool subdiv_mesh_split_edge(struct subdiv_mesh *mesh, uint32_t edge, const float position_m[3]);
+/* Appends a number to a list. */
 void subdiv_mesh_list(struct subdiv_list *list, uint32_t number);
-/* The list in order, each once. */
+/* Sorts a list and removes duplicates. */
 void subdiv_mesh_sort(struct subdiv_list *list);
-/* Has all triangles of the level among those made. */
+/* Marks all triangles of the current level as new (mesh->made). */
 void subdiv_mesh_list_all(struct subdiv_mesh *mesh);
-/* Splits triangles until none has an edge that is cut. Returns the number of pieces made. */
+/* Splits triangles until none has a cut edge. Returns the number of triangles made. */
 size_t subdiv_mesh_apply(struct subdiv_mesh *mesh);
-/* Puts a new vertex into a triangle. Returns it. */
+/* Inserts a vertex into a triangle at these barycentric weights. Returns the vertex. */
 uint32_t subdiv_mesh_insert(struct subdiv_mesh *mesh, size_t tri, const double weights[3], const float position_m[3]);
 
-/* Two triangles at an edge whose corners there are the same vertices: tris[1] has them the other way round. The edge between their other
-   corners, which need not be in the level; TRIMESH_NONE: they are no such two. */
+/* Returns the edge between the other corners of two triangles at an edge, tris[1] having it the other way round; it need not be in the
+   level. TRIMESH_NONE if the triangles do not share the edge's two vertices. */
 uint32_t subdiv_mesh_opposite_edge(struct subdiv_mesh *mesh, const uint32_t tris[2], uint32_t edge);
-/* Has that edge in place of this one. */
+/* Replaces the two triangles' common edge by that one. */
 void subdiv_mesh_flip_edge(struct subdiv_mesh *mesh, const uint32_t tris[2], uint32_t edge);
 
-/* Which way the surface looks at an edge; of no certain length. */
+/* Writes the surface's normal at an edge, of no certain length. */
 void subdiv_mesh_normal(const struct subdiv_mesh *mesh, const struct subdiv_edge *edge, double normal[3]);
 
 #endif

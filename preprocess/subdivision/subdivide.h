@@ -1,17 +1,19 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Cuts triangles where the field is not straight enough along an edge, and puts a vertex where each sensor stands.
+/* Adaptive subdivision: cuts triangles where linear interpolation of the field would err, and puts a vertex where each sensor stands.
 
-   The finest level shows the field to SUBDIV_ERROR, whatever the readings are (straight.h). A coarser one, whose surface is up to error_m
-   off, shows it to SUBDIV_ERROR at a place no farther away than two thirds of that or so, and to three times SUBDIV_ERROR where it is: it is
-   only drawn where error_m is less than a pixel. Its surface stays as it is but that edges in flat places may be turned to run the other
-   way between two triangles. An edge that a finer level has too, and need not cut, is not looked at.
-   Pieces no longer than an eighth of the model's tolerance or, in coarser levels, than their error are not cut; nor, up to eight tolerances
-   or errors long, for the field on distances along the surface ones where those jump because the surface does not hang together there: no
-   cut mends a jump, cuts only close in on it. What is hidden deep inside another part does not count (a coarser level's surface may stand
-   out of one that hides it by less than its error), nor do triangles that have no width; of what stands out of it, what is seen does.
-   A level may not grow for ever, so errors are cut in the order of their size: the finest level to three times its triangles or by 100,000,
-   whichever is more. A coarser one that would need more than three quarters of the next finer one's triangles is given up.
-   What is left is told by its reason (level.left). */
+   The finest level shows the field to SUBDIV_ERROR, whatever the readings are (linear_error.h). A coarser level, whose surface is up to
+   error_m off, shows it to SUBDIV_ERROR at a point no farther away than about two thirds of that, and to three times SUBDIV_ERROR in place:
+   it is only drawn where error_m is less than a pixel. Its surface stays as it is, except that edges in flat regions may be flipped. An
+   edge that a finer level has too, and need not cut, is not measured again.
+
+   Edges no longer than an eighth of the model's tolerance (in coarser levels: than their error) are not cut; nor are, up to eight
+   tolerances or errors long, those whose error comes from a jump of the geodesic distance where the surface does not hang together: no cut
+   mends a jump. Interior triangles (hidden inside another part, in coarser levels with an allowance for their error) and slivers without
+   width do not count.
+
+   The largest errors are cut first, and the number of triangles is bounded: the finest level grows to three times its triangles or by
+   100,000, whichever is more; a coarser one that would need more than three quarters of the next finer one's triangles is given up. What is
+   left is counted by its reason (level.left). */
 #ifndef PREPROCESS_SUBDIVISION_SUBDIVIDE_H
 #define PREPROCESS_SUBDIVISION_SUBDIVIDE_H
 #include "preprocess/levels/levels.h"
@@ -36,8 +38,9 @@ struct subdiv_input {
     void *arg;
 };
 
-/* Levels may be fewer afterwards. New vertices come after the geometry's; both faces at an edge are cut at the same vertex, so a level
-   without cracks stays without. distances: of all vertices, to be finished by the caller. False: out of memory, and there are none. */
+/* Subdivides all levels and computes the distances of all vertices into *distances, which the caller finishes. New vertices come after the
+   geometry's own; both faces at an edge are cut at the same vertex, so a watertight level stays watertight. Levels that would need too many
+   triangles are dropped. Returns false if out of memory, and then there are no distances. */
 bool subdivide_levels(struct levels *levels, struct geometry *geometry, const struct subdiv_input *input, struct distance_rows *distances);
 
 #endif

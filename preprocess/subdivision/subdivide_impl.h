@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What the files of the splitting share. */
+/* Shared by the files of the adaptive subdivision (subdiv*.c). */
 #ifndef PREPROCESS_SUBDIVISION_SUBDIVIDE_IMPL_H
 #define PREPROCESS_SUBDIVISION_SUBDIVIDE_IMPL_H
 #include "preprocess/subdivision/subdiv_mesh.h"
@@ -34,17 +34,22 @@ struct subdiv {
     size_t most_tris, first_count; /* first_count: before sensors were placed */
 };
 
+/* Writes the point at fraction t of the way from a to b. */
 void subdiv_mix(const float a[3], const float b[3], double t, float out[3]);
+/* Returns the distance between two points. */
 double subdiv_length(const float a[3], const float b[3]);
+/* Returns a vertex's position. */
 const float *subdiv_position(const struct subdiv *subdiv, uint32_t vertex);
-bool subdiv_is_short(const struct subdiv *subdiv, double length_m); /* too short to be cut: a piece may not be so short */
+/* Returns whether an edge of this length is too short to be cut. */
+bool subdiv_is_short(const struct subdiv *subdiv, double length_m);
 
-/* Over [0, count) on all cores, in pieces of about `grain`. */
+/* Runs body(arg, begin, end) over [0, count) on all cores, in ranges of about `grain`; on the calling thread if there are no workers. */
 void subdiv_parallel(const struct subdiv *subdiv, size_t count, size_t grain, void (*body)(void *arg, size_t begin, size_t end), void *arg);
 
 /* --- measuring (split_measure.c) --- */
 
-struct subdiv_finding { /* about one edge or one triangle */
+/* The measured error of one edge or one triangle. */
+struct subdiv_finding {
     uint32_t number;
     float error, share; /* share: where the edge is best cut */
     float barred;       /* the error that cutting may not mend */
@@ -53,40 +58,45 @@ struct subdiv_finding { /* about one edge or one triangle */
     float doubt, off; /* split_kept.h */
 };
 
-bool subdiv_find_parts(struct subdiv *subdiv); /* false: out of memory */
+/* Assigns each position the part (connected component by edges) that it belongs to. Returns false if out of memory. */
+bool subdiv_find_parts(struct subdiv *subdiv);
+/* Assigns a new position its part. */
 void subdiv_add_place(struct subdiv *subdiv, uint32_t place, uint32_t part);
-/* Shares at places from `first` on; before that, with `edges`, the distances there too: at which edge each lies. */
+/* Computes the weights at positions from `first` on; with `edges` (the edge that each lies on), first their distances too. */
 void subdiv_measure_places(struct subdiv *subdiv, uint32_t first, const uint32_t *edges, size_t count);
-/* Of edges. Errors below `enough` need not be exact, and tell no share. */
+/* Measures the interpolation error along `count` edges. Errors below `enough` need not be exact, and then no cut position is found. */
 void subdiv_measure_edges(struct subdiv *subdiv, struct subdiv_finding *findings, size_t count, double enough);
-/* And notes them at the edges. */
+/* Measures edges and stores the findings at the edges themselves. */
 void subdiv_measure_new_edges(struct subdiv *subdiv, struct subdiv_finding *findings, size_t count);
-/* Of triangles, at their middles. */
+/* Measures the interpolation error of triangles at their centres. */
 void subdiv_measure_insides(struct subdiv *subdiv, struct subdiv_finding *findings, size_t count);
 
 /* --- levels that are no use (split_bound.c) --- */
 
-/* A coarser level, or what its sample stands for, that is sure to come to its bound: this is best known before it is cut that far. */
+/* Returns whether a coarser level, or the level that its sample stands for, is certain to need more triangles than it may have. Known
+   before the cuts are made. */
 bool subdiv_will_exceed_bound(const struct subdiv *subdiv);
-/* Some of a level's triangles, a few neighbours at a time; to be finished. Returns how many such blocks there are. */
+/* Copies some of a level's triangles, a few neighbours at a time, into *sample, which the caller finishes (level_finish()). Returns how
+   many such blocks there are. */
 size_t subdiv_take_sample(struct level *sample, const struct level *level);
 
 /* --- keeping (split_kept.c) --- */
 
-/* About an edge or a triangle, by its corners. *next: a guess where it is, 0 at first; then one for what is asked for next. False: it is
-   not known, or may no longer hold. */
+/* Looks up the finding of the last run about an edge or triangle by its corners, if it still holds. *next: a guess of where it is stored, 0
+   at first; updated for the next call. Returns false if it is not known, or may no longer hold. */
 bool subdiv_cache_find(const struct subdiv *subdiv, const uint32_t *corners, size_t count, uint32_t *next, struct subdiv_finding *finding);
+/* Records a finding for the next run. */
 void subdiv_cache_add(struct subdiv *subdiv, const uint32_t *corners, size_t count, const struct subdiv_finding *finding);
 
 /* --- turning (split_turn.c) --- */
 
-/* Has edges that err by more than the limit run between the other corners of their triangles, if the field errs less there and the surface
-   stays about where it is. */
+/* Flips edges between two triangles whose error exceeds `limit`, where the field errs less along the other diagonal and the surface stays
+   about in place. */
 void subdiv_flip_edges(struct subdiv *subdiv, double limit);
 
 /* --- sensors (split_sensors.c) --- */
 
-/* A vertex where each sensor stands. */
+/* Inserts a vertex where each sensor stands. error_m: how far the level's surface may be off. */
 void subdiv_place_sensors(struct subdiv *subdiv, double error_m);
 
 #endif

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Colour maps: 256 sRGB colours each, from shaders/maps/NAME.csv (r,g,b per line, 0..255), embedded at build; and those that are added
-   before other threads begin. Then immutable. Thread: any. */
+/* Colour maps: 256 sRGB colours each. Built-in maps come from shaders/maps/NAME.csv (r,g,b per line, 0..255), embedded at build; a plant's
+   own are added before other threads begin. Immutable from then on. Thread: any. */
 #ifndef FIELD_COLORMAP_H
 #define FIELD_COLORMAP_H
 #include <stdbool.h>
@@ -18,17 +18,22 @@ struct colormap {
     uint8_t below[3], above[3]; /* colours for < MIN and > MAX; not on the map */
 };
 
-/* Adds a map, or changes one that was added; it is judged, and gets colours for what is outside. Index, or -1: the name is that of a
-   built-in one, or there are too many. */
+/* Adds a map, or replaces one that was added before: rates its shading and chooses its out-of-range colours. Returns its index, or -1 if
+   the name belongs to a built-in map or there is no room. Thread: before others begin. */
 int colormap_add(const char *name, const uint8_t rgb[256][3]);
+/* Adds the colour maps that the plant file defines. Thread: before others begin. */
 void colormaps_of_plant(const struct plant *plant);
-/* Works out shading and safe from the colours; some milliseconds. Those of the embedded maps stand in their files. */
+/* Computes `shading` and `safe` from the map's colours; takes some milliseconds. Built-in maps have them in their files. */
 void colormap_rate_shading(struct colormap *map);
 
+/* Returns the number of maps. */
 size_t colormap_count(void);
-const struct colormap *colormap_at(size_t index); /* 0 is the default */
-/* Colours of places between limits, -3 to 3 (field/limits.h): not on the list, since it does not show values. */
+/* Returns the map with this index; 0 is the default. */
+const struct colormap *colormap_at(size_t index);
+/* Returns the map for positions between alarm limits, -3 to 3 (field/limits.h). It is not listed among the others, as it does not show
+   values. */
 const struct colormap *colormap_operator(void);
-int colormap_find(const char *name); /* index or -1 */
+/* Returns the index of the map with this name, or -1. */
+int colormap_find(const char *name);
 
 #endif

@@ -35,50 +35,59 @@
 #include "value/baselines.h"
 #include "value/snapshot.h"
 
+/* Computes the scalars of all assets of a scene, and caches them by parameters. Thread: one at a time. */
 struct field;
-struct field *field_create(struct workers *workers, const struct scene *scene); /* both must outlive it */
-void field_destroy(struct field **field);                                       /* &NULL is fine; leaves NULL */
+/* Creates an empty field. workers and scene must outlive it. The caller destroys it. */
+struct field *field_create(struct workers *workers, const struct scene *scene);
+/* Frees the field and its cache. &NULL is fine; leaves NULL. */
+void field_destroy(struct field **field);
+/* Returns the workers it was created with. */
 struct workers *field_workers(const struct field *field);
-/* Where differences look their baselines up; it must outlive the field. Without it, and for a baseline that was forgotten, a
-   difference has no data anywhere. */
+/* Sets where differences look up their baselines; they must outlive the field. Without it, or for a forgotten baseline, a difference has no
+   data. */
 void field_set_baselines(struct field *field, struct baselines *baselines);
-/* Where places that are tried out are looked up, likewise. Without it, and for a trial that is gone, sensors are where the plant has
-   them. */
+/* Sets where trial positions of sensors are looked up; they must outlive the field. Without it, or for a trial that is gone, sensors are
+   where the plant has them. */
 void field_set_trials(struct field *field, struct trials *trials);
-/* The parameters that the field of this asset is kept under: without the trial, where it moves nothing there. `room` is for a copy. */
+/* Returns the parameters under which the field of this asset is cached: params, or a copy in *room without the trial, where the trial moves
+   nothing on this asset. */
 const struct field_params *field_params_of(struct field *field, int asset, const struct field_params *params, struct field_params *room);
-/* What is tried out, held until trials_give. NULL: nothing. */
+/* Returns the trial that params name, held until field_give_trial(); NULL if there is none. */
 const struct trial *field_take_trial(struct field *field, const struct field_params *params);
+/* Releases a trial. &NULL is fine; leaves NULL. */
 void field_give_trial(struct field *field, const struct trial **trial);
-/* What the difference is from. False: no difference is shown, or it was forgotten. */
+/* Looks up the baseline of a difference into *out. Returns false if params show no difference or the baseline was forgotten. */
 bool field_baseline(const struct field *field, const struct field_params *params, struct baseline *out);
 /* The bound on what is kept, FIELD_DEFAULT_BYTES at first. What the parameters asked for last need for themselves may pass it. */
 #define FIELD_DEFAULT_BYTES ((size_t)512 << 20)
+/* Sets the limit of the cache in bytes, FIELD_DEFAULT_BYTES at first. What the parameters asked for last need for themselves may exceed
+   it. */
 void field_set_cache_limit(struct field *field, size_t bytes);
-size_t field_bytes(const struct field *field); /* kept now */
-void field_clear_cache(struct field *field);   /* drops all that is kept */
+/* Returns the bytes that are cached now. */
+size_t field_bytes(const struct field *field);
+/* Drops everything that is cached. */
+void field_clear_cache(struct field *field);
 
-/* The scalars of one asset, brought up to date with the snapshot: values, metres, or differences. Distances have no data where the
-   surface does not lead (the value there is the largest). Belongs to `field`, valid until the next call with other parameters;
-   scalars->version grows only when a value or a flag really changed. NULL: the asset has no sensor of the group (a distance: is not
-   the sensor's own), or out of memory. Shared by all who ask with equal parameters; the least recently used are dropped beyond the
-   bound. */
+/* Brings the scalars of one asset up to date with the snapshot and returns them. They belong to the field, are shared by all who ask with
+   equal parameters, and are valid until the next call with other parameters; scalars->version grows only when a value or flag really
+   changed. Distances have no data where the surface does not lead (their value there is the largest). Returns NULL if the asset has no
+   sensor of the group (for a distance: not that sensor), or out of memory. */
 const struct scalars *field_scalars(struct field *field, int asset, const struct field_params *params, const struct snapshot *snapshot);
 
-/* The same, but only the first `count` vertices must be up to date (scalars->ready of them are): those of a level of detail. */
+/* As field_scalars(), but brings only the first `count` vertices up to date, those of a level of detail: scalars->ready of them are
+   valid. */
 const struct scalars *field_scalars_of(struct field *field, int asset, const struct field_params *params, const struct snapshot *snapshot,
                                        size_t count);
-/* Brings these fields up to date side by side, each on one core: small ones are not worth waking another thread for each. What it leaves
-   (large ones, trials, where memory is short) field_scalars_of does, which is to be called next for all of them. counts: by place in
-   assets. */
+/* Brings the fields of several small assets up to date side by side, one core each. What it leaves (large fields, trials, or where memory
+   is short) field_scalars_of() does, which must be called next for all of them. counts: vertices wanted, by place in assets. */
 void field_update_all(struct field *field, const int *assets, const size_t *counts, size_t asset_count, const struct field_params *params,
                       const struct snapshot *snapshot);
-/* Works towards that for about so many nanoseconds of one core, so that much to do at once holds nobody up. True: it would be had at
-   once now. While false comes, the readings are those of the first call, and these scalars must not be read. */
+/* Works towards field_scalars_of() for about `work` nanoseconds of one core, so that a large update blocks nobody. Returns true when that
+   call would now return at once. While it returns false, the readings are those of the first call and the scalars must not be read. */
 bool field_advance(struct field *field, int asset, const struct field_params *params, const struct snapshot *snapshot, size_t count,
                    double work);
 
-/* Whether there is something to show on that asset, were there enough memory. */
+/* Returns whether there is anything to show on the asset with these parameters, given enough memory. */
 bool field_covers(struct field *field, int asset, const struct field_params *params);
 
 /* What the field at any point of an asset is made of, for whoever works it out by himself. */
@@ -91,8 +100,8 @@ struct field_sensor {
     float value;                        /* as it is summed: for `paper` 0..1, for a difference that of two */
     bool configured, usable, uncertain; /* configured: would take part, were it good */
 };
-/* Those of the asset, as field_scalars with these parameters has just taken them; *radius_m: R of `paper`. Belongs to whoever asked
-   (mem_free). 0: there are none. */
+/* Lists the inputs of the field on an asset, as the last field_scalars() with these parameters took them, for a caller that evaluates the
+   field itself; *radius_m receives R of Algorithm 1. Returns their number; the caller frees *out (mem_free). 0: there are none. */
 size_t field_sensors(struct field *field, int asset, const struct field_params *params, struct field_sensor **out, float *radius_m);
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What field.c and field_ask.c share. Private to field/. */
+/* Shared by the files of the field (field*.c). */
 #ifndef FIELD_FIELD_IMPL_H
 #define FIELD_FIELD_IMPL_H
 #include "field/field.h"
@@ -26,16 +26,20 @@ struct field {
     uint64_t versions;
 };
 
-/* NULL: no sensor of the group on the asset. trial: as in field_params_of, which params have been through. */
+/* Returns the layout of the sensors of params' group on the asset, made if needed; NULL if there are none. params must have been through
+   field_params_of(). */
 struct layout *field_layout(struct field *field, int asset, const struct field_params *params);
-/* field_trials.c: what the trial makes of it. */
+/* Returns the layout with the trial's positions. */
 struct layout *field_trial_layout(struct field *field, int asset, const struct field_params *params);
-void field_forget_trial_layout(struct field *field, const struct trial_layout *tried); /* in field.c: all that is made of its layout */
+/* Drops every state and weights object that was made from this trial's layout. */
+void field_forget_trial_layout(struct field *field, const struct trial_layout *tried);
+/* Frees all trial layouts. */
 void field_trials_finish(struct field *field);
-/* Found or made; not brought up to date. NULL: no sensor of the group on the asset, or out of memory. */
+/* Returns the state for these parameters, found or created, but not brought up to date. NULL if the asset has no sensor of the group, or
+   out of memory. */
 struct state *field_state(struct field *field, int asset, const struct field_params *params);
 
-/* Looks at the readings; begins what there is to do. False: out of memory, the state is gone. */
+/* Reads the snapshot into the state and begins the update that it needs. Returns false if out of memory; the state is gone then. */
 bool field_begin_update(struct field *field, struct state *state, const struct snapshot *snapshot, size_t count);
 
 #endif

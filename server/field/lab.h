@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* CIELAB (D65) and back, and how a deuteranope sees. Pure. Thread: any. */
+/* Conversion between sRGB and CIELAB (D65), and simulation of deuteranopia. Pure. Thread: any. */
 #ifndef FIELD_LAB_H
 #define FIELD_LAB_H
 #include <stdbool.h>
@@ -7,10 +7,12 @@
 
 enum color_vision { VISION_NORMAL, VISION_DEUTERANOPE, VISION_COUNT };
 
-/* srgb: 0..255, not necessarily whole. Deuteranopes: Machado, Oliveira, Fernandes 2009, severity 1. */
+/* Converts sRGB components 0..255 (need not be whole) to CIELAB, as seen with this colour vision. Deuteranopes: Machado, Oliveira,
+   Fernandes 2009, severity 1. */
 void lab_from_srgb(const double srgb[3], enum color_vision vision, double lab[3]);
+/* Converts an 8-bit sRGB colour to CIELAB, normal vision. */
 void lab_from_rgb(const uint8_t rgb[3], double lab[3]);
-/* The colour with `offset` added to its L*, as far as sRGB goes; hue and chroma stay. */
+/* Writes the colour with `offset` added to its lightness L*, as far as sRGB allows; hue and chroma stay. */
 void lab_shade(const uint8_t rgb[3], double offset, uint8_t out[3]);
 
 #endif

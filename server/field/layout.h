@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Which sensors of one group stand on one asset, and how far every vertex is from them. Thread: one. */
+/* The sensors of one group on one asset, and the distances of every vertex from them. Thread: one. */
 #ifndef FIELD_LAYOUT_H
 #define FIELD_LAYOUT_H
 #include "base/workers.h"
@@ -26,16 +26,19 @@ struct layout {
     uint32_t trial;     /* of which some of the places are; 0: none */
 };
 
-/* NULL: no sensor of the group on the asset. scene, and trial (NULL: none), must outlive it. */
+/* Builds the layout of a group's sensors on an asset; trial: sensors that are tried out elsewhere (NULL: none). Both scene and trial must
+   outlive it. Returns NULL if no sensor of the group is there. */
 struct layout *layout_create(const struct scene *scene, int asset, int group, const struct trial *trial);
-/* Whether sensors of the group come to the asset, go from it or move on it. */
+/* Returns whether the trial adds, removes or moves sensors of the group on the asset. */
 bool layout_is_touched(const struct scene *scene, int asset, int group, const struct trial *trial);
-void layout_destroy(struct layout **layout); /* &NULL is fine; leaves NULL */
-/* Distances of `count` vertices from `begin` on from one sensor: in the file, or made in scratch. Euclidean ones are taken from
-   the sensor's place on the surface, so that both kinds are 0 at the same point; they stand in for those not known yet. */
+/* Frees the layout. &NULL is fine; leaves NULL. */
+void layout_destroy(struct layout **layout);
+/* Returns the distances of `count` vertices from `begin` on from one sensor: a pointer into the asset file, or computed into scratch.
+   Straight-line ones start at the sensor's point on the surface, so that both kinds are 0 there; they stand in for geodesic ones that are
+   not known yet. */
 const float *layout_distances(const struct layout *layout, enum distance_mode mode, size_t sensor, size_t begin, size_t count,
                               float *scratch);
-/* The largest finite distance of any vertex from any of the sensors; 1 where all are 0 or infinite. Kept. */
+/* Returns the largest finite distance of any vertex from any of the sensors, computed once; 1 where all are 0 or infinite. */
 float layout_largest(struct layout *layout, enum distance_mode mode, struct workers *workers);
 
 #endif

@@ -11,14 +11,15 @@
 
 enum field_show { SHOW_VALUE, SHOW_DISTANCE, SHOW_DIFFERENCE, SHOW_OPERATOR };
 
-struct field_override { /* of one sensor, in place of what the tag list says */
+/* One sensor's strength and decay, in place of the tag list's. */
+struct field_override {
     int tag;
     float strength, decay; /* FIELD_AS_CONFIGURED: not overridden */
 };
 #define FIELD_AS_CONFIGURED (-1.0f)
 enum { FIELD_OVERRIDES = 256 };
 
-/* What a session may choose. Compared byte for byte: zero-initialise, then field_params_default. */
+/* What a session may choose about its field. Compared byte for byte: zero-initialise, then call field_params_default(). */
 struct field_params {
     int group;
     enum field_show show;
@@ -36,15 +37,19 @@ struct field_params {
     size_t override_count;
     struct field_override overrides[FIELD_OVERRIDES]; /* in order of tags; 0 beyond the count */
 };
+/* Fills in the group's defaults from the plant file. */
 void field_params_default(const struct plant *plant, int group, struct field_params *params);
+/* Returns whether two sets of parameters are equal. */
 bool field_params_equal(const struct field_params *a, const struct field_params *b);
-/* Ranges: 0 <= strength, decay <= 100; 0.5 <= power <= 16; radius 0 or 1e-3..1e6 m; reach > 0. NULL if good, else what is wrong. */
+/* Checks the parameters: 0 <= strength, decay <= 100; 0.5 <= power <= 16; radius 0 or 1e-3..1e6 m; reach > 0. Returns NULL if they are
+   valid, else a static text that says what is wrong. */
 const char *field_params_wrong(const struct plant *plant, const struct field_params *params);
-/* Sets (or, with both as configured, drops) the override of one sensor. False: there is no room. */
+/* Sets one sensor's override; drops it where both values are FIELD_AS_CONFIGURED. Returns false if there is no room for another. */
 bool field_params_override(struct field_params *params, struct field_override override);
-const struct field_override *field_params_override_of(const struct field_params *params, int tag); /* NULL: none */
-/* The values that the colour map spans when nobody says otherwise: the group's MIN and MAX; 0 to the largest distance, rounded up; a
-   quarter of the range below and above 0; all places between limits. */
+/* Returns the tag's override, or NULL. Belongs to params. */
+const struct field_override *field_params_override_of(const struct field_params *params, int tag);
+/* Writes the default range of the colour map: the group's MIN and MAX; for distances 0 to the largest, rounded up; for differences a
+   quarter of the range below and above 0; for the operator's view all positions between limits. */
 void field_default_range(const struct scene *scene, const struct field_params *params, double *min, double *max);
 
 #endif

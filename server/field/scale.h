@@ -24,13 +24,17 @@ struct scale {
 };
 enum { SCALE_BELOW = -1, SCALE_ABOVE = 256 };
 
-double scale_place(const struct scale *scale, double value); /* 0 at MIN, 1 at MAX; value > 0 where log */
+/* Returns the value's position on the scale, 0 at MIN and 1 at MAX; value > 0 where the scale is logarithmic. */
+double scale_place(const struct scale *scale, double value);
+/* Returns the value at a position; the inverse of scale_place(). */
 double scale_value(const struct scale *scale, double place);
-int scale_index(const struct scale *scale, double value); /* 0..255, SCALE_BELOW or SCALE_ABOVE; value is finite */
+/* Returns the colour number of a finite value: 0..255, SCALE_BELOW or SCALE_ABOVE. */
+int scale_index(const struct scale *scale, double value);
+/* Writes the colour of a value. */
 void scale_look_up(const struct scale *scale, double value, uint8_t rgb[3]);
-/* Where bands meet, ascending. 0: there are none, or more than SCALE_EDGES. */
+/* Writes the values where bands meet, ascending. Returns how many; 0 if there are none or more than SCALE_EDGES. */
 int scale_edges(const struct scale *scale, double edges[SCALE_EDGES]);
-/* The least change of a value that another colour can show. */
+/* Returns the smallest change of a value that can show another colour. */
 double scale_step(const struct scale *scale);
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The field of one asset for one set of parameters, and the readings it shows. Thread: one at a time. */
+/* The field of one asset for one set of parameters: its scalars, and the readings that they show. Thread: one at a time. */
 #ifndef FIELD_STATE_H
 #define FIELD_STATE_H
 #include "base/workers.h"
@@ -36,21 +36,24 @@ struct state {
     struct state *next;
 };
 
-struct state *state_create(int asset, struct layout *layout, const struct field_params *params); /* without room for vertices */
-void state_destroy(struct state **state); /* no update may be under way (update_forget()); &NULL is fine; leaves NULL */
+/* Creates the state, without room for vertices yet. The layout must outlive it. The caller destroys it. */
+struct state *state_create(int asset, struct layout *layout, const struct field_params *params);
+/* Frees the state. &NULL is fine; leaves NULL. */
+void state_destroy(struct state **state);
+/* Returns the bytes that the state takes. */
 size_t state_bytes(const struct state *state);
-/* Room for the first `count` vertices: a far asset needs few of them. False: out of memory, nothing has changed. state_more_bytes: by how
-   much state_bytes would grow. */
+/* Returns by how much state_bytes() would grow with room for the first `count` vertices. */
 size_t state_more_bytes(const struct state *state, size_t count);
+/* Makes room for the first `count` vertices; a far asset needs few of them. Returns false if out of memory, with nothing changed. */
 bool state_grow(struct state *state, size_t count);
 
-/* Reads the snapshot into state->now and state->usable, and its ages. baseline: what a difference is from; NULL: not known. */
+/* Reads the snapshot into state->now, state->usable and the ages. baseline: what a difference is from; NULL: not known. */
 void state_read(struct state *state, const struct snapshot *snapshot, const struct snapshot *baseline);
-/* True: the weights that state holds are for other sensors than those usable now. */
+/* Returns whether the state's weights were made for other usable sensors than those of now. */
 bool state_needs_weights(const struct state *state);
-/* True: what is shown is not what state->now says. */
+/* Returns whether the scalars show something else than state->now. */
 bool state_is_behind(const struct state *state);
-/* For SHOW_DISTANCE, instead of all these: the distances from one sensor of the layout, once. */
+/* For SHOW_DISTANCE, in place of all the above: fills the scalars with the distances from one sensor of the layout, once. */
 void state_measure(struct state *state, size_t sensor, uint64_t *versions);
 
 #endif

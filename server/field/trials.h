@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Places of sensors that somebody tries out: sets of them, each under a number that views name. What is in a set never changes; a sensor
-   that is dragged makes another one. Numbers are never used again. Thread: any. */
+/* Trials: sets of sensor positions that somebody tries out, each under a number that views refer to. A set is immutable; a sensor that is
+   dragged makes a new one. Numbers are never used again. Thread: any. */
 #ifndef FIELD_TRIALS_H
 #define FIELD_TRIALS_H
 #include <stdbool.h>
@@ -9,10 +9,12 @@
 
 enum { TRIAL_SENSORS = 64 };
 
-struct trial_reach; /* distances along the surface, of every vertex; counted */
-/* Takes distance_m (mem_free). */
+/* Geodesic distances of every vertex from a trial position; reference-counted. */
+struct trial_reach;
+/* Wraps distance_m, which it takes over (mem_free). Returns one reference. */
 struct trial_reach *trial_reach_create(float *distance_m);
-void trial_reach_unref(struct trial_reach **reach); /* &NULL is fine; leaves NULL */
+/* Drops a reference. &NULL is fine; leaves NULL. */
+void trial_reach_unref(struct trial_reach **reach);
 
 struct trial_sensor {
     int tag, asset;            /* it stands on this asset, and nowhere else */
@@ -28,20 +30,27 @@ struct trial {
     size_t count;
     struct trial_sensor sensors[TRIAL_SENSORS];
 };
-const struct trial_sensor *trial_find(const struct trial *trial, int tag); /* NULL: it is where the plant has it; so if trial is NULL */
-const float *trial_distances(const struct trial_sensor *sensor);           /* along the surface; NULL: not known yet */
+/* Returns the trial's position of this tag; NULL if it moves the tag not, or if trial is NULL. */
+const struct trial_sensor *trial_find(const struct trial *trial, int tag);
+/* Returns the geodesic distances of every vertex; NULL if they are not known yet. */
+const float *trial_distances(const struct trial_sensor *sensor);
 
 struct trials;
+/* Creates an empty registry of trials. The caller destroys it. */
 struct trials *trials_create(void);
-void trials_destroy(struct trials **trials); /* &NULL is fine; leaves NULL */
-/* Copies the sensors, with references of its own. The number, never 0. count: 1..TRIAL_SENSORS. */
+/* Frees the registry. &NULL is fine; leaves NULL. */
+void trials_destroy(struct trials **trials);
+/* Adds a trial of 1..TRIAL_SENSORS sensors, copied, taking references of its own. Returns its number, never 0. */
 uint32_t trials_put(struct trials *trials, const struct trial_sensor *sensors, size_t count);
 /* Nobody will ask for it any more, but in pictures under way: the last TRIALS_KEPT of them stay for those. 0 is fine. */
 enum { TRIALS_KEPT = 16 };
+/* Marks a trial as no longer wanted; the last TRIALS_KEPT such stay for frames under way. 0 is fine. */
 void trials_drop(struct trials *trials, uint32_t id);
-bool trials_live(struct trials *trials, uint32_t id); /* it was not dropped */
-/* Held until trials_give. NULL: there is none such (any more). */
+/* Returns whether the trial exists and was not dropped. */
+bool trials_live(struct trials *trials, uint32_t id);
+/* Returns the trial, held until trials_give(); NULL if there is none. */
 const struct trial *trials_take(struct trials *trials, uint32_t id);
-void trials_give(struct trials *trials, const struct trial **trial); /* &NULL is fine; leaves NULL */
+/* Releases a trial. &NULL is fine; leaves NULL. */
+void trials_give(struct trials *trials, const struct trial **trial);
 
 #endif

@@ -1,19 +1,22 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Brings sums and scalars of a state from what is shown to what sensors say now, in as many pieces as are asked for; the readings are
-   those of its beginning. Thread: one at a time (it spreads its work over `workers`). */
+/* Updates a state's sums and scalars from what is shown to what sensors say now, in as many steps as the caller likes; the readings are
+   those of the beginning. Thread: one at a time (it spreads its work over `workers`). */
 #ifndef FIELD_UPDATE_H
 #define FIELD_UPDATE_H
 #include "field/state.h"
 
-/* The first `count` vertices at least. state->now must not change, and the scalars must not be read, until it is done. */
+/* Begins an update of at least the first `count` vertices. Until it ends, state->now must not change and the scalars must not be read. */
 void update_begin(struct state *state, size_t count);
-/* Does so much of it (about nanoseconds of one core), and a little at least. True: done, and state->update is NULL. */
+/* Does about `work` nanoseconds (of one core) of the update, at least a little. Returns true once it is done; state->update is NULL
+   then. */
 bool update_go_on(struct state *state, struct workers *workers, double work, uint64_t *versions);
-/* The same on one core, for one that is light: all of it, by any thread, beside others; then what belongs to the field's thread. Light:
-   little to do, and it only reads its weights. */
+/* Returns whether the update is small and only reads its weights, so that update_run() may do it beside others. */
 bool update_is_light(const struct state *state);
+/* Does the whole of a light update on the calling thread. Thread: any, beside updates of other states; update_end() must follow. */
 void update_run(struct state *state);
+/* Completes an update_run(). Thread: the field's. */
 void update_end(struct state *state, uint64_t *versions);
-void update_forget(struct state *state); /* none under way is fine */
+/* Abandons the update, if one is under way. */
+void update_forget(struct state *state);
 
 #endif

@@ -55,48 +55,60 @@ struct weights {
     struct weights *next;
 };
 
-/* usable: enum sensor_use, by sensor of the layout. radius_m: R of `paper`, already resolved. */
+/* Computes the key of everything that G depends on. usable: enum sensor_use by sensor of the layout. radius_m: R of Algorithm 1,
+   resolved. */
 void weights_key_init(struct weights_key *key, const struct layout *layout, const struct field_params *params, float radius_m,
                       const uint8_t *usable);
+/* Frees the key. */
 void weights_key_finish(struct weights_key *key);
+/* Returns whether two keys are equal. */
 bool weights_key_equal(const struct weights_key *a, const struct weights_key *b);
 
-/* Takes over the key. NULL: out of memory. Nothing is computed yet, but what can be taken over from others is by weights_copy_known. */
+/* Creates the weights of this key, which it takes over. Nothing is computed yet. Returns NULL if out of memory. The caller destroys it. */
 struct weights *weights_create(const struct layout *layout, const struct field_params *params, float radius_m, const uint8_t *usable,
                                struct weights_key *key);
-/* Copies what is the same in `from`, which has been summed: while a parameter is dragged most of it is. */
+/* Copies the arrays that are the same in `from`, which has been summed: most are while a parameter is dragged. */
 void weights_copy_known(struct weights *weights, const struct weights *from);
-void weights_destroy(struct weights **weights); /* &NULL is fine; leaves NULL */
+/* Frees the weights. &NULL is fine; leaves NULL. */
+void weights_destroy(struct weights **weights);
+/* Returns the bytes that weights for this layout take, without columns. */
 size_t weights_bytes(const struct layout *layout);
-size_t weights_column_bytes(const struct weights *weights); /* of all columns, kept or not */
-size_t weights_kept_bytes(const struct weights *weights);   /* of those that are kept */
-/* From now on as many columns as fit into so many bytes, of the first vertices, are kept as they are made. Only where none are. Returns
-   weights_kept_bytes; 0: none fit, or out of memory. */
+/* Returns the bytes that all columns would take, cached or not. */
+size_t weights_column_bytes(const struct weights *weights);
+/* Returns the bytes of the columns that are cached. */
+size_t weights_kept_bytes(const struct weights *weights);
+/* Starts caching columns as they are computed: of the first vertices, as many as fit into `bytes`. Only where none are cached yet. Returns
+   weights_kept_bytes(); 0 if none fit or memory runs out. */
 size_t weights_keep(struct weights *weights, size_t bytes);
+/* Frees the cached columns. */
 void weights_drop_columns(struct weights *weights);
 
-/* Metres beyond the rim of the data, negative within it, as struct scalar's `lacking`. */
+/* Encodes a distance beyond the rim of the data (negative: within it), in metres, as struct scalar's `lacking`. */
 uint8_t weights_lacking(const struct weights *weights, float beyond_m);
-/* Fills what is not known of near_m, top and place of a block (begin: a multiple of KERNEL_BLOCK; count <= KERNEL_BLOCK). */
+/* Computes what is still missing of near_m, top and place for a block of vertices (begin: a multiple of KERNEL_BLOCK; count <=
+   KERNEL_BLOCK). Thread: any, on different blocks. */
 void weights_prepare(struct weights *weights, size_t begin, size_t count);
 
-struct weights_terms { /* which members, by what factor */
+/* Which columns to add, by what factors. */
+struct weights_terms {
     const uint32_t *members;
     const double *factors;
     const uint8_t *marked; /* by place in this list: counts in sums->marked too */
     size_t count;
 };
-struct weights_sums {       /* of one block; added to */
+/* Sums of one block, which are added to. */
+struct weights_sums {
     double *values;         /* sum of factor times column */
     double *total, *marked; /* sum of weights: all of the list, those marked; NULL: not asked for (marked only beside total) */
 };
-/* Adds the terms at a block that is prepared. Fills the columns of those members, where columns are kept. */
+/* Adds the terms' columns to the sums of a prepared block, computing those that are not cached, and caching them where columns are cached.
+   Thread: any, on different blocks. */
 void weights_add(struct weights *weights, size_t begin, size_t count, const struct weights_terms *terms, const struct weights_sums *sums);
-/* One that is there. */
+/* Returns a cached column of a block. */
 const float *weights_column(const struct weights *weights, size_t begin, uint32_t member);
-/* Whether all columns of a block are there, so that they need only be added. */
+/* Returns whether all columns of a block are cached. */
 bool weights_has_columns(const struct weights *weights, size_t begin);
-/* And all else: its sums only read (but for those of `paper` where some sensor is Uncertain). */
+/* Returns whether everything of a block is known, so that summing only reads it (except for Algorithm 1 with Uncertain sensors). */
 bool weights_is_complete(const struct weights *weights, size_t begin);
 
 #endif

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Sensors that people place: for each who does it a set of moves, which become a trial (field/trials.h) at once with straight distances,
-   and again when those along the surface are there. Thread: the loop, but for what workers call by themselves. */
+/* Sensors that people place on the model: a set of moves per person, which becomes a trial (field/trials.h) at once with straight-line
+   distances, and again when geodesic ones are there. Thread: the loop, except what workers call themselves. */
 #ifndef PLACING_PLACING_H
 #define PLACING_PLACING_H
 #include "base/log.h"
@@ -18,11 +18,12 @@ struct placing_params {
     void *notify_arg;
 };
 struct placing;
-/* Never NULL. All but folder must outlive it. */
+/* Creates it. Everything in params but folder must outlive it. Never NULL. The caller destroys it. */
 struct placing *placing_create(const struct placing_params *params);
-/* Every set is gone by then. Waits for what is under way. &NULL is fine; leaves NULL. */
+/* Waits for what is under way and frees everything. All sets must be destroyed before. &NULL is fine; leaves NULL. */
 void placing_destroy(struct placing **placing);
-struct trials *placing_trials(struct placing *placing); /* where views of its trials find them */
+/* Returns the registry in which views find the trials. */
+struct trials *placing_trials(struct placing *placing);
 
 enum { PLACING_MOVES = TRIAL_SENSORS };
 struct place_move {
@@ -34,6 +35,7 @@ enum placed_state {
     PLACED_READY,
     PLACED_STRAIGHT /* there will be no others: the log says why */
 };
+/* A move and what came of it. */
 struct placed {
     struct place_move move;
     double surface_m[3];        /* on the asset, plant frame */
@@ -42,17 +44,21 @@ struct placed {
 };
 
 struct place_set;
+/* Creates an empty set of moves. The caller destroys it. */
 struct place_set *place_set_create(struct placing *placing);
-void place_set_destroy(struct place_set **set); /* &NULL is fine; leaves NULL; what waits for it is cancelled */
-/* In place of all that was in the set; what is as it was keeps its distances. At most PLACING_MOVES, each tag once. False: nothing has
-   changed, and why says which tag cannot be there (it has no group, or the place is farther from the asset than that is large). */
+/* Cancels what the set waits for and frees it. &NULL is fine; leaves NULL. */
+void place_set_destroy(struct place_set **set);
+/* Replaces the set's moves: at most PLACING_MOVES, each tag once; unchanged ones keep their distances. Returns false with nothing changed,
+   and why says which tag cannot be there (it has no group, or the point is farther from the asset than that is large). */
 bool place_set_moves(struct place_set *set, const struct place_move *moves, size_t count, char why[160]);
-uint32_t place_set_trial(const struct place_set *set);                        /* 0: no moves */
-size_t place_set_get(const struct place_set *set, const struct placed **out); /* valid until it changes */
-/* Distances came in since it was asked last: another trial stands for the set. */
+/* Returns the number of the trial that stands for the set; 0: it has no moves. */
+uint32_t place_set_trial(const struct place_set *set);
+/* Writes the set's moves to *out, valid until the set changes. Returns their number. */
+size_t place_set_get(const struct place_set *set, const struct placed **out);
+/* Returns whether geodesic distances came in since the last call: another trial stands for the set now. */
 bool place_set_changed(struct place_set *set);
 
-/* Gaps of a group on all its assets, by a worker. client, seq: whose answer it is. */
+/* The answer to a coverage request; client and seq say whose. */
 struct sensor_coverage_answer {
     uint64_t client;
     uint32_t seq;
@@ -65,11 +71,14 @@ struct sensor_coverage_answer {
     } * assets; /* those with sensors of the group */
     struct sensor_coverage_answer *next;
 };
-/* set: whose moves count; NULL: nobody's. far_m: as in sensor_coverage_query. */
+/* Computes, on a worker, the sensor coverage of a group on all its assets, with the moves of `set` (NULL: none). far_m: as in
+   sensor_coverage_query. The answer comes from placing_collect(). */
 void placing_request_coverage(struct placing *placing, const struct place_set *set, int group, double far_m,
                               const struct snapshot *snapshot, uint64_t client, uint32_t seq);
-/* What came in: sets take their distances; gaps go to the caller (sensor_coverage_answer_free), oldest first. */
+/* Gives the sets the distances that came in, and returns the coverage answers that are ready, oldest first, as a list that the caller frees
+   (sensor_coverage_answer_free() each). */
 struct sensor_coverage_answer *placing_collect(struct placing *placing);
+/* Frees one answer. */
 void sensor_coverage_answer_free(struct sensor_coverage_answer *answer);
 
 #endif

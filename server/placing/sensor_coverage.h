@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Where an asset's sensors leave gaps: how far its surface is from them, and how much of it nobody speaks for. Pure. Thread: any. */
+/* Sensor coverage: how far an asset's surface is from its sensors, and how much of its area no usable sensor covers. Pure. Thread: any. */
 #ifndef PLACING_SENSOR_COVERAGE_H
 #define PLACING_SENSOR_COVERAGE_H
 #include "field/layout.h"
@@ -25,7 +25,7 @@ struct sensor_coverage {
     int next_tags[2];        /* which, and that one; -1: none */
 };
 
-/* False: no sensor of the group stands there. */
+/* Computes the coverage that the query asks for into *out. Returns false if no sensor of the group is on the asset. */
 bool sensor_coverage_find(const struct sensor_coverage_query *order, struct sensor_coverage *out);
 
 #endif

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Distances of a sensor that is added to a loaded asset, or moved on it, while the plant is shown. Straight ones come at once; those along
-   the surface when they are ready. */
+/* Live sensor relocation: distances of a sensor that is added to a loaded asset, or moved on it, while the plant is shown. Straight-line
+   distances are computed at once, geodesic ones in the background. */
 #ifndef SURFACE_RELOCATION_H
 #define SURFACE_RELOCATION_H
 #include <stdbool.h>
@@ -12,7 +12,8 @@
 
 struct relocation;
 
-struct relocation_shape { /* an asset's finest level; what it points to must outlive the mover */
+/* An asset's finest level. What it points to must outlive the relocation object. */
+struct relocation_shape {
     const float (*positions_m)[3];
     const float (*normals)[3]; /* by which vertices that only coarser levels have are told which side they are on; NULL: they are not */
     size_t vertex_count;
@@ -26,10 +27,11 @@ struct relocation_shape { /* an asset's finest level; what it points to must out
     const char *surface_path; /* NULL: none; need only live for relocation_create */
     uint64_t surface_key;
 };
-/* Never NULL. The surface is made in the background, on a worker: seconds for a large asset, and some hundred bytes a triangle. Until
-   then what is asked for waits. Thread: create and destroy from one thread; all else from any. */
+/* Starts building the asset's surface on a worker (seconds for a large asset, and some hundred bytes per triangle); requests wait until it
+   is built. Never NULL. Thread: create and destroy from one thread, all other functions from any. */
 struct relocation *relocation_create(struct log *log, struct workers *workers, const struct relocation_shape *shape);
-/* Cancels what waits, and returns when all of it is done with. &NULL is fine; leaves NULL. Not from a `done`. */
+/* Cancels waiting requests, waits for those under way, and frees everything. Must not be called from a `done` callback. &NULL is fine;
+   leaves NULL. */
 void relocation_destroy(struct relocation **relocation);
 
 enum relocation_state {
@@ -37,8 +39,10 @@ enum relocation_state {
     RELOCATION_WARM,
     RELOCATION_BROKEN
 }; /* broken: no triangle has an area, or out of memory; logged */
+/* Returns whether the surface is still being built, ready, or impossible to build. */
 enum relocation_state relocation_state(struct relocation *relocation);
 
+/* Where a sensor would be. */
 struct relocation_place {
     double surface_m[3]; /* on the asset, nearest to the point asked for: once warm, on what is not hidden inside another part */
     double distance_m;   /* from that point */
@@ -58,17 +62,17 @@ struct relocation_result {
     float *geodesic_m; /* RELOCATION_DONE: of each vertex, INFINITY where no way leads; the receiver's, mem_free. Else NULL */
 };
 
-/* Where the sensor would be, and the straight-line distance of each vertex from there (euclidean_m may be NULL): at once. False: the point
-   is not finite, or farther from the asset than the asset is large, or there is no triangle. */
+/* Projects a point onto the asset into *place and, unless euclidean_m is NULL, writes the straight-line distance of each vertex from there.
+   Returns at once; false if the point is not finite, farther from the asset than the asset is large, or the asset has no triangle. */
 bool relocation_place(struct relocation *relocation, const double point_m[3], struct relocation_place *place, float *euclidean_m);
 
-/* Distances along the surface. done(arg, result) is called exactly once, on a worker (or in relocation_destroy and relocation_cancel, by their
-   caller, with RELOCATION_CANCELLED), never under a lock of the mover. The ticket, or 0: the point is refused by relocation_place, and done is not
-   called. */
+/* Requests the geodesic distances of every vertex from a point. done(arg, result) is called exactly once, on a worker, or with
+   RELOCATION_CANCELLED by relocation_cancel() or relocation_destroy() on their caller's thread; never under a lock. Returns the request's
+   ticket, or 0 if relocation_place() refuses the point: then done is not called. */
 uint64_t relocation_request(struct relocation *relocation, const double point_m[3],
                             void (*done)(void *arg, struct relocation_result *result), void *arg);
-/* What waits is cancelled at once, what is under way when it is through. Of a ticket that is done with: nothing. A sensor that is dragged
-   cancels its last ticket before it asks again. */
+/* Cancels the request of this ticket: at once if it waits, as soon as its computation ends if it is under way. A finished ticket is fine. A
+   sensor that is dragged cancels its last request before the next one. */
 void relocation_cancel(struct relocation *relocation, uint64_t ticket);
 
 #endif

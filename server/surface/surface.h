@@ -52,12 +52,14 @@ struct surface_report {
     double weld_s, bridge_s, sample_s, laplacian_s, factor_s, check_s;
 };
 
-/* positions: count vertices in metres; triangles: indices, 3 each. Everything is copied. workers may be NULL, else it must
-   outlive the surface. NULL on failure, already logged unless params->why takes it: no triangle has an area, or out of memory.
-   Thread: one call at a time per surface; different surfaces are independent. */
+/* Builds a surface from a model's triangles (positions in metres, 3 indices per triangle; all copied): welds, repairs, samples. workers may
+   be NULL, else they must outlive the surface. Returns NULL if no triangle has an area or memory runs out: logged, unless params->why takes
+   the reason. Thread: one call at a time per surface; surfaces are independent. */
 struct surface *surface_create(struct log *log, struct workers *workers, const float (*positions_m)[3], size_t vertex_count,
                                const uint32_t *triangles, size_t triangle_count, const struct surface_params *params);
-void surface_destroy(struct surface **surface); /* &NULL is fine; leaves NULL */
+/* Frees the surface. &NULL is fine; leaves NULL. */
+void surface_destroy(struct surface **surface);
+/* Returns counts and times of the steps. Belongs to the surface. */
 const struct surface_report *surface_report(const struct surface *surface);
 
 /* The surface as distances are found on it, to be looked at. Belongs to the surface. */
@@ -71,65 +73,76 @@ struct surface_debug_mesh {
     const struct crack_bridge *bridges; /* stitch.h */
     size_t bridge_count;
 };
+/* Fills *look with the mesh that distances are computed on, for debug views. Belongs to the surface. */
 void surface_debug_mesh(const struct surface *surface, struct surface_debug_mesh *look);
 
+/* The result of projecting a point onto the surface. */
 struct surface_place {
     double position_m[3]; /* on the surface */
     double distance_m;    /* from the point asked for */
     uint32_t vertex;      /* the model's vertex nearest to it, along straight lines */
 };
+/* Projects a point onto the nearest place of the surface, and finds the model's vertex nearest to it. */
 void surface_nearest(const struct surface *surface, const double point_m[3], struct surface_place *place);
 
-/* The spot nearest to a point; off the surface, one whose triangle faces along `normal` if there is one about as near (NULL: any), so that
-   a thin wall's other side is not taken. */
+/* A point on the surface, by triangle and barycentric weights. */
 struct surface_point {
     uint32_t tri;                              /* of the sampled surface */
     double weights[3], point_m[3], distance_m; /* weights: of tri's corners; distance_m: from the point asked for */
 };
+/* Finds the surface point nearest to point_m. With `normal`, prefers, among about equally near ones, a triangle that faces along it, so
+   that the far side of a thin wall is not taken (NULL: no preference). */
 void surface_find_point(const struct surface *surface, const double point_m[3], const double normal[3], struct surface_point *spot);
-/* Whether that spot is within limit_m; it is not looked for farther away. */
+/* As surface_find_point(), but searches only within limit_m. Returns false if there is nothing. */
 bool surface_find_point_within(const struct surface *surface, const double point_m[3], const double normal[3], double limit_m,
                                struct surface_point *spot);
-/* The nearest one within limit_m, on pieces of two triangles of the model (which may be one); on pieces of those for which
-   allowed(arg, triangle) holds. False: none is near and seen. */
+/* Finds the nearest surface point within limit_m that belongs to one of two triangles of the model (which may be equal). Returns false if
+   there is none that is visible. */
 bool surface_find_point_on(const struct surface *surface, const double point_m[3], double limit_m, const uint32_t triangles[2],
                            struct surface_point *spot);
+/* Finds the nearest surface point within limit_m that belongs to a triangle of the model for which allowed(arg, triangle) returns true.
+   Returns false if there is none that is visible. */
 bool surface_find_point_among(const struct surface *surface, const double point_m[3], double limit_m,
                               bool (*allowed)(const void *arg, uint32_t triangle), const void *arg, struct surface_point *spot);
 
-/* The spot nearest to a point on one triangle of the sampled surface; of one that was found for the point, the same again. False: there is
-   no such triangle, or it is farther than limit_m. */
+/* Finds the point nearest to point_m on one triangle `tri` of the sampled surface; gives the same result as the search that found this
+   triangle. Returns false if there is no such triangle or it is farther than limit_m. */
 bool surface_point_on(const struct surface *surface, const double point_m[3], double limit_m, uint32_t tri, struct surface_point *spot);
 
-/* Metres along the surface from each point (dropped onto the surface first) to every vertex of the model:
-   out[point * vertex_count + vertex]. INFINITY where no way leads. Points are spread over all workers.
-   False: out of memory, logged. Thread: any number of calls at a time; likewise for all that follows. */
+/* Computes the geodesic distance in metres from each point (projected onto the surface) to every vertex of the model: out[point *
+   vertex_count + vertex], INFINITY where the surface does not connect them. Spread over the workers. Returns false if out of memory,
+   logged. Thread: any number of calls at a time; so for all functions below. */
 bool surface_distances(const struct surface *surface, const double (*points_m)[3], size_t point_count, float *out);
 
-/* The same at all points of the sampled surface; from them follows the distance at any place. */
+/* Distances from a set of sources at every point of the sampled surface, from which those at any place follow. */
 struct surface_field {
     size_t source_count;
     struct surface_point *sources;
     uint32_t *source_tris; /* theirs, side by side */
     float *distances_m;    /* [point of the sampled surface][source] */
 };
-/* Distances from sources that were found before: at each point of the sampled surface. Both are called on any thread. */
+/* Access to a cache of distances: a column is the distances of all points of the sampled surface from one source. Both callbacks run on any
+   thread. */
 struct surface_columns {
     bool (*fetch)(void *arg, size_t source, float *distances_m);      /* false: not known */
     void (*keep)(void *arg, size_t source, const float *distances_m); /* one that was not known */
     void *arg;
 };
+/* Returns the number of points of the sampled surface, the length of a column. */
 size_t surface_column_length(const struct surface *surface);
-/* columns may be NULL. False: out of memory, logged; nothing to finish. */
+/* Computes the field of these source points, fetching known columns from the cache and storing new ones in it (columns NULL: no cache).
+   Returns false if out of memory, logged, and then there is nothing to finish. */
 bool surface_field_init(struct surface_field *field, const struct surface *surface, const double (*points_m)[3], size_t point_count,
                         const struct surface_columns *columns);
+/* Frees the field. */
 void surface_field_finish(struct surface_field *field);
-/* out[source] */
+/* Writes the distances of a vertex of the model from every source: out[source]. */
 void surface_field_at_vertex(const struct surface_field *field, const struct surface *surface, uint32_t vertex, float *out);
+/* Writes the distances of a surface point from every source: out[source]. */
 void surface_field_at_point(const struct surface_field *field, const struct surface *surface, const struct surface_point *spot, float *out);
 
-/* Holds distances against the heat method's, for some of the field's sources: the report's heat_disagreement, time_m2, factor_s. False: out
-   of memory, logged. Thread: one at a time, beside calls that do not ask for the report. */
+/* Compares the field with the heat method's distances for some of its sources, and fills the report's heat_disagreement, time_m2 and
+   factor_s. Returns false if out of memory, logged. Thread: one at a time, beside calls that do not read the report. */
 bool surface_check(struct surface *surface, const struct surface_field *field);
 
 #endif

@@ -33,7 +33,8 @@ struct surface {
     size_t bridge_count, bridge_capacity;
 };
 
-/* Makes bvh, unfold and the lists of pieces, of mesh and intrinsic; and this too, if it is not there. */
+/* Builds what searching and measuring need from mesh and intrinsic: the BVH, the propagation fans, and the lists of sampled triangles by
+   model triangle. Builds the intrinsic triangulation too, unless it is there. */
 void surface_index(struct surface *surface);
 
 /* For bvh_nearest: only triangles whose front looks along the normal. */
@@ -41,6 +42,7 @@ struct surface_facing {
     const struct trimesh *mesh;
     const double *normal;
 };
+/* Predicate for bvh_nearest(): returns whether the triangle's front faces along the normal. facing: a struct surface_facing. */
 bool surface_faces(const void *facing, uint32_t tri);
 
 #endif

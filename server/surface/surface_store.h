@@ -1,12 +1,14 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A surface in a file, so that what was made once need not be made again: it takes a fiftieth of the time. Thread: any. */
+/* Serialises a surface, so that one that was built once can be loaded in a fiftieth of the time. Thread: any. */
 #ifndef SURFACE_SURFACE_STORE_H
 #define SURFACE_SURFACE_STORE_H
 #include "base/pack.h"
 #include "surface/surface.h"
 
+/* Appends the surface to *to as bytes. */
 void surface_pack(const struct surface *surface, struct text *to);
-/* Distances on it are the same to the last bit. NULL: the bytes are no surface, or out of memory. */
+/* Rebuilds a surface from bytes; distances on it are the same to the last bit. Returns NULL if the bytes are no surface or memory runs out.
+   The caller destroys it. */
 struct surface *surface_unpack(struct unpack *from, struct log *log, struct workers *workers);
 
 /* Its file holds that and no more (base/cache_file.h). */

@@ -13,10 +13,12 @@ struct intrinsic {
     size_t flips;
 };
 
+/* Builds the intrinsic Delaunay triangulation of a mesh by flipping edges. Finish with intrinsic_finish(). */
 void intrinsic_init(struct intrinsic *in, const struct trimesh *mesh);
+/* Frees the triangulation. */
 void intrinsic_finish(struct intrinsic *in);
 
-/* Corner i of a triangle with these sides, laid out in the plane: (0, 0), (l0, 0), (x, y). */
+/* Lays a triangle with these side lengths out in the plane, corners at (0, 0), (l0, 0) and (x, y), and writes x and y. */
 void intrinsic_layout(const double lengths[3], double *x, double *y);
 
 #endif

@@ -1,12 +1,14 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Distances from a source, unfolded triangle by triangle (Novotni & Klein 2002): exact where the surface is flat or unrolls. */
+/* Geodesic distances by propagation from a source, triangle by triangle, nearer points first, each triangle unfolded into the plane
+   (Novotni and Klein 2002): exact where the surface is flat or developable. */
 #ifndef SURFACE_GEODESIC_PROPAGATION_H
 #define SURFACE_GEODESIC_PROPAGATION_H
 #include "surface/geodesic/intrinsic.h"
 
 #define PROPAGATION_FAN 8 /* points around one that are looked at side by side, a lane of a vector register each */
 
-struct propagation { /* what meets at each point; shared by all walks */
+/* What propagation needs to know of a mesh, shared by all runs: the fans of triangles around each point. */
+struct propagation {
     const struct trimesh *mesh;
     const struct intrinsic *in;
     uint32_t *first;                     /* of each point in fans; one more at the end */
@@ -21,13 +23,15 @@ struct propagation { /* what meets at each point; shared by all walks */
     double near_m;     /* so far points are looked for straight from the source */
     uint32_t bucket_count;
 };
-/* Visible triangles are walked over as the intrinsic triangulation has them, which leaves few obtuse ones; from there on the walk goes into
-   the mesh's triangles from visible_count on, which are hidden inside another part, so that a triangle that passes through a surface has a
-   distance at its hidden end too; but never back. mesh and in must outlive it. */
+/* Builds the fans. Visible triangles (the first visible_count) are crossed as the intrinsic triangulation has them, which leaves few obtuse
+   ones; from them propagation enters the mesh's interior triangles, so that one that passes through a surface has distances at its interior
+   end too, but never returns. mesh and in must outlive it. */
 void propagation_init(struct propagation *propagation, const struct trimesh *mesh, size_t visible_count, const struct intrinsic *in);
+/* Frees the fans. */
 void propagation_finish(struct propagation *propagation);
 
-struct propagation_front { /* one thread's; zero-initialise, used again and again */
+/* The state of one propagation, of one thread; zero-initialise, and use again and again. */
+struct propagation_front {
     float *distance_m;     /* of all points; INFINITY where no way leads */
     float *straight_m;     /* and as the crow flies */
     char *settled;
@@ -39,6 +43,7 @@ struct propagation_front { /* one thread's; zero-initialise, used again and agai
     double source_m[3];
     size_t item_count, item_capacity;
 };
+/* Frees the state. */
 void propagation_front_finish(struct propagation_front *walk);
 
 #define PROPAGATION_ABREAST 2 /* walks that one thread takes at once, at most: it waits less for each */
@@ -46,8 +51,8 @@ struct propagation_source {
     uint32_t tri;
     const double *weights; /* of its corners */
 };
-/* Distances of all points from each source, in the walk of its number; the same whatever others are walked beside it. False: out of
-   memory. */
+/* Computes the distances of all points from each of `count` sources (at most PROPAGATION_ABREAST), into the front of the same number.
+   Results do not depend on which sources run together. Returns false if out of memory. Thread: any, with fronts of its own. */
 bool propagation_run(const struct propagation *propagation, struct propagation_front *walks, const struct propagation_source *sources,
                      size_t count);
 

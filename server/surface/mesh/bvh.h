@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Boxes around boxes around triangles: nearest place, and triangles whose boxes meet. Immutable once built. Thread: any. */
+/* Bounding volume hierarchy over a mesh's triangles: nearest-point, overlap and ray queries. Immutable once built. Thread: any. */
 #ifndef SURFACE_MESH_BVH_H
 #define SURFACE_MESH_BVH_H
 #include <stdbool.h>
@@ -8,7 +8,9 @@
 
 struct bvh;
 
-struct bvh *bvh_create(const struct trimesh *mesh); /* mesh must outlive it, unchanged */
+/* Builds the hierarchy of a mesh, which must outlive it unchanged. The caller destroys it. */
+struct bvh *bvh_create(const struct trimesh *mesh);
+/* Frees the hierarchy. &NULL is fine; leaves NULL. */
 void bvh_destroy(struct bvh **bvh);
 
 struct bvh_place {
@@ -16,30 +18,32 @@ struct bvh_place {
     double weights[3]; /* of its corners */
     double point[3], distance_m;
 };
-/* The nearest place within limit_m (may be INFINITY) on triangles for which allowed(arg, tri) holds; allowed may be NULL. */
+/* Finds the point of the mesh nearest to `point` within limit_m (may be INFINITY), on triangles for which allowed(arg, tri) returns true
+   (NULL: all). place->tri is TRIMESH_NONE if there is none. */
 void bvh_nearest(const struct bvh *bvh, const double point[3], double limit_m, bool (*allowed)(const void *arg, uint32_t tri),
                  const void *arg, struct bvh_place *place);
 
-/* Whether there is such a place: quicker than which one is nearest. *tri: the triangle to be tried first, as near points often have theirs
-   on the same one, or TRIMESH_NONE; then that on which there is one. */
+/* Returns whether any such point exists: quicker than finding the nearest. *tri: a triangle to try first, or TRIMESH_NONE (points near each
+   other often have the same one); receives the triangle found. */
 bool bvh_any_within(const struct bvh *bvh, const double point[3], double limit_m, bool (*allowed)(const void *arg, uint32_t tri),
                     const void *arg, uint32_t *tri);
 
-/* Calls visit(arg, tri) for every triangle whose box comes within margin_m of the box low..high. */
+/* Calls visit(arg, tri) for every triangle whose bounding box comes within margin_m of the box low..high. */
 void bvh_overlaps(const struct bvh *bvh, const double low[3], const double high[3], double margin_m, void (*visit)(void *arg, uint32_t tri),
                   void *arg);
 
-/* Calls visit(arg, tri, t) for every triangle that the ray from origin along direction meets, at origin + t direction, t > 0. No order. */
+/* Calls visit(arg, tri, t) for every triangle that the ray hits at origin + t direction, t > 0, in no particular order. */
 void bvh_ray(const struct bvh *bvh, const double origin[3], const double direction[3], void (*visit)(void *arg, uint32_t tri, double t),
              void *arg);
 
-/* Where the line from p to q passes through the triangle: its share of the way (0..1) and the weights of the corners. False: nowhere. */
+/* Computes where the segment from p to q passes through a triangle: its fraction t (0..1) and the barycentric weights. Returns false if it
+   does not. */
 bool triangle_crossed(const double p[3], const double q[3], const double a[3], const double b[3], const double c[3], double *t,
                       double weights[3]);
 
-/* The place of the triangle nearest to a point, as weights of its corners. */
+/* Computes the point of a triangle nearest to p, as barycentric weights. */
 void triangle_nearest(const double p[3], const double a[3], const double b[3], const double c[3], double weights[3]);
-/* Its box or its plane alone is farther than that: a quick look. */
+/* Returns true only if the triangle is farther from p than distance_m, by its bounding box or plane alone: a quick rejection test. */
 bool triangle_is_farther(const double p[3], const double a[3], const double b[3], const double c[3], double distance_m);
 
 #endif

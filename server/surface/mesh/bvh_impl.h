@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What the files of the boxes share. */
+/* Shared by the files of the bounding volume hierarchy (bvh*.c). */
 #ifndef SURFACE_MESH_BVH_IMPL_H
 #define SURFACE_MESH_BVH_IMPL_H
 #include "surface/mesh/bvh.h"
@@ -24,6 +24,7 @@ struct bvh {
     size_t wide_count, wide_capacity;
 };
 
-void bvh_build_wide(struct bvh *bvh); /* from its order */
+/* Builds the nodes of eight children (bvh->wide), which nearest-point queries use, from the binary tree. */
+void bvh_build_wide(struct bvh *bvh);
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Open edges and the points on them. */
+/* Border edges of a mesh (edges with one face) and the points on them. */
 #ifndef SURFACE_REPAIR_BORDERS_H
 #define SURFACE_REPAIR_BORDERS_H
 #include "surface/repair/parts.h"
@@ -15,9 +15,11 @@ struct borders {
     double *reach_m;      /* of each point in points: the least of its parts; NULL: not asked for */
 };
 
+/* Collects all border edges of a mesh. */
 void borders_init(struct borders *borders, const struct trimesh *mesh);
-/* Those edges only that are open because the other faces at them are hidden; with the reach of their parts. */
+/* Collects only those border edges of `seen` that are open because the other faces at them are hidden, with the reach of their parts. */
 void borders_init_rims(struct borders *borders, const struct trimesh *seen, const struct trimesh *hidden, const struct parts *parts);
+/* Frees the lists. */
 void borders_finish(struct borders *borders);
 
 #endif

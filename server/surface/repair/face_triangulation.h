@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* One triangle on the way to being cut up: points in its plane, and triangles between them, all turned the same way. */
+/* Triangulation of one face while points and edges are inserted into it: points in its plane, and triangles between them with one
+   orientation. */
 #ifndef SURFACE_REPAIR_FACE_TRIANGULATION_H
 #define SURFACE_REPAIR_FACE_TRIANGULATION_H
 #include <stddef.h>
@@ -12,12 +13,15 @@ struct face_triangulation {
     size_t count, capacity, at_capacity, tri_count, tri_capacity;
 };
 
+/* Frees the triangulation. */
 void face_triangulation_finish(struct face_triangulation *face);
+/* Appends a point, the mesh's point `id`, at (x, y) in the face's plane. Returns its number here; no triangle uses it yet. */
 uint32_t face_triangulation_add_point(struct face_triangulation *face, uint32_t id, double x, double y);
+/* Appends a triangle of three points. */
 void face_triangulation_add_tri(struct face_triangulation *face, uint32_t a, uint32_t b, uint32_t c);
-/* Cuts the triangle that has the point in it, or the two beside the side that it is on. */
+/* Splits the triangle that contains the point, or the two triangles at the edge that it lies on. */
 void face_triangulation_insert(struct face_triangulation *face, uint32_t point);
-/* Makes the straight way from u to v one side, or several over points that it passes over, by turning the sides that cross it. */
+/* Makes the straight line from u to v an edge, or several over points that it passes through, by flipping the edges that cross it. */
 void face_triangulation_connect(struct face_triangulation *face, uint32_t u, uint32_t v);
 
 #endif

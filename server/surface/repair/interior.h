@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Triangles that nobody sees from outside: those inside another, closed part, or covered by one. */
+/* Finds interior triangles, which nobody sees from outside: those inside another, closed part, or covered by one. */
 #ifndef SURFACE_REPAIR_INTERIOR_H
 #define SURFACE_REPAIR_INTERIOR_H
 #include "base/workers.h"
@@ -7,17 +7,17 @@
 
 enum interior_kind { INTERIOR_NOT, INTERIOR_INSIDE, INTERIOR_ACROSS };
 
-/* hidden[tri] = 1 where the middle of the triangle is inside a closed part other than its own: rays into five directions say so, four at
-   least. Where it lies on the other part's surface (within both parts' reach), it is hidden if it is covered: the other part is
-   on one side of it and its own on the other. Within a thin part, where all is within reach, also if it stands across, unless it alone
-   joins what is seen. In a part that passes through itself, or has walls within, where both sides are inside that part.
-   part: of mesh's triangles. crossings: points where a part passes through itself. workers may be NULL. */
+/* Sets hidden[tri] to a value of enum interior_kind for each triangle whose centre is inside a closed part other than its own, decided by
+   rays in five directions (at least four must agree). Where it lies on the other part's surface (within both parts' reach) it is interior
+   if it is covered: the other part on one side, its own on the other. Within a thin part, where everything is within reach, also if it
+   stands across, unless it alone connects visible triangles. In a part that intersects itself or has internal walls, where both sides are
+   inside that part. part: of each triangle. crossings: points where a part intersects itself. workers may be NULL. */
 void interior_find(const struct trimesh *mesh, const uint32_t *part, const struct parts *parts, const uint32_t *crossings,
                    size_t crossing_count, struct workers *workers, char *hidden);
-/* Of triangles that are INTERIOR_ACROSS, those are seen after all by which pieces hang together that else would not; others are inside. */
+/* Decides the triangles marked INTERIOR_ACROSS: those that alone connect visible pieces become visible, the others interior. */
 void interior_resolve_across(const struct trimesh *mesh, char *hidden);
-/* Hides what is left over amid hidden triangles: pieces that hang together by points with nothing else that is seen, all of whose points
-   touch hidden triangles, and which are smaller than those. */
+/* Hides small visible remnants amid hidden triangles: groups connected by points, touched by no other visible triangle, all of whose points
+   touch hidden triangles larger than they. */
 void interior_islands(const struct trimesh *mesh, char *hidden);
 
 #endif

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Joining a trimesh to itself: points become one, or a point is set into an edge or a face that it lies on. */
+/* A batch of edits that join a mesh to itself: points to merge, points to insert into edges or faces, edges to add. Collected first, then
+   applied at once. */
 #ifndef SURFACE_REPAIR_MESH_EDIT_H
 #define SURFACE_REPAIR_MESH_EDIT_H
 #include "surface/mesh/trimesh.h"
@@ -16,15 +17,21 @@ struct mesh_edit {
     double longest_m;
 };
 
+/* Starts an empty batch. */
 void mesh_edit_init(struct mesh_edit *edit);
+/* Frees the batch. */
 void mesh_edit_finish(struct mesh_edit *edit);
+/* Adds: points a and b, distance_m apart, become one. */
 void mesh_edit_merge_points(struct mesh_edit *edit, uint32_t a, uint32_t b, double distance_m);
+/* Adds: a point is inserted into the edge a-b at fraction t from a, distance_m away from it. */
 void mesh_edit_insert_in_edge(struct mesh_edit *edit, uint32_t point, uint32_t a, uint32_t b, double t, double distance_m);
+/* Adds: a point is inserted into a triangle, distance_m away from it. */
 void mesh_edit_insert_in_tri(struct mesh_edit *edit, uint32_t point, uint32_t tri, double distance_m);
-/* In each triangle that is cut up and has both points, there will be an edge between them. */
+/* Adds: each triangle that is cut up and contains both points gets an edge between them. */
 void mesh_edit_connect(struct mesh_edit *edit, uint32_t a, uint32_t b);
 
-/* Carries all of it out. target[point]: the point it has become. Triangles that touch a new place are cut up. */
+/* Applies the batch to the mesh: triangles that touch an inserted or merged point are triangulated anew. target[point]: receives the point
+   that it has become. */
 void mesh_edit_apply(const struct mesh_edit *edit, struct trimesh *mesh, uint32_t *target);
 
 #endif

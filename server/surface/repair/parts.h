@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The bodies that a surface is made of, as they were before they were cut up and joined. */
+/* The parts (bodies) that a surface consists of, as they were before anything was cut or joined. */
 #ifndef SURFACE_REPAIR_PARTS_H
 #define SURFACE_REPAIR_PARTS_H
 #include "surface/mesh/trimesh.h"
@@ -22,13 +22,14 @@ struct parts {
     size_t count;
 };
 
-/* mesh: the model's triangles (source_count of them), welded, seams closed, and still counted. tolerance_m is every part's reach; if it is
-   the program's choice, that of a closed part is at most half of its thickness, or what touches a thin plate's one side would touch its
-   other side too; beyond that it is joined to what it looks at (sight.h). */
+/* Finds the parts of `mesh`, the model's source_count triangles after welding and closing seams, with multiplicities. tolerance_m is every
+   part's reach; if it was chosen by the program (is_chosen), a closed part's reach is at most half of its thickness, so that what touches
+   one side of a plate does not touch the other; beyond that it is joined to what it faces (line_of_sight.h). Finish with parts_finish(). */
 void parts_init(struct parts *parts, const struct trimesh *mesh, size_t source_count, double tolerance_m, bool is_chosen);
+/* Frees the parts. */
 void parts_finish(struct parts *parts);
 
-/* of_source for each triangle of the mesh as it is now; mem_free. */
+/* Returns of_source looked up for each current triangle of the mesh. The caller frees it (mem_free). */
 uint32_t *parts_spread(const struct trimesh *mesh, const uint32_t *of_source);
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What numbering parts and facing them share. */
+/* Shared by the files that find parts and their orientation (parts*.c). */
 #ifndef SURFACE_REPAIR_PARTS_IMPL_H
 #define SURFACE_REPAIR_PARTS_IMPL_H
 #include "surface/repair/parts.h"
@@ -25,7 +25,7 @@ static inline const struct edge_use *use_of(const struct parts_finding *f, size_
     return &f->uses[f->edge[t][i]];
 }
 
-/* Edges, patches and parts of parts->solid, which of them are closed, and the bodies of mesh, whose triangles are the solid's. */
+/* Finds edges, patches and parts of parts->solid, which of them are closed, and the bodies of mesh, whose triangles are the solid's. */
 void parts_number(struct parts_finding *f, const struct trimesh *mesh);
 
 #endif
