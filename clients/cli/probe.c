@@ -15,8 +15,6 @@
 
 enum { MAX_SESSIONS = 1000 };
 
-const char *const probe_motions[MOTION_COUNT] = { "still", "orbit", "random" };
-
 static void print_usage(FILE *out)
 {
     fputs("usage: plantcast probe URL [--sessions N] [--seconds S] [--motion still|orbit|random] [--hz N] [--size WxH]\n"

@@ -9,6 +9,7 @@
 #include "base/mem.h"
 #include "probe.h"
 
+const char *const probe_motions[MOTION_COUNT] = { "still", "orbit", "random" };
 static const char *const stage_names[STAGE_COUNT] = { "wait", "field", "render", "encode", "network", "decode" };
 
 static int ascending(const void *pa, const void *pb)

@@ -2,26 +2,10 @@
 /* tinygltf behind plain C: it parses a document that was made plain before; what it yields is decoded into plain arrays. */
 #include "preprocess/model/gltf_shim.h"
 
-#include <cstdarg>
 #include <exception>
 #include <limits>
 
 #include "preprocess/model/gltf_impl.hh"
-
-namespace gltf
-{
-
-void refuse(const char *fmt, ...)
-{
-    char text[MODEL_WHY_BYTES];
-    va_list ap;
-    va_start(ap, fmt);
-    vsnprintf(text, sizeof(text), fmt, ap);
-    va_end(ap);
-    throw refusal(text);
-}
-
-} // namespace gltf
 
 namespace
 {

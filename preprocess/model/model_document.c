@@ -13,33 +13,14 @@
 
 #define MAX_ZERO_BYTES ((uint64_t)64 << 20) /* of accessors without a buffer view, which cost a file nothing */
 
-static uint64_t number_of(const json_t *object, const char *key)
-{
-    return (uint64_t)json_integer_value(json_object_get(object, key));
-}
-
 /* --- buffers ------------------------------------------------------------------------------------------------------------- */
-
-static size_t add_buffer(struct document_work *work, struct document_bytes bytes)
-{
-    struct model_document *d = work->document;
-    mem_grow(&d->buffers, &work->buffer_room, d->buffer_count + 1, sizeof(*d->buffers));
-    d->buffers[d->buffer_count] = bytes;
-    d->total_bytes += bytes.size;
-    return d->buffer_count++;
-}
-
-size_t document_add_buffer(struct document_work *work, unsigned char *own, size_t size)
-{
-    return add_buffer(work, (struct document_bytes){ own, size, own });
-}
 
 static bool load_buffer(struct document_work *work, size_t number, const json_t *buffer)
 {
     struct document_bytes bytes = { 0 };
     char uri_why[MODEL_WHY_BYTES];
     const char *uri = json_string_value(json_object_get(buffer, "uri"));
-    uint64_t length = number_of(buffer, "byteLength");
+    uint64_t length = document_number(buffer, "byteLength");
     bool standin = /* of a compressed buffer, for programs that cannot read it */
         json_is_true(json_object_get(json_object_get(json_object_get(buffer, "extensions"), "EXT_meshopt_compression"), "fallback"));
     if (uri) {
@@ -54,7 +35,7 @@ static bool load_buffer(struct document_work *work, size_t number, const json_t 
     size_t has = bytes.size;
     if (length < has)
         bytes.size = (size_t)length;
-    add_buffer(work, bytes);
+    document_add_buffer(work, bytes);
     if (length > has && bytes.at)
         return wrong(work->why, "buffer %zu: truncated: %zu bytes, it should have %" PRIu64, number, has, length);
     return true;
@@ -69,24 +50,12 @@ static bool load_buffers(struct document_work *work)
     return true;
 }
 
-bool document_range(const struct document_work *work, size_t buffer, uint64_t offset, uint64_t length, const char *what,
-                    struct model_bytes *out)
-{
-    const struct document_bytes *b = &work->document->buffers[buffer];
-    if (length > 0 && !b->at)
-        return wrong(work->why, "%s: buffer %zu has no bytes of its own", what, buffer);
-    if (offset > b->size || length > b->size - offset)
-        return wrong(work->why, "%s: bytes %" PRIu64 "+%" PRIu64 " of a buffer of %zu", what, offset, length, b->size);
-    *out = (struct model_bytes){ length ? b->at + offset : NULL, (size_t)length };
-    return true;
-}
-
 static bool view_bytes(const struct document_work *work, size_t number, struct model_bytes *out)
 {
     char what[40];
     const json_t *view = json_array_get(json_object_get(work->root, "bufferViews"), number);
     snprintf(what, sizeof(what), "bufferView %zu", number);
-    return document_range(work, (size_t)number_of(view, "buffer"), number_of(view, "byteOffset"), number_of(view, "byteLength"), what, out);
+    return document_range(work, (size_t)document_number(view, "buffer"), document_number(view, "byteOffset"), document_number(view, "byteLength"), what, out);
 }
 
 static bool views_good(const struct document_work *work)
@@ -100,40 +69,6 @@ static bool views_good(const struct document_work *work)
 
 /* --- accessors ----------------------------------------------------------------------------------------------------------- */
 
-size_t document_element_bytes(const json_t *accessor, int *component_type, int *width)
-{
-    static const char *const types[] = { "SCALAR", "VEC2", "VEC3", "VEC4", "MAT4" };
-    static const int widths[] = { 1, 2, 3, 4, 16 };
-    const char *type = json_string_value(json_object_get(accessor, "type"));
-    *component_type = (int)number_of(accessor, "componentType");
-    *width = 0;
-    for (size_t i = 0; type && i < sizeof(types) / sizeof(types[0]); i++)
-        if (strcmp(type, types[i]) == 0)
-            *width = widths[i];
-    switch (*component_type) {
-    case 5120:
-    case 5121: return (size_t)*width;
-    case 5122:
-    case 5123: return 2 * (size_t)*width;
-    case 5125:
-    case 5126: return 4 * (size_t)*width;
-    default: return 0;
-    }
-}
-
-void document_point_accessor(struct document_work *work, json_t *accessor, size_t buffer)
-{
-    json_t *views = json_object_get(work->root, "bufferViews");
-    if (!views) {
-        views = json_array();
-        json_object_set_new(work->root, "bufferViews", views);
-    }
-    json_array_append_new(views, json_pack("{s:I,s:I}", "buffer", (json_int_t)buffer, "byteLength",
-                                           (json_int_t)work->document->buffers[buffer].size));
-    json_object_set_new(accessor, "bufferView", json_integer((json_int_t)json_array_size(views) - 1));
-    json_object_del(accessor, "byteOffset");
-}
-
 /* An accessor without a buffer view is all zeros, but for what its sparse part says. */
 static bool fill_with_zeros(struct document_work *work, const json_t *number, uint64_t *zeros)
 {
@@ -141,14 +76,14 @@ static bool fill_with_zeros(struct document_work *work, const json_t *number, ui
     int component_type, width;
     if (!accessor || json_object_get(accessor, "bufferView"))
         return true;
-    uint64_t count = number_of(accessor, "count"), element = document_element_bytes(accessor, &component_type, &width);
+    uint64_t count = document_number(accessor, "count"), element = document_element_bytes(accessor, &component_type, &width);
     if (count > MAX_ZERO_BYTES || (*zeros += count * element) > MAX_ZERO_BYTES)
         return wrong(work->why, "accessor %lld: %" PRIu64 " elements, but not a byte of them in the file",
                      (long long)json_integer_value(number), count);
     unsigned char *own = mem_try_array(count * element + 1, 1);
     if (!own)
         return wrong(work->why, "out of memory for accessor %lld", (long long)json_integer_value(number));
-    document_point_accessor(work, accessor, document_add_buffer(work, own, (size_t)(count * element)));
+    document_point_accessor(work, accessor, document_add_buffer(work, (struct document_bytes){ own, (size_t)(count * element), own }));
     work->document->total_bytes -= (size_t)(count * element);
     return true;
 }

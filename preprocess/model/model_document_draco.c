@@ -13,7 +13,7 @@
 static size_t add_accessor(struct document_work *work, json_t *accessor, unsigned char *own, size_t size)
 {
     json_t *accessors = json_object_get(work->root, "accessors");
-    document_point_accessor(work, accessor, document_add_buffer(work, own, size));
+    document_point_accessor(work, accessor, document_add_buffer(work, (struct document_bytes){ own, size, own }));
     json_object_del(accessor, "sparse");
     json_array_append_new(accessors, accessor);
     return json_array_size(accessors) - 1;

@@ -14,8 +14,14 @@ struct document_work { /* a document in the making; root's types and references 
     char *why;
 };
 
-/* Appends a buffer and takes ownership of its bytes, also on failure. Returns the buffer's number. */
-size_t document_add_buffer(struct document_work *work, unsigned char *own, size_t size);
+/* Returns the whole number under `key` of an object; 0 if there is none. */
+static inline uint64_t document_number(const json_t *object, const char *key)
+{
+    return (uint64_t)json_integer_value(json_object_get(object, key));
+}
+
+/* Appends a buffer and takes ownership of bytes.own, also on failure. Returns the buffer's number. */
+size_t document_add_buffer(struct document_work *work, struct document_bytes bytes);
 /* Appends a buffer view over the whole of a buffer and makes the accessor read from it. */
 void document_point_accessor(struct document_work *work, json_t *accessor, size_t buffer);
 /* Finds `length` bytes at `offset` of a buffer and writes where they are to *out. Returns false if the buffer is too short; `what` begins

@@ -85,7 +85,7 @@ static bool expand(struct document_work *work, const char *what, json_t *view, c
         mem_free(own);
         return wrong(work->why, "%s: EXT_meshopt_compression: its %zu bytes are broken", what, p.from.size);
     }
-    json_object_set_new(view, "buffer", json_integer((json_int_t)document_add_buffer(work, own, size)));
+    json_object_set_new(view, "buffer", json_integer((json_int_t)document_add_buffer(work, (struct document_bytes){ own, size, own })));
     json_object_set_new(view, "byteOffset", json_integer(0));
     return true;
 }

@@ -20,28 +20,6 @@
 #define ROUNDING 1e-9 /* of a distance, more than it is off by */
 #define JUMP 1.5      /* times the way gone: a distance cannot grow by more, unless the surface does not hang together there */
 
-void subdiv_mix(const float a[3], const float b[3], double t, float out[3])
-{
-    for (int i = 0; i < 3; i++)
-        out[i] = (float)((double)a[i] + t * ((double)b[i] - (double)a[i]));
-}
-
-double subdiv_length(const float a[3], const float b[3])
-{
-    double x = (double)b[0] - (double)a[0], y = (double)b[1] - (double)a[1], z = (double)b[2] - (double)a[2];
-    return sqrt(x * x + y * y + z * z);
-}
-
-bool subdiv_is_short(const struct subdiv *subdiv, double length_m)
-{
-    return length_m < 2 * subdiv->shortest_m;
-}
-
-const float *subdiv_position(const struct subdiv *subdiv, uint32_t vertex)
-{
-    return subdiv->mesh.geometry->positions_m[vertex];
-}
-
 static uint32_t place_of(const struct subdiv *subdiv, uint32_t vertex)
 {
     return subdiv->mesh.welded.of_vertex[vertex];
@@ -592,6 +570,21 @@ void subdiv_measure_edges(struct subdiv *subdiv, struct subdiv_finding *findings
     for (size_t i = 0; i < count; i++) {
         const struct subdiv_edge *edge = &subdiv->mesh.cuts[findings[i].number];
         subdiv_cache_add(subdiv, (const uint32_t[2]){ edge->a, edge->b }, 2, &findings[i]);
+    }
+}
+
+void subdiv_measure_new_edges(struct subdiv *subdiv, struct subdiv_finding *findings, size_t count)
+{
+    subdiv_measure_edges(subdiv, findings, count, SUBDIV_AIM);
+    for (size_t i = 0; i < count; i++) {
+        struct subdiv_edge *edge = &subdiv->mesh.cuts[findings[i].number];
+        edge->error = findings[i].error;
+        edge->barred = findings[i].barred;
+        edge->jumps = findings[i].jumps;
+        edge->unasked = false;
+        edge->proven = findings[i].error <= (float)SUBDIV_AIM && findings[i].barred <= (float)SUBDIV_AIM;
+        if (edge->middle == TRIMESH_NONE)
+            edge->share = findings[i].share;
     }
 }
 

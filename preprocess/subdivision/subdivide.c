@@ -79,21 +79,6 @@ static bool is_line(const struct subdiv *subdiv, const struct subdiv_tri *tri)
     return vec_length(normal) <= LINE_OF_SIZE * subdiv->size_m * longest_m;
 }
 
-void subdiv_measure_new_edges(struct subdiv *subdiv, struct subdiv_finding *findings, size_t count)
-{
-    subdiv_measure_edges(subdiv, findings, count, SUBDIV_AIM);
-    for (size_t i = 0; i < count; i++) {
-        struct subdiv_edge *edge = &subdiv->mesh.cuts[findings[i].number];
-        edge->error = findings[i].error;
-        edge->barred = findings[i].barred;
-        edge->jumps = findings[i].jumps;
-        edge->unasked = false;
-        edge->proven = findings[i].error <= (float)SUBDIV_AIM && findings[i].barred <= (float)SUBDIV_AIM;
-        if (edge->middle == TRIMESH_NONE)
-            edge->share = findings[i].share;
-    }
-}
-
 /* In a coarser level: it stays as it is, whatever it errs by. */
 static bool is_too_short(const struct subdiv *subdiv, const struct subdiv_edge *edge)
 {

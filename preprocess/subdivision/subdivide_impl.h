@@ -35,13 +35,27 @@ struct subdiv {
 };
 
 /* Writes the point at fraction t of the way from a to b. */
-void subdiv_mix(const float a[3], const float b[3], double t, float out[3]);
+static inline void subdiv_mix(const float a[3], const float b[3], double t, float out[3])
+{
+    for (int i = 0; i < 3; i++)
+        out[i] = (float)((double)a[i] + t * ((double)b[i] - (double)a[i]));
+}
 /* Returns the distance between two points. */
-double subdiv_length(const float a[3], const float b[3]);
+static inline double subdiv_length(const float a[3], const float b[3])
+{
+    double x = (double)b[0] - (double)a[0], y = (double)b[1] - (double)a[1], z = (double)b[2] - (double)a[2];
+    return sqrt(x * x + y * y + z * z);
+}
 /* Returns a vertex's position. */
-const float *subdiv_position(const struct subdiv *subdiv, uint32_t vertex);
+static inline const float *subdiv_position(const struct subdiv *subdiv, uint32_t vertex)
+{
+    return subdiv->mesh.geometry->positions_m[vertex];
+}
 /* Returns whether an edge of this length is too short to be cut. */
-bool subdiv_is_short(const struct subdiv *subdiv, double length_m);
+static inline bool subdiv_is_short(const struct subdiv *subdiv, double length_m)
+{
+    return length_m < 2 * subdiv->shortest_m;
+}
 
 /* Runs body(arg, begin, end) over [0, count) on all cores, in ranges of about `grain`; on the calling thread if there are no workers. */
 void subdiv_parallel(const struct subdiv *subdiv, size_t count, size_t grain, void (*body)(void *arg, size_t begin, size_t end), void *arg);

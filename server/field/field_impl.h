@@ -31,8 +31,6 @@ struct field {
 struct layout *field_layout(struct field *field, int asset, const struct field_params *params);
 /* Returns the layout with the trial's positions. */
 struct layout *field_trial_layout(struct field *field, int asset, const struct field_params *params);
-/* Drops every state and weights object that was made from this trial's layout. */
-void field_forget_trial_layout(struct field *field, const struct trial_layout *tried);
 /* Frees all trial layouts. */
 void field_trials_finish(struct field *field);
 /* Returns the state for these parameters, found or created, but not brought up to date. NULL if the asset has no sensor of the group, or
@@ -41,5 +39,21 @@ struct state *field_state(struct field *field, int asset, const struct field_par
 
 /* Reads the snapshot into the state and begins the update that it needs. Returns false if out of memory; the state is gone then. */
 bool field_begin_update(struct field *field, struct state *state, const struct snapshot *snapshot, size_t count);
+
+/* --- the cache (field_cache.c) --- */
+
+/* Returns the list of weights with this hash. */
+struct weights **field_cache_bucket(struct field *field, uint64_t hash);
+/* Drops the state's hold on its weights. */
+void field_cache_release_weights(struct state *state);
+/* Takes *link out of its list and destroys it. */
+void field_cache_remove_state(struct field *field, struct state **link);
+/* Drops what was last used before tick `before`, but no state of the parameters `keep`, until `need` more bytes fit under the limit: the
+   oldest first, an eighth of the time at once, so that they are seldom searched for. Returns false if they do not fit. */
+bool field_cache_make_room(struct field *field, size_t need, const struct field_params *keep, uint64_t before);
+/* Begins caching the columns of weights that are summed for the second time or later; previous: the tick of their last use. */
+void field_cache_keep_columns(struct field *field, struct weights *weights, const struct field_params *params, uint64_t previous);
+/* Drops every state and weights object that was made from this trial's layout. */
+void field_forget_trial_layout(struct field *field, const struct trial_layout *tried);
 
 #endif

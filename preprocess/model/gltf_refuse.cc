@@ -1,0 +1,21 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The exception that carries the reason why a model is refused. */
+#include <cstdarg>
+#include <cstdio>
+
+#include "preprocess/model/gltf_impl.hh"
+
+namespace gltf
+{
+
+void refuse(const char *fmt, ...)
+{
+    char text[MODEL_WHY_BYTES];
+    va_list ap;
+    va_start(ap, fmt);
+    vsnprintf(text, sizeof(text), fmt, ap);
+    va_end(ap);
+    throw refusal(text);
+}
+
+} // namespace gltf
