@@ -4,11 +4,14 @@
 
 #include <math.h>
 #include <meshoptimizer.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "base/mem.h"
 #include "base/vec.h"
 
+#define MANY 256 /* faces at one place, from which on not each is compared with each */
+#define LEAF 16
 #define CREASE_COSINE 0.766 /* of 40 degrees: a cylinder of ten sides is round, one of eight has edges */
 
 static void face_normal(const float a[3], const float b[3], const float c[3], double out[3])
@@ -69,21 +72,128 @@ static bool around_init(struct around *a, const float (*positions)[3], size_t ve
     return true;
 }
 
-static void corner_normal(const struct around *a, uint32_t corner, unsigned place, float out[3])
+/* --- the sum over the faces at one place ------------------------------------------------------------------------------------- */
+
+/* Adds the corner's face, weighted by its angle, if it turns away from `own` by less than the crease angle. */
+static void add_face(const struct around *a, uint32_t corner, const double own[3], double sum[3])
 {
-    const double *own = a->faces[corner / 3];
-    double sum[3] = { 0 };
-    for (uint32_t i = a->first[place]; i < a->first[place + 1]; i++) {
-        const double *face = a->faces[a->corners[i] / 3];
-        if (vec_dot(own, face) < CREASE_COSINE)
-            continue;
-        for (int axis = 0; axis < 3; axis++)
-            sum[axis] += a->angles[a->corners[i]] * face[axis];
-    }
+    const double *face = a->faces[corner / 3];
+    if (vec_dot(own, face) < CREASE_COSINE)
+        return;
+    for (int axis = 0; axis < 3; axis++)
+        sum[axis] += a->angles[corner] * face[axis];
+}
+
+/* Writes the sum's direction, or the face's own normal where the sum has none. */
+static void take_direction(double sum[3], const double own[3], float out[3])
+{
     if (!(vec_normalize(sum) > 0))
-        memcpy(sum, vec_dot(own, own) > 0 ? own : (const double[3]){ 0, 0, 1 }, sizeof(sum));
+        memcpy(sum, vec_dot(own, own) > 0 ? own : (const double[3]){ 0, 0, 1 }, 3 * sizeof(*sum));
     for (int axis = 0; axis < 3; axis++)
         out[axis] = (float)sum[axis];
+}
+
+/* Where very many faces meet, not each is compared with each: the normals are halved again and again, and a half that lies within the
+   crease angle as a whole, or beyond it, is taken or left as a whole. Nodes are stored as an implicit binary tree. */
+struct half {
+    double low[3], high[3], sum[3]; /* of the normals; sum: weighted by angles */
+};
+
+struct halves {
+    const struct around *around;
+    uint32_t *corners; /* those at the place, reordered */
+    struct half *nodes;
+};
+
+static int compare_axis(const void *pa, const void *pb, void *arg)
+{
+    const struct halves *halves = ((void **)arg)[0];
+    int axis = *(const int *)((void **)arg)[1];
+    double a = halves->around->faces[*(const uint32_t *)pa / 3][axis], b = halves->around->faces[*(const uint32_t *)pb / 3][axis];
+    return (a > b) - (a < b);
+}
+
+static void halves_build(struct halves *halves, size_t node, size_t begin, size_t end)
+{
+    struct half *half = &halves->nodes[node];
+    *half = (struct half){ .low = { 2, 2, 2 }, .high = { -2, -2, -2 } };
+    for (size_t i = begin; i < end; i++) {
+        const double *face = halves->around->faces[halves->corners[i] / 3];
+        for (int axis = 0; axis < 3; axis++) {
+            half->low[axis] = fmin(half->low[axis], face[axis]);
+            half->high[axis] = fmax(half->high[axis], face[axis]);
+            half->sum[axis] += halves->around->angles[halves->corners[i]] * face[axis];
+        }
+    }
+    if (end - begin <= LEAF)
+        return;
+    int axis = 0;
+    for (int other = 1; other < 3; other++)
+        if (half->high[other] - half->low[other] > half->high[axis] - half->low[axis])
+            axis = other;
+    if (half->high[axis] > half->low[axis])
+        qsort_r(halves->corners + begin, end - begin, sizeof(*halves->corners), compare_axis, (void *[2]){ halves, &axis });
+    size_t middle = begin + (end - begin) / 2;
+    halves_build(halves, 2 * node + 1, begin, middle);
+    halves_build(halves, 2 * node + 2, middle, end);
+}
+
+static void halves_sum(const struct halves *halves, size_t node, size_t begin, size_t end, const double own[3], double sum[3])
+{
+    const struct half *half = &halves->nodes[node];
+    double nearest[3], farthest[3];
+    for (int axis = 0; axis < 3; axis++) {
+        nearest[axis] = own[axis] > 0 ? half->high[axis] : half->low[axis];
+        farthest[axis] = own[axis] > 0 ? half->low[axis] : half->high[axis];
+    }
+    if (vec_dot(own, nearest) < CREASE_COSINE)
+        return;
+    if (vec_dot(own, farthest) >= CREASE_COSINE) {
+        for (int axis = 0; axis < 3; axis++)
+            sum[axis] += half->sum[axis];
+        return;
+    }
+    size_t middle = begin + (end - begin) / 2;
+    if (end - begin > LEAF) {
+        halves_sum(halves, 2 * node + 1, begin, middle, own, sum);
+        halves_sum(halves, 2 * node + 2, middle, end, own, sum);
+        return;
+    }
+    for (size_t i = begin; i < end; i++)
+        add_face(halves->around, halves->corners[i], own, sum);
+}
+
+static bool sum_of_many(const struct around *a, uint32_t first, size_t count, float (*corner_normals)[3])
+{
+    size_t node_count = 4; /* halves are equal to one: no node has a number beyond twice the lowest power of 2 above count / LEAF */
+    while (node_count < 4 * (count / LEAF + 1))
+        node_count *= 2;
+    struct halves halves = { a, mem_try_array(count, sizeof(*halves.corners)), mem_try_array(node_count, sizeof(*halves.nodes)) };
+    bool good = halves.corners && halves.nodes;
+    if (good) {
+        memcpy(halves.corners, a->corners + first, count * sizeof(*halves.corners));
+        halves_build(&halves, 0, 0, count);
+    }
+    for (size_t i = 0; good && i < count; i++) {
+        uint32_t corner = halves.corners[i];
+        double sum[3] = { 0 };
+        halves_sum(&halves, 0, 0, count, a->faces[corner / 3], sum);
+        take_direction(sum, a->faces[corner / 3], corner_normals[corner]);
+    }
+    mem_free(halves.corners);
+    mem_free(halves.nodes);
+    return good;
+}
+
+static void sum_of_few(const struct around *a, uint32_t first, size_t count, float (*corner_normals)[3])
+{
+    for (size_t i = first; i < first + count; i++) {
+        const double *own = a->faces[a->corners[i] / 3];
+        double sum[3] = { 0 };
+        for (size_t other = first; other < first + count; other++)
+            add_face(a, a->corners[other], own, sum);
+        take_direction(sum, own, corner_normals[a->corners[i]]);
+    }
 }
 
 bool normals_compute(const float (*positions)[3], size_t vertex_count, const uint32_t *indices, size_t index_count,
@@ -91,8 +201,13 @@ bool normals_compute(const float (*positions)[3], size_t vertex_count, const uin
 {
     struct around around;
     bool good = around_init(&around, positions, vertex_count, indices, index_count);
-    for (uint32_t i = 0; good && i < index_count; i++)
-        corner_normal(&around, i, around.place[indices[i]], corner_normals[i]);
+    for (size_t place = 0; good && place < vertex_count; place++) {
+        size_t count = around.first[place + 1] - around.first[place];
+        if (count > MANY)
+            good = sum_of_many(&around, around.first[place], count, corner_normals);
+        else
+            sum_of_few(&around, around.first[place], count, corner_normals);
+    }
     around_finish(&around);
     return good;
 }
