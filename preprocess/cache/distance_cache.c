@@ -9,8 +9,8 @@
 #include <xxhash.h>
 
 #include "base/mem.h"
+#include "preprocess/cache/build_cache.h"
 #include "preprocess/cache/file_io.h"
-#include "preprocess/cache/folder.h"
 
 struct slot { /* the column follows */
     double place_m[3];
@@ -62,7 +62,7 @@ static void deal_slots(struct distance_cache *cache)
 void distance_cache_open(struct distance_cache *cache, const char *folder, uint64_t key, size_t length, const double (*places_m)[3],
                          size_t count)
 {
-    char *path = folder_path(folder, key, FOLDER_DISTANCES);
+    char *path = build_cache_path(folder, BUILD_CACHE_DISTANCES, key);
     *cache = (struct distance_cache){ .key = key, .length = length, .places_m = places_m, .count = count };
     cache->fd = open(path, O_RDWR | O_CREAT | O_CLOEXEC, 0666);
     cache->may_write = cache->fd >= 0;

@@ -18,6 +18,7 @@
 #include "base/atomic_file.h"
 #include "base/mem.h"
 #include "base/text.h"
+#include "preprocess/cache/build_cache.h"
 
 #define KEY_DIGITS 16
 #define MANIFEST "manifest.json"
@@ -33,7 +34,7 @@ char *folder_file_name(uint64_t key)
     return mem_printf("%016" PRIx64 ASSET, key);
 }
 
-char *folder_path(const char *folder, uint64_t key, const char *ending)
+static char *path_of(const char *folder, uint64_t key, const char *ending)
 {
     return mem_printf("%s/%016" PRIx64 "%s", folder, key, ending);
 }
@@ -70,7 +71,7 @@ int folder_lock(const char *folder, struct log *log, const atomic_bool *stop)
 int folder_open(struct folder_file *file, const char *folder, uint64_t key, char why[200])
 {
     struct stat st;
-    char *path = folder_path(folder, key, ASSET);
+    char *path = path_of(folder, key, ASSET);
     int fd = open(path, O_RDONLY | O_CLOEXEC), result = -1;
     *file = (struct folder_file){ 0 };
     mem_free(path);
@@ -115,7 +116,7 @@ void folder_close(struct folder_file *file)
 
 int folder_draft(struct folder_draft *draft, const char *folder, uint64_t key, size_t size)
 {
-    char *path = folder_path(folder, key, ASSET);
+    char *path = path_of(folder, key, ASSET);
     *draft = (struct folder_draft){ .size = size };
     int status = -atomic_file_begin(&draft->file, path, 0666);
     mem_free(path);
@@ -138,7 +139,7 @@ void folder_draft_send(const struct folder_draft *draft)
 
 int folder_put(struct folder_draft *draft, const char *folder, uint64_t key, const char *report)
 {
-    char *path = folder_path(folder, key, REPORT);
+    char *path = path_of(folder, key, REPORT);
     int status = report ? atomic_file_put(path, report, strlen(report)) : 0;
     if (status == 0 && msync(draft->bytes, draft->size, MS_SYNC) != 0)
         status = -errno;
@@ -159,14 +160,14 @@ void folder_draft_close(struct folder_draft *draft)
 char *folder_report(const char *folder, uint64_t key)
 {
     size_t size;
-    char *path = folder_path(folder, key, REPORT), *text = text_read_file(path, REPORT_MAX_BYTES, &size);
+    char *path = path_of(folder, key, REPORT), *text = text_read_file(path, REPORT_MAX_BYTES, &size);
     mem_free(path);
     return text;
 }
 
 static void add_surface(json_t *asset, const char *folder, uint64_t key)
 {
-    char *path = folder_path(folder, key, FOLDER_SURFACE);
+    char *path = build_cache_path(folder, BUILD_CACHE_SURFACE, key);
     if (access(path, R_OK) == 0)
         json_object_set_new(asset, "surface", json_string(strrchr(path, '/') + 1));
     mem_free(path);
@@ -198,26 +199,9 @@ static char *manifest_text(const char *folder, const struct folder_entry *entrie
     return text;
 }
 
-static const struct kind { /* of files, beside the manifest */
-    const char *ending;
-    size_t key; /* which one in an entry */
-} kinds[] = {
-    { ASSET, offsetof(struct folder_entry, key) },
-    { REPORT, offsetof(struct folder_entry, key) },
-    { FOLDER_GEOMETRY, offsetof(struct folder_entry, geometry_key) },
-    { FOLDER_SURFACE, offsetof(struct folder_entry, geometry_key) },
-    { FOLDER_SAMPLES, offsetof(struct folder_entry, geometry_key) },
-    { FOLDER_DISTANCES, offsetof(struct folder_entry, distances_key) },
-    { FOLDER_SUBDIVISION, offsetof(struct folder_entry, distances_key) },
-};
-
-static bool named(const char *name, const struct kind *kind, const struct folder_entry *entries, size_t count)
+static uint64_t cache_key_of(const struct folder_entry *entry, enum build_cache_kind kind)
 {
-    uint64_t key = strtoull(name, NULL, 16);
-    for (size_t i = 0; i < count; i++)
-        if (*(const uint64_t *)((const char *)&entries[i] + kind->key) == key)
-            return true;
-    return false;
+    return build_cache_needs_sensors(kind) ? entry->distances_key : entry->geometry_key;
 }
 
 /* 16 hexadecimal digits and the ending; *whole: nothing behind, else what an interrupted write left. */
@@ -230,20 +214,36 @@ static bool is_name(const char *name, const char *ending, bool *whole)
     return *whole || (strlen(rest) > 4 && strcmp(rest + strlen(rest) - 4, ".new") == 0);
 }
 
-static void remove_unnamed(const char *folder, const struct folder_entry *entries, size_t count, size_t *removed)
+/* Whether no entry needs this file: of a key that none has, or left by an interrupted write. *is_asset: it was a whole asset file. */
+static bool is_left_over(const char *name, const struct folder_entry *entries, size_t count, bool *is_asset)
+{
+    uint64_t key = strtoull(name, NULL, 16);
+    bool whole, is_named = false;
+    *is_asset = is_name(name, ASSET, &whole);
+    if (*is_asset || is_name(name, REPORT, &whole)) {
+        for (size_t i = 0; i < count; i++)
+            is_named |= entries[i].key == key;
+        return !whole || !is_named;
+    }
+    for (int kind = 0; kind < BUILD_CACHE_KINDS; kind++) {
+        const char *ending = build_cache_ending((enum build_cache_kind)kind);
+        if (!ending || !is_name(name, ending, &whole))
+            continue;
+        for (size_t i = 0; i < count; i++)
+            is_named |= cache_key_of(&entries[i], (enum build_cache_kind)kind) == key;
+        return !whole || !is_named;
+    }
+    return false;
+}
+
+static void remove_left_overs(const char *folder, const struct folder_entry *entries, size_t count, size_t *removed)
 {
     DIR *dir = opendir(folder);
-    const struct dirent *entry;
-    while (dir && (entry = readdir(dir)) != NULL) {
-        size_t kind = 0;
-        bool whole;
-        while (kind < sizeof(kinds) / sizeof(*kinds) && !is_name(entry->d_name, kinds[kind].ending, &whole))
-            kind++;
-        if (kind == sizeof(kinds) / sizeof(*kinds) || (whole && named(entry->d_name, &kinds[kind], entries, count)))
-            continue;
-        if (unlinkat(dirfd(dir), entry->d_name, 0) == 0)
-            *removed += kind == 0;
-    }
+    const struct dirent *file;
+    bool is_asset;
+    while (dir && (file = readdir(dir)) != NULL)
+        if (is_left_over(file->d_name, entries, count, &is_asset) && unlinkat(dirfd(dir), file->d_name, 0) == 0)
+            *removed += is_asset;
     if (dir)
         closedir(dir);
 }
@@ -257,7 +257,7 @@ int folder_finish(const char *folder, const struct folder_entry *entries, size_t
     if (text && (!old || size != strlen(text) || memcmp(old, text, size) != 0))
         status = atomic_file_put(path, text, strlen(text));
     if (status == 0 && removed)
-        remove_unnamed(folder, entries, count, removed);
+        remove_left_overs(folder, entries, count, removed);
     mem_free(old);
     free(text);
     mem_free(path);

@@ -27,14 +27,6 @@ char *folder_file_name(uint64_t key);
    stopped or the lock file cannot be made. */
 int folder_lock(const char *folder, struct log *log, const atomic_bool *stop);
 
-#define FOLDER_GEOMETRY ".stock"        /* stock.h */
-#define FOLDER_SURFACE ".surface"       /* surface_store.h; its key is the stock's */
-#define FOLDER_SAMPLES ".spots"         /* spots.h; likewise */
-#define FOLDER_DISTANCES ".columns"     /* columns.h */
-#define FOLDER_SUBDIVISION ".splitting" /* split_kept.h; its key is the columns' */
-/* Returns the path FOLDER/KEY followed by `ending`. The caller frees it (mem_free). */
-char *folder_path(const char *folder, uint64_t key, const char *ending);
-
 /* Maps FOLDER/KEY.asset and checks it. Returns 1 with *file set (until folder_close()), 0 if there is no such file, or -1 if it is damaged,
    with the reason in why. */
 int folder_open(struct folder_file *file, const char *folder, uint64_t key, char why[200]);

@@ -4,18 +4,15 @@
 
 #include <string.h>
 
-#include "base/cache_file.h"
 #include "base/mem.h"
 #include "base/pack.h"
-
-#define MAGIC "PLCCUTS1"
+#include "preprocess/cache/build_cache.h"
 
 void model_cache_read(struct model_cache *cache, const char *folder)
 {
     struct cache_file kept;
-    char *path = mem_printf("%s/cuts", folder);
     *cache = (struct model_cache){ 0 };
-    if (cache_file_open(&kept, path, MAGIC, 0)) {
+    if (build_cache_open(&kept, folder, BUILD_CACHE_MODELS, 0)) {
         struct unpack from = { kept.bytes, kept.count, false };
         cache->at = unpack_array(&from, &cache->count, sizeof(*cache->at));
         cache->nodes = unpack_array(&from, &cache->node_count, sizeof(*cache->nodes));
@@ -25,18 +22,15 @@ void model_cache_read(struct model_cache *cache, const char *folder)
             model_cache_finish(cache);
         cache_file_close(&kept);
     }
-    mem_free(path);
 }
 
 int model_cache_write(const struct model_cache *cache, const char *folder)
 {
     struct text file = { 0 };
-    char *path = mem_printf("%s/cuts", folder);
     pack_array(&file, cache->at, cache->count, sizeof(*cache->at));
     pack_array(&file, cache->nodes, cache->node_count, sizeof(*cache->nodes));
-    int status = cache_file_write(path, MAGIC, 0, file.at, file.length);
+    int status = build_cache_write(folder, BUILD_CACHE_MODELS, 0, &(struct atomic_file_part){ file.at, file.length }, 1);
     text_finish(&file);
-    mem_free(path);
     return status;
 }
 

@@ -12,6 +12,7 @@
 
 #include "base/clock.h"
 #include "base/mem.h"
+#include "preprocess/cache/build_cache.h"
 #include "preprocess/levels/clusters.h"
 #include "preprocess/pipeline/sensor_distances.h"
 #include "preprocess/levels/vertex_order.h"
@@ -109,7 +110,7 @@ struct build {
     bool keeps; /* what splitting found out */
     struct subdiv_cache findings;
     struct sample_cache sample_cache;
-    struct build_report stock_report;
+    struct build_report geometry_report;
     struct workers_task *keeping;          /* writes what is kept for the next time */
     struct workers_task *sending;          /* the asset's file to the disk */
     void (*tasks[2])(struct build *build); /* side by side */
@@ -235,23 +236,22 @@ static bool write_surface(const struct build *build)
 {
     const struct build_input *input = build->input;
     struct text packed = { 0 };
-    char *path = folder_path(input->folder, input->geometry_key, FOLDER_SURFACE);
     surface_pack(build->measured.surface, &packed);
-    bool good = cache_file_write(path, SURFACE_MAGIC, input->geometry_key, packed.at, packed.length) == 0;
+    bool good = build_cache_write(input->folder, BUILD_CACHE_SURFACE, input->geometry_key,
+                                  &(struct atomic_file_part){ packed.at, packed.length }, 1) == 0;
     text_finish(&packed);
-    mem_free(path);
     return good;
 }
 
 /* If it cannot be written, the next time takes longer; that is all. */
-static void write_stock(const struct build *build)
+static void write_geometry(const struct build *build)
 {
     const struct build_input *input = build->input;
     if (!input->cache && build->parts.length && write_surface(build))
-        geometry_cache_write(input->folder, input->geometry_key, build->parts.at, build->parts.length, &build->stock_report);
+        geometry_cache_write(input->folder, input->geometry_key, build->parts.at, build->parts.length, &build->geometry_report);
 }
 
-static void write_kept(void *arg)
+static void write_caches(void *arg)
 {
     const struct build *build = arg;
     const struct build_input *input = build->input;
@@ -259,7 +259,7 @@ static void write_kept(void *arg)
         subdiv_cache_write(&build->findings, input->folder, input->distances_key);
         sample_cache_write(&build->sample_cache, input->folder, input->geometry_key);
     }
-    write_stock(build);
+    write_geometry(build);
 }
 
 /* Levels first, then each is split; so a level has no more vertices than it needs. */
@@ -372,8 +372,8 @@ static bool build_file(struct build *build)
         pack_parts(build);
         if (!run_both(build, split, input->cache ? NULL : check))
             return false;
-        build->stock_report = build->output->report;
-        build->keeping = workers_begin(build->workers, write_kept, build);
+        build->geometry_report = build->output->report;
+        build->keeping = workers_begin(build->workers, write_caches, build);
         surface_field_finish(&build->measured.field); /* it is large */
     }
     for (size_t l = 0; l < build->levels.count && !any; l++)

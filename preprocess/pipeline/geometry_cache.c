@@ -5,10 +5,8 @@
 #include <string.h>
 
 #include "base/mem.h"
-#include "preprocess/cache/folder.h"
+#include "preprocess/cache/build_cache.h"
 #include "surface/surface_store.h"
-
-#define MAGIC "PLCSTOCK"
 
 /* --- reading ------------------------------------------------------------------------------------------------------------------ */
 
@@ -34,12 +32,9 @@ static bool read_rest(struct geometry_cache *cache)
 
 bool geometry_cache_open(struct geometry_cache *cache, const char *folder, uint64_t key)
 {
-    char *path = folder_path(folder, key, FOLDER_GEOMETRY), *surface = folder_path(folder, key, FOLDER_SURFACE);
     *cache = (struct geometry_cache){ 0 };
-    bool good = cache_file_open(&cache->parts, path, MAGIC, key) && cache_file_open(&cache->surface, surface, SURFACE_MAGIC, key) &&
-                read_rest(cache);
-    mem_free(path);
-    mem_free(surface);
+    bool good = build_cache_open(&cache->parts, folder, BUILD_CACHE_GEOMETRY, key) &&
+                build_cache_open(&cache->surface, folder, BUILD_CACHE_SURFACE, key) && read_rest(cache);
     if (!good)
         geometry_cache_close(cache);
     return good;
@@ -177,13 +172,10 @@ bool geometry_cache_unpack(const struct geometry_cache *cache, struct log *log, 
 
 int geometry_cache_write(const char *folder, uint64_t key, const void *parts, size_t size, const struct build_report *report)
 {
-    struct text file = { 0 };
-    char *path = folder_path(folder, key, FOLDER_GEOMETRY);
-    text_add_bytes(&file, &(uint64_t){ size }, sizeof(uint64_t));
-    text_add_bytes(&file, parts, size);
-    pack_array(&file, report, 1, sizeof(*report));
-    int status = cache_file_write(path, MAGIC, key, file.at, file.length);
-    text_finish(&file);
-    mem_free(path);
+    struct text rest = { 0 };
+    pack_array(&rest, report, 1, sizeof(*report));
+    const struct atomic_file_part all[] = { { &(uint64_t){ size }, sizeof(uint64_t) }, { parts, size }, { rest.at, rest.length } };
+    int status = build_cache_write(folder, BUILD_CACHE_GEOMETRY, key, all, sizeof(all) / sizeof(*all));
+    text_finish(&rest);
     return status;
 }

@@ -5,10 +5,9 @@
 #include <string.h>
 
 #include "base/mem.h"
-#include "preprocess/cache/folder.h"
+#include "preprocess/cache/build_cache.h"
 #include "surface/mesh/trimesh.h"
 
-#define MAGIC "PLCSPOTS"
 #define TRI_BITS 24 /* one more than the triangle's number; the key's lower bits before it, its higher ones say where it stands */
 #define NOWHERE ((1u << TRI_BITS) - 1)
 #define FULL 0.85
@@ -16,14 +15,12 @@
 
 void sample_cache_open(struct sample_cache *sample_cache, const char *folder, uint64_t key)
 {
-    char *path = folder_path(folder, key, FOLDER_SAMPLES);
     *sample_cache = (struct sample_cache){ 0 };
     pthread_mutex_init(&sample_cache->lock, NULL);
-    if (cache_file_open(&sample_cache->file, path, MAGIC, key)) {
+    if (build_cache_open(&sample_cache->file, folder, BUILD_CACHE_SAMPLES, key)) {
         sample_cache->known = (const uint64_t *)(const void *)sample_cache->file.bytes;
         sample_cache->slot_count = sample_cache->file.count / sizeof(*sample_cache->known);
     }
-    mem_free(path);
 }
 
 void sample_cache_close(struct sample_cache *sample_cache)
@@ -85,8 +82,6 @@ void sample_cache_write(const struct sample_cache *sample_cache, const char *fol
             continue;
         table[slot_of(table, count, asked->key)] = asked->key << TRI_BITS | (asked->tri == TRIMESH_NONE ? NOWHERE : asked->tri + 1);
     }
-    char *path = folder_path(folder, key, FOLDER_SAMPLES);
-    cache_file_write(path, MAGIC, key, table, count * sizeof(*table));
-    mem_free(path);
+    build_cache_write(folder, BUILD_CACHE_SAMPLES, key, &(struct atomic_file_part){ table, count * sizeof(*table) }, 1);
     mem_free(table);
 }

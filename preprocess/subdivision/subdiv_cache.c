@@ -9,10 +9,9 @@
 
 #include "base/atomic_file.h"
 #include "base/mem.h"
-#include "preprocess/cache/folder.h"
+#include "preprocess/cache/build_cache.h"
 #include "preprocess/subdivision/subdivide_impl.h"
 
-#define MAGIC "PLCSPLIT"
 #define MOST_CHANGES 16   /* sensors */
 #define FEW 16            /* changes must be fewer than one in so many sensors */
 #define MOST_DOUBT 0.05f  /* then, of edges that err by about a step, one in a thousand errs by a tenth of a step more or less: measured */
@@ -140,15 +139,13 @@ static void read_file(struct subdiv_cache *cache, const struct linear_error *lin
 
 void subdiv_cache_open(struct subdiv_cache *cache, const char *folder, uint64_t key, const struct linear_error *linear)
 {
-    char *path = folder_path(folder, key, FOLDER_SUBDIVISION);
     *cache = (struct subdiv_cache){ .applies = true };
     for (size_t g = 0; g < linear->group_count; g++)
         cache->applies &= is_local(&linear->groups[g]);
     if (cache->applies)
         list_sensors(linear, &cache->sensors);
-    if (cache->applies && cache_file_open(&cache->file, path, MAGIC, key))
+    if (cache->applies && build_cache_open(&cache->file, folder, BUILD_CACHE_SUBDIVISION, key))
         read_file(cache, linear);
-    mem_free(path);
 }
 
 void subdiv_cache_close(struct subdiv_cache *cache)
@@ -168,11 +165,8 @@ void subdiv_cache_write(const struct subdiv_cache *cache, const char *folder, ui
     const struct atomic_file_part parts[] = { { &head, sizeof(head) },
                                               { cache->sensors.at, cache->sensors.length },
                                               { cache->found.at, cache->found.length } };
-    if (!cache->applies)
-        return;
-    char *path = folder_path(folder, key, FOLDER_SUBDIVISION);
-    cache_file_write_parts(path, MAGIC, key, parts, sizeof(parts) / sizeof(*parts));
-    mem_free(path);
+    if (cache->applies)
+        build_cache_write(folder, BUILD_CACHE_SUBDIVISION, key, parts, sizeof(parts) / sizeof(*parts));
 }
 
 /* --- findings --------------------------------------------------------------------------------------------------------------------- */

@@ -2,6 +2,7 @@
 /* The states and weights that are cached, and which go first when they take more than the limit. */
 #include "base/mem.h"
 #include "field/field_impl.h"
+#include "field/update.h"
 
 static void columns_drop(struct field *field, struct weights *weights)
 {

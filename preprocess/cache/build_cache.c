@@ -1,0 +1,53 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* One table of the kinds of entries: their files' names and formats. */
+#include "preprocess/cache/build_cache.h"
+
+#include <inttypes.h>
+
+#include "base/mem.h"
+#include "surface/surface_store.h"
+
+static const struct {
+    const char *ending;
+    const char *magic; /* with the format's version; of files with a format of their own: NULL */
+    bool needs_sensors;
+} kinds[BUILD_CACHE_KINDS] = {
+    [BUILD_CACHE_MODELS] = { NULL, "PLCCUTS1", false },
+    [BUILD_CACHE_GEOMETRY] = { ".stock", "PLCSTOCK", false },
+    [BUILD_CACHE_SURFACE] = { ".surface", SURFACE_MAGIC, false },
+    [BUILD_CACHE_SAMPLES] = { ".spots", "PLCSPOTS", false },
+    [BUILD_CACHE_DISTANCES] = { ".columns", NULL, true },
+    [BUILD_CACHE_SUBDIVISION] = { ".splitting", "PLCSPLIT", true },
+};
+
+char *build_cache_path(const char *folder, enum build_cache_kind kind, uint64_t key)
+{
+    const char *ending = kinds[kind].ending;
+    return ending ? mem_printf("%s/%016" PRIx64 "%s", folder, key, ending) : mem_printf("%s/cuts", folder);
+}
+
+const char *build_cache_ending(enum build_cache_kind kind)
+{
+    return kinds[kind].ending;
+}
+
+bool build_cache_needs_sensors(enum build_cache_kind kind)
+{
+    return kinds[kind].needs_sensors;
+}
+
+bool build_cache_open(struct cache_file *entry, const char *folder, enum build_cache_kind kind, uint64_t key)
+{
+    char *path = build_cache_path(folder, kind, key);
+    bool good = cache_file_open(entry, path, kinds[kind].magic, key);
+    mem_free(path);
+    return good;
+}
+
+int build_cache_write(const char *folder, enum build_cache_kind kind, uint64_t key, const struct atomic_file_part *parts, size_t part_count)
+{
+    char *path = build_cache_path(folder, kind, key);
+    int status = cache_file_write_parts(path, kinds[kind].magic, key, parts, part_count);
+    mem_free(path);
+    return status;
+}
