@@ -30,20 +30,20 @@ static void leave(struct viewer *viewer)
     raw_websocket_destroy(&viewer->raw);
 }
 
-static void watch(const struct load_generator *swarm, struct viewer *viewer, uint32_t events, int how)
+static void watch(const struct load_generator *load, struct viewer *viewer, uint32_t events, int how)
 {
     struct epoll_event event = { .events = events, .data.ptr = viewer };
-    if (epoll_ctl(swarm->epoll, how, raw_websocket_fd(viewer->raw), &event) != 0)
+    if (epoll_ctl(load->epoll, how, raw_websocket_fd(viewer->raw), &event) != 0)
         viewer_fail(viewer, strerror(errno));
 }
 
-static void join(const struct load_generator *swarm, struct viewer *viewer)
+static void join(const struct load_generator *load, struct viewer *viewer)
 {
     const char *why = NULL;
     viewer->begin_ns = clock_mono_ns();
     viewer->raw = raw_websocket_connect(viewer->params.url, &why);
     if (viewer->raw)
-        watch(swarm, viewer, EPOLLIN | EPOLLOUT, EPOLL_CTL_ADD);
+        watch(load, viewer, EPOLLIN | EPOLLOUT, EPOLL_CTL_ADD);
     else
         viewer_fail(viewer, why);
 }
@@ -55,7 +55,7 @@ static void speak(struct viewer *viewer)
             viewer_fail(viewer, "what it said was not taken");
 }
 
-static void on_messages(const struct load_generator *swarm, struct viewer *viewer)
+static void on_messages(const struct load_generator *load, struct viewer *viewer)
 {
     struct raw_websocket_message message;
     const char *why = NULL;
@@ -67,7 +67,7 @@ static void on_messages(const struct load_generator *swarm, struct viewer *viewe
         viewer->in_count = message.count;
         viewer_on_message(viewer, message.binary);
         if (viewer->params.stalls && viewer->result.frames > 0) {
-            watch(swarm, viewer, 0, EPOLL_CTL_MOD);
+            watch(load, viewer, 0, EPOLL_CTL_MOD);
             return;
         }
     }
@@ -77,25 +77,25 @@ static void on_messages(const struct load_generator *swarm, struct viewer *viewe
         viewer_fail(viewer, why);
 }
 
-static void on_event(const struct load_generator *swarm, const struct epoll_event *event)
+static void on_event(const struct load_generator *load, const struct epoll_event *event)
 {
     struct viewer *viewer = event->data.ptr;
     if (!viewer->raw)
         return;
     if (event->events & EPOLLOUT) /* connected */
-        watch(swarm, viewer, EPOLLIN, EPOLL_CTL_MOD);
-    on_messages(swarm, viewer);
+        watch(load, viewer, EPOLLIN, EPOLL_CTL_MOD);
+    on_messages(load, viewer);
     speak(viewer);
     if (viewer->done)
         leave(viewer);
 }
 
 /* True: some of them are there still. */
-static bool on_time(struct load_generator *swarm, int64_t now_ns)
+static bool on_time(struct load_generator *load, int64_t now_ns)
 {
     bool any = false;
-    for (int i = 0; i < swarm->count; i++) {
-        struct viewer *viewer = swarm->viewers[i];
+    for (int i = 0; i < load->count; i++) {
+        struct viewer *viewer = load->viewers[i];
         if (!viewer->done)
             viewer_on_time(viewer, now_ns);
         if (viewer->raw && !raw_websocket_is_open(viewer->raw) && now_ns - viewer->begin_ns > PATIENCE_NS)
@@ -105,36 +105,36 @@ static bool on_time(struct load_generator *swarm, int64_t now_ns)
             leave(viewer);
         any |= !viewer->done;
     }
-    swarm->next_ns += swarm->step_ns;
-    if (swarm->next_ns < now_ns)
-        swarm->next_ns = now_ns;
+    load->next_ns += load->step_ns;
+    if (load->next_ns < now_ns)
+        load->next_ns = now_ns;
     return any;
 }
 
 bool load_generator_run(struct viewer **viewers, int count)
 {
-    struct load_generator swarm = { .epoll = epoll_create1(EPOLL_CLOEXEC), .count = count, .viewers = viewers, .next_ns = clock_mono_ns() };
+    struct load_generator load = { .epoll = epoll_create1(EPOLL_CLOEXEC), .count = count, .viewers = viewers, .next_ns = clock_mono_ns() };
     struct epoll_event events[EVENTS];
     bool any = true;
-    swarm.step_ns = (int64_t)(1e9 / viewers[0]->params.hz);
-    if (swarm.epoll < 0) {
+    load.step_ns = (int64_t)(1e9 / viewers[0]->params.hz);
+    if (load.epoll < 0) {
         fprintf(stderr, "plantcast: epoll: %s\n", strerror(errno));
         return false;
     }
     viewer_threads_raise_file_limit();
     for (int i = 0; i < count; i++)
-        join(&swarm, viewers[i]);
+        join(&load, viewers[i]);
     while (any) {
         int64_t now_ns = clock_mono_ns();
-        if (now_ns >= swarm.next_ns && !(any = on_time(&swarm, now_ns)))
+        if (now_ns >= load.next_ns && !(any = on_time(&load, now_ns)))
             break;
-        int64_t wait_ns = swarm.next_ns - now_ns;
-        int found = epoll_wait(swarm.epoll, events, EVENTS, wait_ns > 0 ? (int)(wait_ns / NS_PER_MS) + 1 : 0);
+        int64_t wait_ns = load.next_ns - now_ns;
+        int found = epoll_wait(load.epoll, events, EVENTS, wait_ns > 0 ? (int)(wait_ns / NS_PER_MS) + 1 : 0);
         for (int i = 0; i < found; i++)
-            on_event(&swarm, &events[i]);
+            on_event(&load, &events[i]);
         if (found < EVENTS)
             nanosleep(&(struct timespec){ .tv_nsec = PAUSE_NS }, NULL);
     }
-    close(swarm.epoll);
+    close(load.epoll);
     return true;
 }

@@ -31,7 +31,7 @@ struct levels {
     struct level at[LEVELS_MAX]; /* finest first */
     size_t count;
     size_t given_up; /* by the splitting: they would need as many triangles as the next finer one */
-    size_t repeated; /* triangles of the finest with the same three corners as one before; 0 once it comes out of a stock */
+    size_t repeated; /* triangles of the finest with the same three corners as one before; 0 once they come out of the cache */
 };
 
 /* Simplifies the geometry into levels, finest first. Each has at most 0.6 of the triangles of the one before (0.85 for far levels, which

@@ -7,7 +7,7 @@
 
 #define LEVELS_FARTHEST 0.08 /* of the size: a level that errs by more is never drawn larger than a dozen pixels */
 
-/* --- welds and parts (levels_knots.c) --- */
+/* --- welds and parts (levels_welds.c) --- */
 
 /* Groups of vertices that the simplifier treats as one: equal in all attributes that it must keep. Welds hang together in parts (connected
    components, by position). */
@@ -51,7 +51,7 @@ void versions_make(struct versions *versions, const struct welds *welds, struct 
 /* Frees all versions. */
 void versions_finish(struct versions *versions);
 
-/* --- parts that far levels leave out (levels_parts.c) --- */
+/* --- parts that far levels leave out (levels_omissions.c) --- */
 
 struct omission {
     float from_m; /* left out of levels that err by so much or more; INFINITY: of none */

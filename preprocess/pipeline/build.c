@@ -103,7 +103,7 @@ struct build {
     struct levels levels;
     struct sensor_distances measured;
     struct asset_level file[LEVELS_MAX]; /* the levels as the file has them */
-    struct text parts;                   /* of a stock, unless there is one */
+    struct text parts;                   /* for the geometry cache, unless it has them */
     struct distance_rows distances;      /* of the vertices, as they come to be numbered */
     struct clusters_making *making[LEVELS_MAX];
     size_t making_count;
@@ -384,7 +384,7 @@ static bool build_file(struct build *build)
     return good;
 }
 
-/* Out of the model, or out of the stock, which has levels and surface too. */
+/* Out of the model, or out of the geometry cache, which has levels and surface too. */
 static bool begin(struct build *build)
 {
     const struct build_input *input = build->input;

@@ -9,14 +9,14 @@
 
 struct geometry_cache;
 struct build_input {
-    const struct gltf_model *model; /* not looked at where there is a stock */
+    const struct gltf_model *model; /* not used where `cache` is set */
     struct geometry_params geometry;
     const struct plant *plant;          /* its groups and tags say where the field bends */
     const struct plant_sensor *sensors; /* position_m also where it is a node's */
     size_t sensor_count;
     uint64_t key;
-    const struct geometry_cache *cache; /* of this geometry_key; NULL: there is none */
-    const char *folder;                 /* where stock and columns are kept; NULL: nowhere */
+    const struct geometry_cache *cache; /* of geometry_key; NULL: there is none */
+    const char *folder;                 /* of prepared files, with the build cache; NULL: none */
     uint64_t geometry_key, distances_key;
 };
 

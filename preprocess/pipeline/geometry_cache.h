@@ -15,9 +15,9 @@ struct geometry_cache { /* checked files; what it points to is its own */
 };
 
 /* Maps and checks the files of this key. Returns false if either is missing or damaged, and then there is nothing to close. */
-bool geometry_cache_open(struct geometry_cache *stock, const char *folder, uint64_t key);
+bool geometry_cache_open(struct geometry_cache *cache, const char *folder, uint64_t key);
 /* Unmaps the files. A zeroed cache is fine. */
-void geometry_cache_close(struct geometry_cache *stock);
+void geometry_cache_close(struct geometry_cache *cache);
 
 /* Copies geometry, levels and surface out of the cache; the caller owns all three. Returns false if the contents are damaged after all, and
    then there is nothing to finish. */

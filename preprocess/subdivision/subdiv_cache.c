@@ -31,7 +31,7 @@ struct sensor { /* all that its shares depend on */
 
 struct head {
     uint64_t sensors, findings;       /* how many follow */
-    uint64_t given_up, changes_since; /* split_kept.h */
+    uint64_t given_up, changes_since; /* subdiv_cache.h */
 };
 
 /* --- sensors ---------------------------------------------------------------------------------------------------------------------- */

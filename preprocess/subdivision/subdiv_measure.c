@@ -98,14 +98,14 @@ static void to_doubles(const float point[3], double at[3])
 }
 
 /* Where a coarser level's point is: on its own part, or else on another one that hides that, out of which it may stand. */
-static bool search(const struct sight *sight, const double at[3], struct surface_point *spot)
+static bool search(const struct sight *sight, const double at[3], struct surface_point *hit)
 {
     const struct subdiv *subdiv = sight->subdiv;
     if (subdiv->finest)
-        return surface_find_point_on(subdiv->in->surface, at, subdiv->on_surface_m, sight->origin, spot);
-    if (surface_find_point_among(subdiv->in->surface, at, subdiv->on_surface_m, is_in_sight, sight, spot))
+        return surface_find_point_on(subdiv->in->surface, at, subdiv->on_surface_m, sight->origin, hit);
+    if (surface_find_point_among(subdiv->in->surface, at, subdiv->on_surface_m, is_in_sight, sight, hit))
         return true;
-    return surface_find_point_within(subdiv->in->surface, at, sight->normal, subdiv->on_surface_m, spot);
+    return surface_find_point_within(subdiv->in->surface, at, sight->normal, subdiv->on_surface_m, hit);
 }
 
 /* All that the place of a point depends on, but for the surface. */
@@ -126,7 +126,7 @@ static uint64_t key_of(const struct sight *sight, const float point[3])
 }
 
 /* Where it was found the last time, if it is known. */
-static bool find_spot(const struct sight *sight, const float point[3], const double at[3], struct surface_point *spot)
+static bool project(const struct sight *sight, const float point[3], const double at[3], struct surface_point *hit)
 {
     const struct subdiv *subdiv = sight->subdiv;
     struct sample_cache *sample_cache = subdiv->in->sample_cache;
@@ -134,37 +134,37 @@ static bool find_spot(const struct sight *sight, const float point[3], const dou
     uint32_t tri;
     bool known = sample_cache && sample_cache_find(sample_cache, key, &tri), seen = false;
     if (known && tri != TRIMESH_NONE)
-        known = seen = surface_point_on(subdiv->in->surface, at, subdiv->on_surface_m, tri, spot);
+        known = seen = surface_point_on(subdiv->in->surface, at, subdiv->on_surface_m, tri, hit);
     if (!known)
-        seen = search(sight, at, spot);
+        seen = search(sight, at, hit);
     if (sample_cache)
-        sample_cache_note(sample_cache, sight->notes, key, seen ? spot->tri : TRIMESH_NONE, known);
+        sample_cache_note(sample_cache, sight->notes, key, seen ? hit->tri : TRIMESH_NONE, known);
     return seen;
 }
 
-/* Where a triangle is seen, nearest to a place in it that is not: large ones stand out of other parts. *spot: what was found from another
+/* Where a triangle is seen, nearest to a place in it that is not: large ones stand out of other parts. *hit: what was found from another
    place, or none; what is found from this one, though it be too far to count; none: nothing of the triangle is seen. */
 static bool find_seen(const struct sight *sight, const double corners[3][3], const double from[3], double weights[3],
-                      struct surface_point *spot)
+                      struct surface_point *hit)
 {
     const struct subdiv *subdiv = sight->subdiv;
     double at[3], reach_m = 0;
     for (int c = 0; c < 3; c++)
         reach_m = max_of(reach_m, vec_distance(from, corners[c]));
     double limit_m = reach_m + subdiv->on_surface_m;
-    if (spot->tri != TRIMESH_NONE)
-        limit_m = min_of(limit_m, vec_distance(from, spot->point_m) * (1 + ROUNDING));
-    if (subdiv->finest ? !surface_find_point_on(subdiv->in->surface, from, limit_m, sight->origin, spot)
-                       : !surface_find_point_among(subdiv->in->surface, from, limit_m, is_in_sight, sight, spot)) {
-        spot->tri = TRIMESH_NONE;
+    if (hit->tri != TRIMESH_NONE)
+        limit_m = min_of(limit_m, vec_distance(from, hit->point_m) * (1 + ROUNDING));
+    if (subdiv->finest ? !surface_find_point_on(subdiv->in->surface, from, limit_m, sight->origin, hit)
+                       : !surface_find_point_among(subdiv->in->surface, from, limit_m, is_in_sight, sight, hit)) {
+        hit->tri = TRIMESH_NONE;
         return false;
     }
-    if (vec_distance2(from, spot->point_m) > reach_m * reach_m)
+    if (vec_distance2(from, hit->point_m) > reach_m * reach_m)
         return false;
-    triangle_nearest(spot->point_m, corners[0], corners[1], corners[2], weights);
+    triangle_nearest(hit->point_m, corners[0], corners[1], corners[2], weights);
     for (int i = 0; i < 3; i++)
         at[i] = weights[0] * corners[0][i] + weights[1] * corners[1][i] + weights[2] * corners[2][i];
-    return vec_distance(at, spot->point_m) <= subdiv->on_surface_m;
+    return vec_distance(at, hit->point_m) <= subdiv->on_surface_m;
 }
 
 /* Distances along the surface, where it is nearest to a coarser level's point. False: the point is hidden deep inside another part, and
@@ -172,25 +172,25 @@ static bool find_seen(const struct sight *sight, const double corners[3][3], con
 static bool measure(const struct sight *sight, const float point[3], float *geodesic_m)
 {
     const struct subdiv *subdiv = sight->subdiv;
-    struct surface_point spot;
+    struct surface_point hit;
     double at[3];
     to_doubles(point, at);
-    if (!find_spot(sight, point, at, &spot))
+    if (!project(sight, point, at, &hit))
         return false;
-    surface_field_at_point(subdiv->in->field, subdiv->in->surface, &spot, geodesic_m);
+    surface_field_at_point(subdiv->in->field, subdiv->in->surface, &hit, geodesic_m);
     return true;
 }
 
 /* The same; at a hidden point, those of the nearest one that is seen. */
 static void measure_always(const struct sight *sight, const float point[3], float *geodesic_m)
 {
-    struct surface_point spot;
+    struct surface_point hit;
     double at[3];
     if (measure(sight, point, geodesic_m))
         return;
     to_doubles(point, at);
-    surface_find_point(sight->subdiv->in->surface, at, sight->normal, &spot);
-    surface_field_at_point(sight->subdiv->in->field, sight->subdiv->in->surface, &spot, geodesic_m);
+    surface_find_point(sight->subdiv->in->surface, at, sight->normal, &hit);
+    surface_field_at_point(sight->subdiv->in->field, sight->subdiv->in->surface, &hit, geodesic_m);
 }
 
 /* --- edges ------------------------------------------------------------------------------------------------------------------ */
@@ -476,7 +476,7 @@ static void place_in(const struct inside *inside, const double weights[3], doubl
 }
 
 /* At a place with these weights, where the surface is there. */
-static double error_inside(const struct inside *inside, const double weights[3], const struct surface_point *spot)
+static double error_inside(const struct inside *inside, const double weights[3], const struct surface_point *hit)
 {
     const struct subdiv *subdiv = inside->sight.subdiv;
     const struct linear_error *linear = subdiv->in->linear;
@@ -484,7 +484,7 @@ static double error_inside(const struct inside *inside, const double weights[3],
     double at[3];
     place_in(inside, weights, at);
     const float point[3] = { (float)at[0], (float)at[1], (float)at[2] };
-    surface_field_at_point(subdiv->in->field, subdiv->in->surface, spot, geodesic_m);
+    surface_field_at_point(subdiv->in->field, subdiv->in->surface, hit, geodesic_m);
     linear_error_weights(linear, point, geodesic_m, subdiv->slack_m > 0, interp, inside->norms);
     enum linear_error_modes modes = jumps_inside(subdiv, inside->tri, point, geodesic_m) ? LINEAR_ERROR_EUCLIDEAN : LINEAR_ERROR_BOTH;
     double wide_m = 0;
@@ -501,7 +501,7 @@ static void try_inside(const struct subdiv *subdiv, struct subdiv_finding *findi
     };
     const struct subdiv_tri *tri = &subdiv->mesh.tris[finding->number];
     struct inside inside = { .sight = sight_of_tri(subdiv, tri, &room->notes), .tri = tri, .points = room->points, .norms = room->norms };
-    struct surface_point spot;
+    struct surface_point hit;
     double at[3], weights[3];
     for (uint32_t c = 0; c < 3; c++) {
         inside.interp[c] = shares_at(subdiv, tri->v[c], c, room);
@@ -509,14 +509,14 @@ static void try_inside(const struct subdiv *subdiv, struct subdiv_finding *findi
     }
     *finding = (struct subdiv_finding){ .number = finding->number };
     place_in(&inside, places[0], at);
-    bool middle_seen = find_spot(&inside.sight, (const float[3]){ (float)at[0], (float)at[1], (float)at[2] }, at, &spot);
+    bool middle_seen = project(&inside.sight, (const float[3]){ (float)at[0], (float)at[1], (float)at[2] }, at, &hit);
     if (middle_seen)
-        finding->error = (float)error_inside(&inside, places[0], &spot);
-    spot.tri = TRIMESH_NONE;
-    for (int p = 0; p < 4 && !middle_seen && (p == 0 || spot.tri != TRIMESH_NONE); p++) {
+        finding->error = (float)error_inside(&inside, places[0], &hit);
+    hit.tri = TRIMESH_NONE;
+    for (int p = 0; p < 4 && !middle_seen && (p == 0 || hit.tri != TRIMESH_NONE); p++) {
         place_in(&inside, places[p], at);
-        if (find_seen(&inside.sight, (const double(*)[3])inside.corners, at, weights, &spot))
-            finding->error = fmaxf(finding->error, (float)error_inside(&inside, weights, &spot));
+        if (find_seen(&inside.sight, (const double(*)[3])inside.corners, at, weights, &hit))
+            finding->error = fmaxf(finding->error, (float)error_inside(&inside, weights, &hit));
     }
 }
 

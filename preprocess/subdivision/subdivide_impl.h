@@ -60,7 +60,7 @@ static inline bool subdiv_is_short(const struct subdiv *subdiv, double length_m)
 /* Runs body(arg, begin, end) over [0, count) on all cores, in ranges of about `grain`; on the calling thread if there are no workers. */
 void subdiv_parallel(const struct subdiv *subdiv, size_t count, size_t grain, void (*body)(void *arg, size_t begin, size_t end), void *arg);
 
-/* --- measuring (split_measure.c) --- */
+/* --- measuring (subdiv_measure.c) --- */
 
 /* The measured error of one edge or one triangle. */
 struct subdiv_finding {
@@ -69,7 +69,7 @@ struct subdiv_finding {
     float barred;       /* the error that cutting may not mend */
     bool jumps;
     bool is_cached;   /* it is of the last time */
-    float doubt, off; /* split_kept.h */
+    float doubt, off; /* subdiv_cache.h */
 };
 
 /* Assigns each position the part (connected component by edges) that it belongs to. Returns false if out of memory. */
@@ -85,7 +85,7 @@ void subdiv_measure_new_edges(struct subdiv *subdiv, struct subdiv_finding *find
 /* Measures the interpolation error of triangles at their centres. */
 void subdiv_measure_insides(struct subdiv *subdiv, struct subdiv_finding *findings, size_t count);
 
-/* --- levels that are no use (split_bound.c) --- */
+/* --- levels that are no use (subdiv_bound.c) --- */
 
 /* Returns whether a coarser level, or the level that its sample stands for, is certain to need more triangles than it may have. Known
    before the cuts are made. */
@@ -94,7 +94,7 @@ bool subdiv_will_exceed_bound(const struct subdiv *subdiv);
    many such blocks there are. */
 size_t subdiv_take_sample(struct level *sample, const struct level *level);
 
-/* --- keeping (split_kept.c) --- */
+/* --- keeping (subdiv_cache.c) --- */
 
 /* Looks up the finding of the last run about an edge or triangle by its corners, if it still holds. *next: a guess of where it is stored, 0
    at first; updated for the next call. Returns false if it is not known, or may no longer hold. */
@@ -102,13 +102,13 @@ bool subdiv_cache_find(const struct subdiv *subdiv, const uint32_t *corners, siz
 /* Records a finding for the next run. */
 void subdiv_cache_add(struct subdiv *subdiv, const uint32_t *corners, size_t count, const struct subdiv_finding *finding);
 
-/* --- turning (split_turn.c) --- */
+/* --- turning (subdiv_flip.c) --- */
 
 /* Flips edges between two triangles whose error exceeds `limit`, where the field errs less along the other diagonal and the surface stays
    about in place. */
 void subdiv_flip_edges(struct subdiv *subdiv, double limit);
 
-/* --- sensors (split_sensors.c) --- */
+/* --- sensors (subdiv_sensors.c) --- */
 
 /* Inserts a vertex where each sensor stands. error_m: how far the level's surface may be off. */
 void subdiv_place_sensors(struct subdiv *subdiv, double error_m);

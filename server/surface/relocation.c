@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A surface made in the background, and walks on it for whoever asks. */
+/* Builds the surface in the background, and computes distances on it for one request after another. */
 #include "surface/relocation.h"
 
 #include <math.h>
@@ -20,7 +20,7 @@ struct ask {
     void (*done)(void *arg, struct relocation_result *result);
     void *arg;
     struct ask *next;
-    /* --- below: under the mover's lock */
+    /* --- below: under the lock */
     bool running, cancelled;
 };
 
@@ -34,7 +34,7 @@ struct relocation {
     pthread_cond_t idle;
     /* --- below: under lock */
     enum relocation_state state;
-    struct surface *surface;            /* once warm: read by walks, without the lock */
+    struct surface *surface;            /* once warm: read without the lock */
     struct vertex_embedding *embedding; /* likewise; NULL: the surface's vertices are the shape's */
     struct ask *asks;                   /* waiting or running, oldest first */
     uint64_t last_ticket;
@@ -166,7 +166,7 @@ static bool find_distances(const struct relocation *relocation, const double sur
                                  : surface_distances(relocation->surface, (const double(*)[3])surface_m, 1, geodesic_m);
 }
 
-static void walk(void *arg)
+static void solve_next(void *arg)
 {
     struct relocation *relocation = arg;
     struct ask *ask = begin_ask(relocation);
@@ -225,7 +225,7 @@ static void warm(void *arg)
     relocation->jobs += waiting;
     pthread_mutex_unlock(&relocation->lock);
     for (; waiting; waiting--)
-        workers_submit(relocation->workers, walk, relocation);
+        workers_submit(relocation->workers, solve_next, relocation);
     end_job(relocation);
 }
 
@@ -317,7 +317,7 @@ uint64_t relocation_request(struct relocation *relocation, const double point_m[
     relocation->jobs += now;
     pthread_mutex_unlock(&relocation->lock);
     if (now)
-        workers_submit(relocation->workers, walk, relocation);
+        workers_submit(relocation->workers, solve_next, relocation);
     return ticket;
 }
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* From a model's triangles to a surface that distances can be walked over: weld, bridge, sample. */
+/* From a model's triangles to a surface that distances can be computed on: weld, repair, sample. */
 #include "surface/surface.h"
 
 #include <math.h>

@@ -7,8 +7,8 @@
    narrow slots); on broken CAD it is what still works. So here:
      1. what the mesh knows is kept: vertices at one place are welded, repeated faces dropped (trimesh.h);
      2. what is broken is bridged: open borders and parts that touch or cross, also themselves, are joined within one tolerance.
-        Candidates on open borders come from the point cloud, by kNN (cloud.h, stitch.h); what lies inside another closed part, or
-        between two that touch face to face, leaves (parts.h, hidden.h);
+        Candidates on open borders come from the point cloud, by kNN (point_cloud.h, repair.h); what lies inside another closed part, or
+        between two that touch face to face, leaves (parts.h, interior.h);
      3. the surface is sampled evenly: long edges are split until no edge is longer than the spacing (trimesh.h);
      4. the heat method (Crane, Weischedel, Wardetzky 2013) with the cotangent Laplacian of the intrinsic Delaunay triangulation, which
         has no negative weights inside a patch (intrinsic.h, heat.h). Diffusion time: 3 times the mean edge squared, more where the
@@ -16,7 +16,7 @@
         is nearly linear in a triangle, heat itself is not;
      5. the heat method still errs by 0.05 to 0.4 % on average and up to 4 % at borders and ridges (measured on planes, spheres and
         cylinders of 30,000 points; with t = h^2 it is 0.7 % and 3 %). So the distances handed out are unfolded over the same
-        triangulation, from the source outwards (unfold.h): 0.01 to 0.12 % on average. The heat method is what some of them are held
+        triangulation, from the source outwards (propagation.h): 0.01 to 0.12 % on average. The heat method is what some of them are held
         against (surface_check): two methods that share nothing but the mesh. Where they differ by more than some percent the report
         says so.
    Distances are kept at the model's own vertices. */
@@ -70,7 +70,7 @@ struct surface_debug_mesh {
     size_t point_count, tri_count, visible_count;
     const uint32_t *vertex_point; /* of the model's vertices; other points are samples */
     size_t vertex_count;
-    const struct crack_bridge *bridges; /* stitch.h */
+    const struct crack_bridge *bridges; /* repair.h */
     size_t bridge_count;
 };
 /* Fills *look with the mesh that distances are computed on, for debug views. Belongs to the surface. */
@@ -92,22 +92,22 @@ struct surface_point {
 };
 /* Finds the surface point nearest to point_m. With `normal`, prefers, among about equally near ones, a triangle that faces along it, so
    that the far side of a thin wall is not taken (NULL: no preference). */
-void surface_find_point(const struct surface *surface, const double point_m[3], const double normal[3], struct surface_point *spot);
+void surface_find_point(const struct surface *surface, const double point_m[3], const double normal[3], struct surface_point *hit);
 /* As surface_find_point(), but searches only within limit_m. Returns false if there is nothing. */
 bool surface_find_point_within(const struct surface *surface, const double point_m[3], const double normal[3], double limit_m,
-                               struct surface_point *spot);
+                               struct surface_point *hit);
 /* Finds the nearest surface point within limit_m that belongs to one of two triangles of the model (which may be equal). Returns false if
    there is none that is visible. */
 bool surface_find_point_on(const struct surface *surface, const double point_m[3], double limit_m, const uint32_t triangles[2],
-                           struct surface_point *spot);
+                           struct surface_point *hit);
 /* Finds the nearest surface point within limit_m that belongs to a triangle of the model for which allowed(arg, triangle) returns true.
    Returns false if there is none that is visible. */
 bool surface_find_point_among(const struct surface *surface, const double point_m[3], double limit_m,
-                              bool (*allowed)(const void *arg, uint32_t triangle), const void *arg, struct surface_point *spot);
+                              bool (*allowed)(const void *arg, uint32_t triangle), const void *arg, struct surface_point *hit);
 
 /* Finds the point nearest to point_m on one triangle `tri` of the sampled surface; gives the same result as the search that found this
    triangle. Returns false if there is no such triangle or it is farther than limit_m. */
-bool surface_point_on(const struct surface *surface, const double point_m[3], double limit_m, uint32_t tri, struct surface_point *spot);
+bool surface_point_on(const struct surface *surface, const double point_m[3], double limit_m, uint32_t tri, struct surface_point *hit);
 
 /* Computes the geodesic distance in metres from each point (projected onto the surface) to every vertex of the model: out[point *
    vertex_count + vertex], INFINITY where the surface does not connect them. Spread over the workers. Returns false if out of memory,
@@ -139,7 +139,7 @@ void surface_field_finish(struct surface_field *field);
 /* Writes the distances of a vertex of the model from every source: out[source]. */
 void surface_field_at_vertex(const struct surface_field *field, const struct surface *surface, uint32_t vertex, float *out);
 /* Writes the distances of a surface point from every source: out[source]. */
-void surface_field_at_point(const struct surface_field *field, const struct surface *surface, const struct surface_point *spot, float *out);
+void surface_field_at_point(const struct surface_field *field, const struct surface *surface, const struct surface_point *hit, float *out);
 
 /* Compares the field with the heat method's distances for some of its sources, and fills the report's heat_disagreement, time_m2 and
    factor_s. Returns false if out of memory, logged. Thread: one at a time, beside calls that do not read the report. */

@@ -23,13 +23,13 @@ static double reach_of(const struct surface *surface)
     for (uint32_t t = 0; t < mesh->tri_count; t++)
         if (++counts[surface->component[mesh->tris[t][0]]] > counts[surface->component[mesh->tris[best][0]]])
             best = t;
-    struct propagation_front walk = { 0 };
+    struct propagation_front front = { 0 };
     double reach_m = 0;
-    if (propagation_run(&surface->propagation, &walk, &(struct propagation_source){ best, (const double[3]){ 1, 0, 0 } }, 1))
+    if (propagation_run(&surface->propagation, &front, &(struct propagation_source){ best, (const double[3]){ 1, 0, 0 } }, 1))
         for (size_t i = 0; i < mesh->point_count; i++)
-            if (walk.distance_m[i] < INFINITY)
-                reach_m = max_of(reach_m, (double)walk.distance_m[i]);
-    propagation_front_finish(&walk);
+            if (front.distance_m[i] < INFINITY)
+                reach_m = max_of(reach_m, (double)front.distance_m[i]);
+    propagation_front_finish(&front);
     mem_free(counts);
     return reach_m;
 }
@@ -75,9 +75,9 @@ static void check_block(void *arg, size_t begin, size_t end)
     struct heat_source *sources = mem_array(count, sizeof(*sources));
     double *heat_m = mem_try_array(count * points, sizeof(*heat_m));
     for (size_t s = 0; s < count; s++) {
-        const struct surface_point *spot = &check->field->sources[source_of(check, begin + s)];
-        memcpy(sources[s].points, surface->visible.tris[spot->tri], sizeof(sources[s].points));
-        memcpy(sources[s].weights, spot->weights, sizeof(sources[s].weights));
+        const struct surface_point *hit = &check->field->sources[source_of(check, begin + s)];
+        memcpy(sources[s].points, surface->visible.tris[hit->tri], sizeof(sources[s].points));
+        memcpy(sources[s].weights, hit->weights, sizeof(sources[s].weights));
     }
     if (!heat_m || !heat_solve(check->heat, sources, count, heat_m))
         check->failed = true;

@@ -8,13 +8,13 @@
 #include "base/vec.h"
 #include "surface/surface_impl.h"
 
-#define BLOCK 16 /* sources walked one after another by one thread, then written side by side */
+#define BLOCK 16 /* sources propagated one after another by one thread, then written side by side */
 
 struct solve {
     const struct surface *surface;
-    const struct surface_point *spots;
+    const struct surface_point *hits;
     size_t count;
-    float *out;                            /* NULL, or [spot][vertex] */
+    float *out;                            /* NULL, or [point][vertex] */
     struct surface_field *field;           /* or NULL */
     const struct surface_columns *columns; /* or NULL */
     atomic_bool failed;
@@ -59,21 +59,21 @@ static void take_rows(const struct solve *solve, const float *block, size_t firs
             solve->field->distances_m[p * solve->field->source_count + first + s] = block[s * points + p];
 }
 
-struct abreast { /* sources that are walked at once */
-    struct propagation_front walks[PROPAGATION_ABREAST];
+struct abreast { /* sources that are propagated at once */
+    struct propagation_front fronts[PROPAGATION_ABREAST];
     struct propagation_source from[PROPAGATION_ABREAST];
     size_t source[PROPAGATION_ABREAST], count;
 };
 
 /* block: columns of the sources from `first` on, if it is for a field. */
-static bool walk(const struct solve *solve, struct abreast *abreast, float *block, size_t first)
+static bool propagate(const struct solve *solve, struct abreast *abreast, float *block, size_t first)
 {
     const struct surface *surface = solve->surface;
     size_t points = surface->mesh.point_count;
-    if (!propagation_run(&surface->propagation, abreast->walks, abreast->from, abreast->count))
+    if (!propagation_run(&surface->propagation, abreast->fronts, abreast->from, abreast->count))
         return false;
     for (size_t i = 0; i < abreast->count; i++) {
-        const float *distance_m = abreast->walks[i].distance_m;
+        const float *distance_m = abreast->fronts[i].distance_m;
         size_t s = abreast->source[i];
         if (block)
             memcpy(block + (s - first) * points, distance_m, points * sizeof(*block));
@@ -96,16 +96,16 @@ static void solve_block(void *arg, size_t begin, size_t end)
     for (size_t s = begin; s < end && !solve->failed; s++) {
         bool known = solve->columns && solve->columns->fetch(solve->columns->arg, s, block + (s - begin) * points);
         if (!known) {
-            abreast.from[abreast.count] = (struct propagation_source){ solve->spots[s].tri, solve->spots[s].weights };
+            abreast.from[abreast.count] = (struct propagation_source){ solve->hits[s].tri, solve->hits[s].weights };
             abreast.source[abreast.count++] = s;
         }
-        if (abreast.count > 0 && (abreast.count == PROPAGATION_ABREAST || s + 1 == end) && !walk(solve, &abreast, block, begin))
+        if (abreast.count > 0 && (abreast.count == PROPAGATION_ABREAST || s + 1 == end) && !propagate(solve, &abreast, block, begin))
             solve->failed = true;
     }
     if (block && !solve->failed)
         take_rows(solve, block, begin, end - begin);
     for (size_t i = 0; i < PROPAGATION_ABREAST; i++)
-        propagation_front_finish(&abreast.walks[i]);
+        propagation_front_finish(&abreast.fronts[i]);
     mem_free(block);
 }
 
@@ -123,20 +123,20 @@ static bool solve_all(struct solve *solve)
     return !solve->failed;
 }
 
-static struct surface_point *find_spots(const struct surface *surface, const double (*points_m)[3], size_t count)
+static struct surface_point *project_all(const struct surface *surface, const double (*points_m)[3], size_t count)
 {
-    struct surface_point *spots = mem_array(count, sizeof(*spots));
+    struct surface_point *hits = mem_array(count, sizeof(*hits));
     for (size_t i = 0; i < count; i++)
-        surface_find_point(surface, points_m[i], NULL, &spots[i]);
-    return spots;
+        surface_find_point(surface, points_m[i], NULL, &hits[i]);
+    return hits;
 }
 
 bool surface_distances(const struct surface *surface, const double (*points_m)[3], size_t point_count, float *out)
 {
-    struct surface_point *spots = find_spots(surface, points_m, point_count);
-    struct solve solve = { .surface = surface, .spots = spots, .count = point_count, .out = out };
+    struct surface_point *hits = project_all(surface, points_m, point_count);
+    struct solve solve = { .surface = surface, .hits = hits, .count = point_count, .out = out };
     bool good = solve_all(&solve);
-    mem_free(spots);
+    mem_free(hits);
     return good;
 }
 
@@ -151,11 +151,11 @@ bool surface_field_init(struct surface_field *field, const struct surface *surfa
     struct solve solve = { .surface = surface, .count = point_count, .field = field, .columns = columns };
     *field = (struct surface_field){ .source_count = point_count };
     field->distances_m = mem_try_array(surface->mesh.point_count, field->source_count * sizeof(*field->distances_m));
-    field->sources = find_spots(surface, points_m, point_count);
+    field->sources = project_all(surface, points_m, point_count);
     field->source_tris = mem_array(point_count, sizeof(*field->source_tris));
     for (size_t s = 0; s < point_count; s++)
         field->source_tris[s] = field->sources[s].tri;
-    solve.spots = field->sources;
+    solve.hits = field->sources;
     if (!field->distances_m)
         log_err(surface->log, "distances of %zu places on %zu points: out of memory", point_count, surface->mesh.point_count);
     if (field->distances_m && solve_all(&solve))
@@ -181,7 +181,7 @@ void surface_field_at_vertex(const struct surface_field *field, const struct sur
         out[s] = at_stray(stray, field->distances_m + s, field->source_count);
 }
 
-/* Seen from a spot, an edge of its triangle from corner a to corner b: its length, and the spot's place with a at (0, 0) and b at
+/* Seen from a surface point, an edge of its triangle from corner a to corner b: its length, and the point's place with a at (0, 0) and b at
    (side, 0). */
 struct line_of_sight {
     float side, half, per, x, y;
@@ -233,15 +233,15 @@ SIMD_AVX2 static void fill_row_wide(const struct line_of_sight sights[3], const 
     fill_row(sights, to_m, rows[0], rows[1], rows[2], count, out);
 }
 
-void surface_field_at_point(const struct surface_field *field, const struct surface *surface, const struct surface_point *spot, float *out)
+void surface_field_at_point(const struct surface_field *field, const struct surface *surface, const struct surface_point *hit, float *out)
 {
     const struct trimesh *mesh = &surface->visible;
-    const uint32_t *v = mesh->tris[spot->tri];
+    const uint32_t *v = mesh->tris[hit->tri];
     const float *rows[3];
     struct line_of_sight sights[3];
     double to_m[3];
     for (int i = 0; i < 3; i++) {
-        to_m[i] = vec_distance(spot->point_m, mesh->points[v[i]]);
+        to_m[i] = vec_distance(hit->point_m, mesh->points[v[i]]);
         rows[i] = field->distances_m + v[i] * field->source_count;
     }
     for (int i = 0; i < 3; i++) {
@@ -251,6 +251,6 @@ void surface_field_at_point(const struct surface_field *field, const struct surf
     (simd_has_avx2() ? fill_row_wide : fill_row_plain)(sights, (const float[3]){ (float)to_m[0], (float)to_m[1], (float)to_m[2] }, rows,
                                                        field->source_count, out);
     for (size_t s = 0; s < field->source_count; s++)
-        if (field->source_tris[s] == spot->tri)
-            out[s] = (float)vec_distance(spot->point_m, field->sources[s].point_m);
+        if (field->source_tris[s] == hit->tri)
+            out[s] = (float)vec_distance(hit->point_m, field->sources[s].point_m);
 }

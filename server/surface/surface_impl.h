@@ -25,7 +25,7 @@ struct surface {
     struct intrinsic intrinsic;
     struct propagation propagation;
     struct bvh *bvh;
-    uint32_t *plane;                /* of the model's triangles: the lowest that it is not told apart from (thin.h) */
+    uint32_t *plane;                /* of the model's triangles: the lowest that it is not told apart from (decimate.h) */
     uint32_t *piece_first, *pieces; /* visible triangles by the plane of the model's triangle that they are a piece of */
     double size_m, edge_m;          /* edge_m: mean edge length */
     struct surface_report report;

@@ -37,7 +37,7 @@ bool surface_faces(const void *arg, uint32_t tri)
 }
 
 bool surface_find_point_within(const struct surface *surface, const double point_m[3], const double normal[3], double limit_m,
-                               struct surface_point *spot)
+                               struct surface_point *hit)
 {
     struct bvh_place any, facing = { .tri = TRIMESH_NONE };
     bvh_nearest(surface->bvh, point_m, limit_m * (1 + ROUNDING), NULL, NULL, &any);
@@ -45,31 +45,31 @@ bool surface_find_point_within(const struct surface *surface, const double point
         bvh_nearest(surface->bvh, point_m, any.distance_m * SPOT_PATIENCE, surface_faces,
                     &(struct surface_facing){ &surface->visible, normal }, &facing);
     const struct bvh_place *at = facing.tri == TRIMESH_NONE ? &any : &facing;
-    spot->tri = at->tri;
-    spot->distance_m = at->distance_m;
-    memcpy(spot->point_m, at->point, sizeof(spot->point_m));
-    memcpy(spot->weights, at->weights, sizeof(spot->weights));
-    return spot->tri != TRIMESH_NONE && spot->distance_m <= limit_m;
+    hit->tri = at->tri;
+    hit->distance_m = at->distance_m;
+    memcpy(hit->point_m, at->point, sizeof(hit->point_m));
+    memcpy(hit->weights, at->weights, sizeof(hit->weights));
+    return hit->tri != TRIMESH_NONE && hit->distance_m <= limit_m;
 }
 
-void surface_find_point(const struct surface *surface, const double point_m[3], const double normal[3], struct surface_point *spot)
+void surface_find_point(const struct surface *surface, const double point_m[3], const double normal[3], struct surface_point *hit)
 {
-    surface_find_point_within(surface, point_m, normal, INFINITY, spot);
+    surface_find_point_within(surface, point_m, normal, INFINITY, hit);
 }
 
-bool surface_point_on(const struct surface *surface, const double point_m[3], double limit_m, uint32_t tri, struct surface_point *spot)
+bool surface_point_on(const struct surface *surface, const double point_m[3], double limit_m, uint32_t tri, struct surface_point *hit)
 {
     if (tri >= surface->visible.tri_count)
         return false;
     const uint32_t *v = surface->visible.tris[tri];
     const double(*points)[3] = (const double(*)[3])surface->visible.points;
-    spot->tri = tri;
-    triangle_nearest(point_m, points[v[0]], points[v[1]], points[v[2]], spot->weights);
+    hit->tri = tri;
+    triangle_nearest(point_m, points[v[0]], points[v[1]], points[v[2]], hit->weights);
     for (int axis = 0; axis < 3; axis++)
-        spot->point_m[axis] =
-            spot->weights[0] * points[v[0]][axis] + spot->weights[1] * points[v[1]][axis] + spot->weights[2] * points[v[2]][axis];
-    spot->distance_m = vec_distance(spot->point_m, point_m);
-    return spot->distance_m <= limit_m;
+        hit->point_m[axis] =
+            hit->weights[0] * points[v[0]][axis] + hit->weights[1] * points[v[1]][axis] + hit->weights[2] * points[v[2]][axis];
+    hit->distance_m = vec_distance(hit->point_m, point_m);
+    return hit->distance_m <= limit_m;
 }
 
 struct among {
@@ -85,12 +85,12 @@ static bool is_among(const void *arg, uint32_t tri)
 }
 
 bool surface_find_point_among(const struct surface *surface, const double point_m[3], double limit_m,
-                              bool (*allowed)(const void *arg, uint32_t triangle), const void *arg, struct surface_point *spot)
+                              bool (*allowed)(const void *arg, uint32_t triangle), const void *arg, struct surface_point *hit)
 {
     const struct among among = { surface->visible.tri_source, allowed, arg };
     struct bvh_place at;
     bvh_nearest(surface->bvh, point_m, limit_m, is_among, &among, &at);
-    return surface_point_on(surface, point_m, INFINITY, at.tri, spot);
+    return surface_point_on(surface, point_m, INFINITY, at.tri, hit);
 }
 
 struct planes {
@@ -104,27 +104,27 @@ static bool is_in_one_of(const void *arg, uint32_t triangle)
     return planes->of[triangle] == planes->at[0] || planes->of[triangle] == planes->at[1];
 }
 
-static void try_piece(const struct surface *surface, const double point_m[3], uint32_t tri, struct surface_point *spot)
+static void try_piece(const struct surface *surface, const double point_m[3], uint32_t tri, struct surface_point *hit)
 {
     struct surface_point at;
-    if (surface_point_on(surface, point_m, spot->distance_m, tri, &at))
-        *spot = at;
+    if (surface_point_on(surface, point_m, hit->distance_m, tri, &at))
+        *hit = at;
 }
 
 bool surface_find_point_on(const struct surface *surface, const double point_m[3], double limit_m, const uint32_t triangles[2],
-                           struct surface_point *spot)
+                           struct surface_point *hit)
 {
     const uint32_t *first = surface->piece_first;
     const struct planes planes = { surface->plane, { surface->plane[triangles[0]], surface->plane[triangles[1]] } };
     size_t count = planes.at[0] == planes.at[1] ? 1 : 2, pieces = 0;
-    *spot = (struct surface_point){ .tri = TRIMESH_NONE, .distance_m = limit_m };
+    *hit = (struct surface_point){ .tri = TRIMESH_NONE, .distance_m = limit_m };
     for (size_t i = 0; i < count; i++)
         pieces += first[planes.at[i] + 1] - first[planes.at[i]];
     if (pieces > FEW_PIECES)
-        return surface_find_point_among(surface, point_m, limit_m, is_in_one_of, &planes, spot);
+        return surface_find_point_among(surface, point_m, limit_m, is_in_one_of, &planes, hit);
     double enough_m = fmin(surface->edge_m * ON_PIECE, limit_m / 2);
     for (size_t i = 0; i < count; i++)
-        for (uint32_t p = first[planes.at[i]]; p < first[planes.at[i] + 1] && spot->distance_m > enough_m; p++)
-            try_piece(surface, point_m, surface->pieces[p], spot);
-    return spot->tri != TRIMESH_NONE;
+        for (uint32_t p = first[planes.at[i]]; p < first[planes.at[i] + 1] && hit->distance_m > enough_m; p++)
+            try_piece(surface, point_m, surface->pieces[p], hit);
+    return hit->tri != TRIMESH_NONE;
 }

@@ -14,8 +14,8 @@
 #define ON_SURFACE 1e-3 /* mean edges: as near, a vertex lies on a face */
 
 struct anchor {
-    uint32_t point; /* of the surface, or TRIMESH_NONE: spot */
-    struct surface_point spot;
+    uint32_t point; /* of the surface, or TRIMESH_NONE: at `hit` */
+    struct surface_point hit;
 };
 
 struct vertex_embedding {
@@ -95,19 +95,19 @@ static bool find_normals(struct job *job, const float (*normals)[3], const uint3
     return true;
 }
 
-static void find_spot(const struct surface *surface, const double place_m[3], const double normal[3], bool is_off,
-                      struct surface_point *spot)
+static void project(const struct surface *surface, const double place_m[3], const double normal[3], bool is_off,
+                    struct surface_point *hit)
 {
     struct bvh_place at;
     const struct surface_facing facing = { &surface->visible, normal };
     bvh_nearest(surface->bvh, place_m, is_off ? INFINITY : ON_SURFACE * surface->edge_m, surface_faces, &facing, &at);
     if (at.tri == TRIMESH_NONE) {
-        surface_find_point(surface, place_m, normal, spot);
+        surface_find_point(surface, place_m, normal, hit);
         return;
     }
-    *spot = (struct surface_point){ .tri = at.tri, .distance_m = at.distance_m };
-    memcpy(spot->point_m, at.point, sizeof(spot->point_m));
-    memcpy(spot->weights, at.weights, sizeof(spot->weights));
+    *hit = (struct surface_point){ .tri = at.tri, .distance_m = at.distance_m };
+    memcpy(hit->point_m, at.point, sizeof(hit->point_m));
+    memcpy(hit->weights, at.weights, sizeof(hit->weights));
 }
 
 static void find_some(void *arg, size_t begin, size_t end)
@@ -119,7 +119,7 @@ static void find_some(void *arg, size_t begin, size_t end)
         struct anchor *anchor = &job->embedding->at[v];
         anchor->point = job->table.points[slot_of(&job->table, place_m)];
         if (anchor->point == TRIMESH_NONE)
-            find_spot(job->embedding->surface, place_m, job->normals[v], job->is_off[v], &anchor->spot);
+            project(job->embedding->surface, place_m, job->normals[v], job->is_off[v], &anchor->hit);
     }
 }
 
@@ -163,7 +163,7 @@ bool vertex_embedding_distances(const struct vertex_embedding *embedding, const 
         if (anchor->point != TRIMESH_NONE)
             out[v] = field.distances_m[anchor->point];
         else
-            surface_field_at_point(&field, surface, &anchor->spot, &out[v]);
+            surface_field_at_point(&field, surface, &anchor->hit, &out[v]);
     }
     surface_field_finish(&field);
     return true;

@@ -142,10 +142,10 @@ static enum sight *sights_of(const struct relocation_shape *shape)
         sights[shape->triangles[i]] = SEEN_FINEST;
     for (size_t v = 0; v < shape->vertex_count; v++) {
         const float *p = shape->positions_m[v];
-        struct surface_point spot;
+        struct surface_point hit;
         bool finest = sights[v] == SEEN_FINEST;
-        surface_find_point(surface, (const double[3]){ (double)p[0], (double)p[1], (double)p[2] }, NULL, &spot);
-        sights[v] = spot.distance_m >= (finest ? SEEN : NEAR) ? UNSEEN : finest ? SEEN_FINEST : SEEN_COARSE;
+        surface_find_point(surface, (const double[3]){ (double)p[0], (double)p[1], (double)p[2] }, NULL, &hit);
+        sights[v] = hit.distance_m >= (finest ? SEEN : NEAR) ? UNSEEN : finest ? SEEN_FINEST : SEEN_COARSE;
         of_finest += finest;
         hidden += finest && !sights[v];
     }

@@ -192,10 +192,10 @@ static double field(const struct body *body, int group, bool paper, const double
 static void true_distances(const struct body *body, const double p[3], bool geodesic, double *out)
 {
     float solved_m[SENSORS];
-    struct surface_point spot;
+    struct surface_point hit;
     if (geodesic && body->as_solved) {
-        surface_find_point(body->surface, p, NULL, &spot);
-        surface_field_at_point(&body->field, body->surface, &spot, solved_m);
+        surface_find_point(body->surface, p, NULL, &hit);
+        surface_field_at_point(&body->field, body->surface, &hit, solved_m);
     }
     for (int i = 0; i < SENSORS; i++) {
         const float *s = body->places[i].surface_m;
@@ -267,9 +267,9 @@ static void prepare(struct body *body, const double (*points)[3])
 
 static void onto_surface(const struct body *body, double p[3])
 {
-    struct surface_point spot;
-    surface_find_point(body->surface, p, NULL, &spot);
-    memcpy(p, spot.point_m, sizeof(spot.point_m));
+    struct surface_point hit;
+    surface_find_point(body->surface, p, NULL, &hit);
+    memcpy(p, hit.point_m, sizeof(hit.point_m));
 }
 
 struct showing { /* of a field */
@@ -836,7 +836,7 @@ static void random_plates_show_the_field(void **state)
         assert_sensors(&body);
         if (body.levels.at[0].index_count / 3 < body.own_triangles + 100000)
             assert_field(&body, "random plate", stay, 2);
-        else /* sensors of one group side by side on a large plate ask for more than the limit of split.h, which is reported */
+        else /* sensors of one group side by side on a large plate ask for more than the limit of subdivide.h, which is reported */
             assert_true(body.levels.at[0].left[LEVEL_LIMIT_TRIANGLES].edges > 0);
         finish(&body);
     }

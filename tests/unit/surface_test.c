@@ -502,16 +502,16 @@ static void within_a_limit_is_the_same_spot_or_none(void **state)
             normal[axis] = 2 * cad_random(&chance) - 1;
         }
         p[2] *= 0.25;
-        struct surface_point spot, near, any;
-        surface_find_point(surface, p, normal, &spot);
+        struct surface_point hit, near, any;
+        surface_find_point(surface, p, normal, &hit);
         surface_find_point(surface, p, NULL, &any);
-        double limit_m = spot.distance_m * (0.2 + 1.6 * cad_random(&chance));
+        double limit_m = hit.distance_m * (0.2 + 1.6 * cad_random(&chance));
         bool found = surface_find_point_within(surface, p, normal, limit_m, &near);
-        assert_int_equal(found, spot.distance_m <= limit_m);
+        assert_int_equal(found, hit.distance_m <= limit_m);
         if (found) {
-            assert_int_equal(near.tri, spot.tri);
-            assert_memory_equal(near.weights, spot.weights, sizeof(spot.weights));
-            assert_memory_equal(near.point_m, spot.point_m, sizeof(spot.point_m));
+            assert_int_equal(near.tri, hit.tri);
+            assert_memory_equal(near.weights, hit.weights, sizeof(hit.weights));
+            assert_memory_equal(near.point_m, hit.point_m, sizeof(hit.point_m));
         }
         within += found;
         beyond += !found;
@@ -539,7 +539,7 @@ static void long_thin_strips_are_exact_near_a_source_too(void **state)
     for (int i = 0; i < PLACES; i++) {
         double place[3];
         float found[SOURCES];
-        struct surface_point spot;
+        struct surface_point hit;
         choose_source(&pipe, true, place);
         if (i % 2) { /* near a source */
             const double *near = sources[i / 2 % SOURCES];
@@ -548,10 +548,10 @@ static void long_thin_strips_are_exact_near_a_source_too(void **state)
             place[1] = sin(turn);
             place[2] = fmin(fmax(near[2] + 0.4 * (cad_random(&chance) - 0.5), 0), size[0]);
         }
-        surface_find_point(surface, place, NULL, &spot);
-        surface_field_at_point(&field, surface, &spot, found);
+        surface_find_point(surface, place, NULL, &hit);
+        surface_field_at_point(&field, surface, &hit, found);
         for (int s = 0; s < SOURCES; s++) {
-            double truth = cylinder_distance(size, spot.point_m, sources[s]), error = fabs((double)found[s] - truth);
+            double truth = cylinder_distance(size, hit.point_m, sources[s]), error = fabs((double)found[s] - truth);
             sum += error / (truth + 0.05) / (PLACES * SOURCES);
             worst = fmax(worst, error / (truth + 0.05));
         }
@@ -582,11 +582,11 @@ static double worst_short_way(int across, int up)
     for (int i = 0; i < PLACES; i++) {
         const double *near = sources[i % SOURCES], turn = 2 * M_PI * cad_random(&chance), far_m = 0.1 * cad_random(&chance);
         float found[SOURCES];
-        struct surface_point spot;
-        surface_find_point(surface, (const double[3]){ near[0] + far_m * cos(turn), near[1] + far_m * sin(turn), 0 }, NULL, &spot);
-        surface_field_at_point(&field, surface, &spot, found);
+        struct surface_point hit;
+        surface_find_point(surface, (const double[3]){ near[0] + far_m * cos(turn), near[1] + far_m * sin(turn), 0 }, NULL, &hit);
+        surface_field_at_point(&field, surface, &hit, found);
         for (int s = 0; s < SOURCES; s++) {
-            double truth = hypot3(spot.point_m, sources[s]);
+            double truth = hypot3(hit.point_m, sources[s]);
             worst = fmax(worst, fabs((double)found[s] - truth) / (truth + 0.002));
         }
     }

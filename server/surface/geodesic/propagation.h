@@ -19,7 +19,7 @@ struct propagation {
     } * fans;
     size_t fan_count, fan_capacity;
     char *hidden;      /* of each point: it has no visible triangle */
-    float steps_per_m; /* buckets of a walk */
+    float steps_per_m; /* buckets of a front */
     double near_m;     /* so far points are looked for straight from the source */
     uint32_t bucket_count;
 };
@@ -44,16 +44,16 @@ struct propagation_front {
     size_t item_count, item_capacity;
 };
 /* Frees the state. */
-void propagation_front_finish(struct propagation_front *walk);
+void propagation_front_finish(struct propagation_front *front);
 
-#define PROPAGATION_ABREAST 2 /* walks that one thread takes at once, at most: it waits less for each */
+#define PROPAGATION_ABREAST 2 /* fronts that one thread takes at once, at most: it waits less for each */
 struct propagation_source {
     uint32_t tri;
     const double *weights; /* of its corners */
 };
 /* Computes the distances of all points from each of `count` sources (at most PROPAGATION_ABREAST), into the front of the same number.
    Results do not depend on which sources run together. Returns false if out of memory. Thread: any, with fronts of its own. */
-bool propagation_run(const struct propagation *propagation, struct propagation_front *walks, const struct propagation_source *sources,
+bool propagation_run(const struct propagation *propagation, struct propagation_front *fronts, const struct propagation_source *sources,
                      size_t count);
 
 #endif

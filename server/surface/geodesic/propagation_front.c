@@ -17,32 +17,32 @@
 typedef float lanes __attribute__((vector_size(4 * PROPAGATION_FAN)));
 typedef int32_t mask __attribute__((vector_size(4 * PROPAGATION_FAN))); /* of each lane all bits, or none */
 
-void propagation_front_finish(struct propagation_front *walk)
+void propagation_front_finish(struct propagation_front *front)
 {
-    mem_free(walk->distance_m);
-    mem_free(walk->straight_m);
-    mem_free(walk->settled);
-    mem_free(walk->buckets);
-    mem_free(walk->items);
-    *walk = (struct propagation_front){ 0 };
+    mem_free(front->distance_m);
+    mem_free(front->straight_m);
+    mem_free(front->settled);
+    mem_free(front->buckets);
+    mem_free(front->items);
+    *front = (struct propagation_front){ 0 };
 }
 
-static bool clear(const struct propagation *propagation, struct propagation_front *walk)
+static bool clear(const struct propagation *propagation, struct propagation_front *front)
 {
     size_t count = propagation->mesh->point_count;
-    if (!walk->distance_m) {
-        walk->distance_m = mem_try_array(count, sizeof(*walk->distance_m));
-        walk->straight_m = mem_try_array(count, sizeof(*walk->straight_m));
-        walk->settled = mem_try_array(count, 1);
-        walk->buckets = mem_try_array(propagation->bucket_count, sizeof(*walk->buckets));
-        if (!walk->distance_m || !walk->straight_m || !walk->settled || !walk->buckets)
+    if (!front->distance_m) {
+        front->distance_m = mem_try_array(count, sizeof(*front->distance_m));
+        front->straight_m = mem_try_array(count, sizeof(*front->straight_m));
+        front->settled = mem_try_array(count, 1);
+        front->buckets = mem_try_array(propagation->bucket_count, sizeof(*front->buckets));
+        if (!front->distance_m || !front->straight_m || !front->settled || !front->buckets)
             return false;
-        memset(walk->buckets, 0xff, propagation->bucket_count * sizeof(*walk->buckets)); /* a walk leaves them empty */
+        memset(front->buckets, 0xff, propagation->bucket_count * sizeof(*front->buckets)); /* a front leaves them empty */
     }
     for (size_t i = 0; i < count; i++)
-        walk->distance_m[i] = INFINITY;
-    memset(walk->settled, 0, count);
-    walk->item_count = walk->at = 0;
+        front->distance_m[i] = INFINITY;
+    memset(front->settled, 0, count);
+    front->item_count = front->at = 0;
     return true;
 }
 
@@ -57,22 +57,22 @@ static inline void fetch_fans(const struct propagation *propagation, uint32_t po
 
 /* No way is shorter than the straight line. What is offered may be: an edge's two ends have their distances by ways round a fold, or round
    a rod, and a source that is laid out to fit both is nearer than either. */
-static inline void offer(const struct propagation *propagation, struct propagation_front *walk, uint32_t point, float offered_m)
+static inline void offer(const struct propagation *propagation, struct propagation_front *front, uint32_t point, float offered_m)
 {
-    float distance_m = offered_m < walk->straight_m[point] ? walk->straight_m[point] : offered_m;
-    if (!(distance_m < walk->distance_m[point]))
+    float distance_m = offered_m < front->straight_m[point] ? front->straight_m[point] : offered_m;
+    if (!(distance_m < front->distance_m[point]))
         return;
-    if (walk->distance_m[point] == INFINITY)
+    if (front->distance_m[point] == INFINITY)
         fetch_fans(propagation, point);
-    walk->distance_m[point] = distance_m;
-    if (walk->settled[point])
+    front->distance_m[point] = distance_m;
+    if (front->settled[point])
         return; /* nothing goes out from a point twice, or small corrections would run over the whole surface again and again */
-    if (walk->item_count == walk->item_capacity)
-        mem_grow(&walk->items, &walk->item_capacity, walk->item_count + 1, sizeof(*walk->items));
+    if (front->item_count == front->item_capacity)
+        mem_grow(&front->items, &front->item_capacity, front->item_count + 1, sizeof(*front->items));
     uint64_t number = (uint64_t)(int64_t)(distance_m * propagation->steps_per_m); /* not negative, but so it is one instruction */
-    uint32_t *bucket = &walk->buckets[(number > walk->at ? number : walk->at) & (propagation->bucket_count - 1)];
-    walk->items[walk->item_count] = (struct propagation_item){ point, *bucket };
-    *bucket = (uint32_t)walk->item_count++;
+    uint32_t *bucket = &front->buckets[(number > front->at ? number : front->at) & (propagation->bucket_count - 1)];
+    front->items[front->item_count] = (struct propagation_item){ point, *bucket };
+    *bucket = (uint32_t)front->item_count++;
 }
 
 SIMD_BODY void root(lanes *x)
@@ -137,9 +137,9 @@ SIMD_BODY void offers_of(const lanes *d_of_p, const lanes *reached, const lanes 
     choose(&less, &through, &along, out);
 }
 
-/* Where a walk is. */
-struct front {
-    struct propagation_front *walk;
+/* Where a front is. */
+struct turn {
+    struct propagation_front *front;
     const struct propagation_fan *fan, *end; /* the fan in hand; the end of its point's */
     lanes d, reached;                        /* of the point */
     uint32_t empty;                          /* buckets in a row */
@@ -148,53 +148,53 @@ struct front {
 };
 
 /* Takes the next point in hand. False: there is none left. */
-SIMD_BODY bool next_point(const struct propagation *propagation, struct front *front)
+SIMD_BODY bool next_point(const struct propagation *propagation, struct turn *turn)
 {
-    struct propagation_front *walk = front->walk;
-    for (; front->empty < propagation->bucket_count; walk->at++) {
-        uint32_t *bucket = &walk->buckets[walk->at & (propagation->bucket_count - 1)];
-        front->empty = *bucket == TRIMESH_NONE ? front->empty + 1 : 0;
+    struct propagation_front *front = turn->front;
+    for (; turn->empty < propagation->bucket_count; front->at++) {
+        uint32_t *bucket = &front->buckets[front->at & (propagation->bucket_count - 1)];
+        turn->empty = *bucket == TRIMESH_NONE ? turn->empty + 1 : 0;
         while (*bucket != TRIMESH_NONE) {
-            struct propagation_item item = walk->items[*bucket];
+            struct propagation_item item = front->items[*bucket];
             *bucket = item.next;
-            if (walk->settled[item.point]) /* it was reached by a shorter way */
+            if (front->settled[item.point]) /* it was reached by a shorter way */
                 continue;
-            walk->settled[item.point] = 1;
-            front->d = walk->distance_m[item.point] - (lanes){ 0 };
-            front->reached = front->d + ANY_ORDER / propagation->steps_per_m;
-            front->fan = propagation->fans + propagation->first[item.point];
-            front->end = propagation->fans + propagation->first[item.point + 1];
-            if (front->fan < front->end)
+            front->settled[item.point] = 1;
+            turn->d = front->distance_m[item.point] - (lanes){ 0 };
+            turn->reached = turn->d + ANY_ORDER / propagation->steps_per_m;
+            turn->fan = propagation->fans + propagation->first[item.point];
+            turn->end = propagation->fans + propagation->first[item.point + 1];
+            if (turn->fan < turn->end)
                 return true;
         }
     }
     return false;
 }
 
-/* What the point in hand offers to those of its fan: no branches, so that those of several walks are under way at once. */
-SIMD_BODY void look_round(struct front *front)
+/* What the point in hand offers to those of its fan: no branches, so that those of several fronts are under way at once. */
+SIMD_BODY void look_round(struct turn *turn)
 {
     const lanes zero = { 0 };
-    const struct propagation_fan *fan = front->fan;
+    const struct propagation_fan *fan = turn->fan;
     lanes each, length, cosine, sine, offers;
     for (int i = 0; i < PROPAGATION_FAN; i++)
-        each[i] = front->walk->distance_m[fan->to[i]];
+        each[i] = turn->front->distance_m[fan->to[i]];
     memcpy(&length, fan->length_m, sizeof(length));
     memcpy(&cosine, fan->cosine, sizeof(cosine));
     memcpy(&sine, fan->sine, sizeof(sine));
-    mask takes = (each > front->d) & (length >= zero);
+    mask takes = (each > turn->d) & (length >= zero);
     length = (lanes)((mask)length & INT32_MAX);
-    offers_of(&front->d, &front->reached, &each, &length, &cosine, &sine, &offers);
+    offers_of(&turn->d, &turn->reached, &each, &length, &cosine, &sine, &offers);
     takes &= offers < each;
-    memcpy(front->offered_m, &offers, sizeof(offers));
-    front->takes = bits_of(&takes);
+    memcpy(turn->offered_m, &offers, sizeof(offers));
+    turn->takes = bits_of(&takes);
 }
 
-SIMD_BODY void hand_out(const struct propagation *propagation, struct front *front)
+SIMD_BODY void hand_out(const struct propagation *propagation, struct turn *turn)
 {
-    for (uint32_t left = front->takes; left; left &= left - 1) {
+    for (uint32_t left = turn->takes; left; left &= left - 1) {
         int i = __builtin_ctz(left);
-        offer(propagation, front->walk, front->fan->to[i], front->offered_m[i]);
+        offer(propagation, turn->front, turn->fan->to[i], turn->offered_m[i]);
     }
 }
 
@@ -222,7 +222,7 @@ static void lay_out_apex(const struct window *window, double to_l_m, double to_r
     apex[1] = window->l[1] + (along * e[1] - off * e[0]) / length;
 }
 
-static void look_through(const struct propagation *propagation, struct propagation_front *walk, const struct window *window, int depth)
+static void look_through(const struct propagation *propagation, struct propagation_front *front, const struct window *window, int depth)
 {
     const struct intrinsic *in = propagation->in;
     uint32_t t = window->entered / 3, side = window->entered % 3;
@@ -235,7 +235,7 @@ static void look_through(const struct propagation *propagation, struct propagati
     if (!after_low && !before_high) /* a corner beyond an edge is not behind the source: its place is no number, and windows stay wide */
         return;
     if (after_low && before_high && distance_m < propagation->near_m)
-        offer(propagation, walk, in->points[t][(side + 2) % 3], (float)distance_m);
+        offer(propagation, front, in->points[t][(side + 2) % 3], (float)distance_m);
     for (uint32_t i = 0; i < 2; i++) {
         struct window next = *window;
         next.entered = in->glue[t][(side + 1 + i) % 3];
@@ -243,7 +243,7 @@ static void look_through(const struct propagation *propagation, struct propagati
         if (i ? after_low : before_high)
             memcpy(i ? next.low : next.high, apex, sizeof(apex));
         if (next.entered != TRIMESH_NONE && cross(next.low, next.high) > 0 && depth < DEEPEST)
-            look_through(propagation, walk, &next, depth + 1);
+            look_through(propagation, front, &next, depth + 1);
     }
 }
 
@@ -353,7 +353,7 @@ static bool lay_out_flipped(const struct propagation *propagation, const uint32_
 
 /* Points that the source sees in a straight line have that distance, though its ray may pass between points that are farther away than
    they are: the order from near to far, which is right elsewhere, is wrong so near to it. */
-static void look_around(const struct propagation *propagation, struct propagation_front *walk, uint32_t tri, const double weights[3])
+static void look_around(const struct propagation *propagation, struct propagation_front *front, uint32_t tri, const double weights[3])
 {
     const struct intrinsic *in = propagation->in;
     const uint32_t *given = propagation->mesh->tris[tri];
@@ -367,91 +367,91 @@ static void look_around(const struct propagation *propagation, struct propagatio
         return;
     for (int i = 0; i < 3; i++) {
         struct window window = { .entered = in->glue[laid.tri][i] };
-        offer(propagation, walk, in->points[laid.tri][i], (float)hypot(laid.corners[i][0], laid.corners[i][1]));
+        offer(propagation, front, in->points[laid.tri][i], (float)hypot(laid.corners[i][0], laid.corners[i][1]));
         memcpy(window.l, laid.corners[i], sizeof(window.l));
         memcpy(window.r, laid.corners[(i + 1) % 3], sizeof(window.r));
         memcpy(window.low, window.l, sizeof(window.low));
         memcpy(window.high, window.r, sizeof(window.high));
         if (window.entered != TRIMESH_NONE)
-            look_through(propagation, walk, &window, 0);
+            look_through(propagation, front, &window, 0);
     }
 }
 
 /* From the source to all points: one after another, since places of points that offers go to lie all over the memory. */
-SIMD_BODY void measure_straight(const struct trimesh *mesh, struct propagation_front *walk)
+SIMD_BODY void measure_straight(const struct trimesh *mesh, struct propagation_front *front)
 {
-    const double q[3] = { walk->source_m[0], walk->source_m[1], walk->source_m[2] }, (*points)[3] = (const double(*)[3])mesh->points;
-    float *restrict straight_m = walk->straight_m;
+    const double q[3] = { front->source_m[0], front->source_m[1], front->source_m[2] }, (*points)[3] = (const double(*)[3])mesh->points;
+    float *restrict straight_m = front->straight_m;
     for (size_t i = 0; i < mesh->point_count; i++) {
         double x = points[i][0] - q[0], y = points[i][1] - q[1], z = points[i][2] - q[2];
         straight_m[i] = (float)sqrt(x * x + y * y + z * z);
     }
 }
 
-/* From what is in the buckets outwards: the walks take turns, a fan each. A walk's next fan hangs on what the last one's came to, and the
-   processor would wait for that; walks know nothing of each other. */
-SIMD_BODY void go_on(const struct propagation *propagation, struct propagation_front *walks, size_t count)
+/* From what is in the buckets outwards: the fronts take turns, a fan each. A front's next fan hangs on what the last one's came to, and the
+   processor would wait for that; fronts know nothing of each other. */
+SIMD_BODY void go_on(const struct propagation *propagation, struct propagation_front *fronts, size_t count)
 {
-    struct front fronts[PROPAGATION_ABREAST] = { { 0 } };
+    struct turn turns[PROPAGATION_ABREAST] = { { 0 } };
     size_t left = 0;
     for (size_t i = 0; i < count; i++) {
-        fronts[left].walk = &walks[i];
-        fronts[left].empty = 0;
-        left += next_point(propagation, &fronts[left]);
+        turns[left].front = &fronts[i];
+        turns[left].empty = 0;
+        left += next_point(propagation, &turns[left]);
     }
     while (left > 0) {
         for (size_t i = 0; i < left; i++)
-            look_round(&fronts[i]);
+            look_round(&turns[i]);
         for (size_t i = left; i-- > 0;) {
-            hand_out(propagation, &fronts[i]);
-            if (++fronts[i].fan == fronts[i].end && !next_point(propagation, &fronts[i]))
-                fronts[i] = fronts[--left];
+            hand_out(propagation, &turns[i]);
+            if (++turns[i].fan == turns[i].end && !next_point(propagation, &turns[i]))
+                turns[i] = turns[--left];
         }
     }
 }
 
-static void measure_straight_plain(const struct trimesh *mesh, struct propagation_front *walk)
+static void measure_straight_plain(const struct trimesh *mesh, struct propagation_front *front)
 {
-    measure_straight(mesh, walk);
+    measure_straight(mesh, front);
 }
 
-SIMD_AVX2 static void measure_straight_wide(const struct trimesh *mesh, struct propagation_front *walk)
+SIMD_AVX2 static void measure_straight_wide(const struct trimesh *mesh, struct propagation_front *front)
 {
-    measure_straight(mesh, walk);
+    measure_straight(mesh, front);
 }
 
-static void go_on_plain(const struct propagation *propagation, struct propagation_front *walks, size_t count)
+static void go_on_plain(const struct propagation *propagation, struct propagation_front *fronts, size_t count)
 {
-    go_on(propagation, walks, count);
+    go_on(propagation, fronts, count);
 }
 
-SIMD_AVX2 static void go_on_wide(const struct propagation *propagation, struct propagation_front *walks, size_t count)
+SIMD_AVX2 static void go_on_wide(const struct propagation *propagation, struct propagation_front *fronts, size_t count)
 {
-    go_on(propagation, walks, count);
+    go_on(propagation, fronts, count);
 }
 
-static bool set_out(const struct propagation *propagation, struct propagation_front *walk, uint32_t tri, const double weights[3])
+static bool set_out(const struct propagation *propagation, struct propagation_front *front, uint32_t tri, const double weights[3])
 {
     const struct trimesh *mesh = propagation->mesh;
     const uint32_t *v = mesh->tris[tri];
-    if (!clear(propagation, walk))
+    if (!clear(propagation, front))
         return false;
     for (int axis = 0; axis < 3; axis++)
-        walk->source_m[axis] =
+        front->source_m[axis] =
             weights[0] * mesh->points[v[0]][axis] + weights[1] * mesh->points[v[1]][axis] + weights[2] * mesh->points[v[2]][axis];
-    (simd_has_avx2() ? measure_straight_wide : measure_straight_plain)(mesh, walk);
+    (simd_has_avx2() ? measure_straight_wide : measure_straight_plain)(mesh, front);
     for (int i = 0; i < 3; i++)
-        offer(propagation, walk, v[i], (float)vec_distance(walk->source_m, mesh->points[v[i]]));
-    look_around(propagation, walk, tri, weights);
+        offer(propagation, front, v[i], (float)vec_distance(front->source_m, mesh->points[v[i]]));
+    look_around(propagation, front, tri, weights);
     return true;
 }
 
-bool propagation_run(const struct propagation *propagation, struct propagation_front *walks, const struct propagation_source *sources,
+bool propagation_run(const struct propagation *propagation, struct propagation_front *fronts, const struct propagation_source *sources,
                      size_t count)
 {
     for (size_t i = 0; i < count; i++)
-        if (!set_out(propagation, &walks[i], sources[i].tri, sources[i].weights))
+        if (!set_out(propagation, &fronts[i], sources[i].tri, sources[i].weights))
             return false;
-    (simd_has_avx2() ? go_on_wide : go_on_plain)(propagation, walks, count);
+    (simd_has_avx2() ? go_on_wide : go_on_plain)(propagation, fronts, count);
     return true;
 }

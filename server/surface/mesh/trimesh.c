@@ -262,7 +262,7 @@ static bool tri_has_area(const struct trimesh *mesh, uint32_t a, uint32_t b, uin
     vec_sub(mesh->points[c], mesh->points[b], bc);
     vec_cross(ab, ac, n);
     double longest2 = max_of(vec_dot(ab, ab), max_of(vec_dot(ac, ac), vec_dot(bc, bc)));
-    return vec_length(n) > 1e-6 * longest2; /* height over a millionth of the longest edge; else its corner hangs on that edge (stitch.h) */
+    return vec_length(n) > 1e-6 * longest2; /* height over a millionth of the longest edge; else its corner hangs on that edge (repair.h) */
 }
 
 /* Keeps triangles that have an area and are not there yet. */
