@@ -55,7 +55,8 @@ static bool view_bytes(const struct document_work *work, size_t number, struct m
     char what[40];
     const json_t *view = json_array_get(json_object_get(work->root, "bufferViews"), number);
     snprintf(what, sizeof(what), "bufferView %zu", number);
-    return document_range(work, (size_t)document_number(view, "buffer"), document_number(view, "byteOffset"), document_number(view, "byteLength"), what, out);
+    return document_range(work, (size_t)document_number(view, "buffer"), document_number(view, "byteOffset"),
+                          document_number(view, "byteLength"), what, out);
 }
 
 static bool views_good(const struct document_work *work)
