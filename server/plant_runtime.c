@@ -9,7 +9,7 @@
 #include "field/colormap.h"
 #include "scene/scene_create.h"
 
-/* --- what lies on disk ----------------------------------------------------------------------------------------------------- */
+/* --- what lies on disk ------------------------------------------------------------------------------------------------ */
 
 char *plant_runtime_prepared_folder(const struct server_params *params, const struct plant *plant)
 {
@@ -41,93 +41,93 @@ static void warn_of_far_sensors(struct log *log, const struct scene *scene)
 
 struct plant_runtime *plant_runtime_read(const struct plant_runtime_context *context, struct diag *diag)
 {
-    struct plant_runtime *loaded = mem_new(sizeof(*loaded));
+    struct plant_runtime *runtime = mem_new(sizeof(*runtime));
     const struct server_params *params = context->params;
-    loaded->context = context;
-    if (!(loaded->plant = plant_load(params->plant_path, diag)) ||
-        !(loaded->scene = plant_runtime_open_scene(context->log, params, loaded->plant))) {
-        plant_runtime_destroy(&loaded);
+    runtime->context = context;
+    if (!(runtime->plant = plant_load(params->plant_path, diag)) ||
+        !(runtime->scene = plant_runtime_open_scene(context->log, params, runtime->plant))) {
+        plant_runtime_destroy(&runtime);
         return NULL;
     }
-    warn_of_far_sensors(context->log, loaded->scene);
-    loaded->store = store_create(loaded->plant);
-    loaded->baselines = baselines_create();
-    loaded->snapshot_cache = snapshot_cache_create();
-    if (!loaded->plant->history.off)
-        loaded->history = params->history ? mem_strdup(params->history) : plant_history_folder(loaded->plant);
-    return loaded;
+    warn_of_far_sensors(context->log, runtime->scene);
+    runtime->store = store_create(runtime->plant);
+    runtime->baselines = baselines_create();
+    runtime->snapshot_cache = snapshot_cache_create();
+    if (!runtime->plant->history.off)
+        runtime->history = params->history ? mem_strdup(params->history) : plant_history_folder(runtime->plant);
+    return runtime;
 }
 
-/* --- life ------------------------------------------------------------------------------------------------------------------ */
+/* --- life ------------------------------------------------------------------------------------------------------------- */
 
-static bool start_historian(struct plant_runtime *loaded, bool follows)
+static bool start_historian(struct plant_runtime *runtime, bool follows)
 {
-    const struct plant_runtime_context *context = loaded->context;
+    const struct plant_runtime_context *context = runtime->context;
     const struct historian_params params = { .log = context->log,
                                              .counters = context->counters,
-                                             .plant = loaded->plant,
-                                             .store = loaded->store,
-                                             .folder = loaded->history,
+                                             .plant = runtime->plant,
+                                             .store = runtime->store,
+                                             .folder = runtime->history,
                                              .follows = follows };
-    return !loaded->history || (loaded->historian = historian_start(&params));
+    return !runtime->history || (runtime->historian = historian_start(&params));
 }
 
-static bool start_alarm_service(struct plant_runtime *loaded, struct alarm_service *before)
+static bool start_alarm_service(struct plant_runtime *runtime, struct alarm_service *before)
 {
-    const struct plant_runtime_context *context = loaded->context;
+    const struct plant_runtime_context *context = runtime->context;
     const struct alarm_service_params params = {
         .log = context->log,
         .counters = context->counters,
-        .plant = loaded->plant,
-        .store = loaded->store,
-        .folder = loaded->history,
-        .keep_days = loaded->plant->history.keep_days,
+        .plant = runtime->plant,
+        .store = runtime->store,
+        .folder = runtime->history,
+        .keep_days = runtime->plant->history.keep_days,
         .before = before,
         .notify = context->notify,
         .notify_arg = context->notify_arg,
     };
-    return (loaded->alarm_service = alarm_service_start(&params));
+    return (runtime->alarm_service = alarm_service_start(&params));
 }
 
 /* Made from what is loaded; works only once somebody asks. */
-static void start_placing(struct plant_runtime *loaded)
+static void start_placing(struct plant_runtime *runtime)
 {
-    const struct plant_runtime_context *context = loaded->context;
-    char *folder = plant_runtime_prepared_folder(context->params, loaded->plant), *why;
-    loaded->placing = placing_create(&(struct placing_params){ .log = context->log,
-                                                               .workers = context->workers,
-                                                               .scene = loaded->scene,
-                                                               .folder = folder,
-                                                               .notify = context->notify,
-                                                               .notify_arg = context->notify_arg });
-    loaded->tag_list = tag_file_read(loaded->plant->tags_path, &why);
+    const struct plant_runtime_context *context = runtime->context;
+    char *folder = plant_runtime_prepared_folder(context->params, runtime->plant), *why;
+    runtime->placing = placing_create(&(struct placing_params){ .log = context->log,
+                                                                .workers = context->workers,
+                                                                .scene = runtime->scene,
+                                                                .folder = folder,
+                                                                .notify = context->notify,
+                                                                .notify_arg = context->notify_arg });
+    runtime->tag_list = tag_file_read(runtime->plant->tags_path, &why);
     if (why)
         log_warn(context->log, "%s", why);
     mem_free(why);
     mem_free(folder);
 }
 
-bool plant_runtime_start_recording(struct plant_runtime *loaded, struct plant_runtime *before)
+bool plant_runtime_start_recording(struct plant_runtime *runtime, struct plant_runtime *before)
 {
     if (before)
-        store_adopt(loaded->store, before->store);
-    if (loaded->history)
-        loaded->loop_checks = loop_checks_open(loaded->context->log, loaded->plant, loaded->history);
-    if (loaded->painter)
-        render_service_set_loop_checks(loaded->painter, loaded->loop_checks);
-    return start_historian(loaded, before != NULL) && start_alarm_service(loaded, before ? before->alarm_service : NULL);
+        store_adopt(runtime->store, before->store);
+    if (runtime->history)
+        runtime->loop_checks = loop_checks_open(runtime->context->log, runtime->plant, runtime->history);
+    if (runtime->render_service)
+        render_service_set_loop_checks(runtime->render_service, runtime->loop_checks);
+    return start_historian(runtime, before != NULL) && start_alarm_service(runtime, before ? before->alarm_service : NULL);
 }
 
-bool plant_runtime_start_sources(struct plant_runtime *loaded)
+bool plant_runtime_start_sources(struct plant_runtime *runtime)
 {
-    const struct plant_runtime_context *context = loaded->context;
-    loaded->sources = mem_array(loaded->plant->source_count, sizeof(*loaded->sources));
-    for (size_t i = 0; i < loaded->plant->source_count; i++)
-        if (!(loaded->sources[i] = source_start(context->log, loaded->plant, (int)i, loaded->store, context->counters)))
+    const struct plant_runtime_context *context = runtime->context;
+    runtime->sources = mem_array(runtime->plant->source_count, sizeof(*runtime->sources));
+    for (size_t i = 0; i < runtime->plant->source_count; i++)
+        if (!(runtime->sources[i] = source_start(context->log, runtime->plant, (int)i, runtime->store, context->counters)))
             return false;
-    if (loaded->plant->derived_count > 0)
-        loaded->derived = derived_start(context->log, loaded->plant, loaded->store);
-    return loaded->plant->derived_count == 0 || loaded->derived;
+    if (runtime->plant->derived_count > 0)
+        runtime->derived = derived_start(context->log, runtime->plant, runtime->store);
+    return runtime->plant->derived_count == 0 || runtime->derived;
 }
 
 const char *plant_runtime_h264_library(const struct server_params *params)
@@ -135,21 +135,21 @@ const char *plant_runtime_h264_library(const struct server_params *params)
     return params->h264 ? params->h264 : ENCODER_H264_LIBRARY;
 }
 
-bool plant_runtime_start_render_service(struct plant_runtime *loaded, const struct view *first, size_t first_count)
+bool plant_runtime_start_render_service(struct plant_runtime *runtime, const struct view *first, size_t first_count)
 {
-    const struct plant_runtime_context *context = loaded->context;
+    const struct plant_runtime_context *context = runtime->context;
     const struct server_params *server = context->params;
-    start_placing(loaded);
+    start_placing(runtime);
     struct render_service_params params = {
         .log = context->log,
         .gl = server->gl,
         .per_fragment = server->per_fragment,
         .gl_device = server->has_gl_device ? &server->gl_device : NULL,
-        .scene = loaded->scene,
-        .store = loaded->store,
-        .baselines = loaded->baselines,
-        .snapshot_cache = loaded->snapshot_cache,
-        .trials = placing_trials(loaded->placing),
+        .scene = runtime->scene,
+        .store = runtime->store,
+        .baselines = runtime->baselines,
+        .snapshot_cache = runtime->snapshot_cache,
+        .trials = placing_trials(runtime->placing),
         .workers = context->workers,
         .memory_bytes = server->memory_bytes,
         .h264_library = plant_runtime_h264_library(server),
@@ -159,63 +159,63 @@ bool plant_runtime_start_render_service(struct plant_runtime *loaded, const stru
         .notify = context->notify,
         .notify_arg = context->notify_arg,
     };
-    loaded->painter = render_service_create(&params);
-    if (loaded->painter)
-        render_service_set_loop_checks(loaded->painter, loaded->loop_checks);
-    return loaded->painter != NULL;
+    runtime->render_service = render_service_create(&params);
+    if (runtime->render_service)
+        render_service_set_loop_checks(runtime->render_service, runtime->loop_checks);
+    return runtime->render_service != NULL;
 }
 
-static void stop_sources(struct plant_runtime *loaded)
+static void stop_sources(struct plant_runtime *runtime)
 {
-    for (size_t i = 0; loaded->sources && i < loaded->plant->source_count; i++)
-        source_stop(&loaded->sources[i]);
-    source_stop(&loaded->derived);
-    mem_free(loaded->sources);
-    loaded->sources = NULL;
+    for (size_t i = 0; runtime->sources && i < runtime->plant->source_count; i++)
+        source_stop(&runtime->sources[i]);
+    source_stop(&runtime->derived);
+    mem_free(runtime->sources);
+    runtime->sources = NULL;
 }
 
-void plant_runtime_hand_over(struct plant_runtime *loaded, const struct plant *next)
+void plant_runtime_hand_over(struct plant_runtime *runtime, const struct plant *next)
 {
-    stop_sources(loaded);
-    historian_end(&loaded->historian, next);
-    alarm_service_halt(loaded->alarm_service);
+    stop_sources(runtime);
+    historian_end(&runtime->historian, next);
+    alarm_service_halt(runtime->alarm_service);
 }
 
-struct net_plant plant_runtime_net_plant(const struct plant_runtime *loaded)
+struct net_plant plant_runtime_net_plant(const struct plant_runtime *runtime)
 {
     return (struct net_plant){
-        .scene = loaded->scene,
-        .store = loaded->store,
-        .painter = loaded->painter,
-        .baselines = loaded->baselines,
-        .snapshot_cache = loaded->snapshot_cache,
-        .alarm_service = loaded->alarm_service,
-        .placing = loaded->placing,
-        .loop_checks = loaded->loop_checks,
-        .tag_list = loaded->tag_list,
-        .history_folder = loaded->history,
+        .scene = runtime->scene,
+        .store = runtime->store,
+        .render_service = runtime->render_service,
+        .baselines = runtime->baselines,
+        .snapshot_cache = runtime->snapshot_cache,
+        .alarm_service = runtime->alarm_service,
+        .placing = runtime->placing,
+        .loop_checks = runtime->loop_checks,
+        .tag_list = runtime->tag_list,
+        .history_folder = runtime->history,
     };
 }
 
 void plant_runtime_destroy(struct plant_runtime **pointer)
 {
-    struct plant_runtime *loaded = *pointer;
-    if (!loaded)
+    struct plant_runtime *runtime = *pointer;
+    if (!runtime)
         return;
-    render_service_destroy(&loaded->painter);
-    placing_destroy(&loaded->placing);
-    loop_checks_close(&loaded->loop_checks);
-    mem_free(loaded->tag_list);
-    stop_sources(loaded);
-    alarm_service_stop(&loaded->alarm_service);
-    historian_stop(&loaded->historian);
-    store_destroy(&loaded->store);
-    baselines_destroy(&loaded->baselines);
-    if (loaded->snapshot_cache)
-        snapshot_cache_destroy(&loaded->snapshot_cache);
-    scene_destroy(&loaded->scene);
-    plant_destroy(&loaded->plant);
-    mem_free(loaded->history);
-    mem_free(loaded);
+    render_service_destroy(&runtime->render_service);
+    placing_destroy(&runtime->placing);
+    loop_checks_close(&runtime->loop_checks);
+    mem_free(runtime->tag_list);
+    stop_sources(runtime);
+    alarm_service_stop(&runtime->alarm_service);
+    historian_stop(&runtime->historian);
+    store_destroy(&runtime->store);
+    baselines_destroy(&runtime->baselines);
+    if (runtime->snapshot_cache)
+        snapshot_cache_destroy(&runtime->snapshot_cache);
+    scene_destroy(&runtime->scene);
+    plant_destroy(&runtime->plant);
+    mem_free(runtime->history);
+    mem_free(runtime);
     *pointer = NULL;
 }

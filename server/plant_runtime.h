@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A plant that is loaded, and all of the daemon that depends on it: what a reload makes anew. Thread: one at a time. */
+/* The plant runtime: a loaded plant and all parts of the daemon that depend on it. A reload makes another one. Thread: one at a time. */
 #ifndef PLANT_RUNTIME_H
 #define PLANT_RUNTIME_H
 #include "alarm/alarm_service.h"
@@ -11,12 +11,12 @@
 #include "value/derived.h"
 #include "value/source.h"
 
-struct plant_runtime_context { /* what outlives it */
+struct plant_runtime_context { /* what a reload keeps */
     const struct server_params *params;
     struct log *log;
     struct counters *counters;
     struct workers *workers;
-    void (*notify)(void *arg); /* pictures, or changes of alarms, are there; any thread */
+    void (*notify)(void *arg); /* called when frames, or changes of alarms, can be collected; any thread */
     void *notify_arg;
 };
 
@@ -30,29 +30,37 @@ struct plant_runtime {
     struct historian *historian; /* NULL: nothing is recorded */
     struct alarm_service *alarm_service;
     struct source **sources; /* by index in plant->sources */
-    struct source *derived;  /* computes tags from tags; NULL: there are none */
-    struct render_service *painter;
-    char *history; /* folder; NULL: none */
+    struct source *derived;  /* computes derived tags; NULL: there are none */
+    struct render_service *render_service;
+    char *history; /* its folder; NULL: nothing is recorded */
     struct placing *placing;
     struct loop_checks *loop_checks; /* NULL: nothing is recorded */
-    char *tag_list;                  /* the text; NULL: it could not be read a second time */
+    char *tag_list;                  /* its text; NULL: it could not be read */
 };
 
-/* Plant and scene, from disk, and the store; nothing runs yet. Findings go to diag. NULL: with an error there, or in the log. */
+/* Reads plant and scene from disk and makes the store; nothing runs yet. Findings go to diag. Returns NULL after an error, which is there
+   or in the log. */
 struct plant_runtime *plant_runtime_read(const struct plant_runtime_context *context, struct diag *diag);
-void plant_runtime_destroy(struct plant_runtime **loaded); /* ends what runs, against the flow of data; &NULL is fine; leaves NULL */
+/* Ends what runs, in reverse order of the flow of data, and frees all. &NULL is fine; leaves NULL. */
+void plant_runtime_destroy(struct plant_runtime **runtime);
 
-/* Each false: logged. before: whose history, alarms and readings go on (plant_runtime_hand_over); NULL: none. */
-bool plant_runtime_start_recording(struct plant_runtime *loaded, struct plant_runtime *before);
-bool plant_runtime_start_sources(struct plant_runtime *loaded);
-/* first: pictures that it shall be quick to draw from the beginning (painter.h). */
-bool plant_runtime_start_render_service(struct plant_runtime *loaded, const struct view *first, size_t first_count);
-/* Nothing is read, recorded or evaluated any more; pictures are still drawn of what there was. */
-void plant_runtime_hand_over(struct plant_runtime *loaded, const struct plant *next);
-struct net_plant plant_runtime_net_plant(const struct plant_runtime *loaded);
+/* Starts historian and alarms. before: the runtime whose history, alarms and readings are continued (plant_runtime_hand_over); NULL: none.
+   Returns false on failure, already logged. */
+bool plant_runtime_start_recording(struct plant_runtime *runtime, struct plant_runtime *before);
+/* Starts the field devices' sources and derived tags. Returns false on failure, already logged. */
+bool plant_runtime_start_sources(struct plant_runtime *runtime);
+/* Starts the render service. first: views that are to be quick to draw from the beginning. Returns false on failure, already logged. */
+bool plant_runtime_start_render_service(struct plant_runtime *runtime, const struct view *first, size_t first_count);
+/* Stops reading, recording and evaluating, for the runtime of `next` to continue. Frames are still drawn, of the last readings. */
+void plant_runtime_hand_over(struct plant_runtime *runtime, const struct plant *next);
+/* Returns what the loop needs of it. */
+struct net_plant plant_runtime_net_plant(const struct plant_runtime *runtime);
 
+/* Returns the H.264 encoder to use; NULL: none. */
 const char *plant_runtime_h264_library(const struct server_params *params);
-char *plant_runtime_prepared_folder(const struct server_params *params, const struct plant *plant); /* mem_free */
+/* Returns the folder of prepared assets; mem_free. */
+char *plant_runtime_prepared_folder(const struct server_params *params, const struct plant *plant);
+/* Opens the prepared scene. Returns NULL on failure, already logged. */
 struct scene *plant_runtime_open_scene(struct log *log, const struct server_params *params, const struct plant *plant);
 
 #endif

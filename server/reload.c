@@ -22,7 +22,7 @@ enum { FIRST = 16 }; /* views that the new plant is drawn from before it takes o
 
 struct reload {
     const struct plant_runtime_context *context;
-    struct plant_runtime **loaded;
+    struct plant_runtime **runtime;
     struct net *net;
     pthread_t thread;
     bool started;
@@ -42,7 +42,7 @@ void reload_count(struct counters *counters, const char *hash, bool in_force)
     mem_free(name);
 }
 
-/* --- what becomes of it ----------------------------------------------------------------------------------------------------- */
+/* --- what becomes of it ----------------------------------------------------------------------------------------------- */
 
 struct verdict {
     struct net *net;
@@ -104,11 +104,12 @@ static void refuse(struct reload *reload, const struct diag *diag, const char *w
     }
     if (why)
         json_array_append_new(errors, json_string(why));
-    log_err(log, "reload: the configuration %s stays in force%s%s", (*reload->loaded)->plant->hash, why ? ": " : "", why ? why : "");
-    answer(reload, false, json_pack("{s:b,s:s,s:o}", "reloaded", false, "configuration", (*reload->loaded)->plant->hash, "errors", errors));
+    log_err(log, "reload: the configuration %s stays in force%s%s", (*reload->runtime)->plant->hash, why ? ": " : "", why ? why : "");
+    answer(reload, false,
+           json_pack("{s:b,s:s,s:o}", "reloaded", false, "configuration", (*reload->runtime)->plant->hash, "errors", errors));
 }
 
-/* --- the swap --------------------------------------------------------------------------------------------------------------- */
+/* --- the swap --------------------------------------------------------------------------------------------------------- */
 
 struct swap {
     struct net *net;
@@ -125,11 +126,11 @@ static void look_at_views(void *arg)
     swap->first_count = net_views(swap->net, &plant, swap->first, FIRST);
 }
 
-/* Beside the old plant's painter, which goes on meanwhile, so that the new one is as quick from its first picture on. */
-static bool start_painter(struct reload *reload, struct plant_runtime *after)
+/* Beside the old plant's render service, which goes on meanwhile, so that the new one is as quick from its first frame on. */
+static bool start_render_service(struct reload *reload, struct plant_runtime *after)
 {
     struct swap swap = { .net = reload->net, .after = after };
-    store_adopt(after->store, (*reload->loaded)->store);
+    store_adopt(after->store, (*reload->runtime)->store);
     return net_call(reload->net, look_at_views, &swap) && plant_runtime_start_render_service(after, swap.first, swap.first_count);
 }
 
@@ -150,22 +151,22 @@ static void say_difference(struct reload *reload, const struct plant_diff *diff,
         log_info(log, "reload: %s", diff->lines[i]);
         json_array_append_new(changes, json_string(diff->lines[i]));
     }
-    log_info(log, "reload: configuration %s in place of %s, after %.1f s", (*reload->loaded)->plant->hash, before, took_s);
+    log_info(log, "reload: configuration %s in place of %s, after %.1f s", (*reload->runtime)->plant->hash, before, took_s);
     answer(reload, true,
-           json_pack("{s:b,s:s,s:s,s:o}", "reloaded", true, "configuration", (*reload->loaded)->plant->hash, "before", before, "changes",
+           json_pack("{s:b,s:s,s:s,s:o}", "reloaded", true, "configuration", (*reload->runtime)->plant->hash, "before", before, "changes",
                      changes));
 }
 
 /* Sources end: from here on there is a new plant, or, if no thread can be had any more, no daemon. begun_ns: when it was asked for. */
 static void put_in_force(struct reload *reload, struct plant_runtime *after, const struct plant_diff *diff, int64_t begun_ns)
 {
-    struct plant_runtime *before = *reload->loaded;
+    struct plant_runtime *before = *reload->runtime;
     struct swap both = { .net = reload->net, .after = after };
     char *hash = mem_strdup(before->plant->hash);
     plant_runtime_hand_over(before, after->plant);
     bool good = plant_runtime_start_recording(after, before) && plant_runtime_start_sources(after) && net_call(reload->net, swap, &both);
     if (good) {
-        *reload->loaded = after;
+        *reload->runtime = after;
         plant_runtime_destroy(&before);
         malloc_trim(0);
         reload_count(reload->context->counters, hash, false);
@@ -185,9 +186,9 @@ static bool reload_now(struct reload *reload)
     struct diag diag = { 0 };
     struct plant_diff diff = { 0 };
     int64_t begun_ns = clock_mono_ns();
-    struct plant_runtime *before = *reload->loaded, *after = plant_runtime_read(reload->context, &diag);
+    struct plant_runtime *before = *reload->runtime, *after = plant_runtime_read(reload->context, &diag);
     const char *why = after ? plant_needs_restart(before->plant, after->plant) : diag.errors ? NULL : "the log says why";
-    if (after && !why && !start_painter(reload, after))
+    if (after && !why && !start_render_service(reload, after))
         why = "nothing draws it beside the one in force; the log says why";
     bool good = after && !why;
     if (good) {
@@ -202,7 +203,7 @@ static bool reload_now(struct reload *reload)
     return good;
 }
 
-/* --- another tag list --------------------------------------------------------------------------------------------------------- */
+/* --- another tag list ------------------------------------------------------------------------------------------------- */
 
 static bool is_stopping(struct reload *reload)
 {
@@ -212,11 +213,11 @@ static bool is_stopping(struct reload *reload)
     return stopping;
 }
 
-/* As somebody would by hand, and no more urgent than serving pictures is. */
+/* As somebody would by hand, and no more urgent than serving frames is. */
 static bool prepare(struct reload *reload)
 {
     const struct plant_runtime_context *context = reload->context;
-    char program[PATH_MAX], *folder = plant_runtime_prepared_folder(context->params, (*reload->loaded)->plant);
+    char program[PATH_MAX], *folder = plant_runtime_prepared_folder(context->params, (*reload->runtime)->plant);
     ssize_t n = readlink("/proc/self/exe", program, sizeof(program) - 32);
     program[n > 0 ? n : 0] = 0;
     char *slash = strrchr(program, '/');
@@ -269,7 +270,7 @@ static void save_now(struct reload *reload, const struct tag_save *save)
     mem_free(why);
 }
 
-/* --- life ------------------------------------------------------------------------------------------------------------------- */
+/* --- life ------------------------------------------------------------------------------------------------------------- */
 
 static void *run(void *arg)
 {
@@ -293,11 +294,11 @@ static void *run(void *arg)
     }
 }
 
-struct reload *reload_create(const struct plant_runtime_context *context, struct plant_runtime **loaded, struct net *net)
+struct reload *reload_create(const struct plant_runtime_context *context, struct plant_runtime **runtime, struct net *net)
 {
     struct reload *reload = mem_new(sizeof(*reload));
     reload->context = context;
-    reload->loaded = loaded;
+    reload->runtime = runtime;
     reload->net = net;
     pthread_mutex_init(&reload->lock, NULL);
     pthread_cond_init(&reload->wake, NULL);

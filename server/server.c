@@ -32,7 +32,7 @@ struct server {
     struct counters *counters;
     struct workers *workers;
     struct plant_runtime_context context;
-    struct plant_runtime *loaded;
+    struct plant_runtime *runtime;
     struct reload *reload;
     pthread_mutex_t wake_lock; /* holds net alive while the render thread wakes it */
     struct net *net;
@@ -137,7 +137,7 @@ static bool start_net(struct server *server)
 {
     struct net_params params = {
         .log = server->log,
-        .plant = plant_runtime_net_plant(server->loaded),
+        .plant = plant_runtime_net_plant(server->runtime),
         .counters = server->counters,
         .address = server->params.address,
         .port = server->params.port,
@@ -155,7 +155,7 @@ static bool start_net(struct server *server)
     pthread_mutex_lock(&server->wake_lock);
     server->net = net;
     pthread_mutex_unlock(&server->wake_lock);
-    return net && (server->reload = reload_create(&server->context, &server->loaded, net));
+    return net && (server->reload = reload_create(&server->context, &server->runtime, net));
 }
 
 /* Clocks in pictures show the plant's time. The environment may be changed only while there is one thread. */
@@ -169,12 +169,12 @@ static void set_time_zone(const struct plant *plant)
 static bool read_plant(struct server *server)
 {
     struct diag diag = { 0 };
-    server->loaded = plant_runtime_read(&server->context, &diag);
+    server->runtime = plant_runtime_read(&server->context, &diag);
     diag_print(&diag, stderr);
     if (diag.errors)
         fprintf(stderr, "plantcastd: %s: %d error%s\n", server->params.plant_path, diag.errors, diag.errors == 1 ? "" : "s");
     diag_finish(&diag);
-    return server->loaded != NULL;
+    return server->runtime != NULL;
 }
 
 static bool server_start(struct server *server)
@@ -185,15 +185,15 @@ static bool server_start(struct server *server)
     };
     if (!read_plant(server))
         return false;
-    set_time_zone(server->loaded->plant);
-    colormaps_of_plant(server->loaded->plant);
+    set_time_zone(server->runtime->plant);
+    colormaps_of_plant(server->runtime->plant);
     if (!net_port_free(server->log, server->params.address, server->params.port) || !net_access_good(server->log, &server->params.access))
         return false;
     server->context.workers = server->workers = workers_create(server->params.threads);
     server->web = find_web(server->params.web);
-    reload_count(server->counters, server->loaded->plant->hash, true);
-    return plant_runtime_start_recording(server->loaded, NULL) && plant_runtime_start_sources(server->loaded) &&
-           plant_runtime_start_render_service(server->loaded, NULL, 0) && start_net(server);
+    reload_count(server->counters, server->runtime->plant->hash, true);
+    return plant_runtime_start_recording(server->runtime, NULL) && plant_runtime_start_sources(server->runtime) &&
+           plant_runtime_start_render_service(server->runtime, NULL, 0) && start_net(server);
 }
 
 /* Against the flow of data: first who takes, last who gives. */
@@ -205,7 +205,7 @@ static void server_finish(struct server *server)
     pthread_mutex_unlock(&server->wake_lock);
     reload_destroy(&server->reload);
     net_destroy(&net);
-    plant_runtime_destroy(&server->loaded);
+    plant_runtime_destroy(&server->runtime);
     workers_destroy(&server->workers);
     counters_destroy(&server->counters);
     mem_free(server->web);

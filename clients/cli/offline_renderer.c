@@ -114,8 +114,8 @@ static bool add_colormaps(const struct offline_renderer *offline, const struct s
 static bool take_view(const struct offline_renderer *offline, const struct snapshot_options *options, struct view *view)
 {
     struct message_error error;
-    const struct params_context world = { .scene = offline->scene, .baselines = offline->baselines, .bare = options->no_overlay };
-    bool good = view_query_parse(&world, ROLE_ENGINEER, (const char *const *)options->args, options->arg_count, view, NULL, &error);
+    const struct params_context context = { .scene = offline->scene, .baselines = offline->baselines, .bare = options->no_overlay };
+    bool good = view_query_parse(&context, ROLE_ENGINEER, (const char *const *)options->args, options->arg_count, view, NULL, &error);
     if (!good)
         fprintf(stderr, "plantcast: %s\n", error.text);
     return good;

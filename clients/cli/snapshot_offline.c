@@ -21,8 +21,8 @@ static bool draw(struct offline_renderer *offline, const struct snapshot_options
 static void print_pick(struct offline_renderer *offline, const struct snapshot_options *options, const struct view *view)
 {
     struct pick_answer *answer = mem_new(sizeof(*answer));
-    answer->order = (struct pick_query){ .view = *view, .x_px = options->place_px[0], .y_px = options->place_px[1] };
-    pick_at(offline->scene, offline->field, view, offline->snapshot, answer->order.x_px, answer->order.y_px, &answer->pick);
+    answer->query = (struct pick_query){ .view = *view, .x_px = options->place_px[0], .y_px = options->place_px[1] };
+    pick_at(offline->scene, offline->field, view, offline->snapshot, answer->query.x_px, answer->query.y_px, &answer->pick);
     char *text = reply_picked_text(offline->plant, answer);
     puts(text);
     mem_free(text);

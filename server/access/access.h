@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Who may do what: roles, and what a message, a host or a page must be. Pure. PROTOCOL.md holds the table for readers. */
+/* Rules of access: where the daemon may listen, which host names and pages may use it, what a page of ours may load. What each role may
+   do is in message/role.h. Pure; any thread. */
 #ifndef ACCESS_ACCESS_H
 #define ACCESS_ACCESS_H
 #include "access/quota.h"
@@ -8,34 +9,40 @@
 enum { ACCESS_MAX_NAMES = 16 };
 
 struct access_params {
-    bool open_viewers;                        /* who has no token gets pictures */
-    bool behind_proxy;                        /* a proxy on this machine speaks for others: no connection is trusted for being local */
-    bool trust_local;                         /* who is on this machine needs no token, though others do */
-    const char *tokens_path;                  /* NULL: there are none */
+    bool open_viewers;                        /* clients without a token get pictures, and nothing else */
+    bool behind_proxy;                        /* a proxy on this machine forwards the connections of others: being local proves nothing */
+    bool trust_local;                         /* clients on this machine need no token, though others do */
+    const char *tokens_path;                  /* NULL: no tokens */
     const char *tls_cert_path, *tls_key_path; /* NULL: no TLS */
-    const char *hosts[ACCESS_MAX_NAMES];      /* names under which the daemon may be asked for, beside those it knows */
+    const char *hosts[ACCESS_MAX_NAMES];      /* host names by which clients may ask for the daemon, beside those it knows */
     const char *origins[ACCESS_MAX_NAMES];    /* pages of other hosts that may connect, as SCHEME://HOST[:PORT] */
     int host_count, origin_count;
     struct quotas quotas;
 };
 
-/* False: *why (static) says which rule of the bind address is not kept. */
+/* Returns whether the daemon may listen with these parameters on a loopback address, or on another. If not, *why (static) says which rule
+   is broken. */
 bool access_allowed_at(const struct access_params *params, bool loopback, const char **why);
 
-/* "name", "name:80", "[::1]:80" -> the name, lower case, without brackets. False: it is none. */
+/* Writes the host name of a Host header ("name", "name:80", "[::1]:80") into out, in lower case, without brackets. Returns false if it is
+   not a host name. */
 bool access_host_name(const char *host, char *out, size_t size);
-bool access_name_is_local(const char *name); /* localhost, 127.x, ::1 */
+/* Returns whether the name is localhost, 127.x or ::1. */
+bool access_name_is_local(const char *name);
+/* Returns whether the name is a numeric IP address. */
 bool access_name_is_address(const char *name);
-/* Whether a page of `origin` may use who asks `host`: the same host by the same kind of line, or one of those named. "": no browser. */
+/* Returns whether a page of that origin may connect to that host: it is the same host with the same scheme, or named in params. An empty
+   origin may: no browser sent it. secure: the connection has TLS. */
 bool access_origin(const struct access_params *params, const char *origin, const char *host, bool secure);
-/* What a page of ours may load, and who may show it in a frame: it, and those named; mem_free. */
+/* Returns the Content-Security-Policy of our pages: they load from here only, and the origins named may show them in a frame; mem_free. */
 char *access_content_policy(const struct access_params *params);
-/* Finds a name in a header's list with commas; *rest (may be NULL) is what follows `prefix` in the word that begins with it. */
+/* Returns whether a header's comma-separated list has that word. */
 bool access_list_has(const char *list, const char *word);
+/* Finds the word of such a list that begins with the prefix and writes what follows that into out. Returns false if there is none. */
 bool access_list_rest(const char *list, const char *prefix, char *out, size_t size);
-/* The last address in X-Forwarded-For, which the nearest proxy wrote. False: there is none. */
+/* Writes the last address of an X-Forwarded-For header, which the nearest proxy added, into out. Returns false if there is none. */
 bool access_forwarded(const char *list, char *out, size_t size);
-/* A token in a query, where logs and histories keep it. */
+/* Returns whether an argument of a query is a token, which must not stand where logs and browser histories keep it. */
 bool access_argument_is_token(const char *argument);
 
 #endif

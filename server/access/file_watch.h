@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Whether a file has become another since it was read. */
+/* File watch: notices that a file changed since it was read. Thread: one. */
 #ifndef ACCESS_FILE_WATCH_H
 #define ACCESS_FILE_WATCH_H
 #include <stdbool.h>
@@ -16,9 +16,10 @@ struct file_watch { /* zero-initialise */
     struct file_stamp seen, read;
 };
 
-/* What was read now; st NULL: there was none. */
+/* Notes the state of the file that has just been read; st NULL: there is no file. */
 void file_watch_read(struct file_watch *watch, const struct stat *st);
-/* True: it is another than what was read, and was the same at the last look: a file that is being written may be half a file. */
+/* Returns true if the file differs from what was read and has stayed the same since the last call: while it is being written it may be
+   half a file. */
 bool file_watch_changed(struct file_watch *watch, const char *path);
 
 #endif

@@ -37,35 +37,35 @@ struct login_throttle *login_throttle_create(void)
 
 void login_throttle_destroy(struct login_throttle **logins_ptr)
 {
-    struct login_throttle *logins = *logins_ptr;
-    if (!logins)
+    struct login_throttle *throttle = *logins_ptr;
+    if (!throttle)
         return;
-    mem_free(logins->entries);
-    mem_free(logins);
+    mem_free(throttle->entries);
+    mem_free(throttle);
     *logins_ptr = NULL;
 }
 
-static struct entry *find(const struct login_throttle *logins, const uint8_t address[16])
+static struct entry *find(const struct login_throttle *throttle, const uint8_t address[16])
 {
-    for (size_t i = 0; i < logins->count; i++)
-        if (!memcmp(logins->entries[i].address, address, sizeof(logins->entries[i].address)))
-            return &logins->entries[i];
+    for (size_t i = 0; i < throttle->count; i++)
+        if (!memcmp(throttle->entries[i].address, address, sizeof(throttle->entries[i].address)))
+            return &throttle->entries[i];
     return NULL;
 }
 
-static struct entry *find_or_make(struct login_throttle *logins, const uint8_t address[16])
+static struct entry *find_or_make(struct login_throttle *throttle, const uint8_t address[16])
 {
-    struct entry *entry = find(logins, address);
+    struct entry *entry = find(throttle, address);
     if (entry)
         return entry;
-    if (logins->count < LOGIN_ADDRESSES) {
-        mem_grow(&logins->entries, &logins->capacity, logins->count + 1, sizeof(*logins->entries));
-        entry = &logins->entries[logins->count++];
+    if (throttle->count < LOGIN_ADDRESSES) {
+        mem_grow(&throttle->entries, &throttle->capacity, throttle->count + 1, sizeof(*throttle->entries));
+        entry = &throttle->entries[throttle->count++];
     } else {
-        entry = logins->entries;
-        for (size_t i = 1; i < logins->count; i++)
-            if (logins->entries[i].heard_ns < entry->heard_ns)
-                entry = &logins->entries[i];
+        entry = throttle->entries;
+        for (size_t i = 1; i < throttle->count; i++)
+            if (throttle->entries[i].heard_ns < entry->heard_ns)
+                entry = &throttle->entries[i];
     }
     *entry = (struct entry){ .failures = 0 };
     memcpy(entry->address, address, sizeof(entry->address));
@@ -114,9 +114,9 @@ static enum login fail(struct entry *entry, int64_t now_ns)
     return was_slowed ? LOGIN_WRONG : LOGIN_WRONG_SLOWS;
 }
 
-enum login login_throttle_judge(struct login_throttle *logins, const uint8_t address[16], const uint8_t *hash, int64_t now_ns)
+enum login login_throttle_judge(struct login_throttle *throttle, const uint8_t address[16], const uint8_t *hash, int64_t now_ns)
 {
-    struct entry *entry = find_or_make(logins, address);
+    struct entry *entry = find_or_make(throttle, address);
     entry->heard_ns = now_ns;
     if (now_ns < entry->slowed_until_ns && !(hash && find_known(entry, hash))) {
         if (now_ns < entry->next_try_ns)
@@ -126,16 +126,16 @@ enum login login_throttle_judge(struct login_throttle *logins, const uint8_t add
     return hash ? let_in(entry, hash, now_ns) : fail(entry, now_ns);
 }
 
-int login_throttle_failures(const struct login_throttle *logins, const uint8_t address[16], int64_t now_ns)
+int login_throttle_failures(const struct login_throttle *throttle, const uint8_t address[16], int64_t now_ns)
 {
-    const struct entry *entry = find(logins, address);
+    const struct entry *entry = find(throttle, address);
     return entry ? failures(entry, now_ns) : 0;
 }
 
-int logins_slowed(const struct login_throttle *logins, int64_t now_ns)
+int login_throttle_slowed(const struct login_throttle *throttle, int64_t now_ns)
 {
     int count = 0;
-    for (size_t i = 0; i < logins->count; i++)
-        count += now_ns < logins->entries[i].slowed_until_ns;
+    for (size_t i = 0; i < throttle->count; i++)
+        count += now_ns < throttle->entries[i].slowed_until_ns;
     return count;
 }

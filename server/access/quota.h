@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* How much clients may have, in numbers that the command line can change (--limit NAME=N). Pure. */
+/* Quotas: limits on what clients may have, which the command line can change (--limit NAME=N). Pure; any thread. */
 #ifndef ACCESS_QUOTA_H
 #define ACCESS_QUOTA_H
 #include <stdbool.h>
@@ -30,12 +30,14 @@ enum quota {
 
 struct quotas {
     int64_t at[QUOTA_COUNT];
-    bool given[QUOTA_COUNT]; /* by somebody; limits of an address then hold for this machine's own too */
+    bool given[QUOTA_COUNT]; /* on the command line; limits by address then hold for this machine's own addresses too */
 };
 
+/* Returns the limits that hold without --limit. */
 struct quotas quotas_default(void);
-/* NAME=N. False: there is no such limit, or N is out of its range. */
+/* Sets one limit from "NAME=N". Returns false if there is no such limit, or N is out of its range. */
 bool quotas_parse(struct quotas *quotas, const char *text);
-void quotas_print(FILE *out); /* names, defaults and meaning, for --help */
+/* Prints names, defaults and meaning of all limits, for --help. */
+void quotas_print(FILE *out);
 
 #endif

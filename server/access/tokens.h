@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The file of tokens: a line each, `ROLE NAME SHA-256 [until YYYY-MM-DD]`. What it does not say is not let in: a file that is gone, or
-   that others may write, lets in nobody. Thread: one. */
+/* The file of tokens: one per line, `ROLE NAME SHA-256 [until YYYY-MM-DD]`. A token that is not in it is not accepted; nor is any, once the
+   file is gone or others may write it. Thread: one. */
 #ifndef ACCESS_TOKENS_H
 #define ACCESS_TOKENS_H
 #include "base/log.h"
@@ -12,31 +12,38 @@ enum { TOKEN_HASH_BYTES = 32, TOKEN_NAME_BYTES = 64 };
 struct token_holder {
     enum role role;
     char name[TOKEN_NAME_BYTES];
-    uint8_t hash[TOKEN_HASH_BYTES]; /* all 0: nobody's */
+    uint8_t hash[TOKEN_HASH_BYTES]; /* all 0: no holder */
     int64_t until_utc_ns;           /* INT64_MAX: for ever */
 };
 
 struct tokens;
-/* NULL: the file cannot be read, or is not for us alone; the reason is logged. Lines that are wrong are logged, and let in nobody. */
+/* Reads the file. Returns NULL if it cannot be read, or if others than its owner may write it; the reason is logged. Lines that are wrong
+   are logged and skipped. */
 struct tokens *tokens_create(struct log *log, const char *path);
 void tokens_destroy(struct tokens **tokens); /* &NULL is fine; leaves NULL */
-/* Looks whether the file is another by now, and reads it once it has stopped changing. True: it was read. */
+/* Reads the file again if it changed and has stopped changing. Returns whether it was read. */
 bool tokens_look(struct tokens *tokens);
+/* Returns how many tokens are in force. */
 size_t tokens_count(const struct tokens *tokens);
 
-/* False: nobody's, or its time is over; then *out is whose it was, with its role, or ROLE_NOBODY. */
+/* Looks a token up and writes its holder into *out. Returns false if it is not in the file (then out->role is ROLE_NOBODY), or has
+   expired. */
 bool tokens_find(const struct tokens *tokens, const char *token, int64_t now_utc_ns, struct token_holder *out);
-/* What the holder of a token may by now; ROLE_NOBODY: it was revoked, or its time is over. */
+/* Returns the role that the holder of a token has now; ROLE_NOBODY: the token was revoked or has expired. */
 enum role tokens_role(const struct tokens *tokens, const struct token_holder *holder, int64_t now_utc_ns);
 
 /* --- for `plantcast token` --- */
-/* A line to a holder. 0: nothing is on it; 1: a holder; -1: *why says what is wrong. */
+/* Parses a line of the file into *out. Returns 1; 0 for an empty line or a comment; -1 with *why (static) saying what is wrong. */
 int tokens_parse_line(const char *line, struct token_holder *out, const char **why);
+/* Writes the SHA-256 of a token. */
 void tokens_hash(const char *token, uint8_t hash[TOKEN_HASH_BYTES]);
-bool tokens_make(char token[TOKEN_MAX_CHARS + 1]); /* 256 random bits; false: there is no randomness */
+/* Makes a token of 256 random bits. Returns false if the system has no randomness. */
+bool tokens_make(char token[TOKEN_MAX_CHARS + 1]);
+/* Appends the line of a holder. */
 void tokens_print_line(struct text *out, const struct token_holder *holder);
+/* Returns whether a holder may have that name. */
 bool tokens_name_valid(const char *name);
-/* YYYY-MM-DD, the last day (UTC). False: it is none. */
+/* Parses YYYY-MM-DD, the last day (UTC) on which a token is valid. Returns false if it is not a date. */
 bool tokens_parse_day(const char *text, int64_t *until_utc_ns);
 
 #endif

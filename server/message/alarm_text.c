@@ -53,30 +53,30 @@ static void add_row(void *arg, const struct alarm *alarm)
     }
 }
 
-char *alarms_text(struct alarm_text_cache *said, struct alarm_service *alarm_service, const struct plant *plant, int64_t now_utc_ns,
+char *alarms_text(struct alarm_text_cache *cache, struct alarm_service *alarm_service, const struct plant *plant, int64_t now_utc_ns,
                   uint64_t *number_out)
 {
     uint64_t since = *number_out;
-    if (said && said->text && said->since == since && said->number == alarm_service_number(alarm_service)) {
-        *number_out = said->number;
-        return mem_strdup(said->text);
+    if (cache && cache->text && cache->since == since && cache->number == alarm_service_number(alarm_service)) {
+        *number_out = cache->number;
+        return mem_strdup(cache->text);
     }
     json_t *rows = json_array();
     *number_out = alarm_service_changes(alarm_service, since, add_row, rows);
     char *text = json_text(json_pack("{s:s,s:s,s:b,s:I,s:o}", "type", "alarms", "mode", mode_name(plant->alarms), "all", since == 0,
                                      "time_us", (json_int_t)(now_utc_ns / 1000), "alarms", rows),
                            DIGITS);
-    if (said) {
-        alarm_text_cache_finish(said);
-        *said = (struct alarm_text_cache){ mem_strdup(text), since, *number_out };
+    if (cache) {
+        alarm_text_cache_finish(cache);
+        *cache = (struct alarm_text_cache){ mem_strdup(text), since, *number_out };
     }
     return text;
 }
 
-void alarm_text_cache_finish(struct alarm_text_cache *said)
+void alarm_text_cache_finish(struct alarm_text_cache *cache)
 {
-    mem_free(said->text);
-    *said = (struct alarm_text_cache){ 0 };
+    mem_free(cache->text);
+    *cache = (struct alarm_text_cache){ 0 };
 }
 
 /* --- to programs: what is asked --------------------------------------------------------------------------------------------- */

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What is said of alarms: to sessions as they change, and to programs that ask. Every result is freed with mem_free. */
+/* Alarms as text: for sessions as they change, and for programs that ask over HTTP. Every text returned is freed with mem_free. */
 #ifndef MESSAGE_ALARM_TEXT_H
 #define MESSAGE_ALARM_TEXT_H
 #include "alarm/alarm_service.h"
@@ -7,29 +7,32 @@
 #include "base/text.h"
 #include "message/message.h"
 
-/* What was last said, for the next session that is to hear the same. Zero-initialise. */
+/* The last text, for the next session that needs the same. Zero-initialise; alarm_text_cache_finish. Thread: the loop. */
 struct alarm_text_cache {
     char *text;
     uint64_t since, number;
 };
-void alarm_text_cache_finish(struct alarm_text_cache *said);
-/* The message `alarms`: what changed after *number (0: all that is not normal), which is brought up to date. said NULL: nothing is kept. */
-char *alarms_text(struct alarm_text_cache *said, struct alarm_service *alarm_service, const struct plant *plant, int64_t now_utc_ns,
+void alarm_text_cache_finish(struct alarm_text_cache *cache);
+/* Returns the message `alarms`: what changed after *number (0: all that is not normal). Sets *number to the newest change. cache NULL:
+   the text is made anew. */
+char *alarms_text(struct alarm_text_cache *cache, struct alarm_service *alarm_service, const struct plant *plant, int64_t now_utc_ns,
                   uint64_t *number);
 
-/* `/api/v1/alarms` and `/api/v1/alarms/journal`. */
+/* A query of /api/v1/alarms or /api/v1/alarms/journal. */
 struct alarm_query {
     bool csv;
-    int limit;                         /* rows, at most */
-    int64_t offset;                    /* of alarms: so many are passed over */
-    char tag[256];                     /* or device; "": of all */
+    int limit;                         /* rows at most */
+    int64_t offset;                    /* of alarms: rows to skip */
+    char tag[256];                     /* or a device; "": all */
     int64_t from_us, to_us, before_id; /* of the journal */
 };
-/* `limit=100&format=csv`, decoded. False: *error says which is wrong. */
+/* Parses `limit=100&format=csv`, decoded. journal: the journal's arguments are understood too. Returns false with *error saying what is
+   wrong. */
 bool alarm_query_parse(const struct plant *plant, bool journal, const char *const *args, size_t count, int64_t now_us,
                        struct alarm_query *query, struct message_error *error);
+/* Returns the alarms that are not normal, as JSON or CSV. */
 char *alarms_api_text(struct alarm_service *alarm_service, const struct plant *plant, const struct alarm_query *query, int64_t now_utc_ns);
-/* False: it could not be read; logged. */
+/* Appends rows of the journal, as JSON or CSV. Reads the disk; any thread. Returns false if it cannot be read, already logged. */
 bool alarms_journal_text(struct log *log, const char *folder, const struct alarm_query *query, struct text *out);
 
 #endif

@@ -114,3 +114,21 @@ bool view_query_camera(const struct scene *scene, const json_t *o, bool bare, st
     json_decref(fit_o);
     return good;
 }
+
+bool camera_parse(const json_t *o, struct camera *out, struct message_error *error)
+{
+    int projection = PROJECTION_PERSPECTIVE;
+    bool given;
+    *out = (struct camera){ .up = { 0, 0, 1 }, .fov_deg = 45 };
+    if (!need_vector(o, "eye", out->eye_m, error) || !need_vector(o, "target", out->target_m, error) ||
+        !may_vector(o, "up", out->up, NULL, error) || !may_name(o, "projection", names_projection, &projection, &given, error) ||
+        !may_number(o, "fov", 1, 120, &out->fov_deg, NULL, error))
+        return false;
+    if (projection == PROJECTION_ORTHOGRAPHIC && !need_number(o, "height_m", 1e-3, PLANT_MAX_M, &out->height_m, error))
+        return false;
+    if (!camera_valid(out)) {
+        message_fail(error, "bad_field", "eye, target, up: eye must be apart from target, and up not along the view");
+        return false;
+    }
+    return true;
+}

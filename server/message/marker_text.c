@@ -43,22 +43,22 @@ static bool same_place(const struct frame_marker *a, const struct frame_marker *
            fabsf(a->y_px - b->y_px) < SAME_PX;
 }
 
-static bool same_places(const struct frame *frame, const struct known_markers *said)
+static bool same_places(const struct frame *frame, const struct known_markers *known)
 {
-    if (!said->any || frame->marker_count != said->marker_count)
+    if (!known->any || frame->marker_count != known->marker_count)
         return false;
     for (size_t i = 0; i < frame->marker_count; i++)
-        if (!same_place(&frame->markers[i], &said->markers[i]))
+        if (!same_place(&frame->markers[i], &known->markers[i]))
             return false;
     return true;
 }
 
-static bool same_labels(const struct frame *frame, const struct known_markers *said)
+static bool same_labels(const struct frame *frame, const struct known_markers *known)
 {
-    if (!said->any || frame->label_count != said->label_count)
+    if (!known->any || frame->label_count != known->label_count)
         return false;
     for (size_t i = 0; i < frame->label_count; i++) {
-        const struct frame_label *a = &frame->labels[i], *b = &said->labels[i];
+        const struct frame_label *a = &frame->labels[i], *b = &known->labels[i];
         if (a->value != b->value || a->half != b->half || !(fabsf(a->x_px - b->x_px) < SAME_PX) || !(fabsf(a->y_px - b->y_px) < SAME_PX))
             return false;
     }
@@ -78,11 +78,11 @@ static json_t *all_markers(const struct frame *frame)
 }
 
 /* Those whose places are as said. */
-static json_t *changed_values(const struct frame *frame, const struct known_markers *said)
+static json_t *changed_values(const struct frame *frame, const struct known_markers *known)
 {
     json_t *list = json_array();
     for (size_t i = 0; i < frame->marker_count; i++) {
-        const struct frame_marker *m = &frame->markers[i], *before = &said->markers[i];
+        const struct frame_marker *m = &frame->markers[i], *before = &known->markers[i];
         if (!is_placed(m) || (m->value == before->value && m->quality == before->quality))
             continue;
         json_t *row = json_pack("[i,i,o]", m->tag, m->half, value_of(frame, m));
@@ -103,17 +103,17 @@ static json_t *all_labels(const struct frame *frame)
     return list;
 }
 
-static void remember(struct known_markers *said, const struct frame *frame)
+static void remember(struct known_markers *known, const struct frame *frame)
 {
-    mem_grow(&said->markers, &said->marker_capacity, frame->marker_count, sizeof(*said->markers));
-    mem_grow(&said->labels, &said->label_capacity, frame->label_count, sizeof(*said->labels));
+    mem_grow(&known->markers, &known->marker_capacity, frame->marker_count, sizeof(*known->markers));
+    mem_grow(&known->labels, &known->label_capacity, frame->label_count, sizeof(*known->labels));
     if (frame->marker_count)
-        memcpy(said->markers, frame->markers, frame->marker_count * sizeof(*said->markers));
+        memcpy(known->markers, frame->markers, frame->marker_count * sizeof(*known->markers));
     if (frame->label_count)
-        memcpy(said->labels, frame->labels, frame->label_count * sizeof(*said->labels));
-    said->marker_count = frame->marker_count;
-    said->label_count = frame->label_count;
-    said->any = true;
+        memcpy(known->labels, frame->labels, frame->label_count * sizeof(*known->labels));
+    known->marker_count = frame->marker_count;
+    known->label_count = frame->label_count;
+    known->any = true;
 }
 
 void marker_text_cache_finish(struct marker_text_cache *lists)
@@ -139,31 +139,31 @@ static void add_list(struct text *text, const char *name, const char *list)
 }
 
 /* What is new of the markers: all, or values only. */
-static void add_markers(struct text *text, struct frame *frame, const struct known_markers *said, struct marker_text_cache *lists)
+static void add_markers(struct text *text, struct frame *frame, const struct known_markers *known, struct marker_text_cache *lists)
 {
-    if (!same_places(frame, said)) {
+    if (!same_places(frame, known)) {
         lists->markers = lists->markers ? lists->markers : json_text(all_markers(frame), DIGITS);
         add_list(text, "markers", lists->markers);
         return;
     }
-    char *values = json_text(changed_values(frame, said), DIGITS);
+    char *values = json_text(changed_values(frame, known), DIGITS);
     if (strcmp(values, "[]") != 0)
         add_list(text, "values", values);
     mem_free(values);
 }
 
-char *marker_text(struct frame *frame, uint32_t seq, struct known_markers *said, struct marker_text_cache *lists)
+char *marker_text(struct frame *frame, uint32_t seq, struct known_markers *known, struct marker_text_cache *lists)
 {
     struct text text = { 0 };
     list_frame(lists, frame);
     text_add(&text, "{\"type\":\"markers\",\"seq\":%u", seq);
     size_t head = text.length;
-    add_markers(&text, frame, said, lists);
-    if (!same_labels(frame, said)) {
+    add_markers(&text, frame, known, lists);
+    if (!same_labels(frame, known)) {
         lists->labels = lists->labels ? lists->labels : json_text(all_labels(frame), DIGITS);
         add_list(&text, "isolines", lists->labels);
     }
-    remember(said, frame);
+    remember(known, frame);
     if (text.length == head)
         text_finish(&text);
     else
@@ -171,9 +171,9 @@ char *marker_text(struct frame *frame, uint32_t seq, struct known_markers *said,
     return text.at;
 }
 
-void known_markers_finish(struct known_markers *said)
+void known_markers_finish(struct known_markers *known)
 {
-    mem_free(said->markers);
-    mem_free(said->labels);
-    *said = (struct known_markers){ 0 };
+    mem_free(known->markers);
+    mem_free(known->labels);
+    *known = (struct known_markers){ 0 };
 }

@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The message that goes before a frame: where its sensors are and what the picture shows of them; after the first one only what changed
-   since the one before. Pure. */
+/* The message `markers` that precedes a frame: where its sensors and labels are and what the frame shows of them; after the first, only
+   what changed. Pure. Thread: the loop. */
 #ifndef MESSAGE_MARKER_TEXT_H
 #define MESSAGE_MARKER_TEXT_H
 #include "render/frame.h"
 
-struct known_markers { /* what a client knows; zero-initialise */
+struct known_markers { /* as a client was last told; zero-initialise; known_markers_finish */
     bool any;
     struct frame_marker *markers;
     size_t marker_count, marker_capacity;
@@ -13,14 +13,14 @@ struct known_markers { /* what a client knows; zero-initialise */
     size_t label_count, label_capacity;
 };
 
-struct marker_text_cache { /* of the last frame, as JSON, for all who get it; zero-initialise */
+struct marker_text_cache { /* JSON lists of the last frame, for all who get it; zero-initialise; marker_text_cache_finish */
     struct frame *frame;
     char *markers, *labels;
 };
 
-/* NULL: all of it was said. Brings *said up to date. mem_free. */
-char *marker_text(struct frame *frame, uint32_t seq, struct known_markers *said, struct marker_text_cache *lists);
+/* Returns the message for the frame of number seq; mem_free. Returns NULL if the client knows all of it. Updates *known. */
+char *marker_text(struct frame *frame, uint32_t seq, struct known_markers *known, struct marker_text_cache *lists);
 void marker_text_cache_finish(struct marker_text_cache *lists);
-void known_markers_finish(struct known_markers *said);
+void known_markers_finish(struct known_markers *known);
 
 #endif

@@ -14,15 +14,6 @@
 #include "message/place_message.h"
 #include "message/prove_message.h"
 
-void message_fail(struct message_error *error, const char *code, const char *fmt, ...)
-{
-    va_list ap;
-    va_start(ap, fmt);
-    error->code = code;
-    vsnprintf(error->text, sizeof(error->text), fmt, ap);
-    va_end(ap);
-}
-
 bool message_take_time(const char *name, const char *text, int64_t now_us, int64_t *out, struct message_error *error)
 {
     if (timestamp_parse(text, now_us, out))
@@ -49,24 +40,6 @@ static bool size_parse(const json_t *o, struct message *out, struct message_erro
     out->width_px = (int)w;
     out->height_px = (int)h;
     return may_number(o, "pixel_ratio", 0.25, 8, &out->pixel_ratio, NULL, error);
-}
-
-bool camera_parse(const json_t *o, struct camera *out, struct message_error *error)
-{
-    int projection = PROJECTION_PERSPECTIVE;
-    bool given;
-    *out = (struct camera){ .up = { 0, 0, 1 }, .fov_deg = 45 };
-    if (!need_vector(o, "eye", out->eye_m, error) || !need_vector(o, "target", out->target_m, error) ||
-        !may_vector(o, "up", out->up, NULL, error) || !may_name(o, "projection", names_projection, &projection, &given, error) ||
-        !may_number(o, "fov", 1, 120, &out->fov_deg, NULL, error))
-        return false;
-    if (projection == PROJECTION_ORTHOGRAPHIC && !need_number(o, "height_m", 1e-3, PLANT_MAX_M, &out->height_m, error))
-        return false;
-    if (!camera_valid(out)) {
-        message_fail(error, "bad_field", "eye, target, up: eye must be apart from target, and up not along the view");
-        return false;
-    }
-    return true;
 }
 
 static bool parse_camera(const struct plant *plant, const json_t *o, struct message *out, struct message_error *error)

@@ -1,10 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What a client says: JSON text to a checked struct. The one place where input of clients is read and judged; pure. */
+/* A client's message: JSON text to a checked struct. The only place where the input of clients is read and checked. Pure; any thread. */
 #ifndef MESSAGE_MESSAGE_H
 #define MESSAGE_MESSAGE_H
 #include <jansson.h>
 
 #include "alarm/alarms.h"
+#include "message/message_error.h"
 #include "placing/placing.h"
 #include "protocol/wire.h"
 #include "loopcheck/loop_checks.h"
@@ -35,14 +36,7 @@ enum message_type {
 
 enum { TOKEN_MAX_CHARS = 128, RESUME_CHARS = 32 };
 
-struct message_error {
-    const char *code; /* of PROTOCOL.md */
-    char text[240];
-    char about[24];    /* type of the message; "": unknown */
-    int retry_after_s; /* 0: there is nothing to wait for */
-};
-
-enum params_given { /* which fields of a params message were there */
+enum params_given { /* which members a params message had */
                     GIVEN_GROUP = 1 << 0,
                     GIVEN_INTERPOLATION = 1 << 1,
                     GIVEN_DISTANCE = 1 << 2,
@@ -77,11 +71,11 @@ enum baseline_change { BASELINE_STAYS, BASELINE_NONE, BASELINE_NAMED, BASELINE_N
 struct params_change {
     uint32_t seq;
     unsigned given;            /* enum params_given */
-    struct field_params field; /* only what was given is set; so below */
+    struct field_params field; /* only members that were given are set, here and below */
     int colormap;
     double ramp_interval;
     struct color_scale color_scale;
-    double isoline_step; /* isolines: a number; 0: paint.lines */
+    double isoline_step; /* isolines as a step; 0: color_scale has the lines */
     bool breaks_of_group, breaks_of_limits;
     bool range_of_group; /* range: null */
     double range_min, range_max;
@@ -104,13 +98,13 @@ struct fit {
 };
 
 struct split_change {
-    enum { SPLIT_AS_IS, SPLIT_OFF, SPLIT_ON } wish;
+    enum { SPLIT_AS_IS, SPLIT_OFF, SPLIT_ON } mode;
     struct params_change right;
 };
 
 struct pick_request {
     double x_px, y_px;
-    bool has_camera; /* else: the newest */
+    bool has_camera; /* else the newest camera */
     struct camera camera;
 };
 
@@ -125,16 +119,16 @@ struct alarm_request {
 
 #define TIME_MOST_SPEED 3600
 struct time_request {
-    bool has_at;   /* else: from where it is */
+    bool has_at;   /* else from the instant that is shown */
     int64_t at_us; /* 0: now */
     double speed;  /* of play: seconds of the past in each second; negative: backwards; 0: stands */
 };
 
 enum { CODEC_LIST_MOST = 4 };
-struct codec_list { /* what a client decodes, what it likes best first */
+struct codec_list { /* what a client decodes, in order of preference */
     enum wire_codec at[CODEC_LIST_MOST];
     int count;
-    bool choose; /* the server may choose among them, and choose again */
+    bool choose; /* the server may choose among them, and change its choice */
 };
 
 struct place_request {
@@ -143,14 +137,14 @@ struct place_request {
 };
 
 struct gaps_request {
-    int group;    /* -1: the one that is shown */
-    double far_m; /* 0: as usual */
+    int group;    /* -1: the group that is shown */
+    double far_m; /* 0: the default */
 };
 
 struct prove_request {
     int tag;
     double expected, tolerance;
-    bool fail; /* whatever the value is */
+    bool fail; /* failed, whatever the value is */
     char remark[LOOP_CHECK_REMARK_BYTES];
 };
 
@@ -180,37 +174,36 @@ struct message {
     struct prove_request prove;
 };
 
-/* False: *error is what to answer. text need not end in 0. */
+/* Parses and checks a message of `count` bytes. Returns false with *error holding the refusal. */
 bool message_parse(const struct plant *plant, const char *text, size_t count, struct message *out, struct message_error *error);
-void message_fail(struct message_error *error, const char *code, const char *fmt, ...) __attribute__((format(printf, 3, 4)));
-/* Reads an instant (base/timestamp.h) of the field `name`. Returns false, with *error set, for any other text. */
+/* Reads an instant (base/timestamp.h) of the argument `name` into *out, in microseconds UTC. Returns false, with *error set, for any other
+   text. */
 bool message_take_time(const char *name, const char *text, int64_t now_us, int64_t *out, struct message_error *error);
 
-/* Reads the fields of a params message from an object that may hold others. False: *error names the field. */
+/* Reads the members of a params message from an object that may have others. Returns false with *error naming the member that is wrong. */
 bool params_parse(const struct plant *plant, const json_t *object, struct params_change *out, struct message_error *error);
 struct params_context {
     const struct scene *scene;
     struct baselines *baselines;     /* NULL: there are none */
-    const struct snapshot *snapshot; /* what may be kept as a baseline; NULL: nothing */
-    int64_t now_us;                  /* UTC; of a query */
-    bool bare;                       /* of a query: its picture has no legend and no clock */
+    const struct snapshot *snapshot; /* readings that can be kept as a baseline; NULL: none */
+    int64_t now_us;                  /* UTC; for queries */
+    bool bare;                       /* for queries: the picture has no legend and no clock */
 };
-/* Applies a change to a view: all of it, or nothing and *error. A new group brings its own settings first. */
-bool params_apply(const struct params_context *world, const struct params_change *change, struct view *view, struct message_error *error);
-/* Parts of the two above: what is shown, of which sensor, against what, and overrides of single sensors (params_show.c). */
+/* Applies a change to a view: all of it, or nothing, with *error and false. A new group first brings its own settings. */
+bool params_apply(const struct params_context *context, const struct params_change *change, struct view *view, struct message_error *error);
+/* Parts of the two above: `show`, `sensor`, `baseline` and `sensors` (params_show.c). */
 bool params_parse_show(const struct plant *plant, const json_t *o, struct params_change *out, struct message_error *error);
-bool params_apply_show(const struct params_context *world, const struct params_change *change, const struct view *before, struct view *view,
-                       struct message_error *error);
-/* The last step of a change that is good: keeps or forgets a baseline. */
-void params_apply_baseline(const struct params_context *world, const struct params_change *change, struct view *view);
-/* Likewise: scale, breaks and isolines (params_paint.c). */
+bool params_apply_show(const struct params_context *context, const struct params_change *change, const struct view *before,
+                       struct view *view, struct message_error *error);
+/* Keeps or forgets the baseline of a change; its last step, once nothing can be refused any more. */
+void params_apply_baseline(const struct params_context *context, const struct params_change *change, struct view *view);
+/* Parts of the two above: `scale`, `breaks` and `isolines` (params_paint.c). */
 bool params_parse_paint(const json_t *o, struct params_change *out, struct message_error *error);
 bool params_apply_paint(const struct plant *plant, const struct params_change *change, struct view *view, struct message_error *error);
-/* The right half of a split view (params_split.c). */
+/* Likewise for `split`, the right half of a split view (params_split.c). */
 bool split_parse(const struct plant *plant, const json_t *o, struct split_change *out, struct message_error *error);
-bool split_apply(const struct params_context *world, const struct split_change *change, struct view *view, struct message_error *error);
-/* Reads the fields of a camera message, but for seq. */
-bool camera_parse(const json_t *object, struct camera *out, struct message_error *error);
+bool split_apply(const struct params_context *context, const struct split_change *change, struct view *view, struct message_error *error);
+/* Returns whether a view may have that size. */
 bool view_size_valid(double width_px, double height_px);
 
 #endif

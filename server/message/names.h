@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* How the choices of a view are called in messages (PROTOCOL.md). */
+/* The names that messages use for enumerated values (PROTOCOL.md). */
 #ifndef MESSAGE_NAMES_H
 #define MESSAGE_NAMES_H
 #include "protocol/wire.h"
@@ -12,10 +12,11 @@ struct name {
 enum projection { PROJECTION_AS_IT_IS = -1, PROJECTION_PERSPECTIVE, PROJECTION_ORTHOGRAPHIC };
 
 extern const struct name names_backdrop[], names_interpolation[], names_distance[], names_fill[], names_show[], names_scale[], names_look[],
-    names_codec[], names_projection[], names_side[], names_pick[], names_role[]; /* each ends with NULL */
+    names_codec[], names_projection[], names_side[], names_pick[], names_role[]; /* each ends with a NULL text */
 
-/* The value of a name, or -1. */
+/* Returns the value of a name; -1: it is not in the table. */
 int name_find(const struct name *names, const char *text);
+/* Returns the name of a value, which must be in the table; static. */
 const char *name_of(const struct name *names, int value);
 
 #endif

@@ -239,18 +239,18 @@ static void apply_look(const struct scene *scene, const struct params_change *ch
     visibility_apply(change, &view->visibility);
 }
 
-bool params_apply(const struct params_context *world, const struct params_change *change, struct view *view, struct message_error *error)
+bool params_apply(const struct params_context *context, const struct params_change *change, struct view *view, struct message_error *error)
 {
     struct view changed = *view;
     if ((change->given & GIVEN_GROUP) && change->field.group != changed.field.group)
-        take_group(world->scene, change->field.group, view_is_operator(view), &changed);
+        take_group(context->scene, change->field.group, view_is_operator(view), &changed);
     apply_field(change, &changed.field);
-    if (!params_apply_show(world, change, view, &changed, error))
+    if (!params_apply_show(context, change, view, &changed, error))
         return false;
-    apply_look(world->scene, change, &changed);
-    if (!params_apply_paint(world->scene->plant, change, &changed, error))
+    apply_look(context->scene, change, &changed);
+    if (!params_apply_paint(context->scene->plant, change, &changed, error))
         return false;
-    params_apply_baseline(world, change, &changed);
+    params_apply_baseline(context, change, &changed);
     *view = changed;
     return true;
 }

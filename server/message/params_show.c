@@ -83,12 +83,12 @@ static bool parse_sensors(const struct plant *plant, const json_t *o, struct par
     return true;
 }
 
-static bool take_name(const json_t *value, enum baseline_change wish, struct params_change *out, struct message_error *error)
+static bool take_name(const json_t *value, enum baseline_change what, struct params_change *out, struct message_error *error)
 {
     const char *name = json_string_value(value);
-    out->baseline = wish;
+    out->baseline = what;
     if (name && name[0] && strlen(name) < sizeof(out->baseline_name) && !has_controls(name) &&
-        !(wish == BASELINE_SET && !strcmp(name, NOW))) {
+        !(what == BASELINE_SET && !strcmp(name, NOW))) {
         strcpy(out->baseline_name, name);
         return true;
     }
@@ -145,7 +145,7 @@ static bool apply_sensors(const struct params_change *change, struct field_param
 }
 
 /* What it is called now; a new one gets its number when all else is good. */
-static bool find_baseline(const struct params_context *world, const struct params_change *change, struct field_params *field,
+static bool find_baseline(const struct params_context *context, const struct params_change *change, struct field_params *field,
                           struct message_error *error)
 {
     char name[48];
@@ -154,15 +154,15 @@ static bool find_baseline(const struct params_context *world, const struct param
         field->baseline = 0;
     if (change->baseline <= BASELINE_NONE)
         return true;
-    if (!world->baselines || (change->baseline != BASELINE_NAMED && !world->snapshot)) {
+    if (!context->baselines || (change->baseline != BASELINE_NAMED && !context->snapshot)) {
         message_fail(error, "bad_field", "baseline: none can be kept here");
         return false;
     }
-    if (change->baseline == BASELINE_SET && !baselines_may_set(world->baselines, change->baseline_name)) {
+    if (change->baseline == BASELINE_SET && !baselines_may_set(context->baselines, change->baseline_name)) {
         message_fail(error, "bad_field", "baseline: %d are kept already; remove one", BASELINES_NAMED);
         return false;
     }
-    uint32_t found = keeps ? UINT32_MAX : baselines_find(world->baselines, change->baseline_name);
+    uint32_t found = keeps ? UINT32_MAX : baselines_find(context->baselines, change->baseline_name);
     if (!found) {
         message_fail(error, "bad_field", "baseline: '%s' is unknown", quoted(change->baseline_name, name));
         return false;
@@ -173,14 +173,14 @@ static bool find_baseline(const struct params_context *world, const struct param
 }
 
 /* Another quantity brings its own range and colours. */
-static void take_quantity(const struct params_context *world, const struct field_params *before, struct view *view)
+static void take_quantity(const struct params_context *context, const struct field_params *before, struct view *view)
 {
     const struct field_params *now = &view->field;
     bool other = now->show != before->show;
     bool other_distance = now->show == SHOW_DISTANCE && (now->sensor != before->sensor || now->distance != before->distance);
     if (!other && !other_distance)
         return;
-    view_default_scale(world->scene, view);
+    view_default_scale(context->scene, view);
     if (now->show == SHOW_DIFFERENCE || before->show == SHOW_DIFFERENCE)
         view->colormap = now->show == SHOW_DIFFERENCE ? colormap_find("diverging") : 0;
 }
@@ -209,33 +209,33 @@ static bool may_show(const struct plant *plant, const struct field_params *field
     return false;
 }
 
-bool params_apply_show(const struct params_context *world, const struct params_change *change, const struct view *before, struct view *view,
-                       struct message_error *error)
+bool params_apply_show(const struct params_context *context, const struct params_change *change, const struct view *before,
+                       struct view *view, struct message_error *error)
 {
     struct field_params *field = &view->field;
     if (change->given & GIVEN_SHOW)
         field->show = change->field.show;
     if (change->given & GIVEN_SENSOR)
         field->sensor = change->field.sensor;
-    if (!apply_sensors(change, field, error) || !find_baseline(world, change, field, error))
+    if (!apply_sensors(change, field, error) || !find_baseline(context, change, field, error))
         return false;
-    const char *wrong = field_params_wrong(world->scene->plant, field);
+    const char *wrong = field_params_wrong(context->scene->plant, field);
     if (wrong) {
         message_fail(error, "bad_field", "%s", wrong);
         return false;
     }
-    if (!may_show(world->scene->plant, field, error))
+    if (!may_show(context->scene->plant, field, error))
         return false;
-    take_quantity(world, &before->field, view);
+    take_quantity(context, &before->field, view);
     return true;
 }
 
-void params_apply_baseline(const struct params_context *world, const struct params_change *change, struct view *view)
+void params_apply_baseline(const struct params_context *context, const struct params_change *change, struct view *view)
 {
     if (change->baseline == BASELINE_NOW)
-        view->field.baseline = baselines_keep(world->baselines, world->snapshot);
+        view->field.baseline = baselines_keep(context->baselines, context->snapshot);
     if (change->baseline == BASELINE_SET)
-        view->field.baseline = baselines_set(world->baselines, change->baseline_name, world->snapshot);
+        view->field.baseline = baselines_set(context->baselines, change->baseline_name, context->snapshot);
     if (change->baseline == BASELINE_REMOVE)
-        baselines_remove(world->baselines, change->baseline_name);
+        baselines_remove(context->baselines, change->baseline_name);
 }

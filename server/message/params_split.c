@@ -14,8 +14,8 @@ bool split_parse(const struct plant *plant, const json_t *o, struct split_change
     memset(out, 0, sizeof(*out));
     if (!value)
         return true;
-    out->wish = json_is_null(value) ? SPLIT_OFF : SPLIT_ON;
-    if (out->wish == SPLIT_OFF)
+    out->mode = json_is_null(value) ? SPLIT_OFF : SPLIT_ON;
+    if (out->mode == SPLIT_OFF)
         return true;
     if (!json_is_object(value)) {
         message_fail(error, "bad_field", "split: parameters of the right half, or null expected");
@@ -33,21 +33,21 @@ bool split_parse(const struct plant *plant, const json_t *o, struct split_change
     return false;
 }
 
-bool split_apply(const struct params_context *world, const struct split_change *change, struct view *view, struct message_error *error)
+bool split_apply(const struct params_context *context, const struct split_change *change, struct view *view, struct message_error *error)
 {
     struct view right;
-    if (change->wish == SPLIT_OFF) {
+    if (change->mode == SPLIT_OFF) {
         view->split = false;
         memset(&view->right, 0, sizeof(view->right));
     }
-    if (change->wish != SPLIT_ON)
+    if (change->mode != SPLIT_ON)
         return true;
     if (view->width_px < VIEW_SPLIT_LEAST_PX) {
         message_fail(error, "bad_field", "split: %d pixels are too narrow for two pictures", view->width_px);
         return false;
     }
     view_half(view, 1, &right); /* where it was not split, the right half begins as the left one is */
-    if (!params_apply(world, &change->right, &right, error))
+    if (!params_apply(context, &change->right, &right, error))
         return false;
     view_split(view, &right);
     return true;

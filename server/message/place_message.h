@@ -1,21 +1,24 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Placing sensors in words: what engineers say, and what they are told. Thread: the loop. */
+/* The messages with which engineers move sensors on trial, and save the list: `place`, `gaps`, `save_tags`. Thread: the loop. */
 #ifndef MESSAGE_PLACE_MESSAGE_H
 #define MESSAGE_PLACE_MESSAGE_H
 #include "message/message.h"
 #include "placing/tag_file.h"
 
+/* Parse a message into out->place, out->gaps, out->confirm. Return false with *error saying what is wrong. */
 bool place_parse(const struct plant *plant, const json_t *o, struct message *out, struct message_error *error);
 bool gaps_parse(const struct plant *plant, const json_t *o, struct message *out, struct message_error *error);
 bool save_tags_parse(const struct plant *plant, const json_t *o, struct message *out, struct message_error *error);
 
-/* All texts: mem_free. */
+/* Returns `placed`, the answer to `place`: where the sensors are by now; mem_free. */
 char *placed_text(const struct plant *plant, const struct place_set *set, uint32_t seq);
+/* Returns `gaps`, the answer to it: surfaces that no sensor covers; mem_free. */
 char *gaps_text(const struct scene *scene, const struct place_set *set, const struct sensor_coverage_answer *answer);
-/* What a list with the moves of the set in it would be: the difference, for somebody to confirm; and, where they confirmed that very one,
-   the order to put it in force (tag_save_free). before: the list in force. */
+/* Returns how the list in force, `before`, would change by the moves of the set, for the client to confirm; mem_free. If the message
+   confirms that very list, *order is a request to put it in force (tag_save_free); else NULL. who: the user's name. */
 char *tags_diff_text(const struct plant *plant, const char *before, const struct place_set *set, const struct message *message,
                      const char *who, struct tag_save **order);
+/* Returns `tags_saved`: whether a list was put in force, or why not; mem_free. */
 char *tags_saved_text(uint32_t seq, bool saved, const char *why);
 
 #endif

@@ -251,18 +251,18 @@ static bool add(json_t *o, const char *arg, struct message_error *error)
     return false;
 }
 
-static bool apply_at(const struct params_context *world, const json_t *o, struct view *view, struct message_error *error)
+static bool apply_at(const struct params_context *context, const json_t *o, struct view *view, struct message_error *error)
 {
     const char *text = json_string_value(json_object_get(o, "at"));
     int64_t at_us = 0;
     if (!text)
         return true;
-    if (!timestamp_parse(text, world->now_us, &at_us) || at_us <= 0) {
+    if (!timestamp_parse(text, context->now_us, &at_us) || at_us <= 0) {
         char found[48];
         message_fail(error, "bad_field", "at: expected " TIMESTAMP_FORMS ", found '%s'", quoted(text, found));
         return false;
     }
-    if (at_us > world->now_us - HISTORY_SETTLED_US) {
+    if (at_us > context->now_us - HISTORY_SETTLED_US) {
         message_fail(error, "bad_field", "at: the past begins 3 s ago; without it the picture is of now");
         return false;
     }
@@ -270,7 +270,7 @@ static bool apply_at(const struct params_context *world, const json_t *o, struct
     return true;
 }
 
-static bool apply(const struct params_context *world, enum role role, const json_t *o, struct view *view, struct message_error *error)
+static bool apply(const struct params_context *context, enum role role, const json_t *o, struct view *view, struct message_error *error)
 {
     double w = 1280, h = 720;
     struct message asked = { .type = MESSAGE_PARAMS };
@@ -280,15 +280,15 @@ static bool apply(const struct params_context *world, enum role role, const json
         message_fail(error, "bad_field", "width, height: whole numbers of pixels expected, at most %d together", VIEW_MAX_PIXELS);
         return false;
     }
-    view_default(world->scene, (int)w, (int)h, view);
+    view_default(context->scene, (int)w, (int)h, view);
     view->tier = TIER_REFINED;
-    return params_parse(world->scene->plant, o, &asked.params, error) && split_parse(world->scene->plant, o, &asked.split, error) &&
-           role_may_send(role, &asked, error) && params_apply(world, &asked.params, view, error) &&
-           split_apply(world, &asked.split, view, error) && view_query_camera(world->scene, o, world->bare, view, error) &&
-           apply_at(world, o, view, error);
+    return params_parse(context->scene->plant, o, &asked.params, error) && split_parse(context->scene->plant, o, &asked.split, error) &&
+           role_may_send(role, &asked, error) && params_apply(context, &asked.params, view, error) &&
+           split_apply(context, &asked.split, view, error) && view_query_camera(context->scene, o, context->bare, view, error) &&
+           apply_at(context, o, view, error);
 }
 
-bool view_query_parse(const struct params_context *world, enum role role, const char *const *args, size_t count, struct view *view,
+bool view_query_parse(const struct params_context *context, enum role role, const char *const *args, size_t count, struct view *view,
                       double place[2], struct message_error *error)
 {
     json_t *o = json_object();
@@ -301,7 +301,7 @@ bool view_query_parse(const struct params_context *world, enum role role, const 
     }
     good = good && (!place || (need_number(o, "x", 0, VIEW_MAX_SIDE_PX, &place[0], error) &&
                                need_number(o, "y", 0, VIEW_MAX_SIDE_PX, &place[1], error)));
-    good = good && apply(world, role, o, view, error);
+    good = good && apply(context, role, o, view, error);
     json_decref(o);
     return good;
 }

@@ -1,12 +1,14 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Hidden, isolated and ghosted assets, and clipping, as JSON. */
+/* Hidden, isolated and ghosted assets, and clipping, in JSON. Pure. */
 #ifndef MESSAGE_VISIBILITY_H
 #define MESSAGE_VISIBILITY_H
 #include "message/message.h"
 
-/* Reads `hidden`, `isolate`, `ghost` and `clip`. False: *error names the field. */
+/* Reads `hidden`, `isolate`, `ghost` and `clip` into the change. Returns false with *error naming the member that is wrong. */
 bool visibility_parse(const struct plant *plant, const json_t *o, struct params_change *out, struct message_error *error);
+/* Applies what the change gives to a view's visibility. */
 void visibility_apply(const struct params_change *change, struct visibility *visibility);
+/* Adds the four members to an object. */
 void visibility_print(const struct plant *plant, const struct visibility *visibility, json_t *into);
 
 #endif

@@ -18,21 +18,21 @@ struct address_limits {
 
 struct address_limits *address_limits_create(const struct quotas *quotas, bool exempt)
 {
-    struct address_limits *peers = mem_new(sizeof(*peers));
-    peers->quotas = quotas;
-    peers->exempt = exempt;
-    return peers;
+    struct address_limits *limits = mem_new(sizeof(*limits));
+    limits->quotas = quotas;
+    limits->exempt = exempt;
+    return limits;
 }
 
 void address_limits_destroy(struct address_limits **peers_ptr)
 {
-    struct address_limits *peers = *peers_ptr;
-    if (!peers)
+    struct address_limits *limits = *peers_ptr;
+    if (!limits)
         return;
-    for (size_t i = 0; i < peers->count; i++)
-        mem_free(peers->all[i]);
-    mem_free(peers->all);
-    mem_free(peers);
+    for (size_t i = 0; i < limits->count; i++)
+        mem_free(limits->all[i]);
+    mem_free(limits->all);
+    mem_free(limits);
     *peers_ptr = NULL;
 }
 
@@ -54,86 +54,86 @@ static void read_address(const char *text, struct address_usage *out)
     out->local |= memcmp(out->address, mapped, sizeof(mapped)) == 0 && out->address[12] == 127;
 }
 
-static bool is_exempt(const struct address_limits *peers, const struct address_usage *peer, enum quota quota)
+static bool is_exempt(const struct address_limits *limits, const struct address_usage *usage, enum quota quota)
 {
-    return peers->exempt && peer->local && !peers->quotas->given[quota];
+    return limits->exempt && usage->local && !limits->quotas->given[quota];
 }
 
-struct address_usage *address_limits_ref(struct address_limits *peers, const char *address)
+struct address_usage *address_limits_ref(struct address_limits *limits, const char *address)
 {
     struct address_usage read = { .refs = 1 };
     read_address(address, &read);
-    for (size_t i = 0; i < peers->count; i++)
-        if (!memcmp(peers->all[i]->address, read.address, sizeof(read.address))) {
-            peers->all[i]->refs++;
-            return peers->all[i];
+    for (size_t i = 0; i < limits->count; i++)
+        if (!memcmp(limits->all[i]->address, read.address, sizeof(read.address))) {
+            limits->all[i]->refs++;
+            return limits->all[i];
         }
-    mem_grow(&peers->all, &peers->capacity, peers->count + 1, sizeof(struct address_usage *));
-    struct address_usage *peer = mem_new(sizeof(*peer));
-    *peer = read;
-    peer->share.payer = ++peers->payers;
-    peer->share.exempt_pixels = is_exempt(peers, peer, QUOTA_ADDRESS_PIXELS);
-    return peers->all[peers->count++] = peer;
+    mem_grow(&limits->all, &limits->capacity, limits->count + 1, sizeof(struct address_usage *));
+    struct address_usage *usage = mem_new(sizeof(*usage));
+    *usage = read;
+    usage->share.account = ++limits->payers;
+    usage->share.exempt_pixels = is_exempt(limits, usage, QUOTA_ADDRESS_PIXELS);
+    return limits->all[limits->count++] = usage;
 }
 
-void address_limits_unref(struct address_limits *peers, struct address_usage **peer_ptr)
+void address_limits_unref(struct address_limits *limits, struct address_usage **peer_ptr)
 {
-    struct address_usage *peer = *peer_ptr;
+    struct address_usage *usage = *peer_ptr;
     *peer_ptr = NULL;
-    if (!peer || --peer->refs > 0)
+    if (!usage || --usage->refs > 0)
         return;
     size_t i = 0;
-    while (peers->all[i] != peer)
+    while (limits->all[i] != usage)
         i++;
-    peers->all[i] = peers->all[--peers->count];
-    mem_free(peer);
+    limits->all[i] = limits->all[--limits->count];
+    mem_free(usage);
 }
 
-static bool below(const struct address_limits *peers, const struct address_usage *peer, enum quota quota, int64_t count)
+static bool below(const struct address_limits *limits, const struct address_usage *usage, enum quota quota, int64_t count)
 {
-    return is_exempt(peers, peer, quota) || count < peers->quotas->at[quota];
+    return is_exempt(limits, usage, quota) || count < limits->quotas->at[quota];
 }
 
-bool address_limits_may_connect(const struct address_limits *peers, const struct address_usage *peer)
+bool address_limits_may_connect(const struct address_limits *limits, const struct address_usage *usage)
 {
-    return below(peers, peer, QUOTA_ADDRESS_CONNECTIONS, peer->connections);
+    return below(limits, usage, QUOTA_ADDRESS_CONNECTIONS, usage->connections);
 }
 
-bool address_limits_may_be_named(const struct address_limits *peers, const struct address_usage *peer)
+bool address_limits_may_be_named(const struct address_limits *limits, const struct address_usage *usage)
 {
-    return below(peers, peer, QUOTA_ADDRESS_CONNECTIONS, peer->named);
+    return below(limits, usage, QUOTA_ADDRESS_CONNECTIONS, usage->named);
 }
 
-bool address_limits_may_stream(const struct address_limits *peers, const struct address_usage *peer)
+bool address_limits_may_stream(const struct address_limits *limits, const struct address_usage *usage)
 {
-    return below(peers, peer, QUOTA_ADDRESS_SESSIONS, peer->sessions);
+    return below(limits, usage, QUOTA_ADDRESS_SESSIONS, usage->sessions);
 }
 
-bool address_limits_may_ask(const struct address_limits *peers, const struct address_usage *peer)
+bool address_limits_may_ask(const struct address_limits *limits, const struct address_usage *usage)
 {
-    return below(peers, peer, QUOTA_ADDRESS_QUESTIONS, peer->questions);
+    return below(limits, usage, QUOTA_ADDRESS_QUESTIONS, usage->questions);
 }
 
-bool address_limits_may_hold(const struct address_limits *peers, const struct address_usage *peer, size_t count)
+bool address_limits_may_hold(const struct address_limits *limits, const struct address_usage *usage, size_t count)
 {
-    return below(peers, peer, QUOTA_ADDRESS_ANSWER_BYTES, peer->answer_bytes + (int64_t)count);
+    return below(limits, usage, QUOTA_ADDRESS_ANSWER_BYTES, usage->answer_bytes + (int64_t)count);
 }
 
-bool address_limits_may_draw(const struct address_limits *peers, const struct address_usage *peer)
+bool address_limits_may_draw(const struct address_limits *limits, const struct address_usage *usage)
 {
-    return below(peers, peer, QUOTA_ADDRESS_SNAPSHOTS, peer->pictures);
+    return below(limits, usage, QUOTA_ADDRESS_SNAPSHOTS, usage->pictures);
 }
 
-bool address_limits_count_message(const struct address_limits *peers, struct address_usage *peer, int64_t now_ns)
+bool address_limits_count_message(const struct address_limits *limits, struct address_usage *usage, int64_t now_ns)
 {
-    if (now_ns - peer->rate_begin_ns >= NS_PER_S) {
-        peer->rate_begin_ns = now_ns;
-        peer->messages = 0;
+    if (now_ns - usage->rate_begin_ns >= NS_PER_S) {
+        usage->rate_begin_ns = now_ns;
+        usage->messages = 0;
     }
-    return below(peers, peer, QUOTA_ADDRESS_MESSAGES, peer->messages++);
+    return below(limits, usage, QUOTA_ADDRESS_MESSAGES, usage->messages++);
 }
 
-int address_limits_count(const struct address_limits *peers)
+int address_limits_count(const struct address_limits *limits)
 {
-    return (int)peers->count;
+    return (int)limits->count;
 }

@@ -21,57 +21,57 @@ static const struct refusal HELD = { 429, "too many wrong tokens came from this 
 static const struct refusal TOO_LONG = { 431, "a header is too long\n" };
 static const struct refusal TOO_MANY = { 503, "this address has as many connections as one may have; try again later\n" };
 
-/* --- connections ---------------------------------------------------------------------------------------------------------------- */
+/* --- connections ------------------------------------------------------------------------------------------------------ */
 
-static bool count_refusal(struct server_context *hub, bool good)
+static bool count_refusal(struct server_context *server, bool good)
 {
     if (!good)
-        counter_inc(hub->counters.refused, 1);
+        counter_inc(server->counters.refused, 1);
     return good;
 }
 
-bool connection_may_open(struct server_context *hub, int fd)
+bool connection_may_open(struct server_context *server, int fd)
 {
     char address[64] = "";
-    if (hub->connection_count >= hub->quotas->at[QUOTA_CONNECTIONS])
-        return count_refusal(hub, false);
-    if (hub->params.access.behind_proxy) /* all come from one address there; sessions are counted by what it says */
+    if (server->connection_count >= server->quotas->at[QUOTA_CONNECTIONS])
+        return count_refusal(server, false);
+    if (server->params.access.behind_proxy) /* all come from one address there; sessions are counted by what it says */
         return true;
     lws_get_peer_simple_fd(fd, address, sizeof(address));
-    struct address_usage *peer = address_limits_ref(hub->peers, address);
-    bool good = address_limits_may_connect(hub->peers, peer);
-    address_limits_unref(hub->peers, &peer);
-    return count_refusal(hub, good);
+    struct address_usage *usage = address_limits_ref(server->limits, address);
+    bool good = address_limits_may_connect(server->limits, usage);
+    address_limits_unref(server->limits, &usage);
+    return count_refusal(server, good);
 }
 
-void connection_open(struct server_context *hub, struct lws *wsi)
+void connection_open(struct server_context *server, struct lws *wsi)
 {
     char address[64] = "";
-    struct connection *visitor = mem_new(sizeof(*visitor));
+    struct connection *connection = mem_new(sizeof(*connection));
     lws_get_peer_simple(wsi, address, sizeof(address));
-    visitor->peer = address_limits_ref(hub->peers, address);
-    visitor->peer->connections++;
-    hub->connection_count++;
-    lws_set_opaque_user_data(wsi, visitor);
+    connection->usage = address_limits_ref(server->limits, address);
+    connection->usage->connections++;
+    server->connection_count++;
+    lws_set_opaque_user_data(wsi, connection);
 }
 
-static void leave_client(struct server_context *hub, struct connection *visitor)
+static void leave_client(struct server_context *server, struct connection *connection)
 {
-    if (visitor->client)
-        visitor->client->named--;
-    address_limits_unref(hub->peers, &visitor->client);
+    if (connection->client)
+        connection->client->named--;
+    address_limits_unref(server->limits, &connection->client);
 }
 
-void connection_close(struct server_context *hub, struct lws *wsi)
+void connection_close(struct server_context *server, struct lws *wsi)
 {
-    struct connection *visitor = connection_of(wsi);
-    if (!visitor)
+    struct connection *connection = connection_of(wsi);
+    if (!connection)
         return;
-    visitor->peer->connections--;
-    hub->connection_count--;
-    leave_client(hub, visitor);
-    address_limits_unref(hub->peers, &visitor->peer);
-    mem_free(visitor);
+    connection->usage->connections--;
+    server->connection_count--;
+    leave_client(server, connection);
+    address_limits_unref(server->limits, &connection->usage);
+    mem_free(connection);
     lws_set_opaque_user_data(wsi, NULL);
 }
 
@@ -80,7 +80,7 @@ struct connection *connection_of(struct lws *wsi)
     return lws_get_opaque_user_data(wsi);
 }
 
-/* --- requests ----------------------------------------------------------------------------------------------------------------------- */
+/* --- requests --------------------------------------------------------------------------------------------------------- */
 
 bool connection_header(struct lws *wsi, enum lws_token_indexes token, char *out, int size)
 {
@@ -88,11 +88,11 @@ bool connection_header(struct lws *wsi, enum lws_token_indexes token, char *out,
     return lws_hdr_total_length(wsi, token) == 0 || lws_hdr_copy(wsi, out, size, token) >= 0;
 }
 
-void connection_learn_host_name(struct server_context *hub)
+void connection_learn_host_name(struct server_context *server)
 {
-    char name[sizeof(hub->machine)] = "";
-    if (gethostname(name, sizeof(name) - 1) != 0 || !access_host_name(name, hub->machine, sizeof(hub->machine)))
-        hub->machine[0] = 0;
+    char name[sizeof(server->machine)] = "";
+    if (gethostname(name, sizeof(name) - 1) != 0 || !access_host_name(name, server->machine, sizeof(server->machine)))
+        server->machine[0] = 0;
 }
 
 static bool is_named(const struct access_params *params, const char *name)
@@ -104,14 +104,15 @@ static bool is_named(const struct access_params *params, const char *name)
 }
 
 /* A page of a foreign name that leads here (DNS rebinding) may not ask; addresses cannot be led elsewhere. */
-static bool is_ours(const struct server_context *hub, const char *name)
+static bool is_ours(const struct server_context *server, const char *name)
 {
-    const struct access_params *params = &hub->params.access;
+    const struct access_params *params = &server->params.access;
     if (access_name_is_local(name) || is_named(params, name))
         return true;
-    if (hub->local_only || params->behind_proxy)
+    if (server->local_only || params->behind_proxy)
         return false;
-    return access_name_is_address(name) || (hub->machine[0] && !strcmp(name, hub->machine)) || (hub->tls && tls_is_called(hub->tls, name));
+    return access_name_is_address(name) || (server->machine[0] && !strcmp(name, server->machine)) ||
+           (server->tls && tls_is_called(server->tls, name));
 }
 
 /* What a proxy adds to the requests of others. lws knows some of these names, and those it does not find among the custom ones. */
@@ -129,19 +130,19 @@ static bool has_forwarding(struct lws *wsi)
 }
 
 /* Behind a proxy its connections are those of whom it names. False: *refusal. */
-static bool find_client(struct server_context *hub, struct lws *wsi, struct connection *visitor, struct refusal *refusal)
+static bool find_client(struct server_context *server, struct lws *wsi, struct connection *connection, struct refusal *refusal)
 {
-    bool proxied = hub->params.access.behind_proxy && visitor->peer->local;
-    char list[512] = "", *address = visitor->address;
-    leave_client(hub, visitor);
+    bool proxied = server->params.access.behind_proxy && connection->usage->local;
+    char list[512] = "", *address = connection->address;
+    leave_client(server, connection);
     if (proxied && !connection_header(wsi, WSI_TOKEN_X_FORWARDED_FOR, list, sizeof(list)))
         *refusal = TOO_LONG;
-    if (!list[0] || !access_forwarded(list, address, sizeof(visitor->address)))
-        lws_get_peer_simple(wsi, address, sizeof(visitor->address));
-    visitor->client = address_limits_ref(hub->peers, address);
-    if (proxied && !refusal->status && !address_limits_may_be_named(hub->peers, visitor->client))
+    if (!list[0] || !access_forwarded(list, address, sizeof(connection->address)))
+        lws_get_peer_simple(wsi, address, sizeof(connection->address));
+    connection->client = address_limits_ref(server->limits, address);
+    if (proxied && !refusal->status && !address_limits_may_be_named(server->limits, connection->client))
         *refusal = TOO_MANY;
-    visitor->client->named++;
+    connection->client->named++;
     return !refusal->status;
 }
 
@@ -171,81 +172,83 @@ static bool find_token(struct lws *wsi, char token[TOKEN_MAX_CHARS + 1])
     return true;
 }
 
-void connection_log_login(struct server_context *hub, struct lws *wsi, const char *way, const struct token_holder *holder, enum login login)
+void connection_log_login(struct server_context *server, struct lws *wsi, const char *way, const struct token_holder *holder,
+                          enum login login)
 {
-    const struct connection *visitor = connection_of(wsi);
-    struct log *log = hub->params.log;
+    const struct connection *connection = connection_of(wsi);
+    struct log *log = server->params.log;
     bool known = holder->role != ROLE_NOBODY;
     const char *role = known ? name_of(names_role, (int)holder->role) : "none", *name = holder->name[0] ? holder->name : "(none)";
-    int failures = login_throttle_failures(hub->logins, visitor->client->address, clock_mono_ns());
+    int failures = login_throttle_failures(server->login_throttle, connection->client->address, clock_mono_ns());
     if (login == LOGIN_NONE || login == LOGIN_GOOD_NEW)
-        log_info(log, "login from %s by %s: token %s, role %s: let in", visitor->address, way, name, role);
+        log_info(log, "login from %s by %s: token %s, role %s: let in", connection->address, way, name, role);
     if (login == LOGIN_HELD)
-        counter_inc(hub->counters.logins_held, 1);
+        counter_inc(server->counters.logins_held, 1);
     if (login != LOGIN_WRONG && login != LOGIN_WRONG_SLOWS)
         return;
-    counter_inc(hub->counters.logins_wrong, 1);
-    log_warn(log, "login from %s by %s: token %s, role %s: refused, %s (%d within a minute)", visitor->address, way,
+    counter_inc(server->counters.logins_wrong, 1);
+    log_warn(log, "login from %s by %s: token %s, role %s: refused, %s (%d within a minute)", connection->address, way,
              known ? holder->name : "(unknown)", role, known ? "its time is over" : "nobody's", failures);
     if (login == LOGIN_WRONG_SLOWS)
-        log_warn(log, "login from %s: slowed, to one token in %d s, until there was no wrong one for a minute", visitor->address,
+        log_warn(log, "login from %s: slowed, to one token in %d s, until there was no wrong one for a minute", connection->address,
                  LOGIN_WAIT_S);
 }
 
-/* NULL: it is let in, and visitor->holder is whose it is. */
-static const struct refusal *judge_token(struct server_context *hub, struct lws *wsi, const char *token)
+/* NULL: it is let in, and connection->holder is whose it is. */
+static const struct refusal *judge_token(struct server_context *server, struct lws *wsi, const char *token)
 {
-    struct connection *visitor = connection_of(wsi);
+    struct connection *connection = connection_of(wsi);
     struct token_holder holder;
-    bool good = tokens_find(hub->tokens, token, clock_utc_ns(), &holder);
+    bool good = tokens_find(server->tokens, token, clock_utc_ns(), &holder);
     bool stream = lws_hdr_total_length(wsi, WSI_TOKEN_UPGRADE) > 0; /* one that is let in is noted at its hello */
-    enum login login = login_throttle_judge(hub->logins, visitor->client->address, good ? holder.hash : NULL, clock_mono_ns());
+    enum login login =
+        login_throttle_judge(server->login_throttle, connection->client->address, good ? holder.hash : NULL, clock_mono_ns());
     if (!stream || !login_is_good(login))
-        connection_log_login(hub, wsi, stream ? "stream" : "HTTP", &holder, login);
+        connection_log_login(server, wsi, stream ? "stream" : "HTTP", &holder, login);
     if (login_is_good(login))
-        visitor->holder = holder;
+        connection->holder = holder;
     return login_is_good(login) ? NULL : login == LOGIN_HELD ? &HELD : &BAD_TOKEN;
 }
 
 /* Somebody on this machine, who asks for it by a local name, and whom no token is wanted from. */
-static bool is_trusted(const struct server_context *hub, const struct connection *visitor, const char *name)
+static bool is_trusted(const struct server_context *server, const struct connection *connection, const char *name)
 {
-    const struct access_params *params = &hub->params.access;
-    if (!visitor->peer->local || params->behind_proxy || (hub->tokens && !params->trust_local))
+    const struct access_params *params = &server->params.access;
+    if (!connection->usage->local || params->behind_proxy || (server->tokens && !params->trust_local))
         return false;
     return !name[0] || access_name_is_local(name) || (params->trust_local && is_named(params, name));
 }
 
-bool connection_identify(struct server_context *hub, struct lws *wsi, struct refusal *refusal)
+bool connection_identify(struct server_context *server, struct lws *wsi, struct refusal *refusal)
 {
-    const struct access_params *params = &hub->params.access;
-    struct connection *visitor = connection_of(wsi);
+    const struct access_params *params = &server->params.access;
+    struct connection *connection = connection_of(wsi);
     char host[256], name[256] = "", token[TOKEN_MAX_CHARS + 1];
     bool has_host = lws_hdr_total_length(wsi, WSI_TOKEN_HOST) > 0;
     const struct refusal *bad_token;
     *refusal = (struct refusal){ 0 };
-    visitor->holder = (struct token_holder){ 0 };
-    visitor->role = ROLE_NOBODY;
-    if (!find_client(hub, wsi, visitor, refusal))
+    connection->holder = (struct token_holder){ 0 };
+    connection->role = ROLE_NOBODY;
+    if (!find_client(server, wsi, connection, refusal))
         return false;
-    if (has_host &&
-        (!connection_header(wsi, WSI_TOKEN_HOST, host, sizeof(host)) || !access_host_name(host, name, sizeof(name)) || !is_ours(hub, name)))
-        *refusal = hub->local_only ? LOCAL_ONLY : WRONG_HOST;
-    else if (visitor->peer->local && !params->behind_proxy && has_forwarding(wsi))
+    if (has_host && (!connection_header(wsi, WSI_TOKEN_HOST, host, sizeof(host)) || !access_host_name(host, name, sizeof(name)) ||
+                     !is_ours(server, name)))
+        *refusal = server->local_only ? LOCAL_ONLY : WRONG_HOST;
+    else if (connection->usage->local && !params->behind_proxy && has_forwarding(wsi))
         *refusal = PROXY;
     else if (has_token_in_query(wsi))
         *refusal = IN_QUERY;
     else if (!find_token(wsi, token))
         *refusal = TOO_LONG;
-    else if (token[0] && hub->tokens && (bad_token = judge_token(hub, wsi, token)))
+    else if (token[0] && server->tokens && (bad_token = judge_token(server, wsi, token)))
         *refusal = *bad_token;
     if (refusal->status)
         return false;
-    if (visitor->holder.role != ROLE_NOBODY)
-        visitor->role = visitor->holder.role;
-    else if (is_trusted(hub, visitor, name))
-        visitor->role = ROLE_ENGINEER;
+    if (connection->holder.role != ROLE_NOBODY)
+        connection->role = connection->holder.role;
+    else if (is_trusted(server, connection, name))
+        connection->role = ROLE_ENGINEER;
     else if (params->open_viewers)
-        visitor->role = ROLE_OPEN;
+        connection->role = ROLE_OPEN;
     return true;
 }

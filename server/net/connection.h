@@ -1,36 +1,38 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Who is at the other end of a connection: its address, what its headers prove, what it may. Thread: the loop. */
+/* Connection identity: who is at the other end of a connection, by its address and the headers of its requests. Thread: the loop. */
 #ifndef NET_CONNECTION_H
 #define NET_CONNECTION_H
 #include "net/server_context.h"
 
-struct connection {               /* belongs to a connection */
-    struct address_usage *peer;   /* of the connection */
-    struct address_usage *client; /* who is meant by the last request: behind a proxy, whom that names */
+struct connection {               /* lives as long as the connection */
+    struct address_usage *usage;  /* of the address that connected; a reference */
+    struct address_usage *client; /* of the client: behind a proxy, the address that the last request names; a reference */
     char address[64];             /* the client's, for the log */
     enum role role;               /* by the last request's headers */
     struct token_holder holder;
 };
 
-/* Before a connection is made to anything. False: it is cut off. */
-bool connection_may_open(struct server_context *hub, int fd);
-void connection_open(struct server_context *hub, struct lws *wsi);
-void connection_close(struct server_context *hub, struct lws *wsi);
+/* Decides about a socket before a connection is made of it. Returns false if it is to be closed. */
+bool connection_may_open(struct server_context *server, int fd);
+/* Adds and removes the identity of a connection. */
+void connection_open(struct server_context *server, struct lws *wsi);
+void connection_close(struct server_context *server, struct lws *wsi);
+/* Returns the identity of an open connection. */
 struct connection *connection_of(struct lws *wsi);
 
 struct refusal {
     int status;
     const char *text; /* static */
 };
-/* Reads the headers of a request. False: *refusal is the answer. */
-bool connection_identify(struct server_context *hub, struct lws *wsi, struct refusal *refusal);
-/* One line in the log, and the counters, for what became of a token, or of a session that needed none. way: static; holder: whose the
-   token is; role ROLE_NOBODY: nobody's. */
-void connection_log_login(struct server_context *hub, struct lws *wsi, const char *way, const struct token_holder *holder,
+/* Reads the headers of a request and sets role, client and holder by them. Returns false with *refusal holding the answer. */
+bool connection_identify(struct server_context *server, struct lws *wsi, struct refusal *refusal);
+/* Logs and counts what became of a token, or of a session that needed none. way: static; holder: of the token; role ROLE_NOBODY: it is
+   not in the file. */
+void connection_log_login(struct server_context *server, struct lws *wsi, const char *way, const struct token_holder *holder,
                           enum login login);
-/* A header; "": there is none. False: it is too long. */
+/* Copies a header into out; "" if there is none. Returns false if it is too long. */
 bool connection_header(struct lws *wsi, enum lws_token_indexes token, char *out, int size);
-/* Names the machine goes by, beside those of params. Once. */
-void connection_learn_host_name(struct server_context *hub);
+/* Finds the machine's own host name, under which it may be asked for. Once, at the start. */
+void connection_learn_host_name(struct server_context *server);
 
 #endif

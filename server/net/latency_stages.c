@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Durations of the stages. */
+/* Durations of the latency stages. */
 #include "net/latency_stages.h"
 
 #include "base/histogram.h"
@@ -7,35 +7,35 @@
 
 static const char *const names[STAGE_COUNT] = { "wait", "field", "render", "encode", "queue", "write", "network", "decode" };
 
-void latency_stages_init(struct latency_stages *stages, struct counters *counters)
+void latency_stages_init(struct latency_stages *latency, struct counters *counters)
 {
     for (int i = 0; i < STAGE_COUNT; i++) {
         char *name = mem_printf("plantcast_stage_seconds{stage=\"%s\"}", names[i]);
-        stages->of[i] = counters_add_histogram(counters, name, "What a frame's way is made of, in the order of the stages.");
+        latency->of[i] = counters_add_histogram(counters, name, "What a frame's way is made of, in the order of the stages.");
         mem_free(name);
     }
-    stages->input = counters_add_histogram(counters, "plantcast_input_to_frame_seconds", "From a client's input to its acknowledgement.");
-    stages->sensor =
+    latency->input = counters_add_histogram(counters, "plantcast_input_to_frame_seconds", "From a client's input to its acknowledgement.");
+    latency->sensor =
         counters_add_histogram(counters, "plantcast_sensor_to_frame_seconds", "From a changed reading to a client's acknowledgement.");
 }
 
-void latency_stages_sent(struct latency_stages *stages, const struct encoded_frame *picture, int64_t now_ns)
+void latency_stages_sent(struct latency_stages *latency, const struct encoded_frame *encoded, int64_t now_ns)
 {
-    const struct frame *frame = picture->packet->frame;
-    histogram_add(stages->of[STAGE_WAIT], picture->wait_ns);
-    histogram_add(stages->of[STAGE_FIELD], frame->field_ns);
-    histogram_add(stages->of[STAGE_RENDER], frame->render_ns + frame->readback_ns);
-    histogram_add(stages->of[STAGE_ENCODE], picture->packet->encode_ns);
-    histogram_add(stages->of[STAGE_QUEUE], now_ns - picture->made_ns);
+    const struct frame *frame = encoded->packet->frame;
+    histogram_add(latency->of[STAGE_WAIT], encoded->wait_ns);
+    histogram_add(latency->of[STAGE_FIELD], frame->field_ns);
+    histogram_add(latency->of[STAGE_RENDER], frame->render_ns + frame->readback_ns);
+    histogram_add(latency->of[STAGE_ENCODE], encoded->packet->encode_ns);
+    histogram_add(latency->of[STAGE_QUEUE], now_ns - encoded->made_ns);
 }
 
-void latency_stages_shown(struct latency_stages *stages, const struct pacer *pacer)
+void latency_stages_shown(struct latency_stages *latency, const struct pacer *pacer)
 {
     const struct pacer_flight *acked = &pacer->acked;
     const struct channel *channel = &pacer->channel;
-    histogram_add(stages->of[STAGE_WRITE], acked->written_ns - acked->sent_ns);
-    histogram_add(stages->of[STAGE_NETWORK], channel->arrived_ns - acked->written_ns);
-    histogram_add(stages->of[STAGE_DECODE], channel->acked_ns - channel->arrived_ns);
+    histogram_add(latency->of[STAGE_WRITE], acked->written_ns - acked->sent_ns);
+    histogram_add(latency->of[STAGE_NETWORK], channel->arrived_ns - acked->written_ns);
+    histogram_add(latency->of[STAGE_DECODE], channel->acked_ns - channel->arrived_ns);
     if (acked->note.moving || acked->note.of_data)
-        histogram_add(acked->note.of_data ? stages->sensor : stages->input, channel->acked_ns - acked->note.input_ns);
+        histogram_add(acked->note.of_data ? latency->sensor : latency->input, channel->acked_ns - acked->note.input_ns);
 }

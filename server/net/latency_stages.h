@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Where the time goes from an input, or a reading, to the picture that shows it: each stage's durations, for /metrics. Thread: the loop. */
+/* Latency stages: histograms, for /metrics, of where the time goes from an input, or a changed reading, to the frame that shows it.
+   Thread: the loop. */
 #ifndef NET_LATENCY_STAGES_H
 #define NET_LATENCY_STAGES_H
 #include "base/counters.h"
@@ -9,11 +10,14 @@
 enum { STAGE_WAIT, STAGE_FIELD, STAGE_RENDER, STAGE_ENCODE, STAGE_QUEUE, STAGE_WRITE, STAGE_NETWORK, STAGE_DECODE, STAGE_COUNT };
 struct latency_stages {
     struct histogram *of[STAGE_COUNT];
-    struct histogram *input, *sensor; /* all together, to the acknowledgement: with the way back */
+    struct histogram *input, *sensor; /* from an input, from a reading, to the acknowledgement */
 };
 
+/* Adds the histograms to the counters. */
 void latency_stages_init(struct latency_stages *stages, struct counters *counters);
-void latency_stages_sent(struct latency_stages *stages, const struct encoded_frame *picture, int64_t now_ns); /* its first byte goes */
-void latency_stages_shown(struct latency_stages *stages, const struct pacer *pacer); /* pacer->acked was acknowledged */
+/* Notes the stages of a frame whose first byte is being sent. */
+void latency_stages_sent(struct latency_stages *stages, const struct encoded_frame *encoded, int64_t now_ns);
+/* Notes the stages of the frame that was acknowledged last (pacer->acked). */
+void latency_stages_shown(struct latency_stages *stages, const struct pacer *pacer);
 
 #endif

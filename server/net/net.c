@@ -16,7 +16,6 @@
 #include "base/mem.h"
 #include "net/tls.h"
 #include "net/connection.h"
-#include "value/quality.h"
 
 static const int64_t TICK_NS = 100 * NS_PER_MS;
 static const int64_t GOODBYE_NS = 500 * NS_PER_MS; /* for the close frames to leave */
@@ -41,77 +40,23 @@ static void lws_log_line(int level, const char *line)
         log_at(log, level == LLL_ERR ? LOG_WARN : LOG_DEBUG, "lws: %.*s", (int)strcspn(line, "\n"), line);
 }
 
-bool net_write(struct server_context *hub, struct lws *wsi, const void *bytes, size_t count, enum lws_write_protocol how)
-{
-    memcpy(hub->out + LWS_PRE, bytes, count);
-    return lws_write(wsi, hub->out + LWS_PRE, count, how) >= (int)count;
-}
-
-void net_wake_render_service(struct server_context *hub)
-{
-    if (hub->asked)
-        render_service_wake(hub->params.plant.painter);
-    hub->asked = false;
-}
-
-/* --- what happens by itself ---------------------------------------------------------------------------------------------- */
-
-/* A reading that went stale changed just now, whenever it came in. */
-static int64_t changed_ns(const struct snapshot *snapshot, const struct reading *reading)
-{
-    bool usable = !quality_is_bad(reading->quality) && reading->age_ns < NS_PER_S;
-    return snapshot->taken_mono_ns - (usable ? reading->age_ns : 0);
-}
-
-static bool take_snapshot(struct server_context *hub)
-{
-    bool changed = false;
-    store_snapshot(hub->params.plant.store, clock_mono_ns(), clock_utc_ns(), hub->snapshot);
-    hub->data_ns = hub->snapshot->taken_mono_ns;
-    for (size_t i = 0; i < hub->snapshot->count; i++) {
-        const struct reading *reading = &hub->snapshot->readings[i];
-        if (hub->changes[i] == reading->changes)
-            continue;
-        int64_t at_ns = changed_ns(hub->snapshot, reading);
-        hub->data_ns = at_ns < hub->data_ns ? at_ns : hub->data_ns;
-        hub->changes[i] = reading->changes;
-        changed = true;
-    }
-    return changed;
-}
-
-static bool look_at_links(struct server_context *hub)
-{
-    bool changed = false, any = false;
-    for (size_t i = 0; i < hub->world.plant->source_count; i++) {
-        bool up = store_link_is_up(hub->params.plant.store, (int)i);
-        changed |= hub->links_up[i] != up;
-        hub->links_up[i] = up;
-        any |= up;
-    }
-    hub->world.live = any;
-    bool set = clock_utc_is_set();
-    changed |= hub->world.clock_is_set != set;
-    hub->world.clock_is_set = set;
-    counter_set(hub->counters.clock_set, set);
-    return changed;
-}
+/* --- what happens by itself ------------------------------------------------------------------------------------------- */
 
 /* Twice, if need be: a file counts as changed once it has stopped changing. */
 static void look_at_files(struct net *net, int64_t now_ns)
 {
-    struct server_context *hub = &net->hub;
+    struct server_context *server = &net->server;
     bool asked = atomic_exchange(&net->look, false);
-    if (!asked && now_ns - hub->looked_ns < LOOK_NS)
+    if (!asked && now_ns - server->looked_ns < LOOK_NS)
         return;
-    hub->looked_ns = now_ns;
-    if (asked && hub->params.reload)
-        hub->params.reload(hub->params.reload_arg);
-    if (hub->tls)
-        tls_look(hub->tls);
-    if (hub->tokens) {
-        tokens_look(hub->tokens);
-        streams_check_tokens(hub, clock_utc_ns());
+    server->looked_ns = now_ns;
+    if (asked && server->params.reload)
+        server->params.reload(server->params.reload_arg);
+    if (server->tls)
+        tls_look(server->tls);
+    if (server->tokens) {
+        tokens_look(server->tokens);
+        streams_check_tokens(server, clock_utc_ns());
     }
 }
 
@@ -127,7 +72,7 @@ static void look_at_processors(struct net *net, int64_t now_ns)
     if (file)
         fclose(file);
     net->cpu_ns = now_ns;
-    net->hub.world.cpu_used = 1 - cpu_meter_free(&net->cpu, stat);
+    net->server.session_context.cpu_used = 1 - cpu_meter_free(&net->cpu, stat);
 }
 
 static void on_tick(lws_sorted_usec_list_t *sul)
@@ -136,101 +81,101 @@ static void on_tick(lws_sorted_usec_list_t *sul)
     int64_t now_ns = clock_mono_ns();
     look_at_files(net, now_ns);
     look_at_processors(net, now_ns);
-    admission_on_tick(&net->hub.admission, now_ns);
-    counter_set(net->hub.counters.busy, admission_busy_percent(&net->hub.admission));
-    counter_set(net->hub.counters.connections, net->hub.connection_count);
-    counter_set(net->hub.counters.logins_slowed, logins_slowed(net->hub.logins, now_ns));
-    bool data_changed = take_snapshot(&net->hub), links_changed = look_at_links(&net->hub);
-    if (net->hub.past)
-        net->hub.world.history_first_us = history_loader_first_us(net->hub.past);
+    admission_on_tick(&net->server.admission, now_ns);
+    counter_set(net->server.counters.busy, admission_busy_percent(&net->server.admission));
+    counter_set(net->server.counters.connections, net->server.connection_count);
+    counter_set(net->server.counters.logins_slowed, login_throttle_slowed(net->server.login_throttle, now_ns));
+    bool data_changed = net_take_snapshot(&net->server), links_changed = net_check_links(&net->server);
+    if (net->server.history_loader)
+        net->server.session_context.history_first_us = history_loader_first_us(net->server.history_loader);
     if (data_changed)
-        net->hub.world.changed_ns = net->hub.snapshot->taken_mono_ns;
+        net->server.session_context.changed_ns = net->server.snapshot->taken_mono_ns;
     if (data_changed)
-        render_service_on_data(net->hub.params.plant.painter);
-    streams_on_tick(&net->hub, data_changed, links_changed);
-    net_wake_render_service(&net->hub);
-    lws_sul_schedule(net->hub.context, 0, sul, on_tick, TICK_NS / 1000);
+        render_service_on_data(net->server.params.plant.render_service);
+    streams_on_tick(&net->server, data_changed, links_changed);
+    net_wake_render_service(&net->server);
+    lws_sul_schedule(net->server.lws, 0, sul, on_tick, TICK_NS / 1000);
 }
 
-static void collect_picks(struct server_context *hub)
+static void collect_picks(struct server_context *server)
 {
-    for (struct pick_answer *answer = render_service_collect_picks(hub->params.plant.painter), *next; answer; answer = next) {
+    for (struct pick_answer *answer = render_service_collect_picks(server->params.plant.render_service), *next; answer; answer = next) {
         next = answer->next;
-        if (stream_owns(hub, answer->order.client))
-            stream_on_pick(hub, answer);
+        if (stream_owns(server, answer->query.client))
+            stream_on_pick(server, answer);
         else
-            http_on_pick(hub, answer);
+            http_on_pick(server, answer);
         mem_free(answer);
     }
 }
 
-static void collect_recalled(struct server_context *hub)
+static void collect_recalled(struct server_context *server)
 {
-    struct history_answer *recalled = hub->recall ? history_queries_collect(hub->recall) : NULL;
+    struct history_answer *recalled = server->history_queries ? history_queries_collect(server->history_queries) : NULL;
     for (struct history_answer *next; recalled; recalled = next) {
         next = recalled->next;
-        http_on_history_answer(hub, recalled);
+        http_on_history_answer(server, recalled);
         history_answer_free(&recalled);
     }
 }
 
-static void look_at_alarms(struct server_context *hub)
+static void look_at_alarms(struct server_context *server)
 {
-    uint64_t number = hub->params.plant.alarm_service ? alarm_service_number(hub->params.plant.alarm_service) : 0;
-    if (number == hub->alarms_number)
+    uint64_t number = server->params.plant.alarm_service ? alarm_service_number(server->params.plant.alarm_service) : 0;
+    if (number == server->alarms_number)
         return;
-    hub->alarms_number = number;
-    streams_on_alarms(hub);
+    server->alarms_number = number;
+    streams_on_alarms(server);
 }
 
-static void collect_moments(struct server_context *hub)
+static void collect_moments(struct server_context *server)
 {
-    struct history_loader_answer *answer = hub->past ? history_loader_collect(hub->past) : NULL;
+    struct history_loader_answer *answer = server->history_loader ? history_loader_collect(server->history_loader) : NULL;
     if (answer)
-        hub->world.history_first_us = history_loader_first_us(hub->past);
+        server->session_context.history_first_us = history_loader_first_us(server->history_loader);
     for (struct history_loader_answer *next; answer; answer = next) {
         next = answer->next;
-        if (stream_owns(hub, answer->client))
-            stream_on_historical_snapshot(hub, answer);
+        if (stream_owns(server, answer->client))
+            stream_on_historical_snapshot(server, answer);
         else
-            http_on_historical_snapshot(hub, answer);
+            http_on_historical_snapshot(server, answer);
         mem_free(answer);
     }
 }
 
-static void collect_places(struct server_context *hub)
+static void collect_places(struct server_context *server)
 {
-    struct sensor_coverage_answer *answer = hub->params.plant.placing ? placing_collect(hub->params.plant.placing) : NULL;
+    struct sensor_coverage_answer *answer = server->params.plant.placing ? placing_collect(server->params.plant.placing) : NULL;
     for (struct sensor_coverage_answer *next; answer; answer = next) {
         next = answer->next;
-        stream_on_gaps(hub, answer);
+        stream_on_gaps(server, answer);
         sensor_coverage_answer_free(answer);
     }
-    if (hub->params.plant.placing)
-        streams_on_placed(hub);
+    if (server->params.plant.placing)
+        streams_on_placed(server);
 }
 
 static void collect(struct net *net)
 {
-    struct server_context *hub = &net->hub;
+    struct server_context *server = &net->server;
     net_calls_run(net);
-    look_at_alarms(hub);
-    collect_picks(hub);
-    collect_recalled(hub);
-    collect_moments(hub);
-    collect_places(hub);
-    for (struct encoded_frame *picture = render_service_collect(hub->params.plant.painter), *next; picture; picture = next) {
-        next = picture->next;
-        picture->next = NULL;
-        if (stream_owns(hub, picture->client))
-            stream_on_frame(hub, picture);
+    look_at_alarms(server);
+    collect_picks(server);
+    collect_recalled(server);
+    collect_moments(server);
+    collect_places(server);
+    for (struct encoded_frame *encoded = render_service_collect(server->params.plant.render_service), *next; encoded; encoded = next) {
+        next = encoded->next;
+        encoded->next = NULL;
+        if (stream_owns(server, encoded->client))
+            stream_on_frame(server, encoded);
         else
-            http_on_frame(hub, picture);
+            http_on_frame(server, encoded);
     }
-    net_wake_render_service(hub);
+    net_wake_render_service(server);
 }
 
-/* --- life ------------------------------------------------------------------------------------------------------------------ */
+/* --- life ------------------------------------------------------------------------------------------------------------- */
 
 static void raise_file_limit(struct log *log, const struct quotas *quotas)
 {
@@ -270,104 +215,81 @@ bool net_port_free(struct log *log, const char *address, int port)
     return good;
 }
 
-static void add_counters(struct server_context *hub)
+static void add_counters(struct server_context *server)
 {
-    struct counters *c = hub->params.counters;
-    latency_stages_init(&hub->stages, c);
-    hub->counters.sessions = counters_add(c, "plantcast_sessions", "gauge", "Clients that are connected.");
-    hub->counters.sessions_all = counters_add(c, "plantcast_sessions_total", "counter", "Clients that ever were.");
-    hub->counters.refused = counters_add(c, "plantcast_sessions_refused_total", "counter", "Clients that were not let in.");
-    hub->counters.connections = counters_add(c, "plantcast_connections", "gauge", "TCP connections.");
-    hub->counters.busy = counters_add(c, "plantcast_drawing_busy_percent", "gauge", "Of the render thread's time, for moving pictures.");
-    hub->counters.frames = counters_add(c, "plantcast_frames_sent_total", "counter", "Frames sent.");
-    hub->counters.frame_bytes = counters_add(c, "plantcast_frame_bytes_total", "counter", "Bytes of frames sent.");
-    hub->counters.dropped =
+    struct counters *c = server->params.counters;
+    latency_stages_init(&server->latency, c);
+    server->counters.sessions = counters_add(c, "plantcast_sessions", "gauge", "Clients that are connected.");
+    server->counters.sessions_all = counters_add(c, "plantcast_sessions_total", "counter", "Clients that ever were.");
+    server->counters.refused = counters_add(c, "plantcast_sessions_refused_total", "counter", "Clients that were not let in.");
+    server->counters.connections = counters_add(c, "plantcast_connections", "gauge", "TCP connections.");
+    server->counters.busy = counters_add(c, "plantcast_drawing_busy_percent", "gauge", "Of the render thread's time, for moving pictures.");
+    server->counters.frames = counters_add(c, "plantcast_frames_sent_total", "counter", "Frames sent.");
+    server->counters.frame_bytes = counters_add(c, "plantcast_frame_bytes_total", "counter", "Bytes of frames sent.");
+    server->counters.dropped =
         counters_add(c, "plantcast_frames_dropped_total", "counter", "Frames made and overtaken before they were sent.");
-    hub->counters.given_up = counters_add(c, "plantcast_frames_given_up_total", "counter", "Frames that were not sent to their end.");
-    hub->counters.stalled = counters_add(c, "plantcast_sessions_stalled_total", "counter", "Clients closed because they took nothing.");
-    hub->counters.messages = counters_add(c, "plantcast_messages_total", "counter", "Messages of clients.");
-    hub->counters.errors = counters_add(c, "plantcast_message_errors_total", "counter", "Messages of clients answered with an error.");
-    hub->counters.clock_set =
+    server->counters.given_up = counters_add(c, "plantcast_frames_given_up_total", "counter", "Frames that were not sent to their end.");
+    server->counters.stalled = counters_add(c, "plantcast_sessions_stalled_total", "counter", "Clients closed because they took nothing.");
+    server->counters.messages = counters_add(c, "plantcast_messages_total", "counter", "Messages of clients.");
+    server->counters.errors = counters_add(c, "plantcast_message_errors_total", "counter", "Messages of clients answered with an error.");
+    server->counters.clock_set =
         counters_add(c, "plantcast_clock_synchronised", "gauge", "1 while something keeps this machine's clock right.");
-    hub->counters.logins_wrong = counters_add(c, "plantcast_logins_wrong_total", "counter", "Tokens that were nobody's, or no longer.");
-    hub->counters.logins_held =
+    server->counters.logins_wrong = counters_add(c, "plantcast_logins_wrong_total", "counter", "Tokens that were nobody's, or no longer.");
+    server->counters.logins_held =
         counters_add(c, "plantcast_logins_held_total", "counter", "Tokens that were not looked at, of addresses that are slowed.");
-    hub->counters.logins_slowed =
+    server->counters.logins_slowed =
         counters_add(c, "plantcast_logins_slowed_addresses", "gauge", "Addresses that are slowed, for ten wrong tokens within a minute.");
-    hub->counters.requests = counters_add(c, "plantcast_http_requests_total", "counter", "HTTP requests.");
+    server->counters.requests = counters_add(c, "plantcast_http_requests_total", "counter", "HTTP requests.");
 }
 
 static bool open_context(struct net *net)
 {
-    struct server_context *hub = &net->hub;
+    struct server_context *server = &net->server;
     struct lws_context_creation_info info = {
-        .port = hub->params.port,
-        .iface = hub->params.address,
+        .port = server->params.port,
+        .iface = server->params.address,
         .protocols = protocols,
-        .user = hub,
+        .user = server,
         .gid = -1,
         .uid = -1,
         .options = LWS_SERVER_OPTION_FAIL_UPON_UNABLE_TO_BIND | LWS_SERVER_OPTION_DISABLE_OS_CA_CERTS | LWS_SERVER_OPTION_VALIDATE_UTF8 |
-                   (strchr(hub->params.address, ':') ? 0 : LWS_SERVER_OPTION_DISABLE_IPV6),
-        .timeout_secs = (unsigned)hub->quotas->at[QUOTA_PATIENCE_S],
+                   (strchr(server->params.address, ':') ? 0 : LWS_SERVER_OPTION_DISABLE_IPV6),
+        .timeout_secs = (unsigned)server->quotas->at[QUOTA_PATIENCE_S],
         .keepalive_timeout = 30,
         .pt_serv_buf_size = 16 * 1024,
         .fd_limit_per_thread = 0,
         .retry_and_idle_policy = &idle_policy,
         .vhost_name = "plantcast",
     };
-    if (hub->tls) {
+    if (server->tls) {
         info.options |= LWS_SERVER_OPTION_DO_SSL_GLOBAL_INIT;
-        info.ssl_cert_filepath = hub->params.access.tls_cert_path;
-        info.ssl_private_key_filepath = hub->params.access.tls_key_path;
+        info.ssl_cert_filepath = server->params.access.tls_cert_path;
+        info.ssl_private_key_filepath = server->params.access.tls_key_path;
         info.alpn = "http/1.1"; /* in HTTP/2 a request would be no connection, and could have a stream in it */
     }
     lws_set_log_level(LLL_ERR | LLL_WARN, lws_log_line);
-    atomic_store(&lws_log_to, hub->params.log);
-    if (!net_port_free(hub->params.log, hub->params.address, hub->params.port))
+    atomic_store(&lws_log_to, server->params.log);
+    if (!net_port_free(server->params.log, server->params.address, server->params.port))
         return false;
-    hub->context = lws_create_context(&info);
-    if (!hub->context) {
-        log_err(hub->params.log, "listen %s port %d: libwebsockets could not start", hub->params.address, hub->params.port);
+    server->lws = lws_create_context(&info);
+    if (!server->lws) {
+        log_err(server->params.log, "listen %s port %d: libwebsockets could not start", server->params.address, server->params.port);
         return false;
     }
-    net->vhost = lws_get_vhost_by_name(hub->context, "plantcast");
+    net->vhost = lws_get_vhost_by_name(server->lws, "plantcast");
     return true;
 }
 
 static bool open_access(struct net *net)
 {
-    struct server_context *hub = &net->hub;
-    const struct access_params *access = &hub->params.access;
-    connection_learn_host_name(hub);
-    hub->content_policy = access_content_policy(access);
-    hub->local_only = access_name_is_local(hub->params.address) && !access->behind_proxy;
-    if (access->tokens_path && !(hub->world.tokens = hub->tokens = tokens_create(hub->params.log, access->tokens_path)))
+    struct server_context *server = &net->server;
+    const struct access_params *access = &server->params.access;
+    connection_learn_host_name(server);
+    server->content_policy = access_content_policy(access);
+    server->local_only = access_name_is_local(server->params.address) && !access->behind_proxy;
+    if (access->tokens_path && !(server->session_context.tokens = server->tokens = tokens_create(server->params.log, access->tokens_path)))
         return false;
-    return !access->tls_cert_path || (hub->tls = tls_create(hub->params.log, access->tls_cert_path, access->tls_key_path));
-}
-
-static void wake(void *arg)
-{
-    net_wake(arg);
-}
-
-bool net_open_history(struct net *net)
-{
-    struct server_context *hub = &net->hub;
-    const struct net_plant *plant = &hub->params.plant;
-    const struct history_loader_params past = { .log = hub->params.log,
-                                                .plant = plant->scene->plant,
-                                                .folder = plant->history_folder,
-                                                .snapshot_cache = plant->snapshot_cache,
-                                                .notify = wake,
-                                                .notify_arg = net };
-    hub->world.snapshot_cache = plant->history_folder ? plant->snapshot_cache : NULL;
-    if (!plant->history_folder)
-        return true;
-    hub->recall = history_queries_create(hub->params.log, plant->scene->plant, plant->history_folder, wake, net);
-    hub->past = history_loader_create(&past);
-    return hub->recall && hub->past;
+    return !access->tls_cert_path || (server->tls = tls_create(server->params.log, access->tls_cert_path, access->tls_key_path));
 }
 
 bool net_access_good(struct log *log, const struct access_params *access)
@@ -380,51 +302,31 @@ bool net_access_good(struct log *log, const struct access_params *access)
     return good;
 }
 
-void net_bind_plant(struct net *net)
-{
-    struct server_context *hub = &net->hub;
-    const struct plant *plant = hub->params.plant.scene->plant;
-    hub->snapshot = snapshot_create(plant->tag_count);
-    hub->changes = mem_array(plant->tag_count, sizeof(*hub->changes));
-    hub->links_up = mem_array(plant->source_count, sizeof(*hub->links_up));
-    hub->world.plant = plant;
-    hub->world.scene = hub->params.plant.scene;
-    hub->world.snapshot = hub->snapshot;
-    hub->world.baselines = hub->params.plant.baselines;
-    hub->world.alarm_service = hub->params.plant.alarm_service;
-    hub->world.placing = hub->params.save ? hub->params.plant.placing : NULL;
-    hub->world.loop_checks = hub->params.plant.loop_checks;
-    hub->world.tag_list = hub->params.plant.tag_list;
-    hub->world.links_up = hub->links_up;
-    take_snapshot(hub);
-    look_at_links(hub);
-}
-
 struct net *net_create(const struct net_params *params)
 {
     struct net *net = mem_new(sizeof(*net));
-    struct server_context *hub = &net->hub;
+    struct server_context *server = &net->server;
     net_calls_init(net);
-    hub->params = *params;
-    hub->next_client = 1;
-    hub->quotas = &hub->params.access.quotas;
-    hub->admission.quotas = hub->quotas;
-    hub->peers = address_limits_create(hub->quotas, !params->access.behind_proxy);
-    hub->logins = login_throttle_create();
-    hub->world = (struct session_context){
-        .alarms_said = &hub->alarms_said,
-        .tags_said = &hub->tags_said,
-        .lists_said = hub->lists_said,
+    server->params = *params;
+    server->next_client = 1;
+    server->quotas = &server->params.access.quotas;
+    server->admission.quotas = server->quotas;
+    server->limits = address_limits_create(server->quotas, !params->access.behind_proxy);
+    server->login_throttle = login_throttle_create();
+    server->session_context = (struct session_context){
+        .alarm_texts = &server->alarm_texts,
+        .tag_texts = &server->tag_texts,
+        .lists_said = server->lists_said,
         .codecs = params->codecs,
         .version = params->version,
-        .quotas = hub->quotas,
+        .quotas = server->quotas,
         .resumes = resumes_create(),
-        .admission = &hub->admission,
-        .logins = hub->logins,
+        .admission = &server->admission,
+        .login_throttle = server->login_throttle,
     };
-    add_counters(hub);
+    add_counters(server);
     net_bind_plant(net);
-    raise_file_limit(params->log, hub->quotas);
+    raise_file_limit(params->log, server->quotas);
     if (!open_access(net) || !open_context(net) || !net_open_history(net))
         net_destroy(&net);
     return net;
@@ -436,26 +338,26 @@ void net_destroy(struct net **net_ptr)
     if (!net)
         return;
     lws_sul_cancel(&net->tick);
-    history_queries_destroy(&net->hub.recall); /* before what they wake */
-    history_loader_destroy(&net->hub.past);
-    if (net->hub.context)
-        lws_context_destroy(net->hub.context);
+    history_queries_destroy(&net->server.history_queries); /* before what they wake */
+    history_loader_destroy(&net->server.history_loader);
+    if (net->server.lws)
+        lws_context_destroy(net->server.lws);
     atomic_store(&lws_log_to, NULL);
-    tls_destroy(&net->hub.tls);
-    tokens_destroy(&net->hub.tokens);
-    mem_free(net->hub.content_policy);
-    address_limits_destroy(&net->hub.peers);
-    login_throttle_destroy(&net->hub.logins);
-    mem_free(net->hub.by_client);
-    resumes_destroy(&net->hub.world.resumes);
-    alarm_text_cache_finish(&net->hub.alarms_said);
-    tag_text_cache_finish(&net->hub.tags_said);
+    tls_destroy(&net->server.tls);
+    tokens_destroy(&net->server.tokens);
+    mem_free(net->server.content_policy);
+    address_limits_destroy(&net->server.limits);
+    login_throttle_destroy(&net->server.login_throttle);
+    mem_free(net->server.by_client);
+    resumes_destroy(&net->server.session_context.resumes);
+    alarm_text_cache_finish(&net->server.alarm_texts);
+    tag_text_cache_finish(&net->server.tag_texts);
     for (int i = 0; i < 2; i++)
-        mem_free(net->hub.lists_said[i]);
-    marker_text_cache_finish(&net->hub.marker_lists);
-    snapshot_destroy(&net->hub.snapshot);
-    mem_free(net->hub.changes);
-    mem_free(net->hub.links_up);
+        mem_free(net->server.lists_said[i]);
+    marker_text_cache_finish(&net->server.marker_lists);
+    snapshot_destroy(&net->server.snapshot);
+    mem_free(net->server.changes);
+    mem_free(net->server.links_up);
     net_calls_finish(net);
     mem_free(net);
     *net_ptr = NULL;
@@ -468,29 +370,24 @@ int net_port(const struct net *net)
 
 void net_run(struct net *net)
 {
-    struct server_context *hub = &net->hub;
+    struct server_context *server = &net->server;
     on_tick(&net->tick);
-    while (!atomic_load(&net->stopping) && lws_service(hub->context, 0) >= 0)
+    while (!atomic_load(&net->stopping) && lws_service(server->lws, 0) >= 0)
         collect(net);
     net_calls_close(net);
-    streams_close(hub);
-    for (int64_t end_ns = clock_mono_ns() + GOODBYE_NS; hub->stream_count > 0 && clock_mono_ns() < end_ns;)
-        lws_service(hub->context, 0);
-}
-
-void net_wake(struct net *net)
-{
-    lws_cancel_service(net->hub.context);
+    streams_close(server);
+    for (int64_t end_ns = clock_mono_ns() + GOODBYE_NS; server->stream_count > 0 && clock_mono_ns() < end_ns;)
+        lws_service(server->lws, 0);
 }
 
 void net_stop(struct net *net)
 {
     atomic_store(&net->stopping, true);
-    lws_cancel_service(net->hub.context);
+    lws_cancel_service(net->server.lws);
 }
 
 void net_check_credentials(struct net *net)
 {
     atomic_store(&net->look, true);
-    lws_cancel_service(net->hub.context);
+    lws_cancel_service(net->server.lws);
 }

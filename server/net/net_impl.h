@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What net.c and reload.c share. Private to them. */
+/* The loop's own state. Private to net*.c. */
 #ifndef NET_NET_IMPL_H
 #define NET_NET_IMPL_H
 #include <pthread.h>
@@ -8,7 +8,7 @@
 #include "net/server_context.h"
 
 struct net {
-    struct server_context hub;
+    struct server_context server;
     struct lws_vhost *vhost;
     lws_sorted_usec_list_t tick;
     struct cpu_meter cpu;
@@ -18,17 +18,30 @@ struct net {
         pthread_mutex_t lock;
         pthread_cond_t done;
         /* --- below: under lock */
-        void (*what)(void *arg); /* NULL: nothing is asked */
+        void (*what)(void *arg); /* NULL: no call waits */
         void *arg;
         bool closed; /* the loop has ended */
     } call;
 };
 
+/* --- net_calls.c --- */
+
 void net_calls_init(struct net *net);
 void net_calls_finish(struct net *net);
-void net_calls_run(struct net *net);   /* what is asked */
-void net_calls_close(struct net *net); /* nobody waits any longer */
-void net_bind_plant(struct net *net);  /* makes what depends on the plant of hub->params */
+/* Runs the call that waits (net_call), if any. Thread: the loop. */
+void net_calls_run(struct net *net);
+/* Lets callers go: no more calls are run. Thread: the loop. */
+void net_calls_close(struct net *net);
+
+/* --- net_plant.c; thread: the loop --- */
+
+/* Makes all that depends on server.params.plant, but history. */
+void net_bind_plant(struct net *net);
+/* Starts the readers of the plant's history, if there is one. Returns false if they cannot start, already logged. */
 bool net_open_history(struct net *net);
+/* Brings server->snapshot up to date. Returns whether readings changed since the last time. */
+bool net_take_snapshot(struct server_context *server);
+/* Notes which sources are connected and whether the clock is set. Returns whether any of that changed. */
+bool net_check_links(struct server_context *server);
 
 #endif

@@ -1,98 +1,117 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What the parts of the loop share. Private to net/. Thread: the loop. */
+/* The server context: what the parts of the loop share. Private to net/. Thread: the loop. */
 #ifndef NET_SERVER_CONTEXT_H
 #define NET_SERVER_CONTEXT_H
 #include <libwebsockets.h>
 
 #include "message/alarm_text.h"
 #include "message/marker_text.h"
+#include "net/address_limits.h"
+#include "net/latency_stages.h"
 #include "net/net.h"
 #include "service/history_loader.h"
-#include "net/address_limits.h"
 #include "service/history_queries.h"
 #include "session/session.h"
 #include "session/tag_text_cache.h"
-#include "net/latency_stages.h"
 
 enum { SLICE_BYTES = 32 * 1024 };
 
-struct stream;  /* stream.c */
+struct stream;  /* stream.h */
 struct request; /* http_impl.h */
 
 struct server_context {
     struct net_params params;
-    struct session_context world;
+    struct session_context session_context; /* what all sessions see */
     struct snapshot *snapshot;
     uint32_t *changes; /* reading.changes at the last tick, by tag */
-    int64_t data_ns;   /* when the oldest of those that changed came in; monotonic */
-    bool *links_up;
-    struct lws_context *context;
-    struct history_queries *recall;      /* NULL: nothing is recorded */
-    struct history_loader *past;         /* likewise */
-    struct stream *streams, **by_client; /* all of them; the same, by number, ascending */
+    int64_t data_ns;   /* monotonic: when the oldest reading that changed in the last tick came in */
+    bool *links_up;    /* by source */
+    struct lws_context *lws;
+    struct history_queries *history_queries; /* NULL: nothing is recorded */
+    struct history_loader *history_loader;   /* likewise */
+    struct stream *streams, **by_client;     /* all connections to /stream; the same, by session id, ascending */
     size_t by_client_capacity;
-    struct request *snapshots;                       /* HTTP requests that wait for their picture */
-    int stream_count, picture_count, question_count; /* the latter two for HTTP, that are being answered */
-    int64_t answer_bytes;                            /* of HTTP, that were not read yet */
+    struct request *snapshots;                       /* HTTP requests that wait for a frame, a pick or a reload */
+    int stream_count, picture_count, question_count; /* the latter two: of HTTP, that are being answered */
+    int64_t answer_bytes;                            /* of HTTP answers that their clients have not read yet */
     const struct quotas *quotas;
-    struct address_limits *peers;
+    struct address_limits *limits;
     int connection_count;
-    struct tokens *tokens; /* NULL: there are none */
-    struct login_throttle *logins;
+    struct tokens *tokens; /* NULL: none are configured */
+    struct login_throttle *login_throttle;
     char *content_policy; /* Content-Security-Policy of every answer */
-    struct tls *tls;      /* NULL: there is none */
+    struct tls *tls;      /* NULL: no TLS */
     struct admission admission;
     bool local_only;   /* bound to a loopback address, and no proxy is in front */
-    char machine[256]; /* its own name; "": none */
-    int64_t looked_ns; /* when the files of tokens and certificate were looked at */
+    char machine[256]; /* the machine's host name; "": none */
+    int64_t looked_ns; /* when the files of tokens and certificate were last looked at */
     uint64_t next_client;
-    bool asked;                         /* wishes were made: render_service_wake is due */
-    int64_t still_ns;                   /* what the last refined picture cost that was not one before with new readings */
+    bool asked;                         /* requests were made: net_wake_render_service is due */
+    int64_t still_ns;                   /* what the last refined frame cost that was drawn anew */
     uint8_t out[LWS_PRE + SLICE_BYTES]; /* lws writes its framing in front of what is sent */
-    struct tag_text_cache tags_said;
+    struct tag_text_cache tag_texts;
     char *lists_said[2];
-    struct alarm_text_cache alarms_said;
-    uint64_t alarms_number;                /* as sessions were last told to look */
+    struct alarm_text_cache alarm_texts;
+    uint64_t alarms_number;                /* of the last change of alarms that sessions were told of */
     struct marker_text_cache marker_lists; /* of the frame that was sent last */
-    struct latency_stages stages;
+    struct latency_stages latency;
     struct {
         counter *sessions, *sessions_all, *frames, *frame_bytes, *messages, *errors, *dropped, *given_up, *stalled, *requests, *refused,
             *connections, *busy, *clock_set, *logins_wrong, *logins_held, *logins_slowed;
     } counters;
 };
 
+/* Returns the context of a connection's loop. */
 static inline struct server_context *server_context_of(struct lws *wsi)
 {
     return lws_context_user(lws_get_context(wsi));
 }
 
-/* Writes up to SLICE_BYTES through hub->out. False: the connection is gone. */
-bool net_write(struct server_context *hub, struct lws *wsi, const void *bytes, size_t count, enum lws_write_protocol how);
-void net_wake_render_service(struct server_context *hub); /* after all wishes of one event are made */
+/* Writes up to SLICE_BYTES to a connection. Returns false when it is gone. */
+bool net_write(struct server_context *server, struct lws *wsi, const void *bytes, size_t count, enum lws_write_protocol how);
+/* Lets the render thread begin with the requests that were made. To be called at the end of each event. */
+void net_wake_render_service(struct server_context *server);
 
+/* --- stream.c, stream_table.c: connections to /stream --- */
+
+/* Handles the events of a connection to /stream, for lws. */
 int stream_callback(struct lws *wsi, enum lws_callback_reasons reason, void *user, void *in, size_t len);
-void stream_on_frame(struct server_context *hub, struct encoded_frame *picture); /* takes it over; false owner: destroys it */
-void stream_on_pick(struct server_context *hub, const struct pick_answer *answer);
-void stream_on_historical_snapshot(struct server_context *hub, const struct history_loader_answer *answer);
-void stream_on_gaps(struct server_context *hub, const struct sensor_coverage_answer *answer); /* whoever asked may have gone */
-void streams_on_placed(struct server_context *hub);                             /* distances of sensors that are placed came in */
-void stream_say(struct server_context *hub, uint64_t client, const char *text); /* likewise */
-bool stream_owns(const struct server_context *hub, uint64_t client);
-void streams_on_tick(struct server_context *hub, bool data_changed, bool links_changed);
-void streams_on_alarms(struct server_context *hub); /* some changed */
-void streams_check_tokens(struct server_context *hub, int64_t now_utc_ns);
-void streams_close(struct server_context *hub); /* server goes down */
-/* 0: upgrade; 1: answered with an HTTP error. */
-int stream_check_upgrade(struct server_context *hub, struct lws *wsi);
+/* Returns whether the client of that id is a connected stream, and not an HTTP request. */
+bool stream_owns(const struct server_context *server, uint64_t client);
+/* Hand an answer to the stream that asked, which must be connected. The encoded frame is taken over. */
+void stream_on_frame(struct server_context *server, struct encoded_frame *encoded);
+void stream_on_pick(struct server_context *server, const struct pick_answer *answer);
+void stream_on_historical_snapshot(struct server_context *server, const struct history_loader_answer *answer);
+/* Hands coverage of sensors, or a text, to a stream that asked; it may have gone meanwhile. */
+void stream_on_gaps(struct server_context *server, const struct sensor_coverage_answer *answer);
+void stream_say(struct server_context *server, uint64_t client, const char *text);
+/* Tells sessions whose sensors are placed on trial that distances were computed. */
+void streams_on_placed(struct server_context *server);
+/* Lets all sessions act on a tick: 100 ms have gone by, readings or the state of links may have changed. */
+void streams_on_tick(struct server_context *server, bool data_changed, bool links_changed);
+/* Has changed alarms sent to all sessions. */
+void streams_on_alarms(struct server_context *server);
+/* Closes sessions whose token is not valid any more. */
+void streams_check_tokens(struct server_context *server, int64_t now_utc_ns);
+/* Begins to close all connections: the server goes down. */
+void streams_close(struct server_context *server);
+/* Checks a request to become a stream. Returns 0 to go on; 1: it was answered with an HTTP error. */
+int stream_check_upgrade(struct server_context *server, struct lws *wsi);
 
+/* --- http/ --- */
+
+/* Handles the events of an HTTP connection, for lws. */
 int http_callback(struct lws *wsi, enum lws_callback_reasons reason, void *user, void *in, size_t len);
-void http_on_frame(struct server_context *hub, struct encoded_frame *picture); /* takes it over */
-void http_on_pick(struct server_context *hub, const struct pick_answer *answer);
-void http_on_historical_snapshot(struct server_context *hub, const struct history_loader_answer *answer);
-void http_release_plant(struct server_context *hub); /* the plant is loaded anew: what waits for the old one is answered */
-void http_on_reloaded(struct server_context *hub, bool good, const char *text);
-void http_on_history_answer(struct server_context *hub, struct history_answer *recalled); /* a piece of its answer; may take its text */
-/* A complete short answer in plain text. Returns what the callback is to return. */
+/* Hand an answer to the HTTP request that waits for it, if it still does. The encoded frame is taken over; the text may be. */
+void http_on_frame(struct server_context *server, struct encoded_frame *encoded);
+void http_on_pick(struct server_context *server, const struct pick_answer *answer);
+void http_on_historical_snapshot(struct server_context *server, const struct history_loader_answer *answer);
+void http_on_history_answer(struct server_context *server, struct history_answer *piece);
+/* Answers those who asked for a reload. */
+void http_on_reloaded(struct server_context *server, bool good, const char *text);
+/* Answers all requests that wait for the plant that is about to be replaced. */
+void http_release_plant(struct server_context *server);
+/* Sends a complete short answer in plain text. Returns what the lws callback is to return. */
 int http_answer(struct lws *wsi, int status, const char *text);
 
 #endif

@@ -9,100 +9,101 @@
 static const int64_t TELL_NS = 500 * NS_PER_MS; /* between two lists of followers: hundreds may come at once */
 
 /* Who followed the session that this one has resumed follows it. */
-static void take_back(struct server_context *hub, struct session *session)
+static void take_back(struct server_context *server, struct session *session)
 {
-    for (struct stream *stream = hub->streams; stream; stream = stream->next) {
+    for (struct stream *stream = server->streams; stream; stream = stream->next) {
         struct session *other = stream->session;
-        bool was = other->leader && other->leader != session && other->leader->called == session->called;
-        if (other != session && (was || other->left == session->called))
+        bool was = other->following.leader && other->following.leader != session &&
+                   other->following.leader->identity.number == session->identity.number;
+        if (other != session && (was || other->following.left == session->identity.number))
             session_follow(other, session, clock_mono_ns());
     }
 }
 
 /* The followers of one become those of another (NULL: of nobody). */
-static void hand_over(struct server_context *hub, const struct session *from, struct session *to)
+static void hand_over(struct server_context *server, const struct session *from, struct session *to)
 {
-    for (struct stream *stream = hub->streams; stream; stream = stream->next)
-        if (stream->session->leader == from)
+    for (struct stream *stream = server->streams; stream; stream = stream->next)
+        if (stream->session->following.leader == from)
             session_follow(stream->session, to, clock_mono_ns());
 }
 
 /* What all of them see does not change, but who moves it does. */
-static void resolve_lead(struct server_context *hub, struct session *session)
+static void resolve_lead(struct server_context *server, struct session *session)
 {
-    const struct stream *other = stream_called(hub, session->lead);
+    const struct stream *other = stream_called(server, session->following.heir_wanted);
     struct session *heir = other ? other->session : NULL;
-    if (!heir || heir->leader != session) {
+    if (!heir || heir->following.leader != session) {
         session_lead_nobody(session);
         return;
     }
     session_inherit(heir, session);
     session_follow(heir, NULL, clock_mono_ns());
-    hand_over(hub, session, heir);
+    hand_over(server, session, heir);
     session_follow(session, heir, clock_mono_ns());
 }
 
-void follow_resolve(struct server_context *hub, struct stream *stream)
+void follow_resolve(struct server_context *server, struct stream *stream)
 {
     struct session *session = stream->session;
-    if (session->returned)
-        take_back(hub, session);
-    session->returned = false;
-    if (session->lead)
-        resolve_lead(hub, session);
-    session->lead = 0;
-    if (!session->follow_asked)
+    if (session->identity.returned)
+        take_back(server, session);
+    session->identity.returned = false;
+    if (session->following.heir_wanted)
+        resolve_lead(server, session);
+    session->following.heir_wanted = 0;
+    if (!session->following.asked)
         return;
-    session->follow_asked = false;
-    struct stream *other = session->follow ? stream_called(hub, session->follow) : NULL;
-    struct session *leader = other ? other->session->leader ? other->session->leader : other->session : NULL;
-    if (session->follow && (!leader || leader == session || !leader->hello)) {
+    session->following.asked = false;
+    struct stream *other = session->following.wanted ? stream_called(server, session->following.wanted) : NULL;
+    struct session *leader = other ? other->session->following.leader ? other->session->following.leader : other->session : NULL;
+    if (session->following.wanted && (!leader || leader == session || !leader->hello)) {
         session_follow_nobody(session);
         return;
     }
     if (leader)
-        hand_over(hub, session, leader);
+        hand_over(server, session, leader);
     session_follow(session, leader, clock_mono_ns());
 }
 
-bool follow_spread(struct server_context *hub, const struct stream *leader)
+bool follow_spread(struct server_context *server, const struct stream *leader)
 {
     bool any = false;
-    for (struct stream *stream = hub->streams; stream; stream = stream->next) {
-        if (stream->session->leader != leader->session)
+    for (struct stream *stream = server->streams; stream; stream = stream->next) {
+        if (stream->session->following.leader != leader->session)
             continue;
-        session_on_leader(stream->session, leader->session->input_ns);
+        session_on_leader(stream->session, leader->session->demand.input_ns);
         any = true;
     }
     return any;
 }
 
-void follow_forget(struct server_context *hub, const struct stream *leader)
+void follow_forget(struct server_context *server, const struct stream *leader)
 {
-    const struct stream *newer = stream_called(hub, leader->session->called);
+    const struct stream *newer = stream_called(server, leader->session->identity.number);
     struct session *again = newer ? newer->session : NULL; /* has resumed it while it was still there */
-    for (struct stream *stream = hub->streams; stream; stream = stream->next)
-        if (stream->session->leader == leader->session && again && again != stream->session)
+    for (struct stream *stream = server->streams; stream; stream = stream->next)
+        if (stream->session->following.leader == leader->session && again && again != stream->session)
             session_follow(stream->session, again, clock_mono_ns());
-        else if (stream->session->leader == leader->session)
+        else if (stream->session->following.leader == leader->session)
             session_leader_gone(stream->session, clock_mono_ns());
-    if (leader->session->leader)
-        leader->session->leader->followers_changed = true;
+    if (leader->session->following.leader)
+        leader->session->following.leader->following.followers_changed = true;
 }
 
-void follow_tell(struct server_context *hub, int64_t now_ns)
+void follow_tell(struct server_context *server, int64_t now_ns)
 {
-    for (struct stream *stream = hub->streams; stream; stream = stream->next) {
+    for (struct stream *stream = server->streams; stream; stream = stream->next) {
         struct session *session = stream->session;
         uint64_t *followers = NULL;
         size_t count = 0, capacity = 0;
-        if (!session->followers_changed || now_ns - session->followers_ns < TELL_NS)
+        if (!session->following.followers_changed || now_ns - session->following.followers_ns < TELL_NS)
             continue;
-        for (const struct stream *other = hub->streams; other; other = other->next) {
-            if (other->session->leader != session)
+        for (const struct stream *other = server->streams; other; other = other->next) {
+            if (other->session->following.leader != session)
                 continue;
             mem_grow(&followers, &capacity, count + 1, sizeof(*followers));
-            followers[count++] = other->session->called;
+            followers[count++] = other->session->identity.number;
         }
         session_say_followers(session, followers, count, now_ns);
         mem_free(followers);
@@ -112,17 +113,18 @@ void follow_tell(struct server_context *hub, int64_t now_ns)
 /* Whose view it sees. */
 static struct session *seen(struct session *session)
 {
-    return session->leader ? session->leader : session;
+    return session->following.leader ? session->following.leader : session;
 }
 
-void follow_share_steps(struct server_context *hub)
+void follow_share_steps(struct server_context *server)
 {
     struct stream *stream;
-    for (stream = hub->streams; stream; stream = stream->next)
-        memset(stream->session->steps, 0, sizeof(stream->session->steps));
-    for (stream = hub->streams; stream; stream = stream->next)
-        if (stream->session->pacer.ladder.known)
-            seen(stream->session)->steps[stream->session->pacer.ladder.step]++;
-    for (stream = hub->streams; stream; stream = stream->next)
-        stream->session->common_step = quality_ladder_common(&seen(stream->session)->pacer.ladder, seen(stream->session)->steps);
+    for (stream = server->streams; stream; stream = stream->next)
+        memset(stream->session->delivery.steps, 0, sizeof(stream->session->delivery.steps));
+    for (stream = server->streams; stream; stream = stream->next)
+        if (stream->session->delivery.pacer.ladder.known)
+            seen(stream->session)->delivery.steps[stream->session->delivery.pacer.ladder.step]++;
+    for (stream = server->streams; stream; stream = stream->next)
+        stream->session->delivery.common_step =
+            quality_ladder_common(&seen(stream->session)->delivery.pacer.ladder, seen(stream->session)->delivery.steps);
 }

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What goes to one client: texts and pictures, one write per writeable callback, so that lws never has to keep what a socket does
+/* What goes to one client: texts and frames, one write per writeable callback, so that lws never has to keep what a socket does
    not take. */
 #include <string.h>
 
@@ -23,11 +23,11 @@ static const struct text *padded(struct text *text)
 }
 
 /* False: the connection is gone. *wrote: there was something to say. */
-static bool write_markers(struct server_context *hub, struct stream *stream, bool *wrote)
+static bool write_markers(struct server_context *server, struct stream *stream, bool *wrote)
 {
     struct text text = { 0 };
     bool open = session_is_open(stream->session);
-    char *markers = open ? NULL : marker_text(stream->sending->packet->frame, stream->seq, &stream->said, &hub->marker_lists);
+    char *markers = open ? NULL : marker_text(stream->sending->packet->frame, stream->seq, &stream->known, &server->marker_lists);
     *wrote = markers != NULL;
     if (!markers)
         return true;
@@ -55,12 +55,12 @@ static void camera_to_wire(const struct camera *camera, struct wire_frame *heade
     header_out->height_m = (float)camera->height_m;
 }
 
-/* --- the packets of a picture, and the parts of each ------------------------------------------------------------------------- */
+/* --- the packets of a frame, and the parts of each -------------------------------------------------------------------- */
 
 static const struct packet *packet_now(const struct stream *stream)
 {
-    const struct encoded_frame *picture = stream->sending;
-    return stream->packet < picture->earlier_count ? picture->earlier[stream->packet] : picture->packet;
+    const struct encoded_frame *encoded = stream->sending;
+    return stream->packet < encoded->earlier_count ? encoded->earlier[stream->packet] : encoded->packet;
 }
 
 static bool is_last_part(const struct stream *stream)
@@ -84,13 +84,13 @@ static uint16_t flags_of(const struct stream *stream)
     bool last = is_last_part(stream), live = packet->frame->oldest_age_ns != INT64_MAX;
     bool still = last && packet->frame->view.tier == TIER_REFINED;
     return (uint16_t)((packet->key ? WIRE_FLAG_KEY : 0) | (still ? WIRE_FLAG_STILL : 0) | (live ? 0 : WIRE_FLAG_NO_LIVE_DATA) |
-                      (last ? 0 : WIRE_FLAG_MORE) | (stream->sending->wish.of_data ? WIRE_FLAG_DATA : 0) |
+                      (last ? 0 : WIRE_FLAG_MORE) | (stream->sending->request.of_data ? WIRE_FLAG_DATA : 0) |
                       (packet->frame->view.at_us ? WIRE_FLAG_PAST : 0));
 }
 
 static struct wire_frame frame_header(const struct stream *stream)
 {
-    const struct encoded_frame *picture = stream->sending;
+    const struct encoded_frame *encoded = stream->sending;
     const struct packet *packet = packet_now(stream);
     const struct packet_part *part = &packet->parts[stream->part];
     const struct frame *frame = packet->frame;
@@ -100,12 +100,12 @@ static struct wire_frame frame_header(const struct stream *stream)
         .payload_bytes = (uint32_t)part->count,
         .seq = stream->seq,
         .flags = flags_of(stream),
-        .camera_seq = picture->wish.view.camera_seq,
-        .params_seq = picture->wish.view.params_seq,
+        .camera_seq = encoded->request.view.camera_seq,
+        .params_seq = encoded->request.view.params_seq,
         .oldest_age_ms = frame->oldest_age_ns == INT64_MAX ? WIRE_NO_AGE : us_of(frame->oldest_age_ns / 1000),
         .data_time_us = (uint64_t)(frame->data_utc_ns / 1000),
         .sent_time_us = (uint64_t)(clock_utc_ns() / 1000),
-        .wait_us = us_of(picture->wait_ns),
+        .wait_us = us_of(encoded->wait_ns),
         .field_us = us_of(frame->field_ns),
         .render_us = us_of(frame->render_ns + frame->readback_ns),
         .encode_us = us_of(packet->encode_ns),
@@ -120,13 +120,13 @@ static struct wire_frame frame_header(const struct stream *stream)
     return out;
 }
 
-static void part_sent(struct server_context *hub, struct stream *stream)
+static void part_sent(struct server_context *server, struct stream *stream)
 {
     if (!is_last_part(stream)) {
         next_part(stream);
         return;
     }
-    counter_inc(hub->counters.frames, 1);
+    counter_inc(server->counters.frames, 1);
     encoded_frame_destroy(&stream->sending);
 }
 
@@ -139,11 +139,11 @@ static size_t put_header(struct stream *stream, uint8_t *bytes)
     return WIRE_FRAME_HEADER_BYTES;
 }
 
-static bool write_slice(struct server_context *hub, struct stream *stream)
+static bool write_slice(struct server_context *server, struct stream *stream)
 {
     const struct packet *packet = packet_now(stream);
     const struct packet_part *part = &packet->parts[stream->part];
-    uint8_t *out = hub->out + LWS_PRE;
+    uint8_t *out = server->out + LWS_PRE;
     enum lws_write_protocol how = stream->step == SEND_HEADER ? LWS_WRITE_BINARY : LWS_WRITE_CONTINUATION;
     size_t head = stream->step == SEND_HEADER ? put_header(stream, out) : 0;
     size_t left = part->count - stream->sent, slice = left < SLICE_BYTES - head ? left : SLICE_BYTES - head;
@@ -154,63 +154,63 @@ static bool write_slice(struct server_context *hub, struct stream *stream)
     stream->sent += slice;
     stream->sent_all += slice;
     session_wrote(stream->session, slice == left && is_last_part(stream), clock_mono_ns());
-    counter_inc(hub->counters.frame_bytes, (int64_t)(head + slice));
+    counter_inc(server->counters.frame_bytes, (int64_t)(head + slice));
     if (slice == left)
-        part_sent(hub, stream);
+        part_sent(server, stream);
     return good;
 }
 
-static bool write_picture(struct server_context *hub, struct stream *stream)
+static bool write_picture(struct server_context *server, struct stream *stream)
 {
     if (stream->step == SEND_MARKERS) {
-        bool wrote, good = write_markers(hub, stream, &wrote);
+        bool wrote, good = write_markers(server, stream, &wrote);
         stream->step = SEND_HEADER;
         if (wrote)
             return good;
     }
-    return write_slice(hub, stream);
+    return write_slice(server, stream);
 }
 
-/* --- pictures that are not sent to their end ------------------------------------------------------------------------------- */
+/* --- frames that are not sent to their end ---------------------------------------------------------------------------- */
 
-void stream_give_up(struct server_context *hub, struct stream *stream, int64_t now_ns)
+void stream_give_up(struct server_context *server, struct stream *stream, int64_t now_ns)
 {
     if (!stream->sending || stream->step != SEND_PAYLOAD ||
         !session_gives_up(stream->session, stream->sending, encoded_frame_bytes(stream->sending) - stream->sent_all, now_ns))
         return;
     session_gave_up(stream->session);
-    counter_inc(hub->counters.given_up, 1);
+    counter_inc(server->counters.given_up, 1);
     stream->cut = true;
     encoded_frame_destroy(&stream->sending);
 }
 
 /* The message ends before its header says. */
-static bool write_end(struct server_context *hub, struct stream *stream)
+static bool write_end(struct server_context *server, struct stream *stream)
 {
     stream->cut = false;
     session_wrote(stream->session, true, clock_mono_ns());
-    return net_write(hub, stream->wsi, "", 0, LWS_WRITE_CONTINUATION);
+    return net_write(server, stream->wsi, "", 0, LWS_WRITE_CONTINUATION);
 }
 
-/* --- round trips ------------------------------------------------------------------------------------------------------------- */
+/* --- round trips ------------------------------------------------------------------------------------------------------ */
 
-/* While pictures go, and none is under way: a pong behind one would tell its transfer, not the round trip. */
+/* While frames go, and none is under way: a pong behind one would tell its transfer, not the round trip. */
 static bool ping_due(const struct stream *stream, int64_t now_ns)
 {
-    const struct pacer *pacer = &stream->session->pacer;
+    const struct pacer *pacer = &stream->session->delivery.pacer;
     bool first = stream->first == FIRST_TEXTS && stream->first_bytes > 0 && !session_has_text(stream->session, now_ns);
     if (stream->sending || stream->ping != stream->pong || pacer->flight_count > 0)
         return false;
     return stream->ping == 0 || first || (pacer->acked.sent_ns > stream->ping_ns && now_ns - stream->ping_ns >= PING_NS);
 }
 
-static bool write_ping(struct server_context *hub, struct stream *stream, int64_t now_ns)
+static bool write_ping(struct server_context *server, struct stream *stream, int64_t now_ns)
 {
     stream->ping++;
     if (stream->first == FIRST_TEXTS && stream->first_bytes > 0)
         stream->first = FIRST_PING;
     stream->ping_ns = now_ns;
-    return net_write(hub, stream->wsi, &stream->ping, sizeof(stream->ping), LWS_WRITE_PING);
+    return net_write(server, stream->wsi, &stream->ping, sizeof(stream->ping), LWS_WRITE_PING);
 }
 
 void stream_on_pong(struct stream *stream, const void *bytes, size_t count)
@@ -231,11 +231,11 @@ void stream_on_pong(struct stream *stream, const void *bytes, size_t count)
     }
 }
 
-/* --- all of it ----------------------------------------------------------------------------------------------------------------- */
+/* --- all of it -------------------------------------------------------------------------------------------------------- */
 
 bool stream_has_output(const struct stream *stream, int64_t now_ns)
 {
-    return stream->sending || stream->cut || stream->session->ready || session_has_text(stream->session, now_ns) ||
+    return stream->sending || stream->cut || stream->session->delivery.ready || session_has_text(stream->session, now_ns) ||
            ping_due(stream, now_ns);
 }
 
@@ -247,30 +247,30 @@ static void note_first(struct stream *stream, size_t bytes, int64_t now_ns)
         stream->first_bytes += bytes;
 }
 
-/* Texts go between pictures, never into one. */
-bool stream_send(struct server_context *hub, struct stream *stream)
+/* Texts go between frames, never into one. */
+bool stream_send(struct server_context *server, struct stream *stream)
 {
     struct session *session = stream->session;
     struct text text = { 0 };
     bool good = true;
     int64_t now_ns = clock_mono_ns();
-    stream_give_up(hub, stream, now_ns);
+    stream_give_up(server, stream, now_ns);
     if (stream->cut)
-        return write_end(hub, stream);
+        return write_end(server, stream);
     if (stream->sending)
-        return write_picture(hub, stream);
+        return write_picture(server, stream);
     if (ping_due(stream, now_ns))
-        return write_ping(hub, stream, now_ns);
+        return write_ping(server, stream, now_ns);
     padded(&text);
     if (session_next_text(session, now_ns, clock_utc_ns(), &text)) {
         note_first(stream, text.length, now_ns);
         good = write_text(stream, text.at + LWS_PRE, text.length - LWS_PRE);
     } else if ((stream->sending = session_next_frame(session, now_ns, &stream->seq))) {
-        latency_stages_sent(&hub->stages, stream->sending, now_ns);
+        latency_stages_sent(&server->latency, stream->sending, now_ns);
         stream->step = SEND_MARKERS;
         stream->sent = stream->sent_all = 0;
         stream->packet = stream->part = 0;
-        good = write_picture(hub, stream);
+        good = write_picture(server, stream);
     }
     text_finish(&text);
     return good;

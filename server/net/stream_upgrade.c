@@ -6,41 +6,41 @@
 #include "message/json_fields.h"
 #include "net/connection.h"
 
-static int refuse(struct server_context *hub, struct lws *wsi, int status, const char *text)
+static int refuse(struct server_context *server, struct lws *wsi, int status, const char *text)
 {
-    counter_inc(hub->counters.refused, 1);
+    counter_inc(server->counters.refused, 1);
     return http_answer(wsi, status, text) < 0 ? -1 : 1;
 }
 
 /* A page of another host must not use the browser of someone who may: same host, or no browser. */
-static bool origin_allowed(const struct server_context *hub, struct lws *wsi)
+static bool origin_allowed(const struct server_context *server, struct lws *wsi)
 {
     char origin[256], host[256];
     return connection_header(wsi, WSI_TOKEN_ORIGIN, origin, sizeof(origin)) && connection_header(wsi, WSI_TOKEN_HOST, host, sizeof(host)) &&
-           access_origin(&hub->params.access, origin, host, hub->tls != NULL);
+           access_origin(&server->params.access, origin, host, server->tls != NULL);
 }
 
-static int refuse_protocol(struct server_context *hub, struct lws *wsi, const char *list)
+static int refuse_protocol(struct server_context *server, struct lws *wsi, const char *list)
 {
     char asked[48], *text = mem_printf("subprotocol %s is unknown; this server speaks " WIRE_SUBPROTOCOL "\n", quoted(list, asked));
-    int result = refuse(hub, wsi, HTTP_STATUS_BAD_REQUEST, text);
+    int result = refuse(server, wsi, HTTP_STATUS_BAD_REQUEST, text);
     mem_free(text);
     return result;
 }
 
-int stream_check_upgrade(struct server_context *hub, struct lws *wsi)
+int stream_check_upgrade(struct server_context *server, struct lws *wsi)
 {
     char path[16], list[512];
     struct refusal refusal;
     if (lws_hdr_copy(wsi, path, sizeof(path), WSI_TOKEN_GET_URI) < 0 || strcmp(path, "/stream") != 0)
-        return refuse(hub, wsi, HTTP_STATUS_NOT_FOUND, "the stream is at /stream\n");
-    if (!connection_identify(hub, wsi, &refusal))
-        return refuse(hub, wsi, refusal.status, refusal.text);
-    if (!origin_allowed(hub, wsi))
-        return refuse(hub, wsi, HTTP_STATUS_FORBIDDEN, "this origin is not allowed\n");
+        return refuse(server, wsi, HTTP_STATUS_NOT_FOUND, "the stream is at /stream\n");
+    if (!connection_identify(server, wsi, &refusal))
+        return refuse(server, wsi, refusal.status, refusal.text);
+    if (!origin_allowed(server, wsi))
+        return refuse(server, wsi, HTTP_STATUS_FORBIDDEN, "this origin is not allowed\n");
     if (!connection_header(wsi, WSI_TOKEN_PROTOCOL, list, sizeof(list)))
-        return refuse(hub, wsi, 431, "a header is too long\n");
+        return refuse(server, wsi, 431, "a header is too long\n");
     if (list[0] && !access_list_has(list, WIRE_SUBPROTOCOL))
-        return refuse_protocol(hub, wsi, list);
+        return refuse_protocol(server, wsi, list);
     return 0;
 }

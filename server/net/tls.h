@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The certificate: checked before it is served, and taken anew when its files change. Thread: the loop. */
+/* The TLS certificate: checked before it is served, and read again when its files change. Thread: the loop. */
 #ifndef NET_TLS_H
 #define NET_TLS_H
 #include <openssl/ssl.h>
@@ -8,13 +8,14 @@
 #include "base/log.h"
 
 struct tls;
-/* Both are PEM files. NULL: they cannot be served; the reason is logged. */
+/* Reads both PEM files. Returns NULL if they cannot be served; the reason is logged. */
 struct tls *tls_create(struct log *log, const char *cert_path, const char *key_path);
 void tls_destroy(struct tls **tls); /* &NULL is fine; leaves NULL */
-/* What connections are made with from now on. */
+/* Has the OpenSSL context use the certificate, now and whenever it changes. */
 void tls_serve(struct tls *tls, SSL_CTX *context);
-/* Looks whether the files are others by now. A certificate that cannot be served leaves the old one in force. */
+/* Reads the files again if they changed. A certificate that cannot be served leaves the old one in force; logged. */
 void tls_look(struct tls *tls);
-bool tls_is_called(const struct tls *tls, const char *name); /* the certificate is for this name */
+/* Returns whether the certificate is for that host name. */
+bool tls_is_called(const struct tls *tls, const char *name);
 
 #endif

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Pictures that a GPU has been given whole and that are waited for, oldest first: another one is drawn meanwhile. Thread: the render
-   thread. */
+/* Awaited frames: given to the GPU whole and not read back yet, oldest first, so that the next is drawn meanwhile. Thread: the
+   render thread. */
 #ifndef SERVICE_AWAITED_FRAMES_H
 #define SERVICE_AWAITED_FRAMES_H
-#include "service/request_group.h"
 #include "render/split_view.h"
+#include "service/request_group.h"
 #include "value/snapshot_cache.h"
 #include "value/store.h"
 
@@ -13,25 +13,28 @@ enum { AWAITED_FRAMES_MOST = 3 };
 struct awaited_frames {
     struct awaited_frame {
         struct split_view *split;
-        struct request_group batch;                   /* whom it is for */
-        const struct historical_snapshot *historical; /* what it shows, held; NULL: the snapshot */
+        struct request_group group;                   /* whose requests it answers */
+        const struct historical_snapshot *historical; /* its readings, a reference; NULL: they are `snapshot` */
         struct snapshot *snapshot;
-        uint64_t content; /* split_view_content */
+        uint64_t content; /* content hash of what it shows */
         int64_t field_ns;
     } at[AWAITED_FRAMES_MOST];
     int count;
 };
 
-void awaited_frames_init(struct awaited_frames *flying, size_t tag_count);
-void awaited_frames_finish(struct awaited_frames *flying); /* none is under way */
-/* There is room. Takes split, moment and batch over, and the snapshot where there is no moment; *batch and *snapshot are others then, of
-   no content. */
-void awaited_frames_push(struct awaited_frames *flying, const struct awaited_frame *picture, struct request_group *batch,
+/* Allocates the snapshots, of tag_count readings each. */
+void awaited_frames_init(struct awaited_frames *in_flight, size_t tag_count);
+/* Frees them; no frame may be in flight. */
+void awaited_frames_finish(struct awaited_frames *in_flight);
+/* Adds a frame; there must be room. Takes over its split view, historical snapshot and the group, and, where there is no historical
+   snapshot, *snapshot. Leaves an empty group and another snapshot, of no content, in their place. */
+void awaited_frames_push(struct awaited_frames *in_flight, const struct awaited_frame *frame, struct request_group *group,
                          struct snapshot **snapshot);
-/* The one that is drawn for somebody else already. NULL: none. */
-struct awaited_frame *awaited_frames_find(struct awaited_frames *flying, uint64_t content);
-/* The oldest has come down, its moment is given back; its batch and snapshot serve the next. */
-const struct snapshot *awaited_frames_readings(const struct awaited_frame *picture); /* what it shows */
-void awaited_frames_pop(struct awaited_frames *flying);
+/* Returns the frame of that content, or NULL. */
+struct awaited_frame *awaited_frames_find(struct awaited_frames *in_flight, uint64_t content);
+/* Returns the readings that the frame shows. */
+const struct snapshot *awaited_frames_readings(const struct awaited_frame *frame);
+/* Removes the oldest, which has been read back and whose historical snapshot was given back. Its memory serves the next. */
+void awaited_frames_pop(struct awaited_frames *in_flight);
 
 #endif

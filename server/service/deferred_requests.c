@@ -4,35 +4,35 @@
 
 #include <string.h>
 
-bool deferred_requests_push(struct deferred_requests *held, struct request_group *batch)
+bool deferred_requests_push(struct deferred_requests *deferred, struct request_group *group)
 {
-    if (held->count == HELD)
+    if (deferred->count == DEFERRED_MOST)
         return false;
-    struct request_group empty = held->batches[held->count];
-    held->batches[held->count++] = *batch;
-    *batch = empty;
-    batch->count = 0;
+    struct request_group empty = deferred->groups[deferred->count];
+    deferred->groups[deferred->count++] = *group;
+    *group = empty;
+    group->count = 0;
     return true;
 }
 
-void deferred_requests_pop(struct deferred_requests *held, struct request_group *batch)
+void deferred_requests_pop(struct deferred_requests *deferred, struct request_group *group)
 {
-    struct request_group empty = *batch;
-    *batch = held->batches[0];
-    memmove(held->batches, held->batches + 1, --held->count * sizeof(*batch));
+    struct request_group empty = *group;
+    *group = deferred->groups[0];
+    memmove(deferred->groups, deferred->groups + 1, --deferred->count * sizeof(*group));
     empty.count = 0;
-    held->batches[held->count] = empty;
+    deferred->groups[deferred->count] = empty;
 }
 
-bool deferred_requests_due(struct deferred_requests *held, bool others)
+bool deferred_requests_due(struct deferred_requests *deferred, bool others)
 {
-    bool due = held->count > 0 && (held->due || !others);
-    held->due = !due;
+    bool due = deferred->count > 0 && (deferred->due || !others);
+    deferred->due = !due;
     return due;
 }
 
-void deferred_requests_finish(struct deferred_requests *held)
+void deferred_requests_finish(struct deferred_requests *deferred)
 {
-    for (size_t i = 0; i < HELD; i++)
-        request_group_finish(&held->batches[i]);
+    for (size_t i = 0; i < DEFERRED_MOST; i++)
+        request_group_finish(&deferred->groups[i]);
 }

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Frames to packets on the workers: the jobs of one chain one after the other, those of different chains side by side. */
+/* Frames to packets on the workers: the jobs of one stream one after the other, those of different streams side by side. */
 #include "service/encode_queue.h"
 
 #include <pthread.h>
@@ -24,19 +24,19 @@ struct encode_queue {
     pthread_cond_t job_ended;
     /* --- below: under lock */
     struct idle_encoder *idle;
-    struct encode_streams chains;
+    struct encode_streams streams;
     int jobs;
-    int heavy; /* jobs on the workers that are of pictures over HTTP: of many pixels, maybe, and losslessly */
+    int heavy; /* jobs on the workers that are of frames over HTTP: of many pixels, maybe, and losslessly */
     struct job *heavy_waiting, **heavy_last;
     struct request_group rest; /* of encode_queue_submit */
     struct encode_plan plan;
 };
 
 struct job {
-    struct encode_queue *encoding;
-    struct encode_stream *chain;
+    struct encode_queue *queue;
+    struct encode_stream *stream;
     struct frame *frame;        /* NULL: nothing to be encoded */
-    struct request_group batch; /* all of one codec and quality */
+    struct request_group group; /* all of one codec and quality */
     struct encoder_params quality;
     bool again;
     uint64_t number, *from;
@@ -44,82 +44,82 @@ struct job {
     bool heavy;
 };
 
-struct work {                  /* of a chain */
+struct work {                  /* of a stream */
     struct job *first, **last; /* under lock; the first is running */
     struct encoder *encoder;   /* of a codec that is a stream; and below: only the running job's */
-    struct frame *before;      /* what the clients of the chain show, in this quality */
+    struct frame *before;      /* what the clients of the stream show, in this quality */
     struct encoder_params quality;
 };
 
-/* --- life ---------------------------------------------------------------------------------------------------------------------- */
+/* --- life ------------------------------------------------------------------------------------------------------------- */
 
-static void add_counters(struct encode_queue *encoding)
+static void add_counters(struct encode_queue *queue)
 {
-    struct counters *counters = encoding->params.counters;
+    struct counters *counters = queue->params.counters;
     for (int codec = WIRE_CODEC_JPEG; codec < CODECS; codec++) {
         const char *name = name_of(names_codec, codec);
         char *encodes = mem_printf("plantcast_encodes_total{codec=\"%s\"}", name);
         char *us = mem_printf("plantcast_encode_us_total{codec=\"%s\"}", name);
         char *bytes = mem_printf("plantcast_encode_bytes_total{codec=\"%s\"}", name);
-        encoding->encodes[codec] = counters_add(counters, encodes, "counter", "Pictures encoded.");
-        encoding->encode_us[codec] = counters_add(counters, us, "counter", "Microseconds spent encoding.");
-        encoding->bytes[codec] = counters_add(counters, bytes, "counter", "Bytes that pictures were encoded to.");
+        queue->encodes[codec] = counters_add(counters, encodes, "counter", "Pictures encoded.");
+        queue->encode_us[codec] = counters_add(counters, us, "counter", "Microseconds spent encoding.");
+        queue->bytes[codec] = counters_add(counters, bytes, "counter", "Bytes that pictures were encoded to.");
         mem_free(encodes);
         mem_free(us);
         mem_free(bytes);
     }
-    encoding->failures = counters_add(counters, "plantcast_encode_failures_total", "counter", "Pictures that could not be encoded.");
-    encoding->chain_count =
+    queue->failures = counters_add(counters, "plantcast_encode_failures_total", "counter", "Pictures that could not be encoded.");
+    queue->chain_count =
         counters_add(counters, "plantcast_encode_streams", "gauge", "Streams of packets, each for the clients that share it.");
 }
 
 struct encode_queue *encode_queue_create(const struct encode_queue_params *params)
 {
-    struct encode_queue *encoding = mem_new(sizeof(*encoding));
-    encoding->params = *params;
-    encoding->heavy_last = &encoding->heavy_waiting;
-    pthread_mutex_init(&encoding->lock, NULL);
-    pthread_cond_init(&encoding->job_ended, NULL);
-    add_counters(encoding);
-    return encoding;
+    struct encode_queue *queue = mem_new(sizeof(*queue));
+    queue->params = *params;
+    queue->heavy_last = &queue->heavy_waiting;
+    pthread_mutex_init(&queue->lock, NULL);
+    pthread_cond_init(&queue->job_ended, NULL);
+    add_counters(queue);
+    return queue;
 }
 
-static bool is_busy(const struct encode_stream *chain)
+static bool is_busy(const struct encode_stream *stream)
 {
-    const struct work *work = chain->work;
+    const struct work *work = stream->work;
     return work->first != NULL;
 }
 
-void encode_queue_sweep(struct encode_queue *encoding)
+void encode_queue_sweep(struct encode_queue *queue)
 {
     for (;;) {
-        pthread_mutex_lock(&encoding->lock);
-        struct encode_stream *chain = encode_streams_take_empty(&encoding->chains, is_busy);
-        pthread_mutex_unlock(&encoding->lock);
-        if (!chain)
+        pthread_mutex_lock(&queue->lock);
+        struct encode_stream *stream = encode_streams_take_empty(&queue->streams, is_busy);
+        pthread_mutex_unlock(&queue->lock);
+        if (!stream)
             return;
-        struct work *work = chain->work;
+        struct work *work = stream->work;
         encoder_destroy(&work->encoder);
         frame_unref(&work->before);
         mem_free(work);
-        encode_stream_destroy(&chain);
-        counter_inc(encoding->chain_count, -1);
+        encode_stream_destroy(&stream);
+        counter_inc(queue->chain_count, -1);
     }
 }
 
-void encode_queue_forget(struct encode_queue *encoding, uint64_t client)
+void encode_queue_forget(struct encode_queue *queue, uint64_t client)
 {
-    pthread_mutex_lock(&encoding->lock);
-    encode_streams_forget(&encoding->chains, client);
-    pthread_mutex_unlock(&encoding->lock);
+    pthread_mutex_lock(&queue->lock);
+    encode_streams_forget(&queue->streams, client);
+    pthread_mutex_unlock(&queue->lock);
 }
 
-void encode_queue_drop_idle(struct encode_queue *encoding)
+void encode_queue_drop_idle(struct encode_queue *queue)
 {
-    pthread_mutex_lock(&encoding->lock);
-    struct idle_encoder *idle = encoding->idle, *next;
-    encoding->idle = NULL;
-    pthread_mutex_unlock(&encoding->lock);
+    pthread_mutex_lock(&queue->lock);
+    struct idle_encoder *idle = queue->idle, *next;
+    queue->idle = NULL;
+    pthread_mutex_unlock(&queue->lock);
     for (; idle; idle = next) {
         next = idle->next;
         encoder_destroy(&idle->encoder);
@@ -129,68 +129,68 @@ void encode_queue_drop_idle(struct encode_queue *encoding)
 
 void encode_queue_destroy(struct encode_queue **encoding_ptr)
 {
-    struct encode_queue *encoding = *encoding_ptr;
-    if (!encoding)
+    struct encode_queue *queue = *encoding_ptr;
+    if (!queue)
         return;
-    pthread_mutex_lock(&encoding->lock);
-    while (encoding->jobs > 0)
-        pthread_cond_wait(&encoding->job_ended, &encoding->lock);
-    while (encoding->chains.link_count > 0)
-        encode_streams_forget(&encoding->chains, encoding->chains.links[encoding->chains.link_count - 1].client);
-    pthread_mutex_unlock(&encoding->lock);
-    encode_queue_sweep(encoding);
-    encode_queue_drop_idle(encoding);
-    mem_free(encoding->chains.links);
-    request_group_finish(&encoding->rest);
-    mem_free(encoding->plan.from);
-    pthread_cond_destroy(&encoding->job_ended);
-    pthread_mutex_destroy(&encoding->lock);
-    mem_free(encoding);
+    pthread_mutex_lock(&queue->lock);
+    while (queue->jobs > 0)
+        pthread_cond_wait(&queue->job_ended, &queue->lock);
+    while (queue->streams.link_count > 0)
+        encode_streams_forget(&queue->streams, queue->streams.links[queue->streams.link_count - 1].client);
+    pthread_mutex_unlock(&queue->lock);
+    encode_queue_sweep(queue);
+    encode_queue_drop_idle(queue);
+    mem_free(queue->streams.links);
+    request_group_finish(&queue->rest);
+    mem_free(queue->plan.from);
+    pthread_cond_destroy(&queue->job_ended);
+    pthread_mutex_destroy(&queue->lock);
+    mem_free(queue);
     *encoding_ptr = NULL;
 }
 
-/* --- encoders -------------------------------------------------------------------------------------------------------------------- */
+/* --- encoders --------------------------------------------------------------------------------------------------------- */
 
-static struct encoder *encoder_take(struct encode_queue *encoding, struct work *work, enum wire_codec codec)
+static struct encoder *encoder_take(struct encode_queue *queue, struct work *work, enum wire_codec codec)
 {
     const char *name = name_of(names_codec, (int)codec);
     if (encoder_is_stream(name)) {
         if (!work->encoder)
-            work->encoder = encoder_create(encoding->params.log, name, encoding->params.h264_library);
+            work->encoder = encoder_create(queue->params.log, name, queue->params.h264_library);
         return work->encoder;
     }
-    pthread_mutex_lock(&encoding->lock);
-    struct idle_encoder **at = &encoding->idle;
+    pthread_mutex_lock(&queue->lock);
+    struct idle_encoder **at = &queue->idle;
     while (*at && (*at)->codec != codec)
         at = &(*at)->next;
     struct idle_encoder *idle = *at;
     if (idle)
         *at = idle->next;
-    pthread_mutex_unlock(&encoding->lock);
-    struct encoder *encoder = idle ? idle->encoder : encoder_create(encoding->params.log, name, NULL);
+    pthread_mutex_unlock(&queue->lock);
+    struct encoder *encoder = idle ? idle->encoder : encoder_create(queue->params.log, name, NULL);
     mem_free(idle);
     return encoder;
 }
 
-static void encoder_give(struct encode_queue *encoding, const struct work *work, enum wire_codec codec, struct encoder *encoder)
+static void encoder_give(struct encode_queue *queue, const struct work *work, enum wire_codec codec, struct encoder *encoder)
 {
     if (!encoder || encoder == work->encoder)
         return;
     struct idle_encoder *idle = mem_new(sizeof(*idle));
-    pthread_mutex_lock(&encoding->lock);
-    *idle = (struct idle_encoder){ .codec = codec, .encoder = encoder, .next = encoding->idle };
-    encoding->idle = idle;
-    pthread_mutex_unlock(&encoding->lock);
+    pthread_mutex_lock(&queue->lock);
+    *idle = (struct idle_encoder){ .codec = codec, .encoder = encoder, .next = queue->idle };
+    queue->idle = idle;
+    pthread_mutex_unlock(&queue->lock);
 }
 
-static void count(struct encode_queue *encoding, const struct packet *packet)
+static void count(struct encode_queue *queue, const struct packet *packet)
 {
-    counter_inc(encoding->encodes[packet->codec], 1);
-    counter_inc(encoding->encode_us[packet->codec], packet->encode_ns / 1000);
-    counter_inc(encoding->bytes[packet->codec], (int64_t)packet->count);
+    counter_inc(queue->encodes[packet->codec], 1);
+    counter_inc(queue->encode_us[packet->codec], packet->encode_ns / 1000);
+    counter_inc(queue->bytes[packet->codec], (int64_t)packet->count);
 }
 
-/* --- jobs ------------------------------------------------------------------------------------------------------------------------ */
+/* --- jobs ------------------------------------------------------------------------------------------------------------- */
 
 static bool same_quality(const struct encoder_params *a, const struct encoder_params *b)
 {
@@ -200,19 +200,19 @@ static bool same_quality(const struct encoder_params *a, const struct encoder_pa
 /* False: it failed. *out NULL: nothing has changed. */
 static bool encode(struct job *job, struct packet **out)
 {
-    struct encode_queue *encoding = job->encoding;
-    struct work *work = job->chain->work;
-    enum wire_codec codec = job->batch.orders[0].wish.codec;
+    struct encode_queue *queue = job->queue;
+    struct work *work = job->stream->work;
+    enum wire_codec codec = job->group.tickets[0].request.codec;
     struct encoder_params params = job->quality;
-    struct encoder *encoder = encoder_take(encoding, work, codec);
+    struct encoder *encoder = encoder_take(queue, work, codec);
     params.before = !job->again && same_quality(&work->quality, &params) ? work->before : NULL;
-    params.workers = encoding->params.workers;
+    params.workers = queue->params.workers;
     bool good = encoder && encoder_send(encoder, job->frame, &params) == 0;
     if (good && encoder_receive(encoder, out) == 0)
-        count(encoding, *out);
-    encoder_give(encoding, work, codec, encoder);
+        count(queue, *out);
+    encoder_give(queue, work, codec, encoder);
     if (!good) {
-        counter_inc(encoding->failures, 1);
+        counter_inc(queue->failures, 1);
         encoder_destroy(&work->encoder);
     }
     frame_unref(&work->before);
@@ -226,7 +226,7 @@ static uint64_t still_needed(const struct job *job)
 {
     uint64_t least = UINT64_MAX;
     for (; job; job = job->next)
-        for (size_t i = 0; i < job->batch.count; i++)
+        for (size_t i = 0; i < job->group.count; i++)
             least = job->from[i] < least ? job->from[i] : least;
     return least;
 }
@@ -236,22 +236,22 @@ struct run {
     int count; /* negative: gone */
 };
 
-static void take_run(struct job *job, size_t order, struct run *run)
+static void take_run(struct job *job, size_t ticket, struct run *run)
 {
-    pthread_mutex_lock(&job->encoding->lock);
-    run->count = encode_stream_catch_up(job->chain, job->from[order], job->number, run->packets);
+    pthread_mutex_lock(&job->queue->lock);
+    run->count = encode_stream_catch_up(job->stream, job->from[ticket], job->number, run->packets);
     for (int i = 0; i < run->count; i++)
         packet_ref(run->packets[i]);
-    pthread_mutex_unlock(&job->encoding->lock);
+    pthread_mutex_unlock(&job->queue->lock);
 }
 
 static void answer(struct job *job)
 {
-    const struct encode_queue_params *params = &job->encoding->params;
+    const struct encode_queue_params *params = &job->queue->params;
     struct run run;
-    for (size_t i = 0; i < job->batch.count; i++) {
+    for (size_t i = 0; i < job->group.count; i++) {
         take_run(job, i, &run);
-        params->done(params->done_arg, &job->batch.orders[i], run.packets, run.count < 0 ? 0 : run.count, run.count < 0);
+        params->done(params->done_arg, &job->group.tickets[i], run.packets, run.count < 0 ? 0 : run.count, run.count < 0);
         for (int p = 0; p < run.count; p++)
             packet_unref(&run.packets[p]);
     }
@@ -261,113 +261,113 @@ static void answer(struct job *job)
 static void job_destroy(struct job *job)
 {
     frame_unref(&job->frame);
-    request_group_finish(&job->batch);
+    request_group_finish(&job->group);
     mem_free(job->from);
     mem_free(job);
 }
 
 static void run_job(void *arg);
 
-/* Pictures over HTTP leave half of the workers to streams. */
-static void start(struct encode_queue *encoding, struct job *job)
+/* Frames over HTTP leave half of the workers to streams. */
+static void start(struct encode_queue *queue, struct job *job)
 {
-    int most = workers_count(encoding->params.workers) / 2;
-    pthread_mutex_lock(&encoding->lock);
-    bool waits = job->heavy && encoding->heavy >= (most > 1 ? most : 1);
+    int most = workers_count(queue->params.workers) / 2;
+    pthread_mutex_lock(&queue->lock);
+    bool waits = job->heavy && queue->heavy >= (most > 1 ? most : 1);
     if (waits) {
-        *encoding->heavy_last = job;
-        encoding->heavy_last = &job->next_heavy;
+        *queue->heavy_last = job;
+        queue->heavy_last = &job->next_heavy;
     } else {
-        encoding->heavy += job->heavy;
+        queue->heavy += job->heavy;
     }
-    pthread_mutex_unlock(&encoding->lock);
+    pthread_mutex_unlock(&queue->lock);
     if (!waits)
-        workers_submit(encoding->params.workers, run_job, job);
+        workers_submit(queue->params.workers, run_job, job);
 }
 
 /* One of them is done: the next takes its place. */
-static void start_heavy(struct encode_queue *encoding)
+static void start_heavy(struct encode_queue *queue)
 {
-    pthread_mutex_lock(&encoding->lock);
-    struct job *job = encoding->heavy_waiting;
+    pthread_mutex_lock(&queue->lock);
+    struct job *job = queue->heavy_waiting;
     if (job)
-        encoding->heavy_waiting = job->next_heavy;
-    if (!encoding->heavy_waiting)
-        encoding->heavy_last = &encoding->heavy_waiting;
-    encoding->heavy -= !job;
-    pthread_mutex_unlock(&encoding->lock);
+        queue->heavy_waiting = job->next_heavy;
+    if (!queue->heavy_waiting)
+        queue->heavy_last = &queue->heavy_waiting;
+    queue->heavy -= !job;
+    pthread_mutex_unlock(&queue->lock);
     if (job)
-        workers_submit(encoding->params.workers, run_job, job);
+        workers_submit(queue->params.workers, run_job, job);
 }
 
 static void run_job(void *arg)
 {
     struct job *job = arg;
-    struct encode_queue *encoding = job->encoding;
-    struct encode_stream *chain = job->chain;
-    struct work *work = chain->work;
+    struct encode_queue *queue = job->queue;
+    struct encode_stream *stream = job->stream;
+    struct work *work = stream->work;
     struct packet *packet = NULL;
     bool good = !job->frame || encode(job, &packet);
-    pthread_mutex_lock(&encoding->lock);
+    pthread_mutex_lock(&queue->lock);
     if (!good)
-        encode_stream_break(chain);
+        encode_stream_break(stream);
     else if (job->frame)
-        encode_stream_keep(chain, packet, still_needed(job));
-    pthread_mutex_unlock(&encoding->lock);
+        encode_stream_keep(stream, packet, still_needed(job));
+    pthread_mutex_unlock(&queue->lock);
     packet_unref(&packet);
     answer(job);
-    pthread_mutex_lock(&encoding->lock);
+    pthread_mutex_lock(&queue->lock);
     struct job *next = work->first = job->next;
     if (!next)
         work->last = &work->first;
-    pthread_mutex_unlock(&encoding->lock);
+    pthread_mutex_unlock(&queue->lock);
     bool heavy = job->heavy;
     job_destroy(job);
     if (heavy)
-        start_heavy(encoding);
+        start_heavy(queue);
     if (next)
-        start(encoding, next);
-    encode_queue_sweep(encoding);
-    pthread_mutex_lock(&encoding->lock);
-    encoding->jobs--;
-    pthread_cond_broadcast(&encoding->job_ended);
-    pthread_mutex_unlock(&encoding->lock);
+        start(queue, next);
+    encode_queue_sweep(queue);
+    pthread_mutex_lock(&queue->lock);
+    queue->jobs--;
+    pthread_cond_broadcast(&queue->job_ended);
+    pthread_mutex_unlock(&queue->lock);
 }
 
-/* --- from frames to jobs ------------------------------------------------------------------------------------------------------------ */
+/* --- from frames to jobs ---------------------------------------------------------------------------------------------- */
 
-static bool same_coding(const struct request_ticket *order, void *arg)
+static bool same_coding(const struct request_ticket *ticket, void *arg)
 {
-    const struct frame_request *a = &order->wish, *b = arg;
+    const struct frame_request *a = &ticket->request, *b = arg;
     return a->codec == b->codec && a->overlay == b->overlay && same_quality(&a->quality, &b->quality);
 }
 
 /* Under lock. */
-static struct job *make_job(struct encode_queue *encoding, struct frame *frame, struct request_group *orders)
+static struct job *make_job(struct encode_queue *queue, struct frame *frame, struct request_group *tickets)
 {
-    struct encode_plan *plan = &encoding->plan;
+    struct encode_plan *plan = &queue->plan;
     struct job *job = mem_new(sizeof(*job));
-    *job = (struct job){ .encoding = encoding, .chain = plan->chain, .number = plan->number, .batch = *orders, .from = plan->from };
+    *job = (struct job){ .queue = queue, .stream = plan->stream, .number = plan->number, .group = *tickets, .from = plan->from };
     job->frame = plan->encode ? frame_ref(frame) : NULL;
-    job->quality = orders->orders[0].wish.quality;
+    job->quality = tickets->tickets[0].request.quality;
     job->quality.key = plan->key;
     job->again = plan->again;
-    job->heavy = job->frame && orders->orders[0].wish.urgency == URGENCY_SNAPSHOT;
-    *orders = (struct request_group){ 0 };
+    job->heavy = job->frame && tickets->tickets[0].request.urgency == URGENCY_SNAPSHOT;
+    *tickets = (struct request_group){ 0 };
     plan->from = NULL;
     plan->from_capacity = 0;
-    encoding->jobs++;
+    queue->jobs++;
     return job;
 }
 
-/* Under lock. True: nothing of the chain is under way, so that this one may start. */
-static bool append(struct encode_queue *encoding, struct job *job)
+/* Under lock. True: nothing of the stream is under way, so that this one may start. */
+static bool append(struct encode_queue *queue, struct job *job)
 {
-    struct work *work = job->chain->work;
+    struct work *work = job->stream->work;
     if (!work) {
-        work = job->chain->work = mem_new(sizeof(*work));
+        work = job->stream->work = mem_new(sizeof(*work));
         work->last = &work->first;
-        counter_inc(encoding->chain_count, 1);
+        counter_inc(queue->chain_count, 1);
     }
     bool idle = work->first == NULL;
     *work->last = job;
@@ -375,29 +375,29 @@ static bool append(struct encode_queue *encoding, struct job *job)
     return idle;
 }
 
-static void submit_group(struct encode_queue *encoding, struct frame *frame, struct request_group *group)
+static void submit_group(struct encode_queue *queue, struct frame *frame, struct request_group *same)
 {
-    while (group->count > 0) {
-        struct request_group orders = *group;
-        pthread_mutex_lock(&encoding->lock);
-        encode_streams_plan(&encoding->chains, frame, &orders, clock_mono_ns(), &encoding->plan, &encoding->rest);
-        *group = encoding->rest;
-        encoding->rest = (struct request_group){ 0 };
-        struct job *job = make_job(encoding, frame, &orders);
-        bool starts = append(encoding, job);
-        pthread_mutex_unlock(&encoding->lock);
+    while (same->count > 0) {
+        struct request_group tickets = *same;
+        pthread_mutex_lock(&queue->lock);
+        encode_streams_plan(&queue->streams, frame, &tickets, clock_mono_ns(), &queue->plan, &queue->rest);
+        *same = queue->rest;
+        queue->rest = (struct request_group){ 0 };
+        struct job *job = make_job(queue, frame, &tickets);
+        bool starts = append(queue, job);
+        pthread_mutex_unlock(&queue->lock);
         if (starts)
-            start(encoding, job);
+            start(queue, job);
     }
-    request_group_finish(group);
+    request_group_finish(same);
 }
 
-void encode_queue_submit(struct encode_queue *encoding, struct frame *frame, struct request_group *batch)
+void encode_queue_submit(struct encode_queue *queue, struct frame *frame, struct request_group *group)
 {
-    while (batch->count > 0) {
-        struct frame_request first = batch->orders[0].wish;
-        struct request_group group = { 0 };
-        request_group_split(batch, same_coding, &first, &group);
-        submit_group(encoding, frame, &group);
+    while (group->count > 0) {
+        struct frame_request first = group->tickets[0].request;
+        struct request_group same = { 0 };
+        request_group_split(group, same_coding, &first, &same);
+        submit_group(queue, frame, &same);
     }
 }

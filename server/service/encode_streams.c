@@ -7,18 +7,18 @@
 #include "base/clock.h"
 #include "base/mem.h"
 
-static const int64_t JOIN_NS = 2 * NS_PER_S, JOIN_MAX_NS = 64 * NS_PER_S; /* between pictures that stand alone only to let some in */
+static const int64_t JOIN_NS = 2 * NS_PER_S, JOIN_MAX_NS = 64 * NS_PER_S; /* between frames that stand alone only to let some in */
 enum { CATCH_UP = ENCODE_STREAM_KEPT / 2 };                               /* packets; as many may be planned for while they are needed */
-static const size_t KEPT_BYTES = 64 * 1024;                               /* at least; else as much as the last picture that stood alone */
+static const size_t KEPT_BYTES = 64 * 1024;                               /* at least; else as much as the last frame that stood alone */
 
-/* --- who is where ------------------------------------------------------------------------------------------------------------ */
+/* --- who is where ----------------------------------------------------------------------------------------------------- */
 
-static size_t place_of(const struct encode_streams *chains, uint64_t client)
+static size_t place_of(const struct encode_streams *streams, uint64_t client)
 {
-    size_t low = 0, high = chains->link_count;
+    size_t low = 0, high = streams->link_count;
     while (low < high) {
         size_t middle = (low + high) / 2;
-        if (chains->links[middle].client < client)
+        if (streams->links[middle].client < client)
             low = middle + 1;
         else
             high = middle;
@@ -26,288 +26,288 @@ static size_t place_of(const struct encode_streams *chains, uint64_t client)
     return low;
 }
 
-static struct encode_stream_member *find(const struct encode_streams *chains, uint64_t client)
+static struct encode_stream_member *find(const struct encode_streams *streams, uint64_t client)
 {
-    size_t at = place_of(chains, client);
-    return at < chains->link_count && chains->links[at].client == client ? &chains->links[at] : NULL;
+    size_t at = place_of(streams, client);
+    return at < streams->link_count && streams->links[at].client == client ? &streams->links[at] : NULL;
 }
 
-static struct encode_stream_member *find_or_add(struct encode_streams *chains, uint64_t client)
+static struct encode_stream_member *find_or_add(struct encode_streams *streams, uint64_t client)
 {
-    struct encode_stream_member *known = find(chains, client);
+    struct encode_stream_member *known = find(streams, client);
     if (known)
         return known;
-    size_t at = place_of(chains, client);
-    mem_grow(&chains->links, &chains->link_capacity, chains->link_count + 1, sizeof(*chains->links));
-    memmove(chains->links + at + 1, chains->links + at, (chains->link_count++ - at) * sizeof(*chains->links));
-    chains->links[at] = (struct encode_stream_member){ .client = client, .patience_ns = JOIN_NS };
-    return &chains->links[at];
+    size_t at = place_of(streams, client);
+    mem_grow(&streams->links, &streams->link_capacity, streams->link_count + 1, sizeof(*streams->links));
+    memmove(streams->links + at + 1, streams->links + at, (streams->link_count++ - at) * sizeof(*streams->links));
+    streams->links[at] = (struct encode_stream_member){ .client = client, .patience_ns = JOIN_NS };
+    return &streams->links[at];
 }
 
-void encode_streams_forget(struct encode_streams *chains, uint64_t client)
+void encode_streams_forget(struct encode_streams *streams, uint64_t client)
 {
-    struct encode_stream_member *link = find(chains, client);
+    struct encode_stream_member *link = find(streams, client);
     if (!link)
         return;
-    if (link->chain)
-        link->chain->members--;
-    memmove(link, link + 1, (size_t)(chains->links + --chains->link_count - link) * sizeof(*link));
+    if (link->stream)
+        link->stream->members--;
+    memmove(link, link + 1, (size_t)(streams->links + --streams->link_count - link) * sizeof(*link));
 }
 
-/* --- what someone lacks -------------------------------------------------------------------------------------------------------- */
+/* --- what someone lacks ----------------------------------------------------------------------------------------------- */
 
-static bool same_coding(const struct encode_stream *chain, const struct frame *frame, const struct frame_request *wish)
+static bool same_coding(const struct encode_stream *stream, const struct frame *frame, const struct frame_request *request)
 {
-    const struct frame_request *shown = &chain->shown;
-    return shown->codec == wish->codec && shown->overlay == wish->overlay && shown->quality.quality == wish->quality.quality &&
-           shown->quality.full_chroma == wish->quality.full_chroma && shown->view.width_px == frame->width_px &&
+    const struct frame_request *shown = &stream->shown;
+    return shown->codec == request->codec && shown->overlay == request->overlay && shown->quality.quality == request->quality.quality &&
+           shown->quality.full_chroma == request->quality.full_chroma && shown->view.width_px == frame->width_px &&
            shown->view.height_px == frame->height_px;
 }
 
 /* The first number that the client needs. */
-static uint64_t lacks(const struct encode_stream *chain, const struct encode_stream_member *link, const struct request_ticket *order)
+static uint64_t lacks(const struct encode_stream *stream, const struct encode_stream_member *link, const struct request_ticket *ticket)
 {
-    uint64_t next = link && link->chain == chain && !order->wish.alone ? link->position + 1 : 1;
-    return next > chain->key ? next : chain->key;
+    uint64_t next = link && link->stream == stream && !ticket->request.alone ? link->position + 1 : 1;
+    return next > stream->key ? next : stream->key;
 }
 
-static bool reaches(const struct encode_stream *chain, const struct encode_stream_member *link, const struct request_ticket *order)
+static bool reaches(const struct encode_stream *stream, const struct encode_stream_member *link, const struct request_ticket *ticket)
 {
-    uint64_t first = lacks(chain, link, order);
-    return chain->key > 0 && first >= chain->oldest && chain->planned < first + CATCH_UP;
+    uint64_t first = lacks(stream, link, ticket);
+    return stream->key > 0 && first >= stream->oldest && stream->planned < first + CATCH_UP;
 }
 
-/* --- planning ------------------------------------------------------------------------------------------------------------------ */
+/* --- planning --------------------------------------------------------------------------------------------------------- */
 
-/* The chain that most of them are in already and can go on with. */
-static struct encode_stream *most_common(struct encode_streams *chains, const struct request_group *orders)
+/* The stream that most of them are in already and can go on with. */
+static struct encode_stream *most_common(struct encode_streams *streams, const struct request_group *tickets)
 {
     struct encode_stream *best = NULL;
-    for (struct encode_stream *chain = chains->first; chain; chain = chain->next)
-        chain->present = 0;
-    for (size_t i = 0; i < orders->count; i++) {
-        struct encode_stream_member *link = find(chains, orders->orders[i].client);
-        struct encode_stream *chain = link ? link->chain : NULL;
-        if (!chain || chain->shown.codec != orders->orders[i].wish.codec || !reaches(chain, link, &orders->orders[i]))
+    for (struct encode_stream *stream = streams->first; stream; stream = stream->next)
+        stream->present = 0;
+    for (size_t i = 0; i < tickets->count; i++) {
+        struct encode_stream_member *link = find(streams, tickets->tickets[i].client);
+        struct encode_stream *stream = link ? link->stream : NULL;
+        if (!stream || stream->shown.codec != tickets->tickets[i].request.codec || !reaches(stream, link, &tickets->tickets[i]))
             continue;
-        if (++chain->present > (best ? best->present : 0))
-            best = chain;
+        if (++stream->present > (best ? best->present : 0))
+            best = stream;
     }
     return best;
 }
 
 /* It shows this already, and all of it can still be had. */
-static bool shows(const struct encode_stream *chain, const struct frame *frame, const struct frame_request *wish)
+static bool shows(const struct encode_stream *stream, const struct frame *frame, const struct frame_request *request)
 {
-    return !wish->overlay && chain->key > 0 && chain->key >= chain->oldest && chain->planned < chain->key + CATCH_UP &&
-           chain->content == frame->content && same_coding(chain, frame, wish);
+    return !request->overlay && stream->key > 0 && stream->key >= stream->oldest && stream->planned < stream->key + CATCH_UP &&
+           stream->content == frame->content && same_coding(stream, frame, request);
 }
 
-/* One that shows this already; whole: by a picture that stands alone. */
-static struct encode_stream *showing(const struct encode_streams *chains, const struct frame *frame, const struct frame_request *wish,
+/* One that shows this already; whole: by a frame that stands alone. */
+static struct encode_stream *showing(const struct encode_streams *streams, const struct frame *frame, const struct frame_request *request,
                                      bool whole)
 {
-    struct encode_stream *chain = chains->first;
-    while (chain && !(shows(chain, frame, wish) && (!whole || chain->key == chain->planned)))
-        chain = chain->next;
-    return chain;
+    struct encode_stream *stream = streams->first;
+    while (stream && !(shows(stream, frame, request) && (!whole || stream->key == stream->planned)))
+        stream = stream->next;
+    return stream;
 }
 
 /* Most of those who have all of it look at something else. */
-static bool belongs_to_others(const struct encode_streams *chains, const struct encode_stream *chain, const struct frame *frame)
+static bool belongs_to_others(const struct encode_streams *streams, const struct encode_stream *stream, const struct frame *frame)
 {
     size_t all = 0;
-    if (view_equal(&chain->shown.view, &frame->view))
+    if (view_equal(&stream->shown.view, &frame->view))
         return false;
-    for (size_t i = 0; i < chains->link_count; i++)
-        all += chains->links[i].chain == chain && chains->links[i].position == chain->planned;
-    return all > 2 * chain->present;
+    for (size_t i = 0; i < streams->link_count; i++)
+        all += streams->links[i].stream == stream && streams->links[i].position == stream->planned;
+    return all > 2 * stream->present;
 }
 
-static struct encode_stream *add_chain(struct encode_streams *chains)
+static struct encode_stream *add_chain(struct encode_streams *streams)
 {
-    struct encode_stream *chain = mem_new(sizeof(*chain));
-    chain->next = chains->first;
-    chain->oldest = 1;
-    chains->first = chain;
-    return chain;
+    struct encode_stream *stream = mem_new(sizeof(*stream));
+    stream->next = streams->first;
+    stream->oldest = 1;
+    streams->first = stream;
+    return stream;
 }
 
-/* A client that is alone in its chain, or in none, keeps what was made for it. */
-static struct encode_stream *own_chain(const struct encode_streams *chains, const struct request_group *orders)
+/* A client that is alone in its stream, or in none, keeps what was made for it. */
+static struct encode_stream *own_chain(const struct encode_streams *streams, const struct request_group *tickets)
 {
-    const struct encode_stream_member *link = find(chains, orders->orders[0].client);
-    struct encode_stream *chain = link ? link->chain : NULL;
-    return chain && chain->members == 1 && chain->shown.codec == orders->orders[0].wish.codec ? chain : NULL;
+    const struct encode_stream_member *link = find(streams, tickets->tickets[0].client);
+    struct encode_stream *stream = link ? link->stream : NULL;
+    return stream && stream->members == 1 && stream->shown.codec == tickets->tickets[0].request.codec ? stream : NULL;
 }
 
 struct outsiders {
-    struct encode_streams *chains;
-    const struct encode_stream *chain;
+    struct encode_streams *streams;
+    const struct encode_stream *stream;
 };
 
-static bool is_outside(const struct request_ticket *order, void *arg)
+static bool is_outside(const struct request_ticket *ticket, void *arg)
 {
     const struct outsiders *outsiders = arg;
-    return !reaches(outsiders->chain, find(outsiders->chains, order->client), order);
+    return !reaches(outsiders->stream, find(outsiders->streams, ticket->client), ticket);
 }
 
-static size_t count_outside(struct outsiders *outsiders, const struct request_group *orders, int64_t now_ns, bool *patient)
+static size_t count_outside(struct outsiders *outsiders, const struct request_group *tickets, int64_t now_ns, bool *patient)
 {
     size_t count = 0;
     *patient = true;
-    for (size_t i = 0; i < orders->count; i++) {
-        if (!is_outside(&orders->orders[i], outsiders))
+    for (size_t i = 0; i < tickets->count; i++) {
+        if (!is_outside(&tickets->tickets[i], outsiders))
             continue;
-        const struct encode_stream_member *link = find(outsiders->chains, orders->orders[i].client);
+        const struct encode_stream_member *link = find(outsiders->streams, tickets->tickets[i].client);
         *patient &= link && now_ns < link->join_after_ns;
         count++;
     }
     return count;
 }
 
-/* Whether those outside may cost the others a picture that stands alone; else they go to rest. */
-static bool let_in(struct encode_streams *chains, const struct encode_stream *chain, struct request_group *orders, int64_t now_ns,
+/* Whether those outside may cost the others a frame that stands alone; else they go to rest. */
+static bool let_in(struct encode_streams *streams, const struct encode_stream *stream, struct request_group *tickets, int64_t now_ns,
                    struct request_group *rest)
 {
-    struct outsiders outsiders = { chains, chain };
+    struct outsiders outsiders = { streams, stream };
     bool patient;
-    size_t outside = count_outside(&outsiders, orders, now_ns, &patient);
+    size_t outside = count_outside(&outsiders, tickets, now_ns, &patient);
     if (outside == 0)
         return false;
-    if (outside >= orders->count - outside || (!patient && now_ns - chain->key_ns >= JOIN_NS))
+    if (outside >= tickets->count - outside || (!patient && now_ns - stream->key_ns >= JOIN_NS))
         return true;
-    request_group_split(orders, is_outside, &outsiders, rest);
+    request_group_split(tickets, is_outside, &outsiders, rest);
     return false;
 }
 
-static void join(struct encode_stream_member *link, struct encode_stream *chain, int64_t now_ns)
+static void join(struct encode_stream_member *link, struct encode_stream *stream, int64_t now_ns)
 {
-    bool fell_out = link->chain == chain;
+    bool fell_out = link->stream == stream;
     if (fell_out && now_ns - link->joined_ns < JOIN_MAX_NS)
         link->patience_ns = link->patience_ns * 2 > JOIN_MAX_NS ? JOIN_MAX_NS : link->patience_ns * 2;
     else
         link->patience_ns = JOIN_NS;
-    if (link->chain)
-        link->chain->members--;
-    link->chain = chain;
-    chain->members++;
+    if (link->stream)
+        link->stream->members--;
+    link->stream = stream;
+    stream->members++;
     link->joined_ns = now_ns;
     link->join_after_ns = now_ns + link->patience_ns;
 }
 
 /* Hands out what each lacks; all of them are up to date after it. */
-static void give(struct encode_streams *chains, const struct request_group *orders, int64_t now_ns, struct encode_plan *plan)
+static void give(struct encode_streams *streams, const struct request_group *tickets, int64_t now_ns, struct encode_plan *plan)
 {
-    struct encode_stream *chain = plan->chain;
-    mem_grow(&plan->from, &plan->from_capacity, orders->count, sizeof(*plan->from));
-    for (size_t i = 0; i < orders->count; i++) {
-        const struct request_ticket *order = &orders->orders[i];
-        struct encode_stream_member *link = find_or_add(chains, order->client);
-        bool was_in = link->chain == chain && !plan->key;
-        plan->from[i] = lacks(chain, link, order);
+    struct encode_stream *stream = plan->stream;
+    mem_grow(&plan->from, &plan->from_capacity, tickets->count, sizeof(*plan->from));
+    for (size_t i = 0; i < tickets->count; i++) {
+        const struct request_ticket *ticket = &tickets->tickets[i];
+        struct encode_stream_member *link = find_or_add(streams, ticket->client);
+        bool was_in = link->stream == stream && !plan->key;
+        plan->from[i] = lacks(stream, link, ticket);
         if (!was_in)
-            join(link, chain, now_ns);
-        link->position = chain->planned;
+            join(link, stream, now_ns);
+        link->position = stream->planned;
     }
 }
 
-static struct encode_stream *choose(struct encode_streams *chains, const struct frame *frame, const struct request_group *orders)
+static struct encode_stream *choose(struct encode_streams *streams, const struct frame *frame, const struct request_group *tickets)
 {
-    const struct frame_request *wish = &orders->orders[0].wish;
-    struct encode_stream *chain = most_common(chains, orders), *other = NULL;
-    if (chain && !shows(chain, frame, wish))
-        other = showing(chains, frame, wish, true);
+    const struct frame_request *request = &tickets->tickets[0].request;
+    struct encode_stream *stream = most_common(streams, tickets), *other = NULL;
+    if (stream && !shows(stream, frame, request))
+        other = showing(streams, frame, request, true);
     if (other)
         return other; /* made a moment ago for some who asked first: nobody needs another */
-    if (!chain)
-        chain = showing(chains, frame, wish, false);
-    else if (chain->content != frame->content && belongs_to_others(chains, chain, frame))
-        chain = NULL;
-    if (!chain)
-        chain = own_chain(chains, orders);
-    return chain ? chain : add_chain(chains);
+    if (!stream)
+        stream = showing(streams, frame, request, false);
+    else if (stream->content != frame->content && belongs_to_others(streams, stream, frame))
+        stream = NULL;
+    if (!stream)
+        stream = own_chain(streams, tickets);
+    return stream ? stream : add_chain(streams);
 }
 
 /* Someone has the same already, and shall have it once more; alone, it is given what was kept. */
-static bool must_again(const struct request_group *orders)
+static bool must_again(const struct request_group *tickets)
 {
-    for (size_t i = 0; i < orders->count; i++)
-        if (orders->orders[i].wish.always && !orders->orders[i].wish.alone)
+    for (size_t i = 0; i < tickets->count; i++)
+        if (tickets->tickets[i].request.always && !tickets->tickets[i].request.alone)
             return true;
     return false;
 }
 
 /* Where all has moved, JPEG and PNG come whole anyway: everyone may come in, at no cost for the others. */
-static bool is_whole(const struct encode_stream *chain, const struct frame *frame, const struct frame_request *wish)
+static bool is_whole(const struct encode_stream *stream, const struct frame *frame, const struct frame_request *request)
 {
-    return wish->codec != WIRE_CODEC_H264 && !view_equal(&chain->shown.view, &frame->view);
+    return request->codec != WIRE_CODEC_H264 && !view_equal(&stream->shown.view, &frame->view);
 }
 
-void encode_streams_plan(struct encode_streams *chains, const struct frame *frame, struct request_group *orders, int64_t now_ns,
+void encode_streams_plan(struct encode_streams *streams, const struct frame *frame, struct request_group *tickets, int64_t now_ns,
                          struct encode_plan *plan, struct request_group *rest)
 {
-    const struct frame_request *wish = &orders->orders[0].wish;
-    struct encode_stream *chain = plan->chain = choose(chains, frame, orders);
-    bool sized = chain->shown.view.width_px == frame->width_px && chain->shown.view.height_px == frame->height_px;
+    const struct frame_request *request = &tickets->tickets[0].request;
+    struct encode_stream *stream = plan->stream = choose(streams, frame, tickets);
+    bool sized = stream->shown.view.width_px == frame->width_px && stream->shown.view.height_px == frame->height_px;
     rest->count = 0;
-    plan->key = is_whole(chain, frame, wish) || let_in(chains, chain, orders, now_ns, rest) || chain->key == 0 || !sized;
-    plan->again = must_again(orders);
-    plan->encode = plan->key || plan->again || chain->content != frame->content || !same_coding(chain, frame, wish);
+    plan->key = is_whole(stream, frame, request) || let_in(streams, stream, tickets, now_ns, rest) || stream->key == 0 || !sized;
+    plan->again = must_again(tickets);
+    plan->encode = plan->key || plan->again || stream->content != frame->content || !same_coding(stream, frame, request);
     if (plan->encode) {
-        chain->planned++;
-        chain->shown = *wish;
-        chain->shown.view = frame->view;
-        chain->content = frame->content;
+        stream->planned++;
+        stream->shown = *request;
+        stream->shown.view = frame->view;
+        stream->content = frame->content;
     }
     if (plan->key) {
-        chain->key = chain->planned;
-        chain->key_ns = now_ns;
+        stream->key = stream->planned;
+        stream->key_ns = now_ns;
     }
-    plan->number = chain->planned;
-    give(chains, orders, now_ns, plan);
+    plan->number = stream->planned;
+    give(streams, tickets, now_ns, plan);
 }
 
-/* --- packets -------------------------------------------------------------------------------------------------------------------- */
+/* --- packets ---------------------------------------------------------------------------------------------------------- */
 
-static void drop_oldest(struct encode_stream *chain)
+static void drop_oldest(struct encode_stream *stream)
 {
-    if (chain->kept[0])
-        chain->kept_bytes -= chain->kept[0]->count;
-    packet_unref(&chain->kept[0]);
-    memmove(chain->kept, chain->kept + 1, (size_t)--chain->kept_count * sizeof(chain->kept[0]));
-    chain->oldest++;
+    if (stream->kept[0])
+        stream->kept_bytes -= stream->kept[0]->count;
+    packet_unref(&stream->kept[0]);
+    memmove(stream->kept, stream->kept + 1, (size_t)--stream->kept_count * sizeof(stream->kept[0]));
+    stream->oldest++;
 }
 
-static size_t most_bytes(const struct encode_stream *chain)
+static size_t most_bytes(const struct encode_stream *stream)
 {
-    return 2 * (chain->key_bytes > KEPT_BYTES ? chain->key_bytes : KEPT_BYTES);
+    return 2 * (stream->key_bytes > KEPT_BYTES ? stream->key_bytes : KEPT_BYTES);
 }
 
-void encode_stream_keep(struct encode_stream *chain, struct packet *packet, uint64_t needed)
+void encode_stream_keep(struct encode_stream *stream, struct packet *packet, uint64_t needed)
 {
     bool key = packet && packet->key;
-    while (chain->kept_count > 0 && chain->oldest < needed &&
-           (key || chain->kept_count == ENCODE_STREAM_KEPT || chain->kept_bytes > most_bytes(chain)))
-        drop_oldest(chain);
-    if (chain->kept_count == ENCODE_STREAM_KEPT) /* more than a client may have under way */
-        drop_oldest(chain);
-    chain->kept[chain->kept_count++] = packet ? packet_ref(packet) : NULL;
-    chain->kept_bytes += packet ? packet->count : 0;
+    while (stream->kept_count > 0 && stream->oldest < needed &&
+           (key || stream->kept_count == ENCODE_STREAM_KEPT || stream->kept_bytes > most_bytes(stream)))
+        drop_oldest(stream);
+    if (stream->kept_count == ENCODE_STREAM_KEPT) /* more than a client may have under way */
+        drop_oldest(stream);
+    stream->kept[stream->kept_count++] = packet ? packet_ref(packet) : NULL;
+    stream->kept_bytes += packet ? packet->count : 0;
     if (key)
-        chain->key_bytes = packet->count;
+        stream->key_bytes = packet->count;
 }
 
-int encode_stream_catch_up(const struct encode_stream *chain, uint64_t from, uint64_t to, struct packet *out[ENCODE_STREAM_KEPT])
+int encode_stream_catch_up(const struct encode_stream *stream, uint64_t from, uint64_t to, struct packet *out[ENCODE_STREAM_KEPT])
 {
     int count = 0;
     if (from > to)
         return 0;
-    bool lacks_some = from < chain->oldest;
-    if (to < chain->oldest || to >= chain->oldest + (uint64_t)chain->kept_count)
+    bool lacks_some = from < stream->oldest;
+    if (to < stream->oldest || to >= stream->oldest + (uint64_t)stream->kept_count)
         return -1;
-    for (uint64_t number = lacks_some ? chain->oldest : from; number <= to; number++) {
-        struct packet *packet = chain->kept[number - chain->oldest];
+    for (uint64_t number = lacks_some ? stream->oldest : from; number <= to; number++) {
+        struct packet *packet = stream->kept[number - stream->oldest];
         if (packet && packet->key)
             count = 0;
         if (packet)
@@ -318,31 +318,31 @@ int encode_stream_catch_up(const struct encode_stream *chain, uint64_t from, uin
     return count;
 }
 
-void encode_stream_break(struct encode_stream *chain)
+void encode_stream_break(struct encode_stream *stream)
 {
-    while (chain->kept_count > 0)
-        drop_oldest(chain);
-    chain->oldest++;
-    if (chain->key < chain->oldest)
-        chain->key = 0;
+    while (stream->kept_count > 0)
+        drop_oldest(stream);
+    stream->oldest++;
+    if (stream->key < stream->oldest)
+        stream->key = 0;
 }
 
-struct encode_stream *encode_streams_take_empty(struct encode_streams *chains, bool (*busy)(const struct encode_stream *chain))
+struct encode_stream *encode_streams_take_empty(struct encode_streams *streams, bool (*busy)(const struct encode_stream *stream))
 {
-    for (struct encode_stream **at = &chains->first; *at; at = &(*at)->next) {
-        struct encode_stream *chain = *at;
-        if (chain->members > 0 || busy(chain))
+    for (struct encode_stream **at = &streams->first; *at; at = &(*at)->next) {
+        struct encode_stream *stream = *at;
+        if (stream->members > 0 || busy(stream))
             continue;
-        *at = chain->next;
-        return chain;
+        *at = stream->next;
+        return stream;
     }
     return NULL;
 }
 
-void encode_stream_destroy(struct encode_stream **chain)
+void encode_stream_destroy(struct encode_stream **stream)
 {
-    while ((*chain)->kept_count > 0)
-        drop_oldest(*chain);
-    mem_free(*chain);
-    *chain = NULL;
+    while ((*stream)->kept_count > 0)
+        drop_oldest(*stream);
+    mem_free(*stream);
+    *stream = NULL;
 }

@@ -1,107 +1,107 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* One picture for all who want the same, whenever they ask. */
+/* Frame sharing: one frame for all clients who ask for the same, whenever they ask. */
 #include "base/clock.h"
 #include "service/render_thread_impl.h"
 
 struct content_of {
-    struct render_service *painter;
+    struct render_service *service;
     uint64_t content;
     int64_t cost_ns; /* each one's part */
 };
 
-/* Under lock: the client has this picture already. */
-static bool has_it(const struct request_ticket *order, void *arg)
+/* Under lock: the client has this frame already. */
+static bool has_it(const struct request_ticket *ticket, void *arg)
 {
     const struct content_of *now = arg;
-    const struct render_client *client = render_service_find(now->painter, order->client);
-    return !order->wish.always && client && client->has_content && client->content == now->content;
+    const struct render_client *client = render_service_find(now->service, ticket->client);
+    return !ticket->request.always && client && client->has_content && client->content == now->content;
 }
 
 /* Under lock: who is there remembers what it gets. */
-static bool remember(const struct request_ticket *order, void *arg)
+static bool remember(const struct request_ticket *ticket, void *arg)
 {
     const struct content_of *now = arg;
-    struct render_client *client = render_service_find(now->painter, order->client);
+    struct render_client *client = render_service_find(now->service, ticket->client);
     if (!client)
         return false;
     client->has_content = true;
     client->content = now->content;
-    client->spent_ns[scheduler_share(order->wish.urgency)] += now->cost_ns;
-    client->payer->spent_ns[scheduler_share(order->wish.urgency)] += now->cost_ns;
+    client->spent_ns[scheduler_share(ticket->request.urgency)] += now->cost_ns;
+    client->account->spent_ns[scheduler_share(ticket->request.urgency)] += now->cost_ns;
     return true;
 }
 
-/* Who left has no more part in any stream of packets: decided under the lock that render_service_forget takes. Who shares a picture shares its
-   cost. */
-void frame_sharing_submit(struct render_service *painter, struct frame *frame, struct request_group *batch, int64_t cost_ns)
+/* A client that was forgotten gets no packets: that is decided under the lock that render_service_forget takes. Clients that share a frame
+   share its cost. */
+void frame_sharing_submit(struct render_service *service, struct frame *frame, struct request_group *group, int64_t cost_ns)
 {
-    struct content_of now = { .painter = painter, .content = frame->content, .cost_ns = cost_ns / (int64_t)batch->count };
+    struct content_of now = { .service = service, .content = frame->content, .cost_ns = cost_ns / (int64_t)group->count };
     struct request_group here = { 0 };
-    pthread_mutex_lock(&painter->lock);
-    request_group_split(batch, remember, &now, &here);
-    encode_queue_submit(painter->encoding, frame, &here);
-    pthread_mutex_unlock(&painter->lock);
+    pthread_mutex_lock(&service->lock);
+    request_group_split(group, remember, &now, &here);
+    encode_queue_submit(service->queue, frame, &here);
+    pthread_mutex_unlock(&service->lock);
     request_group_finish(&here);
-    batch->count = 0;
+    group->count = 0;
 }
 
-/* To those who have that picture already: nothing new. */
-static void answer_same(struct render_thread *drawing, struct request_group *batch, uint64_t content)
+/* To those who have that frame already: nothing new. */
+static void answer_same(struct render_thread *thread, struct request_group *group, uint64_t content)
 {
-    struct render_service *painter = drawing->painter;
-    struct content_of now = { .painter = painter, .content = content };
-    pthread_mutex_lock(&painter->lock);
-    request_group_split(batch, has_it, &now, &drawing->same);
-    pthread_mutex_unlock(&painter->lock);
-    counter_inc(painter->same, (int64_t)drawing->same.count);
-    render_service_answer_without_frame(painter, &drawing->same, false);
+    struct render_service *service = thread->service;
+    struct content_of now = { .service = service, .content = content };
+    pthread_mutex_lock(&service->lock);
+    request_group_split(group, has_it, &now, &thread->same);
+    pthread_mutex_unlock(&service->lock);
+    counter_inc(service->same, (int64_t)thread->same.count);
+    render_service_answer_without_frame(service, &thread->same, false);
 }
 
-static void answer_with(struct render_service *painter, struct frame *frame, struct request_group *batch)
+static void answer_with(struct render_service *service, struct frame *frame, struct request_group *group)
 {
-    counter_inc(painter->shared, (int64_t)batch->count);
-    if (batch->count > 0)
-        frame_sharing_submit(painter, frame, batch, 0);
+    counter_inc(service->shared, (int64_t)group->count);
+    if (group->count > 0)
+        frame_sharing_submit(service, frame, group, 0);
 }
 
 /* To those for whom it is drawn goes who asks for it meanwhile. */
-static void join_flying(struct render_thread *drawing, struct request_group *batch, uint64_t content)
+static void join_flying(struct render_thread *thread, struct request_group *group, uint64_t content)
 {
-    struct awaited_frame *flying = awaited_frames_find(&drawing->flying, content);
-    if (!flying)
+    struct awaited_frame *flight = awaited_frames_find(&thread->in_flight, content);
+    if (!flight)
         return;
-    counter_inc(drawing->painter->shared, (int64_t)batch->count);
-    for (size_t i = 0; i < batch->count; i++)
-        request_group_add(&flying->batch, &batch->orders[i]);
-    batch->count = 0;
+    counter_inc(thread->service->shared, (int64_t)group->count);
+    for (size_t i = 0; i < group->count; i++)
+        request_group_add(&flight->group, &group->tickets[i]);
+    group->count = 0;
 }
 
-uint64_t frame_sharing_answer_unchanged(struct render_thread *drawing, const struct snapshot *snapshot, struct request_group *batch)
+uint64_t frame_sharing_answer_unchanged(struct render_thread *thread, const struct snapshot *snapshot, struct request_group *group)
 {
-    const struct frame_request *wish = &batch->orders[0].wish;
-    uint64_t content = split_view_content(drawing->renderer, &wish->view, snapshot);
-    bool overlay = wish->overlay;
-    answer_same(drawing, batch, content);
-    struct frame *frame = overlay ? NULL : recent_frames_find(&drawing->recent, content, clock_mono_ns());
+    const struct frame_request *request = &group->tickets[0].request;
+    uint64_t content = split_view_content(thread->renderer, &request->view, snapshot);
+    bool overlay = request->overlay;
+    answer_same(thread, group, content);
+    struct frame *frame = overlay ? NULL : recent_frames_find(&thread->recent, content, clock_mono_ns());
     if (frame)
-        answer_with(drawing->painter, frame, batch);
+        answer_with(thread->service, frame, group);
     else if (!overlay)
-        join_flying(drawing, batch, content);
+        join_flying(thread, group, content);
     return content;
 }
 
-void frame_sharing_answer_from_recent(struct render_thread *drawing, struct request_group *batch)
+void frame_sharing_answer_from_recent(struct render_thread *thread, struct request_group *group)
 {
-    const struct frame_request *wish = &batch->orders[0].wish;
+    const struct frame_request *request = &group->tickets[0].request;
     int64_t read_ns = 0;
-    for (size_t i = 0; i < batch->count; i++)
-        if (batch->orders[i].wish.read_ns > read_ns)
-            read_ns = batch->orders[i].wish.read_ns;
-    if (wish->view.tier != TIER_PREVIEW || wish->overlay)
+    for (size_t i = 0; i < group->count; i++)
+        if (group->tickets[i].request.read_ns > read_ns)
+            read_ns = group->tickets[i].request.read_ns;
+    if (request->view.tier != TIER_PREVIEW || request->overlay)
         return;
-    struct frame *frame = recent_frames_find_view(&drawing->recent, &wish->view, read_ns, clock_mono_ns());
+    struct frame *frame = recent_frames_find_view(&thread->recent, &request->view, read_ns, clock_mono_ns());
     if (!frame)
         return;
-    answer_same(drawing, batch, frame->content);
-    answer_with(drawing->painter, frame, batch);
+    answer_same(thread, group, frame->content);
+    answer_with(thread->service, frame, group);
 }

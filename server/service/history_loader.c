@@ -36,139 +36,140 @@ struct history_loader {
     bool stopping;
 };
 
-/* --- what is wanted, any thread ------------------------------------------------------------------------------------------------ */
+/* --- what is wanted, any thread --------------------------------------------------------------------------------------- */
 
 /* Under lock. */
-static void remove_at(struct history_loader *past, size_t i)
+static void remove_at(struct history_loader *loader, size_t i)
 {
-    past->count--;
-    memmove(&past->wanted[i], &past->wanted[i + 1], (past->count - i) * sizeof(*past->wanted));
+    loader->count--;
+    memmove(&loader->wanted[i], &loader->wanted[i + 1], (loader->count - i) * sizeof(*loader->wanted));
 }
 
 /* Under lock. */
-static size_t find(const struct history_loader *past, uint64_t client)
+static size_t find(const struct history_loader *loader, uint64_t client)
 {
     size_t i = 0;
-    while (i < past->count && past->wanted[i].client != client)
+    while (i < loader->count && loader->wanted[i].client != client)
         i++;
     return i;
 }
 
-void history_loader_ask(struct history_loader *past, uint64_t client, int64_t at_us)
+void history_loader_ask(struct history_loader *loader, uint64_t client, int64_t at_us)
 {
-    pthread_mutex_lock(&past->lock);
-    size_t i = find(past, client);
-    if (i == past->count)
-        mem_grow(&past->wanted, &past->capacity, ++past->count, sizeof(*past->wanted));
-    past->wanted[i] = (struct wanted){ client, at_us };
-    pthread_cond_signal(&past->wake);
-    pthread_mutex_unlock(&past->lock);
+    pthread_mutex_lock(&loader->lock);
+    size_t i = find(loader, client);
+    if (i == loader->count)
+        mem_grow(&loader->wanted, &loader->capacity, ++loader->count, sizeof(*loader->wanted));
+    loader->wanted[i] = (struct wanted){ client, at_us };
+    pthread_cond_signal(&loader->wake);
+    pthread_mutex_unlock(&loader->lock);
 }
 
-void history_loader_forget(struct history_loader *past, uint64_t client)
+void history_loader_forget(struct history_loader *loader, uint64_t client)
 {
-    pthread_mutex_lock(&past->lock);
-    size_t i = find(past, client);
-    if (i < past->count)
-        remove_at(past, i);
-    pthread_mutex_unlock(&past->lock);
+    pthread_mutex_lock(&loader->lock);
+    size_t i = find(loader, client);
+    if (i < loader->count)
+        remove_at(loader, i);
+    pthread_mutex_unlock(&loader->lock);
 }
 
-struct history_loader_answer *history_loader_collect(struct history_loader *past)
+struct history_loader_answer *history_loader_collect(struct history_loader *loader)
 {
-    pthread_mutex_lock(&past->lock);
-    struct history_loader_answer *answers = past->answers;
-    past->answers = NULL;
-    past->last = &past->answers;
-    pthread_mutex_unlock(&past->lock);
+    pthread_mutex_lock(&loader->lock);
+    struct history_loader_answer *answers = loader->answers;
+    loader->answers = NULL;
+    loader->last = &loader->answers;
+    pthread_mutex_unlock(&loader->lock);
     return answers;
 }
 
-int64_t history_loader_first_us(struct history_loader *past)
+int64_t history_loader_first_us(struct history_loader *loader)
 {
-    pthread_mutex_lock(&past->lock);
-    int64_t first_us = past->first_us;
-    pthread_mutex_unlock(&past->lock);
+    pthread_mutex_lock(&loader->lock);
+    int64_t first_us = loader->first_us;
+    pthread_mutex_unlock(&loader->lock);
     return first_us;
 }
 
-/* --- the thread ---------------------------------------------------------------------------------------------------------------- */
+/* --- the thread ------------------------------------------------------------------------------------------------------- */
 
-static bool read_moment(struct history_loader *past, int64_t at_us)
+static bool read_moment(struct history_loader *loader, int64_t at_us)
 {
-    const struct historical_snapshot *there = snapshot_cache_take(past->params.snapshot_cache, at_us);
+    const struct historical_snapshot *there = snapshot_cache_take(loader->params.snapshot_cache, at_us);
     if (there) {
-        snapshot_cache_give(past->params.snapshot_cache, &there);
+        snapshot_cache_give(loader->params.snapshot_cache, &there);
         return true;
     }
-    struct snapshot *snapshot = snapshot_create(past->params.plant->tag_count);
-    bool good = history_at(past->reader, past->tags, at_us, snapshot) == 0 &&
-                alarms_at_instant(past->params.log, past->reader, past->params.folder, past->params.plant, snapshot) == 0;
+    struct snapshot *snapshot = snapshot_create(loader->params.plant->tag_count);
+    bool good = history_at(loader->reader, loader->tags, at_us, snapshot) == 0 &&
+                alarms_at_instant(loader->params.log, loader->reader, loader->params.folder, loader->params.plant, snapshot) == 0;
     if (good)
-        snapshot_cache_add(past->params.snapshot_cache, at_us, snapshot);
+        snapshot_cache_add(loader->params.snapshot_cache, at_us, snapshot);
     snapshot_destroy(&snapshot);
     return good;
 }
 
-static void look_at_span(struct history_loader *past)
+static void look_at_span(struct history_loader *loader)
 {
     int64_t first_us = 0, last_us, now_ns = clock_mono_ns();
-    if (past->spanned_ns && now_ns - past->spanned_ns < SPAN_NS)
+    if (loader->spanned_ns && now_ns - loader->spanned_ns < SPAN_NS)
         return;
-    past->spanned_ns = now_ns;
-    if (!history_span(past->reader, &first_us, &last_us)) {
+    loader->spanned_ns = now_ns;
+    if (!history_span(loader->reader, &first_us, &last_us)) {
         first_us = 0;
-        past->spanned_ns = 0; /* nothing is there yet: look again soon, and with the next question */
+        loader->spanned_ns = 0; /* nothing is there yet: look again soon, and with the next question */
     }
-    pthread_mutex_lock(&past->lock);
-    past->first_us = first_us;
-    pthread_mutex_unlock(&past->lock);
+    pthread_mutex_lock(&loader->lock);
+    loader->first_us = first_us;
+    pthread_mutex_unlock(&loader->lock);
 }
 
 /* False: nothing is, and it is time to look again for the beginning of what is recorded, or to stop. */
-static bool next_wanted(struct history_loader *past, struct wanted *out, bool *stopping)
+static bool next_wanted(struct history_loader *loader, struct wanted *out, bool *stopping)
 {
     int64_t until_ns = clock_mono_ns() + LOOK_NS;
     struct timespec until = { .tv_sec = until_ns / NS_PER_S, .tv_nsec = until_ns % NS_PER_S };
     int status = 0;
-    pthread_mutex_lock(&past->lock);
-    while (!past->stopping && past->count == 0 && status != ETIMEDOUT) {
-        if (past->first_us)
-            pthread_cond_wait(&past->wake, &past->lock);
+    pthread_mutex_lock(&loader->lock);
+    while (!loader->stopping && loader->count == 0 && status != ETIMEDOUT) {
+        if (loader->first_us)
+            pthread_cond_wait(&loader->wake, &loader->lock);
         else
-            status = pthread_cond_timedwait(&past->wake, &past->lock, &until);
+            status = pthread_cond_timedwait(&loader->wake, &loader->lock, &until);
     }
-    *stopping = past->stopping;
-    bool any = !*stopping && past->count > 0;
+    *stopping = loader->stopping;
+    bool any = !*stopping && loader->count > 0;
     if (any) {
-        *out = past->wanted[0];
-        remove_at(past, 0);
+        *out = loader->wanted[0];
+        remove_at(loader, 0);
     }
-    pthread_mutex_unlock(&past->lock);
+    pthread_mutex_unlock(&loader->lock);
     return any;
 }
 
-static void give_answer(struct history_loader *past, const struct wanted *wanted)
+static void give_answer(struct history_loader *loader, const struct wanted *wanted)
 {
     struct history_loader_answer *answer = mem_new(sizeof(*answer));
-    *answer = (struct history_loader_answer){ .client = wanted->client, .at_us = wanted->at_us, .good = read_moment(past, wanted->at_us) };
-    pthread_mutex_lock(&past->lock);
-    *past->last = answer;
-    past->last = &answer->next;
-    pthread_mutex_unlock(&past->lock);
-    past->params.notify(past->params.notify_arg);
+    *answer =
+        (struct history_loader_answer){ .client = wanted->client, .at_us = wanted->at_us, .good = read_moment(loader, wanted->at_us) };
+    pthread_mutex_lock(&loader->lock);
+    *loader->last = answer;
+    loader->last = &answer->next;
+    pthread_mutex_unlock(&loader->lock);
+    loader->params.notify(loader->params.notify_arg);
 }
 
 static void *run(void *arg)
 {
-    struct history_loader *past = arg;
+    struct history_loader *loader = arg;
     struct wanted wanted;
     bool stopping = false;
     while (!stopping) {
-        look_at_span(past);
-        if (next_wanted(past, &wanted, &stopping)) {
-            look_at_span(past);
-            give_answer(past, &wanted);
+        look_at_span(loader);
+        if (next_wanted(loader, &wanted, &stopping)) {
+            look_at_span(loader);
+            give_answer(loader, &wanted);
         }
     }
     return NULL;
@@ -176,42 +177,42 @@ static void *run(void *arg)
 
 struct history_loader *history_loader_create(const struct history_loader_params *params)
 {
-    struct history_loader *past = mem_new(sizeof(*past));
-    past->params = *params;
-    past->reader = history_reader_create(params->log, params->folder);
-    past->tags = history_tags(params->plant);
-    past->last = &past->answers;
-    pthread_mutex_init(&past->lock, NULL);
-    clock_cond_init(&past->wake);
-    int error = pthread_create(&past->thread, NULL, run, past);
-    past->started = !error;
+    struct history_loader *loader = mem_new(sizeof(*loader));
+    loader->params = *params;
+    loader->reader = history_reader_create(params->log, params->folder);
+    loader->tags = history_tags(params->plant);
+    loader->last = &loader->answers;
+    pthread_mutex_init(&loader->lock, NULL);
+    clock_cond_init(&loader->wake);
+    int error = pthread_create(&loader->thread, NULL, run, loader);
+    loader->started = !error;
     if (error) {
         log_err(params->log, "history: no thread to read instants of it: %s", strerror(error));
-        history_loader_destroy(&past);
+        history_loader_destroy(&loader);
     }
-    return past;
+    return loader;
 }
 
 void history_loader_destroy(struct history_loader **pointer)
 {
-    struct history_loader *past = *pointer;
-    if (!past)
+    struct history_loader *loader = *pointer;
+    if (!loader)
         return;
-    pthread_mutex_lock(&past->lock);
-    past->stopping = true;
-    pthread_cond_signal(&past->wake);
-    pthread_mutex_unlock(&past->lock);
-    if (past->started)
-        pthread_join(past->thread, NULL);
-    for (struct history_loader_answer *answer = past->answers, *next; answer; answer = next) {
+    pthread_mutex_lock(&loader->lock);
+    loader->stopping = true;
+    pthread_cond_signal(&loader->wake);
+    pthread_mutex_unlock(&loader->lock);
+    if (loader->started)
+        pthread_join(loader->thread, NULL);
+    for (struct history_loader_answer *answer = loader->answers, *next; answer; answer = next) {
         next = answer->next;
         mem_free(answer);
     }
-    history_reader_destroy(&past->reader);
-    mem_free(past->tags);
-    mem_free(past->wanted);
-    pthread_cond_destroy(&past->wake);
-    pthread_mutex_destroy(&past->lock);
-    mem_free(past);
+    history_reader_destroy(&loader->reader);
+    mem_free(loader->tags);
+    mem_free(loader->wanted);
+    pthread_cond_destroy(&loader->wake);
+    pthread_mutex_destroy(&loader->lock);
+    mem_free(loader);
     *pointer = NULL;
 }

@@ -17,7 +17,7 @@ static const size_t PIECE_BYTES = 256 * 1024;    /* a piece ends with the tag th
 static const int64_t PIECE_NS = 100 * NS_PER_MS; /* or that took as long */
 
 struct question {
-    struct history_query order;
+    struct history_query query;
     int next_tag; /* to be read */
     bool buckets; /* as the last line of a CSV file that names columns says */
     bool wanted;  /* its next piece is */
@@ -46,7 +46,7 @@ struct history_queries {
     bool stopping;
 };
 
-/* --- a piece of an answer ------------------------------------------------------------------------------------------------------ */
+/* --- a piece of an answer --------------------------------------------------------------------------------------------- */
 
 static void print_csv(struct question *question, const struct plant_tag *tag, const struct history_series *series, struct text *out)
 {
@@ -59,24 +59,24 @@ static void print_csv(struct question *question, const struct plant_tag *tag, co
 
 static void print_json(const struct question *question, const struct plant_tag *tag, const struct history_series *series, struct text *out)
 {
-    const struct history_query *order = &question->order;
+    const struct history_query *query = &question->query;
     if (question->next_tag == 0)
-        text_add(out, "{\"from_us\":%lld,\"to_us\":%lld,\"series\":[", (long long)order->from_us, (long long)order->to_us);
+        text_add(out, "{\"from_us\":%lld,\"to_us\":%lld,\"series\":[", (long long)query->from_us, (long long)query->to_us);
     else
         text_add(out, ",");
     series_text_json(out, tag->name, tag->unit ? tag->unit : "", series);
-    if (question->next_tag + 1 == order->tag_count)
+    if (question->next_tag + 1 == query->tag_count)
         text_add(out, "]}\n");
 }
 
 /* The next tag of it. False: history could not be read. */
-static bool read_tag(struct history_queries *recall, struct history_reader *reader, struct question *question, struct text *out)
+static bool read_tag(struct history_queries *queries, struct history_reader *reader, struct question *question, struct text *out)
 {
-    const struct history_query *order = &question->order;
-    const struct plant_tag *tag = &recall->plant->tags[order->tags[question->next_tag]];
+    const struct history_query *query = &question->query;
+    const struct plant_tag *tag = &queries->plant->tags[query->tags[question->next_tag]];
     struct history_series series;
-    bool good = history_series(reader, tag->name, order->from_us, order->to_us, order->max_points, &series) == 0;
-    if (good && order->csv)
+    bool good = history_series(reader, tag->name, query->from_us, query->to_us, query->max_points, &series) == 0;
+    if (good && query->csv)
         print_csv(question, tag, &series, out);
     else if (good)
         print_json(question, tag, &series, out);
@@ -85,12 +85,12 @@ static bool read_tag(struct history_queries *recall, struct history_reader *read
     return good;
 }
 
-static bool print_gaps(struct history_reader *reader, const struct history_query *order, struct text *out)
+static bool print_gaps(struct history_reader *reader, const struct history_query *query, struct text *out)
 {
     struct history_gaps gaps;
-    if (history_gaps(reader, order->from_us, order->to_us, &gaps))
+    if (history_gaps(reader, query->from_us, query->to_us, &gaps))
         return false;
-    text_add(out, "{\"from_us\":%lld,\"to_us\":%lld,\"gaps\":[", (long long)order->from_us, (long long)order->to_us);
+    text_add(out, "{\"from_us\":%lld,\"to_us\":%lld,\"gaps\":[", (long long)query->from_us, (long long)query->to_us);
     for (size_t i = 0; i < gaps.count; i++)
         text_add(out, "%s[%lld,%lld]", i ? "," : "", (long long)gaps.at[i].from_us, (long long)gaps.at[i].to_us);
     text_add(out, "]}\n");
@@ -98,23 +98,23 @@ static bool print_gaps(struct history_reader *reader, const struct history_query
     return true;
 }
 
-static struct history_answer *read_piece(struct history_queries *recall, struct history_reader *reader, struct question *question)
+static struct history_answer *read_piece(struct history_queries *queries, struct history_reader *reader, struct question *question)
 {
-    const struct history_query *order = &question->order;
+    const struct history_query *query = &question->query;
     struct history_answer *piece = mem_new(sizeof(*piece));
     struct text text = { 0 };
     int64_t begin_ns = clock_mono_ns();
-    bool series = !order->journal && !order->gaps, good = true;
-    *piece = (struct history_answer){ .client = order->client, .csv = order->journal ? order->alarms.csv : order->csv };
+    bool series = !query->journal && !query->gaps, good = true;
+    *piece = (struct history_answer){ .client = query->client, .csv = query->journal ? query->alarms.csv : query->csv };
     piece->first = question->next_tag == 0;
-    if (order->journal)
-        alarms_journal_text(recall->log, recall->folder, &order->alarms, &text);
-    else if (order->gaps)
-        good = print_gaps(reader, order, &text);
-    while (good && series && question->next_tag < order->tag_count && text.length < PIECE_BYTES &&
+    if (query->journal)
+        alarms_journal_text(queries->log, queries->folder, &query->alarms, &text);
+    else if (query->gaps)
+        good = print_gaps(reader, query, &text);
+    while (good && series && question->next_tag < query->tag_count && text.length < PIECE_BYTES &&
            (text.length == 0 || clock_mono_ns() - begin_ns < PIECE_NS))
-        good = read_tag(recall, reader, question, &text);
-    piece->last = !good || !series || question->next_tag == order->tag_count;
+        good = read_tag(queries, reader, question, &text);
+    piece->last = !good || !series || question->next_tag == query->tag_count;
     if (good && text.length > 0) { /* a text that grew has room to spare, and it may lie there for long */
         piece->text = mem_array(text.length + 1, 1);
         piece->length = text.length;
@@ -124,39 +124,39 @@ static struct history_answer *read_piece(struct history_queries *recall, struct 
     return piece;
 }
 
-/* --- whose turn it is ---------------------------------------------------------------------------------------------------------- */
+/* --- whose turn it is ------------------------------------------------------------------------------------------------- */
 
 /* Under lock. */
-static bool is_at_work(const struct history_queries *recall, uint64_t payer)
+static bool is_at_work(const struct history_queries *queries, uint64_t account)
 {
     bool any = false;
     for (int i = 0; i < THREADS; i++)
-        any |= payer && recall->at_work[i] == payer;
+        any |= account && queries->at_work[i] == account;
     return any;
 }
 
 /* Under lock. When the newest piece for its address was begun. */
-static uint64_t served_of(const struct history_queries *recall, const struct question *question)
+static uint64_t served_of(const struct history_queries *queries, const struct question *question)
 {
     uint64_t served = question->served;
-    for (const struct question *other = recall->questions; other; other = other->next)
-        if (question->order.payer && other->order.payer == question->order.payer && other->served > served)
+    for (const struct question *other = queries->questions; other; other = other->next)
+        if (question->query.account && other->query.account == question->query.account && other->served > served)
             served = other->served;
     return served;
 }
 
-static bool goes_before(const struct history_queries *recall, const struct question *a, const struct question *b)
+static bool goes_before(const struct history_queries *queries, const struct question *a, const struct question *b)
 {
-    uint64_t a_served = served_of(recall, a), b_served = served_of(recall, b);
+    uint64_t a_served = served_of(queries, a), b_served = served_of(queries, b);
     return a_served < b_served || (a_served == b_served && a->served <= b->served); /* the older one comes later in the list */
 }
 
 /* Under lock. Taken out of the list; NULL: there is nothing to do. */
-static struct question *take_next(struct history_queries *recall)
+static struct question *take_next(struct history_queries *queries)
 {
     struct question **best = NULL;
-    for (struct question **at = &recall->questions; *at; at = &(*at)->next)
-        if ((*at)->wanted && !is_at_work(recall, (*at)->order.payer) && (!best || goes_before(recall, *at, *best)))
+    for (struct question **at = &queries->questions; *at; at = &(*at)->next)
+        if ((*at)->wanted && !is_at_work(queries, (*at)->query.account) && (!best || goes_before(queries, *at, *best)))
             best = at;
     struct question *question = best ? *best : NULL;
     if (question)
@@ -165,91 +165,91 @@ static struct question *take_next(struct history_queries *recall)
 }
 
 /* Under lock. The piece is there. */
-static void give(struct history_queries *recall, struct question *question, struct history_answer *piece)
+static void give(struct history_queries *queries, struct question *question, struct history_answer *piece)
 {
     bool last = piece->last;
     if (question->forgotten) {
         history_answer_free(&piece);
     } else {
-        *recall->last = piece;
-        recall->last = &piece->next;
+        *queries->last = piece;
+        queries->last = &piece->next;
     }
     if (question->forgotten || last) {
-        recall->count--;
+        queries->count--;
         mem_free(question);
         return;
     }
-    question->next = recall->questions;
-    recall->questions = question;
+    question->next = queries->questions;
+    queries->questions = question;
 }
 
 struct worker {
-    struct history_queries *recall;
+    struct history_queries *queries;
     int index;
 };
 
 static void *run(void *arg)
 {
     struct worker *worker = arg;
-    struct history_queries *recall = worker->recall;
-    struct history_reader *reader = history_reader_create(recall->log, recall->folder);
+    struct history_queries *queries = worker->queries;
+    struct history_reader *reader = history_reader_create(queries->log, queries->folder);
     int index = worker->index;
-    history_reader_show_by(reader, recall->plant);
+    history_reader_show_by(reader, queries->plant);
     mem_free(worker);
-    pthread_mutex_lock(&recall->lock);
-    while (!recall->stopping) {
-        struct question *question = take_next(recall);
+    pthread_mutex_lock(&queries->lock);
+    while (!queries->stopping) {
+        struct question *question = take_next(queries);
         if (!question) {
-            pthread_cond_wait(&recall->wake, &recall->lock);
+            pthread_cond_wait(&queries->wake, &queries->lock);
             continue;
         }
         question->wanted = false;
-        question->served = ++recall->served;
-        recall->at_work[index] = question->order.payer;
-        recall->working[index] = question;
-        pthread_mutex_unlock(&recall->lock);
-        struct history_answer *piece = read_piece(recall, reader, question);
-        pthread_mutex_lock(&recall->lock);
-        recall->at_work[index] = 0;
-        recall->working[index] = NULL;
-        give(recall, question, piece);
-        pthread_cond_broadcast(&recall->wake); /* another of that address may be read by the other thread */
-        pthread_mutex_unlock(&recall->lock);
-        recall->notify(recall->notify_arg);
-        pthread_mutex_lock(&recall->lock);
+        question->served = ++queries->served;
+        queries->at_work[index] = question->query.account;
+        queries->working[index] = question;
+        pthread_mutex_unlock(&queries->lock);
+        struct history_answer *piece = read_piece(queries, reader, question);
+        pthread_mutex_lock(&queries->lock);
+        queries->at_work[index] = 0;
+        queries->working[index] = NULL;
+        give(queries, question, piece);
+        pthread_cond_broadcast(&queries->wake); /* another of that address may be read by the other thread */
+        pthread_mutex_unlock(&queries->lock);
+        queries->notify(queries->notify_arg);
+        pthread_mutex_lock(&queries->lock);
     }
-    pthread_mutex_unlock(&recall->lock);
+    pthread_mutex_unlock(&queries->lock);
     history_reader_destroy(&reader);
     return NULL;
 }
 
-/* --- life ---------------------------------------------------------------------------------------------------------------------- */
+/* --- life ------------------------------------------------------------------------------------------------------------- */
 
 struct history_queries *history_queries_create(struct log *log, const struct plant *plant, const char *folder, void (*notify)(void *arg),
                                                void *arg)
 {
-    struct history_queries *recall = mem_new(sizeof(*recall));
-    pthread_mutex_init(&recall->lock, NULL);
-    pthread_cond_init(&recall->wake, NULL);
-    recall->log = log;
-    recall->plant = plant;
-    recall->folder = mem_strdup(folder);
-    recall->notify = notify;
-    recall->notify_arg = arg;
-    recall->last = &recall->answers;
+    struct history_queries *queries = mem_new(sizeof(*queries));
+    pthread_mutex_init(&queries->lock, NULL);
+    pthread_cond_init(&queries->wake, NULL);
+    queries->log = log;
+    queries->plant = plant;
+    queries->folder = mem_strdup(folder);
+    queries->notify = notify;
+    queries->notify_arg = arg;
+    queries->last = &queries->answers;
     for (int i = 0, error = 0; i < THREADS && !error; i++) {
         struct worker *worker = mem_new(sizeof(*worker));
-        *worker = (struct worker){ recall, i };
-        error = pthread_create(&recall->threads[i], NULL, run, worker);
-        recall->thread_count += !error;
+        *worker = (struct worker){ queries, i };
+        error = pthread_create(&queries->threads[i], NULL, run, worker);
+        queries->thread_count += !error;
         if (!error)
             continue;
         mem_free(worker);
         log_err(log, "history: no thread to read it: %s", strerror(error));
     }
-    if (recall->thread_count < THREADS)
-        history_queries_destroy(&recall);
-    return recall;
+    if (queries->thread_count < THREADS)
+        history_queries_destroy(&queries);
+    return queries;
 }
 
 void history_answer_free(struct history_answer **answer)
@@ -261,81 +261,81 @@ void history_answer_free(struct history_answer **answer)
 
 void history_queries_destroy(struct history_queries **pointer)
 {
-    struct history_queries *recall = *pointer;
-    if (!recall)
+    struct history_queries *queries = *pointer;
+    if (!queries)
         return;
-    pthread_mutex_lock(&recall->lock);
-    recall->stopping = true;
-    pthread_cond_broadcast(&recall->wake);
-    pthread_mutex_unlock(&recall->lock);
-    for (int i = 0; i < recall->thread_count; i++)
-        pthread_join(recall->threads[i], NULL);
-    for (struct history_answer *answer = recall->answers, *next; answer; answer = next) {
+    pthread_mutex_lock(&queries->lock);
+    queries->stopping = true;
+    pthread_cond_broadcast(&queries->wake);
+    pthread_mutex_unlock(&queries->lock);
+    for (int i = 0; i < queries->thread_count; i++)
+        pthread_join(queries->threads[i], NULL);
+    for (struct history_answer *answer = queries->answers, *next; answer; answer = next) {
         next = answer->next;
         history_answer_free(&answer);
     }
-    for (struct question *question = recall->questions, *next; question; question = next) {
+    for (struct question *question = queries->questions, *next; question; question = next) {
         next = question->next;
         mem_free(question);
     }
-    mem_free(recall->folder);
-    pthread_cond_destroy(&recall->wake);
-    pthread_mutex_destroy(&recall->lock);
-    mem_free(recall);
+    mem_free(queries->folder);
+    pthread_cond_destroy(&queries->wake);
+    pthread_mutex_destroy(&queries->lock);
+    mem_free(queries);
     *pointer = NULL;
 }
 
-/* --- for the loop -------------------------------------------------------------------------------------------------------------- */
+/* --- for the loop ----------------------------------------------------------------------------------------------------- */
 
-bool history_queries_ask(struct history_queries *recall, const struct history_query *order)
+bool history_queries_ask(struct history_queries *queries, const struct history_query *query)
 {
-    pthread_mutex_lock(&recall->lock);
-    bool room = recall->count < HISTORY_QUERIES_MOST;
+    pthread_mutex_lock(&queries->lock);
+    bool room = queries->count < HISTORY_QUERIES_MOST;
     if (room) {
         struct question *question = mem_new(sizeof(*question));
-        *question = (struct question){ .order = *order, .wanted = true, .next = recall->questions };
-        recall->questions = question;
-        recall->count++;
-        pthread_cond_broadcast(&recall->wake);
+        *question = (struct question){ .query = *query, .wanted = true, .next = queries->questions };
+        queries->questions = question;
+        queries->count++;
+        pthread_cond_broadcast(&queries->wake);
     }
-    pthread_mutex_unlock(&recall->lock);
+    pthread_mutex_unlock(&queries->lock);
     return room;
 }
 
-void history_queries_continue(struct history_queries *recall, uint64_t client)
+void history_queries_continue(struct history_queries *queries, uint64_t client)
 {
-    pthread_mutex_lock(&recall->lock);
-    for (struct question *question = recall->questions; question; question = question->next)
-        question->wanted |= question->order.client == client;
-    pthread_cond_broadcast(&recall->wake);
-    pthread_mutex_unlock(&recall->lock);
+    pthread_mutex_lock(&queries->lock);
+    for (struct question *question = queries->questions; question; question = question->next)
+        question->wanted |= question->query.client == client;
+    pthread_cond_broadcast(&queries->wake);
+    pthread_mutex_unlock(&queries->lock);
 }
 
-void history_queries_forget(struct history_queries *recall, uint64_t client)
+void history_queries_forget(struct history_queries *queries, uint64_t client)
 {
-    pthread_mutex_lock(&recall->lock);
+    pthread_mutex_lock(&queries->lock);
     for (int i = 0; i < THREADS; i++)
-        if (recall->working[i] && recall->working[i]->order.client == client)
-            recall->working[i]->forgotten = true;
-    for (struct question **at = &recall->questions; *at;) {
+        if (queries->working[i] && queries->working[i]->query.client == client)
+            queries->working[i]->forgotten = true;
+    for (struct question **at = &queries->questions; *at;) {
         struct question *question = *at;
-        if (question->order.client != client) {
+        if (question->query.client != client) {
             at = &question->next;
             continue;
         }
         *at = question->next;
-        recall->count--;
+        queries->count--;
         mem_free(question);
     }
-    pthread_mutex_unlock(&recall->lock);
+    pthread_mutex_unlock(&queries->lock);
 }
 
-struct history_answer *history_queries_collect(struct history_queries *recall)
+struct history_answer *history_queries_collect(struct history_queries *queries)
 {
-    pthread_mutex_lock(&recall->lock);
-    struct history_answer *answers = recall->answers;
-    recall->answers = NULL;
-    recall->last = &recall->answers;
-    pthread_mutex_unlock(&recall->lock);
+    pthread_mutex_lock(&queries->lock);
+    struct history_answer *answers = queries->answers;
+    queries->answers = NULL;
+    queries->last = &queries->answers;
+    pthread_mutex_unlock(&queries->lock);
     return answers;
 }

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Questions about the past, answered on threads of their own: the loop never waits for the disk. An answer comes in pieces of some hundred
-   kilobytes, each made when it is wanted: who reads slowly costs one of them, not all. Addresses take turns. Thread: any. */
+/* History queries: series, recording gaps and the alarm journal, read for HTTP on threads of their own. An answer comes in pieces of some
+   hundred kilobytes, each made when it is asked for, so that a slow reader costs the memory of one piece. Addresses take turns.
+   Thread: any. */
 #ifndef SERVICE_HISTORY_QUERIES_H
 #define SERVICE_HISTORY_QUERIES_H
 #include <stdbool.h>
@@ -16,43 +17,49 @@ enum { HISTORY_QUERY_TAGS = 64, HISTORY_QUERY_POINTS = 20000, HISTORY_QUERIES_MO
 
 struct history_query {
     uint64_t client;
-    uint64_t payer;               /* whose turn it takes: the client's address; 0: there are none apart */
+    uint64_t account;             /* whose turn it takes: the client's address; 0: one for all such */
     int tags[HISTORY_QUERY_TAGS]; /* indices */
     int tag_count, max_points;
     int64_t from_us, to_us;
     bool csv;
-    bool gaps;    /* asked instead of series: when nothing was recorded */
-    bool journal; /* this is asked instead: */
+    bool gaps;    /* instead of series: when nothing was recorded */
+    bool journal; /* instead of series: the alarm journal, as `alarms` says */
     struct alarm_query alarms;
 };
 
-/* `tags=A,B&from=-8h&to=now&points=1000&format=csv`, decoded. False: *error says which is wrong. Pure. */
-bool history_query_parse(const struct plant *plant, const char *const *args, size_t count, int64_t now_us, struct history_query *order,
+/* Parses `tags=A,B&from=-8h&to=now&points=1000&format=csv`, decoded, into *query. Returns false with *error saying what is wrong. Pure. */
+bool history_query_parse(const struct plant *plant, const char *const *args, size_t count, int64_t now_us, struct history_query *query,
                          struct message_error *error);
-
-/* `from=-8h&to=now`, likewise: when nothing was recorded. Pure. */
-bool history_query_parse_gaps(const char *const *args, size_t count, int64_t now_us, struct history_query *order,
+/* Parses `from=-8h&to=now` into a query for recording gaps. Returns false with *error saying what is wrong. Pure. */
+bool history_query_parse_gaps(const char *const *args, size_t count, int64_t now_us, struct history_query *query,
                               struct message_error *error);
 
-struct history_answer { /* a piece of one: history_answer_free */
+struct history_answer { /* one piece of an answer; history_answer_free */
     uint64_t client;
     bool csv;
     bool first, last; /* of its pieces */
-    char *text;       /* NULL: history could not be read, and nothing more comes */
+    char *text;       /* NULL: history could not be read, and no more pieces come */
     size_t length;
     struct history_answer *next;
 };
 
 struct history_queries;
+/* Frees the piece; leaves NULL. */
 void history_answer_free(struct history_answer **answer);
 
-/* notify is called on a thread when there is an answer. NULL: no thread, logged. plant must outlive it. */
+/* Starts the threads; notify(arg) is called on one of them when there is a piece. Returns NULL if they cannot start, already logged.
+   plant must outlive it. */
 struct history_queries *history_queries_create(struct log *log, const struct plant *plant, const char *folder, void (*notify)(void *arg),
                                                void *arg);
-void history_queries_destroy(struct history_queries **recall);                               /* &NULL is fine; leaves NULL */
-bool history_queries_ask(struct history_queries *recall, const struct history_query *order); /* false: too many are being answered */
-void history_queries_continue(struct history_queries *recall, uint64_t client); /* its last piece has gone: the next is wanted */
-void history_queries_forget(struct history_queries *recall, uint64_t client);
-struct history_answer *history_queries_collect(struct history_queries *recall); /* oldest first; NULL: none */
+/* Ends the threads. &NULL is fine; leaves NULL. */
+void history_queries_destroy(struct history_queries **queries);
+/* Queues a copy of the query. Returns false when HISTORY_QUERIES_MOST are being answered. */
+bool history_queries_ask(struct history_queries *queries, const struct history_query *query);
+/* Asks for the next piece of the client's answer; its last one was sent. */
+void history_queries_continue(struct history_queries *queries, uint64_t client);
+/* Drops the client's query and pieces. */
+void history_queries_forget(struct history_queries *queries, uint64_t client);
+/* Returns all pieces so far, oldest first; the caller owns them. NULL: none. */
+struct history_answer *history_queries_collect(struct history_queries *queries);
 
 #endif

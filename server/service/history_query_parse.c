@@ -3,24 +3,23 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/timestamp.h"
 #include "service/history_queries.h"
 
-static bool has_tag(const struct history_query *order, int tag)
+static bool has_tag(const struct history_query *query, int tag)
 {
     int i = 0;
-    while (i < order->tag_count && order->tags[i] != tag)
+    while (i < query->tag_count && query->tags[i] != tag)
         i++;
-    return i < order->tag_count;
+    return i < query->tag_count;
 }
 
-static bool take_tags(const struct plant *plant, const char *list, struct history_query *order, struct message_error *error)
+static bool take_tags(const struct plant *plant, const char *list, struct history_query *query, struct message_error *error)
 {
     char name[256];
-    order->tag_count = 0;
+    query->tag_count = 0;
     for (const char *at = list; *at;) {
         size_t n = strcspn(at, ",");
-        if (n >= sizeof(name) || order->tag_count == HISTORY_QUERY_TAGS) {
+        if (n >= sizeof(name) || query->tag_count == HISTORY_QUERY_TAGS) {
             message_fail(error, "bad_field", "tags: at most %d names of at most %zu bytes", HISTORY_QUERY_TAGS, sizeof(name) - 1);
             return false;
         }
@@ -31,17 +30,17 @@ static bool take_tags(const struct plant *plant, const char *list, struct histor
             message_fail(error, "unknown_tag", "tags: there is no tag '%.60s'", name);
             return false;
         }
-        if (has_tag(order, tag)) {
+        if (has_tag(query, tag)) {
             message_fail(error, "bad_field", "tags: '%.60s' is named twice", name);
             return false;
         }
-        order->tags[order->tag_count++] = tag;
+        query->tags[query->tag_count++] = tag;
         at += n + (at[n] == ',');
     }
     return true;
 }
 
-static bool take_points(const char *text, struct history_query *order, struct message_error *error)
+static bool take_points(const char *text, struct history_query *query, struct message_error *error)
 {
     char *end;
     long points = strtol(text, &end, 10);
@@ -49,71 +48,71 @@ static bool take_points(const char *text, struct history_query *order, struct me
         message_fail(error, "bad_field", "points: expected a number from 2 to %d, found '%.60s'", HISTORY_QUERY_POINTS, text);
         return false;
     }
-    order->max_points = (int)points;
+    query->max_points = (int)points;
     return true;
 }
 
-static bool take_format(const char *text, struct history_query *order, struct message_error *error)
+static bool take_format(const char *text, struct history_query *query, struct message_error *error)
 {
-    order->csv = !strcmp(text, "csv");
-    if (order->csv || !strcmp(text, "json"))
+    query->csv = !strcmp(text, "csv");
+    if (query->csv || !strcmp(text, "json"))
         return true;
     message_fail(error, "bad_field", "format: expected json or csv, found '%.60s'", text);
     return false;
 }
 
-static bool take(const struct plant *plant, const char *arg, int64_t now_us, struct history_query *order, struct message_error *error)
+static bool take(const struct plant *plant, const char *arg, int64_t now_us, struct history_query *query, struct message_error *error)
 {
     size_t n = strcspn(arg, "=");
     const char *value = arg[n] ? arg + n + 1 : "";
     if (n == 4 && !memcmp(arg, "tags", n))
-        return take_tags(plant, value, order, error);
+        return take_tags(plant, value, query, error);
     if (n == 4 && !memcmp(arg, "from", n))
-        return message_take_time("from", value, now_us, &order->from_us, error);
+        return message_take_time("from", value, now_us, &query->from_us, error);
     if (n == 2 && !memcmp(arg, "to", n))
-        return message_take_time("to", value, now_us, &order->to_us, error);
+        return message_take_time("to", value, now_us, &query->to_us, error);
     if (n == 6 && !memcmp(arg, "points", n))
-        return take_points(value, order, error);
+        return take_points(value, query, error);
     if (n == 6 && !memcmp(arg, "format", n))
-        return take_format(value, order, error);
+        return take_format(value, query, error);
     message_fail(error, "unknown_field", "there is no argument '%.*s'; tags, from, to, points and format are", n < 60 ? (int)n : 60, arg);
     return false;
 }
 
-bool history_query_parse(const struct plant *plant, const char *const *args, size_t count, int64_t now_us, struct history_query *order,
+bool history_query_parse(const struct plant *plant, const char *const *args, size_t count, int64_t now_us, struct history_query *query,
                          struct message_error *error)
 {
-    *order = (struct history_query){ .max_points = 1000, .from_us = INT64_MIN, .to_us = now_us };
+    *query = (struct history_query){ .max_points = 1000, .from_us = INT64_MIN, .to_us = now_us };
     for (size_t i = 0; i < count; i++)
-        if (!take(plant, args[i], now_us, order, error))
+        if (!take(plant, args[i], now_us, query, error))
             return false;
-    if (order->from_us == INT64_MIN)
-        order->from_us = order->to_us - INT64_C(3600000000);
-    if (order->tag_count == 0)
+    if (query->from_us == INT64_MIN)
+        query->from_us = query->to_us - INT64_C(3600000000);
+    if (query->tag_count == 0)
         message_fail(error, "bad_field", "tags: expected the names of tags, with commas between them");
-    else if (order->from_us >= order->to_us)
+    else if (query->from_us >= query->to_us)
         message_fail(error, "bad_field", "from: expected an earlier instant than to");
     else
         return true;
     return false;
 }
 
-bool history_query_parse_gaps(const char *const *args, size_t count, int64_t now_us, struct history_query *order,
+bool history_query_parse_gaps(const char *const *args, size_t count, int64_t now_us, struct history_query *query,
                               struct message_error *error)
 {
-    *order = (struct history_query){ .gaps = true, .from_us = INT64_MIN, .to_us = now_us };
+    *query = (struct history_query){ .gaps = true, .from_us = INT64_MIN, .to_us = now_us };
     for (size_t i = 0; i < count; i++) {
         bool from = !strncmp(args[i], "from=", 5);
         if (!from && strncmp(args[i], "to=", 3) != 0) {
             message_fail(error, "unknown_field", "there is no argument '%.60s'; from and to are", args[i]);
             return false;
         }
-        if (!message_take_time(from ? "from" : "to", strchr(args[i], '=') + 1, now_us, from ? &order->from_us : &order->to_us, error))
+        if (!message_take_time(from ? "from" : "to", strchr(args[i], '=') + 1, now_us, from ? &query->from_us : &query->to_us, error))
             return false;
     }
-    if (order->from_us == INT64_MIN)
-        order->from_us = order->to_us - INT64_C(3600000000);
-    if (order->from_us < order->to_us)
+    if (query->from_us == INT64_MIN)
+        query->from_us = query->to_us - INT64_C(3600000000);
+    if (query->from_us < query->to_us)
         return true;
     message_fail(error, "bad_field", "from: expected an earlier instant than to");
     return false;

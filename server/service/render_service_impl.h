@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What the two halves of the painter share: wishes (painter.c, any thread) and drawing (drawing.c, the render thread). Private to them. */
+/* The state that callers of the render service and the render thread share. Private to this folder. */
 #ifndef SERVICE_RENDER_SERVICE_IMPL_H
 #define SERVICE_RENDER_SERVICE_IMPL_H
 #include <pthread.h>
@@ -9,42 +9,57 @@
 #include "service/time_accounts.h"
 
 struct render_client {
-    uint64_t id, number;
-    bool pending, has_content;
-    bool left; /* the slow picture: it wants another by now */
-    struct frame_request wish;
-    uint64_t content;                   /* of the last picture drawn for it */
-    int64_t spent_ns[SCHEDULER_SHARES]; /* of drawing time, its share; see schedule.h */
-    struct time_account *payer;         /* of its wish */
+    uint64_t id, number; /* number counts its requests as drawing of them begins */
+    bool pending;        /* `request` has yet to be begun */
+    bool has_content;
+    bool left; /* it wants another frame than the long job that is drawn for it */
+    struct frame_request request;
+    uint64_t content;                   /* content hash of the last frame drawn for it */
+    int64_t spent_ns[SCHEDULER_SHARES]; /* drawing time that it was charged, by scheduler_share */
+    struct time_account *account;       /* of its address */
 };
 
 struct render_service {
     struct render_service_params params;
     counter *renders, *render_us, *same, *shared, *failures, *steps, *abandoned, *losses, *picked, *pick_us;
     struct pick_queue *picks;
-    struct encode_queue *encoding;
+    struct encode_queue *queue;
     pthread_t thread;
     bool has_thread;
     pthread_mutex_t lock;
     pthread_cond_t wake;
     /* --- below: under lock */
     enum { STARTING, RUNNING, FAILED, STOPPING } state;
-    bool new_data;
-    const struct loop_checks *loop_checks; /* NULL: nothing is unproven */
-    bool lost, lose;                       /* the GL context; at the next picture */
+    bool new_data;                         /* readings changed since the last snapshot */
+    const struct loop_checks *loop_checks; /* NULL: no tag is marked as unchecked */
+    bool lost;                             /* the GL context is being made anew */
+    bool lose;                             /* a test wants it lost in the middle of the next frame */
     struct render_client **clients;        /* by id, ascending */
     size_t client_count, client_capacity;
-    struct time_accounts payers;
-    int64_t spent_ns[SCHEDULER_SHARES]; /* what the client that was served last had spent before */
-    struct encoded_frame *done, **done_last;
-    bool announced; /* somebody was told of them */
+    struct time_accounts accounts;
+    int64_t spent_ns[SCHEDULER_SHARES];      /* what the client served last had been charged before */
+    struct encoded_frame *done, **done_last; /* not collected yet, oldest first */
+    bool announced;                          /* params.notify was called for them */
 };
 
-/* Under lock. NULL: none. */
-struct render_client *render_service_find(struct render_service *painter, uint64_t id);
-/* Answers every order of the batch: there is nothing new to be seen, or there is no picture. */
-void render_service_answer_without_frame(struct render_service *painter, const struct request_group *batch, bool failed);
-/* The render thread, from making the GL context to its end. arg: struct render_service. */
+/* --- render_clients.c ------------------------------------------------------------------------------------------------- */
+
+/* Returns the client of that id, or NULL. Under lock. */
+struct render_client *render_service_find(struct render_service *service, uint64_t id);
+/* Adds a client of that id, which is not there yet, with an account of that number. Under lock. */
+struct render_client *render_service_add_client(struct render_service *service, uint64_t id, uint64_t account);
+/* Removes the client, if it is there. Under lock. */
+void render_service_remove_client(struct render_service *service, uint64_t id);
+/* Answers each request of the group without a frame: nothing new is to be seen, or drawing failed. Any thread. */
+void render_service_answer_without_frame(struct render_service *service, const struct request_group *group, bool failed);
+/* Takes what the encode queue made of a ticket (encode_queue_params.done). arg: the service. Thread: a worker. */
+void render_service_on_encoded(void *arg, const struct request_ticket *ticket, struct packet *const *packets, int count, bool failed);
+/* Calls params.notify if there is something to be collected that it was not called for. arg: the service. Any thread. */
+void render_service_announce(void *arg);
+
+/* --- render_thread.c -------------------------------------------------------------------------------------------------- */
+
+/* Runs the render thread, from making the GL context to its end. arg: the service. */
 void *render_thread_main(void *arg);
 
 #endif

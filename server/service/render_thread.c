@@ -1,574 +1,535 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Draws what is wished for. */
+/* The render thread: takes the most urgent request, draws it and hands the frame to the encode queue. */
 #include "base/clock.h"
 #include "service/render_thread_impl.h"
 #include "render/overlay/overlay.h"
 
-static const int64_t STEP_NS = 10 * NS_PER_MS;    /* of a slow picture, before anyone else gets a turn */
-static const int64_t LIGHT_NS = 4 * NS_PER_MS;    /* of each picture of a moving session, for a light that it chose */
-static const int64_t FIELD_NS = 6 * NS_PER_MS;    /* of a field that takes long, likewise */
-static const int64_t IDLE_NS = 5 * NS_PER_MS;     /* of what nobody waits for, before looking whether somebody does */
-static const int64_t REHEARSE_NS = 10 * NS_PER_S; /* of a field, before anyone asks; what is left is worked on as for others */
+static const int64_t STEP_NS = 10 * NS_PER_MS; /* of a long job, before anyone else gets a turn */
+static const int64_t LIGHT_NS = 4 * NS_PER_MS; /* of each frame of a moving session, for a light that it chose */
+static const int64_t FIELD_NS = 6 * NS_PER_MS; /* of a field that takes long, likewise */
 static const int64_t REBUILD_NS = 100 * NS_PER_MS, REBUILD_MAX_NS = 5 * NS_PER_S; /* between attempts at a new context */
 static const int64_t SAME_NS = 60 * NS_PER_S; /* a driver that restarts is waited for so long, before anything else will do */
 
-/* Under lock. It is wanted as before; true: a newer wish of its client is there already, and stands for it. */
-static bool wish_again(const struct request_ticket *order, void *arg)
+/* Under lock. It is wanted as before; true: a newer request of its client is there already, and stands for it. */
+static bool request_again(const struct request_ticket *ticket, void *arg)
 {
-    struct render_client *client = render_service_find(arg, order->client);
+    struct render_client *client = render_service_find(arg, ticket->client);
     if (!client || client->pending)
         return true;
-    client->wish = order->wish;
+    client->request = ticket->request;
     client->pending = true;
     return false;
 }
 
-/* What the picture is not made for. If the context was lost it is drawn again in the next one. */
-static void fail(struct render_thread *drawing, struct request_group *batch)
+/* What the frame is not made for. If the context was lost it is drawn again in the next one. */
+static void fail(struct render_thread *thread, struct request_group *group)
 {
-    struct render_service *painter = drawing->painter;
-    bool lost = gl_lost(drawing->gl);
+    struct render_service *service = thread->service;
+    bool lost = gl_lost(thread->gl);
     if (lost) {
-        pthread_mutex_lock(&painter->lock);
-        request_group_split(batch, wish_again, painter, &drawing->same);
-        pthread_mutex_unlock(&painter->lock);
-        render_service_answer_without_frame(painter, &drawing->same, false);
+        pthread_mutex_lock(&service->lock);
+        request_group_split(group, request_again, service, &thread->same);
+        pthread_mutex_unlock(&service->lock);
+        render_service_answer_without_frame(service, &thread->same, false);
     } else {
-        counter_inc(painter->failures, 1);
-        render_service_answer_without_frame(painter, batch, true);
+        counter_inc(service->failures, 1);
+        render_service_answer_without_frame(service, group, true);
     }
-    batch->count = 0;
+    group->count = 0;
 }
 
-/* What was read back from a context that is gone is no picture. Takes the frame. */
-static bool is_good(struct render_thread *drawing, struct frame *frame)
+/* What was read back from a context that is gone is no frame. Takes the frame. */
+static bool is_good(struct render_thread *thread, struct frame *frame)
 {
-    bool good = frame && !gl_lost(drawing->gl);
+    bool good = frame && !gl_lost(thread->gl);
     if (frame && !good)
         frame_unref(&frame);
     return good;
 }
 
-static void lose_on_demand(struct render_thread *drawing)
+static void lose_on_demand(struct render_thread *thread)
 {
-    struct render_service *painter = drawing->painter;
-    pthread_mutex_lock(&painter->lock);
-    bool lose = painter->lose;
-    painter->lose = false;
-    pthread_mutex_unlock(&painter->lock);
+    struct render_service *service = thread->service;
+    pthread_mutex_lock(&service->lock);
+    bool lose = service->lose;
+    service->lose = false;
+    pthread_mutex_unlock(&service->lock);
     if (lose)
-        gl_lose(drawing->gl);
+        gl_lose(thread->gl);
 }
 
-static const struct loop_checks *loop_checks_now(struct render_service *painter)
+static const struct loop_checks *loop_checks_now(struct render_service *service)
 {
-    pthread_mutex_lock(&painter->lock);
-    const struct loop_checks *loop_checks = painter->loop_checks;
-    pthread_mutex_unlock(&painter->lock);
+    pthread_mutex_lock(&service->lock);
+    const struct loop_checks *loop_checks = service->loop_checks;
+    pthread_mutex_unlock(&service->lock);
     return loop_checks;
 }
 
 /* Takes the frame. */
-static void deliver(struct render_thread *drawing, struct frame *frame, const struct snapshot *snapshot, struct request_group *batch)
+static void deliver(struct render_thread *thread, struct frame *frame, const struct snapshot *snapshot, struct request_group *group)
 {
-    struct render_service *painter = drawing->painter;
-    frame_read_markers(frame, snapshot, painter->params.baselines);
+    struct render_service *service = thread->service;
+    frame_read_markers(frame, snapshot, service->params.baselines);
     frame->clock_unset = !frame->view.at_us && !clock_utc_is_set();
-    if (batch->orders[0].wish.overlay)
-        (batch->orders[0].wish.overlay == OVERLAY_FULL ? overlay_draw : overlay_draw_bare)(frame, painter->params.scene, snapshot,
-                                                                                           loop_checks_now(painter));
-    counter_inc(painter->renders, 1);
-    counter_inc(painter->render_us, (frame->render_ns + frame->readback_ns) / 1000);
-    if (!batch->orders[0].wish.overlay)
-        recent_frames_add(&drawing->recent, frame, snapshot->taken_mono_ns, clock_mono_ns());
-    frame_sharing_submit(painter, frame, batch, frame->field_ns + frame->render_ns + frame->readback_ns);
+    if (group->tickets[0].request.overlay)
+        (group->tickets[0].request.overlay == OVERLAY_FULL ? overlay_draw : overlay_draw_bare)(frame, service->params.scene, snapshot,
+                                                                                               loop_checks_now(service));
+    counter_inc(service->renders, 1);
+    counter_inc(service->render_us, (frame->render_ns + frame->readback_ns) / 1000);
+    if (!group->tickets[0].request.overlay)
+        recent_frames_add(&thread->recent, frame, snapshot->taken_mono_ns, clock_mono_ns());
+    frame_sharing_submit(service, frame, group, frame->field_ns + frame->render_ns + frame->readback_ns);
     frame_unref(&frame);
 }
 
-/* --- pictures that a GPU draws while another one's pixels come ----------------------------------------------------------------- */
+/* --- frames that a GPU draws while another one's pixels come ---------------------------------------------------------- */
 
 /* The instant, if it is one, goes over to it. */
-static void fly(struct render_thread *drawing, struct request_group *batch, const struct historical_snapshot **historical, uint64_t content,
+static void fly(struct render_thread *thread, struct request_group *group, const struct historical_snapshot **historical, uint64_t content,
                 int64_t field_ns)
 {
-    struct awaited_frame picture = { .historical = *historical, .content = content, .field_ns = field_ns };
-    const struct snapshot *snapshot = *historical ? &(*historical)->snapshot : drawing->snapshot;
-    picture.split = split_view_submit(drawing->renderer, &batch->orders[0].wish.view, snapshot);
-    if (!picture.split) {
-        fail(drawing, batch);
+    struct awaited_frame encoded = { .historical = *historical, .content = content, .field_ns = field_ns };
+    const struct snapshot *snapshot = *historical ? &(*historical)->snapshot : thread->snapshot;
+    encoded.split = split_view_submit(thread->renderer, &group->tickets[0].request.view, snapshot);
+    if (!encoded.split) {
+        fail(thread, group);
         return;
     }
-    awaited_frames_push(&drawing->flying, &picture, batch, &drawing->snapshot);
+    awaited_frames_push(&thread->in_flight, &encoded, group, &thread->snapshot);
     *historical = NULL;
-    if (picture.historical)
+    if (encoded.historical)
         return;
-    store_snapshot(drawing->painter->params.store, clock_mono_ns(), clock_utc_ns(), drawing->snapshot);
+    store_snapshot(thread->service->params.store, clock_mono_ns(), clock_utc_ns(), thread->snapshot);
 }
 
-static void flying_gone(struct render_thread *drawing)
+static void flying_gone(struct render_thread *thread)
 {
-    if (drawing->flying.at[0].historical)
-        snapshot_cache_give(drawing->painter->params.snapshot_cache, &drawing->flying.at[0].historical);
-    awaited_frames_pop(&drawing->flying);
+    if (thread->in_flight.at[0].historical)
+        snapshot_cache_give(thread->service->params.snapshot_cache, &thread->in_flight.at[0].historical);
+    awaited_frames_pop(&thread->in_flight);
 }
 
 /* The oldest: waits for it. */
-static void land(struct render_thread *drawing)
+static void land(struct render_thread *thread)
 {
-    struct awaited_frame *picture = &drawing->flying.at[0];
-    struct frame *frame = split_view_end(drawing->renderer, &picture->split);
-    if (is_good(drawing, frame)) {
-        frame->field_ns += picture->field_ns;
-        deliver(drawing, frame, awaited_frames_readings(picture), &picture->batch);
+    struct awaited_frame *encoded = &thread->in_flight.at[0];
+    struct frame *frame = split_view_end(thread->renderer, &encoded->split);
+    if (is_good(thread, frame)) {
+        frame->field_ns += encoded->field_ns;
+        deliver(thread, frame, awaited_frames_readings(encoded), &encoded->group);
     } else {
-        fail(drawing, &picture->batch);
+        fail(thread, &encoded->group);
     }
-    flying_gone(drawing);
+    flying_gone(thread);
 }
 
 /* Those that came, and where there is room for no other the oldest. */
-static void land_some(struct render_thread *drawing)
+static void land_some(struct render_thread *thread)
 {
-    struct awaited_frames *flying = &drawing->flying;
-    while (flying->count > 0 && (flying->count == AWAITED_FRAMES_MOST || split_view_is_complete(flying->at[0].split)))
-        land(drawing);
+    struct awaited_frames *in_flight = &thread->in_flight;
+    while (in_flight->count > 0 && (in_flight->count == AWAITED_FRAMES_MOST || split_view_is_complete(in_flight->at[0].split)))
+        land(thread);
 }
 
-/* --- pictures that take long -------------------------------------------------------------------------------------------------- */
+/* --- frames that take long -------------------------------------------------------------------------------------------- */
 
 /* Whoever it is for left the one before it, not this one. */
-static void stay(struct render_service *painter, const struct request_group *batch)
+static void stay(struct render_service *service, const struct request_group *group)
 {
-    pthread_mutex_lock(&painter->lock);
-    for (size_t i = 0; i < batch->count; i++) {
-        struct render_client *client = render_service_find(painter, batch->orders[i].client);
+    pthread_mutex_lock(&service->lock);
+    for (size_t i = 0; i < group->count; i++) {
+        struct render_client *client = render_service_find(service, group->tickets[i].client);
         if (client)
             client->left = false;
     }
-    pthread_mutex_unlock(&painter->lock);
+    pthread_mutex_unlock(&service->lock);
 }
 
 /* The instant, if it is one, goes over to it. */
-static void slow_swap(struct render_thread *drawing)
+static void slow_swap(struct render_thread *thread)
 {
-    struct slow parked = drawing->parked;
-    drawing->parked = drawing->slow;
-    drawing->slow = parked;
+    struct long_job parked = thread->parked;
+    thread->parked = thread->long_job;
+    thread->long_job = parked;
 }
 
-/* Makes the place free, if whoever is first in the batch may have it at once. */
-static void slow_park(struct render_thread *drawing, const struct request_group *batch)
+/* Makes the place free, if whoever is first in the group may have it at once. */
+static void slow_park(struct render_thread *thread, const struct request_group *group)
 {
-    struct render_service *painter = drawing->painter;
-    pthread_mutex_lock(&painter->lock);
-    const struct render_client *client = render_service_find(painter, batch->orders[0].client);
-    bool overtakes = client && render_thread_overtakes(drawing, client);
-    pthread_mutex_unlock(&painter->lock);
+    struct render_service *service = thread->service;
+    pthread_mutex_lock(&service->lock);
+    const struct render_client *client = render_service_find(service, group->tickets[0].client);
+    bool overtakes = client && render_thread_overtakes(thread, client);
+    pthread_mutex_unlock(&service->lock);
     if (overtakes)
-        slow_swap(drawing);
+        slow_swap(thread);
 }
 
-static int64_t spent_by(struct render_service *painter, uint64_t id)
+static int64_t spent_by(struct render_service *service, uint64_t id)
 {
-    pthread_mutex_lock(&painter->lock);
-    const struct render_client *client = render_service_find(painter, id);
-    int64_t spent_ns = client ? client->payer->spent_ns[SCHEDULER_LONG] : 0;
-    pthread_mutex_unlock(&painter->lock);
+    pthread_mutex_lock(&service->lock);
+    const struct render_client *client = render_service_find(service, id);
+    int64_t spent_ns = client ? client->account->spent_ns[SCHEDULER_LONG] : 0;
+    pthread_mutex_unlock(&service->lock);
     return spent_ns;
 }
 
-static void slow_begin(struct render_thread *drawing, struct request_group *batch, const struct historical_snapshot **historical,
+static void slow_begin(struct render_thread *thread, struct request_group *group, const struct historical_snapshot **historical,
                        int64_t field_ns)
 {
-    const struct frame_request *wish = &batch->orders[0].wish;
-    const struct snapshot *snapshot = *historical ? &(*historical)->snapshot : drawing->snapshot;
-    drawing->slow.split = split_view_begin(drawing->renderer, &wish->view, snapshot);
-    if (!drawing->slow.split) {
-        fail(drawing, batch);
+    const struct frame_request *request = &group->tickets[0].request;
+    const struct snapshot *snapshot = *historical ? &(*historical)->snapshot : thread->snapshot;
+    thread->long_job.split = split_view_begin(thread->renderer, &request->view, snapshot);
+    if (!thread->long_job.split) {
+        fail(thread, group);
         return;
     }
-    drawing->slow.keeps = split_view_keeps(drawing->slow.split);
-    drawing->slow.urgency = wish->urgency;
-    drawing->slow.asked_ns = wish->asked_ns;
-    drawing->slow.field_ns = field_ns;
-    drawing->slow.px = (int64_t)wish->view.width_px * wish->view.height_px;
-    drawing->slow.payer = wish->payer;
-    drawing->slow.payer_spent_ns = spent_by(drawing->painter, batch->orders[0].client);
-    drawing->slow.spent_ns = 0;
-    struct request_group empty = drawing->slow.batch;
-    stay(drawing->painter, batch);
-    drawing->slow.batch = *batch;
-    *batch = empty;
-    batch->count = 0;
-    drawing->slow.historical = *historical;
+    thread->long_job.keeps = split_view_keeps(thread->long_job.split);
+    thread->long_job.urgency = request->urgency;
+    thread->long_job.asked_ns = request->asked_ns;
+    thread->long_job.field_ns = field_ns;
+    thread->long_job.px = (int64_t)request->view.width_px * request->view.height_px;
+    thread->long_job.account = request->account;
+    thread->long_job.account_spent_ns = spent_by(thread->service, group->tickets[0].client);
+    thread->long_job.spent_ns = 0;
+    struct request_group empty = thread->long_job.group;
+    stay(thread->service, group);
+    thread->long_job.group = *group;
+    *group = empty;
+    group->count = 0;
+    thread->long_job.historical = *historical;
     *historical = NULL;
-    if (drawing->slow.historical)
+    if (thread->long_job.historical)
         return;
-    struct snapshot *other = drawing->slow.snapshot;
-    drawing->slow.snapshot = drawing->snapshot;
-    drawing->snapshot = other;
-    store_snapshot(drawing->painter->params.store, clock_mono_ns(), clock_utc_ns(), drawing->snapshot);
+    struct snapshot *other = thread->long_job.snapshot;
+    thread->long_job.snapshot = thread->snapshot;
+    thread->snapshot = other;
+    store_snapshot(thread->service->params.store, clock_mono_ns(), clock_utc_ns(), thread->snapshot);
 }
 
-/* Its clients may have got newer readings meanwhile: the refined picture shows them too, and is the newest. NULL: it cannot. */
-static struct frame *slow_again(struct render_thread *drawing)
+/* Its clients may have got newer readings meanwhile: the refined frame shows them too, and is the newest. NULL: it cannot. */
+static struct frame *slow_again(struct render_thread *thread)
 {
-    struct render_service *painter = drawing->painter;
-    struct request_group *batch = &drawing->slow.batch;
-    const struct view *view = &batch->orders[0].wish.view;
-    if (!drawing->slow.keeps || batch->orders[0].wish.overlay || drawing->slow.historical)
+    struct render_service *service = thread->service;
+    struct request_group *group = &thread->long_job.group;
+    const struct view *view = &group->tickets[0].request.view;
+    if (!thread->long_job.keeps || group->tickets[0].request.overlay || thread->long_job.historical)
         return NULL;
-    render_thread_refresh(drawing);
-    if (!split_view_is_quick(drawing->renderer, view, drawing->snapshot))
+    render_thread_refresh(thread);
+    if (!split_view_is_quick(thread->renderer, view, thread->snapshot))
         return NULL;
-    pthread_mutex_lock(&painter->lock);
-    for (size_t i = 0; i < batch->count; i++) {
-        struct render_client *client = render_service_find(painter, batch->orders[i].client);
+    pthread_mutex_lock(&service->lock);
+    for (size_t i = 0; i < group->count; i++) {
+        struct render_client *client = render_service_find(service, group->tickets[i].client);
         if (client)
-            batch->orders[i].number = ++client->number;
+            group->tickets[i].number = ++client->number;
     }
-    pthread_mutex_unlock(&painter->lock);
-    return split_view_draw(drawing->renderer, view, drawing->snapshot);
+    pthread_mutex_unlock(&service->lock);
+    return split_view_draw(thread->renderer, view, thread->snapshot);
 }
 
-static const struct snapshot *slow_readings(const struct render_thread *drawing)
+static const struct snapshot *slow_readings(const struct render_thread *thread)
 {
-    return drawing->slow.historical ? &drawing->slow.historical->snapshot : drawing->slow.snapshot;
+    return thread->long_job.historical ? &thread->long_job.historical->snapshot : thread->long_job.snapshot;
 }
 
-static void slow_forget_moment(struct render_thread *drawing)
+static void slow_forget_moment(struct render_thread *thread)
 {
-    if (drawing->slow.historical)
-        snapshot_cache_give(drawing->painter->params.snapshot_cache, &drawing->slow.historical);
+    if (thread->long_job.historical)
+        snapshot_cache_give(thread->service->params.snapshot_cache, &thread->long_job.historical);
 }
 
 /* True: it is done. */
-static bool slow_step(struct render_thread *drawing)
+static bool slow_step(struct render_thread *thread)
 {
     int64_t start_ns = clock_mono_ns();
-    bool drawn = split_view_step(drawing->renderer, drawing->slow.split, STEP_NS);
-    drawing->slow.spent_ns += clock_mono_ns() - start_ns;
-    counter_inc(drawing->painter->steps, 1);
-    lose_on_demand(drawing);
-    if (!drawn && !gl_lost(drawing->gl))
+    bool drawn = split_view_step(thread->renderer, thread->long_job.split, STEP_NS);
+    thread->long_job.spent_ns += clock_mono_ns() - start_ns;
+    counter_inc(thread->service->steps, 1);
+    lose_on_demand(thread);
+    if (!drawn && !gl_lost(thread->gl))
         return false;
-    struct frame *frame = split_view_end(drawing->renderer, &drawing->slow.split);
-    if (is_good(drawing, frame)) {
-        struct frame *newer = slow_again(drawing);
-        frame->field_ns += drawing->slow.field_ns;
+    struct frame *frame = split_view_end(thread->renderer, &thread->long_job.split);
+    if (is_good(thread, frame)) {
+        struct frame *newer = slow_again(thread);
+        frame->field_ns += thread->long_job.field_ns;
         if (newer) {
             newer->field_ns += frame->field_ns;
             newer->render_ns += frame->render_ns;
             frame_unref(&frame);
         }
-        deliver(drawing, newer ? newer : frame, newer ? drawing->snapshot : slow_readings(drawing), &drawing->slow.batch);
+        deliver(thread, newer ? newer : frame, newer ? thread->snapshot : slow_readings(thread), &thread->long_job.group);
     } else {
-        fail(drawing, &drawing->slow.batch);
+        fail(thread, &thread->long_job.group);
     }
-    slow_forget_moment(drawing);
-    drawing->slow.batch.count = 0;
+    slow_forget_moment(thread);
+    thread->long_job.group.count = 0;
     return true;
 }
 
 /* Under lock. */
-static bool has_left(const struct request_ticket *order, void *arg)
+static bool has_left(const struct request_ticket *ticket, void *arg)
 {
-    const struct render_client *client = render_service_find(arg, order->client);
-    return !client || client->left || (client->pending && client->wish.urgency == URGENCY_INPUT);
+    const struct render_client *client = render_service_find(arg, ticket->client);
+    return !client || client->left || (client->pending && client->request.urgency == URGENCY_INPUT);
 }
 
 /* Who moved on gets no more of it; when nobody is left it is given up. */
-static void slow_leave(struct render_thread *drawing)
+static void slow_leave(struct render_thread *thread)
 {
-    struct render_service *painter = drawing->painter;
-    if (!drawing->slow.split)
+    struct render_service *service = thread->service;
+    if (!thread->long_job.split)
         return;
-    pthread_mutex_lock(&painter->lock);
-    request_group_split(&drawing->slow.batch, has_left, painter, &drawing->same);
-    pthread_mutex_unlock(&painter->lock);
-    render_service_answer_without_frame(painter, &drawing->same, false);
-    if (drawing->slow.batch.count > 0)
+    pthread_mutex_lock(&service->lock);
+    request_group_split(&thread->long_job.group, has_left, service, &thread->same);
+    pthread_mutex_unlock(&service->lock);
+    render_service_answer_without_frame(service, &thread->same, false);
+    if (thread->long_job.group.count > 0)
         return;
-    counter_inc(painter->abandoned, 1);
-    split_view_abandon(drawing->renderer, &drawing->slow.split);
-    slow_forget_moment(drawing);
+    counter_inc(service->abandoned, 1);
+    split_view_abandon(thread->renderer, &thread->long_job.split);
+    slow_forget_moment(thread);
 }
 
-/* A refined picture was wished for if it were quick, and it is not: the other one that was wished for then. */
-static void choose_other(struct request_group *batch)
+/* A refined frame was asked for if it were quick, and it is not: the other one that was asked for then. */
+static void choose_other(struct request_group *group)
 {
-    for (size_t i = 0; i < batch->count; i++) {
-        struct frame_request *wish = &batch->orders[i].wish;
-        if (!wish->or_moving) {
-            wish->urgency = URGENCY_REFINE;
+    for (size_t i = 0; i < group->count; i++) {
+        struct frame_request *request = &group->tickets[i].request;
+        if (!request->or_moving) {
+            request->urgency = URGENCY_REFINE;
             continue;
         }
-        wish->view.tier = TIER_PREVIEW;
-        wish->quality = wish->moving_quality;
+        request->view.tier = TIER_PREVIEW;
+        request->quality = request->moving_quality;
     }
 }
 
-/* False: held: the field is not there yet, or the place for slow pictures is taken; again later. */
-static bool draw_of(struct render_thread *drawing, struct request_group *batch, const struct snapshot *snapshot,
+/* False: held: the field is not there yet, or the place for slow frames is taken; again later. */
+static bool draw_of(struct render_thread *thread, struct request_group *group, const struct snapshot *snapshot,
                     const struct historical_snapshot **historical)
 {
     int64_t field_begin_ns = clock_mono_ns();
-    const struct frame_request *wish = &batch->orders[0].wish;
-    bool ready = split_view_prepare(drawing->renderer, &wish->view, snapshot, FIELD_NS);
-    bool quick = ready && split_view_is_quick(drawing->renderer, &wish->view, snapshot);
-    if (ready && !quick && wish->urgency == URGENCY_DATA)
-        choose_other(batch);
-    quick = quick || wish->urgency < URGENCY_REFINE;
-    if (ready && !quick && drawing->slow.split)
-        slow_park(drawing, batch);
-    if ((!ready || (!quick && drawing->slow.split)) && deferred_requests_push(&drawing->held, batch)) {
-        counter_inc(drawing->painter->steps, 1);
+    const struct frame_request *request = &group->tickets[0].request;
+    bool ready = split_view_prepare(thread->renderer, &request->view, snapshot, FIELD_NS);
+    bool quick = ready && split_view_is_quick(thread->renderer, &request->view, snapshot);
+    if (ready && !quick && request->urgency == URGENCY_DATA)
+        choose_other(group);
+    quick = quick || request->urgency < URGENCY_REFINE;
+    if (ready && !quick && thread->long_job.split)
+        slow_park(thread, group);
+    if ((!ready || (!quick && thread->long_job.split)) && deferred_requests_push(&thread->deferred, group)) {
+        counter_inc(thread->service->steps, 1);
         return false;
     }
-    uint64_t content = frame_sharing_answer_unchanged(drawing, snapshot, batch);
-    if (batch->count == 0)
+    uint64_t content = frame_sharing_answer_unchanged(thread, snapshot, group);
+    if (group->count == 0)
         return true;
     int64_t field_ns = clock_mono_ns() - field_begin_ns; /* to know what changed, the field was brought up to date already */
-    if (!quick && !drawing->slow.split) {
-        slow_begin(drawing, batch, historical, field_ns);
+    if (!quick && !thread->long_job.split) {
+        slow_begin(thread, group, historical, field_ns);
         return true;
     }
-    lose_on_demand(drawing);
-    if (renderer_submits(drawing->renderer)) {
-        fly(drawing, batch, historical, content, field_ns);
+    lose_on_demand(thread);
+    if (renderer_submits(thread->renderer)) {
+        fly(thread, group, historical, content, field_ns);
         return true;
     }
-    struct frame *frame = split_view_draw(drawing->renderer, &wish->view, snapshot);
-    if (!is_good(drawing, frame)) {
-        fail(drawing, batch);
+    struct frame *frame = split_view_draw(thread->renderer, &request->view, snapshot);
+    if (!is_good(thread, frame)) {
+        fail(thread, group);
         return true;
     }
     frame->field_ns += field_ns;
-    deliver(drawing, frame, snapshot, batch);
+    deliver(thread, frame, snapshot, group);
     return true;
 }
 
 /* As draw_of. */
-static bool draw(struct render_thread *drawing, struct request_group *batch)
+static bool draw(struct render_thread *thread, struct request_group *group)
 {
     const struct historical_snapshot *historical;
-    frame_sharing_answer_from_recent(drawing, batch);
-    if (batch->count == 0)
+    frame_sharing_answer_from_recent(thread, group);
+    if (group->count == 0)
         return true;
-    const struct snapshot *snapshot = render_thread_readings(drawing, &batch->orders[0].wish.view, &historical);
+    const struct snapshot *snapshot = render_thread_readings(thread, &group->tickets[0].request.view, &historical);
     if (!snapshot) {
-        render_service_answer_without_frame(drawing->painter, batch, false);
-        batch->count = 0;
+        render_service_answer_without_frame(thread->service, group, false);
+        group->count = 0;
         return true;
     }
-    bool done = draw_of(drawing, batch, snapshot, &historical);
+    bool done = draw_of(thread, group, snapshot, &historical);
     if (historical)
-        snapshot_cache_give(drawing->painter->params.snapshot_cache, &historical);
+        snapshot_cache_give(thread->service->params.snapshot_cache, &historical);
     return done;
 }
 
-/* --- life of the render thread -------------------------------------------------------------------------------------------------- */
+/* --- life of the render thread ---------------------------------------------------------------------------------------- */
 
 /* GL and what hangs on it. kind: GL_AUTO or that of a context that is gone; hardware: a processor will not do. */
-static bool gl_begin(struct render_thread *drawing, enum gl_kind kind, bool hardware)
+static bool gl_begin(struct render_thread *thread, enum gl_kind kind, bool hardware)
 {
-    const struct render_service_params *params = &drawing->painter->params;
+    const struct render_service_params *params = &thread->service->params;
     unsigned shortages = gl_out_of_memory_count();
-    drawing->gl = gl_create(params->log, kind, params->gl_device);
-    if (drawing->gl && hardware && drawing->gl->software) {
+    thread->gl = gl_create(params->log, kind, params->gl_device);
+    if (thread->gl && hardware && thread->gl->software) {
         log_warn(params->log, "gl: the GPU is not back yet");
         return false;
     }
-    if (drawing->gl)
-        drawing->renderer = renderer_create(params->log, drawing->gl, params->scene, drawing->field);
+    if (thread->gl)
+        thread->renderer = renderer_create(params->log, thread->gl, params->scene, thread->field);
     bool complete = gl_out_of_memory_count() == shortages;
     if (!complete)
         log_err(params->log, "gl: the GPU has no room for the plant");
-    if (!drawing->renderer || !complete)
+    if (!thread->renderer || !complete)
         return false;
-    renderer_set_per_fragment(drawing->renderer, params->per_fragment);
-    renderer_use_gl(drawing->renderer, params->by_gl);
-    drawing->warm = false;
-    return renderer_set_bake_budget(drawing->renderer, LIGHT_NS);
+    renderer_set_per_fragment(thread->renderer, params->per_fragment);
+    renderer_use_gl(thread->renderer, params->by_gl);
+    thread->warm = false;
+    return renderer_set_bake_budget(thread->renderer, LIGHT_NS);
 }
 
-static void gl_end(struct render_thread *drawing)
+static void gl_end(struct render_thread *thread)
 {
-    for (; drawing->flying.count > 0; flying_gone(drawing))
-        split_view_abandon(drawing->renderer, &drawing->flying.at[0].split);
-    for (int i = 0; i < 2; i++, slow_swap(drawing)) {
-        if (drawing->renderer)
-            split_view_abandon(drawing->renderer, &drawing->slow.split);
-        slow_forget_moment(drawing);
+    for (; thread->in_flight.count > 0; flying_gone(thread))
+        split_view_abandon(thread->renderer, &thread->in_flight.at[0].split);
+    for (int i = 0; i < 2; i++, slow_swap(thread)) {
+        if (thread->renderer)
+            split_view_abandon(thread->renderer, &thread->long_job.split);
+        slow_forget_moment(thread);
     }
-    renderer_destroy(&drawing->renderer);
-    gl_destroy(&drawing->gl);
+    renderer_destroy(&thread->renderer);
+    gl_destroy(&thread->gl);
 }
 
-/* For what it costs. */
-static void draw_for_nobody(struct render_thread *drawing, const struct view *view)
+static bool render_thread_init(struct render_thread *thread, struct render_service *service)
 {
-    struct frame *frame = split_view_draw(drawing->renderer, view, drawing->snapshot);
-    if (frame)
-        frame_unref(&frame);
+    const struct render_service_params *params = &service->params;
+    *thread = (struct render_thread){ .service = service };
+    thread->field = field_create(params->workers, params->scene);
+    field_set_baselines(thread->field, params->baselines);
+    field_set_trials(thread->field, params->trials);
+    thread->snapshot = snapshot_create(params->scene->plant->tag_count);
+    thread->long_job.snapshot = snapshot_create(params->scene->plant->tag_count);
+    thread->parked.snapshot = snapshot_create(params->scene->plant->tag_count);
+    awaited_frames_init(&thread->in_flight, params->scene->plant->tag_count);
+    store_snapshot(params->store, clock_mono_ns(), clock_utc_ns(), thread->snapshot);
+    render_thread_memory_init(&thread->memory, service);
+    return gl_begin(thread, params->gl, false);
 }
 
-/* What only the first picture of a tier costs (shaders) is paid before anyone asks. */
-static void warm_up(struct render_thread *drawing, enum tier tier)
+static void render_thread_finish(struct render_thread *thread)
 {
-    struct view view;
-    view_default(drawing->painter->params.scene, 64, 36, &view);
-    view.tier = tier;
-    draw_for_nobody(drawing, &view);
+    gl_end(thread);
+    request_group_finish(&thread->long_job.group);
+    request_group_finish(&thread->parked.group);
+    field_destroy(&thread->field);
+    snapshot_destroy(&thread->snapshot);
+    snapshot_destroy(&thread->long_job.snapshot);
+    snapshot_destroy(&thread->parked.snapshot);
+    request_group_finish(&thread->same);
+    recent_frames_finish(&thread->recent);
+    deferred_requests_finish(&thread->deferred);
+    awaited_frames_finish(&thread->in_flight);
 }
 
-/* Pictures that somebody waits for: the next ones find their fields, buffers and shaders. */
-static void rehearse(struct render_thread *drawing)
+static void set_lost(struct render_service *service, bool lost)
 {
-    const struct render_service_params *params = &drawing->painter->params;
-    for (size_t i = 0; i < params->first_count; i++) {
-        struct view view = params->first[i];
-        view.tier = TIER_PREVIEW;
-        split_view_prepare(drawing->renderer, &view, drawing->snapshot, REHEARSE_NS);
-        draw_for_nobody(drawing, &view);
-    }
+    pthread_mutex_lock(&service->lock);
+    service->lost = lost;
+    pthread_mutex_unlock(&service->lock);
 }
 
-static bool render_thread_init(struct render_thread *drawing, struct render_service *painter)
-{
-    const struct render_service_params *params = &painter->params;
-    *drawing = (struct render_thread){ .painter = painter };
-    drawing->field = field_create(params->workers, params->scene);
-    field_set_baselines(drawing->field, params->baselines);
-    field_set_trials(drawing->field, params->trials);
-    drawing->snapshot = snapshot_create(params->scene->plant->tag_count);
-    drawing->slow.snapshot = snapshot_create(params->scene->plant->tag_count);
-    drawing->parked.snapshot = snapshot_create(params->scene->plant->tag_count);
-    awaited_frames_init(&drawing->flying, params->scene->plant->tag_count);
-    store_snapshot(params->store, clock_mono_ns(), clock_utc_ns(), drawing->snapshot);
-    render_thread_memory_init(&drawing->resting, painter);
-    return gl_begin(drawing, params->gl, false);
-}
-
-static void render_thread_finish(struct render_thread *drawing)
-{
-    gl_end(drawing);
-    request_group_finish(&drawing->slow.batch);
-    request_group_finish(&drawing->parked.batch);
-    field_destroy(&drawing->field);
-    snapshot_destroy(&drawing->snapshot);
-    snapshot_destroy(&drawing->slow.snapshot);
-    snapshot_destroy(&drawing->parked.snapshot);
-    request_group_finish(&drawing->same);
-    recent_frames_finish(&drawing->recent);
-    deferred_requests_finish(&drawing->held);
-    awaited_frames_finish(&drawing->flying);
-}
-
-void render_thread_warm_up(struct render_thread *drawing)
-{
-    drawing->warm = renderer_bake_idle(drawing->renderer, IDLE_NS);
-    render_thread_note_work(drawing);
-    if (drawing->warm)
-        warm_up(drawing, TIER_REFINED);
-}
-
-static void set_lost(struct render_service *painter, bool lost)
-{
-    pthread_mutex_lock(&painter->lock);
-    painter->lost = lost;
-    pthread_mutex_unlock(&painter->lock);
-}
-
-/* False: the painter is to stop. */
-static bool pause_for(struct render_service *painter, int64_t pause_ns)
+/* False: the render service is to stop. */
+static bool pause_for(struct render_service *service, int64_t pause_ns)
 {
     int64_t until_ns = clock_mono_ns() + pause_ns;
-    pthread_mutex_lock(&painter->lock);
-    while (painter->state == RUNNING && clock_mono_ns() < until_ns)
-        render_thread_wait(painter, until_ns);
-    bool running = painter->state == RUNNING;
-    pthread_mutex_unlock(&painter->lock);
+    pthread_mutex_lock(&service->lock);
+    while (service->state == RUNNING && clock_mono_ns() < until_ns)
+        render_thread_wait(service, until_ns);
+    bool running = service->state == RUNNING;
+    pthread_mutex_unlock(&service->lock);
     return running;
 }
 
 /* A device that was reset needs a moment, a driver that restarts some seconds; until then nothing is drawn, and nothing else ends.
-   The slow picture that was under way is asked for again. */
-static void rebuild(struct render_thread *drawing)
+   The long job that was under way is asked for again. */
+static void rebuild(struct render_thread *thread)
 {
-    struct render_service *painter = drawing->painter;
+    struct render_service *service = thread->service;
     int64_t pause_ns = REBUILD_NS, lost_ns = clock_mono_ns();
-    enum gl_kind kind = drawing->gl->kind;
-    bool hardware = !drawing->gl->software;
-    log_err(painter->params.log, "gl: the context is lost; making a new one");
-    counter_inc(painter->losses, 1);
-    set_lost(painter, true);
-    for (int i = 0; i < drawing->flying.count; i++)
-        fail(drawing, &drawing->flying.at[i].batch);
-    fail(drawing, &drawing->slow.batch);
-    fail(drawing, &drawing->parked.batch);
-    gl_end(drawing);
-    while (!gl_begin(drawing, kind, hardware)) {
-        gl_end(drawing);
-        if (!pause_for(painter, pause_ns))
+    enum gl_kind kind = thread->gl->kind;
+    bool hardware = !thread->gl->software;
+    log_err(service->params.log, "gl: the context is lost; making a new one");
+    counter_inc(service->losses, 1);
+    set_lost(service, true);
+    for (int i = 0; i < thread->in_flight.count; i++)
+        fail(thread, &thread->in_flight.at[i].group);
+    fail(thread, &thread->long_job.group);
+    fail(thread, &thread->parked.group);
+    gl_end(thread);
+    while (!gl_begin(thread, kind, hardware)) {
+        gl_end(thread);
+        if (!pause_for(service, pause_ns))
             return;
         pause_ns = pause_ns * 2 > REBUILD_MAX_NS ? REBUILD_MAX_NS : pause_ns * 2;
         if (clock_mono_ns() - lost_ns >= SAME_NS) {
-            kind = painter->params.gl;
+            kind = service->params.gl;
             hardware = false;
         }
     }
-    renderer_bake_idle(drawing->renderer, INT64_MAX); /* pictures go on as they were */
-    set_lost(painter, false);
-    log_info(painter->params.log, "gl: a new context draws after %.1f s", (double)(clock_mono_ns() - lost_ns) / NS_PER_S);
+    renderer_bake_idle(thread->renderer, INT64_MAX); /* frames go on as they were */
+    set_lost(service, false);
+    log_info(service->params.log, "gl: a new context draws after %.1f s", (double)(clock_mono_ns() - lost_ns) / NS_PER_S);
 }
 
-static void turn(struct render_thread *drawing, struct scheduler *schedule, struct request_group *batch)
+static void turn(struct render_thread *thread, struct scheduler *scheduler, struct request_group *group)
 {
-    enum urgency urgency = batch->count > 0 ? batch->orders[0].wish.urgency : drawing->slow.urgency;
+    enum urgency urgency = group->count > 0 ? group->tickets[0].request.urgency : thread->long_job.urgency;
     bool done = true;
-    if (!drawing->slow.split && drawing->parked.split)
-        slow_swap(drawing);
-    slow_leave(drawing);
-    if (batch->count == 0 && !drawing->slow.split && drawing->flying.count > 0) {
-        land(drawing);
+    if (!thread->long_job.split && thread->parked.split)
+        slow_swap(thread);
+    slow_leave(thread);
+    if (group->count == 0 && !thread->long_job.split && thread->in_flight.count > 0) {
+        land(thread);
         return;
     }
-    if (batch->count > 0)
-        done = draw(drawing, batch);
-    else if (drawing->slow.split)
-        done = slow_step(drawing);
-    land_some(drawing);
+    if (group->count > 0)
+        done = draw(thread, group);
+    else if (thread->long_job.split)
+        done = slow_step(thread);
+    land_some(thread);
     if (urgency >= URGENCY_REFINE)
-        scheduler_stepped(schedule);
-    if (done && !(urgency >= URGENCY_REFINE && drawing->slow.split))
-        scheduler_done(schedule, urgency, clock_mono_ns());
+        scheduler_stepped(scheduler);
+    if (done && !(urgency >= URGENCY_REFINE && thread->long_job.split))
+        scheduler_done(scheduler, urgency, clock_mono_ns());
 }
 
 void *render_thread_main(void *arg)
 {
-    struct render_service *painter = arg;
-    struct render_thread drawing;
-    struct request_group batch = { 0 };
-    struct scheduler schedule = { 0 };
-    bool good = render_thread_init(&drawing, painter);
+    struct render_service *service = arg;
+    struct render_thread thread;
+    struct request_group group = { 0 };
+    struct scheduler scheduler = { 0 };
+    bool good = render_thread_init(&thread, service);
     if (good) {
-        render_thread_bound_memory(&drawing);
-        rehearse(&drawing);
+        render_thread_bound_memory(&thread);
+        render_thread_draw_first(&thread);
     }
-    pthread_mutex_lock(&painter->lock);
-    painter->state = good ? RUNNING : FAILED;
-    pthread_cond_broadcast(&painter->wake);
-    pthread_mutex_unlock(&painter->lock);
+    pthread_mutex_lock(&service->lock);
+    service->state = good ? RUNNING : FAILED;
+    pthread_cond_broadcast(&service->wake);
+    pthread_mutex_unlock(&service->lock);
     if (good)
-        warm_up(&drawing, TIER_PREVIEW);
-    while (render_thread_next(&drawing, &schedule, &batch)) {
-        turn(&drawing, &schedule, &batch);
-        render_thread_check_memory(&drawing);
-        if (gl_lost(drawing.gl))
-            rebuild(&drawing);
+        render_thread_warm_tier(&thread, TIER_PREVIEW);
+    while (render_thread_next(&thread, &scheduler, &group)) {
+        turn(&thread, &scheduler, &group);
+        render_thread_check_memory(&thread);
+        if (gl_lost(thread.gl))
+            rebuild(&thread);
     }
-    request_group_finish(&batch);
-    render_thread_finish(&drawing);
+    request_group_finish(&group);
+    render_thread_finish(&thread);
     return NULL;
 }

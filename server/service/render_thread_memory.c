@@ -9,25 +9,25 @@
 static const int64_t LOOK_NS = 1 * NS_PER_S;  /* between counts */
 static const int64_t REST_NS = 10 * NS_PER_S; /* nobody is there for so long */
 static const double FIELD_SHARE = 0.3;        /* of the bound: values and weights of all fields */
-/* Beside models and caches: shaders, threads, the plant; and what is made while a picture, or a light, is under way. */
+/* Beside models and caches: shaders, threads, the plant; and what is made while a frame, or a light, is under way. */
 static const size_t OWN_BYTES = (size_t)576 << 20;
 
-static counter *add(struct render_service *painter, const char *of)
+static counter *add(struct render_service *service, const char *of)
 {
     char *name = mem_printf("plantcast_memory_bytes{of=\"%s\"}", of);
     counter *added =
-        counters_add(painter->params.counters, name, "gauge", "Memory that drawing holds: all but the models can be had anew.");
+        counters_add(service->params.counters, name, "gauge", "Memory that drawing holds: all but the models can be had anew.");
     mem_free(name);
     return added;
 }
 
-void render_thread_memory_init(struct thread_memory *resting, struct render_service *painter)
+void render_thread_memory_init(struct thread_memory *memory, struct render_service *service)
 {
-    *resting = (struct thread_memory){ .fields = add(painter, "fields"), .frames = add(painter, "frames") };
+    *memory = (struct thread_memory){ .fields = add(service, "fields"), .frames = add(service, "frames") };
     for (int i = 0; i < RENDER_STORES; i++)
-        resting->stores[i] = add(painter, render_store_names[i]);
-    resting->bound = counters_add(painter->params.counters, "plantcast_memory_bound_bytes", "gauge",
-                                  "What all of these may hold together, but for what the picture that is drawn needs.");
+        memory->stores[i] = add(service, render_store_names[i]);
+    memory->bound = counters_add(service->params.counters, "plantcast_memory_bound_bytes", "gauge",
+                                 "What all of these may hold together, but for what the picture that is drawn needs.");
 }
 
 /* What models and the program itself leave of what the daemon may take; a quarter of it in any case. */
@@ -37,64 +37,64 @@ static size_t bound_of(size_t all, size_t models)
     return own < all - all / 4 ? all - own : all / 4;
 }
 
-void render_thread_bound_memory(struct render_thread *drawing)
+void render_thread_bound_memory(struct render_thread *thread)
 {
-    struct thread_memory *resting = &drawing->resting;
-    size_t bytes[RENDER_STORES], all = drawing->painter->params.memory_bytes;
-    renderer_measure_memory(drawing->renderer, bytes);
+    struct thread_memory *memory = &thread->memory;
+    size_t bytes[RENDER_STORES], all = thread->service->params.memory_bytes;
+    renderer_measure_memory(thread->renderer, bytes);
     size_t bound = bound_of(all ? all : memory_default_bytes(), bytes[STORE_MODELS]), frames = frame_bytes();
     size_t caches = bound > 2 * frames ? bound - frames : bound / 2; /* frames are as many as sessions need */
-    field_set_cache_limit(drawing->field, (size_t)(FIELD_SHARE * (double)caches));
-    renderer_bound_memory(drawing->renderer, caches - (size_t)(FIELD_SHARE * (double)caches));
-    renderer_measure_memory(drawing->renderer, bytes);
+    field_set_cache_limit(thread->field, (size_t)(FIELD_SHARE * (double)caches));
+    renderer_bound_memory(thread->renderer, caches - (size_t)(FIELD_SHARE * (double)caches));
+    renderer_measure_memory(thread->renderer, bytes);
     for (int i = 0; i < RENDER_STORES; i++)
-        counter_set(resting->stores[i], (int64_t)bytes[i]);
-    counter_set(resting->fields, (int64_t)field_bytes(drawing->field));
-    counter_set(resting->frames, (int64_t)frames);
-    counter_set(resting->bound, (int64_t)(bound + bytes[STORE_MODELS]));
+        counter_set(memory->stores[i], (int64_t)bytes[i]);
+    counter_set(memory->fields, (int64_t)field_bytes(thread->field));
+    counter_set(memory->frames, (int64_t)frames);
+    counter_set(memory->bound, (int64_t)(bound + bytes[STORE_MODELS]));
 }
 
-void render_thread_note_work(struct render_thread *drawing)
+void render_thread_note_work(struct render_thread *thread)
 {
-    drawing->resting.rests = false;
-    drawing->resting.alone_since_ns = 0;
+    thread->memory.released = false;
+    thread->memory.alone_since_ns = 0;
 }
 
-void render_thread_check_memory(struct render_thread *drawing)
+void render_thread_check_memory(struct render_thread *thread)
 {
     int64_t now_ns = clock_mono_ns();
-    render_thread_note_work(drawing);
-    if (now_ns - drawing->resting.looked_ns < LOOK_NS)
+    render_thread_note_work(thread);
+    if (now_ns - thread->memory.looked_ns < LOOK_NS)
         return;
-    drawing->resting.looked_ns = now_ns;
-    render_thread_bound_memory(drawing);
+    thread->memory.looked_ns = now_ns;
+    render_thread_bound_memory(thread);
 }
 
-bool render_thread_may_release_memory(struct render_thread *drawing, int64_t *wait_until_ns)
+bool render_thread_may_release_memory(struct render_thread *thread, int64_t *wait_until_ns)
 {
-    struct thread_memory *resting = &drawing->resting;
+    struct thread_memory *memory = &thread->memory;
     int64_t now_ns = clock_mono_ns();
-    if (drawing->painter->client_count > 0) {
-        resting->alone_since_ns = 0;
+    if (thread->service->client_count > 0) {
+        memory->alone_since_ns = 0;
         return false;
     }
-    if (!resting->alone_since_ns)
-        resting->alone_since_ns = now_ns;
-    if (resting->rests)
+    if (!memory->alone_since_ns)
+        memory->alone_since_ns = now_ns;
+    if (memory->released)
         return false;
-    int64_t due_ns = resting->alone_since_ns + REST_NS;
+    int64_t due_ns = memory->alone_since_ns + REST_NS;
     *wait_until_ns = due_ns < *wait_until_ns ? due_ns : *wait_until_ns;
     return now_ns >= due_ns;
 }
 
-void render_thread_release_memory(struct render_thread *drawing)
+void render_thread_release_memory(struct render_thread *thread)
 {
-    renderer_drop_caches(drawing->renderer);
-    field_clear_cache(drawing->field);
-    recent_frames_finish(&drawing->recent);
-    encode_queue_drop_idle(drawing->painter->encoding);
+    renderer_drop_caches(thread->renderer);
+    field_clear_cache(thread->field);
+    recent_frames_finish(&thread->recent);
+    encode_queue_drop_idle(thread->service->queue);
     frame_drop_spares();
     memory_trim();
-    render_thread_bound_memory(drawing);
-    drawing->resting.rests = true;
+    render_thread_bound_memory(thread);
+    thread->memory.released = true;
 }

@@ -5,210 +5,210 @@
 
 static const int64_t OWN_DATA_NS = 1 * NS_PER_S; /* changed readings wait so long for a refinement of the same client */
 enum { OVERTAKE_SMALLER = 4 }; /* times, in pixels, than what it overtakes: one more of that size may be in memory, not two */
-static const int64_t SNAPSHOT_MAX_AGE_NS = 100 * NS_PER_MS; /* the clock in the picture, and ages, are no older than this */
+static const int64_t SNAPSHOT_MAX_AGE_NS = 100 * NS_PER_MS; /* the clock in the frame, and ages, are no older than this */
 
-static bool slow_is_for(const struct slow *slow, const struct render_client *client)
+static bool slow_is_for(const struct long_job *long_job, const struct render_client *client)
 {
-    for (size_t i = 0; slow->split && i < slow->batch.count; i++)
-        if (slow->batch.orders[i].client == client->id)
+    for (size_t i = 0; long_job->split && i < long_job->group.count; i++)
+        if (long_job->group.tickets[i].client == client->id)
             return true;
     return false;
 }
 
-/* Under lock. Its slow picture is under way and still good: what it wants besides can wait for it. */
-static bool waits_for_slow(const struct render_thread *drawing, const struct render_client *client, int64_t now_ns)
+/* Under lock. Its long job is under way and still good: what it wants besides can wait for it. */
+static bool waits_for_slow(const struct render_thread *thread, const struct render_client *client, int64_t now_ns)
 {
-    bool moving = client->wish.view.tier == TIER_PREVIEW || client->wish.or_moving;
-    bool soon = client->wish.urgency == URGENCY_DATA && moving && now_ns - client->wish.asked_ns >= OWN_DATA_NS;
-    if (client->left || client->wish.urgency == URGENCY_INPUT || soon)
+    bool moving = client->request.view.tier == TIER_PREVIEW || client->request.or_moving;
+    bool soon = client->request.urgency == URGENCY_DATA && moving && now_ns - client->request.asked_ns >= OWN_DATA_NS;
+    if (client->left || client->request.urgency == URGENCY_INPUT || soon)
         return false;
-    return slow_is_for(&drawing->slow, client) || slow_is_for(&drawing->parked, client);
+    return slow_is_for(&thread->long_job, client) || slow_is_for(&thread->parked, client);
 }
 
 struct turn {
-    bool step;                    /* of the slow picture; else */
+    bool step;                    /* of the long job; else */
     struct render_client *client; /* NULL: nobody before wait_until_ns */
     int64_t wait_until_ns;
 };
 
-bool render_thread_overtakes(const struct render_thread *drawing, const struct render_client *client)
+bool render_thread_overtakes(const struct render_thread *thread, const struct render_client *client)
 {
-    const struct slow *slow = &drawing->slow;
-    int share = SCHEDULER_LONG;
-    if (!slow->split || drawing->parked.split || slow->payer == client->wish.payer)
+    const struct long_job *long_job = &thread->long_job;
+    int kind = SCHEDULER_LONG;
+    if (!long_job->split || thread->parked.split || long_job->account == client->request.account)
         return false;
-    int64_t px = (int64_t)client->wish.view.width_px * client->wish.view.height_px;
-    return px * OVERTAKE_SMALLER <= slow->px && client->payer->spent_ns[share] < slow->payer_spent_ns + slow->spent_ns;
+    int64_t px = (int64_t)client->request.view.width_px * client->request.view.height_px;
+    return px * OVERTAKE_SMALLER <= long_job->px && client->account->spent_ns[kind] < long_job->account_spent_ns + long_job->spent_ns;
 }
 
 /* Under lock. Addresses first, then their clients. */
-static bool has_had_less(const struct render_client *client, const struct render_client *other, int share)
+static bool has_had_less(const struct render_client *client, const struct render_client *other, int kind)
 {
-    const int64_t *a = client->payer->spent_ns, *b = other->payer->spent_ns;
-    if (client->payer == other->payer)
+    const int64_t *a = client->account->spent_ns, *b = other->account->spent_ns;
+    if (client->account == other->account)
         a = client->spent_ns, b = other->spent_ns;
-    return scheduler_before(a[share], client->wish.asked_ns, b[share], other->wish.asked_ns);
+    return scheduler_before(a[kind], client->request.asked_ns, b[kind], other->request.asked_ns);
 }
 
 /* Under lock. It can be drawn now, and before the other (NULL: nobody). */
-static bool goes_before(const struct render_thread *drawing, const struct render_client *client, const struct render_client *other,
+static bool goes_before(const struct render_thread *thread, const struct render_client *client, const struct render_client *other,
                         int64_t now_ns)
 {
-    enum urgency urgency = client->wish.urgency;
-    if (!client->pending || waits_for_slow(drawing, client, now_ns))
+    enum urgency urgency = client->request.urgency;
+    if (!client->pending || waits_for_slow(thread, client, now_ns))
         return false;
-    if (drawing->slow.split && urgency >= URGENCY_REFINE && !render_thread_overtakes(drawing, client))
+    if (thread->long_job.split && urgency >= URGENCY_REFINE && !render_thread_overtakes(thread, client))
         return false;
     return !other || has_had_less(client, other, scheduler_share(urgency));
 }
 
 /* Under lock. */
-static struct turn next_turn(const struct render_thread *drawing, const struct scheduler *schedule)
+static struct turn next_turn(const struct render_thread *thread, const struct scheduler *scheduler)
 {
-    const struct render_service *painter = drawing->painter;
+    const struct render_service *service = thread->service;
     struct render_client *first[URGENCY_COUNT + 1] = { NULL };
     int64_t asked_ns[URGENCY_COUNT], now_ns = clock_mono_ns();
-    bool busy = drawing->slow.split != NULL;
+    bool busy = thread->long_job.split != NULL;
     struct turn turn = { 0 };
-    for (size_t i = 0; i < painter->client_count; i++) {
-        struct render_client *client = painter->clients[i];
-        if (goes_before(drawing, client, first[client->wish.urgency], now_ns))
-            first[client->wish.urgency] = client;
+    for (size_t i = 0; i < service->client_count; i++) {
+        struct render_client *client = service->clients[i];
+        if (goes_before(thread, client, first[client->request.urgency], now_ns))
+            first[client->request.urgency] = client;
     }
     for (int i = 0; i < URGENCY_COUNT; i++)
-        asked_ns[i] = busy && drawing->slow.urgency == (enum urgency)i ? drawing->slow.asked_ns
-                      : first[i]                                       ? first[i]->wish.asked_ns
-                                                                       : INT64_MAX;
-    enum urgency urgency = scheduler_choose(schedule, asked_ns, now_ns, &turn.wait_until_ns);
+        asked_ns[i] = busy && thread->long_job.urgency == (enum urgency)i ? thread->long_job.asked_ns
+                      : first[i]                                          ? first[i]->request.asked_ns
+                                                                          : INT64_MAX;
+    enum urgency urgency = scheduler_choose(scheduler, asked_ns, now_ns, &turn.wait_until_ns);
     struct render_client *over = first[URGENCY_REFINE] ? first[URGENCY_REFINE] : first[URGENCY_SNAPSHOT];
-    bool slow = urgency == URGENCY_REFINE || urgency == URGENCY_SNAPSHOT;
-    turn.step = busy && slow && !over;
-    turn.client = busy && slow ? over : first[urgency];
+    bool long_job = urgency == URGENCY_REFINE || urgency == URGENCY_SNAPSHOT;
+    turn.step = busy && long_job && !over;
+    turn.client = busy && long_job ? over : first[urgency];
     return turn;
 }
 
-void render_thread_wait(struct render_service *painter, int64_t mono_ns)
+void render_thread_wait(struct render_service *service, int64_t mono_ns)
 {
     struct timespec until = { .tv_sec = mono_ns / NS_PER_S, .tv_nsec = mono_ns % NS_PER_S };
     if (mono_ns == INT64_MAX)
-        pthread_cond_wait(&painter->wake, &painter->lock);
+        pthread_cond_wait(&service->wake, &service->lock);
     else
-        pthread_cond_timedwait(&painter->wake, &painter->lock, &until);
+        pthread_cond_timedwait(&service->wake, &service->lock, &until);
 }
 
 /* Under lock. What it had under way is not wanted any more, unless it will show new readings too. */
-static void begin(const struct render_thread *drawing, struct render_client *client, struct request_group *batch, int64_t now_ns)
+static void begin(const struct render_thread *thread, struct render_client *client, struct request_group *group, int64_t now_ns)
 {
-    enum urgency urgency = client->wish.urgency;
+    enum urgency urgency = client->request.urgency;
     client->pending = false;
-    client->left = urgency == URGENCY_INPUT || (urgency == URGENCY_DATA && !drawing->slow.keeps);
-    request_group_add(batch, &(struct request_ticket){ .client = client->id,
+    client->left = urgency == URGENCY_INPUT || (urgency == URGENCY_DATA && !thread->long_job.keeps);
+    request_group_add(group, &(struct request_ticket){ .client = client->id,
                                                        .number = ++client->number,
-                                                       .wish = client->wish,
-                                                       .wait_ns = now_ns - client->wish.view.input_ns });
+                                                       .request = client->request,
+                                                       .wait_ns = now_ns - client->request.view.input_ns });
 }
 
-/* Under lock. The client's wish, and all that the same picture answers. */
-static void begin_all(const struct render_thread *drawing, struct render_client *first, struct request_group *batch)
+/* Under lock. The client's request, and all that the same frame answers. */
+static void begin_all(const struct render_thread *thread, struct render_client *first, struct request_group *group)
 {
-    struct render_service *painter = drawing->painter;
+    struct render_service *service = thread->service;
     int64_t now_ns = clock_mono_ns();
-    int share = scheduler_share(first->wish.urgency);
-    painter->spent_ns[share] = scheduler_asked(first->spent_ns[share], painter->spent_ns[share]);
-    time_accounts_served(&painter->payers, first->payer, share);
-    begin(drawing, first, batch, now_ns);
-    struct frame_request wish = batch->orders[0].wish;
-    for (size_t i = 0; i < painter->client_count && !wish.overlay; i++) {
-        struct render_client *other = painter->clients[i];
-        if (other->pending && !other->wish.overlay && view_equal(&other->wish.view, &wish.view))
-            begin(drawing, other, batch, now_ns);
+    int kind = scheduler_share(first->request.urgency);
+    service->spent_ns[kind] = scheduler_asked(first->spent_ns[kind], service->spent_ns[kind]);
+    time_accounts_served(&service->accounts, first->account, kind);
+    begin(thread, first, group, now_ns);
+    struct frame_request request = group->tickets[0].request;
+    for (size_t i = 0; i < service->client_count && !request.overlay; i++) {
+        struct render_client *other = service->clients[i];
+        if (other->pending && !other->request.overlay && view_equal(&other->request.view, &request.view))
+            begin(thread, other, group, now_ns);
     }
 }
 
-void render_thread_refresh(struct render_thread *drawing)
+void render_thread_refresh(struct render_thread *thread)
 {
-    struct render_service *painter = drawing->painter;
+    struct render_service *service = thread->service;
     int64_t now_ns = clock_mono_ns();
-    pthread_mutex_lock(&painter->lock);
-    bool new_data = painter->new_data;
-    painter->new_data = false;
-    pthread_mutex_unlock(&painter->lock);
-    if (new_data || now_ns - drawing->snapshot->taken_mono_ns > SNAPSHOT_MAX_AGE_NS)
-        store_snapshot(painter->params.store, now_ns, clock_utc_ns(), drawing->snapshot);
+    pthread_mutex_lock(&service->lock);
+    bool new_data = service->new_data;
+    service->new_data = false;
+    pthread_mutex_unlock(&service->lock);
+    if (new_data || now_ns - thread->snapshot->taken_mono_ns > SNAPSHOT_MAX_AGE_NS)
+        store_snapshot(service->params.store, now_ns, clock_utc_ns(), thread->snapshot);
 }
 
-const struct snapshot *render_thread_readings(struct render_thread *drawing, const struct view *view,
+const struct snapshot *render_thread_readings(struct render_thread *thread, const struct view *view,
                                               const struct historical_snapshot **historical)
 {
-    *historical = view->at_us ? snapshot_cache_take(drawing->painter->params.snapshot_cache, view->at_us) : NULL;
+    *historical = view->at_us ? snapshot_cache_take(thread->service->params.snapshot_cache, view->at_us) : NULL;
     if (view->at_us)
         return *historical ? &(*historical)->snapshot : NULL;
-    render_thread_refresh(drawing);
-    return drawing->snapshot;
+    render_thread_refresh(thread);
+    return thread->snapshot;
 }
 
 /* One question about a pixel. */
-static void answer_pick(struct render_thread *drawing)
+static void answer_pick(struct render_thread *thread)
 {
-    struct render_service *painter = drawing->painter;
-    struct pick_query order;
+    struct render_service *service = thread->service;
+    struct pick_query query;
     struct pick pick;
     const struct historical_snapshot *historical;
     int64_t start_ns = clock_mono_ns();
-    if (!pick_queue_take(painter->picks, &order))
+    if (!pick_queue_take(service->picks, &query))
         return;
-    const struct snapshot *snapshot = render_thread_readings(drawing, &order.view, &historical);
+    const struct snapshot *snapshot = render_thread_readings(thread, &query.view, &historical);
     if (!snapshot)
         return;
-    pick_at(painter->params.scene, drawing->field, &order.view, snapshot, order.x_px, order.y_px, &pick);
+    pick_at(service->params.scene, thread->field, &query.view, snapshot, query.x_px, query.y_px, &pick);
     if (historical)
-        snapshot_cache_give(painter->params.snapshot_cache, &historical);
-    render_thread_note_work(drawing);
-    counter_inc(painter->picked, 1);
-    counter_inc(painter->pick_us, (clock_mono_ns() - start_ns) / 1000);
-    if (pick_queue_answer(painter->picks, &order, &pick))
-        painter->params.notify(painter->params.notify_arg);
+        snapshot_cache_give(service->params.snapshot_cache, &historical);
+    render_thread_note_work(thread);
+    counter_inc(service->picked, 1);
+    counter_inc(service->pick_us, (clock_mono_ns() - start_ns) / 1000);
+    if (pick_queue_answer(service->picks, &query, &pick))
+        service->params.notify(service->params.notify_arg);
 }
 
-bool render_thread_next(struct render_thread *drawing, const struct scheduler *schedule, struct request_group *batch)
+bool render_thread_next(struct render_thread *thread, const struct scheduler *scheduler, struct request_group *group)
 {
-    struct render_service *painter = drawing->painter;
+    struct render_service *service = thread->service;
     struct turn turn = { 0 };
-    batch->count = 0;
-    pthread_mutex_lock(&painter->lock);
-    while (painter->state == RUNNING) {
-        if (pick_queue_has_query(painter->picks)) {
-            pthread_mutex_unlock(&painter->lock);
-            answer_pick(drawing);
-            pthread_mutex_lock(&painter->lock);
+    group->count = 0;
+    pthread_mutex_lock(&service->lock);
+    while (service->state == RUNNING) {
+        if (pick_queue_has_query(service->picks)) {
+            pthread_mutex_unlock(&service->lock);
+            answer_pick(thread);
+            pthread_mutex_lock(&service->lock);
         }
-        turn = next_turn(drawing, schedule);
-        if (turn.step || turn.client || drawing->held.count > 0)
+        turn = next_turn(thread, scheduler);
+        if (turn.step || turn.client || thread->deferred.count > 0)
             break;
-        if (pick_queue_has_query(painter->picks))
+        if (pick_queue_has_query(service->picks))
             continue;
-        if (drawing->flying.count > 0)
+        if (thread->in_flight.count > 0)
             break;
-        if (!drawing->warm) {
-            pthread_mutex_unlock(&painter->lock);
-            render_thread_warm_up(drawing);
-            pthread_mutex_lock(&painter->lock);
+        if (!thread->warm) {
+            pthread_mutex_unlock(&service->lock);
+            render_thread_warm_up(thread);
+            pthread_mutex_lock(&service->lock);
             continue;
         }
-        if (!drawing->slow.split && render_thread_may_release_memory(drawing, &turn.wait_until_ns)) {
-            pthread_mutex_unlock(&painter->lock);
-            render_thread_release_memory(drawing);
-            pthread_mutex_lock(&painter->lock);
+        if (!thread->long_job.split && render_thread_may_release_memory(thread, &turn.wait_until_ns)) {
+            pthread_mutex_unlock(&service->lock);
+            render_thread_release_memory(thread);
+            pthread_mutex_lock(&service->lock);
             continue;
         }
-        render_thread_wait(painter, turn.wait_until_ns);
+        render_thread_wait(service, turn.wait_until_ns);
     }
-    bool running = painter->state == RUNNING;
-    bool held = deferred_requests_due(&drawing->held, turn.step || turn.client);
-    if (running && held)
-        deferred_requests_pop(&drawing->held, batch);
+    bool running = service->state == RUNNING;
+    bool deferred = deferred_requests_due(&thread->deferred, turn.step || turn.client);
+    if (running && deferred)
+        deferred_requests_pop(&thread->deferred, group);
     else if (running && turn.client && !turn.step)
-        begin_all(drawing, turn.client, batch);
-    pthread_mutex_unlock(&painter->lock);
+        begin_all(thread, turn.client, group);
+    pthread_mutex_unlock(&service->lock);
     return running;
 }

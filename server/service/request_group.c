@@ -4,28 +4,28 @@
 
 #include "base/mem.h"
 
-void request_group_add(struct request_group *batch, const struct request_ticket *order)
+void request_group_add(struct request_group *group, const struct request_ticket *ticket)
 {
-    mem_grow(&batch->orders, &batch->capacity, batch->count + 1, sizeof(*batch->orders));
-    batch->orders[batch->count++] = *order;
+    mem_grow(&group->tickets, &group->capacity, group->count + 1, sizeof(*group->tickets));
+    group->tickets[group->count++] = *ticket;
 }
 
-void request_group_split(struct request_group *batch, bool (*belongs)(const struct request_ticket *order, void *arg), void *arg,
+void request_group_split(struct request_group *group, bool (*belongs)(const struct request_ticket *ticket, void *arg), void *arg,
                          struct request_group *into)
 {
     size_t kept = 0;
     into->count = 0;
-    for (size_t i = 0; i < batch->count; i++) {
-        if (belongs(&batch->orders[i], arg))
-            request_group_add(into, &batch->orders[i]);
+    for (size_t i = 0; i < group->count; i++) {
+        if (belongs(&group->tickets[i], arg))
+            request_group_add(into, &group->tickets[i]);
         else
-            batch->orders[kept++] = batch->orders[i];
+            group->tickets[kept++] = group->tickets[i];
     }
-    batch->count = kept;
+    group->count = kept;
 }
 
-void request_group_finish(struct request_group *batch)
+void request_group_finish(struct request_group *group)
 {
-    mem_free(batch->orders);
-    *batch = (struct request_group){ 0 };
+    mem_free(group->tickets);
+    *group = (struct request_group){ 0 };
 }

@@ -1,24 +1,26 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Wishes that were begun and that one picture answers. */
+/* A group of frame requests that one frame answers. Plain data; thread: one at a time. */
 #ifndef SERVICE_REQUEST_GROUP_H
 #define SERVICE_REQUEST_GROUP_H
-#include "service/encoded_frame.h"
+#include "service/frame_request.h"
 
-struct request_ticket {
+struct request_ticket { /* a request that was begun */
     uint64_t client, number;
-    struct frame_request wish;
-    int64_t wait_ns;
+    struct frame_request request;
+    int64_t wait_ns; /* from the input to the start of drawing */
 };
 
-struct request_group { /* zero-initialise */
-    struct request_ticket *orders;
+struct request_group { /* zero-initialise; request_group_finish */
+    struct request_ticket *tickets;
     size_t count, capacity;
 };
 
-void request_group_add(struct request_group *batch, const struct request_ticket *order);
-/* Moves the orders for which belongs(order, arg) is true to `into`, which is emptied first; both keep their order. */
-void request_group_split(struct request_group *batch, bool (*belongs)(const struct request_ticket *order, void *arg), void *arg,
+/* Appends a copy of the ticket. */
+void request_group_add(struct request_group *group, const struct request_ticket *ticket);
+/* Moves the tickets for which belongs(ticket, arg) is true into `into`, which is emptied first. Both keep their order. */
+void request_group_split(struct request_group *group, bool (*belongs)(const struct request_ticket *ticket, void *arg), void *arg,
                          struct request_group *into);
-void request_group_finish(struct request_group *batch);
+/* Frees the memory; the group is empty and can be used again. */
+void request_group_finish(struct request_group *group);
 
 #endif

@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Whose picture is drawn next. */
+/* Which class of request is drawn next. */
 #include "service/scheduler.h"
 
 #include "base/clock.h"
 
-static const int64_t PAUSE_NS = 150 * NS_PER_MS;       /* after a moving picture the next of the same session may come */
+static const int64_t PAUSE_NS = 150 * NS_PER_MS;       /* after a moving frame the next of the same session may come */
 static const int64_t SHARE_NS = 3 * NS_PER_S;          /* what takes long gets its turn in this time, whoever moves */
-static const int64_t SNAPSHOT_SHARE_NS = 1 * NS_PER_S; /* likewise a picture that somebody asked for by itself, and has none of yet */
+static const int64_t SNAPSHOT_SHARE_NS = 1 * NS_PER_S; /* likewise a frame that somebody asked for by itself, and has none of yet */
 
 int scheduler_share(enum urgency urgency)
 {
@@ -28,44 +28,44 @@ static bool is_pending(int64_t asked_ns)
     return asked_ns != INT64_MAX;
 }
 
-static bool share_due(const struct scheduler *schedule, enum urgency urgency, int64_t asked_ns, int64_t now_ns)
+static bool share_due(const struct scheduler *scheduler, enum urgency urgency, int64_t asked_ns, int64_t now_ns)
 {
     int64_t share_ns = urgency == URGENCY_SNAPSHOT ? SNAPSHOT_SHARE_NS : SHARE_NS;
-    return schedule->step_next && is_pending(asked_ns) && now_ns - asked_ns >= share_ns && now_ns - schedule->long_ns >= share_ns;
+    return scheduler->step_next && is_pending(asked_ns) && now_ns - asked_ns >= share_ns && now_ns - scheduler->long_ns >= share_ns;
 }
 
-enum urgency scheduler_choose(const struct scheduler *schedule, const int64_t asked_ns[URGENCY_COUNT], int64_t now_ns,
+enum urgency scheduler_choose(const struct scheduler *scheduler, const int64_t asked_ns[URGENCY_COUNT], int64_t now_ns,
                               int64_t *wait_until_ns)
 {
     bool input = is_pending(asked_ns[URGENCY_INPUT]), data = is_pending(asked_ns[URGENCY_DATA]);
     enum urgency slow = asked_ns[URGENCY_SNAPSHOT] < asked_ns[URGENCY_REFINE] ? URGENCY_SNAPSHOT : URGENCY_REFINE;
     *wait_until_ns = INT64_MAX;
-    if (share_due(schedule, slow, asked_ns[slow], now_ns))
+    if (share_due(scheduler, slow, asked_ns[slow], now_ns))
         return slow;
-    if (input && !(data && schedule->data_next))
+    if (input && !(data && scheduler->data_next))
         return URGENCY_INPUT;
     if (data)
         return URGENCY_DATA;
     if (!is_pending(asked_ns[slow]))
         return URGENCY_COUNT;
-    if (now_ns - schedule->input_ns >= PAUSE_NS)
+    if (now_ns - scheduler->input_ns >= PAUSE_NS)
         return slow;
-    *wait_until_ns = schedule->input_ns + PAUSE_NS;
+    *wait_until_ns = scheduler->input_ns + PAUSE_NS;
     return URGENCY_COUNT;
 }
 
-void scheduler_done(struct scheduler *schedule, enum urgency urgency, int64_t now_ns)
+void scheduler_done(struct scheduler *scheduler, enum urgency urgency, int64_t now_ns)
 {
-    schedule->step_next = urgency == URGENCY_INPUT || urgency == URGENCY_DATA;
-    if (schedule->step_next)
-        schedule->data_next = urgency == URGENCY_INPUT;
+    scheduler->step_next = urgency == URGENCY_INPUT || urgency == URGENCY_DATA;
+    if (scheduler->step_next)
+        scheduler->data_next = urgency == URGENCY_INPUT;
     if (urgency == URGENCY_INPUT)
-        schedule->input_ns = now_ns;
+        scheduler->input_ns = now_ns;
     else if (urgency != URGENCY_DATA)
-        schedule->long_ns = now_ns;
+        scheduler->long_ns = now_ns;
 }
 
-void scheduler_stepped(struct scheduler *schedule)
+void scheduler_stepped(struct scheduler *scheduler)
 {
-    schedule->step_next = false;
+    scheduler->step_next = false;
 }

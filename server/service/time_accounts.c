@@ -4,64 +4,64 @@
 
 #include "base/mem.h"
 
-static bool owes(const struct time_accounts *payers, const struct time_account *payer)
+static bool owes(const struct time_accounts *accounts, const struct time_account *account)
 {
     bool any = false;
-    for (int share = 0; share < SCHEDULER_SHARES; share++)
-        any |= payer->spent_ns[share] > payers->served_ns[share];
+    for (int kind = 0; kind < SCHEDULER_SHARES; kind++)
+        any |= account->spent_ns[kind] > accounts->served_ns[kind];
     return any;
 }
 
-static void forget_old(struct time_accounts *payers)
+static void forget_old(struct time_accounts *accounts)
 {
     size_t kept = 0;
-    for (size_t i = 0; i < payers->count; i++) {
-        struct time_account *payer = payers->all[i];
-        if (payer->clients > 0 || owes(payers, payer))
-            payers->all[kept++] = payer;
+    for (size_t i = 0; i < accounts->count; i++) {
+        struct time_account *account = accounts->all[i];
+        if (account->clients > 0 || owes(accounts, account))
+            accounts->all[kept++] = account;
         else
-            mem_free(payer);
+            mem_free(account);
     }
-    payers->count = kept;
+    accounts->count = kept;
 }
 
-struct time_account *time_accounts_join(struct time_accounts *payers, uint64_t id)
+struct time_account *time_accounts_join(struct time_accounts *accounts, uint64_t id)
 {
     size_t i = 0;
-    while (i < payers->count && payers->all[i]->id != id)
+    while (i < accounts->count && accounts->all[i]->id != id)
         i++;
-    if (i == payers->count) {
-        forget_old(payers);
-        i = payers->count;
-        mem_grow(&payers->all, &payers->capacity, payers->count + 1, sizeof(*payers->all));
-        struct time_account *payer = payers->all[payers->count++] = mem_new(sizeof(*payer));
-        payer->id = id;
+    if (i == accounts->count) {
+        forget_old(accounts);
+        i = accounts->count;
+        mem_grow(&accounts->all, &accounts->capacity, accounts->count + 1, sizeof(*accounts->all));
+        struct time_account *account = accounts->all[accounts->count++] = mem_new(sizeof(*account));
+        account->id = id;
     }
-    payers->all[i]->clients++;
-    return payers->all[i];
+    accounts->all[i]->clients++;
+    return accounts->all[i];
 }
 
-void time_accounts_leave(struct time_accounts *payers, struct time_account **payer)
+void time_accounts_leave(struct time_accounts *accounts, struct time_account **account)
 {
-    (*payer)->clients--;
-    *payer = NULL;
-    forget_old(payers);
+    (*account)->clients--;
+    *account = NULL;
+    forget_old(accounts);
 }
 
-void time_accounts_asked(const struct time_accounts *payers, struct time_account *payer, int share)
+void time_accounts_asked(const struct time_accounts *accounts, struct time_account *account, int kind)
 {
-    payer->spent_ns[share] = scheduler_asked(payer->spent_ns[share], payers->served_ns[share]);
+    account->spent_ns[kind] = scheduler_asked(account->spent_ns[kind], accounts->served_ns[kind]);
 }
 
-void time_accounts_served(struct time_accounts *payers, const struct time_account *payer, int share)
+void time_accounts_served(struct time_accounts *accounts, const struct time_account *account, int kind)
 {
-    payers->served_ns[share] = scheduler_asked(payer->spent_ns[share], payers->served_ns[share]);
+    accounts->served_ns[kind] = scheduler_asked(account->spent_ns[kind], accounts->served_ns[kind]);
 }
 
-void time_accounts_finish(struct time_accounts *payers)
+void time_accounts_finish(struct time_accounts *accounts)
 {
-    for (size_t i = 0; i < payers->count; i++)
-        mem_free(payers->all[i]);
-    mem_free(payers->all);
-    *payers = (struct time_accounts){ 0 };
+    for (size_t i = 0; i < accounts->count; i++)
+        mem_free(accounts->all[i]);
+    mem_free(accounts->all);
+    *accounts = (struct time_accounts){ 0 };
 }

@@ -30,30 +30,30 @@ void admission_leave(struct admission *admission, struct address_share *share)
     share->moving = 0;
 }
 
-static void count(struct admission_window *window, const struct encoded_frame *picture, bool drawn)
+static void count(struct admission_window *window, const struct encoded_frame *encoded, bool drawn)
 {
-    const struct frame *frame = picture->packet->frame;
+    const struct frame *frame = encoded->packet->frame;
     int64_t cost_ns = drawn ? frame->render_ns + frame->readback_ns + frame->field_ns : 0;
-    bool moves = picture->wish.urgency == URGENCY_INPUT;
+    bool moves = encoded->request.urgency == URGENCY_INPUT;
     window->drawing_ns += cost_ns;
     window->moving_ns += moves ? cost_ns : 0;
     window->drawn += moves && drawn;
     window->moving += moves;
-    if (!moves && picture->wait_ns > window->data_wait_ns)
-        window->data_wait_ns = picture->wait_ns;
+    if (!moves && encoded->wait_ns > window->data_wait_ns)
+        window->data_wait_ns = encoded->wait_ns;
 }
 
-void admission_on_frame(struct admission *admission, struct address_share *share, const struct encoded_frame *picture)
+void admission_on_frame(struct admission *admission, struct address_share *share, const struct encoded_frame *encoded)
 {
-    const struct frame *frame = picture->packet ? picture->packet->frame : NULL;
-    enum urgency urgency = picture->wish.urgency;
+    const struct frame *frame = encoded->packet ? encoded->packet->frame : NULL;
+    enum urgency urgency = encoded->request.urgency;
     if (!frame || frame->view.tier == TIER_REFINED || (urgency != URGENCY_INPUT && urgency != URGENCY_DATA))
         return;
     bool drawn = frame->content != admission->last_content;
     admission->last_content = frame->content;
-    count(&admission->now, picture, drawn);
+    count(&admission->now, encoded, drawn);
     if (share)
-        count(&share->now, picture, drawn);
+        count(&share->now, encoded, drawn);
 }
 
 void admission_on_tick(struct admission *admission, int64_t now_ns)
@@ -89,7 +89,7 @@ const char *admission_refuses_pixels(const struct admission *admission, const st
     return NULL;
 }
 
-/* --- when drawing is busy -------------------------------------------------------------------------------------------------------- */
+/* --- when drawing is busy --------------------------------------------------------------------------------------------- */
 
 /* 0: not known. */
 typedef int64_t of_share(const struct address_share *share);

@@ -8,7 +8,7 @@ static const int64_t RTT_NS = 15 * NS_PER_S;      /* a measured round trip is go
 static const int64_t RTT_MOST_NS = 1 * NS_PER_S;  /* more is a queue */
 static const int64_t SHORTEST_NS = NS_PER_MS / 4; /* transfers that took less say only that there is enough */
 static const int64_t WAITED_NS = 1 * NS_PER_MS;   /* decoding that began so soon after the frame before had waited for it */
-static const size_t SMALL_BYTES = 4096;           /* pictures in which little changed say at most that there is more bandwidth */
+static const size_t SMALL_BYTES = 4096;           /* frames in which little changed say at most that there is more bandwidth */
 static const double SHARE = 0.25;                 /* of a new sample in what is smoothed */
 
 static void smooth(double *value, double sample)
@@ -89,7 +89,7 @@ void channel_on_ack(struct channel *channel, const struct channel_ack *ack)
 void channel_on_bytes(struct channel *channel, size_t bytes, int64_t took_ns)
 {
     int64_t transfer_ns = more(took_ns - channel_rtt_ns(channel), SHORTEST_NS);
-    channel->ns_per_byte = (double)transfer_ns / (double)(bytes + 1); /* a guess, while the client begins: pictures tell */
+    channel->ns_per_byte = (double)transfer_ns / (double)(bytes + 1); /* a guess, while the client begins: frames tell */
 }
 
 int64_t channel_transfer_ns(const struct channel *channel, double bytes)

@@ -10,7 +10,7 @@
 static const double JPEG_BYTES_PER_PX = 0.1, RATE_HZ = 30;                  /* measured: 196 kB at 1920x1080, quality 78 */
 static const double PLENTY = 4, SCARCE = 2;                                 /* times what JPEG needs */
 static const double SHORT = 0.15, EASY = 0.4;                               /* processors free */
-static const int64_t TO_JPEG_NS = 5 * NS_PER_S, TO_H264_NS = 30 * NS_PER_S; /* a change costs a picture that stands alone */
+static const int64_t TO_JPEG_NS = 5 * NS_PER_S, TO_H264_NS = 30 * NS_PER_S; /* a change costs a frame that stands alone */
 
 static bool speaks_for_other(const struct codec_choice *choice, const struct codec_facts *facts)
 {

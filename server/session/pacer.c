@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Pictures under way to one client, by our own records. */
+/* Frames under way to one client, by our own records. */
 #include "session/pacer.h"
 
 #include <assert.h>
@@ -35,7 +35,7 @@ static int most_pictures(const struct pacer *pacer)
     return most > PACER_MOST ? PACER_MOST : (int)most;
 }
 
-/* What is asked for is expected to have the size that pictures have at that step. */
+/* What is asked for is expected to have the size that frames have at that step. */
 static bool fits_window(const struct pacer *pacer)
 {
     int64_t window_ns = AHEAD_NS + channel_rtt_ns(&pacer->channel);

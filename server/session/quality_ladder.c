@@ -9,11 +9,11 @@ static const int64_t FAST_NS = 40 * NS_PER_MS; /* a better step that is expected
 static const int64_t FIRST_PATIENCE_NS = 1 * NS_PER_S, LAST_PATIENCE_NS = 30 * NS_PER_S;
 static const int64_t LASTED_NS = 5 * NS_PER_S;    /* a step up that held for so long was right */
 static const int64_t SETTLE_NS = 500 * NS_PER_MS; /* a step down shows in the lag only after some frames */
-static const int64_t HARD_NS = 40 * NS_PER_MS;    /* decoding that takes longer cannot follow 25 pictures a second */
+static const int64_t HARD_NS = 40 * NS_PER_MS;    /* decoding that takes longer cannot follow 25 frames a second */
 static const int64_t EASY_NS = 20 * NS_PER_MS;
 static const int64_t HARD_FOR_NS = 500 * NS_PER_MS, EASY_FOR_NS = 3 * NS_PER_S;
 static const double SHARE = 0.25;
-static const double CROWD_BYTES = 30e6;     /* of one picture, to all who see it: what a loop sends in some tens of milliseconds */
+static const double CROWD_BYTES = 30e6;     /* of one frame, to all who see it: what a loop sends in some tens of milliseconds */
 enum { FEWEST = 3, NEARLY = 2 };            /* who share a step; how much worse one of them may be */
 static const double BYTES_PER_PIXEL = 0.08; /* of the first step, before any was seen */
 
@@ -62,7 +62,7 @@ double quality_ladder_bytes(const struct quality_ladder *ladder)
     return ladder->unit_bytes * steps[ladder->step].bytes;
 }
 
-/* Fewer pixels are the last resort: those who share a view then share no picture any more. */
+/* Fewer pixels are the last resort: those who share a view then share no frame any more. */
 static int patience_with(int step)
 {
     return step < QUALITY_LADDER_STEPS - 1 && steps[step + 1].rung.scale < 1 ? 2 : 1;

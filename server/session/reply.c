@@ -77,31 +77,31 @@ static json_t *baseline(const struct baseline *b)
     return json_pack("{s:o,s:I}", "name", b->name[0] ? string(b->name) : json_null(), "time_us", us(b->taken_utc_ns));
 }
 
-static json_t *baseline_of(const struct session_context *world, uint32_t id)
+static json_t *baseline_of(const struct session_context *context, uint32_t id)
 {
     struct baseline found;
-    return world->baselines && id && baselines_describe(world->baselines, id, &found) ? baseline(&found) : json_null();
+    return context->baselines && id && baselines_describe(context->baselines, id, &found) ? baseline(&found) : json_null();
 }
 
-static json_t *baselines(const struct session_context *world)
+static json_t *baselines(const struct session_context *context)
 {
     struct baseline list[BASELINES_NAMED];
     json_t *all = json_array();
-    size_t count = world->baselines ? baselines_list(world->baselines, list) : 0;
+    size_t count = context->baselines ? baselines_list(context->baselines, list) : 0;
     for (size_t i = 0; i < count; i++)
         json_array_append_new(all, baseline(&list[i]));
     return all;
 }
 
 /* What one half shows. */
-static void set_shown(json_t *object, const struct session_context *world, const struct view *view)
+static void set_shown(json_t *object, const struct session_context *context, const struct view *view)
 {
-    const struct plant *plant = world->plant;
+    const struct plant *plant = context->plant;
     const struct field_params *field = &view->field;
     json_object_set_new(object, "group", string(plant->groups[field->group].id));
     json_object_set_new(object, "show", string(name_of(names_show, (int)field->show)));
     json_object_set_new(object, "sensor", tag_name(plant, field->sensor));
-    json_object_set_new(object, "baseline", baseline_of(world, field->baseline));
+    json_object_set_new(object, "baseline", baseline_of(context, field->baseline));
     json_object_set_new(object, "sensors", overrides(plant, field));
     json_object_set_new(object, "unit", string(view_unit(plant, view)));
     json_object_set_new(object, "interpolation", string(name_of(names_interpolation, field->interpolation)));
@@ -134,16 +134,16 @@ static json_t *environments(const struct plant *plant)
     return array;
 }
 
-static void set_params(json_t *object, const struct session_context *world, const struct view *view)
+static void set_params(json_t *object, const struct session_context *context, const struct view *view)
 {
-    const struct plant *plant = world->plant;
+    const struct plant *plant = context->plant;
     struct view right;
-    set_shown(object, world, view);
-    json_object_set_new(object, "baselines", baselines(world));
+    set_shown(object, context, view);
+    json_object_set_new(object, "baselines", baselines(context));
     json_object_set_new(object, "split", view->split ? json_object() : json_null());
     view_half(view, 1, &right);
     if (view->split)
-        set_shown(json_object_get(object, "split"), world, &right);
+        set_shown(json_object_get(object, "split"), context, &right);
     json_object_set_new(object, "light", vector(view->light_dir));
     json_object_set_new(object, "environment", string(environment_name(plant, view->environment)));
     json_object_set_new(object, "backdrop", string(name_of(names_backdrop, view->dark)));
@@ -165,9 +165,9 @@ static void hide_names(json_t *object)
         hide_names(split);
 }
 
-static void set_params_for(json_t *object, const struct session_context *world, const struct view *view, bool open)
+static void set_params_for(json_t *object, const struct session_context *context, const struct view *view, bool open)
 {
-    set_params(object, world, view);
+    set_params(object, context, view);
     if (open)
         hide_names(object);
 }
@@ -257,57 +257,57 @@ static json_t *tag(const struct plant *plant, const struct plant_tag *t)
                      t->asset < 0 ? json_null() : string(plant->assets[t->asset].id), "limits", limits(t->limits));
 }
 
-static json_t *tags(const struct session_context *world)
+static json_t *tags(const struct session_context *context)
 {
-    const struct plant *plant = world->plant;
+    const struct plant *plant = context->plant;
     json_t *list = json_array();
     for (size_t i = 0; i < plant->tag_count; i++) {
         json_t *object = tag(plant, &plant->tags[i]);
         json_object_set_new(object, "position", json_null());
         json_array_append_new(list, object);
     }
-    for (size_t a = 0; a < world->scene->asset_count; a++)
-        for (size_t s = 0; s < world->scene->assets[a].sensor_count; s++) {
-            const struct scene_sensor *sensor = &world->scene->assets[a].sensors[s];
+    for (size_t a = 0; a < context->scene->asset_count; a++)
+        for (size_t s = 0; s < context->scene->assets[a].sensor_count; s++) {
+            const struct scene_sensor *sensor = &context->scene->assets[a].sensors[s];
             json_object_set_new(json_array_get(list, (size_t)sensor->tag), "position", vector(sensor->surface_m));
         }
     return list;
 }
 
-static json_t *plant_object(const struct session_context *world, const struct camera *home)
+static json_t *plant_object(const struct session_context *context, const struct camera *home)
 {
-    json_t *object = json_pack("{s:o,s:o,s:o}", "name", string(world->plant->name), "time_zone", string(world->plant->time_zone), "bounds",
-                               box(world->scene->bounds_min_m, world->scene->bounds_max_m));
-    json_object_set_new(object, "configuration", string(world->plant->hash));
+    json_t *object = json_pack("{s:o,s:o,s:o}", "name", string(context->plant->name), "time_zone", string(context->plant->time_zone),
+                               "bounds", box(context->scene->bounds_min_m, context->scene->bounds_max_m));
+    json_object_set_new(object, "configuration", string(context->plant->hash));
     json_object_set_new(object, "home",
                         json_pack("{s:o,s:o,s:o,s:o}", "eye", vector(home->eye_m), "target", vector(home->target_m), "up", vector(home->up),
                                   "fov", number(home->fov_deg)));
-    if (world->plant->view.set)
+    if (context->plant->view.set)
         json_object_set_new(json_object_get(object, "home"), "given", json_true());
     json_t *outline = json_array();
-    for (size_t i = 0; i < world->scene->extreme_count; i++)
-        json_array_append_new(outline, vector(world->scene->extremes_m[i]));
+    for (size_t i = 0; i < context->scene->extreme_count; i++)
+        json_array_append_new(outline, vector(context->scene->extremes_m[i]));
     json_object_set_new(object, "outline", outline);
     return object;
 }
 
-static void set_home(json_t *object, const struct session_context *world, int width_px, int height_px)
+static void set_home(json_t *object, const struct session_context *context, int width_px, int height_px)
 {
     struct view home;
-    view_default(world->scene, width_px, height_px, &home);
-    json_object_set_new(object, "server", string(world->version));
-    json_object_set_new(object, "plant", plant_object(world, &home.camera));
+    view_default(context->scene, width_px, height_px, &home);
+    json_object_set_new(object, "server", string(context->version));
+    json_object_set_new(object, "plant", plant_object(context, &home.camera));
 }
 
 /* Long, and the same for everybody who has a role; open: for anyone who looks on, without what people and tags are called. */
-static void set_lists(json_t *object, const struct session_context *world, bool open)
+static void set_lists(json_t *object, const struct session_context *context, bool open)
 {
-    json_object_set_new(object, "groups", groups(world->plant));
+    json_object_set_new(object, "groups", groups(context->plant));
     json_object_set_new(object, "colormaps", colormaps());
-    json_object_set_new(object, "environments", environments(world->plant));
-    json_object_set_new(object, "links", open ? json_array() : links(world->plant));
-    json_object_set_new(object, "assets", assets(world->scene, open));
-    json_object_set_new(object, "tags", open ? json_array() : tags(world));
+    json_object_set_new(object, "environments", environments(context->plant));
+    json_object_set_new(object, "links", open ? json_array() : links(context->plant));
+    json_object_set_new(object, "assets", assets(context->scene, open));
+    json_object_set_new(object, "tags", open ? json_array() : tags(context));
 }
 
 static json_t *quotas_json(const struct quotas *quotas)
@@ -316,10 +316,10 @@ static json_t *quotas_json(const struct quotas *quotas)
                      (json_int_t)quotas->at[QUOTA_MESSAGES], "pixels", (json_int_t)quotas->at[QUOTA_SESSION_PIXELS]);
 }
 
-static char *lists_text(const struct session_context *world, bool open)
+static char *lists_text(const struct session_context *context, bool open)
 {
     json_t *object = json_object();
-    set_lists(object, world, open);
+    set_lists(object, context, open);
     return json_text(object, DIGITS);
 }
 
@@ -333,48 +333,48 @@ static char *join(char *first, char *second)
 }
 
 /* Kept for the next who comes. mem_free. */
-static char *lists_said(const struct session_context *world, bool open)
+static char *lists_said(const struct session_context *context, bool open)
 {
-    if (!world->lists_said)
-        return lists_text(world, open);
-    if (!world->lists_said[open])
-        world->lists_said[open] = lists_text(world, open);
-    return mem_strdup(world->lists_said[open]);
+    if (!context->lists_said)
+        return lists_text(context, open);
+    if (!context->lists_said[open])
+        context->lists_said[open] = lists_text(context, open);
+    return mem_strdup(context->lists_said[open]);
 }
 
 char *reply_welcome_text(const struct session *session, int64_t now_utc_ns)
 {
     const struct view *view = &session->view;
     json_t *object =
-        json_pack("{s:s,s:s,s:I,s:o,s:I}", "type", "welcome", "protocol", WIRE_SUBPROTOCOL, "session", (json_int_t)session->called, "codec",
-                  string(name_of(names_codec, (int)session->codec)), "time_us", us(now_utc_ns));
+        json_pack("{s:s,s:s,s:I,s:o,s:I}", "type", "welcome", "protocol", WIRE_SUBPROTOCOL, "session", (json_int_t)session->identity.number,
+                  "codec", string(name_of(names_codec, (int)session->codec.current)), "time_us", us(now_utc_ns));
     json_t *params = json_object();
-    json_object_update_new(object, json_pack("{s:s,s:s,s:I,s:b,s:o}", "role", name_of(names_role, (int)session->role), "resume",
-                                             session->resume, "resume_s", (json_int_t)(RESUME_KEPT_NS / 1000000000), "resumed",
-                                             session->resumed, "limits", quotas_json(session->world->quotas)));
-    set_home(object, session->world, view->width_px, view->height_px);
-    set_params_for(params, session->world, view, session_is_open(session));
+    json_object_update_new(object, json_pack("{s:s,s:s,s:I,s:b,s:o}", "role", name_of(names_role, (int)session->identity.role), "resume",
+                                             session->identity.resume_secret, "resume_s", (json_int_t)(RESUME_KEPT_NS / 1000000000),
+                                             "resumed", session->identity.resumed, "limits", quotas_json(session->context->quotas)));
+    set_home(object, session->context, view->width_px, view->height_px);
+    set_params_for(params, session->context, view, session_is_open(session));
     json_object_set_new(object, "view", params);
-    return join(json_text(object, DIGITS), lists_said(session->world, session_is_open(session)));
+    return join(json_text(object, DIGITS), lists_said(session->context, session_is_open(session)));
 }
 
-char *reply_params_text(const struct session_context *world, const struct view *view, uint32_t seq, bool open)
+char *reply_params_text(const struct session_context *context, const struct view *view, uint32_t seq, bool open)
 {
     json_t *object = json_pack("{s:s,s:I}", "type", "params", "seq", (json_int_t)seq);
-    set_params_for(object, world, view, open);
+    set_params_for(object, context, view, open);
     return json_text(object, DIGITS);
 }
 
 char *reply_following_text(const struct session *session)
 {
     const struct view *view = session_view(session);
-    uint64_t called = session->leader ? session->leader->called : session->left;
+    uint64_t called = session->following.leader ? session->following.leader->identity.number : session->following.left;
     json_t *leader = called ? json_integer((json_int_t)called) : json_null();
     json_t *object =
         json_pack("{s:s,s:o,s:i,s:i}", "type", "following", "session", leader, "width", view->width_px, "height", view->height_px);
-    if (session->left)
+    if (session->following.left)
         json_object_set_new(object, "gone", json_true());
-    set_params_for(object, session->world, view, session_is_open(session));
+    set_params_for(object, session->context, view, session_is_open(session));
     return json_text(object, DIGITS);
 }
 
@@ -439,18 +439,18 @@ char *reply_tags_text(const struct plant *plant, const struct snapshot *snapshot
     return json_text(object, VALUE_DIGITS);
 }
 
-char *reply_status_text(const struct session_context *world, int64_t now_utc_ns)
+char *reply_status_text(const struct session_context *context, int64_t now_utc_ns)
 {
     json_t *links = json_array();
-    for (size_t i = 0; i < world->plant->source_count; i++) {
-        const struct plant_source *source = &world->plant->sources[i];
-        json_t *link = json_pack("{s:o,s:b}", "source", string(source->id), "up", world->links_up[i]);
+    for (size_t i = 0; i < context->plant->source_count; i++) {
+        const struct plant_source *source = &context->plant->sources[i];
+        json_t *link = json_pack("{s:o,s:b}", "source", string(source->id), "up", context->links_up[i]);
         if (source->simulated)
             json_object_set_new(link, "simulated", json_true());
         json_array_append_new(links, link);
     }
-    return json_text(json_pack("{s:s,s:o,s:I,s:b,s:b}", "type", "status", "links", links, "time_us", us(now_utc_ns), "live", world->live,
-                               "clock_set", world->clock_is_set),
+    return json_text(json_pack("{s:s,s:o,s:I,s:b,s:b}", "type", "status", "links", links, "time_us", us(now_utc_ns), "live", context->live,
+                               "clock_set", context->clock_is_set),
                      DIGITS);
 }
 
@@ -480,9 +480,9 @@ static json_t *instant(int64_t at_us)
 
 char *reply_time_text(const struct session *session)
 {
-    const struct travel *travel = session->leader ? &session->leader->travel : &session->travel;
+    const struct travel *travel = session->following.leader ? &session->following.leader->travel : &session->travel;
     return json_text(json_pack("{s:s,s:o,s:f,s:o}", "type", "time", "at_us", instant(session_view(session)->at_us), "speed", travel->speed,
-                               "from_us", instant(session->world->history_first_us)),
+                               "from_us", instant(session->context->history_first_us)),
                      DIGITS);
 }
 
@@ -516,13 +516,13 @@ char *reply_picked_text(const struct plant *plant, const struct pick_answer *ans
     const struct pick *pick = &answer->pick;
     bool found = pick->asset >= 0, told = pick->state == PICK_BETWEEN || pick->state == PICK_MEASURED;
     struct view half;
-    view_half(&answer->order.view, answer->order.view.split && answer->order.x_px >= view_left_px(&answer->order.view), &half);
+    view_half(&answer->query.view, answer->query.view.split && answer->query.x_px >= view_left_px(&answer->query.view), &half);
     json_t *object =
         json_pack("{s:s,s:I,s:o,s:o,s:o,s:s}", "type", "picked", "time_us", us(pick->data_utc_ns), "asset",
                   found ? string(plant->assets[pick->asset].id) : json_null(), "position", found ? vector(pick->position_m) : json_null(),
                   "normal", found ? vector(pick->normal) : json_null(), "state", name_of(names_pick, (int)pick->state));
-    if (answer->order.seq)
-        json_object_set_new(object, "seq", json_integer(answer->order.seq));
+    if (answer->query.seq)
+        json_object_set_new(object, "seq", json_integer(answer->query.seq));
     json_object_set_new(object, "value", told ? number(pick->value) : json_null());
     json_object_set_new(object, "unit", string(view_unit(plant, &half)));
     json_object_set_new(object, "uncertain", json_boolean(told && pick->uncertain));
@@ -542,19 +542,19 @@ char *reply_error_text(const struct message_error *error)
     return json_text(object, DIGITS);
 }
 
-char *reply_api_plant_text(const struct session_context *world)
+char *reply_api_plant_text(const struct session_context *context)
 {
     json_t *object = json_object();
-    set_home(object, world, 1920, 1080);
-    return join(json_text(object, DIGITS), lists_said(world, false));
+    set_home(object, context, 1920, 1080);
+    return join(json_text(object, DIGITS), lists_said(context, false));
 }
 
-char *reply_api_tags_text(const struct session_context *world, size_t first, size_t count)
+char *reply_api_tags_text(const struct session_context *context, size_t first, size_t count)
 {
-    const struct plant *plant = world->plant;
+    const struct plant *plant = context->plant;
     json_t *list = json_array();
     for (size_t i = first; i < plant->tag_count && i - first < count; i++) {
-        const struct reading *r = &world->snapshot->readings[i];
+        const struct reading *r = &context->snapshot->readings[i];
         json_t *object = tag(plant, &plant->tags[i]);
         json_object_set_new(object, "value", value_of(r));
         json_object_set_new(object, "quality", string(quality_class(r->quality)));
@@ -564,7 +564,7 @@ char *reply_api_tags_text(const struct session_context *world, size_t first, siz
             json_object_set_new(object, "simulated", json_true());
         json_array_append_new(list, object);
     }
-    json_t *page = json_pack("{s:I,s:I,s:I,s:o}", "time_us", us(world->snapshot->taken_utc_ns), "total", (json_int_t)plant->tag_count,
+    json_t *page = json_pack("{s:I,s:I,s:I,s:o}", "time_us", us(context->snapshot->taken_utc_ns), "total", (json_int_t)plant->tag_count,
                              "first", (json_int_t)first, "tags", list);
     return json_text(page, DIGITS);
 }

@@ -1,28 +1,31 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What the server says in text: JSON messages of PROTOCOL.md and the bodies of /api. Pure. Every result is freed with mem_free. */
+/* The texts that the server sends: JSON messages of PROTOCOL.md and the bodies of /api. Each function returns the message it is named
+   after; mem_free. Pure. Thread: the loop. */
 #ifndef SESSION_REPLY_H
 #define SESSION_REPLY_H
 #include "message/message.h"
 #include "session/session.h"
 
 char *reply_welcome_text(const struct session *session, int64_t now_utc_ns);
-/* open: for anyone who looks on, without names of tags and of baselines. */
-char *reply_params_text(const struct session_context *world, const struct view *view, uint32_t seq, bool open);
-/* Who follows; at most REPLY_FOLLOWERS of them by number. */
+/* open: for clients without a token, who are told no names of tags and baselines. */
+char *reply_params_text(const struct session_context *context, const struct view *view, uint32_t seq, bool open);
+/* Lists who follows a session; at most REPLY_FOLLOWERS of them by number. */
 enum { REPLY_FOLLOWERS = 256 };
 char *reply_followers_text(const uint64_t *sessions, size_t count);
-/* Whose view it is shown; where that one has gone, so it says. */
+/* Says whose view the session is shown, and whether that one has gone. */
 char *reply_following_text(const struct session *session);
-/* All values, or those that differ from `sent` (reading.changes by tag index), which is brought up to date. */
+/* Lists all values, or those that changed since `sent` (reading.changes by tag), which is updated. */
 char *reply_tags_text(const struct plant *plant, const struct snapshot *snapshot, uint32_t *sent, bool all);
-char *reply_status_text(const struct session_context *world, int64_t now_utc_ns);
+char *reply_status_text(const struct session_context *context, int64_t now_utc_ns);
 char *reply_pong_text(const struct snapshot *snapshot, double t, int64_t now_utc_ns);
 char *reply_time_text(const struct session *session);
-char *reply_camera_text(const struct camera *camera, uint32_t seq);                   /* of a fit */
-char *reply_picked_text(const struct plant *plant, const struct pick_answer *answer); /* order.seq 0: of nobody's */
+/* Answers a fit. */
+char *reply_camera_text(const struct camera *camera, uint32_t seq);
+/* Answers a pick; query.seq 0: without a number. */
+char *reply_picked_text(const struct plant *plant, const struct pick_answer *answer);
 char *reply_error_text(const struct message_error *error);
-char *reply_api_plant_text(const struct session_context *world);
-/* count tags from index `first` on, fewer where there are no more. */
-char *reply_api_tags_text(const struct session_context *world, size_t first, size_t count);
+char *reply_api_plant_text(const struct session_context *context);
+/* Lists `count` tags from index `first` on, or as many as there are. */
+char *reply_api_tags_text(const struct session_context *context, size_t first, size_t count);
 
 #endif

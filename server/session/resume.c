@@ -57,7 +57,7 @@ void resumes_open(struct resumes *resumes, struct session *session, char secret[
         snprintf(secret + 2 * i, 3, "%02x", bytes[i]);
     mem_grow(&resumes->kept, &resumes->capacity, resumes->count + 1, sizeof(*resumes->kept));
     struct kept *kept = &resumes->kept[resumes->count++];
-    *kept = (struct kept){ .what.live = session, .holder = session->holder };
+    *kept = (struct kept){ .what.live = session, .holder = session->identity.holder };
     strcpy(kept->secret, secret);
 }
 
@@ -80,9 +80,9 @@ void resumes_close(struct resumes *resumes, const struct session *session, bool 
     forget(resumes, i);
     if (keep) {
         kept.what = (struct resumed){ .view = session->view,
-                                      .codecs = session->codecs,
+                                      .codecs = session->codec.list,
                                       .pixel_ratio = session->pixel_ratio,
-                                      .called = session->called,
+                                      .called = session->identity.number,
                                       .speed = session->travel.speed };
         kept.until_ns = now_ns + RESUME_KEPT_NS;
         resumes->kept[resumes->count++] = kept;
@@ -101,15 +101,15 @@ static const struct kept *find(const struct resumes *resumes, const char *secret
 bool resumes_find(const struct resumes *resumes, const char *secret, const struct session *session, int64_t now_ns, struct resumed *out)
 {
     const struct kept *kept = find(resumes, secret);
-    if (!kept || gone(kept, now_ns) || memcmp(kept->holder.hash, session->holder.hash, TOKEN_HASH_BYTES) != 0)
+    if (!kept || gone(kept, now_ns) || memcmp(kept->holder.hash, session->identity.holder.hash, TOKEN_HASH_BYTES) != 0)
         return false;
     struct session *live = kept->what.live;
     *out = kept->what;
     if (live)
         *out = (struct resumed){ .view = live->view,
-                                 .codecs = live->codecs,
+                                 .codecs = live->codec.list,
                                  .pixel_ratio = live->pixel_ratio,
-                                 .called = live->called,
+                                 .called = live->identity.number,
                                  .speed = live->travel.speed,
                                  .live = live };
     return true;

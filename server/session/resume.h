@@ -1,34 +1,36 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Views that are kept for clients who come back: by a secret that `welcome` told them, each good for one return. Pure: time is handed in.
-   Thread: the loop. */
+/* Resumption: keeps the views of clients whose connection is lost, for their return with a secret that `welcome` gave them. Each secret is
+   good for one return. Pure: time is handed in. Thread: the loop. */
 #ifndef SESSION_RESUME_H
 #define SESSION_RESUME_H
 #include "message/message.h"
 
 static const int64_t RESUME_KEPT_NS = 60LL * 1000000000; /* after the connection is gone */
-enum { RESUME_MAX_KEPT = 256 };                          /* of those who are gone; the oldest go first */
+enum { RESUME_MAX_KEPT = 256 };                          /* views of lost connections; the oldest are dropped first */
 
 struct session;
 struct resumes;
 struct resumes *resumes_create(void);
 void resumes_destroy(struct resumes **resumes); /* &NULL is fine; leaves NULL */
 
-/* A connected session can be resumed from now on, by *secret. */
+/* Lets a connected session be resumed from now on, and writes the secret for that. */
 void resumes_open(struct resumes *resumes, struct session *session, char secret[RESUME_CHARS + 1]);
-/* It is gone: what it looked at is kept for a while, unless it is not to. */
+/* Notes that the session's connection is lost. keep: its view is kept for RESUME_KEPT_NS; false: it cannot be resumed. */
 void resumes_close(struct resumes *resumes, const struct session *session, bool keep, int64_t now_ns);
 
 struct resumed {
     struct view view;
     struct codec_list codecs;
     double pixel_ratio;
-    uint64_t called;      /* its number for others, who follow it by that */
+    uint64_t called;      /* the number by which others follow it */
     double speed;         /* of play, where view.at_us is an instant */
-    struct session *live; /* NULL: its connection is gone; else the one that is to go now */
+    struct session *live; /* a session that is still connected and is to be closed now; NULL: its connection is lost */
 };
-/* False: there is none, its time is over, or it is another's than `session`'s. */
+/* Finds what a secret resumes. Returns false if there is nothing, it has expired, or it belongs to another token than the session's. */
 bool resumes_find(const struct resumes *resumes, const char *secret, const struct session *session, int64_t now_ns, struct resumed *out);
-void resumes_forget_gone(struct resumes *resumes); /* views of those who are not connected */
+/* Drops the views of lost connections. */
+void resumes_forget_gone(struct resumes *resumes);
+/* Drops what the secret resumes. */
 void resumes_forget(struct resumes *resumes, const char *secret);
 
 #endif

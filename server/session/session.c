@@ -11,14 +11,14 @@
 #include "message/fit_message.h"
 #include "session/reply.h"
 
-struct session *session_create(const struct session_context *world, uint64_t id, int64_t now_ns)
+struct session *session_create(const struct session_context *context, uint64_t id, int64_t now_ns)
 {
     struct session *session = mem_new(sizeof(*session));
-    *session = (struct session){ .id = id, .called = id, .world = world, .role = ROLE_ENGINEER, .opened_ns = now_ns };
-    session->rate_begin_ns = now_ns;
-    pacer_init(&session->pacer);
-    session->common_step = -1;
-    session->tag_changes = mem_array(world->plant->tag_count, sizeof(*session->tag_changes));
+    *session = (struct session){ .id = id, .context = context, .identity = { .number = id, .role = ROLE_ENGINEER }, .opened_ns = now_ns };
+    session->rate.begin_ns = now_ns;
+    pacer_init(&session->delivery.pacer);
+    session->delivery.common_step = -1;
+    session->owed.tag_changes = mem_array(context->plant->tag_count, sizeof(*session->owed.tag_changes));
     return session;
 }
 
@@ -30,10 +30,10 @@ void session_destroy(struct session **session_ptr)
     session_drop_ready(session);
     session_time_end(session);
     session_place_leave(session);
-    for (int i = 0; i < session->reply_count; i++)
-        mem_free(session->replies[i]);
-    mem_free(session->tag_changes);
-    mem_free(session->followers);
+    for (int i = 0; i < session->owed.reply_count; i++)
+        mem_free(session->owed.replies[i]);
+    mem_free(session->owed.tag_changes);
+    mem_free(session->following.followers_text);
     mem_free(session);
     *session_ptr = NULL;
 }
@@ -41,25 +41,17 @@ void session_destroy(struct session **session_ptr)
 void session_leave(struct session *session, bool keep, int64_t now_ns)
 {
     session_release_pixels(session);
-    resumes_close(session->world->resumes, session, keep, now_ns);
-}
-
-void session_close(struct session *session, int code, const char *text)
-{
-    if (session->close_code)
-        return;
-    session->close_code = code;
-    session->close_text = text;
+    resumes_close(session->context->resumes, session, keep, now_ns);
 }
 
 void session_check_token(struct session *session, int64_t now_utc_ns)
 {
-    if (session->holder.role == ROLE_NOBODY)
+    if (session->identity.holder.role == ROLE_NOBODY)
         return;
-    enum role role = session->world->tokens ? tokens_role(session->world->tokens, &session->holder, now_utc_ns) : ROLE_NOBODY;
+    enum role role = session->context->tokens ? tokens_role(session->context->tokens, &session->identity.holder, now_utc_ns) : ROLE_NOBODY;
     if (role != ROLE_NOBODY) {
-        session->role = session->holder.role = role;
-    } else if (!session->close_code) {
+        session->identity.role = session->identity.holder.role = role;
+    } else if (!session->close.code) {
         struct message_error error = { 0 };
         message_fail(&error, "bad_token", "this token is no longer let in");
         session_reply_error(session, &error);
@@ -67,33 +59,7 @@ void session_check_token(struct session *session, int64_t now_utc_ns)
     }
 }
 
-/* --- input ---------------------------------------------------------------------------------------------------------------- */
-
-void session_reply(struct session *session, char *text)
-{
-    if (session->reply_count == SESSION_MAX_REPLIES) { /* it does not read: the oldest answer is worth least */
-        mem_free(session->replies[0]);
-        memmove(session->replies, session->replies + 1, sizeof(session->replies) - sizeof(session->replies[0]));
-        session->reply_count--;
-    }
-    session->replies[session->reply_count++] = text;
-}
-
-void session_reply_error(struct session *session, const struct message_error *error)
-{
-    session->errors++;
-    session_reply(session, reply_error_text(error));
-}
-
-void session_on_input(struct session *session, int64_t now_ns)
-{
-    session->input_pending = true;
-    session->refined = REFINED_NOT;
-    session->failure_said = false;
-    session->input_ns = now_ns;
-    if (!session->starting_ns)
-        session->starting_ns = now_ns;
-}
+/* --- input ------------------------------------------------------------------------------------------------------------ */
 
 static void set_camera(struct session *session, const struct message *message)
 {
@@ -105,8 +71,8 @@ static bool on_params(struct session *session, const struct message *message, st
 {
     if (!session_apply_params(session, message, &session->view, error))
         return false;
-    session->view.params_seq = session->params_seq = message->params.seq;
-    session->owes_params = true;
+    session->view.params_seq = session->owed.params_seq = message->params.seq;
+    session->owed.params = true;
     return true;
 }
 
@@ -124,7 +90,7 @@ static bool on_resize(struct session *session, const struct message *message, st
 static bool on_ack(struct session *session, const struct message *message, int64_t now_ns, struct message_error *error)
 {
     int64_t decode_ns = message->decode_ms < 0 ? -1 : (int64_t)(message->decode_ms * NS_PER_MS);
-    enum pacer_ack ack = pacer_acked(&session->pacer, message->seq, decode_ns, now_ns);
+    enum pacer_ack ack = pacer_acked(&session->delivery.pacer, message->seq, decode_ns, now_ns);
     if (ack == PACER_ACK_NEW)
         session_on_shown(session);
     if (ack != PACER_ACK_NEVER_SENT)
@@ -137,52 +103,52 @@ static bool on_ack(struct session *session, const struct message *message, int64
 static void on_fit(struct session *session, const struct message *message)
 {
     struct camera camera = session->view.camera;
-    fit_apply(session->world->scene, &message->fit, &session->view, &camera);
+    fit_apply(session->context->scene, &message->fit, &session->view, &camera);
     session_reply(session, reply_camera_text(&camera, message->seq));
 }
 
 static void on_pick(struct session *session, const struct message *message)
 {
-    session->pick = (struct pick_query){ .client = session->id, .seq = message->seq, .view = session_shown(session) };
-    session->pick.x_px = message->pick.x_px;
-    session->pick.y_px = message->pick.y_px;
-    session->pick.view.pixel_ratio = session->pixel_ratio;
+    session->pick.query = (struct pick_query){ .client = session->id, .seq = message->seq, .view = session_shown(session) };
+    session->pick.query.x_px = message->pick.x_px;
+    session->pick.query.y_px = message->pick.y_px;
+    session->pick.query.view.pixel_ratio = session->pixel_ratio;
     if (message->pick.has_camera)
-        session->pick.view.camera = message->pick.camera;
-    session->pick_pending = true;
+        session->pick.query.view.camera = message->pick.camera;
+    session->pick.pending = true;
 }
 
-bool session_next_pick(struct session *session, struct pick_query *order)
+bool session_next_pick(struct session *session, struct pick_query *query)
 {
-    bool pending = session->pick_pending;
+    bool pending = session->pick.pending;
     if (pending)
-        *order = session->pick;
-    session->pick_pending = false;
+        *query = session->pick.query;
+    session->pick.pending = false;
     return pending;
 }
 
 void session_on_pick(struct session *session, const struct pick_answer *answer)
 {
-    struct pick_answer said = *answer;
+    struct pick_answer cache = *answer;
     if (session_is_open(session)) {
-        said.pick.value = NAN;
-        said.pick.uncertain = false;
-        said.pick.nearest_count = 0;
-        said.pick.sensor = -1;
-        if (said.pick.state == PICK_MEASURED)
-            said.pick.state = PICK_BETWEEN;
+        cache.pick.value = NAN;
+        cache.pick.uncertain = false;
+        cache.pick.nearest_count = 0;
+        cache.pick.sensor = -1;
+        if (cache.pick.state == PICK_MEASURED)
+            cache.pick.state = PICK_BETWEEN;
     }
-    session_reply(session, reply_picked_text(session->world->plant, &said));
+    session_reply(session, reply_picked_text(session->context->plant, &cache));
 }
 
 static bool on_alarm(struct session *session, const struct message *message, struct message_error *error)
 {
-    const struct session_context *world = session->world;
-    if (!world->alarm_service || world->plant->alarms != ALARMS_LOCAL) {
+    const struct session_context *context = session->context;
+    if (!context->alarm_service || context->plant->alarms != ALARMS_LOCAL) {
         message_fail(error, "not_allowed", "alarms are another system's here: nothing can be acknowledged or shelved");
         return false;
     }
-    session_reply(session, alarm_do(world->alarm_service, world->plant, message, session_who(session)));
+    session_reply(session, alarm_do(context->alarm_service, context->plant, message, session_who(session)));
     return true;
 }
 
@@ -203,7 +169,7 @@ static bool act(struct session *session, const struct message *message, int64_t 
     case MESSAGE_ALARM: return on_alarm(session, message, error);
     case MESSAGE_FIT: on_fit(session, message); return true;
     case MESSAGE_PICK: on_pick(session, message); return true;
-    case MESSAGE_KEY_FRAME: session->always_pending = true; return true;
+    case MESSAGE_KEY_FRAME: session->demand.any = true; return true;
     case MESSAGE_CODECS: return session_choose_codec(session, &message->codecs, error);
     case MESSAGE_TIME: return session_on_time(session, &message->time, now_ns, now_utc_ns, error);
     case MESSAGE_PLACE: return session_on_place(session, message, now_ns, error);
@@ -226,28 +192,28 @@ static bool in_order(const struct session *session, const struct message *messag
         return false;
     }
     /* What hello may say, its token decides. */
-    return message->type == MESSAGE_HELLO || role_may_send(session->role, message, error);
+    return message->type == MESSAGE_HELLO || role_may_send(session->identity.role, message, error);
 }
 
 void session_too_fast(struct session *session, int64_t count, const char *whose)
 {
     struct message_error error = { 0 };
-    if (session->too_fast)
+    if (session->rate.exceeded)
         return;
     message_fail(&error, "too_fast", "%lld messages %swithin a second: the next are read after it", (long long)count, whose);
-    session->too_fast = true;
+    session->rate.exceeded = true;
     session_reply_error(session, &error);
 }
 
 static void count_message(struct session *session, int64_t now_ns)
 {
-    int64_t most = session->world->quotas->at[QUOTA_MESSAGES];
-    session->messages++;
-    if (now_ns - session->rate_begin_ns >= NS_PER_S) {
-        session->rate_begin_ns = now_ns;
-        session->rate_count = 0;
+    int64_t most = session->context->quotas->at[QUOTA_MESSAGES];
+    session->stats.messages++;
+    if (now_ns - session->rate.begin_ns >= NS_PER_S) {
+        session->rate.begin_ns = now_ns;
+        session->rate.count = 0;
     }
-    if (++session->rate_count >= most)
+    if (++session->rate.count >= most)
         session_too_fast(session, most, "");
 }
 
@@ -256,9 +222,9 @@ void session_on_message(struct session *session, const char *text, size_t count,
     struct message message;
     struct message_error error;
     count_message(session, now_ns);
-    if (!login_is_good(session->login)) /* it is being closed */
+    if (!login_is_good(session->identity.login)) /* it is being closed */
         return;
-    if (!message_parse(session->world->plant, text, count, &message, &error) || !in_order(session, &message, &error) ||
+    if (!message_parse(session->context->plant, text, count, &message, &error) || !in_order(session, &message, &error) ||
         !act(session, &message, now_ns, now_utc_ns, &error))
         session_reply_error(session, &error);
 }
@@ -268,26 +234,27 @@ void session_on_oversize(struct session *session, size_t count, int64_t now_ns)
     struct message_error error = { 0 };
     count_message(session, now_ns);
     message_fail(&error, "too_long", "%zu bytes; a message holds at most %lld", count,
-                 (long long)session->world->quotas->at[QUOTA_MESSAGE_BYTES]);
+                 (long long)session->context->quotas->at[QUOTA_MESSAGE_BYTES]);
     session_reply_error(session, &error);
 }
 
 void session_on_tick(struct session *session, int64_t now_ns)
 {
-    if (!session->hello && now_ns - session->opened_ns >= session->world->quotas->at[QUOTA_PATIENCE_S] * NS_PER_S)
+    if (!session->hello && now_ns - session->opened_ns >= session->context->quotas->at[QUOTA_PATIENCE_S] * NS_PER_S)
         session_close(session, 1008, "no hello for too long");
-    if (session->too_fast && now_ns - session->rate_begin_ns >= NS_PER_S)
-        session->too_fast = false;
-    if (pacer_state(&session->pacer, now_ns) != PACER_FLOWS)
+    if (session->rate.exceeded && now_ns - session->rate.begin_ns >= NS_PER_S)
+        session->rate.exceeded = false;
+    if (pacer_state(&session->delivery.pacer, now_ns) != PACER_FLOWS)
         session_pause(session);
     session_choose_again(session, now_ns);
     session_keep_pixels(session, now_ns);
-    session->owes_time |= session->hello && session->world->snapshot_cache && session->world->history_first_us && !session->told_beginning;
+    session->owed.time |=
+        session->hello && session->context->snapshot_cache && session->context->history_first_us && !session->owed.told_beginning;
 }
 
 void session_on_data(struct session *session, int64_t data_ns)
 {
-    if (!session->data_pending)
-        session->data_ns = data_ns;
-    session->data_pending = session->owes_tags = true;
+    if (!session->demand.data)
+        session->demand.data_ns = data_ns;
+    session->demand.data = session->owed.tags = true;
 }

@@ -9,11 +9,11 @@ static const int64_t HIDDEN_NS = 15 * NS_PER_S; /* a page that is hidden for lon
 
 static void hold(struct session *session, int64_t pixels)
 {
-    int64_t more = pixels - session->pixels;
-    session->world->admission->pixels += more;
-    if (session->share)
-        session->share->pixels += more;
-    session->pixels = pixels;
+    int64_t more = pixels - session->room.pixels;
+    session->context->admission->pixels += more;
+    if (session->room.share)
+        session->room.share->pixels += more;
+    session->room.pixels = pixels;
 }
 
 static int64_t pixels_of(const struct view *view)
@@ -23,15 +23,15 @@ static int64_t pixels_of(const struct view *view)
 
 bool session_reserve_pixels(struct session *session, int width_px, int height_px, struct message_error *error)
 {
-    const struct session_context *world = session->world;
-    int64_t pixels = (int64_t)width_px * height_px, most = world->quotas->at[QUOTA_SESSION_PIXELS];
+    const struct session_context *context = session->context;
+    int64_t pixels = (int64_t)width_px * height_px, most = context->quotas->at[QUOTA_SESSION_PIXELS];
     const char *why = NULL;
     if (pixels > most) {
         message_fail(error, "limit", "width, height: this server draws at most %lld pixels for one view", (long long)most);
         return false;
     }
-    if (session->hello && pixels > session->pixels)
-        why = admission_refuses_pixels(world->admission, session->share, session->pixels, pixels);
+    if (session->hello && pixels > session->room.pixels)
+        why = admission_refuses_pixels(context->admission, session->room.share, session->room.pixels, pixels);
     if (why) {
         message_fail(error, "limit", "width, height: %s", why + strlen("full: "));
         return false;
@@ -47,13 +47,13 @@ void session_release_pixels(struct session *session)
 
 bool session_has_pixels(const struct session *session)
 {
-    return session->pixels > 0;
+    return session->room.pixels > 0;
 }
 
 static bool take_again(struct session *session, const char **why)
 {
     int64_t pixels = pixels_of(&session->view);
-    *why = admission_refuses_pixels(session->world->admission, session->share, 0, pixels);
+    *why = admission_refuses_pixels(session->context->admission, session->room.share, 0, pixels);
     if (!*why)
         hold(session, pixels);
     return !*why;
@@ -64,9 +64,9 @@ void session_on_visible(struct session *session, bool visible, int64_t now_ns)
 {
     struct message_error error = { 0 };
     const char *why;
-    session->always_pending |= visible && session->hidden;
+    session->demand.any |= visible && session->hidden;
     if (session->hidden != !visible)
-        session->hidden_ns = now_ns;
+        session->room.hidden_ns = now_ns;
     session->hidden = !visible;
     if (session->hidden || session_has_pixels(session) || take_again(session, &why))
         return;
@@ -77,9 +77,9 @@ void session_on_visible(struct session *session, bool visible, int64_t now_ns)
 void session_keep_pixels(struct session *session, int64_t now_ns)
 {
     const char *why;
-    if (!session->hello || session->close_code)
+    if (!session->hello || session->close.code)
         return;
-    if (session->hidden && session_has_pixels(session) && now_ns - session->hidden_ns >= HIDDEN_NS)
+    if (session->hidden && session_has_pixels(session) && now_ns - session->room.hidden_ns >= HIDDEN_NS)
         hold(session, 0);
     else if (!session->hidden && !session_has_pixels(session))
         take_again(session, &why);

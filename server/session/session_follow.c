@@ -5,23 +5,10 @@
 #include "session/reply.h"
 #include "session/session_impl.h"
 
-const struct view *session_view(const struct session *session)
-{
-    return session->leader ? &session->leader->view : &session->view;
-}
-
-struct view session_shown(const struct session *session)
-{
-    struct view view = *session_view(session);
-    if (session->leader)
-        view_set_trial(&view, 0);
-    return view;
-}
-
 void session_ask_follow(struct session *session, const struct message *message)
 {
-    session->follow = message->follow;
-    session->follow_asked = true;
+    session->following.wanted = message->follow;
+    session->following.asked = true;
 }
 
 /* What it was shown of a leader who has gone ends. */
@@ -29,43 +16,43 @@ static void come_to_own(struct session *session)
 {
     const struct view shown = session->view;
     session_time_leave(session);
-    session->view = session->beneath;
+    session->view = session->following.own_view;
     session->view.width_px = shown.width_px;
     session->view.height_px = shown.height_px;
     session->view.pixel_ratio = shown.pixel_ratio;
     session->view.camera_seq = shown.camera_seq;
     session->view.params_seq = shown.params_seq;
     view_set_instant(&session->view, 0, 0);
-    session->left = 0;
+    session->following.left = 0;
 }
 
 void session_leader_gone(struct session *session, int64_t now_ns)
 {
-    uint64_t called = session->leader->called;
-    session->beneath = session->view;
-    session_inherit(session, session->leader);
+    uint64_t called = session->following.leader->identity.number;
+    session->following.own_view = session->view;
+    session_inherit(session, session->following.leader);
     view_set_trial(&session->view, 0); /* what somebody tried out went with him */
     session_follow(session, NULL, now_ns);
-    session->left = called;
+    session->following.left = called;
 }
 
 void session_follow(struct session *session, struct session *leader, int64_t now_ns)
 {
-    if (session->left)
+    if (session->following.left)
         come_to_own(session);
-    if (session->leader)
-        session->leader->followers_changed = true;
+    if (session->following.leader)
+        session->following.leader->following.followers_changed = true;
     if (leader)
-        leader->followers_changed = true;
-    session->leader = leader;
-    session->common_step = -1;
-    session->owes_following = true;
+        leader->following.followers_changed = true;
+    session->following.leader = leader;
+    session->delivery.common_step = -1;
+    session->owed.following = true;
     session_on_leader(session, now_ns);
 }
 
 void session_ask_lead(struct session *session, const struct message *message)
 {
-    session->lead = message->follow;
+    session->following.heir_wanted = message->follow;
 }
 
 void session_inherit(struct session *heir, const struct session *session)
@@ -87,32 +74,32 @@ void session_inherit(struct session *heir, const struct session *session)
 void session_lead_nobody(struct session *session)
 {
     struct message_error error = { .about = "lead" };
-    message_fail(&error, "bad_field", "session: %llu does not follow this one", (unsigned long long)session->lead);
+    message_fail(&error, "bad_field", "session: %llu does not follow this one", (unsigned long long)session->following.heir_wanted);
     session_reply_error(session, &error);
 }
 
 void session_say_followers(struct session *session, const uint64_t *sessions, size_t count, int64_t now_ns)
 {
-    mem_free(session->followers);
-    session->followers = reply_followers_text(sessions, count);
-    session->followers_changed = false;
-    session->followers_ns = now_ns;
+    mem_free(session->following.followers_text);
+    session->following.followers_text = reply_followers_text(sessions, count);
+    session->following.followers_changed = false;
+    session->following.followers_ns = now_ns;
 }
 
 void session_follow_nobody(struct session *session)
 {
     struct message_error error = { .about = "follow" };
-    message_fail(&error, "bad_field", "session: %llu is not connected, or is this one", (unsigned long long)session->follow);
+    message_fail(&error, "bad_field", "session: %llu is not connected, or is this one", (unsigned long long)session->following.wanted);
     session_reply_error(session, &error);
 }
 
 void session_on_leader(struct session *session, int64_t now_ns)
 {
     const struct view *view = session_view(session);
-    int *size_px = session->leader_size_px;
-    bool told = view->params_seq == session->leader_params_seq && view->width_px == size_px[0] && view->height_px == size_px[1];
-    session->owes_following |= session->leader && !told;
-    session->leader_params_seq = view->params_seq;
+    int *size_px = session->following.told_size_px;
+    bool told = view->params_seq == session->following.told_params_seq && view->width_px == size_px[0] && view->height_px == size_px[1];
+    session->owed.following |= session->following.leader && !told;
+    session->following.told_params_seq = view->params_seq;
     size_px[0] = view->width_px;
     size_px[1] = view->height_px;
     session_tell_time(session);

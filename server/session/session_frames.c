@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Which pictures a session wants, and what becomes of those that come. */
+/* Which frames a session wants, and what becomes of those that come. */
 #include "base/clock.h"
 #include "session/reply.h"
 #include "session/session_impl.h"
@@ -8,111 +8,113 @@ static const int64_t STILL_NS = 200 * NS_PER_MS;         /* nothing moved for so
 static const int64_t LOADED_STILL_NS = 1000 * NS_PER_MS; /* likewise, when not all can be refined */
 static const int64_t LOADED_SHARE_NS = 3 * NS_PER_S;     /* but after so long without one, however often readings change */
 static const int64_t PATIENCE_NS = 10 * NS_PER_S;        /* others may move for so long before one is refined all the same */
-static const int64_t SLOW_STILL_NS = 500 * NS_PER_MS;    /* refined pictures that take the network longer come in two stages */
+static const int64_t SLOW_STILL_NS = 500 * NS_PER_MS;    /* refined frames that take the network longer come in two stages */
 static const int64_t CALM_NS = 1000 * NS_PER_MS;         /* the second one after so long */
 static const int64_t START_NS = 1000 * NS_PER_MS;        /* the network is not waited for any longer */
-static const int64_t GIVE_UP_NS = 100 * NS_PER_MS;       /* what is left of a refined picture, when its view has changed */
+static const int64_t GIVE_UP_NS = 100 * NS_PER_MS;       /* what is left of a refined frame, when its view has changed */
 static const int64_t AGAIN_NS = 2000 * NS_PER_MS;        /* what there was no memory for is tried again after so long */
 static const double STILL_OVER_MOVING = 3;               /* in bytes, before one was seen */
 static const struct encoder_params STILL = { .quality = 92, .full_chroma = true }, DRAFT = { .quality = 42 };
 static const int64_t SOON_NS = 120 * NS_PER_MS; /* cameras of one movement follow each other so soon */
 enum { SMALL_PX = 128 };                        /* sides that are not made smaller */
 
-/* The one who already has a picture keeps it; a new one would look at nothing. */
-static void on_failure(struct session *session, const struct frame_request *wish)
+/* The one who already has a frame keeps it; a new one would look at nothing. */
+static void on_failure(struct session *session, const struct frame_request *request)
 {
-    const struct view *view = &wish->view;
+    const struct view *view = &request->view;
     struct message_error error = { 0 };
-    if (session->newest_number == 0) {
+    if (session->delivery.newest_number == 0) {
         session_close(session, 1013, "no memory for another picture: try later, or a smaller one");
         return;
     }
-    session->refined = REFINED_NOT;
-    session->failed_ns = wish->asked_ns;
-    if (session->failure_said)
+    session->demand.refined = REFINED_NOT;
+    session->demand.failed_ns = request->asked_ns;
+    if (session->demand.failure_said)
         return;
-    session->failure_said = true;
+    session->demand.failure_said = true;
     message_fail(&error, "no_picture", "%dx%d cannot be drawn: the server is out of memory; the last picture stays", view->width_px,
                  view->height_px);
     session_reply_error(session, &error);
 }
 
-/* What came may be less refined than what was asked for, or more: readings overtake a refined picture, which shows them in the end. */
-static void note_refined(struct session *session, const struct frame_request *wish)
+/* What came may be less refined than what was asked for, or more: readings overtake a refined frame, which shows them in the end. */
+static void note_refined(struct session *session, const struct frame_request *request)
 {
     struct view view = session_shown(session);
-    view.tier = wish->view.tier;
-    if (wish->or_moving && wish->view.tier == TIER_PREVIEW)
-        session->refined = REFINED_NOT;
-    else if (wish->view.tier == TIER_REFINED && !wish->draft && !session->input_pending && view_equal(&view, &wish->view))
-        session->refined = REFINED_FULL;
+    view.tier = request->view.tier;
+    if (request->or_moving && request->view.tier == TIER_PREVIEW)
+        session->demand.refined = REFINED_NOT;
+    else if (request->view.tier == TIER_REFINED && !request->draft && !session->demand.input && view_equal(&view, &request->view))
+        session->demand.refined = REFINED_FULL;
 }
 
-void session_on_frame(struct session *session, struct encoded_frame *picture)
+void session_on_frame(struct session *session, struct encoded_frame *encoded)
 {
-    if (picture->failed)
-        on_failure(session, &picture->wish);
-    bool late = picture->number < session->newest_number;
-    if (!picture->packet || late) {
-        session->dropped += late;
-        pacer_dropped(&session->pacer);
-        encoded_frame_destroy(&picture);
+    if (encoded->failed)
+        on_failure(session, &encoded->request);
+    bool late = encoded->number < session->delivery.newest_number;
+    if (!encoded->packet || late) {
+        session->stats.dropped += late;
+        pacer_dropped(&session->delivery.pacer);
+        encoded_frame_destroy(&encoded);
         return;
     }
-    session->newest_number = picture->number;
-    if (picture->wish.view.tier == TIER_PREVIEW)
-        session->moved_ns = picture->wish.asked_ns;
-    note_refined(session, &picture->wish);
-    if (encoded_frame_stands_alone(picture)) /* newer than what the socket has not yet taken */
+    session->delivery.newest_number = encoded->number;
+    if (encoded->request.view.tier == TIER_PREVIEW)
+        session->demand.preview_ns = encoded->request.asked_ns;
+    note_refined(session, &encoded->request);
+    if (encoded_frame_stands_alone(encoded)) /* newer than what the socket has not yet taken */
         session_drop_ready(session);
-    struct encoded_frame **last = &session->ready;
+    struct encoded_frame **last = &session->delivery.ready;
     while (*last)
         last = &(*last)->next;
-    *last = picture;
+    *last = encoded;
 }
 
 void session_drop_ready(struct session *session)
 {
-    for (struct encoded_frame *picture = session->ready, *next; picture; picture = next) {
-        next = picture->next;
-        session->dropped++;
-        pacer_dropped(&session->pacer);
-        encoded_frame_destroy(&picture);
+    for (struct encoded_frame *encoded = session->delivery.ready, *next; encoded; encoded = next) {
+        next = encoded->next;
+        session->stats.dropped++;
+        pacer_dropped(&session->delivery.pacer);
+        encoded_frame_destroy(&encoded);
     }
-    session->ready = NULL;
+    session->delivery.ready = NULL;
 }
 
-/* --- wishes --------------------------------------------------------------------------------------------------------------- */
+/* --- requests --------------------------------------------------------------------------------------------------------- */
 
-/* A refined picture would hold up for long what comes after it. */
+/* A refined frame would hold up for long what comes after it. */
 static bool is_slow(const struct session *session)
 {
-    double bytes = session->still_bytes > 0 ? session->still_bytes : STILL_OVER_MOVING * session->pacer.ladder.unit_bytes;
-    return pacer_is_slower(&session->pacer, bytes, SLOW_STILL_NS);
+    double bytes =
+        session->demand.refined_bytes > 0 ? session->demand.refined_bytes : STILL_OVER_MOVING * session->delivery.pacer.ladder.unit_bytes;
+    return pacer_is_slower(&session->delivery.pacer, bytes, SLOW_STILL_NS);
 }
 
 static bool is_calm(const struct session *session, int64_t now_ns)
 {
-    int64_t last_ns = session->moved_ns > session->refined_ns ? session->moved_ns : session->refined_ns;
-    return session->pacer.flight_count == 0 && !session->data_pending && now_ns - last_ns >= CALM_NS;
+    int64_t last_ns = session->demand.preview_ns > session->demand.refined_ns ? session->demand.preview_ns : session->demand.refined_ns;
+    return session->delivery.pacer.flight_count == 0 && !session->demand.data && now_ns - last_ns >= CALM_NS;
 }
 
 static bool refine_due(const struct session *session, int64_t now_ns)
 {
-    const struct session_context *world = session->world;
-    bool others_move = now_ns < world->moving_until_ns && now_ns - session->input_ns < PATIENCE_NS;
-    bool short_of = world->loaded || is_slow(session);
-    bool data_moves = short_of && now_ns - session->moved_ns < LOADED_STILL_NS && now_ns - session->refined_ns < LOADED_SHARE_NS;
-    bool failed = session->failed_ns && now_ns - session->failed_ns < AGAIN_NS;
-    if (session->refined == REFINED_FULL || session->pacer.asked > 0 || others_move || data_moves || failed)
+    const struct session_context *context = session->context;
+    bool others_move = now_ns < context->moving_until_ns && now_ns - session->demand.input_ns < PATIENCE_NS;
+    bool short_of = context->overloaded || is_slow(session);
+    bool data_moves =
+        short_of && now_ns - session->demand.preview_ns < LOADED_STILL_NS && now_ns - session->demand.refined_ns < LOADED_SHARE_NS;
+    bool failed = session->demand.failed_ns && now_ns - session->demand.failed_ns < AGAIN_NS;
+    if (session->demand.refined == REFINED_FULL || session->delivery.pacer.asked > 0 || others_move || data_moves || failed)
         return false;
-    return session->refined == REFINED_DRAFT ? is_calm(session, now_ns) : now_ns - session->input_ns >= STILL_NS;
+    return session->demand.refined == REFINED_DRAFT ? is_calm(session, now_ns) : now_ns - session->demand.input_ns >= STILL_NS;
 }
 
-/* The data's picture is refined at once where all can be. */
+/* The data's frame is refined at once where all can be. */
 static bool all_can_be_refined(const struct session *session, int64_t now_ns)
 {
-    return !session->world->loaded && now_ns >= session->world->moving_until_ns;
+    return !session->context->overloaded && now_ns >= session->context->moving_until_ns;
 }
 
 static int scaled(int px, double scale)
@@ -121,61 +123,61 @@ static int scaled(int px, double scale)
     return scale < 1 && px > SMALL_PX && less < px ? less : px;
 }
 
-static void make_moving(const struct session *session, struct frame_request *wish)
+static void make_moving(const struct session *session, struct frame_request *request)
 {
-    const struct quality_ladder *ladder = &session->pacer.ladder;
-    int step = quality_ladder_step(ladder, session->common_step);
+    const struct quality_ladder *ladder = &session->delivery.pacer.ladder;
+    int step = quality_ladder_step(ladder, session->delivery.common_step);
     struct rung rung = quality_ladder_rung(ladder, step);
-    wish->view.tier = TIER_PREVIEW;
-    wish->view.width_px = scaled(wish->view.width_px, rung.scale);
-    wish->view.height_px = scaled(wish->view.height_px, rung.scale);
-    wish->quality = (struct encoder_params){ .quality = rung.quality };
-    wish->step = step;
+    request->view.tier = TIER_PREVIEW;
+    request->view.width_px = scaled(request->view.width_px, rung.scale);
+    request->view.height_px = scaled(request->view.height_px, rung.scale);
+    request->quality = (struct encoder_params){ .quality = rung.quality };
+    request->step = step;
 }
 
-static void make_still(const struct session *session, struct frame_request *wish)
+static void make_still(const struct session *session, struct frame_request *request)
 {
-    wish->view.tier = TIER_REFINED;
-    wish->urgency = URGENCY_REFINE;
-    wish->draft = session->refined == REFINED_NOT && is_slow(session);
-    wish->quality = wish->draft ? DRAFT : STILL;
+    request->view.tier = TIER_REFINED;
+    request->urgency = URGENCY_REFINE;
+    request->draft = session->demand.refined == REFINED_NOT && is_slow(session);
+    request->quality = request->draft ? DRAFT : STILL;
 }
 
-/* Whoever looks at a refined picture keeps it when readings change, if it is quick to colour again. */
-static void make_refreshed(const struct session *session, int64_t now_ns, struct frame_request *wish)
+/* Whoever looks at a refined frame keeps it when readings change, if it is quick to colour again. */
+static void make_refreshed(const struct session *session, int64_t now_ns, struct frame_request *request)
 {
-    const struct quality_ladder *ladder = &session->pacer.ladder;
-    wish->view.tier = TIER_REFINED;
-    wish->quality = STILL;
-    wish->or_moving = !all_can_be_refined(session, now_ns);
-    wish->moving_quality.quality = quality_ladder_rung(ladder, quality_ladder_step(ladder, session->common_step)).quality;
+    const struct quality_ladder *ladder = &session->delivery.pacer.ladder;
+    request->view.tier = TIER_REFINED;
+    request->quality = STILL;
+    request->or_moving = !all_can_be_refined(session, now_ns);
+    request->moving_quality.quality = quality_ladder_rung(ladder, quality_ladder_step(ladder, session->delivery.common_step)).quality;
 }
 
-/* A camera that moves, if not fast, brings new readings with its next picture: they need none of their own. */
+/* A camera that moves, if not fast, brings new readings with its next frame: they need none of their own. */
 static bool next_camera_brings(const struct session *session, int64_t now_ns)
 {
-    return session->refined == REFINED_NOT && now_ns - session->input_ns < SOON_NS;
+    return session->demand.refined == REFINED_NOT && now_ns - session->demand.input_ns < SOON_NS;
 }
 
-static bool wants(const struct session *session, int64_t now_ns, struct frame_request *wish)
+static bool wants(const struct session *session, int64_t now_ns, struct frame_request *request)
 {
-    if (session->input_pending || session->always_pending) {
-        wish->urgency = URGENCY_INPUT;
-        wish->always = wish->alone = session->always_pending;
-        wish->view.input_ns = session->input_ns;
-        make_moving(session, wish);
+    if (session->demand.input || session->demand.any) {
+        request->urgency = URGENCY_INPUT;
+        request->always = request->alone = session->demand.any;
+        request->view.input_ns = session->demand.input_ns;
+        make_moving(session, request);
     } else if (refine_due(session, now_ns)) {
-        wish->view.input_ns = now_ns;
-        wish->always = session->refined == REFINED_DRAFT; /* the same, but better */
-        make_still(session, wish);
-    } else if (session->data_pending && !next_camera_brings(session, now_ns)) {
-        wish->view.input_ns = session->data_ns;
-        wish->of_data = true;
-        wish->urgency = URGENCY_DATA;
-        if (session->refined == REFINED_FULL && !is_slow(session))
-            make_refreshed(session, now_ns, wish);
+        request->view.input_ns = now_ns;
+        request->always = session->demand.refined == REFINED_DRAFT; /* the same, but better */
+        make_still(session, request);
+    } else if (session->demand.data && !next_camera_brings(session, now_ns)) {
+        request->view.input_ns = session->demand.data_ns;
+        request->of_data = true;
+        request->urgency = URGENCY_DATA;
+        if (session->demand.refined == REFINED_FULL && !is_slow(session))
+            make_refreshed(session, now_ns, request);
         else
-            make_moving(session, wish);
+            make_moving(session, request);
     } else {
         return false;
     }
@@ -184,7 +186,7 @@ static bool wants(const struct session *session, int64_t now_ns, struct frame_re
 
 static bool has_codec(const struct session *session, enum wire_codec codec)
 {
-    unsigned all = session->world->codecs ? session->world->codecs : 1u << WIRE_CODEC_JPEG | 1u << WIRE_CODEC_PNG;
+    unsigned all = session->context->codecs ? session->context->codecs : 1u << WIRE_CODEC_JPEG | 1u << WIRE_CODEC_PNG;
     return (all & 1u << codec) != 0;
 }
 
@@ -193,9 +195,9 @@ bool session_choose_codec(struct session *session, const struct codec_list *code
     for (int i = 0; i < codecs->count; i++) {
         if (!has_codec(session, codecs->at[i]))
             continue;
-        session->codecs = *codecs;
-        session->codec = codecs->at[i];
-        session->always_pending = true;
+        session->codec.list = *codecs;
+        session->codec.current = codecs->at[i];
+        session->demand.any = true;
         return true;
     }
     message_fail(error, "bad_field", "codecs: this server has jpeg and png%s", has_codec(session, WIRE_CODEC_H264) ? " and h264" : " only");
@@ -204,121 +206,124 @@ bool session_choose_codec(struct session *session, const struct codec_list *code
 
 static bool decodes(const struct session *session, enum wire_codec codec)
 {
-    for (int i = 0; i < session->codecs.count; i++)
-        if (session->codecs.at[i] == codec)
+    for (int i = 0; i < session->codec.list.count; i++)
+        if (session->codec.list.at[i] == codec)
             return has_codec(session, codec);
     return false;
 }
 
 void session_choose_again(struct session *session, int64_t now_ns)
 {
-    double ns_per_byte = session->pacer.channel.ns_per_byte;
+    double ns_per_byte = session->delivery.pacer.channel.ns_per_byte;
     struct codec_facts facts = { .bytes_per_s = ns_per_byte > 0 ? NS_PER_S / ns_per_byte : 0,
-                                 .cpu_free = 1 - session->world->cpu_used,
+                                 .cpu_free = 1 - session->context->cpu_used,
                                  .pixels = (long)session->view.width_px * session->view.height_px };
-    if (!session->codecs.choose || !decodes(session, WIRE_CODEC_H264) || !decodes(session, WIRE_CODEC_JPEG))
+    if (!session->codec.list.choose || !decodes(session, WIRE_CODEC_H264) || !decodes(session, WIRE_CODEC_JPEG))
         return;
-    codec_choice_update(&session->choice, &facts, now_ns);
-    session->codec = session->choice.jpeg ? WIRE_CODEC_JPEG : WIRE_CODEC_H264;
+    codec_choice_update(&session->codec.choice, &facts, now_ns);
+    session->codec.current = session->codec.choice.jpeg ? WIRE_CODEC_JPEG : WIRE_CODEC_H264;
 }
 
-bool session_next_request(const struct session *session, int64_t now_ns, struct frame_request *wish)
+bool session_next_request(const struct session *session, int64_t now_ns, struct frame_request *request)
 {
-    if ((session->starting && now_ns - session->starting_ns < START_NS) || (session->travel.first && !session->leader))
+    if ((session->demand.starting && now_ns - session->demand.starting_ns < START_NS) ||
+        (session->travel.first && !session->following.leader))
         return false;
-    bool may_add = !session->ready && pacer_may_ask(&session->pacer, now_ns);
-    if (!session->hello || session->hidden || !session_has_pixels(session) || (!may_add && session->pacer.asked == 0))
+    bool may_add = !session->delivery.ready && pacer_may_ask(&session->delivery.pacer, now_ns);
+    if (!session->hello || session->hidden || !session_has_pixels(session) || (!may_add && session->delivery.pacer.asked == 0))
         return false;
-    *wish = (struct frame_request){ .view = session_shown(session), .codec = session->codec, .asked_ns = now_ns, .only_replace = !may_add };
-    wish->payer = session->share ? session->share->payer : 0;
-    wish->read_ns = wish->view.at_us ? 0 : session->world->changed_ns; /* what was does not change */
-    wish->view.camera_seq = session->view.camera_seq;
-    wish->view.params_seq = session->view.params_seq;
-    return wants(session, now_ns, wish);
+    *request = (struct frame_request){
+        .view = session_shown(session), .codec = session->codec.current, .asked_ns = now_ns, .only_replace = !may_add
+    };
+    request->account = session->room.share ? session->room.share->account : 0;
+    request->read_ns = request->view.at_us ? 0 : session->context->changed_ns; /* what was does not change */
+    request->view.camera_seq = session->view.camera_seq;
+    request->view.params_seq = session->view.params_seq;
+    return wants(session, now_ns, request);
 }
 
-void session_requested(struct session *session, const struct frame_request *wish, bool replaced)
+void session_requested(struct session *session, const struct frame_request *request, bool replaced)
 {
     if (!replaced)
-        pacer_asked(&session->pacer);
-    session->input_pending = session->always_pending = session->data_pending = false;
-    session->refined = wish->view.tier != TIER_REFINED ? REFINED_NOT : wish->draft ? REFINED_DRAFT : REFINED_FULL;
-    if (session->refined)
-        session->refined_ns = wish->asked_ns;
+        pacer_asked(&session->delivery.pacer);
+    session->demand.input = session->demand.any = session->demand.data = false;
+    session->demand.refined = request->view.tier != TIER_REFINED ? REFINED_NOT : request->draft ? REFINED_DRAFT : REFINED_FULL;
+    if (session->demand.refined)
+        session->demand.refined_ns = request->asked_ns;
 }
 
-/* --- on its way ----------------------------------------------------------------------------------------------------------- */
+/* --- on its way ------------------------------------------------------------------------------------------------------- */
 
 struct encoded_frame *session_next_frame(struct session *session, int64_t now_ns, uint32_t *seq)
 {
-    struct encoded_frame *picture = session->ready;
-    if (!picture)
+    struct encoded_frame *encoded = session->delivery.ready;
+    if (!encoded)
         return NULL;
-    const struct frame_request *wish = &picture->wish;
-    struct pacer_note note = { .moving = wish->view.tier == TIER_PREVIEW,
-                               .full = wish->view.tier == TIER_REFINED && !wish->draft,
-                               .of_data = wish->of_data,
-                               .step = wish->step,
-                               .input_ns = wish->view.input_ns,
-                               .made_ns = picture->made_ns };
-    session->ready = picture->next;
-    picture->next = NULL;
-    *seq = pacer_sent(&session->pacer, encoded_frame_bytes(picture), &note, now_ns);
-    return picture;
+    const struct frame_request *request = &encoded->request;
+    struct pacer_note note = { .moving = request->view.tier == TIER_PREVIEW,
+                               .full = request->view.tier == TIER_REFINED && !request->draft,
+                               .of_data = request->of_data,
+                               .step = request->step,
+                               .input_ns = request->view.input_ns,
+                               .made_ns = encoded->made_ns };
+    session->delivery.ready = encoded->next;
+    encoded->next = NULL;
+    *seq = pacer_sent(&session->delivery.pacer, encoded_frame_bytes(encoded), &note, now_ns);
+    return encoded;
 }
 
 void session_wrote(struct session *session, bool all, int64_t now_ns)
 {
-    pacer_wrote(&session->pacer, all, now_ns);
+    pacer_wrote(&session->delivery.pacer, all, now_ns);
 }
 
 bool session_gives_up(const struct session *session, const struct encoded_frame *sending, size_t bytes_left, int64_t now_ns)
 {
     if (sending->packet->codec == WIRE_CODEC_H264) /* the next would have to stand alone, and be larger */
         return false;
-    if (pacer_state(&session->pacer, now_ns) != PACER_FLOWS || session->hidden)
+    if (pacer_state(&session->delivery.pacer, now_ns) != PACER_FLOWS || session->hidden)
         return true;
-    bool moved = session->input_pending && sending->wish.view.tier == TIER_REFINED;
-    return moved && pacer_is_slower(&session->pacer, (double)bytes_left, GIVE_UP_NS);
+    bool moved = session->demand.input && sending->request.view.tier == TIER_REFINED;
+    return moved && pacer_is_slower(&session->delivery.pacer, (double)bytes_left, GIVE_UP_NS);
 }
 
 /* The render thread takes it for shown: the next is drawn whatever it shows. */
 void session_gave_up(struct session *session)
 {
-    pacer_gave_up(&session->pacer);
-    session->always_pending = true;
+    pacer_gave_up(&session->delivery.pacer);
+    session->demand.any = true;
 }
 
 void session_pause(struct session *session)
 {
-    if (!session->ready)
+    if (!session->delivery.ready)
         return;
     session_drop_ready(session);
-    session->always_pending = true;
+    session->demand.any = true;
 }
 
 void session_on_shown(struct session *session)
 {
-    const struct pacer_flight *acked = &session->pacer.acked;
+    const struct pacer_flight *acked = &session->delivery.pacer.acked;
     if (acked->note.full)
-        session->still_bytes = (double)acked->bytes;
-    session->measured = true;
+        session->demand.refined_bytes = (double)acked->bytes;
+    session->delivery.measured = true;
 }
 
 void session_begin(struct session *session, size_t bytes, int64_t took_ns)
 {
     const struct view *view = session_view(session);
-    channel_on_bytes(&session->pacer.channel, bytes, took_ns);
-    quality_ladder_begin(&session->pacer.ladder, &session->pacer.channel, (double)view->width_px * view->height_px);
-    session->starting = false;
+    channel_on_bytes(&session->delivery.pacer.channel, bytes, took_ns);
+    quality_ladder_begin(&session->delivery.pacer.ladder, &session->delivery.pacer.channel, (double)view->width_px * view->height_px);
+    session->demand.starting = false;
 }
 
 void session_on_pong(struct session *session, int64_t rtt_ns, int64_t now_ns)
 {
-    channel_on_pong(&session->pacer.channel, rtt_ns, now_ns);
+    channel_on_pong(&session->delivery.pacer.channel, rtt_ns, now_ns);
 }
 
 enum pacer_state session_state(const struct session *session, int64_t now_ns)
 {
-    return pacer_state(&session->pacer, now_ns);
+    return pacer_state(&session->delivery.pacer, now_ns);
 }

@@ -6,41 +6,46 @@
 
 static bool judge_token(struct session *session, const char *token, int64_t now_ns, int64_t now_utc_ns, struct message_error *error)
 {
-    const struct session_context *world = session->world;
-    bool good = tokens_find(world->tokens, token, now_utc_ns, &session->holder);
-    session->login = world->logins ? login_throttle_judge(world->logins, session->address, good ? session->holder.hash : NULL, now_ns)
-                     : good        ? LOGIN_GOOD
-                                   : LOGIN_WRONG;
-    if (session->login == LOGIN_HELD) {
+    const struct session_context *context = session->context;
+    struct token_holder holder;
+    bool good = tokens_find(context->tokens, token, now_utc_ns, &holder);
+    session->identity.login = context->login_throttle ? login_throttle_judge(context->login_throttle, session->identity.address,
+                                                                             good ? holder.hash : NULL, now_ns)
+                              : good                  ? LOGIN_GOOD
+                                                      : LOGIN_WRONG;
+    if (session->identity.login == LOGIN_HELD) {
         message_fail(error, "full", "too many wrong tokens came from this address");
         error->retry_after_s = LOGIN_WAIT_S;
         session_close(session, 1013, "full: too many wrong tokens came from this address; try again later");
-    } else if (!good) {
+        return false;
+    }
+    session->identity.holder = holder;
+    if (!good) {
         message_fail(error, "bad_token", "this token is not, or no longer, let in");
         session_close(session, 1008, "this token is not let in");
-    } else {
-        session->role = session->holder.role;
+        return false;
     }
-    return login_is_good(session->login);
+    session->identity.role = holder.role;
+    return true;
 }
 
 /* With a token, its holder's role counts, even where none is needed. */
 static bool identify(struct session *session, const struct message *message, int64_t now_ns, int64_t now_utc_ns,
                      struct message_error *error)
 {
-    if (message->token[0] && session->world->tokens && !judge_token(session, message->token, now_ns, now_utc_ns, error))
+    if (message->token[0] && session->context->tokens && !judge_token(session, message->token, now_ns, now_utc_ns, error))
         return false;
-    if (role_may_send(session->role, message, error))
+    if (role_may_send(session->identity.role, message, error))
         return true;
-    if (session->role == ROLE_NOBODY)
+    if (session->identity.role == ROLE_NOBODY)
         session_close(session, 1008, "a token is needed");
     return false;
 }
 
 static bool admit(struct session *session, const struct view *view, struct message_error *error)
 {
-    const struct session_context *world = session->world;
-    const char *why = admission_refuses(world->admission, session->share, (int64_t)view->width_px * view->height_px);
+    const struct session_context *context = session->context;
+    const char *why = admission_refuses(context->admission, session->room.share, (int64_t)view->width_px * view->height_px);
     if (!why)
         return session_reserve_pixels(session, view->width_px, view->height_px, error);
     message_fail(error, "full", "%s", why);
@@ -63,7 +68,7 @@ static bool begin_view(const struct session *session, const struct message *mess
         view_set_trial(view, 0);
     }
     if (!resumed)
-        view_default(session->world->scene, message->width_px, message->height_px, view);
+        view_default(session->context->scene, message->width_px, message->height_px, view);
     if (message->width_px) {
         view->width_px = message->width_px;
         view->height_px = message->height_px;
@@ -80,8 +85,10 @@ static bool begin_view(const struct session *session, const struct message *mess
 
 bool session_apply_params(const struct session *session, const struct message *message, struct view *view, struct message_error *error)
 {
-    const struct session_context *world = session->world;
-    const struct params_context params = { .scene = world->scene, .baselines = world->baselines, .snapshot = session_snapshot(session) };
+    const struct session_context *context = session->context;
+    const struct params_context params = { .scene = context->scene,
+                                           .baselines = context->baselines,
+                                           .snapshot = session_snapshot(session) };
     struct view changed = *view;
     if (!params_apply(&params, &message->params, &changed, error) || !split_apply(&params, &message->split, &changed, error))
         return false;
@@ -93,19 +100,19 @@ bool session_apply_params(const struct session *session, const struct message *m
 
 static void take_over(struct session *session, const struct resumed *resumed, const char *secret)
 {
-    resumes_forget(session->world->resumes, secret);
+    resumes_forget(session->context->resumes, secret);
     if (resumed->live)
         session_close(resumed->live, 1000, "a new connection has taken this view over");
 }
 
 bool session_hello(struct session *session, const struct message *message, int64_t now_ns, int64_t now_utc_ns, struct message_error *error)
 {
-    const struct session_context *world = session->world;
+    const struct session_context *context = session->context;
     struct resumed resumed = { .live = NULL };
     struct view view;
     if (!identify(session, message, now_ns, now_utc_ns, error))
         return false;
-    bool back = message->resume[0] && resumes_find(world->resumes, message->resume, session, now_ns, &resumed);
+    bool back = message->resume[0] && resumes_find(context->resumes, message->resume, session, now_ns, &resumed);
     const struct resumed *before = back && !message->anew ? &resumed : NULL; /* of which the view is taken, too */
     if (!begin_view(session, message, before, &view, error) ||
         !session_choose_codec(session, message->codecs.count ? &message->codecs : &resumed.codecs, error) || !admit(session, &view, error))
@@ -117,13 +124,13 @@ bool session_hello(struct session *session, const struct message *message, int64
         session_time_begin(session, message->time.at_us, message->time.speed);
     else if (before)
         session_time_begin(session, resumed.view.at_us, resumed.speed);
-    session->resumed = session->returned = back;
+    session->identity.resumed = session->identity.returned = back;
     if (back)
-        session->called = resumed.called;
+        session->identity.number = resumed.called;
     session->pixel_ratio = message->pixel_ratio > 0 ? message->pixel_ratio : before ? resumed.pixel_ratio : 1;
-    resumes_open(world->resumes, session, session->resume);
-    session->hello = session->owes_welcome = session->owes_tags_all = session->owes_status = session->always_pending = true;
-    session->owes_time = world->snapshot_cache != NULL;
-    session->owes_loop_checks = true;
+    resumes_open(context->resumes, session, session->identity.resume_secret);
+    session->hello = session->owed.welcome = session->owed.tags_all = session->owed.status = session->demand.any = true;
+    session->owed.time = context->snapshot_cache != NULL;
+    session->owed.loop_checks = true;
     return true;
 }

@@ -1,49 +1,89 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What the parts of a session share: input (session.c), its first message (session_hello.c),
-   pictures (session_wishes.c), words (session_texts.c). Private to them. */
+/* Functions that the files of a session share. Private to session_*.c. Thread: the loop. */
 #ifndef SESSION_SESSION_IMPL_H
 #define SESSION_SESSION_IMPL_H
 #include "session/session.h"
 
-void session_reply(struct session *session, char *text); /* takes it */
-void session_drop_ready(struct session *session);        /* what was not sent yet */
-/* Takes the list, and the first of it that there is. False: there is none. */
-bool session_choose_codec(struct session *session, const struct codec_list *codecs, struct message_error *error);
-void session_choose_again(struct session *session, int64_t now_ns); /* as bandwidth and processors are by now */
+/* --- session_state.c -------------------------------------------------------------------------------------------------- */
+
+/* Queues a text for the client; takes it (mem_free). */
+void session_reply(struct session *session, char *text);
+/* Counts an error and queues its text. */
 void session_reply_error(struct session *session, const struct message_error *error);
-/* session_hello.c: who it is, whether there is room, what it looks at. False: *error, and session->close_code if it is not let in. */
+/* Notes that what is shown changed by an input: a preview is due, and later a refined frame. */
+void session_on_input(struct session *session, int64_t now_ns);
+/* Returns the user's name, for journals and lists; "local" without a token. */
+const char *session_who(const struct session *session);
+
+/* --- session_view.c --------------------------------------------------------------------------------------------------- */
+
+/* Returns the view to draw: session_view, without what a leader has moved on trial. */
+struct view session_shown(const struct session *session);
+
+/* --- session_hello.c -------------------------------------------------------------------------------------------------- */
+
+/* Acts on `hello`: checks the token, admits the session and sets its first view. Returns false with *error, and session->close set if it is
+   not let in. */
 bool session_hello(struct session *session, const struct message *message, int64_t now_ns, int64_t now_utc_ns, struct message_error *error);
-/* session_room.c: whether its view may have this size; if so it is counted. */
-bool session_reserve_pixels(struct session *session, int width_px, int height_px, struct message_error *error);
-void session_release_pixels(struct session *session);
-bool session_has_pixels(const struct session *session);
-void session_on_visible(struct session *session, bool visible, int64_t now_ns);
-void session_keep_pixels(struct session *session, int64_t now_ns); /* every tick */
+/* Applies the parameters of a message to a view: all, or none with *error and false. */
 bool session_apply_params(const struct session *session, const struct message *message, struct view *view, struct message_error *error);
 
-void session_on_input(struct session *session, int64_t now_ns); /* what it is shown changes */
-/* session_time.c: it goes to an instant, plays, or comes back. */
-bool session_on_time(struct session *session, const struct time_request *wish, int64_t now_ns, int64_t now_utc_ns,
+/* --- session_frames.c ------------------------------------------------------------------------------------------------- */
+
+/* Drops the frames that were not sent yet. */
+void session_drop_ready(struct session *session);
+/* Drops them, to be drawn anew, while the client takes nothing. */
+void session_pause(struct session *session);
+/* Notes that delivery.pacer.acked is on the client's screen. */
+void session_on_shown(struct session *session);
+/* Takes the client's list of codecs and uses the first that works here. Returns false with *error if none does. */
+bool session_choose_codec(struct session *session, const struct codec_list *codecs, struct message_error *error);
+/* Chooses again by bandwidth and processors, where the client lets the server choose. */
+void session_choose_again(struct session *session, int64_t now_ns);
+
+/* --- session_admission.c ---------------------------------------------------------------------------------------------- */
+
+/* Counts a view of that size in place of the last one. Returns false with *error if that is more than the limits allow. */
+bool session_reserve_pixels(struct session *session, int width_px, int height_px, struct message_error *error);
+/* Gives its pixels back. */
+void session_release_pixels(struct session *session);
+/* Returns whether its view is counted, so that frames may be drawn. */
+bool session_has_pixels(const struct session *session);
+/* Acts on `visible`. */
+void session_on_visible(struct session *session, bool visible, int64_t now_ns);
+/* Gives pixels back while the page is hidden, and takes them again. Every tick. */
+void session_keep_pixels(struct session *session, int64_t now_ns);
+
+/* --- session_time.c --------------------------------------------------------------------------------------------------- */
+
+/* Acts on `time`: goes to an instant, plays, or comes back to now. Returns false with *error if it cannot. */
+bool session_on_time(struct session *session, const struct time_request *request, int64_t now_ns, int64_t now_utc_ns,
                      struct message_error *error);
-void session_time_begin(struct session *session, int64_t at_us, double speed); /* it begins there, not now */
+/* Has a new session begin at an instant. */
+void session_time_begin(struct session *session, int64_t at_us, double speed);
+/* Gives the reference on historical readings back. */
 void session_time_end(struct session *session);
-void session_time_inherit(struct session *heir, const struct session *session); /* its view is that one's: likewise when */
-void session_tell_time(struct session *session);                                /* what it is shown may be of another time than it was */
+/* Comes back to now at once. */
+void session_time_leave(struct session *session);
+/* Gives the heir the instant, and the play, of the session. */
+void session_time_inherit(struct session *heir, const struct session *session);
+/* Has the client told which instant it is shown. */
+void session_tell_time(struct session *session);
+
+/* --- session_follow.c ------------------------------------------------------------------------------------------------- */
+
+/* Note what `follow` and `lead` ask for; the loop resolves it. */
 void session_ask_follow(struct session *session, const struct message *message);
 void session_ask_lead(struct session *session, const struct message *message);
-void session_pause(struct session *session);    /* nothing moves: keep no picture for it */
-void session_on_shown(struct session *session); /* session->pacer.acked is on the client's screen */
 
-/* session_follow.c: what is drawn for it. What a leader tries out is the leader's own affair. */
-struct view session_shown(const struct session *session);
-/* session_place.c */
+/* --- session_place.c -------------------------------------------------------------------------------------------------- */
+
+/* Act on `place`, `gaps`, `save_tags` and `prove`. Return false with *error if they are refused. */
 bool session_on_place(struct session *session, const struct message *message, int64_t now_ns, struct message_error *error);
 bool session_ask_gaps(struct session *session, const struct message *message, struct message_error *error);
 bool session_save_tags(struct session *session, const struct message *message, struct message_error *error);
 bool session_prove(struct session *session, const struct message *message, struct message_error *error);
-void session_place_leave(struct session *session); /* nothing of the plant's is used any more */
-const char *session_who(const struct session *session);
-
-void session_time_leave(struct session *session); /* at once, to now; nothing of its moment is used any more */
+/* Drops sensors moved on trial; nothing of the plant is used any more. */
+void session_place_leave(struct session *session);
 
 #endif

@@ -5,11 +5,6 @@
 #include "message/prove_message.h"
 #include "session/session_impl.h"
 
-const char *session_who(const struct session *session)
-{
-    return session->holder.name[0] ? session->holder.name : "local";
-}
-
 void session_say(struct session *session, const char *text)
 {
     session_reply(session, mem_strdup(text));
@@ -17,15 +12,15 @@ void session_say(struct session *session, const char *text)
 
 void session_place_leave(struct session *session)
 {
-    place_set_destroy(&session->places);
-    tag_save_free(session->save);
-    session->save = NULL;
+    place_set_destroy(&session->placement.set);
+    tag_save_free(session->placement.save);
+    session->placement.save = NULL;
     view_set_trial(&session->view, 0);
 }
 
 static bool can_place(const struct session *session, struct message_error *error)
 {
-    if (session->world->placing)
+    if (session->context->placing)
         return true;
     message_fail(error, "not_allowed", "sensors cannot be placed here");
     return false;
@@ -34,9 +29,9 @@ static bool can_place(const struct session *session, struct message_error *error
 /* The view shows it, and the client is told. */
 static void show(struct session *session, int64_t now_ns)
 {
-    view_set_trial(&session->view, place_set_trial(session->places));
+    view_set_trial(&session->view, place_set_trial(session->placement.set));
     session_on_input(session, now_ns);
-    session_reply(session, placed_text(session->world->plant, session->places, session->place_seq));
+    session_reply(session, placed_text(session->context->plant, session->placement.set, session->placement.seq));
 }
 
 bool session_on_place(struct session *session, const struct message *message, int64_t now_ns, struct message_error *error)
@@ -44,68 +39,70 @@ bool session_on_place(struct session *session, const struct message *message, in
     char why[160];
     if (!can_place(session, error))
         return false;
-    if (!session->places)
-        session->places = place_set_create(session->world->placing);
-    if (!place_set_moves(session->places, message->place.moves, message->place.count, why)) {
+    if (!session->placement.set)
+        session->placement.set = place_set_create(session->context->placing);
+    if (!place_set_moves(session->placement.set, message->place.moves, message->place.count, why)) {
         message_fail(error, "bad_field", "moves: %s", why);
         return false;
     }
-    session->place_seq = message->seq;
+    session->placement.seq = message->seq;
     show(session, now_ns);
     return true;
 }
 
 void session_on_placed(struct session *session, int64_t now_ns)
 {
-    if (session->places && place_set_changed(session->places))
+    if (session->placement.set && place_set_changed(session->placement.set))
         show(session, now_ns);
 }
 
 bool session_ask_gaps(struct session *session, const struct message *message, struct message_error *error)
 {
-    const struct session_context *world = session->world;
+    const struct session_context *context = session->context;
     int group = message->gaps.group >= 0 ? message->gaps.group : session->view.field.group;
     if (!can_place(session, error))
         return false;
-    placing_request_coverage(world->placing, session->places, group, message->gaps.far_m, world->snapshot, session->id, message->seq);
+    placing_request_coverage(context->placing, session->placement.set, group, message->gaps.far_m, context->snapshot, session->id,
+                             message->seq);
     return true;
 }
 
 void session_on_gaps(struct session *session, const struct sensor_coverage_answer *answer)
 {
-    session_reply(session, gaps_text(session->world->scene, session->places, answer));
+    session_reply(session, gaps_text(session->context->scene, session->placement.set, answer));
 }
 
 bool session_save_tags(struct session *session, const struct message *message, struct message_error *error)
 {
-    const struct session_context *world = session->world;
+    const struct session_context *context = session->context;
     const struct placed *placed;
     if (!can_place(session, error))
         return false;
-    if (!world->tag_list) {
+    if (!context->tag_list) {
         message_fail(error, "not_allowed", "the tag list could not be read when the plant was loaded");
         return false;
     }
-    if (!session->places || place_set_get(session->places, &placed) == 0) {
+    if (!session->placement.set || place_set_get(session->placement.set, &placed) == 0) {
         message_fail(error, "bad_field", "save_tags: no sensor has been moved");
         return false;
     }
-    if (world->saving) {
+    if (context->saving) {
         session_reply(session, tags_saved_text(message->seq, false, "another list is being put in force; look again in a moment"));
         return true;
     }
-    tag_save_free(session->save);
-    session_reply(session, tags_diff_text(world->plant, world->tag_list, session->places, message, session_who(session), &session->save));
+    tag_save_free(session->placement.save);
+    session_reply(session, tags_diff_text(context->plant, context->tag_list, session->placement.set, message, session_who(session),
+                                          &session->placement.save));
     return true;
 }
 
 bool session_prove(struct session *session, const struct message *message, struct message_error *error)
 {
-    const struct session_context *world = session->world;
-    if (!world->loop_checks) {
+    const struct session_context *context = session->context;
+    if (!context->loop_checks) {
         message_fail(error, "no_history", "this daemon records nothing (history: record: no): proofs are kept beside the history");
         return false;
     }
-    session_reply(session, prove_do(world->loop_checks, world->plant, world->snapshot, message, session_who(session)));
+    session_reply(session, prove_do(context->loop_checks, context->plant, context->snapshot, message, session_who(session)));
     return true;
 }

@@ -8,13 +8,13 @@
 #include "session/session_impl.h"
 
 /* What is seen, by names, as `params` of the server says it; `start`: of assets that start otherwise than shown, how. */
-static char *carried_of(const struct session_context *world, const struct view *view)
+static char *carried_of(const struct session_context *context, const struct view *view)
 {
-    char *said = reply_params_text(world, view, 0, false);
+    char *said = reply_params_text(context, view, 0, false);
     json_t *o = json_loads(said, 0, NULL), *start = json_object();
-    for (size_t i = 0; i < world->plant->asset_count; i++)
-        if (world->plant->assets[i].start != PLANT_START_SHOWN)
-            json_object_set_new(start, world->plant->assets[i].id, json_integer(world->plant->assets[i].start));
+    for (size_t i = 0; i < context->plant->asset_count; i++)
+        if (context->plant->assets[i].start != PLANT_START_SHOWN)
+            json_object_set_new(start, context->plant->assets[i].id, json_integer(context->plant->assets[i].start));
     json_object_set_new(o, "start", start);
     char *dumped = json_dumps(o, JSON_COMPACT), *carried = mem_strdup(dumped);
     free(dumped);
@@ -28,11 +28,11 @@ char *session_carry(struct session *session)
     session_time_leave(session);
     session_place_leave(session);
     session_drop_ready(session);
-    return session->hello ? carried_of(session->world, &session->view) : NULL;
+    return session->hello ? carried_of(session->context, &session->view) : NULL;
 }
 
 /* The same as a client would ask for it. */
-static json_t *wish_of(const char *carried)
+static json_t *request_of(const char *carried)
 {
     static const char *const said_only[] = { "type", "seq", "baselines", "unit" };
     json_t *o = json_loads(carried, 0, NULL), *baseline = json_object_get(o, "baseline");
@@ -47,12 +47,12 @@ static json_t *wish_of(const char *carried)
     return o;
 }
 
-static bool apply(struct session *session, const json_t *wish)
+static bool apply(struct session *session, const json_t *request)
 {
     struct message message = { .type = MESSAGE_PARAMS };
     struct message_error error = { 0 };
-    return params_parse(session->world->plant, wish, &message.params, &error) &&
-           split_parse(session->world->plant, wish, &message.split, &error) &&
+    return params_parse(session->context->plant, request, &message.params, &error) &&
+           split_parse(session->context->plant, request, &message.split, &error) &&
            session_apply_params(session, &message, &session->view, &error);
 }
 
@@ -103,10 +103,10 @@ static void start_anew(const struct plant *plant, json_t *o)
 /* All of it, or each that still means something. */
 static void apply_carried(struct session *session, const char *carried)
 {
-    json_t *o = wish_of(carried), *value;
+    json_t *o = request_of(carried), *value;
     const char *key;
-    forget_gone(session->world->plant, o);
-    start_anew(session->world->plant, o);
+    forget_gone(session->context->plant, o);
+    start_anew(session->context->plant, o);
     if (o && !apply(session, o)) {
         json_t *group = json_pack("{s:O}", "group", json_object_get(o, "group"));
         apply(session, group);
@@ -124,18 +124,18 @@ static void apply_carried(struct session *session, const char *carried)
 
 static void look_again(struct session *session, const struct view *before, const char *carried)
 {
-    view_default(session->world->scene, before->width_px, before->height_px, &session->view);
+    view_default(session->context->scene, before->width_px, before->height_px, &session->view);
     session->view.camera = before->camera;
     session->view.camera_seq = before->camera_seq;
     session->view.params_seq = before->params_seq;
     apply_carried(session, carried);
 }
 
-void session_view_in(const struct session *session, const struct session_context *world, struct view *out)
+void session_view_in(const struct session *session, const struct session_context *context, struct view *out)
 {
     const struct view *view = session_view(session);
-    struct session *other = session_create(world, session->id, 0);
-    char *carried = carried_of(session->world, view);
+    struct session *other = session_create(context, session->id, 0);
+    char *carried = carried_of(session->context, view);
     look_again(other, view, carried);
     *out = other->view;
     mem_free(carried);
@@ -145,22 +145,22 @@ void session_view_in(const struct session *session, const struct session_context
 void session_take_plant(struct session *session, const char *carried)
 {
     const struct view before = session->view;
-    mem_free(session->tag_changes);
-    session->tag_changes = mem_array(session->world->plant->tag_count, sizeof(*session->tag_changes));
-    session->newest_number = 0;
-    session->pick_pending = false;
-    session->alarms_said = false;
-    session->alarms_number = 0;
-    session->loop_checks_said = 0;
-    session->refined = REFINED_NOT;
-    while (session->pacer.asked > 0) /* what was asked for does not come */
-        pacer_dropped(&session->pacer);
+    mem_free(session->owed.tag_changes);
+    session->owed.tag_changes = mem_array(session->context->plant->tag_count, sizeof(*session->owed.tag_changes));
+    session->delivery.newest_number = 0;
+    session->pick.pending = false;
+    session->owed.alarms_sent = false;
+    session->owed.alarms_number = 0;
+    session->owed.loop_checks_sent = 0;
+    session->demand.refined = REFINED_NOT;
+    while (session->delivery.pacer.asked > 0) /* what was asked for does not come */
+        pacer_dropped(&session->delivery.pacer);
     if (!session->hello)
         return;
-    session->owes_following |= session->left != 0;
-    session->left = 0; /* what is beneath is of the plant before */
+    session->owed.following |= session->following.left != 0;
+    session->following.left = 0; /* what is beneath is of the plant before */
     look_again(session, &before, carried);
-    session->owes_welcome = session->owes_tags_all = session->owes_status = session->always_pending = true;
-    session->owes_params = false;
-    session->owes_loop_checks = true;
+    session->owed.welcome = session->owed.tags_all = session->owed.status = session->demand.any = true;
+    session->owed.params = false;
+    session->owed.loop_checks = true;
 }

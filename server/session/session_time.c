@@ -10,26 +10,20 @@ static const int64_t STEP_NS = 100 * NS_PER_MS;      /* of play, at most so ofte
 static const int64_t SLOW_STEP_NS = 500 * NS_PER_MS; /* likewise, where little happens in so little time */
 static const double SLOW_SPEED = 10;
 
-const struct snapshot *session_snapshot(const struct session *session)
-{
-    const struct session *seen = session->leader ? session->leader : session;
-    return seen->travel.historical ? &seen->travel.historical->snapshot : session->world->snapshot;
-}
-
 void session_tell_time(struct session *session)
 {
     int64_t at_us = session_view(session)->at_us;
-    session->owes_time = true;
-    session->owes_tags = true;
-    session->owes_tags_all |= (at_us != 0) != (session->told_at_us != 0); /* changes are counted otherwise */
-    session->told_at_us = at_us;
+    session->owed.time = true;
+    session->owed.tags = true;
+    session->owed.tags_all |= (at_us != 0) != (session->owed.told_at_us != 0); /* changes are counted otherwise */
+    session->owed.told_at_us = at_us;
 }
 
 static void show(struct session *session, const struct historical_snapshot *historical, int64_t now_ns)
 {
     struct travel *travel = &session->travel;
     if (travel->historical)
-        snapshot_cache_give(session->world->snapshot_cache, &travel->historical);
+        snapshot_cache_give(session->context->snapshot_cache, &travel->historical);
     travel->historical = historical;
     travel->first = false;
     view_set_instant(&session->view, historical ? historical->at_us : 0, historical ? historical->slot : 0);
@@ -56,12 +50,12 @@ static void play(struct session *session, double speed, int64_t from_us, int64_t
     session->travel.speed = speed;
     session->travel.from_us = from_us;
     session->travel.from_ns = session->travel.stepped_ns = now_ns;
-    session->owes_time = true;
+    session->owed.time = true;
 }
 
 void session_time_begin(struct session *session, int64_t at_us, double speed)
 {
-    if (at_us == 0 || !session->world->snapshot_cache)
+    if (at_us == 0 || !session->context->snapshot_cache)
         return;
     session->travel.first = true;
     session->travel.speed = speed;
@@ -79,14 +73,14 @@ void session_time_leave(struct session *session)
 void session_time_end(struct session *session)
 {
     if (session->travel.historical)
-        snapshot_cache_give(session->world->snapshot_cache, &session->travel.historical);
+        snapshot_cache_give(session->context->snapshot_cache, &session->travel.historical);
 }
 
 void session_time_inherit(struct session *heir, const struct session *session)
 {
     struct travel *travel = &heir->travel;
     const struct historical_snapshot *historical =
-        session->travel.historical ? snapshot_cache_take(session->world->snapshot_cache, session->view.at_us) : NULL;
+        session->travel.historical ? snapshot_cache_take(session->context->snapshot_cache, session->view.at_us) : NULL;
     session_time_end(heir);
     *travel = session->travel;
     travel->historical = historical;
@@ -95,30 +89,30 @@ void session_time_inherit(struct session *heir, const struct session *session)
     session_tell_time(heir);
 }
 
-bool session_on_time(struct session *session, const struct time_request *wish, int64_t now_ns, int64_t now_utc_ns,
+bool session_on_time(struct session *session, const struct time_request *request, int64_t now_ns, int64_t now_utc_ns,
                      struct message_error *error)
 {
     struct travel *travel = &session->travel;
     int64_t newest_us = now_utc_ns / 1000 - HISTORY_SETTLED_US, here_us = travel->wanted_us ? travel->wanted_us : session->view.at_us;
-    if (wish->has_at && wish->at_us == 0) {
+    if (request->has_at && request->at_us == 0) {
         come_back(session, now_ns);
         return true;
     }
-    if (!session->world->snapshot_cache) {
+    if (!session->context->snapshot_cache) {
         message_fail(error, "no_history", "this daemon records nothing (history: record: no)");
         return false;
     }
-    if (!wish->has_at && here_us == 0) {
+    if (!request->has_at && here_us == 0) {
         message_fail(error, "bad_field", "speed: only in the past; at_us says from when");
         return false;
     }
-    int64_t at_us = wish->has_at ? wish->at_us : here_us;
+    int64_t at_us = request->has_at ? request->at_us : here_us;
     if (at_us > newest_us) {
         come_back(session, now_ns);
         return true;
     }
-    play(session, wish->speed, at_us, now_ns);
-    if (wish->has_at)
+    play(session, request->speed, at_us, now_ns);
+    if (request->has_at)
         go(session, at_us);
     return true;
 }
@@ -133,8 +127,8 @@ static bool step(struct session *session, int64_t now_ns, int64_t now_utc_ns)
         come_back(session, now_ns);
         return false;
     }
-    if (travel->speed < 0 && at_us <= session->world->history_first_us) {
-        at_us = session->world->history_first_us;
+    if (travel->speed < 0 && at_us <= session->context->history_first_us) {
+        at_us = session->context->history_first_us;
         travel->speed = 0;
     }
     go(session, at_us);
@@ -163,7 +157,7 @@ static void on_failure(struct session *session)
     session->travel.wanted_us = 0;
     session->travel.asked = session->travel.first = false;
     session->travel.speed = 0;
-    session->owes_time = true;
+    session->owed.time = true;
 }
 
 /* One that was asked for before, on the way to another, is shown too: who drags a slider sees something all the way. */
@@ -172,7 +166,7 @@ void session_on_historical_snapshot(struct session *session, int64_t at_us, bool
     struct travel *travel = &session->travel;
     if (!travel->wanted_us)
         return;
-    const struct historical_snapshot *historical = good ? snapshot_cache_take(session->world->snapshot_cache, at_us) : NULL;
+    const struct historical_snapshot *historical = good ? snapshot_cache_take(session->context->snapshot_cache, at_us) : NULL;
     if (!historical) {
         on_failure(session);
         return;

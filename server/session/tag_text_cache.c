@@ -7,34 +7,34 @@
 #include "base/mem.h"
 #include "session/reply.h"
 
-static bool is_the_same(const struct tag_text_cache *said, const struct snapshot *snapshot, const uint32_t *sent, bool all)
+static bool is_the_same(const struct tag_text_cache *cache, const struct snapshot *snapshot, const uint32_t *sent, bool all)
 {
-    return said->text && said->taken_ns == snapshot->taken_mono_ns && said->all == all &&
-           (all || !memcmp(said->before, sent, snapshot->count * sizeof(*sent)));
+    return cache->text && cache->taken_ns == snapshot->taken_mono_ns && cache->all == all &&
+           (all || !memcmp(cache->before, sent, snapshot->count * sizeof(*sent)));
 }
 
-char *tag_text_cache_get(struct tag_text_cache *said, const struct plant *plant, const struct snapshot *snapshot, uint32_t *sent, bool all)
+char *tag_text_cache_get(struct tag_text_cache *cache, const struct plant *plant, const struct snapshot *snapshot, uint32_t *sent, bool all)
 {
-    if (!said || snapshot->count == 0)
+    if (!cache || snapshot->count == 0)
         return reply_tags_text(plant, snapshot, sent, all);
-    if (is_the_same(said, snapshot, sent, all)) {
+    if (is_the_same(cache, snapshot, sent, all)) {
         for (size_t i = 0; i < snapshot->count; i++)
             sent[i] = snapshot->readings[i].changes;
-        return mem_strdup(said->text);
+        return mem_strdup(cache->text);
     }
-    if (!said->before)
-        said->before = mem_array(snapshot->count, sizeof(*said->before));
-    memcpy(said->before, sent, snapshot->count * sizeof(*sent));
-    said->taken_ns = snapshot->taken_mono_ns;
-    said->all = all;
-    mem_free(said->text);
-    said->text = reply_tags_text(plant, snapshot, sent, all);
-    return mem_strdup(said->text);
+    if (!cache->before)
+        cache->before = mem_array(snapshot->count, sizeof(*cache->before));
+    memcpy(cache->before, sent, snapshot->count * sizeof(*sent));
+    cache->taken_ns = snapshot->taken_mono_ns;
+    cache->all = all;
+    mem_free(cache->text);
+    cache->text = reply_tags_text(plant, snapshot, sent, all);
+    return mem_strdup(cache->text);
 }
 
-void tag_text_cache_finish(struct tag_text_cache *said)
+void tag_text_cache_finish(struct tag_text_cache *cache)
 {
-    mem_free(said->before);
-    mem_free(said->text);
-    *said = (struct tag_text_cache){ 0 };
+    mem_free(cache->before);
+    mem_free(cache->text);
+    *cache = (struct tag_text_cache){ 0 };
 }

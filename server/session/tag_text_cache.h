@@ -1,18 +1,20 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What was last said of tags, kept for the next who is to hear the same: many sessions hear of every change at one time. Pure. */
+/* The tag text cache: the last `tags` message, for the next session that needs the same. Many sessions are sent each change at one time.
+   Thread: the loop. */
 #ifndef SESSION_TAG_TEXT_CACHE_H
 #define SESSION_TAG_TEXT_CACHE_H
 #include "session/session.h"
 
 struct tag_text_cache { /* zero-initialise */
-    uint32_t *before;   /* what those knew who heard it; by tag */
-    int64_t taken_ns;   /* the snapshot that it is of */
+    uint32_t *before;   /* reading.changes that its receivers had been sent, by tag */
+    int64_t taken_ns;   /* of its snapshot */
     bool all;
-    char *text; /* NULL: nothing was said yet */
+    char *text; /* NULL: none yet */
 };
 
-/* As reply_tags_text; said NULL: nothing is kept. mem_free. */
-char *tag_text_cache_get(struct tag_text_cache *said, const struct plant *plant, const struct snapshot *snapshot, uint32_t *sent, bool all);
-void tag_text_cache_finish(struct tag_text_cache *said);
+/* Returns what reply_tags_text would; mem_free. cache NULL: the text is made anew. Updates `sent`. */
+char *tag_text_cache_get(struct tag_text_cache *cache, const struct plant *plant, const struct snapshot *snapshot, uint32_t *sent,
+                         bool all);
+void tag_text_cache_finish(struct tag_text_cache *cache);
 
 #endif

@@ -26,13 +26,13 @@ static struct plant *make_plant(void)
 }
 
 /* Milliseconds of the longest page and of all of them. */
-static void ask_all(const struct session_context *world, size_t count, double *longest_ms, double *all_ms, size_t *bytes)
+static void ask_all(const struct session_context *context, size_t count, double *longest_ms, double *all_ms, size_t *bytes)
 {
     *longest_ms = *all_ms = 0;
     *bytes = 0;
     for (size_t first = 0; first < TAGS; first += count) {
         int64_t begun_ns = clock_work_ns();
-        char *text = reply_api_tags_text(world, first, count);
+        char *text = reply_api_tags_text(context, first, count);
         double ms = (double)(clock_work_ns() - begun_ns) / 1e6;
         *longest_ms = ms > *longest_ms ? ms : *longest_ms;
         *all_ms += ms;
@@ -41,13 +41,13 @@ static void ask_all(const struct session_context *world, size_t count, double *l
     }
 }
 
-static void measure(const struct session_context *world, size_t count)
+static void measure(const struct session_context *context, size_t count)
 {
     double longest_ms = INFINITY, all_ms = INFINITY;
     size_t bytes = 0;
     for (int i = 0; i < ROUNDS; i++) {
         double longest, all;
-        ask_all(world, count, &longest, &all, &bytes);
+        ask_all(context, count, &longest, &all, &bytes);
         longest_ms = longest < longest_ms ? longest : longest_ms;
         all_ms = all < all_ms ? all : all_ms;
     }
@@ -63,9 +63,9 @@ int main(void)
     struct snapshot *snapshot = snapshot_create(TAGS);
     for (int i = 0; i < TAGS; i++)
         snapshot->readings[i] = (struct reading){ .value = 20 + i * 0.001, .quality = QUALITY_GOOD, .age_ns = i * NS_PER_MS };
-    const struct session_context world = { .plant = plant, .snapshot = snapshot };
-    measure(&world, PAGE);
-    measure(&world, LONGEST_PAGE);
+    const struct session_context context = { .plant = plant, .snapshot = snapshot };
+    measure(&context, PAGE);
+    measure(&context, LONGEST_PAGE);
     snapshot_destroy(&snapshot);
     plant_by_hand_destroy(&plant);
     return 0;

@@ -41,7 +41,7 @@ static void check_view(const struct session *session)
     check_field(&view->field);
     if (view->split)
         check_field(&view->right.field);
-    require(session->pixels == (int64_t)view->width_px * view->height_px, "pixels are counted");
+    require(session->room.pixels == (int64_t)view->width_px * view->height_px, "pixels are counted");
 }
 
 static void check_texts(struct session *session, int64_t now_ns)
@@ -80,17 +80,17 @@ int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t count)
     struct baselines *baselines = baselines_create();
     struct resumes *resumes = resumes_create();
     const bool up[1] = { true };
-    const struct session_context world = { .plant = plant,
-                                           .scene = small_scene(),
-                                           .snapshot = snapshot,
-                                           .baselines = baselines,
-                                           .links_up = up,
-                                           .version = "1",
-                                           .quotas = &quotas,
-                                           .resumes = resumes,
-                                           .admission = &admission };
+    const struct session_context context = { .plant = plant,
+                                             .scene = small_scene(),
+                                             .snapshot = snapshot,
+                                             .baselines = baselines,
+                                             .links_up = up,
+                                             .version = "1",
+                                             .quotas = &quotas,
+                                             .resumes = resumes,
+                                             .admission = &admission };
     int64_t now_ns = 1000 * NS_PER_S;
-    struct session *session = session_create(&world, 1, now_ns);
+    struct session *session = session_create(&context, 1, now_ns);
     say_lines(session, (const char *)bytes, count, now_ns);
     session_leave(session, session->hello, now_ns);
     require(admission.pixels == 0, "pixels are given back");

@@ -31,11 +31,11 @@ static void read_query(char *text)
     struct view view;
     double place[2];
     struct message_error error = { 0 };
-    const struct params_context world = { .scene = small_scene() };
+    const struct params_context context = { .scene = small_scene() };
     for (char *arg; count < MOST && (arg = strsep(&text, "&"));)
         args[count++] = arg;
     for (int with_place = 0; with_place < 2; with_place++) {
-        if (view_query_parse(&world, ROLE_ENGINEER, args, count, &view, with_place ? place : NULL, &error))
+        if (view_query_parse(&context, ROLE_ENGINEER, args, count, &view, with_place ? place : NULL, &error))
             require(view_size_valid(view.width_px, view.height_px) && camera_valid(&view.camera), "a query makes a view");
         else
             require(error.code && error.text[0], "a refusal has a reason");

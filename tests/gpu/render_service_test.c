@@ -31,7 +31,7 @@ static struct log *logger;
 static struct workers *workers;
 static struct counters *counters;
 static struct store *store;
-static struct render_service *painter;
+static struct render_service *service;
 static pthread_mutex_t lock = PTHREAD_MUTEX_INITIALIZER;
 static pthread_cond_t came = PTHREAD_COND_INITIALIZER;
 static int notices;
@@ -58,26 +58,26 @@ static struct encoded_frame *next(void)
             if (pthread_cond_timedwait(&came, &lock, &until) != 0)
                 fail_msg("no picture came");
         notices--;
-        waiting = render_service_collect(painter);
+        waiting = render_service_collect(service);
     }
     pthread_mutex_unlock(&lock);
-    struct encoded_frame *picture = waiting;
-    waiting = picture->next;
-    return picture;
+    struct encoded_frame *encoded = waiting;
+    waiting = encoded->next;
+    return encoded;
 }
 
 static void ask_sized(uint64_t client, enum urgency urgency, double turn, int width_px, int height_px)
 {
     int64_t now_ns = clock_mono_ns();
-    struct frame_request wish = {
+    struct frame_request request = {
         .codec = WIRE_CODEC_JPEG, .quality = { .quality = 80 }, .urgency = urgency, .asked_ns = now_ns, .always = true
     };
-    view_default(&toy->scene, width_px, height_px, &wish.view);
-    wish.view.tier = urgency == URGENCY_REFINE ? TIER_REFINED : TIER_PREVIEW;
-    wish.view.camera.eye_m[0] += turn;
-    wish.view.input_ns = now_ns;
-    assert_int_equal(render_service_request(painter, client, &wish), REQUEST_ADDED);
-    render_service_wake(painter);
+    view_default(&toy->scene, width_px, height_px, &request.view);
+    request.view.tier = urgency == URGENCY_REFINE ? TIER_REFINED : TIER_PREVIEW;
+    request.view.camera.eye_m[0] += turn;
+    request.view.input_ns = now_ns;
+    assert_int_equal(render_service_request(service, client, &request), REQUEST_ADDED);
+    render_service_wake(service);
 }
 
 /* turn: of the camera. */
@@ -113,10 +113,10 @@ static void test_mover_is_served_during_a_refinement(void **state)
     await_step(steps + 1);
     for (int i = 1; i <= 8; i++) {
         ask(MOVER, URGENCY_INPUT, 0.1 * i);
-        struct encoded_frame *picture = next();
-        assert_int_equal(picture->client, MOVER);
-        assert_true(picture->packet != NULL);
-        encoded_frame_destroy(&picture);
+        struct encoded_frame *encoded = next();
+        assert_int_equal(encoded->client, MOVER);
+        assert_true(encoded->packet != NULL);
+        encoded_frame_destroy(&encoded);
     }
     struct encoded_frame *refined = next();
     assert_int_equal(refined->client, REFINER);
@@ -133,30 +133,30 @@ static void test_a_small_picture_overtakes_a_large_one_of_another(void **state)
     if (hardware)
         skip();
     int64_t steps = count_of("plantcast_render_steps_total");
-    struct frame_request wish = { .codec = WIRE_CODEC_JPEG, .quality = { .quality = 80 }, .urgency = URGENCY_SNAPSHOT, .always = true };
+    struct frame_request request = { .codec = WIRE_CODEC_JPEG, .quality = { .quality = 80 }, .urgency = URGENCY_SNAPSHOT, .always = true };
     const struct {
-        uint64_t client, payer;
+        uint64_t client, account;
         int width_px, height_px;
     } asked[] = { { REFINER, 1, 2400, 1600 }, { PICKER, 1, 320, 200 }, { MOVER, 2, 320, 200 } };
     for (int i = 0; i < 3; i++) {
-        wish.asked_ns = clock_mono_ns();
-        wish.payer = asked[i].payer;
-        view_default(&toy->scene, asked[i].width_px, asked[i].height_px, &wish.view);
-        wish.view.tier = TIER_REFINED;
-        wish.view.camera.eye_m[0] += 7 + i;
-        assert_int_equal(render_service_request(painter, asked[i].client, &wish), REQUEST_ADDED);
-        render_service_wake(painter);
+        request.asked_ns = clock_mono_ns();
+        request.account = asked[i].account;
+        view_default(&toy->scene, asked[i].width_px, asked[i].height_px, &request.view);
+        request.view.tier = TIER_REFINED;
+        request.view.camera.eye_m[0] += 7 + i;
+        assert_int_equal(render_service_request(service, asked[i].client, &request), REQUEST_ADDED);
+        render_service_wake(service);
         if (i == 0)
             await_step(steps + 2);
     }
-    static const uint64_t order[] = { MOVER, REFINER, PICKER };
+    static const uint64_t query[] = { MOVER, REFINER, PICKER };
     for (int i = 0; i < 3; i++) {
-        struct encoded_frame *picture = next();
-        assert_true(picture->packet && picture->client == order[i]);
-        encoded_frame_destroy(&picture);
+        struct encoded_frame *encoded = next();
+        assert_true(encoded->packet && encoded->client == query[i]);
+        encoded_frame_destroy(&encoded);
     }
     for (int i = 0; i < 3; i++)
-        render_service_forget(painter, asked[i].client);
+        render_service_forget(service, asked[i].client);
 }
 
 static void test_mover_gives_its_own_refinement_up(void **state)
@@ -170,12 +170,12 @@ static void test_mover_gives_its_own_refinement_up(void **state)
     ask(REFINER, URGENCY_INPUT, 2);
     int empty = 0, moving = 0;
     for (int i = 0; i < 2; i++) {
-        struct encoded_frame *picture = next();
-        assert_int_equal(picture->client, REFINER);
-        assert_false(picture->failed);
-        empty += picture->packet == NULL && picture->wish.urgency == URGENCY_REFINE;
-        moving += picture->packet != NULL && picture->wish.urgency == URGENCY_INPUT;
-        encoded_frame_destroy(&picture);
+        struct encoded_frame *encoded = next();
+        assert_int_equal(encoded->client, REFINER);
+        assert_false(encoded->failed);
+        empty += encoded->packet == NULL && encoded->request.urgency == URGENCY_REFINE;
+        moving += encoded->packet != NULL && encoded->request.urgency == URGENCY_INPUT;
+        encoded_frame_destroy(&encoded);
     }
     assert_true(empty == 1 && moving == 1);
     assert_true(count_of("plantcast_renders_abandoned_total") == abandoned + 1);
@@ -188,10 +188,10 @@ static void test_refinement_ends_while_others_go_on_moving(void **state)
     ask(REFINER, URGENCY_REFINE, 3);
     ask(MOVER, URGENCY_INPUT, -1);
     for (bool refined = false; !refined;) {
-        struct encoded_frame *picture = next();
-        assert_true(picture->packet != NULL);
-        refined = picture->client == REFINER;
-        encoded_frame_destroy(&picture);
+        struct encoded_frame *encoded = next();
+        assert_true(encoded->packet != NULL);
+        refined = encoded->client == REFINER;
+        encoded_frame_destroy(&encoded);
         if (!refined)
             ask(MOVER, URGENCY_INPUT, -1 - 0.01 * ++moved);
     }
@@ -217,11 +217,11 @@ static bool refining_costs_little(int attempt)
         for (int i = 0; i < PICTURES;) {
             ask(MOVER, URGENCY_INPUT, 20 + 2 * attempt + with + 0.01 * i);
             for (bool moved = false; !moved;) {
-                struct encoded_frame *picture = next();
-                moved = picture->client == MOVER;
+                struct encoded_frame *encoded = next();
+                moved = encoded->client == MOVER;
                 refined |= !moved;
                 i += moved;
-                encoded_frame_destroy(&picture);
+                encoded_frame_destroy(&encoded);
             }
         }
         took_ns[with] = clock_mono_ns() - begin_ns;
@@ -231,9 +231,9 @@ static bool refining_costs_little(int attempt)
     /* A step is drawn where there was no moving picture for 150 ms, and at most one between two of them. */
     bool little = count_of("plantcast_render_steps_total") - steps <= 2 + took_ns[1] / (150 * NS_PER_MS);
     while (!refined) {
-        struct encoded_frame *picture = next();
-        refined = picture->client == REFINER && picture->packet;
-        encoded_frame_destroy(&picture);
+        struct encoded_frame *encoded = next();
+        refined = encoded->client == REFINER && encoded->packet;
+        encoded_frame_destroy(&encoded);
     }
     return little;
 }
@@ -256,38 +256,38 @@ static void test_a_hundred_viewers_cost_one_picture(void **state)
     (void)state;
     int64_t renders = count_of("plantcast_renders_total"), encodes = count_of(ENCODES);
     const struct packet *shared = NULL;
-    struct frame_request wish = {
+    struct frame_request request = {
         .codec = WIRE_CODEC_JPEG, .quality = { .quality = 80 }, .urgency = URGENCY_INPUT, .asked_ns = clock_mono_ns()
     };
-    view_default(&toy->scene, 640, 360, &wish.view);
-    wish.view.camera.eye_m[0] += 30;
+    view_default(&toy->scene, 640, 360, &request.view);
+    request.view.camera.eye_m[0] += 30;
     for (int i = 0; i < VIEWERS / 2; i++)
-        render_service_request(painter, 1000 + (uint64_t)i, &wish);
-    render_service_wake(painter);
+        render_service_request(service, 1000 + (uint64_t)i, &request);
+    render_service_wake(service);
     for (int i = 0; i < VIEWERS; i++) {
         if (i >= VIEWERS / 2) {
-            render_service_request(painter, 1000 + (uint64_t)i, &wish);
-            render_service_wake(painter);
+            render_service_request(service, 1000 + (uint64_t)i, &request);
+            render_service_wake(service);
         }
-        struct encoded_frame *picture = next();
-        assert_non_null(picture->packet);
-        assert_true(!shared || picture->packet == shared);
-        shared = picture->packet;
-        encoded_frame_destroy(&picture);
+        struct encoded_frame *encoded = next();
+        assert_non_null(encoded->packet);
+        assert_true(!shared || encoded->packet == shared);
+        shared = encoded->packet;
+        encoded_frame_destroy(&encoded);
     }
     assert_int_equal(count_of("plantcast_renders_total") - renders, 1);
     assert_int_equal(count_of(ENCODES) - encodes, 1);
-    wish.quality.quality = 42; /* of other quality: shares the render */
-    wish.always = true;
-    render_service_request(painter, 1000, &wish);
-    render_service_wake(painter);
+    request.quality.quality = 42; /* of other quality: shares the render */
+    request.always = true;
+    render_service_request(service, 1000, &request);
+    render_service_wake(service);
     struct encoded_frame *poorer = next();
     assert_true(poorer->packet && poorer->packet != shared);
     assert_int_equal(count_of("plantcast_renders_total") - renders, 1);
     assert_int_equal(count_of(ENCODES) - encodes, 2);
     encoded_frame_destroy(&poorer);
     for (uint64_t i = 0; i < VIEWERS; i++)
-        render_service_forget(painter, 1000 + i);
+        render_service_forget(service, 1000 + i);
 }
 
 /* One draws pictures that cost many times what another's do. True: the other got many more of them. */
@@ -298,15 +298,15 @@ static bool shares_time(void)
     ask_sized(LARGE, URGENCY_INPUT, 40, 2560, 1440);
     ask_sized(SMALL, URGENCY_INPUT, 50, 320, 180);
     for (int i = 0; i < PICTURES && counts[0] < LARGES; i++) {
-        struct encoded_frame *picture = next();
-        int which = picture->client == SMALL;
+        struct encoded_frame *encoded = next();
+        int which = encoded->client == SMALL;
         counts[which]++;
-        ask_sized(picture->client, URGENCY_INPUT, (which ? 50 : 40) + 0.01 * i, which ? 320 : 2560, which ? 180 : 1440);
-        encoded_frame_destroy(&picture);
+        ask_sized(encoded->client, URGENCY_INPUT, (which ? 50 : 40) + 0.01 * i, which ? 320 : 2560, which ? 180 : 1440);
+        encoded_frame_destroy(&encoded);
     }
     for (int i = 0; i < 2; i++) {
-        struct encoded_frame *picture = next();
-        encoded_frame_destroy(&picture);
+        struct encoded_frame *encoded = next();
+        encoded_frame_destroy(&encoded);
     }
     assert_int_equal(counts[0], LARGES);
     print_message("# %d large pictures, %d small ones\n", counts[0], counts[1]);
@@ -333,10 +333,10 @@ static void assert_same_bytes(const struct packet *a, const struct packet *b)
 static struct encoded_frame *picture_of(uint64_t client, enum urgency urgency, double turn)
 {
     ask(client, urgency, turn);
-    struct encoded_frame *picture = next();
-    assert_int_equal(picture->client, client);
-    assert_true(picture->packet != NULL);
-    return picture;
+    struct encoded_frame *encoded = next();
+    assert_int_equal(encoded->client, client);
+    assert_true(encoded->packet != NULL);
+    return encoded;
 }
 
 /* The real context goes, again and again, in the middle of pictures that take long and of short ones: nobody's is lost, and all are
@@ -358,25 +358,25 @@ static void test_lost_context_is_made_again_under_load(void **state)
         ask(REFINER, URGENCY_REFINE, 5 + 0.1 * loss);
         if (loss > 0)
             await_step(steps + 1);
-        render_service_lose_context(painter);
+        render_service_lose_context(service);
         for (int i = 0; i < MOVES;) {
             ask(MOVER, URGENCY_INPUT, 6 + i);
             for (bool answered = false; !answered;) {
-                struct encoded_frame *picture = next();
-                assert_true(picture->packet && !picture->failed);
-                answered = picture->client == MOVER;
+                struct encoded_frame *encoded = next();
+                assert_true(encoded->packet && !encoded->failed);
+                answered = encoded->client == MOVER;
                 refinements += !answered;
-                assert_same_bytes(picture->packet, answered ? moved[i++]->packet : refined[loss]->packet);
-                encoded_frame_destroy(&picture);
+                assert_same_bytes(encoded->packet, answered ? moved[i++]->packet : refined[loss]->packet);
+                encoded_frame_destroy(&encoded);
             }
         }
         if (refinements == 0) {
-            struct encoded_frame *picture = next();
-            assert_true(picture->client == REFINER && picture->packet);
-            assert_same_bytes(picture->packet, refined[loss]->packet);
-            encoded_frame_destroy(&picture);
+            struct encoded_frame *encoded = next();
+            assert_true(encoded->client == REFINER && encoded->packet);
+            assert_same_bytes(encoded->packet, refined[loss]->packet);
+            encoded_frame_destroy(&encoded);
         }
-        assert_true(render_service_ready(painter));
+        assert_true(render_service_ready(service));
     }
     assert_true(count_of("plantcast_gl_losses_total") == losses + LOSSES);
     assert_true(count_of("plantcast_render_failures_total") == failures);
@@ -427,17 +427,17 @@ static void test_what_could_not_be_encoded_is_drawn_again(void **state)
     (void)state;
     const enum wire_codec codecs[] = { WIRE_CODEC_H264, WIRE_CODEC_JPEG }; /* the first has no encoder here */
     for (int i = 0; i < 2; i++) {
-        struct frame_request wish = {
+        struct frame_request request = {
             .codec = codecs[i], .quality = { .quality = 80 }, .urgency = URGENCY_INPUT, .asked_ns = clock_mono_ns()
         };
-        view_default(&toy->scene, 320, 180, &wish.view);
-        wish.view.tier = TIER_PREVIEW;
-        wish.view.camera.eye_m[0] += 11;
-        assert_int_equal(render_service_request(painter, MOVER, &wish), REQUEST_ADDED);
-        render_service_wake(painter);
-        struct encoded_frame *picture = next();
-        assert_true(picture->failed == (i == 0) && !picture->packet == (i == 0));
-        encoded_frame_destroy(&picture);
+        view_default(&toy->scene, 320, 180, &request.view);
+        request.view.tier = TIER_PREVIEW;
+        request.view.camera.eye_m[0] += 11;
+        assert_int_equal(render_service_request(service, MOVER, &request), REQUEST_ADDED);
+        render_service_wake(service);
+        struct encoded_frame *encoded = next();
+        assert_true(encoded->failed == (i == 0) && !encoded->packet == (i == 0));
+        encoded_frame_destroy(&encoded);
     }
 }
 
@@ -447,7 +447,7 @@ static struct pick_answer *next_pick(void)
     struct timespec until = { .tv_sec = until_ns / NS_PER_S };
     struct pick_answer *answer;
     pthread_mutex_lock(&lock);
-    while (!(answer = render_service_collect_picks(painter)))
+    while (!(answer = render_service_collect_picks(service)))
         if (pthread_cond_timedwait(&came, &lock, &until) != 0)
             fail_msg("no answer came");
     pthread_mutex_unlock(&lock);
@@ -460,20 +460,20 @@ static void test_picks_are_answered_between_steps(void **state)
     (void)state;
     if (hardware)
         skip();
-    struct pick_query order = { .client = PICKER, .x_px = 320, .y_px = 180 };
-    view_default(&toy->scene, 640, 360, &order.view);
+    struct pick_query query = { .client = PICKER, .x_px = 320, .y_px = 180 };
+    view_default(&toy->scene, 640, 360, &query.view);
     int64_t steps = count_of("plantcast_render_steps_total");
     ask(REFINER, URGENCY_REFINE, 2);
     await_step(steps + 1);
     for (uint32_t i = 1; i <= 20; i++) {
-        order.seq = i;
-        render_service_pick(painter, &order);
+        query.seq = i;
+        render_service_pick(service, &query);
         struct pick_answer *answer = next_pick();
-        assert_int_equal(answer->order.seq, i);
+        assert_int_equal(answer->query.seq, i);
         assert_true(answer->pick.asset >= 0 && !answer->next);
         mem_free(answer);
     }
-    render_service_forget(painter, PICKER);
+    render_service_forget(service, PICKER);
     struct encoded_frame *refined = next();
     assert_true(refined->client == REFINER && refined->packet);
     encoded_frame_destroy(&refined);
@@ -483,17 +483,17 @@ static void test_picks_are_answered_between_steps(void **state)
 static void test_newest_pick_wins(void **state)
 {
     (void)state;
-    struct pick_query order = { .client = PICKER, .x_px = 320, .y_px = 180 };
-    view_default(&toy->scene, 640, 360, &order.view);
+    struct pick_query query = { .client = PICKER, .x_px = 320, .y_px = 180 };
+    view_default(&toy->scene, 640, 360, &query.view);
     uint32_t last = 0;
     int answers = 0;
-    for (order.seq = 1; order.seq <= 500; order.seq++)
-        render_service_pick(painter, &order);
+    for (query.seq = 1; query.seq <= 500; query.seq++)
+        render_service_pick(service, &query);
     while (last < 500) {
         for (struct pick_answer *answer = next_pick(), *after; answer; answer = after) {
             after = answer->next;
-            assert_true(answer->order.seq > last);
-            last = answer->order.seq;
+            assert_true(answer->query.seq > last);
+            last = answer->query.seq;
             answers++;
             mem_free(answer);
         }
@@ -507,24 +507,24 @@ static void change_readings(double value)
         struct sample sample = { .tag = tag, .value = value + tag, .quality = QUALITY_GOOD };
         store_write(store, &sample, 1, clock_mono_ns(), clock_utc_ns());
     }
-    render_service_on_data(painter);
+    render_service_on_data(service);
 }
 
 /* As a session does that looks at a refined picture when a reading changes. Returns how many more pictures will come. */
 static int ask_for_data(uint64_t client, double turn)
 {
-    struct frame_request wish = { .codec = WIRE_CODEC_JPEG,
-                                  .quality = { .quality = 80 },
-                                  .moving_quality = { .quality = 80 },
-                                  .urgency = URGENCY_DATA,
-                                  .or_moving = true,
-                                  .of_data = true,
-                                  .asked_ns = clock_mono_ns() };
-    view_default(&toy->scene, 2400, 1600, &wish.view);
-    wish.view.tier = TIER_REFINED;
-    wish.view.camera.eye_m[0] += turn;
-    enum request_outcome answer = render_service_request(painter, client, &wish);
-    render_service_wake(painter);
+    struct frame_request request = { .codec = WIRE_CODEC_JPEG,
+                                     .quality = { .quality = 80 },
+                                     .moving_quality = { .quality = 80 },
+                                     .urgency = URGENCY_DATA,
+                                     .or_moving = true,
+                                     .of_data = true,
+                                     .asked_ns = clock_mono_ns() };
+    view_default(&toy->scene, 2400, 1600, &request.view);
+    request.view.tier = TIER_REFINED;
+    request.view.camera.eye_m[0] += turn;
+    enum request_outcome answer = render_service_request(service, client, &request);
+    render_service_wake(service);
     return answer == REQUEST_ADDED;
 }
 
@@ -542,10 +542,10 @@ static void test_changing_readings_leave_refined_pictures(void **state)
     for (int i = 0; i < 8 || !refined; i++, owed--) {
         change_readings(30 + i % 40);
         owed += ask_for_data(REFINER, 0.05);
-        struct encoded_frame *picture = next();
-        assert_true(picture->client == REFINER && !picture->failed);
-        refined |= picture->packet && picture->packet->frame->view.tier == TIER_REFINED;
-        encoded_frame_destroy(&picture);
+        struct encoded_frame *encoded = next();
+        assert_true(encoded->client == REFINER && !encoded->failed);
+        refined |= encoded->packet && encoded->packet->frame->view.tier == TIER_REFINED;
+        encoded_frame_destroy(&encoded);
     }
     for (; owed > 0; owed--) {
         struct encoded_frame *last = next();
@@ -556,9 +556,9 @@ static void test_changing_readings_leave_refined_pictures(void **state)
     for (int i = 0; i < 8; i++) {
         change_readings(80 - 5 * i);
         assert_int_equal(ask_for_data(REFINER, 0.05), 1);
-        struct encoded_frame *picture = next();
-        assert_true(picture->packet && picture->packet->frame->view.tier == TIER_REFINED && picture->packet->frame->width_px == 2400);
-        encoded_frame_destroy(&picture);
+        struct encoded_frame *encoded = next();
+        assert_true(encoded->packet && encoded->packet->frame->view.tier == TIER_REFINED && encoded->packet->frame->width_px == 2400);
+        encoded_frame_destroy(&encoded);
     }
     assert_int_equal(count_of("plantcast_render_steps_total"), steps);
 }
@@ -569,20 +569,20 @@ static void test_readings_change_pictures_that_are_not_quick(void **state)
     (void)state;
     int64_t abandoned = count_of("plantcast_renders_abandoned_total");
     for (int i = 0; i < 4; i++) {
-        struct frame_request wish = {
+        struct frame_request request = {
             .codec = WIRE_CODEC_JPEG, .quality = { .quality = 80 }, .of_data = i > 0, .asked_ns = clock_mono_ns()
         };
         change_readings(20 + 15 * i);
-        wish.urgency = i ? URGENCY_DATA : URGENCY_REFINE;
-        view_default(&toy->scene, 640, 480, &wish.view);
-        wish.view.tier = TIER_REFINED;
-        wish.view.ramp_interval = 10;
-        assert_int_equal(render_service_request(painter, REFINER, &wish), REQUEST_ADDED);
-        render_service_wake(painter);
-        struct encoded_frame *picture = next();
-        assert_true(picture->client == REFINER && picture->packet);
-        assert_int_equal(picture->packet->frame->view.tier, TIER_REFINED);
-        encoded_frame_destroy(&picture);
+        request.urgency = i ? URGENCY_DATA : URGENCY_REFINE;
+        view_default(&toy->scene, 640, 480, &request.view);
+        request.view.tier = TIER_REFINED;
+        request.view.ramp_interval = 10;
+        assert_int_equal(render_service_request(service, REFINER, &request), REQUEST_ADDED);
+        render_service_wake(service);
+        struct encoded_frame *encoded = next();
+        assert_true(encoded->client == REFINER && encoded->packet);
+        assert_int_equal(encoded->packet->frame->view.tier, TIER_REFINED);
+        encoded_frame_destroy(&encoded);
     }
     assert_int_equal(count_of("plantcast_renders_abandoned_total"), abandoned);
 }
@@ -596,11 +596,11 @@ static void test_stop_waits_for_no_refinement(void **state)
     int64_t steps = count_of("plantcast_render_steps_total"), renders = count_of("plantcast_renders_total");
     ask(REFINER, URGENCY_REFINE, 4);
     await_step(steps + 1);
-    render_service_destroy(&painter);
+    render_service_destroy(&service);
     assert_true(count_of("plantcast_renders_total") == renders);
 }
 
-static bool make_painter(bool by_gl)
+static bool make_service(bool by_gl)
 {
     const char *name = getenv("PLANTCAST_GL");
     enum gl_kind kind = GL_EGL_SURFACELESS;
@@ -609,7 +609,7 @@ static bool make_painter(bool by_gl)
     struct gl *gl = gl_create(logger, kind, NULL);
     hardware = gl && !gl->software;
     gl_destroy(&gl);
-    painter = render_service_create(&(struct render_service_params){ .log = logger,
+    service = render_service_create(&(struct render_service_params){ .log = logger,
                                                                      .gl = kind,
                                                                      .scene = &toy->scene,
                                                                      .store = store,
@@ -618,9 +618,9 @@ static bool make_painter(bool by_gl)
                                                                      .notify = on_pictures,
                                                                      .h264_library = "none",
                                                                      .by_gl = by_gl });
-    if (!painter)
+    if (!service)
         printf("TAP version 13\n1..1\nok 1 - render_service_test # SKIP no %s context on this machine\n", gl_kind_name(kind));
-    return painter != NULL;
+    return service != NULL;
 }
 
 /* With a GPU, or as if there were one: pictures are given to it before others have come. Every one comes, to whom it is for, and shows
@@ -630,24 +630,24 @@ static void test_pictures_fly(void **state)
     (void)state;
     enum { CLIENTS = 8, ROUNDS = 6, FIRST = 100 };
     int64_t renders = count_of("plantcast_renders_total"), losses = count_of("plantcast_gl_losses_total");
-    render_service_destroy(&painter);
-    make_painter(true);
-    assert_non_null(painter);
+    render_service_destroy(&service);
+    make_service(true);
+    assert_non_null(service);
     int most = ROUNDS * CLIENTS * 3 / 4;
     for (int round = 0; round < ROUNDS; round++) {
         bool came_for[CLIENTS] = { false };
         int64_t begin_ns = clock_mono_ns();
         if (round == ROUNDS / 2)
-            render_service_lose_context(painter);
+            render_service_lose_context(service);
         for (int i = 0; i < CLIENTS; i++)
             ask((uint64_t)(FIRST + i), URGENCY_INPUT, round + 0.1 * (i % 4));
         for (int i = 0; i < CLIENTS; i++) {
-            struct encoded_frame *picture = next();
-            int client = (int)picture->client - FIRST;
-            assert_true(client >= 0 && client < CLIENTS && !came_for[client] && picture->packet);
-            assert_true(picture->packet->frame->view.camera.eye_m[0] == picture->wish.view.camera.eye_m[0]);
+            struct encoded_frame *encoded = next();
+            int client = (int)encoded->client - FIRST;
+            assert_true(client >= 0 && client < CLIENTS && !came_for[client] && encoded->packet);
+            assert_true(encoded->packet->frame->view.camera.eye_m[0] == encoded->request.view.camera.eye_m[0]);
             came_for[client] = true;
-            encoded_frame_destroy(&picture);
+            encoded_frame_destroy(&encoded);
         }
         if (clock_mono_ns() - begin_ns > RECENT_NS / 2)
             most += CLIENTS / 4; /* what it drew may have been too old to be handed on */
@@ -657,9 +657,9 @@ static void test_pictures_fly(void **state)
     struct encoded_frame *by_gl = picture_of(MOVER, URGENCY_INPUT, 7);
     assert_true(by_gl->packet->frame->marker_count > 0);
     encoded_frame_destroy(&by_gl);
-    render_service_destroy(&painter);
-    make_painter(false);
-    assert_non_null(painter);
+    render_service_destroy(&service);
+    make_service(false);
+    assert_non_null(service);
 }
 
 /* Another painter, while the first is at work, in one process and on one driver. */
@@ -694,8 +694,8 @@ static int move_while(const _Atomic bool *done, pthread_t thread)
 {
     int drawn = 0;
     for (; !done || !*done || drawn == 0; drawn++) {
-        struct encoded_frame *picture = picture_of(MOVER, URGENCY_INPUT, 0.05 * (drawn % 20));
-        encoded_frame_destroy(&picture);
+        struct encoded_frame *encoded = picture_of(MOVER, URGENCY_INPUT, 0.05 * (drawn % 20));
+        encoded_frame_destroy(&encoded);
         if (!done && drawn == 20)
             break;
     }
@@ -707,13 +707,13 @@ static void test_another_is_made_and_the_first_destroyed_beside_it(void **state)
 {
     (void)state;
     struct making making = { .made = NULL };
-    struct render_service *first = painter;
+    struct render_service *first = service;
     pthread_t thread;
     view_default(&toy->scene, 320, 180, &making.first);
     assert_int_equal(pthread_create(&thread, NULL, make_another, &making), 0);
     assert_true(move_while(&making.done, thread) > 0);
     assert_non_null(making.made);
-    painter = making.made;
+    service = making.made;
     struct encoded_frame *by_other = picture_of(MOVER, URGENCY_INPUT, 3);
     assert_true(by_other->packet->frame->marker_count > 0);
     encoded_frame_destroy(&by_other);
@@ -731,12 +731,12 @@ static bool start(void)
     for (size_t i = 0; i < toy->plant.tag_count; i++)
         toy->plant.tags[i].stale_s = 3600;
     store = store_create(&toy->plant);
-    return make_painter(false);
+    return make_service(false);
 }
 
 static void stop(void)
 {
-    render_service_destroy(&painter);
+    render_service_destroy(&service);
     store_destroy(&store);
     counters_destroy(&counters);
     workers_destroy(&workers);

@@ -11,16 +11,16 @@ int session_case_set_up(void **state)
     struct session_case *c = mem_new(sizeof(*c));
     c->snapshot = snapshot_create(small_scene()->plant->tag_count);
     c->up[0] = true;
-    c->world = (struct session_context){
+    c->context = (struct session_context){
         .plant = small_scene()->plant, .scene = small_scene(), .snapshot = c->snapshot, .links_up = c->up, .live = true, .version = "1.2.3"
     };
-    c->world.baselines = baselines_create();
+    c->context.baselines = baselines_create();
     c->quotas = quotas_default();
-    c->admission.quotas = c->world.quotas = &c->quotas;
-    c->world.admission = &c->admission;
-    c->world.resumes = resumes_create();
+    c->admission.quotas = c->context.quotas = &c->quotas;
+    c->context.admission = &c->admission;
+    c->context.resumes = resumes_create();
     c->now_ns = 1000 * NS_PER_S;
-    c->session = session_create(&c->world, 7, c->now_ns);
+    c->session = session_create(&c->context, 7, c->now_ns);
     *state = c;
     return 0;
 }
@@ -30,8 +30,8 @@ int session_case_tear_down(void **state)
     struct session_case *c = *state;
     session_destroy(&c->session);
     snapshot_destroy(&c->snapshot);
-    baselines_destroy(&c->world.baselines);
-    resumes_destroy(&c->world.resumes);
+    baselines_destroy(&c->context.baselines);
+    resumes_destroy(&c->context.resumes);
     mem_free(c);
     return 0;
 }

@@ -5,7 +5,7 @@
 #include "session/session.h"
 
 struct session_case {
-    struct session_context world;
+    struct session_context context;
     struct quotas quotas;
     struct admission admission;
     struct snapshot *snapshot;

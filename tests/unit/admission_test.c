@@ -42,38 +42,39 @@ static void limits_are_set_by_name_and_within_range(void **state)
 static void an_address_is_one_however_it_is_written(void **state)
 {
     (void)state;
-    struct address_limits *peers = address_limits_create(&quotas, true);
-    struct address_usage *four = address_limits_ref(peers, "203.0.113.7"), *mapped = address_limits_ref(peers, "::ffff:203.0.113.7");
-    struct address_usage *six = address_limits_ref(peers, "2001:db8:1:2::1"), *near_it = address_limits_ref(peers, "2001:db8:1:2:ffff::9");
-    struct address_usage *far_from_it = address_limits_ref(peers, "2001:db8:1:3::1");
+    struct address_limits *limits = address_limits_create(&quotas, true);
+    struct address_usage *four = address_limits_ref(limits, "203.0.113.7"), *mapped = address_limits_ref(limits, "::ffff:203.0.113.7");
+    struct address_usage *six = address_limits_ref(limits, "2001:db8:1:2::1"),
+                         *near_it = address_limits_ref(limits, "2001:db8:1:2:ffff::9");
+    struct address_usage *far_from_it = address_limits_ref(limits, "2001:db8:1:3::1");
     assert_true(four == mapped && six == near_it && six != far_from_it && six != four);
-    assert_int_equal(address_limits_count(peers), 3);
-    struct address_usage *local = address_limits_ref(peers, "127.0.0.1"), *local6 = address_limits_ref(peers, "::1"),
-                         *none = address_limits_ref(peers, "nonsense");
+    assert_int_equal(address_limits_count(limits), 3);
+    struct address_usage *local = address_limits_ref(limits, "127.0.0.1"), *local6 = address_limits_ref(limits, "::1"),
+                         *none = address_limits_ref(limits, "nonsense");
     assert_true(local->local && local6->local && !four->local && !none->local);
     struct address_usage *all[] = { four, mapped, six, near_it, far_from_it, local, local6, none };
     for (size_t i = 0; i < sizeof(all) / sizeof(all[0]); i++)
-        address_limits_unref(peers, &all[i]);
-    assert_int_equal(address_limits_count(peers), 0);
-    address_limits_destroy(&peers);
+        address_limits_unref(limits, &all[i]);
+    assert_int_equal(address_limits_count(limits), 0);
+    address_limits_destroy(&limits);
 }
 
 static void an_address_has_its_limits_and_this_machine_only_those_set(void **state)
 {
     (void)state;
-    struct address_limits *peers = address_limits_create(&quotas, true);
-    struct address_usage *peer = address_limits_ref(peers, "203.0.113.7"), *local = address_limits_ref(peers, "127.0.0.1");
-    peer->connections = local->connections = (int)quotas.at[QUOTA_ADDRESS_CONNECTIONS];
-    peer->sessions = local->sessions = (int)quotas.at[QUOTA_ADDRESS_SESSIONS];
-    assert_false(address_limits_may_connect(peers, peer) || address_limits_may_stream(peers, peer));
-    assert_true(address_limits_may_connect(peers, local) && address_limits_may_stream(peers, local));
-    peer->connections--;
-    assert_true(address_limits_may_connect(peers, peer));
+    struct address_limits *limits = address_limits_create(&quotas, true);
+    struct address_usage *usage = address_limits_ref(limits, "203.0.113.7"), *local = address_limits_ref(limits, "127.0.0.1");
+    usage->connections = local->connections = (int)quotas.at[QUOTA_ADDRESS_CONNECTIONS];
+    usage->sessions = local->sessions = (int)quotas.at[QUOTA_ADDRESS_SESSIONS];
+    assert_false(address_limits_may_connect(limits, usage) || address_limits_may_stream(limits, usage));
+    assert_true(address_limits_may_connect(limits, local) && address_limits_may_stream(limits, local));
+    usage->connections--;
+    assert_true(address_limits_may_connect(limits, usage));
     assert_true(quotas_parse(&quotas, "address-sessions=2"));
-    assert_false(address_limits_may_stream(peers, local));
-    address_limits_unref(peers, &peer);
-    address_limits_unref(peers, &local);
-    address_limits_destroy(&peers);
+    assert_false(address_limits_may_stream(limits, local));
+    address_limits_unref(limits, &usage);
+    address_limits_unref(limits, &local);
+    address_limits_destroy(&limits);
 }
 
 static void messages_of_an_address_are_counted_together(void **state)
@@ -81,14 +82,14 @@ static void messages_of_an_address_are_counted_together(void **state)
     (void)state;
     int64_t now_ns = 1000 * NS_PER_S;
     quotas_parse(&quotas, "address-messages=10");
-    struct address_limits *peers = address_limits_create(&quotas, true);
-    struct address_usage *peer = address_limits_ref(peers, "203.0.113.7");
+    struct address_limits *limits = address_limits_create(&quotas, true);
+    struct address_usage *usage = address_limits_ref(limits, "203.0.113.7");
     for (int i = 0; i < 10; i++)
-        assert_true(address_limits_count_message(peers, peer, now_ns));
-    assert_false(address_limits_count_message(peers, peer, now_ns + NS_PER_S / 2));
-    assert_true(address_limits_count_message(peers, peer, now_ns + NS_PER_S));
-    address_limits_unref(peers, &peer);
-    address_limits_destroy(&peers);
+        assert_true(address_limits_count_message(limits, usage, now_ns));
+    assert_false(address_limits_count_message(limits, usage, now_ns + NS_PER_S / 2));
+    assert_true(address_limits_count_message(limits, usage, now_ns + NS_PER_S));
+    address_limits_unref(limits, &usage);
+    address_limits_destroy(&limits);
 }
 
 /* --- room ------------------------------------------------------------------------------------------------------------------------ */
@@ -102,14 +103,15 @@ static void a_second(struct admission *admission, struct address_share *share, i
         frame->view.tier = TIER_PREVIEW;
         frame->render_ns = cost_ms * NS_PER_MS;
         frame->content = ++content;
-        struct encoded_frame picture = { .packet = packet_create(frame, WIRE_CODEC_JPEG, true, "jpeg", 4), .wish.urgency = URGENCY_INPUT };
+        struct encoded_frame encoded = { .packet = packet_create(frame, WIRE_CODEC_JPEG, true, "jpeg", 4),
+                                         .request.urgency = URGENCY_INPUT };
         if (i == moving * fps) {
-            picture.wish.urgency = URGENCY_DATA;
-            picture.wait_ns = data_wait_ms * NS_PER_MS;
+            encoded.request.urgency = URGENCY_DATA;
+            encoded.wait_ns = data_wait_ms * NS_PER_MS;
         }
-        admission_on_frame(admission, share, &picture);
-        admission_on_frame(admission, share, &picture); /* of another who shares it */
-        packet_unref(&picture.packet);
+        admission_on_frame(admission, share, &encoded);
+        admission_on_frame(admission, share, &encoded); /* of another who shares it */
+        packet_unref(&encoded.packet);
         frame_unref(&frame);
     }
     admission->now.moving /= 2;
@@ -167,10 +169,10 @@ static void a_second_of(struct admission *admission, struct address_share *share
             struct frame *frame = frame_create(16, 16);
             frame->render_ns = cost_ms * NS_PER_MS;
             frame->content = ++content;
-            struct encoded_frame picture = { .packet = packet_create(frame, WIRE_CODEC_JPEG, true, "jpeg", 4),
-                                             .wish.urgency = URGENCY_INPUT };
-            admission_on_frame(admission, &shares[i], &picture);
-            packet_unref(&picture.packet);
+            struct encoded_frame encoded = { .packet = packet_create(frame, WIRE_CODEC_JPEG, true, "jpeg", 4),
+                                             .request.urgency = URGENCY_INPUT };
+            admission_on_frame(admission, &shares[i], &encoded);
+            packet_unref(&encoded.packet);
             frame_unref(&frame);
         }
     admission_on_tick(admission, admission->begin_ns + NS_PER_S);

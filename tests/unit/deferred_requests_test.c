@@ -10,80 +10,80 @@
 
 #include "service/deferred_requests.h"
 
-static void fill(struct request_group *batch, uint64_t first, int count)
+static void fill(struct request_group *group, uint64_t first, int count)
 {
-    batch->count = 0;
+    group->count = 0;
     for (int i = 0; i < count; i++)
-        request_group_add(batch, &(struct request_ticket){ .client = first + (uint64_t)i });
+        request_group_add(group, &(struct request_ticket){ .client = first + (uint64_t)i });
 }
 
-static void assert_batch(const struct request_group *batch, uint64_t first, size_t count)
+static void assert_batch(const struct request_group *group, uint64_t first, size_t count)
 {
-    assert_int_equal(batch->count, count);
+    assert_int_equal(group->count, count);
     for (size_t i = 0; i < count; i++)
-        assert_int_equal(batch->orders[i].client, first + i);
+        assert_int_equal(group->tickets[i].client, first + i);
 }
 
 static void test_the_oldest_comes_first(void **state)
 {
-    struct deferred_requests held = { 0 };
-    struct request_group batch = { 0 };
+    struct deferred_requests deferred = { 0 };
+    struct request_group group = { 0 };
     (void)state;
     for (uint64_t round = 0; round < 50; round++) {
         for (uint64_t i = 0; i < 3; i++) {
-            fill(&batch, 100 * round + 10 * i, 1 + (int)((round + i) % 4));
-            assert_true(deferred_requests_push(&held, &batch));
-            assert_int_equal(batch.count, 0);
+            fill(&group, 100 * round + 10 * i, 1 + (int)((round + i) % 4));
+            assert_true(deferred_requests_push(&deferred, &group));
+            assert_int_equal(group.count, 0);
         }
         for (uint64_t i = 0; i < 3; i++) {
-            fill(&batch, 7, 2); /* what was there goes */
-            deferred_requests_pop(&held, &batch);
-            assert_batch(&batch, 100 * round + 10 * i, 1 + (round + i) % 4);
+            fill(&group, 7, 2); /* what was there goes */
+            deferred_requests_pop(&deferred, &group);
+            assert_batch(&group, 100 * round + 10 * i, 1 + (round + i) % 4);
         }
     }
-    request_group_finish(&batch);
-    deferred_requests_finish(&held);
+    request_group_finish(&group);
+    deferred_requests_finish(&deferred);
 }
 
 static void test_a_full_list_takes_no_more(void **state)
 {
-    struct deferred_requests held = { 0 };
-    struct request_group batch = { 0 };
+    struct deferred_requests deferred = { 0 };
+    struct request_group group = { 0 };
     (void)state;
-    for (uint64_t i = 0; i < HELD; i++) {
-        fill(&batch, 10 * i, 2);
-        assert_true(deferred_requests_push(&held, &batch));
+    for (uint64_t i = 0; i < DEFERRED_MOST; i++) {
+        fill(&group, 10 * i, 2);
+        assert_true(deferred_requests_push(&deferred, &group));
     }
-    fill(&batch, 5000, 3);
-    assert_false(deferred_requests_push(&held, &batch));
-    assert_batch(&batch, 5000, 3);
-    deferred_requests_pop(&held, &batch);
-    assert_batch(&batch, 0, 2);
-    assert_true(deferred_requests_push(&held, &batch));
-    for (uint64_t i = 1; i <= HELD; i++) {
-        deferred_requests_pop(&held, &batch);
-        assert_batch(&batch, 10 * (i % HELD), 2);
+    fill(&group, 5000, 3);
+    assert_false(deferred_requests_push(&deferred, &group));
+    assert_batch(&group, 5000, 3);
+    deferred_requests_pop(&deferred, &group);
+    assert_batch(&group, 0, 2);
+    assert_true(deferred_requests_push(&deferred, &group));
+    for (uint64_t i = 1; i <= DEFERRED_MOST; i++) {
+        deferred_requests_pop(&deferred, &group);
+        assert_batch(&group, 10 * (i % DEFERRED_MOST), 2);
     }
-    assert_int_equal(held.count, 0);
-    request_group_finish(&batch);
-    deferred_requests_finish(&held);
+    assert_int_equal(deferred.count, 0);
+    request_group_finish(&group);
+    deferred_requests_finish(&deferred);
 }
 
 static void test_turns(void **state)
 {
-    struct deferred_requests held = { 0 };
-    struct request_group batch = { 0 };
+    struct deferred_requests deferred = { 0 };
+    struct request_group group = { 0 };
     (void)state;
-    assert_false(deferred_requests_due(&held, true));
-    assert_false(deferred_requests_due(&held, false));
-    fill(&batch, 1, 1);
-    assert_true(deferred_requests_push(&held, &batch));
-    bool last = deferred_requests_due(&held, true);
+    assert_false(deferred_requests_due(&deferred, true));
+    assert_false(deferred_requests_due(&deferred, false));
+    fill(&group, 1, 1);
+    assert_true(deferred_requests_push(&deferred, &group));
+    bool last = deferred_requests_due(&deferred, true);
     for (int i = 0; i < 10; i++, last = !last)
-        assert_true(deferred_requests_due(&held, true) == !last);
-    assert_true(deferred_requests_due(&held, false) && deferred_requests_due(&held, false));
-    request_group_finish(&batch);
-    deferred_requests_finish(&held);
+        assert_true(deferred_requests_due(&deferred, true) == !last);
+    assert_true(deferred_requests_due(&deferred, false) && deferred_requests_due(&deferred, false));
+    request_group_finish(&group);
+    deferred_requests_finish(&deferred);
 }
 
 int main(void)

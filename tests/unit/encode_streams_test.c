@@ -22,7 +22,7 @@ struct state {
 };
 
 struct fixture {
-    struct encode_streams chains;
+    struct encode_streams streams;
     struct encode_plan plan;
     struct request_group rest;
     uint64_t shown[CLIENTS]; /* what each client's decoder holds */
@@ -45,17 +45,17 @@ static int set_up(void **state)
     return 0;
 }
 
-static bool never_busy(const struct encode_stream *chain)
+static bool never_busy(const struct encode_stream *stream)
 {
-    (void)chain;
+    (void)stream;
     return false;
 }
 
 static void sweep(struct fixture *f)
 {
-    for (struct encode_stream *chain; (chain = encode_streams_take_empty(&f->chains, never_busy));) {
-        mem_free(chain->work);
-        encode_stream_destroy(&chain);
+    for (struct encode_stream *stream; (stream = encode_streams_take_empty(&f->streams, never_busy));) {
+        mem_free(stream->work);
+        encode_stream_destroy(&stream);
     }
 }
 
@@ -63,10 +63,10 @@ static int tear_down(void **state)
 {
     struct fixture *f = *state;
     for (uint64_t client = 0; client < CLIENTS; client++)
-        encode_streams_forget(&f->chains, client);
+        encode_streams_forget(&f->streams, client);
     sweep(f);
-    assert_null(f->chains.first);
-    mem_free(f->chains.links);
+    assert_null(f->streams.first);
+    mem_free(f->streams.links);
     mem_free(f->plan.from);
     request_group_finish(&f->rest);
     mem_free(f);
@@ -75,14 +75,14 @@ static int tear_down(void **state)
 
 static struct request_ticket order_of(const struct fixture *f, uint64_t client, const struct view *view)
 {
-    struct request_ticket order = { .client = client, .wish = { .view = *view, .codec = f->codec, .quality = { .quality = 80 } } };
-    return order;
+    struct request_ticket ticket = { .client = client, .request = { .view = *view, .codec = f->codec, .quality = { .quality = 80 } } };
+    return ticket;
 }
 
 /* What the encoder would make. */
-static struct packet *encode(struct fixture *f, struct encode_stream *chain, const struct frame *frame, bool key)
+static struct packet *encode(struct fixture *f, struct encode_stream *stream, const struct frame *frame, bool key)
 {
-    struct head *head = chain->work ? chain->work : (chain->work = mem_new(sizeof(*head)));
+    struct head *head = stream->work ? stream->work : (stream->work = mem_new(sizeof(*head)));
     struct state made = { .needs = key ? 0 : head->state, .leaves = ++f->last_state };
     uint8_t bytes[512] = { 0 };
     memcpy(bytes, &made, sizeof(made));
@@ -101,24 +101,24 @@ static void decode(struct fixture *f, uint64_t client, const struct packet *pack
     f->shown[client] = made.leaves;
 }
 
-static uint64_t least_needed(const struct fixture *f, const struct request_group *orders)
+static uint64_t least_needed(const struct fixture *f, const struct request_group *tickets)
 {
     uint64_t least = UINT64_MAX;
-    for (size_t i = 0; i < orders->count; i++)
+    for (size_t i = 0; i < tickets->count; i++)
         least = f->plan.from[i] < least ? f->plan.from[i] : least;
     return least;
 }
 
-static void deliver(struct fixture *f, const struct request_group *orders)
+static void deliver(struct fixture *f, const struct request_group *tickets)
 {
     struct packet *run[ENCODE_STREAM_KEPT];
-    const struct head *head = f->plan.chain->work;
-    for (size_t i = 0; i < orders->count; i++) {
-        int count = encode_stream_catch_up(f->plan.chain, f->plan.from[i], f->plan.number, run);
+    const struct head *head = f->plan.stream->work;
+    for (size_t i = 0; i < tickets->count; i++) {
+        int count = encode_stream_catch_up(f->plan.stream, f->plan.from[i], f->plan.number, run);
         assert_true(count >= 0);
         for (int p = 0; p < count; p++)
-            decode(f, orders->orders[i].client, run[p]);
-        assert_int_equal(f->shown[orders->orders[i].client], head->state);
+            decode(f, tickets->tickets[i].client, run[p]);
+        assert_int_equal(f->shown[tickets->tickets[i].client], head->state);
     }
 }
 
@@ -126,29 +126,29 @@ static void deliver(struct fixture *f, const struct request_group *orders)
 static void show(struct fixture *f, unsigned clients, int view_number, uint64_t content, bool alone)
 {
     struct frame *frame = frame_create(WIDTH, HEIGHT);
-    struct request_group orders = { 0 };
+    struct request_group tickets = { 0 };
     frame->view = (struct view){ .width_px = WIDTH, .height_px = HEIGHT, .camera = { .fov_deg = 30 + view_number } };
     frame->content = content;
     for (uint64_t client = 0; client < CLIENTS; client++)
         if (clients & 1u << client) {
-            struct request_ticket order = order_of(f, client, &frame->view);
-            order.wish.always = order.wish.alone = alone;
-            request_group_add(&orders, &order);
+            struct request_ticket ticket = order_of(f, client, &frame->view);
+            ticket.request.always = ticket.request.alone = alone;
+            request_group_add(&tickets, &ticket);
         }
-    while (orders.count > 0) {
-        encode_streams_plan(&f->chains, frame, &orders, f->now_ns, &f->plan, &f->rest);
+    while (tickets.count > 0) {
+        encode_streams_plan(&f->streams, frame, &tickets, f->now_ns, &f->plan, &f->rest);
         if (f->plan.encode) {
-            struct packet *packet = encode(f, f->plan.chain, frame, f->plan.key);
-            encode_stream_keep(f->plan.chain, packet, least_needed(f, &orders));
+            struct packet *packet = encode(f, f->plan.stream, frame, f->plan.key);
+            encode_stream_keep(f->plan.stream, packet, least_needed(f, &tickets));
             packet_unref(&packet);
         }
-        deliver(f, &orders);
-        struct request_group done = orders;
-        orders = f->rest;
+        deliver(f, &tickets);
+        struct request_group done = tickets;
+        tickets = f->rest;
         f->rest = (struct request_group){ 0 };
         request_group_finish(&done);
     }
-    request_group_finish(&orders);
+    request_group_finish(&tickets);
     frame_unref(&frame);
     sweep(f);
     f->now_ns += 50 * MS;
@@ -157,7 +157,7 @@ static void show(struct fixture *f, unsigned clients, int view_number, uint64_t 
 static size_t chain_count(const struct fixture *f)
 {
     size_t count = 0;
-    for (const struct encode_stream *chain = f->chains.first; chain; chain = chain->next)
+    for (const struct encode_stream *stream = f->streams.first; stream; stream = stream->next)
         count++;
     return count;
 }
@@ -242,9 +242,9 @@ static void what_broke_starts_anew(void **state)
 {
     struct fixture *f = *state;
     show(f, 3, 0, 1, false);
-    struct encode_stream *chain = f->chains.first;
-    chain->planned++; /* a picture that could not be made */
-    encode_stream_break(chain);
+    struct encode_stream *stream = f->streams.first;
+    stream->planned++; /* a picture that could not be made */
+    encode_stream_break(stream);
     show(f, 3, 0, 9, false);
     assert_int_equal(f->keys, 2);
 }
@@ -258,7 +258,7 @@ static void whoever_asks_whenever_decodes_it(void **state)
     for (int i = 0; i < 20000; i++) {
         unsigned clients = (unsigned)rand() & (rand() % 3 ? 0xfffu : 0x00fu);
         if (rand() % 40 == 0)
-            encode_streams_forget(&f->chains, (uint64_t)(rand() % CLIENTS));
+            encode_streams_forget(&f->streams, (uint64_t)(rand() % CLIENTS));
         if (rand() % 100 == 0)
             f->now_ns += 3 * NS_PER_S;
         show(f, clients, rand() % 4, (uint64_t)(rand() % 6) + 1, rand() % 30 == 0);

@@ -20,7 +20,7 @@
 #define HELLO "{\"type\":\"hello\"," SIZE "}"
 
 struct fixture {
-    struct session_context world;
+    struct session_context context;
     struct quotas quotas;
     struct admission admission;
     struct log *log;
@@ -57,16 +57,16 @@ static int set_up(void **state)
     f->quotas = quotas_default();
     f->admission.quotas = &f->quotas;
     f->now_ns = 1000 * NS_PER_S;
-    f->world = (struct session_context){ .plant = small_scene()->plant,
-                                         .scene = small_scene(),
-                                         .snapshot = snapshot_create(small_scene()->plant->tag_count),
-                                         .baselines = baselines_create(),
-                                         .links_up = (const bool[]){ true },
-                                         .version = "1.2.3",
-                                         .quotas = &f->quotas,
-                                         .tokens = f->tokens,
-                                         .resumes = resumes_create(),
-                                         .admission = &f->admission };
+    f->context = (struct session_context){ .plant = small_scene()->plant,
+                                           .scene = small_scene(),
+                                           .snapshot = snapshot_create(small_scene()->plant->tag_count),
+                                           .baselines = baselines_create(),
+                                           .links_up = (const bool[]){ true },
+                                           .version = "1.2.3",
+                                           .quotas = &f->quotas,
+                                           .tokens = f->tokens,
+                                           .resumes = resumes_create(),
+                                           .admission = &f->admission };
     *state = f;
     return 0;
 }
@@ -74,11 +74,11 @@ static int set_up(void **state)
 static int tear_down(void **state)
 {
     struct fixture *f = *state;
-    struct snapshot *snapshot = (struct snapshot *)f->world.snapshot;
+    struct snapshot *snapshot = (struct snapshot *)f->context.snapshot;
     assert_int_equal(f->admission.pixels, 0);
     snapshot_destroy(&snapshot);
-    baselines_destroy(&f->world.baselines);
-    resumes_destroy(&f->world.resumes);
+    baselines_destroy(&f->context.baselines);
+    resumes_destroy(&f->context.resumes);
     tokens_destroy(&f->tokens);
     log_destroy(&f->log);
     temp_folder_destroy(&f->folder);
@@ -94,8 +94,8 @@ static void say(struct fixture *f, struct session *session, const char *text)
 
 static struct session *open_session(struct fixture *f, enum role role, const char *text)
 {
-    struct session *session = session_create(&f->world, ++f->next_id, f->now_ns);
-    session->role = role;
+    struct session *session = session_create(&f->context, ++f->next_id, f->now_ns);
+    session->identity.role = role;
     say(f, session, text);
     return session;
 }
@@ -122,7 +122,7 @@ static void expect_error(struct fixture *f, struct session *session, const char 
     assert_string_equal(json_string_value(json_object_get(message, "type")), "error");
     assert_string_equal(json_string_value(json_object_get(message, "code")), code);
     assert_int_equal(json_integer_value(json_object_get(message, "retry_after_s")) > 0, close_code == 1013);
-    assert_int_equal(session->close_code, close_code);
+    assert_int_equal(session->close.code, close_code);
     json_decref(message);
 }
 
@@ -185,11 +185,30 @@ static void a_revoked_token_ends_its_sessions_and_no_others(void **state)
     session_check_token(bob, f->now_ns);
     session_check_token(alice, f->now_ns);
     session_check_token(local, f->now_ns);
-    assert_int_equal(bob->close_code, 1008);
-    assert_int_equal(alice->close_code | local->close_code, 0);
+    assert_int_equal(bob->close.code, 1008);
+    assert_int_equal(alice->close.code | local->close.code, 0);
     leave(f, &bob);
     leave(f, &alice);
     leave(f, &local);
+}
+
+/* A good token that was held up is not judged, so that its holder has no part in the session. */
+static void a_login_that_is_held_up_keeps_no_holder(void **state)
+{
+    struct fixture *f = *state;
+    struct login_throttle *throttle = f->context.login_throttle = login_throttle_create();
+    struct session *session;
+    for (int i = 0; i < LOGIN_FAILURES + 1; i++) {
+        session = open_session(f, ROLE_NOBODY, "{\"type\":\"hello\",\"token\":\"pc_wrong\"," SIZE "}");
+        leave(f, &session);
+    }
+    session = open_session(f, ROLE_NOBODY, "{\"type\":\"hello\",\"token\":\"pc_alice\"," SIZE "}");
+    expect_error(f, session, "full", 1013);
+    assert_int_equal(session->identity.login, LOGIN_HELD);
+    assert_int_equal(session->identity.holder.role, ROLE_NOBODY);
+    leave(f, &session);
+    f->context.login_throttle = NULL;
+    login_throttle_destroy(&throttle);
 }
 
 #define VIEW                                                                                                                               \
@@ -210,7 +229,7 @@ static void expect_view_of_before(const struct session *session)
     assert_int_equal(session->view.field.group, 1);
     assert_true(session->view.camera.eye_m[1] == 8 && session->view.ramp_interval == 2 && session->pixel_ratio == 2);
     assert_int_equal(session->view.camera_seq | session->view.params_seq, 0);
-    assert_int_equal(session->codec, WIRE_CODEC_JPEG);
+    assert_int_equal(session->codec.current, WIRE_CODEC_JPEG);
 }
 
 static void who_comes_back_in_time_has_its_view(void **state)
@@ -218,18 +237,18 @@ static void who_comes_back_in_time_has_its_view(void **state)
     struct fixture *f = *state;
     char secret[RESUME_CHARS + 1];
     struct session *first = open_session(f, ROLE_ENGINEER, VIEW), *again, *late;
-    strcpy(secret, first->resume);
+    strcpy(secret, first->identity.resume_secret);
     leave(f, &first);
     f->now_ns += RESUME_KEPT_NS - 1;
     come_back(f, ROLE_ENGINEER, secret, "", &again);
     expect_welcome(f, again, "engineer", true);
     expect_view_of_before(again);
-    assert_string_not_equal(again->resume, secret); /* each is good for one return */
+    assert_string_not_equal(again->identity.resume_secret, secret); /* each is good for one return */
     come_back(f, ROLE_ENGINEER, secret, "," SIZE, &late);
     expect_welcome(f, late, "engineer", false);
     assert_int_equal(late->view.field.group, 0);
     leave(f, &late);
-    strcpy(secret, again->resume);
+    strcpy(secret, again->identity.resume_secret);
     leave(f, &again);
     f->now_ns += RESUME_KEPT_NS;
     come_back(f, ROLE_ENGINEER, secret, "", &late);
@@ -244,13 +263,13 @@ static void what_is_said_comes_on_top_of_the_view_of_before(void **state)
     struct fixture *f = *state;
     struct session *first = open_session(f, ROLE_ENGINEER, VIEW), *again;
     char secret[RESUME_CHARS + 1];
-    strcpy(secret, first->resume);
+    strcpy(secret, first->identity.resume_secret);
     leave(f, &first);
     come_back(f, ROLE_ENGINEER, secret, ",\"width\":200,\"height\":100,\"codecs\":[\"png\"],\"params\":{\"seq\":1,\"ramp_interval\":4}",
               &again);
     expect_welcome(f, again, "engineer", true);
     assert_true(again->view.width_px == 200 && again->view.height_px == 100 && again->view.ramp_interval == 4);
-    assert_true(again->view.field.group == 1 && again->view.camera.eye_m[0] == 7 && again->codec == WIRE_CODEC_PNG);
+    assert_true(again->view.field.group == 1 && again->view.camera.eye_m[0] == 7 && again->codec.current == WIRE_CODEC_PNG);
     leave(f, &again);
 }
 
@@ -258,10 +277,10 @@ static void a_connection_that_only_seems_alive_gives_way(void **state)
 {
     struct fixture *f = *state;
     struct session *first = open_session(f, ROLE_ENGINEER, VIEW), *again;
-    come_back(f, ROLE_ENGINEER, first->resume, "", &again);
+    come_back(f, ROLE_ENGINEER, first->identity.resume_secret, "", &again);
     expect_welcome(f, again, "engineer", true);
     expect_view_of_before(again);
-    assert_int_equal(first->close_code, 1000);
+    assert_int_equal(first->close.code, 1000);
     leave(f, &first);
     leave(f, &again);
 }
@@ -271,7 +290,7 @@ static void a_view_belongs_to_a_token(void **state)
     struct fixture *f = *state;
     struct session *alice = open_session(f, ROLE_NOBODY, "{\"type\":\"hello\",\"token\":\"pc_alice\"," SIZE "}"), *bob, *again;
     char secret[RESUME_CHARS + 1];
-    strcpy(secret, alice->resume);
+    strcpy(secret, alice->identity.resume_secret);
     leave(f, &alice);
     come_back(f, ROLE_NOBODY, secret, ",\"token\":\"pc_bob\"," SIZE, &bob);
     expect_welcome(f, bob, "viewer", false);
@@ -287,7 +306,7 @@ static void of_many_who_left_the_newest_are_kept(void **state)
     char first[RESUME_CHARS + 1], last[RESUME_CHARS + 1];
     for (int i = 0; i <= RESUME_MAX_KEPT; i++) {
         struct session *session = open_session(f, ROLE_ENGINEER, HELLO);
-        strcpy(i == 0 ? first : last, session->resume);
+        strcpy(i == 0 ? first : last, session->identity.resume_secret);
         leave(f, &session);
     }
     struct session *forgotten, *kept;
@@ -318,8 +337,8 @@ static void without_room_a_session_is_told_when_to_come_again(void **state)
 
 static struct session *open_of(struct fixture *f, struct address_share *share, const char *hello)
 {
-    struct session *session = session_create(&f->world, ++f->next_id, f->now_ns);
-    session->share = share;
+    struct session *session = session_create(&f->context, ++f->next_id, f->now_ns);
+    session->room.share = share;
     admission_join(&f->admission, share);
     say(f, session, hello);
     return session;
@@ -327,7 +346,7 @@ static struct session *open_of(struct fixture *f, struct address_share *share, c
 
 static void leave_share(struct fixture *f, struct session **session)
 {
-    struct address_share *share = (*session)->share;
+    struct address_share *share = (*session)->room.share;
     leave(f, session);
     admission_leave(&f->admission, share);
 }
@@ -335,7 +354,7 @@ static void leave_share(struct fixture *f, struct session **session)
 static void an_address_has_its_part_of_all_pixels(void **state)
 {
     struct fixture *f = *state;
-    struct address_share share = { .payer = 1 }, other = { .payer = 2 };
+    struct address_share share = { .account = 1 }, other = { .account = 2 };
     quotas_parse(&f->quotas, "pixels=1000000");
     quotas_parse(&f->quotas, "address-pixels=300000");
     struct session *first = open_of(f, &share, HELLO), *second = open_of(f, &share, HELLO), *third = open_of(f, &other, HELLO);
@@ -352,8 +371,8 @@ static void an_address_has_its_part_of_all_pixels(void **state)
 static void who_is_hidden_gives_its_place_back_and_takes_it_again(void **state)
 {
     struct fixture *f = *state;
-    struct address_share share = { .payer = 1 }, other = { .payer = 2 };
-    struct frame_request wish;
+    struct address_share share = { .account = 1 }, other = { .account = 2 };
+    struct frame_request request;
     quotas_parse(&f->quotas, "pixels=300000");
     struct session *hidden = open_of(f, &share, HELLO);
     expect_welcome(f, hidden, "engineer", false);
@@ -366,11 +385,11 @@ static void who_is_hidden_gives_its_place_back_and_takes_it_again(void **state)
     expect_welcome(f, second, "engineer", false);
     say(f, hidden, "{\"type\":\"visible\",\"visible\":true}");
     expect_error(f, hidden, "limit", 0);
-    assert_false(session_next_request(hidden, f->now_ns, &wish));
+    assert_false(session_next_request(hidden, f->now_ns, &request));
     leave_share(f, &second);
     session_on_tick(hidden, f->now_ns += NS_PER_S); /* there is room again, and nobody has to ask */
     assert_int_equal(share.pixels, 230400);
-    assert_true(session_next_request(hidden, f->now_ns, &wish) && wish.payer == 1);
+    assert_true(session_next_request(hidden, f->now_ns, &request) && request.account == 1);
     leave_share(f, &hidden);
 }
 
@@ -391,12 +410,12 @@ static void who_does_not_say_hello_is_sent_away(void **state)
     struct session *session = open_session(f, ROLE_ENGINEER, "{\"type\":\"ping\",\"t\":1}"), *other = open_session(f, ROLE_ENGINEER, HELLO);
     f->now_ns += 10 * NS_PER_S - 1;
     session_on_tick(session, f->now_ns);
-    assert_int_equal(session->close_code, 0);
+    assert_int_equal(session->close.code, 0);
     f->now_ns++;
     session_on_tick(session, f->now_ns);
     session_on_tick(other, f->now_ns);
-    assert_int_equal(session->close_code, 1008);
-    assert_int_equal(other->close_code, 0);
+    assert_int_equal(session->close.code, 1008);
+    assert_int_equal(other->close.code, 0);
     leave(f, &session);
     leave(f, &other);
 }
@@ -409,6 +428,7 @@ int main(void)
         TEST(who_needs_a_token_is_told_and_sent_away),
         TEST(a_token_stands_for_its_role),
         TEST(a_revoked_token_ends_its_sessions_and_no_others),
+        TEST(a_login_that_is_held_up_keeps_no_holder),
         TEST(who_comes_back_in_time_has_its_view),
         TEST(what_is_said_comes_on_top_of_the_view_of_before),
         TEST(a_connection_that_only_seems_alive_gives_way),

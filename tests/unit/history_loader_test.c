@@ -24,7 +24,7 @@ struct setup {
     struct log *log;
     struct plant *plant;
     struct snapshot_cache *snapshot_cache;
-    struct history_loader *past;
+    struct history_loader *loader;
     _Atomic int notified;
 };
 
@@ -58,7 +58,7 @@ static int set_up(void **state)
     record(&s);
     s.snapshot_cache = snapshot_cache_create();
     const struct history_loader_params params = { s.log, s.plant, s.folder, s.snapshot_cache, on_answer, &s };
-    s.past = history_loader_create(&params);
+    s.loader = history_loader_create(&params);
     *state = &s;
     return 0;
 }
@@ -66,7 +66,7 @@ static int set_up(void **state)
 static int tear_down(void **state)
 {
     struct setup *s = *state;
-    history_loader_destroy(&s->past);
+    history_loader_destroy(&s->loader);
     snapshot_cache_destroy(&s->snapshot_cache);
     plant_by_hand_destroy(&s->plant);
     log_destroy(&s->log);
@@ -78,10 +78,10 @@ static int tear_down(void **state)
 static struct reading read_at(struct setup *s, int64_t at_us)
 {
     int before = s->notified;
-    history_loader_ask(s->past, 7, at_us);
+    history_loader_ask(s->loader, 7, at_us);
     for (int i = 0; i < 1000 && s->notified == before; i++)
         sleep_ns(10 * NS_PER_MS);
-    struct history_loader_answer *answer = history_loader_collect(s->past);
+    struct history_loader_answer *answer = history_loader_collect(s->loader);
     assert_non_null(answer);
     assert_true(answer->good && answer->client == 7 && answer->at_us == at_us && !answer->next);
     const struct historical_snapshot *historical = snapshot_cache_take(s->snapshot_cache, at_us);
@@ -101,7 +101,7 @@ static void test_an_instant_is_as_it_was(void **state)
     assert_true(gap.quality == QUALITY_BAD_COMMUNICATION_ERROR && gap.age_ns == 4 * NS_PER_S);
     assert_true(before.quality == QUALITY_BAD_WAITING);
     assert_true(read_at(s, BEGIN + 20500000).value == middle.value);
-    assert_true(history_loader_first_us(s->past) == BEGIN);
+    assert_true(history_loader_first_us(s->loader) == BEGIN);
 }
 
 static void test_only_the_newest_wish_of_a_client_counts(void **state)
@@ -109,14 +109,14 @@ static void test_only_the_newest_wish_of_a_client_counts(void **state)
     struct setup *s = *state;
     enum { WISHES = 2000 };
     for (int i = 1; i <= WISHES; i++)
-        history_loader_ask(s->past, 7, BEGIN + i);
-    history_loader_ask(s->past, 8, BEGIN + 5);
-    history_loader_forget(s->past, 9);
+        history_loader_ask(s->loader, 7, BEGIN + i);
+    history_loader_ask(s->loader, 8, BEGIN + 5);
+    history_loader_forget(s->loader, 9);
     int64_t last_us = 0;
     bool other = false;
     int count = 0;
     for (int i = 0; i < 1000 && !(other && last_us == BEGIN + WISHES); i++) {
-        for (struct history_loader_answer *answer = history_loader_collect(s->past), *next; answer; answer = next) {
+        for (struct history_loader_answer *answer = history_loader_collect(s->loader), *next; answer; answer = next) {
             next = answer->next;
             other |= answer->client == 8;
             last_us = answer->client == 7 ? answer->at_us : last_us;

@@ -25,7 +25,7 @@ struct setup {
     char *folder;
     struct log *log;
     struct plant *plant;
-    struct history_queries *recall;
+    struct history_queries *queries;
     _Atomic int notified;
 };
 
@@ -38,7 +38,7 @@ static void on_answer(void *arg)
 static int set_up(void **state)
 {
     static struct setup s;
-    static int order[2] = { 0, 1 };
+    static int query[2] = { 0, 1 };
     s.folder = temp_folder_create();
     s.log = log_create(LOG_ERROR);
     s.plant = plant_by_hand_create(2);
@@ -46,7 +46,7 @@ static int set_up(void **state)
     plant_by_hand_source(s.plant, "plc", 502);
     plant_by_hand_tag(s.plant, "A \"1\"", TABLE_HOLDING, 0, DATA_FLOAT32)->deadband = 0;
     plant_by_hand_tag(s.plant, "B,2", TABLE_HOLDING, 2, DATA_FLOAT32)->deadband = 0;
-    s.plant->tags_by_name = order;
+    s.plant->tags_by_name = query;
     struct history_tag *tags = history_tags(s.plant);
     int error;
     struct month_file *file = month_file_open(s.log, s.folder, month_of(NOW), tags, 2, &error);
@@ -54,7 +54,7 @@ static int set_up(void **state)
         assert_int_equal(month_file_import(file, 0, &(struct history_point){ NOW - (50 - i) * US_PER_S, i, 0 }, 1), 0);
     month_file_close(&file);
     mem_free(tags);
-    s.recall = history_queries_create(s.log, s.plant, s.folder, on_answer, &s);
+    s.queries = history_queries_create(s.log, s.plant, s.folder, on_answer, &s);
     *state = &s;
     return 0;
 }
@@ -62,7 +62,7 @@ static int set_up(void **state)
 static int tear_down(void **state)
 {
     struct setup *s = *state;
-    history_queries_destroy(&s->recall);
+    history_queries_destroy(&s->queries);
     s->plant->tags_by_name = NULL;
     plant_by_hand_destroy(&s->plant);
     log_destroy(&s->log);
@@ -70,9 +70,9 @@ static int tear_down(void **state)
     return 0;
 }
 
-static bool parse(struct setup *s, const char *const *args, size_t count, struct history_query *order, struct message_error *error)
+static bool parse(struct setup *s, const char *const *args, size_t count, struct history_query *query, struct message_error *error)
 {
-    return history_query_parse(s->plant, args, count, NOW, order, error);
+    return history_query_parse(s->plant, args, count, NOW, query, error);
 }
 
 static void queries_are_judged(void **state)
@@ -93,33 +93,33 @@ static void queries_are_judged(void **state)
         { { "tag=A \"1\"" }, "there is no argument 'tag'" },
         { { "tags" }, "tags: expected the names" },
     };
-    struct history_query order;
+    struct history_query query;
     for (size_t i = 0; i < sizeof(bad) / sizeof(bad[0]); i++) {
         struct message_error error = { 0 };
         size_t count = 0;
         while (count < 3 && bad[i].args[count])
             count++;
-        if (parse(s, bad[i].args, count, &order, &error) || !strstr(error.text, bad[i].says))
+        if (parse(s, bad[i].args, count, &query, &error) || !strstr(error.text, bad[i].says))
             fail_msg("'%s': '%s' is not '%s'", bad[i].args[0], error.text, bad[i].says);
     }
     struct message_error error = { 0 };
     const char *const good[] = { "tags=A \"1\"", "from=-30m", "points=7", "format=csv" };
-    assert_true(parse(s, good, 4, &order, &error));
-    assert_true(order.tag_count == 1 && order.tags[0] == 0 && order.max_points == 7 && order.csv);
-    assert_true(order.from_us == NOW - 1800 * US_PER_S && order.to_us == NOW);
+    assert_true(parse(s, good, 4, &query, &error));
+    assert_true(query.tag_count == 1 && query.tags[0] == 0 && query.max_points == 7 && query.csv);
+    assert_true(query.from_us == NOW - 1800 * US_PER_S && query.to_us == NOW);
 }
 
 static void gaps_are_asked_by_time_alone(void **state)
 {
     (void)state;
-    struct history_query order;
+    struct history_query query;
     struct message_error error = { 0 };
-    assert_true(history_query_parse_gaps((const char *const[]){ "from=-8h", "to=-1h" }, 2, NOW, &order, &error));
-    assert_true(order.gaps && order.from_us == NOW - 8 * 3600 * US_PER_S && order.to_us == NOW - 3600 * US_PER_S);
-    assert_false(history_query_parse_gaps((const char *const[]){ "tags=A" }, 1, NOW, &order, &error));
-    assert_false(history_query_parse_gaps((const char *const[]){ "to" }, 1, NOW, &order, &error));
-    assert_false(history_query_parse_gaps((const char *const[]){ "from=noon" }, 1, NOW, &order, &error));
-    assert_false(history_query_parse_gaps((const char *const[]){ "from=-1h", "to=-2h" }, 2, NOW, &order, &error));
+    assert_true(history_query_parse_gaps((const char *const[]){ "from=-8h", "to=-1h" }, 2, NOW, &query, &error));
+    assert_true(query.gaps && query.from_us == NOW - 8 * 3600 * US_PER_S && query.to_us == NOW - 3600 * US_PER_S);
+    assert_false(history_query_parse_gaps((const char *const[]){ "tags=A" }, 1, NOW, &query, &error));
+    assert_false(history_query_parse_gaps((const char *const[]){ "to" }, 1, NOW, &query, &error));
+    assert_false(history_query_parse_gaps((const char *const[]){ "from=noon" }, 1, NOW, &query, &error));
+    assert_false(history_query_parse_gaps((const char *const[]){ "from=-1h", "to=-2h" }, 2, NOW, &query, &error));
 }
 
 static struct history_answer *wait_for(struct setup *s, int count)
@@ -127,16 +127,16 @@ static struct history_answer *wait_for(struct setup *s, int count)
     for (int i = 0; i < 1000 && s->notified < count; i++)
         sleep_ns(10 * NS_PER_MS);
     assert_int_equal(s->notified, count);
-    return history_queries_collect(s->recall);
+    return history_queries_collect(s->queries);
 }
 
 static void answers_hold_what_was_recorded(void **state)
 {
     struct setup *s = *state;
-    struct history_query order = { .client = 7, .tags = { 0, 1 }, .tag_count = 2, .max_points = 100 };
-    order.from_us = NOW - 20 * US_PER_S;
-    order.to_us = NOW;
-    assert_true(history_queries_ask(s->recall, &order));
+    struct history_query query = { .client = 7, .tags = { 0, 1 }, .tag_count = 2, .max_points = 100 };
+    query.from_us = NOW - 20 * US_PER_S;
+    query.to_us = NOW;
+    assert_true(history_queries_ask(s->queries, &query));
     struct history_answer *answer = wait_for(s, 1);
     assert_int_equal(answer->client, 7);
     json_t *root = json_loads(answer->text, 0, NULL);
@@ -159,10 +159,10 @@ static void answers_hold_what_was_recorded(void **state)
 static void csv_has_quotes_where_it_needs_them(void **state)
 {
     struct setup *s = *state;
-    struct history_query order = { .tags = { 0 }, .tag_count = 1, .max_points = 100, .csv = true };
-    order.from_us = NOW - 2 * US_PER_S;
-    order.to_us = NOW;
-    assert_true(history_queries_ask(s->recall, &order));
+    struct history_query query = { .tags = { 0 }, .tag_count = 1, .max_points = 100, .csv = true };
+    query.from_us = NOW - 2 * US_PER_S;
+    query.to_us = NOW;
+    assert_true(history_queries_ask(s->queries, &query));
     struct history_answer *answer = wait_for(s, 1);
     assert_string_equal(answer->text, "Tag,Time,Value,Quality,Unit\r\n"
                                       "\"A \"\"1\"\"\",2026-11-01T02:26:38.000Z,48,0x00000000,\r\n"
@@ -190,24 +190,24 @@ static void record_much(struct setup *s)
 static void long_answers_come_in_pieces(void **state)
 {
     struct setup *s = *state;
-    struct history_query order = { .client = 7, .payer = 1, .tags = { 0, 1 }, .tag_count = 2, .max_points = 20000 };
+    struct history_query query = { .client = 7, .account = 1, .tags = { 0, 1 }, .tag_count = 2, .max_points = 20000 };
     struct text all = { 0 };
     int pieces = 0;
     record_much(s);
-    order.from_us = NOW;
-    order.to_us = NOW + 3000 * US_PER_S;
-    assert_true(history_queries_ask(s->recall, &order));
+    query.from_us = NOW;
+    query.to_us = NOW + 3000 * US_PER_S;
+    assert_true(history_queries_ask(s->queries, &query));
     struct history_answer *answer = wait_for(s, ++pieces);
     assert_true(answer->first && !answer->last && answer->length > 256 * 1024);
     sleep_ns(50 * NS_PER_MS);
-    assert_null(history_queries_collect(s->recall)); /* nothing more before it is wanted */
+    assert_null(history_queries_collect(s->queries)); /* nothing more before it is wanted */
     for (;;) {
         bool last = answer->last;
         text_add_bytes(&all, answer->text, answer->length);
         history_answer_free(&answer);
         if (last)
             break;
-        history_queries_continue(s->recall, 7);
+        history_queries_continue(s->queries, 7);
         answer = wait_for(s, ++pieces);
         assert_false(answer->first);
     }
@@ -221,15 +221,15 @@ static void long_answers_come_in_pieces(void **state)
 static void who_is_forgotten_leaves_room(void **state)
 {
     struct setup *s = *state;
-    struct history_query order = { .payer = 1, .tags = { 0, 1 }, .tag_count = 2, .max_points = 20000, .from_us = NOW };
+    struct history_query query = { .account = 1, .tags = { 0, 1 }, .tag_count = 2, .max_points = 20000, .from_us = NOW };
     record_much(s);
-    order.to_us = NOW + 3000 * US_PER_S;
+    query.to_us = NOW + 3000 * US_PER_S;
     for (int i = 0; i < 4 * HISTORY_QUERIES_MOST; i++) {
-        order.client = (uint64_t)i + 1;
-        assert_true(history_queries_ask(s->recall, &order));
+        query.client = (uint64_t)i + 1;
+        assert_true(history_queries_ask(s->queries, &query));
         if (i >= HISTORY_QUERIES_MOST - 2) /* at work, waiting, or with a piece that nobody took */
-            history_queries_forget(s->recall, order.client - HISTORY_QUERIES_MOST + 2);
-        for (struct history_answer *answer = history_queries_collect(s->recall), *next; answer; answer = next) {
+            history_queries_forget(s->queries, query.client - HISTORY_QUERIES_MOST + 2);
+        for (struct history_answer *answer = history_queries_collect(s->queries), *next; answer; answer = next) {
             next = answer->next;
             history_answer_free(&answer);
         }
@@ -240,18 +240,18 @@ static void who_is_forgotten_leaves_room(void **state)
 static void too_many_are_refused(void **state)
 {
     struct setup *s = *state;
-    struct history_query order = { .tags = { 0 }, .tag_count = 1, .max_points = 100 };
-    order.from_us = NOW - 20 * US_PER_S;
-    order.to_us = NOW;
+    struct history_query query = { .tags = { 0 }, .tag_count = 1, .max_points = 100 };
+    query.from_us = NOW - 20 * US_PER_S;
+    query.to_us = NOW;
     int taken = 0;
     for (int i = 0; i < 10000; i++) {
-        order.client = (uint64_t)i;
-        taken += history_queries_ask(s->recall, &order);
+        query.client = (uint64_t)i;
+        taken += history_queries_ask(s->queries, &query);
         if (i % 2)
-            history_queries_forget(s->recall, (uint64_t)i);
+            history_queries_forget(s->queries, (uint64_t)i);
     }
     assert_true(taken < 10000);
-    for (struct history_answer *answer = history_queries_collect(s->recall), *next; answer; answer = next) {
+    for (struct history_answer *answer = history_queries_collect(s->queries), *next; answer; answer = next) {
         next = answer->next;
         history_answer_free(&answer);
     }

@@ -23,72 +23,72 @@ static int set_up(void **state)
 
 static int tear_down(void **state)
 {
-    struct login_throttle *logins = *state;
-    login_throttle_destroy(&logins);
+    struct login_throttle *throttle = *state;
+    login_throttle_destroy(&throttle);
     return 0;
 }
 
 static void ten_wrong_tokens_within_a_minute_slow_an_address(void **state)
 {
-    struct login_throttle *logins = *state;
+    struct login_throttle *throttle = *state;
     for (int i = 0; i < 9; i++)
-        assert_int_equal(login_throttle_judge(logins, HERE, NULL, i * 6 * S), LOGIN_WRONG);
-    assert_int_equal(login_throttle_failures(logins, HERE, 49 * S), 9);
-    assert_int_equal(logins_slowed(logins, 49 * S), 0);
-    assert_int_equal(login_throttle_judge(logins, HERE, NULL, 54 * S), LOGIN_WRONG_SLOWS);
-    assert_int_equal(logins_slowed(logins, 54 * S), 1);
-    assert_int_equal(login_throttle_judge(logins, HERE, NULL, 55 * S), LOGIN_HELD);
-    assert_int_equal(login_throttle_judge(logins, HERE, DESK, 58 * S), LOGIN_HELD);  /* nor is a good one told apart from a wrong one */
-    assert_int_equal(login_throttle_judge(logins, HERE, NULL, 59 * S), LOGIN_WRONG); /* one in five seconds */
-    assert_int_equal(login_throttle_judge(logins, HERE, NULL, 60 * S), LOGIN_HELD);
-    assert_int_equal(login_throttle_judge(logins, THERE, NULL, 60 * S), LOGIN_WRONG);
-    assert_int_equal(login_throttle_judge(logins, HERE, DESK, 64 * S), LOGIN_GOOD_NEW);
-    assert_int_equal(logins_slowed(logins, 118 * S), 1); /* a minute after the last wrong one */
-    assert_int_equal(logins_slowed(logins, 119 * S), 0);
-    assert_int_equal(login_throttle_judge(logins, HERE, NULL, 119 * S), LOGIN_WRONG);
+        assert_int_equal(login_throttle_judge(throttle, HERE, NULL, i * 6 * S), LOGIN_WRONG);
+    assert_int_equal(login_throttle_failures(throttle, HERE, 49 * S), 9);
+    assert_int_equal(login_throttle_slowed(throttle, 49 * S), 0);
+    assert_int_equal(login_throttle_judge(throttle, HERE, NULL, 54 * S), LOGIN_WRONG_SLOWS);
+    assert_int_equal(login_throttle_slowed(throttle, 54 * S), 1);
+    assert_int_equal(login_throttle_judge(throttle, HERE, NULL, 55 * S), LOGIN_HELD);
+    assert_int_equal(login_throttle_judge(throttle, HERE, DESK, 58 * S), LOGIN_HELD);  /* nor is a good one told apart from a wrong one */
+    assert_int_equal(login_throttle_judge(throttle, HERE, NULL, 59 * S), LOGIN_WRONG); /* one in five seconds */
+    assert_int_equal(login_throttle_judge(throttle, HERE, NULL, 60 * S), LOGIN_HELD);
+    assert_int_equal(login_throttle_judge(throttle, THERE, NULL, 60 * S), LOGIN_WRONG);
+    assert_int_equal(login_throttle_judge(throttle, HERE, DESK, 64 * S), LOGIN_GOOD_NEW);
+    assert_int_equal(login_throttle_slowed(throttle, 118 * S), 1); /* a minute after the last wrong one */
+    assert_int_equal(login_throttle_slowed(throttle, 119 * S), 0);
+    assert_int_equal(login_throttle_judge(throttle, HERE, NULL, 119 * S), LOGIN_WRONG);
 }
 
 static void ten_in_more_than_a_minute_do_not(void **state)
 {
-    struct login_throttle *logins = *state;
+    struct login_throttle *throttle = *state;
     for (int i = 0; i < 100; i++)
-        assert_int_equal(login_throttle_judge(logins, HERE, NULL, i * 7 * S), LOGIN_WRONG);
+        assert_int_equal(login_throttle_judge(throttle, HERE, NULL, i * 7 * S), LOGIN_WRONG);
 }
 
 static void who_was_let_in_before_is_not_held_up(void **state)
 {
-    struct login_throttle *logins = *state;
-    assert_int_equal(login_throttle_judge(logins, HERE, WALL, 0), LOGIN_GOOD_NEW);
+    struct login_throttle *throttle = *state;
+    assert_int_equal(login_throttle_judge(throttle, HERE, WALL, 0), LOGIN_GOOD_NEW);
     for (int i = 0; i < 12; i++)
-        login_throttle_judge(logins, HERE, NULL, S);
-    assert_int_equal(login_throttle_judge(logins, HERE, WALL, 2 * S), LOGIN_GOOD);
-    assert_int_equal(login_throttle_judge(logins, HERE, DESK, 2 * S), LOGIN_HELD);
-    assert_int_equal(login_throttle_judge(logins, THERE, DESK, 2 * S), LOGIN_GOOD_NEW);
+        login_throttle_judge(throttle, HERE, NULL, S);
+    assert_int_equal(login_throttle_judge(throttle, HERE, WALL, 2 * S), LOGIN_GOOD);
+    assert_int_equal(login_throttle_judge(throttle, HERE, DESK, 2 * S), LOGIN_HELD);
+    assert_int_equal(login_throttle_judge(throttle, THERE, DESK, 2 * S), LOGIN_GOOD_NEW);
 }
 
 static void a_login_is_news_every_ten_minutes(void **state)
 {
-    struct login_throttle *logins = *state;
-    assert_int_equal(login_throttle_judge(logins, HERE, WALL, 0), LOGIN_GOOD_NEW);
-    assert_int_equal(login_throttle_judge(logins, HERE, DESK, S), LOGIN_GOOD_NEW);
-    assert_int_equal(login_throttle_judge(logins, HERE, WALL, 599 * S), LOGIN_GOOD);
-    assert_int_equal(login_throttle_judge(logins, HERE, WALL, 600 * S), LOGIN_GOOD_NEW);
-    assert_int_equal(login_throttle_judge(logins, HERE, WALL, 601 * S), LOGIN_GOOD);
+    struct login_throttle *throttle = *state;
+    assert_int_equal(login_throttle_judge(throttle, HERE, WALL, 0), LOGIN_GOOD_NEW);
+    assert_int_equal(login_throttle_judge(throttle, HERE, DESK, S), LOGIN_GOOD_NEW);
+    assert_int_equal(login_throttle_judge(throttle, HERE, WALL, 599 * S), LOGIN_GOOD);
+    assert_int_equal(login_throttle_judge(throttle, HERE, WALL, 600 * S), LOGIN_GOOD_NEW);
+    assert_int_equal(login_throttle_judge(throttle, HERE, WALL, 601 * S), LOGIN_GOOD);
 }
 
 /* Memory is bounded, and who is wrong now is not forgotten for those of long ago. */
 static void as_many_addresses_as_there_is_room_for(void **state)
 {
-    struct login_throttle *logins = *state;
+    struct login_throttle *throttle = *state;
     uint8_t other[16] = { 0x20, 0x01 };
     for (int i = 0; i < 3 * LOGIN_ADDRESSES; i++) {
         other[6] = (uint8_t)(i >> 8);
         other[7] = (uint8_t)i;
-        assert_int_equal(login_throttle_judge(logins, other, NULL, i * S / 1000), LOGIN_WRONG);
+        assert_int_equal(login_throttle_judge(throttle, other, NULL, i * S / 1000), LOGIN_WRONG);
         if (i % 300 == 0)
-            login_throttle_judge(logins, HERE, NULL, i * S / 1000);
+            login_throttle_judge(throttle, HERE, NULL, i * S / 1000);
     }
-    assert_int_equal(logins_slowed(logins, 4 * S), 1);
+    assert_int_equal(login_throttle_slowed(throttle, 4 * S), 1);
 }
 
 int main(void)

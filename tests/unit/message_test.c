@@ -27,23 +27,23 @@ static const struct plant *plant(void)
     return small_scene()->plant;
 }
 
-static struct params_context world;
+static struct params_context context;
 
 static int set_up(void **state)
 {
     (void)state;
-    world = (struct params_context){ .scene = small_scene(),
-                                     .baselines = baselines_create(),
-                                     .snapshot = snapshot_create(small_scene()->plant->tag_count) };
+    context = (struct params_context){ .scene = small_scene(),
+                                       .baselines = baselines_create(),
+                                       .snapshot = snapshot_create(small_scene()->plant->tag_count) };
     return 0;
 }
 
 static int tear_down(void **state)
 {
     (void)state;
-    struct snapshot *snapshot = (struct snapshot *)world.snapshot;
+    struct snapshot *snapshot = (struct snapshot *)context.snapshot;
     snapshot_destroy(&snapshot);
-    baselines_destroy(&world.baselines);
+    baselines_destroy(&context.baselines);
     return 0;
 }
 
@@ -56,7 +56,7 @@ static bool take(const char *text, size_t count, struct message_error *error)
     if (!message_parse(plant(), text, count, &message, error))
         return false;
     bool params = message.type == MESSAGE_PARAMS || message.has_params;
-    return !params || (params_apply(&world, &message.params, &view, error) && split_apply(&world, &message.split, &view, error));
+    return !params || (params_apply(&context, &message.params, &view, error) && split_apply(&context, &message.split, &view, error));
 }
 
 static void check_vector(const char *file, int *accepted, int *refused)
@@ -130,7 +130,7 @@ static struct view changed(struct view view, const char *text)
 {
     struct message m = parse(text);
     struct message_error error;
-    if (!params_apply(&world, &m.params, &view, &error))
+    if (!params_apply(&context, &m.params, &view, &error))
         fail_msg("%s: %s", text, error.text);
     return view;
 }
@@ -186,7 +186,7 @@ static struct view both_changed(struct view view, const char *text)
 {
     struct message m = parse(text);
     struct message_error error;
-    if (!params_apply(&world, &m.params, &view, &error) || !split_apply(&world, &m.split, &view, &error))
+    if (!params_apply(&context, &m.params, &view, &error) || !split_apply(&context, &m.split, &view, &error))
         fail_msg("%s: %s", text, error.text);
     return view;
 }
@@ -238,7 +238,7 @@ static void refuse(const struct view *view, const char *text, const char *word)
     struct message m = parse(text);
     struct message_error error;
     struct view before = *view, after = *view;
-    assert_false(params_apply(&world, &m.params, &after, &error));
+    assert_false(params_apply(&context, &m.params, &after, &error));
     assert_memory_equal(&before, &after, sizeof(before));
     assert_int_equal(strncmp(error.text, word, strlen(word)), 0);
 }
@@ -296,28 +296,28 @@ static void baselines_are_set_shown_and_forgotten(void **state)
     view_default(small_scene(), 640, 360, &view);
     view = changed(view, "{\"type\":\"params\",\"seq\":1,\"baseline\":{\"set\":\"calm\"}}");
     uint32_t id = view.field.baseline;
-    assert_true(id && id == baselines_find(world.baselines, "calm"));
+    assert_true(id && id == baselines_find(context.baselines, "calm"));
     view.field.baseline = 0;
     view = changed(view, "{\"type\":\"params\",\"seq\":2,\"show\":\"difference\",\"baseline\":\"calm\"}");
     assert_int_equal(view.field.baseline, id);
     refuse(&view, "{\"type\":\"params\",\"seq\":3,\"baseline\":{\"set\":\"other\"},\"radius_m\":1e-4}", "radius_m");
-    assert_int_equal(baselines_find(world.baselines, "other"), 0);
+    assert_int_equal(baselines_find(context.baselines, "other"), 0);
     changed(view, "{\"type\":\"params\",\"seq\":4,\"baseline\":{\"remove\":\"calm\"}}");
-    assert_int_equal(baselines_find(world.baselines, "calm"), 0);
-    for (int i = (int)baselines_list(world.baselines, list); i < BASELINES_NAMED; i++) {
+    assert_int_equal(baselines_find(context.baselines, "calm"), 0);
+    for (int i = (int)baselines_list(context.baselines, list); i < BASELINES_NAMED; i++) {
         char text[100];
         snprintf(text, sizeof(text), "{\"type\":\"params\",\"seq\":5,\"baseline\":{\"set\":\"b%d\"}}", i);
         changed(view, text);
     }
     refuse(&view, "{\"type\":\"params\",\"seq\":6,\"baseline\":{\"set\":\"one too many\"}}", "baseline");
     changed(view, "{\"type\":\"params\",\"seq\":7,\"baseline\":{\"set\":\"b31\"}}");
-    assert_int_equal(baselines_list(world.baselines, list), BASELINES_NAMED);
+    assert_int_equal(baselines_list(context.baselines, list), BASELINES_NAMED);
 }
 
 static bool query(const char *const *args, size_t count, struct view *view, struct message_error *error)
 {
     *error = (struct message_error){ 0 };
-    const struct params_context of_query = { .scene = small_scene(), .baselines = world.baselines };
+    const struct params_context of_query = { .scene = small_scene(), .baselines = context.baselines };
     return view_query_parse(&of_query, ROLE_ENGINEER, args, count, view, NULL, error);
 }
 
@@ -562,7 +562,7 @@ static void no_number_is_minus_nought(void **state)
 {
     struct pick_answer answer = { .pick = { .sensor = -1, .state = PICK_BETWEEN, .value = -0.0, .position_m = { -0.0, 2, -0.0 } } };
     (void)state;
-    view_default(small_scene(), 640, 360, &answer.order.view);
+    view_default(small_scene(), 640, 360, &answer.query.view);
     char *text = reply_picked_text(plant(), &answer);
     assert_non_null(strstr(text, "\"position\":[0.0,2.0,0.0]"));
     assert_non_null(strstr(text, "\"value\":0.0"));

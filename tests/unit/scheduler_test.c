@@ -13,40 +13,40 @@
 static const int64_t MS = NS_PER_MS;
 #define NONE INT64_MAX
 
-static enum urgency choose(const struct scheduler *schedule, int64_t input, int64_t data, int64_t refine, int64_t snapshot, int64_t now_ns)
+static enum urgency choose(const struct scheduler *scheduler, int64_t input, int64_t data, int64_t refine, int64_t snapshot, int64_t now_ns)
 {
     int64_t wait_until_ns;
-    return scheduler_choose(schedule, (int64_t[]){ input, data, refine, snapshot }, now_ns, &wait_until_ns);
+    return scheduler_choose(scheduler, (int64_t[]){ input, data, refine, snapshot }, now_ns, &wait_until_ns);
 }
 
 static void nothing_to_do_waits_for_ever(void **state)
 {
     (void)state;
-    struct scheduler schedule = { 0 };
+    struct scheduler scheduler = { 0 };
     int64_t wait_until_ns = 0;
-    assert_int_equal(scheduler_choose(&schedule, (int64_t[]){ NONE, NONE, NONE, NONE }, NS_PER_S, &wait_until_ns), URGENCY_COUNT);
+    assert_int_equal(scheduler_choose(&scheduler, (int64_t[]){ NONE, NONE, NONE, NONE }, NS_PER_S, &wait_until_ns), URGENCY_COUNT);
     assert_true(wait_until_ns == INT64_MAX);
 }
 
 static void an_idle_renderer_refines_at_once(void **state)
 {
     (void)state;
-    struct scheduler schedule = { 0 };
-    assert_int_equal(choose(&schedule, NONE, NONE, 10 * NS_PER_S, NONE, 10 * NS_PER_S), URGENCY_REFINE);
-    assert_int_equal(choose(&schedule, NONE, NONE, 10 * NS_PER_S, 9 * NS_PER_S, 10 * NS_PER_S), URGENCY_SNAPSHOT);
-    assert_int_equal(choose(&schedule, NONE, 10 * NS_PER_S, 9 * NS_PER_S, NONE, 10 * NS_PER_S), URGENCY_DATA);
+    struct scheduler scheduler = { 0 };
+    assert_int_equal(choose(&scheduler, NONE, NONE, 10 * NS_PER_S, NONE, 10 * NS_PER_S), URGENCY_REFINE);
+    assert_int_equal(choose(&scheduler, NONE, NONE, 10 * NS_PER_S, 9 * NS_PER_S, 10 * NS_PER_S), URGENCY_SNAPSHOT);
+    assert_int_equal(choose(&scheduler, NONE, 10 * NS_PER_S, 9 * NS_PER_S, NONE, 10 * NS_PER_S), URGENCY_DATA);
 }
 
 static void slow_pictures_wait_for_a_pause(void **state)
 {
     (void)state;
-    struct scheduler schedule = { 0 };
+    struct scheduler scheduler = { 0 };
     int64_t now_ns = 100 * NS_PER_S, wait_until_ns;
-    scheduler_done(&schedule, URGENCY_INPUT, now_ns);
-    assert_int_equal(scheduler_choose(&schedule, (int64_t[]){ NONE, NONE, now_ns, NONE }, now_ns + MS, &wait_until_ns), URGENCY_COUNT);
+    scheduler_done(&scheduler, URGENCY_INPUT, now_ns);
+    assert_int_equal(scheduler_choose(&scheduler, (int64_t[]){ NONE, NONE, now_ns, NONE }, now_ns + MS, &wait_until_ns), URGENCY_COUNT);
     assert_true(wait_until_ns > now_ns + MS && wait_until_ns < now_ns + 500 * MS);
-    assert_int_equal(choose(&schedule, NONE, NONE, now_ns, NONE, wait_until_ns), URGENCY_REFINE);
-    assert_int_equal(choose(&schedule, wait_until_ns, NONE, now_ns, NONE, wait_until_ns), URGENCY_INPUT);
+    assert_int_equal(choose(&scheduler, NONE, NONE, now_ns, NONE, wait_until_ns), URGENCY_REFINE);
+    assert_int_equal(choose(&scheduler, wait_until_ns, NONE, now_ns, NONE, wait_until_ns), URGENCY_INPUT);
 }
 
 /* A picture of input takes 30 ms, of data 30 ms, a refinement 50 steps of 10 ms. All are always wanted again as soon as they were
@@ -56,7 +56,7 @@ static void everyone_gets_a_share(void **state)
     (void)state;
     enum { STEPS = 50 };
     static const int64_t cost_ns[] = { 30 * NS_PER_MS, 30 * NS_PER_MS, 10 * NS_PER_MS, 10 * NS_PER_MS };
-    struct scheduler schedule = { 0 };
+    struct scheduler scheduler = { 0 };
     int64_t now_ns = 100 * NS_PER_S, end_ns = now_ns + 60 * NS_PER_S;
     int64_t asked_ns[URGENCY_COUNT] = { now_ns, now_ns, now_ns, now_ns }, longest_ns[URGENCY_COUNT] = { 0 }, wait_until_ns;
     int drawn[URGENCY_COUNT] = { 0 }, left[URGENCY_COUNT] = { 1, 1, STEPS, STEPS };
@@ -65,11 +65,11 @@ static void everyone_gets_a_share(void **state)
         int64_t asked[URGENCY_COUNT];
         for (int i = 0; i < URGENCY_COUNT; i++)
             asked[i] = i >= URGENCY_REFINE && begun != URGENCY_COUNT && (enum urgency)i != begun ? NONE : asked_ns[i];
-        enum urgency urgency = scheduler_choose(&schedule, asked, now_ns, &wait_until_ns);
+        enum urgency urgency = scheduler_choose(&scheduler, asked, now_ns, &wait_until_ns);
         assert_int_not_equal(urgency, URGENCY_COUNT);
         now_ns += cost_ns[urgency];
         if (urgency >= URGENCY_REFINE) {
-            scheduler_stepped(&schedule);
+            scheduler_stepped(&scheduler);
             begun = urgency;
         }
         if (--left[urgency] > 0)
@@ -79,7 +79,7 @@ static void everyone_gets_a_share(void **state)
         longest_ns[urgency] = now_ns - asked_ns[urgency] > longest_ns[urgency] ? now_ns - asked_ns[urgency] : longest_ns[urgency];
         asked_ns[urgency] = now_ns;
         drawn[urgency]++;
-        scheduler_done(&schedule, urgency, now_ns);
+        scheduler_done(&scheduler, urgency, now_ns);
     }
     assert_true(drawn[URGENCY_INPUT] > 750 && drawn[URGENCY_DATA] > 750);
     assert_true(drawn[URGENCY_REFINE] >= 4 && drawn[URGENCY_SNAPSHOT] >= 4);
@@ -91,11 +91,11 @@ static void everyone_gets_a_share(void **state)
 static void a_queue_of_refinements_does_not_hold_up_a_move(void **state)
 {
     (void)state;
-    struct scheduler schedule = { .long_ns = 99 * NS_PER_S };
+    struct scheduler scheduler = { .long_ns = 99 * NS_PER_S };
     int64_t now_ns = 100 * NS_PER_S;
     for (int i = 0; i < 60; i++, now_ns += 30 * MS) {
-        assert_int_equal(choose(&schedule, now_ns, NONE, 50 * NS_PER_S, NONE, now_ns), URGENCY_INPUT);
-        scheduler_done(&schedule, URGENCY_INPUT, now_ns);
+        assert_int_equal(choose(&scheduler, now_ns, NONE, 50 * NS_PER_S, NONE, now_ns), URGENCY_INPUT);
+        scheduler_done(&scheduler, URGENCY_INPUT, now_ns);
     }
 }
 

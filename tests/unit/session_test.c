@@ -66,47 +66,47 @@ static void greet(struct session_case *f)
 }
 
 /* Asks the painter that there is not. False: the session wants nothing, or the painter would refuse. */
-static bool ask(struct session_case *f, struct frame_request *wish)
+static bool ask(struct session_case *f, struct frame_request *request)
 {
-    if (!session_next_request(f->session, f->now_ns, wish) || wish->only_replace)
+    if (!session_next_request(f->session, f->now_ns, request) || request->only_replace)
         return false;
-    session_requested(f->session, wish, false);
+    session_requested(f->session, request, false);
     return true;
 }
 
-static struct encoded_frame *empty_picture(struct session_case *f, const struct frame_request *wish)
+static struct encoded_frame *empty_picture(struct session_case *f, const struct frame_request *request)
 {
-    struct encoded_frame *picture = mem_new(sizeof(*picture));
-    *picture = (struct encoded_frame){ .client = 7, .number = ++f->number, .wish = *wish };
-    return picture;
+    struct encoded_frame *encoded = mem_new(sizeof(*encoded));
+    *encoded = (struct encoded_frame){ .client = 7, .number = ++f->number, .request = *request };
+    return encoded;
 }
 
-static void paint_nothing(struct session_case *f, const struct frame_request *wish)
+static void paint_nothing(struct session_case *f, const struct frame_request *request)
 {
-    struct encoded_frame *picture = empty_picture(f, wish);
-    picture->failed = true;
-    session_on_frame(f->session, picture);
+    struct encoded_frame *encoded = empty_picture(f, request);
+    encoded->failed = true;
+    session_on_frame(f->session, encoded);
 }
 
-static void paint(struct session_case *f, const struct frame_request *wish, bool same)
+static void paint(struct session_case *f, const struct frame_request *request, bool same)
 {
-    struct encoded_frame *picture = empty_picture(f, wish);
+    struct encoded_frame *encoded = empty_picture(f, request);
     if (!same) {
         struct frame *frame = frame_create(16, 16);
-        frame->view = wish->view;
-        picture->packet = packet_create(frame, WIRE_CODEC_JPEG, true, "jpeg", 4);
+        frame->view = request->view;
+        encoded->packet = packet_create(frame, WIRE_CODEC_JPEG, true, "jpeg", 4);
         frame_unref(&frame);
     }
-    session_on_frame(f->session, picture);
+    session_on_frame(f->session, encoded);
 }
 
 static uint32_t send_picture(struct session_case *f)
 {
     uint32_t seq = 0;
-    struct encoded_frame *picture = session_next_frame(f->session, f->now_ns, &seq);
-    if (picture)
+    struct encoded_frame *encoded = session_next_frame(f->session, f->now_ns, &seq);
+    if (encoded)
         session_wrote(f->session, true, f->now_ns);
-    encoded_frame_destroy(&picture);
+    encoded_frame_destroy(&encoded);
     return seq;
 }
 
@@ -118,16 +118,16 @@ static void ack(struct session_case *f, uint32_t seq)
 }
 
 /* It is drawn, sent, and acknowledged after so long. */
-static void carry(struct session_case *f, const struct frame_request *wish, size_t bytes, int64_t way_ns)
+static void carry(struct session_case *f, const struct frame_request *request, size_t bytes, int64_t way_ns)
 {
-    struct encoded_frame *picture = empty_picture(f, wish);
+    struct encoded_frame *encoded = empty_picture(f, request);
     struct frame *frame = frame_create(16, 16);
     uint8_t *payload = mem_array(bytes, 1);
-    frame->view = wish->view;
-    picture->packet = packet_create(frame, WIRE_CODEC_JPEG, true, payload, bytes);
+    frame->view = request->view;
+    encoded->packet = packet_create(frame, WIRE_CODEC_JPEG, true, payload, bytes);
     frame_unref(&frame);
     mem_free(payload);
-    session_on_frame(f->session, picture);
+    session_on_frame(f->session, encoded);
     uint32_t seq = send_picture(f);
     f->now_ns += way_ns;
     ack(f, seq);
@@ -136,38 +136,38 @@ static void carry(struct session_case *f, const struct frame_request *wish, size
 /* One picture all the way. */
 static struct frame_request show(struct session_case *f)
 {
-    struct frame_request wish = { 0 };
-    if (!ask(f, &wish))
+    struct frame_request request = { 0 };
+    if (!ask(f, &request))
         fail_msg("no picture is wanted");
-    paint(f, &wish, false);
+    paint(f, &request, false);
     ack(f, send_picture(f));
-    return wish;
+    return request;
 }
 
 /* New readings under a refined picture: quick says whether the render thread can colour it again, or draws a moving one instead. */
 static struct frame_request show_data(struct session_case *f, bool quick)
 {
-    struct frame_request wish = { 0 };
+    struct frame_request request = { 0 };
     session_on_data(f->session, f->now_ns);
-    if (!ask(f, &wish))
+    if (!ask(f, &request))
         fail_msg("no picture is wanted");
-    if (wish.or_moving && !quick)
-        wish.view.tier = TIER_PREVIEW;
-    paint(f, &wish, false);
+    if (request.or_moving && !quick)
+        request.view.tier = TIER_PREVIEW;
+    paint(f, &request, false);
     ack(f, send_picture(f));
-    return wish;
+    return request;
 }
 
 static void nothing_before_hello(void **state)
 {
     struct session_case *f = *state;
-    struct frame_request wish;
-    assert_false(session_next_request(f->session, f->now_ns, &wish));
+    struct frame_request request;
+    assert_false(session_next_request(f->session, f->now_ns, &request));
     session_on_data(f->session, f->now_ns);
     expect(f, "");
     say(f, "{\"type\":\"resize\",\"width\":640,\"height\":360}");
     expect_error(f, "hello_first");
-    assert_false(session_next_request(f->session, f->now_ns, &wish));
+    assert_false(session_next_request(f->session, f->now_ns, &request));
     say(f, HELLO);
     say(f, HELLO);
     expect(f, "welcome error status tags ");
@@ -200,106 +200,107 @@ static void welcome_tells_the_plant_and_no_addresses(void **state)
 static void first_picture_comes_at_once_then_refined_then_nothing(void **state)
 {
     struct session_case *f = *state;
-    struct frame_request wish;
+    struct frame_request request;
     greet(f);
-    assert_true(ask(f, &wish));
-    assert_true(wish.always && wish.urgency == URGENCY_INPUT && wish.view.tier == TIER_PREVIEW && !wish.quality.full_chroma);
-    paint(f, &wish, false);
+    assert_true(ask(f, &request));
+    assert_true(request.always && request.urgency == URGENCY_INPUT && request.view.tier == TIER_PREVIEW && !request.quality.full_chroma);
+    paint(f, &request, false);
     assert_int_equal(send_picture(f), 1);
     ack(f, 1);
     f->now_ns += 100 * MS;
-    assert_false(ask(f, &wish));
+    assert_false(ask(f, &request));
     f->now_ns += 150 * MS;
-    assert_true(ask(f, &wish));
-    assert_true(wish.urgency == URGENCY_REFINE && wish.view.tier == TIER_REFINED && wish.quality.full_chroma && wish.quality.quality >= 90);
-    paint(f, &wish, false);
+    assert_true(ask(f, &request));
+    assert_true(request.urgency == URGENCY_REFINE && request.view.tier == TIER_REFINED && request.quality.full_chroma &&
+                request.quality.quality >= 90);
+    paint(f, &request, false);
     ack(f, send_picture(f));
     f->now_ns += 60 * NS_PER_S;
-    assert_false(ask(f, &wish));
+    assert_false(ask(f, &request));
 }
 
 static void newest_camera_wins_and_the_last_state_arrives(void **state)
 {
     struct session_case *f = *state;
-    struct frame_request wish;
+    struct frame_request request;
     greet(f);
     show(f);
     for (uint32_t seq = 1; seq <= 50; seq++) { /* nobody acknowledges: two pictures, then none */
         char text[128];
         snprintf(text, sizeof(text), "{\"type\":\"camera\",\"seq\":%u,\"eye\":[%u,-9,4],\"target\":[0,0,1]}", seq, seq + 5);
         say(f, text);
-        if (ask(f, &wish)) {
-            paint(f, &wish, false);
+        if (ask(f, &request)) {
+            paint(f, &request, false);
             send_picture(f);
         }
     }
-    assert_int_equal(f->session->pacer.flight_count, PACER_LEAST);
-    assert_int_equal(wish.only_replace ? 2 : wish.view.camera_seq, 2);
-    ack(f, f->session->pacer.last_seq);
-    assert_true(ask(f, &wish));
-    assert_int_equal(wish.view.camera_seq, 50);
-    assert_true(wish.view.camera.eye_m[0] == 55);
+    assert_int_equal(f->session->delivery.pacer.flight_count, PACER_LEAST);
+    assert_int_equal(request.only_replace ? 2 : request.view.camera_seq, 2);
+    ack(f, f->session->delivery.pacer.last_seq);
+    assert_true(ask(f, &request));
+    assert_int_equal(request.view.camera_seq, 50);
+    assert_true(request.view.camera.eye_m[0] == 55);
 }
 
 static void a_full_window_only_replaces(void **state)
 {
     struct session_case *f = *state;
-    struct frame_request wish;
+    struct frame_request request;
     greet(f);
-    assert_true(ask(f, &wish));
+    assert_true(ask(f, &request));
     say(f, "{\"type\":\"camera\",\"seq\":1,\"eye\":[9,9,9],\"target\":[0,0,1]}");
-    assert_true(ask(f, &wish));
+    assert_true(ask(f, &request));
     say(f, "{\"type\":\"camera\",\"seq\":2,\"eye\":[8,9,9],\"target\":[0,0,1]}");
-    assert_true(session_next_request(f->session, f->now_ns, &wish));
-    assert_true(wish.only_replace && wish.view.camera_seq == 2);
-    session_requested(f->session, &wish, true);
-    assert_int_equal(f->session->pacer.asked, 2);
-    assert_false(session_next_request(f->session, f->now_ns, &wish));
+    assert_true(session_next_request(f->session, f->now_ns, &request));
+    assert_true(request.only_replace && request.view.camera_seq == 2);
+    session_requested(f->session, &request, true);
+    assert_int_equal(f->session->delivery.pacer.asked, 2);
+    assert_false(session_next_request(f->session, f->now_ns, &request));
 }
 
 static void equal_pictures_free_their_place(void **state)
 {
     struct session_case *f = *state;
-    struct frame_request wish;
+    struct frame_request request;
     greet(f);
     for (int i = 0; i < 10; i++) {
         say(f, "{\"type\":\"camera\",\"seq\":1,\"eye\":[9,9,9],\"target\":[0,0,1]}");
-        assert_true(ask(f, &wish));
-        paint(f, &wish, true);
+        assert_true(ask(f, &request));
+        paint(f, &request, true);
     }
-    assert_int_equal(f->session->pacer.asked, 0);
+    assert_int_equal(f->session->delivery.pacer.asked, 0);
     assert_int_equal(send_picture(f), 0);
 }
 
 static void without_a_first_picture_a_session_is_refused(void **state)
 {
     struct session_case *f = *state;
-    struct frame_request wish;
+    struct frame_request request;
     greet(f);
-    assert_true(ask(f, &wish));
-    paint_nothing(f, &wish);
-    assert_int_equal(f->session->close_code, 1013);
-    assert_int_equal(f->session->pacer.asked, 0);
+    assert_true(ask(f, &request));
+    paint_nothing(f, &request);
+    assert_int_equal(f->session->close.code, 1013);
+    assert_int_equal(f->session->delivery.pacer.asked, 0);
 }
 
 static void a_view_that_cannot_be_drawn_is_said_once(void **state)
 {
     struct session_case *f = *state;
-    struct frame_request wish;
+    struct frame_request request;
     greet(f);
     show(f);
     for (int camera = 1; camera <= 2; camera++) {
         char text[96];
         snprintf(text, sizeof(text), "{\"type\":\"camera\",\"seq\":%d,\"eye\":[9,9,%d],\"target\":[0,0,1]}", camera, camera + 5);
         say(f, text);
-        assert_true(ask(f, &wish));
-        paint_nothing(f, &wish);
+        assert_true(ask(f, &request));
+        paint_nothing(f, &request);
         expect_error(f, "no_picture");
         f->now_ns += 150 * MS;
         session_on_data(f->session, f->now_ns);
-        assert_true(ask(f, &wish));
-        paint_nothing(f, &wish);
-        assert_int_equal(f->session->close_code, 0);
+        assert_true(ask(f, &request));
+        paint_nothing(f, &request);
+        assert_int_equal(f->session->close.code, 0);
     }
     f->now_ns += 3 * NS_PER_S;
     show(f);
@@ -309,134 +310,134 @@ static void a_view_that_cannot_be_drawn_is_said_once(void **state)
 static void a_view_that_cannot_be_drawn_is_tried_again(void **state)
 {
     struct session_case *f = *state;
-    struct frame_request wish;
+    struct frame_request request;
     greet(f);
     show(f);
     say(f, "{\"type\":\"camera\",\"seq\":1,\"eye\":[9,9,5],\"target\":[0,0,1]}");
-    assert_true(ask(f, &wish));
-    paint_nothing(f, &wish);
+    assert_true(ask(f, &request));
+    paint_nothing(f, &request);
     int tries = 0;
     for (int tenth = 0; tenth < 100; tenth++) {
         f->now_ns += 100 * MS;
-        if (!ask(f, &wish))
+        if (!ask(f, &request))
             continue;
-        assert_true(wish.view.tier == TIER_REFINED && wish.view.camera_seq == 1);
-        paint_nothing(f, &wish);
+        assert_true(request.view.tier == TIER_REFINED && request.view.camera_seq == 1);
+        paint_nothing(f, &request);
         tries++;
     }
     assert_in_range(tries, 3, 6);
     f->now_ns += 3 * NS_PER_S;
     assert_int_equal(show(f).view.tier, TIER_REFINED);
     f->now_ns += 10 * NS_PER_S;
-    assert_false(ask(f, &wish));
+    assert_false(ask(f, &request));
 }
 
 static void overtaken_pictures_are_not_sent(void **state)
 {
     struct session_case *f = *state;
-    struct frame_request wish;
+    struct frame_request request;
     greet(f);
-    assert_true(ask(f, &wish));
+    assert_true(ask(f, &request));
     say(f, "{\"type\":\"camera\",\"seq\":1,\"eye\":[9,9,9],\"target\":[0,0,1]}");
-    struct frame_request first = wish;
-    assert_true(ask(f, &wish));
+    struct frame_request first = request;
+    assert_true(ask(f, &request));
     f->number = 1;
-    paint(f, &wish, false); /* number 2 */
+    paint(f, &request, false); /* number 2 */
     f->number = 0;
     paint(f, &first, false); /* number 1 comes later */
     uint32_t seq;
-    struct encoded_frame *picture = session_next_frame(f->session, f->now_ns, &seq);
-    assert_int_equal(picture->wish.view.camera_seq, 1);
-    encoded_frame_destroy(&picture);
+    struct encoded_frame *encoded = session_next_frame(f->session, f->now_ns, &seq);
+    assert_int_equal(encoded->request.view.camera_seq, 1);
+    encoded_frame_destroy(&encoded);
     assert_null(session_next_frame(f->session, f->now_ns, &seq));
-    assert_int_equal(f->session->pacer.asked, 0);
-    assert_int_equal(f->session->dropped, 1);
+    assert_int_equal(f->session->delivery.pacer.asked, 0);
+    assert_int_equal(f->session->stats.dropped, 1);
 }
 
 static void data_under_a_still_view_is_drawn_once_and_refined(void **state)
 {
     struct session_case *f = *state;
-    struct frame_request wish;
+    struct frame_request request;
     greet(f);
     show(f);
     f->now_ns += NS_PER_S;
     assert_true(show(f).view.tier == TIER_REFINED);
     session_on_data(f->session, f->now_ns);
-    assert_true(ask(f, &wish));
-    assert_true(!wish.always && wish.view.tier == TIER_REFINED && wish.view.input_ns == f->now_ns);
-    paint(f, &wish, true);
-    assert_false(ask(f, &wish));
+    assert_true(ask(f, &request));
+    assert_true(!request.always && request.view.tier == TIER_REFINED && request.view.input_ns == f->now_ns);
+    paint(f, &request, true);
+    assert_false(ask(f, &request));
 }
 
 static void readings_come_with_the_next_camera_of_a_slow_drag(void **state)
 {
     struct session_case *f = *state;
-    struct frame_request wish;
+    struct frame_request request;
     greet(f);
     show(f);
     for (int camera = 1; camera <= 5; camera++) {
         char text[96];
         snprintf(text, sizeof(text), "{\"type\":\"camera\",\"seq\":%d,\"eye\":[9,9,%d],\"target\":[0,0,1]}", camera, camera + 5);
         say(f, text);
-        f->world.changed_ns = f->now_ns;
-        wish = show(f);
-        assert_true(wish.urgency == URGENCY_INPUT && wish.read_ns == f->now_ns);
+        f->context.changed_ns = f->now_ns;
+        request = show(f);
+        assert_true(request.urgency == URGENCY_INPUT && request.read_ns == f->now_ns);
         f->now_ns += 50 * MS;
         session_on_data(f->session, f->now_ns);
-        assert_false(ask(f, &wish));
+        assert_false(ask(f, &request));
         f->now_ns += 50 * MS;
     }
     f->now_ns += 50 * MS; /* it was the last */
-    assert_true(ask(f, &wish));
-    assert_true(wish.of_data && wish.urgency == URGENCY_DATA);
+    assert_true(ask(f, &request));
+    assert_true(request.of_data && request.urgency == URGENCY_DATA);
 }
 
 static void nobody_is_refined_while_another_moves(void **state)
 {
     struct session_case *f = *state;
-    struct frame_request wish;
+    struct frame_request request;
     greet(f);
     show(f);
     for (int i = 0; i < 9; i++) {
         f->now_ns += NS_PER_S;
-        f->world.moving_until_ns = f->now_ns + 200 * MS;
-        assert_false(ask(f, &wish));
+        f->context.moving_until_ns = f->now_ns + 200 * MS;
+        assert_false(ask(f, &request));
         session_on_data(f->session, f->now_ns);
         assert_true(show(f).view.tier == TIER_PREVIEW);
     }
     f->now_ns += 250 * MS;
-    assert_true(ask(f, &wish));
-    assert_true(wish.view.tier == TIER_REFINED);
+    assert_true(ask(f, &request));
+    assert_true(request.view.tier == TIER_REFINED);
 }
 
 static void others_may_move_for_a_while_not_for_ever(void **state)
 {
     struct session_case *f = *state;
-    struct frame_request wish;
+    struct frame_request request;
     greet(f);
     show(f);
     f->now_ns += 11 * NS_PER_S;
-    f->world.moving_until_ns = f->now_ns + 200 * MS;
-    assert_true(ask(f, &wish));
-    assert_true(wish.view.tier == TIER_REFINED);
+    f->context.moving_until_ns = f->now_ns + 200 * MS;
+    assert_true(ask(f, &request));
+    assert_true(request.view.tier == TIER_REFINED);
 }
 
 static void data_on_a_loaded_server_is_not_refined_at_once(void **state)
 {
     struct session_case *f = *state;
-    struct frame_request wish;
+    struct frame_request request;
     greet(f);
     show(f);
     f->now_ns += NS_PER_S;
     assert_true(show(f).view.tier == TIER_REFINED);
-    f->world.loaded = true;
-    wish = show_data(f, false);
-    assert_true(wish.view.tier == TIER_PREVIEW && wish.urgency == URGENCY_DATA);
+    f->context.overloaded = true;
+    request = show_data(f, false);
+    assert_true(request.view.tier == TIER_PREVIEW && request.urgency == URGENCY_DATA);
     f->now_ns += 900 * MS;
-    assert_false(ask(f, &wish));
+    assert_false(ask(f, &request));
     f->now_ns += 200 * MS;
-    assert_true(ask(f, &wish));
-    assert_true(wish.view.tier == TIER_REFINED);
+    assert_true(ask(f, &request));
+    assert_true(request.view.tier == TIER_REFINED);
 }
 
 static void data_on_a_loaded_server_does_not_put_refinement_off_for_ever(void **state)
@@ -447,7 +448,7 @@ static void data_on_a_loaded_server_does_not_put_refinement_off_for_ever(void **
     show(f);
     f->now_ns += NS_PER_S;
     assert_true(show(f).view.tier == TIER_REFINED);
-    f->world.loaded = true;
+    f->context.overloaded = true;
     for (int i = 0; i < 20; i++) { /* 10 s */
         f->now_ns += 500 * MS;
         refined += show_data(f, false).view.tier == TIER_REFINED;
@@ -459,96 +460,96 @@ static void data_on_a_loaded_server_does_not_put_refinement_off_for_ever(void **
 static void data_leaves_a_refined_picture_that_is_quick_to_color(void **state)
 {
     struct session_case *f = *state;
-    struct frame_request wish;
+    struct frame_request request;
     greet(f);
     show(f);
     f->now_ns += NS_PER_S;
     assert_true(show(f).view.tier == TIER_REFINED);
-    f->world.loaded = true;
+    f->context.overloaded = true;
     for (int i = 0; i < 120; i++) {
         f->now_ns += 500 * MS;
-        wish = show_data(f, true);
-        assert_true(wish.view.tier == TIER_REFINED && wish.urgency == URGENCY_DATA && wish.quality.full_chroma);
+        request = show_data(f, true);
+        assert_true(request.view.tier == TIER_REFINED && request.urgency == URGENCY_DATA && request.quality.full_chroma);
     }
     f->now_ns += 5 * NS_PER_S;
-    assert_false(ask(f, &wish));
+    assert_false(ask(f, &request));
 }
 
 /* 125 kB/s: what moves becomes smaller, what stands still is refined in two stages. */
 static void a_slow_client_gets_less_and_everything_in_the_end(void **state)
 {
     struct session_case *f = *state;
-    struct frame_request wish;
+    struct frame_request request;
     greet(f);
     for (int i = 1; i <= 40; i++) {
         char text[96];
         snprintf(text, sizeof(text), "{\"type\":\"camera\",\"seq\":%d,\"eye\":[9,9,%d],\"target\":[0,0,1]}", i, i + 5);
         say(f, text);
-        assert_true(ask(f, &wish));
-        size_t bytes = (size_t)(200e3 * wish.quality.quality / 78 * wish.view.width_px / 640 * wish.view.width_px / 640);
-        carry(f, &wish, bytes, (int64_t)bytes * 8000);
+        assert_true(ask(f, &request));
+        size_t bytes = (size_t)(200e3 * request.quality.quality / 78 * request.view.width_px / 640 * request.view.width_px / 640);
+        carry(f, &request, bytes, (int64_t)bytes * 8000);
     }
-    assert_true(wish.quality.quality < 50 && wish.view.width_px < 400 && wish.view.height_px < 250);
+    assert_true(request.quality.quality < 50 && request.view.width_px < 400 && request.view.height_px < 250);
     assert_int_equal(f->session->view.width_px, 640);
     f->now_ns += 300 * MS;
-    assert_true(ask(f, &wish));
-    assert_true(wish.view.tier == TIER_REFINED && wish.view.width_px == 640 && !wish.quality.full_chroma);
-    carry(f, &wish, 100000, 800 * MS);
+    assert_true(ask(f, &request));
+    assert_true(request.view.tier == TIER_REFINED && request.view.width_px == 640 && !request.quality.full_chroma);
+    carry(f, &request, 100000, 800 * MS);
     f->now_ns += 1100 * MS;
-    assert_true(ask(f, &wish));
-    assert_true(wish.always && wish.view.width_px == 640 && wish.quality.full_chroma && wish.quality.quality >= 90);
-    carry(f, &wish, 500000, 4000 * MS);
+    assert_true(ask(f, &request));
+    assert_true(request.always && request.view.width_px == 640 && request.quality.full_chroma && request.quality.quality >= 90);
+    carry(f, &request, 500000, 4000 * MS);
     f->now_ns += 60 * NS_PER_S;
-    assert_false(ask(f, &wish));
+    assert_false(ask(f, &request));
 }
 
 static void a_refined_picture_that_is_out_of_date_is_not_sent_on(void **state)
 {
     struct session_case *f = *state;
-    struct frame_request wish;
+    struct frame_request request;
     uint32_t seq;
     greet(f);
-    assert_true(ask(f, &wish));
-    carry(f, &wish, 50000, 400 * MS);
+    assert_true(ask(f, &request));
+    carry(f, &request, 50000, 400 * MS);
     f->now_ns += 300 * MS;
-    assert_true(ask(f, &wish));
-    assert_true(wish.view.tier == TIER_REFINED);
-    paint(f, &wish, false);
+    assert_true(ask(f, &request));
+    assert_true(request.view.tier == TIER_REFINED);
+    paint(f, &request, false);
     struct encoded_frame *sending = session_next_frame(f->session, f->now_ns, &seq);
     assert_false(session_gives_up(f->session, sending, 400000, f->now_ns));
     say(f, "{\"type\":\"camera\",\"seq\":1,\"eye\":[9,9,9],\"target\":[0,0,1]}");
     assert_false(session_gives_up(f->session, sending, 1000, f->now_ns));
     assert_true(session_gives_up(f->session, sending, 400000, f->now_ns));
     session_gave_up(f->session);
-    assert_false(ask(f, &wish));
+    assert_false(ask(f, &request));
     session_wrote(f->session, true, f->now_ns);
-    assert_true(ask(f, &wish));
-    assert_true(wish.always && wish.view.camera_seq == 1);
+    assert_true(ask(f, &request));
+    assert_true(request.always && request.view.camera_seq == 1);
     encoded_frame_destroy(&sending);
 }
 
 static void who_takes_nothing_is_paused_and_costs_nothing(void **state)
 {
     struct session_case *f = *state;
-    struct frame_request wish;
+    struct frame_request request;
     greet(f);
-    assert_true(ask(f, &wish));
-    paint(f, &wish, false);
+    assert_true(ask(f, &request));
+    paint(f, &request, false);
     assert_int_equal(send_picture(f), 1);
     say(f, "{\"type\":\"camera\",\"seq\":1,\"eye\":[9,9,9],\"target\":[0,0,1]}");
-    assert_true(ask(f, &wish));
-    paint(f, &wish, false);
-    assert_non_null(f->session->ready);
+    assert_true(ask(f, &request));
+    paint(f, &request, false);
+    assert_non_null(f->session->delivery.ready);
     f->now_ns += 2100 * MS;
     session_on_tick(f->session, f->now_ns);
-    assert_null(f->session->ready);
+    assert_null(f->session->delivery.ready);
     assert_int_equal(session_state(f->session, f->now_ns), PACER_STALLS);
-    assert_false(ask(f, &wish));
+    assert_false(ask(f, &request));
     ack(f, 1);
     assert_int_equal(session_state(f->session, f->now_ns), PACER_FLOWS);
-    assert_true(ask(f, &wish));
-    assert_true(wish.always && wish.view.camera_seq == 1);
-    paint(f, &wish, false);
+    assert_true(ask(f, &request));
+    assert_true(request.always && request.view.camera_seq == 1);
+    paint(f, &request, false);
     send_picture(f);
     f->now_ns += 15100 * MS;
     assert_int_equal(session_state(f->session, f->now_ns), PACER_DEAD);
@@ -557,18 +558,18 @@ static void who_takes_nothing_is_paused_and_costs_nothing(void **state)
 static void hidden_pages_get_nothing(void **state)
 {
     struct session_case *f = *state;
-    struct frame_request wish;
+    struct frame_request request;
     greet(f);
     show(f);
     say(f, "{\"type\":\"visible\",\"visible\":false}");
     f->now_ns += 10 * NS_PER_S;
     session_on_data(f->session, f->now_ns);
     say(f, "{\"type\":\"camera\",\"seq\":1,\"eye\":[9,9,9],\"target\":[0,0,1]}");
-    assert_false(ask(f, &wish));
+    assert_false(ask(f, &request));
     expect(f, "");
     say(f, "{\"type\":\"visible\",\"visible\":true}");
-    assert_true(ask(f, &wish));
-    assert_true(wish.always && wish.view.camera_seq == 1);
+    assert_true(ask(f, &request));
+    assert_true(request.always && request.view.camera_seq == 1);
 }
 
 static void tags_come_whole_then_by_change_then_nothing(void **state)
@@ -652,7 +653,7 @@ static void a_client_that_does_not_read_costs_a_bounded_list(void **state)
     greet(f);
     for (int i = 0; i < 10000; i++)
         say(f, "{\"type\":\"ping\",\"t\":1.5}");
-    assert_true(f->session->reply_count <= SESSION_MAX_REPLIES);
+    assert_true(f->session->owed.reply_count <= SESSION_MAX_REPLIES);
 }
 
 static void too_many_messages_are_put_off(void **state)
@@ -661,15 +662,15 @@ static void too_many_messages_are_put_off(void **state)
     greet(f);
     for (int i = 0; i < f->quotas.at[QUOTA_MESSAGES]; i++)
         say(f, "{\"type\":\"camera\",\"seq\":1,\"eye\":[9,9,9],\"target\":[0,0,1]}");
-    assert_true(f->session->too_fast);
+    assert_true(f->session->rate.exceeded);
     expect_error(f, "too_fast");
     expect(f, "");
     f->now_ns += 500 * MS;
     session_on_tick(f->session, f->now_ns);
-    assert_true(f->session->too_fast);
+    assert_true(f->session->rate.exceeded);
     f->now_ns += 600 * MS;
     session_on_tick(f->session, f->now_ns);
-    assert_false(f->session->too_fast);
+    assert_false(f->session->rate.exceeded);
 }
 
 static void acks_for_nothing_are_errors(void **state)
@@ -709,16 +710,16 @@ static void a_fit_is_answered_with_a_camera_and_moves_nothing(void **state)
 static void a_pick_is_asked_once_and_answered(void **state)
 {
     struct session_case *f = *state;
-    struct pick_query order;
+    struct pick_query query;
     greet(f);
-    assert_false(session_next_pick(f->session, &order));
+    assert_false(session_next_pick(f->session, &query));
     say(f, "{\"type\":\"pick\",\"seq\":5,\"x\":10.5,\"y\":20}");
     say(f, "{\"type\":\"pick\",\"seq\":6,\"x\":11,\"y\":20,\"camera\":{\"eye\":[1,2,3],\"target\":[4,5,6]}}");
-    assert_true(session_next_pick(f->session, &order));
-    assert_true(order.client == f->session->id && order.seq == 6 && order.x_px == 11 && order.view.camera.eye_m[2] == 3);
+    assert_true(session_next_pick(f->session, &query));
+    assert_true(query.client == f->session->id && query.seq == 6 && query.x_px == 11 && query.view.camera.eye_m[2] == 3);
     assert_true(f->session->view.camera.eye_m[2] != 3);
-    assert_false(session_next_pick(f->session, &order));
-    struct pick_answer answer = { .order = order, .pick = { .asset = 0, .state = PICK_MEASURED, .value = 30.5, .sensor = 0 } };
+    assert_false(session_next_pick(f->session, &query));
+    struct pick_answer answer = { .query = query, .pick = { .asset = 0, .state = PICK_MEASURED, .value = 30.5, .sensor = 0 } };
     answer.pick.nearest_count = 1;
     answer.pick.nearest[0] = (struct pick_sensor){ .tag = 0, .distance_m = 0.25, .value = 30.5 };
     session_on_pick(f->session, &answer);
@@ -744,8 +745,8 @@ static void a_pick_is_asked_once_and_answered(void **state)
 static void a_follower_is_shown_its_leaders_view(void **state)
 {
     struct session_case *f = *state;
-    struct frame_request wish;
-    struct session *leader = session_create(&f->world, 8, f->now_ns);
+    struct frame_request request;
+    struct session *leader = session_create(&f->context, 8, f->now_ns);
     static const char hello[] = "{\"type\":\"hello\",\"width\":800,\"height\":600,\"codecs\":[\"jpeg\"]}";
     static const char camera[] = "{\"type\":\"camera\",\"seq\":77,\"eye\":[3,4,5],\"target\":[0,0,1]}";
     static const char params[] = "{\"type\":\"params\",\"seq\":5,\"group\":\"pressure\"}";
@@ -755,7 +756,7 @@ static void a_follower_is_shown_its_leaders_view(void **state)
     say(f, "{\"type\":\"camera\",\"seq\":1,\"eye\":[9,9,9],\"target\":[0,0,1]}");
     show(f);
     say(f, "{\"type\":\"follow\",\"session\":8}");
-    assert_true(f->session->follow_asked && f->session->follow == 8);
+    assert_true(f->session->following.asked && f->session->following.wanted == 8);
     session_follow(f->session, leader, f->now_ns);
     json_t *following = hear(f);
     assert_string_equal(type_of(following), "following");
@@ -767,23 +768,23 @@ static void a_follower_is_shown_its_leaders_view(void **state)
     session_on_message(leader, camera, sizeof(camera) - 1, f->now_ns, f->now_ns);
     session_on_message(leader, params, sizeof(params) - 1, f->now_ns, f->now_ns);
     session_on_leader(f->session, f->now_ns);
-    wish = show(f);
-    assert_true(wish.view.camera.eye_m[0] == 3 && wish.view.field.group == leader->view.field.group);
-    assert_int_equal(wish.view.camera_seq, 1); /* no other was asked for by this client */
+    request = show(f);
+    assert_true(request.view.camera.eye_m[0] == 3 && request.view.field.group == leader->view.field.group);
+    assert_int_equal(request.view.camera_seq, 1); /* no other was asked for by this client */
     following = hear(f);
     assert_string_equal(json_string_value(json_object_get(following, "group")), "pressure");
     json_decref(following);
     say(f, "{\"type\":\"resize\",\"width\":320,\"height\":200}");
     assert_int_equal(show(f).view.width_px, 800);
     say(f, "{\"type\":\"follow\",\"session\":null}");
-    assert_true(f->session->follow_asked && f->session->follow == 0);
+    assert_true(f->session->following.asked && f->session->following.wanted == 0);
     session_follow(f->session, NULL, f->now_ns);
     following = hear(f);
     assert_true(json_is_null(json_object_get(following, "session")));
     assert_int_equal(json_integer_value(json_object_get(following, "width")), 320);
     json_decref(following);
-    wish = show(f);
-    assert_true(wish.view.width_px == 320 && wish.view.camera.eye_m[0] == 9);
+    request = show(f);
+    assert_true(request.view.width_px == 320 && request.view.camera.eye_m[0] == 9);
     session_follow(f->session, leader, f->now_ns);
     session_leader_gone(f->session, f->now_ns); /* what is there stays, at its own size, and is said to be of one who has gone */
     following = hear(f);
@@ -791,8 +792,8 @@ static void a_follower_is_shown_its_leaders_view(void **state)
     assert_true(json_is_true(json_object_get(following, "gone")));
     assert_string_equal(json_string_value(json_object_get(following, "group")), "pressure");
     json_decref(following);
-    wish = show(f);
-    assert_true(wish.view.width_px == 320 && wish.view.camera.eye_m[0] == 3);
+    request = show(f);
+    assert_true(request.view.width_px == 320 && request.view.camera.eye_m[0] == 3);
     session_follow(f->session, leader, f->now_ns); /* it is back */
     following = hear(f);
     assert_null(json_object_get(following, "gone"));
@@ -827,29 +828,29 @@ static void pings_come_back_exactly(void **state)
 static void codecs_are_chosen_and_chosen_again(void **state)
 {
     struct session_case *f = *state;
-    struct frame_request wish;
-    f->world.codecs = 1u << WIRE_CODEC_JPEG | 1u << WIRE_CODEC_H264;
+    struct frame_request request;
+    f->context.codecs = 1u << WIRE_CODEC_JPEG | 1u << WIRE_CODEC_H264;
     say(f, "{\"type\":\"hello\",\"width\":640,\"height\":360,\"codecs\":[\"auto\",\"h264\",\"jpeg\"]}");
     expect(f, "welcome status tags ");
-    assert_true(ask(f, &wish) && wish.codec == WIRE_CODEC_H264 && wish.alone);
-    paint_nothing(f, &wish);
-    f->session->pacer.channel.ns_per_byte = 1;
-    f->world.cpu_used = 1;
+    assert_true(ask(f, &request) && request.codec == WIRE_CODEC_H264 && request.alone);
+    paint_nothing(f, &request);
+    f->session->delivery.pacer.channel.ns_per_byte = 1;
+    f->context.cpu_used = 1;
     for (int i = 0; i < 60; i++, f->now_ns += 100 * MS)
         session_on_tick(f->session, f->now_ns);
-    assert_int_equal(f->session->codec, WIRE_CODEC_JPEG);
+    assert_int_equal(f->session->codec.current, WIRE_CODEC_JPEG);
     say(f, "{\"type\":\"codecs\",\"codecs\":[\"h264\"]}");
     session_on_tick(f->session, f->now_ns);
-    assert_int_equal(f->session->codec, WIRE_CODEC_H264);
-    assert_true(ask(f, &wish) && wish.codec == WIRE_CODEC_H264 && wish.alone && wish.always);
-    paint_nothing(f, &wish);
+    assert_int_equal(f->session->codec.current, WIRE_CODEC_H264);
+    assert_true(ask(f, &request) && request.codec == WIRE_CODEC_H264 && request.alone && request.always);
+    paint_nothing(f, &request);
     say(f, "{\"type\":\"key_frame\"}");
-    assert_true(ask(f, &wish) && wish.alone && wish.always);
-    paint_nothing(f, &wish);
-    f->world.codecs = 0;
+    assert_true(ask(f, &request) && request.alone && request.always);
+    paint_nothing(f, &request);
+    f->context.codecs = 0;
     say(f, "{\"type\":\"codecs\",\"codecs\":[\"h264\"]}"); /* of a server without it */
     expect_error(f, "bad_field");
-    assert_int_equal(f->session->codec, WIRE_CODEC_H264);
+    assert_int_equal(f->session->codec.current, WIRE_CODEC_H264);
 }
 
 int main(void)

@@ -22,16 +22,16 @@ static int set_up(void **state)
 {
     session_case_set_up(state);
     struct session_case *f = *state;
-    f->world.live = false;
-    f->world.snapshot_cache = snapshot_cache_create();
-    f->world.history_first_us = NOW_US - INT64_C(3600000000);
+    f->context.live = false;
+    f->context.snapshot_cache = snapshot_cache_create();
+    f->context.history_first_us = NOW_US - INT64_C(3600000000);
     return 0;
 }
 
 static int tear_down(void **state)
 {
     struct session_case *f = *state;
-    struct snapshot_cache *snapshot_cache = f->world.snapshot_cache;
+    struct snapshot_cache *snapshot_cache = f->context.snapshot_cache;
     session_case_tear_down(state);
     snapshot_cache_destroy(&snapshot_cache);
     return 0;
@@ -113,7 +113,7 @@ static void bring(struct session_case *f, double ago_s, double value)
     int64_t at_us = NOW_US - (int64_t)llround(ago_s * 1e6);
     snapshot->taken_utc_ns = at_us * 1000;
     snapshot->readings[0] = (struct reading){ .value = value };
-    snapshot_cache_add(f->world.snapshot_cache, at_us, snapshot);
+    snapshot_cache_add(f->context.snapshot_cache, at_us, snapshot);
     snapshot_destroy(&snapshot);
     session_on_historical_snapshot(f->session, at_us, true, f->now_ns);
 }
@@ -121,15 +121,15 @@ static void bring(struct session_case *f, double ago_s, double value)
 static void test_an_instant_is_shown_once_it_was_read(void **state)
 {
     struct session_case *f = *state;
-    struct frame_request wish;
+    struct frame_request request;
     greet(f, "");
     go(f, 60, 0);
     assert_true(f->session->view.at_us == 0);
     assert_true(wanted(f) == 60);
     assert_true(isnan(wanted(f))); /* asked once */
     bring(f, 60, 5);
-    assert_true(session_next_request(f->session, f->now_ns, &wish));
-    assert_true(wish.view.at_us == NOW_US - 60000000 && wish.view.field.slot == 1 && wish.urgency == URGENCY_INPUT);
+    assert_true(session_next_request(f->session, f->now_ns, &request));
+    assert_true(request.view.at_us == NOW_US - 60000000 && request.view.field.slot == 1 && request.urgency == URGENCY_INPUT);
     assert_true(session_snapshot(f->session)->readings[0].value == 5);
     json_t *tags = hear(f, "tags");
     assert_int_equal(number(tags, "time_us"), NOW_US - 60000000);
@@ -145,7 +145,7 @@ static void test_the_client_is_told_where_it_is(void **state)
     bring(f, 60, 5);
     json_t *time = hear(f, "time");
     assert_non_null(time);
-    assert_int_equal(json_integer_value(json_object_get(time, "from_us")), f->world.history_first_us);
+    assert_int_equal(json_integer_value(json_object_get(time, "from_us")), f->context.history_first_us);
     assert_int_equal(number(time, "at_us"), NOW_US - 60000000);
     say(f, "{\"type\":\"time\",\"at_us\":null}");
     time = hear(f, "time");
@@ -220,11 +220,11 @@ static void test_what_cannot_be_read_is_said_and_changes_nothing(void **state)
     assert_true(f->session->view.at_us == 0 && f->session->travel.speed == 0 && isnan(wanted(f)));
     say(f, "{\"type\":\"time\",\"speed\":2}");
     expect_error(f, "bad_field");
-    struct snapshot_cache *snapshot_cache = f->world.snapshot_cache;
-    f->world.snapshot_cache = NULL;
+    struct snapshot_cache *snapshot_cache = f->context.snapshot_cache;
+    f->context.snapshot_cache = NULL;
     go(f, 60, 0);
     expect_error(f, "no_history");
-    f->world.snapshot_cache = snapshot_cache;
+    f->context.snapshot_cache = snapshot_cache;
 }
 
 static void test_the_newest_seconds_are_the_present(void **state)
@@ -246,7 +246,7 @@ static void test_new_parameters_stay_in_the_past(void **state)
     assert_true(f->session->view.at_us == NOW_US - 60000000 && f->session->view.field.slot == 1 && f->session->view.right.field.slot == 1);
     say(f, "{\"type\":\"params\",\"seq\":2,\"baseline\":{\"set\":\"then\"}}");
     struct baseline list[BASELINES_NAMED];
-    assert_int_equal(baselines_list(f->world.baselines, list), 1);
+    assert_int_equal(baselines_list(f->context.baselines, list), 1);
     assert_true(list[0].taken_utc_ns == (NOW_US - 60000000) * 1000);
 }
 
@@ -254,14 +254,14 @@ static void test_whoever_begins_in_the_past_never_sees_the_present(void **state)
 {
     struct session_case *f = *state;
     char more[64];
-    struct frame_request wish;
+    struct frame_request request;
     snprintf(more, sizeof(more), ",\"at_us\":%lld,\"speed\":60", (long long)(NOW_US - 600000000));
     greet(f, more);
-    assert_false(session_next_request(f->session, f->now_ns, &wish));
+    assert_false(session_next_request(f->session, f->now_ns, &request));
     assert_true(wanted(f) == 600);
     bring(f, 600, 5);
-    assert_true(session_next_request(f->session, f->now_ns, &wish));
-    assert_true(wish.view.at_us == NOW_US - 600000000);
+    assert_true(session_next_request(f->session, f->now_ns, &request));
+    assert_true(request.view.at_us == NOW_US - 600000000);
     f->now_ns += 1000 * MS;
     assert_true(wanted(f) == 540);
 }
@@ -269,7 +269,7 @@ static void test_whoever_begins_in_the_past_never_sees_the_present(void **state)
 static void test_who_comes_back_is_where_he_was(void **state)
 {
     struct session_case *f = *state;
-    struct frame_request wish;
+    struct frame_request request;
     char more[128];
     greet(f, "");
     go(f, 60, 0);
@@ -277,21 +277,21 @@ static void test_who_comes_back_is_where_he_was(void **state)
     bring(f, 60, 5);
     session_leave(f->session, true, f->now_ns);
     session_destroy(&f->session);
-    f->session = session_create(&f->world, 8, f->now_ns);
+    f->session = session_create(&f->context, 8, f->now_ns);
     snprintf(more, sizeof(more), ",\"resume\":\"%s\"", f->resume);
     greet(f, more);
-    assert_false(session_next_request(f->session, f->now_ns, &wish));
+    assert_false(session_next_request(f->session, f->now_ns, &request));
     assert_true(wanted(f) == 60);
     bring(f, 60, 5);
-    assert_true(session_next_request(f->session, f->now_ns, &wish));
-    assert_true(wish.view.at_us == NOW_US - 60000000);
+    assert_true(session_next_request(f->session, f->now_ns, &request));
+    assert_true(request.view.at_us == NOW_US - 60000000);
 }
 
 static void test_who_follows_comes_along(void **state)
 {
     struct session_case *f = *state;
     greet(f, "");
-    struct session *other = session_create(&f->world, 8, f->now_ns);
+    struct session *other = session_create(&f->context, 8, f->now_ns);
     session_follow(other, f->session, f->now_ns);
     go(f, 60, 0);
     wanted(f);
@@ -299,7 +299,7 @@ static void test_who_follows_comes_along(void **state)
     session_on_leader(other, f->now_ns);
     assert_true(session_view(other)->at_us == NOW_US - 60000000);
     assert_true(session_snapshot(other)->readings[0].value == 5);
-    assert_true(other->owes_time && other->owes_tags_all);
+    assert_true(other->owed.time && other->owed.tags_all);
     session_destroy(&other);
 }
 
@@ -307,7 +307,7 @@ static void test_who_is_given_the_lead_stays_there(void **state)
 {
     struct session_case *f = *state;
     greet(f, "");
-    struct session *heir = session_create(&f->world, 8, f->now_ns);
+    struct session *heir = session_create(&f->context, 8, f->now_ns);
     session_follow(heir, f->session, f->now_ns);
     go(f, 60, 0);
     wanted(f);

@@ -18,48 +18,48 @@ static struct time_account *who_has_had_less(struct time_account *a, struct time
     return scheduler_before(a->spent_ns[SHARE], 0, b->spent_ns[SHARE], 1) ? a : b;
 }
 
-static void serve(struct time_accounts *payers, struct time_account *payer, int64_t cost_ns)
+static void serve(struct time_accounts *accounts, struct time_account *account, int64_t cost_ns)
 {
-    time_accounts_served(payers, payer, SHARE);
-    payer->spent_ns[SHARE] += cost_ns;
-    time_accounts_asked(payers, payer, SHARE);
+    time_accounts_served(accounts, account, SHARE);
+    account->spent_ns[SHARE] += cost_ns;
+    time_accounts_asked(accounts, account, SHARE);
 }
 
 static void each_address_has_half_of_the_time(void **state)
 {
     (void)state;
-    struct time_accounts payers = { 0 };
-    struct time_account *large = time_accounts_join(&payers, 1), *small = time_accounts_join(&payers, 2);
+    struct time_accounts accounts = { 0 };
+    struct time_account *large = time_accounts_join(&accounts, 1), *small = time_accounts_join(&accounts, 2);
     int64_t had_ns[2] = { 0 };
     for (int i = 0; i < 29; i++)
-        assert_ptr_equal(time_accounts_join(&payers, 1), large); /* however many sessions it has */
+        assert_ptr_equal(time_accounts_join(&accounts, 1), large); /* however many sessions it has */
     while (had_ns[0] + had_ns[1] < 60 * NS_PER_S) {
         struct time_account *next = who_has_had_less(large, small);
         int64_t cost_ns = next == large ? 300 * NS_PER_MS : 20 * NS_PER_MS;
-        serve(&payers, next, cost_ns);
+        serve(&accounts, next, cost_ns);
         had_ns[next == small] += cost_ns;
     }
     assert_true(had_ns[1] > 29 * NS_PER_S && had_ns[1] < 31 * NS_PER_S);
-    time_accounts_finish(&payers);
+    time_accounts_finish(&accounts);
 }
 
 static void who_comes_anew_owes_what_it_had(void **state)
 {
     (void)state;
-    struct time_accounts payers = { 0 };
-    struct time_account *greedy = time_accounts_join(&payers, 1), *other = time_accounts_join(&payers, 2);
-    serve(&payers, greedy, NS_PER_S);
-    time_accounts_leave(&payers, &greedy);
-    greedy = time_accounts_join(&payers, 1);
+    struct time_accounts accounts = { 0 };
+    struct time_account *greedy = time_accounts_join(&accounts, 1), *other = time_accounts_join(&accounts, 2);
+    serve(&accounts, greedy, NS_PER_S);
+    time_accounts_leave(&accounts, &greedy);
+    greedy = time_accounts_join(&accounts, 1);
     assert_ptr_equal(who_has_had_less(greedy, other), other);
     for (int i = 0; i < 60; i++)
-        serve(&payers, other, 20 * NS_PER_MS);
-    time_accounts_leave(&payers, &greedy); /* the other has caught up: nothing is owed */
-    assert_int_equal(payers.count, 1);
-    greedy = time_accounts_join(&payers, 1);
-    time_accounts_asked(&payers, greedy, SHARE);
-    assert_int_equal(greedy->spent_ns[SHARE], payers.served_ns[SHARE]);
-    time_accounts_finish(&payers);
+        serve(&accounts, other, 20 * NS_PER_MS);
+    time_accounts_leave(&accounts, &greedy); /* the other has caught up: nothing is owed */
+    assert_int_equal(accounts.count, 1);
+    greedy = time_accounts_join(&accounts, 1);
+    time_accounts_asked(&accounts, greedy, SHARE);
+    assert_int_equal(greedy->spent_ns[SHARE], accounts.served_ns[SHARE]);
+    time_accounts_finish(&accounts);
 }
 
 int main(void)

@@ -8,43 +8,43 @@
 #include "net/tls.h"
 #include "net/connection.h"
 
-static int alive(struct server_context *hub, struct request *request)
+static int alive(struct server_context *server, struct request *request)
 {
-    (void)hub;
+    (void)server;
     return request_answer_text(request, HTTP_STATUS_OK, "ok\n");
 }
 
-static int ready(struct server_context *hub, struct request *request)
+static int ready(struct server_context *server, struct request *request)
 {
-    if (render_service_ready(hub->params.plant.painter))
+    if (render_service_ready(server->params.plant.render_service))
         return request_answer_text(request, HTTP_STATUS_OK, "ok\n");
     return request_answer_text(request, HTTP_STATUS_SERVICE_UNAVAILABLE, "the GL context was lost; a new one is being made\n");
 }
 
-static int stream_without_upgrade(struct server_context *hub, struct request *request)
+static int stream_without_upgrade(struct server_context *server, struct request *request)
 {
-    (void)hub;
+    (void)server;
     static const char text[] = "a WebSocket with the subprotocol " WIRE_SUBPROTOCOL " is here\n";
     return request_answer(request, 426, HTTP_TEXT, mem_strdup(text), strlen(text), "upgrade:", "websocket");
 }
 
-static int file(struct server_context *hub, struct request *request, const char *path)
+static int file(struct server_context *server, struct request *request, const char *path)
 {
     struct site_file found;
     char seen[64] = "";
     bool cached = false;
     if (lws_hdr_copy(request->wsi, seen, sizeof(seen), WSI_TOKEN_HTTP_IF_NONE_MATCH) > 0)
-        cached = site_read(hub->params.web_folder, path, true, &found) && !strcmp(seen, found.etag);
+        cached = site_read(server->params.web_folder, path, true, &found) && !strcmp(seen, found.etag);
     if (cached)
         return request_answer(request, HTTP_STATUS_NOT_MODIFIED, found.type, NULL, 0, "etag:", found.etag);
-    if (!site_read(hub->params.web_folder, path, false, &found))
+    if (!site_read(server->params.web_folder, path, false, &found))
         return request_answer_text(request, HTTP_STATUS_NOT_FOUND, "not found\n");
     return request_answer(request, HTTP_STATUS_OK, found.type, found.bytes, found.count, "etag:", found.etag);
 }
 
 static const struct {
     const char *path;
-    int (*serve)(struct server_context *hub, struct request *request);
+    int (*serve)(struct server_context *server, struct request *request);
     enum role least;
 } routes[] = {
     { "/healthz", alive, ROLE_NOBODY },
@@ -86,57 +86,57 @@ static const struct refusal NOT_FOR_YOU = { HTTP_STATUS_FORBIDDEN, "viewers get 
 static const struct refusal NOT_ENGINEER = { HTTP_STATUS_FORBIDDEN, "this takes the role engineer\n" };
 static const struct refusal FOREIGN = { HTTP_STATUS_FORBIDDEN, "pages of other sites do not get this\n" };
 
-static int serve_route(struct server_context *hub, struct request *request, size_t i)
+static int serve_route(struct server_context *server, struct request *request, size_t i)
 {
     enum role role = connection_of(request->wsi)->role;
     if (role < routes[i].least)
         return refuse(request, role == ROLE_NOBODY ? &NEED_TOKEN : &NOT_FOR_YOU);
     if (routes[i].least > ROLE_NOBODY && is_foreign_page(request->wsi))
         return refuse(request, &FOREIGN);
-    return routes[i].serve(hub, request);
+    return routes[i].serve(server, request);
 }
 
-static int serve_reload(struct server_context *hub, struct request *request)
+static int serve_reload(struct server_context *server, struct request *request)
 {
     enum role role = connection_of(request->wsi)->role;
     request->close = true;
     if (role < ROLE_ENGINEER)
         return refuse(request, role == ROLE_NOBODY ? &NEED_TOKEN : &NOT_ENGINEER);
-    return is_foreign_page(request->wsi) ? refuse(request, &FOREIGN) : ask_reload(hub, request);
+    return is_foreign_page(request->wsi) ? refuse(request, &FOREIGN) : ask_reload(server, request);
 }
 
-static int serve(struct server_context *hub, struct request *request, const char *path)
+static int serve(struct server_context *server, struct request *request, const char *path)
 {
     bool post = lws_hdr_total_length(request->wsi, WSI_TOKEN_POST_URI) > 0 && !strcmp(path, RELOAD_PATH);
     bool get = lws_hdr_total_length(request->wsi, WSI_TOKEN_GET_URI) > 0;
     struct refusal refusal;
     request->head = lws_hdr_total_length(request->wsi, WSI_TOKEN_HEAD_URI) > 0;
-    counter_inc(hub->counters.requests, 1);
+    counter_inc(server->counters.requests, 1);
     if (!get && !request->head && !post) {
         request->close = true; /* there may be a body that nobody reads */
         static const char text[] = "only GET and HEAD (POST: /api/v1/reload)\n";
         return request_answer(request, HTTP_STATUS_METHOD_NOT_ALLOWED, HTTP_TEXT, mem_strdup(text), strlen(text), "allow:", "GET, HEAD");
     }
-    if (!connection_identify(hub, request->wsi, &refusal)) {
-        counter_inc(hub->counters.refused, 1);
+    if (!connection_identify(server, request->wsi, &refusal)) {
+        counter_inc(server->counters.refused, 1);
         return refuse(request, &refusal);
     }
     if (post)
-        return serve_reload(hub, request);
+        return serve_reload(server, request);
     for (size_t i = 0; i < sizeof(routes) / sizeof(routes[0]); i++)
         if (!strcmp(routes[i].path, path))
-            return serve_route(hub, request, i);
-    return file(hub, request, path);
+            return serve_route(server, request, i);
+    return file(server, request, path);
 }
 
-static int on_writeable(struct server_context *hub, struct request *request)
+static int on_writeable(struct server_context *server, struct request *request)
 {
     if (request->pieces)
-        return chunked_write(hub, request);
+        return chunked_write(server, request);
     size_t left = request->count - request->sent, slice = left < SLICE_BYTES ? left : SLICE_BYTES;
     if (!request->body)
         return 0;
-    if (!net_write(hub, request->wsi, request->body + request->sent, slice, slice == left ? LWS_WRITE_HTTP_FINAL : LWS_WRITE_HTTP))
+    if (!net_write(server, request->wsi, request->body + request->sent, slice, slice == left ? LWS_WRITE_HTTP_FINAL : LWS_WRITE_HTTP))
         return -1;
     request->sent += slice;
     if (slice == left)
@@ -155,11 +155,11 @@ static struct request *request_of(struct lws *wsi, struct request **slot)
     return *slot;
 }
 
-static void request_end(struct server_context *hub, struct request **slot)
+static void request_end(struct server_context *server, struct request **slot)
 {
     if (!slot || !*slot)
         return;
-    request_forget(hub, *slot);
+    request_forget(server, *slot);
     request_hold(*slot, NULL, 0);
     mem_free(*slot);
     *slot = NULL;

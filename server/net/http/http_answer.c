@@ -36,15 +36,15 @@ bool request_write_head(struct request *request, int status, const char *type, c
 {
     unsigned char buffer[LWS_PRE + HEAD_BYTES], *start = buffer + LWS_PRE, *p = start, *end = buffer + sizeof(buffer) - 1;
     struct lws *wsi = request->wsi;
-    const struct server_context *hub = server_context_of(wsi);
+    const struct server_context *server = server_context_of(wsi);
     if (!add_first(request, status, type, &p, end))
         return false;
     for (size_t i = 0; i < sizeof(security) / sizeof(security[0]); i++)
         if (!add_header(wsi, security[i][0], security[i][1], &p, end))
             return false;
-    if (!add_header(wsi, "content-security-policy:", hub->content_policy, &p, end))
+    if (!add_header(wsi, "content-security-policy:", server->content_policy, &p, end))
         return false;
-    if (hub->tls && !add_header(wsi, "strict-transport-security:", "max-age=31536000", &p, end))
+    if (server->tls && !add_header(wsi, "strict-transport-security:", "max-age=31536000", &p, end))
         return false;
     if (extra_name && !add_header(wsi, extra_name, extra, &p, end))
         return false;
@@ -53,10 +53,10 @@ bool request_write_head(struct request *request, int status, const char *type, c
 
 void request_hold(struct request *request, char *body, size_t count)
 {
-    struct server_context *hub = server_context_of(request->wsi);
+    struct server_context *server = server_context_of(request->wsi);
     if (request->holder) {
         request->holder->answer_bytes -= (int64_t)request->count;
-        hub->answer_bytes -= (int64_t)request->count;
+        server->answer_bytes -= (int64_t)request->count;
     }
     mem_free(request->body);
     request->holder = body ? connection_of(request->wsi)->client : NULL;
@@ -66,16 +66,16 @@ void request_hold(struct request *request, char *body, size_t count)
     if (!request->holder)
         return;
     request->holder->answer_bytes += (int64_t)count;
-    hub->answer_bytes += (int64_t)count;
+    server->answer_bytes += (int64_t)count;
 }
 
 /* A large answer waits for whoever asked for it to read it, for as long as he takes. */
 static bool may_hold(const struct request *request, size_t count)
 {
-    const struct server_context *hub = server_context_of(request->wsi);
-    const struct connection *visitor = connection_of(request->wsi);
-    bool room = hub->answer_bytes + (int64_t)count < hub->quotas->at[QUOTA_ANSWER_BYTES];
-    return count <= SMALL_BYTES || !visitor->client || (room && address_limits_may_hold(hub->peers, visitor->client, count));
+    const struct server_context *server = server_context_of(request->wsi);
+    const struct connection *connection = connection_of(request->wsi);
+    bool room = server->answer_bytes + (int64_t)count < server->quotas->at[QUOTA_ANSWER_BYTES];
+    return count <= SMALL_BYTES || !connection->client || (room && address_limits_may_hold(server->limits, connection->client, count));
 }
 
 int request_done(struct request *request)
@@ -146,43 +146,43 @@ bool request_args(struct lws *wsi, struct args *args, struct message_error *erro
     return true;
 }
 
-void request_await(struct server_context *hub, struct request *request)
+void request_await(struct server_context *server, struct request *request)
 {
-    request->client = hub->next_client++;
-    request->next = hub->snapshots;
-    hub->snapshots = request;
-    request->peer = connection_of(request->wsi)->client;
+    request->client = server->next_client++;
+    request->next = server->snapshots;
+    server->snapshots = request;
+    request->usage = connection_of(request->wsi)->client;
     lws_set_timeout(request->wsi, PENDING_TIMEOUT_HTTP_CONTENT, 60);
 }
 
-struct request *request_find(const struct server_context *hub, uint64_t client)
+struct request *request_find(const struct server_context *server, uint64_t client)
 {
-    struct request *request = hub->snapshots;
+    struct request *request = server->snapshots;
     while (request && request->client != client)
         request = request->next;
     return request;
 }
 
-void request_forget(struct server_context *hub, struct request *request)
+void request_forget(struct server_context *server, struct request *request)
 {
-    struct request **at = &hub->snapshots;
+    struct request **at = &server->snapshots;
     while (*at && *at != request)
         at = &(*at)->next;
     if (!*at)
         return;
     *at = request->next;
-    hub->picture_count -= request->asked != NULL;
-    request->peer->pictures -= request->asked != NULL;
-    hub->question_count -= request->asks;
-    request->peer->questions -= request->asks;
+    server->picture_count -= request->asked != NULL;
+    request->usage->pictures -= request->asked != NULL;
+    server->question_count -= request->asks;
+    request->usage->questions -= request->asks;
     request->asks = false;
-    render_service_forget(hub->params.plant.painter, request->client);
-    if (hub->recall)
-        history_queries_forget(hub->recall, request->client);
-    if (hub->past)
-        history_loader_forget(hub->past, request->client);
+    render_service_forget(server->params.plant.render_service, request->client);
+    if (server->history_queries)
+        history_queries_forget(server->history_queries, request->client);
+    if (server->history_loader)
+        history_loader_forget(server->history_loader, request->client);
     if (request->asked && request->asked->historical)
-        snapshot_cache_give(hub->params.plant.snapshot_cache, &request->asked->historical);
+        snapshot_cache_give(server->params.plant.snapshot_cache, &request->asked->historical);
     mem_free(request->asked);
     request->asked = NULL;
 }

@@ -10,76 +10,76 @@
 #include "net/connection.h"
 #include "session/reply.h"
 
-static int await_recalled(struct server_context *hub, struct request *request, struct history_query *order)
+static int await_recalled(struct server_context *server, struct request *request, struct history_query *query)
 {
-    struct address_usage *peer = connection_of(request->wsi)->client;
-    order->client = hub->next_client;
-    order->payer = peer->share.payer;
-    if (hub->question_count >= hub->quotas->at[QUOTA_QUESTIONS] || !address_limits_may_ask(hub->peers, peer) ||
-        !history_queries_ask(hub->recall, order))
+    struct address_usage *usage = connection_of(request->wsi)->client;
+    query->client = server->next_client;
+    query->account = usage->share.account;
+    if (server->question_count >= server->quotas->at[QUOTA_QUESTIONS] || !address_limits_may_ask(server->limits, usage) ||
+        !history_queries_ask(server->history_queries, query))
         return request_answer_later(request, "too much is being asked; try again\n");
-    request_await(hub, request);
+    request_await(server, request);
     request->asks = true;
-    peer->questions++;
-    hub->question_count++;
+    usage->questions++;
+    server->question_count++;
     return 0;
 }
 
-static int ask_recorded(struct server_context *hub, struct request *request, bool gaps)
+static int ask_recorded(struct server_context *server, struct request *request, bool gaps)
 {
-    struct history_query order;
+    struct history_query query;
     struct message_error error = { 0 };
     struct args args;
     int64_t now_us = clock_utc_ns() / 1000;
-    if (!hub->recall)
+    if (!server->history_queries)
         return request_answer_text(request, HTTP_STATUS_NOT_FOUND, HTTP_NOTHING_RECORDED);
     if (!request_args(request->wsi, &args, &error) ||
-        !(gaps ? history_query_parse_gaps(args.list, args.count, now_us, &order, &error)
-               : history_query_parse(hub->params.plant.scene->plant, args.list, args.count, now_us, &order, &error)))
+        !(gaps ? history_query_parse_gaps(args.list, args.count, now_us, &query, &error)
+               : history_query_parse(server->params.plant.scene->plant, args.list, args.count, now_us, &query, &error)))
         return request_answer_error(request, &error);
-    return await_recalled(hub, request, &order);
+    return await_recalled(server, request, &query);
 }
 
-int ask_history(struct server_context *hub, struct request *request)
+int ask_history(struct server_context *server, struct request *request)
 {
-    return ask_recorded(hub, request, false);
+    return ask_recorded(server, request, false);
 }
 
-int ask_gaps(struct server_context *hub, struct request *request)
+int ask_gaps(struct server_context *server, struct request *request)
 {
-    return ask_recorded(hub, request, true);
+    return ask_recorded(server, request, true);
 }
 
-static bool read_alarm_query(struct server_context *hub, struct request *request, bool journal, struct alarm_query *query,
+static bool read_alarm_query(struct server_context *server, struct request *request, bool journal, struct alarm_query *query,
                              struct message_error *error)
 {
     struct args args;
     return request_args(request->wsi, &args, error) &&
-           alarm_query_parse(hub->params.plant.scene->plant, journal, args.list, args.count, clock_utc_ns() / 1000, query, error);
+           alarm_query_parse(server->params.plant.scene->plant, journal, args.list, args.count, clock_utc_ns() / 1000, query, error);
 }
 
-int api_alarms(struct server_context *hub, struct request *request)
+int api_alarms(struct server_context *server, struct request *request)
 {
     struct alarm_query query;
     struct message_error error = { 0 };
-    if (!hub->params.plant.alarm_service)
+    if (!server->params.plant.alarm_service)
         return request_answer_text(request, HTTP_STATUS_NOT_FOUND, "there are no alarms here\n");
-    if (!read_alarm_query(hub, request, false, &query, &error))
+    if (!read_alarm_query(server, request, false, &query, &error))
         return request_answer_error(request, &error);
-    char *text = alarms_api_text(hub->params.plant.alarm_service, hub->params.plant.scene->plant, &query, clock_utc_ns());
+    char *text = alarms_api_text(server->params.plant.alarm_service, server->params.plant.scene->plant, &query, clock_utc_ns());
     return query.csv ? request_answer(request, HTTP_STATUS_OK, "text/csv; charset=utf-8", text, strlen(text), NULL, NULL)
                      : request_answer_json(request, text);
 }
 
-int ask_journal(struct server_context *hub, struct request *request)
+int ask_journal(struct server_context *server, struct request *request)
 {
-    struct history_query order = { .journal = true };
+    struct history_query query = { .journal = true };
     struct message_error error = { 0 };
-    if (!hub->recall)
+    if (!server->history_queries)
         return request_answer_text(request, HTTP_STATUS_NOT_FOUND, HTTP_NOTHING_RECORDED);
-    if (!read_alarm_query(hub, request, true, &order.alarms, &error))
+    if (!read_alarm_query(server, request, true, &query.alarms, &error))
         return request_answer_error(request, &error);
-    return await_recalled(hub, request, &order);
+    return await_recalled(server, request, &query);
 }
 
 /* The first piece of several, or one that follows. */
@@ -99,9 +99,9 @@ static int answer_whole(struct request *request, struct history_answer *answer, 
     return request_answer(request, HTTP_STATUS_OK, type, text, answer->length, NULL, NULL);
 }
 
-void http_on_history_answer(struct server_context *hub, struct history_answer *recalled)
+void http_on_history_answer(struct server_context *server, struct history_answer *recalled)
 {
-    struct request *request = request_find(hub, recalled->client);
+    struct request *request = request_find(server, recalled->client);
     const char *type = recalled->csv ? "text/csv; charset=utf-8" : "application/json";
     bool whole = recalled->first && recalled->last;
     if (!request)
@@ -110,7 +110,7 @@ void http_on_history_answer(struct server_context *hub, struct history_answer *r
         request_answered(request, take_piece(request, recalled, type));
         return;
     }
-    request_forget(hub, request);
+    request_forget(server, request);
     if (!recalled->text) /* what was begun cannot be taken back, but it can be seen not to be whole */
         request_answered(request, recalled->first ? request_answer_text(request, HTTP_STATUS_INTERNAL_SERVER_ERROR, HTTP_UNREADABLE) : -1);
     else
@@ -118,9 +118,9 @@ void http_on_history_answer(struct server_context *hub, struct history_answer *r
 }
 
 /* Of the whole process, when somebody asks. */
-static void count_memory(struct server_context *hub)
+static void count_memory(struct server_context *server)
 {
-    struct counters *counters = hub->params.counters;
+    struct counters *counters = server->params.counters;
     struct memory_use use;
     memory_measure(&use);
     counter_set(counters_add(counters, "process_resident_memory_bytes", "gauge", "Resident memory, mapped files and all."),
@@ -129,17 +129,17 @@ static void count_memory(struct server_context *hub)
     counter_set(counters_add(counters, "plantcast_heap_bytes", "gauge", "Memory that malloc has handed out."), (int64_t)use.allocated);
 }
 
-int metrics(struct server_context *hub, struct request *request)
+int metrics(struct server_context *server, struct request *request)
 {
     struct text text = { 0 };
-    count_memory(hub);
-    counters_print(hub->params.counters, &text);
+    count_memory(server);
+    counters_print(server->params.counters, &text);
     return request_answer(request, HTTP_STATUS_OK, "text/plain; version=0.0.4; charset=utf-8", text.at, text.length, NULL, NULL);
 }
 
-int api_plant(struct server_context *hub, struct request *request)
+int api_plant(struct server_context *server, struct request *request)
 {
-    return request_answer_json(request, reply_api_plant_text(&hub->world));
+    return request_answer_json(request, reply_api_plant_text(&server->session_context));
 }
 
 enum { TAGS_PAGE = 1000, TAGS_PAGE_MAX = 5000 };
@@ -160,22 +160,22 @@ static bool read_page(const struct args *args, size_t *first, size_t *count)
     return *count >= 1 && *count <= TAGS_PAGE_MAX;
 }
 
-int api_tags(struct server_context *hub, struct request *request)
+int api_tags(struct server_context *server, struct request *request)
 {
     struct message_error error = { 0 };
     struct args args;
     size_t first = 0, count = TAGS_PAGE;
     if (!request_args(request->wsi, &args, &error) || !read_page(&args, &first, &count))
         return request_answer_text(request, HTTP_STATUS_BAD_REQUEST, "expected first=N and count=N, 1 to 5000\n");
-    return request_answer_json(request, reply_api_tags_text(&hub->world, first, count));
+    return request_answer_json(request, reply_api_tags_text(&server->session_context, first, count));
 }
 
-int api_proofs(struct server_context *hub, struct request *request)
+int api_proofs(struct server_context *server, struct request *request)
 {
     struct text text = { 0 };
-    if (!hub->params.plant.loop_checks)
+    if (!server->params.plant.loop_checks)
         return request_answer_text(request, HTTP_STATUS_NOT_FOUND, HTTP_NOTHING_RECORDED);
-    loop_checks_print(hub->params.plant.loop_checks, &text);
+    loop_checks_print(server->params.plant.loop_checks, &text);
     return request_answer(request, HTTP_STATUS_OK, "text/csv; charset=utf-8", text.at, text.length,
                           "content-disposition:", "attachment; filename=\"proofs.csv\"");
 }

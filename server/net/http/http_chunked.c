@@ -29,9 +29,9 @@ void chunked_append(struct request *request, char *body, size_t count, bool last
     lws_callback_on_writable(request->wsi);
 }
 
-static bool write_chunk(struct server_context *hub, struct request *request, size_t count, bool end)
+static bool write_chunk(struct server_context *server, struct request *request, size_t count, bool end)
 {
-    char *out = (char *)hub->out + LWS_PRE;
+    char *out = (char *)server->out + LWS_PRE;
     size_t n = 0;
     bool chunked = request->pieces == PIECES_CHUNKED;
     if (chunked && count > 0)
@@ -49,23 +49,23 @@ static bool write_chunk(struct server_context *hub, struct request *request, siz
     return lws_write(request->wsi, (unsigned char *)out, n, end ? LWS_WRITE_HTTP_FINAL : LWS_WRITE_HTTP) >= (int)n;
 }
 
-int chunked_write(struct server_context *hub, struct request *request)
+int chunked_write(struct server_context *server, struct request *request)
 {
     size_t left = request->count - request->sent, most = SLICE_BYTES - 2 * ROOM_BYTES, slice = left < most ? left : most;
     if (!request->body)
         return 0;
-    if (!write_chunk(hub, request, slice, slice == left && request->last_piece))
+    if (!write_chunk(server, request, slice, slice == left && request->last_piece))
         return -1;
     request->sent += slice;
     lws_set_timeout(request->wsi, PENDING_TIMEOUT_HTTP_CONTENT, slice < left ? PATIENCE_S : MAKING_S);
     if (slice < left) {
         lws_callback_on_writable(request->wsi);
     } else if (request->last_piece) {
-        request_forget(hub, request);
+        request_forget(server, request);
         return request_done(request);
     } else {
         request_hold(request, NULL, 0);
-        history_queries_continue(hub->recall, request->client);
+        history_queries_continue(server->history_queries, request->client);
     }
     return 0;
 }

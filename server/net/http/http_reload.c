@@ -7,45 +7,45 @@
 #include "net/connection.h"
 
 /* A page of another site may have its user's browser send this. */
-static bool may_change(struct server_context *hub, struct lws *wsi)
+static bool may_change(struct server_context *server, struct lws *wsi)
 {
     char origin[256], host[256];
     return connection_header(wsi, WSI_TOKEN_ORIGIN, origin, sizeof(origin)) && connection_header(wsi, WSI_TOKEN_HOST, host, sizeof(host)) &&
-           access_origin(&hub->params.access, origin, host, hub->tls != NULL);
+           access_origin(&server->params.access, origin, host, server->tls != NULL);
 }
 
-int ask_reload(struct server_context *hub, struct request *request)
+int ask_reload(struct server_context *server, struct request *request)
 {
     request->close = true; /* there may be a body that nobody reads */
-    if (!may_change(hub, request->wsi))
+    if (!may_change(server, request->wsi))
         return request_answer_text(request, HTTP_STATUS_FORBIDDEN, "pages of other sites may not do this\n");
-    if (!hub->params.reload)
+    if (!server->params.reload)
         return request_answer_text(request, HTTP_STATUS_NOT_FOUND, "this plant cannot be loaded anew\n");
     request->reloads = true;
-    request_await(hub, request);
-    hub->params.reload(hub->params.reload_arg);
+    request_await(server, request);
+    server->params.reload(server->params.reload_arg);
     return 0;
 }
 
-static void answer_all(struct server_context *hub, bool reloads, int status, const char *type, const char *text)
+static void answer_all(struct server_context *server, bool reloads, int status, const char *type, const char *text)
 {
-    for (struct request *request = hub->snapshots, *next; request; request = next) {
+    for (struct request *request = server->snapshots, *next; request; request = next) {
         next = request->next;
         if (request->reloads != reloads)
             continue;
-        request_forget(hub, request);
+        request_forget(server, request);
         request->reloads = false;
         bool begun = request->pieces != PIECES_NONE; /* the rest of it will not come: whoever reads it sees that it is not whole */
         request_answered(request, begun ? -1 : request_answer(request, status, type, mem_strdup(text), strlen(text), NULL, NULL));
     }
 }
 
-void http_release_plant(struct server_context *hub)
+void http_release_plant(struct server_context *server)
 {
-    answer_all(hub, false, HTTP_STATUS_SERVICE_UNAVAILABLE, HTTP_TEXT, "the plant was loaded anew meanwhile; try again\n");
+    answer_all(server, false, HTTP_STATUS_SERVICE_UNAVAILABLE, HTTP_TEXT, "the plant was loaded anew meanwhile; try again\n");
 }
 
-void http_on_reloaded(struct server_context *hub, bool good, const char *text)
+void http_on_reloaded(struct server_context *server, bool good, const char *text)
 {
-    answer_all(hub, true, good ? HTTP_STATUS_OK : 422, "application/json", text);
+    answer_all(server, true, good ? HTTP_STATUS_OK : 422, "application/json", text);
 }

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The files of the web client, below one folder and nowhere else. */
+/* The files of the web client, served from one folder. Thread: the loop. */
 #ifndef NET_SITE_H
 #define NET_SITE_H
 #include <stdbool.h>
@@ -12,8 +12,8 @@ struct site_file {
     char etag[48];    /* with its quotes */
 };
 
-/* path: decoded, starts with '/'. False: there is no such file that may be served. bytes stay NULL if only_etag. The page's own scripts
-   come without lines that only comment. */
+/* Reads the file of a path, which is decoded and starts with '/'. Scripts of the page come without comment lines. only_etag: bytes stays
+   NULL. Returns false if there is no such file below the folder. */
 bool site_read(const char *folder, const char *path, bool only_etag, struct site_file *out);
 
 #endif

@@ -1,0 +1,60 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Calls into the loop from other threads. */
+#include <pthread.h>
+
+#include "net/net_impl.h"
+
+void net_calls_init(struct net *net)
+{
+    pthread_mutex_init(&net->call.lock, NULL);
+    pthread_cond_init(&net->call.done, NULL);
+}
+
+void net_calls_finish(struct net *net)
+{
+    pthread_cond_destroy(&net->call.done);
+    pthread_mutex_destroy(&net->call.lock);
+}
+
+bool net_call(struct net *net, void (*what)(void *arg), void *arg)
+{
+    pthread_mutex_lock(&net->call.lock);
+    bool open = !net->call.closed;
+    net->call.what = what;
+    net->call.arg = arg;
+    net_wake(net);
+    while (net->call.what && !net->call.closed)
+        pthread_cond_wait(&net->call.done, &net->call.lock);
+    open = open && !net->call.what;
+    net->call.what = NULL;
+    pthread_mutex_unlock(&net->call.lock);
+    return open;
+}
+
+void net_calls_run(struct net *net)
+{
+    pthread_mutex_lock(&net->call.lock);
+    void (*what)(void *arg) = net->call.what;
+    void *arg = net->call.arg;
+    pthread_mutex_unlock(&net->call.lock);
+    if (!what)
+        return;
+    what(arg); /* who asked waits, and so changes nothing */
+    pthread_mutex_lock(&net->call.lock);
+    net->call.what = NULL;
+    pthread_cond_signal(&net->call.done);
+    pthread_mutex_unlock(&net->call.lock);
+}
+
+void net_calls_close(struct net *net)
+{
+    pthread_mutex_lock(&net->call.lock);
+    net->call.closed = true;
+    pthread_cond_signal(&net->call.done);
+    pthread_mutex_unlock(&net->call.lock);
+}
+
+void net_wake(struct net *net)
+{
+    lws_cancel_service(net->server.lws);
+}

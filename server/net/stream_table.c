@@ -1,0 +1,60 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* All connections to /stream, found by the number of their session. */
+#include <string.h>
+
+#include "base/mem.h"
+#include "net/stream.h"
+
+/* Where it is, or would be, in server->by_client. */
+static size_t place_of(const struct server_context *server, uint64_t client)
+{
+    size_t low = 0, high = (size_t)server->stream_count;
+    while (low < high) {
+        size_t middle = (low + high) / 2;
+        if (server->by_client[middle]->session->id < client)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    return low;
+}
+
+/* NULL: not connected. */
+struct stream *stream_find(const struct server_context *server, uint64_t client)
+{
+    size_t place = place_of(server, client);
+    bool there = place < (size_t)server->stream_count && server->by_client[place]->session->id == client;
+    return there ? server->by_client[place] : NULL;
+}
+
+struct stream *stream_called(const struct server_context *server, uint64_t number)
+{
+    struct stream *stream = server->streams;
+    while (stream && stream->session->identity.number != number)
+        stream = stream->next;
+    return stream;
+}
+
+bool stream_owns(const struct server_context *server, uint64_t client)
+{
+    return stream_find(server, client) != NULL;
+}
+
+void stream_table_add(struct server_context *server, struct stream *stream)
+{
+    stream->next = server->streams;
+    server->streams = stream;
+    mem_grow(&server->by_client, &server->by_client_capacity, (size_t)server->stream_count + 1, sizeof(struct stream *));
+    server->by_client[server->stream_count++] = stream; /* numbers go up */
+}
+
+void stream_table_remove(struct server_context *server, const struct stream *stream)
+{
+    struct stream **at = &server->streams;
+    while (*at != stream)
+        at = &(*at)->next;
+    *at = stream->next;
+    size_t place = place_of(server, stream->session->id), behind = (size_t)server->stream_count - place - 1;
+    memmove(server->by_client + place, server->by_client + place + 1, behind * sizeof(struct stream *));
+    server->stream_count--;
+}

@@ -1,0 +1,46 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* A session's answers, and what an input and the end of its connection change. */
+#include <string.h>
+
+#include "base/mem.h"
+#include "session/reply.h"
+#include "session/session_impl.h"
+
+void session_close(struct session *session, int code, const char *text)
+{
+    if (session->close.code)
+        return;
+    session->close.code = code;
+    session->close.text = text;
+}
+
+void session_reply(struct session *session, char *text)
+{
+    if (session->owed.reply_count == SESSION_MAX_REPLIES) { /* it does not read: the oldest answer is worth least */
+        mem_free(session->owed.replies[0]);
+        memmove(session->owed.replies, session->owed.replies + 1, sizeof(session->owed.replies) - sizeof(session->owed.replies[0]));
+        session->owed.reply_count--;
+    }
+    session->owed.replies[session->owed.reply_count++] = text;
+}
+
+void session_reply_error(struct session *session, const struct message_error *error)
+{
+    session->stats.errors++;
+    session_reply(session, reply_error_text(error));
+}
+
+void session_on_input(struct session *session, int64_t now_ns)
+{
+    session->demand.input = true;
+    session->demand.refined = REFINED_NOT;
+    session->demand.failure_said = false;
+    session->demand.input_ns = now_ns;
+    if (!session->demand.starting_ns)
+        session->demand.starting_ns = now_ns;
+}
+
+const char *session_who(const struct session *session)
+{
+    return session->identity.holder.name[0] ? session->identity.holder.name : "local";
+}

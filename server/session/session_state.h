@@ -1,0 +1,160 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The state of one client's session, in parts by concern. The loop reads it; only the functions of session.h change it, except where a
+   member says otherwise. Thread: the loop. */
+#ifndef SESSION_SESSION_STATE_H
+#define SESSION_SESSION_STATE_H
+#include "access/login_throttle.h"
+#include "access/tokens.h"
+#include "message/message.h"
+#include "placing/tag_file.h"
+#include "service/encoded_frame.h"
+#include "service/pick_queue.h"
+#include "session/admission.h"
+#include "session/codec_choice.h"
+#include "session/pacer.h"
+#include "value/snapshot_cache.h"
+
+enum { SESSION_MAX_REPLIES = 64 };
+
+/* Who the client is, as far as `hello` has told. */
+struct session_identity {
+    uint64_t number; /* by which other clients name this session; random; a resumed session keeps the number it had */
+    enum role role;
+    uint8_t address[16];                  /* of the client, as in struct address_usage */
+    enum login login;                     /* the verdict on the token in hello */
+    struct token_holder holder;           /* of that token; role ROLE_NOBODY: no token was given, or none was accepted */
+    char resume_secret[RESUME_CHARS + 1]; /* lets the client take its view up again over another connection */
+    bool resumed;                         /* this session took up another's view, as `welcome` says */
+    bool returned;                        /* likewise, and its followers have yet to be moved here; the loop clears it */
+};
+
+/* Why the connection is to be closed once the texts owed have been sent. */
+struct session_close {
+    int code;         /* WebSocket close code; 0: it stays open */
+    const char *text; /* static */
+};
+
+/* The pixels that the session's view takes of the server's limits (session_admission.c). */
+struct session_room {
+    struct address_share *share; /* of the client's address; NULL: none. The loop owns it, and joins and leaves it */
+    int64_t pixels;              /* counted in the admission's totals; 0: given back while the page was hidden */
+    int64_t hidden_ns;           /* when the page was last hidden or shown */
+};
+
+/* Which codec frames are encoded with. */
+struct session_codec {
+    struct codec_list list; /* what the client decodes */
+    enum wire_codec current;
+    struct codec_choice choice; /* where the server may choose */
+};
+
+/* Why the next frame is wanted, and how refined the view is shown (session_frames.c). */
+struct frame_demand {
+    bool input, data, any;          /* the view changed; a reading changed; a frame is due even if it shows the same, and stands alone */
+    int64_t input_ns;               /* newest change of the view */
+    int64_t data_ns;                /* oldest change of a reading that no frame was requested for */
+    int64_t preview_ns, refined_ns; /* when the newest frame of each tier was requested */
+    enum { REFINED_NOT, REFINED_DRAFT, REFINED_FULL } refined; /* the best refined frame requested of the view as it is */
+    double refined_bytes;                                      /* size of the last frame of full quality; 0: none was acknowledged */
+    bool starting; /* the first frame waits until session_begin tells the bandwidth, for a second at most */
+    int64_t starting_ns;
+    bool failure_said; /* the client was told that the view as it is cannot be drawn */
+    int64_t failed_ns; /* when the newest frame that there was no memory for was requested; 0: none */
+};
+
+/* Frames on their way to the client (session_frames.c). */
+struct frame_delivery {
+    struct pacer pacer;
+    uint64_t newest_number;          /* of the frames that were received from the render service */
+    struct encoded_frame *ready;     /* to be sent next, oldest first: a frame that stands alone replaces all before it */
+    bool measured;                   /* pacer.acked is new; the loop clears it */
+    int steps[QUALITY_LADDER_STEPS]; /* how many who see this view, itself too, are at each step of the quality ladder */
+    int common_step;                 /* the step that they share; negative: each its own. Set by the loop, as steps are */
+};
+
+/* Who is shown whose view (session_follow.c). The loop resolves numbers to sessions. */
+struct session_following {
+    struct session *leader;   /* whose view is shown; NULL: its own. Kept right by the loop */
+    bool asked;               /* the client asked to follow `wanted`; the loop answers */
+    uint64_t wanted;          /* a session's number; 0: nobody */
+    uint64_t left;            /* number of the leader who has gone and whose last view is shown; 0: none */
+    struct view own_view;     /* its own view meanwhile */
+    uint64_t heir_wanted;     /* who is to have the lead, as asked; 0: it stays. The loop answers */
+    bool followers_changed;   /* the list of its followers is to be sent again */
+    int64_t followers_ns;     /* when it was last made */
+    char *followers_text;     /* that text, to be sent; NULL: none */
+    uint32_t told_params_seq; /* of the leader's view, as the client was last told */
+    int told_size_px[2];
+};
+
+/* Where in time the session is (session_time.c). What it shows is view.at_us and `historical`. */
+struct travel {
+    const struct historical_snapshot *historical; /* a reference; NULL: readings of now are shown */
+    int64_t wanted_us;                            /* the instant that it moves to; 0: it is there */
+    bool asked;                                   /* that is being read */
+    bool first;                                   /* nothing is drawn until it is there: the session began at an instant */
+    double speed;                                 /* of play, seconds in a second; 0: stands */
+    int64_t from_us, from_ns;                     /* play was at from_us when the monotonic clock was at from_ns */
+    int64_t stepped_ns;
+};
+
+/* Texts that the client has yet to be sent (session_texts.c). */
+struct owed_texts {
+    bool welcome, params, following, tags_all, tags, status, time, loop_checks; /* loop_checks: all of them */
+    uint32_t params_seq;                                                        /* to be answered by `params` */
+    int64_t tags_ns;                                                            /* when tags were last sent */
+    uint32_t *tag_changes;                                                      /* reading.changes as last sent, by tag */
+    bool alarms_sent;                                                           /* at least once */
+    uint64_t alarms_number;                                                     /* of the last change of alarms that was sent */
+    uint64_t loop_checks_sent;                                                  /* number of the newest loop check that was sent */
+    int64_t told_at_us;                                                         /* the instant that is shown, as last told; 0: now */
+    bool told_beginning;                                                        /* the last `time` said where recorded history begins */
+    char *replies[SESSION_MAX_REPLIES];                                         /* answers, oldest first */
+    int reply_count;
+};
+
+/* Sensors that an engineer moves on trial (session_place.c). */
+struct session_placement {
+    struct place_set *set; /* of this session; NULL: nothing was moved */
+    uint32_t seq;          /* of the newest `place` */
+    struct tag_save *save; /* a tag list that is to be put in force; the loop takes it */
+};
+
+struct session_pick { /* a question about a pixel */
+    bool pending;     /* `query` has yet to be asked */
+    struct pick_query query;
+};
+
+struct message_rate {
+    int64_t begin_ns; /* of the second that is counted */
+    int count;
+    bool exceeded; /* the loop reads nothing more until that second is over */
+};
+
+struct session_stats { /* for the log and the counters */
+    int64_t messages, errors, dropped;
+};
+
+struct session {
+    uint64_t id; /* within this process */
+    const struct session_context *context;
+    struct session_identity identity;
+    int64_t opened_ns;
+    bool hello, hidden; /* hello was accepted; the client's page is not visible */
+    double pixel_ratio; /* device pixels per pixel of the page */
+    struct view view;   /* its own */
+    struct session_close close;
+    struct session_room room;
+    struct session_codec codec;
+    struct frame_demand demand;
+    struct frame_delivery delivery;
+    struct session_following following;
+    struct travel travel;
+    struct owed_texts owed;
+    struct session_placement placement;
+    struct session_pick pick;
+    struct message_rate rate;
+    struct session_stats stats;
+};
+
+#endif
