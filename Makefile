@@ -59,7 +59,8 @@ sim_archive      := $(if $(sim_sources),$(out)/lib/sim.a)
 import_sources   := $(wildcard preprocess/import/*.c)
 prep_sources     := $(filter-out %/main.c %/image_lazy.c $(import_sources),$(wildcard preprocess/*.c preprocess/*/*.c preprocess/*/*.cc))
 programs := $(if $(wildcard server/main.c),$(bin)/plantcastd) $(if $(wildcard preprocess/main.c),$(bin)/plantcast-prep) \
-            $(if $(wildcard clients/cli/main.c),$(bin)/plantcast) $(if $(import_sources),$(bin)/plantcast-import) $(if $(sim_sources),$(bin)/plantcast-sim) \
+            $(if $(wildcard clients/cli/main.c),$(bin)/plantcast) $(if $(import_sources),$(bin)/plantcast-import) \
+            $(if $(sim_sources),$(bin)/plantcast-sim) \
             $(if $(generate_sources),$(bin)/plantcast-demo)
 modules  := $(bin)/plantcast-images.so
 

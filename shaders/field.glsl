@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The colour of the field at a pixel: one look-up by place on the scale and by light. The colormap (render/shaded_colormap.h) holds sRGB colours
+// The colour of the field at a pixel: one look-up by place on the scale and by light. The colormap (render/shaded_colormap.h)
+// holds sRGB colours
 // by the legend's rule (field/scale.h), with bands, what lies outside MIN and MAX, and the patterns.
 layout(binding = 0) uniform sampler2D colormap;
 #ifdef RICH

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What holds for a whole picture. "eye" space: axes of the plant frame, origin at the camera, metres. Same layout as render/gl/frame_uniforms.h.
+// What holds for a whole picture. "eye" space: axes of the plant frame, origin at the camera, metres. Same layout as
+// render/gl/frame_uniforms.h.
 layout(std140, binding = 0) uniform Frame {
     mat4 clip_from_eye;
     mat4 eye_from_clip;

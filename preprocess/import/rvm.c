@@ -353,8 +353,8 @@ static void add_faces(struct reader *r, size_t primitive)
     }
 }
 
-/* What lies between two primitives is inside of both: neither light nor heat gets there. A plane whose direction is on the border between two
- * hundredths may be missed; then both faces stay, which is no error. */
+/* What lies between two primitives is inside of both: neither light nor heat gets there. A plane whose direction is on the border between
+ * two hundredths may be missed; then both faces stay, which is no error. */
 static void leave_out_covered_faces(struct reader *r)
 {
     for (size_t p = 0; p < r->primitive_count; p++)

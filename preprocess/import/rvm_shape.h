@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The primitives of RVM files (AVEVA PDMS, E3D, Marine) as triangles. A round section has a number of corners that depends on its radius and
- * the chord error alone, and its first corner lies in a direction that depends on its plane alone: where two primitives meet with equal
+/* The primitives of RVM files (AVEVA PDMS, E3D, Marine) as triangles. A round section has a number of corners that depends on its radius
+ * and the chord error alone, and its first corner lies in a direction that depends on its plane alone: where two primitives meet with equal
  * sections, they meet corner to corner. Thread: any. */
 #ifndef PREPROCESS_IMPORT_RVM_SHAPE_H
 #define PREPROCESS_IMPORT_RVM_SHAPE_H
@@ -47,8 +47,8 @@ struct rvm_face {
 };
 enum { RVM_MAX_FACES = 6 };
 
-/* Finds the flat faces that a neighbour may cover, numbered as in `open_faces`, and returns how many they are: both ends of what is round or
- * bent, the base of a dish, the faces of a box, top and bottom of a pyramid. Snouts with sheared ends have none. */
+/* Finds the flat faces that a neighbour may cover, numbered as in `open_faces`, and returns how many they are: both ends of what is
+ * round or bent, the base of a dish, the faces of a box, top and bottom of a pyramid. Snouts with sheared ends have none. */
 int rvm_shape_faces(const struct rvm_shape *shape, struct rvm_face faces[RVM_MAX_FACES]);
 
 /* Appends the primitive's triangles (or its line) to the node. No chord is further than chord_m from the true surface, except that a whole

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The first surface along a ray, as far as it is drawn: on the finest level, without what is hidden, a ghost or cut away, and without
-   the backs of one-sided surfaces; where a cut goes through closed bodies (scene/closed_bodies.h), the plane that closes them. Clusters of the
+   the backs of one-sided surfaces; where a cut goes through closed bodies (scene/closed_bodies.h), the plane that closes them.
+   Clusters of the
    asset file are passed over whole. Thread: any. */
 #ifndef SCENE_RAYCAST_H
 #define SCENE_RAYCAST_H

@@ -107,7 +107,9 @@ static void sums_are_those_of_all_pairs(void **state)
     static const struct {
         size_t count;
         double height, rough;
-    } fans[] = { { 12, 1, 0 }, { 256, 0.5, 0.02 }, { 257, 0.5, 0.02 }, { 1000, 0, 0 }, { 1777, 1, 0 }, { 2000, 0.3, 0.05 }, { 2000, 3, 1 } };
+    } fans[] = {
+        { 12, 1, 0 }, { 256, 0.5, 0.02 }, { 257, 0.5, 0.02 }, { 1000, 0, 0 }, { 1777, 1, 0 }, { 2000, 0.3, 0.05 }, { 2000, 3, 1 }
+    };
     for (size_t i = 0; i < sizeof(fans) / sizeof(fans[0]); i++) {
         struct fan fan;
         fan_init(&fan, fans[i].count, fans[i].height, fans[i].rough, (unsigned)i + 1);

@@ -55,7 +55,8 @@ void draw_batches_begin(struct draw_batches *batches, size_t model_count);
 uint32_t draw_batches_add_instance(struct draw_batches *batches, const struct draw_instance *instance); /* its number */
 /* A batch of that state. model: number of its model. in_order: what is drawn before must stay so: only the newest will do. */
 size_t draw_batches_choose(struct draw_batches *batches, const struct draw_batch_state *state, size_t model, bool in_order);
-/* A submesh, or of it only clusters that are seen; then returns how many triangles these have. shown: 0: not drawn unless the GPU says so. */
+/* Adds a submesh, or of it only the clusters that are seen, and returns how many triangles these have. shown 0: not drawn unless the GPU
+   says so. */
 void draw_batches_add_submesh(struct draw_batches *batches, size_t batch, const struct model_submesh *submesh, uint32_t instance,
                               uint32_t shown);
 int draw_batches_add_seen(struct draw_batches *batches, size_t batch, const struct model_submesh *submesh, uint32_t instance,

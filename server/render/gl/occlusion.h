@@ -38,7 +38,8 @@ size_t occlusion_round(const struct occlusion *occlusion, size_t first);
 /* The box of an asset that is tested decides about these commands. */
 void occlusion_decides(struct occlusion *occlusion, const struct occlusion_asset *asset, size_t first_command, size_t count);
 bool occlusion_upload(struct occlusion *occlusion); /* false: the GPU has no room for the boxes, logged */
-/* Decides about these, by what was drawn until now. State of the pass (render/gl/surface_pass.c) is as before but for the program, what is bound,
+/* Decides about these, by what was drawn until now. State of the pass (render/gl/surface_pass.c) is as before but for the program,
+   what is bound,
    the culling of faces and the polygon offset. */
 void occlusion_test(const struct occlusion *occlusion, const struct draw_batches *batches, size_t first, size_t end);
 /* How many assets were left out; waits for the GPU. For tests and measurements. */

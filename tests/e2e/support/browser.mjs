@@ -98,7 +98,8 @@ export async function settle(page, quietMs = 0) {
 // Until the picture has the size that it has in the page, and nothing flies any more.
 export const land = (page) => page.waitForFunction(() => {
     const { cameraController, session: { picture, size }, viewport } = globalThis.plantcast, ratio = devicePixelRatio;
-    return !cameraController?.fly && Math.abs(size.width - viewport.width * ratio) <= 2 && Math.abs(size.height - viewport.height * ratio) <= 2 &&
+    return !cameraController?.fly && Math.abs(size.width - viewport.width * ratio) <= 2 &&
+        Math.abs(size.height - viewport.height * ratio) <= 2 &&
         picture.fullWidth === size.width && picture.fullHeight === size.height;
 }, null, { timeout: 60000 });
 
