@@ -17,6 +17,7 @@
 #include "message/view_query.h"
 #include "plant/image_ramp.h"
 #include "render/overlay/overlay.h"
+#include "render/split_view.h"
 #include "scene/scene_create.h"
 #include "value/alarm.h"
 #include "values.h"
@@ -171,7 +172,7 @@ bool offline_renderer_seek(struct offline_renderer *offline, int64_t at_us, stru
 struct frame *offline_renderer_draw(struct offline_renderer *offline, const struct snapshot_options *options, struct view *view)
 {
     view->tier = options->moving ? TIER_PREVIEW : TIER_REFINED;
-    struct frame *frame = split_view_draw(offline->renderer, view, offline->snapshot);
+    struct frame *frame = split_view_draw_now(offline->renderer, view, offline->snapshot);
     if (frame) {
         frame_read_markers(frame, offline->snapshot, offline->baselines);
         frame->clock_unset = !view->at_us && !clock_utc_is_set();

@@ -23,6 +23,7 @@ struct frame_context {
     struct shaded_colormap colormap;
     struct reference *reference; /* NULL: the field is interpolated between vertices; else worked out at each fragment */
     double error_px;             /* of levels of detail, at most (render/plan/lod_selection.h); 0: no coarser ones */
+    uint64_t shape;              /* content_hash_shape of its plan */
     bool measured;               /* the field's numbers instead of colours, into floats */
 };
 

@@ -3,18 +3,15 @@
 #include "render/renderer.h"
 
 #include <limits.h>
-#include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "base/clock.h"
 #include "base/mem.h"
 #include "gpu/mesh.h"
 #include "render/plan/content_hash.h"
-#include "render/plan/lod_selection.h"
+#include "render/plan/frame_planner.h"
 #include "render/gl/frame_uniforms.h"
-#include "render/matrix.h"
-#include "render/pick/measure_target.h"
+#include "render/renderer_compare.h"
 #include "render/renderer_impl.h"
 #include "render/render_job.h"
 
@@ -25,18 +22,11 @@ enum { LEAST_HIDING = 250000 };
 /* Expected of GL on a processor before anything was measured. */
 static const double FIRST_PIXEL_NS[PASSES] = { 200, 20 };
 
-static struct light_key wanted_light(const struct view *view)
-{
-    struct light_key key = { .environment = view->environment, .shown = view->visibility };
-    memcpy(key.towards, view->light_dir, sizeof(key.towards));
-    return key;
-}
-
 struct light_key renderer_usual_light(const struct renderer *renderer)
 {
     struct view view;
     view_default(renderer->scene, 16, 16, &view);
-    return wanted_light(&view);
+    return frame_plan_wanted_light(&view);
 }
 
 struct renderer *renderer_create(struct log *log, struct gl *gl, const struct scene *scene, struct field *field)
@@ -45,9 +35,8 @@ struct renderer *renderer_create(struct log *log, struct gl *gl, const struct sc
     renderer->gl = gl;
     renderer->scene = scene;
     memcpy(renderer->pixel_ns, FIRST_PIXEL_NS, sizeof(renderer->pixel_ns));
-    renderer->asset_fields = mem_array(scene->asset_count, sizeof(*renderer->asset_fields));
-    renderer->visible = mem_array(scene->asset_count, sizeof(*renderer->visible));
-    renderer->distance_m = mem_array(scene->asset_count, sizeof(*renderer->distance_m));
+    renderer->planner =
+        (struct frame_planner){ .gpu_scene = &renderer->gpu_scene, .fields = &renderer->fields, .light = &renderer->light };
     fields_init(&renderer->fields, log, field);
     isolines_init(&renderer->isolines, scene->asset_count);
     renderer->frame_buffer = mesh_buffer(log, "frame block", sizeof(struct frame_uniforms), NULL, GL_DYNAMIC_STORAGE_BIT);
@@ -94,179 +83,79 @@ void renderer_destroy(struct renderer **renderer_ptr)
     light_finish(&renderer->light);
     environments_finish(&renderer->environments);
     gpu_scene_finish(&renderer->gpu_scene);
-    mem_free(renderer->asset_fields);
-    mem_free(renderer->visible);
-    mem_free(renderer->distance_m);
     mem_free(renderer);
     *renderer_ptr = NULL;
 }
 
-/* The camera's matrices, with depth turned round: 32-bit floats are finest near 0, and most of the scene lies far away. */
-static void aim(struct renderer *renderer, const struct view *view, struct view_constants *constants)
+struct frame_plan *renderer_plan(struct renderer *renderer, const struct view *view, const struct snapshot *snapshot, int64_t budget_ns)
 {
-    static const double reverse[16] = { 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, -0.5, 0, 0, 0, 0.5, 1 };
-    double rotation[16], projection[16];
-    double aspect = (double)view->width_px / view->height_px;
-    camera_matrices(&view->camera, aspect, renderer->scene->bounds_min_m, renderer->scene->bounds_max_m, rotation, projection);
-    double back[3] = { rotation[2], rotation[6], rotation[10] }, depth_m = -2 / projection[10];
-    rotation[12] = rotation[13] = rotation[14] = 0;
-    matrix_multiply(projection, rotation, projection);
-    matrix_multiply(reverse, projection, projection);
-    view_constants_init(constants, view->camera.eye_m, projection, view->height_px / (2 * tan(view->camera.fov_deg * M_PI / 360)));
-    if (view->camera.height_m > 0) {
-        constants->pixel_per_metre = view->height_px / view->camera.height_m;
-        constants->depth_scale = depth_m / camera_parallel_m(&view->camera);
-        memcpy(constants->back, back, sizeof(back));
-    }
+    struct frame_plan *plan = frame_plan_create(&renderer->planner, view);
+    if (frame_plan_prepare(plan, &renderer->planner, snapshot, budget_ns))
+        frame_plan_complete(plan, &renderer->planner, snapshot);
+    else
+        frame_plan_destroy(&plan);
+    return plan;
 }
 
-static int by_distance(const void *a, const void *b, void *distance_m)
+const struct frame_planner *renderer_planner(const struct renderer *renderer)
 {
-    const double *d = distance_m;
-    double first = d[*(const int *)a], second = d[*(const int *)b];
-    return (first > second) - (first < second);
+    return &renderer->planner;
 }
 
-/* Drawn as it is, some of it at least. */
-static bool is_left(const struct visibility *visibility, int index, const struct scene_asset *asset)
-{
-    return visibility_of(visibility, index) == ASSET_SHOWN && !clip_drops(&visibility->clip, asset->bounds_min_m, asset->bounds_max_m);
-}
-
-/* Assets in the frustum, nearest first, so that what is hidden costs little. */
-static void find_visible(struct renderer *renderer, struct frame_context *context)
-{
-    for (size_t i = 0; i < renderer->scene->asset_count; i++) {
-        const struct scene_asset *asset = &renderer->scene->assets[i];
-        double square = 0;
-        if (!view_constants_sees(&context->constants, asset) || !is_left(&context->view->visibility, (int)i, asset))
-            continue;
-        for (int c = 0; c < 3; c++) {
-            double by = fmax(fabs(asset->bounds_min_m[c] - context->constants.eye_m[c]),
-                             fabs(asset->bounds_max_m[c] - context->constants.eye_m[c]));
-            square += by * by;
-        }
-        renderer->distance_m[i] = sqrt(square);
-        renderer->visible[context->visible_count++] = (int)i;
-    }
-    qsort_r(renderer->visible, context->visible_count, sizeof(*renderer->visible), by_distance, renderer->distance_m);
-    context->visible = renderer->visible;
-}
-
-/* What the picture shows. */
-static struct light_key choose_light(struct renderer *renderer, const struct view *view)
-{
-    struct light_key key = wanted_light(view);
-    const struct light_set *near = view->tier == TIER_PREVIEW && renderer->bake_budget_ns ? light_near(&renderer->light, &key) : NULL;
-    return near ? near->key : key;
-}
-
-/* What there is to draw, but for the field. */
-static void look(struct renderer *renderer, struct frame_context *context, const struct view *view)
+void renderer_context_init(struct renderer *renderer, const struct frame_plan *plan, struct frame_context *context)
 {
     *context = (struct frame_context){ .gpu_scene = &renderer->gpu_scene,
-                                       .view = view,
+                                       .view = &plan->view,
+                                       .constants = plan->constants,
+                                       .lit_by = plan->lit_by,
                                        .field = renderer->fields.field,
-                                       .fields = renderer->asset_fields,
-                                       .reference = renderer->per_fragment ? &renderer->reference : NULL };
-    context->lit_by = choose_light(renderer, view);
-    aim(renderer, view, &context->constants);
-    find_visible(renderer, context);
-    context->error_px = lod_error_px(context);
+                                       .fields = plan->fields,
+                                       .visible = plan->visible,
+                                       .visible_count = plan->visible_count,
+                                       .reference = renderer->per_fragment ? &renderer->reference : NULL,
+                                       .error_px = plan->error_px,
+                                       .shape = plan->shape };
 }
 
-/* So many of the first vertices are drawn, or looked at for labels. */
-static size_t count_vertices(const struct frame_context *context, int asset)
+static int64_t oldest_age_of(const struct frame_context *context)
 {
-    double lines[VIEW_ALL_LINES];
-    size_t count = surface_pass_level(context, asset)->vertex_count;
-    size_t labels = view_lines(context->view, lines) > 0 ? isolines_vertex_count(&context->gpu_scene->scene->assets[asset]) : 0;
-    return count > labels ? count : labels;
-}
-
-/* With the field brought up to date. */
-static void picture_init(struct renderer *renderer, struct frame_context *context, const struct view *view, const struct snapshot *snapshot,
-                         bool finest)
-{
-    look(renderer, context, view);
-    if (finest)
-        context->error_px = 0;
-    fields_trim(&renderer->fields);
-    memset(renderer->asset_fields, 0, renderer->scene->asset_count * sizeof(*renderer->asset_fields));
-    struct scale scale;
-    view_scale(view, &scale);
-    if (view->look == LOOK_MATERIALS)
-        return;
-    size_t *counts = mem_array(context->visible_count, sizeof(*counts));
-    for (size_t i = 0; i < context->visible_count; i++)
-        counts[i] = count_vertices(context, renderer->visible[i]);
-    fields_get(&renderer->fields,
-               &(struct fields_ask){ .assets = renderer->visible,
-                                     .counts = counts,
-                                     .asset_count = context->visible_count,
-                                     .params = &view->field,
-                                     .step = scale_step(&scale),
-                                     .snapshot = snapshot },
-               renderer->asset_fields);
-    mem_free(counts);
-}
-
-bool renderer_prepare(struct renderer *renderer, const struct view *view, const struct snapshot *snapshot, int64_t budget_ns)
-{
-    static const double slice = 1e6;
-    struct frame_context context;
-    int64_t end_ns = clock_mono_ns() + budget_ns;
-    look(renderer, &context, view);
-    for (size_t i = 0; i < context.visible_count && view->look != LOOK_MATERIALS; i++) {
-        int asset = renderer->visible[i];
-        size_t count = count_vertices(&context, asset);
-        while (!field_advance(renderer->fields.field, asset, &view->field, snapshot, count, slice))
-            if (clock_mono_ns() >= end_ns)
-                return false;
-    }
-    return true;
-}
-
-uint64_t renderer_content(struct renderer *renderer, const struct view *view, const struct snapshot *snapshot)
-{
-    struct frame_context context;
-    renderer->fields.without_gl = true;
-    picture_init(renderer, &context, view, snapshot, false);
-    renderer->fields.without_gl = false;
-    return content_hash(&context);
-}
-
-static void describe(const struct renderer *renderer, struct frame *frame, const struct frame_context *context,
-                     const struct snapshot *snapshot)
-{
-    frame->view = *context->view;
-    frame->data_utc_ns = snapshot->taken_utc_ns;
-    frame->oldest_age_ns = INT64_MAX;
+    int64_t oldest_ns = INT64_MAX;
     for (size_t i = 0; i < context->visible_count; i++) {
         const struct fields_entry *field = context->fields[context->visible[i]];
-        if (!field || field->oldest_age_ns == INT64_MAX)
-            continue;
-        if (frame->oldest_age_ns == INT64_MAX || field->oldest_age_ns > frame->oldest_age_ns)
-            frame->oldest_age_ns = field->oldest_age_ns;
+        if (field && field->oldest_age_ns != INT64_MAX && (oldest_ns == INT64_MAX || field->oldest_age_ns > oldest_ns))
+            oldest_ns = field->oldest_age_ns;
     }
-    field_baseline(renderer->fields.field, &context->view->field, &frame->baseline);
-    frame->content = content_hash(context);
-    frame->triangles = surface_pass_triangles(context);
+    return oldest_ns;
 }
 
-struct frame *renderer_start(struct renderer *renderer, const struct view *view, const struct snapshot *snapshot,
-                             struct frame_context *context)
+struct frame *renderer_start(struct renderer *renderer, const struct frame_plan *plan, struct frame_context *context)
 {
+    const struct view *view = &plan->view;
     struct frame *frame = frame_create(view->width_px, view->height_px);
     if (!frame) {
         log_err(renderer->gl->log, "frame of %dx%d: out of memory", view->width_px, view->height_px);
         return NULL;
     }
-    int64_t start_ns = clock_mono_ns();
-    picture_init(renderer, context, view, snapshot, false);
-    frame->field_ns = clock_mono_ns() - start_ns;
-    describe(renderer, frame, context, snapshot);
+    renderer_context_init(renderer, plan, context);
+    frame->view = *view;
+    frame->data_utc_ns = plan->data_utc_ns;
+    frame->oldest_age_ns = oldest_age_of(context);
+    frame->content = plan->content;
+    frame->field_ns = plan->field_ns;
+    frame->triangles = surface_pass_triangles(context);
+    field_baseline(renderer->fields.field, &view->field, &frame->baseline);
     return frame;
+}
+
+void renderer_upload_fields(struct renderer *renderer, const struct frame_plan *plan, const struct frame_context *context,
+                            const struct fields_entry **fields, struct frame *frame)
+{
+    struct frame_plan shown = *plan;
+    if (fields_upload(&renderer->fields, context->visible, context->visible_count, fields))
+        return;
+    shown.fields = fields;
+    frame->content = content_hash(&shown);
+    frame->oldest_age_ns = oldest_age_of(context);
 }
 
 bool renderer_take_up(struct renderer *renderer, struct frame_context *context)
@@ -296,21 +185,19 @@ static bool has_lost(const struct frame_context *context)
     return false;
 }
 
-static struct frame *draw_draft(struct renderer *renderer, const struct view *view, const struct snapshot *snapshot)
+static struct frame *draw_draft(struct renderer *renderer, const struct frame_plan *plan)
 {
     struct frame_context context;
-    renderer->fields.without_gl = true;
-    struct frame *frame = renderer_start(renderer, view, snapshot, &context);
-    renderer->fields.without_gl = false;
+    struct frame *frame = renderer_start(renderer, plan, &context);
     if (frame && has_lost(&context)) { /* only GL hatches without scalars */
         frame_unref(&frame);
-        return renderer_draw_job(renderer, view, snapshot);
+        return renderer_draw_job(renderer, plan);
     }
     if (!frame)
         return NULL;
     int64_t start_ns = clock_mono_ns();
     context.light = light_get(&renderer->light, &context.lit_by);
-    context.colormap = shaded_colormap_cache_get(&renderer->colormaps, view);
+    context.colormap = shaded_colormap_cache_get(&renderer->colormaps, context.view);
     if (!context.light || !context.colormap.colors || !draft_draw(renderer->draft, &context, &renderer->light, &renderer->isolines, frame))
         frame_unref(&frame);
     else
@@ -318,31 +205,25 @@ static struct frame *draw_draft(struct renderer *renderer, const struct view *vi
     return frame;
 }
 
-bool renderer_is_quick(struct renderer *renderer, const struct view *view, const struct snapshot *snapshot)
+bool renderer_is_quick(struct renderer *renderer, const struct frame_plan *plan)
 {
     struct frame_context context;
-    if (view->tier == TIER_PREVIEW || !renderer->plates || renderer->always_gl)
-        return view->tier == TIER_PREVIEW || (renderer->refined_ns > 0 && renderer->refined_ns <= QUICK_NS);
-    renderer->fields.without_gl = true;
-    picture_init(renderer, &context, view, snapshot, false);
-    renderer->fields.without_gl = false;
+    if (plan->view.tier == TIER_PREVIEW || !renderer->plates || renderer->always_gl)
+        return plan->view.tier == TIER_PREVIEW || (renderer->refined_ns > 0 && renderer->refined_ns <= QUICK_NS);
+    renderer_context_init(renderer, plan, &context);
     return plates_know(renderer->plates, &context);
 }
 
-/* A still picture that was drawn before and differs in values and colours only. NULL: there is none. */
-static struct frame *draw_again(struct renderer *renderer, const struct view *view, const struct snapshot *snapshot)
+/* A refined frame that was drawn before and differs in values and colours only. NULL: there is none. */
+static struct frame *draw_again(struct renderer *renderer, const struct frame_plan *plan)
 {
     struct frame_context context;
-    if (!renderer->plates || !renderer_is_quick(renderer, view, snapshot))
-        return NULL;
-    renderer->fields.without_gl = true;
-    struct frame *frame = renderer_start(renderer, view, snapshot, &context);
-    renderer->fields.without_gl = false;
+    struct frame *frame = renderer->plates && renderer_is_quick(renderer, plan) ? renderer_start(renderer, plan, &context) : NULL;
     if (!frame)
         return NULL;
     int64_t start_ns = clock_mono_ns();
     context.light = light_get(&renderer->light, &context.lit_by);
-    context.colormap = shaded_colormap_cache_get(&renderer->colormaps, view);
+    context.colormap = shaded_colormap_cache_get(&renderer->colormaps, context.view);
     struct isoline_points points = { 0 };
     isolines_collect(&renderer->isolines, &context, &points);
     if (!context.light || !context.colormap.colors || !plates_recolor(renderer->plates, &context, &points, frame))
@@ -356,21 +237,21 @@ static struct frame *draw_again(struct renderer *renderer, const struct view *vi
 /* After a picture: works on the light that it should have had. */
 static void bake_wanted_light(struct renderer *renderer, const struct view *view)
 {
-    struct light_key wanted = wanted_light(view);
+    struct light_key wanted = frame_plan_wanted_light(view);
     bool steady = visibility_equal(&wanted.shown, &renderer->shown); /* not at each place of a cut that somebody drags */
     if (renderer->bake_budget_ns && steady)
         light_step(&renderer->light, &wanted, renderer->bake_budget_ns);
     renderer->shown = view->visibility;
 }
 
-struct frame *renderer_draw(struct renderer *renderer, const struct view *view, const struct snapshot *snapshot)
+struct frame *renderer_draw(struct renderer *renderer, const struct frame_plan *plan)
 {
-    bool draft = renderer->draft && !renderer->always_gl && !renderer->per_fragment && draft_can(renderer->draft, view);
-    struct frame *frame = view->tier == TIER_REFINED ? draw_again(renderer, view, snapshot) : NULL;
+    bool draft = renderer->draft && !renderer->always_gl && !renderer->per_fragment && draft_can(renderer->draft, &plan->view);
+    struct frame *frame = plan->view.tier == TIER_REFINED ? draw_again(renderer, plan) : NULL;
     if (!frame)
-        frame = draft ? draw_draft(renderer, view, snapshot) : renderer_draw_job(renderer, view, snapshot);
+        frame = draft ? draw_draft(renderer, plan) : renderer_draw_job(renderer, plan);
     if (frame)
-        bake_wanted_light(renderer, view);
+        bake_wanted_light(renderer, &plan->view);
     return frame;
 }
 
@@ -379,11 +260,11 @@ bool renderer_submits(const struct renderer *renderer)
     return (!renderer->gl->software || renderer->always_gl) && !renderer->per_fragment;
 }
 
-struct render_job *renderer_submit(struct renderer *renderer, const struct view *view, const struct snapshot *snapshot)
+struct render_job *renderer_submit(struct renderer *renderer, const struct frame_plan *plan)
 {
-    struct render_job *job = renderer_submit_job(renderer, view, snapshot);
+    struct render_job *job = renderer_submit_job(renderer, plan);
     if (job)
-        bake_wanted_light(renderer, view);
+        bake_wanted_light(renderer, &plan->view);
     return job;
 }
 
@@ -396,6 +277,7 @@ bool renderer_set_bake_budget(struct renderer *renderer, int64_t bake_ns)
 {
     struct light_key usual = renderer_usual_light(renderer);
     renderer->bake_budget_ns = bake_ns;
+    renderer->planner.near_light = bake_ns > 0;
     usual.rough = true;
     return !bake_ns || light_near(&renderer->light, &usual) || light_get(&renderer->light, &usual);
 }
@@ -412,17 +294,22 @@ void renderer_set_per_fragment(struct renderer *renderer, bool per_fragment)
 {
     if (per_fragment && !renderer->reference.models)
         reference_init(&renderer->reference, &renderer->gpu_scene, renderer->fields.field);
-    renderer->per_fragment = per_fragment;
+    renderer->per_fragment = renderer->planner.finest = per_fragment;
     renderer->fields.reference = per_fragment ? &renderer->reference : NULL;
 }
 
 bool renderer_measure(struct renderer *renderer, const struct view *view, const struct snapshot *snapshot, bool finest, float (*out)[4])
 {
+    struct frame_planner planner = renderer->planner;
     struct view plain = *view;
     struct frame_context context;
     struct measure_target measure = { 0 };
     plain.color_scale.log = false;
-    picture_init(renderer, &context, &plain, snapshot, finest);
+    planner.finest = finest;
+    struct frame_plan *plan = frame_plan_create(&planner, &plain);
+    frame_plan_complete(plan, &planner, snapshot);
+    fields_upload(&renderer->fields, plan->visible, plan->visible_count, plan->fields);
+    renderer_context_init(renderer, plan, &context);
     context.measured = true;
     bool good = renderer_take_up(renderer, &context) && measure_target_begin(&measure, renderer->gl->log, view->width_px, view->height_px);
     if (good) {
@@ -430,6 +317,7 @@ bool renderer_measure(struct renderer *renderer, const struct view *view, const 
         measure_target_read(&measure, out);
     }
     measure_target_finish(&measure);
+    frame_plan_destroy(&plan);
     return good;
 }
 

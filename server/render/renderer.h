@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Draws views of the scene. Thread: the one that made the GL context. */
+/* Draws frames of the scene, at once or as jobs in steps. Thread: the one that made the GL context. */
 #ifndef RENDER_RENDERER_H
 #define RENDER_RENDERER_H
 #include <stdbool.h>
@@ -9,60 +9,55 @@
 #include "render/frame.h"
 
 struct renderer;
+struct frame_plan; /* render/plan/frame_plan.h */
+struct frame_planner; /* render/plan/frame_planner.h */
 
-/* NULL on failure, logged. All must outlive it. */
+/* Returns NULL on failure, logged. All arguments must outlive it. */
 struct renderer *renderer_create(struct log *log, struct gl *gl, const struct scene *scene, struct field *field);
 void renderer_destroy(struct renderer **renderer);
 
-/* Works towards the field of this view for about that long. True: it is there, and what is below does not wait for it. */
-bool renderer_prepare(struct renderer *renderer, const struct view *view, const struct snapshot *snapshot, int64_t budget_ns);
-/* What the picture of this view would show now; equal to frame->content of an earlier frame if drawing it again would give the
-   same picture (camera, parameters, size and every field value in view, to a colour step). Brings the field up to date; cheap. */
-uint64_t renderer_content(struct renderer *renderer, const struct view *view, const struct snapshot *snapshot);
-/* renderer_draw draws it in about the time of a moving picture: it is one, or differs in values and colours only from a still one that
-   was drawn lately, or there is a GPU that is fast enough. Its field is prepared. */
-bool renderer_is_quick(struct renderer *renderer, const struct view *view, const struct snapshot *snapshot);
-/* The caller owns the frame (frame_unref). NULL on failure, logged. view is already checked. */
-struct frame *renderer_draw(struct renderer *renderer, const struct view *view, const struct snapshot *snapshot);
-/* Without a GPU most moving pictures are drawn by other means (render/draft/draft.h), unless GL shall draw them always: to compare. */
-void renderer_use_gl(struct renderer *renderer, bool always);
-/* What other assets hide is left out of pictures of so many triangles. INT_MAX: of none, but clusters that are not seen. From the
-   beginning: what pays. */
-void renderer_set_occlusion_least(struct renderer *renderer, int least_triangles);
-/* By GL each asset is drawn by calls of its own, not with all that are alike: to compare. */
-void renderer_set_batching_off(struct renderer *renderer, bool one_by_one);
-/* So many assets were left out of the last picture that GL drew; waits for it. */
-size_t renderer_occluded_count(const struct renderer *renderer);
+/* Decides what a frame of this view shows now. Works towards its field for about budget_ns (INT64_MAX: as long as it takes); NULL: the
+   field is not there yet. view must be checked, and not split. The caller owns the plan (frame_plan_destroy). Two plans with equal
+   content give equal frames. */
+struct frame_plan *renderer_plan(struct renderer *renderer, const struct view *view, const struct snapshot *snapshot, int64_t budget_ns);
+/* The same in parts, for who plans several frames at a time. Owned by the renderer. */
+const struct frame_planner *renderer_planner(const struct renderer *renderer);
 
-/* A light that is not baked yet: pictures of the moving tier show the one most like it for now, and bake on for about that long each.
-   Where none is, a rough one is made for now. Without this, and in the still tier, a picture takes the time that its light takes.
-   False: out of GPU memory, logged. */
+/* Returns whether renderer_draw() takes about the time of a preview: it is one, or differs in values and colours only from a refined frame
+   that was drawn lately, or there is a GPU that is fast enough. */
+bool renderer_is_quick(struct renderer *renderer, const struct frame_plan *plan);
+/* Draws the frame at once. The caller owns it (frame_unref). NULL on failure, logged. */
+struct frame *renderer_draw(struct renderer *renderer, const struct frame_plan *plan);
+
+/* Begins a job that draws the frame in steps, so that others can be drawn in between; it keeps what the plan shows, and the plan is not
+   needed any more. As many as fit in memory may be under way. NULL on failure, logged. */
+struct render_job *renderer_begin(struct renderer *renderer, const struct frame_plan *plan);
+/* Returns whether a frame of other readings will be quick (renderer_is_quick) once this job has ended. */
+bool renderer_keeps(const struct render_job *job);
+/* Draws on for about that long, and one step at least. Returns true when nothing is left to do but renderer_end(). */
+bool renderer_step(struct renderer *renderer, struct render_job *job, int64_t budget_ns);
+/* Draws what is left, and destroys the job. The caller owns the frame. NULL on failure, logged. */
+struct frame *renderer_end(struct renderer *renderer, struct render_job **job);
+/* Destroys the job without a frame. &NULL is fine; leaves NULL. */
+void renderer_abandon(struct renderer *renderer, struct render_job **job);
+/* Returns whether renderer_submit() is of use: there is a GPU. */
+bool renderer_submits(const struct renderer *renderer);
+/* Gives the whole frame to the GPU and does not wait; renderer_end() does. A few may be under way, so that one is drawn while another one's
+   pixels come. NULL on failure, logged. */
+struct render_job *renderer_submit(struct renderer *renderer, const struct frame_plan *plan);
+/* Returns whether renderer_end() would not wait for a job that was submitted. */
+bool renderer_is_complete(const struct render_job *job);
+
+/* Sets how long each preview bakes on at a light that is not there yet: until it is, previews show the one most like it, and if there is
+   none a rough one is made at once. 0, as it begins, and for refined frames: a frame takes the time that its light takes. Returns false
+   when the GPU is out of memory, logged. */
 bool renderer_set_bake_budget(struct renderer *renderer, int64_t bake_ns);
-/* Nobody wants a picture: bakes the light that most views have, for about that long. True: there is nothing more to do. */
+/* Bakes the light that most views have, for about that long, while nobody wants a frame. Returns true when there is nothing more to do. */
 bool renderer_bake_idle(struct renderer *renderer, int64_t budget_ns);
 
-/* From now on the field is worked out at each fragment, over all sensors, on the finest level (renderer_measure: on the one it is asked
-   for; render/reference/reference.h): slow, for comparison. */
+/* Draws by GL what is drawn in software where there is no GPU. */
+void renderer_use_gl(struct renderer *renderer, bool always);
+/* Works the field out at each fragment from now on, over all sensors, on the finest level (render/reference/reference.h): slow. */
 void renderer_set_per_fragment(struct renderer *renderer, bool per_fragment);
-/* What the pixels of the view's tier stand for, at one sample each, rows from the top: the field's place in the range (unclamped,
-   never on a logarithmic scale), no data (0..1; MEASURE_CONTEXT: an asset without a field; MEASURE_NOTHING), uncertain (0..1), depth
-   (1 near, 0 far). finest: without coarser levels of detail. False: logged. */
-enum { MEASURE_CONTEXT = -1, MEASURE_NOTHING = -2 };
-bool renderer_measure(struct renderer *renderer, const struct view *view, const struct snapshot *snapshot, bool finest, float (*out)[4]);
-
-/* The same picture drawn bit by bit, so that others can be drawn in between; it shows what there was to see when it was begun.
-   As many as fit in memory may be under way. NULL on failure, logged. */
-struct render_job *renderer_begin(struct renderer *renderer, const struct view *view, const struct snapshot *snapshot);
-bool renderer_keeps(const struct render_job *job); /* when it is ended, the same with other readings is quick (renderer_is_quick) */
-/* Draws on for about that long, and a bit at least. True: nothing is left to do but renderer_end. */
-bool renderer_step(struct renderer *renderer, struct render_job *job, int64_t budget_ns);
-/* Draws what is left. The caller owns the frame. NULL on failure, logged. The job is gone in either case. */
-struct frame *renderer_end(struct renderer *renderer, struct render_job **job);
-/* With a GPU: gives it the whole picture and does not wait; renderer_end does. A few may be under way, so that one is drawn while
-   another one's pixels come. NULL on failure, logged. */
-bool renderer_submits(const struct renderer *renderer);
-struct render_job *renderer_submit(struct renderer *renderer, const struct view *view, const struct snapshot *snapshot);
-bool renderer_is_complete(const struct render_job *job);                   /* renderer_end would not wait */
-void renderer_abandon(struct renderer *renderer, struct render_job **job); /* &NULL is fine; leaves NULL */
 
 #endif

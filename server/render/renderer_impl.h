@@ -11,6 +11,7 @@
 #include "render/gl/lines.h"
 #include "render/pick/markers.h"
 #include "render/shaded_colormap_cache.h"
+#include "render/plan/frame_planner.h"
 #include "render/plate/plate.h"
 #include "render/renderer.h"
 #include "render/gl/surface_pass.h"
@@ -25,6 +26,7 @@ struct renderer {
     struct environments environments;
     struct light light;
     struct fields fields;
+    struct frame_planner planner;
     struct reference reference;
     bool per_fragment;
     struct surface_pass surface_pass;
@@ -43,22 +45,24 @@ struct renderer {
     struct draft *draft;     /* NULL: a GPU draws moving pictures too; and below */
     struct plates *plates;   /* still ones */
     bool always_gl;
-    const struct fields_entry **asset_fields; /* per asset, of the picture being drawn */
-    int *visible;
-    double *distance_m;      /* per asset */
     struct visibility shown; /* by the last picture that was drawn at once */
 };
 
-/* An empty frame, and what there is to draw. NULL: out of memory, logged. */
-struct frame *renderer_start(struct renderer *renderer, const struct view *view, const struct snapshot *snapshot,
-                             struct frame_context *context);
+/* Fills in what every pass is handed, but for light, colour map and target. It points into the plan, which must outlive it. */
+void renderer_context_init(struct renderer *renderer, const struct frame_plan *plan, struct frame_context *context);
+/* Returns an empty frame with all that the plan says of it, and fills in the context. NULL: out of memory, logged. */
+struct frame *renderer_start(struct renderer *renderer, const struct frame_plan *plan, struct frame_context *context);
+/* Before GL draws with them: brings the context's fields to the GPU. fields: the context's, which are the caller's own; what there is no
+   room for becomes one of no data there, and the frame says so. */
+void renderer_upload_fields(struct renderer *renderer, const struct frame_plan *plan, const struct frame_context *context,
+                            const struct fields_entry **fields, struct frame *frame);
 /* Light, colormap and uniforms of the picture: others drew meanwhile. False: out of GPU memory, logged. */
 bool renderer_take_up(struct renderer *renderer, struct frame_context *context);
 /* The whole picture at once by the steps of a job. As renderer_draw. */
-struct frame *renderer_draw_job(struct renderer *renderer, const struct view *view, const struct snapshot *snapshot);
+struct frame *renderer_draw_job(struct renderer *renderer, const struct frame_plan *plan);
 /* The light that most views have. */
 struct light_key renderer_usual_light(const struct renderer *renderer);
 /* As renderer_submit. */
-struct render_job *renderer_submit_job(struct renderer *renderer, const struct view *view, const struct snapshot *snapshot);
+struct render_job *renderer_submit_job(struct renderer *renderer, const struct frame_plan *plan);
 
 #endif

@@ -20,23 +20,25 @@ static bool take_target(struct renderer *renderer, const struct view *view, stru
     return targets_take(&renderer->targets, renderer->gl->log, view->width_px, view->height_px, samples, target);
 }
 
-static struct render_job *begin(struct renderer *renderer, const struct view *view, const struct snapshot *snapshot, bool whole)
+static struct render_job *begin(struct renderer *renderer, const struct frame_plan *plan, bool whole)
 {
     struct frame_context context;
     struct target target = { 0 };
-    struct frame *frame = renderer_start(renderer, view, snapshot, &context);
+    struct frame *frame = renderer_start(renderer, plan, &context);
     if (!frame)
         return NULL;
     bool by_plate = renderer->plates && !renderer->always_gl && plates_can(renderer->plates, &context);
     struct plate *plate = by_plate ? plate_begin(renderer->plates) : NULL;
-    if (by_plate ? !plate : !take_target(renderer, view, &target)) {
+    if (by_plate ? !plate : !take_target(renderer, &plan->view, &target)) {
         frame_unref(&frame);
         return NULL;
     }
     struct render_job *job = mem_new(sizeof(*job));
     render_job_init(job, &context, &target, frame, whole);
     job->plate = plate;
-    isolines_collect(&renderer->isolines, &context, &job->isolines);
+    if (!plate)
+        renderer_upload_fields(renderer, plan, &job->context, job->fields, frame);
+    isolines_collect(&renderer->isolines, &job->context, &job->isolines);
     return job;
 }
 
@@ -118,10 +120,10 @@ static void learn(struct renderer *renderer, const struct bit *bit, int64_t took
         *pixel_ns = fmax(*pixel_ns + 0.3 * (now_ns - *pixel_ns), 1);
 }
 
-struct render_job *renderer_begin(struct renderer *renderer, const struct view *view, const struct snapshot *snapshot)
+struct render_job *renderer_begin(struct renderer *renderer, const struct frame_plan *plan)
 {
     /* A GPU draws the whole in the time that a processor takes for a tile. */
-    struct render_job *job = begin(renderer, view, snapshot, !renderer->gl->software);
+    struct render_job *job = begin(renderer, plan, !renderer->gl->software);
     if (job && !render_job_hold_fields(job))
         renderer_abandon(renderer, &job);
     return job;
@@ -260,15 +262,15 @@ void renderer_abandon(struct renderer *renderer, struct render_job **job_ptr)
     *job_ptr = NULL;
 }
 
-struct frame *renderer_draw_job(struct renderer *renderer, const struct view *view, const struct snapshot *snapshot)
+struct frame *renderer_draw_job(struct renderer *renderer, const struct frame_plan *plan)
 {
-    struct render_job *job = begin(renderer, view, snapshot, true);
+    struct render_job *job = begin(renderer, plan, true);
     return job ? renderer_end(renderer, &job) : NULL;
 }
 
-struct render_job *renderer_submit_job(struct renderer *renderer, const struct view *view, const struct snapshot *snapshot)
+struct render_job *renderer_submit_job(struct renderer *renderer, const struct frame_plan *plan)
 {
-    struct render_job *job = begin(renderer, view, snapshot, true);
+    struct render_job *job = begin(renderer, plan, true);
     if (job && !submit(renderer, job))
         renderer_abandon(renderer, &job);
     return job;

@@ -5,8 +5,10 @@
 #include <string.h>
 
 #include "base/mem.h"
+#include "render/plan/frame_planner.h"
 
 enum { DIVIDER_PX = 2 };
+static const uint64_t CONTENT_FACTOR = 0x9e3779b97f4a7c15u;
 static const uint8_t divider_bgrx[4] = { 48, 40, 34, 255 };
 
 struct split_view {
@@ -20,36 +22,44 @@ static int count_halves(const struct view *view)
     return view->split ? 2 : 1;
 }
 
-bool split_view_prepare(struct renderer *renderer, const struct view *view, const struct snapshot *snapshot, int64_t budget_ns)
+void split_plan_destroy(struct split_plan **plan)
 {
+    if (!*plan)
+        return;
+    frame_plan_destroy(&(*plan)->halves[0]);
+    frame_plan_destroy(&(*plan)->halves[1]);
+    mem_free(*plan);
+    *plan = NULL;
+}
+
+struct split_plan *split_view_plan(struct renderer *renderer, const struct view *view, const struct snapshot *snapshot, int64_t budget_ns)
+{
+    const struct frame_planner *planner = renderer_planner(renderer);
+    struct split_plan *plan = mem_new(sizeof(*plan));
     bool ready = true;
-    for (int half = 0; half < count_halves(view) && ready; half++) {
+    plan->view = *view;
+    plan->half_count = count_halves(view);
+    for (int half = 0; half < plan->half_count && ready; half++) {
         struct view one;
         view_half(view, half, &one);
-        ready = renderer_prepare(renderer, &one, snapshot, budget_ns);
+        plan->halves[half] = frame_plan_create(planner, &one);
+        ready = frame_plan_prepare(plan->halves[half], planner, snapshot, budget_ns);
     }
-    return ready;
+    for (int half = 0; half < plan->half_count && ready; half++) {
+        frame_plan_complete(plan->halves[half], planner, snapshot);
+        plan->content = plan->content * CONTENT_FACTOR + plan->halves[half]->content;
+        plan->field_ns += plan->halves[half]->field_ns;
+    }
+    if (!ready)
+        split_plan_destroy(&plan);
+    return plan;
 }
 
-uint64_t split_view_content(struct renderer *renderer, const struct view *view, const struct snapshot *snapshot)
-{
-    uint64_t content = 0;
-    for (int half = 0; half < count_halves(view); half++) {
-        struct view one;
-        view_half(view, half, &one);
-        content = content * 0x9e3779b97f4a7c15u + renderer_content(renderer, &one, snapshot);
-    }
-    return content;
-}
-
-bool split_view_is_quick(struct renderer *renderer, const struct view *view, const struct snapshot *snapshot)
+bool split_view_is_quick(struct renderer *renderer, const struct split_plan *plan)
 {
     bool quick = true;
-    for (int half = 0; half < count_halves(view) && quick; half++) {
-        struct view one;
-        view_half(view, half, &one);
-        quick = renderer_is_quick(renderer, &one, snapshot);
-    }
+    for (int half = 0; half < plan->half_count && quick; half++)
+        quick = renderer_is_quick(renderer, plan->halves[half]);
     return quick;
 }
 
@@ -106,7 +116,7 @@ static void add_meaning(struct frame *whole, const struct frame *part, int half)
     whole->field_ns += part->field_ns;
     whole->render_ns += part->render_ns;
     whole->readback_ns += part->readback_ns;
-    whole->content = whole->content * 0x9e3779b97f4a7c15u + part->content;
+    whole->content = whole->content * CONTENT_FACTOR + part->content;
     whole->triangles += part->triangles;
 }
 
@@ -130,30 +140,31 @@ static struct frame *join(const struct view *view, struct frame *parts[2])
     return whole;
 }
 
-struct frame *split_view_draw(struct renderer *renderer, const struct view *view, const struct snapshot *snapshot)
+struct frame *split_view_draw(struct renderer *renderer, const struct split_plan *plan)
 {
     struct frame *parts[2] = { NULL };
-    if (!view->split)
-        return renderer_draw(renderer, view, snapshot);
-    for (int half = 0; half < 2; half++) {
-        struct view one;
-        view_half(view, half, &one);
-        parts[half] = renderer_draw(renderer, &one, snapshot);
-    }
-    return join(view, parts);
+    for (int half = 0; half < plan->half_count; half++)
+        parts[half] = renderer_draw(renderer, plan->halves[half]);
+    return plan->half_count == 2 ? join(&plan->view, parts) : parts[0];
 }
 
-typedef struct render_job *begin_fn(struct renderer *renderer, const struct view *view, const struct snapshot *snapshot);
+struct frame *split_view_draw_now(struct renderer *renderer, const struct view *view, const struct snapshot *snapshot)
+{
+    struct split_plan *plan = split_view_plan(renderer, view, snapshot, INT64_MAX);
+    struct frame *frame = split_view_draw(renderer, plan);
+    split_plan_destroy(&plan);
+    return frame;
+}
 
-static struct split_view *begin(struct renderer *renderer, const struct view *view, const struct snapshot *snapshot, begin_fn *begin_half)
+typedef struct render_job *begin_fn(struct renderer *renderer, const struct frame_plan *plan);
+
+static struct split_view *begin(struct renderer *renderer, const struct split_plan *plan, begin_fn *begin_half)
 {
     struct split_view *split = mem_new(sizeof(*split));
-    split->view = *view;
-    split->half_count = count_halves(view);
+    split->view = plan->view;
+    split->half_count = plan->half_count;
     for (int half = 0; half < split->half_count; half++) {
-        struct view one;
-        view_half(view, half, &one);
-        split->jobs[half] = begin_half(renderer, &one, snapshot);
+        split->jobs[half] = begin_half(renderer, plan->halves[half]);
         if (!split->jobs[half]) {
             split_view_abandon(renderer, &split);
             return NULL;
@@ -162,14 +173,14 @@ static struct split_view *begin(struct renderer *renderer, const struct view *vi
     return split;
 }
 
-struct split_view *split_view_begin(struct renderer *renderer, const struct view *view, const struct snapshot *snapshot)
+struct split_view *split_view_begin(struct renderer *renderer, const struct split_plan *plan)
 {
-    return begin(renderer, view, snapshot, renderer_begin);
+    return begin(renderer, plan, renderer_begin);
 }
 
-struct split_view *split_view_submit(struct renderer *renderer, const struct view *view, const struct snapshot *snapshot)
+struct split_view *split_view_submit(struct renderer *renderer, const struct split_plan *plan)
 {
-    return begin(renderer, view, snapshot, renderer_submit);
+    return begin(renderer, plan, renderer_submit);
 }
 
 bool split_view_is_complete(const struct split_view *split)

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What the pixels of pictures from still cameras are made of (which triangle, where in it, in what light), so that new values need new
-   colours only. What that is made of is up to whoever draws; here it is kept, by content_shape_hash, up to a bound. The least recently
+   colours only. What that is made of is up to whoever draws; here it is kept, by content_hash_shape, up to a bound. The least recently
    used go first. Thread: the one of the GL context. */
 #ifndef RENDER_VISIBILITY_BUFFERS_H
 #define RENDER_VISIBILITY_BUFFERS_H

@@ -2,6 +2,7 @@
 /* The plant as it stands: every asset in its place, with its sensors. Immutable once made. Thread: any. */
 #ifndef SCENE_SCENE_H
 #define SCENE_SCENE_H
+#include <stdbool.h>
 #include <stddef.h>
 
 #include "plant/plant.h"
@@ -35,5 +36,8 @@ struct scene {
     double (*extremes_m)[3]; /* outermost places of what a view of the whole has to hold: scene/extremes.h */
     size_t extreme_count;    /* 0: not known */
 };
+
+/* Returns whether the placement mirrors: the winding of triangles is turned round. */
+bool scene_asset_mirrored(const struct scene_asset *asset);
 
 #endif

@@ -265,3 +265,9 @@ void scene_home(const struct scene *scene, double aspect, struct camera *camera)
     if (!camera_valid(camera)) /* straight down: a plan, north above */
         memcpy(camera->up, scene->plant->up == AXIS_Y ? (double[]){ 0, 0, -1 } : (double[]){ 0, 1, 0 }, sizeof(camera->up));
 }
+
+bool scene_asset_mirrored(const struct scene_asset *asset)
+{
+    const double *m = asset->placement;
+    return m[0] * (m[5] * m[10] - m[6] * m[9]) - m[4] * (m[1] * m[10] - m[2] * m[9]) + m[8] * (m[1] * m[6] - m[2] * m[5]) < 0;
+}

@@ -17,7 +17,6 @@ struct awaited_frames {
         const struct historical_snapshot *historical; /* its readings, a reference; NULL: they are `snapshot` */
         struct snapshot *snapshot;
         uint64_t content; /* content hash of what it shows */
-        int64_t field_ns;
     } at[AWAITED_FRAMES_MOST];
     int count;
 };

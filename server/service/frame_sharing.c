@@ -76,18 +76,15 @@ static void join_flying(struct render_thread *thread, struct request_group *grou
     group->count = 0;
 }
 
-uint64_t frame_sharing_answer_unchanged(struct render_thread *thread, const struct snapshot *snapshot, struct request_group *group)
+void frame_sharing_answer_unchanged(struct render_thread *thread, uint64_t content, struct request_group *group)
 {
-    const struct frame_request *request = &group->tickets[0].request;
-    uint64_t content = split_view_content(thread->renderer, &request->view, snapshot);
-    bool overlay = request->overlay;
+    bool overlay = group->tickets[0].request.overlay;
     answer_same(thread, group, content);
     struct frame *frame = overlay ? NULL : recent_frames_find(&thread->recent, content, clock_mono_ns());
     if (frame)
         answer_with(thread->service, frame, group);
     else if (!overlay)
         join_flying(thread, group, content);
-    return content;
 }
 
 void frame_sharing_answer_from_recent(struct render_thread *thread, struct request_group *group)

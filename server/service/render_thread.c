@@ -86,21 +86,18 @@ static void deliver(struct render_thread *thread, struct frame *frame, const str
 /* --- frames that a GPU draws while another one's pixels come ---------------------------------------------------------- */
 
 /* The instant, if it is one, goes over to it. */
-static void fly(struct render_thread *thread, struct request_group *group, const struct historical_snapshot **historical, uint64_t content,
-                int64_t field_ns)
+static void fly(struct render_thread *thread, struct request_group *group, const struct historical_snapshot **historical,
+                const struct split_plan *plan)
 {
-    struct awaited_frame encoded = { .historical = *historical, .content = content, .field_ns = field_ns };
-    const struct snapshot *snapshot = *historical ? &(*historical)->snapshot : thread->snapshot;
-    encoded.split = split_view_submit(thread->renderer, &group->tickets[0].request.view, snapshot);
+    struct awaited_frame encoded = { .historical = *historical, .content = plan->content };
+    encoded.split = split_view_submit(thread->renderer, plan);
     if (!encoded.split) {
         fail(thread, group);
         return;
     }
     awaited_frames_push(&thread->in_flight, &encoded, group, &thread->snapshot);
     *historical = NULL;
-    if (encoded.historical)
-        return;
-    store_snapshot(thread->service->params.store, clock_mono_ns(), clock_utc_ns(), thread->snapshot);
+    thread->stale |= !encoded.historical;
 }
 
 static void flying_gone(struct render_thread *thread)
@@ -115,12 +112,10 @@ static void land(struct render_thread *thread)
 {
     struct awaited_frame *encoded = &thread->in_flight.at[0];
     struct frame *frame = split_view_end(thread->renderer, &encoded->split);
-    if (is_good(thread, frame)) {
-        frame->field_ns += encoded->field_ns;
+    if (is_good(thread, frame))
         deliver(thread, frame, awaited_frames_readings(encoded), &encoded->group);
-    } else {
+    else
         fail(thread, &encoded->group);
-    }
     flying_gone(thread);
 }
 
@@ -176,11 +171,10 @@ static int64_t spent_by(struct render_service *service, uint64_t id)
 }
 
 static void slow_begin(struct render_thread *thread, struct request_group *group, const struct historical_snapshot **historical,
-                       int64_t field_ns)
+                       const struct split_plan *plan)
 {
     const struct frame_request *request = &group->tickets[0].request;
-    const struct snapshot *snapshot = *historical ? &(*historical)->snapshot : thread->snapshot;
-    thread->long_job.split = split_view_begin(thread->renderer, &request->view, snapshot);
+    thread->long_job.split = split_view_begin(thread->renderer, plan);
     if (!thread->long_job.split) {
         fail(thread, group);
         return;
@@ -188,7 +182,6 @@ static void slow_begin(struct render_thread *thread, struct request_group *group
     thread->long_job.keeps = split_view_keeps(thread->long_job.split);
     thread->long_job.urgency = request->urgency;
     thread->long_job.asked_ns = request->asked_ns;
-    thread->long_job.field_ns = field_ns;
     thread->long_job.px = (int64_t)request->view.width_px * request->view.height_px;
     thread->long_job.account = request->account;
     thread->long_job.account_spent_ns = spent_by(thread->service, group->tickets[0].client);
@@ -205,7 +198,7 @@ static void slow_begin(struct render_thread *thread, struct request_group *group
     struct snapshot *other = thread->long_job.snapshot;
     thread->long_job.snapshot = thread->snapshot;
     thread->snapshot = other;
-    store_snapshot(thread->service->params.store, clock_mono_ns(), clock_utc_ns(), thread->snapshot);
+    thread->stale = true;
 }
 
 /* Its clients may have got newer readings meanwhile: the refined frame shows them too, and is the newest. NULL: it cannot. */
@@ -217,8 +210,11 @@ static struct frame *slow_again(struct render_thread *thread)
     if (!thread->long_job.keeps || group->tickets[0].request.overlay || thread->long_job.historical)
         return NULL;
     render_thread_refresh(thread);
-    if (!split_view_is_quick(thread->renderer, view, thread->snapshot))
+    struct split_plan *plan = split_view_plan(thread->renderer, view, thread->snapshot, INT64_MAX);
+    if (!split_view_is_quick(thread->renderer, plan)) {
+        split_plan_destroy(&plan);
         return NULL;
+    }
     pthread_mutex_lock(&service->lock);
     for (size_t i = 0; i < group->count; i++) {
         struct render_client *client = render_service_find(service, group->tickets[i].client);
@@ -226,7 +222,9 @@ static struct frame *slow_again(struct render_thread *thread)
             group->tickets[i].number = ++client->number;
     }
     pthread_mutex_unlock(&service->lock);
-    return split_view_draw(thread->renderer, view, thread->snapshot);
+    struct frame *frame = split_view_draw(thread->renderer, plan);
+    split_plan_destroy(&plan);
+    return frame;
 }
 
 static const struct snapshot *slow_readings(const struct render_thread *thread)
@@ -253,7 +251,6 @@ static bool slow_step(struct render_thread *thread)
     struct frame *frame = split_view_end(thread->renderer, &thread->long_job.split);
     if (is_good(thread, frame)) {
         struct frame *newer = slow_again(thread);
-        frame->field_ns += thread->long_job.field_ns;
         if (newer) {
             newer->field_ns += frame->field_ns;
             newer->render_ns += frame->render_ns;
@@ -306,43 +303,52 @@ static void choose_other(struct request_group *group)
     }
 }
 
+/* Draws what is planned, or begins to; quick: at once. */
+static void draw_plan(struct render_thread *thread, struct request_group *group, const struct snapshot *snapshot,
+                      const struct historical_snapshot **historical, const struct split_plan *plan, bool quick)
+{
+    if (!quick && !thread->long_job.split) {
+        slow_begin(thread, group, historical, plan);
+        return;
+    }
+    lose_on_demand(thread);
+    if (renderer_submits(thread->renderer)) {
+        fly(thread, group, historical, plan);
+        return;
+    }
+    struct frame *frame = split_view_draw(thread->renderer, plan);
+    if (is_good(thread, frame))
+        deliver(thread, frame, snapshot, group);
+    else
+        fail(thread, group);
+}
+
 /* False: held: the field is not there yet, or the place for slow frames is taken; again later. */
 static bool draw_of(struct render_thread *thread, struct request_group *group, const struct snapshot *snapshot,
                     const struct historical_snapshot **historical)
 {
-    int64_t field_begin_ns = clock_mono_ns();
     const struct frame_request *request = &group->tickets[0].request;
-    bool ready = split_view_prepare(thread->renderer, &request->view, snapshot, FIELD_NS);
-    bool quick = ready && split_view_is_quick(thread->renderer, &request->view, snapshot);
-    if (ready && !quick && request->urgency == URGENCY_DATA)
+    struct split_plan *plan = split_view_plan(thread->renderer, &request->view, snapshot, FIELD_NS);
+    bool ready = plan != NULL, quick = ready && split_view_is_quick(thread->renderer, plan);
+    if (ready && !quick && request->urgency == URGENCY_DATA) {
         choose_other(group);
+        if (request->view.tier != plan->view.tier)
+            split_plan_destroy(&plan);
+    }
     quick = quick || request->urgency < URGENCY_REFINE;
     if (ready && !quick && thread->long_job.split)
         slow_park(thread, group);
     if ((!ready || (!quick && thread->long_job.split)) && deferred_requests_push(&thread->deferred, group)) {
+        split_plan_destroy(&plan);
         counter_inc(thread->service->steps, 1);
         return false;
     }
-    uint64_t content = frame_sharing_answer_unchanged(thread, snapshot, group);
-    if (group->count == 0)
-        return true;
-    int64_t field_ns = clock_mono_ns() - field_begin_ns; /* to know what changed, the field was brought up to date already */
-    if (!quick && !thread->long_job.split) {
-        slow_begin(thread, group, historical, field_ns);
-        return true;
-    }
-    lose_on_demand(thread);
-    if (renderer_submits(thread->renderer)) {
-        fly(thread, group, historical, content, field_ns);
-        return true;
-    }
-    struct frame *frame = split_view_draw(thread->renderer, &request->view, snapshot);
-    if (!is_good(thread, frame)) {
-        fail(thread, group);
-        return true;
-    }
-    frame->field_ns += field_ns;
-    deliver(thread, frame, snapshot, group);
+    if (!plan)
+        plan = split_view_plan(thread->renderer, &request->view, snapshot, INT64_MAX);
+    frame_sharing_answer_unchanged(thread, plan->content, group);
+    if (group->count > 0)
+        draw_plan(thread, group, snapshot, historical, plan, quick);
+    split_plan_destroy(&plan);
     return true;
 }
 

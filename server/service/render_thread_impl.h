@@ -21,7 +21,7 @@ struct long_job {                                 /* a frame that is drawn in st
     const struct historical_snapshot *historical; /* its readings, a reference; NULL: they are `snapshot` */
     struct snapshot *snapshot;
     enum urgency urgency;
-    int64_t asked_ns, field_ns;
+    int64_t asked_ns;
     int64_t px, spent_ns;     /* its pixels; time spent so far */
     uint64_t account;         /* who pays that time */
     int64_t account_spent_ns; /* spent on that account before */
@@ -33,7 +33,8 @@ struct render_thread {
     struct gl *gl;
     struct field *field;
     struct renderer *renderer;
-    struct snapshot *snapshot; /* the newest readings that were taken */
+    struct snapshot *snapshot; /* the newest readings that were taken, unless: */
+    bool stale;                /* a frame took them over: take new ones before the next use */
     struct request_group same; /* scratch: requests that are answered without drawing */
     struct recent_frames recent;
     struct long_job long_job;
@@ -50,8 +51,8 @@ struct render_thread {
    drawing took, is charged to them in equal parts. Takes its own reference on the frame. */
 void frame_sharing_submit(struct render_service *service, struct frame *frame, struct request_group *group, int64_t cost_ns);
 /* Answers the requests of the group that need no drawing and removes them: clients that already show this content get no frame; others
-   share a recent frame, or one in flight, of the same content. Returns the content hash of the view. */
-uint64_t frame_sharing_answer_unchanged(struct render_thread *thread, const struct snapshot *snapshot, struct request_group *group);
+   share a recent frame, or one in flight, of the same content. content: of the plan. */
+void frame_sharing_answer_unchanged(struct render_thread *thread, uint64_t content, struct request_group *group);
 /* Answers the requests of the group with a recent frame of the same view, if its readings are as new as those clients know of; then the
    group is empty. To be called before the field is updated. */
 void frame_sharing_answer_from_recent(struct render_thread *thread, struct request_group *group);

@@ -133,8 +133,9 @@ void render_thread_refresh(struct render_thread *thread)
     bool new_data = service->new_data;
     service->new_data = false;
     pthread_mutex_unlock(&service->lock);
-    if (new_data || now_ns - thread->snapshot->taken_mono_ns > SNAPSHOT_MAX_AGE_NS)
+    if (new_data || thread->stale || now_ns - thread->snapshot->taken_mono_ns > SNAPSHOT_MAX_AGE_NS)
         store_snapshot(service->params.store, now_ns, clock_utc_ns(), thread->snapshot);
+    thread->stale = false;
 }
 
 const struct snapshot *render_thread_readings(struct render_thread *thread, const struct view *view,

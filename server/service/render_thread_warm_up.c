@@ -9,7 +9,8 @@ static const int64_t FIRST_FIELD_NS = 10 * NS_PER_S; /* of the field of a view t
 /* For what it costs. */
 static void draw_for_nobody(struct render_thread *thread, const struct view *view)
 {
-    struct frame *frame = split_view_draw(thread->renderer, view, thread->snapshot);
+    render_thread_refresh(thread);
+    struct frame *frame = split_view_draw_now(thread->renderer, view, thread->snapshot);
     if (frame)
         frame_unref(&frame);
 }
@@ -30,7 +31,8 @@ void render_thread_draw_first(struct render_thread *thread)
     for (size_t i = 0; i < params->first_count; i++) {
         struct view view = params->first[i];
         view.tier = TIER_PREVIEW;
-        split_view_prepare(thread->renderer, &view, thread->snapshot, FIRST_FIELD_NS);
+        struct split_plan *plan = split_view_plan(thread->renderer, &view, thread->snapshot, FIRST_FIELD_NS);
+        split_plan_destroy(&plan);
         draw_for_nobody(thread, &view);
     }
 }

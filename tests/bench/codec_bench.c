@@ -12,6 +12,7 @@
 #include "deploy/demo/sim_values.h"
 #include "encode/encoder.h"
 #include "render/renderer.h"
+#include "render/split_view.h"
 #include "scene/scene_create.h"
 #include "value/quality.h"
 
@@ -144,7 +145,7 @@ static void forget(struct measured measured[CODECS])
 
 static struct frame *draw(struct bench *bench, const struct view *view)
 {
-    struct frame *frame = renderer_draw(bench->renderer, view, bench->snapshot);
+    struct frame *frame = split_view_draw_now(bench->renderer, view, bench->snapshot);
     if (!frame)
         abort();
     return frame;

@@ -16,6 +16,7 @@
 #include "field/colormap.h"
 #include "render/renderer.h"
 #include "tests/support/crowd.h"
+#include "tests/support/planned.h"
 
 #define DEMO_MODEL "build/demo/plant.glb"
 #define PLANT_MODEL "../shared/data/models/plm_plant_5parts.glb"
@@ -28,10 +29,10 @@ static const int64_t CHANGE_NS = 100 * NS_PER_MS, LONGEST_NS = 3 * NS_PER_S; /* 
 static const double LONGEST_BRUTE_MS = 20e3;                                 /* of a frame that is drawn more than once */
 static const double SWING_RAD = 6 * M_PI / 180, FOV_DEG = 15, WANTED_COVERAGE = 0.6;
 
-struct model {
+struct paper_model {
     const char *path, *nodes, *up, *suffix; /* of the rows' names */
 };
-static const struct model models[] = {
+static const struct paper_model models[] = {
     { DEMO_MODEL, "E-101", "y", "" },
     { PLANT_MODEL, NULL, "y", "_5parts" },
 };
@@ -144,7 +145,7 @@ static void make_view(const struct bench *bench, int width_px, int height_px, st
 
 static struct frame *draw(struct bench *bench, const struct view *view)
 {
-    struct frame *frame = renderer_draw(bench->renderer, view, bench->crowd.snapshot);
+    struct frame *frame = split_view_draw_now(bench->renderer, view, bench->crowd.snapshot);
     if (!frame)
         abort();
     return frame;
@@ -227,7 +228,7 @@ static void write_scene(const struct bench *bench, const char *folder)
     fclose(out);
 }
 
-static bool bench_init(struct bench *bench, const struct model *model, int instances, int sensors)
+static bool bench_init(struct bench *bench, const struct paper_model *model, int instances, int sensors)
 {
     char *folder = mem_printf(FOLDER "/crowd%s-%dx%d", model->suffix, instances, sensors), *path = realpath(model->path, NULL);
     struct crowd_params params = {
@@ -330,7 +331,7 @@ static void run_flow(struct bench *bench, struct series *series)
             frame_unref(&frame);
         }
         view.camera = bench->cameras[(i + CAMERAS) % CAMERAS];
-        *job = renderer_submit(bench->renderer, &view, bench->crowd.snapshot);
+        *job = planned_submit(bench->renderer, &view, bench->crowd.snapshot);
     }
     series->seconds = (double)(clock_mono_ns() - began_ns) / 1e9;
     for (int i = 0; i < IN_FLIGHT; i++)
@@ -357,7 +358,7 @@ static void print_row(const struct bench *bench, const char *name, struct series
 }
 
 /* A frame's cost does not grow with the sensors. */
-static void compare_sensors(struct bench *bench, const struct model *model, int sensors, const struct series *series)
+static void compare_sensors(struct bench *bench, const struct paper_model *model, int sensors, const struct series *series)
 {
     double here_ms = series->work_ms[series->frames / 2];
     if (sensors == FEW_SENSORS)
@@ -387,7 +388,7 @@ static void measure_brute(struct bench *bench, const char *name, int sensors, st
     bench->brute_sensors = sensors;
 }
 
-static void measure(struct bench *bench, const struct model *model, const char *kind, int instances, int sensors, double goal_ms)
+static void measure(struct bench *bench, const struct paper_model *model, const char *kind, int instances, int sensors, double goal_ms)
 {
     struct series *series = mem_new(sizeof(*series));
     int count = sensors == 5 && !strcmp(kind, "instances") ? instances : sensors;
@@ -427,7 +428,7 @@ static const struct goal sensor_goals[] = { { 5, 0, 0 },    { 10, 0, 0 },  { 20,
 enum { INSTANCE_GOALS = sizeof(instance_goals) / sizeof(instance_goals[0]), SENSOR_GOALS = sizeof(sensor_goals) / sizeof(sensor_goals[0]) };
 
 /* instances, sensors: of the only rows; -1: all of them. */
-static void measure_model(struct bench *bench, const struct model *model, bool gpu, int instances, int sensors)
+static void measure_model(struct bench *bench, const struct paper_model *model, bool gpu, int instances, int sensors)
 {
     for (int i = 0; i < INSTANCE_GOALS; i++) {
         const struct goal *goal = &instance_goals[i];

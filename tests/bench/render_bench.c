@@ -10,6 +10,7 @@
 #include "base/mem.h"
 #include "render/renderer.h"
 #include "scene/scene_create.h"
+#include "tests/support/planned.h"
 #include "value/quality.h"
 
 #define DEMO "build/demo/plant.yaml"
@@ -148,7 +149,7 @@ static void measure(struct bench *bench, enum tier tier, enum dress dress, const
     for (int i = -2; i < rounds; i++) {
         view.camera.eye_m[0] += 0.001;
         double began_ms = now_ms(CLOCK_MONOTONIC), worked_ms = now_ms(CLOCK_PROCESS_CPUTIME_ID);
-        struct frame *frame = renderer_draw(bench->renderer, &view, bench->snapshot);
+        struct frame *frame = split_view_draw_now(bench->renderer, &view, bench->snapshot);
         if (!frame)
             abort();
         frame_unref(&frame);
@@ -187,7 +188,7 @@ static void measure_recolour(struct bench *bench)
     for (int i = -3; i < MOVING_ROUNDS; i++) { /* the third picture is the first to be coloured anew only */
         bench->snapshot->readings[tag].value = group->min + (0.3 + 0.01 * (i + 3)) * (group->max - group->min);
         double began_ms = now_ms(CLOCK_MONOTONIC), worked_ms = now_ms(CLOCK_PROCESS_CPUTIME_ID);
-        struct frame *frame = renderer_draw(bench->renderer, &view, bench->snapshot);
+        struct frame *frame = split_view_draw_now(bench->renderer, &view, bench->snapshot);
         if (!frame)
             abort();
         frame_unref(&frame);
@@ -209,7 +210,7 @@ static void measure_steps(struct bench *bench)
     view.tier = TIER_REFINED;
     for (int i = -1; i < STILL_ROUNDS; i++) {
         double worked_ms = now_ms(CLOCK_PROCESS_CPUTIME_ID), longest = 0, longest_work = 0;
-        struct render_job *job = renderer_begin(bench->renderer, &view, bench->snapshot);
+        struct render_job *job = planned_begin(bench->renderer, &view, bench->snapshot);
         if (!job)
             abort();
         for (bool done = false; !done;) {
@@ -246,17 +247,16 @@ static void measure_again(struct bench *bench, enum dress dress, bool all, const
         struct reading *readings = bench->snapshot->readings;
         for (size_t tag = 0; tag < (all ? bench->plant->tag_count : 1); tag++)
             readings[tag].value *= i % 2 ? 0.97 : 1 / 0.97;
-        while (!renderer_prepare(bench->renderer, &view, bench->snapshot, INT64_MAX / 4)) {
-        }
-        renderer_content(bench->renderer, &view, bench->snapshot);
+        struct split_plan *plan = split_view_plan(bench->renderer, &view, bench->snapshot, INT64_MAX);
         double began_ms = now_ms(CLOCK_MONOTONIC), worked_ms = now_ms(CLOCK_PROCESS_CPUTIME_ID);
-        struct frame *frame = renderer_draw(bench->renderer, &view, bench->snapshot);
+        struct frame *frame = split_view_draw(bench->renderer, plan);
         if (!frame)
             abort();
         if (i >= 0) {
             time_ms[i] = now_ms(CLOCK_MONOTONIC) - began_ms;
             work_ms[i] = now_ms(CLOCK_PROCESS_CPUTIME_ID) - worked_ms;
         }
+        split_plan_destroy(&plan);
         frame_unref(&frame);
     }
     print_row(time_name, time_ms, MOVING_ROUNDS, 4);

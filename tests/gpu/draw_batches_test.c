@@ -13,8 +13,9 @@
 
 #include <cmocka.h>
 
-#include "render/split_view.h"
+#include "render/renderer_compare.h"
 #include "tests/support/gl_calls.h"
+#include "tests/support/planned.h"
 #include "tests/support/rig.h"
 #include "tests/support/sweep.h"
 #include "tests/support/synthetic.h"
@@ -152,7 +153,7 @@ static void look_anyhow(const struct scene *scene, struct view *view)
 static struct frame *draw(const struct stand *stand, const struct view *view, bool one_by_one)
 {
     renderer_set_batching_off(stand->renderer, one_by_one);
-    struct frame *frame = split_view_draw(stand->renderer, view, stand->snapshot);
+    struct frame *frame = split_view_draw_now(stand->renderer, view, stand->snapshot);
     assert_non_null(frame);
     renderer_set_batching_off(stand->renderer, false);
     return frame;
@@ -213,7 +214,7 @@ static void test_a_picture_under_way_keeps_its_readings(void **state)
     view.tier = TIER_REFINED;
     read_all(&stand, 10);
     struct frame *want = stand_draw(&stand, &view);
-    struct render_job *job = renderer_begin(stand.renderer, &view, stand.snapshot);
+    struct render_job *job = planned_begin(stand.renderer, &view, stand.snapshot);
     assert_non_null(job);
     renderer_step(stand.renderer, job, 1);
     for (int i = 0; i < 3; i++) {

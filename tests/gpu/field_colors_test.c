@@ -13,6 +13,7 @@
 #include "field/lab.h"
 #include "render/overlay/overlay.h"
 #include "render/shaded_colormap.h"
+#include "tests/support/planned.h"
 #include "tests/support/rig.h"
 #include "tests/support/temp.h"
 #include "value/alarm.h"
@@ -193,7 +194,7 @@ static void test_labels_stand_on_their_lines(void **state)
     memcpy(view.color_scale.lines, (double[]){ 30, 60 }, 2 * sizeof(double));
     view.color_scale.line_count = 2;
     for (int bits = 0; bits < 2; bits++) {
-        struct render_job *job = bits ? renderer_begin(stand.renderer, &view, stand.snapshot) : NULL;
+        struct render_job *job = bits ? planned_begin(stand.renderer, &view, stand.snapshot) : NULL;
         struct frame *frame = bits ? renderer_end(stand.renderer, &job) : stand_draw(&stand, &view);
         int of_each[2] = { 0 };
         for (size_t i = 0; i < frame->label_count; i++) {

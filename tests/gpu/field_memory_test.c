@@ -14,6 +14,7 @@
 #include "gpu/pool.h"
 #include "render/shaded_colormap.h"
 #include "render/renderer_impl.h"
+#include "tests/support/planned.h"
 #include "tests/support/rig.h"
 #include "value/quality.h"
 
@@ -119,10 +120,10 @@ static void test_without_memory_there_is_no_data(void **state)
             view.tier = (enum tier)tier;
             view.field.power = 1 + kind + 0.25 * tier; /* none that is known */
             fault = kind;
-            uint64_t content = renderer_content(stand.renderer, &view, stand.snapshot);
+            uint64_t content = planned_content(stand.renderer, &view, stand.snapshot);
             assert_hatched(&view);
             fault = ALL_WELL;
-            assert_true(renderer_content(stand.renderer, &view, stand.snapshot) != content); /* so it is drawn again */
+            assert_true(planned_content(stand.renderer, &view, stand.snapshot) != content); /* so it is drawn again */
             struct frame *frame = stand_draw(&stand, &view);
             assert_true(map_index_exact(colormap_at(0), frame_pixel(frame, 8, SIDE_PX - 8)) >= 0);
             frame_unref(&frame);
@@ -137,7 +138,7 @@ static void test_bit_by_bit_too(void **state)
     view.tier = TIER_REFINED;
     view.field.power = 9;
     fault = NO_WEIGHTS;
-    struct render_job *job = renderer_begin(stand.renderer, &view, stand.snapshot);
+    struct render_job *job = planned_begin(stand.renderer, &view, stand.snapshot);
     assert_non_null(job);
     while (!renderer_step(stand.renderer, job, 1000000)) {
     }
@@ -165,7 +166,7 @@ static void test_with_little_room_many_are_shown_alike(void **state)
         for (int i = 0; i < 2 * PLATES; i++)
             if ((i + round) % 3)
                 toy_set(stand.snapshot, i, (i * 37 + round * 11) % 100, (i + round) % 11 ? QUALITY_GOOD : QUALITY_BAD_SENSOR_FAILURE);
-        struct frame *want = stand_draw(&stand, &view), *got = renderer_draw(frugal, &view, stand.snapshot);
+        struct frame *want = stand_draw(&stand, &view), *got = split_view_draw_now(frugal, &view, stand.snapshot);
         assert_non_null(got);
         int shown = 0;
         for (int i = 0; i < SIDE_PX * SIDE_PX; i++) {

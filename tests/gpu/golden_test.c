@@ -152,7 +152,7 @@ static void test_golden(void **state)
         split_up(&view);
     for (int by_gl = 0; by_gl <= 1; by_gl++) {
         renderer_use_gl(stand.renderer, by_gl);
-        struct frame *frame = split_view_draw(stand.renderer, &view, stand.snapshot);
+        struct frame *frame = split_view_draw_now(stand.renderer, &view, stand.snapshot);
         frame_read_markers(frame, stand.snapshot, NULL);
         if (golden->overlay)
             overlay_draw(frame, &stand.toy->scene, stand.snapshot, NULL);

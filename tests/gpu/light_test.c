@@ -12,6 +12,7 @@
 
 #include "base/clock.h"
 #include "render/light/light.h"
+#include "tests/support/planned.h"
 #include "tests/support/rig.h"
 #include "value/quality.h"
 
@@ -166,7 +167,7 @@ static void test_a_moving_session_does_not_wait(void **state)
     for (; content == first->content && pictures < 1000; pictures++) {
         struct frame *frame = stand_draw(&stand, &view);
         frame_unref(&frame);
-        content = renderer_content(stand.renderer, &view, stand.snapshot);
+        content = planned_content(stand.renderer, &view, stand.snapshot);
     }
     assert_true(pictures > 3 && pictures < 1000);
     struct frame *after = stand_draw(&stand, &view);
@@ -195,7 +196,7 @@ static void test_the_first_light_is_rough(void **state)
     int steps = 1;
     while (!renderer_bake_idle(fresh.renderer, 1))
         steps++;
-    assert_true(steps > 8 && renderer_content(fresh.renderer, &view, fresh.snapshot) != first->content);
+    assert_true(steps > 8 && planned_content(fresh.renderer, &view, fresh.snapshot) != first->content);
     struct frame *after = stand_draw(&fresh, &view), *exact = stand_draw(&stand, &view);
     assert_true(same_pixels(after, exact) && !same_pixels(first, exact));
     frame_unref(&first);
@@ -211,7 +212,7 @@ static void test_a_still_picture_waits_for_its_light(void **state)
     (void)state;
     view_default(&stand.toy->scene, 320, 180, &view);
     memcpy(view.light_dir, sun(4).towards, sizeof(view.light_dir));
-    struct render_job *job = renderer_begin(stand.renderer, &view, stand.snapshot);
+    struct render_job *job = planned_begin(stand.renderer, &view, stand.snapshot);
     int steps = 1;
     for (; !renderer_step(stand.renderer, job, 1); steps++) {
     }

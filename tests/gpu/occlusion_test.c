@@ -13,6 +13,8 @@
 #include <cmocka.h>
 
 #include "base/mem.h"
+#include "render/renderer_compare.h"
+#include "render/split_view.h"
 #include "tests/support/site.h"
 #include "tests/support/sweep.h"
 #include "tests/support/synthetic.h"
@@ -30,7 +32,7 @@ static struct frame *draw(struct renderer *renderer, const struct view *view, co
                           size_t *count)
 {
     renderer_set_occlusion_least(renderer, leave_out ? 0 : INT_MAX - 1);
-    struct frame *frame = renderer_draw(renderer, view, snapshot);
+    struct frame *frame = split_view_draw_now(renderer, view, snapshot);
     assert_non_null(frame);
     *count = renderer_occluded_count(renderer);
     return frame;

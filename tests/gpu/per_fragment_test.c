@@ -12,6 +12,7 @@
 #include <cmocka.h>
 
 #include "base/mem.h"
+#include "render/renderer_compare.h"
 #include "tests/support/cad.h"
 #include "tests/support/rig.h"
 #include "tests/support/synthetic.h"

@@ -17,6 +17,7 @@
 #include <cmocka.h>
 
 #include "base/mem.h"
+#include "render/renderer_compare.h"
 #include "scene/framing.h"
 #include "scene/scene_create.h"
 #include "tests/support/rig.h"

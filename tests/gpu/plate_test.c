@@ -13,6 +13,7 @@
 
 #include "base/mem.h"
 #include "render/render_job.h"
+#include "tests/support/planned.h"
 #include "tests/support/rig.h"
 #include "value/quality.h"
 
@@ -30,7 +31,7 @@ static struct frame *draw_by_gl(const struct view *view)
 /* Whatever was drawn before. */
 static struct frame *draw_anew(const struct view *view)
 {
-    struct render_job *job = renderer_begin(stand.renderer, view, stand.snapshot);
+    struct render_job *job = planned_begin(stand.renderer, view, stand.snapshot);
     assert_non_null(job);
     assert_non_null(job->plate);
     struct frame *frame = renderer_end(stand.renderer, &job);
@@ -306,7 +307,7 @@ static void test_nothing_in_sight(void **state)
     start_view(&view, 320, 180);
     for (int c = 0; c < 3; c++) /* the sky behind */
         view.camera.target_m[c] = 2 * view.camera.eye_m[c] - view.camera.target_m[c];
-    struct render_job *first = renderer_begin(stand.renderer, &view, stand.snapshot);
+    struct render_job *first = planned_begin(stand.renderer, &view, stand.snapshot);
     assert_non_null(first);
     assert_like_gl(&view, 0);
     struct frame *frame = renderer_end(stand.renderer, &first);
@@ -372,7 +373,7 @@ static void test_thin_poles_have_no_beads(void **state)
 
 static bool is_quick(const struct view *view)
 {
-    return renderer_is_quick(stand.renderer, view, stand.snapshot);
+    return planned_is_quick(stand.renderer, view, stand.snapshot);
 }
 
 static void assert_same_anew(const struct view *view)

@@ -13,6 +13,7 @@
 
 #include "base/mem.h"
 #include "field/lab.h"
+#include "render/split_view.h"
 #include "scene/framing.h"
 #include "tests/support/site.h"
 #include "value/quality.h"
@@ -115,7 +116,7 @@ static struct flash flash_of(struct site *site, struct view *view)
     struct frame *frames[2];
     for (int tier = TIER_PREVIEW; tier <= TIER_REFINED; tier++) {
         view->tier = (enum tier)tier;
-        frames[tier] = renderer_draw(site->renderer, view, site->snapshot);
+        frames[tier] = split_view_draw_now(site->renderer, view, site->snapshot);
         assert_non_null(frames[tier]);
     }
     for (int i = 0; i < count; i++) {

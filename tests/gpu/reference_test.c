@@ -18,6 +18,7 @@
 #include "base/vec.h"
 #include "message/message.h"
 #include "plant/transform.h"
+#include "render/renderer_compare.h"
 #include "tests/support/site.h"
 #include "tests/support/sweep.h"
 #include "tests/support/synthetic.h"

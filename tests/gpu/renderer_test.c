@@ -11,6 +11,8 @@
 #include <cmocka.h>
 
 #include "render/memory.h"
+#include "render/renderer_compare.h"
+#include "tests/support/planned.h"
 #include "tests/support/rig.h"
 #include "value/quality.h"
 
@@ -30,7 +32,7 @@ static int reset(void **state)
 
 static uint64_t content(void)
 {
-    return renderer_content(stand.renderer, &view, stand.snapshot);
+    return planned_content(stand.renderer, &view, stand.snapshot);
 }
 
 static void test_content_is_that_of_the_frame(void **state)
@@ -40,6 +42,27 @@ static void test_content_is_that_of_the_frame(void **state)
     struct frame *frame = stand_draw(&stand, &view);
     assert_true(frame->content == before && before == content());
     frame_unref(&frame);
+}
+
+/* Each half of a split view is planned before either is drawn. */
+static void test_plan_holds_while_another_is_made(void **state)
+{
+    (void)state;
+    view.camera.eye_m[1] += 0.3; /* a camera of its own: drawn whole, both times */
+    struct view other = view;
+    struct frame *want = stand_draw(&stand, &view);
+    other.camera.eye_m[0] += 1;
+    other.range_max *= 2;
+    struct frame_plan *plan = renderer_plan(stand.renderer, &view, stand.snapshot, INT64_MAX);
+    struct frame_plan *next = renderer_plan(stand.renderer, &other, stand.snapshot, INT64_MAX);
+    assert_true(plan->content == want->content && next->content != want->content && plan->shape != next->shape);
+    struct frame *got = renderer_draw(stand.renderer, plan);
+    assert_true(got && got->content == want->content);
+    assert_memory_equal(got->bgrx, want->bgrx, (size_t)want->stride_bytes * (size_t)want->height_px);
+    frame_plan_destroy(&plan);
+    frame_plan_destroy(&next);
+    frame_unref(&want);
+    frame_unref(&got);
 }
 
 static void test_content_ignores_numbers_and_times(void **state)
@@ -116,7 +139,7 @@ static void test_content_is_the_same_elsewhere(void **state)
     stand_init(&other, &rig, toy_unit());
     for (int i = 0; i < 8; i++)
         toy_set(other.snapshot, i, 20 + 7 * i, QUALITY_GOOD);
-    assert_true(renderer_content(other.renderer, &view, other.snapshot) == content());
+    assert_true(planned_content(other.renderer, &view, other.snapshot) == content());
     struct frame *here = stand_draw(&stand, &view), *there = stand_draw(&other, &view);
     assert_memory_equal(here->bgrx, there->bgrx, (size_t)here->stride_bytes * (size_t)here->height_px);
     frame_unref(&here);
@@ -178,7 +201,7 @@ static void test_bit_by_bit_is_the_same_picture(void **state)
         renderer_use_gl(stand.renderer, view.tier == TIER_PREVIEW); /* as bit by bit */
         struct frame *whole = stand_draw(&stand, &view);
         renderer_use_gl(stand.renderer, false);
-        struct render_job *job = renderer_begin(stand.renderer, &view, stand.snapshot);
+        struct render_job *job = planned_begin(stand.renderer, &view, stand.snapshot);
         int steps = 1;
         assert_non_null(job);
         for (; !renderer_step(stand.renderer, job, 0); steps++) {
@@ -207,7 +230,7 @@ static void test_abandoned_picture_leaves_no_trace(void **state)
     view.tier = TIER_REFINED;
     struct frame *before = stand_draw(&stand, &view);
     for (int i = 0; i < 20; i++) {
-        struct render_job *job = renderer_begin(stand.renderer, &view, stand.snapshot);
+        struct render_job *job = planned_begin(stand.renderer, &view, stand.snapshot);
         assert_non_null(job);
         for (int step = 0; step < i % 3; step++)
             renderer_step(stand.renderer, job, 0);
@@ -465,6 +488,7 @@ int main(void)
         each(test_camera_within_the_plant),
         each(test_what_is_kept_can_be_had_anew),
         each(test_what_is_kept_has_a_bound),
+        each(test_plan_holds_while_another_is_made),
     };
     cmocka_set_message_output(CM_OUTPUT_TAP);
     if (!rig_init(&rig, "renderer_test"))

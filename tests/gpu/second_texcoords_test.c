@@ -15,6 +15,7 @@
 
 #include "base/mem.h"
 #include "render/frame.h"
+#include "render/split_view.h"
 #include "tests/support/model_maker.h"
 #include "tests/support/model_seeds.h"
 #include "tests/support/prep_case.h"
@@ -169,7 +170,7 @@ static struct frame *picture_of(struct prep_case *c, enum way way)
     view.camera = (struct camera){ .eye_m = { 1.2, -1.1, 2.2 }, .target_m = { 1, 0.5, 0 }, .up = { 0, 0, 1 }, .fov_deg = 40 };
     view.tier = TIER_REFINED;
     view.look = LOOK_MATERIALS;
-    struct frame *frame = renderer_draw(site.renderer, &view, site.snapshot);
+    struct frame *frame = split_view_draw_now(site.renderer, &view, site.snapshot);
     assert_non_null(frame);
     save(frame, way);
     site_finish(&site);

@@ -15,6 +15,8 @@
 #include <cmocka.h>
 
 #include "base/mem.h"
+#include "render/renderer_compare.h"
+#include "tests/support/planned.h"
 #include "tests/support/site.h"
 #include "tests/support/synthetic.h"
 
@@ -107,8 +109,8 @@ static void compare(const struct view *view, const float (*numbers)[4], const st
 static struct frame *draw(struct site *site, const struct view *view)
 {
     if (view->tier == TIER_PREVIEW)
-        return renderer_draw(site->renderer, view, site->snapshot);
-    struct render_job *job = renderer_begin(site->renderer, view, site->snapshot);
+        return split_view_draw_now(site->renderer, view, site->snapshot);
+    struct render_job *job = planned_begin(site->renderer, view, site->snapshot);
     return job ? renderer_end(site->renderer, &job) : NULL;
 }
 

@@ -10,6 +10,7 @@
 
 #include <cmocka.h>
 
+#include "render/split_view.h"
 #include "tests/support/site.h"
 #include "tests/support/synthetic.h"
 
@@ -35,9 +36,9 @@ static int differing(const struct frame *a, const struct frame *b)
 static int compare(struct site *site, const struct view *view)
 {
     renderer_use_gl(site->renderer, true);
-    struct frame *gl = renderer_draw(site->renderer, view, site->snapshot);
+    struct frame *gl = split_view_draw_now(site->renderer, view, site->snapshot);
     renderer_use_gl(site->renderer, false);
-    struct frame *ours = renderer_draw(site->renderer, view, site->snapshot);
+    struct frame *ours = split_view_draw_now(site->renderer, view, site->snapshot);
     assert_non_null(gl);
     assert_non_null(ours);
     int count = differing(gl, ours);

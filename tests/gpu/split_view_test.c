@@ -11,8 +11,8 @@
 #include <cmocka.h>
 
 #include "base/clock.h"
-#include "render/split_view.h"
 #include "render/overlay/overlay.h"
+#include "tests/support/planned.h"
 #include "tests/support/rig.h"
 #include "value/quality.h"
 
@@ -61,7 +61,7 @@ static void test_halves_are_pictures(void **state)
     make_view(&view);
     for (int tier = TIER_PREVIEW; tier <= TIER_REFINED; tier++) {
         view.tier = (enum tier)tier;
-        struct frame *whole = split_view_draw(stand.renderer, &view, stand.snapshot), *parts[2];
+        struct frame *whole = split_view_draw_now(stand.renderer, &view, stand.snapshot), *parts[2];
         assert_true(whole->width_px == WIDTH && whole->height_px == HEIGHT && whole->view.split);
         size_t markers = 0;
         for (int i = 0; i < 2; i++) {
@@ -81,7 +81,7 @@ static void test_halves_are_pictures(void **state)
         assert_true(whole->label_count > 0 && whole->label_count == parts[1]->label_count);
         for (size_t i = 0; i < whole->label_count; i++)
             assert_true(whole->labels[i].half == 1 && whole->labels[i].x_px == parts[1]->labels[i].x_px + LEFT);
-        assert_true(whole->content == split_view_content(stand.renderer, &view, stand.snapshot));
+        assert_true(whole->content == planned_content(stand.renderer, &view, stand.snapshot));
         frame_read_markers(whole, stand.snapshot, NULL);
         overlay_draw(whole, &stand.toy->scene, stand.snapshot, NULL); /* two legends; that it ends is what can be said here */
         frame_unref(&parts[0]);
@@ -95,18 +95,18 @@ static void test_bit_by_bit(void **state)
     struct view view;
     (void)state;
     make_view(&view);
-    struct split_view *canvas = split_view_begin(stand.renderer, &view, stand.snapshot);
+    struct split_view *canvas = planned_split(stand.renderer, &view, stand.snapshot, false);
     int steps = 1;
     while (!split_view_step(stand.renderer, canvas, NS_PER_MS))
         steps++;
     assert_true(steps >= 2);
-    struct frame *frame = split_view_end(stand.renderer, &canvas), *once = split_view_draw(stand.renderer, &view, stand.snapshot);
+    struct frame *frame = split_view_end(stand.renderer, &canvas), *once = split_view_draw_now(stand.renderer, &view, stand.snapshot);
     assert_null(canvas);
     assert_memory_equal(frame->bgrx, once->bgrx, (size_t)HEIGHT * (size_t)frame->stride_bytes);
     assert_true(frame->content == once->content && frame->marker_count == once->marker_count && frame->label_count == once->label_count);
     frame_unref(&frame);
     frame_unref(&once);
-    canvas = split_view_begin(stand.renderer, &view, stand.snapshot);
+    canvas = planned_split(stand.renderer, &view, stand.snapshot, false);
     split_view_step(stand.renderer, canvas, 1);
     split_view_abandon(stand.renderer, &canvas);
     assert_null(canvas);
@@ -125,7 +125,7 @@ static void test_launched_together(void **state)
     views[1].tier = TIER_REFINED;
     for (int i = 0; i < 2; i++) {
         views[i].camera.eye_m[0] += i;
-        canvases[i] = split_view_submit(stand.renderer, &views[i], stand.snapshot);
+        canvases[i] = planned_split(stand.renderer, &views[i], stand.snapshot, true);
         assert_non_null(canvases[i]);
     }
     while (!split_view_is_complete(canvases[1])) {
@@ -133,14 +133,14 @@ static void test_launched_together(void **state)
     assert_true(split_view_is_complete(canvases[0]));
     for (int i = 0; i < 2; i++) {
         struct frame *frame = split_view_end(stand.renderer, &canvases[i]),
-                     *once = split_view_draw(stand.renderer, &views[i], stand.snapshot);
+                     *once = split_view_draw_now(stand.renderer, &views[i], stand.snapshot);
         assert_memory_equal(frame->bgrx, once->bgrx, (size_t)HEIGHT * (size_t)frame->stride_bytes);
         assert_true(frame->content == once->content && frame->marker_count == once->marker_count && frame->label_count > 0);
         assert_memory_equal(frame->markers, once->markers, frame->marker_count * sizeof(*frame->markers));
         frame_unref(&frame);
         frame_unref(&once);
     }
-    canvases[0] = split_view_submit(stand.renderer, &views[0], stand.snapshot);
+    canvases[0] = planned_split(stand.renderer, &views[0], stand.snapshot, true);
     split_view_abandon(stand.renderer, &canvases[0]);
     renderer_use_gl(stand.renderer, false);
 }
@@ -152,7 +152,7 @@ static void test_narrow(void **state)
     (void)state;
     make_view(&view);
     for (view.width_px = 16; view.width_px < 20; view.width_px++) {
-        struct frame *frame = split_view_draw(stand.renderer, &view, stand.snapshot);
+        struct frame *frame = split_view_draw_now(stand.renderer, &view, stand.snapshot);
         assert_int_equal(frame->width_px, view.width_px);
         frame_read_markers(frame, stand.snapshot, NULL);
         overlay_draw(frame, &stand.toy->scene, stand.snapshot, NULL);
@@ -165,12 +165,12 @@ static void test_what_is_not_split_stays_as_it_is(void **state)
     struct view view;
     (void)state;
     view_default(&stand.toy->scene, WIDTH, HEIGHT, &view);
-    struct frame *whole = split_view_draw(stand.renderer, &view, stand.snapshot), *plain = stand_draw(&stand, &view);
+    struct frame *whole = split_view_draw_now(stand.renderer, &view, stand.snapshot), *plain = stand_draw(&stand, &view);
     assert_memory_equal(whole->bgrx, plain->bgrx, (size_t)HEIGHT * (size_t)whole->stride_bytes);
-    assert_true(whole->content == plain->content && split_view_content(stand.renderer, &view, stand.snapshot) == plain->content);
+    assert_true(whole->content == plain->content && planned_content(stand.renderer, &view, stand.snapshot) == plain->content);
     struct view split;
     make_view(&split);
-    assert_true(split_view_content(stand.renderer, &split, stand.snapshot) != plain->content);
+    assert_true(planned_content(stand.renderer, &split, stand.snapshot) != plain->content);
     frame_unref(&whole);
     frame_unref(&plain);
 }

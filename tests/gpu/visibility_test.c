@@ -12,6 +12,7 @@
 #include <cmocka.h>
 
 #include "render/pick/pick.h"
+#include "tests/support/planned.h"
 #include "tests/support/rig.h"
 #include "value/quality.h"
 
@@ -111,7 +112,7 @@ static void test_what_is_hidden_has_no_age(void **state)
 
 static uint64_t content(void)
 {
-    return renderer_content(stand.renderer, &view, stand.snapshot);
+    return planned_content(stand.renderer, &view, stand.snapshot);
 }
 
 static void test_content_sees_what_is_shown(void **state)
@@ -342,7 +343,7 @@ static void test_bit_by_bit_is_the_same(void **state)
     asset_set_add(&view.visibility.ghosts, TANK);
     view.visibility.clip = (struct clip){ .plane_count = 1, .planes = { { 0, 1, 0, 0.1 } } };
     struct frame *at_once = stand_draw(&stand, &view);
-    struct render_job *job = renderer_begin(stand.renderer, &view, stand.snapshot);
+    struct render_job *job = planned_begin(stand.renderer, &view, stand.snapshot);
     while (!renderer_step(stand.renderer, job, 1))
         continue;
     struct frame *bits = renderer_end(stand.renderer, &job);

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Contexts, stands and pixels for GL tests. */
+#include "render/split_view.h"
 #include "tests/support/rig.h"
 
 #include <math.h>
@@ -63,7 +64,7 @@ void stand_look(const struct stand *stand, int i, struct view *view)
 
 struct frame *stand_draw(struct stand *stand, const struct view *view)
 {
-    struct frame *frame = renderer_draw(stand->renderer, view, stand->snapshot);
+    struct frame *frame = split_view_draw_now(stand->renderer, view, stand->snapshot);
     if (!frame)
         abort();
     return frame;

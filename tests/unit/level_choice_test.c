@@ -61,16 +61,15 @@ static double error_among(size_t assets, int fewer, enum tier tier)
     struct scene scene = { .assets = mem_array(assets, sizeof(*scene.assets)), .asset_count = assets };
     struct gpu_scene gpu_scene = { .scene = &scene, .of_asset = of_asset };
     int *visible = mem_array(assets, sizeof(*visible));
-    struct view view = { .tier = tier };
     for (size_t i = 0; i < assets; i++) {
         of_asset[i] = &model;
         visible[i] = (int)i;
         scene.assets[i] = (struct scene_asset){ .bounds_min_m = { 10, -1, -1 }, .bounds_max_m = { 12, 1, 1 } };
     }
-    const struct frame_context context = {
-        .gpu_scene = &gpu_scene, .view = &view, .constants = { .pixel_per_radian = 1000 }, .visible = visible, .visible_count = assets
-    };
-    double error_px = lod_error_px(&context);
+    const struct view_constants constants = { .pixel_per_radian = 1000 };
+    double error_px = lod_error_px(
+        &(struct lod_params){ .gpu_scene = &gpu_scene, .constants = &constants, .tier = tier, .visible = visible,
+                              .visible_count = assets });
     mem_free(visible);
     mem_free(scene.assets);
     mem_free(of_asset);

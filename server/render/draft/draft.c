@@ -5,7 +5,6 @@
 #include <string.h>
 
 #include "base/mem.h"
-#include "render/plan/content_hash.h"
 #include "render/draft/draft_kernels.h"
 #include "render/draft/draft_simd.h"
 #include "render/pick/markers.h"
@@ -193,5 +192,5 @@ bool draft_draw(struct draft *draft, const struct frame_context *context, const 
     draft_aim(draft, light);
     if (!draft_find(draft))
         return complain(draft);
-    return draw_all(draft, isolines, frame, !lined && is_still(draft, content_shape_hash(context)));
+    return draw_all(draft, isolines, frame, !lined && is_still(draft, context->shape));
 }

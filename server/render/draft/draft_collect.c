@@ -22,7 +22,7 @@ void draft_fill_mesh(struct draft *draft, struct draft_mesh *mesh, int index, co
         .baked = (const uint8_t(*)[4])draft->light->baked[index],
         .first_vertex = (uint32_t)draft->vertex_count,
         .vertex_count = level->vertex_count,
-        .mirrored = gpu_scene_mirrored(asset),
+        .mirrored = scene_asset_mirrored(asset),
         .cut = clip_touches(&context->view->visibility.clip, asset->bounds_min_m, asset->bounds_max_m),
     };
     if (mesh->cut)

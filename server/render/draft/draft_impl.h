@@ -138,7 +138,7 @@ struct draft {
     struct draft_light lights[DRAFT_LIGHTS];
     uint64_t uses;
     struct visibility_buffers kept; /* struct recolor, of cameras that stand still */
-    uint64_t shapes[DRAFT_SHAPES];  /* content_shape_hash of the last pictures drawn */
+    uint64_t shapes[DRAFT_SHAPES];  /* content_hash_shape of the last pictures drawn */
     size_t shape_count;
     struct draft_parts **parts; /* by number of the model, level; made when they are first needed */
     /* --- of the picture being drawn */

@@ -3,7 +3,6 @@
 #include <string.h>
 
 #include "base/mem.h"
-#include "render/plan/content_hash.h"
 #include "render/draft/draft_tile.h"
 
 struct keeping {
@@ -158,13 +157,13 @@ void draft_give(struct visibility_buffers *store, const struct frame_context *co
     recolor->marker_count = frame->marker_count;
     if (frame->marker_count > 0)
         memcpy(recolor->markers, frame->markers, frame->marker_count * sizeof(*recolor->markers));
-    visibility_buffers_give(store, content_shape_hash(context), recolor, recolor_bytes(recolor), forget);
+    visibility_buffers_give(store, context->shape, recolor, recolor_bytes(recolor), forget);
 }
 
 bool draft_recolor(struct draft *draft, struct visibility_buffers *store, const struct frame_context *context,
                    const struct isoline_points *points, struct frame *frame)
 {
-    struct recolor *recolor = visibility_buffers_find(store, content_shape_hash(context));
+    struct recolor *recolor = visibility_buffers_find(store, context->shape);
     struct frame_uniforms block;
     if (!recolor || (context->colormap.lines && !recolor->lined))
         return false;

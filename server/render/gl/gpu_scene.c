@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Models by asset, frustum and levels of detail. */
+/* Models by asset, and the pass that draws their depth. */
 #include "render/gl/gpu_scene.h"
 
 #include <math.h>
@@ -8,7 +8,6 @@
 #include "base/mem.h"
 #include "gpu/program.h"
 #include "render/matrix.h"
-#include "scene/coincident.h"
 
 static struct model *find_model(struct gpu_scene *gpu_scene, const struct asset *file)
 {
@@ -74,54 +73,6 @@ void gpu_scene_finish(struct gpu_scene *gpu_scene)
     for (int i = 0; i < 4; i++)
         program_destroy(&gpu_scene->depth_programs[i / 2][i % 2]);
     *gpu_scene = (struct gpu_scene){ 0 };
-}
-
-void view_constants_init(struct view_constants *constants, const double eye_m[3], const double clip_from_eye[16], double pixel_per_radian)
-{
-    double eye_from_plant[16];
-    *constants = (struct view_constants){ .pixel_per_radian = pixel_per_radian };
-    memcpy(constants->eye_m, eye_m, sizeof(constants->eye_m));
-    memcpy(constants->clip_from_eye, clip_from_eye, sizeof(constants->clip_from_eye));
-    matrix_translation((double[3]){ -eye_m[0], -eye_m[1], -eye_m[2] }, eye_from_plant);
-    matrix_multiply(clip_from_eye, eye_from_plant, constants->clip_from_plant);
-    const double *m = constants->clip_from_plant;
-    for (int p = 0; p < 6; p++) /* w + x, w - x, w + y, w - y, z, w - z: all >= 0 inside */
-        for (int c = 0; c < 4; c++) {
-            double row = m[4 * c + p / 2], w = m[4 * c + 3];
-            constants->planes[p][c] = p == 4 ? row : p % 2 ? w - row : w + row;
-        }
-}
-
-void view_constants_narrow(struct view_constants *constants, const double low[2], const double high[2])
-{
-    const double *m = constants->clip_from_plant;
-    for (int p = 0; p < 4; p++)
-        for (int c = 0; c < 4; c++) {
-            double row = m[4 * c + p / 2], w = m[4 * c + 3];
-            constants->planes[p][c] = p % 2 ? high[p / 2] * w - row : row - low[p / 2] * w;
-        }
-}
-
-bool view_constants_sees(const struct view_constants *constants, const struct scene_asset *asset)
-{
-    for (int p = 0; p < 6; p++) {
-        double far = constants->planes[p][3]; /* of the corner that lies farthest inward */
-        for (int c = 0; c < 3; c++)
-            far += constants->planes[p][c] * (constants->planes[p][c] > 0 ? asset->bounds_max_m[c] : asset->bounds_min_m[c]);
-        if (far < 0)
-            return false;
-    }
-    return true;
-}
-
-void view_constants_bring_forward(const struct view_constants *constants, const struct scene_asset *asset, double clip_from_file[16])
-{
-    double forward = coincident_forward(asset);
-    if (constants->pixel_per_metre > 0)
-        clip_from_file[14] += forward / constants->depth_scale;
-    else
-        for (int c = 0; c < 4; c++)
-            clip_from_file[4 * c + 2] *= 1 + forward;
 }
 
 const struct model_level *gpu_scene_level(const struct gpu_scene *gpu_scene, const struct view_constants *constants, int asset,
@@ -209,13 +160,7 @@ void gpu_scene_draw_depth(const struct gpu_scene *gpu_scene, const double clip_f
     gpu_scene_clip_end(clip);
 }
 
-bool gpu_scene_mirrored(const struct scene_asset *asset)
-{
-    const double *m = asset->placement;
-    return m[0] * (m[5] * m[10] - m[6] * m[9]) - m[4] * (m[1] * m[10] - m[2] * m[9]) + m[8] * (m[1] * m[6] - m[2] * m[5]) < 0;
-}
-
 void gpu_scene_set_front_face(const struct scene_asset *asset)
 {
-    glFrontFace(gpu_scene_mirrored(asset) ? GL_CW : GL_CCW);
+    glFrontFace(scene_asset_mirrored(asset) ? GL_CW : GL_CCW);
 }

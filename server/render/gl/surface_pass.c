@@ -157,7 +157,7 @@ static void place_instance(const struct frame_context *context, int index, const
 
 const struct model_level *surface_pass_level(const struct frame_context *context, int asset)
 {
-    return lod_level(context, asset, context->reference && !context->measured ? 0 : context->error_px);
+    return lod_level(context->gpu_scene, &context->constants, asset, context->error_px);
 }
 
 /* One asset's surfaces, those that are blended or those that are not. A field is never blended: it would mix its colours. hidden: it is
@@ -176,7 +176,7 @@ static void gather(struct surface_pass *pass, struct draw_batches *batches, cons
                                       .field = field && field->slice ? field->slice->page : NULL,
                                       .front = asset->front,
                                       .alone = alone ? index : -1,
-                                      .mirrored = gpu_scene_mirrored(asset),
+                                      .mirrored = scene_asset_mirrored(asset),
                                       .blend = blend,
                                       .cut = clip_touches(&context->view->visibility.clip, asset->bounds_min_m, asset->bounds_max_m) };
     struct culling culling;

@@ -2,7 +2,6 @@
 /* Four floats a pixel. */
 #include "render/pick/measure_target.h"
 
-#include "render/renderer.h"
 
 bool measure_target_begin(struct measure_target *measure, struct log *log, int width_px, int height_px)
 {

@@ -7,6 +7,8 @@
 #include "base/log.h"
 #include <glad/gl.h>
 
+enum { MEASURE_CONTEXT = -1, MEASURE_NOTHING = -2 }; /* instead of "no data": an asset without a field; no asset */
+
 struct measure_target {
     int width_px, height_px;
     GLuint framebuffer, numbers, depth;

@@ -29,12 +29,12 @@ static void add_color_scale(XXH3_state_t *state, const struct color_scale *color
 }
 
 /* What is hidden throws no shadow either, wherever it stands: all assets count. */
-static void add_visibility(XXH3_state_t *state, const struct frame_context *context)
+static void add_visibility(XXH3_state_t *state, const struct frame_plan *plan)
 {
-    const struct visibility *visibility = &context->view->visibility;
+    const struct visibility *visibility = &plan->view.visibility;
     size_t planes = (size_t)visibility->clip.plane_count;
     if (visibility->hidden.count + visibility->isolated.count + visibility->ghosts.count > 0)
-        for (size_t i = 0; i < context->gpu_scene->scene->asset_count; i++) {
+        for (size_t i = 0; i < plan->gpu_scene->scene->asset_count; i++) {
             uint8_t look = (uint8_t)visibility_of(visibility, (int)i);
             add(state, &look, sizeof(look));
         }
@@ -42,9 +42,9 @@ static void add_visibility(XXH3_state_t *state, const struct frame_context *cont
 }
 
 /* All but the field and its colours. */
-static void add_shape(XXH3_state_t *state, const struct frame_context *context)
+static void add_shape(XXH3_state_t *state, const struct frame_plan *plan)
 {
-    const struct view *view = context->view;
+    const struct view *view = &plan->view;
     int32_t choices[] = { view->width_px,       view->height_px,   (int32_t)view->look,        (int32_t)view->tier,
                           view->selected_asset, view->environment, (int32_t)view->field.trial, view->dark };
     double numbers[] = { view->camera.fov_deg, view->camera.height_m };
@@ -54,12 +54,12 @@ static void add_shape(XXH3_state_t *state, const struct frame_context *context)
     add(state, view->camera.target_m, sizeof(view->camera.target_m));
     add(state, view->camera.up, sizeof(view->camera.up));
     add(state, view->light_dir, sizeof(view->light_dir));
-    add(state, context->lit_by.towards, sizeof(context->lit_by.towards));
-    add(state, &context->lit_by.environment, sizeof(context->lit_by.environment));
-    add(state, &context->lit_by.rough, sizeof(context->lit_by.rough));
-    bool own_shadows = visibility_equal(&context->lit_by.shown, &view->visibility);
+    add(state, plan->lit_by.towards, sizeof(plan->lit_by.towards));
+    add(state, &plan->lit_by.environment, sizeof(plan->lit_by.environment));
+    add(state, &plan->lit_by.rough, sizeof(plan->lit_by.rough));
+    bool own_shadows = visibility_equal(&plan->lit_by.shown, &view->visibility);
     add(state, &own_shadows, sizeof(own_shadows));
-    add_visibility(state, context);
+    add_visibility(state, plan);
 }
 
 static void add_colors(XXH3_state_t *state, const struct view *view)
@@ -71,29 +71,29 @@ static void add_colors(XXH3_state_t *state, const struct view *view)
     add_color_scale(state, &view->color_scale);
 }
 
-uint64_t content_hash(const struct frame_context *context)
+uint64_t content_hash(const struct frame_plan *plan)
 {
     XXH3_state_t state;
     XXH3_INITSTATE(&state);
     XXH3_64bits_reset(&state);
-    add_shape(&state, context);
-    add_colors(&state, context->view);
-    for (size_t i = 0; i < context->visible_count; i++) {
-        int asset = context->visible[i];
-        uint64_t one[2] = { (uint64_t)asset, context->fields[asset] ? context->fields[asset]->content : 0 };
+    add_shape(&state, plan);
+    add_colors(&state, &plan->view);
+    for (size_t i = 0; i < plan->visible_count; i++) {
+        int asset = plan->visible[i];
+        uint64_t one[2] = { (uint64_t)asset, plan->fields[asset] ? plan->fields[asset]->content : 0 };
         add(&state, one, sizeof(one));
     }
     return XXH3_64bits_digest(&state);
 }
 
-uint64_t content_shape_hash(const struct frame_context *context)
+uint64_t content_hash_shape(const struct frame_plan *plan)
 {
     XXH3_state_t state;
     XXH3_INITSTATE(&state);
     XXH3_64bits_reset(&state);
-    add_shape(&state, context);
-    for (size_t i = 0; i < context->visible_count; i++) {
-        int one[2] = { context->visible[i], context->fields[context->visible[i]] != NULL };
+    add_shape(&state, plan);
+    for (size_t i = 0; i < plan->visible_count; i++) {
+        int one[2] = { plan->visible[i], plan->fields[plan->visible[i]] != NULL };
         add(&state, one, sizeof(one));
     }
     return XXH3_64bits_digest(&state);

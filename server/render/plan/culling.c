@@ -18,7 +18,7 @@ void culling_init(struct culling *culling, const struct view_constants *constant
     matrix_point(file_from_plant, constants->eye_m, eye);
     for (int c = 0; c < 3; c++)
         culling->eye_m[c] = (float)eye[c];
-    culling->cones = !gpu_scene_mirrored(asset) && constants->pixel_per_metre <= 0;
+    culling->cones = !scene_asset_mirrored(asset) && constants->pixel_per_metre <= 0;
 }
 
 static bool in_frustum(const struct culling *culling, const struct asset_cluster *cluster)

@@ -2,7 +2,7 @@
 /* Which clusters of an asset's triangles a camera, or a tile of its picture, may show. No GL here. */
 #ifndef RENDER_PLAN_CULLING_H
 #define RENDER_PLAN_CULLING_H
-#include "render/gl/gpu_scene.h"
+#include "render/plan/view_constants.h"
 
 struct culling { /* one asset, in the frame of its file */
     float planes[6][4];

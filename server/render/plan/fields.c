@@ -206,14 +206,11 @@ static void show_some(void *arg, size_t begin, size_t end)
         show(showing->entries[i]);
 }
 
-/* False: it is shown as no data, for now. */
-static bool to_gpu(struct fields *fields, struct fields_entry *entry)
+/* For fragments that work the field out themselves. */
+static void take_sensors(const struct fields *fields, struct fields_entry *entry)
 {
-    if (!entry->uploaded && !fields->without_gl && !upload(fields, entry))
-        return false;
     if (fields->reference && !entry->sensors)
         entry->sensors = reference_sensors(fields->reference, entry->asset, &entry->params);
-    return true;
 }
 
 /* Fields of one set of parameters stay where they are while others of it are asked for, however little room there is; of a trial, each
@@ -234,16 +231,30 @@ void fields_get(struct fields *fields, const struct fields_ask *ask, const struc
             continue;
         }
         show(entry);
-        if (!take_slice(fields, entry) || !to_gpu(fields, entry))
+        if (take_slice(fields, entry))
+            take_sensors(fields, entry);
+        else
             entries[ask->assets[i]] = &fields->lost;
     }
     workers_for(field_workers(fields->field), count, 1, show_some, &showing);
     mem_free(changed);
     make_room(fields, ask, entries);
     for (size_t i = 0; i < ask->asset_count; i++)
-        if (entries[ask->assets[i]] && entries[ask->assets[i]] != &fields->lost &&
-            !to_gpu(fields, (struct fields_entry *)entries[ask->assets[i]]))
-            entries[ask->assets[i]] = &fields->lost;
+        if (entries[ask->assets[i]] && entries[ask->assets[i]] != &fields->lost)
+            take_sensors(fields, (struct fields_entry *)entries[ask->assets[i]]);
+}
+
+bool fields_upload(struct fields *fields, const int *assets, size_t count, const struct fields_entry **entries)
+{
+    bool good = true;
+    for (size_t i = 0; i < count; i++) {
+        struct fields_entry *entry = (struct fields_entry *)entries[assets[i]];
+        if (!entry || entry == &fields->lost || entry->uploaded || upload(fields, entry))
+            continue;
+        entries[assets[i]] = &fields->lost;
+        good = false;
+    }
+    return good;
 }
 
 /* Not what the last picture showed, which is what the next one shows, mostly: it would be worked out anew for each. */

@@ -32,7 +32,6 @@ struct fields {
     struct log *log;
     const struct reference *reference; /* NULL: not used */
     struct field *field;
-    bool without_gl; /* who asks now reads `shown` only: slices may stay behind */
     struct pool *pool;
     struct fields_entry **entries;
     struct fields_entry lost; /* stands for all that there is no room for */
@@ -53,6 +52,9 @@ struct fields_ask {
 /* Into entries, by asset. NULL: that asset has nothing to show. Where there is no room (logged) that is shown as no data. Valid until the
    next fields_trim. */
 void fields_get(struct fields *fields, const struct fields_ask *ask, const struct fields_entry **entries);
+/* Brings what these show to the GPU, before it draws with them. Returns false where there was no room for one (logged): its entry is now
+   one that is shown as no data. */
+bool fields_upload(struct fields *fields, const int *assets, size_t count, const struct fields_entry **entries);
 /* Between frames: drops what is beyond the bound. */
 void fields_trim(struct fields *fields);
 void fields_drop(struct fields *fields); /* drops all */

@@ -6,7 +6,6 @@
 #include <string.h>
 
 #include "base/mem.h"
-#include "render/plan/content_hash.h"
 #include "render/pick/markers.h"
 #include "render/matrix.h"
 #include "render/plate/plate_impl.h"
@@ -514,7 +513,7 @@ bool plates_know(struct plates *plates, const struct frame_context *context)
 {
     double lines[VIEW_ALL_LINES];
     const struct recolor *recolor =
-        plates_can(plates, context) ? visibility_buffers_find(&plates->kept, content_shape_hash(context)) : NULL;
+        plates_can(plates, context) ? visibility_buffers_find(&plates->kept, context->shape) : NULL;
     return recolor && (recolor->lined || view_lines(context->view, lines) == 0);
 }
 
