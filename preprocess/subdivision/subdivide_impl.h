@@ -2,6 +2,8 @@
 /* Shared by the files of the adaptive subdivision (subdiv*.c). */
 #ifndef PREPROCESS_SUBDIVISION_SUBDIVIDE_IMPL_H
 #define PREPROCESS_SUBDIVISION_SUBDIVIDE_IMPL_H
+#include <math.h>
+
 #include "preprocess/subdivision/subdiv_mesh.h"
 #include "preprocess/subdivision/subdivide.h"
 

@@ -2,6 +2,9 @@
 /* What tests and benchmarks compare a renderer's frames by. Thread: the one that made the GL context. */
 #ifndef RENDER_RENDERER_COMPARE_H
 #define RENDER_RENDERER_COMPARE_H
+#include <stdbool.h>
+#include <stddef.h>
+
 #include "render/pick/measure_target.h"
 
 struct renderer; /* render/renderer.h */
