@@ -174,8 +174,6 @@ struct message {
     struct prove_request prove;
 };
 
-/* Parses and checks a message of `count` bytes. Returns false with *error holding the refusal. */
-bool message_parse(const struct plant *plant, const char *text, size_t count, struct message *out, struct message_error *error);
 /* Reads an instant (base/timestamp.h) of the argument `name` into *out, in microseconds UTC. Returns false, with *error set, for any other
    text. */
 bool message_take_time(const char *name, const char *text, int64_t now_us, int64_t *out, struct message_error *error);

@@ -6,7 +6,6 @@
 #include <stddef.h>
 #include <string.h>
 
-#include "message/role.h"
 #include "render/pick/pick.h"
 #include "render/view.h"
 #include "scene/framing.h"
@@ -29,10 +28,7 @@ const struct name names_projection[] = { { "perspective", PROJECTION_PERSPECTIVE
 const struct name names_pick[] = {
     { "context", PICK_CONTEXT }, { "no data", PICK_NO_DATA }, { "between", PICK_BETWEEN }, { "measured", PICK_MEASURED }, { NULL, 0 }
 };
-const struct name names_role[] = {
-    { "nobody", ROLE_NOBODY },     { "open", ROLE_OPEN },         { "viewer", ROLE_VIEWER },
-    { "operator", ROLE_OPERATOR }, { "engineer", ROLE_ENGINEER }, { NULL, 0 },
-};
+
 const struct name names_side[] = { { "now", SIDE_NOW },     { "top", SIDE_TOP },   { "bottom", SIDE_BOTTOM },
                                    { "front", SIDE_FRONT }, { "back", SIDE_BACK }, { "left", SIDE_LEFT },
                                    { "right", SIDE_RIGHT }, { "iso", SIDE_ISO },   { NULL, 0 } };

@@ -4,6 +4,11 @@
 
 #include "message/names.h"
 
+const struct name names_role[] = {
+    { "nobody", ROLE_NOBODY },     { "open", ROLE_OPEN },         { "viewer", ROLE_VIEWER },
+    { "operator", ROLE_OPERATOR }, { "engineer", ROLE_ENGINEER }, { NULL, 0 },
+};
+
 /* How the field is computed: each set of these costs the server a field of its own, and takes somebody who knows. */
 static const unsigned ENGINEERS = GIVEN_FILL | GIVEN_STRENGTH | GIVEN_DECAY | GIVEN_POWER | GIVEN_RADIUS | GIVEN_REACH | GIVEN_SENSORS;
 

@@ -3,6 +3,7 @@
 #ifndef MESSAGE_ROLE_H
 #define MESSAGE_ROLE_H
 #include "message/message.h"
+#include "message/names.h"
 
 enum role {
     ROLE_NOBODY, /* has yet to say who it is */
@@ -11,6 +12,8 @@ enum role {
     ROLE_OPERATOR,
     ROLE_ENGINEER, /* also whoever is on the daemon's own machine */
 };
+
+extern const struct name names_role[]; /* ends with a NULL text */
 
 /* Returns whether a client of that role may send the message. If not, fills *error with the refusal to answer. */
 bool role_may_send(enum role role, const struct message *message, struct message_error *error);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The loop: its context, its tick, its end. */
-#include "net/net_impl.h"
+#include "net/net.h"
 
 #include <arpa/inet.h>
 #include <errno.h>
@@ -16,6 +16,7 @@
 #include "base/mem.h"
 #include "net/tls.h"
 #include "net/connection.h"
+#include "net/net_impl.h"
 
 static const int64_t TICK_NS = 100 * NS_PER_MS;
 static const int64_t GOODBYE_NS = 500 * NS_PER_MS; /* for the close frames to leave */

@@ -3,45 +3,9 @@
    net_wake, net_stop and net_call from any. */
 #ifndef NET_NET_H
 #define NET_NET_H
-#include <stdbool.h>
-
-#include "access/access.h"
-#include "alarm/alarm_service.h"
-#include "base/counters.h"
-#include "base/log.h"
-#include "loopcheck/loop_checks.h"
-#include "placing/tag_file.h"
-#include "service/render_service.h"
+#include "net/net_params.h"
 
 struct net;
-struct net_plant { /* what belongs to one loaded plant; a reload brings another */
-    const struct scene *scene;
-    struct store *store;
-    struct render_service *render_service;
-    struct baselines *baselines;
-    struct snapshot_cache *snapshot_cache;
-    struct alarm_service *alarm_service;
-    struct placing *placing;         /* NULL: sensors cannot be placed */
-    struct loop_checks *loop_checks; /* NULL: loops cannot be checked */
-    const char *tag_list;            /* the text in force; NULL: not known */
-    const char *history_folder;      /* NULL: nothing is recorded */
-};
-
-struct net_params {
-    struct log *log;
-    struct net_plant plant;
-    struct counters *counters;
-    const char *address; /* to listen on, numeric */
-    int port;            /* 0: any that is free */
-    struct access_params access;
-    unsigned codecs;        /* a bit, 1 << enum wire_codec, for each that works here */
-    const char *web_folder; /* the page's files; NULL: no page is served */
-    const char *version;
-    void (*reload)(void *arg);                      /* called in the loop: load the plant anew. NULL: it cannot be */
-    void (*save)(void *arg, struct tag_save *save); /* called in the loop: put another tag list in force; takes it. NULL: it cannot be */
-    void *reload_arg;                               /* of both */
-};
-
 /* Returns whether the port can be bound now; if not, the reason is logged. For before the slow part of starting. */
 bool net_port_free(struct log *log, const char *address, int port);
 /* Returns whether the configured tokens and certificate can be used; if not, the reason is logged. */

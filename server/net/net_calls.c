@@ -2,6 +2,7 @@
 /* Calls into the loop from other threads. */
 #include <pthread.h>
 
+#include "net/net.h"
 #include "net/net_impl.h"
 
 void net_calls_init(struct net *net)

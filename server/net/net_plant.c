@@ -2,6 +2,7 @@
 /* What the loop knows of one plant: its readings, its links, its history. */
 #include "base/clock.h"
 #include "base/mem.h"
+#include "net/net.h"
 #include "net/net_impl.h"
 #include "value/quality.h"
 

@@ -4,6 +4,7 @@
 
 #include "base/clock.h"
 #include "base/mem.h"
+#include "net/net.h"
 #include "net/net_impl.h"
 #include "net/stream.h"
 

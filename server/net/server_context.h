@@ -8,7 +8,7 @@
 #include "message/marker_text.h"
 #include "net/address_limits.h"
 #include "net/latency_stages.h"
-#include "net/net.h"
+#include "net/net_params.h"
 #include "service/history_loader.h"
 #include "service/history_queries.h"
 #include "session/session.h"

@@ -7,6 +7,7 @@
 
 #include "base/clock.h"
 #include "base/mem.h"
+#include "message/message_parse.h"
 #include "message/alarm_message.h"
 #include "message/fit_message.h"
 #include "session/reply.h"

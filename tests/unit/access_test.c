@@ -9,6 +9,7 @@
 #include <cmocka.h>
 
 #include "base/mem.h"
+#include "message/message_parse.h"
 #include "message/names.h"
 #include "tests/support/small_scene.h"
 

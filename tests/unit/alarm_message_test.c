@@ -12,6 +12,7 @@
 
 #include "base/clock.h"
 #include "base/mem.h"
+#include "message/message_parse.h"
 #include "access/access.h"
 #include "message/alarm_message.h"
 #include "message/alarm_text.h"

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What clients say: the vectors, the merging of parameters, the query of snapshots, and text that was damaged at random. */
-#include "message/message.h"
+#include "message/message_parse.h"
 
 #include <dirent.h>
 #include <math.h>
