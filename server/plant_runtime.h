@@ -44,8 +44,8 @@ struct plant_runtime *plant_runtime_read(const struct plant_runtime_context *con
 /* Ends what runs, in reverse order of the flow of data, and frees all. &NULL is fine; leaves NULL. */
 void plant_runtime_destroy(struct plant_runtime **runtime);
 
-/* Starts historian and alarms. before: the runtime whose history, alarms and readings are continued (plant_runtime_hand_over); NULL: none.
-   Returns false on failure, already logged. */
+/* Starts historian and alarms. before: the runtime whose history, alarms and readings are continued; plant_runtime_hand_over() must have
+   been called on it, and the caller still destroys it. NULL: none. Returns false on failure, already logged. */
 bool plant_runtime_start_recording(struct plant_runtime *runtime, struct plant_runtime *before);
 /* Starts the field devices' sources and derived tags. Returns false on failure, already logged. */
 bool plant_runtime_start_sources(struct plant_runtime *runtime);

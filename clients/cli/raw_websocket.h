@@ -24,7 +24,7 @@ int raw_websocket_fd(const struct raw_websocket *raw);
 /* Returns whether the server has accepted the handshake, so that messages may be sent. */
 bool raw_websocket_is_open(const struct raw_websocket *raw);
 /* Reads from the socket when it is ready. Returns 1 with *message set until the next call (call again), 0 if there is nothing more for now,
-   or a negative number with the reason in *why if the connection is over. */
+   or a negative number with the reason in *why if the connection is over; *why is not to be freed, and valid while `raw` is. */
 int raw_websocket_read(struct raw_websocket *raw, struct raw_websocket_message *message, const char **why);
 /* Sends one text message. Returns false if the connection is gone or takes nothing. */
 bool raw_websocket_send(struct raw_websocket *raw, const char *text, size_t count);

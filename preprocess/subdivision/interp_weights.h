@@ -35,7 +35,7 @@ float interp_shepard(const struct interp_group *group, const float *distance_m, 
 /* As interp_shepard(), by Algorithm 1 of the paper with radius radius_m. */
 float interp_paper(const struct interp_group *group, float radius_m, const float *distance_m, float *interp);
 
-/* Computes only the normalisation of Shepard weights. */
+/* Computes only the normalisation of Shepard weights, for interp_shepard_again(). distance_m: group->count of them, padding included. */
 void interp_shepard_norm(const struct interp_group *group, const float *distance_m, struct interp_norm *norm);
 /* Writes the same weights as interp_shepard(), given their normalisation, in less than half the time. */
 void interp_shepard_again(const struct interp_group *group, const float *distance_m, const struct interp_norm *norm, float *interp);

@@ -22,7 +22,8 @@ struct alarm_service_params {
 struct alarm_service;
 /* Starts the service. Returns NULL if there is no thread (logged). */
 struct alarm_service *alarm_service_start(const struct alarm_service_params *params);
-/* Ends the thread; alarms do not change any more, but can still be queried. */
+/* Ends the thread and waits until it has ended and the journal is written; this call does wait for the disk. Alarms do not change any more,
+   but can still be queried. Journal rows that cannot be written are lost (logged). alarm_service_stop() frees the service. */
 void alarm_service_halt(struct alarm_service *service);
 /* Writes what is pending to the journal, ends the thread and frees the service. &NULL is fine; leaves NULL. */
 void alarm_service_stop(struct alarm_service **service);

@@ -12,7 +12,7 @@ bool timestamp_parse(const char *text, int64_t now_us, int64_t *t_us);
 /* Parses a date and time with a zone, or without: then in the zone of timestamp_use_zone(). Of a time that the clocks showed twice, takes
    the earlier one that is later than after_us. Returns false if it is no time, or one that the clocks skipped. */
 bool timestamp_parse_local(const char *text, int64_t after_us, int64_t *t_us);
-void timestamp_use_zone(const char *iana_name); /* sets the zone of the program; only while it has one thread */
+void timestamp_use_zone(const char *iana_name); /* sets the zone of the program (TZ); only while it has one thread */
 #define TIMESTAMP_FORMS "an instant such as 2026-11-20T10:00:00Z (or with an offset, +01:00), seconds since 1970, or -8h"
 enum { TIMESTAMP_BYTES = 32 };
 void timestamp_print(int64_t t_us, char text[TIMESTAMP_BYTES]); /* 2026-11-20T10:00:00.500Z; microseconds where there are any */

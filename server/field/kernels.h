@@ -24,7 +24,8 @@ float kernel_largest(const float *distance_m, size_t count, float most_m);
    A sensor takes part where it is within reach or the nearest: where none is within reach, the nearest alone carries its value on, so that
    a triangle with one reached corner can be interpolated. */
 void kernel_top_shepard(const float *restrict distance_m, const float *restrict near_m, size_t count, float strength, float *restrict top);
-/* Raises top[i] likewise for Algorithm 1: the largest exponent. */
+/* Raises top[i] to one sensor's exponent of Algorithm 1, max(0, 1 - distance / radius) strength / ln 2 (a power of 2), where that is larger
+   and the sensor takes part, as in kernel_top_shepard(). Begin with top of zeros and call it for each sensor. */
 void kernel_top_paper(const float *restrict distance_m, const float *restrict near_m, size_t count, float reach_m, float radius_m,
                       float strength, float *restrict top);
 

@@ -36,7 +36,8 @@ struct state {
     struct state *next;
 };
 
-/* Creates the state, without room for vertices yet. The layout must outlive it. The caller destroys it. */
+/* Creates the state, never NULL, without room for vertices yet (state_grow). Copies params; the layout must outlive it. The caller
+   destroys it. */
 struct state *state_create(int asset, struct layout *layout, const struct field_params *params);
 /* Frees the state. &NULL is fine; leaves NULL. */
 void state_destroy(struct state **state);

@@ -12,7 +12,8 @@ void update_begin(struct state *state, size_t count);
 bool update_go_on(struct state *state, struct workers *workers, double work, uint64_t *versions);
 /* Returns whether the update is small and only reads its weights, so that update_run() may do it beside others. */
 bool update_is_light(const struct state *state);
-/* Does the whole of a light update on the calling thread. Thread: any, beside updates of other states; update_end() must follow. */
+/* Does the whole of an update on the calling thread, once update_begin() has begun it and update_is_light() has returned true. update_end()
+   must follow. Thread: any, beside updates of other states. */
 void update_run(struct state *state);
 /* Completes an update_run(). Thread: the field's. */
 void update_end(struct state *state, uint64_t *versions);

@@ -17,7 +17,8 @@ struct readback { /* zero-initialise */
     GLsync done;
 };
 
-/* Of the resolved picture. False: out of GPU memory, logged. */
+/* Begins to copy the resolved picture of the target, without waiting; the caller has called target_resolve(). The target may be drawn to
+   again at once. Returns false if out of GPU memory, logged. */
 bool readback_start(struct readback *readback, struct log *log, const struct target *target);
 bool readback_is_done(const struct readback *readback);         /* without waiting */
 bool readback_wait(struct readback *readback, struct log *log); /* until it is there. False: the GL context is lost, logged */

@@ -29,7 +29,9 @@ struct render_texture {
     int width_px, height_px;
     GLuint framebuffer, texture;
 };
-/* False: out of GPU memory; it is tried again the next time. */
+/* Makes the texture, with a framebuffer that has it as that attachment, if there is none or its size is another one; its contents are lost
+   then. Format and attachment must be those of the first call. Returns false if out of GPU memory (not logged), with the texture empty; the
+   next call tries again. */
 bool render_texture_fit(struct render_texture *layer, GLenum format, GLenum attachment, int width_px, int height_px);
 void render_texture_finish(struct render_texture *layer);
 

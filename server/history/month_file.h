@@ -52,8 +52,9 @@ int month_file_month(const struct month_file *file);
 /* Returns whether the open file is still that of its name: it was not deleted, renamed or replaced meanwhile. */
 bool month_file_is_there(const struct month_file *file);
 
-/* Writes rows in one transaction, which is on disk when this returns. held: newest samples that are not recorded yet; they replace those of
-   the last call. Returns -ENOSPC if the disk is full, -EROFS, or -EBADMSG if the file is damaged (open it again). */
+/* Writes rows in one transaction, which is on disk when this returns. held: newest samples that are not recorded yet; each replaces the
+   held sample of its tag, other tags keep theirs. Returns -ENOSPC if the disk is full, -EROFS, or -EBADMSG if the file is damaged (open it
+   again). */
 int month_file_write(struct month_file *file, const struct history_row *rows, size_t count, const struct history_row *held,
                      size_t held_count);
 /* Sorts the rows that were written by tag and makes rollups of them. month_file_waiting() returns how many rows wait for that. */
@@ -84,7 +85,7 @@ struct history_gaps {
 };
 /* Appends the gaps that this file knows of, in no order. */
 int month_file_gaps(struct month_file *file, struct history_gaps *out);
-/* Finds the times of the first and the last point. Leaves both as they are if there is none. */
+/* Finds the times of the first and the last point. Returns 0 and leaves both as they are if there is none. */
 int month_file_span(struct month_file *file, int64_t *first_us, int64_t *last_us);
 /* The points of a tag around a time: the last one before or at it, and the first one after; t_us is INT64_MIN in a point not found yet. */
 struct history_pair {

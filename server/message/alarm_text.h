@@ -32,7 +32,8 @@ bool alarm_query_parse(const struct plant *plant, bool journal, const char *cons
                        struct alarm_query *query, struct message_error *error);
 /* Returns the alarms that are not normal, as JSON or CSV. */
 char *alarms_api_text(struct alarm_service *alarm_service, const struct plant *plant, const struct alarm_query *query, int64_t now_utc_ns);
-/* Appends rows of the journal, as JSON or CSV. Reads the disk; any thread. Returns false if it cannot be read, already logged. */
+/* Appends the rows of the journal that the query asks for, as CSV if query->csv, else as JSON. Reads the disk; any thread. Returns false,
+   with *out emptied, if it cannot be read, already logged. */
 bool alarms_journal_text(struct log *log, const char *folder, const struct alarm_query *query, struct text *out);
 
 #endif

@@ -82,7 +82,7 @@ bool stream_owns(const struct server_context *server, uint64_t client);
 void stream_on_frame(struct server_context *server, struct encoded_frame *encoded);
 void stream_on_pick(struct server_context *server, const struct pick_answer *answer);
 void stream_on_historical_snapshot(struct server_context *server, const struct history_loader_answer *answer);
-/* Hands coverage of sensors, or a text, to a stream that asked; it may have gone meanwhile. */
+/* Hand coverage of sensors, or a text, to the stream that asked, and copy it; do nothing if that has gone meanwhile. */
 void stream_on_gaps(struct server_context *server, const struct sensor_coverage_answer *answer);
 void stream_say(struct server_context *server, uint64_t client, const char *text);
 /* Tells sessions whose sensors are placed on trial that distances were computed. */

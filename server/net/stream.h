@@ -49,7 +49,8 @@ struct stream *stream_called(const struct server_context *server, uint64_t numbe
 
 /* --- stream_send.c --- */
 
-/* Makes one write: a text, or a part of a frame. Returns false when the connection is gone. */
+/* Makes one write at most: a text, a part of a frame, the end of one given up, or a ping; nothing if nothing is due. Returns false when the
+   connection is gone; the caller then has lws close it, which frees the stream. */
 bool stream_send(struct server_context *server, struct stream *stream);
 /* Returns whether there is anything to send now. */
 bool stream_has_output(const struct stream *stream, int64_t now_ns);

@@ -16,7 +16,7 @@ struct expression *expression_parse(const char *text, int (*find)(const void *ar
 void expression_destroy(struct expression **expression); /* &NULL is fine; leaves NULL */
 /* Returns how many inputs there are, and the indices that find returned for them, each once. */
 size_t expression_inputs(const struct expression *expression, const int **inputs);
-/* Computes the value from the values of the inputs, in that order. Returns NaN or infinity if it cannot be computed. */
+/* Computes the value from the values of the inputs, in the order of expression_inputs(). Returns NaN or infinity if it has none. */
 double expression_value(const struct expression *expression, const double *values);
 
 #endif

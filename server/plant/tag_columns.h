@@ -31,7 +31,7 @@ const char *tag_column_name(enum tag_column column);
 
 /* Returns the text of a cell of the current row. */
 const char *cell_text(const struct tag_columns *columns, enum tag_column column);
-bool cell_given(const struct tag_columns *columns, enum tag_column column); /* returns whether the cell is not blank */
+bool cell_given(const struct tag_columns *columns, enum tag_column column); /* returns whether it is not blank; no such column: false */
 /* Reads a number in [low, high] (both 0: any finite one). Returns false, with *out unchanged, if the cell is blank or wrong (reported). */
 bool cell_number(struct tag_columns *columns, enum tag_column column, double low, double high, double *out);
 bool cell_flag(struct tag_columns *columns, enum tag_column column); /* reads 1, true, yes; 0, false, no or blank */

@@ -62,7 +62,7 @@ struct place yaml_place(const yaml_node_t *node);
 void yaml_error(struct yaml_reader *reader, struct place place, const char *fmt, ...) __attribute__((format(printf, 3, 4)));
 /* Reports `name: expected ..., found ...` at a node. */
 void yaml_expected(struct yaml_reader *reader, const yaml_node_t *node, const char *name, const char *expected);
-/* Returns whether a node is null: an empty plain scalar, `~` or `null`. */
+/* Returns whether a node is null: an empty plain scalar, `~` or `null` in lower case. The pointer must not be NULL. */
 bool yaml_is_null(const yaml_node_t *node);
 /* Returns the text of a scalar; NULL for lists and mappings. */
 const char *yaml_text(const yaml_node_t *node);

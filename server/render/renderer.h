@@ -30,7 +30,8 @@ bool renderer_is_quick(struct renderer *renderer, const struct frame_plan *plan)
 struct frame *renderer_draw(struct renderer *renderer, const struct frame_plan *plan);
 
 /* Begins a job that draws the frame in steps, so that others can be drawn in between; it keeps what the plan shows, and the plan is not
-   needed any more. As many as fit in memory may be under way. NULL on failure, logged. */
+   needed any more. As many as fit in memory may be under way. renderer_end() or renderer_abandon() frees the job. NULL on failure,
+   logged. */
 struct render_job *renderer_begin(struct renderer *renderer, const struct frame_plan *plan);
 /* Returns whether a frame of other readings will be quick (renderer_is_quick) once this job has ended. */
 bool renderer_keeps(const struct render_job *job);
@@ -48,16 +49,17 @@ struct render_job *renderer_submit(struct renderer *renderer, const struct frame
 /* Returns whether renderer_end() would not wait for a job that was submitted. */
 bool renderer_is_complete(const struct render_job *job);
 
-/* Sets how long each preview bakes on at a light that is not there yet: until it is, previews show the one most like it, and if there is
-   none a rough one is made at once. 0, as it begins, and for refined frames: a frame takes the time that its light takes. Returns false
-   when the GPU is out of memory, logged. */
+/* Sets how long each preview bakes on at a light that is not there yet. Until it is there, previews show the ready light most like it; if
+   no light is ready, this call makes a rough one. With 0, the value at first, a preview waits until its light is baked. Refined frames
+   always wait. Returns false when the GPU is out of memory, logged. */
 bool renderer_set_bake_budget(struct renderer *renderer, int64_t bake_ns);
 /* Bakes the light that most views have, for about that long, while nobody wants a frame. Returns true when there is nothing more to do. */
 bool renderer_bake_idle(struct renderer *renderer, int64_t budget_ns);
 
 /* Draws by GL what is drawn in software where there is no GPU. */
 void renderer_use_gl(struct renderer *renderer, bool always);
-/* Works the field out at each fragment from now on, over all sensors, on the finest level (render/reference/reference.h): slow. */
+/* per_fragment true: works the field out at each fragment from now on, over all sensors, on the finest level
+   (render/reference/reference.h): slow. false: interpolates it between vertices again. */
 void renderer_set_per_fragment(struct renderer *renderer, bool per_fragment);
 
 #endif

@@ -76,7 +76,8 @@ enum { VIEW_ALL_LINES = VIEW_LINES + SCALE_EDGES };
 int view_lines(const struct view *view, double lines[VIEW_ALL_LINES]);
 /* Half 0 (all of it, where it is not split) or 1 as a view of its own. */
 void view_half(const struct view *view, int half, struct view *out);
-/* Shows that instant of the past (value/snapshot_cache.h); 0: now. A field that was set anew is told again. */
+/* Sets the instant that the view shows; 0: now. slot: of the instant's historical snapshot (value/snapshot_cache.h); 0: now, or not loaded
+   yet. The field of each half keeps it: whoever assigns a field anew calls this again. */
 void view_set_instant(struct view *view, int64_t at_us, int slot);
 /* Likewise: with sensors where somebody tries them out (field/trials.h); 0: where the plant has them. */
 void view_set_trial(struct view *view, uint32_t trial);

@@ -12,7 +12,8 @@ struct far_sensor {
 
 /* Sorted, farthest first. Free with mem_free. */
 struct far_sensor *far_sensors_find(const struct scene *scene, size_t *count);
-/* Farther from the surface is worth a word: it may stand on something else, or its numbers are wrong. */
+/* Returns the distance from the asset's surface beyond which a sensor is worth a word: it may stand on something else, or its numbers are
+   wrong. 0.25 m, or 5 % of the diagonal of the asset's bounds, whichever is less. */
 double far_limit_m(const struct scene_asset *asset);
 
 #endif

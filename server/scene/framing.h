@@ -18,7 +18,8 @@ struct framing {
 bool framing_find(const struct plant *plant, const char *name, struct framing *framing);
 /* Turns the camera to look at all of it, with the lens it has. */
 void framing_look(const struct scene *scene, const struct framing *framing, double aspect, struct camera *camera);
-/* Steps a perspective camera back where a window of a picture of that aspect does not show all of the plant that it sees at 16:9. */
+/* Moves a perspective camera, without turning it, until the window of a picture of that aspect shows all of the plant that it sees now at
+   16:9. Leaves the camera as it is where the window shows that already. A window of zeros: the whole picture. */
 void framing_keep(const struct scene *scene, double aspect, const struct camera_window *window, struct camera *camera);
 
 #endif

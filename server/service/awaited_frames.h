@@ -29,7 +29,8 @@ void awaited_frames_finish(struct awaited_frames *in_flight);
    snapshot, *snapshot. Leaves an empty group and another snapshot, of no content, in their place. */
 void awaited_frames_push(struct awaited_frames *in_flight, const struct awaited_frame *frame, struct request_group *group,
                          struct snapshot **snapshot);
-/* Returns the frame of that content, or NULL. */
+/* Returns the frame of that content (a content hash), leaving out frames that get an overlay; NULL: none. It stays in the list, and valid
+   until the next pop. */
 struct awaited_frame *awaited_frames_find(struct awaited_frames *in_flight, uint64_t content);
 /* Returns the readings that the frame shows. */
 const struct snapshot *awaited_frames_readings(const struct awaited_frame *frame);

@@ -17,7 +17,7 @@ struct encoded_frame { /* belongs to whoever collected it: encoded_frame_destroy
     struct encoded_frame *next;
 };
 
-/* Releases the frame and its packets. &NULL is fine; leaves NULL. */
+/* Frees the frame and drops its references to packets, which other frames may share. Any thread. &NULL is fine; leaves NULL. */
 void encoded_frame_destroy(struct encoded_frame **frame);
 /* Returns the bytes of all its packets. */
 size_t encoded_frame_bytes(const struct encoded_frame *frame);

@@ -49,7 +49,8 @@ enum request_outcome render_service_request(struct render_service *service, uint
 void render_service_wake(struct render_service *service);
 /* Drops all that is waiting or encoded for the client. */
 void render_service_forget(struct render_service *service, uint64_t client);
-/* Marks tags whose loop was not checked, where the server draws markers. loop_checks must outlive the service; NULL: none. */
+/* Has tags whose loop was not checked marked in all frames drawn from now on, where the server draws markers. loop_checks must outlive the
+   service; NULL: none is marked. */
 void render_service_set_loop_checks(struct render_service *service, const struct loop_checks *loop_checks);
 /* Says that readings changed: a new snapshot is taken before the next frame. */
 void render_service_on_data(struct render_service *service);

@@ -43,7 +43,7 @@ void channel_on_pong(struct channel *channel, int64_t rtt_ns, int64_t now_ns);
 int64_t channel_rtt_ns(const struct channel *channel);
 /* Returns whether the round trip was measured so long ago that it is to be measured again, with nothing else under way. */
 bool channel_rtt_is_old(const struct channel *channel, int64_t now_ns);
-/* Returns how long the network takes for so many bytes; 0: not known. */
+/* Returns how long the client's bandwidth takes for so many bytes, without the round trip; 0: the bandwidth is not known. */
 int64_t channel_transfer_ns(const struct channel *channel, double bytes);
 
 #endif

@@ -135,7 +135,9 @@ const struct snapshot *session_snapshot(const struct session *session);
 
 /* Returns true if readings of an instant are to be loaded now, with it in *at_us. Advances play, which may end in the present. */
 bool session_wants_historical_snapshot(struct session *session, int64_t now_ns, int64_t now_utc_ns, int64_t *at_us);
-/* Notes that the readings of an instant are in the cache; good false: they could not be read. */
+/* Shows the instant, whose readings are in the cache now, if the session waits for any instant: for this one, or for another that it
+   travels to. Does nothing if it waits for none. good false (they could not be read), or no longer in the cache: replies with the error
+   no_history, stops playing and goes on showing what it showed. */
 void session_on_historical_snapshot(struct session *session, int64_t at_us, bool good, int64_t now_ns);
 
 /* --- following -------------------------------------------------------------------------------------------------------- */

@@ -30,7 +30,7 @@ struct read_plan { /* zero-initialise */
     size_t unit_count;
 };
 
-/* Makes the plan of one of the plant's sources. */
+/* Makes the plan of one of the plant's sources, a Modbus one. Keeps no pointer to the plant. Free with read_plan_finish(). */
 void read_plan_init(struct read_plan *plan, const struct plant *plant, int source);
 void read_plan_finish(struct read_plan *plan);
 /* Splits a block of at least two tags between two of them; the second half becomes block index + 1. */

@@ -16,8 +16,9 @@ struct snapshot_cache;
 struct snapshot_cache *snapshot_cache_create(void);
 void snapshot_cache_destroy(struct snapshot_cache **snapshot_cache); /* &NULL is fine; leaves NULL; nothing may be held any more */
 
-/* Adds an instant. Takes over the readings of the snapshot, which is left empty, and renumbers their `changes` so that equal values and
-   qualities have equal numbers. An instant that is already there stays as it was. */
+/* Adds an instant. Renumbers the `changes` of the snapshot's readings so that equal values and qualities have equal numbers, and takes the
+   readings over, which leaves the snapshot empty. An instant that is already there stays as it was, and the caller keeps the readings. The
+   struct itself stays the caller's. */
 void snapshot_cache_add(struct snapshot_cache *snapshot_cache, int64_t at_us, struct snapshot *snapshot);
 /* Returns the snapshot of an instant, which stays valid until snapshot_cache_give(); NULL if it is not in the cache. */
 const struct historical_snapshot *snapshot_cache_take(struct snapshot_cache *snapshot_cache, int64_t at_us);

@@ -10,6 +10,7 @@ const why = missing();
 const options = { skip: why ?? false, timeout: 200000 };
 const SCREEN = { viewport: { width: 1280, height: 720 } };
 const LEAST = 0.95, WITHIN_MS = 1000, BUSY_MS = 350, QUIET_MS = 1500;
+const SMALL_MS = 500;
 const SPIN_MS = 80, LEAST_SHARE = 0.85; // of a processor
 let plant, browser, page;
 
@@ -78,7 +79,8 @@ test('it looks as the refined picture does, within a second', options, async (t)
     assert.ok(first >= LEAST, `refined at once, not in two stages: ${said.join('; ')}`);
     const had = [beforeMove, share()];
     if (Math.min(...had) >= LEAST_SHARE) {
-        assert.ok(seen.every((one) => one.fullWidth === image.width), `of the viewport's size: ${said.join('; ')}`);
+        // Where nothing changed since the page was loaded, little is known of the link, and the first previews are small.
+        assert.ok(seen.every((one) => one.fullWidth === image.width || one.at <= SMALL_MS), `of the viewport's size: ${said.join('; ')}`);
         assert.ok(good.at <= WITHIN_MS, said.join('; '));
     } else {
         t.diagnostic(`others take too much of the machine for a time to mean anything: ${had.map((part) => part.toFixed(2)).join(', ')}`);

@@ -20,7 +20,7 @@ after(() => plant?.destroy());
 const unsaid = (page) => page.evaluate(() => {
     const { session: { model } } = globalThis.plantcast;
     const own = [model.plant, ...model.groups, ...model.assets, ...model.tags, ...model.colormaps].flatMap((one) =>
-        [one.name, one.id, one.tag, one.description, one.quantity, one.unit]).filter(Boolean);
+        [one.name, one.id, one.tag, one.description, one.quantity, one.unit, one.source]).filter(Boolean);
     const ours = ['Plantcast', '°C', 'JPEG', 'UTC'];
     const allowed = new Set([...own, ...own.map((text) => text[0].toUpperCase() + text.slice(1)), ...ours]);
     const shown = (element) => element?.checkVisibility?.() && !element.closest('code, kbd, a, svg, .limit-flag, .limits, #config, #clock');

@@ -139,5 +139,6 @@ int main(void)
         cmocka_unit_test(sums_are_those_of_all_pairs),
         cmocka_unit_test(a_large_fan_takes_no_quadratic_time),
     };
+    cmocka_set_message_output(CM_OUTPUT_TAP);
     return cmocka_run_group_tests_name("normals", tests, NULL, NULL);
 }

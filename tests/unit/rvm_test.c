@@ -392,5 +392,6 @@ int main(void)
         cmocka_unit_test(test_names_that_are_not_utf8_are_latin1),
         cmocka_unit_test(test_broken_files_are_refused_at_a_byte),
     };
+    cmocka_set_message_output(CM_OUTPUT_TAP);
     return cmocka_run_group_tests_name("rvm", tests, NULL, NULL);
 }

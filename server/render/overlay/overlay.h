@@ -9,7 +9,7 @@
    file sets to the plant's. loop_checks: tags that are unproven are marked as such; NULL: none is. */
 void overlay_draw(struct frame *frame, const struct scene *scene, const struct snapshot *snapshot, const struct loop_checks *loop_checks);
 
-/* Likewise, without markers, labels of sensors and alarms: for those who may see the picture and no reading. */
+/* Draws as overlay_draw() does, but no markers, sensor labels and alarms: for those who may see the picture and no reading. */
 void overlay_draw_bare(struct frame *frame, const struct scene *scene, const struct snapshot *snapshot,
                        const struct loop_checks *loop_checks);
 

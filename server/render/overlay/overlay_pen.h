@@ -52,7 +52,8 @@ double overlay_bar_left(struct pen *pen);  /* of which before the bar itself */
 void overlay_legend(struct pen *pen);
 bool overlay_legend_is_shared(struct pen *pen); /* of a split view: both halves' say the same. Chooses the right half */
 double overlay_legend_width(struct pen *pen);   /* what it takes of the area, with its margins */
-/* Of a split view: what each half has otherwise than the other one, where no legend says so. Chooses the right half. */
+/* Draws, in each half of a split view, a caption of what it shows otherwise than the other half, where no legend says so. The view must be
+   split. Leaves the pen on the right half (pen_choose_half). */
 void overlay_halves(struct pen *pen);
 /* A mark's outline: broken where its tag is unproven. */
 void overlay_outline(struct pen *pen, double x, double y, double radius, bool broken);

@@ -19,7 +19,7 @@ void frame_plan_destroy(struct frame_plan **plan); /* &NULL is fine; leaves NULL
 bool frame_plan_prepare(struct frame_plan *plan, const struct frame_planner *planner, const struct snapshot *snapshot, int64_t budget_ns);
 /* Brings its fields up to date with the snapshot, and fills in the rest. Where there is no room for a field it shows no data; logged. */
 void frame_plan_complete(struct frame_plan *plan, const struct frame_planner *planner, const struct snapshot *snapshot);
-/* Returns the light that the view asks for. */
+/* Returns the key of the light that the view asks for, whether it is baked or not. */
 struct light_key frame_plan_wanted_light(const struct view *view);
 
 #endif

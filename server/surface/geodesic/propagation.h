@@ -25,7 +25,7 @@ struct propagation {
 };
 /* Builds the fans. Visible triangles (the first visible_count) are crossed as the intrinsic triangulation has them, which leaves few obtuse
    ones; from them propagation enters the mesh's interior triangles, so that one that passes through a surface has distances at its interior
-   end too, but never returns. mesh and in must outlive it. */
+   end too, but never returns. mesh and in must outlive it. Free with propagation_finish(). */
 void propagation_init(struct propagation *propagation, const struct trimesh *mesh, size_t visible_count, const struct intrinsic *in);
 /* Frees the fans. */
 void propagation_finish(struct propagation *propagation);

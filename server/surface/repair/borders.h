@@ -15,7 +15,7 @@ struct borders {
     double *reach_m;      /* of each point in points: the least of its parts; NULL: not asked for */
 };
 
-/* Collects all border edges of a mesh. */
+/* Collects all border edges of a mesh, and the points on them. Keeps no pointer to the mesh. Free with borders_finish(). */
 void borders_init(struct borders *borders, const struct trimesh *mesh);
 /* Collects only those border edges of `seen` that are open because the other faces at them are hidden, with the reach of their parts. */
 void borders_init_rims(struct borders *borders, const struct trimesh *seen, const struct trimesh *hidden, const struct parts *parts);

@@ -14,7 +14,8 @@ struct line_of_sight {
     uint32_t *first, *at; /* triangles at each point; NULL: no part is thin, and nothing is seen that is not within its reach */
 };
 
-/* Prepares the search. Everything passed must outlive it, and stays as it is before anything is joined. */
+/* Prepares the search. Keeps pointers to everything passed, which must outlive it and must not change while it is used: it sees the mesh as
+   it is before anything is joined. body: of each triangle. Free with line_of_sight_finish(). */
 void line_of_sight_init(struct line_of_sight *sight, const struct trimesh *mesh, const struct parts *parts, const uint32_t *body,
                         const struct bvh *bvh);
 /* Frees the lists. */

@@ -19,7 +19,7 @@ struct mesh_edit {
 
 /* Starts an empty batch. */
 void mesh_edit_init(struct mesh_edit *edit);
-/* Frees the batch. */
+/* Frees the batch, without applying what is in it, and leaves it empty. */
 void mesh_edit_finish(struct mesh_edit *edit);
 /* Adds: points a and b, distance_m apart, become one. */
 void mesh_edit_merge_points(struct mesh_edit *edit, uint32_t a, uint32_t b, double distance_m);
