@@ -77,6 +77,7 @@ test('a click selects and flies there; what is known of it and its links are sho
     await page.locator('#assets-list .asset', { hasText: 'E 137' }).click();
     await page.waitForFunction((eye) => Math.hypot(...globalThis.plantcast.session.camera.eye.map((x, i) => x - eye[i])) > 1, camera.eye);
     assert.equal((await view(page)).params.selected, 'E-137');
+    await page.waitForFunction(() => document.querySelector('#asset-about')?.textContent); // its script is loaded when it is first used
     assert.match(await page.locator('#asset-about').textContent(),
         /E 137.*box 137.*Unit 4.*1\.0 × 1\.0 × 1\.0 m.*100.*MakerExample WorksBuilt2007/);
     const link = page.locator('#asset-about a');

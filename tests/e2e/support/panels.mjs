@@ -46,6 +46,10 @@ export async function everyPanel(page, f) {
     await page.locator('#card').waitFor();
     await f('card');
     await page.mouse.click(at[1].x - 6, at[1].y + 30);
+    await page.locator('#place').waitFor({ timeout: 10000 }).catch(async () => { // a card or a label that came meanwhile lay over it
+        await page.keyboard.press('Escape');
+        await page.mouse.click(at[1].x - 6, at[1].y + 30);
+    });
     await page.locator('#place').waitFor();
     await f('place');
     await press('Escape', 'closed');
