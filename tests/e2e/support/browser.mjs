@@ -32,7 +32,13 @@ after(() => Promise.all([...browsers.values()].map(async (browser) => (await bro
 async function profileWith(args, shape) {
     const { chromium } = await import('playwright-core'), folder = mkdtempSync(join(tmpdir(), 'plantcast-chromium-'));
     const context = await chromium.launchPersistentContext(folder, { executablePath: CHROMIUM, ...shape, args: [...QUIET, ...args] });
-    context.once('close', () => rmSync(folder, { recursive: true, force: true }));
+    process.once('exit', () => { // not before: a browser that is closed goes on writing for a while
+        try {
+            rmSync(folder, { recursive: true, force: true });
+        } catch {
+            console.log(`# ${folder} is left`);
+        }
+    });
     return context;
 }
 
