@@ -106,7 +106,7 @@ wide_objects := $(foreach w,wide widest,$(patsubst %.c,$(out)/obj/%.$(w).o,$(wid
 $(out)/lib/render.a: $(if $(filter x86_64%,$(shell $(CC) -dumpmachine 2>/dev/null)),$(wide_objects))
 $(out)/lib/protocol.a: $(call objects,$(wildcard protocol/*.c))
 $(out)/lib/prep.a: $(call objects,$(prep_sources))
-$(out)/lib/import.a: $(call objects,$(filter-out %/main.c,$(import_sources)))
+$(out)/lib/import.a: $(call objects,$(filter-out %/main.c,$(import_sources)) preprocess/glb/glb_file.c)
 $(out)/lib/sim.a: $(call objects,$(filter-out %/sim.c,$(sim_sources)))
 $(out)/lib/%.a:
 	@mkdir -p $(@D); rm -f $@; $(AR) rcs $@ $^

@@ -2,10 +2,10 @@
 /* Arrays that grow, and their end. */
 #include "preprocess/import/cad_model.h"
 
-#include <math.h>
 #include <string.h>
 
 #include "base/mem.h"
+#include "base/vec.h"
 
 struct cad_model *cad_model_create(void)
 {
@@ -46,7 +46,7 @@ uint32_t cad_node_add_vertex(struct cad_node *node, const double position_m[3], 
 {
     mem_grow(&node->vertices, &node->vertex_room, node->vertex_count + 1, sizeof(*node->vertices));
     struct cad_vertex *vertex = &node->vertices[node->vertex_count];
-    double length = sqrt(normal[0] * normal[0] + normal[1] * normal[1] + normal[2] * normal[2]);
+    double length = vec_length(normal);
     for (int axis = 0; axis < 3; axis++) {
         vertex->position_m[axis] = position_m[axis];
         vertex->normal[axis] = length > 0 ? (float)(normal[axis] / length) : axis == 2;
@@ -85,21 +85,4 @@ const char *cad_node_attribute(const struct cad_node *node, const char *name)
         if (!strcmp(node->attributes[i].name, name))
             return node->attributes[i].value;
     return NULL;
-}
-
-double cad_node_area_m2(const struct cad_node *node)
-{
-    double sum = 0;
-    for (size_t i = 0; i < node->triangle_count; i++) {
-        const double *a = node->vertices[node->triangles[i][0]].position_m, *b = node->vertices[node->triangles[i][1]].position_m,
-                     *c = node->vertices[node->triangles[i][2]].position_m;
-        double u[3], v[3];
-        for (int axis = 0; axis < 3; axis++) {
-            u[axis] = b[axis] - a[axis];
-            v[axis] = c[axis] - a[axis];
-        }
-        double x = u[1] * v[2] - u[2] * v[1], y = u[2] * v[0] - u[0] * v[2], z = u[0] * v[1] - u[1] * v[0];
-        sum += sqrt(x * x + y * y + z * z) / 2;
-    }
-    return sum;
 }

@@ -56,7 +56,4 @@ void cad_model_add_color(struct cad_model *model, uint32_t material, const uint8
 /* Returns the value of the first attribute of this name, or NULL. */
 const char *cad_node_attribute(const struct cad_node *node, const char *name);
 
-/* The sum of the areas of a node's triangles, in square metres. */
-double cad_node_area_m2(const struct cad_node *node);
-
 #endif

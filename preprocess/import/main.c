@@ -72,16 +72,23 @@ static char *attributes_beside(const char *path)
     return NULL;
 }
 
+/* Returns NULL on failure, already printed; free with mem_free. */
+static char *read_whole(const char *path, size_t *length)
+{
+    char *bytes = text_read_file(path, max_bytes, length);
+    if (!bytes)
+        fail_at(path, strerror(errno));
+    return bytes;
+}
+
 static bool add_attributes(struct cad_model *model, const char *path)
 {
     struct attribute_counts counts;
     size_t length;
     char why[256];
-    char *text = text_read_file(path, max_bytes, &length);
-    if (!text) {
-        fail_at(path, strerror(errno));
+    char *text = read_whole(path, &length);
+    if (!text)
         return false;
-    }
     bool good = cad_attributes_read(model, text, length, &counts, why, sizeof(why));
     mem_free(text);
     if (!good)
@@ -130,11 +137,9 @@ static struct cad_model *read_rvm(const char *path, const struct params *params)
     struct rvm_counts counts;
     size_t length;
     char why[256];
-    char *bytes = text_read_file(path, max_bytes, &length);
-    if (!bytes) {
-        fail_at(path, strerror(errno));
+    char *bytes = read_whole(path, &length);
+    if (!bytes)
         return NULL;
-    }
     struct cad_model *model = cad_model_create();
     bool good = rvm_read(model, bytes, length, params->chord_m, &counts, why, sizeof(why));
     mem_free(bytes);

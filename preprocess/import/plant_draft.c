@@ -4,6 +4,7 @@
 
 #include <errno.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
@@ -31,11 +32,29 @@ static void add_quoted(struct text *out, const char *text)
     text_add(out, "\"");
 }
 
-struct choice { /* by node */
-    bool *item, *shows;
+struct choice {                  /* by node */
+    bool *item, *shows, *unique; /* unique: no other node has its name */
     int *depth;
     bool typed; /* the model has elements of type ZONE */
 };
+
+static int by_name(const void *a, const void *b)
+{
+    return strcmp((*(const struct cad_node *const *)a)->name, (*(const struct cad_node *const *)b)->name);
+}
+
+static void find_unique(const struct cad_model *model, bool *unique)
+{
+    const struct cad_node **sorted = mem_array(model->node_count + 1, sizeof(*sorted)); /* ends in NULL */
+    for (size_t i = 0; i < model->node_count; i++)
+        sorted[i] = &model->nodes[i];
+    qsort(sorted, model->node_count, sizeof(*sorted), by_name);
+    for (size_t i = 0; i < model->node_count; i++) {
+        bool first = i == 0 || strcmp(sorted[i - 1]->name, sorted[i]->name) != 0;
+        unique[sorted[i] - model->nodes] = first && (!sorted[i + 1] || strcmp(sorted[i + 1]->name, sorted[i]->name) != 0);
+    }
+    mem_free(sorted);
+}
 
 /* An element of a zone is a piece of equipment, a pipe, a structure. Where nothing says what is a zone, the third level is taken, as the
  * hierarchy of these systems begins with site and zone; and whatever shows something above it. */
@@ -62,20 +81,12 @@ static void choose(const struct cad_model *model, struct choice *choice)
     }
 }
 
-static bool is_unique(const struct cad_model *model, size_t number)
-{
-    for (size_t i = 0; i < model->node_count; i++)
-        if (i != number && !strcmp(model->nodes[i].name, model->nodes[number].name))
-            return false;
-    return true;
-}
-
-static void add_asset(struct text *out, const struct plant_draft_model *from, size_t number)
+static void add_asset(struct text *out, const struct plant_draft_model *from, size_t number, bool unique)
 {
     const struct cad_model *model = from->model;
     const struct cad_node *node = &model->nodes[number];
     const char *description = cad_node_attribute(node, "Description"), *name = node->name;
-    bool unique = *name && is_unique(model, number);
+    unique = unique && *name;
     text_add(out, "  - { id: ");
     if (unique) {
         add_quoted(out, name + (name[0] == '/' && name[1]));
@@ -126,15 +137,18 @@ int plant_draft_write(const struct plant_draft *draft)
         const struct cad_model *model = draft->models[m].model;
         struct choice choice = { .item = mem_array(model->node_count + 1, sizeof(bool)),
                                  .shows = mem_array(model->node_count + 1, sizeof(bool)),
+                                 .unique = mem_array(model->node_count + 1, sizeof(bool)),
                                  .depth = mem_array(model->node_count + 1, sizeof(int)) };
+        find_unique(model, choice.unique);
         choose(model, &choice);
         for (size_t i = 0; i < model->node_count; i++)
             if (choice.item[i]) {
-                add_asset(&out, &draft->models[m], i);
+                add_asset(&out, &draft->models[m], i, choice.unique[i]);
                 assets++;
             }
         mem_free(choice.item);
         mem_free(choice.shows);
+        mem_free(choice.unique);
         mem_free(choice.depth);
     }
     text_add(&out, "%s", tail);

@@ -9,6 +9,7 @@
 #include <string.h>
 
 #include "base/mem.h"
+#include "base/vec.h"
 #include "preprocess/import/encoding.h"
 #include "preprocess/import/rvm_shape.h"
 
@@ -108,13 +109,14 @@ static bool read_text(struct reader *r, char *out, size_t out_bytes)
 static bool read_head(struct reader *r)
 {
     uint32_t version;
-    char info[256], date[64], user[64], encoding[64] = "";
-    if (!read_word(r, &version) || !read_text(r, info, sizeof(info)) || !read_text(r, r->counts->note, sizeof(r->counts->note)) ||
-        !read_text(r, date, sizeof(date)) || !read_text(r, user, sizeof(user)) ||
-        (version >= 2 && !read_text(r, encoding, sizeof(encoding))))
+    char ignored[256], encoding[64] = ""; /* info, note, date, user */
+    if (!read_word(r, &version))
         return false;
-    if (r->counts->note[0] == 0)
-        snprintf(r->counts->note, sizeof(r->counts->note), "%s", info);
+    for (int i = 0; i < 4; i++)
+        if (!read_text(r, ignored, sizeof(ignored)))
+            return false;
+    if (version >= 2 && !read_text(r, encoding, sizeof(encoding)))
+        return false;
     r->utf8 = strstr(encoding, "UTF8") || strstr(encoding, "UTF-8") || strstr(encoding, "Unicode");
     return true;
 }
@@ -145,7 +147,6 @@ static bool begin_group(struct reader *r)
     int node = cad_model_add_node(r->model, r->depth > 0 ? r->stack[r->depth - 1] : -1, name);
     r->model->nodes[node].material = material;
     r->stack[r->depth++] = node;
-    r->counts->groups++;
     return true;
 }
 
@@ -294,39 +295,28 @@ static int by_plane(const void *a, const void *b)
     return (x->offset_m > y->offset_m) - (x->offset_m < y->offset_m);
 }
 
-static double along(const double a[3], const double b[3])
-{
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
 static bool contains(const struct rvm_face *face, const double point[3])
 {
-    double d[3], square = 0;
-    for (int axis = 0; axis < 3; axis++) {
-        d[axis] = point[axis] - face->centre_m[axis];
-        square += d[axis] * d[axis];
-    }
+    double d[3];
+    vec_sub(point, face->centre_m, d);
     if (face->radius_m > 0)
-        return square <= (face->radius_m + near_m / 10) * (face->radius_m + near_m / 10);
-    return fabs(along(d, face->directions[0])) <= face->half_m[0] + near_m / 10 &&
-           fabs(along(d, face->directions[1])) <= face->half_m[1] + near_m / 10;
+        return vec_length(d) <= face->radius_m + near_m / 10;
+    return fabs(vec_dot(d, face->directions[0])) <= face->half_m[0] + near_m / 10 &&
+           fabs(vec_dot(d, face->directions[1])) <= face->half_m[1] + near_m / 10;
 }
 
 /* Both lie in one plane and look at each other, and all of `face` is in `cover`. */
 static bool covers(const struct rvm_face *cover, const struct rvm_face *face)
 {
-    double d[3], between2 = 0;
-    for (int axis = 0; axis < 3; axis++) {
-        d[axis] = face->centre_m[axis] - cover->centre_m[axis];
-        between2 += d[axis] * d[axis];
-    }
-    if (along(cover->outward, face->outward) > -0.9999 || fabs(along(d, cover->outward)) > near_m)
+    double d[3];
+    vec_sub(face->centre_m, cover->centre_m, d);
+    if (vec_dot(cover->outward, face->outward) > -0.9999 || fabs(vec_dot(d, cover->outward)) > near_m)
         return false;
     if (face->radius_m > 0 && cover->radius_m > 0)
-        return sqrt(between2) + face->radius_m <= cover->radius_m + near_m;
+        return vec_length(d) + face->radius_m <= cover->radius_m + near_m;
     if (face->radius_m > 0)
-        return fabs(along(d, cover->directions[0])) + face->radius_m <= cover->half_m[0] + near_m &&
-               fabs(along(d, cover->directions[1])) + face->radius_m <= cover->half_m[1] + near_m;
+        return fabs(vec_dot(d, cover->directions[0])) + face->radius_m <= cover->half_m[0] + near_m &&
+               fabs(vec_dot(d, cover->directions[1])) + face->radius_m <= cover->half_m[1] + near_m;
     for (int corner = 0; corner < 4; corner++) {
         double at[3];
         for (int axis = 0; axis < 3; axis++)
@@ -347,7 +337,7 @@ static void add_faces(struct reader *r, size_t primitive)
         double first = fabs(n[0]) > 1e-3 ? n[0] : fabs(n[1]) > 1e-3 ? n[1] : n[2], sign = first < 0 ? -1 : 1;
         mem_grow(&r->faces, &r->face_room, r->face_count + 1, sizeof(*r->faces));
         struct face *face = &r->faces[r->face_count++];
-        *face = (struct face){ .flat = found[i], .primitive = primitive, .number = i, .offset_m = sign * along(n, found[i].centre_m) };
+        *face = (struct face){ .flat = found[i], .primitive = primitive, .number = i, .offset_m = sign * vec_dot(n, found[i].centre_m) };
         for (int axis = 0; axis < 3; axis++)
             face->axis[axis] = (int)lround(sign * n[axis] * 100);
     }

@@ -6,12 +6,11 @@
 #include "preprocess/import/cad_model.h"
 
 struct rvm_counts {
-    size_t groups, primitives;
+    size_t primitives;
     size_t covered_faces;                 /* lie on a neighbour's face: left out */
     size_t empty;                         /* primitives without extent, or with numbers that are not finite: left out */
     size_t obstructions, insulations;     /* left out: volumes kept free, and lagging */
     size_t unknown_chunks, unknown_kinds; /* skipped */
-    char note[256];                       /* who exported it, as the file says */
 };
 
 /* Appends the file's groups and their triangles, no chord further than chord_m from the surface, to the model. `bytes` is the whole file.

@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "base/mem.h"
+#include "base/vec.h"
 
 enum { MIN_CORNERS = 8, MAX_CORNERS = 256 };
 
@@ -22,37 +23,15 @@ struct frame { /* from the primitive's frame to the plant's */
     bool mirrored;
 };
 
-static double dot(const double a[3], const double b[3])
-{
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
-static void cross(const double a[3], const double b[3], double out[3])
-{
-    out[0] = a[1] * b[2] - a[2] * b[1];
-    out[1] = a[2] * b[0] - a[0] * b[2];
-    out[2] = a[0] * b[1] - a[1] * b[0];
-}
-
-static bool normalize(double v[3])
-{
-    double length = sqrt(dot(v, v));
-    if (!(length > 0) || !isfinite(length))
-        return false;
-    for (int axis = 0; axis < 3; axis++)
-        v[axis] /= length;
-    return true;
-}
-
 static bool frame_of(const double m[12], struct frame *frame)
 {
     *frame = (struct frame){ .m = m };
-    cross(m + 3, m + 6, frame->normal_of);
-    cross(m + 6, m, frame->normal_of + 3);
-    cross(m, m + 3, frame->normal_of + 6);
-    double volume = dot(m, frame->normal_of);
+    vec_cross(m + 3, m + 6, frame->normal_of);
+    vec_cross(m + 6, m, frame->normal_of + 3);
+    vec_cross(m, m + 3, frame->normal_of + 6);
+    double volume = vec_dot(m, frame->normal_of);
     for (int column = 0; column < 3; column++)
-        frame->scale = fmax(frame->scale, sqrt(dot(m + 3 * column, m + 3 * column)));
+        frame->scale = fmax(frame->scale, vec_length(m + 3 * column));
     for (int i = 0; i < 12; i++)
         if (!isfinite(m[i]))
             return false;
@@ -112,14 +91,14 @@ static double phase_of(const struct frame *frame, const double x[3], const doubl
     double u[3], v[3], n[3];
     apply(frame->m, x, u);
     apply(frame->m, y, v);
-    if (!normalize(u) || !normalize(v))
+    if (!(vec_normalize(u) > 0) || !(vec_normalize(v) > 0))
         return 0;
-    cross(u, v, n);
-    if (!normalize(n))
+    vec_cross(u, v, n);
+    if (!(vec_normalize(n) > 0))
         return 0;
     const double up[3] = { 0, 0, 1 }, east[3] = { 1, 0, 0 };
     const double *reference = fabs(n[2]) < 0.9 ? up : east;
-    return atan2(dot(reference, v), dot(reference, u));
+    return atan2(vec_dot(reference, v), vec_dot(reference, u));
 }
 
 /* --- rings ------------------------------------------------------------------------------------------------------------------------ */
@@ -142,7 +121,7 @@ static void corner_of(const struct ring *ring, int corner, int corners, double o
 static void add_cap(struct cad_node *node, const struct frame *frame, const struct ring *ring, int corners, bool towards_axis)
 {
     double n[3], at[3];
-    cross(ring->x, ring->y, n);
+    vec_cross(ring->x, ring->y, n);
     for (int axis = 0; axis < 3 && towards_axis; axis++)
         n[axis] = -n[axis];
     uint32_t first = (uint32_t)node->vertex_count;
@@ -178,12 +157,10 @@ static void add_prism(struct cad_node *node, const struct frame *frame, const do
         double u[3], v[3], n[3];
         for (int i = 0; i < 4; i++)
             p[i] = corners[faces[f][i]];
-        for (int axis = 0; axis < 3; axis++) { /* the diagonals: right too where a side has no length */
-            u[axis] = p[2][axis] - p[0][axis];
-            v[axis] = p[3][axis] - p[1][axis];
-        }
-        cross(u, v, n);
-        if (dot(n, n) == 0 || (open_faces >> f & 1))
+        vec_sub(p[2], p[0], u); /* the diagonals: right too where a side has no length */
+        vec_sub(p[3], p[1], v);
+        vec_cross(u, v, n);
+        if (vec_dot(n, n) == 0 || (open_faces >> f & 1))
             continue;
         uint32_t at[4];
         for (int i = 0; i < 4; i++)
@@ -488,7 +465,7 @@ static bool add_facets(struct cad_node *node, const struct frame *frame, const s
         contour_normal(shape->points, &shape->contours[c], polygon.normal);
         polygon.count = 0;
         polygon.made_count = 0;
-        bool empty = !normalize(polygon.normal);
+        bool empty = !(vec_normalize(polygon.normal) > 0);
         gluTessNormal(tess, polygon.normal[0], polygon.normal[1], polygon.normal[2]);
         gluTessBeginPolygon(tess, &polygon);
         do {
@@ -575,7 +552,7 @@ static void circle_of(const struct frame *frame, const double centre[3], const d
     *face = (struct rvm_face){ .radius_m = radius * frame->scale };
     to_plant(frame, centre, face->centre_m);
     apply(frame->normal_of, outward, face->outward);
-    normalize(face->outward);
+    vec_normalize(face->outward);
 }
 
 /* u, v: half the sides, as vectors. */
@@ -586,8 +563,7 @@ static void rectangle_of(const struct frame *frame, const double centre[3], cons
     const double *sides[2] = { u, v };
     for (int i = 0; i < 2; i++) {
         apply(frame->m, sides[i], face->directions[i]);
-        face->half_m[i] = sqrt(dot(face->directions[i], face->directions[i]));
-        normalize(face->directions[i]);
+        face->half_m[i] = vec_normalize(face->directions[i]);
     }
 }
 

@@ -15,6 +15,8 @@
 #include <stdexcept>
 #include <vector>
 
+#include "base/srgb.h"
+
 extern "C" {
 #include "base/mem.h"
 }
@@ -189,11 +191,6 @@ bool load(struct image *image, const char *path, uint32_t max_px, char *why)
     return in != nullptr;
 }
 
-float linear_from_srgb(float c)
-{
-    return c <= 0.04045f ? c / 12.92f : std::pow((c + 0.055f) / 1.055f, 2.4f);
-}
-
 bool load_float(struct image_float *image, const char *path, uint32_t max_px, char *why)
 {
     OIIO::ImageSpec spec;
@@ -206,7 +203,7 @@ bool load_float(struct image_float *image, const char *path, uint32_t max_px, ch
     size_t values = static_cast<size_t>(image->width_px) * image->height_px * 4;
     for (size_t i = 0; i < values; i++)
         if (i % 4 != 3)
-            image->rgba[i] = linear_from_srgb(image->rgba[i]);
+            image->rgba[i] = linear_from_srgbf(image->rgba[i]);
     return true;
 }
 

@@ -5,17 +5,9 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/srgb.h"
+
 static const double white[3] = { 0.95047, 1.0, 1.08883 };
-
-static double linear_from_srgb(double c)
-{
-    return c <= 0.04045 ? c / 12.92 : pow((c + 0.055) / 1.055, 2.4);
-}
-
-static double srgb_from_linear(double c)
-{
-    return c <= 0.0031308 ? c * 12.92 : 1.055 * pow(c, 1 / 2.4) - 0.055;
-}
 
 static void see_without_green(double c[3])
 {

@@ -10,16 +10,9 @@
 #include <xxhash.h>
 
 #include "protocol/asset_format.h"
+#include "tests/fuzz/promise.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t count);
-
-static void require(bool promise, const char *what)
-{
-    if (promise)
-        return;
-    fprintf(stderr, "broken promise: %s\n", what);
-    abort();
-}
 
 static void check_primitives(const struct asset_view *view)
 {

@@ -10,6 +10,7 @@
 #include "base/mem.h"
 #include "preprocess/geometry/geometry.h"
 #include "tests/support/temp.h"
+#include "tests/fuzz/promise.h"
 
 #define MOST_CUT 100000u /* corners: more would only take long */
 
@@ -21,14 +22,6 @@ static void remove_folder(void)
 {
     if (folder)
         temp_folder_destroy(&folder);
-}
-
-static void require(bool promise, const char *what)
-{
-    if (promise)
-        return;
-    fprintf(stderr, "broken promise: %s\n", what);
-    abort();
 }
 
 static void require_finite(const float *values, size_t count, const char *what)

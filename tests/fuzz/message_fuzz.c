@@ -13,16 +13,9 @@
 #include "base/mem.h"
 #include "session/session.h"
 #include "tests/support/small_scene.h"
+#include "tests/fuzz/promise.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t count);
-
-static void require(bool promise, const char *what)
-{
-    if (promise)
-        return;
-    fprintf(stderr, "broken promise: %s\n", what);
-    abort();
-}
 
 static void check_field(const struct field_params *field)
 {

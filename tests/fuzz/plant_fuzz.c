@@ -11,6 +11,7 @@
 #include "plant/plant.h"
 #include "plant/sensors.h"
 #include "tests/support/temp.h"
+#include "tests/fuzz/promise.h"
 
 #define SEPARATOR "\n====\n"
 
@@ -22,14 +23,6 @@ static void remove_folder(void)
 {
     if (folder)
         temp_folder_destroy(&folder);
-}
-
-static void require(bool promise, const char *what)
-{
-    if (promise)
-        return;
-    fprintf(stderr, "broken promise: %s\n", what);
-    abort();
 }
 
 static void check_tag(const struct plant *plant, const struct plant_tag *tag)

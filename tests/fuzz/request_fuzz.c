@@ -12,16 +12,9 @@
 #include "message/view_query.h"
 #include "access/tokens.h"
 #include "tests/support/small_scene.h"
+#include "tests/fuzz/promise.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t count);
-
-static void require(bool promise, const char *what)
-{
-    if (promise)
-        return;
-    fprintf(stderr, "broken promise: %s\n", what);
-    abort();
-}
 
 static void read_query(char *text)
 {

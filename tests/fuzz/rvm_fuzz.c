@@ -7,16 +7,9 @@
 
 #include "preprocess/import/cad_attributes.h"
 #include "preprocess/import/rvm.h"
+#include "tests/fuzz/promise.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t count);
-
-static void require(bool promise, const char *what)
-{
-    if (promise)
-        return;
-    fprintf(stderr, "broken promise: %s\n", what);
-    abort();
-}
 
 static void check_model(const struct cad_model *model)
 {

@@ -9,16 +9,9 @@
 #include <string.h>
 
 #include "protocol/wire.h"
+#include "tests/fuzz/promise.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t count);
-
-static void require(bool promise, const char *what)
-{
-    if (promise)
-        return;
-    fprintf(stderr, "broken promise: %s\n", what);
-    abort();
-}
 
 static void check_sound(const struct wire_frame *frame, size_t count)
 {

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "base/mem.h"
+#include "base/srgb.h"
 #include "render/draft/draft_impl.h"
 #include "render/light/sky.h"
 
@@ -45,17 +46,6 @@ bool draft_read_textures(struct draft *draft, const struct sky *sky)
     return glGetError() == GL_NO_ERROR;
 }
 
-static double linear_from_srgb(double c)
-{
-    return c <= 0.04045 ? c / 12.92 : pow((c + 0.055) / 1.055, 2.4);
-}
-
-static double srgb_from_linear(double c)
-{
-    c = fmin(fmax(c, 0), 1);
-    return c <= 0.0031308 ? c * 12.92 : 1.055 * pow(c, 1 / 2.4) - 0.055;
-}
-
 /* As tone_map in shaders/light.glsl. */
 static void tone_map(double c[3])
 {
@@ -81,7 +71,7 @@ static void make_glossy(uint32_t *colormap)
             tone_map(c);
             uint32_t out = 0xff000000;
             for (int i = 0; i < 3; i++)
-                out |= (uint32_t)(255 * srgb_from_linear(c[i]) + 0.5) << (8 * i);
+                out |= (uint32_t)(255 * srgb_from_linear(fmin(fmax(c[i], 0), 1)) + 0.5) << (8 * i);
             colormap[row * COLORMAP_COLUMNS + column] = out;
         }
     }

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "base/mem.h"
+#include "base/srgb.h"
 
 /* As in shaders/material.glsl. */
 struct material_block {
@@ -29,11 +30,6 @@ static GLuint upload_texture(const struct asset_view *view, const struct asset_t
     return name;
 }
 
-static float linear_from_srgb(float c)
-{
-    return c <= 0.04045f ? c / 12.92f : powf((c + 0.055f) / 1.055f, 2.4f);
-}
-
 /* The texture's mean in linear light, from every 7th texel or so. */
 static void texture_mean(const struct asset_view *view, const struct asset_texture *texture, float mean[3])
 {
@@ -43,7 +39,7 @@ static void texture_mean(const struct asset_view *view, const struct asset_textu
     for (size_t i = 0; i < count; i += step, taken++)
         for (int c = 0; c < 3; c++) {
             float value = texels[4 * i + c] / 255.0f;
-            sum[c] += texture->srgb ? linear_from_srgb(value) : value;
+            sum[c] += texture->srgb ? linear_from_srgbf(value) : value;
         }
     for (int c = 0; c < 3; c++)
         mean[c] = (float)(sum[c] / (double)taken);
