@@ -35,8 +35,7 @@ struct renderer *renderer_create(struct log *log, struct gl *gl, const struct sc
     renderer->gl = gl;
     renderer->scene = scene;
     memcpy(renderer->pixel_ns, FIRST_PIXEL_NS, sizeof(renderer->pixel_ns));
-    renderer->planner =
-        (struct frame_planner){ .gpu_scene = &renderer->gpu_scene, .fields = &renderer->fields, .light = &renderer->light };
+    renderer->planner = (struct frame_planner){ .gpu_scene = &renderer->gpu_scene, .fields = &renderer->fields, .light = &renderer->light };
     fields_init(&renderer->fields, log, field);
     isolines_init(&renderer->isolines, scene->asset_count);
     renderer->frame_buffer = mesh_buffer(log, "frame block", sizeof(struct frame_uniforms), NULL, GL_DYNAMIC_STORAGE_BIT);
@@ -87,22 +86,13 @@ void renderer_destroy(struct renderer **renderer_ptr)
     *renderer_ptr = NULL;
 }
 
-struct frame_plan *renderer_plan(struct renderer *renderer, const struct view *view, const struct snapshot *snapshot, int64_t budget_ns)
-{
-    struct frame_plan *plan = frame_plan_create(&renderer->planner, view);
-    if (frame_plan_prepare(plan, &renderer->planner, snapshot, budget_ns))
-        frame_plan_complete(plan, &renderer->planner, snapshot);
-    else
-        frame_plan_destroy(&plan);
-    return plan;
-}
-
 const struct frame_planner *renderer_planner(const struct renderer *renderer)
 {
     return &renderer->planner;
 }
 
-void renderer_context_init(struct renderer *renderer, const struct frame_plan *plan, struct frame_context *context)
+/* What every pass is handed, but for light, colour map and target. It points into the plan, which must outlive it. */
+static void init_context(struct renderer *renderer, const struct frame_plan *plan, struct frame_context *context)
 {
     *context = (struct frame_context){ .gpu_scene = &renderer->gpu_scene,
                                        .view = &plan->view,
@@ -136,7 +126,7 @@ struct frame *renderer_start(struct renderer *renderer, const struct frame_plan 
         log_err(renderer->gl->log, "frame of %dx%d: out of memory", view->width_px, view->height_px);
         return NULL;
     }
-    renderer_context_init(renderer, plan, context);
+    init_context(renderer, plan, context);
     frame->view = *view;
     frame->data_utc_ns = plan->data_utc_ns;
     frame->oldest_age_ns = oldest_age_of(context);
@@ -148,12 +138,12 @@ struct frame *renderer_start(struct renderer *renderer, const struct frame_plan 
 }
 
 void renderer_upload_fields(struct renderer *renderer, const struct frame_plan *plan, const struct frame_context *context,
-                            const struct fields_entry **fields, struct frame *frame)
+                            struct frame *frame)
 {
     struct frame_plan shown = *plan;
-    if (fields_upload(&renderer->fields, context->visible, context->visible_count, fields))
+    if (fields_upload(&renderer->fields, context->visible, context->visible_count, context->fields))
         return;
-    shown.fields = fields;
+    shown.fields = context->fields;
     frame->content = content_hash(&shown);
     frame->oldest_age_ns = oldest_age_of(context);
 }
@@ -210,7 +200,7 @@ bool renderer_is_quick(struct renderer *renderer, const struct frame_plan *plan)
     struct frame_context context;
     if (plan->view.tier == TIER_PREVIEW || !renderer->plates || renderer->always_gl)
         return plan->view.tier == TIER_PREVIEW || (renderer->refined_ns > 0 && renderer->refined_ns <= QUICK_NS);
-    renderer_context_init(renderer, plan, &context);
+    init_context(renderer, plan, &context);
     return plates_know(renderer->plates, &context);
 }
 
@@ -309,7 +299,7 @@ bool renderer_measure(struct renderer *renderer, const struct view *view, const 
     struct frame_plan *plan = frame_plan_create(&planner, &plain);
     frame_plan_complete(plan, &planner, snapshot);
     fields_upload(&renderer->fields, plan->visible, plan->visible_count, plan->fields);
-    renderer_context_init(renderer, plan, &context);
+    init_context(renderer, plan, &context);
     context.measured = true;
     bool good = renderer_take_up(renderer, &context) && measure_target_begin(&measure, renderer->gl->log, view->width_px, view->height_px);
     if (good) {

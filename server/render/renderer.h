@@ -16,11 +16,7 @@ struct frame_planner; /* render/plan/frame_planner.h */
 struct renderer *renderer_create(struct log *log, struct gl *gl, const struct scene *scene, struct field *field);
 void renderer_destroy(struct renderer **renderer);
 
-/* Decides what a frame of this view shows now. Works towards its field for about budget_ns (INT64_MAX: as long as it takes); NULL: the
-   field is not there yet. view must be checked, and not split. The caller owns the plan (frame_plan_destroy). Two plans with equal
-   content give equal frames. */
-struct frame_plan *renderer_plan(struct renderer *renderer, const struct view *view, const struct snapshot *snapshot, int64_t budget_ns);
-/* The same in parts, for who plans several frames at a time. Owned by the renderer. */
+/* Returns what frames of this renderer are planned with (render/plan/frame_planner.h). Owned by the renderer. */
 const struct frame_planner *renderer_planner(const struct renderer *renderer);
 
 /* Returns whether renderer_draw() takes about the time of a preview: it is one, or differs in values and colours only from a refined frame

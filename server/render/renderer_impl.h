@@ -48,14 +48,12 @@ struct renderer {
     struct visibility shown; /* by the last picture that was drawn at once */
 };
 
-/* Fills in what every pass is handed, but for light, colour map and target. It points into the plan, which must outlive it. */
-void renderer_context_init(struct renderer *renderer, const struct frame_plan *plan, struct frame_context *context);
 /* Returns an empty frame with all that the plan says of it, and fills in the context. NULL: out of memory, logged. */
 struct frame *renderer_start(struct renderer *renderer, const struct frame_plan *plan, struct frame_context *context);
-/* Before GL draws with them: brings the context's fields to the GPU. fields: the context's, which are the caller's own; what there is no
-   room for becomes one of no data there, and the frame says so. */
+/* Before GL draws with them: brings the context's fields, which are the caller's own, to the GPU. What there is no room for becomes one of
+   no data there, and the frame says so. */
 void renderer_upload_fields(struct renderer *renderer, const struct frame_plan *plan, const struct frame_context *context,
-                            const struct fields_entry **fields, struct frame *frame);
+                            struct frame *frame);
 /* Light, colormap and uniforms of the picture: others drew meanwhile. False: out of GPU memory, logged. */
 bool renderer_take_up(struct renderer *renderer, struct frame_context *context);
 /* The whole picture at once by the steps of a job. As renderer_draw. */

@@ -37,7 +37,7 @@ static struct render_job *begin(struct renderer *renderer, const struct frame_pl
     render_job_init(job, &context, &target, frame, whole);
     job->plate = plate;
     if (!plate)
-        renderer_upload_fields(renderer, plan, &job->context, job->fields, frame);
+        renderer_upload_fields(renderer, plan, &job->context, frame);
     isolines_collect(&renderer->isolines, &job->context, &job->isolines);
     return job;
 }

@@ -48,7 +48,6 @@ struct split_plan *split_view_plan(struct renderer *renderer, const struct view 
     for (int half = 0; half < plan->half_count && ready; half++) {
         frame_plan_complete(plan->halves[half], planner, snapshot);
         plan->content = plan->content * CONTENT_FACTOR + plan->halves[half]->content;
-        plan->field_ns += plan->halves[half]->field_ns;
     }
     if (!ready)
         split_plan_destroy(&plan);

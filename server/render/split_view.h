@@ -10,7 +10,6 @@ struct split_plan { /* immutable */
     int half_count;
     struct frame_plan *halves[2];
     uint64_t content; /* of both: the content of the frame */
-    int64_t field_ns;
 };
 struct split_view; /* a frame that is being drawn: one job for each half */
 

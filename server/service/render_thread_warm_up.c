@@ -3,8 +3,7 @@
 #include "base/clock.h"
 #include "service/render_thread_impl.h"
 
-static const int64_t IDLE_NS = 5 * NS_PER_MS;        /* of warm-up, before looking whether somebody waits */
-static const int64_t FIRST_FIELD_NS = 10 * NS_PER_S; /* of the field of a view that is announced; what is left is done as for others */
+static const int64_t IDLE_NS = 5 * NS_PER_MS; /* of warm-up, before looking whether somebody waits */
 
 /* For what it costs. */
 static void draw_for_nobody(struct render_thread *thread, const struct view *view)
@@ -31,8 +30,6 @@ void render_thread_draw_first(struct render_thread *thread)
     for (size_t i = 0; i < params->first_count; i++) {
         struct view view = params->first[i];
         view.tier = TIER_PREVIEW;
-        struct split_plan *plan = split_view_plan(thread->renderer, &view, thread->snapshot, FIRST_FIELD_NS);
-        split_plan_destroy(&plan);
         draw_for_nobody(thread, &view);
     }
 }

@@ -53,8 +53,8 @@ static void test_plan_holds_while_another_is_made(void **state)
     struct frame *want = stand_draw(&stand, &view);
     other.camera.eye_m[0] += 1;
     other.range_max *= 2;
-    struct frame_plan *plan = renderer_plan(stand.renderer, &view, stand.snapshot, INT64_MAX);
-    struct frame_plan *next = renderer_plan(stand.renderer, &other, stand.snapshot, INT64_MAX);
+    struct frame_plan *plan = planned(stand.renderer, &view, stand.snapshot);
+    struct frame_plan *next = planned(stand.renderer, &other, stand.snapshot);
     assert_true(plan->content == want->content && next->content != want->content && plan->shape != next->shape);
     struct frame *got = renderer_draw(stand.renderer, plan);
     assert_true(got && got->content == want->content);

@@ -5,9 +5,16 @@
 #include "render/plan/frame_planner.h"
 #include "render/split_view.h"
 
+static inline struct frame_plan *planned(struct renderer *renderer, const struct view *view, const struct snapshot *snapshot)
+{
+    struct frame_plan *plan = frame_plan_create(renderer_planner(renderer), view);
+    frame_plan_complete(plan, renderer_planner(renderer), snapshot);
+    return plan;
+}
+
 static inline struct render_job *planned_begin(struct renderer *renderer, const struct view *view, const struct snapshot *snapshot)
 {
-    struct frame_plan *plan = renderer_plan(renderer, view, snapshot, INT64_MAX);
+    struct frame_plan *plan = planned(renderer, view, snapshot);
     struct render_job *job = renderer_begin(renderer, plan);
     frame_plan_destroy(&plan);
     return job;
@@ -15,7 +22,7 @@ static inline struct render_job *planned_begin(struct renderer *renderer, const 
 
 static inline struct render_job *planned_submit(struct renderer *renderer, const struct view *view, const struct snapshot *snapshot)
 {
-    struct frame_plan *plan = renderer_plan(renderer, view, snapshot, INT64_MAX);
+    struct frame_plan *plan = planned(renderer, view, snapshot);
     struct render_job *job = renderer_submit(renderer, plan);
     frame_plan_destroy(&plan);
     return job;

@@ -7,6 +7,7 @@
 #include "base/mem.h"
 #include "render/draft/draft_kernels.h"
 #include "render/draft/draft_simd.h"
+#include "render/gl/ghosts.h"
 #include "render/pick/markers.h"
 
 static const size_t KEPT_BYTES = (size_t)128 << 20; /* some five pictures of 1920x1080 */
@@ -127,7 +128,7 @@ static bool draw_selected(struct draft *draft, struct recolor *recolor)
 static bool draw_ghosts(struct draft *draft, struct recolor *recolor)
 {
     uint8_t bgr[3], *veil;
-    if (!draft_has_ghosts(draft))
+    if (!ghosts_any(draft->context))
         return true;
     veil = mem_try_array((size_t)draft->width_px * (size_t)draft->height_px, 1);
     if (!veil || !draft_ghosts(draft, veil, bgr)) {

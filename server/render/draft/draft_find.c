@@ -7,6 +7,7 @@
 #include "render/draft/draft_impl.h"
 #include "render/draft/draft_simd.h"
 #include "render/matrix.h"
+#include "render/gl/ghosts.h"
 #include "render/gl/surface_pass.h"
 
 #define SLACK_PX 0.02f    /* boxes and vertices round differently */
@@ -175,27 +176,12 @@ bool draft_find_only(struct draft *draft, int asset)
     return true;
 }
 
-static bool is_ghost(const struct draft *draft, size_t asset)
-{
-    const struct frame_context *context = draft->context;
-    return visibility_of(&context->view->visibility, (int)asset) == ASSET_GHOST &&
-           view_constants_sees(&context->constants, &draft->gpu_scene->scene->assets[asset]);
-}
-
-bool draft_has_ghosts(const struct draft *draft)
-{
-    for (size_t i = 0; i < draft->gpu_scene->scene->asset_count && draft->context->view->visibility.ghosts.count > 0; i++)
-        if (is_ghost(draft, i))
-            return true;
-    return false;
-}
-
 bool draft_find_ghosts(struct draft *draft)
 {
     draft->mesh_count = draft->vertex_count = 0;
     draft->counts_bodies = false;
     for (size_t i = 0; i < draft->gpu_scene->scene->asset_count; i++)
-        if (is_ghost(draft, i) && !add_asset(draft, (int)i, gpu_scene_level(draft->gpu_scene, &draft->context->constants, (int)i, 1), true))
+        if (ghosts_shows(draft->context, i) && !add_asset(draft, (int)i, gpu_scene_level(draft->gpu_scene, &draft->context->constants, (int)i, 1), true))
             return false;
     workers_for(draft->workers, draft->mesh_count, 1, find_meshes, draft);
     return true;

@@ -71,12 +71,26 @@ bool draft_ghosts(struct draft *draft, uint8_t *veil, uint8_t bgr[3])
     return true;
 }
 
-void draft_paint_ghosts(const struct draft *draft, const uint8_t *veil, const uint8_t bgr[3])
+struct painting {
+    const struct draft *draft;
+    const uint8_t *veil, *bgr;
+};
+
+static void paint_rows(void *arg, size_t begin, size_t end)
 {
-    for (int y = 0; y < draft->height_px; y++) {
-        uint8_t *out = draft->out + (size_t)y * draft->out_stride_bytes;
+    const struct painting *painting = arg;
+    const struct draft *draft = painting->draft;
+    const uint8_t *bgr = painting->bgr, *veil = painting->veil + begin * (size_t)draft->width_px;
+    for (size_t y = begin; y < end; y++) {
+        uint8_t *out = draft->out + y * draft->out_stride_bytes;
         for (int x = 0; x < draft->width_px; x++, veil++)
             for (int c = 0; c < 3 && *veil; c++)
                 out[4 * x + c] = (uint8_t)(out[4 * x + c] + (bgr[c] - out[4 * x + c]) * *veil / 255.0 + 0.5);
     }
+}
+
+void draft_paint_ghosts(const struct draft *draft, const uint8_t *veil, const uint8_t bgr[3])
+{
+    struct painting painting = { draft, veil, bgr };
+    workers_for(draft->workers, (size_t)draft->height_px, 16, paint_rows, &painting);
 }

@@ -192,8 +192,7 @@ bool draft_collect(struct draft *draft); /* meshes, draws and chunks: what may b
 void draft_fill_mesh(struct draft *draft, struct draft_mesh *mesh, int asset, const struct model_level *level);
 bool draft_find(struct draft *draft);                 /* meshes, and which of their parts may be seen. False: out of memory */
 bool draft_find_only(struct draft *draft, int asset); /* the same of one, from both sides */
-bool draft_has_ghosts(const struct draft *draft);
-bool draft_find_ghosts(struct draft *draft); /* of what is only hinted at; and below, how much of a line each pixel has, of 255 */
+bool draft_find_ghosts(struct draft *draft);          /* of what is only hinted at; and below, how much of a line each pixel has, of 255 */
 bool draft_ghosts(struct draft *draft, uint8_t *veil, uint8_t bgr[3]); /* rows of width_px; marks are lost. False: out of memory */
 void draft_paint_ghosts(const struct draft *draft, const uint8_t *veil, const uint8_t bgr[3]);
 enum draft_output { DRAFT_CAPS, DRAFT_DEPTH, DRAFT_COLORS };                         /* only marks of caps; marks and depth; and colours */

@@ -21,12 +21,16 @@ void ghosts_finish(struct ghosts *ghosts)
     glDeleteVertexArrays(1, &ghosts->vao);
 }
 
-static bool any_ghost(const struct frame_context *context)
+bool ghosts_shows(const struct frame_context *context, size_t asset)
 {
-    const struct scene *scene = context->gpu_scene->scene;
-    const struct visibility *visibility = &context->view->visibility;
-    for (size_t i = 0; i < scene->asset_count && visibility->ghosts.count > 0; i++)
-        if (visibility_of(visibility, (int)i) == ASSET_GHOST && view_constants_sees(&context->constants, &scene->assets[i]))
+    return visibility_of(&context->view->visibility, (int)asset) == ASSET_GHOST &&
+           view_constants_sees(&context->constants, &context->gpu_scene->scene->assets[asset]);
+}
+
+bool ghosts_any(const struct frame_context *context)
+{
+    for (size_t i = 0; i < context->gpu_scene->scene->asset_count && context->view->visibility.ghosts.count > 0; i++)
+        if (ghosts_shows(context, i))
             return true;
     return false;
 }
@@ -40,7 +44,7 @@ static void draw_depth(const struct ghosts *ghosts, const struct frame_context *
     glDepthMask(GL_TRUE);
     glClear(GL_DEPTH_BUFFER_BIT);
     for (size_t i = 0; i < scene->asset_count; i++)
-        if (visibility_of(visibility, (int)i) == ASSET_GHOST && view_constants_sees(&context->constants, &scene->assets[i])) {
+        if (ghosts_shows(context, i)) {
             float error_m = gpu_scene_level(context->gpu_scene, &context->constants, (int)i, 1)->error_m;
             gpu_scene_draw_depth(context->gpu_scene, context->constants.clip_from_plant, &visibility->clip, (int)i, (double)error_m, true);
         }
@@ -52,7 +56,7 @@ static void find_part(const struct frame_context *context, double low[2], double
     const struct scene *scene = context->gpu_scene->scene;
     for (size_t i = 0; i < scene->asset_count; i++) {
         const struct scene_asset *asset = &scene->assets[i];
-        if (visibility_of(&context->view->visibility, (int)i) != ASSET_GHOST || !view_constants_sees(&context->constants, asset))
+        if (!ghosts_shows(context, i))
             continue;
         for (int corner = 0; corner < 8; corner++) {
             double place[3], clip[4];
@@ -82,7 +86,7 @@ static void scissor(const struct frame_context *context)
 
 void ghosts_draw(struct ghosts *ghosts, const struct frame_context *context)
 {
-    if (!any_ghost(context))
+    if (!ghosts_any(context))
         return;
     gl_pass_enter("ghosts");
     if (!render_texture_fit(&ghosts->depth, GL_DEPTH_COMPONENT32F, GL_DEPTH_ATTACHMENT, context->target->width_px,

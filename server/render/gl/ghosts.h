@@ -11,6 +11,9 @@ struct ghosts {
     struct render_texture depth;
 };
 
+/* Returns whether an asset is a ghost that the camera may see, and whether any is. */
+bool ghosts_shows(const struct frame_context *context, size_t asset);
+bool ghosts_any(const struct frame_context *context);
 bool ghosts_init(struct ghosts *ghosts, struct log *log); /* false: logged */
 void ghosts_finish(struct ghosts *ghosts);
 void ghosts_draw(struct ghosts *ghosts, const struct frame_context *context); /* nothing to do where there is none */

@@ -109,6 +109,8 @@ bool frame_plan_prepare(struct frame_plan *plan, const struct frame_planner *pla
     static const double slice = 1e6;
     int64_t begin_ns = clock_mono_ns();
     bool ready = true;
+    if (budget_ns == INT64_MAX)
+        return true; /* frame_plan_complete() works on many assets side by side */
     for (size_t i = 0; i < plan->visible_count && ready && plan->view.look != LOOK_MATERIALS; i++)
         while (ready &&
                !field_advance(planner->fields->field, plan->visible[i], &plan->view.field, snapshot, plan->vertex_counts[i], slice))

@@ -6,9 +6,11 @@
 #include <string.h>
 
 #include "base/mem.h"
+#include "base/srgb.h"
 #include "render/pick/markers.h"
 #include "render/matrix.h"
 #include "render/plate/plate_impl.h"
+#include "render/gl/ghosts.h"
 #include "render/gl/surface_pass.h"
 
 /* Of a step, for each core: some milliseconds' worth. */
@@ -38,7 +40,7 @@ static void find_tones(struct plates *plates)
 {
     for (int i = 0; i <= TONES; i++) {
         double x = (double)i / TONES;
-        plates->tones[i] = (float)(x <= 0.0031308 ? 12.92 * x : 1.055 * pow(x, 1 / 2.4) - 0.055);
+        plates->tones[i] = (float)srgb_from_linear(x);
     }
 }
 
@@ -321,7 +323,7 @@ static bool find_ghosts(struct plate *plate, const struct frame *frame)
 {
     struct draft *draft = plate->draft;
     struct recolor *recolor = plate->recolor;
-    if (!draft_has_ghosts(draft))
+    if (!ghosts_any(draft->context))
         return true;
     recolor->veil = mem_try_array((size_t)recolor->width_px * (size_t)recolor->height_px, 1);
     return recolor->veil && draft_make_room(draft, frame, BAND_ROWS) && draft_ghosts(draft, recolor->veil, recolor->veil_bgr);

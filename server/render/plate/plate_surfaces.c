@@ -195,8 +195,7 @@ DRAFT_KERNEL void plate_shade_surfaces(const struct plate *plate, const struct i
         c = (vec){ srgb_from_linear(plates, c.x), srgb_from_linear(plates, c.y), srgb_from_linear(plates, c.z) };
         c = bright > 0 ? times(mute(c), all(bright)) : c;
         c = greys ? grey(grey_of(c)) : c;
-        lanes_int red = lanes_whole(c.x * 255.0f + 0.5f), green = lanes_whole(c.y * 255.0f + 0.5f);
-        lanes_int packed = lanes_whole(c.z * 255.0f + 0.5f) | green << 8 | red << 16;
+        lanes_int packed = pack_color(c.x, c.y, c.z);
         if (lanes_any(spot.back & spot.cut)) {
             lanes_int inside = inside_color((lanes[3]){ v.x, v.y, v.z }, (lanes[3]){ spot.normal.x, spot.normal.y, spot.normal.z },
                                             plate->draft->block.up);
