@@ -10,7 +10,7 @@
 
 bool subdiv_mesh_init(struct subdiv_mesh *mesh, struct geometry *geometry)
 {
-    *mesh = (struct subdiv_mesh){ .geometry = geometry, .own_vertices = geometry->vertex_count };
+    *mesh = (struct subdiv_mesh){ .geometry = geometry };
     mesh->position_capacity = mesh->normal_capacity = mesh->texcoord_capacity = geometry->vertex_count;
     mesh->second_capacity = mesh->color_capacity = geometry->vertex_count;
     edge_table_init(&mesh->edges, geometry->index_count);

@@ -37,7 +37,6 @@ struct subdiv_list { /* of numbers of triangles, or of corners */
 struct subdiv_mesh {
     struct geometry *geometry;
     struct welded_positions welded;
-    uint32_t own_vertices; /* of the geometry, before anything was added */
     size_t place_capacity, of_vertex_capacity, position_capacity, normal_capacity, texcoord_capacity, second_capacity, color_capacity;
     struct edge_table edges, vertex_edges; /* by places; by vertices */
     struct subdiv_edge *cuts;

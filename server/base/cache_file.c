@@ -54,11 +54,6 @@ void cache_file_close(struct cache_file *file)
     *file = (struct cache_file){ 0 };
 }
 
-int cache_file_write(const char *path, const char *magic, uint64_t key, const void *bytes, size_t count)
-{
-    return cache_file_write_parts(path, magic, key, &(struct atomic_file_part){ bytes, count }, 1);
-}
-
 /* Not put together first: there may be tens of megabytes. */
 int cache_file_write_parts(const char *path, const char *magic, uint64_t key, const struct atomic_file_part *parts, size_t part_count)
 {

@@ -20,8 +20,7 @@ struct cache_file { /* mapped */
 /* Maps the file into memory. magic: 8 bytes that name its kind. Returns false if there is no valid file; then there is nothing to close. */
 bool cache_file_open(struct cache_file *file, const char *path, const char *magic, uint64_t key);
 void cache_file_close(struct cache_file *file); /* unmaps it; a zeroed one is fine */
-/* Write a file, from one array or from several parts. Return 0 or -errno. */
-int cache_file_write(const char *path, const char *magic, uint64_t key, const void *bytes, size_t count);
+/* Writes a file, its parts one after the other. Returns 0 or -errno. */
 int cache_file_write_parts(const char *path, const char *magic, uint64_t key, const struct atomic_file_part *parts, size_t part_count);
 
 #endif

@@ -220,8 +220,7 @@ KERNEL static void add_one(double *restrict sum, const float *restrict a, double
 }
 
 /* Of KERNEL_COLUMNS columns. */
-static inline __attribute__((always_inline)) void add_eight(double *restrict sum, const float *const *columns, const double *factors,
-                                                            size_t begin, size_t end)
+SIMD_BODY void add_eight(double *restrict sum, const float *const *columns, const double *factors, size_t begin, size_t end)
 {
     const float *restrict a = columns[0], *restrict b = columns[1], *restrict c = columns[2], *restrict d = columns[3];
     const float *restrict e = columns[4], *restrict f = columns[5], *restrict g = columns[6], *restrict h = columns[7];
@@ -327,8 +326,8 @@ struct few {
 };
 
 /* column_count: known where this is put in. */
-static inline __attribute__((always_inline)) int32_t put_few(const struct few *few, size_t column_count, const float *restrict weight,
-                                                             size_t count, struct scalar *restrict at)
+SIMD_BODY int32_t put_few(const struct few *few, size_t column_count, const float *restrict weight, size_t count,
+                          struct scalar *restrict at)
 {
     const struct few own = *few;
     int32_t most = 0;

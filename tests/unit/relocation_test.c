@@ -363,7 +363,8 @@ static void without_memory_it_says_so_and_goes_on(void **state)
                                              &(struct surface_params){ 0 });
     char *path = temp_path(c->folder, "plate.surface");
     surface_pack(surface, &packed);
-    assert_int_equal(cache_file_write(path, SURFACE_MAGIC, 7, packed.at, packed.length), 0);
+    const struct atomic_file_part part = { packed.at, packed.length };
+    assert_int_equal(cache_file_write_parts(path, SURFACE_MAGIC, 7, &part, 1), 0);
     for (int kept = 0; kept < 2; kept++) {
         int broken = 0, warm = 0;
         shape.surface_path = kept ? path : NULL;

@@ -93,10 +93,10 @@ export function gaps(series, fromUs, toUs) {
 
 // Returns the tags that speak for each source, its first and its last: [{ source, tags: [name] }], of `most` sources at most.
 export function witnesses(tags, most = 16) {
-    const names = new Map();
+    const ends = new Map();
     for (const { source, name } of tags.filter((tag) => tag.source))
-        names.set(source, [...(names.get(source) ?? []), name]);
-    return [...names].slice(0, most).map(([source, all]) => ({ source, tags: [...new Set([all[0], all.at(-1)])] }));
+        ends.set(source, [ends.get(source)?.[0] ?? name, name]);
+    return [...ends].slice(0, most).map(([source, pair]) => ({ source, tags: [...new Set(pair)] }));
 }
 
 // Returns when none of these had a value: [[from, to]], in microseconds.

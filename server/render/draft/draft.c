@@ -16,10 +16,10 @@ static const size_t KEPT_BYTES = (size_t)128 << 20; /* some five pictures of 192
 static const struct draft_kernels *choose_kernels(void)
 {
 #ifdef __x86_64__
-    if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vl") && __builtin_cpu_supports("avx512bw") &&
-        __builtin_cpu_supports("avx512dq"))
+    enum simd_level level = simd_level();
+    if (level == SIMD_HAS_AVX512)
         return &draft_kernels_widest;
-    if (__builtin_cpu_supports("avx2"))
+    if (level == SIMD_HAS_AVX2)
         return &draft_kernels_wide;
 #endif
     return &draft_kernels_plain;

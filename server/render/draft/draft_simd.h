@@ -8,13 +8,10 @@
 #include <immintrin.h>
 #endif
 
-/* Built for wider registers too; the loader takes what the machine has. Not under sanitizers, whose run time starts after the loader. */
-#if defined(__x86_64__) && defined(__linux__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__) && !defined(__clang__)
-#define DRAFT_KERNEL __attribute__((target_clones("avx2", "default")))
-#else
-#define DRAFT_KERNEL
-#endif
-#define DRAFT_INLINE static inline __attribute__((always_inline))
+#include "base/simd.h"
+
+#define DRAFT_KERNEL SIMD_CLONES("avx2")
+#define DRAFT_INLINE SIMD_BODY
 
 enum { LANES = 8 }; /* DRAFT_STRETCH_LEAST is no less */
 typedef float lanes __attribute__((vector_size(32), aligned(4)));

@@ -15,8 +15,12 @@ const HELD_US = 3.5e6;      // what is newer than that counts as now
 // Those of the shown group that stand somewhere and whose distances can be shown: not of single ones whose equipment was left whole.
 export function sensorsOf({ model, params }) {
     const all = model.tags.filter(({ group, asset, position }) => group === params.group && asset && position);
-    const isAlone = (sensor) => !all.some((other) => other !== sensor && other.asset === sensor.asset);
-    return model.group(params.group)?.singles === 'whole' ? all.filter((sensor) => !isAlone(sensor)) : all;
+    if (model.group(params.group)?.singles !== 'whole')
+        return all;
+    const counts = new Map();
+    for (const { asset } of all)
+        counts.set(asset, (counts.get(asset) ?? 0) + 1);
+    return all.filter(({ asset }) => counts.get(asset) > 1);
 }
 
 export class Commands {
