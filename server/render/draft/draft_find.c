@@ -180,11 +180,10 @@ bool draft_find_ghosts(struct draft *draft)
 {
     draft->mesh_count = draft->vertex_count = 0;
     draft->counts_bodies = false;
-    for (size_t i = 0; i < draft->gpu_scene->scene->asset_count; i++)
-    {
+    for (size_t i = 0; i < draft->gpu_scene->scene->asset_count; i++) {
         if (!ghosts_shows(draft->context, i))
             continue;
-        int level = gpu_scene_level(draft->gpu_scene, &draft->context->constants, (int)i, 1);
+        const struct model_level *level = gpu_scene_level(draft->gpu_scene, &draft->context->constants, (int)i, 1);
         if (!add_asset(draft, (int)i, level, true))
             return false;
     }
