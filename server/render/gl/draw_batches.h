@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The draws of a pass, gathered by the state they need: each batch is one call, however many assets it shows. What differs between
-   assets is in buffers: where they stand by instance, light and scalars by vertex (gpu/pool.h). Thread: the one of the GL context. */
+/* Collects the draws of a pass into batches that need the same GL state, so that each batch is one call, however many assets it draws.
+   What differs between assets is in buffers: the placement per instance, light and scalars per vertex (gpu/pool.h).
+   Order of calls: begin, choose and add, upload, draw. Thread: the one of the GL context. */
 #ifndef RENDER_GL_DRAW_BATCHES_H
 #define RENDER_GL_DRAW_BATCHES_H
 #include "gpu/mesh.h"
@@ -17,10 +18,10 @@ struct draw_instance {   /* as in shaders/instance.glsl */
 struct draw_batch_state {
     GLuint program;
     const struct model *model;
-    const struct pool_page *light, *field; /* field NULL: no data, or none at all */
+    const struct pool_page *light, *field; /* field NULL: the asset has no data or no field */
     int front;                             /* as scene_asset.front */
-    int material;                          /* -1: shaders do not look at it */
-    int alone;                             /* an asset that shares its batches with no other; -1: none */
+    int material;                          /* -1: the program does not use it */
+    int alone;                             /* index of an asset that must not share its batch; -1: may be shared */
     bool two_sided, mirrored, cut, blend;
 };
 
@@ -32,40 +33,47 @@ struct draw_command { /* for glMultiDrawElementsIndirect */
 
 struct draw_batch {
     struct draw_batch_state state;
-    size_t first, count; /* commands, when they are sorted */
-    size_t older;        /* another one of the model; SIZE_MAX: none */
+    size_t first, count; /* range in `sorted`; valid after draw_batches_upload() */
+    size_t older;        /* the batch made before this one for the same model; SIZE_MAX: none */
 };
 
-struct draw_batches { /* zero-initialise log excepted */
+struct draw_batches { /* zero-initialise, then set log */
     struct log *log;
     struct draw_batch *at;
-    size_t count, from; /* batches; draws join those from here on only */
+    size_t count, from; /* number of batches; draws may join those with an index of at least `from` */
     struct draw_instance *instances;
-    struct draw_command *commands, *sorted; /* as they were added; by batch */
-    uint32_t *batch_of, *place_of;          /* per command as they were added: its batch, and its place among the sorted */
-    size_t *newest;                         /* per model: its newest batch */
+    struct draw_command *commands, *sorted; /* in the order added; ordered by batch */
+    uint32_t *batch_of, *place_of;          /* per command in the order added: its batch, its index in `sorted` */
+    size_t *newest;                         /* per model: the batch made last */
     size_t instance_count, command_count;
     size_t capacity, instance_capacity, command_capacity, sorted_capacity, batch_of_capacity, place_capacity, newest_capacity;
     GLuint instance_buffer, command_buffer, place_buffer;
     size_t instance_room, command_room, place_room;
 };
 
+/* Frees all memory and GL buffers. */
 void draw_batches_finish(struct draw_batches *batches);
+/* Empties the batches for a new pass. */
 void draw_batches_begin(struct draw_batches *batches, size_t model_count);
-uint32_t draw_batches_add_instance(struct draw_batches *batches, const struct draw_instance *instance); /* its number */
-/* A batch of that state. model: number of its model. in_order: what is drawn before must stay so: only the newest will do. */
+/* Copies an instance and returns its number. */
+uint32_t draw_batches_add_instance(struct draw_batches *batches, const struct draw_instance *instance);
+/* Returns the index of a batch with that state, and makes one if there is none. model: the model's index. in_order: draws must keep the
+   order in which they are added, so only the batch made last may be joined. */
 size_t draw_batches_choose(struct draw_batches *batches, const struct draw_batch_state *state, size_t model, bool in_order);
-/* Adds a submesh, or of it only the clusters that are seen, and returns how many triangles these have. shown 0: not drawn unless the GPU
-   says so. */
+/* Adds the draw of a whole submesh. shown: instances to draw, 1; or 0 if an occlusion test on the GPU decides (render/gl/occlusion.h). */
 void draw_batches_add_submesh(struct draw_batches *batches, size_t batch, const struct model_submesh *submesh, uint32_t instance,
                               uint32_t shown);
+/* Adds draws of those clusters of a submesh that are not culled. Returns their number of triangles. */
 int draw_batches_add_seen(struct draw_batches *batches, size_t batch, const struct model_submesh *submesh, uint32_t instance,
                           const struct culling *culling);
-/* Sorts, and hands everything to the GPU. places: place_buffer, too. False: it has no room, logged. */
+/* Sorts the commands by batch and uploads commands and instances. places: uploads place_buffer as well. Returns false if the GPU is out of
+   memory; that is logged. */
 bool draw_batches_upload(struct draw_batches *batches, bool places);
-void draw_batches_draw(const struct draw_batches *batches, const struct draw_batch *batch); /* with its state set and its mesh bound */
+/* Draws one batch. The caller has set its state and bound its mesh. */
+void draw_batches_draw(const struct draw_batches *batches, const struct draw_batch *batch);
 
-/* A buffer for what changes from picture to picture. False: the GPU has no room, logged. */
+/* Writes data into a buffer that changes with every picture and grows it if needed. Returns false if the GPU is out of memory; that is
+   logged. */
 bool draw_batches_refill(struct log *log, GLuint *buffer, size_t *room, size_t bytes, const void *data);
 
 #endif

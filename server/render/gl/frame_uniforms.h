@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The uniform block of shaders/frame.glsl. */
+/* The uniform block of shaders/frame.glsl: what is the same for all draws of a picture. */
 #ifndef RENDER_GL_FRAME_UNIFORMS_H
 #define RENDER_GL_FRAME_UNIFORMS_H
 #include "render/frame_context.h"
@@ -10,6 +10,7 @@ struct frame_uniforms { /* std140 */
     float clip[CLIP_MAX_PLANES][4];
 };
 
+/* Fills the block from the camera, sun, scale and section planes of a picture. Pure. */
 void frame_uniforms_fill(struct frame_uniforms *block, const struct frame_context *context);
 
 #endif

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What the GPU still owes of pictures that were given to it: pixels, markers, labels. Several may be under way, so that one is drawn
-   while another one's pixels come. Thread: the one of the GL context. */
+/* A fixed number of slots for pictures whose results the GPU has not delivered yet: pixels, visibility of markers and of labels. With
+   several slots one picture is drawn while the pixels of another are read back. Thread: the one of the GL context. */
 #ifndef RENDER_GL_FRAMES_IN_FLIGHT_H
 #define RENDER_GL_FRAMES_IN_FLIGHT_H
 #include "gpu/readback.h"
@@ -14,13 +14,16 @@ struct frame_in_flight {
     bool taken;
 };
 struct frames_in_flight {
-    GLuint program; /* of the queries */
+    GLuint program; /* shaders/point_visibility.comp */
     struct frame_in_flight at[FRAMES_IN_FLIGHT];
 };
 
-bool frames_in_flight_init(struct frames_in_flight *frames_in_flight, struct log *log); /* false: logged */
+/* Compiles the program. Returns false if that fails; it is logged. */
+bool frames_in_flight_init(struct frames_in_flight *frames_in_flight, struct log *log);
 void frames_in_flight_finish(struct frames_in_flight *frames_in_flight);
-struct frame_in_flight *frames_in_flight_take(struct frames_in_flight *frames_in_flight, struct log *log); /* NULL: all are taken, logged */
-void frames_in_flight_give(struct frame_in_flight *in_flight); /* its picture came, or is not waited for; NULL is fine */
+/* Takes a free slot. Returns NULL if all are taken; that is logged. */
+struct frame_in_flight *frames_in_flight_take(struct frames_in_flight *frames_in_flight, struct log *log);
+/* Frees a slot whose results have been read or are no longer wanted. Accepts NULL. */
+void frames_in_flight_give(struct frame_in_flight *in_flight);
 
 #endif

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The pass that hints at ghosted assets: outline and a thin tint over the resolved picture, where nothing stands before them. Of ghosts
-   behind one another the nearest is drawn. Thread: the one of the GL context. */
+/* The pass that draws ghosted assets: an outline and a faint tint over the resolved picture, where no other surface is in front of them.
+   Where ghosts overlap, the nearest is drawn. Thread: the one of the GL context. */
 #ifndef RENDER_GL_GHOSTS_H
 #define RENDER_GL_GHOSTS_H
 #include "gpu/target.h"
@@ -11,11 +11,13 @@ struct ghosts {
     struct render_texture depth;
 };
 
-/* Returns whether an asset is a ghost that the camera may see, and whether any is. */
+/* Returns whether an asset is ghosted and inside the view frustum; ghosts_any: whether any asset is. */
 bool ghosts_shows(const struct frame_context *context, size_t asset);
 bool ghosts_any(const struct frame_context *context);
-bool ghosts_init(struct ghosts *ghosts, struct log *log); /* false: logged */
+/* Compiles the program. Returns false if that fails; it is logged. */
+bool ghosts_init(struct ghosts *ghosts, struct log *log);
 void ghosts_finish(struct ghosts *ghosts);
-void ghosts_draw(struct ghosts *ghosts, const struct frame_context *context); /* nothing to do where there is none */
+/* Draws all ghosts into the resolved picture; does nothing if there are none. */
+void ghosts_draw(struct ghosts *ghosts, const struct frame_context *context);
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The passes that draw lines over the resolved picture: edges of shapes, and the outline of the selected asset.
+/* The passes that draw lines over the resolved picture: feature edges, and the outline of the selected asset.
    Thread: the one of the GL context. */
 #ifndef RENDER_GL_LINES_H
 #define RENDER_GL_LINES_H
@@ -11,11 +11,14 @@ struct lines {
     struct render_texture mask;
 };
 
-bool lines_init(struct lines *lines, struct log *log); /* false: logged */
+/* Compiles the programs. Returns false if that fails; it is logged. */
+bool lines_init(struct lines *lines, struct log *log);
 void lines_finish(struct lines *lines);
+/* Darkens the picture where depth or normal jump. */
 void lines_draw_edges(const struct lines *lines, const struct frame_context *context);
-double lines_outline_px(const struct view *view); /* width of its dark line; the light one is as wide */
-/* Of view->selected_asset, also where something stands before it. */
+/* Returns the width in pixels of the outline's dark line; the light line beside it is as wide. Pure. */
+double lines_outline_px(const struct view *view);
+/* Draws the outline of view->selected_asset, also where other surfaces hide it. */
 void lines_draw_outline(struct lines *lines, const struct frame_context *context);
 
 #endif

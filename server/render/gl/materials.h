@@ -1,10 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Materials and textures of a model: upload, and the ramps that the moving tier looks up. */
+/* Uploads a model's materials and textures, and computes the colour ramps that previews look up.
+   Thread: the one of the GL context. */
 #ifndef RENDER_GL_MATERIALS_H
 #define RENDER_GL_MATERIALS_H
 #include "render/gl/model.h"
 
-bool materials_upload(struct model *model, struct gl *gl, GLuint ramp_program); /* false: out of GPU memory, logged */
+/* Returns false if the GPU is out of memory; that is logged. */
+bool materials_upload(struct model *model, struct gl *gl, GLuint ramp_program);
+/* Deletes what materials_upload() made. */
 void materials_finish(struct model *model);
 
 #endif

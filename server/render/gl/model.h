@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* One asset file on the GPU: geometry, materials, textures, and the order in which to draw them. Shared by all its instances.
+/* One asset file on the GPU: geometry, materials, textures, and submeshes in drawing order. All instances of the asset share it.
    Thread: the one of the GL context. */
 #ifndef RENDER_GL_MODEL_H
 #define RENDER_GL_MODEL_H
@@ -8,7 +8,7 @@
 #include "scene/asset.h"
 
 enum model_map { MODEL_BASE_COLOR, MODEL_METALLIC_ROUGHNESS, MODEL_NORMAL, MODEL_OCCLUSION, MODEL_EMISSIVE, MODEL_MAPS };
-enum { MODEL_LIGHT_STEPS = 64 }; /* of a ramp */
+enum { MODEL_LIGHT_STEPS = 64 }; /* texels of a material's ramp */
 
 struct model_submesh { /* the triangles of one material in one level */
     uint32_t material;
@@ -25,14 +25,14 @@ struct model_level {
     float error_m;
     int triangles;
     uint32_t vertex_count;
-    uint32_t first_primitive, primitive_count, first_cluster; /* in the file */
+    uint32_t first_primitive, primitive_count, first_cluster; /* indices in the asset file */
 };
 
 struct model_material {
     GLuint maps[MODEL_MAPS]; /* 0: none; owned by the model's textures */
-    int mask;                /* bit per map that is there */
-    int second;              /* likewise: it lies where the second texture coordinates put it */
-    bool masked;             /* the base colour's alpha cuts holes */
+    int mask;                /* bit per map that the material has */
+    int second;              /* bit per map that uses the second set of texture coordinates */
+    bool masked;             /* alpha of the base colour cuts holes (glTF alphaMode MASK) */
 };
 
 struct model {
@@ -42,23 +42,25 @@ struct model {
     struct model_material *materials;
     GLuint *textures;
     size_t level_count, material_count, texture_count;
-    GLuint material_buffer, ramps, own_ramps; /* ramps: a row per material, sRGB by light; muted and not */
+    GLuint material_buffer, ramps, own_ramps; /* a row per material, sRGB by brightness; own_ramps: not muted */
 };
 
-struct model_draws { /* zero-initialise: memory for one submesh's draws */
+struct model_draws { /* scratch memory for the draws of one submesh; zero-initialise */
     GLsizei *counts;
     const void **offsets;
     size_t count_capacity, offset_capacity;
 };
 void model_draws_finish(struct model_draws *draws);
 
-/* ramp_program: compiled ramp.comp. False: logged; finish copes with what is half-made. */
+/* Uploads an asset file. ramp_program: shaders/ramp.comp, compiled. Returns false if that fails; it is logged, and model_finish() must
+   still be called. */
 bool model_init(struct model *model, struct gl *gl, const struct asset *file, GLuint ramp_program);
 void model_finish(struct model *model);
-/* The coarsest level that errs by at most that. */
+/* Returns the coarsest level with an error of at most error_m. */
 const struct model_level *model_level(const struct model *model, double error_m);
+/* Draws one submesh; the model's mesh must be bound. */
 void model_draw_submesh(const struct model_submesh *submesh);
-/* Only closed bodies (scene/closed_bodies.h), all of them. */
+/* Draws the closed bodies of a level (scene/closed_bodies.h) and nothing else. */
 void model_draw_closed(struct model_draws *draws, const struct model *model, const struct model_level *level);
 
 #endif

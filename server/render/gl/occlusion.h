@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Leaves out what others hide: an asset's box is drawn against the depth of what was drawn before, into nothing; where some of it
-   shows, the GPU itself says to draw the asset. Nothing waits, and nothing is left out that would change a pixel: the box holds the
-   asset, and a rim more than rounding can make of it. Thread: the one of the GL context. */
+/* Occlusion culling of assets: an asset's bounding box is tested against the depth drawn so far, without writing; a shader that finds a
+   visible fragment enables the asset's draw commands on the GPU, so nothing is read back. Conservative: the box encloses the asset with a
+   margin larger than any rounding, so culling never changes a pixel. Thread: the one of the GL context. */
 #ifndef RENDER_GL_OCCLUSION_H
 #define RENDER_GL_OCCLUSION_H
 #include "render/gl/draw_batches.h"
@@ -9,40 +9,42 @@
 
 struct occlusion_box { /* as shaders/occlusion.vert reads it */
     float clip_from_box[16];
-    uint32_t first_place, place_count, unused[2]; /* of its asset's commands (render/gl/draw_batches.h) */
+    uint32_t first_place, place_count, unused[2]; /* range of the asset's draw commands (render/gl/draw_batches.h) */
 };
-struct occlusion_asset { /* of the picture's visible ones, or the end of their list */
+struct occlusion_asset { /* one per visible asset, and one that ends the list */
     size_t boxes_before;
     bool tested;
     int triangles;
 };
 
-struct occlusion { /* zero-initialise log excepted; of the picture that was drawn last */
+struct occlusion { /* state of the picture drawn last; zero-initialise, then set log */
     struct log *log;
     GLuint program, vao, box_buffer;
     struct occlusion_box *boxes;
     struct occlusion_asset *assets;
     size_t box_count, asset_count;
-    size_t box_capacity, asset_capacity; /* here */
+    size_t box_capacity, asset_capacity; /* in memory */
     size_t box_room;                     /* on the GPU */
 };
 
-bool occlusion_init(struct occlusion *occlusion, struct log *log); /* false: logged */
+/* Compiles the program. Returns false if that fails; it is logged. */
+bool occlusion_init(struct occlusion *occlusion, struct log *log);
 void occlusion_finish(struct occlusion *occlusion);
-/* Before what is not blended is gathered: boxes of all visible assets. False: there are fewer triangles than that; all are to be drawn. */
+/* Collects the boxes of all visible assets; call it before opaque draws are collected. Returns false if the picture has fewer than
+   least_triangles triangles: then testing does not pay, and all assets are to be drawn. */
 bool occlusion_begin(struct occlusion *occlusion, const struct frame_context *context, int least_triangles);
-/* So many of the visible assets, from `first` on, can be drawn before it pays to test again. Each round but the last draws as many
-   triangles as all before it, the first an eighth. */
+/* Returns how many of the visible assets, from index `first` on, the next round should draw before it tests again. The first round draws an
+   eighth of all triangles, each later one but the last as many as all rounds before it. Pure. */
 enum { OCCLUSION_ROUNDS = 6 };
 size_t occlusion_round(const struct occlusion *occlusion, size_t first);
-/* The box of an asset that is tested decides about these commands. */
+/* Records the range of draw commands that the box test of an asset enables. */
 void occlusion_decides(struct occlusion *occlusion, const struct occlusion_asset *asset, size_t first_command, size_t count);
-bool occlusion_upload(struct occlusion *occlusion); /* false: the GPU has no room for the boxes, logged */
-/* Decides about these, by what was drawn until now. State of the pass (render/gl/surface_pass.c) is as before but for the program,
-   what is bound,
-   the culling of faces and the polygon offset. */
+/* Uploads the boxes. Returns false if the GPU is out of memory; that is logged. */
+bool occlusion_upload(struct occlusion *occlusion);
+/* Tests the boxes of visible assets first..end-1 against the depth drawn so far. Changes the program, bindings, face culling and polygon
+   offset; leaves all other GL state of the pass (render/gl/surface_pass.c) as it was. */
 void occlusion_test(const struct occlusion *occlusion, const struct draw_batches *batches, size_t first, size_t end);
-/* How many assets were left out; waits for the GPU. For tests and measurements. */
+/* Returns how many assets were culled; waits for the GPU. For tests and measurements. */
 size_t occlusion_count(const struct occlusion *occlusion, const struct draw_batches *batches);
 
 #endif

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The pass that closes what a cut opens: closed bodies are solid, so that the cut shows a plane there, neutral, since no sensor knows what
-   the field is inside. Over the resolved picture, with its depth. Thread: the one of the GL context. */
+/* The pass that caps closed bodies where a section plane cuts them. Caps have a neutral colour, since no sensor measures the field inside.
+   It draws over the resolved picture, with its depth. Thread: the one of the GL context. */
 #ifndef RENDER_GL_SECTION_CAPS_H
 #define RENDER_GL_SECTION_CAPS_H
 #include "gpu/target.h"
@@ -12,8 +12,10 @@ struct section_caps {
     struct model_draws draws;
 };
 
-bool section_caps_init(struct section_caps *caps, struct log *log); /* false: logged */
+/* Compiles the programs. Returns false if that fails; it is logged. */
+bool section_caps_init(struct section_caps *caps, struct log *log);
 void section_caps_finish(struct section_caps *caps);
-void section_caps_draw(struct section_caps *caps, const struct frame_context *context); /* nothing to do where nothing is cut */
+/* Draws the caps of all section planes; does nothing if the view has none. */
+void section_caps_draw(struct section_caps *caps, const struct frame_context *context);
 
 #endif

@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The pass that draws the plant itself, in either tier. Thread: the one of the GL context. */
+/* The pass that draws the surfaces of all visible assets, for previews and refined pictures. Thread: the one of the GL context. */
 #ifndef RENDER_GL_SURFACE_PASS_H
 #define RENDER_GL_SURFACE_PASS_H
 #include "render/gl/draw_batches.h"
 #include "render/gl/occlusion.h"
 #include "render/frame_context.h"
 
-/* What a program can do; each does only what it must, since a software GL runs every branch. Rich: lines, and
-   scales that are not linear; without a field, only greys. */
+/* Features a program is compiled with, or'ed. Each draw uses the program with the fewest, since a software GL runs every branch.
+   RICH: isolines and scales that are not linear; without FIELD, greys only. */
 enum surface_variant {
     SURFACE_FIELD = 1,
     SURFACE_RICH = 2,
@@ -17,29 +17,33 @@ enum surface_variant {
     SURFACE_VARIANTS = 32
 };
 
-/* What the programs are for; all but pictures are made when first needed. */
+/* What a program writes. All but SURFACE_PICTURE are compiled when first needed. */
 enum surface_program_kind { SURFACE_PICTURE, SURFACE_PER_FRAGMENT, SURFACE_MEASURE, SURFACE_MEASURE_PER_FRAGMENT, SURFACE_KINDS };
 
 struct surface_pass {
     struct log *log;
     struct occlusion occlusion;
-    int least_hiding; /* of pictures of so many triangles what others hide is left out; INT_MAX: of none, but clusters that are not seen */
-    bool one_by_one;  /* each asset by calls of its own: to compare */
+    int least_hiding; /* least number of triangles for occlusion culling; INT_MAX: never, only clusters are culled */
+    bool one_by_one;  /* draws each asset by its own calls; for comparison in tests */
     struct draw_batches opaque, blended;
-    int triangles; /* drawn without those that are not seen; whoever wants to know sets it to 0 before */
-    GLuint programs[SURFACE_KINDS][2][SURFACE_VARIANTS]; /* by tier; 0: not used, or not made yet */
+    int triangles; /* counts triangles drawn, culled ones left out; the caller resets it */
+    GLuint programs[SURFACE_KINDS][2][SURFACE_VARIANTS]; /* [kind][refined][features]; 0: not compiled yet */
 };
 
-bool surface_pass_init(struct surface_pass *pass, struct log *log); /* false: logged */
+/* Compiles the programs of pictures. Returns false if that fails; it is logged. */
+bool surface_pass_init(struct surface_pass *pass, struct log *log);
 void surface_pass_finish(struct surface_pass *pass);
+/* Draws all visible assets, opaque ones first. */
 void surface_pass_draw(struct surface_pass *pass, const struct frame_context *context);
-/* The same in parts: what is not blended, of the visible assets from `first` on, until about so many triangles are drawn; returns the
-   first that is left. Then all that is blended. */
+/* Does the same in slices. surface_pass_draw_some() draws opaque submeshes of the visible assets from index `first` on until about
+   `triangles` triangles are drawn, and returns the index to go on with; surface_pass_draw_blended() then draws all transparent ones. */
 size_t surface_pass_draw_some(struct surface_pass *pass, const struct frame_context *context, size_t first, int triangles);
 void surface_pass_draw_blended(struct surface_pass *pass, const struct frame_context *context);
-const struct model_level *surface_pass_level(const struct frame_context *context, int asset); /* what of it is drawn */
-double
-surface_pass_sun_slack(const struct frame_context *context); /* in depth of the sun's map: by how much surfaces are moved towards the sun */
-int surface_pass_triangles(const struct frame_context *context); /* of what is drawn */
+/* Returns the level of an asset that the frame plan chose. */
+const struct model_level *surface_pass_level(const struct frame_context *context, int asset);
+/* Returns by how much surfaces are moved towards the sun against shadow acne, in depth of the shadow map. */
+double surface_pass_sun_slack(const struct frame_context *context);
+/* Returns the number of triangles of the planned levels of all visible assets. */
+int surface_pass_triangles(const struct frame_context *context);
 
 #endif

@@ -1,20 +1,25 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Targets by size, kept for the next picture of that size. Thread: the one of the GL context. */
+/* A cache of render targets, so that the next picture of the same size needs no allocation. Thread: the one of the GL context. */
 #ifndef RENDER_GL_TARGETS_H
 #define RENDER_GL_TARGETS_H
 #include "gpu/target.h"
 
 enum { TARGETS = 6 };
 struct targets {               /* zero-initialise */
-    struct target at[TARGETS]; /* least recently used last; width 0: empty */
-    size_t bound_bytes;        /* one is kept in any case; 0: none but TARGETS */
+    struct target at[TARGETS]; /* free targets, least recently used last; width 0: empty */
+    size_t bound_bytes;        /* memory limit; one target is kept even above it; 0: no limit but TARGETS */
 };
 
-/* The caller has it until targets_give. False: out of GPU memory, logged. */
+/* Takes a target of that size out of the cache, or makes one; the caller owns it until targets_give(). Returns false if the GPU is out of
+   memory; that is logged. */
 bool targets_take(struct targets *targets, struct log *log, int width_px, int height_px, int samples, struct target *out);
+/* Puts a target back; the least recently used one is deleted when the cache is full. */
 void targets_give(struct targets *targets, const struct target *target);
+/* Returns the memory of the free targets. */
 size_t targets_bytes(const struct targets *targets);
+/* Sets the memory limit and deletes what is above it. */
 void targets_bound(struct targets *targets, size_t bytes);
+/* Deletes all free targets. */
 void targets_finish(struct targets *targets);
 
 #endif

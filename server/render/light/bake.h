@@ -1,29 +1,29 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Works out one set of light, bit by bit, so that pictures can be drawn in between: a map of what the sun sees, and what reaches each
-   vertex and the ground. Sky light and openness come from depth maps taken from 32 directions all round; how open a place is
-   depends on neither sun nor surroundings, and is taken over from a set that has it. That is of the plant as it starts; where less of it
-   is shown, it is only kept from being too dark. Thread: the one of the GL context. */
+/* Bakes one set of light in small steps, so that pictures can be drawn in between: a shadow map of the sun, and the light that reaches each
+   vertex and the ground. Sky light and openness (ambient occlusion) come from depth maps taken from 32 directions. Openness depends on
+   neither sun nor environment, so it is copied from a set that has it. It is that of the whole plant; where assets are hidden, it is only
+   kept from being too dark. Thread: the one of the GL context. */
 #ifndef RENDER_BAKE_H
 #define RENDER_BAKE_H
 #include "gpu/pool.h"
 #include "render/gl/gpu_scene.h"
 
 struct light_key {
-    double towards[3];       /* the sun; plant frame, unit length */
-    int environment;         /* number of the surroundings */
-    struct visibility shown; /* what throws shadows */
-    bool rough;              /* every place is taken to be equally open */
+    double towards[3];       /* direction to the sun; plant frame, unit length */
+    int environment;         /* its number (render/light/environments.h) */
+    struct visibility shown; /* assets that cast shadows */
+    bool rough;              /* without openness: every place is taken to be equally open */
 };
 
 struct light_set {
-    uint64_t id; /* of no other set, ever; 0: empty */
+    uint64_t id; /* unique, never reused; 0: empty */
     struct light_key key;
-    double texture_from_plant[16]; /* texture coordinates and depth of sun_map */
-    double texel_m, depth_m;       /* of sun_map: side of a texel; what its depths span */
+    double texture_from_plant[16]; /* to texture coordinates and depth of sun_map */
+    double texel_m, depth_m;       /* of sun_map: side of a texel; range of its depths */
     GLuint sun_map;
-    GLuint ground; /* RG8: sun and openness on the ground */
+    GLuint ground; /* RG8: sun and openness of the ground */
     struct pool *pool;
-    struct pool_slice **baked; /* per asset: 4 bytes a vertex: light, ambient, openness, sun */
+    struct pool_slice **baked; /* per asset, 4 bytes per vertex: light, ambient, openness, sun */
     size_t bytes;
     uint64_t used;
     int holds;
@@ -32,24 +32,32 @@ struct light_set {
 struct bake_programs {
     GLuint sky, sun, faces_sky, faces_sun, ground_sky, ground_sun;
 };
-bool bake_programs_init(struct bake_programs *programs, struct log *log); /* false: logged */
+/* Compiles the programs. Returns false if that fails; it is logged. */
+bool bake_programs_init(struct bake_programs *programs, struct log *log);
 void bake_programs_finish(struct bake_programs *programs);
 
 struct bake;
-/* Where a part of the plant is hidden, what it hid must not stay in the dark: how open any place there is at least, 0..1. */
+/* Returns the lower bound of openness, 0..1, when only `shown` is visible: what hidden assets covered must not stay dark. */
 double bake_least_open(const struct gpu_scene *gpu_scene, const struct visibility *shown);
-/* Of a set that is to be; `from` need only live for the call, is not rough, and is of no larger bake_least_open. NULL for `from`: openness
-   is worked out too, which is most of the work, unless the key is rough. NULL: out of GPU memory, logged. */
+/* Begins to bake a set for `key`. from: a set to copy openness from; it is read during the call only, must not be rough, and must have no
+   larger bake_least_open(). NULL: openness is baked as well, which is most of the work, unless the key is rough. Returns NULL if the GPU is
+   out of memory; that is logged. The caller ends it with bake_end() or bake_abandon(). */
 struct bake *bake_begin(const struct gpu_scene *gpu_scene, const struct bake_programs *programs, const double plant_from_ground[16],
                         const struct light_key *key, const struct light_set *from);
+/* Returns the key it was begun with. */
 const struct light_key *bake_key(const struct bake *bake);
-/* Issues a bit of the work, of a few milliseconds, with its surroundings bound (render/light/environments.h). True: all was issued. */
+/* Issues the next few milliseconds of work; the key's environment must be bound (render/light/environments.h). Returns true once all work
+   is issued. */
 bool bake_step(struct bake *bake);
-/* Hands the set over, with everything but its place among others. False: a GL error, logged; there is no set. */
+/* Moves the result into *set (all but `used` and `holds`) and frees *bake. Returns false on a GL error, which is logged; *set is
+   unchanged then. */
 bool bake_end(struct bake **bake, struct light_set *set);
-void bake_abandon(struct bake **bake); /* &NULL is fine; leaves NULL */
+/* Frees *bake without a result and sets it to NULL. Accepts a pointer to NULL. */
+void bake_abandon(struct bake **bake);
 
-size_t bake_bytes(const struct gpu_scene *gpu_scene); /* of any set */
+/* Returns the GPU memory of a set of this scene. Pure. */
+size_t bake_bytes(const struct gpu_scene *gpu_scene);
+/* Deletes the textures and buffers of a set. */
 void light_set_finish(struct light_set *set, const struct gpu_scene *gpu_scene);
 
 #endif

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The light of the surroundings, worked out from a picture of them or from the built-in sky: irradiance as spherical harmonics, and
-   what surfaces of each roughness mirror. Exposed and balanced so that a level white surface under the open sky reflects 1 in every
-   channel. No GL here. Thread: any.
-   Irradiance: Ramamoorthi and Hanrahan, "An efficient representation for irradiance environment maps", 2001. Mirrored light: Karis,
-   "Real shading in Unreal Engine 4", 2013. */
+/* Image-based light of an environment map or of the built-in sky: irradiance as spherical harmonics, and prefiltered reflections for each
+   roughness. Exposure and white balance are such that a level white surface under the open sky reflects 1 in every channel. No GL.
+   Thread: any.
+   Irradiance: Ramamoorthi and Hanrahan, "An efficient representation for irradiance environment maps", 2001. Prefiltered reflections:
+   Karis, "Real shading in Unreal Engine 4", 2013. */
 #ifndef RENDER_ENVIRONMENT_H
 #define RENDER_ENVIRONMENT_H
 #include <stdbool.h>
@@ -13,9 +13,10 @@
 
 enum { ENVIRONMENT_PX = 128, ENVIRONMENT_LAYERS = 8, ENVIRONMENT_TERMS = 9 };
 struct environment {
-    /* Of the irradiance over pi, in the order 1, y, z, x, xy, yz, 3zz-1, xz, xx-yy of a direction's components, factors taken in. */
+    /* Coefficients of irradiance over pi, in the order 1, y, z, x, xy, yz, 3zz-1, xz, xx-yy of a direction's components, with the
+       basis functions' constant factors multiplied in. */
     float irradiance[ENVIRONMENT_TERMS][4];
-    /* By roughness 0 to 1, then octahedral (render: shaders/environment.glsl): mean radiance around the mirrored ray. */
+    /* By roughness 0 to 1, then octahedral (render: shaders/environment.glsl): mean radiance around the reflected ray. */
     float (*mirrored)[4];
 };
 
@@ -25,8 +26,8 @@ struct environment {
 bool environment_init(struct environment *environment, const struct image_float *image, bool y_up, struct workers *workers);
 void environment_finish(struct environment *environment);
 
-/* Scale and bias of F0 that the surroundings, all alike, would be reflected with. side x side texels: cosine to the viewer from left
-   to right, roughness from top to bottom, both at texel centres of (0, 1). */
+/* Computes scale and bias of F0 for the reflection of a uniform environment (split-sum approximation). side x side texels:
+   cosine to the viewer from left to right, roughness from top to bottom, both at texel centres of (0, 1). */
 void environment_brdf(int side, float (*scale_bias)[2]);
 
 #endif

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The surroundings of a plant on the GPU, by number: 0 is the built-in sky, then those of the plant file, which the workers read and
-   convolve meanwhile. Thread: the one of the GL context. */
+/* The environment maps of a plant on the GPU, by number: 0 is the built-in sky, then those of the plant file, which workers read and
+   convolve in the background. Thread: the one of the GL context. */
 #ifndef RENDER_ENVIRONMENTS_H
 #define RENDER_ENVIRONMENTS_H
 #include <stdint.h>
@@ -12,7 +12,7 @@
 #include "plant/plant.h"
 
 struct environment_slot {
-    GLuint irradiance, mirrored; /* a uniform block, a 3D texture; 0: not there (yet) */
+    GLuint irradiance, mirrored; /* a uniform buffer, a 3D texture; 0: not loaded (yet) */
     struct environment_task *task;
 };
 struct environments {
@@ -22,12 +22,13 @@ struct environments {
     GLuint brdf;
 };
 
-/* Both must outlive it. False: out of GPU memory, logged. */
+/* Uploads the sky and starts to load the others. plant and workers must outlive it. Returns false if the GPU is out of memory; that is
+   logged. */
 bool environments_init(struct environments *environments, struct gl *gl, const struct plant *plant, struct workers *workers);
 void environments_finish(struct environments *environments);
-/* Waits for at most that long. True: it will not change any more. One that cannot be read (logged) looks like the sky. */
+/* Waits at most timeout_ns for one to load. Returns true if it is final: loaded, or unreadable, which is logged; then the sky is used. */
 bool environments_wait(struct environments *environments, int number, int64_t timeout_ns);
-/* For all programs that include shaders/environment.glsl; the sky while it is not there. */
+/* Binds one for all programs that include shaders/environment.glsl; the sky as long as it is not loaded. */
 void environments_bind(const struct environments *environments, int number);
 
 #endif

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Samples of the GGX distribution. */
+/* Sampling of the GGX distribution. Pure. */
 #ifndef RENDER_GGX_H
 #define RENDER_GGX_H
 #include <math.h>
 
-/* The i-th of a sequence that fills (0, 1) evenly, by reversed bits. */
+/* Returns the i-th number of the van der Corput sequence in base 2, which fills [0, 1) evenly. */
 static inline double ggx_turn(unsigned i)
 {
     i = (i << 16) | (i >> 16);
@@ -15,7 +15,7 @@ static inline double ggx_turn(unsigned i)
     return i * 2.3283064365386963e-10;
 }
 
-/* Cosine between normal and half vector, distributed as GGX; alpha: roughness squared. */
+/* Returns the cosine between normal and half vector for the GGX distribution at quantile `part`. alpha: roughness squared. */
 static inline double ggx_cosine(double alpha, double part)
 {
     return sqrt((1 - part) / (1 + (alpha * alpha - 1) * part));

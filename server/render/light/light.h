@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Light that stands still: shadow maps, and what reaches each vertex and the ground, worked out once for each place of the sun.
-   What was worked out is kept, as much as fits in a bound. Thread: the one of the GL context. */
+/* A cache of baked light: shadow map, and light at each vertex and on the ground, baked once per position of the sun, environment and
+   visible assets (render/light/bake.h), kept within a memory limit. Thread: the one of the GL context. */
 #ifndef RENDER_LIGHT_H
 #define RENDER_LIGHT_H
 #include "render/light/bake.h"
@@ -11,29 +11,32 @@ struct light {
     const struct gpu_scene *gpu_scene;
     struct environments *environments;
     struct bake_programs programs;
-    double plant_from_ground[16]; /* from texture coordinates on the ground, and height over it */
+    double plant_from_ground[16]; /* from texture coordinates of the ground and height above it */
     double ground_height_m;       /* along `up` */
-    size_t bound_bytes, bytes;    /* of all sets; one that is in use stays in any case */
+    size_t bound_bytes, bytes;    /* limit and sum over all sets; a held set is never dropped */
     struct light_set sets[LIGHT_SETS];
-    struct bake *bake; /* under way; NULL: none */
+    struct bake *bake; /* in progress; NULL: none */
     uint64_t uses, last_id;
 };
 
-bool light_init(struct light *light, const struct gpu_scene *gpu_scene, struct environments *environments); /* false: logged */
+/* Compiles the programs; bakes nothing yet. Returns false if that fails; it is logged. */
+bool light_init(struct light *light, const struct gpu_scene *gpu_scene, struct environments *environments);
 void light_finish(struct light *light);
-/* The light of that sun and those surroundings; baked now if it is not known, which takes a fraction of the time if it is rough: such a
-   set is there until the first other one is. NULL: out of GPU memory, logged. */
+/* Returns the set for `key`; bakes it now, and waits, if it is not cached. A rough one takes a fraction of the time and is meant to be used
+   until the first full set is ready. Returns NULL if the GPU is out of memory; that is logged. */
 struct light_set *light_get(struct light *light, const struct light_key *key);
-/* The ready one most like it: of the same surroundings if there is one, then of what is shown, then with the sun nearest. NULL: none
-   is ready. */
+/* Returns the cached set most similar to `key`: same environment first, then same visible assets, then the nearest sun. Returns NULL if
+   none is cached. */
 struct light_set *light_near(struct light *light, const struct light_key *key);
-/* Likewise; bakes on for about that long, and a bit at least, if nothing else is under way. True: light_get does not wait now. */
+/* Bakes the set for `key` for about budget_ns, at least one step, unless another set is being baked. Returns true if the set is cached, so
+   that light_get() does not wait. */
 bool light_step(struct light *light, const struct light_key *key, int64_t budget_ns);
-/* So many bytes at most, but two sets at least: one to show while the next is baked. */
+/* Sets the memory limit and drops sets above it, but keeps two: one to show while the next is baked. */
 void light_bound(struct light *light, size_t bytes);
-void light_drop(struct light *light, const struct light_key *usual); /* drops all but that one, and what is under way */
-/* While it is held, a set stays. */
+/* Drops all sets but the one for `usual`, and abandons a bake in progress. */
+void light_drop(struct light *light, const struct light_key *usual);
+/* Hold and release a set; a held set is not dropped. light_release() accepts NULL. */
 void light_hold(struct light_set *set);
-void light_release(struct light_set *set); /* NULL is fine */
+void light_release(struct light_set *set);
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Which markers are drawn where many crowd: the rule of protocol/LABELS.md. Pure; in pixels. */
+/* Thins out markers where many overlap, by the rule of protocol/LABELS.md. Pure; all lengths in pixels. */
 #ifndef RENDER_OVERLAY_CROWD_H
 #define RENDER_OVERLAY_CROWD_H
 #include <stdbool.h>
@@ -8,11 +8,11 @@
 struct crowd_item {
     double x, y, depth_m;
     bool occluded;
-    bool kept; /* drawn in any case */
-    bool held; /* drawn in the picture before */
+    bool kept; /* is always drawn */
+    bool held; /* was drawn in the picture before */
 };
 
-/* drawn: by item. */
+/* Sets drawn[i] to whether items[i] is drawn. unit: size of one pixel at 1280x720. */
 void crowd_thin(const struct crowd_item *items, size_t count, double unit, bool *drawn);
 
 #endif

@@ -1,15 +1,15 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What is taken of one picture while its labels are placed: shared by labels.c and labels_rings.c. */
+/* The layout of one picture while its labels are placed: shared by labels.c and labels_rings.c. */
 #ifndef RENDER_OVERLAY_LABELS_IMPL_H
 #define RENDER_OVERLAY_LABELS_IMPL_H
 #include "render/overlay/labels.h"
 
 #define LABEL_CLEARANCE 3.0 /* units of room around a label that was not there before */
 
-enum label_over { /* what a label may lie over; likewise what something is */
+enum label_over { /* what a label may cover; also the kind of a taken box */
                   OVER_NOTHING,
-                  OVER_MARKS, /* without a ring */
-                  OVER_RINGS, /* and these */
+                  OVER_MARKS, /* markers without an alarm ring */
+                  OVER_RINGS, /* markers with one as well */
                   OVER_ALL
 };
 
@@ -19,26 +19,27 @@ struct cell_entry {
     enum label_over kind;
 };
 
-struct layout { /* of one picture */
+struct layout {
     const struct label_item *items;
     const struct label_area *area;
     struct label_place *places;
-    int columns, rows, *heads; /* a grid of what is taken */
+    int columns, rows, *heads; /* a grid over the picture: per cell, a list of taken boxes */
     struct cell_entry *entries;
     size_t entry_count, entry_capacity;
-    int *labelled; /* items whose labels stand */
+    int *labelled; /* items that have a label */
     int labelled_count;
     double used;
 };
 
-/* Where a label lies whose markers reach so far from the middle between them, item->x and item->y. */
+/* Returns the box of an item's label in a slot. across, down: half extent of its markers around item->x, item->y. */
 struct box layout_box(const struct label_item *item, int slot, double unit, double across, double down);
+/* Returns whether a box lies within the picture's area. */
 bool layout_is_inside(const struct layout *layout, const struct box *box);
-/* Over nothing but what is the owner's and what it may lie over. */
+/* Returns whether a box covers nothing but boxes of its owner and of kinds it may cover. */
 bool layout_is_free(const struct layout *layout, const struct box *box, int owner, enum label_over over);
-/* A label of these items, which are in a call-out where there are several. */
+/* Places the label of these items and marks its box as taken; with more than one item it is a call-out. */
 void layout_set(struct layout *layout, const int *members, size_t count, const struct box *box, int slot);
-/* Every one of them, in order of importance, gets a label, or is in a call-out. */
+/* Gives every item with an alarm ring a label or a place in a call-out. order: their indices, most important first. */
 void layout_place_rings(struct layout *layout, const int *order, size_t count);
 
 #endif

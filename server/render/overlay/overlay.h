@@ -13,7 +13,7 @@ void overlay_draw(struct frame *frame, const struct scene *scene, const struct s
 void overlay_draw_bare(struct frame *frame, const struct scene *scene, const struct snapshot *snapshot,
                        const struct loop_checks *loop_checks);
 
-/* What legend and clock leave free of the view, or of either half of one that is split. */
+/* Computes the part of the view, or of each half of a split view, that legend and clock leave free. Pure. */
 void overlay_window(const struct scene *scene, const struct view *view, struct camera_window *out);
 
 #endif

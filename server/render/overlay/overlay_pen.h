@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What the parts of the overlay draw with. Sizes grow with the picture: `unit` is one pixel at 1280x720. */
+/* The drawing context shared by the parts of the overlay. Sizes scale with the picture: `unit` is one pixel at 1280x720.
+   Thread: any; one pen belongs to one thread. */
 #ifndef RENDER_OVERLAY_PEN_H
 #define RENDER_OVERLAY_PEN_H
 #include <stdbool.h>
@@ -17,54 +18,69 @@ enum { PEN_MAX_TAKEN = 512 };
 struct pen {
     cairo_t *cairo;
     const struct frame *frame;
-    struct view view; /* of the half that is drawn over */
+    struct view view; /* of the half being drawn */
     int half;         /* of a split view; else 0 */
-    struct box area;  /* that half */
+    struct box area;  /* of that half, in pixels */
     const struct scene *scene;
     const struct snapshot *snapshot;
     const struct loop_checks *loop_checks; /* NULL: none */
-    bool bare;                             /* nothing of sensors and alarms */
+    bool bare;                             /* draws nothing about sensors and alarms */
     double unit, text_px;
-    struct box taken[PEN_MAX_TAKEN]; /* where nothing more may be put */
+    struct box taken[PEN_MAX_TAKEN]; /* occupied areas */
     int taken_count;
 };
 
-void pen_choose_half(struct pen *pen, int half);                /* what is drawn over from now on */
-bool pen_is_free(const struct pen *pen, const struct box *box); /* inside the area, and over nothing that is taken */
+/* Makes a half of a split view the one to draw over. */
+void pen_choose_half(struct pen *pen, int half);
+/* Returns whether a box lies inside the area and covers nothing that is taken. */
+bool pen_is_free(const struct pen *pen, const struct box *box);
+/* Marks a box as taken. */
 void pen_take(struct pen *pen, const struct box *box);
-void pen_card(struct pen *pen, const struct box *box); /* a light plate with a thin rim, for text to stand on */
+/* Draws a light card with a thin border, as a background for text. */
+void pen_card(struct pen *pen, const struct box *box);
+/* Set the colour: any sRGB colour; that of text. */
 void pen_rgb(struct pen *pen, const uint8_t rgb[3]);
-void pen_ink(struct pen *pen, double alpha);            /* the colour of text */
-void pen_font(struct pen *pen, double size, bool bold); /* size: of text_px */
+void pen_ink(struct pen *pen, double alpha);
+/* Sets the font. size: a multiple of text_px. */
+void pen_font(struct pen *pen, double size, bool bold);
+/* Returns the width of a text in the current font. */
 double pen_text_width(struct pen *pen, const char *text);
-void pen_text(struct pen *pen, double x, double y, const char *text); /* from x, on a line through y; left where it starts */
+/* Draws text that starts at x and is centred on y. */
+void pen_text(struct pen *pen, double x, double y, const char *text);
 
-/* As few decimals as tell it apart from what differs by a 5000th of the range. */
+/* Prints a value with as few decimals as tell apart values that differ by a 5000th of the range. */
 void pen_number(double value, double range, char out[40]);
-/* How many decimals tell values apart that differ by a 500th of the range. */
+/* Returns how many decimals tell apart values that differ by a 500th of the range. */
 int pen_decimals(double range);
-double pen_rounded(double value, int decimals); /* to print with so many: 0 where that would be -0 */
+/* Returns the value rounded to so many decimals, and 0 instead of -0. */
+double pen_rounded(double value, int decimals);
 
-/* The scale of pen->view: colours from MIN at the bottom to MAX at the top, ticks to the right, the group's limits to the left. */
+/* Draws the colour bar of pen->view: MIN at the bottom, MAX at the top, ticks on the right, the group's limits on the left. */
 void overlay_bar(struct pen *pen, const struct box *bar);
-double overlay_bar_width(struct pen *pen); /* with all that is written beside it */
-double overlay_bar_left(struct pen *pen);  /* of which before the bar itself */
+/* Return the width of the colour bar with all text beside it, and the part of it that is left of the bar itself. */
+double overlay_bar_width(struct pen *pen);
+double overlay_bar_left(struct pen *pen);
+/* Draws the legend of the half that is chosen. */
 void overlay_legend(struct pen *pen);
-bool overlay_legend_is_shared(struct pen *pen); /* of a split view: both halves' say the same. Chooses the right half */
-double overlay_legend_width(struct pen *pen);   /* what it takes of the area, with its margins */
+/* Returns whether the legends of both halves of a split view are the same. Leaves the pen on the right half. */
+bool overlay_legend_is_shared(struct pen *pen);
+/* Returns the width of the legend with its margins. */
+double overlay_legend_width(struct pen *pen);
 /* Draws, in each half of a split view, a caption of what it shows otherwise than the other half, where no legend says so. The view must be
    split. Leaves the pen on the right half (pen_choose_half). */
 void overlay_halves(struct pen *pen);
-/* A mark's outline: broken where its tag is unproven. */
+/* Draws the outline of a marker. broken: dashed, for a tag that no loop check has proven. */
 void overlay_outline(struct pen *pen, double x, double y, double radius, bool broken);
+/* Returns whether loop checks are given and none has proven the tag. */
 bool overlay_unproven(const struct pen *pen, int tag);
-/* Around a place with an alarm: its colour says the priority, its form how it is. Thick: it calls; thin: it is acknowledged;
-   hollow: its cause is gone. */
+/* Draws an alarm ring. Its colour is the priority, its form the state: thick, unacknowledged; thin, acknowledged; hollow, returned to
+   normal but not acknowledged. */
 void overlay_ring(struct pen *pen, double x, double y, double radius, int priority, enum alarm_status word);
+/* Draws markers, alarm rings and labels of the half that is chosen. */
 void overlay_markers(struct pen *pen);
-/* Within the half that is chosen, with nothing before it, and under nothing that was drawn over the picture so far. */
+/* Returns whether a marker lies in the chosen half, is not hidden by the plant, and is not covered by the overlay drawn so far. */
 bool overlay_marker_seen(const struct pen *pen, const struct frame_marker *marker);
-/* Active alarms of the whole plant that no mark in the picture shows, the gravest first. */
+/* Lists active alarms of the whole plant that no marker in the picture shows, gravest first. */
 void overlay_alarms(struct pen *pen);
 
 #endif

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A target for numbers instead of colours. Thread: the one of the GL context. */
+/* A render target of floating-point numbers instead of colours, for measuring the field at every pixel.
+   Thread: the one of the GL context. */
 #ifndef RENDER_PICK_MEASURE_TARGET_H
 #define RENDER_PICK_MEASURE_TARGET_H
 #include <stdbool.h>
@@ -14,9 +15,11 @@ struct measure_target {
     GLuint framebuffer, numbers, depth;
 };
 
-/* Made, cleared to MEASURE_NOTHING and bound. False: out of GPU memory, logged; finish copes. */
+/* Creates the target, clears it to MEASURE_NOTHING and binds it. Returns false if the GPU is out of memory; that is logged, and
+   measure_target_finish() must still be called. */
 bool measure_target_begin(struct measure_target *measure, struct log *log, int width_px, int height_px);
-void measure_target_read(const struct measure_target *measure, float (*out)[4]); /* rows from the top */
+/* Reads all pixels, rows from the top; waits for the GPU. */
+void measure_target_read(const struct measure_target *measure, float (*out)[4]);
 void measure_target_finish(struct measure_target *measure);
 
 #endif

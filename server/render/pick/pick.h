@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What is at a pixel of a picture: the asset, the place, and what the field says there. Thread: the one of the field. */
+/* Picks what is at a pixel: the asset, the position, and the value of the field there. Casts a ray; needs no GL.
+   Thread: the one that owns the field. */
 #ifndef RENDER_PICK_H
 #define RENDER_PICK_H
 #include "field/field.h"
@@ -31,7 +32,7 @@ struct pick {
     int64_t data_utc_ns;
 };
 
-/* x_px, y_px: from the top left, of the whole picture; both halves of a split view. */
+/* Picks at x_px, y_px, from the top left of the whole picture, also of a split view. Evaluates the field of `snapshot` at that point. */
 void pick_at(const struct scene *scene, struct field *field, const struct view *view, const struct snapshot *snapshot, double x_px,
              double y_px, struct pick *out);
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Where places of the plant stand in a picture, and whether something stands before them: by the GPU, from the picture's depth.
+/* Projects points of the plant into a picture and tests on the GPU, against the picture's depth, whether they are hidden.
    Thread: the one of the GL context. */
 #ifndef RENDER_PICK_POINT_VISIBILITY_H
 #define RENDER_PICK_POINT_VISIBILITY_H
@@ -12,10 +12,11 @@ struct point_visibility {
     size_t capacity;
 };
 
-/* Room for so many places, to be filled in: eye space, metres, and how far it may lie behind the surface. The picture that they were
-   used for last is done. NULL: out of GPU memory, logged, or the context is lost, and what it had mapped with it. */
+/* Returns a mapped buffer for `count` points, which the caller fills: eye-space position and depth tolerance in metres. The picture that
+   used the buffer last must be done. Returns NULL if the GPU is out of memory, which is logged, or if the context is lost. */
 float (*point_visibility_reserve(struct point_visibility *queries, const struct gl *gl, size_t count))[4];
-/* Once the picture is resolved. When the GPU is done places hold x, y in pixels, hidden 0 or 1. False: logged. */
+/* Starts the test once the picture is resolved. When the GPU is done, each place holds x and y in pixels, then 1 if hidden, else 0.
+   Returns false on a GL error; that is logged. */
 bool point_visibility_start(const struct point_visibility *queries, const struct frame_context *context, size_t count);
 void point_visibility_finish(struct point_visibility *queries);
 
