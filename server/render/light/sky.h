@@ -16,8 +16,8 @@ struct sky {
 /* Compiles the programs and computes the backdrops. Returns false if that fails; it is logged. */
 bool sky_init(struct sky *sky, struct log *log);
 void sky_finish(struct sky *sky);
-/* Returns whether the ground is drawn: the camera is above it, and no asset is cut, hidden or ghosted, since its shadow is that of the whole
-   plant. Pure. */
+/* Returns whether the ground is drawn: the camera is above it, and no asset is cut, hidden or ghosted, since its shadow is that of the
+   whole plant. Pure. */
 bool sky_sees_ground(const struct frame_context *context, const struct light *light);
 /* Draws backdrop and ground behind everything drawn so far. */
 void sky_draw(const struct sky *sky, const struct frame_context *context, const struct light *light);
