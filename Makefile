@@ -57,10 +57,12 @@ generate_sources := $(wildcard deploy/demo/generate*.c deploy/demo/generate/*.c)
 sim_sources      := $(filter-out $(generate_sources),$(sim_sources))
 sim_archive      := $(if $(sim_sources),$(out)/lib/sim.a)
 import_sources   := $(wildcard preprocess/import/*.c)
-prep_sources     := $(filter-out %/main.c %/image_lazy.c $(import_sources),$(wildcard preprocess/*.c preprocess/*/*.c preprocess/*/*.cc))
+match_sources    := $(wildcard preprocess/match/*.c)
+prep_sources     := $(filter-out %/main.c %/image_lazy.c $(import_sources) $(match_sources), \
+                    $(wildcard preprocess/*.c preprocess/*/*.c preprocess/*/*.cc))
 programs := $(if $(wildcard server/main.c),$(bin)/plantcastd) $(if $(wildcard preprocess/main.c),$(bin)/plantcast-prep) \
             $(if $(wildcard clients/cli/main.c),$(bin)/plantcast) $(if $(import_sources),$(bin)/plantcast-import) \
-            $(if $(sim_sources),$(bin)/plantcast-sim) \
+            $(if $(filter %/main.c,$(match_sources)),$(bin)/plantcast-match) $(if $(sim_sources),$(bin)/plantcast-sim) \
             $(if $(generate_sources),$(bin)/plantcast-demo)
 modules  := $(bin)/plantcast-images.so
 
@@ -82,6 +84,8 @@ $(bin)/plantcast-prep: $(call objects,preprocess/main.c preprocess/image_lazy.c)
 # Reads what strangers' programs wrote: neither the daemon nor plantcast-prep links it.
 $(bin)/plantcast-import: $(call objects,preprocess/import/main.c) $(out)/lib/import.a $(archives)
 	$(link) -lGLU
+$(bin)/plantcast-match: $(call objects,preprocess/match/main.c) $(out)/lib/match.a $(archives)
+	$(link) -lminizip -lexpat
 $(bin)/plantcast-images.so: $(patsubst %,$(out)/obj/server/base/%.pic.o,image_shim mem)
 	@mkdir -p $(@D); echo "  LINK $@"; $(CXX) $(ldflags) -shared -o $@ $^ $(pkg_libs)
 cli_sources := $(if $(filter h264,$(CODECS)),,clients/cli/video.c)
@@ -107,6 +111,7 @@ $(out)/lib/render.a: $(if $(filter x86_64%,$(shell $(CC) -dumpmachine 2>/dev/nul
 $(out)/lib/protocol.a: $(call objects,$(wildcard protocol/*.c))
 $(out)/lib/prep.a: $(call objects,$(prep_sources))
 $(out)/lib/import.a: $(call objects,$(filter-out %/main.c,$(import_sources)) preprocess/glb/glb_file.c)
+$(out)/lib/match.a: $(call objects,$(filter-out %/main.c,$(match_sources)))
 $(out)/lib/sim.a: $(call objects,$(filter-out %/sim.c,$(sim_sources)))
 $(out)/lib/%.a:
 	@mkdir -p $(@D); rm -f $@; $(AR) rcs $@ $^
@@ -158,6 +163,9 @@ $(out)/tests/unit/accuracy_test $(out)/tests/unit/contact_test: $(call objects,$
 $(out)/tests/unit/accuracy_test $(out)/tests/unit/contact_test: pkg_libs += -lgmp -lmpfr
 $(out)/tests/unit/rvm_test: $(out)/lib/import.a
 $(out)/tests/unit/rvm_test: pkg_libs += -lGLU
+match_tests := $(foreach t,tag_export,$(out)/tests/unit/$(t)_test)
+$(match_tests): $(out)/lib/match.a
+$(match_tests): pkg_libs += -lminizip -lexpat
 $(out)/tests/%: $(out)/obj/tests/%.o $(support) $(archives) $(out)/lib/prep.a $(sim_archive)
 	$(link) -lcmocka
 # Draws as the command line does.

@@ -1,0 +1,166 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Rows and cells, and CSV. */
+#include "preprocess/match/table.h"
+
+#include <stdio.h>
+#include <string.h>
+
+#include "base/mem.h"
+#include "base/text.h"
+
+enum { SAMPLE_LINES = 50 };
+
+void table_add_cell(struct table *table, struct table_row *row, const char *text, size_t length)
+{
+    char *cell = mem_array(length + 1, 1);
+    size_t from = 0, to = length;
+    for (size_t i = 0; i < length; i++) {
+        unsigned char c = (unsigned char)text[i];
+        bool control = c < 32 || c == 127;
+        cell[i] = control ? ' ' : text[i];
+        table->control += control && c != '\n' && c != '\r' && c != '\t';
+    }
+    while (from < to && cell[from] == ' ')
+        from++;
+    while (to > from && cell[to - 1] == ' ')
+        to--;
+    memmove(cell, cell + from, to - from);
+    cell[to - from] = 0;
+    mem_grow(&row->cells, &row->capacity, row->count + 1, sizeof(*row->cells));
+    row->cells[row->count++] = cell;
+}
+
+void table_row_finish(struct table_row *row)
+{
+    for (size_t i = 0; i < row->count; i++)
+        mem_free(row->cells[i]);
+    mem_free(row->cells);
+    *row = (struct table_row){ 0 };
+}
+
+void table_add_row(struct table *table, struct table_row *row)
+{
+    bool blank = true;
+    for (size_t i = 0; i < row->count; i++)
+        blank &= row->cells[i][0] == 0;
+    if (blank) {
+        table_row_finish(row);
+        return;
+    }
+    mem_grow(&table->rows, &table->capacity, table->count + 1, sizeof(*table->rows));
+    table->rows[table->count++] = *row;
+    *row = (struct table_row){ 0 };
+}
+
+const char *table_cell(const struct table_row *row, int column)
+{
+    return column >= 0 && (size_t)column < row->count ? row->cells[column] : "";
+}
+
+void table_finish(struct table *table)
+{
+    for (size_t i = 0; i < table->count; i++)
+        table_row_finish(&table->rows[i]);
+    mem_free(table->rows);
+    *table = (struct table){ 0 };
+}
+
+/* Counts a separator in each line, outside quotes. Returns for how many lines the commonest count above 0 holds, times that count where
+ * several separators hold for as many. */
+static size_t rate(const char *text, char separator)
+{
+    size_t counts[SAMPLE_LINES] = { 0 }, lines = 0, best = 0;
+    bool quoted = false, any = false;
+    for (; *text && lines < SAMPLE_LINES; text++) {
+        quoted ^= *text == '"';
+        any |= *text != '\n' && *text != '\r';
+        counts[lines] += *text == separator && !quoted;
+        if (*text == '\n' && !quoted) {
+            lines += any;
+            any = false;
+        }
+    }
+    lines += any && lines < SAMPLE_LINES;
+    for (size_t i = 0; i < lines; i++) {
+        size_t same = 0;
+        for (size_t k = 0; k < lines; k++)
+            same += counts[k] == counts[i];
+        if (counts[i] > 0 && same * 1000 + counts[i] > best)
+            best = same * 1000 + (counts[i] < 999 ? counts[i] : 999);
+    }
+    return best;
+}
+
+char table_separator(const char *text)
+{
+    static const char all[] = { ',', ';', '\t', '|' };
+    char best = ',';
+    size_t highest = 0;
+    for (size_t i = 0; i < sizeof(all); i++) {
+        size_t rated = rate(text, all[i]);
+        if (rated > highest) {
+            highest = rated;
+            best = all[i];
+        }
+    }
+    return best;
+}
+
+/* Reads one cell, from `at` on. Returns where it ends, or NULL if its quote does not end. */
+static const char *read_cell(struct table *table, struct table_row *row, const char *at, char separator, int *line)
+{
+    struct text cell = { 0 };
+    while (*at == ' ' || (*at == '\t' && separator != '\t'))
+        at++;
+    text_add_bytes(&cell, "", 0);
+    if (*at == '"') {
+        for (at++; *at && !(*at == '"' && at[1] != '"'); at++) {
+            *line += *at == '\n';
+            text_add_bytes(&cell, at, 1);
+            at += *at == '"';
+        }
+        if (!*at) {
+            text_finish(&cell);
+            return NULL;
+        }
+        at++;
+    }
+    const char *rest = at;
+    while (*at && *at != separator && *at != '\n' && *at != '\r')
+        at++;
+    text_add_bytes(&cell, rest, (size_t)(at - rest));
+    table_add_cell(table, row, cell.at, cell.length);
+    text_finish(&cell);
+    return at;
+}
+
+bool table_read_csv(struct table *table, const char *text, char separator, char *why, size_t why_bytes)
+{
+    struct table_row row = { 0 };
+    int line = 1;
+    for (const char *at = text; *at;) {
+        int begin = line;
+        row.line = begin;
+        while (true) {
+            at = read_cell(table, &row, at, separator, &line);
+            if (!at || row.count > TABLE_MAX_CELLS || table->count >= TABLE_MAX_ROWS) {
+                if (!at)
+                    snprintf(why, why_bytes, "line %d: a quote does not end", begin);
+                else
+                    snprintf(why, why_bytes, "line %d: more than %d cells in a row, or more than %d rows", begin, TABLE_MAX_CELLS,
+                             TABLE_MAX_ROWS);
+                table_row_finish(&row);
+                return false;
+            }
+            if (*at != separator)
+                break;
+            at++;
+        }
+        at += *at == '\r';
+        if (*at == '\n' || (at > text && at[-1] == '\r'))
+            line++;
+        at += *at == '\n';
+        table_add_row(table, &row);
+    }
+    return true;
+}

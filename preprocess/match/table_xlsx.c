@@ -1,0 +1,200 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Spreadsheets: a ZIP archive (minizip) of XML (expat), ISO/IEC 29500-1, 18.3 and 18.4. Only text and numbers as they are stored. */
+#include "preprocess/match/table.h"
+
+#include <expat.h>
+#include <minizip/unzip.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/mem.h"
+#include "base/text.h"
+
+enum { MAX_SHEETS = 64 };
+static const size_t max_part_bytes = (size_t)512 << 20;
+
+struct sheet {
+    struct table *table;
+    char **strings; /* the workbook's shared strings */
+    size_t string_count, string_room;
+    struct table_row row;
+    struct text text; /* of the cell, or of the string */
+    int column, last_row;
+    char type; /* of the cell: 's' shared, 'i' inline, 0 as it stands */
+    bool in_value, in_phonetic, too_large;
+    XML_Parser parser;
+};
+
+static const char *attribute(const char **attributes, const char *name)
+{
+    for (; *attributes; attributes += 2)
+        if (!strcmp(attributes[0], name))
+            return attributes[1];
+    return "";
+}
+
+static void on_text(void *data, const char *text, int length)
+{
+    struct sheet *sheet = data;
+    if (sheet->in_value && !sheet->in_phonetic)
+        text_add_bytes(&sheet->text, text, (size_t)length);
+}
+
+/* --- shared strings --------------------------------------------------------------------------------------------------------- */
+
+static void string_begins(void *data, const char *name, const char **attributes)
+{
+    struct sheet *sheet = data;
+    (void)attributes;
+    if (!strcmp(name, "si"))
+        sheet->text.length = 0;
+    sheet->in_value |= !strcmp(name, "t");
+    sheet->in_phonetic |= !strcmp(name, "rPh");
+}
+
+static void string_ends(void *data, const char *name)
+{
+    struct sheet *sheet = data;
+    if (!strcmp(name, "t"))
+        sheet->in_value = false;
+    else if (!strcmp(name, "rPh"))
+        sheet->in_phonetic = false;
+    else if (!strcmp(name, "si")) {
+        text_add_bytes(&sheet->text, "", 0);
+        mem_grow(&sheet->strings, &sheet->string_room, sheet->string_count + 1, sizeof(*sheet->strings));
+        sheet->strings[sheet->string_count++] = mem_strdup(sheet->text.at);
+    }
+}
+
+/* --- cells ------------------------------------------------------------------------------------------------------------------ */
+
+static int column_of(const char *reference)
+{
+    int column = 0;
+    for (; *reference >= 'A' && *reference <= 'Z' && column < 20000; reference++)
+        column = column * 26 + (*reference - 'A' + 1);
+    return column - 1;
+}
+
+static void cell_begins(void *data, const char *name, const char **attributes)
+{
+    struct sheet *sheet = data;
+    if (!strcmp(name, "row")) {
+        int row = atoi(attribute(attributes, "r"));
+        sheet->last_row = row > 0 ? row : sheet->last_row + 1;
+        sheet->row.line = sheet->last_row;
+    } else if (!strcmp(name, "c")) {
+        const char *reference = attribute(attributes, "r"), *type = attribute(attributes, "t");
+        sheet->column = *reference ? column_of(reference) : (int)sheet->row.count;
+        sheet->type = !strcmp(type, "s") ? 's' : !strcmp(type, "inlineStr") ? 'i' : 0;
+        sheet->text.length = 0;
+    }
+    sheet->in_value |= !strcmp(name, sheet->type == 'i' ? "t" : "v");
+    sheet->in_phonetic |= !strcmp(name, "rPh");
+}
+
+static void finish_cell(struct sheet *sheet)
+{
+    text_add_bytes(&sheet->text, "", 0);
+    const char *value = sheet->text.at;
+    size_t index = sheet->type == 's' ? strtoul(value, NULL, 10) : 0;
+    if (sheet->type == 's')
+        value = index < sheet->string_count ? sheet->strings[index] : "";
+    if (sheet->column < 0 || sheet->column > TABLE_MAX_CELLS || sheet->table->count >= TABLE_MAX_ROWS) {
+        sheet->too_large = true;
+        XML_StopParser(sheet->parser, XML_FALSE);
+        return;
+    }
+    while ((int)sheet->row.count < sheet->column)
+        table_add_cell(sheet->table, &sheet->row, "", 0);
+    table_add_cell(sheet->table, &sheet->row, value, strlen(value));
+}
+
+static void cell_ends(void *data, const char *name)
+{
+    struct sheet *sheet = data;
+    if (!strcmp(name, "v") || !strcmp(name, "t"))
+        sheet->in_value = false;
+    else if (!strcmp(name, "rPh"))
+        sheet->in_phonetic = false;
+    else if (!strcmp(name, "c"))
+        finish_cell(sheet);
+    else if (!strcmp(name, "row"))
+        table_add_row(sheet->table, &sheet->row);
+}
+
+/* --- parts of the archive --------------------------------------------------------------------------------------------------- */
+
+static void refuse_entity(void *data, const char *name, int parameter, const char *value, int length, const char *base,
+                          const char *system_id, const char *public_id, const char *notation)
+{
+    struct sheet *sheet = data;
+    (void)name, (void)parameter, (void)value, (void)length, (void)base, (void)system_id, (void)public_id, (void)notation;
+    XML_StopParser(sheet->parser, XML_FALSE);
+}
+
+/* Returns 1: read, 0: there is no such part, -1: broken, with the reason. */
+static int read_part(struct sheet *sheet, unzFile zip, const char *part, XML_StartElementHandler begins, XML_EndElementHandler ends,
+                     char *why, size_t why_bytes)
+{
+    char buffer[65536];
+    size_t total = 0;
+    int count = 0, good = 1;
+    if (unzLocateFile(zip, part, 2) != UNZ_OK)
+        return 0;
+    if (unzOpenCurrentFile(zip) != UNZ_OK) {
+        snprintf(why, why_bytes, "%s cannot be unpacked", part);
+        return -1;
+    }
+    XML_Parser parser = sheet->parser = XML_ParserCreate(NULL);
+    XML_SetUserData(parser, sheet);
+    XML_SetElementHandler(parser, begins, ends);
+    XML_SetCharacterDataHandler(parser, on_text);
+    XML_SetEntityDeclHandler(parser, refuse_entity);
+    do {
+        count = unzReadCurrentFile(zip, buffer, sizeof(buffer));
+        total += count > 0 ? (size_t)count : 0;
+        if (count < 0 || total > max_part_bytes || XML_Parse(parser, buffer, count, count == 0) != XML_STATUS_OK)
+            good = -1;
+    } while (good == 1 && count > 0);
+    if (good < 0 && (total > max_part_bytes || sheet->too_large))
+        snprintf(why, why_bytes, "%s is too large", part);
+    else if (good < 0)
+        snprintf(why, why_bytes, "%s, line %lu: %s", part, (unsigned long)XML_GetCurrentLineNumber(parser),
+                 count < 0 ? "cannot be unpacked" : XML_ErrorString(XML_GetErrorCode(parser)));
+    XML_ParserFree(parser);
+    unzCloseCurrentFile(zip);
+    return good;
+}
+
+bool table_read_xlsx(struct table *table, const char *path, char *why, size_t why_bytes)
+{
+    struct sheet sheet = { .table = table };
+    unzFile zip = unzOpen(path);
+    if (!zip) {
+        snprintf(why, why_bytes, "not a spreadsheet: its ZIP archive cannot be opened");
+        return false;
+    }
+    int good = read_part(&sheet, zip, "xl/sharedStrings.xml", string_begins, string_ends, why, why_bytes);
+    size_t sheets = 0;
+    for (int i = 1; good >= 0 && i <= MAX_SHEETS && table->count == 0; i++) {
+        char part[64];
+        snprintf(part, sizeof(part), "xl/worksheets/sheet%d.xml", i);
+        sheet.in_value = sheet.in_phonetic = false;
+        sheet.last_row = 0;
+        good = read_part(&sheet, zip, part, cell_begins, cell_ends, why, why_bytes);
+        sheets += good > 0;
+    }
+    if (good >= 0 && sheets == 0) {
+        snprintf(why, why_bytes, "not a spreadsheet: it has no sheet");
+        good = -1;
+    }
+    unzClose(zip);
+    for (size_t i = 0; i < sheet.string_count; i++)
+        mem_free(sheet.strings[i]);
+    mem_free(sheet.strings);
+    table_row_finish(&sheet.row);
+    text_finish(&sheet.text);
+    return good >= 0;
+}

@@ -1,0 +1,108 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Repeated names: the same tag twice, or two tags of one name in different folders. */
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+
+#include "base/mem.h"
+#include "base/text.h"
+#include "preprocess/match/tag_export.h"
+
+enum { NAMED = 5 };
+
+static int by_name(const void *pa, const void *pb, void *tags_ptr)
+{
+    const struct export_tag *tags = tags_ptr;
+    size_t a = *(const size_t *)pa, b = *(const size_t *)pb;
+    int order = strcasecmp(tags[a].fields[EXPORT_NAME], tags[b].fields[EXPORT_NAME]);
+    return order ? order : (a > b) - (a < b);
+}
+
+static bool same_text(const char *a, const char *b)
+{
+    return !strcmp(a ? a : "", b ? b : "");
+}
+
+/* Returns an array of indices that ends in tags->count; the caller frees it. */
+static size_t *sort_names(struct tag_export *list)
+{
+    size_t *order = mem_array(list->count + 1, sizeof(*order));
+    for (size_t i = 0; i <= list->count; i++)
+        order[i] = i;
+    qsort_r(order, list->count, sizeof(*order), by_name, list->tags);
+    return order;
+}
+
+static bool same_name(const struct tag_export *list, size_t a, size_t b)
+{
+    return !strcasecmp(list->tags[a].fields[EXPORT_NAME], list->tags[b].fields[EXPORT_NAME]);
+}
+
+/* Tags of one name in different folders, of which each says which. */
+static void rename_by_folder(struct tag_export *list)
+{
+    size_t *order = sort_names(list);
+    for (size_t i = 0, end; i < list->count; i = end) {
+        bool differ = false;
+        for (end = i + 1; end < list->count && same_name(list, order[i], order[end]); end++)
+            differ |= !same_text(list->tags[order[i]].fields[EXPORT_AREA], list->tags[order[end]].fields[EXPORT_AREA]);
+        for (size_t k = i; k < end && differ; k++) {
+            struct export_tag *tag = &list->tags[order[k]];
+            char *name = tag->fields[EXPORT_NAME];
+            if (!tag->fields[EXPORT_AREA])
+                continue;
+            tag->fields[EXPORT_NAME] = NULL;
+            char *with_path = mem_printf("%s/%s", tag->fields[EXPORT_AREA], name);
+            export_tag_set(tag, EXPORT_NAME, with_path);
+            mem_free(with_path);
+            mem_free(name);
+            list->renamed++;
+        }
+    }
+    mem_free(order);
+}
+
+static void report_differing(struct tag_export *list, size_t first, size_t second, struct text *out)
+{
+    if (list->differing++ >= NAMED)
+        return;
+    text_add(out, "%s%.60s", out->length > 0 ? ", " : "", list->tags[first].fields[EXPORT_NAME]);
+    if (list->tags[first].line > 0)
+        text_add(out, " (lines %d and %d)", list->tags[first].line, list->tags[second].line);
+}
+
+void tag_export_join(struct tag_export *list)
+{
+    struct text differing = { 0 };
+    rename_by_folder(list);
+    size_t *order = sort_names(list), kept = 0;
+    bool *drop = mem_array(list->count + 1, sizeof(*drop));
+    for (size_t i = 0, first = 0; i < list->count; i++) {
+        if (i == 0 || !same_name(list, order[first], order[i])) {
+            first = i;
+            continue;
+        }
+        bool same = true;
+        for (int f = EXPORT_ADDRESS; f < EXPORT_FIELDS; f++)
+            same &= same_text(list->tags[order[first]].fields[f], list->tags[order[i]].fields[f]);
+        drop[order[i]] = true;
+        list->same += same;
+        if (!same)
+            report_differing(list, order[first], order[i], &differing);
+    }
+    for (size_t i = 0; i < list->count; i++)
+        if (drop[i])
+            for (int f = 0; f < EXPORT_FIELDS; f++)
+                mem_free(list->tags[i].fields[f]);
+        else
+            list->tags[kept++] = list->tags[i];
+    list->count = kept;
+    for (size_t i = 0; i < list->count; i++)
+        for (int f = 0; f < EXPORT_FIELDS; f++)
+            if (!list->tags[i].fields[f])
+                list->tags[i].fields[f] = mem_strdup("");
+    list->differing_lines = differing.length > 0 ? mem_strdup(differing.at) : NULL;
+    text_finish(&differing);
+    mem_free(order);
+    mem_free(drop);
+}

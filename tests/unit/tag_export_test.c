@@ -1,0 +1,284 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Tag lists as control systems export them, in their encodings and with their separators; and what is wrong with such lists. */
+#include "preprocess/match/tag_export.h"
+
+#include <minizip/zip.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <string.h>
+#include <cmocka.h>
+
+#include "base/mem.h"
+#include "base/text.h"
+#include "tests/support/temp.h"
+
+static char *folder;
+static char why[256];
+
+static bool read_bytes(struct tag_export *list, const void *bytes, size_t count)
+{
+    char *path = temp_write(folder, "tags", bytes, count);
+    *list = (struct tag_export){ 0 };
+    bool good = tag_export_read(list, path, why, sizeof(why));
+    mem_free(path);
+    return good;
+}
+
+static bool read_text(struct tag_export *list, const char *text)
+{
+    return read_bytes(list, text, strlen(text));
+}
+
+static void check(const struct tag_export *list, size_t tag, enum export_field field, const char *want)
+{
+    assert_true(tag < list->count);
+    assert_string_equal(list->tags[tag].fields[field], want);
+}
+
+static void test_kepware(void **state)
+{
+    struct tag_export list;
+    (void)state;
+    assert_true(
+        read_text(&list,
+                  "\"Tag Name\",\"Address\",\"Data Type\",\"Respect Data Type\",\"Client Access\",\"Scan Rate\",\"Scaling\",\"Raw Low\","
+                  "\"Raw High\",\"Scaled Low\",\"Scaled High\",\"Scaled Data Type\",\"Clamp Low\",\"Clamp High\",\"Eng Units\","
+                  "\"Description\",\"Negate Value\"\r\n"
+                  "\"E101.TT-101\",\"400001\",\"Word\",1,\"R/W\",100,\"Linear\",0,27648,0,200,\"Double\",0,0,\"degC\",\"inlet, "
+                  "\"\"hot\"\" side\",0\r\n"));
+    assert_string_equal(list.format, "Kepware");
+    assert_string_equal(list.encoding, "UTF-8");
+    assert_int_equal(list.separator, ',');
+    check(&list, 0, EXPORT_NAME, "E101.TT-101");
+    check(&list, 0, EXPORT_RAW_HIGH, "27648");
+    check(&list, 0, EXPORT_SCALED_HIGH, "200");
+    check(&list, 0, EXPORT_UNIT, "degC");
+    check(&list, 0, EXPORT_DESCRIPTION, "inlet, \"hot\" side");
+    assert_int_equal(list.tags[0].line, 2);
+    tag_export_finish(&list);
+}
+
+static void test_ignition(void **state)
+{
+    struct tag_export list;
+    (void)state;
+    assert_true(read_text(
+        &list,
+        "{\"name\":\"\",\"tagType\":\"Provider\",\"tags\":[{\"name\":\"Area1\",\"tagType\":\"Folder\",\"tags\":["
+        "{\"name\":\"E-101\",\"tagType\":\"UdtInstance\",\"tags\":[{\"name\":\"TT\",\"tagType\":\"AtomicTag\",\"dataType\":\"Float4\","
+        "\"opcItemPath\":{\"bindType\":\"parameter\",\"binding\":\"ns=1;s=[plc]HR1\"},"
+        "\"engUnit\":\"°C\",\"engLow\":0,\"engHigh\":150.5}]},"
+        "{\"name\":\"E-102\",\"tagType\":\"UdtInstance\",\"tags\":[{\"name\":\"TT\",\"tagType\":\"AtomicTag\"}]},"
+        "{\"name\":\"PT-7\",\"tagType\":\"AtomicTag\",\"documentation\":\"feed\\u0007 pressure\"}]}]}"));
+    assert_string_equal(list.format, "Ignition (JSON)");
+    assert_int_equal(list.count, 3);
+    assert_int_equal(list.renamed, 2);
+    check(&list, 0, EXPORT_NAME, "Area1/E-101/TT");
+    check(&list, 0, EXPORT_ADDRESS, "ns=1;s=[plc]HR1");
+    check(&list, 0, EXPORT_SCALED_HIGH, "150.5");
+    check(&list, 1, EXPORT_NAME, "Area1/E-102/TT");
+    check(&list, 2, EXPORT_NAME, "PT-7");
+    check(&list, 2, EXPORT_AREA, "Area1");
+    check(&list, 2, EXPORT_DESCRIPTION, "feed  pressure");
+    assert_int_equal(list.control, 1);
+    tag_export_finish(&list);
+    assert_true(read_text(&list, "Path,Name,Owner,TagType,DataType,OPCServer,OPCItemPath,EngUnit,EngLow,EngHigh,Tooltip\n"
+                                 ",Area1,,Folder,,,,,,,\n"
+                                 "Area1,TT-1,,OPC,Float4,Ignition OPC,[plc]HR5,degC,0,90,Outlet\n"));
+    assert_string_equal(list.format, "Ignition (CSV)");
+    assert_int_equal(list.count, 1);
+    check(&list, 0, EXPORT_ADDRESS, "[plc]HR5");
+    check(&list, 0, EXPORT_AREA, "Area1");
+    tag_export_finish(&list);
+    assert_false(read_text(&list, "{\"tags\": [1, }"));
+    assert_non_null(strstr(why, "line 1: not JSON"));
+}
+
+static void test_aveva(void **state)
+{
+    struct tag_export list;
+    (void)state;
+    assert_true(
+        read_text(&list,
+                  ":mode=ask\n:IOAccess,Application,Topic,AdviseActive,DDEProtocol\n\"PLC1\",\"DASMBTCP\",\"PLC1\",Yes,No\n"
+                  ":AlarmGroup,Group,Comment\n\"Unit10\",\"$System\",\"\"\n"
+                  ":IODisc,Group,Comment,Logged,AccessName,ItemUseTagname,ItemName\n\"P101_RUN\",\"Unit10\",\"Pump runs\",No,\"PLC1\",No,"
+                  "\"10001\"\n"
+                  ":IOReal,Group,Comment,Logged,EngUnits,MinEU,MaxEU,HiAlarmValue,MinRaw,MaxRaw,Conversion,AccessName,ItemName\n"
+                  "\"TI101\",\"Unit10\",\"E-101 outlet\",No,\"degC\",0,250,200,0,4095,Linear,\"PLC1\",\"40001 F\"\n"));
+    assert_string_equal(list.format, "AVEVA InTouch DBDump");
+    assert_int_equal(list.count, 2);
+    check(&list, 0, EXPORT_TYPE, "Boolean");
+    check(&list, 0, EXPORT_ADDRESS, "10001");
+    check(&list, 1, EXPORT_NAME, "TI101");
+    check(&list, 1, EXPORT_TYPE, "Float");
+    check(&list, 1, EXPORT_SCALED_HIGH, "250");
+    check(&list, 1, EXPORT_H, "200");
+    check(&list, 1, EXPORT_RAW_HIGH, "4095");
+    check(&list, 1, EXPORT_DEVICE, "PLC1");
+    tag_export_finish(&list);
+    assert_true(read_text(&list, "; Created on: 3/4/2024\n\n:TEMPLATE=$AnalogDevice\n:Tagname,Area,ShortDesc,PV.EngUnits,PV.EngUnitsMin\n"
+                                 "TT_101,Unit10,Outlet,bar,-1\n"));
+    assert_string_equal(list.format, "AVEVA Galaxy dump");
+    check(&list, 0, EXPORT_NAME, "TT_101");
+    check(&list, 0, EXPORT_UNIT, "bar");
+    check(&list, 0, EXPORT_SCALED_LOW, "-1");
+    tag_export_finish(&list);
+}
+
+static void test_lists(void **state)
+{
+    struct tag_export list;
+    (void)state;
+    assert_true(read_text(&list, "Site: north;;;;\n\nPoint ID;Description;EUDESC;PVEULO;PVEUHI\nTI101.DACA;Auslass;°C;0;1.250,5\n"));
+    assert_string_equal(list.format, "Honeywell");
+    assert_int_equal(list.separator, ';');
+    check(&list, 0, EXPORT_SCALED_HIGH, "1250.5");
+    tag_export_finish(&list);
+    assert_true(read_text(&list, "Module\tDescription\tArea\tEU0\tEU100\tUnits\nTIC-101\tOutlet\tUNIT_10\t0\t200\tdegC\n"));
+    assert_string_equal(list.format, "Emerson");
+    assert_int_equal(list.separator, '\t');
+    check(&list, 0, EXPORT_AREA, "UNIT_10");
+    tag_export_finish(&list);
+    assert_true(read_text(&list, "TT-101\nTT-102\n"));
+    assert_int_equal(list.count, 2);
+    tag_export_finish(&list);
+}
+
+static void test_encodings(void **state)
+{
+    static const char latin1[] = "Tag;Description;Unit\nTT-1;W\xe4rmetauscher f\xfcr \xd6l;\xb0"
+                                 "C\n";
+    static const char korean[] = "Tag,Description\nTT-1,\xbf\xad\xb1\xb3\xc8\xaf\xb1\xe2 \xc3\xe2\xb1\xb8\n"; /* heat exchanger outlet */
+    static const char wide[] = "\xff\xfeT\0a\0g\0\t\0U\0n\0i\0t\0\n\0T\0T\0-\0\x31\0\t\0\xb0\0C\0\n\0";
+    struct tag_export list;
+    (void)state;
+    assert_true(read_bytes(&list, latin1, sizeof(latin1) - 1));
+    assert_string_equal(list.encoding, "cp1252");
+    check(&list, 0, EXPORT_DESCRIPTION, "Wärmetauscher für Öl");
+    check(&list, 0, EXPORT_UNIT, "°C");
+    tag_export_finish(&list);
+    assert_true(read_bytes(&list, korean, sizeof(korean) - 1));
+    assert_string_equal(list.encoding, "cp949");
+    check(&list, 0, EXPORT_DESCRIPTION, "열교환기 출구");
+    tag_export_finish(&list);
+    for (size_t mark = 0; mark <= 2; mark += 2) {
+        assert_true(read_bytes(&list, wide + mark, sizeof(wide) - 1 - mark));
+        assert_string_equal(list.encoding, "UTF-16LE");
+        assert_int_equal(list.separator, '\t');
+        check(&list, 0, EXPORT_UNIT, "°C");
+        tag_export_finish(&list);
+    }
+    assert_true(read_text(&list, "\xef\xbb\xbfTag\nTT-\xff"
+                                 "1\n")); /* the mark says UTF-8 */
+    assert_int_equal(list.damaged, 1);
+    check(&list, 0, EXPORT_NAME,
+          "TT-\xef\xbf\xbd"
+          "1");
+    tag_export_finish(&list);
+}
+
+static void test_repeated(void **state)
+{
+    struct tag_export list;
+    (void)state;
+    assert_true(read_text(&list, "Tag Name,Address\nTT-1,1\nTT-2,2\n TT-1 ,1\ntt-2,3\n,4\nTT\x01-3,5\n열/교환 기,6\n"));
+    assert_int_equal(list.rows, 7);
+    assert_int_equal(list.count, 4);
+    assert_int_equal(list.same, 1);
+    assert_int_equal(list.differing, 1);
+    assert_string_equal(list.differing_lines, "TT-2 (lines 3 and 5)");
+    assert_int_equal(list.nameless, 1);
+    assert_int_equal(list.control, 1);
+    check(&list, 2, EXPORT_NAME, "TT -3");
+    check(&list, 3, EXPORT_NAME, "열/교환 기");
+    tag_export_finish(&list);
+}
+
+static void add_part(zipFile zip, const char *name, const char *text)
+{
+    assert_int_equal(zipOpenNewFileInZip(zip, name, NULL, NULL, 0, NULL, 0, NULL, Z_DEFLATED, 6), ZIP_OK);
+    assert_int_equal(zipWriteInFileInZip(zip, text, (unsigned)strlen(text)), ZIP_OK);
+    assert_int_equal(zipCloseFileInZip(zip), ZIP_OK);
+}
+
+static bool read_xlsx(struct tag_export *list, const char *strings, const char *sheet)
+{
+    char *path = temp_path(folder, "tags.xlsx");
+    zipFile zip = zipOpen(path, APPEND_STATUS_CREATE);
+    assert_non_null(zip);
+    add_part(zip, "xl/sharedStrings.xml", strings);
+    add_part(zip, "xl/worksheets/sheet1.xml", sheet);
+    zipClose(zip, NULL);
+    *list = (struct tag_export){ 0 };
+    bool good = tag_export_read(list, path, why, sizeof(why));
+    mem_free(path);
+    return good;
+}
+
+static void test_spreadsheet(void **state)
+{
+    static const char strings[] = "<sst><si><t>Tag Name</t></si><si><r><t>Eng </t></r><r><t>Units</t></r></si><si><t>TT-1</t></si></sst>";
+    struct tag_export list;
+    (void)state;
+    assert_true(
+        read_xlsx(&list, strings,
+                  "<worksheet><sheetData><row r=\"1\"><c r=\"A1\" t=\"s\"><v>0</v></c><c r=\"C1\" t=\"s\"><v>1</v></c></row>"
+                  "<row r=\"4\"><c r=\"A4\" t=\"s\"><v>2</v></c><c r=\"C4\" t=\"inlineStr\"><is><t>°C</t></is></c></row></sheetData>"
+                  "</worksheet>"));
+    assert_null(list.encoding);
+    check(&list, 0, EXPORT_NAME, "TT-1");
+    check(&list, 0, EXPORT_UNIT, "°C");
+    assert_int_equal(list.tags[0].line, 4);
+    tag_export_finish(&list);
+    assert_false(read_xlsx(&list, strings, "<worksheet><sheetData><row>"));
+    assert_non_null(strstr(why, "sheet1.xml, line 1"));
+    assert_false(read_xlsx(&list, "<!DOCTYPE a [<!ENTITY b \"bb\">]><sst/>", "<worksheet/>"));
+    assert_false(read_xlsx(&list, strings, "<worksheet><sheetData><row r=\"1\"><c r=\"ZZZZ1\"><v>1</v></c></row></sheetData></worksheet>"));
+    assert_non_null(strstr(why, "too large"));
+}
+
+static void test_refused(void **state)
+{
+    static const struct {
+        const char *text, *why;
+    } cases[] = {
+        { "", "no header" },         { "a,b\n1,2\n", "no header" },         { "Tag,Unit\n\"TT-1,2\n", "line 2: a quote does not end" },
+        { "Tag,Unit\n", "no tags" }, { "PK\3\4rest", "not a spreadsheet" }, { "\xd0\xcf\x11\xe0", "save it as .xlsx" },
+        { "[1, 2]", "no tags" },
+    };
+    struct tag_export list;
+    (void)state;
+    for (size_t i = 0; i < sizeof(cases) / sizeof(*cases); i++) {
+        assert_false(read_text(&list, cases[i].text));
+        if (!strstr(why, cases[i].why))
+            fail_msg("'%s' for '%s'", why, cases[i].text);
+        assert_null(list.tags);
+    }
+}
+
+static int set_up(void **state)
+{
+    (void)state;
+    folder = temp_folder_create();
+    return 0;
+}
+
+static int tear_down(void **state)
+{
+    (void)state;
+    temp_folder_destroy(&folder);
+    return 0;
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = { cmocka_unit_test(test_kepware),     cmocka_unit_test(test_ignition),
+                                        cmocka_unit_test(test_aveva),       cmocka_unit_test(test_lists),
+                                        cmocka_unit_test(test_encodings),   cmocka_unit_test(test_repeated),
+                                        cmocka_unit_test(test_spreadsheet), cmocka_unit_test(test_refused) };
+    cmocka_set_message_output(CM_OUTPUT_TAP);
+    return cmocka_run_group_tests_name("tag_export", tests, set_up, tear_down);
+}
