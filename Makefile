@@ -104,8 +104,8 @@ $(out)/lib/$(1).a: $(call objects,$(filter-out $(without),$(wildcard $(foreach d
     $(if $(filter base,$(1)),$(embedded)) $(if $(filter gpu,$(1)),$(glad))
 endef
 $(foreach l,$(layers),$(eval $(call archive_rule,$(l))))
-# Loops of drafts once more for machines with AVX2, and for those with AVX-512 (render/draft/draft_kernels.h).
-wide_sources := $(foreach f,color faces kernels raster,server/render/draft/draft_$(f).c)
+# Loops of the software rasterizer once more for machines with AVX2, and for those with AVX-512 (render/soft/kernels.h).
+wide_sources := $(foreach f,faces kernels raster resolve_preview,server/render/soft/$(f).c)
 wide_objects := $(foreach w,wide widest,$(patsubst %.c,$(out)/obj/%.$(w).o,$(wide_sources)))
 $(out)/lib/render.a: $(if $(filter x86_64%,$(shell $(CC) -dumpmachine 2>/dev/null)),$(wide_objects))
 $(out)/lib/protocol.a: $(call objects,$(wildcard protocol/*.c))
@@ -126,11 +126,11 @@ $(out)/obj/%.o: %.cc Makefile
 	@$(CXX) $(cxxflags) -c -o $@ $<
 $(out)/obj/%.wide.o: %.c Makefile | $(gen)/glad/include/glad/gl.h
 	@mkdir -p $(@D); echo "  CC   $< (wide)"
-	@$(CC) $(cflags) -mavx2 -DDRAFT_SET=_wide -c -o $@ $<
+	@$(CC) $(cflags) -mavx2 -DSOFT_SET=_wide -c -o $@ $<
 # No product and sum in one, which has other bits.
 $(out)/obj/%.widest.o: %.c Makefile | $(gen)/glad/include/glad/gl.h
 	@mkdir -p $(@D); echo "  CC   $< (widest)"
-	@$(CC) $(cflags) -mavx2 $(addprefix -mavx512,f vl bw dq) -mprefer-vector-width=256 -ffp-contract=off -DDRAFT_SET=_widest -c -o $@ $<
+	@$(CC) $(cflags) -mavx2 $(addprefix -mavx512,f vl bw dq) -mprefer-vector-width=256 -ffp-contract=off -DSOFT_SET=_widest -c -o $@ $<
 $(out)/obj/%.pic.o: %.c Makefile | $(gen)/glad/include/glad/gl.h
 	@mkdir -p $(@D); echo "  CC   $< (shared)"
 	@$(CC) $(cflags) -fPIC -c -o $@ $<

@@ -27,4 +27,11 @@ struct frame_context {
     bool measured;               /* the field's numbers instead of colours, into floats */
 };
 
+/* Returns the level of an asset that the frame plan chose. */
+const struct model_level *frame_level(const struct frame_context *context, int asset);
+/* Returns the number of triangles of the planned levels of all visible assets. */
+int frame_triangles(const struct frame_context *context);
+/* Returns by how much previews move surfaces towards the sun against shadow acne, in depth of the shadow map. */
+double frame_sun_slack(const struct frame_context *context);
+
 #endif

@@ -2,20 +2,20 @@
 /* One bound for all that a renderer keeps. */
 #include "render/memory.h"
 
-#include "render/draft/draft.h"
-#include "render/plate/plate.h"
+#include "render/soft/soft.h"
+#include "render/soft/refined.h"
 #include "render/renderer_impl.h"
 
 const char *const render_store_names[RENDER_STORES] = { "shown fields", "light", "still pictures", "targets", "drawing", "models" };
 
 /* Of what room to draw in leaves. Of fields, half is here and half on the GPU. */
-static const double FIELDS_SHARE = 0.35, LIGHT_SHARE = 0.3, PLATES_SHARE = 0.15, DRAFTS_SHARE = 0.1, TARGETS_SHARE = 0.1;
+static const double FIELDS_SHARE = 0.35, LIGHT_SHARE = 0.3, REFINED_SHARE = 0.15, PREVIEWS_SHARE = 0.1, TARGETS_SHARE = 0.1;
 /* Room beyond this share is made anew for each picture that needs it. */
 static const double ROOM_SHARE = 0.4;
 
 static size_t room_bytes(const struct renderer *renderer)
 {
-    return renderer->draft ? draft_room_bytes(renderer->draft) + plates_room_bytes(renderer->plates) : 0;
+    return renderer->soft ? soft_room_bytes(renderer->soft) + refiner_room_bytes(renderer->refiner) : 0;
 }
 
 void renderer_measure_memory(const struct renderer *renderer, size_t out[RENDER_STORES])
@@ -26,9 +26,9 @@ void renderer_measure_memory(const struct renderer *renderer, size_t out[RENDER_
     out[STORE_TARGETS] = targets_bytes(&renderer->targets);
     out[STORE_ROOM] = room_bytes(renderer);
     out[STORE_MODELS] = 0;
-    if (renderer->draft) {
-        out[STORE_LIGHT] += draft_light_bytes(renderer->draft) + plates_light_bytes(renderer->plates);
-        out[STORE_PICTURES] = draft_kept_bytes(renderer->draft) + plates_kept_bytes(renderer->plates);
+    if (renderer->soft) {
+        out[STORE_LIGHT] += soft_light_bytes(renderer->soft) + refiner_light_bytes(renderer->refiner);
+        out[STORE_PICTURES] = soft_kept_bytes(renderer->soft) + refiner_kept_bytes(renderer->refiner);
     }
     for (size_t i = 0; i < renderer->gpu_scene.model_count; i++) {
         const struct mesh *mesh = &renderer->gpu_scene.models[i].mesh;
@@ -38,16 +38,16 @@ void renderer_measure_memory(const struct renderer *renderer, size_t out[RENDER_
 
 void renderer_bound_memory(struct renderer *renderer, size_t bytes)
 {
-    if (renderer->plates && (double)room_bytes(renderer) > ROOM_SHARE * (double)bytes)
-        plates_drop_spare(renderer->plates);
+    if (renderer->refiner && (double)room_bytes(renderer) > ROOM_SHARE * (double)bytes)
+        refiner_drop_spare(renderer->refiner);
     size_t room = room_bytes(renderer), least = bytes - (size_t)(ROOM_SHARE * (double)bytes);
     double left = (double)(room < bytes - least ? bytes - room : least);
     renderer->fields.bound_bytes = (size_t)(FIELDS_SHARE * left / 2);
     light_bound(&renderer->light, (size_t)(LIGHT_SHARE * left));
     targets_bound(&renderer->targets, (size_t)(TARGETS_SHARE * left));
-    if (renderer->draft) {
-        draft_bound(renderer->draft, (size_t)(DRAFTS_SHARE * left));
-        plates_bound(renderer->plates, (size_t)(PLATES_SHARE * left));
+    if (renderer->soft) {
+        soft_bound(renderer->soft, (size_t)(PREVIEWS_SHARE * left));
+        refiner_bound(renderer->refiner, (size_t)(REFINED_SHARE * left));
     }
 }
 
@@ -57,8 +57,8 @@ void renderer_drop_caches(struct renderer *renderer)
     fields_drop(&renderer->fields);
     light_drop(&renderer->light, &usual);
     targets_finish(&renderer->targets);
-    if (renderer->plates)
-        plates_rest(renderer->plates);
-    if (renderer->draft)
-        draft_rest(renderer->draft);
+    if (renderer->refiner)
+        refiner_rest(renderer->refiner);
+    if (renderer->soft)
+        soft_rest(renderer->soft);
 }

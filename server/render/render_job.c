@@ -46,8 +46,8 @@ static bool copy_field(const struct render_job *job, const struct fields_entry *
     *copy = *from;
     copy->shown = NULL;
     copy->sensors = 0;
-    copy->slice = job->plate ? NULL : pool_ref(from->slice);
-    if (!job->plate)
+    copy->slice = job->refined ? NULL : pool_ref(from->slice);
+    if (!job->refined)
         return !from->sensors || (copy->sensors = copy_buffer(log, from->sensors));
     copy->shown = mem_try_array(from->ready, sizeof(*copy->shown));
     if (!copy->shown) {

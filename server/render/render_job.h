@@ -7,13 +7,13 @@
 #include "render/frame.h"
 #include "render/pick/isolines.h"
 #include "render/frame_context.h"
-#include "render/plate/plate.h"
+#include "render/soft/refined.h"
 
 struct render_job {
     struct frame_context context; /* view, target, fields and visible point into this struct */
     struct view view;
     struct target target;
-    struct plate *plate; /* it is drawn without GL, and there is no target; NULL: by GL */
+    struct refined *refined; /* it is drawn without GL, and there is no target; NULL: by GL */
     struct frame *frame;
     struct frame_in_flight *in_flight;  /* it is given to the GPU, whole; NULL: not yet */
     struct light_set *light;            /* held from when it is ready; NULL: not yet */

@@ -53,10 +53,10 @@ struct renderer *renderer_create(struct log *log, struct gl *gl, const struct sc
     }
     renderer->surface_pass.least_hiding = gl->software ? INT_MAX : LEAST_HIDING;
     if (gl->software)
-        renderer->draft = draft_create(field_workers(field), &renderer->gpu_scene, &renderer->sky);
-    if (renderer->draft)
-        renderer->plates =
-            plates_create(field_workers(field), &renderer->gpu_scene, &renderer->sky, renderer->draft, &renderer->environments);
+        renderer->soft = soft_create(field_workers(field), &renderer->gpu_scene, &renderer->sky);
+    if (renderer->soft)
+        renderer->refiner =
+            refiner_create(field_workers(field), &renderer->gpu_scene, &renderer->sky, renderer->soft, &renderer->environments);
     return renderer;
 }
 
@@ -65,8 +65,8 @@ void renderer_destroy(struct renderer **renderer_ptr)
     struct renderer *renderer = *renderer_ptr;
     if (!renderer)
         return;
-    plates_destroy(&renderer->plates);
-    draft_destroy(&renderer->draft);
+    refiner_destroy(&renderer->refiner);
+    soft_destroy(&renderer->soft);
     targets_finish(&renderer->targets);
     shaded_colormap_cache_finish(&renderer->colormaps);
     glDeleteBuffers(1, &renderer->frame_buffer);
@@ -132,7 +132,7 @@ struct frame *renderer_start(struct renderer *renderer, const struct frame_plan 
     frame->oldest_age_ns = oldest_age_of(context);
     frame->content = plan->content;
     frame->field_ns = plan->field_ns;
-    frame->triangles = surface_pass_triangles(context);
+    frame->triangles = frame_triangles(context);
     field_baseline(renderer->fields.field, &view->field, &frame->baseline);
     return frame;
 }
@@ -175,7 +175,7 @@ static bool has_lost(const struct frame_context *context)
     return false;
 }
 
-static struct frame *draw_draft(struct renderer *renderer, const struct frame_plan *plan)
+static struct frame *draw_preview(struct renderer *renderer, const struct frame_plan *plan)
 {
     struct frame_context context;
     struct frame *frame = renderer_start(renderer, plan, &context);
@@ -188,7 +188,7 @@ static struct frame *draw_draft(struct renderer *renderer, const struct frame_pl
     int64_t start_ns = clock_mono_ns();
     context.light = light_get(&renderer->light, &context.lit_by);
     context.colormap = shaded_colormap_cache_get(&renderer->colormaps, context.view);
-    if (!context.light || !context.colormap.colors || !draft_draw(renderer->draft, &context, &renderer->light, &renderer->isolines, frame))
+    if (!context.light || !context.colormap.colors || !preview_draw(renderer->soft, &context, &renderer->light, &renderer->isolines, frame))
         frame_unref(&frame);
     else
         frame->render_ns = clock_mono_ns() - start_ns;
@@ -198,17 +198,17 @@ static struct frame *draw_draft(struct renderer *renderer, const struct frame_pl
 bool renderer_is_quick(struct renderer *renderer, const struct frame_plan *plan)
 {
     struct frame_context context;
-    if (plan->view.tier == TIER_PREVIEW || !renderer->plates || renderer->always_gl)
+    if (plan->view.tier == TIER_PREVIEW || !renderer->refiner || renderer->always_gl)
         return plan->view.tier == TIER_PREVIEW || (renderer->refined_ns > 0 && renderer->refined_ns <= QUICK_NS);
     init_context(renderer, plan, &context);
-    return plates_know(renderer->plates, &context);
+    return refiner_know(renderer->refiner, &context);
 }
 
 /* A refined frame that was drawn before and differs in values and colours only. NULL: there is none. */
 static struct frame *draw_again(struct renderer *renderer, const struct frame_plan *plan)
 {
     struct frame_context context;
-    struct frame *frame = renderer->plates && renderer_is_quick(renderer, plan) ? renderer_start(renderer, plan, &context) : NULL;
+    struct frame *frame = renderer->refiner && renderer_is_quick(renderer, plan) ? renderer_start(renderer, plan, &context) : NULL;
     if (!frame)
         return NULL;
     int64_t start_ns = clock_mono_ns();
@@ -216,7 +216,7 @@ static struct frame *draw_again(struct renderer *renderer, const struct frame_pl
     context.colormap = shaded_colormap_cache_get(&renderer->colormaps, context.view);
     struct isoline_points points = { 0 };
     isolines_collect(&renderer->isolines, &context, &points);
-    if (!context.light || !context.colormap.colors || !plates_recolor(renderer->plates, &context, &points, frame))
+    if (!context.light || !context.colormap.colors || !refiner_resolve_again(renderer->refiner, &context, &points, frame))
         frame_unref(&frame);
     else
         frame->render_ns = clock_mono_ns() - start_ns;
@@ -236,10 +236,10 @@ static void bake_wanted_light(struct renderer *renderer, const struct view *view
 
 struct frame *renderer_draw(struct renderer *renderer, const struct frame_plan *plan)
 {
-    bool draft = renderer->draft && !renderer->always_gl && !renderer->per_fragment && draft_can(renderer->draft, &plan->view);
+    bool soft = renderer->soft && !renderer->always_gl && !renderer->per_fragment && preview_can(renderer->soft, &plan->view);
     struct frame *frame = plan->view.tier == TIER_REFINED ? draw_again(renderer, plan) : NULL;
     if (!frame)
-        frame = draft ? draw_draft(renderer, plan) : renderer_draw_job(renderer, plan);
+        frame = soft ? draw_preview(renderer, plan) : renderer_draw_job(renderer, plan);
     if (frame)
         bake_wanted_light(renderer, &plan->view);
     return frame;

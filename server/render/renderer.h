@@ -9,7 +9,7 @@
 #include "render/frame.h"
 
 struct renderer;
-struct frame_plan; /* render/plan/frame_plan.h */
+struct frame_plan;    /* render/plan/frame_plan.h */
 struct frame_planner; /* render/plan/frame_planner.h */
 
 /* Returns NULL on failure, logged. All arguments must outlive it. */

@@ -3,7 +3,7 @@
 #ifndef RENDER_RENDERER_IMPL_H
 #define RENDER_RENDERER_IMPL_H
 #include "render/gl/section_caps.h"
-#include "render/draft/draft.h"
+#include "render/soft/soft.h"
 #include "render/gl/frames_in_flight.h"
 #include "render/gl/ghosts.h"
 #include "render/pick/isolines.h"
@@ -12,7 +12,7 @@
 #include "render/pick/markers.h"
 #include "render/shaded_colormap_cache.h"
 #include "render/plan/frame_planner.h"
-#include "render/plate/plate.h"
+#include "render/soft/refined.h"
 #include "render/renderer.h"
 #include "render/gl/surface_pass.h"
 #include "render/gl/targets.h"
@@ -42,8 +42,8 @@ struct renderer {
     double pixel_ns[PASSES]; /* as measured lately */
     int64_t bake_budget_ns;  /* 0: none */
     int64_t refined_ns;      /* what a GPU took for the last still picture; 0: not known */
-    struct draft *draft;     /* NULL: a GPU draws moving pictures too; and below */
-    struct plates *plates;   /* still ones */
+    struct soft *soft;       /* NULL: a GPU draws moving pictures too; and below */
+    struct refiner *refiner; /* still ones */
     bool always_gl;
     struct visibility shown; /* by the last picture that was drawn at once */
 };

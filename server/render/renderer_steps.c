@@ -27,16 +27,16 @@ static struct render_job *begin(struct renderer *renderer, const struct frame_pl
     struct frame *frame = renderer_start(renderer, plan, &context);
     if (!frame)
         return NULL;
-    bool by_plate = renderer->plates && !renderer->always_gl && plates_can(renderer->plates, &context);
-    struct plate *plate = by_plate ? plate_begin(renderer->plates) : NULL;
-    if (by_plate ? !plate : !take_target(renderer, &plan->view, &target)) {
+    bool by_refiner = renderer->refiner && !renderer->always_gl && refiner_can(renderer->refiner, &context);
+    struct refined *refined = by_refiner ? refined_begin(renderer->refiner) : NULL;
+    if (by_refiner ? !refined : !take_target(renderer, &plan->view, &target)) {
         frame_unref(&frame);
         return NULL;
     }
     struct render_job *job = mem_new(sizeof(*job));
     render_job_init(job, &context, &target, frame, whole);
-    job->plate = plate;
-    if (!plate)
+    job->refined = refined;
+    if (!refined)
         renderer_upload_fields(renderer, plan, &job->context, frame);
     isolines_collect(&renderer->isolines, &job->context, &job->isolines);
     return job;
@@ -131,16 +131,16 @@ struct render_job *renderer_begin(struct renderer *renderer, const struct frame_
 
 bool renderer_keeps(const struct render_job *job)
 {
-    return job->plate != NULL;
+    return job->refined != NULL;
 }
 
 /* A bit on all cores takes some milliseconds; the next one may take twice as long as the last. */
-static bool step_plate(struct renderer *renderer, struct render_job *job, int64_t budget_ns)
+static bool step_refined(struct renderer *renderer, struct render_job *job, int64_t budget_ns)
 {
     int64_t start_ns = clock_mono_ns(), spent_ns = 0, last_ns = 0;
     bool done = !take_up_job(renderer, job); /* renderer_end fails likewise */
     while (!done && spent_ns + 2 * last_ns <= budget_ns) {
-        done = plate_step(job->plate, &job->context, &renderer->light, job->frame);
+        done = refined_step(job->refined, &job->context, &renderer->light, job->frame);
         last_ns = clock_mono_ns() - start_ns - spent_ns;
         spent_ns += last_ns;
     }
@@ -154,8 +154,8 @@ bool renderer_step(struct renderer *renderer, struct render_job *job, int64_t bu
     int cells = cells_of(job);
     if (!job->light && !light_step(&renderer->light, &job->context.lit_by, budget_ns))
         return false;
-    if (job->plate)
-        return step_plate(renderer, job, budget_ns);
+    if (job->refined)
+        return step_refined(renderer, job, budget_ns);
     unsigned shortages = gl_out_of_memory_count();
     if (job->next < cells && !take_up_job(renderer, job))
         job->next = cells; /* renderer_end fails likewise */
@@ -174,16 +174,16 @@ bool renderer_step(struct renderer *renderer, struct render_job *job, int64_t bu
     return job->next == cells;
 }
 
-/* What is left of a plate. NULL: it failed, logged. */
-static struct frame *end_plate(struct renderer *renderer, struct render_job *job)
+/* What is left of a refined frame. NULL: it failed, logged. */
+static struct frame *end_refined(struct renderer *renderer, struct render_job *job)
 {
     int64_t start_ns = clock_mono_ns();
     struct frame *frame = job->frame;
     if (!take_up_job(renderer, job))
         return NULL;
-    while (!plate_step(job->plate, &job->context, &renderer->light, frame)) {
+    while (!refined_step(job->refined, &job->context, &renderer->light, frame)) {
     }
-    if (!plates_keep(renderer->plates, job->plate, &job->context, &job->isolines, frame))
+    if (!refiner_keep(renderer->refiner, job->refined, &job->context, &job->isolines, frame))
         return NULL;
     frame->render_ns += clock_mono_ns() - start_ns;
     job->frame = NULL;
@@ -239,8 +239,8 @@ struct frame *renderer_end(struct renderer *renderer, struct render_job **job_pt
 {
     struct render_job *job = *job_ptr;
     struct frame *frame = NULL;
-    if (job->plate)
-        frame = end_plate(renderer, job);
+    if (job->refined)
+        frame = end_refined(renderer, job);
     else if (job->in_flight || submit(renderer, job))
         frame = complete(renderer, job);
     renderer_abandon(renderer, job_ptr);
@@ -252,8 +252,8 @@ void renderer_abandon(struct renderer *renderer, struct render_job **job_ptr)
     struct render_job *job = *job_ptr;
     if (!job)
         return;
-    if (job->plate)
-        plate_end(renderer->plates, &job->plate);
+    if (job->refined)
+        refined_end(renderer->refiner, &job->refined);
     else
         targets_give(&renderer->targets, &job->target);
     frames_in_flight_give(job->in_flight);

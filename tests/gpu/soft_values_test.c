@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What a session without a GPU sees of whole plants against the numbers that reference_test holds against the reference: in the flat look
-   each pixel's colour is read back as a value, in drafts and in plates, over every level that is drawn. They are equal wherever a pixel
-   and its neighbours show one surface. Elsewhere a hair decides what a draft shows; a plate has antialiased rims, and a surface smaller
-   than a pixel may have its part in one. */
+/* What a session without a GPU sees of whole plants against the numbers that reference_test holds against the reference: in the flat
+   look each pixel's colour is read back as a value, in previews and in refined frames, over every level that is drawn. They are equal
+   wherever a pixel and its neighbours show one surface. Elsewhere a hair decides what a preview shows; a refined frame has antialiased
+   rims, and a surface smaller than a pixel may have its part in one. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -143,15 +143,15 @@ static void test_plant(const char *path, const char *name)
     assert_true(site_init(&site, &rig, path, name));
     for (int way = 0; way < 4; way++) {
         struct tally tally = { 0 };
-        bool plate = way & 1;
+        bool refined = way & 1;
         compare_plant(&site, way, &tally);
         print_message("# %s, %s: %d pixels, %d of another colour (by %d at most), %d of none; at silhouettes %d, %d others\n",
-                      plate ? "plate" : "draft", way & 2 ? "paper, euclidean" : "shepard, geodesic", tally.within, tally.off, tally.most,
+                      refined ? "refined" : "soft", way & 2 ? "paper, euclidean" : "shepard, geodesic", tally.within, tally.off, tally.most,
                       tally.unreadable, tally.rims, tally.rims_off);
         assert_true(tally.within > PIXELS / 40);
-        assert_true(tally.off <= (plate ? 0.005 : 0.0003) * tally.within);
-        assert_true(tally.unreadable <= (plate ? 0.1 : 0.0003) * tally.within); /* edges are drawn in ink */
-        assert_true(plate || tally.rims_off <= 0.002 * tally.rims);
+        assert_true(tally.off <= (refined ? 0.005 : 0.0003) * tally.within);
+        assert_true(tally.unreadable <= (refined ? 0.1 : 0.0003) * tally.within); /* edges are drawn in ink */
+        assert_true(refined || tally.rims_off <= 0.002 * tally.rims);
     }
     site_finish(&site);
 }

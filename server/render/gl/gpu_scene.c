@@ -7,6 +7,7 @@
 
 #include "base/mem.h"
 #include "gpu/program.h"
+#include "render/gl/materials.h"
 #include "render/matrix.h"
 
 static struct model *find_model(struct gpu_scene *gpu_scene, const struct asset *file)
@@ -42,6 +43,16 @@ static bool make_depth_programs(struct gpu_scene *gpu_scene)
     return good;
 }
 
+/* False: logged. */
+static bool add_model(struct model *model, struct gl *gl, const struct asset *file, GLuint ramp_program)
+{
+    if (model_init(model, gl, file) && materials_upload(model, gl, ramp_program))
+        return true;
+    log_err(gl->log, "%s: not drawn: %u vertices, %u textures do not fit on the GPU", file->path, file->view.header->vertex_count,
+            file->view.header->texture_count);
+    return false;
+}
+
 bool gpu_scene_init(struct gpu_scene *gpu_scene, struct gl *gl, const struct scene *scene)
 {
     *gpu_scene = (struct gpu_scene){ .gl = gl, .scene = scene, .up = { 0, scene->plant->up == AXIS_Y, scene->plant->up == AXIS_Z } };
@@ -56,7 +67,7 @@ bool gpu_scene_init(struct gpu_scene *gpu_scene, struct gl *gl, const struct sce
         struct model *model = find_model(gpu_scene, scene->assets[i].file);
         if (!model) {
             model = &gpu_scene->models[gpu_scene->model_count++];
-            good = model_init(model, gl, scene->assets[i].file, ramp_program);
+            good = add_model(model, gl, scene->assets[i].file, ramp_program);
         }
         gpu_scene->of_asset[i] = model;
     }
@@ -66,8 +77,10 @@ bool gpu_scene_init(struct gpu_scene *gpu_scene, struct gl *gl, const struct sce
 
 void gpu_scene_finish(struct gpu_scene *gpu_scene)
 {
-    for (size_t i = 0; i < gpu_scene->model_count; i++)
+    for (size_t i = 0; i < gpu_scene->model_count; i++) {
+        materials_finish(&gpu_scene->models[i]);
         model_finish(&gpu_scene->models[i]);
+    }
     mem_free(gpu_scene->models);
     mem_free(gpu_scene->of_asset);
     for (int i = 0; i < 4; i++)

@@ -5,9 +5,9 @@
 #define RENDER_GL_MATERIALS_H
 #include "render/gl/model.h"
 
-/* Returns false if the GPU is out of memory; that is logged. */
+/* Uploads materials and textures of a model that model_init() made. Returns false if the GPU is out of memory. */
 bool materials_upload(struct model *model, struct gl *gl, GLuint ramp_program);
-/* Deletes what materials_upload() made. */
+/* Deletes what materials_upload() made; before model_finish(). */
 void materials_finish(struct model *model);
 
 #endif

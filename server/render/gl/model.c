@@ -5,7 +5,6 @@
 #include <math.h>
 
 #include "base/mem.h"
-#include "render/gl/materials.h"
 
 static bool make_mesh(struct model *model, struct gl *gl)
 {
@@ -74,15 +73,12 @@ static void find_clusters(struct model_level *level, const struct asset_view *vi
         level->first_cluster++;
 }
 
-bool model_init(struct model *model, struct gl *gl, const struct asset *file, GLuint ramp_program)
+bool model_init(struct model *model, struct gl *gl, const struct asset *file)
 {
     const struct asset_header *header = file->view.header;
     *model = (struct model){ .file = file };
-    if (!make_mesh(model, gl) || !materials_upload(model, gl, ramp_program)) {
-        log_err(gl->log, "%s: not drawn: %u vertices, %u textures do not fit on the GPU", file->path, header->vertex_count,
-                header->texture_count);
+    if (!make_mesh(model, gl))
         return false;
-    }
     model->levels = mem_array(header->level_count, sizeof(*model->levels));
     model->level_count = header->level_count;
     for (uint32_t i = 0; i < header->level_count; i++) {
@@ -102,7 +98,6 @@ void model_finish(struct model *model)
         mem_free(model->levels[i].submeshes);
     }
     mem_free(model->levels);
-    materials_finish(model);
     mesh_finish(&model->mesh);
     *model = (struct model){ 0 };
 }

@@ -52,9 +52,9 @@ struct model_draws { /* scratch memory for the draws of one submesh; zero-initia
 };
 void model_draws_finish(struct model_draws *draws);
 
-/* Uploads an asset file. ramp_program: shaders/ramp.comp, compiled. Returns false if that fails; it is logged, and model_finish() must
+/* Uploads the geometry of an asset file; materials_upload() does the rest. Returns false if the GPU is out of memory; model_finish() must
    still be called. */
-bool model_init(struct model *model, struct gl *gl, const struct asset *file, GLuint ramp_program);
+bool model_init(struct model *model, struct gl *gl, const struct asset *file);
 void model_finish(struct model *model);
 /* Returns the coarsest level with an error of at most error_m. */
 const struct model_level *model_level(const struct model *model, double error_m);

@@ -8,7 +8,6 @@
 #include "base/mem.h"
 #include "gpu/program.h"
 #include "render/matrix.h"
-#include "render/gl/surface_pass.h"
 
 enum { BIND_COMMANDS = 1, BIND_PLACES = 2, STRIP_VERTICES = 14 };
 enum { FIRST_PART = 8 };              /* of all triangles: drawn before anything is tested; then as many as until then */
@@ -82,7 +81,7 @@ static bool make_box(const struct view_constants *constants, const struct scene_
 static struct occlusion_asset add_asset(struct occlusion *occlusion, const struct frame_context *context, int index)
 {
     const struct scene_asset *asset = &context->gpu_scene->scene->assets[index];
-    struct occlusion_asset it = { .boxes_before = occlusion->box_count, .triangles = surface_pass_level(context, index)->triangles };
+    struct occlusion_asset it = { .boxes_before = occlusion->box_count, .triangles = frame_level(context, index)->triangles };
     struct occlusion_box box = { 0 };
     it.tested = asset->front == 0 && it.triangles >= BOX_TRIANGLES && make_box(&context->constants, asset, &box);
     if (!it.tested)

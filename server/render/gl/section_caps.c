@@ -47,7 +47,7 @@ static void count_asset(struct section_caps *caps, const struct frame_context *c
     glUniformMatrix4fv(0, 1, GL_FALSE, matrix);
     gpu_scene_set_front_face(at);
     mesh_bind(&model->mesh);
-    model_draw_closed(&caps->draws, model, surface_pass_level(context, asset));
+    model_draw_closed(&caps->draws, model, frame_level(context, asset));
 }
 
 /* Cuts by the planes that rays come in by. What lies beyond the way out of what is left is met, too: a ray that leaves a body there was in

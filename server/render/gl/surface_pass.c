@@ -7,7 +7,6 @@
 #include "base/text.h"
 #include "gpu/program.h"
 #include "render/plan/culling.h"
-#include "render/plan/lod_selection.h"
 #include "render/matrix.h"
 
 /* Uniform locations and texture units, as in the shaders. */
@@ -15,7 +14,6 @@ enum { MATERIAL = 2, TEXTURES = 3 };
 /* Of how much depth changes from pixel to pixel, for each step of scene_asset.front: GPUs round corners to parts of a pixel, each triangle
    in its own way. */
 static const double FORWARD_SLOPE = 0.05;
-static const double SUN_SLACK_TEXELS = 3; /* against surfaces that shade themselves */
 enum { UNIT_COLORMAP = 0, UNIT_RAMPS = 1, UNIT_SUN_MAP = 2, UNIT_MAPS = 3, UNIT_LIGHTS = 12, UNIT_SCALARS = 13, UNIT_LINES = 15 };
 
 /* From the beginning. Of textures the moving tier has only the holes that they cut; rich scales and gloss go with a field. */
@@ -117,11 +115,6 @@ static bool looks_at_material(const struct frame_context *context, int variant)
     return !context->measured && (!(variant & SURFACE_FIELD) || variant & SURFACE_TEXTURED || rich_light);
 }
 
-double surface_pass_sun_slack(const struct frame_context *context)
-{
-    return SUN_SLACK_TEXELS * context->light->texel_m / context->light->depth_m;
-}
-
 static void to_rows(const double matrix[16], float rows[3][4])
 {
     for (int r = 0; r < 3; r++)
@@ -140,7 +133,7 @@ static void place_instance(const struct frame_context *context, int index, const
     matrix_to_float(clip_from_file, out->clip_from_file);
     if (context->view->tier == TIER_PREVIEW) {
         matrix_multiply(context->light->texture_from_plant, asset->placement, from_file);
-        from_file[14] += surface_pass_sun_slack(context);
+        from_file[14] += frame_sun_slack(context);
     } else {
         matrix_translation((double[3]){ -constants->eye_m[0], -constants->eye_m[1], -constants->eye_m[2] }, from_file);
         matrix_multiply(from_file, asset->placement, from_file);
@@ -155,18 +148,13 @@ static void place_instance(const struct frame_context *context, int index, const
     out->normals[2][3] = 0;
 }
 
-const struct model_level *surface_pass_level(const struct frame_context *context, int asset)
-{
-    return lod_level(context->gpu_scene, &context->constants, asset, context->error_px);
-}
-
 /* One asset's surfaces, those that are blended or those that are not. A field is never blended: it would mix its colours. hidden: it is
    drawn only if the GPU says so. */
 static void gather(struct surface_pass *pass, struct draw_batches *batches, const struct frame_context *context, int index, bool hidden)
 {
     const struct gpu_scene *gpu_scene = context->gpu_scene;
     const struct model *model = gpu_scene->of_asset[index];
-    const struct model_level *level = surface_pass_level(context, index);
+    const struct model_level *level = frame_level(context, index);
     const struct fields_entry *field = context->fields[index];
     const struct scene_asset *asset = &gpu_scene->scene->assets[index];
     bool blend = batches == &pass->blended, alone = is_per_fragment(context, field);
@@ -369,12 +357,4 @@ void surface_pass_draw(struct surface_pass *pass, const struct frame_context *co
 {
     surface_pass_draw_some(pass, context, 0, INT_MAX);
     surface_pass_draw_blended(pass, context);
-}
-
-int surface_pass_triangles(const struct frame_context *context)
-{
-    int count = 0;
-    for (size_t i = 0; i < context->visible_count; i++)
-        count += surface_pass_level(context, context->visible[i])->triangles;
-    return count;
 }

@@ -26,7 +26,7 @@ struct surface_pass {
     int least_hiding; /* least number of triangles for occlusion culling; INT_MAX: never, only clusters are culled */
     bool one_by_one;  /* draws each asset by its own calls; for comparison in tests */
     struct draw_batches opaque, blended;
-    int triangles; /* counts triangles drawn, culled ones left out; the caller resets it */
+    int triangles;                                       /* counts triangles drawn, culled ones left out; the caller resets it */
     GLuint programs[SURFACE_KINDS][2][SURFACE_VARIANTS]; /* [kind][refined][features]; 0: not compiled yet */
 };
 
@@ -39,11 +39,5 @@ void surface_pass_draw(struct surface_pass *pass, const struct frame_context *co
    `triangles` triangles are drawn, and returns the index to go on with; surface_pass_draw_blended() then draws all transparent ones. */
 size_t surface_pass_draw_some(struct surface_pass *pass, const struct frame_context *context, size_t first, int triangles);
 void surface_pass_draw_blended(struct surface_pass *pass, const struct frame_context *context);
-/* Returns the level of an asset that the frame plan chose. */
-const struct model_level *surface_pass_level(const struct frame_context *context, int asset);
-/* Returns by how much surfaces are moved towards the sun against shadow acne, in depth of the shadow map. */
-double surface_pass_sun_slack(const struct frame_context *context);
-/* Returns the number of triangles of the planned levels of all visible assets. */
-int surface_pass_triangles(const struct frame_context *context);
 
 #endif

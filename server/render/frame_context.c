@@ -1,0 +1,25 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What each renderer asks of a frame alike. */
+#include "render/frame_context.h"
+
+#include "render/plan/lod_selection.h"
+
+static const double SUN_SLACK_TEXELS = 3;
+
+const struct model_level *frame_level(const struct frame_context *context, int asset)
+{
+    return lod_level(context->gpu_scene, &context->constants, asset, context->error_px);
+}
+
+int frame_triangles(const struct frame_context *context)
+{
+    int count = 0;
+    for (size_t i = 0; i < context->visible_count; i++)
+        count += frame_level(context, context->visible[i])->triangles;
+    return count;
+}
+
+double frame_sun_slack(const struct frame_context *context)
+{
+    return SUN_SLACK_TEXELS * context->light->texel_m / context->light->depth_m;
+}

@@ -1,0 +1,164 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The matrices by which pixels look things up. */
+#include <math.h>
+#include <string.h>
+
+#include "render/soft/soft_impl.h"
+#include "render/light/sky.h"
+#include "render/matrix.h"
+
+static void copy_columns(const double from[16], float to[4][4])
+{
+    for (int c = 0; c < 4; c++)
+        for (int r = 0; r < 4; r++)
+            to[c][r] = (float)from[4 * c + r];
+}
+
+/* Clip space from pixels and depth, for w = 1. */
+static void clip_from_pixel(const struct soft *soft, double out[16])
+{
+    matrix_identity(out);
+    out[0] = 2.0 / soft->width_px;
+    out[5] = -2.0 / soft->height_px;
+    out[12] = -1;
+    out[13] = 1;
+}
+
+static void aim_sun(struct soft *soft, const double clip[16])
+{
+    const struct frame_context *context = soft->context;
+    double plant_from_clip[16], out[16];
+    matrix_invert(context->constants.clip_from_plant, plant_from_clip);
+    matrix_multiply(context->light->texture_from_plant, plant_from_clip, out);
+    matrix_multiply(out, clip, out);
+    for (int c = 0; c < 4; c++)
+        out[4 * c + 2] += frame_sun_slack(context) * out[4 * c + 3];
+    copy_columns(out, soft->sun_from_pixel);
+}
+
+/* Where a pixel looks: near.xyz / near.w of shaders/sky.vert, whose w is the same everywhere. */
+static void aim_rays(struct soft *soft, const double clip[16])
+{
+    double eye_from_clip[16], out[16];
+    matrix_invert(soft->context->constants.clip_from_eye, eye_from_clip);
+    matrix_multiply(eye_from_clip, clip, out);
+    double w = out[11] + out[15]; /* at depth 1 */
+    if (soft->context->constants.pixel_per_metre > 0) {
+        memset(soft->ray_from_pixel, 0, sizeof(soft->ray_from_pixel));
+        for (int r = 0; r < 3; r++)
+            soft->ray_from_pixel[2][r] = (float)-soft->context->constants.back[r];
+        return;
+    }
+    for (int r = 0; r < 3; r++) {
+        soft->ray_from_pixel[0][r] = (float)(out[r] / w);
+        soft->ray_from_pixel[1][r] = (float)(out[4 + r] / w);
+        soft->ray_from_pixel[2][r] = (float)((out[8 + r] + out[12 + r]) / w);
+    }
+}
+
+/* Over n pixels a straight line errs from the sine of a ray's height by at most 0.15 n^2 / f^2, f being the eye's distance from the picture
+   in pixels: the direction of a ray turns by 1 / f at most from pixel to pixel, and its second difference is no more than 1.2 / f^2. */
+static void choose_stretch(struct soft *soft)
+{
+    static const double most = 1; /* columns of the backdrop: half a level at the horizon, where it changes most */
+    const float(*m)[3] = soft->ray_from_pixel;
+    double step2 = 0, area2 = 0, volume = 0;
+    for (int r = 0; r < 3; r++) {
+        int a = (r + 1) % 3, b = (r + 2) % 3;
+        double normal = (double)m[0][a] * (double)m[1][b] - (double)m[0][b] * (double)m[1][a];
+        step2 += (double)m[0][r] * (double)m[0][r];
+        area2 += normal * normal;
+        volume += normal * (double)m[2][r];
+    }
+    double turn2 = step2 > 0 ? step2 * area2 / (volume * volume) : 0; /* 1 / f^2; rays are parallel */
+    int n = SOFT_STRETCH_MOST;
+    while (n >= SOFT_STRETCH_LEAST && !(0.15 * n * n * turn2 * SKY_BACKDROPS / 2 <= most))
+        n /= 2;
+    soft->stretch_px = n >= SOFT_STRETCH_LEAST ? n : 1;
+}
+
+/* The ground is flat: its coordinates and the picture's map to each other by 3x3 matrices. */
+static void aim_ground(struct soft *soft, const struct light *light)
+{
+    double clip[16];
+    float(*to)[3] = soft->ground_from_pixel;
+    soft->has_ground = sky_sees_ground(soft->context, light);
+    matrix_multiply(soft->context->constants.clip_from_plant, light->plant_from_ground, clip);
+    double h[3][3]; /* rows: x w, y w in pixels, w; columns: u, v, 1 */
+    for (int c = 0; c < 3; c++) {
+        const double *column = &clip[c == 2 ? 12 : 4 * c];
+        h[0][c] = 0.5 * soft->width_px * (column[3] + column[0]);
+        h[1][c] = 0.5 * soft->height_px * (column[3] - column[1]);
+        h[2][c] = column[3];
+    }
+    double determinant = 0;
+    for (int c = 0; c < 3; c++) {
+        int a = (c + 1) % 3, b = (c + 2) % 3;
+        determinant += h[0][c] * (h[1][a] * h[2][b] - h[1][b] * h[2][a]);
+        for (int r = 0; r < 3; r++) { /* adjugate */
+            int p = (r + 1) % 3, q = (r + 2) % 3;
+            to[c][r] = (float)(h[p][a] * h[q][b] - h[p][b] * h[q][a]);
+        }
+    }
+    double sign = determinant < 0 ? -1 : 1, size = 0;
+    for (int i = 0; i < 9; i++)
+        size = fmax(size, fabs((double)to[i / 3][i % 3]));
+    for (int i = 0; i < 9; i++)
+        to[i / 3][i % 3] = (float)((double)to[i / 3][i % 3] * sign / size);
+}
+
+void soft_aim_cuts(struct soft *soft)
+{
+    float half[2] = { 0.5f * (float)soft->width_px, 0.5f * (float)soft->height_px };
+    int count = soft->context->view->visibility.clip.plane_count;
+    soft->cut_count = 0;
+    for (int leave = 0; leave < 2; leave++) {
+        for (int i = 0; i < count; i++) {
+            const float *plane = soft->block.clip[i];
+            float *out = soft->cuts[soft->cut_count];
+            if ((plane[2] < 0) == leave)
+                continue;
+            out[0] = plane[0] / half[0];
+            out[1] = -plane[1] / half[1];
+            out[2] = plane[2];
+            out[3] = plane[3] - plane[0] + plane[1] + out[0] * soft->shift_px[0] + out[1] * soft->shift_px[1];
+            soft->cut_count++;
+        }
+        if (!leave)
+            soft->entry_count = soft->cut_count;
+    }
+}
+
+bool soft_is_cut_off(const struct soft *soft, const float at[4], int planes)
+{
+    for (int i = 0; i < planes; i++) {
+        const float *plane = soft->cuts[i];
+        if (plane[0] * at[0] + plane[1] * at[1] + plane[2] * at[2] + plane[3] * at[3] < 0)
+            return true;
+    }
+    return false;
+}
+
+bool soft_cuts_box(const struct soft *soft, const struct soft_mesh *mesh, int plane, const float low[3], const float high[3], bool *cut)
+{
+    float most = 0, least = 0;
+    for (int c = 0; c < 4; c++) {
+        float by = 0;
+        for (int r = 0; r < 4; r++)
+            by += soft->cuts[plane][r] * mesh->place[c][r];
+        most += by * (c == 3 ? 1 : by > 0 ? high[c] : low[c]);
+        least += by * (c == 3 ? 1 : by > 0 ? low[c] : high[c]);
+    }
+    *cut |= least < 0;
+    return most < 0;
+}
+
+void soft_aim(struct soft *soft, const struct light *light)
+{
+    double clip[16];
+    clip_from_pixel(soft, clip);
+    aim_sun(soft, clip);
+    aim_rays(soft, clip);
+    choose_stretch(soft);
+    aim_ground(soft, light);
+}

@@ -1,0 +1,93 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What a cut shows of closed bodies: a plane where it enters them. Over all that a pixel's ray meets behind the cut, bodies that it leaves
+   are counted up and those that it comes into down: what is left over is what it was in from the beginning. */
+#include <math.h>
+#include <string.h>
+
+#include "base/mem.h"
+#include "render/soft/kernels.h"
+
+/* Of a part: some triangle bounds a closed body. */
+static bool bounds_bodies(const struct soft_parts *parts, const struct soft_part *part)
+{
+    return parts->closed && memchr(parts->closed + part->first_vertex, 1, part->vertex_count);
+}
+
+static void keep_closed_faces(struct soft_tile *tile)
+{
+    const uint8_t *corners = tile->parts->corners + tile->part->first_corner, *closed = tile->parts->closed + tile->part->first_vertex;
+    int kept = 0;
+    for (int i = 0; i < tile->face_count; i++) {
+        tile->faces[kept] = tile->faces[i];
+        kept += closed[corners[tile->faces[i].triangle & FACE_TRIANGLE]];
+    }
+    tile->face_count = kept;
+}
+
+void soft_count_part(struct soft_tile *tile, const struct soft_found *found, const struct soft_item *item)
+{
+    const struct soft_kernels *kernels = tile->soft->kernels;
+    const struct soft_part *part = tile->part;
+    if (!tile->mesh->cut || !bounds_bodies(found->parts, part))
+        return;
+    kernels->place_part(tile, tile->mesh, found->parts, part);
+    if (item->cut)
+        soft_cut_corners(tile);
+    if (tile->corners.cut) {
+        kernels->carry_part(tile, tile->mesh, found->parts, part);
+        soft_cut_faces(tile, true);
+    } else {
+        kernels->find_faces(tile, tile->mesh, found, part);
+    }
+    keep_closed_faces(tile);
+    kernels->count_faces(tile);
+}
+
+float soft_entry_depth(const struct soft *soft, float x, float y)
+{
+    float top = 1, bottom = 0;
+    for (int i = 0; i < soft->cut_count; i++) {
+        const float *plane = soft->cuts[i];
+        float here = plane[0] * x + plane[1] * y + plane[3];
+        if (plane[2] > 0)
+            bottom = fmaxf(bottom, -here / plane[2]);
+        else if (plane[2] < 0)
+            top = fminf(top, -here / plane[2]);
+        else if (here < 0)
+            return 0;
+    }
+    return top > bottom && top < 1 ? top : 0;
+}
+
+void soft_cap_tile(struct soft_tile *tile)
+{
+    const struct soft *soft = tile->soft;
+    for (int row = tile->rect.top; row <= tile->rect.bottom; row++) {
+        size_t start = (size_t)row * (size_t)soft->pitch_px;
+        for (int column = tile->rect.left; column <= tile->rect.right; column++) {
+            uint32_t *mark = &soft->marks[start + (size_t)column];
+            float depth = (int32_t)*mark > 0 ? soft_entry_depth(soft, (float)column + 0.5f, (float)row + 0.5f) : 0;
+            *mark = depth > 0 ? MARK_CAP : 0;
+            soft->depth[start + (size_t)column] = depth;
+        }
+    }
+}
+
+/* --- which triangles bound closed bodies ------------------------------------------------------------------------------------------ */
+
+bool soft_parts_close(struct soft_parts *parts, const struct asset_view *file, const struct closed_bodies *closed, uint32_t vertex_count)
+{
+    uint8_t *of_file = mem_try_array(vertex_count, 1);
+    if (!of_file || parts->closed) {
+        mem_free(of_file);
+        return parts->closed != NULL;
+    }
+    for (size_t r = 0; r < closed->run_count; r++)
+        for (uint32_t i = 0; i < closed->runs[r].index_count; i++)
+            of_file[file->indices[closed->runs[r].first_index + i]] = 1; /* no vertex belongs to two bodies */
+    parts->closed = mem_try_array(parts->vertex_count, 1);
+    for (size_t i = 0; i < parts->vertex_count && parts->closed; i++)
+        parts->closed[i] = of_file[parts->vertices[i]];
+    mem_free(of_file);
+    return parts->closed != NULL;
+}

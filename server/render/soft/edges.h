@@ -1,0 +1,78 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Edges of triangles, and values over them, eight pixels at a time. Private to soft/. */
+#ifndef RENDER_SOFT_EDGES_H
+#define RENDER_SOFT_EDGES_H
+#include <stdbool.h>
+
+#include "render/soft/soft_impl.h"
+#include "render/soft/lanes.h"
+
+struct edge {
+    float x, y, dx, dy; /* from its upper end */
+    int32_t negative;   /* -1: what is negative lies inside; 0: what is not */
+};
+
+struct plane { /* a value over the picture, kept between its corners' */
+    float at, dx, dy, low, high;
+};
+
+SOFT_INLINE float smallest(float a, float b, float c)
+{
+    float least = a < b ? a : b;
+    return least < c ? least : c;
+}
+
+SOFT_INLINE float largest(float a, float b, float c)
+{
+    float most = a > b ? a : b;
+    return most > c ? most : c;
+}
+
+SOFT_INLINE void edge_init(struct edge *edge, const struct soft_vertex *p, const struct soft_vertex *q)
+{
+    bool swap = q->y < p->y || (q->y == p->y && q->x < p->x);
+    const struct soft_vertex *upper = swap ? q : p, *lower = swap ? p : q;
+    *edge = (struct edge){ upper->x, upper->y, lower->x - upper->x, lower->y - upper->y, swap ? -1 : 0 };
+}
+
+/* Its part that is the same all along the row. */
+SOFT_INLINE float edge_row(const struct edge *edge, float y)
+{
+    return edge->dx * (y - edge->y) + edge->dy * edge->x;
+}
+
+/* Below 0 where outside; by the sign alone, so that even -0 is on one side of the edge only. x: the pixels' middles. */
+SOFT_INLINE lanes_int edge_side(const struct edge *edge, float row, lanes x)
+{
+    return (lanes_int)(row - edge->dy * x) ^ edge->negative;
+}
+
+struct slopes { /* of the triangle, over twice its area */
+    float x1, y1, x2, y2;
+};
+
+SOFT_INLINE struct plane plane_of(const struct slopes *slopes, float v0, float v1, float v2)
+{
+    float d1 = v1 - v0, d2 = v2 - v0;
+    return (struct plane){ v0, d1 * slopes->y2 - d2 * slopes->y1, d2 * slopes->x1 - d1 * slopes->x2, smallest(v0, v1, v2),
+                           largest(v0, v1, v2) };
+}
+
+SOFT_INLINE lanes plane_at(const struct plane *plane, lanes x, float y, bool thin)
+{
+    lanes value = plane->at + plane->dy * y + plane->dx * x;
+    return thin ? lanes_clamp(value, plane->low, plane->high) : value;
+}
+
+SOFT_INLINE int clip_low(float x, int low)
+{
+    int first = x > 0 ? (int)(x + 0.4999f) : 0;
+    return first > low ? first : low;
+}
+
+SOFT_INLINE int clip_high(float x, int high)
+{
+    return x < (float)high + 0.5f ? (int)(x + 0.5f) - 1 : high;
+}
+
+#endif

@@ -1,0 +1,81 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Thin dark lines around shapes, found in depth: shaders/edges.frag once more. */
+#include <math.h>
+
+#include "render/soft/refined_impl.h"
+
+struct view_of_depth {
+    const float *depth;
+    int width_px, height_px, pitch_px;
+    float scale; /* of depth, in an orthographic picture; 0: depth is one over the distance */
+};
+
+SOFT_INLINE lanes at(const struct view_of_depth *view, int column, int row)
+{
+    row = row < 0 ? 0 : row < view->height_px ? row : view->height_px - 1;
+    const float *from = view->depth + (size_t)row * (size_t)view->pitch_px;
+    if (column >= 0 && column + LANES <= view->width_px)
+        return *(const lanes *)(from + column);
+    lanes out;
+    for (int i = 0; i < LANES; i++) {
+        int c = column + i;
+        out[i] = from[c < 0 ? 0 : c < view->width_px ? c : view->width_px - 1];
+    }
+    return out;
+}
+
+SOFT_INLINE lanes low(lanes a, lanes b)
+{
+    return lanes_choose(a < b, a, b);
+}
+
+SOFT_INLINE lanes high(lanes a, lanes b)
+{
+    return lanes_choose(a > b, a, b);
+}
+
+SOFT_INLINE lanes line(lanes rise)
+{
+    lanes t = lanes_clamp((rise - 0.006f) * (1 / (0.03f - 0.006f)), 0, 1);
+    return t * t * (3.0f - 2.0f * t);
+}
+
+enum { THIN = 3, WIDE = 6 };
+
+/* From here, one pixel to that side: whether it is nearer. */
+SOFT_INLINE lanes edge(const struct view_of_depth *view, int x, int y, lanes here, int dx, int dy)
+{
+    lanes next = at(view, x + dx, y + dy), zero = { 0 }, lines = zero;
+    if (!lanes_any(next > here))
+        return zero;
+    lanes level = here + high(here - at(view, x - dx, y - dy), zero);
+    lanes part = view->scale > 0 ? zero + view->scale : 1.0f / high(next, zero + 1e-9f);
+    lanes ahead = next, left = next, right = next;
+    if (!lanes_any(next > level))
+        return zero;
+    for (int i = THIN; i <= WIDE; i++) {
+        ahead = low(ahead, at(view, x + i * dx, y + i * dy));
+        left = low(left, at(view, x + dx + (i - 1) * dy, y + dy + (i - 1) * dx));
+        right = low(right, at(view, x + dx - (i - 1) * dy, y + dy - (i - 1) * dx));
+        lines += line((low(ahead, high(left, right)) - level) * part);
+    }
+    return lines * (1.0f / (WIDE - THIN + 1));
+}
+
+SOFT_KERNEL void refined_ink_band(const struct refined *refined, int number)
+{
+    const struct soft *soft = refined->soft;
+    struct view_of_depth view = { soft->depth, soft->width_px, soft->height_px, soft->pitch_px, soft->block.back[3] };
+    int end = (number + 1) * REFINED_ROWS < soft->height_px ? (number + 1) * REFINED_ROWS : soft->height_px;
+    for (int y = number * REFINED_ROWS; y < end; y++)
+        for (int x = 0; x < soft->width_px; x += LANES) {
+            lanes here = at(&view, x, y);
+            lanes most = high(high(edge(&view, x, y, here, 1, 0), edge(&view, x, y, here, -1, 0)),
+                              high(edge(&view, x, y, here, 0, 1), edge(&view, x, y, here, 0, -1)));
+            uint8_t *ink = refined->buffer->ink + (size_t)y * (size_t)soft->width_px + (size_t)x;
+            if (!lanes_any(most > 0.0f))
+                continue;
+            for (int i = 0; i < LANES && x + i < soft->width_px; i++)
+                ink[i] = (uint8_t)(most[i] * VISIBILITY_INK + 0.5f);
+        }
+}

@@ -1,0 +1,183 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* A moving picture whose camera stands still, taken apart, so that it can be coloured again (render/buffer.h). */
+#include <string.h>
+
+#include "base/mem.h"
+#include "render/soft/tile.h"
+
+struct keeping {
+    const struct soft *soft;
+    struct visibility_buffer *buffer;
+};
+
+struct spot { /* a triangle, in the picture */
+    uint32_t id;
+    uint32_t number;      /* in the band */
+    double weights[3][3]; /* of x, y and 1: of its corners, up to a factor */
+};
+
+/* The mesh that has this id. */
+static size_t mesh_of(const struct soft *soft, uint32_t id)
+{
+    size_t low = 0, high = soft->mesh_count;
+    while (high - low > 1) {
+        size_t middle = (low + high) / 2;
+        if (soft->found[middle].first_id <= id)
+            low = middle;
+        else
+            high = middle;
+    }
+    return low;
+}
+
+void soft_weights(const struct soft_mesh *mesh, const uint32_t vertices[3], double weights[3][3])
+{
+    double at[3][3]; /* x w, y w, w */
+    static const int rows[3] = { 0, 1, 3 };
+    for (int i = 0; i < 3; i++) {
+        const float *p = mesh->file->positions_m[vertices[i]];
+        for (int r = 0; r < 3; r++) {
+            const float(*m)[4] = mesh->place;
+            at[i][r] = (double)m[0][rows[r]] * p[0] + (double)m[1][rows[r]] * p[1] + (double)m[2][rows[r]] * p[2] + m[3][rows[r]];
+        }
+    }
+    for (int i = 0; i < 3; i++) {
+        const double *q = at[(i + 1) % 3], *r = at[(i + 2) % 3];
+        for (int c = 0; c < 3; c++)
+            weights[i][c] = q[(c + 1) % 3] * r[(c + 2) % 3] - q[(c + 2) % 3] * r[(c + 1) % 3];
+    }
+}
+
+static void find_spot(const struct keeping *keeping, struct visibility_band *band, uint32_t id, struct spot *spot)
+{
+    const struct soft *soft = keeping->soft;
+    size_t m = mesh_of(soft, id);
+    const struct soft_found *found = &soft->found[m];
+    const struct soft_mesh *mesh = &soft->meshes[m];
+    uint32_t local = id - found->first_id;
+    const struct soft_part *part = &found->parts->parts[found->items[local / PART_TRIANGLES].part];
+    const uint8_t *corners = found->parts->corners + part->first_corner + local % PART_TRIANGLES;
+    uint32_t vertices[3], of_picture[3];
+    for (int i = 0; i < 3; i++) {
+        vertices[i] = found->parts->vertices[part->first_vertex + corners[i * part->rounded]];
+        of_picture[i] = mesh->first_vertex + vertices[i];
+    }
+    spot->id = id;
+    spot->number = visibility_add_triangle(band, of_picture);
+    soft_weights(mesh, vertices, spot->weights);
+}
+
+static uint32_t weights_at(const struct spot *spot, double x, double y)
+{
+    double w[3], sum = 0;
+    for (int i = 0; i < 3; i++) {
+        w[i] = spot->weights[i][0] * x + spot->weights[i][1] * y + spot->weights[i][2];
+        sum += w[i];
+    }
+    uint32_t out[2];
+    for (int i = 0; i < 2; i++) {
+        double part = sum != 0 ? w[i + 1] / sum : 0;
+        out[i] = part <= 0 ? 0 : part >= 1 ? 65535 : (uint32_t)(part * 65535 + 0.5);
+    }
+    if (out[0] + out[1] > 65535) /* by rounding */
+        out[1] = 65535 - out[0];
+    return out[0] | out[1] << 16;
+}
+
+static void keep_band(const struct keeping *keeping, int number)
+{
+    enum { SPOTS = 256 };
+    const struct soft *soft = keeping->soft;
+    struct visibility_buffer *buffer = keeping->buffer;
+    struct visibility_band *band = &buffer->bands[number];
+    struct spot spots[SPOTS]; /* by id: neighbours in a row, and the rows above, show the same triangles */
+    for (int i = 0; i < SPOTS; i++)
+        spots[i].id = UINT32_MAX;
+    int end = (number + 1) * buffer->band_rows < buffer->height_px ? (number + 1) * buffer->band_rows : buffer->height_px;
+    for (int y = number * buffer->band_rows; y < end; y++) {
+        size_t from = (size_t)y * (size_t)soft->pitch_px, to = (size_t)y * (size_t)buffer->width_px;
+        const uint32_t *out = (const uint32_t *)(const void *)(soft->out + (size_t)y * soft->out_stride_bytes);
+        for (size_t x = 0; x < (size_t)buffer->width_px; x++) {
+            uint32_t mark = soft->marks[from + x], id = soft->ids[from + x];
+            if (!(mark & MARK_FIELD) || mark & MARK_CONTEXT) {
+                buffer->surfaces[to + x] = VISIBILITY_FIXED | (out[x] & 0xffffff);
+                continue;
+            }
+            struct spot *spot = &spots[(id ^ id >> 8) % SPOTS];
+            if (spot->id != id)
+                find_spot(keeping, band, id, spot);
+            buffer->surfaces[to + x] = spot->number;
+            buffer->weights[to + x] = weights_at(spot, (double)x + 0.5, y + 0.5);
+            buffer->rows[to + x] = (uint8_t)((mark & MARK_PLACE) / COLORMAP_COLUMNS);
+        }
+    }
+}
+
+static void keep_bands(void *arg, size_t begin, size_t end)
+{
+    for (size_t band = begin; band < end; band++)
+        keep_band(arg, (int)band);
+}
+
+struct visibility_buffer *soft_keep(struct soft *soft)
+{
+    struct visibility_buffer *buffer = visibility_buffer_create(soft->width_px, soft->height_px, BAND_ROWS);
+    if (!buffer)
+        return NULL;
+    for (size_t m = 0; m < soft->mesh_count; m++) {
+        const struct soft_mesh *mesh = &soft->meshes[m];
+        if (mesh->has_field)
+            visibility_buffer_add_mesh(buffer, &(struct visibility_mesh){ .asset = mesh->asset,
+                                                                          .first_vertex = mesh->first_vertex,
+                                                                          .vertex_count = mesh->vertex_count });
+    }
+    struct keeping keeping = { soft, buffer };
+    workers_for(soft->workers, (size_t)buffer->band_count, 1, keep_bands, &keeping);
+    return buffer;
+}
+
+void soft_keep_rim(const struct soft *soft, struct visibility_buffer *buffer)
+{
+    const uint8_t *rim = soft_rim(soft);
+    for (int y = 0; y < soft->height_px; y++) {
+        size_t from = (size_t)y * (size_t)soft->pitch_px, to = (size_t)y * (size_t)soft->width_px;
+        for (size_t x = 0; x < (size_t)soft->width_px; x++)
+            if (rim[from + x] && !soft->marks[from + x])
+                buffer->ink[to + x] = rim[from + x] == RIM_DARK ? VISIBILITY_RIM_DARK : VISIBILITY_RIM_LIGHT;
+    }
+}
+
+static void forget(void *buffer)
+{
+    visibility_buffer_destroy(&(struct visibility_buffer *){ buffer });
+}
+
+void soft_give(struct visibility_store *store, const struct frame_context *context, struct visibility_buffer *buffer,
+               const struct frame *frame)
+{
+    buffer->markers = mem_array(frame->marker_count, sizeof(*buffer->markers));
+    buffer->marker_count = frame->marker_count;
+    if (frame->marker_count > 0)
+        memcpy(buffer->markers, frame->markers, frame->marker_count * sizeof(*buffer->markers));
+    visibility_store_give(store, context->shape, buffer, visibility_buffer_bytes(buffer), forget);
+}
+
+bool soft_resolve_again(struct soft *soft, struct visibility_store *store, const struct frame_context *context,
+                        const struct isoline_points *points, struct frame *frame)
+{
+    struct visibility_buffer *buffer = visibility_store_find(store, context->shape);
+    struct frame_uniforms block;
+    if (!buffer || (context->colormap.lines && !buffer->lined))
+        return false;
+    frame_uniforms_fill(&block, context);
+    soft_read_palette(soft, &context->colormap, context->view->look == LOOK_GLOSSY);
+    resolve_read(buffer, context, soft->workers);
+    resolve_colors(buffer, soft->colormap, &(struct resolve_lines){ block.lines[0], soft->lines }, block.scale[3], soft->workers, 0,
+                   buffer->band_count, frame);
+    if (context->colormap.lines)
+        isolines_find(context, points, buffer->depth, (size_t)buffer->width_px, frame);
+    frame->markers = mem_array(buffer->marker_count, sizeof(*frame->markers));
+    frame->marker_count = buffer->marker_count;
+    memcpy(frame->markers, buffer->markers, buffer->marker_count * sizeof(*buffer->markers));
+    return true;
+}

@@ -1,0 +1,13 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The loops of one set. */
+#include "render/soft/kernels.h"
+
+const struct soft_kernels soft_kernels_of_set = {
+    .place_part = soft_place_part,
+    .carry_part = soft_carry_part,
+    .find_faces = soft_find_faces,
+    .raster_faces = soft_raster_faces,
+    .count_faces = soft_count_faces,
+    .look_again = soft_look_again,
+    .color = soft_color,
+};

@@ -1,0 +1,46 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The loops that take most of a preview's time. Their files are compiled once for any machine and, for x86, once more for those with AVX2
+   and once for those with AVX-512 (Makefile): names end in _plain, _wide and _widest. The same bits come out. Private to soft/. */
+#ifndef RENDER_SOFT_KERNELS_H
+#define RENDER_SOFT_KERNELS_H
+#include "render/soft/tile.h"
+
+struct soft_kernels {
+    /* The vertices of a part: first where all of them are, then what those of its faces carry of field and light; all, if some are cut. */
+    void (*place_part)(struct soft_tile *tile, const struct soft_mesh *mesh, const struct soft_parts *parts, const struct soft_part *part);
+    void (*carry_part)(struct soft_tile *tile, const struct soft_mesh *mesh, const struct soft_parts *parts, const struct soft_part *part);
+    /* Its faces, out of corners that were placed and are not cut. */
+    void (*find_faces)(struct soft_tile *tile, const struct soft_mesh *mesh, const struct soft_found *found, const struct soft_part *part);
+    /* Depth and marks of all faces. */
+    void (*raster_faces)(const struct soft_tile *tile, uint32_t mark);
+    /* Of all faces: into the marks, one more where a face looks away, one less where it faces the eye. */
+    void (*count_faces)(const struct soft_tile *tile);
+    /* How far these blocks reach now. */
+    void (*look_again)(struct soft_tile *tile, const struct soft_rect *blocks);
+    /* From marks; begins at a whole SOFT_STRETCH_MOST. */
+    void (*color)(const struct soft *soft, const struct soft_rect *rect);
+};
+extern const struct soft_kernels soft_kernels_plain, soft_kernels_wide, soft_kernels_widest; /* but for plain: on x86 only */
+
+#ifndef SOFT_SET /* which of them is compiled */
+#define SOFT_SET _plain
+#endif
+#define SOFT_JOIN(name, set) name##set
+#define SOFT_IN_SET(name, set) SOFT_JOIN(name, set)
+#define soft_kernels_of_set SOFT_IN_SET(soft_kernels, SOFT_SET)
+#define soft_place_part SOFT_IN_SET(soft_place_part, SOFT_SET)
+#define soft_carry_part SOFT_IN_SET(soft_carry_part, SOFT_SET)
+#define soft_find_faces SOFT_IN_SET(soft_find_faces, SOFT_SET)
+#define soft_raster_faces SOFT_IN_SET(soft_raster_faces, SOFT_SET)
+#define soft_count_faces SOFT_IN_SET(soft_count_faces, SOFT_SET)
+#define soft_look_again SOFT_IN_SET(soft_look_again, SOFT_SET)
+#define soft_color SOFT_IN_SET(soft_color, SOFT_SET)
+void soft_place_part(struct soft_tile *tile, const struct soft_mesh *mesh, const struct soft_parts *parts, const struct soft_part *part);
+void soft_carry_part(struct soft_tile *tile, const struct soft_mesh *mesh, const struct soft_parts *parts, const struct soft_part *part);
+void soft_find_faces(struct soft_tile *tile, const struct soft_mesh *mesh, const struct soft_found *found, const struct soft_part *part);
+void soft_raster_faces(const struct soft_tile *tile, uint32_t mark);
+void soft_count_faces(const struct soft_tile *tile);
+void soft_look_again(struct soft_tile *tile, const struct soft_rect *blocks);
+void soft_color(const struct soft *soft, const struct soft_rect *rect);
+
+#endif

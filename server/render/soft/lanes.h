@@ -1,0 +1,154 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Eight numbers at a time, by the compiler's vector extensions, which do not find all that a machine can: the same bits on every machine.
+   Private to soft/. */
+#ifndef RENDER_SOFT_LANES_H
+#define RENDER_SOFT_LANES_H
+#include <stdint.h>
+#ifdef __AVX2__
+#include <immintrin.h>
+#endif
+
+#include "base/simd.h"
+
+#define SOFT_KERNEL SIMD_CLONES("avx2")
+#define SOFT_INLINE SIMD_BODY
+
+enum { LANES = 8 }; /* SOFT_STRETCH_LEAST is no less */
+typedef float lanes __attribute__((vector_size(32), aligned(4)));
+typedef int32_t lanes_int __attribute__((vector_size(32), aligned(4)));
+typedef uint32_t lanes_uint __attribute__((vector_size(32), aligned(4)));
+typedef float quad __attribute__((vector_size(16), aligned(4)));
+typedef int32_t quad_int __attribute__((vector_size(16), aligned(4)));
+typedef uint8_t lanes_bytes __attribute__((vector_size(8)));
+typedef int64_t lanes_pair __attribute__((vector_size(16)));
+
+#ifdef __AVX512VL__
+#define LANES_CHOOSE_AT_ONCE 1 /* one instruction does it */
+#else
+#define LANES_CHOOSE_AT_ONCE 0
+#endif
+
+SOFT_INLINE lanes_int lanes_choose_int(lanes_int mask, lanes_int a, lanes_int b)
+{
+#if LANES_CHOOSE_AT_ONCE
+    return (lanes_int)_mm256_ternarylogic_epi32((__m256i)mask, (__m256i)a, (__m256i)b, 0xca);
+#else
+    return (mask & a) | (~mask & b);
+#endif
+}
+
+SOFT_INLINE lanes lanes_choose(lanes_int mask, lanes a, lanes b)
+{
+    return (lanes)lanes_choose_int(mask, (lanes_int)a, (lanes_int)b);
+}
+
+/* a < b ? a : b */
+SOFT_INLINE lanes lanes_least(lanes a, lanes b)
+{
+#ifdef __AVX2__
+    return (lanes)_mm256_min_ps((__m256)a, (__m256)b);
+#else
+    return lanes_choose(a < b, a, b);
+#endif
+}
+
+/* a > b ? a : b */
+SOFT_INLINE lanes lanes_most(lanes a, lanes b)
+{
+#ifdef __AVX2__
+    return (lanes)_mm256_max_ps((__m256)a, (__m256)b);
+#else
+    return lanes_choose(a > b, a, b);
+#endif
+}
+
+SOFT_INLINE lanes lanes_clamp(lanes x, float low, float high)
+{
+    return lanes_least((lanes){ 0 } + high, lanes_most((lanes){ 0 } + low, x));
+}
+
+SOFT_INLINE int lanes_any(lanes_int mask)
+{
+#ifdef __AVX2__
+    return !_mm256_testz_si256((__m256i)mask, (__m256i)mask);
+#else
+    union {
+        lanes_int all;
+        lanes_pair halves[2];
+    } u = { mask };
+    lanes_pair both = u.halves[0] | u.halves[1];
+    return (both[0] | both[1]) != 0;
+#endif
+}
+
+/* A bit for each lane, the first one lowest. */
+SOFT_INLINE uint32_t lanes_bits(lanes_int mask)
+{
+#ifdef __AVX2__
+    return (uint32_t)_mm256_movemask_ps((__m256)mask);
+#else
+    union {
+        lanes_int all;
+        lanes_pair halves[2];
+    } u = { mask & (lanes_int){ 1, 2, 4, 8, 16, 32, 64, 128 } };
+    lanes_pair both = u.halves[0] | u.halves[1];
+    uint64_t bits = (uint64_t)(both[0] | both[1]);
+    return (uint32_t)(bits | bits >> 32);
+#endif
+}
+
+SOFT_INLINE lanes_int lanes_whole(lanes x)
+{
+    return __builtin_convertvector(x, lanes_int);
+}
+
+/* log2, to 1e-7; of 1e-30 where x is less. As in field/kernels.c. */
+SOFT_INLINE lanes lanes_log2(lanes x)
+{
+    lanes tiny = (lanes){ 0 } + 1e-30f;
+    lanes_int bits = (lanes_int)lanes_choose(x > tiny, x, tiny), exponent = (bits - 0x3f3504f3) >> 23;
+    lanes r = (lanes)(bits - exponent * (1 << 23)) - 1.0f;
+    lanes p = r * -0.1457575112581253f + 0.23688247799873352f;
+    p = p * r - 0.25006118416786194f;
+    p = p * r + 0.2867085337638855f;
+    p = p * r - 0.3600881099700928f;
+    p = p * r + 0.4809393882751465f;
+    p = p * r - 0.7213571071624756f;
+    p = p * r + 1.4426947832107544f;
+    return __builtin_convertvector(exponent, lanes) + r * p;
+}
+
+SOFT_INLINE lanes lanes_root(lanes x)
+{
+#ifdef __AVX2__
+    return (lanes)_mm256_sqrt_ps((__m256)x);
+#else
+    for (int i = 0; i < LANES; i++)
+        x[i] = __builtin_sqrtf(x[i]);
+    return x;
+#endif
+}
+
+SOFT_INLINE lanes_int lanes_from_bytes(const uint8_t *at)
+{
+    lanes_bytes eight;
+    __builtin_memcpy(&eight, at, sizeof(eight));
+    return __builtin_convertvector(eight, lanes_int);
+}
+
+/* table[at] */
+SOFT_INLINE lanes lanes_look_up(const float *table, lanes_int at)
+{
+#ifdef __AVX2__
+    return (lanes)_mm256_i32gather_ps(table, (__m256i)at, sizeof(float));
+#else
+    lanes out;
+    for (int l = 0; l < LANES; l++)
+        out[l] = table[at[l]];
+    return out;
+#endif
+}
+
+#define LANES_IOTA ((lanes){ 0, 1, 2, 3, 4, 5, 6, 7 })
+
+#endif

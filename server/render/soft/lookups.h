@@ -1,0 +1,100 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What pixels look up, eight at a time: shadow and backdrop. Private to soft/. */
+#ifndef RENDER_SOFT_LOOKUPS_H
+#define RENDER_SOFT_LOOKUPS_H
+#include <math.h>
+#include <string.h>
+
+#include "render/soft/soft_impl.h"
+#include "render/soft/lanes.h"
+#include "render/light/sky.h"
+
+SOFT_INLINE lanes whole_part(lanes x) /* x >= 0 */
+{
+    return __builtin_convertvector(lanes_whole(x), lanes);
+}
+
+SOFT_INLINE lanes_int gather(const uint32_t *table, lanes_int at)
+{
+#ifdef __AVX2__
+    return (lanes_int)_mm256_i32gather_epi32((const int *)table, (__m256i)at, sizeof(*table));
+#else
+    lanes_int out;
+    for (int i = 0; i < LANES; i++)
+        out[i] = (int32_t)table[at[i]];
+    return out;
+#endif
+}
+
+SOFT_INLINE lanes byte_of(lanes_int packed, int number)
+{
+    return __builtin_convertvector(packed >> (8 * number) & 0xff, lanes);
+}
+
+/* How much of the sun is seen, 0..1: four comparisons, weighted as a GL sampler with linear filter does. s, t: 0..1 over the map. */
+SOFT_INLINE lanes sun_tap(const struct soft_light *light, lanes s, lanes t, lanes depth)
+{
+    float size = (float)light->sun_map_px;
+    lanes u = lanes_clamp(s * size - 0.5f, 0, size - 1), v = lanes_clamp(t * size - 0.5f, 0, size - 1);
+    lanes place = lanes_clamp(depth, 0, 1) * 65535.0f;
+    lanes u0 = whole_part(u), v0 = whole_part(v), u_part = u - u0, v_part = v - v0;
+    lanes_int at = lanes_whole(v0) * (light->sun_map_px + 1) + lanes_whole(u0);
+    uint32_t pairs[2][LANES]; /* of neighbours; above, below */
+    for (int i = 0; i < LANES; i++) {
+        memcpy(&pairs[0][i], light->sun_map + at[i], 4);
+        memcpy(&pairs[1][i], light->sun_map + at[i] + light->sun_map_px + 1, 4);
+    }
+    lanes_uint above = *(const lanes_uint *)pairs[0], below = *(const lanes_uint *)pairs[1];
+    lanes one = (lanes){ 0 } + 1.0f, none = { 0 };
+#define LIT(pair) lanes_choose(place >= __builtin_convertvector((lanes_int)((pair)&0xffff), lanes), one, none)
+    lanes upper = LIT(above) + u_part * (LIT(above >> 16) - LIT(above)), lower = LIT(below) + u_part * (LIT(below >> 16) - LIT(below));
+#undef LIT
+    return upper + v_part * (lower - upper);
+}
+
+/* Heights over the horizon, as columns of the backdrop. They bend so little that they are worked out at the ends of stretches only: of
+   soft->stretch_px, as long as the picture lets them be. */
+struct heights {
+    float first, step; /* at the middle of the first pixel; from pixel to pixel */
+};
+
+static float height_at(const struct soft *soft, float x, float y)
+{
+    const float(*m)[3] = soft->ray_from_pixel;
+    float up = 0, square = 0;
+    for (int r = 0; r < 3; r++) {
+        float ray = x * m[0][r] + (y * m[1][r] + m[2][r]);
+        up += ray * (float)soft->gpu_scene->up[r];
+        square += ray * ray;
+    }
+    return up / sqrtf(square) * 1023.5f + 1024.0f;
+}
+
+/* Of the stretch that begins there. */
+static inline struct heights heights_from(const struct soft *soft, int column, int row)
+{
+    float y = (float)row + 0.5f, x = (float)column + 0.5f, first = height_at(soft, x, y);
+    return (struct heights){ first, (height_at(soft, x + (float)soft->stretch_px, y) - first) / (float)soft->stretch_px };
+}
+
+SOFT_INLINE lanes_int backdrop_at(const struct soft *soft, const struct heights *heights, int column, int row)
+{
+    lanes x = LANES_IOTA + ((float)column + 0.5f);
+    lanes height = (LANES_IOTA + (float)(column & (soft->stretch_px - 1))) * heights->step + heights->first;
+    for (int i = 0; i < LANES && soft->stretch_px == 1; i++)
+        height[i] = height_at(soft, (float)(column + i) + 0.5f, (float)row + 0.5f);
+    lanes_int at = lanes_whole(lanes_clamp(height, 0, SKY_BACKDROPS - 1));
+    lanes_int tile = (soft->context->view->dark ? SKY_ROUNDINGS : 0) + (row & 3) * 4 + (lanes_whole(x) & 3);
+    return gather(soft->backdrops, tile * SKY_BACKDROPS + at);
+}
+
+/* factor: 256 leaves a colour as it is. */
+SOFT_INLINE lanes_int darkened(lanes_int color, lanes_int factor)
+{
+    lanes_uint by = (lanes_uint)factor, bgrx = (lanes_uint)color;
+    lanes_uint blue_red = ((bgrx & 0xff00ff) * by + 0x800080) >> 8 & 0xff00ff; /* both at once */
+    lanes_uint green = ((bgrx & 0xff00) * by + 0x8000) >> 8 & 0xff00;
+    return (lanes_int)(blue_red | green | 0xff000000);
+}
+
+#endif

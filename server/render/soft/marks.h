@@ -1,0 +1,114 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Marks of pixels (render/soft/soft_impl.h), eight at a time. Private to soft/. */
+#ifndef RENDER_SOFT_MARKS_H
+#define RENDER_SOFT_MARKS_H
+#include "render/soft/soft_impl.h"
+#include "render/soft/lanes.h"
+
+struct ink {
+    int32_t last_row; /* of the colormap */
+    float pattern_px;
+    bool rich; /* there are lines, or the scale is logarithmic */
+    bool log;
+    float low, over;    /* logarithmic scales: place = (log2(value) - low) * over */
+    float line_px;      /* width; 0: there are none */
+    const float *lines; /* as struct soft */
+};
+
+SOFT_INLINE struct ink ink_of(const struct soft *soft)
+{
+    const struct frame_uniforms *block = &soft->block;
+    return (struct ink){
+        .last_row = (int32_t)block->shade[2],
+        .pattern_px = block->scale[3],
+        .rich = block->lines[0] > 0 || block->scale[2] > 0.5f,
+        .log = block->scale[2] > 0.5f,
+        .low = block->scale[0],
+        .over = block->scale[1],
+        .line_px = block->lines[0],
+        .lines = soft->lines,
+    };
+}
+
+SOFT_INLINE lanes_int whole_within(lanes x, int32_t high)
+{
+    lanes_int whole = lanes_whole(x), highs = (lanes_int){ 0 } + high;
+    whole = lanes_choose_int(whole > 0, whole, (lanes_int){ 0 });
+    return lanes_choose_int(whole < highs, whole, highs);
+}
+
+SOFT_INLINE lanes_int field_mark(lanes column, lanes row, int32_t last_row)
+{
+    return (whole_within(row, last_row) * COLORMAP_COLUMNS + whole_within(column, COLORMAP_PLACES + 1)) | (int32_t)MARK_FIELD;
+}
+
+SOFT_INLINE lanes_int context_mark(lanes ambient, lanes sun, uint32_t mark)
+{
+    lanes_int a = lanes_whole(ambient + 0.5f), s = lanes_whole(sun + 0.5f);
+    return a << 8 | s | (int32_t)mark;
+}
+
+/* Diagonal stripes, as hatch in shaders/field.glsl: -1 on the dark ones. */
+SOFT_INLINE lanes_int hatch(lanes x, float y, float pattern_px)
+{
+    lanes at = (x + y) * (1 / (pattern_px * 1.4142f));
+    lanes phase = at - __builtin_convertvector(lanes_whole(at), lanes) - 0.5f;
+    return (phase < -0.25f) | (phase > 0.25f);
+}
+
+/* Dots in rows, every second one moved by half, as stipple there. */
+SOFT_INLINE lanes_int stipple(lanes x, float y, float pattern_px)
+{
+    float row = y * (1 / pattern_px);
+    float down = row - (float)(int)row - 0.5f, moved = (int)row % 2 ? 0.5f : 0;
+    lanes cell = x * (1 / pattern_px) + moved;
+    lanes across = cell - __builtin_convertvector(lanes_whole(cell), lanes) - 0.5f;
+    return across * across + down * down < 0.26f * 0.26f;
+}
+
+/* As field_color in shaders/field.glsl, but for patterns. value_x, value_y: by how much the value grows from pixel to pixel. */
+SOFT_INLINE lanes_int rich_mark(lanes value, lanes value_x, lanes value_y, lanes row, const struct ink *ink)
+{
+    const float slack = 1e-5f, columns = COLORMAP_PLACES / (1 + 2 * slack), first = 1 + slack * columns, farthest = 1e6f;
+    lanes none = { 0 }, slope = lanes_root(value_x * value_x + value_y * value_y), place;
+    if (ink->log) {
+        lanes_int counts = value > 1e-30f;
+        place = (lanes_log2(value) - ink->low) * ink->over;
+        slope = lanes_choose(counts, slope * (ink->over * 1.44269504f) / lanes_choose(counts, value, none + 1.0f), none);
+        value = lanes_clamp(place * columns + first, -farthest, farthest);
+    } else {
+        place = (value - first) * (1 / columns);
+        slope *= 1 / columns;
+    }
+    lanes_int marks = field_mark(value, row, ink->last_row);
+    if (!(ink->line_px > 0))
+        return marks;
+    lanes_int at = whole_within(lanes_clamp(value - 1.0f, 0, COLORMAP_PLACES - 1), COLORMAP_PLACES - 1), steep = slope > 1e-7f;
+    lanes away;
+    for (int l = 0; l < LANES; l++)
+        away[l] = __builtin_fabsf(place[l] - ink->lines[at[l]]);
+    lanes part = 0.5f * ink->line_px + 0.5f - away / lanes_choose(steep, slope, none + 1.0f);
+    part = lanes_choose(steep, lanes_clamp(part, 0, 1), none);
+    return marks | lanes_whole(part * MARK_LINE_WHOLE + 0.5f) << MARK_LINE;
+}
+
+/* Level lines, wide apart, as rule there. */
+SOFT_INLINE bool rule(float y, float pattern_px)
+{
+    float at = y * (1 / pattern_px), phase = at - (float)(int)at - 0.5f;
+    return phase < -0.36f || phase > 0.36f;
+}
+
+/* Corners differ in their flags, or say that there is no data or that it is uncertain. */
+SOFT_INLINE lanes_int pattern_marks(lanes_int marks, lanes_int no_data, lanes_int uncertain, lanes_int no_limits, lanes row, lanes x,
+                                    float y, const struct ink *ink)
+{
+    lanes_int r = whole_within(row, ink->last_row) * COLORMAP_COLUMNS + (int32_t)MARK_FIELD + COLORMAP_PATTERNS;
+    lanes_int dark = hatch(x, y, ink->pattern_px), dots = stipple(x, y, ink->pattern_px);
+    lanes_int lines = marks & MARK_LINE_WHOLE << MARK_LINE;
+    marks = lanes_choose_int(uncertain & dots, (r + PATTERN_STIPPLE) | lines, marks);
+    marks = lanes_choose_int(no_limits, r + (rule(y, ink->pattern_px) ? PATTERN_PLAIN_DARK : PATTERN_PLAIN_LIGHT), marks);
+    return lanes_choose_int(no_data, lanes_choose_int(dark, r + PATTERN_HATCH_DARK, r + PATTERN_HATCH_LIGHT), marks);
+}
+
+#endif

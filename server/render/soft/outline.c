@@ -1,0 +1,77 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* A dark line with a light one around it, along the rim of one asset, as shaders/outline.frag draws it. */
+#include <math.h>
+#include <string.h>
+
+#include "render/soft/soft_impl.h"
+#include "render/gl/lines.h"
+
+enum { MOST_REACH_PX = 32 };
+static const uint8_t dark_bgr[3] = { 41, 23, 13 };
+
+struct brush { /* half a side is reach_px; what a pixel of the rim does to those around it */
+    int reach_px;
+    uint8_t rim[2 * MOST_REACH_PX + 1][2 * MOST_REACH_PX + 1];
+};
+
+static void brush_init(struct brush *brush, double width_px)
+{
+    brush->reach_px = (int)fmin(ceil(2 * width_px), MOST_REACH_PX);
+    for (int y = -brush->reach_px; y <= brush->reach_px; y++)
+        for (int x = -brush->reach_px; x <= brush->reach_px; x++) {
+            double away = hypot(x, y) - 0.35;
+            brush->rim[y + MOST_REACH_PX][x + MOST_REACH_PX] = away <= width_px ? RIM_DARK : away <= 2 * width_px ? RIM_LIGHT : 0;
+        }
+}
+
+static void stamp(const struct soft *soft, uint8_t *rim, const struct brush *brush, int x, int y)
+{
+    int reach = brush->reach_px;
+    int left = x - reach > 0 ? x - reach : 0, right = x + reach < soft->width_px ? x + reach : soft->width_px - 1;
+    int top = y - reach > 0 ? y - reach : 0, bottom = y + reach < soft->height_px ? y + reach : soft->height_px - 1;
+    for (int v = top; v <= bottom; v++)
+        for (int u = left; u <= right; u++) {
+            uint8_t *at = &rim[(size_t)v * (size_t)soft->pitch_px + (size_t)u];
+            uint8_t ink = brush->rim[v - y + MOST_REACH_PX][u - x + MOST_REACH_PX];
+            *at = ink > *at ? ink : *at;
+        }
+}
+
+/* Covered, with a neighbour that is not. */
+static bool is_rim(const struct soft *soft, int x, int y)
+{
+    const uint32_t *mark = soft->marks + (size_t)y * (size_t)soft->pitch_px + (size_t)x;
+    return *mark && ((x > 0 && !mark[-1]) || (x + 1 < soft->width_px && !mark[1]) || (y > 0 && !mark[-soft->pitch_px]) ||
+                     (y + 1 < soft->height_px && !mark[soft->pitch_px]));
+}
+
+static void paint(const struct soft *soft, const uint8_t *rim)
+{
+    for (int y = 0; y < soft->height_px; y++) {
+        size_t row = (size_t)y * (size_t)soft->pitch_px;
+        uint8_t *out = soft->out + (size_t)y * soft->out_stride_bytes;
+        for (int x = 0; x < soft->width_px; x++) {
+            uint8_t ink = soft->marks[row + (size_t)x] ? 0 : rim[row + (size_t)x];
+            for (int c = 0; c < 3 && ink; c++)
+                out[4 * x + c] = ink == RIM_DARK ? dark_bgr[c] : (uint8_t)(out[4 * x + c] * 0.1 + 229.5 + 0.5);
+        }
+    }
+}
+
+const uint8_t *soft_rim(const struct soft *soft)
+{
+    struct brush brush;
+    uint8_t *rim = (uint8_t *)soft->depth; /* which is done with */
+    brush_init(&brush, lines_outline_px(soft->context->view));
+    memset(rim, 0, (size_t)soft->pitch_px * (size_t)soft->height_px);
+    for (int y = 0; y < soft->height_px; y++)
+        for (int x = 0; x < soft->width_px; x++)
+            if (is_rim(soft, x, y))
+                stamp(soft, rim, &brush, x, y);
+    return rim;
+}
+
+void soft_outline(const struct soft *soft)
+{
+    paint(soft, soft_rim(soft));
+}

@@ -1,0 +1,292 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The faces of a part into a tile: which is nearest at each pixel, and its mark there. Small ones are set up eight at a time.
+
+   A pixel on an edge that two triangles share belongs to exactly one of them: both compute the edge from the same end in the same way,
+   and one takes what is not negative, the other what is. */
+#include "render/soft/kernels.h"
+#include "render/soft/section_colors.h"
+#include "render/soft/sixteen.h"
+
+/* Which triangle a pixel shows, where that is asked for. */
+SOFT_INLINE void keep_id(const struct soft_tile *tile, const struct soft_face *face, size_t at, lanes_int seen)
+{
+    if (!tile->soft->ids)
+        return;
+    lanes_int *ids = (lanes_int *)(tile->soft->ids + at);
+    *ids = lanes_choose_int(seen, (lanes_int){ 0 } + (int32_t)(tile->first_id + (face->triangle & FACE_TRIANGLE)), *ids);
+}
+
+/* --- any face --------------------------------------------------------------------------------------------------------------- */
+
+struct setup {
+    float x, y; /* of the first corner: what planes start from */
+    struct edge edges[3];
+    struct plane depth, a, b, inverse_w;
+    struct plane no_data, uncertain, no_limits; /* where flags are set; as struct near_patterns */
+    uint32_t mark, flags;
+    bool flat; /* no perspective to speak of */
+    bool thin; /* so much so that rounding may lead out of what lies between its corners */
+};
+
+SOFT_INLINE struct soft_vertex vertex_of(const struct soft_corners *corners, int i)
+{
+    return (struct soft_vertex){ corners->x[i], corners->y[i], corners->depth[i], corners->inverse_w[i],
+                                 corners->a[i], corners->b[i], corners->flags[i], 0 };
+}
+
+/* part: of each corner, 0..1. */
+SOFT_INLINE struct plane part_plane(const struct slopes *slopes, const struct soft_vertex v[3], const float part[3], bool flat)
+{
+    float at[3];
+    for (int i = 0; i < 3; i++)
+        at[i] = flat ? part[i] : part[i] * v[i].inverse_w;
+    return plane_of(slopes, at[0], at[1], at[2]);
+}
+
+SOFT_INLINE struct near_patterns patterns_of(const struct soft_corners *corners, int i)
+{
+    return i < corners->placed ? near_patterns_of(corners->flags[i]) : corners->cut_patterns[i - corners->placed];
+}
+
+SOFT_INLINE void setup_patterns(struct setup *setup, const struct slopes *slopes, const struct soft_vertex v[3],
+                                const struct near_patterns at[3])
+{
+    setup->no_data = part_plane(slopes, v, (float[3]){ at[0].no_data, at[1].no_data, at[2].no_data }, setup->flat);
+    setup->uncertain = part_plane(slopes, v, (float[3]){ at[0].uncertain, at[1].uncertain, at[2].uncertain }, setup->flat);
+    setup->no_limits = part_plane(slopes, v, (float[3]){ at[0].no_limits, at[1].no_limits, at[2].no_limits }, setup->flat);
+}
+
+SOFT_INLINE void setup_init(struct setup *setup, const struct soft_vertex v[3], const struct near_patterns patterns[3], uint32_t mark)
+{
+    float low = smallest(v[0].inverse_w, v[1].inverse_w, v[2].inverse_w), high = largest(v[0].inverse_w, v[1].inverse_w, v[2].inverse_w);
+    struct slopes slopes = { v[1].x - v[0].x, v[1].y - v[0].y, v[2].x - v[0].x, v[2].y - v[0].y };
+    float area = slopes.x1 * slopes.y2 - slopes.x2 * slopes.y1, over = 1 / area;
+    float longest = largest(slopes.x1 * slopes.x1 + slopes.y1 * slopes.y1, slopes.x2 * slopes.x2 + slopes.y2 * slopes.y2, 0);
+    setup->thin = area * area < 1e-3f * longest;
+    slopes = (struct slopes){ slopes.x1 * over, slopes.y1 * over, slopes.x2 * over, slopes.y2 * over };
+    setup->x = v[0].x;
+    setup->y = v[0].y;
+    for (int e = 0; e < 3; e++)
+        edge_init(&setup->edges[e], &v[e], &v[(e + 1) % 3]);
+    setup->depth = plane_of(&slopes, v[0].depth, v[1].depth, v[2].depth);
+    setup->flat = high <= SOFT_LITTLE * low;
+    setup->mark = mark;
+    setup->flags = (v[0].flags | v[1].flags | v[2].flags) & SOFT_PATTERNS;
+    if (setup->flat) {
+        setup->a = plane_of(&slopes, v[0].a, v[1].a, v[2].a);
+        setup->b = plane_of(&slopes, v[0].b, v[1].b, v[2].b);
+        setup->inverse_w = setup->depth; /* not looked at */
+    } else {
+        setup->a = plane_of(&slopes, v[0].a * v[0].inverse_w, v[1].a * v[1].inverse_w, v[2].a * v[2].inverse_w);
+        setup->b = plane_of(&slopes, v[0].b * v[0].inverse_w, v[1].b * v[1].inverse_w, v[2].b * v[2].inverse_w);
+        setup->inverse_w = plane_of(&slopes, v[0].inverse_w, v[1].inverse_w, v[2].inverse_w);
+    }
+    setup->no_data = setup->uncertain = setup->no_limits = setup->depth; /* not looked at */
+    if (setup->flags)
+        setup_patterns(setup, &slopes, v, patterns);
+}
+
+/* w: 1 over inverse_w there; looked at if there is perspective. */
+SOFT_INLINE lanes_int field_marks(const struct setup *setup, const struct ink *ink, lanes a, lanes b, lanes w)
+{
+    lanes none = { 0 }, x = none + setup->a.dx, y = none + setup->a.dy;
+    if (!ink->rich)
+        return field_mark(a, b, ink->last_row);
+    if (!setup->flat) {
+        x = (x - a * setup->inverse_w.dx) * w;
+        y = (y - a * setup->inverse_w.dy) * w;
+    }
+    return rich_mark(a, x, y, b, ink);
+}
+
+SOFT_INLINE lanes_int marks_at(const struct setup *setup, const struct ink *ink, lanes x, float y)
+{
+    lanes from_x = x - setup->x;
+    float from_y = y - setup->y;
+    if (setup->mark >= MARK_SECTION)
+        return (lanes_int){ 0 } + (int32_t)setup->mark;
+    lanes a = plane_at(&setup->a, from_x, from_y, setup->thin), b = plane_at(&setup->b, from_x, from_y, setup->thin), w = { 0 };
+    if (!setup->flat) {
+        w = 1.0f / plane_at(&setup->inverse_w, from_x, from_y, setup->thin);
+        a *= w;
+        b *= w;
+    }
+    if (setup->mark != MARK_FIELD)
+        return context_mark(a, b, setup->mark);
+    lanes_int marks = field_marks(setup, ink, a, b, w);
+    if (!setup->flags)
+        return marks;
+    lanes none = plane_at(&setup->no_data, from_x, from_y, setup->thin), little = plane_at(&setup->uncertain, from_x, from_y, setup->thin);
+    lanes free = plane_at(&setup->no_limits, from_x, from_y, setup->thin);
+    if (!setup->flat) {
+        none *= w;
+        little *= w;
+        free *= w;
+    }
+    return pattern_marks(marks, none > 0.5f, little > 0.5f, (free > 0.5f) & -(int32_t)ink->rich, b, x, y, ink);
+}
+
+/* Narrows the row to where edges let pixels be; one too many at each end. */
+SOFT_INLINE void narrow(const struct setup *setup, float y, int *left, int *right)
+{
+    for (int e = 0; e < 3; e++) {
+        const struct edge *edge = &setup->edges[e];
+        if (edge->dy < 1e-3f)
+            continue;
+        float x = edge->x + edge->dx * ((y - edge->y) / edge->dy);
+        x = x < -2 ? -2 : x > 1e5f ? 1e5f : x;
+        if (edge->negative && (int)x - 1 > *left)
+            *left = (int)x - 1;
+        if (!edge->negative && (int)x + 1 < *right)
+            *right = (int)x + 1;
+    }
+}
+
+SOFT_INLINE void draw_face(const struct soft_tile *tile, const struct soft_face *face, const struct setup *setup, const struct ink *ink)
+{
+    bool wide = face->right - face->left >= 2 * LANES;
+    int last = tile->rect.right + 1 - LANES; /* beyond the tile another thread draws */
+    for (int row = face->top; row <= face->bottom; row++) {
+        size_t start = (size_t)row * (size_t)tile->soft->pitch_px;
+        float y = (float)row + 0.5f, from_y = y - setup->y, sides[3];
+        int left = face->left, right = face->right;
+        if (wide)
+            narrow(setup, y, &left, &right);
+        for (int e = 0; e < 3; e++)
+            sides[e] = edge_row(&setup->edges[e], y);
+        for (int column = left; column <= right; column += LANES) {
+            column = column < last ? column : last;
+            lanes x = LANES_IOTA + ((float)column + 0.5f), from_x = x - setup->x;
+            lanes_int side = edge_side(&setup->edges[0], sides[0], x) | edge_side(&setup->edges[1], sides[1], x) |
+                             edge_side(&setup->edges[2], sides[2], x);
+            lanes *depth = (lanes *)(tile->soft->depth + start + column);
+            lanes here = plane_at(&setup->depth, from_x, from_y, setup->thin);
+            lanes_int seen = (side >= 0) & (here >= *depth);
+            if (!lanes_any(seen))
+                continue;
+            lanes_int *marks = (lanes_int *)(tile->soft->marks + start + column), mark = marks_at(setup, ink, x, y);
+            *depth = lanes_choose(seen, here, *depth);
+            *marks = lanes_choose_int(seen, mark, *marks);
+            keep_id(tile, face, start + (size_t)column, seen);
+        }
+    }
+}
+
+/* --- small ones ------------------------------------------------------------------------------------------------------------- */
+
+/* What is at most four wide, two rows of it. */
+SOFT_INLINE void draw_by_one(const struct soft_tile *tile, const struct soft_face *face, const struct small *small, int l, int top,
+                             uint32_t mark, const struct ink *ink)
+{
+    int last_left = tile->rect.right + 1 - LANES / 2, last_top = tile->rect.bottom - 1;
+    int left = face->left < last_left ? face->left : last_left;
+    draw_stamp(tile, face, small, l, left, top < last_top ? top : last_top, mark, ink, true, true);
+}
+
+/* Kind by kind, or the processor would guess wrong with each. In this order on every machine: of what lies at one depth the last one
+   stays. */
+SOFT_INLINE void draw_eight(const struct soft_tile *tile, const struct soft_face *const faces[LANES], int count, uint32_t mark,
+                            const struct ink *ink)
+{
+    struct small small;
+    struct eight_faces eight = read_faces(faces);
+    struct kinds kinds = kinds_of(tile, &eight, count);
+    uint32_t rows = ((1u << count) - 1) & ~(kinds.one | kinds.four | kinds.two | kinds.low);
+    small_init(&small, &tile->corners, eight.corners);
+    for (uint32_t bits = kinds.one; bits; bits &= bits - 1)
+        draw_by_one(tile, faces[__builtin_ctz(bits)], &small, __builtin_ctz(bits), faces[__builtin_ctz(bits)]->top, mark, ink);
+    if (can_draw_sixteen(tile, ink)) {
+        draw_sixteen(tile, faces, &small, &kinds, rows, mark, ink);
+        return;
+    }
+    for (uint32_t bits = kinds.four; bits; bits &= bits - 1)
+        for (int half = 0; half < 4; half += 2)
+            draw_by_one(tile, faces[__builtin_ctz(bits)], &small, __builtin_ctz(bits), faces[__builtin_ctz(bits)]->top + half, mark, ink);
+    for (uint32_t bits = kinds.two; bits; bits &= bits - 1)
+        draw_small(tile, faces[__builtin_ctz(bits)], &small, __builtin_ctz(bits), mark, ink, true);
+    uint32_t row[] = { kinds.low, rows };
+    for (int i = 0; i < 2; i++)
+        for (uint32_t bits = row[i]; bits; bits &= bits - 1)
+            draw_small(tile, faces[__builtin_ctz(bits)], &small, __builtin_ctz(bits), mark, ink, false);
+}
+
+/* --- all -------------------------------------------------------------------------------------------------------------------- */
+
+static void draw_any(const struct soft_tile *tile, const struct soft_face *face, uint32_t mark, const struct ink *ink)
+{
+    struct soft_vertex v[3];
+    struct near_patterns patterns[3];
+    struct setup setup;
+    for (int i = 0; i < 3; i++) {
+        v[i] = vertex_of(&tile->corners, face->corners[i]);
+        patterns[i] = patterns_of(&tile->corners, face->corners[i]);
+    }
+    setup_init(&setup, v, patterns, mark);
+    draw_face(tile, face, &setup, ink);
+}
+
+/* Of the inner side of what is cut. */
+static uint32_t mark_of_back(const struct soft_tile *tile, const struct soft_face *face)
+{
+    const float *planes = soft_part_planes(tile->parts, tile->part) + (face->triangle & FACE_TRIANGLE), *turn = tile->mesh->turn;
+    const float x = planes[0], y = planes[tile->part->rounded], z = planes[2 * tile->part->rounded];
+    return inside_mark((float[3]){ turn[0] * x + turn[3] * y + turn[6] * z, turn[1] * x + turn[4] * y + turn[7] * z,
+                                   turn[2] * x + turn[5] * y + turn[8] * z });
+}
+
+void soft_raster_faces(const struct soft_tile *tile, uint32_t mark)
+{
+    struct ink ink = ink_of(tile->soft);
+    const struct soft_face *waiting[LANES];
+    int count = 0;
+    for (int i = 0; i < tile->face_count; i++) {
+        const struct soft_face *face = &tile->faces[i];
+        if (face->triangle & FACE_BACK) {
+            draw_any(tile, face, mark_of_back(tile, face), &ink);
+            continue;
+        }
+        if (!is_small(face) || !is_plain(&tile->corners, face)) {
+            draw_any(tile, face, mark, &ink);
+            continue;
+        }
+        waiting[count++] = face;
+        if (count == LANES) {
+            draw_eight(tile, waiting, LANES, mark, &ink);
+            count = 0;
+        }
+    }
+    for (int l = count; l < LANES && count > 0; l++)
+        waiting[l] = waiting[0];
+    if (count > 0)
+        draw_eight(tile, waiting, count, mark, &ink);
+}
+
+/* --- bodies ----------------------------------------------------------------------------------------------------------------- */
+
+static void count_face(const struct soft_tile *tile, const struct soft_face *face)
+{
+    struct edge edges[3];
+    struct soft_vertex v[3];
+    int32_t by = face->triangle & FACE_BACK ? 1 : -1;
+    for (int i = 0; i < 3; i++)
+        v[i] = vertex_of(&tile->corners, face->corners[i]);
+    for (int e = 0; e < 3; e++)
+        edge_init(&edges[e], &v[e], &v[(e + 1) % 3]);
+    for (int row = face->top; row <= face->bottom; row++) {
+        uint32_t *counts = tile->soft->marks + (size_t)row * (size_t)tile->soft->pitch_px;
+        float sides[3];
+        for (int e = 0; e < 3; e++)
+            sides[e] = edge_row(&edges[e], (float)row + 0.5f);
+        for (int column = face->left / LANES * LANES; column <= face->right; column += LANES) { /* each pixel once */
+            lanes x = LANES_IOTA + ((float)column + 0.5f);
+            lanes_int side = edge_side(&edges[0], sides[0], x) | edge_side(&edges[1], sides[1], x) | edge_side(&edges[2], sides[2], x);
+            *(lanes_int *)(counts + column) += (side >= 0) & by;
+        }
+    }
+}
+
+void soft_count_faces(const struct soft_tile *tile)
+{
+    for (int i = 0; i < tile->face_count; i++)
+        count_face(tile, &tile->faces[i]);
+}

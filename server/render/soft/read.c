@@ -1,0 +1,197 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What the other passes made on the GPU, brought here: light, ramps, backdrops and colormaps. */
+#include <math.h>
+#include <string.h>
+
+#include "base/mem.h"
+#include "base/srgb.h"
+#include "render/soft/soft_impl.h"
+#include "render/light/sky.h"
+
+static bool fail(const struct soft *soft, const char *what)
+{
+    log_err(soft->gpu_scene->gl->log, "moving pictures: %s cannot be read back: out of memory", what);
+    return false;
+}
+
+/* Four bytes a texel: blue, green, red, alpha. */
+static void read_colors(GLuint texture, uint32_t *to, size_t texels)
+{
+    glGetTextureImage(texture, 0, GL_BGRA, GL_UNSIGNED_BYTE, (GLsizei)(texels * 4), to);
+}
+
+bool soft_read_textures(struct soft *soft, const struct sky *sky)
+{
+    const struct gpu_scene *gpu_scene = soft->gpu_scene;
+    size_t rows = 0, backdrops = SKY_BACKDROPS * SKY_ROWS;
+    soft->ramp_of_model = mem_array(gpu_scene->model_count, sizeof(*soft->ramp_of_model));
+    for (size_t m = 0; m < gpu_scene->model_count; m++) {
+        soft->ramp_of_model[m] = (uint32_t)rows;
+        rows += gpu_scene->models[m].material_count;
+        for (size_t i = 0; i < gpu_scene->models[m].material_count; i++)
+            soft->has_holes |= gpu_scene->models[m].materials[i].masked;
+    }
+    soft->ramp_count = rows;
+    soft->muted_ramps = mem_array(rows * RAMP_STEPS, sizeof(*soft->muted_ramps));
+    soft->own_ramps = mem_array(rows * RAMP_STEPS, sizeof(*soft->own_ramps));
+    for (size_t m = 0; m < gpu_scene->model_count; m++) {
+        size_t first = (size_t)soft->ramp_of_model[m] * RAMP_STEPS, texels = gpu_scene->models[m].material_count * RAMP_STEPS;
+        read_colors(gpu_scene->models[m].ramps, soft->muted_ramps + first, texels);
+        read_colors(gpu_scene->models[m].own_ramps, soft->own_ramps + first, texels);
+    }
+    soft->colormap = mem_array(COLORMAP_ROWS * COLORMAP_COLUMNS, sizeof(*soft->colormap));
+    soft->lines = mem_array(COLORMAP_PLACES, sizeof(*soft->lines));
+    soft->backdrops = mem_array(backdrops, sizeof(*soft->backdrops));
+    read_colors(sky->backdrops, soft->backdrops, backdrops);
+    return glGetError() == GL_NO_ERROR;
+}
+
+/* As tone_map in shaders/light.glsl. */
+static void tone_map(double c[3])
+{
+    const double start = 0.8 - 0.04, desaturation = 0.15, d = 1 - start;
+    double x = fmin(c[0], fmin(c[1], c[2])), off = x < 0.08 ? x - 6.25 * x * x : 0.04;
+    for (int i = 0; i < 3; i++)
+        c[i] -= off;
+    double peak = fmax(c[0], fmax(c[1], c[2])), rolled = 1 - d * d / (peak + d - start);
+    double part = 1 - 1 / (desaturation * (peak - rolled) + 1);
+    for (int i = 0; i < 3 && peak >= start; i++)
+        c[i] = c[i] * rolled / peak + (rolled - c[i] * rolled / peak) * part;
+}
+
+/* The colours that the middle row has, in each step of light: GLOSSY in shaders/preview.frag. */
+static void make_glossy(uint32_t *colormap)
+{
+    for (int column = 0; column < COLORMAP_COLUMNS; column++) {
+        uint32_t color = colormap[COLORMAP_ROWS / 2 * COLORMAP_COLUMNS + column];
+        for (int row = 0; row < COLORMAP_ROWS; row++) {
+            double c[3];
+            for (int i = 0; i < 3; i++)
+                c[i] = linear_from_srgb((color >> (8 * i) & 0xff) / 255.0) * (0.22 + (double)row / (COLORMAP_ROWS - 1));
+            tone_map(c);
+            uint32_t out = 0xff000000;
+            for (int i = 0; i < 3; i++)
+                out |= (uint32_t)(255 * srgb_from_linear(fmin(fmax(c[i], 0), 1)) + 0.5) << (8 * i);
+            colormap[row * COLORMAP_COLUMNS + column] = out;
+        }
+    }
+}
+
+void soft_read_palette(struct soft *soft, const struct shaded_colormap *colormap, bool glossy)
+{
+    if (soft->palette_version == colormap->version && soft->palette_glossy == glossy)
+        return;
+    read_colors(colormap->colors, soft->colormap, COLORMAP_ROWS * COLORMAP_COLUMNS);
+    if (colormap->lines)
+        glGetTextureImage(colormap->lines, 0, GL_RED, GL_FLOAT, COLORMAP_PLACES * sizeof(*soft->lines), soft->lines);
+    soft->palette_version = colormap->version;
+    soft->palette_glossy = glossy;
+    if (glossy)
+        make_glossy(soft->colormap);
+}
+
+/* --- light ------------------------------------------------------------------------------------------------------------------ */
+
+void soft_free_light(const struct soft *soft, struct soft_light *light)
+{
+    for (size_t i = 0; light->baked && i < soft->gpu_scene->scene->asset_count; i++)
+        mem_free(light->baked[i]);
+    mem_free(light->baked);
+    mem_free(light->sun_map);
+    mem_free(light->ground);
+    *light = (struct soft_light){ 0 };
+}
+
+static bool read_baked(const struct soft *soft, struct soft_light *light, const struct light_set *set)
+{
+    const struct gpu_scene *gpu_scene = soft->gpu_scene;
+    light->baked = mem_array(gpu_scene->scene->asset_count, sizeof(*light->baked));
+    for (size_t i = 0; i < gpu_scene->scene->asset_count; i++) {
+        size_t vertices = gpu_scene->of_asset[i]->mesh.vertex_count;
+        light->baked[i] = mem_try_array(vertices, 4);
+        if (!light->baked[i])
+            return fail(soft, "light");
+        glGetNamedBufferSubData(set->baked[i]->page->buffer, (GLintptr)pool_offset(set->baked[i]), (GLsizeiptr)(4 * vertices),
+                                light->baked[i]);
+    }
+    return true;
+}
+
+/* The last row and column twice: comparisons look at right and lower neighbours. */
+static bool read_sun_map(const struct soft *soft, struct soft_light *light, GLuint map)
+{
+    GLint size = 0;
+    glGetTextureLevelParameteriv(map, 0, GL_TEXTURE_WIDTH, &size);
+    size_t row = (size_t)size + 1;
+    light->sun_map_px = size;
+    light->sun_map = mem_try_array(row * row, sizeof(*light->sun_map));
+    if (!light->sun_map)
+        return fail(soft, "shadows");
+    glPixelStorei(GL_PACK_ROW_LENGTH, size + 1);
+    glPixelStorei(GL_PACK_ALIGNMENT, 2);
+    glGetTextureImage(map, 0, GL_DEPTH_COMPONENT, GL_UNSIGNED_SHORT, (GLsizei)(row * row * 2), light->sun_map);
+    glPixelStorei(GL_PACK_ALIGNMENT, 4);
+    glPixelStorei(GL_PACK_ROW_LENGTH, 0);
+    for (size_t y = 0; y < row - 1; y++)
+        light->sun_map[y * row + row - 1] = light->sun_map[y * row + row - 2];
+    memcpy(light->sun_map + (row - 1) * row, light->sun_map + (row - 2) * row, row * sizeof(*light->sun_map));
+    return true;
+}
+
+static double margin(double at)
+{
+    double t = fmin(fmax((fabs(at - 0.5) - 0.5) / (0.3 - 0.5), 0), 1);
+    return t * t * (3 - 2 * t);
+}
+
+/* As shaders/ground.frag. */
+static uint8_t ground_factor(const uint8_t light[2], double u, double v)
+{
+    double dark = fmin(0.20 * (1 - light[0] / 255.0) + 0.42 * (1 - light[1] / 255.0), 0.5);
+    return (uint8_t)lround(255 * (1 - margin(u) * margin(v) * dark));
+}
+
+static bool read_ground(const struct soft *soft, struct soft_light *light, GLuint ground)
+{
+    GLint size = 0;
+    glGetTextureLevelParameteriv(ground, 0, GL_TEXTURE_WIDTH, &size);
+    size_t side = (size_t)size;
+    uint8_t(*texels)[2] = mem_try_array(side * side, sizeof(*texels)), *factors = mem_try_array(side * side, 1);
+    light->ground_px = size;
+    light->ground = mem_try_array(side * side, sizeof(*light->ground));
+    bool good = texels && factors && light->ground;
+    if (good) {
+        glGetTextureImage(ground, 0, GL_RG, GL_UNSIGNED_BYTE, (GLsizei)(side * side * 2), texels);
+        for (size_t i = 0; i < side * side; i++)
+            factors[i] = ground_factor(texels[i], ((double)(i % side) + 0.5) / (double)side, ((double)(i / side) + 0.5) / (double)side);
+        for (size_t i = 0; i < side * side; i++) {
+            size_t right = i % side + 1 < side ? 1 : 0, below = i / side + 1 < side ? side : 0;
+            light->ground[i] = factors[i] | (uint32_t)factors[i + right] << 8 | (uint32_t)factors[i + below] << 16 |
+                               (uint32_t)factors[i + right + below] << 24;
+        }
+    }
+    mem_free(texels);
+    mem_free(factors);
+    return good || fail(soft, "the ground");
+}
+
+const struct soft_light *soft_get_light(struct soft *soft, const struct light_set *set)
+{
+    struct soft_light *oldest = &soft->lights[0];
+    for (int i = 0; i < SOFT_LIGHTS; i++) {
+        struct soft_light *light = &soft->lights[i];
+        if (light->id == set->id) {
+            light->used = ++soft->uses;
+            return light;
+        }
+        if (light->used < oldest->used)
+            oldest = light;
+    }
+    soft_free_light(soft, oldest);
+    oldest->id = set->id;
+    oldest->used = ++soft->uses;
+    if (read_baked(soft, oldest, set) && read_sun_map(soft, oldest, set->sun_map) && read_ground(soft, oldest, set->ground))
+        return oldest;
+    soft_free_light(soft, oldest);
+    return NULL;
+}

@@ -1,0 +1,524 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The steps of a refined frame. */
+#include "render/soft/refined.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "base/mem.h"
+#include "base/srgb.h"
+#include "render/pick/markers.h"
+#include "render/matrix.h"
+#include "render/soft/refined_impl.h"
+#include "render/gl/ghosts.h"
+
+/* Of a step, for each core: some milliseconds' worth. */
+enum { VERTICES = 65536, CHUNKS = 32, SHADED_BANDS = 1, BANDS = 16 };
+static const size_t KEPT_BYTES = (size_t)256 << 20; /* some ten pictures of 1920 x 1080 */
+static const double OFF_SURFACE_TEXELS = 2.58;      /* as sun_visibility in shaders/shadow.glsl */
+
+/* --- what refined frames share ------------------------------------------------------------------------------------------------------- */
+
+static void find_models(struct refiner *refiner)
+{
+    const struct gpu_scene *gpu_scene = refiner->gpu_scene;
+    refiner->textured = mem_array(gpu_scene->model_count, sizeof(bool));
+    refiner->masked = mem_array(gpu_scene->model_count, sizeof(bool));
+    refiner->blended = mem_array(gpu_scene->model_count, sizeof(bool));
+    for (size_t m = 0; m < gpu_scene->model_count; m++) {
+        const struct model *model = &gpu_scene->models[m];
+        for (size_t i = 0; i < model->material_count; i++) {
+            refiner->textured[m] |= model->materials[i].mask != 0;
+            refiner->masked[m] |= model->materials[i].masked && model->materials[i].mask;
+            refiner->blended[m] |= model->file->view.materials[i].alpha == ASSET_ALPHA_BLEND;
+        }
+    }
+}
+
+static void find_tones(struct refiner *refiner)
+{
+    for (int i = 0; i <= TONES; i++) {
+        double x = (double)i / TONES;
+        refiner->tones[i] = (float)srgb_from_linear(x);
+    }
+}
+
+struct refiner *refiner_create(struct workers *workers, const struct gpu_scene *gpu_scene, const struct sky *sky, struct soft *soft,
+                               const struct environments *environments)
+{
+    struct refiner *refiner = mem_new(sizeof(*refiner));
+    *refiner = (struct refiner){ .workers = workers, .gpu_scene = gpu_scene, .sky = sky, .soft = soft, .environments = environments };
+    refiner->kept.bound_bytes = KEPT_BYTES;
+    find_models(refiner);
+    find_tones(refiner);
+    return refiner;
+}
+
+static void destroy(struct refined **refined_ptr)
+{
+    struct refined *refined = *refined_ptr;
+    if (!refined)
+        return;
+    soft_destroy(&refined->soft);
+    visibility_buffer_destroy(&refined->buffer);
+    mem_free(refined->normals);
+    mem_free(refined->draws);
+    mem_free(refined->attributes);
+    mem_free(refined->caps);
+    mem_free(refined);
+    *refined_ptr = NULL;
+}
+
+void refiner_destroy(struct refiner **refiner_ptr)
+{
+    struct refiner *refiner = *refiner_ptr;
+    if (!refiner)
+        return;
+    destroy(&refiner->spare);
+    visibility_store_finish(&refiner->kept);
+    mem_free(refiner->textured);
+    mem_free(refiner->masked);
+    mem_free(refiner->blended);
+    mem_free(refiner->surroundings.texels);
+    mem_free(refiner->light.open);
+    mem_free(refiner);
+    *refiner_ptr = NULL;
+}
+
+void refiner_bound(struct refiner *refiner, size_t bytes)
+{
+    visibility_store_bound(&refiner->kept, bytes);
+}
+
+size_t refiner_kept_bytes(const struct refiner *refiner)
+{
+    return refiner->kept.bytes;
+}
+
+size_t refiner_room_bytes(const struct refiner *refiner)
+{
+    const struct refined *spare = refiner->spare;
+    if (!spare)
+        return 0;
+    return soft_room_bytes(spare->soft) + spare->attribute_capacity * sizeof(*spare->attributes) +
+           spare->mesh_capacity * sizeof(*spare->normals) + spare->draw_capacity * sizeof(*spare->draws);
+}
+
+size_t refiner_light_bytes(const struct refiner *refiner)
+{
+    return refiner->light.open ? (size_t)refiner->light.open_px * (size_t)refiner->light.open_px : 0;
+}
+
+void refiner_drop_spare(struct refiner *refiner)
+{
+    destroy(&refiner->spare);
+}
+
+void refiner_rest(struct refiner *refiner)
+{
+    refiner_drop_spare(refiner);
+    visibility_store_finish(&refiner->kept);
+    mem_free(refiner->light.open);
+    refiner->light = (struct refined_light){ 0 };
+}
+
+bool refiner_can(const struct refiner *refiner, const struct frame_context *context)
+{
+    const struct view *view = context->view;
+    if (view->tier != TIER_REFINED || view->look == LOOK_GLOSSY || context->reference)
+        return false;
+    for (size_t i = 0; i < context->visible_count; i++) {
+        int asset = context->visible[i];
+        size_t model = (size_t)(context->gpu_scene->of_asset[asset] - context->gpu_scene->models);
+        bool field = context->fields[asset] != NULL, lost = field && !context->fields[asset]->slice; /* only GL hatches without scalars */
+        if (lost || refiner->masked[model] || (!field && (refiner->textured[model] || refiner->blended[model])))
+            return false;
+    }
+    return true;
+}
+
+/* --- life -------------------------------------------------------------------------------------------------------------------- */
+
+struct refined *refined_begin(struct refiner *refiner)
+{
+    struct refined *refined = refiner->spare;
+    refiner->spare = NULL;
+    if (!refined) {
+        refined = mem_new(sizeof(*refined));
+        refined->refiner = refiner;
+        refined->soft = soft_create(refiner->workers, refiner->gpu_scene, refiner->sky);
+        if (!refined->soft)
+            destroy(&refined);
+    }
+    return refined;
+}
+
+void refined_end(struct refiner *refiner, struct refined **refined_ptr)
+{
+    struct refined *refined = *refined_ptr;
+    if (!refined)
+        return;
+    *refined_ptr = NULL;
+    visibility_buffer_destroy(&refined->buffer);
+    mem_free(refined->caps);
+    refined->caps = NULL;
+    refined->step = REFINED_CAPS;
+    refined->at = 0;
+    refined->failed = false;
+    if (refiner->spare)
+        destroy(&refined);
+    else
+        refiner->spare = refined;
+}
+
+/* --- steps ------------------------------------------------------------------------------------------------------------------- */
+
+static void copy_columns(const double from[16], float to[4][4])
+{
+    for (int c = 0; c < 4; c++)
+        for (int r = 0; r < 4; r++)
+            to[c][r] = (float)from[4 * c + r];
+}
+
+static void aim(struct refined *refined, const struct light *light)
+{
+    struct soft *soft = refined->soft;
+    const struct frame_context *context = refined->context;
+    const double *sun = context->light->texture_from_plant;
+    double off_m = OFF_SURFACE_TEXELS * context->light->texel_m, matrix[16];
+    soft_aim(soft, light);
+    for (int c = 0; c < 4; c++)
+        for (int r = 0; r < 4; r++) /* a preview moves surfaces towards the sun, here they step off along their normals */
+            refined->sun_from_pixel[c][r] =
+                soft->sun_from_pixel[c][r] - (r == 2 ? (float)frame_sun_slack(context) * soft->sun_from_pixel[c][3] : 0);
+    for (int c = 0; c < 3; c++)
+        for (int r = 0; r < 3; r++)
+            refined->sun_from_normal[c][r] = (float)(sun[4 * c + r] * off_m);
+    for (int r = 0; r < 3; r++) {
+        refined->ground_step[r] = 0;
+        for (int c = 0; c < 3; c++)
+            refined->ground_step[r] += refined->sun_from_normal[c][r] * (float)refined->refiner->gpu_scene->up[c];
+    }
+    matrix_multiply(sun, light->plant_from_ground, matrix);
+    copy_columns(matrix, refined->sun_from_ground);
+}
+
+/* Others drew meanwhile. */
+static bool take_up(struct refined *refined, const struct frame_context *context, struct frame *frame)
+{
+    struct soft *soft = refined->soft;
+    refined->context = soft->context = context;
+    soft->light = soft_get_light(refined->refiner->soft, context->light);
+    if (!soft->light || !refined_read_light(refined->refiner, context->light) ||
+        !refined_read_surroundings(refined->refiner, context->lit_by.environment))
+        return false;
+    soft_read_palette(soft, &context->colormap, false);
+    frame_uniforms_fill(&soft->block, context);
+    soft_aim_cuts(soft);
+    soft->out = frame->bgrx;
+    soft->out_stride_bytes = (size_t)frame->stride_bytes;
+    if (refined->step > REFINED_COLLECT && refined->step < REFINED_INK) /* those of its caps are gone by then */
+        for (size_t m = 0; m < soft->mesh_count; m++)
+            soft->meshes[m].baked = (const uint8_t(*)[4])soft->light->baked[soft->meshes[m].asset];
+    return true;
+}
+
+static lanes material_of(const struct asset_material *material)
+{
+    return (lanes){ material->base_color[0], material->base_color[1], material->base_color[2], material->metallic,
+                    material->roughness,     material->emissive[0],   material->emissive[1],   material->emissive[2] };
+}
+
+/* The preview's meshes and draws, with what a refined frame needs of them besides. Marks become numbers of draws. */
+static void note_meshes(struct refined *refined)
+{
+    struct soft *soft = refined->soft;
+    const struct gpu_scene *gpu_scene = refined->refiner->gpu_scene;
+    mem_grow(&refined->normals, &refined->mesh_capacity, soft->mesh_count, sizeof(*refined->normals));
+    mem_grow(&refined->draws, &refined->draw_capacity, soft->draw_count, sizeof(*refined->draws));
+    for (size_t m = 0; m < soft->mesh_count; m++) {
+        const struct soft_mesh *mesh = &soft->meshes[m];
+        matrix_normals(gpu_scene->scene->assets[mesh->asset].placement, refined->normals[m]);
+        if (mesh->has_field)
+            visibility_buffer_add_mesh(refined->buffer, &(struct visibility_mesh){
+                                                            .asset = mesh->asset,
+                                                            .first_vertex = mesh->first_vertex,
+                                                            .vertex_count = mesh->vertex_count,
+                                                        });
+    }
+    for (size_t d = 0; d < soft->draw_count; d++) {
+        struct soft_draw *draw = &soft->draws[d];
+        const struct model *model = gpu_scene->of_asset[soft->meshes[draw->mesh].asset];
+        bool field = draw->mark == MARK_FIELD;
+        size_t row = draw->mark >> 16 & (MOST_RAMPS - 1), material = row - soft->ramp_of_model[model - gpu_scene->models];
+        refined->draws[d] = (struct refined_draw){ .mesh = draw->mesh, .field = field, .cut = soft->meshes[draw->mesh].cut };
+        if (!field)
+            refined->draws[d].material = material_of(&model->file->view.materials[material]);
+        draw->mark = (uint32_t)d;
+        draw->back = MARK_BACK;
+    }
+}
+
+static bool collect(struct refined *refined, const struct frame *frame, const struct light *light)
+{
+    struct soft *soft = refined->soft;
+    soft->reach_px = 0.5f;
+    if (!soft_make_room(soft, frame, REFINED_ROWS))
+        return false;
+    soft_aim_cuts(soft);
+    refined->buffer = visibility_buffer_create(frame->width_px, frame->height_px, REFINED_ROWS);
+    if (refined->buffer)
+        refined->buffer->lined = refined->context->colormap.lines != 0;
+    if (!refined->buffer || !soft_collect(soft) || soft->chunk_count > ID_NOTHING >> ID_BITS)
+        return false;
+    note_meshes(refined);
+    aim(refined, light);
+    if (!refined->attributes || refined->attribute_capacity < soft->vertex_count) { /* also of a first picture that shows nothing */
+        mem_free(refined->attributes);
+        refined->attributes = mem_try_array(soft->vertex_capacity, sizeof(*refined->attributes));
+        refined->attribute_capacity = refined->attributes ? soft->vertex_capacity : 0;
+    }
+    return refined->attributes;
+}
+
+/* Which samples of each pixel a body that is cut open covers: those of one number, by a picture that is moved so far. */
+static bool find_caps(struct refined *refined, const struct frame *frame, size_t sample)
+{
+    struct soft *soft = refined->soft;
+    size_t pitch, rows = (size_t)frame->height_px;
+    memcpy(soft->shift_px, refined_samples[sample], sizeof(soft->shift_px));
+    bool good = soft_make_room(soft, frame, BAND_ROWS);
+    soft_aim_cuts(soft);
+    good = good && soft_find(soft);
+    memset(soft->shift_px, 0, sizeof(soft->shift_px));
+    if (!good)
+        return false;
+    pitch = (size_t)soft->pitch_px;
+    if (!refined->caps)
+        refined->caps = mem_try_array(pitch, rows);
+    if (!refined->caps)
+        return false;
+    soft_tiles(soft, SOFT_CAPS);
+    for (size_t i = 0; i < pitch * rows; i++)
+        refined->caps[i] |= (uint8_t)((soft->marks[i] == MARK_CAP) << sample);
+    return true;
+}
+
+/* For labels of isolines. */
+static bool keep_depth(struct refined *refined)
+{
+    const struct soft *soft = refined->soft;
+    struct visibility_buffer *buffer = refined->buffer;
+    size_t row = (size_t)buffer->width_px;
+    if (!buffer->lined)
+        return true;
+    buffer->depth = mem_try_array(row * (size_t)buffer->height_px, sizeof(*buffer->depth));
+    for (size_t y = 0; y < (size_t)buffer->height_px && buffer->depth; y++)
+        memcpy(buffer->depth + y * row, soft->depth + y * (size_t)soft->pitch_px, row * sizeof(*buffer->depth));
+    return buffer->depth != NULL;
+}
+
+static bool find_ghosts(struct refined *refined, const struct frame *frame)
+{
+    struct soft *soft = refined->soft;
+    struct visibility_buffer *buffer = refined->buffer;
+    if (!ghosts_any(soft->context))
+        return true;
+    buffer->veil = mem_try_array((size_t)buffer->width_px * (size_t)buffer->height_px, 1);
+    return buffer->veil && soft_make_room(soft, frame, BAND_ROWS) && soft_ghosts(soft, buffer->veil, buffer->veil_bgr);
+}
+
+static void place_mesh(const struct refined *refined, size_t m, size_t begin, size_t end)
+{
+    const struct soft_mesh *mesh = &refined->soft->meshes[m];
+    const float *turn = refined->normals[m];
+    for (size_t v = begin; v < end; v++) {
+        const float *n = mesh->file->normals[v];
+        const uint8_t *baked = mesh->baked[v], *color = mesh->file->colors ? mesh->file->colors[v] : NULL;
+        lanes *to = &refined->attributes[mesh->first_vertex + v];
+        for (int r = 0; r < 3; r++) {
+            (*to)[NORMAL_X + r] = turn[r] * n[0] + turn[3 + r] * n[1] + turn[6 + r] * n[2];
+            (*to)[TINT + r] = color ? (float)color[r] * (1 / 255.0f) : 1;
+        }
+        (*to)[AMBIENT] = (float)baked[1] * (1 / 255.0f);
+        (*to)[OPEN] = (float)baked[2] * (1 / 255.0f);
+    }
+}
+
+struct piece {
+    struct refined *refined;
+    size_t first;
+};
+
+static void place_some(void *arg, size_t begin, size_t end)
+{
+    const struct piece *piece = arg;
+    const struct soft *soft = piece->refined->soft;
+    begin += piece->first;
+    end += piece->first;
+    for (size_t m = 0; m < soft->mesh_count; m++) {
+        size_t first = soft->meshes[m].first_vertex, last = first + soft->meshes[m].vertex_count;
+        if (first < end && last > begin)
+            place_mesh(piece->refined, m, (begin > first ? begin : first) - first, (end < last ? end : last) - first);
+    }
+}
+
+static void shade_some(void *arg, size_t begin, size_t end)
+{
+    const struct piece *piece = arg;
+    for (size_t band = begin; band < end; band++)
+        if (!refined_shade_band(piece->refined, (int)(piece->first + band)))
+            __atomic_store_n(&piece->refined->failed, true, __ATOMIC_RELAXED);
+}
+
+static void ink_some(void *arg, size_t begin, size_t end)
+{
+    const struct piece *piece = arg;
+    for (size_t band = begin; band < end; band++)
+        refined_ink_band(piece->refined, (int)(piece->first + band));
+}
+
+/* The next of `all` pieces of work, so many for each core. True: that was the last. */
+static bool advance(struct refined *refined, size_t all, size_t some, size_t *begin, size_t *end)
+{
+    some *= (size_t)workers_count(refined->refiner->workers);
+    *begin = refined->at;
+    *end = all - refined->at < some ? all : refined->at + some;
+    refined->at = *end == all ? 0 : *end;
+    return *end == all;
+}
+
+static bool is_selected_shown(const struct frame_context *context)
+{
+    int selected = context->view->selected_asset;
+    for (size_t i = 0; i < context->visible_count && selected >= 0; i++)
+        if (context->visible[i] == selected)
+            return true;
+    return false;
+}
+
+/* Of the selected asset. */
+static bool mark(struct refined *refined, const struct frame *frame)
+{
+    struct soft *soft = refined->soft;
+    if (!soft_make_room(soft, frame, BAND_ROWS) || !soft_find_only(soft, refined->context->view->selected_asset))
+        return false;
+    soft_tiles(soft, SOFT_DEPTH);
+    return true;
+}
+
+static bool complain(struct refined *refined)
+{
+    log_err(refined->refiner->gpu_scene->gl->log, "still picture of %dx%d, %zu vertices: out of memory", refined->soft->width_px,
+            refined->soft->height_px, refined->soft->vertex_count);
+    refined->failed = true;
+    return true;
+}
+
+bool refined_step(struct refined *refined, const struct frame_context *context, const struct light *light, struct frame *frame)
+{
+    struct soft *soft = refined->soft;
+    struct workers *workers = refined->refiner->workers;
+    struct piece piece = { .refined = refined };
+    size_t begin = 0, end = 0, bands = refined->buffer ? (size_t)refined->buffer->band_count : 0;
+    bool done = true;
+    if (refined->failed)
+        return true;
+    if (!take_up(refined, context, frame))
+        return complain(refined);
+    switch (refined->step) {
+    case REFINED_CAPS:
+        if (context->view->visibility.clip.plane_count == 0)
+            break;
+        begin = refined->at++;
+        done = refined->at == SAMPLES;
+        if (!find_caps(refined, frame, begin))
+            return complain(refined);
+        refined->at %= SAMPLES;
+        break;
+    case REFINED_COLLECT:
+        if (!collect(refined, frame, light))
+            return complain(refined);
+        break;
+    case REFINED_PLACE:
+        done = advance(refined, soft->vertex_count, VERTICES, &begin, &end);
+        piece.first = begin;
+        soft_place(soft, begin, end);
+        workers_for(workers, end - begin, 4096, place_some, &piece);
+        break;
+    case REFINED_SORT:
+        done = advance(refined, soft->chunk_count, CHUNKS, &begin, &end);
+        soft_sort(soft, begin, end);
+        break;
+    case REFINED_SHADE:
+        done = advance(refined, bands, SHADED_BANDS, &begin, &end);
+        piece.first = begin;
+        workers_for(workers, end - begin, 1, shade_some, &piece);
+        if (refined->failed)
+            return complain(refined);
+        break;
+    case REFINED_INK:
+        done = advance(refined, bands, BANDS, &begin, &end);
+        piece.first = begin;
+        workers_for(workers, end - begin, 1, ink_some, &piece);
+        if (done)
+            markers_find(context, soft->depth, (size_t)soft->pitch_px, frame);
+        if (done && !keep_depth(refined))
+            return complain(refined);
+        break;
+    case REFINED_GHOSTS:
+        if (!find_ghosts(refined, frame))
+            return complain(refined);
+        break;
+    case REFINED_MARK:
+        if (is_selected_shown(context) && !mark(refined, frame))
+            return complain(refined);
+        break;
+    case REFINED_RIM:
+        if (is_selected_shown(context))
+            soft_keep_rim(refined->soft, refined->buffer);
+        break;
+    case REFINED_SETTLE:
+        if (!visibility_buffer_settle(refined->buffer, workers))
+            return complain(refined);
+        resolve_read(refined->buffer, context, workers);
+        break;
+    case REFINED_COLOR:
+        done = advance(refined, bands, BANDS, &begin, &end);
+        resolve_colors(refined->buffer, soft->colormap, &(struct resolve_lines){ soft->block.lines[0], soft->lines }, soft->block.scale[3],
+                       workers, (int)begin, (int)(end - begin), frame);
+        break;
+    case REFINED_DONE: return true;
+    }
+    if (done)
+        refined->step++;
+    return refined->step == REFINED_DONE;
+}
+
+/* --- once more --------------------------------------------------------------------------------------------------------------- */
+
+bool refiner_keep(struct refiner *refiner, struct refined *refined, const struct frame_context *context,
+                  const struct isoline_points *points, struct frame *frame)
+{
+    struct visibility_buffer *buffer = refined->buffer;
+    if (refined->failed)
+        return false;
+    refined->buffer = NULL;
+    if (buffer->lined)
+        isolines_find(context, points, buffer->depth, (size_t)buffer->width_px, frame);
+    soft_give(&refiner->kept, context, buffer, frame);
+    return true;
+}
+
+bool refiner_know(struct refiner *refiner, const struct frame_context *context)
+{
+    double lines[VIEW_ALL_LINES];
+    const struct visibility_buffer *buffer = refiner_can(refiner, context) ? visibility_store_find(&refiner->kept, context->shape) : NULL;
+    return buffer && (buffer->lined || view_lines(context->view, lines) == 0);
+}
+
+bool refiner_resolve_again(struct refiner *refiner, const struct frame_context *context, const struct isoline_points *points,
+                           struct frame *frame)
+{
+    return refiner_can(refiner, context) && soft_resolve_again(refiner->soft, &refiner->kept, context, points, frame);
+}

@@ -1,0 +1,121 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What the steps of a refined frame hand to each other. Private to soft/. */
+#ifndef RENDER_SOFT_REFINED_IMPL_H
+#define RENDER_SOFT_REFINED_IMPL_H
+#include "render/soft/soft_impl.h"
+#include "render/soft/lanes.h"
+#include "render/light/environment.h"
+#include "render/soft/refined.h"
+#include "render/soft/visibility_store.h"
+
+enum { REFINED_ROWS = 8, SAMPLES = VISIBILITY_SHARES, BRDF_PX = 48, TONES = 4096 };
+/* From a pixel's middle: a square turned so that edges of any slant take all steps. */
+extern const float refined_samples[SAMPLES][2];
+
+/* Samples: number of the chunk and of the triangle in it. */
+enum { ID_BITS = 12 };
+#define ID_NOTHING 0xffffffffu
+#define ID_CAP 0xfffffffeu    /* a body that is cut open */
+#define MARK_BACK 0x80000000u /* | number of the draw; a triangle that looks away */
+
+enum { NORMAL_X, NORMAL_Y, NORMAL_Z, AMBIENT, OPEN, TINT }; /* of a vertex, in `lanes`: eight numbers */
+enum { BASE, METALLIC = 3, ROUGHNESS, EMISSIVE };           /* of a material, likewise */
+
+struct refined_draw {
+    lanes material;
+    uint32_t mesh;
+    bool field, cut; /* cut: triangles that look away show the inner side */
+};
+
+struct refined_light { /* what previews do not have of it */
+    uint64_t id;
+    uint8_t *open; /* of the ground, rows from the top */
+    int open_px;   /* of a side */
+};
+
+struct refined_surroundings {
+    GLuint mirrored; /* of which slot it is */
+    float irradiance[ENVIRONMENT_TERMS][4];
+    float (*texels)[4]; /* by roughness, octahedral */
+    float brdf[BRDF_PX * BRDF_PX][2];
+};
+
+struct refiner {
+    struct workers *workers;
+    const struct gpu_scene *gpu_scene;
+    const struct sky *sky;
+    struct soft *soft; /* keeps the light */
+    const struct environments *environments;
+    bool *textured, *masked, *blended; /* by model */
+    struct refined_surroundings surroundings;
+    struct refined_light light;
+    float tones[TONES + 1]; /* sRGB of linear light, 0..1 */
+    struct refined *spare;
+    struct visibility_store kept; /* struct visibility_buffer */
+};
+
+struct refined {
+    struct refiner *refiner;
+    struct soft *soft; /* vertices, triangles, depth */
+    enum {
+        REFINED_CAPS,
+        REFINED_COLLECT,
+        REFINED_PLACE,
+        REFINED_SORT,
+        REFINED_SHADE,
+        REFINED_INK,
+        REFINED_GHOSTS,
+        REFINED_MARK,
+        REFINED_RIM,
+        REFINED_SETTLE,
+        REFINED_COLOR,
+        REFINED_DONE
+    } step;
+    size_t at; /* in the step */
+    bool failed;
+    float (*normals)[9]; /* per mesh, columns: plant from file */
+    struct refined_draw *draws;
+    lanes *attributes; /* per vertex */
+    size_t mesh_capacity, draw_capacity, attribute_capacity;
+    uint8_t *caps; /* per pixel, rows of pitch_px: a bit for each sample. NULL: nothing is cut */
+    struct visibility_buffer *buffer;
+    /* --- of the picture, worked out anew at each step */
+    const struct frame_context *context;
+    float sun_from_pixel[4][4], sun_from_ground[4][4]; /* columns */
+    float sun_from_normal[3][3];                       /* columns; a step off the surface */
+    float ground_step[3];                              /* likewise off the ground */
+};
+
+struct samples { /* of a band; rows of pitch_px */
+    float *depth[SAMPLES];
+    uint32_t *ids[SAMPLES];
+};
+
+struct item { /* a surface in a pixel */
+    uint32_t id;
+    float x, y;    /* in the picture, where it is shaded */
+    uint8_t share; /* of SAMPLES */
+};
+
+struct shaded_items { /* per item of the field */
+    uint32_t *triangles, *weights;
+    uint8_t *rows;
+};
+
+SOFT_INLINE const struct soft_triangle *refined_triangle(const struct soft *soft, uint32_t id)
+{
+    return &soft->chunks[id >> ID_BITS].triangles[id & ((1u << ID_BITS) - 1)];
+}
+
+bool refined_read_light(struct refiner *refiner, const struct light_set *set);
+bool refined_read_surroundings(struct refiner *refiner, int number);
+void refined_raster_band(const struct refined *refined, int band, const struct samples *samples);
+bool refined_shade_band(const struct refined *refined, int band); /* false: out of memory */
+void refined_ink_band(const struct refined *refined, int band);
+/* Eight items or fewer at a time. */
+void refined_shade_field(const struct refined *refined, struct visibility_band *band, const struct item *items, size_t count,
+                         const struct shaded_items *out);
+void refined_shade_surfaces(const struct refined *refined, const struct item *items, size_t count, uint32_t *colors);
+void refined_shade_sky(const struct refined *refined, int row, const uint8_t *wanted, uint32_t *colors);
+
+#endif

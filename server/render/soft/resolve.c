@@ -1,0 +1,360 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* From what vertices carry to the colours of pixels. */
+#include <math.h>
+#include <string.h>
+
+#include "render/soft/visibility_buffer_impl.h"
+
+struct coloring {
+    const struct visibility_buffer *buffer;
+    const uint32_t *colormap;
+    struct resolve_lines lines;
+    float pattern_px;
+    bool log, rich; /* rich: there are lines, or the scale is logarithmic */
+    struct frame *frame;
+    size_t first_band;
+};
+
+static const float WEIGHT = 1 / 65535.0f;
+
+static uint32_t mix(uint32_t a, uint32_t b, float part)
+{
+    uint32_t out = 0;
+    for (int c = 0; c < 24; c += 8) {
+        float from = (float)(a >> c & 0xff), to = (float)(b >> c & 0xff);
+        out |= (uint32_t)(from + part * (to - from) + 0.5f) << c;
+    }
+    return out;
+}
+
+/* As hatch and stipple in shaders/field.glsl; over 0.5 on the dark parts. */
+static float hatch(float x, float y, float pattern_px)
+{
+    float phase = (x + y) / (pattern_px * 1.4142f);
+    return (fabsf(phase - floorf(phase) - 0.5f) - 0.25f) * pattern_px + 0.5f;
+}
+
+static float stipple(float x, float y, float pattern_px)
+{
+    float row = y / pattern_px, column = x / pattern_px + ((int)row % 2 ? 0.5f : 0);
+    return (0.26f - hypotf(column - floorf(column) - 0.5f, row - floorf(row) - 0.5f)) * pattern_px + 0.5f;
+}
+
+/* Over 0.5 on the lines. */
+static float rule(float y, float pattern_px)
+{
+    float at = y / pattern_px;
+    return (fabsf(at - floorf(at) - 0.5f) - 0.36f) * pattern_px + 0.5f;
+}
+
+/* --- isolines: field_color in shaders/field.glsl once more ----------------------------------------------------------------------- */
+
+static const float LEAST_SLOPE = 1e-7f, MOST_LINE = 0.8f;
+
+/* By how much the place on the scale changes from pixel to pixel. carried: of the corners; here: at the pixel. */
+static float slope_at(const struct coloring *coloring, const struct visibility_slopes *slopes, const float carried[3], float w1, float w2,
+                      float here, float x, float y)
+{
+    float over = 1 / (slopes->sum_x * x + slopes->sum_y * y + slopes->sum), d1 = carried[1] - carried[0], d2 = carried[2] - carried[0];
+    float by_x = d1 * (slopes->w1_x - w1 * slopes->sum_x) + d2 * (slopes->w2_x - w2 * slopes->sum_x);
+    float by_y = d1 * (slopes->w1_y - w1 * slopes->sum_y) + d2 * (slopes->w2_y - w2 * slopes->sum_y);
+    float slope = hypotf(by_x, by_y) * fabsf(over);
+    if (coloring->log)
+        return here > 1e-30f ? slope * coloring->buffer->scale[1] * 1.44269504f / here : 0;
+    return slope * (1 / COLUMNS_OF_RANGE);
+}
+
+/* How much of a line there is. column: with its part. */
+static float line_part(const struct coloring *coloring, float column, float slope)
+{
+    float place = (column - (1 + SLACK * COLUMNS_OF_RANGE)) * (1 / COLUMNS_OF_RANGE);
+    float nearest = coloring->lines.nearest[(int)clamped(column - 1, 0, COLORMAP_PLACES - 1)];
+    return slope > LEAST_SLOPE ? clamped(0.5f * coloring->lines.line_px + 0.5f - fabsf(place - nearest) / slope, 0, 1) : 0;
+}
+
+static uint32_t lined(uint32_t color, float part)
+{
+    float blue = (float)(color & 0xff), green = (float)(color >> 8 & 0xff), red = (float)(color >> 16 & 0xff);
+    bool bright = 0.30f * red + 0.59f * green + 0.11f * blue > 0.32f * 255;
+    return mix(color, bright ? 0x12171f : 0xededed, MOST_LINE * part);
+}
+
+static inline float column_of_carried(const struct coloring *coloring, float carried)
+{
+    return coloring->log ? column_of(lanes_log2((lanes){ 0 } + carried)[0], coloring->buffer->scale) : carried;
+}
+
+/* Where a corner has flags, or a line may run. */
+static uint32_t flagged_color(const struct coloring *coloring, const struct visibility_band *band, uint32_t triangle, uint32_t weights,
+                              uint8_t row, float x, float y)
+{
+    const struct visibility_buffer *buffer = coloring->buffer;
+    const uint32_t *colors = coloring->colormap + row * COLORMAP_COLUMNS, *vertices = band->triangles[triangle];
+    float w1 = (float)(weights & 0xffff) * WEIGHT, w2 = (float)(weights >> 16) * WEIGHT, w[3] = { 1 - w1 - w2, w1, w2 };
+    float at[3], carried = 0, none = 0, little = 0, free = 0;
+    for (int i = 0; i < 3; i++) {
+        at[i] = buffer->plain[vertices[i]];
+        carried += w[i] * at[i];
+        none += w[i] * soft_lacking(buffer->flags[vertices[i]]);
+        little += w[i] * soft_uncertain(buffer->flags[vertices[i]]);
+        free += w[i] * soft_no_limits(buffer->flags[vertices[i]]);
+    }
+    if (none > 0.5f)
+        return mix(colors[COLORMAP_PATTERNS + PATTERN_HATCH_LIGHT], colors[COLORMAP_PATTERNS + PATTERN_HATCH_DARK],
+                   clamped(hatch(x, y, coloring->pattern_px), 0, 1));
+    if (coloring->rich && free > 0.5f)
+        return mix(colors[COLORMAP_PATTERNS + PATTERN_PLAIN_LIGHT], colors[COLORMAP_PATTERNS + PATTERN_PLAIN_DARK],
+                   clamped(rule(y, coloring->pattern_px), 0, 1));
+    float column = column_of_carried(coloring, carried);
+    uint32_t color = colors[(int)clamped(column, 0, COLORMAP_PLACES + 1)];
+    if (little > 0.5f)
+        color = mix(color, colors[COLORMAP_PATTERNS + PATTERN_STIPPLE], clamped(stipple(x, y, coloring->pattern_px), 0, 1));
+    if (!(coloring->lines.line_px > 0))
+        return color;
+    return lined(color, line_part(coloring, column, slope_at(coloring, &band->slopes[triangle], at, w1, w2, carried, x, y)));
+}
+
+/* Four rows of four, the first three columns of them. */
+SOFT_INLINE void turn(const quad rows[4], quad columns[3])
+{
+    quad low = __builtin_shufflevector(rows[0], rows[1], 0, 4, 1, 5), high = __builtin_shufflevector(rows[2], rows[3], 0, 4, 1, 5);
+    columns[0] = __builtin_shufflevector(low, high, 0, 1, 4, 5);
+    columns[1] = __builtin_shufflevector(low, high, 2, 3, 6, 7);
+    low = __builtin_shufflevector(rows[0], rows[1], 2, 6, 3, 7), high = __builtin_shufflevector(rows[2], rows[3], 2, 6, 3, 7);
+    columns[2] = __builtin_shufflevector(low, high, 0, 1, 4, 5);
+}
+
+/* What these pixels of the field carry, as field_color has it. */
+SOFT_INLINE lanes carried_by(const struct visibility_band *band, lanes_int triangles, lanes_int weights)
+{
+    quad columns[2][3];
+    for (int half = 0; half < 2; half++) {
+        quad rows[4];
+        for (int i = 0; i < 4; i++)
+            rows[i] = *(const quad *)band->corners[triangles[4 * half + i]];
+        turn(rows, columns[half]);
+    }
+    lanes of[3];
+    for (int i = 0; i < 3; i++)
+        of[i] = __builtin_shufflevector(columns[0][i], columns[1][i], 0, 1, 2, 3, 4, 5, 6, 7);
+    lanes w1 = __builtin_convertvector(weights & 0xffff, lanes) * WEIGHT;
+    lanes w2 = __builtin_convertvector((lanes_int)((lanes_uint)weights >> 16), lanes) * WEIGHT;
+    return of[0] + w1 * of[1] + w2 * of[2];
+}
+
+/* As column_of. */
+SOFT_INLINE lanes columns_of_logs(lanes values, const float *scale)
+{
+    return (lanes_log2(values) - scale[0]) * scale[1] * COLUMNS_OF_RANGE + (1 + SLACK * COLUMNS_OF_RANGE);
+}
+
+/* Which of eight pixels a line may cover some of, by how fast the field changes there. */
+SOFT_INLINE lanes_int may_be_lined(const struct coloring *coloring, const struct visibility_band *band, lanes_int triangles,
+                                   lanes_int weights, int x, int y)
+{
+    float by[7][LANES], d1[LANES], d2[LANES];
+    lanes carried = carried_by(band, triangles, weights), none = { 0 };
+    for (int i = 0; i < LANES; i++) {
+        const struct visibility_slopes *slopes = &band->slopes[triangles[i]];
+        const float all[7] = { slopes->w1_x, slopes->w1_y, slopes->w2_x, slopes->w2_y, slopes->sum_x, slopes->sum_y, slopes->sum };
+        for (int k = 0; k < 7; k++)
+            by[k][i] = all[k];
+        d1[i] = band->corners[triangles[i]][1];
+        d2[i] = band->corners[triangles[i]][2];
+    }
+#define BY(k) (*(const lanes *)by[k])
+    lanes w1 = __builtin_convertvector(weights & 0xffff, lanes) * WEIGHT;
+    lanes w2 = __builtin_convertvector((lanes_int)((lanes_uint)weights >> 16), lanes) * WEIGHT;
+    lanes over = 1.0f / (BY(4) * (LANES_IOTA + ((float)x + 0.5f)) + BY(5) * ((float)y + 0.5f) + BY(6));
+    lanes by_x = *(const lanes *)d1 * (BY(0) - w1 * BY(4)) + *(const lanes *)d2 * (BY(2) - w2 * BY(4));
+    lanes by_y = *(const lanes *)d1 * (BY(1) - w1 * BY(5)) + *(const lanes *)d2 * (BY(3) - w2 * BY(5));
+#undef BY
+    lanes slope = lanes_root((by_x * by_x + by_y * by_y) * over * over), column = carried;
+    if (coloring->log) {
+        lanes_int counts = carried > 1e-30f;
+        slope *= coloring->buffer->scale[1] * 1.44269504f;
+        slope = lanes_choose(counts, slope / lanes_choose(counts, carried, none + 1.0f), none);
+        column = columns_of_logs(carried, coloring->buffer->scale);
+    } else {
+        slope *= 1 / COLUMNS_OF_RANGE;
+    }
+    lanes place = (column - (1 + SLACK * COLUMNS_OF_RANGE)) * (1 / COLUMNS_OF_RANGE), nearest;
+    lanes_int at = lanes_whole(lanes_clamp(lanes_choose(column == column, column, none) - 1.0f, 0, COLORMAP_PLACES - 1));
+    nearest = lanes_look_up(coloring->lines.nearest, at);
+    lanes away = lanes_most(place - nearest, nearest - place);
+    return ~(away > slope * (0.5f * coloring->lines.line_px + 0.51f));
+}
+
+/* Colours of eight places of the field. known: false where a corner has flags. */
+SOFT_INLINE lanes_int field_colors(const struct coloring *coloring, const struct visibility_band *band, lanes_int triangles,
+                                   lanes_int weights, uint64_t rows, lanes_int *known)
+{
+    lanes_int colors;
+    lanes carried = carried_by(band, triangles, weights);
+    *known = carried == carried;
+    carried = lanes_choose(*known, carried, (lanes){ 0 });
+    if (coloring->log)
+        carried = columns_of_logs(carried, coloring->buffer->scale);
+    lanes_int columns = lanes_whole(lanes_clamp(carried, 0, COLORMAP_PLACES + 1));
+    for (int i = 0; i < LANES; i++)
+        colors[i] = (int32_t)coloring->colormap[(rows >> (8 * i) & 0xff) * COLORMAP_COLUMNS + (uint32_t)columns[i]];
+    return colors;
+}
+
+/* --- pixels of several surfaces ---------------------------------------------------------------------------------------------- */
+
+typedef uint64_t sums __attribute__((vector_size(32), aligned(8))); /* blue and red from bit 0 and 16 on, green from bit 32 on */
+
+/* Parts are coloured ahead, eight at a time: pixels need them in the order in which they lie. */
+enum { PARTS_AHEAD = 64 };
+struct ahead {
+    size_t first, end;
+    bool all_known;                                   /* no corner has flags */
+    uint32_t known[PARTS_AHEAD];                      /* 0: one has */
+    uint64_t colors[PARTS_AHEAD + VISIBILITY_SHARES]; /* times share */
+};
+
+static inline uint64_t spread(uint32_t color)
+{
+    return (color & 0xff00ff) | (uint64_t)(color >> 8 & 0xff) << 32;
+}
+
+SOFT_INLINE void color_parts(const struct coloring *coloring, const struct visibility_band *band, size_t first, struct ahead *ahead)
+{
+    size_t left = band->part_count - first, count = left < PARTS_AHEAD ? left : PARTS_AHEAD;
+    lanes_int all_known = { -1, -1, -1, -1, -1, -1, -1, -1 };
+    for (size_t p = 0; p < count; p += LANES) {
+        uint32_t triangles[LANES], weights[LANES], shares[LANES], colors[LANES];
+        uint8_t rows[LANES];
+        uint64_t all_rows;
+        lanes_int known, of[2];
+        for (size_t i = 0; i < LANES; i++) {
+            const struct visibility_part *part = &band->parts[p + i < count ? first + p + i : first];
+            triangles[i] = part->triangle;
+            weights[i] = part->weights;
+            rows[i] = part->row;
+            shares[i] = part->share;
+        }
+        memcpy(&all_rows, rows, sizeof(all_rows));
+        memcpy(&of[0], triangles, sizeof(of[0]));
+        memcpy(&of[1], weights, sizeof(of[1]));
+        of[0] = field_colors(coloring, band, of[0], of[1], all_rows, &known);
+        memcpy(colors, &of[0], sizeof(colors));
+        memcpy(ahead->known + p, &known, sizeof(known));
+        all_known &= known;
+        for (size_t i = 0; i < LANES; i++)
+            ahead->colors[p + i] = spread(colors[i]) * shares[i];
+    }
+    ahead->first = first;
+    ahead->end = first + count;
+    ahead->all_known = !lanes_any(~all_known) && !(coloring->lines.line_px > 0);
+}
+
+static uint64_t flagged_sum(const struct coloring *coloring, const struct visibility_band *band, const struct visibility_mixed *mixed,
+                            const struct ahead *ahead, float x, float y)
+{
+    uint64_t sum = 0;
+    for (size_t i = mixed->first_part; i < (size_t)mixed->first_part + mixed->part_count; i++) {
+        const struct visibility_part *part = &band->parts[i];
+        if (ahead->known[i - ahead->first] && !(coloring->lines.line_px > 0))
+            sum += ahead->colors[i - ahead->first];
+        else
+            sum += spread(flagged_color(coloring, band, part->triangle, part->weights, part->row, x, y)) * part->share;
+    }
+    return sum;
+}
+
+/* After all others: over what was written there. */
+SOFT_INLINE void color_mixed(const struct coloring *coloring, const struct visibility_band *band, int top)
+{
+    static const sums wanted[] = { { 0 }, { -1ull }, { -1ull, -1ull }, { -1ull, -1ull, -1ull }, { -1ull, -1ull, -1ull, -1ull } };
+    const uint64_t half = VISIBILITY_SHARES / 2 * 0x100010001ull;
+    struct ahead ahead = { 0 };
+    for (size_t m = 0; m < band->mixed_count; m++) {
+        const struct visibility_mixed *mixed = &band->mixed[m];
+        if (mixed->first_part < ahead.first || mixed->first_part + mixed->part_count > ahead.end)
+            color_parts(coloring, band, mixed->first_part, &ahead);
+        sums four = *(const sums *)(ahead.colors + (mixed->first_part - ahead.first)) & wanted[mixed->part_count];
+        uint64_t sum = (four[0] + four[1]) + (four[2] + four[3]);
+        if (!ahead.all_known)
+            sum = flagged_sum(coloring, band, mixed, &ahead, (float)mixed->x + 0.5f, (float)(top + mixed->row) + 0.5f);
+        sum = (sum + half + mixed->blue_red + ((uint64_t)mixed->green << 32)) / VISIBILITY_SHARES;
+        uint32_t color = (uint32_t)(sum & 0xff00ff) | (uint32_t)(sum >> 24 & 0xff00);
+        size_t row = (size_t)(top + mixed->row), pixel = row * (size_t)coloring->buffer->width_px + mixed->x;
+        uint8_t *line = coloring->frame->bgrx + row * (size_t)coloring->frame->stride_bytes;
+        bool ink = has_ink(coloring->buffer, pixel);
+        ((uint32_t *)(void *)line)[mixed->x] = (ink ? inked(coloring->buffer, pixel, color) : color) | 0xff000000;
+    }
+}
+
+/* --- pixels ------------------------------------------------------------------------------------------------------------------ */
+
+/* A bit for each byte that is not 0, the lowest first. */
+SOFT_INLINE uint32_t bits_of_bytes(uint64_t x)
+{
+    uint64_t low = 0x7f7f7f7f7f7f7f7f, tops = ((x & low) + low) | x;
+    return (uint32_t)((tops >> 7 & 0x0101010101010101) * 0x0102040810204080 >> 56);
+}
+
+/* Eight pixels in a row; of those of several surfaces, anything. */
+SOFT_INLINE lanes_int color_lanes(const struct coloring *coloring, const struct visibility_band *band, size_t at, int x, int y)
+{
+    const struct visibility_buffer *buffer = coloring->buffer;
+    lanes_int surfaces = *(const lanes_int *)(buffer->surfaces + at), field = (surfaces >> 30) == 0, known;
+    if (!lanes_any(field))
+        return surfaces;
+    uint64_t inks, rows;
+    memcpy(&inks, buffer->ink + at, sizeof(inks));
+    if (buffer->veil) {
+        uint64_t veils;
+        memcpy(&veils, buffer->veil + at, sizeof(veils));
+        inks |= veils;
+    }
+    memcpy(&rows, buffer->rows + at, sizeof(rows));
+    lanes_int colors = field_colors(coloring, band, surfaces & field, *(const lanes_int *)(buffer->weights + at), rows, &known);
+    if (coloring->lines.line_px > 0)
+        known &= ~may_be_lined(coloring, band, surfaces & field, *(const lanes_int *)(buffer->weights + at), x, y);
+    colors = lanes_choose_int(field, colors, surfaces);
+    for (uint32_t left = lanes_bits(field) & (lanes_bits(~known) | bits_of_bytes(inks)); left; left &= left - 1) {
+        size_t i = (size_t)__builtin_ctz(left), pixel = at + i;
+        uint32_t color = (uint32_t)colors[i];
+        if (!known[i])
+            color = flagged_color(coloring, band, buffer->surfaces[pixel], buffer->weights[pixel], buffer->rows[pixel],
+                                  (float)(x + (int)i) + 0.5f, (float)y + 0.5f);
+        colors[i] = (int32_t)(has_ink(buffer, pixel) ? inked(buffer, pixel, color) : color);
+    }
+    return colors;
+}
+
+/* Rows that are no multiple of eight end with pixels of which some were there before. */
+SOFT_KERNEL static void color_band(const struct coloring *coloring, int number)
+{
+    const struct visibility_buffer *buffer = coloring->buffer;
+    const struct visibility_band *band = &buffer->bands[number];
+    int top = number * buffer->band_rows, end = top + buffer->band_rows;
+    end = end < buffer->height_px ? end : buffer->height_px;
+    for (int y = top; y < end; y++) {
+        size_t start = (size_t)y * (size_t)buffer->width_px;
+        uint32_t *out = (uint32_t *)(void *)(coloring->frame->bgrx + (size_t)y * (size_t)coloring->frame->stride_bytes);
+        for (int x = 0; x < buffer->width_px; x += LANES) {
+            x = x + LANES <= buffer->width_px ? x : buffer->width_px - LANES;
+            *(lanes_int *)(out + x) = color_lanes(coloring, band, start + (size_t)x, x, y) | (int32_t)0xff000000;
+        }
+    }
+    color_mixed(coloring, band, top);
+}
+
+static void color_bands(void *arg, size_t begin, size_t end)
+{
+    const struct coloring *coloring = arg;
+    for (size_t band = begin; band < end; band++)
+        color_band(coloring, (int)(coloring->first_band + band));
+}
+
+void resolve_colors(const struct visibility_buffer *buffer, const uint32_t *colormap, const struct resolve_lines *lines, float pattern_px,
+                    struct workers *workers, int first, int count, struct frame *frame)
+{
+    bool log = is_log(buffer->scale);
+    struct coloring coloring = { buffer, colormap, *lines, pattern_px, log, log || lines->line_px > 0, frame, (size_t)first };
+    workers_for(workers, (size_t)count, 2, color_bands, &coloring);
+}

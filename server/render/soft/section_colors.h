@@ -1,0 +1,61 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What a cut opens, eight pixels at a time: shaders/section.glsl once more. Private to soft/. */
+#ifndef RENDER_SOFT_SECTION_COLORS_H
+#define RENDER_SOFT_SECTION_COLORS_H
+#include <math.h>
+
+#include "render/soft/soft_impl.h"
+#include "render/soft/lanes.h"
+
+enum { NORMAL_BITS = 14, NORMAL_MOST = (1 << NORMAL_BITS) - 1 };
+
+SOFT_INLINE lanes_int pack_color(lanes red, lanes green, lanes blue)
+{
+    return lanes_whole(blue * 255.0f + 0.5f) | lanes_whole(green * 255.0f + 0.5f) << 8 | lanes_whole(red * 255.0f + 0.5f) << 16;
+}
+
+/* Of a body that is solid as far as the model says. */
+SOFT_INLINE lanes_int cap_color(lanes x, float y, float pattern_px)
+{
+    lanes phase = (x - y) * (1 / (0.9f * pattern_px)), whole = __builtin_convertvector(lanes_whole(phase), lanes);
+    lanes one = (lanes){ 0 } + 1.0f;
+    phase -= whole - lanes_choose(whole > phase, one, (lanes){ 0 });
+    lanes t = lanes_clamp((lanes_most(phase - 0.5f, 0.5f - phase) - 0.28f) * (1 / (0.40f - 0.28f)), 0, 1), part = t * t * (3.0f - 2.0f * t);
+    return pack_color(0.36f - 0.07f * part, 0.37f - 0.07f * part, 0.39f - 0.07f * part);
+}
+
+/* Of the inner side of a surface. v: towards the viewer, of unit length; n: of the surface, to either side, of any length. */
+SOFT_INLINE lanes_int inside_color(const lanes v[3], const lanes n[3], const float up[3])
+{
+    lanes none = { 0 }, square = n[0] * n[0] + n[1] * n[1] + n[2] * n[2], towards = n[0] * v[0] + n[1] * v[1] + n[2] * v[2];
+    lanes over = 1.0f / lanes_root(lanes_most(square, none + 1e-30f));
+    over = lanes_choose(towards < 0.0f, -over, over);
+    lanes bright = 0.72f + over * (0.28f * towards + 0.12f * (n[0] * up[0] + n[1] * up[1] + n[2] * up[2]));
+    return pack_color(0.40f * bright, 0.41f * bright, 0.43f * bright);
+}
+
+/* A normal of any length as a mark of the inner side: folded flat from an octahedron. */
+static inline uint32_t inside_mark(const float n[3])
+{
+    float sum = fabsf(n[0]) + fabsf(n[1]) + fabsf(n[2]), over = sum > 0 ? 1 / sum : 0, x = n[0] * over, y = n[1] * over;
+    if (n[2] < 0) {
+        float folded = copysignf(1 - fabsf(y), x);
+        y = copysignf(1 - fabsf(x), y);
+        x = folded;
+    }
+    uint32_t across = (uint32_t)((0.5f + 0.5f * x) * NORMAL_MOST + 0.5f), down = (uint32_t)((0.5f + 0.5f * y) * NORMAL_MOST + 0.5f);
+    return MARK_SECTION | across | down << NORMAL_BITS;
+}
+
+SOFT_INLINE void inside_normal(lanes_int marks, lanes n[3])
+{
+    lanes none = { 0 }, x = __builtin_convertvector(marks & NORMAL_MOST, lanes) * (2.0f / NORMAL_MOST) - 1.0f;
+    lanes y = __builtin_convertvector(marks >> NORMAL_BITS & NORMAL_MOST, lanes) * (2.0f / NORMAL_MOST) - 1.0f;
+    lanes ax = lanes_most(x, -x), ay = lanes_most(y, -y);
+    n[2] = 1.0f - ax - ay;
+    lanes back = lanes_most(-n[2], none);
+    n[0] = lanes_choose(x < 0.0f, x + back, x - back);
+    n[1] = lanes_choose(y < 0.0f, y + back, y - back);
+}
+
+#endif

@@ -1,0 +1,32 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Moving pictures on machines without a GPU: from triangles to pixels on all cores, with SIMD, where a software GL would bring every
+   triangle through one thread. Shows what shaders/moving.* show, within rounding. What it cannot show is left to GL.
+
+   Vertices are placed in the picture; triangles that can be seen are sorted into bands of rows; each band is drawn (a depth and a
+   32-bit mark per pixel) and then coloured by marks: what is hidden is never coloured. The order of bands and threads does not matter
+   to the result.
+   Thread: the one of the GL context; it spreads its work over `workers`. */
+#ifndef RENDER_SOFT_H
+#define RENDER_SOFT_H
+#include "base/workers.h"
+#include "render/frame.h"
+#include "render/pick/isolines.h"
+#include "render/light/sky.h"
+#include "render/frame_context.h"
+
+struct soft;
+
+/* NULL: the GL context is lost. workers and gpu_scene must outlive it. */
+struct soft *soft_create(struct workers *workers, const struct gpu_scene *gpu_scene, const struct sky *sky);
+void soft_destroy(struct soft **soft);            /* &NULL is fine; leaves NULL */
+void soft_bound(struct soft *soft, size_t bytes); /* of pictures of cameras that stand still */
+size_t soft_kept_bytes(const struct soft *soft);  /* of these */
+size_t soft_room_bytes(const struct soft *soft);  /* to draw in */
+size_t soft_light_bytes(const struct soft *soft); /* read back */
+void soft_rest(struct soft *soft);                /* drops all three */
+bool preview_can(const struct soft *soft, const struct view *view);
+/* Pixels, markers and labels. False: out of memory, or the GL context is lost; logged. */
+bool preview_draw(struct soft *soft, const struct frame_context *context, const struct light *light, struct isolines *isolines,
+                  struct frame *frame);
+
+#endif

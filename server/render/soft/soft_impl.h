@@ -1,0 +1,198 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What the steps of a preview hand to each other. Private to soft/. */
+#ifndef RENDER_SOFT_SOFT_IMPL_H
+#define RENDER_SOFT_SOFT_IMPL_H
+#include "render/soft/flags.h"
+#include "render/soft/soft.h"
+#include "render/soft/parts.h"
+#include "render/gl/frame_uniforms.h"
+#include "render/shaded_colormap.h"
+#include "render/soft/visibility_buffer.h"
+#include "render/soft/visibility_store.h"
+
+enum { BAND_ROWS = 32, CHUNK_TRIANGLES = 2048, RAMP_STEPS = MODEL_LIGHT_STEPS, SOFT_STRETCH_MOST = 64, SOFT_STRETCH_LEAST = 8 };
+
+/* Marks of pixels. 0: nothing. Else a colour of the colormap, or a material and the light on it, to be looked up. */
+#define MARK_FIELD 0x40000000u /* | colormap row * COLORMAP_COLUMNS + column (MARK_PLACE) | so much of an isoline << MARK_LINE (8 bits) */
+#define MARK_PLACE 0x1ffffu
+enum { MARK_LINE = 17, MARK_LINE_WHOLE = 255 };
+#define MARK_CONTEXT 0x80000000u /* | ambient << 8 (8 bits) | sun (8 bits) | row of the ramps << 16 (14 bits) */
+#define MARK_SECTION 0xc0000000u /* what a cut opens: MARK_CAP, or the inner side of a surface | its normal (section_colors.h) */
+#define MARK_CAP 0xe0000000u
+#define MARK_KIND 0xc0000000u
+enum { MOST_RAMPS = 1 << 14 };
+
+struct soft_vertex {
+    float x, y, depth; /* pixels from the top left; 1 near, 0 far */
+    float inverse_w;   /* 0: nearer than the near plane, or beyond the band (near.h) */
+    float a, b;        /* field: column and row of the colormap (logarithmic: value and row); context: ambient, facing the sun */
+    uint32_t flags;    /* soft_flags */
+    uint32_t source;   /* of one that a cut made: first index of the triangle that was cut */
+};
+
+struct soft_mesh { /* one asset in this picture */
+    int asset;
+    const struct asset_view *file;
+    bool has_field;
+    const struct scalar *scalars; /* NULL: context, or a field that could not be worked out: no data */
+    const uint8_t (*baked)[4];
+    float place[4][4]; /* columns; x w, y w in pixels, z and w of clip space */
+    uint32_t first_vertex, vertex_count;
+    bool mirrored;
+    bool cut;      /* something of it is cut away: what is left shows its inner side */
+    float turn[9]; /* of one that is cut: columns, plant from file, for normals */
+};
+
+struct soft_draw { /* neighbouring triangles of one material */
+    float near_m;  /* from the eye to the ball around them; less than 0: within */
+    uint32_t mesh, first_index, index_count;
+    uint32_t mark; /* MARK_FIELD, or MARK_CONTEXT with its ramp */
+    uint32_t back; /* added to it on triangles that look away; previews: 0 */
+    bool double_sided;
+};
+
+struct soft_triangle {
+    uint32_t vertices[3]; /* of the picture, or EXTRA_VERTEX | number in the chunk */
+    uint32_t mark;
+};
+#define EXTRA_VERTEX 0x80000000u
+
+struct soft_chunk { /* what one job sorts into bands; kept from picture to picture */
+    size_t first_draw, draw_count;
+    struct soft_triangle *triangles;
+    struct soft_vertex *extra; /* where triangles are cut */
+    uint32_t *bands;           /* of each triangle: first | last << 16 */
+    uint16_t *sorted;          /* triangles, band by band */
+    uint32_t *starts;          /* in sorted, by band; one more at the end */
+    size_t triangle_count, extra_count;
+    size_t triangle_capacity, extra_capacity, band_capacity, sorted_capacity, start_capacity;
+};
+
+struct soft_rect { /* pixels, the last ones included */
+    int left, top, right, bottom;
+};
+
+struct soft_item { /* a part that may be seen */
+    float near;    /* depth; over 1: some of it is nearer than the near plane */
+    struct soft_rect rect;
+    uint32_t part;
+    bool cut;    /* it lies on both sides of a plane that cuts */
+    bool beyond; /* nothing of it is left; it may bound a body that is cut open before it */
+};
+
+struct soft_found { /* what of one mesh may be seen; kept from picture to picture */
+    const struct soft_parts *parts;
+    uint32_t ramp; /* of its first material */
+    bool both_sides;
+    float eye_m[3]; /* in the frame of its file */
+    struct soft_rect rect;
+    uint32_t first_id; /* PART_TRIANGLES for each item */
+    struct soft_item *items;
+    size_t count, capacity;
+};
+
+struct soft_light {       /* a light_set, read back */
+    uint64_t id;          /* of the set; 0: empty */
+    uint8_t (**baked)[4]; /* by asset */
+    uint16_t *sun_map;    /* rows from the top; one more row and column than it has */
+    int sun_map_px;
+    uint32_t *ground; /* a byte each: this texel, its right, lower, lower right neighbour; 255: no shadow */
+    int ground_px;
+    uint64_t used;
+};
+enum { SOFT_LIGHTS = 2, SOFT_SHAPES = 16 };
+
+struct soft_kernels;
+struct soft {
+    struct workers *workers;
+    const struct soft_kernels *kernels;
+    const struct gpu_scene *gpu_scene;
+    uint32_t *muted_ramps, *own_ramps, *ramp_of_model; /* colours, RAMP_STEPS to a row; first row, by number of the model */
+    size_t ramp_count;
+    bool has_holes;      /* some material cuts them by a texture */
+    uint32_t *backdrops; /* as render/light/sky.c makes them */
+    uint32_t *colormap;
+    float *lines; /* by place of the scale: the nearest place that has a line */
+    uint64_t palette_version;
+    bool palette_glossy; /* rows of it: colours in a light */
+    struct soft_light lights[SOFT_LIGHTS];
+    uint64_t uses;
+    struct visibility_store kept; /* struct visibility_buffer, of cameras that stand still */
+    uint64_t shapes[SOFT_SHAPES]; /* content_hash_shape of the last pictures drawn */
+    size_t shape_count;
+    struct soft_parts **parts; /* by number of the model, level; made when they are first needed */
+    /* --- of the picture being drawn */
+    const struct frame_context *context;
+    const struct soft_light *light;
+    const uint32_t *ramps; /* the picture's */
+    struct frame_uniforms block;
+    struct soft_mesh *meshes;
+    struct soft_found *found; /* by mesh */
+    size_t found_capacity;
+    struct soft_draw *draws;
+    struct soft_vertex *vertices;
+    struct soft_chunk *chunks;
+    size_t mesh_count, draw_count, chunk_count, vertex_count;
+    size_t mesh_capacity, draw_capacity, chunk_capacity, vertex_capacity;
+    int width_px, height_px, pitch_px, band_count; /* pitch: a multiple of LANES */
+    int band_rows;
+    float reach_px; /* so far from a pixel's middle it is looked at; previews: 0 */
+    float *depth;
+    uint32_t *marks;
+    uint32_t *ids; /* NULL: not asked for; else, where there is a mark: first_id of the part found + triangle of it */
+    size_t pixel_capacity;
+    uint8_t *out;
+    size_t out_stride_bytes;
+    float cuts[CLIP_MAX_PLANES][4]; /* planes that cut, of x w, y w in pixels, z, w; those that rays come in by first */
+    int cut_count, entry_count;
+    float shift_px[2];  /* pixels are looked at so far from their middles */
+    bool counts_bodies; /* planes that cut show which bodies are solid (caps.c) */
+    bool has_ground;
+    bool greys;                                                                /* context has no colours */
+    float sun_from_pixel[4][4], ground_from_pixel[3][3], ray_from_pixel[3][3]; /* columns */
+    int stretch_px; /* of the sky: from SOFT_STRETCH_LEAST to SOFT_STRETCH_MOST, a power of two; 1: each pixel by itself */
+};
+
+/* From the GPU: what is the same in all pictures (false: the context is lost); light (NULL: out of memory, logged); a colormap. */
+bool soft_read_textures(struct soft *soft, const struct sky *sky);
+const struct soft_light *soft_get_light(struct soft *soft, const struct light_set *set);
+void soft_free_light(const struct soft *soft, struct soft_light *light);
+void soft_read_palette(struct soft *soft, const struct shaded_colormap *colormap, bool glossy);
+/* The steps. */
+void soft_aim(struct soft *soft, const struct light *light);                  /* the matrices from pixels */
+void soft_aim_cuts(struct soft *soft);                                        /* before all that follows */
+bool soft_is_cut_off(const struct soft *soft, const float at[4], int planes); /* x w, y w in pixels, z, w */
+/* A box of the mesh: none of it is left by that plane; or some is not (*cut: as it was, else). */
+bool soft_cuts_box(const struct soft *soft, const struct soft_mesh *mesh, int plane, const float low[3], const float high[3], bool *cut);
+/* Where the ray of that place in the picture comes into what is left: depth. 0: nowhere, or its eye is within. */
+float soft_entry_depth(const struct soft *soft, float x, float y);
+bool soft_collect(struct soft *soft); /* meshes, draws and chunks: what may be seen. False: out of memory */
+/* An asset, its vertices counted on from soft->vertex_count. */
+void soft_fill_mesh(struct soft *soft, struct soft_mesh *mesh, int asset, const struct model_level *level);
+bool soft_find(struct soft *soft);                 /* meshes, and which of their parts may be seen. False: out of memory */
+bool soft_find_only(struct soft *soft, int asset); /* the same of one, from both sides */
+bool soft_find_ghosts(struct soft *soft);          /* of what is only hinted at; and below, how much of a line each pixel has, of 255 */
+bool soft_ghosts(struct soft *soft, uint8_t *veil, uint8_t bgr[3]); /* rows of width_px; marks are lost. False: out of memory */
+void soft_paint_ghosts(const struct soft *soft, const uint8_t *veil, const uint8_t bgr[3]);
+enum soft_output { SOFT_CAPS, SOFT_DEPTH, SOFT_COLORS };                          /* only marks of caps; marks and depth; and colours */
+void soft_tiles(struct soft *soft, enum soft_output output);                      /* of what was found */
+bool soft_make_room(struct soft *soft, const struct frame *frame, int band_rows); /* false: out of memory */
+void soft_place(struct soft *soft, size_t begin, size_t end);                     /* vertices */
+void soft_sort(struct soft *soft, size_t begin, size_t end);                      /* triangles of chunks into bands */
+enum soft_rim { RIM_NONE, RIM_LIGHT, RIM_DARK };
+const uint8_t *soft_rim(const struct soft *soft); /* per pixel, rows of pitch_px; in place of depth */
+/* What is needed to colour it again, while soft->ids says what is seen and the frame has all but rims: no ink and no markers yet. NULL:
+   out of memory. */
+struct visibility_buffer *soft_keep(struct soft *soft);
+void soft_keep_rim(const struct soft *soft, struct visibility_buffer *buffer); /* likewise: depth is lost */
+/* Hands it over to a store, with the frame's markers. */
+void soft_give(struct visibility_store *store, const struct frame_context *context, struct visibility_buffer *buffer,
+               const struct frame *frame);
+/* Pixels, markers and labels, if the store has such a picture. points: of its isolines. False: it has not. */
+bool soft_resolve_again(struct soft *soft, struct visibility_store *store, const struct frame_context *context,
+                        const struct isoline_points *points, struct frame *frame);
+/* Of the corners of a triangle (vertices of the file), planes over the picture: up to a factor, the parts that they have of a place. */
+void soft_weights(const struct soft_mesh *mesh, const uint32_t vertices[3], double weights[3][3]);
+void soft_outline(const struct soft *soft); /* of all that has a mark; depth is lost */
+
+#endif

@@ -1,0 +1,274 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Spots of surfaces, eight at a time: where they are, which way they look, and how much of the sun they see. Private to soft/. */
+#ifndef RENDER_SOFT_SPOTS_H
+#define RENDER_SOFT_SPOTS_H
+#include <math.h>
+#include <string.h>
+
+#include "render/soft/lookups.h"
+#include "render/soft/refined_impl.h"
+
+typedef struct {
+    lanes x, y, z;
+} vec;
+
+struct spot {            /* eight of them */
+    lanes attributes[8]; /* NORMAL_X ... */
+    lanes material[8];
+    lanes x, y, depth; /* in the picture */
+    lanes weights[3];
+    uint32_t vertices[LANES][3];
+    lanes_int back; /* -1: looks away */
+    lanes_int cut;  /* with the material: -1: what looks away shows the inner side of what is cut */
+    vec normal;
+};
+
+SOFT_INLINE lanes all(float x)
+{
+    return (lanes){ 0 } + x;
+}
+
+SOFT_INLINE lanes least_of(lanes a, lanes b)
+{
+    return lanes_choose(a < b, a, b);
+}
+
+SOFT_INLINE lanes most_of(lanes a, lanes b)
+{
+    return lanes_choose(a > b, a, b);
+}
+
+SOFT_INLINE lanes root(lanes x)
+{
+    lanes out;
+    for (int i = 0; i < LANES; i++)
+        out[i] = sqrtf(x[i]);
+    return out;
+}
+
+SOFT_INLINE vec times(vec a, lanes by)
+{
+    return (vec){ a.x * by, a.y * by, a.z * by };
+}
+
+SOFT_INLINE vec plus(vec a, vec b)
+{
+    return (vec){ a.x + b.x, a.y + b.y, a.z + b.z };
+}
+
+SOFT_INLINE vec multiplied(vec a, vec b)
+{
+    return (vec){ a.x * b.x, a.y * b.y, a.z * b.z };
+}
+
+SOFT_INLINE vec between(vec a, vec b, lanes part)
+{
+    return (vec){ a.x + (b.x - a.x) * part, a.y + (b.y - a.y) * part, a.z + (b.z - a.z) * part };
+}
+
+SOFT_INLINE lanes dot(vec a, vec b)
+{
+    return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+
+SOFT_INLINE vec unit(vec a)
+{
+    return times(a, 1.0f / root(most_of(dot(a, a), all(1e-30f))));
+}
+
+/* --- where ------------------------------------------------------------------------------------------------------------------- */
+
+struct corners {                    /* of eight triangles, seen from the spots: what the weights are made of */
+    float a[3][LANES], b[3][LANES]; /* to the corner, in pixels; by w where the corner has no place in the picture */
+    float w[3][LANES];              /* 1/w, or 1 */
+    float z[3][LANES], g[3][LANES]; /* depth times g, and g: 1, or w */
+};
+
+/* A triangle that was cut: its corners may lie behind the eye. */
+static inline void see_cut_corner(const struct soft_mesh *mesh, uint32_t v, const struct item *item, int k, int i, struct corners *out)
+{
+    const float *p = mesh->file->positions_m[v];
+    float at[4];
+    for (int r = 0; r < 4; r++)
+        at[r] = mesh->place[0][r] * p[0] + mesh->place[1][r] * p[1] + mesh->place[2][r] * p[2] + mesh->place[3][r];
+    out->a[k][i] = at[0] - item->x * at[3];
+    out->b[k][i] = at[1] - item->y * at[3];
+    out->w[k][i] = 1;
+    out->z[k][i] = at[2];
+    out->g[k][i] = at[3];
+}
+
+SOFT_INLINE void see_corners(const struct refined *refined, const struct item *item, int i, struct spot *spot, struct corners *out)
+{
+    const struct soft *soft = refined->soft;
+    const struct soft_triangle *triangle = refined_triangle(soft, item->id);
+    bool is_cut = (triangle->vertices[0] | triangle->vertices[1] | triangle->vertices[2]) & EXTRA_VERTEX;
+    if (is_cut) {
+        const struct soft_mesh *mesh = &soft->meshes[refined->draws[triangle->mark & ~MARK_BACK].mesh];
+        const struct soft_chunk *chunk = &soft->chunks[item->id >> ID_BITS];
+        const uint32_t *source = mesh->file->indices + chunk->extra[triangle->vertices[0] & ~EXTRA_VERTEX].source;
+        for (int k = 0; k < 3; k++) {
+            spot->vertices[i][k] = mesh->first_vertex + source[k];
+            see_cut_corner(mesh, source[k], item, k, i, out);
+        }
+        return;
+    }
+    for (int k = 0; k < 3; k++) {
+        const struct soft_vertex *vertex = &soft->vertices[triangle->vertices[k]];
+        spot->vertices[i][k] = triangle->vertices[k];
+        out->a[k][i] = vertex->x - item->x;
+        out->b[k][i] = vertex->y - item->y;
+        out->w[k][i] = vertex->inverse_w;
+        out->z[k][i] = vertex->depth;
+        out->g[k][i] = 1;
+    }
+}
+
+SOFT_INLINE lanes load(const float at[LANES])
+{
+    return *(const lanes *)at;
+}
+
+/* e: twice the areas to the corners, negative where the spot lies beyond an edge: it moves to the nearest place of the rim. Weights that
+   are just cut off at 0 would be those of a place far along a sliver. Triangles that were cut are cut off all the same. */
+SOFT_INLINE void keep_within(const struct corners *corners, lanes e[3])
+{
+    lanes_int outside = (e[0] < 0.0f) | (e[1] < 0.0f) | (e[2] < 0.0f);
+    outside &= (load(corners->g[0]) == 1.0f) & (load(corners->g[1]) == 1.0f) & (load(corners->g[2]) == 1.0f);
+    lanes least = all(INFINITY), best[3] = { all(1), all(0), all(0) };
+    for (int k = 0; k < 3 && lanes_any(outside); k++) {
+        int p = (k + 1) % 3, q = (k + 2) % 3;
+        lanes x = load(corners->a[p]), y = load(corners->b[p]), dx = load(corners->a[q]) - x, dy = load(corners->b[q]) - y;
+        lanes part = lanes_clamp(-(x * dx + y * dy) / most_of(dx * dx + dy * dy, all(1e-20f)), 0, 1);
+        x += part * dx;
+        y += part * dy;
+        lanes_int nearer = x * x + y * y < least;
+        least = lanes_choose(nearer, x * x + y * y, least);
+        best[k] = lanes_choose(nearer, all(0), best[k]);
+        best[p] = lanes_choose(nearer, 1.0f - part, best[p]);
+        best[q] = lanes_choose(nearer, part, best[q]);
+    }
+    for (int k = 0; k < 3; k++)
+        e[k] = lanes_choose(outside, best[k], most_of(e[k], all(0)));
+}
+
+/* Weights of the corners with perspective, kept within the triangle; the spot moves to the place that they have. */
+SOFT_INLINE void weigh(struct spot *spot, const struct corners *corners)
+{
+    lanes e[3], sum, depth = all(0), over = all(0), x = all(0), y = all(0);
+    for (int k = 0; k < 3; k++) {
+        int p = (k + 1) % 3, q = (k + 2) % 3;
+        e[k] = load(corners->a[p]) * load(corners->b[q]) - load(corners->a[q]) * load(corners->b[p]);
+    }
+    lanes sign = lanes_choose(e[0] + e[1] + e[2] < 0.0f, all(-1), all(1));
+    for (int k = 0; k < 3; k++)
+        e[k] *= sign;
+    keep_within(corners, e);
+    for (int k = 0; k < 3; k++) {
+        depth += e[k] * load(corners->z[k]);
+        over += e[k] * load(corners->g[k]);
+        x += e[k] * load(corners->a[k]);
+        y += e[k] * load(corners->b[k]);
+        spot->weights[k] = e[k] * load(corners->w[k]);
+    }
+    sum = spot->weights[0] + spot->weights[1] + spot->weights[2];
+    lanes_int flat = ~((sum > 0.0f) & (over > 0.0f));
+    sum = lanes_choose(flat, all(1), 1.0f / sum);
+    for (int k = 0; k < 3; k++)
+        spot->weights[k] = lanes_choose(flat, all(k == 0), spot->weights[k] * sum);
+    over = lanes_choose(flat, all(1), 1.0f / over);
+    spot->depth = lanes_choose(flat, load(corners->z[0]) / load(corners->g[0]), depth * over);
+    spot->x += lanes_choose(flat, all(0), x * over);
+    spot->y += lanes_choose(flat, all(0), y * over);
+}
+
+SOFT_INLINE void turn(float rows[LANES][8], lanes columns[8])
+{
+    for (int c = 0; c < 8; c++)
+        for (int i = 0; i < LANES; i++)
+            columns[c][i] = rows[i][c];
+}
+
+/* Up to eight items; the last one fills what is left. */
+SOFT_INLINE void look(const struct refined *refined, const struct item *items, size_t count, bool with_material, struct spot *spot)
+{
+    struct corners corners;
+    float rows[LANES][8], materials[LANES][8];
+    for (int i = 0; i < LANES; i++) {
+        const struct item *item = &items[(size_t)i < count ? (size_t)i : count - 1];
+        see_corners(refined, item, i, spot, &corners);
+        spot->x[i] = item->x;
+        spot->y[i] = item->y;
+        uint32_t mark = refined_triangle(refined->soft, item->id)->mark;
+        spot->back[i] = mark & MARK_BACK ? -1 : 0;
+        if (with_material) {
+            memcpy(materials[i], &refined->draws[mark & ~MARK_BACK].material, sizeof(lanes));
+            spot->cut[i] = refined->draws[mark & ~MARK_BACK].cut ? -1 : 0;
+        }
+    }
+    weigh(spot, &corners);
+    for (int i = 0; i < LANES; i++) {
+        lanes sum = all(0);
+        for (int k = 0; k < 3; k++)
+            sum += refined->attributes[spot->vertices[i][k]] * spot->weights[k][i];
+        memcpy(rows[i], &sum, sizeof(sum));
+    }
+    turn(rows, spot->attributes);
+    if (with_material)
+        turn(materials, spot->material);
+    spot->normal = unit((vec){ spot->attributes[NORMAL_X], spot->attributes[NORMAL_Y], spot->attributes[NORMAL_Z] });
+}
+
+SOFT_INLINE vec view_of(const struct refined *refined, const struct spot *spot)
+{
+    const float(*m)[3] = refined->soft->ray_from_pixel;
+    lanes ray[3];
+    for (int r = 0; r < 3; r++)
+        ray[r] = -(spot->x * m[0][r] + spot->y * m[1][r] + m[2][r]);
+    return unit((vec){ ray[0], ray[1], ray[2] });
+}
+
+/* Two-sided surfaces from behind, and those whose normals are of the other side: -1. */
+SOFT_INLINE lanes_int is_turned(const struct spot *spot, vec view)
+{
+    const float most_away = -0.3f; /* as in shaders/refined.frag */
+    lanes towards = dot(spot->normal, view);
+    return (spot->back & (towards < 0.0f)) | (towards < most_away);
+}
+
+SOFT_INLINE vec facing(const struct spot *spot, vec view)
+{
+    return times(spot->normal, lanes_choose(is_turned(spot, view), all(-1), all(1)));
+}
+
+/* --- the sun ----------------------------------------------------------------------------------------------------------------- */
+
+/* Four taps on a turned square. s, t, depth: 0..1 over the map, a step off the surface. Outside it nothing stands in the light. */
+SOFT_INLINE lanes sun_visible(const struct soft_light *light, lanes s, lanes t, lanes depth)
+{
+    const float spread = 1.58f / (float)light->sun_map_px, u = 0.949f * spread, v = 0.316f * spread;
+    lanes sum = sun_tap(light, s + u, t + v, depth) + sun_tap(light, s - u, t - v, depth);
+    sum += sun_tap(light, s - v, t + u, depth) + sun_tap(light, s + v, t - u, depth);
+    return lanes_choose((s > 0.0f) & (s < 1.0f) & (t > 0.0f) & (t < 1.0f), 0.25f * sum, all(1));
+}
+
+SOFT_INLINE lanes sun_at(const struct refined *refined, const struct spot *spot, vec n)
+{
+    const float(*m)[4] = refined->sun_from_pixel;
+    const float(*step)[3] = refined->sun_from_normal;
+    lanes at[4], place[3];
+    for (int r = 0; r < 4; r++)
+        at[r] = spot->x * m[0][r] + spot->y * m[1][r] + spot->depth * m[2][r] + m[3][r];
+    lanes over = 1.0f / at[3];
+    for (int r = 0; r < 3; r++)
+        place[r] = at[r] * over + n.x * step[0][r] + n.y * step[1][r] + n.z * step[2][r];
+    return sun_visible(refined->soft->light, place[0], place[1], place[2]);
+}
+
+SOFT_INLINE vec towards_sun(const struct refined *refined)
+{
+    const float *sun = refined->soft->block.sun;
+    return (vec){ all(sun[0]), all(sun[1]), all(sun[2]) };
+}
+
+#endif

@@ -1,0 +1,55 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* A rectangle of the picture while one thread draws it, part by part, nearest first. Private to soft/. */
+#ifndef RENDER_SOFT_TILE_H
+#define RENDER_SOFT_TILE_H
+#include "render/soft/near.h"
+#include "render/soft/lanes.h"
+
+enum { TILE_WIDTH_PX = 320, TILE_HEIGHT_PX = 184, BLOCK_SHIFT = 3, BLOCK_PX = 1 << BLOCK_SHIFT };
+enum { BLOCK_COLUMNS = TILE_WIDTH_PX / BLOCK_PX, BLOCK_ROWS = TILE_HEIGHT_PX / BLOCK_PX };
+enum { MOST_FACES = NEAR_TRIANGLES * PART_TRIANGLES, MOST_CORNERS = PART_VERTICES + NEAR_CORNERS * PART_TRIANGLES };
+
+#define SOFT_LITTLE 1.02f /* from the nearest to the farthest: perspective is not seen */
+
+struct soft_corners { /* vertices of a part, as struct soft_vertex, then those that cuts made */
+    float x[MOST_CORNERS], y[MOST_CORNERS], depth[MOST_CORNERS], inverse_w[MOST_CORNERS], a[MOST_CORNERS], b[MOST_CORNERS];
+    uint32_t flags[MOST_CORNERS]; /* of those that cuts made: SOFT_PATTERNS alone, and beside it */
+    struct near_patterns cut_patterns[MOST_CORNERS - PART_VERTICES];
+    int count, placed;  /* placed: that no cut made, the first ones */
+    uint32_t all_flags; /* of any of them */
+    bool flat;          /* no perspective to speak of */
+    bool cut;           /* some are nearer than the near plane, or beyond the band */
+};
+
+struct soft_face { /* a triangle that faces the eye and covers a pixel's middle in the tile; its area as pixels go is over 0 */
+    uint16_t corners[3];
+    uint16_t triangle;                /* of the part; of a mesh that is cut also FACE_BACK */
+    int16_t left, right, top, bottom; /* in the picture */
+};
+
+enum { FACE_BACK = 0x8000, FACE_TRIANGLE = PART_TRIANGLES - 1 }; /* the former: it looks away */
+
+struct soft_tile {
+    const struct soft *soft;
+    struct soft_rect rect;                     /* whole lanes wide */
+    float farthest[BLOCK_ROWS][BLOCK_COLUMNS]; /* depth in each block: what lies behind it is hidden */
+    struct soft_corners corners;
+    struct soft_face faces[MOST_FACES];
+    int face_count;
+    uint32_t first_id; /* of the part's triangles, in soft->ids */
+    int cuts;          /* planes that cut, of those of soft->cuts */
+    /* --- of the part being drawn */
+    const struct soft_mesh *mesh;
+    const struct soft_parts *parts;
+    const struct soft_part *part;
+};
+
+/* The closed bodies that a part bounds, into the marks. */
+void soft_count_part(struct soft_tile *tile, const struct soft_found *found, const struct soft_item *item);
+void soft_cap_tile(struct soft_tile *tile); /* from these: marks and depth of what is cut open */
+/* Vertices of a part that lie beyond a plane that cuts are to be cut off. */
+void soft_cut_corners(struct soft_tile *tile);
+/* The faces of a part out of corners that were placed, some of them to be cut off, and that carry. */
+void soft_cut_faces(struct soft_tile *tile, bool both_sides);
+
+#endif

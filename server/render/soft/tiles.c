@@ -1,0 +1,208 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Tile by tile: the parts that may be seen in it, nearest first; what lies behind what was drawn is left out. */
+#include "render/soft/kernels.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/mem.h"
+
+struct entry {      /* of a tile's list */
+    uint64_t order; /* nearest first; then as found */
+    uint32_t mesh, item;
+};
+
+struct list {
+    struct entry *entries;
+    size_t count, capacity;
+};
+
+static bool overlap(const struct soft_rect *a, const struct soft_rect *b)
+{
+    return a->left <= b->right && b->left <= a->right && a->top <= b->bottom && b->top <= a->bottom;
+}
+
+static uint32_t bits_of(float x)
+{
+    uint32_t bits;
+    memcpy(&bits, &x, sizeof(bits));
+    return bits;
+}
+
+static int by_order(const void *a, const void *b)
+{
+    uint64_t x = ((const struct entry *)a)->order, y = ((const struct entry *)b)->order;
+    return (x > y) - (x < y);
+}
+
+static void fill_list(const struct soft_tile *tile, struct list *list)
+{
+    const struct soft *soft = tile->soft;
+    for (size_t m = 0; m < soft->mesh_count; m++) {
+        const struct soft_found *found = &soft->found[m];
+        if (!overlap(&found->rect, &tile->rect))
+            continue;
+        mem_grow(&list->entries, &list->capacity, list->count + found->count, sizeof(*list->entries));
+        for (size_t i = 0; i < found->count; i++)
+            if (overlap(&found->items[i].rect, &tile->rect)) {
+                uint64_t order = (uint64_t)(UINT32_MAX - bits_of(found->items[i].near)) << 32 | list->count;
+                list->entries[list->count++] = (struct entry){ order, (uint32_t)m, (uint32_t)i };
+            }
+    }
+    if (list->count > 1) /* where there is none, there may be no array */
+        qsort(list->entries, list->count, sizeof(*list->entries), by_order);
+}
+
+/* In blocks of the tile. */
+static struct soft_rect blocks_of(const struct soft_tile *tile, const struct soft_rect *rect)
+{
+    const struct soft_rect *all = &tile->rect;
+    return (struct soft_rect){
+        ((rect->left > all->left ? rect->left : all->left) - all->left) / BLOCK_PX,
+        ((rect->top > all->top ? rect->top : all->top) - all->top) / BLOCK_PX,
+        ((rect->right < all->right ? rect->right : all->right) - all->left) / BLOCK_PX,
+        ((rect->bottom < all->bottom ? rect->bottom : all->bottom) - all->top) / BLOCK_PX,
+    };
+}
+
+static bool is_hidden(const struct soft_tile *tile, const struct soft_rect *blocks, float near)
+{
+    for (int row = blocks->top; row <= blocks->bottom; row++)
+        for (int column = blocks->left; column <= blocks->right; column++)
+            if (near >= tile->farthest[row][column])
+                return false;
+    return true;
+}
+
+/* Where its faces are. */
+static struct soft_rect faces_rect(const struct soft_tile *tile)
+{
+    struct soft_rect rect = { INT16_MAX, INT16_MAX, 0, 0 };
+    for (int i = 0; i < tile->face_count; i++) {
+        const struct soft_face *face = &tile->faces[i];
+        rect.left = face->left < rect.left ? face->left : rect.left;
+        rect.top = face->top < rect.top ? face->top : rect.top;
+        rect.right = face->right > rect.right ? face->right : rect.right;
+        rect.bottom = face->bottom > rect.bottom ? face->bottom : rect.bottom;
+    }
+    return rect;
+}
+
+static void begin_part(struct soft_tile *tile, const struct soft_found *found, const struct soft_item *item, int cuts)
+{
+    tile->mesh = &tile->soft->meshes[found - tile->soft->found];
+    tile->parts = found->parts;
+    tile->part = &found->parts->parts[item->part];
+    tile->cuts = cuts;
+}
+
+static void draw_part(struct soft_tile *tile, const struct soft_found *found, const struct soft_item *item)
+{
+    const struct soft_mesh *mesh = tile->mesh;
+    const struct soft_part *part = tile->part;
+    const struct soft_kernels *kernels = tile->soft->kernels;
+    struct soft_rect blocks = blocks_of(tile, &item->rect);
+    if (item->beyond || is_hidden(tile, &blocks, item->near))
+        return;
+    kernels->place_part(tile, mesh, found->parts, part);
+    if (item->cut)
+        soft_cut_corners(tile);
+    if (tile->corners.cut) {
+        kernels->carry_part(tile, mesh, found->parts, part);
+        soft_cut_faces(tile, found->both_sides);
+    } else {
+        kernels->find_faces(tile, mesh, found, part);
+        if (tile->face_count > 0)
+            kernels->carry_part(tile, mesh, found->parts, part);
+    }
+    if (tile->face_count == 0)
+        return;
+    tile->first_id = found->first_id + (uint32_t)(item - found->items) * PART_TRIANGLES;
+    kernels->raster_faces(tile, mesh->has_field ? MARK_FIELD : MARK_CONTEXT | (found->ramp + part->material) << 16);
+    struct soft_rect rect = faces_rect(tile);
+    blocks = blocks_of(tile, &rect);
+    kernels->look_again(tile, &blocks);
+}
+
+/* Before all else: what is behind a body that is cut open is hidden. */
+static void draw_caps(struct soft_tile *tile, const struct list *list)
+{
+    const struct soft *soft = tile->soft;
+    for (size_t i = 0; i < list->count; i++) {
+        const struct soft_found *found = &soft->found[list->entries[i].mesh];
+        const struct soft_item *item = &found->items[list->entries[i].item];
+        begin_part(tile, found, item, soft->entry_count);
+        soft_count_part(tile, found, item);
+    }
+    soft_cap_tile(tile);
+    struct soft_rect blocks = blocks_of(tile, &tile->rect);
+    soft->kernels->look_again(tile, &blocks);
+}
+
+static void clear(const struct soft_tile *tile)
+{
+    size_t bytes = (size_t)(tile->rect.right + 1 - tile->rect.left) * sizeof(float);
+    for (int row = tile->rect.top; row <= tile->rect.bottom; row++) {
+        size_t start = (size_t)row * (size_t)tile->soft->pitch_px + (size_t)tile->rect.left;
+        memset(tile->soft->depth + start, 0, bytes);
+        memset(tile->soft->marks + start, 0, bytes);
+    }
+}
+
+static int columns_of(const struct soft *soft)
+{
+    return (soft->pitch_px + TILE_WIDTH_PX - 1) / TILE_WIDTH_PX;
+}
+
+static void draw_tile(const struct soft *soft, int number, enum soft_output output, struct list *list)
+{
+    struct soft_tile tile; /* not set to anything: corners and faces are large, and few are used */
+    int left = number % columns_of(soft) * TILE_WIDTH_PX, top = number / columns_of(soft) * TILE_HEIGHT_PX;
+    tile.soft = soft;
+    tile.rect = (struct soft_rect){ left, top, left + TILE_WIDTH_PX - 1, top + TILE_HEIGHT_PX - 1 };
+    if (tile.rect.right >= soft->pitch_px)
+        tile.rect.right = soft->pitch_px - 1;
+    if (tile.rect.bottom >= soft->height_px)
+        tile.rect.bottom = soft->height_px - 1;
+    memset(tile.farthest, 0, sizeof(tile.farthest));
+    clear(&tile);
+    fill_list(&tile, list);
+    if (soft->counts_bodies)
+        draw_caps(&tile, list);
+    for (size_t i = 0; i < list->count && output != SOFT_CAPS; i++) {
+        const struct soft_found *found = &soft->found[list->entries[i].mesh];
+        const struct soft_item *item = &found->items[list->entries[i].item];
+        begin_part(&tile, found, item, soft->cut_count);
+        draw_part(&tile, found, item);
+    }
+}
+
+struct drawing {
+    const struct soft *soft;
+    enum soft_output output;
+};
+
+static void draw_tiles(void *arg, size_t begin, size_t end)
+{
+    const struct drawing *drawing = arg;
+    const struct soft *soft = drawing->soft;
+    struct list list = { 0 };
+    for (size_t t = begin; t < end; t++) {
+        list.count = 0;
+        draw_tile(soft, (int)t, drawing->output, &list);
+        if (drawing->output == SOFT_COLORS) {
+            int left = (int)t % columns_of(soft) * TILE_WIDTH_PX, top = (int)t / columns_of(soft) * TILE_HEIGHT_PX;
+            int right = left + TILE_WIDTH_PX < soft->width_px ? left + TILE_WIDTH_PX : soft->width_px;
+            int bottom = top + TILE_HEIGHT_PX < soft->height_px ? top + TILE_HEIGHT_PX : soft->height_px;
+            soft->kernels->color(soft, &(struct soft_rect){ left, top, right - 1, bottom - 1 });
+        }
+    }
+    mem_free(list.entries);
+}
+
+void soft_tiles(struct soft *soft, enum soft_output output)
+{
+    struct drawing drawing = { soft, output };
+    int rows = (soft->height_px + TILE_HEIGHT_PX - 1) / TILE_HEIGHT_PX;
+    workers_for(soft->workers, (size_t)(columns_of(soft) * rows), 1, draw_tiles, &drawing);
+}

@@ -1,0 +1,63 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* From what vertices carry to columns of the colormap. Private to soft/. */
+#ifndef RENDER_SOFT_VISIBILITY_BUFFER_IMPL_H
+#define RENDER_SOFT_VISIBILITY_BUFFER_IMPL_H
+#include <string.h>
+
+#include "render/gl/frame_uniforms.h"
+#include "render/shaded_colormap.h"
+#include "render/soft/flags.h"
+#include "render/soft/lanes.h"
+#include "render/soft/visibility_buffer.h"
+
+static const float SLACK = 1e-5f, COLUMNS_OF_RANGE = COLORMAP_PLACES / (1 + 2 * 1e-5f);
+
+static inline float clamped(float x, float low, float high)
+{
+    return x < low ? low : x > high ? high : x;
+}
+
+/* As carry_field in place.c. x: the value, or log2 of it. */
+static inline float column_of(float x, const float *scale)
+{
+    const float farthest = 1e6f;
+    float place = (x - scale[0]) * scale[1];
+    return clamped(place * COLUMNS_OF_RANGE + (1 + SLACK * COLUMNS_OF_RANGE), -farthest, farthest);
+}
+
+static inline bool is_log(const float *scale)
+{
+    return scale[2] > 0.5f;
+}
+
+static inline bool has_ink(const struct visibility_buffer *buffer, size_t pixel)
+{
+    return buffer->ink[pixel] || (buffer->veil && buffer->veil[pixel]);
+}
+
+/* A line, ghosts or a rim over a pixel. */
+static inline uint32_t inked(const struct visibility_buffer *buffer, size_t pixel, uint32_t color)
+{
+    typedef uint8_t octets __attribute__((vector_size(4)));
+    static const quad rim_dark_bgr = { 41, 23, 13 }, ink_bgr = { 0.14f * 255, 0.10f * 255, 0.08f * 255 };
+    static const float most_ink = 0.5f; /* as shaders/edges.frag */
+    uint8_t ink = buffer->ink[pixel];
+    octets bytes;
+    memcpy(&bytes, &color, sizeof(color));
+    quad now = __builtin_convertvector(bytes, quad);
+    if (ink <= VISIBILITY_INK)
+        now += (ink_bgr - now) * (most_ink / VISIBILITY_INK) * (float)ink;
+    if (buffer->veil && buffer->veil[pixel]) {
+        quad veil_bgr = { buffer->veil_bgr[0], buffer->veil_bgr[1], buffer->veil_bgr[2] };
+        now += (veil_bgr - now) * (1 / 255.0f) * (float)buffer->veil[pixel];
+    }
+    if (ink == VISIBILITY_RIM_DARK)
+        now = rim_dark_bgr;
+    if (ink == VISIBILITY_RIM_LIGHT)
+        now = 0.1f * now + 229.5f;
+    bytes = __builtin_convertvector(__builtin_convertvector(now + 0.5f, quad_int), octets);
+    memcpy(&color, &bytes, sizeof(color));
+    return color;
+}
+
+#endif

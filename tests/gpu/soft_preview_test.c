@@ -1,0 +1,517 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Moving pictures without a GPU against the same ones drawn by GL: every pixel and every marker. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "base/mem.h"
+#include "render/soft/kernels.h"
+#include "render/renderer_impl.h"
+#include "tests/support/rig.h"
+#include "value/quality.h"
+
+static struct rig rig;
+static struct stand stand;
+
+static struct frame *draw(const struct view *view, bool by_gl)
+{
+    renderer_use_gl(stand.renderer, by_gl);
+    struct frame *frame = stand_draw(&stand, view);
+    renderer_use_gl(stand.renderer, false);
+    return frame;
+}
+
+static int difference(const uint8_t *a, const uint8_t *b)
+{
+    int most = 0;
+    for (int c = 0; c < 3; c++)
+        most = abs(a[c] - b[c]) > most ? abs(a[c] - b[c]) : most;
+    return most;
+}
+
+/* Pixels may differ where an edge, a band of colours or a shadow's rim runs through them. */
+static void assert_same_pixels(const struct frame *soft, const struct frame *gl, double may_differ)
+{
+    int far = 0, pixels = gl->width_px * gl->height_px;
+    for (int i = 0; i < pixels; i++)
+        far += difference(soft->bgrx + 4 * i, gl->bgrx + 4 * i) > 3;
+    if (far > may_differ * pixels)
+        print_message("%d of %d pixels differ by more than 3\n", far, pixels);
+    assert_true(far <= may_differ * pixels);
+}
+
+static void assert_same(const struct view *view, double may_differ)
+{
+    struct frame *soft = draw(view, false), *gl = draw(view, true);
+    assert_true(preview_can(stand.renderer->soft, view));
+    assert_same_pixels(soft, gl, may_differ);
+    assert_int_equal(soft->marker_count, gl->marker_count);
+    assert_true(soft->marker_count > 0 || view->visibility.clip.plane_count > 0);
+    for (size_t i = 0; i < gl->marker_count; i++) {
+        assert_int_equal(soft->markers[i].tag, gl->markers[i].tag);
+        assert_int_equal(soft->markers[i].occluded, gl->markers[i].occluded);
+        assert_true(fabsf(soft->markers[i].x_px - gl->markers[i].x_px) < 0.01f);
+        assert_true(fabsf(soft->markers[i].y_px - gl->markers[i].y_px) < 0.01f);
+    }
+    assert_int_equal(soft->label_count, gl->label_count);
+    for (size_t i = 0; i < gl->label_count; i++) {
+        assert_true(soft->labels[i].value == gl->labels[i].value);
+        assert_true(fabsf(soft->labels[i].x_px - gl->labels[i].x_px) < 0.11f);
+        assert_true(fabsf(soft->labels[i].y_px - gl->labels[i].y_px) < 0.11f);
+    }
+    assert_int_equal(soft->content, gl->content);
+    assert_int_equal(soft->triangles, gl->triangles);
+    frame_unref(&soft);
+    frame_unref(&gl);
+}
+
+static void start_view(struct view *view, int width_px, int height_px)
+{
+    view_default(&stand.toy->scene, width_px, height_px, view);
+    view->tier = TIER_PREVIEW;
+}
+
+static void draw_lines_every(struct view *view, double step)
+{
+    for (double line = step; line < 100 && view->color_scale.line_count < VIEW_LINES; line += step)
+        view->color_scale.lines[view->color_scale.line_count++] = line;
+}
+
+static void test_home(void **state)
+{
+    struct view view;
+    (void)state;
+    start_view(&view, 640, 360);
+    assert_same(&view, 0.002);
+}
+
+static void test_sizes(void **state)
+{
+    enum { ONE_ROW_MORE = 185 }; /* than a tile has */
+    static const int sizes[][2] = { { 16, 16 }, { 17, 33 }, { 333, 217 }, { 64, 500 }, { 1001, 31 }, { 200, ONE_ROW_MORE } };
+    (void)state;
+    for (size_t i = 0; i < sizeof(sizes) / sizeof(sizes[0]); i++) {
+        struct view view;
+        start_view(&view, sizes[i][0], sizes[i][1]);
+        assert_same(&view, 0.01);
+    }
+}
+
+static void test_flat(void **state)
+{
+    struct view view;
+    (void)state;
+    start_view(&view, 400, 300);
+    view.look = LOOK_FLAT;
+    view.colormap = (int)colormap_count() - 1;
+    view.range_min = 30; /* some values lie below, some above */
+    view.range_max = 70;
+    assert_same(&view, 0.002);
+}
+
+/* All round, from far away, from below and from among the pipes, where triangles pass the eye. */
+static void test_cameras(void **state)
+{
+    struct view view;
+    (void)state;
+    start_view(&view, 320, 240);
+    for (int i = 0; i < 12; i++) {
+        stand_look(&stand, i, &view);
+        assert_same(&view, 0.01);
+    }
+}
+
+/* Rays are parallel: from all round and above, wide and so narrow that the eye stands among the pipes. */
+static void test_orthographic(void **state)
+{
+    (void)state;
+    for (int i = 0; i < 12; i++) {
+        struct view view;
+        start_view(&view, 320, 240);
+        stand_look(&stand, i, &view);
+        view.camera.height_m = i % 3 ? 6 : 1.5;
+        view.selected_asset = i % 4 - 1;
+        if (i % 2)
+            draw_lines_every(&view, 10);
+        assert_same(&view, 0.015);
+    }
+}
+
+static void cut_at(struct view *view, int plane, double x, double y, double z, double d)
+{
+    memcpy(view->visibility.clip.planes[plane], (double[4]){ x, y, z, d }, 4 * sizeof(double));
+    view->visibility.clip.plane_count = plane + 1;
+}
+
+/* By a level plane, by a slanting one, and by a box; bodies that are closed have caps, the inner side of others shows. */
+static void test_cuts(void **state)
+{
+    (void)state;
+    for (int i = 0; i < 24; i++) {
+        struct view view;
+        start_view(&view, 320, 240);
+        stand_look(&stand, i % 12, &view);
+        view.camera.height_m = i % 5 == 4 ? 6 : 0;
+        view.selected_asset = i % 6 == 5 ? 1 : -1;
+        view.look = i % 7 == 3 ? LOOK_FLAT : LOOK_DEFAULT;
+        if (i % 3 == 0)
+            cut_at(&view, 0, 0, 0, -1, 0.2 + 0.1 * i);
+        if (i % 3 == 1)
+            cut_at(&view, 0, 0.6, 0.64, -0.48, 0.3);
+        if (i % 3 == 2)
+            clip_box(&view.visibility.clip, (double[3]){ -0.8, -0.5, -0.2 }, (double[3]){ 2.1, 0.3, 1.1 });
+        assert_same(&view, view.selected_asset < 0 ? 0.01 : 0.02);
+    }
+}
+
+static void test_sun(void **state)
+{
+    struct view view;
+    (void)state;
+    start_view(&view, 400, 300);
+    for (int i = 0; i < 4; i++) { /* more than are kept */
+        double towards[3] = { 0.6 * cos(i), 0.6 * sin(i), 0.8 };
+        memcpy(view.light_dir, towards, sizeof(towards));
+        assert_same(&view, 0.003);
+    }
+}
+
+/* Lines of a pixel and a half: their rims differ. */
+static void test_outlines(void **state)
+{
+    struct view view;
+    (void)state;
+    start_view(&view, 640, 360);
+    for (int asset = 0; asset < (int)stand.toy->scene.asset_count; asset++) {
+        view.selected_asset = asset;
+        assert_same(&view, 0.012);
+    }
+    asset_set_add(&view.visibility.hidden, view.selected_asset);
+    struct frame *hidden = draw(&view, false);
+    view.selected_asset = -1;
+    struct frame *plain = draw(&view, false);
+    assert_memory_equal(hidden->bgrx, plain->bgrx, (size_t)hidden->height_px * (size_t)hidden->stride_bytes);
+    frame_unref(&hidden);
+    frame_unref(&plain);
+}
+
+static void test_hidden_assets(void **state)
+{
+    struct view view;
+    (void)state;
+    start_view(&view, 320, 240);
+    asset_set_add(&view.visibility.hidden, 1);
+    assert_same(&view, 0.003);
+}
+
+/* The third picture of a camera that stands still is coloured anew only; hatches have softer rims then. */
+static void test_still_camera(void **state)
+{
+    struct view view;
+    (void)state;
+    start_view(&view, 640, 360);
+    view.camera.eye_m[0] += 0.25;
+    for (int selected = -1; selected < 2; selected++) {
+        view.selected_asset = selected;
+        for (int i = 0; i < 4; i++) {
+            toy_fill(stand.snapshot, i * 3.0);
+            assert_same(&view, selected < 0 ? 0.01 : 0.02);
+        }
+        view.colormap = (int)colormap_count() - 1;
+        view.range_max -= 10;
+        assert_same(&view, selected < 0 ? 0.01 : 0.02);
+        view.range_min = 10;
+        view.color_scale.log = true;
+        assert_same(&view, selected < 0 ? 0.01 : 0.02);
+        toy_fill(stand.snapshot, 2.0);
+        assert_same(&view, selected < 0 ? 0.01 : 0.02);
+        start_view(&view, 640, 360);
+        view.camera.eye_m[0] += 0.25;
+    }
+    toy_fill(stand.snapshot, 0);
+}
+
+/* Places to draw it anew must not be taken for the same. */
+static void test_moves_after_standing(void **state)
+{
+    struct view view;
+    (void)state;
+    start_view(&view, 320, 200);
+    for (int i = 0; i < 3; i++)
+        assert_same(&view, 0.01);
+    view.camera.eye_m[1] += 0.5;
+    assert_same(&view, 0.01);
+    asset_set_add(&view.visibility.hidden, 0);
+    assert_same(&view, 0.01);
+}
+
+/* What is worked out pixel by pixel: lines, bands, logarithms. Rims of lines differ by the way slopes are measured. */
+static void test_lines_and_scales(void **state)
+{
+    (void)state;
+    for (int i = 0; i < 5; i++) {
+        struct view view;
+        start_view(&view, 400, 300);
+        if (i == 0 || i == 4)
+            draw_lines_every(&view, 10);
+        view.ramp_interval = i == 1 ? 20 : 0;
+        if (i >= 2) {
+            view.range_min = 10;
+            view.color_scale.log = true;
+        }
+        view.look = i == 3 ? LOOK_FLAT : LOOK_DEFAULT;
+        for (int camera = 0; camera < 4; camera++) {
+            assert_same(&view, 0.012);
+            stand_look(&stand, 3 * camera, &view);
+        }
+    }
+}
+
+/* From the side that the surface looks to, at the middle of an edge, so near that its triangles lead far out of the picture. */
+static void look_closely(const struct scene_asset *asset, uint32_t v, uint32_t w, struct view *view)
+{
+    const struct asset_view *file = &asset->file->view;
+    double edge_m = 0, normal[3] = { 0 }, length = 0;
+    for (int c = 0; c < 3; c++) {
+        double along = (double)file->positions_m[w][c] - (double)file->positions_m[v][c];
+        view->camera.target_m[c] = asset->placement[12 + c] + (double)file->positions_m[v][c] + 0.5 * along;
+        normal[c] = file->normals[v][c] + file->normals[w][c];
+        length += normal[c] * normal[c];
+        edge_m += along * along;
+    }
+    for (int c = 0; c < 3; c++)
+        view->camera.eye_m[c] = view->camera.target_m[c] + 2 * sqrt(edge_m / length) * normal[c];
+    view->camera.fov_deg = 5;
+}
+
+static bool is_rim(int a, int b)
+{
+    return (a > 127) != (b > 127);
+}
+
+/* Where data end, and where they are uncertain, in triangles that are cut because they lead far out of the picture. */
+static void test_patterns_close_by(void **state)
+{
+    enum { TANK = 1 }; /* has a sensor that is bad and one that is uncertain */
+    const struct scene_asset *asset = &stand.toy->scene.assets[TANK];
+    int looked = 0, rims = 0;
+    struct view view;
+    (void)state;
+    start_view(&view, 160, 120);
+    view.look = LOOK_FLAT;
+    const struct scalars *scalars = field_scalars(stand.field, TANK, &view.field, stand.snapshot);
+    assert_non_null(scalars);
+    for (uint32_t i = 0; i + 1 < asset->file->view.header->index_count; i++) {
+        uint32_t v = asset->file->view.indices[i], w = asset->file->view.indices[i + 1];
+        const struct scalar *from = &scalars->at[v], *to = &scalars->at[w];
+        if (i % 3 == 2 || !(is_rim(from->lacking, to->lacking) || is_rim(from->uncertain, to->uncertain)) || rims++ % 23 != 0)
+            continue;
+        look_closely(asset, v, w, &view);
+        if (!camera_valid(&view.camera))
+            continue;
+        struct frame *soft = draw(&view, false), *gl = draw(&view, true);
+        assert_same_pixels(soft, gl, 0.02);
+        frame_unref(&soft);
+        frame_unref(&gl);
+        scalars = field_scalars(stand.field, TANK, &view.field, stand.snapshot);
+        looked++;
+    }
+    print_message("# %d places of %d edges where patterns begin\n", looked, rims);
+    assert_true(looked >= 8);
+}
+
+/* One tag without limits: what is near it is plain. What has no field is grey. */
+static void test_operator(void **state)
+{
+    struct view view;
+    struct plant *plant = &stand.toy->plant;
+    (void)state;
+    for (size_t tag = 0; tag < plant->tag_count; tag++)
+        if (tag != 2)
+            memcpy(plant->tags[tag].limits, (double[]){ 0, 20, 70, 90 }, 4 * sizeof(double));
+    start_view(&view, 400, 300);
+    view.field.show = SHOW_OPERATOR;
+    view_default_scale(&stand.toy->scene, &view);
+    for (int camera = 0; camera < 6; camera++) {
+        assert_same(&view, 0.012);
+        stand_look(&stand, 2 * camera, &view);
+    }
+    for (size_t tag = 0; tag < plant->tag_count; tag++)
+        for (int i = 0; i < LIMIT_COUNT; i++)
+            plant->tags[tag].limits[i] = NAN;
+}
+
+/* A still camera is shown again from what was kept; lines of the same view are not. */
+static void test_lines_of_a_still_camera(void **state)
+{
+    struct view view, lined;
+    (void)state;
+    start_view(&view, 400, 300);
+    lined = view;
+    draw_lines_every(&lined, 10);
+    for (int i = 0; i < 3; i++) {
+        assert_same(&view, 0.01);
+        assert_same(&lined, 0.012);
+    }
+}
+
+/* Those that the machine's own set is compared with. */
+static const struct soft_kernels *const other_kernels[] = {
+    &soft_kernels_plain,
+#ifdef __x86_64__
+    &soft_kernels_wide,
+#endif
+};
+enum { OTHER_KERNELS = sizeof(other_kernels) / sizeof(other_kernels[0]) };
+
+static void compare_kernels(const struct view *view, const struct soft_kernels *other)
+{
+    const struct soft_kernels **kernels = &stand.renderer->soft->kernels, *widest = *kernels;
+    struct frame *wide = draw(view, false);
+    *kernels = other;
+    struct frame *same = draw(view, false); /* the second of its view: drawn, and kept to be coloured again */
+    *kernels = widest;
+    assert_memory_equal(wide->bgrx, same->bgrx, (size_t)wide->stride_bytes * (size_t)wide->height_px);
+    frame_unref(&wide);
+    frame_unref(&same);
+}
+
+/* The loops for wider registers leave the same bits as those for any machine. */
+static void test_kernels(void **state)
+{
+    const struct soft_kernels *widest = stand.renderer->soft->kernels;
+    static const int widths_px[] = { 640, 333, 37, 322, 330 }; /* the last tile is 16 or 8 columns wide, and a row high */
+    struct view view;
+    (void)state;
+    if (widest == &soft_kernels_plain) {
+        print_message("SKIP: this machine has no wider registers\n");
+        skip();
+    }
+    for (int i = 0; i < 24 * OTHER_KERNELS; i++) {
+        if (other_kernels[i / 24] == widest)
+            break;
+        start_view(&view, widths_px[i % 5], widths_px[i % 5] * 9 / 16);
+        stand_look(&stand, i % 24 / 2, &view);
+        view.selected_asset = i % 4 == 2 ? 0 : -1;
+        if (i % 4 == 1)
+            draw_lines_every(&view, 5);
+        if (i % 5 == 3)
+            cut_at(&view, 0, 0.6, 0.64, -0.48, 0.3);
+        compare_kernels(&view, other_kernels[i / 24]);
+    }
+}
+
+/* Nothing but sky: wide and high pictures, narrow and wide angles, level and leaning. */
+static void test_sky(void **state)
+{
+    static const int sizes_px[][2] = { { 640, 360 }, { 1600, 40 }, { 40, 600 }, { 320, 240 } };
+    static const double fovs_deg[] = { 10, 40, 100, 140 };
+    int worst = 0;
+    (void)state;
+    for (int i = 0; i < 4 * 4 * 3; i++) {
+        struct view view;
+        double lean = i / 16 * 0.7;
+        start_view(&view, sizes_px[i % 4][0], sizes_px[i % 4][1]);
+        view.camera.fov_deg = fovs_deg[i / 4 % 4];
+        for (int c = 0; c < 3; c++) { /* away from the plant, and up */
+            view.camera.eye_m[c] = stand.toy->scene.bounds_max_m[c] + 5;
+            view.camera.target_m[c] = view.camera.eye_m[c] + (c < 2 ? 1 : 1.2);
+            view.camera.up[c] = c < 2 ? sin(lean) * (c ? 1 : -1) : cos(lean);
+        }
+        struct frame *soft = draw(&view, false), *gl = draw(&view, true);
+        int most = 0;
+        for (int k = 0; k < gl->width_px * gl->height_px; k++) {
+            int by = difference(soft->bgrx + 4 * k, gl->bgrx + 4 * k);
+            most = by > most ? by : most;
+        }
+        if (most > 2)
+            print_message("# %dx%d, %g degrees, leaning %.1f: %d of 255\n", view.width_px, view.height_px, view.camera.fov_deg, lean, most);
+        worst = most > worst ? most : worst;
+        frame_unref(&soft);
+        frame_unref(&gl);
+    }
+    assert_in_range(worst, 0, 2);
+}
+
+/* Before and behind others, cut, and of a camera that stands still. */
+static void test_ghosts(void **state)
+{
+    (void)state;
+    for (int i = 0; i < 12; i++) {
+        struct view view;
+        start_view(&view, 320, 240);
+        stand_look(&stand, i, &view);
+        view.dark = i % 2;
+        view.camera.height_m = i == 6 ? 6 : 0;
+        view.selected_asset = i == 7 ? 0 : -1;
+        asset_set_add(&view.visibility.ghosts, i % 4);
+        asset_set_add(&view.visibility.ghosts, 1);
+        if (i % 4 == 3)
+            cut_at(&view, 0, 0.6, 0.64, -0.48, 0.3);
+        for (int again = 0; again < 3; again++)
+            assert_same(&view, 0.02);
+    }
+}
+
+/* The other looks: steps of light are as fine as colours are. */
+static void test_gloss_and_materials(void **state)
+{
+    (void)state;
+    for (int i = 0; i < 8; i++) {
+        struct view view;
+        start_view(&view, 320, 240);
+        stand_look(&stand, i, &view);
+        view.look = i % 2 ? LOOK_GLOSSY : LOOK_MATERIALS;
+        view.dark = i % 4 == 3;
+        for (int again = 0; again < (i < 2 ? 3 : 1); again++)
+            assert_same(&view, again < 2 ? 0.012 : 0.03); /* coloured anew, patterns have softer rims */
+        view.look = LOOK_DEFAULT;
+        assert_same(&view, 0.01);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_home),
+        cmocka_unit_test(test_sizes),
+        cmocka_unit_test(test_flat),
+        cmocka_unit_test(test_cameras),
+        cmocka_unit_test(test_orthographic),
+        cmocka_unit_test(test_cuts),
+        cmocka_unit_test(test_sun),
+        cmocka_unit_test(test_outlines),
+        cmocka_unit_test(test_hidden_assets),
+        cmocka_unit_test(test_still_camera),
+        cmocka_unit_test(test_moves_after_standing),
+        cmocka_unit_test(test_lines_and_scales),
+        cmocka_unit_test(test_patterns_close_by),
+        cmocka_unit_test(test_operator),
+        cmocka_unit_test(test_lines_of_a_still_camera),
+        cmocka_unit_test(test_ghosts),
+        cmocka_unit_test(test_gloss_and_materials),
+        cmocka_unit_test(test_sky),
+        cmocka_unit_test(test_kernels),
+    };
+    cmocka_set_message_output(CM_OUTPUT_TAP);
+    if (!rig_init(&rig, "soft_test"))
+        return 0;
+    if (!rig.gl->software) {
+        printf("TAP version 13\n1..1\nok 1 - soft_test # SKIP a GPU draws moving pictures itself\n");
+        rig_finish(&rig);
+        return 0;
+    }
+    stand_init(&stand, &rig, toy_unit());
+    toy_fill(stand.snapshot, 0);
+    int failed = cmocka_run_group_tests(tests, NULL, NULL);
+    stand_finish(&stand);
+    rig_finish(&rig);
+    return failed;
+}

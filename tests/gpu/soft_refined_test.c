@@ -1,0 +1,540 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Still pictures without a GPU against the same ones drawn by GL; and pictures that are coloured once more against new ones. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "base/mem.h"
+#include "render/render_job.h"
+#include "tests/support/planned.h"
+#include "tests/support/rig.h"
+#include "value/quality.h"
+
+static struct rig rig;
+static struct stand stand;
+
+static struct frame *draw_by_gl(const struct view *view)
+{
+    renderer_use_gl(stand.renderer, true);
+    struct frame *frame = stand_draw(&stand, view);
+    renderer_use_gl(stand.renderer, false);
+    return frame;
+}
+
+/* Whatever was drawn before. */
+static struct frame *draw_anew(const struct view *view)
+{
+    struct render_job *job = planned_begin(stand.renderer, view, stand.snapshot);
+    assert_non_null(job);
+    assert_non_null(job->refined);
+    struct frame *frame = renderer_end(stand.renderer, &job);
+    assert_non_null(frame);
+    return frame;
+}
+
+static int difference(const struct frame *a, const struct frame *b, int pixel)
+{
+    int most = 0;
+    for (int c = 0; c < 3; c++)
+        most = abs(a->bgrx[4 * pixel + c] - b->bgrx[4 * pixel + c]) > most ? abs(a->bgrx[4 * pixel + c] - b->bgrx[4 * pixel + c]) : most;
+    return most;
+}
+
+/* Rims of shadows and lines of a pixel's width may differ. */
+static void assert_like_gl(const struct view *view, double may_differ)
+{
+    struct frame *refined = draw_anew(view), *gl = draw_by_gl(view);
+    int far = 0, pixels = view->width_px * view->height_px;
+    double sum = 0;
+    for (int i = 0; i < pixels; i++) {
+        int by = difference(refined, gl, i);
+        far += by > 8;
+        sum += by;
+    }
+    if (far > may_differ * pixels || sum > (1 + 20 * may_differ) * pixels)
+        print_message("# %d of %d pixels differ by more than 8, all by %.2f on average\n", far, pixels, sum / pixels);
+    assert_true(far <= may_differ * pixels && sum <= (1 + 20 * may_differ) * pixels);
+    assert_int_equal(refined->marker_count, gl->marker_count);
+    assert_true(refined->marker_count > 0 || view->visibility.clip.plane_count > 0);
+    assert_int_equal(refined->label_count, gl->label_count);
+    for (size_t i = 0; i < gl->label_count; i++)
+        assert_true(refined->labels[i].value == gl->labels[i].value && fabsf(refined->labels[i].x_px - gl->labels[i].x_px) < 0.11f);
+    for (size_t i = 0; i < gl->marker_count; i++) {
+        assert_int_equal(refined->markers[i].tag, gl->markers[i].tag);
+        assert_int_equal(refined->markers[i].occluded, gl->markers[i].occluded);
+        assert_true(fabsf(refined->markers[i].x_px - gl->markers[i].x_px) < 0.01f);
+    }
+    assert_int_equal(refined->content, gl->content);
+    frame_unref(&refined);
+    frame_unref(&gl);
+}
+
+static void start_view(struct view *view, int width_px, int height_px)
+{
+    view_default(&stand.toy->scene, width_px, height_px, view);
+    view->tier = TIER_REFINED;
+}
+
+static void test_home(void **state)
+{
+    struct view view;
+    (void)state;
+    start_view(&view, 640, 360);
+    assert_like_gl(&view, 0.005);
+    view.look = LOOK_FLAT;
+    assert_like_gl(&view, 0.005);
+    view.look = LOOK_MATERIALS;
+    assert_like_gl(&view, 0.01);
+    view.look = LOOK_DEFAULT;
+    view.range_min = 10;
+    view.color_scale.log = true;
+    assert_like_gl(&view, 0.005);
+}
+
+static void test_sizes(void **state)
+{
+    static const int sizes[][2] = { { 16, 16 }, { 17, 33 }, { 333, 217 }, { 64, 500 }, { 1001, 31 } };
+    (void)state;
+    for (size_t i = 0; i < sizeof(sizes) / sizeof(sizes[0]); i++) {
+        struct view view;
+        start_view(&view, sizes[i][0], sizes[i][1]);
+        assert_like_gl(&view, 0.08);
+    }
+}
+
+/* All round, from far away, from below and from among the pipes, where triangles pass the eye. */
+static void test_cameras(void **state)
+{
+    struct view view;
+    (void)state;
+    start_view(&view, 320, 240);
+    for (int i = 0; i < 12; i++) {
+        stand_look(&stand, i, &view);
+        assert_like_gl(&view, 0.02);
+    }
+}
+
+/* Rays are parallel. */
+static void test_orthographic(void **state)
+{
+    (void)state;
+    for (int i = 0; i < 12; i++) {
+        struct view view;
+        start_view(&view, 320, 240);
+        stand_look(&stand, i, &view);
+        view.camera.height_m = i % 3 ? 6 : 1.5;
+        assert_like_gl(&view, 0.02);
+    }
+}
+
+static void draw_lines_every(struct view *view, double step)
+{
+    for (double line = step; line < 100 && view->color_scale.line_count < VIEW_LINES; line += step)
+        view->color_scale.lines[view->color_scale.line_count++] = line;
+}
+
+/* Lines, bands and logarithms. Rims of lines differ by the way slopes are measured. */
+static void test_lines_and_scales(void **state)
+{
+    (void)state;
+    for (int i = 0; i < 8; i++) {
+        struct view view;
+        start_view(&view, 400, 300);
+        stand_look(&stand, i, &view);
+        view.camera.height_m = i == 7 ? 6 : 0;
+        if (i % 4 != 1)
+            draw_lines_every(&view, 10);
+        view.ramp_interval = i % 4 == 1 ? 20 : 0;
+        if (i % 4 == 2) {
+            view.range_min = 10;
+            view.color_scale.log = true;
+        }
+        view.look = i % 4 == 3 ? LOOK_FLAT : LOOK_DEFAULT;
+        assert_like_gl(&view, 0.02);
+    }
+}
+
+static void set_limits(bool set)
+{
+    struct plant *plant = &stand.toy->plant;
+    const double limits[LIMIT_COUNT] = { 0, 20, 70, 90 };
+    for (size_t tag = 0; tag < plant->tag_count; tag++)
+        for (int i = 0; i < LIMIT_COUNT; i++)
+            plant->tags[tag].limits[i] = set && tag != 2 ? limits[i] : NAN;
+}
+
+/* One tag without limits: what is near it is plain. What has no field is grey. */
+static void test_operator(void **state)
+{
+    struct view view;
+    (void)state;
+    set_limits(true);
+    start_view(&view, 400, 300);
+    view.field.show = SHOW_OPERATOR;
+    view_default_scale(&stand.toy->scene, &view);
+    for (int camera = 0; camera < 6; camera++) {
+        assert_like_gl(&view, 0.02);
+        stand_look(&stand, 2 * camera, &view);
+    }
+    set_limits(false);
+}
+
+static void cut_at(struct view *view, double x, double y, double z, double d)
+{
+    memcpy(view->visibility.clip.planes[0], (double[4]){ x, y, z, d }, 4 * sizeof(double));
+    view->visibility.clip.plane_count = 1;
+}
+
+/* Bodies that are closed have caps, the inner side of others shows. */
+static void test_cuts(void **state)
+{
+    (void)state;
+    for (int i = 0; i < 12; i++) {
+        struct view view;
+        start_view(&view, 320, 240);
+        stand_look(&stand, i, &view);
+        view.camera.height_m = i % 5 == 4 ? 6 : 0;
+        if (i % 3 == 0)
+            cut_at(&view, 0, 0, -1, 0.2 + 0.1 * i);
+        if (i % 3 == 1)
+            cut_at(&view, 0.6, 0.64, -0.48, 0.3);
+        if (i % 3 == 2)
+            clip_box(&view.visibility.clip, (double[3]){ -0.8, -0.5, -0.2 }, (double[3]){ 2.1, 0.3, 1.1 });
+        assert_like_gl(&view, 0.02);
+    }
+}
+
+static void test_ghosts(void **state)
+{
+    (void)state;
+    for (int i = 0; i < 8; i++) {
+        struct view view;
+        start_view(&view, 320, 240);
+        stand_look(&stand, i, &view);
+        view.dark = i % 2;
+        view.camera.height_m = i == 6 ? 6 : 0;
+        asset_set_add(&view.visibility.ghosts, i % 4);
+        asset_set_add(&view.visibility.ghosts, 1);
+        if (i == 5)
+            cut_at(&view, 0.6, 0.64, -0.48, 0.3);
+        assert_like_gl(&view, 0.02);
+    }
+}
+
+static void test_suns(void **state)
+{
+    struct view view;
+    (void)state;
+    start_view(&view, 400, 300);
+    for (int i = 0; i < 4; i++) {
+        double towards[3] = { 0.6 * cos(i), 0.6 * sin(i), 0.8 };
+        memcpy(view.light_dir, towards, sizeof(towards));
+        assert_like_gl(&view, 0.01);
+    }
+}
+
+static void test_outlines(void **state)
+{
+    struct view view;
+    (void)state;
+    start_view(&view, 640, 360);
+    for (int asset = 0; asset < (int)stand.toy->scene.asset_count; asset++) {
+        view.selected_asset = asset;
+        assert_like_gl(&view, 0.02);
+    }
+}
+
+static void test_hidden_assets(void **state)
+{
+    struct view view;
+    (void)state;
+    start_view(&view, 320, 240);
+    asset_set_add(&view.visibility.hidden, 1);
+    assert_like_gl(&view, 0.01);
+}
+
+/* A floor of 8 m, cut into strips that share their edges. */
+static void make_floor(struct shape *shape, uint32_t strips)
+{
+    shape->vertex_count = 2 * (strips + 1);
+    shape->index_count = 6 * strips;
+    shape->primitive_count = 1;
+    shape->positions = mem_array(shape->vertex_count, sizeof(*shape->positions));
+    shape->normals = mem_array(shape->vertex_count, sizeof(*shape->normals));
+    shape->indices = mem_array(shape->index_count, sizeof(*shape->indices));
+    shape->primitives = mem_array(1, sizeof(*shape->primitives));
+    *shape->primitives = (struct asset_primitive){ .index_count = (uint32_t)shape->index_count, .material = TOY_CONCRETE };
+    for (uint32_t v = 0; v < shape->vertex_count; v++) {
+        memcpy(shape->positions[v], (float[3]){ v % 2 ? 4 : -4, -4 + 8 * (float)(v / 2) / (float)strips, 0 }, 3 * sizeof(float));
+        memcpy(shape->normals[v], (float[3]){ 0, 0, 1 }, sizeof(shape->normals[v]));
+    }
+    for (uint32_t i = 0; i < strips; i++)
+        memcpy(shape->indices + 6 * i, (uint32_t[6]){ 2 * i, 2 * i + 1, 2 * i + 2, 2 * i + 1, 2 * i + 3, 2 * i + 2 }, 6 * sizeof(uint32_t));
+}
+
+static struct frame *draw_box_over_floor(uint32_t strips, const double light[3])
+{
+    struct toy *toy = toy_create();
+    struct shape floor = { 0 }, box = { 0 };
+    struct stand others = stand;
+    struct view view;
+    make_floor(&floor, strips);
+    shape_box(&box, TOY_STEEL, (double[3]){ -1, -1, 0 }, (double[3]){ 1, 1, 1 });
+    toy_add(toy, "FLOOR", &floor, (double[3]){ 0, 0, 0 }, NULL, 0);
+    toy_add(toy, "BOX", &box, (double[3]){ 0, 0, 0.5 }, NULL, 0);
+    stand_init(&stand, &rig, toy);
+    start_view(&view, 400, 300);
+    memcpy(view.light_dir, light, sizeof(view.light_dir));
+    struct frame *frame = draw_anew(&view);
+    stand_finish(&stand);
+    stand = others;
+    return frame;
+}
+
+/* A pixel's middle may lie beside the sliver that it is told by: it must not slip along it. */
+/* By one that never drew anything: of two that are under way at a time, one is new. */
+static void test_nothing_in_sight(void **state)
+{
+    (void)state;
+    struct view view;
+    start_view(&view, 320, 180);
+    for (int c = 0; c < 3; c++) /* the sky behind */
+        view.camera.target_m[c] = 2 * view.camera.eye_m[c] - view.camera.target_m[c];
+    struct render_job *first = planned_begin(stand.renderer, &view, stand.snapshot);
+    assert_non_null(first);
+    assert_like_gl(&view, 0);
+    struct frame *frame = renderer_end(stand.renderer, &first);
+    assert_non_null(frame);
+    frame_unref(&frame);
+}
+
+static void test_shadows_on_slivers(void **state)
+{
+    (void)state;
+    for (int light = 0; light < 3; light++) {
+        const double towards[3] = { 0.6 * cos(2 * light), 0.6 * sin(2 * light), 0.8 };
+        struct frame *slivers = draw_box_over_floor(1000, towards), *whole = draw_box_over_floor(1, towards);
+        int far = 0, pixels = slivers->width_px * slivers->height_px;
+        for (int i = 0; i < pixels; i++)
+            far += difference(slivers, whole, i) > 8;
+        assert_in_range(far, 0, pixels / 1000);
+        frame_unref(&slivers);
+        frame_unref(&whole);
+    }
+}
+
+static int darkest(const struct frame *frame, int y)
+{
+    const uint8_t *row = frame->bgrx + (size_t)y * (size_t)frame->stride_bytes;
+    int level = 255;
+    for (int x = 0; x < frame->width_px; x++)
+        level = row[4 * x + 1] < level ? row[4 * x + 1] : level;
+    return level;
+}
+
+/* A leaning pole: here it is 3 pixels wide, there 4, and its lines must not show that. */
+static void test_thin_poles_have_no_beads(void **state)
+{
+    (void)state;
+    enum { FIRST = 80, LAST = 220 };
+    struct toy *toy = toy_create();
+    struct shape pole = { 0 };
+    struct stand others = stand;
+    struct view view;
+    shape_box(&pole, TOY_STEEL, (double[3]){ -0.056, -0.056, 0 }, (double[3]){ 0.056, 0.056, 8 });
+    toy_add(toy, "POLE", &pole, (double[3]){ 0, 0, 0 }, NULL, 0);
+    stand_init(&stand, &rig, toy);
+    start_view(&view, 200, 300);
+    view.camera = (struct camera){ .eye_m = { 0, -30, 4 }, .target_m = { 0, 0, 4 }, .up = { 0.05, 0, 1 }, .fov_deg = 17.6 };
+    struct frame *frames[] = { draw_anew(&view), draw_by_gl(&view) };
+    for (int by_gl = 0; by_gl < 2; by_gl++) {
+        int least = 255, most = 0;
+        for (int y = FIRST; y < LAST; y++) {
+            int level = darkest(frames[by_gl], y);
+            least = level < least ? level : least;
+            most = level > most ? level : most;
+        }
+        print_message("# beside a pole of 3.6 pixels%s: levels of %d to %d\n", by_gl ? ", by GL" : "", least, most);
+        assert_true(most < 210 && most - least <= 35);
+        frame_unref(&frames[by_gl]);
+    }
+    stand_finish(&stand);
+    stand = others;
+}
+
+/* --- once more ------------------------------------------------------------------------------------------------------------------- */
+
+static bool is_quick(const struct view *view)
+{
+    return planned_is_quick(stand.renderer, view, stand.snapshot);
+}
+
+static void assert_same_anew(const struct view *view)
+{
+    assert_true(is_quick(view));
+    struct frame *again = stand_draw(&stand, view), *anew = draw_anew(view);
+    assert_memory_equal(again->bgrx, anew->bgrx, (size_t)again->height_px * (size_t)again->stride_bytes);
+    assert_int_equal(again->content, anew->content);
+    assert_int_equal(again->label_count, anew->label_count);
+    for (size_t i = 0; i < anew->label_count; i++)
+        assert_true(again->labels[i].x_px == anew->labels[i].x_px && again->labels[i].value == anew->labels[i].value);
+    assert_int_equal(again->marker_count, anew->marker_count);
+    for (size_t i = 0; i < anew->marker_count; i++) {
+        assert_int_equal(again->markers[i].tag, anew->markers[i].tag);
+        assert_int_equal(again->markers[i].occluded, anew->markers[i].occluded);
+    }
+    frame_unref(&again);
+    frame_unref(&anew);
+}
+
+static void test_new_readings_are_a_new_picture(void **state)
+{
+    struct view view;
+    (void)state;
+    start_view(&view, 501, 300);
+    view.selected_asset = 0;
+    struct frame *first = draw_anew(&view);
+    toy_set(stand.snapshot, 0, 75, QUALITY_GOOD);
+    toy_set(stand.snapshot, 3, 20, QUALITY_GOOD);
+    assert_same_anew(&view);
+    toy_set(stand.snapshot, 3, 20, QUALITY_UNCERTAIN_LAST_USABLE);
+    toy_set(stand.snapshot, 6, 45, QUALITY_GOOD);
+    assert_same_anew(&view);
+    for (int i = 0; i < 8; i++)
+        toy_set(stand.snapshot, i, 50, QUALITY_BAD_SENSOR_FAILURE);
+    assert_same_anew(&view);
+    toy_fill(stand.snapshot, 0);
+    struct frame *last = stand_draw(&stand, &view);
+    assert_memory_equal(first->bgrx, last->bgrx, (size_t)first->height_px * (size_t)first->stride_bytes);
+    frame_unref(&first);
+    frame_unref(&last);
+}
+
+/* With isolines, their labels, ghosts and a cut. */
+static void test_lines_again(void **state)
+{
+    struct view view;
+    (void)state;
+    start_view(&view, 501, 300);
+    draw_lines_every(&view, 10);
+    asset_set_add(&view.visibility.ghosts, 2);
+    cut_at(&view, 0, 0, -1, 1.2);
+    struct frame *first = draw_anew(&view);
+    assert_true(first->label_count > 0);
+    frame_unref(&first);
+    toy_set(stand.snapshot, 0, 75, QUALITY_GOOD);
+    toy_set(stand.snapshot, 3, 20, QUALITY_UNCERTAIN_LAST_USABLE);
+    assert_same_anew(&view);
+    view.color_scale.lines[2] += 5;
+    assert_same_anew(&view);
+    view.color_scale.line_count = 0;
+    assert_same_anew(&view);
+    draw_lines_every(&view, 20);
+    assert_false(is_quick(&view)); /* that last picture had none */
+    toy_fill(stand.snapshot, 0);
+}
+
+static void test_new_colors_too(void **state)
+{
+    struct view view;
+    (void)state;
+    start_view(&view, 300, 200);
+    struct frame *frame = draw_anew(&view);
+    frame_unref(&frame);
+    view.colormap = (int)colormap_count() - 1;
+    view.range_min = 30;
+    view.range_max = 70;
+    assert_same_anew(&view);
+    view.color_scale.log = true;
+    assert_same_anew(&view);
+    toy_set(stand.snapshot, 0, 75, QUALITY_GOOD);
+    toy_set(stand.snapshot, 3, 20, QUALITY_UNCERTAIN_LAST_USABLE);
+    assert_same_anew(&view);
+    toy_fill(stand.snapshot, 0);
+}
+
+static void test_what_else_changes_is_drawn(void **state)
+{
+    struct view view, other;
+    (void)state;
+    start_view(&view, 300, 200);
+    struct frame *frame = draw_anew(&view);
+    frame_unref(&frame);
+    assert_true(is_quick(&view));
+    other = view;
+    other.camera.eye_m[0] += 0.01;
+    assert_false(is_quick(&other));
+    other = view;
+    other.width_px++;
+    assert_false(is_quick(&other));
+    other = view;
+    other.light_dir[2] = 0.3;
+    assert_false(is_quick(&other));
+    other = view;
+    other.selected_asset = 1;
+    assert_false(is_quick(&other));
+    other = view;
+    asset_set_add(&other.visibility.hidden, 1);
+    assert_false(is_quick(&other));
+}
+
+/* What is kept of them has a bound, and the oldest goes. */
+static void test_few_large_ones_are_kept(void **state)
+{
+    struct view views[4];
+    (void)state;
+    for (int i = 0; i < 4; i++) {
+        start_view(&views[i], 3000, 2600);
+        views[i].camera.eye_m[0] += i;
+        struct frame *frame = draw_anew(&views[i]);
+        frame_unref(&frame);
+    }
+    assert_false(is_quick(&views[0]));
+    assert_true(is_quick(&views[2]) && is_quick(&views[3]));
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_home),
+        cmocka_unit_test(test_sizes),
+        cmocka_unit_test(test_cameras),
+        cmocka_unit_test(test_orthographic),
+        cmocka_unit_test(test_lines_and_scales),
+        cmocka_unit_test(test_operator),
+        cmocka_unit_test(test_cuts),
+        cmocka_unit_test(test_ghosts),
+        cmocka_unit_test(test_suns),
+        cmocka_unit_test(test_outlines),
+        cmocka_unit_test(test_hidden_assets),
+        cmocka_unit_test(test_nothing_in_sight),
+        cmocka_unit_test(test_shadows_on_slivers),
+        cmocka_unit_test(test_thin_poles_have_no_beads),
+        cmocka_unit_test(test_new_readings_are_a_new_picture),
+        cmocka_unit_test(test_lines_again),
+        cmocka_unit_test(test_new_colors_too),
+        cmocka_unit_test(test_what_else_changes_is_drawn),
+        cmocka_unit_test(test_few_large_ones_are_kept),
+    };
+    cmocka_set_message_output(CM_OUTPUT_TAP);
+    if (!rig_init(&rig, "refined_test"))
+        return 0;
+    if (!rig.gl->software) {
+        printf("TAP version 13\n1..1\nok 1 - refined_test # SKIP a GPU draws still pictures itself\n");
+        rig_finish(&rig);
+        return 0;
+    }
+    stand_init(&stand, &rig, toy_unit());
+    toy_fill(stand.snapshot, 0);
+    int failed = cmocka_run_group_tests(tests, NULL, NULL);
+    stand_finish(&stand);
+    rig_finish(&rig);
+    return failed;
+}

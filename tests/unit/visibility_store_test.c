@@ -1,0 +1,76 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Pixels that are kept: found by shape, within the bound, the least recently used first to go. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+#include "base/mem.h"
+#include "render/soft/visibility_store.h"
+
+/* NULL: it was not taken. */
+static void *make(struct visibility_store *store, uint64_t shape, size_t bytes)
+{
+    visibility_store_give(store, shape, mem_new(bytes), bytes, mem_free);
+    return visibility_store_find(store, shape);
+}
+
+static void test_found_again(void **state)
+{
+    struct visibility_store store = { .bound_bytes = 1000 };
+    (void)state;
+    assert_null(visibility_store_find(&store, 7));
+    int *made = make(&store, 7, 400);
+    assert_non_null(made);
+    *made = 42;
+    assert_ptr_equal(visibility_store_find(&store, 7), made);
+    assert_int_equal(*made, 42);
+    assert_null(visibility_store_find(&store, 8));
+    assert_non_null(make(&store, 7, 300)); /* in place of the old ones */
+    assert_int_equal(store.bytes, 300);
+    visibility_store_drop(&store, 7);
+    assert_null(visibility_store_find(&store, 7));
+    assert_int_equal(store.bytes, 0);
+    visibility_store_finish(&store);
+}
+
+static void test_bound(void **state)
+{
+    struct visibility_store store = { .bound_bytes = 1000 };
+    (void)state;
+    assert_null(make(&store, 1, 1001));
+    assert_non_null(make(&store, 1, 400));
+    assert_non_null(make(&store, 2, 400));
+    assert_non_null(visibility_store_find(&store, 1));
+    assert_non_null(make(&store, 3, 600)); /* the second was not used since */
+    assert_non_null(visibility_store_find(&store, 1));
+    assert_null(visibility_store_find(&store, 2));
+    assert_int_equal(store.bytes, 1000);
+    visibility_store_finish(&store);
+    assert_int_equal(store.bytes, 0);
+}
+
+static void test_many_small(void **state)
+{
+    struct visibility_store store = { .bound_bytes = 1000 };
+    (void)state;
+    for (uint64_t shape = 0; shape < 3 * VISIBILITY_SLOTS; shape++)
+        assert_non_null(make(&store, shape, 8));
+    assert_int_equal(store.bytes, 8 * VISIBILITY_SLOTS);
+    assert_null(visibility_store_find(&store, 0));
+    assert_non_null(visibility_store_find(&store, 3 * VISIBILITY_SLOTS - 1));
+    visibility_store_finish(&store);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_found_again),
+        cmocka_unit_test(test_bound),
+        cmocka_unit_test(test_many_small),
+    };
+    cmocka_set_message_output(CM_OUTPUT_TAP);
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
