@@ -82,7 +82,7 @@ $(bin)/plantcastd: $(call objects,$(wildcard server/*.c)) $(archives)
 $(bin)/plantcast-prep: $(call objects,preprocess/main.c preprocess/image_lazy.c) $(out)/lib/prep.a $(archives) | $(modules)
 	$(link)
 # Reads what strangers' programs wrote: neither the daemon nor plantcast-prep links it.
-$(bin)/plantcast-import: $(call objects,preprocess/import/main.c) $(out)/lib/import.a $(archives)
+$(bin)/plantcast-import: $(call objects,preprocess/import/main.c) $(out)/lib/import.a $(out)/lib/prep.a $(archives)
 	$(link) -lGLU
 $(bin)/plantcast-match: $(call objects,preprocess/match/main.c) $(out)/lib/match.a $(archives)
 	$(link) -lminizip -lexpat
@@ -110,7 +110,7 @@ wide_objects := $(foreach w,wide widest,$(patsubst %.c,$(out)/obj/%.$(w).o,$(wid
 $(out)/lib/render.a: $(if $(filter x86_64%,$(shell $(CC) -dumpmachine 2>/dev/null)),$(wide_objects))
 $(out)/lib/protocol.a: $(call objects,$(wildcard protocol/*.c))
 $(out)/lib/prep.a: $(call objects,$(prep_sources))
-$(out)/lib/import.a: $(call objects,$(filter-out %/main.c,$(import_sources)) preprocess/glb/glb_file.c)
+$(out)/lib/import.a: $(call objects,$(filter-out %/main.c,$(import_sources)))
 $(out)/lib/match.a: $(call objects,$(filter-out %/main.c,$(match_sources)))
 $(out)/lib/sim.a: $(call objects,$(filter-out %/sim.c,$(sim_sources)))
 $(out)/lib/%.a:

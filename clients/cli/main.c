@@ -30,6 +30,7 @@ static const struct command {
     { "snapshot", "one picture, from a plant file or from a daemon, as PNG", cmd_snapshot },
     { "clip", "a film of what was recorded, as MP4", cmd_clip },
     { "import", "a CAD export into a plant's folder: model, names, attributes, plant file", cmd_import },
+    { "nodes", "what is in a model: nodes, sizes, properties", cmd_import },
     { "probe", "put load on a daemon and print a table of latencies", cmd_probe },
     { "tags", "print the tags of a daemon and their values", cmd_tags },
     { "history", "take series into a plant's history, or print what was recorded", cmd_history },

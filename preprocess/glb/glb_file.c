@@ -54,14 +54,39 @@ int glb_file_add_positions(struct glb_file *file, const float (*positions)[3], s
     return number;
 }
 
-static void add_chunk(struct text *out, const char *type, const void *bytes, size_t count, char fill)
+static void begin_chunk(struct text *out, const char *type, size_t count)
 {
     uint32_t padded = (uint32_t)(count + 3) / 4 * 4;
     text_add_bytes(out, &padded, 4);
     text_add_bytes(out, type, 4);
-    text_add_bytes(out, bytes, count);
-    for (size_t i = count; i < padded; i++)
-        text_add_bytes(out, &fill, 1);
+}
+
+/* The bytes are written from where they are: they may be gigabytes. */
+int glb_file_put(json_t *root, const struct text *bytes, const char *path)
+{
+    char *json = json_dumps(root, JSON_COMPACT | JSON_REAL_PRECISION(17));
+    if (!json)
+        return -ENOMEM;
+    int status = -EFBIG;
+    size_t json_bytes = strlen(json), json_fill = (4 - json_bytes % 4) % 4, fill = (4 - bytes->length % 4) % 4;
+    if (bytes->length + json_bytes < UINT32_MAX - 64) {
+        struct text head = { 0 }, middle = { 0 };
+        uint32_t total = (uint32_t)(12 + 8 + json_bytes + json_fill + (bytes->length ? 8 + bytes->length + fill : 0));
+        text_add_bytes(&head, "glTF\2\0\0\0", 8);
+        text_add_bytes(&head, &total, 4);
+        begin_chunk(&head, "JSON", json_bytes);
+        text_add_bytes(&middle, "   ", json_fill);
+        if (bytes->length)
+            begin_chunk(&middle, "BIN\0", bytes->length);
+        const struct atomic_file_part parts[] = {
+            { head.at, head.length }, { json, json_bytes }, { middle.at, middle.length }, { bytes->at, bytes->length }, { "\0\0\0", fill }
+        };
+        status = atomic_file_put_parts(path, parts, sizeof(parts) / sizeof(parts[0]));
+        text_finish(&head);
+        text_finish(&middle);
+    }
+    free(json);
+    return status;
 }
 
 int glb_file_save(struct glb_file *file, json_t *root, const char *path)
@@ -71,21 +96,5 @@ int glb_file_save(struct glb_file *file, json_t *root, const char *path)
         json_object_set(root, "bufferViews", file->views);
         json_object_set_new(root, "buffers", json_pack("[{s:I}]", "byteLength", (json_int_t)file->bytes.length));
     }
-    char *json = json_dumps(root, JSON_COMPACT | JSON_REAL_PRECISION(17));
-    if (!json)
-        return -ENOMEM;
-    int status = -EFBIG;
-    if (file->bytes.length + strlen(json) < UINT32_MAX - 64) {
-        struct text out = { 0 };
-        text_add_bytes(&out, "glTF\2\0\0\0\0\0\0\0", 12);
-        add_chunk(&out, "JSON", json, strlen(json), ' ');
-        if (file->bytes.length > 0)
-            add_chunk(&out, "BIN\0", file->bytes.at, file->bytes.length, 0);
-        uint32_t total = (uint32_t)out.length;
-        memcpy(out.at + 8, &total, sizeof(total));
-        status = atomic_file_put(path, out.at, out.length);
-        text_finish(&out);
-    }
-    free(json);
-    return status;
+    return glb_file_put(root, &file->bytes, path);
 }

@@ -22,5 +22,7 @@ int glb_file_add(struct glb_file *file, const void *bytes, size_t each, size_t c
 int glb_file_add_positions(struct glb_file *file, const float (*positions)[3], size_t count);
 /* Completes `root` with accessors and buffer, and writes the file. Returns 0 or -errno (-EFBIG: more than a GLB file can hold). */
 int glb_file_save(struct glb_file *file, json_t *root, const char *path);
+/* Writes a GLB file of any JSON and the bytes of its one buffer. Returns likewise. */
+int glb_file_put(json_t *root, const struct text *bytes, const char *path);
 
 #endif

@@ -26,91 +26,149 @@ static const char tags_head[] = "Tag Name,Address,Data Type,Eng Units,Descriptio
 /* In the quotes of YAML. */
 static void add_quoted(struct text *out, const char *text)
 {
+    struct text printable = { 0 };
+    model_outline_add_printable(&printable, text);
     text_add(out, "\"");
-    for (; *text; text++)
-        text_add(out, *text == '"' || *text == '\\' ? "\\%c" : "%c", *text);
+    for (const char *at = printable.at ? printable.at : ""; *at; at++)
+        text_add(out, *at == '"' || *at == '\\' ? "\\%c" : "%c", *at);
     text_add(out, "\"");
+    text_finish(&printable);
 }
 
-struct choice {                  /* by node */
-    bool *item, *shows, *unique; /* unique: no other node has its name */
-    int *depth;
-    bool typed; /* the model has elements of type ZONE */
+static bool is_printable(const char *text)
+{
+    struct text printable = { 0 };
+    model_outline_add_printable(&printable, text);
+    bool is = !strcmp(printable.at ? printable.at : "", text);
+    text_finish(&printable);
+    return is;
+}
+
+struct choice {          /* by node */
+    bool *item, *unique; /* unique: no other node has its name */
+    bool typed, classed; /* the model has elements of type ZONE, or classes of IFC */
 };
 
 static int by_name(const void *a, const void *b)
 {
-    return strcmp((*(const struct cad_node *const *)a)->name, (*(const struct cad_node *const *)b)->name);
+    return strcmp((*(const struct outline_node *const *)a)->name, (*(const struct outline_node *const *)b)->name);
 }
 
-static void find_unique(const struct cad_model *model, bool *unique)
+static void find_unique(const struct model_outline *outline, bool *unique)
 {
-    const struct cad_node **sorted = mem_array(model->node_count + 1, sizeof(*sorted)); /* ends in NULL */
-    for (size_t i = 0; i < model->node_count; i++)
-        sorted[i] = &model->nodes[i];
-    qsort(sorted, model->node_count, sizeof(*sorted), by_name);
-    for (size_t i = 0; i < model->node_count; i++) {
+    size_t count = outline->header.count;
+    const struct outline_node **sorted = mem_array(count + 1, sizeof(*sorted)); /* ends in NULL */
+    for (size_t i = 0; i < count; i++)
+        sorted[i] = &outline->nodes[i];
+    qsort(sorted, count, sizeof(*sorted), by_name);
+    for (size_t i = 0; i < count; i++) {
         bool first = i == 0 || strcmp(sorted[i - 1]->name, sorted[i]->name) != 0;
-        unique[sorted[i] - model->nodes] = first && (!sorted[i + 1] || strcmp(sorted[i + 1]->name, sorted[i]->name) != 0);
+        bool same_as_next = sorted[i + 1] && !strcmp(sorted[i + 1]->name, sorted[i]->name);
+        unique[sorted[i] - outline->nodes] = first && !same_as_next && !sorted[i]->unnamed && is_printable(sorted[i]->name);
     }
     mem_free(sorted);
 }
 
-/* An element of a zone is a piece of equipment, a pipe, a structure. Where nothing says what is a zone, the third level is taken, as the
- * hierarchy of these systems begins with site and zone; and whatever shows something above it. */
-static void choose(const struct cad_model *model, struct choice *choice)
+/* The first level with two nodes that show something; the deepest where none has. */
+static int branching_level(const struct model_outline *outline)
 {
-    for (size_t i = 0; i < model->node_count; i++) {
-        const char *type = cad_node_attribute(&model->nodes[i], "Type");
-        choice->typed |= type && !strcmp(type, "ZONE");
-        choice->depth[i] = model->nodes[i].parent < 0 ? 0 : choice->depth[model->nodes[i].parent] + 1;
-    }
-    for (size_t i = model->node_count; i-- > 0;) {
-        const struct cad_node *node = &model->nodes[i];
-        choice->shows[i] |= node->triangle_count > 0;
-        if (node->parent >= 0)
-            choice->shows[node->parent] |= choice->shows[i];
-    }
-    for (size_t i = 0; i < model->node_count; i++) {
-        const struct cad_node *node = &model->nodes[i];
-        const char *above = node->parent < 0 ? NULL : cad_node_attribute(&model->nodes[node->parent], "Type");
-        bool at_level = choice->typed ? above && !strcmp(above, "ZONE") : choice->depth[i] == 2, within = false;
-        for (int up = node->parent; up >= 0 && !within; up = model->nodes[up].parent)
-            within = choice->item[up];
-        choice->item[i] = choice->shows[i] && !within && (at_level || node->triangle_count > 0);
-    }
+    int deepest = 0, level = 0;
+    for (size_t i = 0; i < outline->header.count; i++)
+        deepest = outline->nodes[i].depth > deepest ? outline->nodes[i].depth : deepest;
+    size_t *shown = mem_array((size_t)deepest + 1, sizeof(*shown));
+    for (size_t i = 0; i < outline->header.count; i++)
+        shown[outline->nodes[i].depth] += outline->nodes[i].all_triangles > 0;
+    while (level < deepest && shown[level] < 2)
+        level++;
+    mem_free(shown);
+    return level;
 }
 
-static void add_asset(struct text *out, const struct plant_draft_model *from, size_t number, bool unique)
+static bool is_type(const struct model_outline *outline, int node, const char *type)
 {
-    const struct cad_model *model = from->model;
-    const struct cad_node *node = &model->nodes[number];
-    const char *description = cad_node_attribute(node, "Description"), *name = node->name;
-    unique = unique && *name;
-    text_add(out, "  - { id: ");
-    if (unique) {
-        add_quoted(out, name + (name[0] == '/' && name[1]));
-    } else {
-        char *id = mem_printf("%s #%zu", *name ? name : "unnamed", number + 1);
-        add_quoted(out, id);
+    const char *own = node < 0 ? NULL : model_outline_property(&outline->nodes[node], "Type");
+    return own && !strcmp(own, type);
+}
+
+/* Sites, buildings, storeys and rooms hold the elements of an IFC model. */
+static bool is_spatial(const char *class)
+{
+    static const char *const spatial[] = { "IfcProject",  "IfcSite",         "IfcBuilding",    "IfcBuildingStorey",        "IfcSpace",
+                                           "IfcFacility", "IfcFacilityPart", "IfcSpatialZone", "IfcExternalSpatialElement" };
+    for (size_t i = 0; i < sizeof(spatial) / sizeof(spatial[0]); i++)
+        if (!strcmp(class, spatial[i]))
+            return true;
+    return false;
+}
+
+/* An element of a zone is a piece of equipment, a pipe, a structure. Where nothing says what is a zone, those of a level are taken; and
+ * whatever shows something above it. */
+static void choose(const struct plant_draft_model *from, struct choice *choice)
+{
+    const struct model_outline *outline = &from->outline;
+    int level = from->item_level ? from->item_level : branching_level(outline);
+    bool *within = mem_array(outline->header.count + 1, sizeof(*within));
+    for (size_t i = 0; i < outline->header.count; i++) {
+        choice->typed |= is_type(outline, (int)i, "ZONE");
+        choice->classed |= model_outline_property(&outline->nodes[i], "IfcClass") != NULL;
+    }
+    for (size_t i = 0; i < outline->header.count; i++) {
+        const struct outline_node *node = &outline->nodes[i];
+        int parent = outline->header.nodes[i].parent;
+        const char *class = model_outline_property(node, "IfcClass");
+        bool at_level = choice->typed     ? is_type(outline, parent, "ZONE")
+                        : choice->classed ? class && !is_spatial(class)
+                                          : node->depth == level;
+        within[i] = parent >= 0 && (within[parent] || choice->item[parent]);
+        choice->item[i] = node->all_triangles > 0 && !within[i] && (at_level || node->triangles > 0);
+    }
+    mem_free(within);
+}
+
+static const char *without_slash(const char *name)
+{
+    return name + (name[0] == '/' && name[1]);
+}
+
+static void add_key(struct text *out, const char *key, const char *text)
+{
+    text_add(out, ", %s: ", key);
+    add_quoted(out, text);
+}
+
+static void add_asset(struct text *out, const struct plant_draft_model *from, size_t i, bool unique, json_t *ids)
+{
+    const struct model_outline *outline = &from->outline;
+    const struct outline_node *node = &outline->nodes[i];
+    const char *description = model_outline_property(node, "Description"), *name = node->name;
+    int parent = outline->header.nodes[i].parent;
+    unsigned number = outline->header.nodes[i].number;
+    char *id = unique ? mem_strdup(without_slash(name)) : mem_printf("%s #%u", *name ? name : "unnamed", number);
+    if (json_object_get(ids, id)) { /* of another model */
+        char *other = mem_printf("%s (%s #%u)", id, from->file, number);
         mem_free(id);
+        id = other;
     }
-    if (description && strcmp(description, "unset") != 0) {
-        text_add(out, ", description: ");
-        add_quoted(out, description);
+    json_object_set_new_nocheck(ids, id, json_true());
+    text_add(out, "  - { id: ");
+    add_quoted(out, id);
+    mem_free(id);
+    if (description && strcmp(description, "unset") != 0)
+        add_key(out, "description", description);
+    if (parent >= 0 && outline->nodes[parent].depth > 0 && outline->nodes[parent].name[0])
+        add_key(out, "area", without_slash(outline->nodes[parent].name));
+    add_key(out, "model", from->file);
+    if (from->units)
+        text_add(out, ", units: %s", from->units);
+    if (from->up)
+        text_add(out, ", up: %s", from->up);
+    if (unique) {
+        add_key(out, "nodes", name);
+    } else {
+        char *pattern = mem_printf("#%u", number);
+        add_key(out, "nodes", pattern);
+        mem_free(pattern);
     }
-    if (node->parent >= 0 && model->nodes[node->parent].name[0]) {
-        const char *area = model->nodes[node->parent].name;
-        text_add(out, ", area: ");
-        add_quoted(out, area + (area[0] == '/' && area[1]));
-    }
-    text_add(out, ", model: ");
-    add_quoted(out, from->file);
-    text_add(out, ", nodes: ");
-    if (unique)
-        add_quoted(out, name);
-    else
-        text_add(out, "\"#%zu\"", number + 1); /* after the root of the file */
     text_add(out, " }\n");
 }
 
@@ -130,27 +188,25 @@ int plant_draft_write(const struct plant_draft *draft)
 {
     struct text out = { 0 };
     size_t assets = 0;
+    json_t *ids = json_object();
     text_add(&out, "%s  name: ", head);
     add_quoted(&out, draft->name);
     text_add(&out, "\n\nassets:\n");
     for (size_t m = 0; m < draft->count; m++) {
-        const struct cad_model *model = draft->models[m].model;
-        struct choice choice = { .item = mem_array(model->node_count + 1, sizeof(bool)),
-                                 .shows = mem_array(model->node_count + 1, sizeof(bool)),
-                                 .unique = mem_array(model->node_count + 1, sizeof(bool)),
-                                 .depth = mem_array(model->node_count + 1, sizeof(int)) };
-        find_unique(model, choice.unique);
-        choose(model, &choice);
-        for (size_t i = 0; i < model->node_count; i++)
+        const struct model_outline *outline = &draft->models[m].outline;
+        struct choice choice = { .item = mem_array(outline->header.count + 1, sizeof(bool)),
+                                 .unique = mem_array(outline->header.count + 1, sizeof(bool)) };
+        find_unique(outline, choice.unique);
+        choose(&draft->models[m], &choice);
+        for (size_t i = 0; i < outline->header.count; i++)
             if (choice.item[i]) {
-                add_asset(&out, &draft->models[m], i, choice.unique[i]);
+                add_asset(&out, &draft->models[m], i, choice.unique[i], ids);
                 assets++;
             }
         mem_free(choice.item);
-        mem_free(choice.shows);
         mem_free(choice.unique);
-        mem_free(choice.depth);
     }
+    json_decref(ids);
     text_add(&out, "%s", tail);
     int status = write_new(draft, "plant.yaml", out.at);
     if (status == 0)

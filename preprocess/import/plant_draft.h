@@ -2,16 +2,18 @@
 /* The first plant.yaml of an imported plant: the models, with an asset for each element that people would call by its name. */
 #ifndef PREPROCESS_IMPORT_PLANT_DRAFT_H
 #define PREPROCESS_IMPORT_PLANT_DRAFT_H
-#include "preprocess/import/cad_model.h"
+#include "preprocess/import/model_outline.h"
 
 struct plant_draft_model {
-    char *file; /* its name in the folder */
-    const struct cad_model *model;
+    char *file;             /* its name in the folder */
+    const char *units, *up; /* what its assets say of them; NULL: nothing */
+    int item_level;         /* how deep its pieces of equipment are, if its properties do not say; 0: where the tree branches first */
+    struct model_outline outline;
 };
 
 struct plant_draft {
     const char *name, *folder;
-    struct plant_draft_model *models;
+    const struct plant_draft_model *models;
     size_t count;
 };
 

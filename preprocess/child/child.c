@@ -1,0 +1,207 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Fork, limits, pipes: the parent waits for output, the end, a signal or the time limit, whichever comes first. */
+#include "preprocess/child/child.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <poll.h>
+#include <signal.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/prctl.h>
+#include <sys/resource.h>
+#include <sys/signalfd.h>
+#include <sys/syscall.h>
+#include <sys/wait.h>
+#include <time.h>
+#include <unistd.h>
+
+#include "preprocess/child/child_confine.h"
+
+enum { MAX_OUTPUT = 1 << 20, MAX_FILES = 512, EXIT_NOT_STARTED = 127 };
+enum watched { OUTPUT, ERRORS, END, SIGNALS, WATCHED };
+
+struct child {
+    pid_t pid;
+    int fds[WATCHED]; /* -1: closed */
+    struct text errors;
+    bool interrupted, timed_out;
+};
+
+static int64_t now_ms(void)
+{
+    struct timespec now;
+    clock_gettime(CLOCK_MONOTONIC, &now);
+    return (int64_t)now.tv_sec * 1000 + now.tv_nsec / 1000000;
+}
+
+static void limit(int resource, rlim_t most)
+{
+    struct rlimit old;
+    if (getrlimit((__rlimit_resource_t)resource, &old) == 0 && old.rlim_max < most)
+        most = old.rlim_max;
+    setrlimit((__rlimit_resource_t)resource, &(struct rlimit){ most, most });
+}
+
+/* After the fork. Data is limited rather than address space, of which WebAssembly reserves much more than it uses. */
+static void become(const struct child_params *params, int out, int errors, const sigset_t *mask)
+{
+    setpgid(0, 0);
+    prctl(PR_SET_PDEATHSIG, SIGKILL);
+    sigprocmask(SIG_SETMASK, mask, NULL);
+    int nothing = open("/dev/null", O_RDONLY);
+    dup2(nothing, STDIN_FILENO);
+    dup2(out, STDOUT_FILENO);
+    dup2(errors, STDERR_FILENO);
+    syscall(SYS_close_range, 3U, ~0U, 0U);
+    limit(RLIMIT_CORE, 0);
+    limit(RLIMIT_NOFILE, MAX_FILES);
+    limit(RLIMIT_FSIZE, (rlim_t)8 << 30);
+#ifndef __SANITIZE_ADDRESS__ /* whose shadow counts as data */
+    limit(RLIMIT_DATA, params->memory_bytes);
+#endif
+    child_confine();
+    if (chdir(params->folder) == 0) {
+        setenv("TMPDIR", params->folder, 1);
+        setenv("HOME", params->folder, 1);
+        execvp(params->argv[0], (char *const *)params->argv);
+    }
+    dprintf(STDERR_FILENO, "%s: %s\n", params->argv[0], strerror(errno));
+    _exit(EXIT_NOT_STARTED);
+}
+
+static bool start(struct child *child, const struct child_params *params)
+{
+    int out[2] = { -1, -1 }, errors[2] = { -1, -1 };
+    sigset_t ours, before;
+    sigemptyset(&ours);
+    sigaddset(&ours, SIGINT);
+    sigaddset(&ours, SIGTERM);
+    if (pipe2(out, O_CLOEXEC) != 0 || pipe2(errors, O_CLOEXEC) != 0)
+        goto error;
+    sigprocmask(SIG_BLOCK, &ours, &before);
+    child->fds[SIGNALS] = signalfd(-1, &ours, SFD_CLOEXEC | SFD_NONBLOCK);
+    fflush(NULL);
+    child->pid = fork();
+    if (child->pid == 0)
+        become(params, out[1], errors[1], &before);
+    if (child->pid > 0)
+        child->fds[END] = (int)syscall(SYS_pidfd_open, child->pid, 0);
+    if (child->pid < 0 || child->fds[END] < 0)
+        goto error;
+    close(out[1]);
+    close(errors[1]);
+    child->fds[OUTPUT] = out[0];
+    child->fds[ERRORS] = errors[0];
+    return true;
+error:
+    for (int i = 0; i < 2; i++) {
+        close(out[i]);
+        close(errors[i]);
+    }
+    return false;
+}
+
+/* False: there is no more. */
+static bool take(int fd, struct text *text)
+{
+    char bytes[65536];
+    ssize_t count = read(fd, bytes, sizeof(bytes));
+    if (count > 0 && text->length < MAX_OUTPUT)
+        text_add_bytes(text, bytes, (size_t)count);
+    return count > 0 || (count < 0 && (errno == EINTR || errno == EAGAIN));
+}
+
+/* What is in the pipes when the child is gone; a process that it left behind may hold them open. */
+static void drain(int fd, struct text *text)
+{
+    fcntl(fd, F_SETFL, O_NONBLOCK);
+    for (char byte; read(fd, &byte, 1) == 1;)
+        if (text->length < MAX_OUTPUT)
+            text_add_bytes(text, &byte, 1);
+}
+
+static void wait_for(struct child *child, int timeout_s, struct text *out)
+{
+    int64_t until_ms = now_ms() + (int64_t)timeout_s * 1000;
+    for (bool ended = false; !ended;) {
+        struct pollfd polls[WATCHED];
+        for (int i = 0; i < WATCHED; i++)
+            polls[i] = (struct pollfd){ .fd = child->fds[i], .events = POLLIN };
+        int64_t left_ms = until_ms - now_ms();
+        int ready = left_ms > 0 ? poll(polls, WATCHED, left_ms < 60000 ? (int)left_ms : 60000) : 0;
+        child->timed_out = left_ms <= 0;
+        child->interrupted = ready > 0 && polls[SIGNALS].revents;
+        for (int i = OUTPUT; ready > 0 && i <= ERRORS; i++)
+            if (polls[i].revents && !take(polls[i].fd, i == OUTPUT ? out : &child->errors)) {
+                close(child->fds[i]);
+                child->fds[i] = -1;
+            }
+        ended = child->timed_out || child->interrupted || (ready > 0 && polls[END].revents);
+    }
+}
+
+/* The last line that is not empty. */
+static void last_line(const struct text *errors, char why[CHILD_WHY_BYTES])
+{
+    size_t end = errors->length;
+    while (end > 0 && strchr(" \t\r\n", errors->at[end - 1]))
+        end--;
+    size_t from = end;
+    while (from > 0 && errors->at[from - 1] != '\n')
+        from--;
+    snprintf(why, CHILD_WHY_BYTES, "%.*s", (int)(end - from), errors->at ? errors->at + from : "");
+    for (char *c = why; *c; c++)
+        if ((unsigned char)*c < 32 || *c == 127)
+            *c = ' ';
+}
+
+static bool judge(const struct child *child, const struct child_params *params, int status, char why[CHILD_WHY_BYTES])
+{
+    if (child->interrupted)
+        snprintf(why, CHILD_WHY_BYTES, "interrupted");
+    else if (child->timed_out)
+        snprintf(why, CHILD_WHY_BYTES, "took longer than %d s", params->timeout_s);
+    else if (WIFSIGNALED(status))
+        snprintf(why, CHILD_WHY_BYTES, "its reader crashed (%s)", strsignal(WTERMSIG(status)));
+    else if (WEXITSTATUS(status) != 0)
+        last_line(&child->errors, why);
+    else
+        return true;
+    if (!why[0])
+        snprintf(why, CHILD_WHY_BYTES, "exit status %d", WEXITSTATUS(status));
+    return false;
+}
+
+bool child_run(const struct child_params *params, struct text *out, char why[CHILD_WHY_BYTES])
+{
+    struct child child = { .fds = { -1, -1, -1, -1 } };
+    sigset_t before;
+    int status = 0;
+    why[0] = 0;
+    sigprocmask(SIG_BLOCK, NULL, &before);
+    bool good = start(&child, params);
+    if (good)
+        wait_for(&child, params->timeout_s, out);
+    else
+        snprintf(why, CHILD_WHY_BYTES, "%s", strerror(errno));
+    if (child.pid > 0) {
+        kill(-child.pid, SIGKILL);
+        kill(child.pid, SIGKILL); /* it may not have its group yet */
+        waitpid(child.pid, &status, 0);
+        kill(-child.pid, SIGKILL); /* what it started meanwhile */
+    }
+    if (child.fds[OUTPUT] >= 0)
+        drain(child.fds[OUTPUT], out);
+    if (child.fds[ERRORS] >= 0)
+        drain(child.fds[ERRORS], &child.errors);
+    good = good && judge(&child, params, status, why);
+    for (int i = 0; i < WATCHED; i++)
+        if (child.fds[i] >= 0)
+            close(child.fds[i]);
+    text_finish(&child.errors);
+    sigprocmask(SIG_SETMASK, &before, NULL);
+    return good;
+}

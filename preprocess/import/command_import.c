@@ -1,0 +1,189 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* `plantcast import`: models are converted in a folder of their own; only when all are good do they go to the plant's. */
+#include <errno.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/mem.h"
+#include "preprocess/import/commands.h"
+#include "preprocess/import/file_name.h"
+#include "preprocess/import/formats.h"
+#include "preprocess/import/options.h"
+#include "preprocess/import/plant_draft.h"
+#include "preprocess/import/work_folder.h"
+#include "preprocess/model/gltf_shim.h"
+
+enum { RVM_ITEM_LEVEL = 3 }; /* the file, its sites, their zones, and what is in them */
+
+struct import {
+    const char *folder, *name;
+    struct conversion_params conversion;
+    struct work_folder work;
+    char **paths;
+    struct plant_draft_model *models;
+    int count;
+};
+
+static void print_usage(FILE *out)
+{
+    fputs(
+        "usage: plantcast import MODEL... -o FOLDER [--name NAME]\n"
+        "\n"
+        "Reads CAD exports and writes into FOLDER a GLB file for each, with names, hierarchy and attributes, and plant.yaml, which names\n"
+        "them. What is there already of plant.yaml stays as it is.\n"
+        "  MODEL             .glb .gltf; .rvm (AVEVA PDMS, E3D, Marine), with its attributes beside it as .att or .txt of the same name;\n"
+        "                    .step .stp .iges .igs; .ifc; .obj .stl .ply .fbx .dae .3ds\n"
+        "  --name NAME       of the plant; else the first model's file name\n",
+        out);
+    options_print(out);
+    fputs("Exit status: 0 good, 1 a model could not be read (nothing is written for any of them), 2 usage.\n", out);
+}
+
+static int fail_at(const char *path, const char *why)
+{
+    fprintf(stderr, "plantcast import: %s: %s\n", path, why);
+    return 1;
+}
+
+/* What plantcast-prep would refuse is refused here, before anything is written. */
+static bool check(const char *glb, char why[MODEL_WHY_BYTES])
+{
+    struct model_source source;
+    struct gltf_model model;
+    if (!model_source_open(&source, glb, why))
+        return false;
+    bool good = gltf_load(&model, &source, why);
+    if (good && model.node_count == 0)
+        good = wrong(why, "there is nothing in it");
+    else if (good)
+        gltf_free(&model);
+    model_source_finish(&source);
+    return good;
+}
+
+static void print_lines(const char *path, const char *lines)
+{
+    for (size_t length; *lines; lines += length + (lines[length] == '\n')) {
+        length = strcspn(lines, "\n");
+        if (length > 0)
+            printf("%s: %.*s\n", path, (int)length, lines);
+    }
+}
+
+static int convert(struct import *import, int number)
+{
+    const char *path = import->paths[number];
+    struct plant_draft_model *model = &import->models[number];
+    const struct import_format *format = import_format_of(path);
+    char why[CONVERSION_WHY_BYTES] = "", *glb = mem_printf("%s/%d.glb", import->work.path, number), *stem = file_name_stem(path);
+    struct text said = { 0 };
+    bool good = conversion_run(path, glb, import->work.path, &import->conversion, &said, why) && check(glb, why) &&
+                model_outline_read(&model->outline, glb, why, sizeof(why));
+    if (good) {
+        model->file = mem_printf("%s.glb", stem);
+        if (format->reader == FORMAT_GLTF) {
+            model->units = import->conversion.units;
+            model->up = import->conversion.up;
+        }
+        model->item_level = format->reader == FORMAT_RVM ? RVM_ITEM_LEVEL : 0;
+        struct text summary = { 0 };
+        model_outline_summary(&model->outline, &summary);
+        print_lines(path, summary.at);
+        print_lines(path, said.at ? said.at : "");
+        text_finish(&summary);
+    }
+    text_finish(&said);
+    mem_free(stem);
+    mem_free(glb);
+    return good ? 0 : fail_at(path, why);
+}
+
+static int move_all(const struct import *import)
+{
+    int status = 0;
+    for (int i = 0; i < import->count && status == 0; i++) {
+        char *from = mem_printf("%s/%d.glb", import->work.path, i), *to = mem_printf("%s/%s", import->folder, import->models[i].file);
+        if (rename(from, to) != 0)
+            status = fail_at(to, strerror(errno));
+        mem_free(from);
+        mem_free(to);
+    }
+    return status;
+}
+
+static int write_plant(const struct import *import)
+{
+    const struct plant_draft draft = {
+        .name = import->name, .folder = import->folder, .models = import->models, .count = (size_t)import->count
+    };
+    int status = plant_draft_write(&draft);
+    return status == 0 ? 0 : fail_at(import->folder, strerror(-status));
+}
+
+static int run(struct import *import)
+{
+    int status = work_folder_begin(&import->work, import->folder);
+    if (status != 0)
+        return fail_at(import->folder, strerror(-status));
+    import->models = mem_array((size_t)import->count, sizeof(*import->models));
+    for (int i = 0; i < import->count && status == 0; i++)
+        status = convert(import, i);
+    if (status == 0)
+        status = move_all(import);
+    if (status == 0)
+        status = write_plant(import);
+    for (int i = 0; i < import->count; i++) {
+        mem_free(import->models[i].file);
+        model_outline_finish(&import->models[i].outline);
+    }
+    mem_free(import->models);
+    work_folder_end(&import->work, status == 0);
+    return status;
+}
+
+/* Their GLB files would have one name. */
+static bool two_alike(char **paths, int count)
+{
+    bool alike = false;
+    for (int i = 0; i < count && !alike; i++)
+        for (int k = 0; k < i && !alike; k++) {
+            char *first = file_name_stem(paths[k]), *second = file_name_stem(paths[i]);
+            alike = !strcmp(first, second);
+            if (alike)
+                fprintf(stderr, "plantcast import: %s and %s would both be %s.glb; rename one of them\n", paths[k], paths[i], first);
+            mem_free(first);
+            mem_free(second);
+        }
+    return alike;
+}
+
+int command_import(int argc, char **argv)
+{
+    static const struct option options[] = {
+        { "output", required_argument, NULL, 'o' }, { "name", required_argument, NULL, 'n' }, OPTIONS_OF_CONVERSION, { 0 }
+    };
+    struct import import = { .conversion = options_default };
+    for (int option; (option = getopt_long(argc, argv, "o:", options, NULL)) != -1;)
+        switch (option) {
+        case 'o': import.folder = optarg; break;
+        case 'n': import.name = optarg; break;
+        case 'F': import_formats_print(stdout); return 0;
+        case 'h': print_usage(stdout); return 0;
+        default:
+            if (!options_take(&import.conversion, "import", option, optarg))
+                return 2;
+        }
+    import.count = argc - optind;
+    import.paths = argv + optind;
+    if (import.count < 1 || !import.folder) {
+        print_usage(stderr);
+        return 2;
+    }
+    if (two_alike(import.paths, import.count))
+        return 1;
+    char *stem = file_name_stem(import.paths[0]);
+    import.name = import.name ? import.name : stem;
+    int status = run(&import);
+    mem_free(stem);
+    return status;
+}

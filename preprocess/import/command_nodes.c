@@ -1,0 +1,102 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* `plantcast nodes`: what is in a model, before it is imported or after. */
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/mem.h"
+#include "preprocess/import/commands.h"
+#include "preprocess/import/formats.h"
+#include "preprocess/import/node_list.h"
+#include "preprocess/import/options.h"
+#include "preprocess/import/work_folder.h"
+
+static void print_usage(FILE *out)
+{
+    fputs(
+        "usage: plantcast nodes MODEL [--grep RE] [--tree N] [--json]\n"
+        "\n"
+        "Prints what a model has: how many nodes, how large it is, how far from its origin; then for each node its number, triangles, "
+        "size\n"
+        "and centre (Z up) with all below it, path and properties. A node without a name has that of its mesh, else its number, which the\n"
+        "plant file takes too (nodes: \"#12\").\n"
+        "  --grep RE         only nodes whose path or properties an extended regular expression finds, whatever the case\n"
+        "  --tree N          the uppermost N levels, indented\n"
+        "  --json            for programs\n",
+        out);
+    options_print(out);
+    fputs("Exit status: 0 good, 1 the model could not be read, 2 usage, 3 no node was found.\n", out);
+}
+
+/* glTF is read as it is; of all else the GLB file that import would make. */
+static bool read_model(const char *path, const struct conversion_params *params, struct model_outline *outline)
+{
+    const struct import_format *format = import_format_of(path);
+    char why[CONVERSION_WHY_BYTES] = "";
+    struct text said = { 0 };
+    struct work_folder work = { 0 };
+    bool good;
+    if (format && format->reader == FORMAT_GLTF) {
+        good = model_outline_read(outline, path, why, sizeof(why));
+    } else {
+        int status = work_folder_begin(&work, NULL);
+        char *glb = mem_printf("%s/model.glb", work.path ? work.path : "");
+        if (status != 0)
+            snprintf(why, sizeof(why), "%s", strerror(-status));
+        good =
+            status == 0 && conversion_run(path, glb, work.path, params, &said, why) && model_outline_read(outline, glb, why, sizeof(why));
+        mem_free(glb);
+        work_folder_end(&work, false);
+    }
+    if (!good)
+        fprintf(stderr, "plantcast nodes: %s: %s\n", path, why);
+    text_finish(&said);
+    return good;
+}
+
+int command_nodes(int argc, char **argv)
+{
+    static const struct option options[] = { { "grep", required_argument, NULL, 'g' },
+                                             { "tree", required_argument, NULL, 'T' },
+                                             { "json", no_argument, NULL, 'j' },
+                                             OPTIONS_OF_CONVERSION,
+                                             { 0 } };
+    struct conversion_params params = options_default;
+    struct node_list_params list = { 0 };
+    struct model_outline outline;
+    regex_t grep;
+    char *end;
+    for (int option; (option = getopt_long(argc, argv, "", options, NULL)) != -1;)
+        switch (option) {
+        case 'g':
+            if (list.grep || regcomp(&grep, optarg, REG_EXTENDED | REG_NOSUB | REG_ICASE) != 0) {
+                fprintf(stderr, "plantcast nodes: --grep %s: one regular expression is wanted\n", optarg);
+                return 2;
+            }
+            list.grep = &grep;
+            break;
+        case 'T':
+            list.levels = (int)strtol(optarg, &end, 10);
+            if (*end || list.levels < 1) {
+                fprintf(stderr, "plantcast nodes: --tree %s: a number of levels is wanted, at least 1\n", optarg);
+                return 2;
+            }
+            break;
+        case 'j': list.json = true; break;
+        case 'F': import_formats_print(stdout); return 0;
+        case 'h': print_usage(stdout); return 0;
+        default:
+            if (!options_take(&params, "nodes", option, optarg))
+                return 2;
+        }
+    if (argc - optind != 1) {
+        print_usage(stderr);
+        return 2;
+    }
+    if (!read_model(argv[optind], &params, &outline))
+        return 1;
+    size_t found = node_list_print(&outline, &list, stdout);
+    model_outline_finish(&outline);
+    if (list.grep)
+        regfree(&grep);
+    return found > 0 ? 0 : 3;
+}

@@ -1,0 +1,89 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The table of formats. */
+#include "preprocess/import/formats.h"
+
+#include <limits.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+#include <unistd.h>
+
+#include "base/mem.h"
+
+#define BY_OCCT "plantcast-import-occt", NULL, "this Plantcast was built without OCCT: install libocct-data-exchange-dev and build again"
+#define BY_ASSIMP "plantcast-import-assimp", NULL, "this Plantcast was built without Assimp: install libassimp-dev and build again"
+#define BY_WEB_IFC "plantcast-import-ifc/ifc.mjs", "node", "it is read by Node.js with web-ifc: install nodejs and npm, and build again"
+
+static const struct import_format formats[] = {
+    { "glTF", ".glb .gltf", FORMAT_GLTF, NULL, NULL, NULL, true },
+    { "RVM", ".rvm", FORMAT_RVM, NULL, NULL, NULL, false },
+    { "STEP", ".step .stp .p21", FORMAT_PROGRAM, BY_OCCT, false },
+    { "IGES", ".iges .igs", FORMAT_PROGRAM, BY_OCCT, false },
+    { "IFC", ".ifc", FORMAT_PROGRAM, BY_WEB_IFC, false },
+    { "OBJ", ".obj", FORMAT_PROGRAM, BY_ASSIMP, true },
+    { "STL", ".stl", FORMAT_PROGRAM, BY_ASSIMP, true },
+    { "PLY", ".ply", FORMAT_PROGRAM, BY_ASSIMP, true },
+    { "FBX", ".fbx", FORMAT_PROGRAM, BY_ASSIMP, true },
+    { "COLLADA", ".dae", FORMAT_PROGRAM, BY_ASSIMP, true },
+    { "3DS", ".3ds", FORMAT_PROGRAM, BY_ASSIMP, true },
+};
+enum { FORMATS = sizeof(formats) / sizeof(formats[0]) };
+
+static bool has_ending(const char *endings, const char *ending)
+{
+    size_t length = strlen(ending);
+    for (const char *at = endings; at; at = strchr(at, ' ')) {
+        at += *at == ' ';
+        if (!strncasecmp(at, ending, length) && (at[length] == ' ' || !at[length]))
+            return true;
+    }
+    return false;
+}
+
+const struct import_format *import_format_of(const char *path)
+{
+    const char *dot = strrchr(path, '.');
+    for (int i = 0; dot && dot[1] && !strchr(dot, '/') && i < FORMATS; i++)
+        if (has_ending(formats[i].endings, dot))
+            return &formats[i];
+    return NULL;
+}
+
+static bool in_path(const char *program)
+{
+    const char *at = getenv("PATH");
+    bool found = false;
+    while (at && *at && !found) {
+        size_t length = strcspn(at, ":");
+        char *path = mem_printf("%.*s/%s", (int)length, at, program);
+        found = access(path, X_OK) == 0;
+        mem_free(path);
+        at += length + (at[length] == ':');
+    }
+    return found;
+}
+
+char *import_format_program(const struct import_format *format)
+{
+    static const char *const places[] = { "", "../libexec/plantcast/" };
+    char own[PATH_MAX] = "";
+    if (readlink("/proc/self/exe", own, sizeof(own) - 1) <= 0 || (format->runtime && !in_path(format->runtime)))
+        return NULL;
+    for (size_t i = 0; i < sizeof(places) / sizeof(places[0]); i++) {
+        char *path = mem_printf("%.*s%s%s", (int)(strrchr(own, '/') + 1 - own), own, places[i], format->program);
+        if (access(path, format->runtime ? R_OK : X_OK) == 0)
+            return path;
+        mem_free(path);
+    }
+    return NULL;
+}
+
+void import_formats_print(FILE *out)
+{
+    for (int i = 0; i < FORMATS; i++) {
+        char *program = formats[i].reader == FORMAT_PROGRAM ? import_format_program(&formats[i]) : NULL;
+        bool there = formats[i].reader != FORMAT_PROGRAM || program;
+        fprintf(out, "%-8s %-16s %s%s\n", formats[i].name, formats[i].endings, there ? "yes" : "no: ", there ? "" : formats[i].missing);
+        mem_free(program);
+    }
+}

@@ -1,0 +1,168 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Counts from accessors; sums of sub-trees from the last node to the first. */
+#include "preprocess/import/model_outline.h"
+
+#include <stdio.h>
+#include <string.h>
+
+#include "base/mem.h"
+#include "base/utf8.h"
+#include "base/vec.h"
+#include "plant/asset_size.h"
+#include "preprocess/report/text_table.h"
+
+static uint64_t count_of(const json_t *accessors, const json_t *number)
+{
+    json_int_t count = json_is_integer(number)
+                           ? json_integer_value(json_object_get(json_array_get(accessors, (size_t)json_integer_value(number)), "count"))
+                           : 0;
+    return count > 0 ? (uint64_t)count : 0;
+}
+
+static uint64_t triangles_of(const json_t *root, const json_t *mesh)
+{
+    const json_t *primitives = json_object_get(mesh, "primitives"), *accessors = json_object_get(root, "accessors");
+    uint64_t sum = 0;
+    for (size_t i = 0; i < json_array_size(primitives); i++) {
+        const json_t *primitive = json_array_get(primitives, i), *mode = json_object_get(primitive, "mode");
+        const json_t *corners = json_object_get(primitive, "indices");
+        uint64_t count = count_of(accessors, corners ? corners : json_object_get(json_object_get(primitive, "attributes"), "POSITION"));
+        json_int_t kind = mode ? json_integer_value(mode) : 4;
+        if (kind == 4)
+            sum += count / 3;
+        else if (kind > 4) /* strips and fans */
+            sum += count > 2 ? count - 2 : 0;
+    }
+    return sum;
+}
+
+/* Each mesh once, however many nodes have it. */
+static uint64_t *count_meshes(const json_t *root)
+{
+    const json_t *meshes = json_object_get(root, "meshes");
+    uint64_t *counts = mem_array(json_array_size(meshes) + 1, sizeof(*counts));
+    for (size_t i = 0; i < json_array_size(meshes); i++)
+        counts[i] = triangles_of(root, json_array_get(meshes, i));
+    return counts;
+}
+
+static void add_up(struct model_outline *outline)
+{
+    outline->box = model_box_empty;
+    for (size_t i = outline->header.count; i-- > 0;) {
+        struct outline_node *node = &outline->nodes[i];
+        int parent = outline->header.nodes[i].parent;
+        struct model_box *above = parent < 0 ? &outline->box : &outline->nodes[parent].all;
+        model_box_add(above, &node->all);
+        *(parent < 0 ? &outline->triangles : &outline->nodes[parent].all_triangles) += node->all_triangles;
+    }
+}
+
+bool model_outline_read(struct model_outline *outline, const char *path, char *why, size_t why_bytes)
+{
+    *outline = (struct model_outline){ 0 };
+    if (!model_header_read(&outline->header, path, why, why_bytes))
+        return false;
+    const json_t *root = outline->header.json, *nodes = json_object_get(root, "nodes");
+    uint64_t *counts = count_meshes(root);
+    outline->nodes = mem_array(outline->header.count + 1, sizeof(*outline->nodes));
+    for (size_t i = 0; i < outline->header.count; i++) {
+        const struct model_node *from = &outline->header.nodes[i];
+        const json_t *node = json_array_get(nodes, from->number), *mesh = json_object_get(node, "mesh");
+        json_int_t number = json_is_integer(mesh) ? json_integer_value(mesh) : -1;
+        bool has_mesh = number >= 0 && (size_t)number < json_array_size(json_object_get(root, "meshes"));
+        uint64_t own = has_mesh ? counts[number] : 0;
+        outline->nodes[i] = (struct outline_node){ .name = from->name[0] ? from->name : from->mesh,
+                                                   .extras = json_object_get(node, "extras"),
+                                                   .triangles = own,
+                                                   .all_triangles = own,
+                                                   .all = outline->header.boxes[i],
+                                                   .depth = from->parent < 0 ? 0 : outline->nodes[from->parent].depth + 1,
+                                                   .unnamed = !from->name[0] };
+        outline->unnamed += outline->nodes[i].unnamed;
+    }
+    mem_free(counts);
+    add_up(outline);
+    return true;
+}
+
+void model_outline_finish(struct model_outline *outline)
+{
+    model_header_finish(&outline->header);
+    mem_free(outline->nodes);
+    *outline = (struct model_outline){ 0 };
+}
+
+const char *model_outline_property(const struct outline_node *node, const char *name)
+{
+    const char *value = json_string_value(json_object_get(node->extras, name)), *key;
+    json_t *group;
+    if (value || !json_is_object(node->extras))
+        return value;
+    json_object_foreach((json_t *)node->extras, key, group)
+    {
+        value = json_string_value(json_object_get(group, name));
+        if (value)
+            return value;
+    }
+    return NULL;
+}
+
+void model_outline_add_printable(struct text *out, const char *text)
+{
+    for (size_t left = strlen(text); left > 0;) {
+        size_t bytes = utf8_length(text, left);
+        unsigned char first = (unsigned char)text[0], second = bytes > 1 ? (unsigned char)text[1] : 0;
+        bool control = bytes == 0 || first < 32 || first == 127 || (first == 0xc2 && second < 0xa0);
+        text_add_bytes(out, control ? "\xef\xbf\xbd" : text, control ? 3 : bytes);
+        text += bytes > 0 ? bytes : 1;
+        left -= bytes > 0 ? bytes : 1;
+    }
+}
+
+void model_outline_path(const struct model_outline *outline, size_t node, struct text *out)
+{
+    int parent = outline->header.nodes[node].parent;
+    if (parent >= 0) {
+        model_outline_path(outline, (size_t)parent, out);
+        text_add(out, "/");
+    }
+    if (outline->nodes[node].name[0])
+        model_outline_add_printable(out, outline->nodes[node].name);
+    else
+        text_add(out, "#%u", outline->header.nodes[node].number);
+}
+
+bool model_outline_extent(const struct model_box *box, double size[3], double centre[3])
+{
+    static const struct {
+        int from, sign;
+    } axes[3] = { { 0, 1 }, { 2, -1 }, { 1, 1 } }; /* of Y up, the axes of Z up */
+    for (int axis = 0; axis < 3; axis++) {
+        int from = axes[axis].from;
+        if (!(box->low[from] <= box->high[from]))
+            return false;
+        size[axis] = box->high[from] - box->low[from];
+        centre[axis] = axes[axis].sign * (box->low[from] + box->high[from]) / 2;
+    }
+    return true;
+}
+
+void model_outline_summary(const struct model_outline *outline, struct text *out)
+{
+    const struct plant_asset metres = { .unit_m = 1 };
+    double size[3], centre[3];
+    char why[SIZE_WHY_BYTES], nodes[32];
+    snprintf(nodes, sizeof(nodes), "%s", text_table_number(outline->header.count).text);
+    text_add(out, "%s nodes, %s unnamed", nodes, text_table_number(outline->unnamed).text);
+    text_add(out, "; %s triangles", text_table_number(outline->triangles).text);
+    if (!model_outline_extent(&outline->box, size, centre)) {
+        text_add(out, "; it shows nothing");
+        return;
+    }
+    text_add(out, "; %.1f x %.1f x %.1f m if metres, up y; %.0f m from the origin", size[0], size[1], size[2], vec_length(centre));
+    if (outline->header.partial)
+        text_add(out, " (some boxes are unknown: instances, or positions without a range)");
+    if (asset_size_doubtful(&metres, size, 0, why))
+        text_add(out, "\n%s", why);
+}

@@ -1,0 +1,63 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Numbers in their ranges, words of their lists. */
+#include "preprocess/import/options.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+const struct conversion_params options_default = { .chord_m = 0.001, .timeout_s = 900, .memory_bytes = (size_t)12 << 30 };
+
+void options_print(FILE *out)
+{
+    fputs("  --chord MM        how far a triangle may be from a round surface (1), where the model has true surfaces\n"
+          "  --units UNIT      m, mm, cm, in or ft, of models that do not say\n"
+          "  --up AXIS         y or z, likewise\n"
+          "  --keep-covered    RVM: keep faces that lie on a neighbour's face, which nobody can see\n"
+          "  --timeout S       for reading one model by another program (900)\n"
+          "  --memory MB       likewise (12288)\n"
+          "  --formats         which formats this build reads\n",
+          out);
+}
+
+static const char *one_of(const char *words, const char *value)
+{
+    size_t length = strlen(value);
+    for (const char *at = words; *at; at += strcspn(at, " "), at += *at == ' ')
+        if (strcspn(at, " ") == length && !strncmp(at, value, length))
+            return value;
+    return NULL;
+}
+
+static bool number(const char *value, double least, double most, double *out)
+{
+    char *end;
+    *out = strtod(value, &end);
+    return end != value && !*end && *out >= least && *out <= most;
+}
+
+bool options_take(struct conversion_params *params, const char *command, int option, const char *value)
+{
+    const char *wanted = NULL, *name = NULL;
+    double taken;
+    switch (option) {
+    case 'c':
+        name = "chord", wanted = number(value, 0.01, 1000, &taken) ? NULL : "0.01 to 1000 (mm)";
+        params->chord_m = taken / 1000;
+        break;
+    case 't':
+        name = "timeout", wanted = number(value, 1, 86400, &taken) ? NULL : "1 to 86400 (s)";
+        params->timeout_s = wanted ? 1 : (int)taken;
+        break;
+    case 'm':
+        name = "memory", wanted = number(value, 64, 1e6, &taken) ? NULL : "64 to 1000000 (MB)";
+        params->memory_bytes = wanted ? 0 : (size_t)taken << 20;
+        break;
+    case 'u': name = "units", wanted = (params->units = one_of("m mm cm in ft", value)) ? NULL : "m, mm, cm, in or ft"; break;
+    case 'U': name = "up", wanted = (params->up = one_of("y z", value)) ? NULL : "y or z"; break;
+    case 'k': params->keep_covered = true; return true;
+    default: return false;
+    }
+    if (wanted)
+        fprintf(stderr, "plantcast %s: --%s %s: %s\n", command, name, value, wanted);
+    return !wanted;
+}

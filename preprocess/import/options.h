@@ -1,0 +1,25 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What `import` and `nodes` have in common on the command line. */
+#ifndef PREPROCESS_IMPORT_OPTIONS_H
+#define PREPROCESS_IMPORT_OPTIONS_H
+#include <getopt.h>
+#include <stdio.h>
+
+#include "preprocess/import/conversion.h"
+
+/* For the array of getopt_long. */
+#define OPTIONS_OF_CONVERSION                                                                                                              \
+    { "chord", required_argument, NULL, 'c' }, { "units", required_argument, NULL, 'u' }, { "up", required_argument, NULL, 'U' },          \
+        { "keep-covered", no_argument, NULL, 'k' }, { "timeout", required_argument, NULL, 't' },                                           \
+        { "memory", required_argument, NULL, 'm' }, { "formats", no_argument, NULL, 'F' },                                                 \
+    {                                                                                                                                      \
+        "help", no_argument, NULL, 'h'                                                                                                     \
+    }
+
+extern const struct conversion_params options_default;
+/* Describes these options. */
+void options_print(FILE *out);
+/* Takes one of these options. Returns false if its value is wrong, already printed, or the option is not one of them. */
+bool options_take(struct conversion_params *params, const char *command, int option, const char *value);
+
+#endif

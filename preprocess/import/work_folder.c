@@ -1,0 +1,54 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* mkdtemp, and its end. */
+#include "preprocess/import/work_folder.h"
+
+#include <errno.h>
+#include <ftw.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "base/mem.h"
+
+int work_folder_begin(struct work_folder *work, const char *target)
+{
+    const char *temporary = getenv("TMPDIR");
+    *work = (struct work_folder){ 0 };
+    if (target) {
+        work->created = mkdir(target, 0777) == 0;
+        if (!work->created && errno != EEXIST)
+            return -errno;
+        work->target = mem_strdup(target);
+    }
+    char *real = realpath(target ? target : temporary && temporary[0] ? temporary : "/tmp", NULL);
+    work->path = real ? mem_printf("%s/.import-XXXXXX", real) : NULL;
+    free(real);
+    if (work->path && mkdtemp(work->path))
+        return 0;
+    int status = -errno;
+    mem_free(work->path);
+    work->path = NULL;
+    work_folder_end(work, false);
+    return status;
+}
+
+static int remove_one(const char *path, const struct stat *st, int kind, struct FTW *at)
+{
+    (void)st;
+    (void)kind;
+    (void)at;
+    return remove(path) == 0 || errno == ENOENT ? 0 : -1;
+}
+
+void work_folder_end(struct work_folder *work, bool keep)
+{
+    if (work->path && nftw(work->path, remove_one, 16, FTW_DEPTH | FTW_PHYS) != 0)
+        fprintf(stderr, "plantcast: %s: %s\n", work->path, strerror(errno));
+    if (work->target && work->created && !keep)
+        rmdir(work->target);
+    mem_free(work->path);
+    mem_free(work->target);
+    *work = (struct work_folder){ 0 };
+}

@@ -1,0 +1,19 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* A folder for what is made, until all of it is good: then its files are moved to where they belong, else nothing stays. Thread: any. */
+#ifndef PREPROCESS_IMPORT_WORK_FOLDER_H
+#define PREPROCESS_IMPORT_WORK_FOLDER_H
+#include <stdbool.h>
+
+struct work_folder {
+    char *path;   /* absolute */
+    char *target; /* where its files will go; NULL: nowhere */
+    bool created; /* the target was not there before */
+};
+
+/* Makes a new folder inside `target`, which is made too if it is not there, or with target NULL among the system's temporary files. Returns
+ * 0, or -errno, and then there is nothing to end. */
+int work_folder_begin(struct work_folder *work, const char *target);
+/* Removes the folder and all in it, and with `keep` false the target too if it was made for it and is empty. */
+void work_folder_end(struct work_folder *work, bool keep);
+
+#endif

@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// `plantcast nodes`: what is in a model.
+import assert from 'node:assert/strict';
+import { spawnSync } from 'node:child_process';
+import { existsSync, mkdtempSync, readdirSync, rmSync, writeFileSync } from 'node:fs';
+import { tmpdir } from 'node:os';
+import { join } from 'node:path';
+import { test } from 'node:test';
+import { BIN, missing } from './support/tiny_plant.mjs';
+
+const absent = missing();
+const DATA = join(import.meta.dirname, '../../../shared/data');
+const skip = absent.length > 0 ? `not built: ${absent.join(', ')}` : false;
+
+// A triangle of the given size, as a data URI, in as many nodes as asked for.
+function model(nodes, size = 1, meshName = 'plate') {
+    const bytes = Buffer.from(new Float32Array([0, 0, 0, size, 0, 0, 0, 2 * size, 0]).buffer);
+    return {
+        asset: { version: '2.0' }, scene: 0, scenes: [{ nodes: [0] }], nodes,
+        meshes: [{ name: meshName, primitives: [{ attributes: { POSITION: 0 } }] }],
+        accessors: [{ bufferView: 0, componentType: 5126, count: 3, type: 'VEC3', min: [0, 0, 0], max: [size, 2 * size, 0] }],
+        bufferViews: [{ buffer: 0, byteLength: 36 }],
+        buffers: [{ byteLength: 36, uri: `data:application/octet-stream;base64,${bytes.toString('base64')}` }],
+    };
+}
+
+function nodes(content, ...args) {
+    const folder = mkdtempSync(join(tmpdir(), 'plantcast-nodes-'));
+    try {
+        writeFileSync(join(folder, 'a.gltf'), typeof content === 'string' ? content : JSON.stringify(content));
+        return spawnSync(join(BIN, 'plantcast'), ['nodes', join(folder, 'a.gltf'), ...args],
+            { encoding: 'utf8', timeout: 60000, maxBuffer: 1 << 28, env: { ...process.env, TMPDIR: folder } });
+    } finally {
+        assert.deepEqual(readdirSync(folder), ['a.gltf'], 'nothing is left behind');
+        rmSync(folder, { recursive: true });
+    }
+}
+
+const three = () => model([{ name: 'Unit', children: [1, 2, 3] },
+    { name: '펌프/P-101', mesh: 0, translation: [100, 0, -240], extras: { Type: 'PUMP', Rating: { power_kW: 7.5 } } },
+    { mesh: 0, scale: [2, 2, 2] }, { name: 'a\nb\u0007', translation: [1, 2, 3] }]);
+
+test('the first line says what must be known, then one line for each node', { skip }, () => {
+    const { status, stdout } = nodes(three());
+    assert.equal(status, 0);
+    const lines = stdout.trimEnd().split('\n');
+    assert.equal(lines[0], '4 nodes, 1 unnamed; 2 triangles; 101.0 x 240.0 x 4.0 m if metres, up y; 130 m from the origin');
+    assert.equal(lines.length, 6);
+    assert.match(lines[3], /^#1 +1 +1 x 0 x 2 +100\.50, 240\.00, 1\.00 +Unit\/펌프\/P-101 {2}\| Type=PUMP; power_kW=7\.5$/);
+    assert.match(lines[4], /^#2 +1 +2 x 0 x 4 .* Unit\/plate$/, 'the name of its mesh');
+    assert.match(lines[5], /Unit\/a\ufffdb\ufffd$/);
+    assert.match(nodes(model([{ mesh: 0 }], 1, '')).stdout, / #0\n$/);
+});
+
+test('a part of them, a tree, JSON', { skip }, () => {
+    const found = nodes(three(), '--grep', 'type=pump|nothing');
+    assert.equal(found.stdout.trimEnd().split('\n').length, 3);
+    assert.equal(nodes(three(), '--grep', 'xyz').status, 3);
+    assert.equal(nodes(three(), '--grep', '(').status, 2);
+    assert.equal(nodes(three(), '--tree', '1').stdout.trimEnd().split('\n').length, 3);
+    assert.match(nodes(three(), '--tree', '2').stdout, / {4}펌프\/P-101 /);
+    const { list, ...head } = JSON.parse(nodes(three(), '--json').stdout);
+    assert.equal(head.nodes, 4);
+    assert.equal(head.triangles, 2);
+    const { number, name, parent, triangles, centre } = list[1];
+    assert.deepEqual([number, name, parent, triangles, centre], [1, '펌프/P-101', 0, 1, [100.5, 240, 1]]);
+    assert.equal(list[1].properties.Type, 'PUMP');
+    assert.equal(list[3].name, 'a\nb\u0007');
+});
+
+test('millimetres taken for metres are doubted', { skip }, () => {
+    assert.match(nodes(model([{ mesh: 0 }], 2500)).stdout, /are its units right\? If its numbers are in mm/);
+    assert.doesNotMatch(nodes(model([{ mesh: 0 }], 25)).stdout, /units right/);
+});
+
+test('100,000 nodes take seconds', { skip }, () => {
+    const list = [{ name: 'top', children: Array.from({ length: 300 }, (_, i) => i + 1) }];
+    for (let i = 0; i < 300; i++)
+        list.push({ name: `area ${i}`, children: Array.from({ length: 333 }, (_, k) => 301 + i * 333 + k) });
+    for (let i = 0; i < 99900; i++)
+        list.push({ name: `P-${i}`, mesh: 0, translation: [i % 200, 0, i / 500], extras: { Type: 'PUMP', Number: `${i}` } });
+    const from = process.hrtime.bigint(), { status, stdout } = nodes(model(list));
+    const seconds = Number(process.hrtime.bigint() - from) / 1e9;
+    assert.equal(status, 0);
+    assert.equal(stdout.trimEnd().split('\n').length, 100203, stdout.slice(0, 400));
+    console.log(`# ${seconds.toFixed(2)} s`);
+    assert.ok(seconds < 20, `${seconds} s`);
+});
+
+test('what is no model is one line', { skip }, () => {
+    const cyclic = model([{ children: [1] }, { children: [0] }]);
+    const deep = model(Array.from({ length: 600 }, (_, i) => ({ children: [i + 1] })));
+    deep.nodes.push({});
+    for (const [content, why] of [['', 'no glTF'], ['{', 'no glTF'], [cyclic, 'no tree'], [deep, 'no tree'],
+        ['[' .repeat(100000), 'no glTF'], [JSON.stringify({ asset: { version: '1.0' } }), 'no glTF 2.0']]) {
+        const { status, stderr, stdout } = nodes(content);
+        assert.equal(status, 1);
+        assert.equal(stdout, '');
+        assert.equal(stderr.trimEnd().split('\n').length, 1, stderr);
+        assert.ok(stderr.includes(why), stderr);
+    }
+});
+
+const noData = existsSync(join(DATA, 'cad')) ? false : 'no ../shared/data/cad';
+test('an RVM file is read as import would', { skip: skip || noData }, () => {
+    const args = ['nodes', join(DATA, 'cad/plm-sample.rvm'), '--tree', '3', '--grep', 'ZONE'];
+    const { status, stdout } = spawnSync(join(BIN, 'plantcast'), args,
+        { encoding: 'utf8', timeout: 60000 });
+    assert.equal(status, 0);
+    assert.match(stdout, /^316 nodes, 0 unnamed; [\d,]+ triangles; 12\.5 x 6\.5 x 8\.0 m if metres, up y; 5 m from the origin\n/);
+    assert.match(stdout, /\/-ART10 {2}\| Name=/);
+});
