@@ -65,9 +65,13 @@ programs := $(if $(wildcard server/main.c),$(bin)/plantcastd) $(if $(wildcard pr
             $(if $(filter %/main.c,$(match_sources)),$(bin)/plantcast-match) $(if $(sim_sources),$(bin)/plantcast-sim) \
             $(if $(generate_sources),$(bin)/plantcast-demo)
 modules  := $(bin)/plantcast-images.so
+# Readers of other formats, each where its library is (plantcast import --formats).
+occt     := $(dir $(wildcard /usr/include/opencascade/STEPCAFControl_Reader.hxx))
+occt_libs := $(patsubst %,-lTK%,XDESTEP XDEIGES STEP IGES XSBase RWMesh XCAF LCAF CAF CDF Mesh Prim TopAlgo BRep G3d Math ernel)
+readers  := $(if $(occt),$(bin)/plantcast-import-occt)
 
 .PHONY: all programs run demo test check test-long bench gpu-bench style layers headers deps test-deps golden-update install clean help
-all: $(programs) $(modules) clients/web/vendor/uPlot.js clients/web/made/version.js
+all: $(programs) $(modules) $(readers) clients/web/vendor/uPlot.js clients/web/made/version.js
 # The page's charts: asked for again with each make until they are there.
 clients/web/vendor/uPlot.js: clients/web/package-lock.json
 	@echo "  NPM  $(@D)"; deploy/vendor $(build)/npm; [ ! -f $@ ] || touch $@
@@ -84,6 +88,11 @@ $(bin)/plantcast-prep: $(call objects,preprocess/main.c preprocess/image_lazy.c)
 # Reads what strangers' programs wrote: neither the daemon nor plantcast-prep links it.
 $(bin)/plantcast-import: $(call objects,preprocess/import/main.c) $(out)/lib/import.a $(out)/lib/prep.a $(archives)
 	$(link) -lGLU
+$(out)/obj/preprocess/import/readers/occt.o: CXXFLAGS += -isystem $(occt)
+$(bin)/plantcast-import-occt: $(call objects,preprocess/import/readers/occt) $(out)/lib/prep.a $(out)/lib/base.a
+	@mkdir -p $(@D); echo "  LINK $@"
+	@$(CXX) $(ldflags) -pie -o $@ $(filter %.o,$^) -Wl,--start-group $(filter %.a,$^) -Wl,--end-group \
+	    $(occt_libs) -ljansson
 $(bin)/plantcast-match: $(call objects,preprocess/match/main.c) $(out)/lib/match.a $(archives)
 	$(link) -lminizip -lexpat
 $(bin)/plantcast-images.so: $(patsubst %,$(out)/obj/server/base/%.pic.o,image_shim mem)
@@ -166,6 +175,10 @@ $(out)/tests/unit/rvm_test: pkg_libs += -lGLU
 match_tests := $(foreach t,tag_export,$(out)/tests/unit/$(t)_test)
 $(match_tests): $(out)/lib/match.a
 $(match_tests): pkg_libs += -lminizip -lexpat
+# Writes STEP and IGES files to be read again.
+$(out)/obj/tests/cad/step_samples.o: CXXFLAGS += -isystem $(occt)
+$(out)/tests/cad/step_samples: $(call objects,tests/cad/step_samples)
+	@mkdir -p $(@D); echo "  LINK $@"; $(CXX) $(ldflags) -pie -o $@ $^ $(occt_libs)
 $(out)/tests/%: $(out)/obj/tests/%.o $(support) $(archives) $(out)/lib/prep.a $(sim_archive)
 	$(link) -lcmocka
 # Draws as the command line does.

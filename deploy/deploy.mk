@@ -24,4 +24,6 @@ install: all
 	install -d $(DESTDIR)$(prefix)/bin $(DESTDIR)$(prefix)/lib/plantcast $(DESTDIR)$(prefix)/share/plantcast
 	install -m 755 $(programs) $(DESTDIR)$(prefix)/bin
 	install -m 755 $(modules) $(DESTDIR)$(prefix)/lib/plantcast
+	install -d $(DESTDIR)$(prefix)/libexec/plantcast
+	$(if $(readers),install -m 755 $(readers) $(DESTDIR)$(prefix)/libexec/plantcast)
 	cp -r clients/web $(DESTDIR)$(prefix)/share/plantcast/

@@ -36,7 +36,8 @@ soak: all tests
 .PHONY: soak
 
 checked: demo style layers headers
-tests: all $(unit_tests) $(gpu_tests) $(out)/tests/scale/facility $(out)/tests/relay/relay $(out)/tests/faults/libEGL.so.1
+tests: all $(unit_tests) $(gpu_tests) $(out)/tests/scale/facility $(out)/tests/relay/relay $(out)/tests/faults/libEGL.so.1 \
+    $(if $(occt),$(out)/tests/cad/step_samples)
 unit: tests
 	@tests/run $(out) $(bin) unit
 gpu: tests

@@ -133,7 +133,8 @@ static void wait_for(struct child *child, int timeout_s, struct text *out)
         int64_t left_ms = until_ms - now_ms();
         int ready = left_ms > 0 ? poll(polls, WATCHED, left_ms < 60000 ? (int)left_ms : 60000) : 0;
         child->timed_out = left_ms <= 0;
-        child->interrupted = ready > 0 && polls[SIGNALS].revents;
+        struct signalfd_siginfo signal;
+        child->interrupted = ready > 0 && polls[SIGNALS].revents && read(child->fds[SIGNALS], &signal, sizeof(signal)) > 0;
         for (int i = OUTPUT; ready > 0 && i <= ERRORS; i++)
             if (polls[i].revents && !take(polls[i].fd, i == OUTPUT ? out : &child->errors)) {
                 close(child->fds[i]);

@@ -149,8 +149,10 @@ bool conversion_run(const char *path, const char *glb, const char *folder, const
     if (!format)
         return fail(why, "its ending is none that import reads (plantcast import --formats); `convert` in the plant file (PLANT.md) runs a "
                          "program of yours");
-    if ((params->units || params->up) && !format->unitless)
-        return fail(why, "%s says itself what its units and axes are: leave out --units and --up", format->name);
+    if (params->units && !format->unitless)
+        return fail(why, "%s says itself what its units are: leave out --units", format->name);
+    if (params->up && !format->upless)
+        return fail(why, "%s says itself which axis is up: leave out --up", format->name);
     switch (format->reader) {
     case FORMAT_RVM: return convert_rvm(path, glb, params, said, why);
     case FORMAT_GLTF: return gltf_pack(path, glb, why);

@@ -15,17 +15,17 @@
 #define BY_WEB_IFC "plantcast-import-ifc/ifc.mjs", "node", "it is read by Node.js with web-ifc: install nodejs and npm, and build again"
 
 static const struct import_format formats[] = {
-    { "glTF", ".glb .gltf", FORMAT_GLTF, NULL, NULL, NULL, true },
-    { "RVM", ".rvm", FORMAT_RVM, NULL, NULL, NULL, false },
-    { "STEP", ".step .stp .p21", FORMAT_PROGRAM, BY_OCCT, false },
-    { "IGES", ".iges .igs", FORMAT_PROGRAM, BY_OCCT, false },
-    { "IFC", ".ifc", FORMAT_PROGRAM, BY_WEB_IFC, false },
-    { "OBJ", ".obj", FORMAT_PROGRAM, BY_ASSIMP, true },
-    { "STL", ".stl", FORMAT_PROGRAM, BY_ASSIMP, true },
-    { "PLY", ".ply", FORMAT_PROGRAM, BY_ASSIMP, true },
-    { "FBX", ".fbx", FORMAT_PROGRAM, BY_ASSIMP, true },
-    { "COLLADA", ".dae", FORMAT_PROGRAM, BY_ASSIMP, true },
-    { "3DS", ".3ds", FORMAT_PROGRAM, BY_ASSIMP, true },
+    { "glTF", ".glb .gltf", FORMAT_GLTF, NULL, NULL, NULL, true, true },
+    { "RVM", ".rvm", FORMAT_RVM, NULL, NULL, NULL, false, false },
+    { "STEP", ".step .stp .p21", FORMAT_PROGRAM, BY_OCCT, false, true },
+    { "IGES", ".iges .igs", FORMAT_PROGRAM, BY_OCCT, false, true },
+    { "IFC", ".ifc", FORMAT_PROGRAM, BY_WEB_IFC, false, false },
+    { "OBJ", ".obj", FORMAT_PROGRAM, BY_ASSIMP, true, true },
+    { "STL", ".stl", FORMAT_PROGRAM, BY_ASSIMP, true, true },
+    { "PLY", ".ply", FORMAT_PROGRAM, BY_ASSIMP, true, true },
+    { "FBX", ".fbx", FORMAT_PROGRAM, BY_ASSIMP, true, true },
+    { "COLLADA", ".dae", FORMAT_PROGRAM, BY_ASSIMP, true, true },
+    { "3DS", ".3ds", FORMAT_PROGRAM, BY_ASSIMP, true, true },
 };
 enum { FORMATS = sizeof(formats) / sizeof(formats[0]) };
 

@@ -14,7 +14,8 @@ struct import_format {
     const char *program; /* FORMAT_PROGRAM: its file name, beside this program or in ../libexec/plantcast/ */
     const char *runtime; /* what runs that file; NULL: itself */
     const char *missing; /* what to do where the program is not there */
-    bool unitless;       /* it does not say its units, or its up axis: --units and --up may */
+    bool unitless;       /* it does not say its units: --units may */
+    bool upless;         /* nor which axis is up: --up may */
 };
 
 /* Returns the format of a path by its ending, in any case; NULL if it has none of these. */

@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// STEP and IGES, brought in by `plantcast import`: assemblies, names, colours, units, and files that are broken.
+import assert from 'node:assert/strict';
+import { spawnSync } from 'node:child_process';
+import { existsSync, mkdtempSync, readdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
+import { tmpdir } from 'node:os';
+import { join } from 'node:path';
+import { test } from 'node:test';
+import { BIN, missing } from './support/tiny_plant.mjs';
+
+const absent = missing();
+const SAMPLES = join(process.env.PLANTCAST_OUT ?? 'build/release', 'tests/cad/step_samples');
+const notBuilt = existsSync(join(BIN, 'plantcast-import-occt')) && existsSync(SAMPLES) ? false : 'built without OCCT';
+const skip = absent.length > 0 ? `not built: ${absent.join(', ')}` : notBuilt;
+const plantcast = (...args) => spawnSync(join(BIN, 'plantcast'), args, { encoding: 'utf8', timeout: 120000 });
+
+async function withSamples(f) {
+    const folder = mkdtempSync(join(tmpdir(), 'plantcast-step-'));
+    try {
+        assert.equal(spawnSync(SAMPLES, [folder], { timeout: 60000 }).status, 0);
+        await f(folder);
+    } finally {
+        rmSync(folder, { recursive: true });
+    }
+}
+
+const readJson = (glb) => {
+    const bytes = readFileSync(glb);
+    return JSON.parse(bytes.subarray(20, 20 + bytes.readUInt32LE(12)));
+};
+const near = (a, b) => a.every((v, k) => Math.abs(v - b[k]) < 0.002);
+
+for (const { file, unit } of [{ file: 'skid_203.step', unit: 'millimetre' }, { file: 'skid_214.stp', unit: 'inch' },
+    { file: 'skid_242.STEP', unit: 'metre' }])
+    test(`${file}: tree, names, sizes, colours, shared parts`, { skip }, () => withSamples((folder) => {
+        const said = plantcast('import', join(folder, file), '-o', join(folder, 'plant'));
+        assert.equal(said.status, 0, said.stderr);
+        assert.match(said.stdout, /4 parts in 11 places; chord error 1 mm; Z up/);
+        assert.match(said.stdout, new RegExp(`its units are: ${unit}`, 'i'));
+        const glb = join(folder, 'plant', file.replace(/\.\w+$/, '.glb'));
+        const { list } = JSON.parse(plantcast('nodes', glb, '--json').stdout);
+        const stem = file.replace(/\.\w+$/, '');
+        assert.equal(list.length, 15);
+        assert.deepEqual(list.slice(0, 4).map(({ name }) => name), [stem, 'Skid S-100', 'Plate:1', 'P-101A']);
+        const pump = list.find(({ name }) => name === '펌프/P-101B'), motor = list.find(({ path }) => path.endsWith('P-101B/Motor:1'));
+        assert.equal(pump.properties.Product, 'Pump');
+        assert.ok(near(pump.size, [0.6, 0.2, 0.3]) && near(pump.centre, [0.5, 0.7, 0.15]), JSON.stringify(pump));
+        assert.ok(near(motor.size, [0.2, 0.2, 0.2]) && near(motor.centre, [0.7, 0.7, 0.1]), JSON.stringify(motor));
+        const { nodes, meshes, materials } = readJson(glb);
+        assert.equal(meshes.length, 4, 'a part is tessellated once');
+        assert.equal(new Set(nodes.filter(({ name }) => name.startsWith('Bolt')).map(({ mesh }) => mesh)).size, 1);
+        const colors = (name) => meshes.find((mesh) => mesh.name === name).primitives
+            .map(({ material }) => materials[material].pbrMetallicRoughness.baseColorFactor.slice(0, 3).map(Math.round).join(' ')).sort();
+        assert.deepEqual(colors('Casing'), ['1 0 0']);
+        assert.deepEqual(colors('Motor'), ['0 0 1', '0 1 0'], 'one side is blue');
+        const check = plantcast('nodes', glb, '--grep', 'Bolt M20');
+        assert.equal(check.stdout.trimEnd().split('\n').length, 8);
+        assert.match(readFileSync(join(folder, 'plant/plant.yaml'), 'utf8'), /id: "P-101A", area: "Skid S-100", model/);
+        const daemon = spawnSync(join(BIN, 'plantcastd'), ['--check', join(folder, 'plant/plant.yaml')], { encoding: 'utf8' });
+        assert.equal(daemon.status, 0, daemon.stderr);
+    }));
+
+test('a finer chord error has more triangles, Y up stands otherwise', { skip }, () => withSamples((folder) => {
+    const of = (...args) => JSON.parse(plantcast('nodes', join(folder, 'skid_203.step'), '--json', ...args).stdout);
+    const [coarse, fine, y] = [of(), of('--chord', '0.05'), of('--up', 'y')];
+    assert.ok(fine.triangles > 1.5 * coarse.triangles, `${coarse.triangles}, ${fine.triangles}`);
+    assert.ok(near(coarse.size, [2, 1, 0.32]) && near(y.size, [2, 0.32, 1]), JSON.stringify([coarse.size, y.size]));
+    const units = plantcast('nodes', join(folder, 'skid_203.step'), '--units', 'mm');
+    assert.equal(units.status, 1);
+    assert.match(units.stderr, /STEP says itself what its units are/);
+}));
+
+test('IGES: a name, its size', { skip }, () => withSamples((folder) => {
+    const { list } = JSON.parse(plantcast('nodes', join(folder, 'skid.igs'), '--json').stdout);
+    assert.ok(near(list[0].size, [2, 1, 0.32]), JSON.stringify(list[0]));
+    assert.equal(list[1].name, 'Skid S-100');
+}));
+
+// Each ends within its time, and is refused in one line or read; nothing is left behind.
+test('broken files are one line each, and leave nothing behind', { skip }, () => withSamples((folder) => {
+    const step = readFileSync(join(folder, 'skid_214.stp')), iges = readFileSync(join(folder, 'skid.igs'));
+    const text = step.toString('latin1');
+    const ring = text.replace(/NEXT_ASSEMBLY_USAGE_OCCURRENCE\(('[^']*','[^']*','[^']*'),#(\d+),#(\d+)/g,
+        (whole, names, a) => `NEXT_ASSEMBLY_USAGE_OCCURRENCE(${names},#${a},#${a}`);
+    const samples = {
+        'empty.step': '', 'text.step': 'hello', 'head.stp': 'ISO-10303-21;\nHEADER;\n', 'zero.igs': Buffer.alloc(4096), 'empty.iges': '',
+        'half.step': step.subarray(0, step.length >> 1), 'tail.step': step.subarray(step.length >> 1),
+        'nan.step': text.replace(/CARTESIAN_POINT\('',\([^)]*\)/g, "CARTESIAN_POINT('',(NAN,1.E999,-1.E999)"),
+        'huge.step': text.replace(/CARTESIAN_POINT\('',\(0\.,/g, "CARTESIAN_POINT('',(1.E300,"),
+        'ring.step': ring, 'self.step': text.replace(/#(\d+) = SHAPE_REPRESENTATION\('',\(/g, "#$1 = SHAPE_REPRESENTATION('',(#$1,"),
+        'nested.step': `${text.slice(0, text.indexOf('DATA;') + 5)}\n#1 = X(${'('.repeat(100000)}${')'.repeat(100000)});\nENDSEC;\n`,
+        'half.igs': iges.subarray(0, iges.length >> 1), 'noise.igs': Buffer.from(iges.map((b, i) => i % 97 === 13 ? 255 - b : b)),
+    };
+    for (const [name, bytes] of Object.entries(samples)) {
+        writeFileSync(join(folder, name), bytes);
+        const before = readdirSync(folder).sort();
+        const { status, stderr, stdout } = plantcast('import', join(folder, name), '-o', join(folder, 'plant'), '--timeout', '8');
+        console.log(`# ${name}: ${status === 0 ? stdout.split('\n')[0].replace(/.*: /, 'read: ') : stderr.trim().replace(/.*: /, '')}`);
+        if (status === 0) {
+            rmSync(join(folder, 'plant'), { recursive: true });
+        } else {
+            assert.equal(status, 1, name);
+            assert.equal(stderr.trimEnd().split('\n').length, 1, stderr);
+            assert.ok(stderr.includes(name), stderr);
+        }
+        assert.deepEqual(readdirSync(folder).sort(), before);
+    }
+}));
