@@ -39,7 +39,8 @@ pkg_libs   := $(shell pkg-config --libs $(packages) 2>/dev/null) -lflann -lcholm
 warn   := -Wall -Wextra -Wshadow -Wpointer-arith -Wvla -Wundef -Wno-psabi
 include := -I. -Iserver -I$(gen) -isystem $(gen)/glad/include -isystem /usr/include/suitesparse $(pkg_cflags)
 common := $(flags_$(config)) $(defines) $(include) -MMD -MP -pthread -fno-math-errno -fPIE
-cflags   = -std=c11 -D_GNU_SOURCE $(warn) -Wstrict-prototypes -Wmissing-prototypes -Werror=int-conversion -Werror=incompatible-pointer-types $(common) $(CFLAGS)
+cflags   = -std=c11 -D_GNU_SOURCE $(warn) -Wstrict-prototypes -Wmissing-prototypes \
+           -Werror=int-conversion -Werror=incompatible-pointer-types $(common) $(CFLAGS)
 cxxflags = -std=c++17 -D_GNU_SOURCE $(warn) $(common) $(CXXFLAGS)
 ldflags  = $(flags_$(config)) -pthread -Wl,--as-needed -Wl,-z,relro,-z,now $(LDFLAGS)
 
