@@ -2,9 +2,9 @@
 /* One bound for all that a renderer keeps. */
 #include "render/memory.h"
 
-#include "render/soft/soft.h"
-#include "render/soft/refined.h"
+#include "render/gl/gl_backend.h"
 #include "render/renderer_impl.h"
+#include "render/soft/soft_backend.h"
 
 const char *const render_store_names[RENDER_STORES] = { "shown fields", "light", "still pictures", "targets", "drawing", "models" };
 
@@ -15,7 +15,7 @@ static const double ROOM_SHARE = 0.4;
 
 static size_t room_bytes(const struct renderer *renderer)
 {
-    return renderer->soft ? soft_room_bytes(renderer->soft) + refiner_room_bytes(renderer->refiner) : 0;
+    return renderer->by_soft ? soft_room_bytes(renderer->by_soft->soft) + refiner_room_bytes(renderer->by_soft->refiner) : 0;
 }
 
 void renderer_measure_memory(const struct renderer *renderer, size_t out[RENDER_STORES])
@@ -23,12 +23,12 @@ void renderer_measure_memory(const struct renderer *renderer, size_t out[RENDER_
     out[STORE_FIELDS] = renderer->fields.bytes + pool_bytes_taken(renderer->fields.pool);
     out[STORE_LIGHT] = renderer->light.bytes;
     out[STORE_PICTURES] = 0;
-    out[STORE_TARGETS] = targets_bytes(&renderer->targets);
+    out[STORE_TARGETS] = targets_bytes(&renderer->by_gl->targets);
     out[STORE_ROOM] = room_bytes(renderer);
     out[STORE_MODELS] = 0;
-    if (renderer->soft) {
-        out[STORE_LIGHT] += soft_light_bytes(renderer->soft) + refiner_light_bytes(renderer->refiner);
-        out[STORE_PICTURES] = soft_kept_bytes(renderer->soft) + refiner_kept_bytes(renderer->refiner);
+    if (renderer->by_soft) {
+        out[STORE_LIGHT] += soft_light_bytes(renderer->by_soft->soft) + refiner_light_bytes(renderer->by_soft->refiner);
+        out[STORE_PICTURES] = soft_kept_bytes(renderer->by_soft->soft) + refiner_kept_bytes(renderer->by_soft->refiner);
     }
     for (size_t i = 0; i < renderer->gpu_scene.model_count; i++) {
         const struct mesh *mesh = &renderer->gpu_scene.models[i].mesh;
@@ -38,16 +38,16 @@ void renderer_measure_memory(const struct renderer *renderer, size_t out[RENDER_
 
 void renderer_bound_memory(struct renderer *renderer, size_t bytes)
 {
-    if (renderer->refiner && (double)room_bytes(renderer) > ROOM_SHARE * (double)bytes)
-        refiner_drop_spare(renderer->refiner);
+    if (renderer->by_soft && (double)room_bytes(renderer) > ROOM_SHARE * (double)bytes)
+        refiner_drop_spare(renderer->by_soft->refiner);
     size_t room = room_bytes(renderer), least = bytes - (size_t)(ROOM_SHARE * (double)bytes);
     double left = (double)(room < bytes - least ? bytes - room : least);
     renderer->fields.bound_bytes = (size_t)(FIELDS_SHARE * left / 2);
     light_bound(&renderer->light, (size_t)(LIGHT_SHARE * left));
-    targets_bound(&renderer->targets, (size_t)(TARGETS_SHARE * left));
-    if (renderer->soft) {
-        soft_bound(renderer->soft, (size_t)(PREVIEWS_SHARE * left));
-        refiner_bound(renderer->refiner, (size_t)(REFINED_SHARE * left));
+    targets_bound(&renderer->by_gl->targets, (size_t)(TARGETS_SHARE * left));
+    if (renderer->by_soft) {
+        soft_bound(renderer->by_soft->soft, (size_t)(PREVIEWS_SHARE * left));
+        refiner_bound(renderer->by_soft->refiner, (size_t)(REFINED_SHARE * left));
     }
 }
 
@@ -56,9 +56,9 @@ void renderer_drop_caches(struct renderer *renderer)
     struct light_key usual = renderer_usual_light(renderer);
     fields_drop(&renderer->fields);
     light_drop(&renderer->light, &usual);
-    targets_finish(&renderer->targets);
-    if (renderer->refiner)
-        refiner_rest(renderer->refiner);
-    if (renderer->soft)
-        soft_rest(renderer->soft);
+    targets_finish(&renderer->by_gl->targets);
+    if (renderer->by_soft) {
+        refiner_rest(renderer->by_soft->refiner);
+        soft_rest(renderer->by_soft->soft);
+    }
 }

@@ -2,25 +2,14 @@
 /* From a view and the field to a frame: the order of the passes. */
 #include "render/renderer.h"
 
-#include <limits.h>
-#include <string.h>
-
 #include "base/clock.h"
 #include "base/mem.h"
-#include "gpu/mesh.h"
+#include "render/gl/gl_backend.h"
 #include "render/plan/content_hash.h"
 #include "render/plan/frame_planner.h"
-#include "render/gl/frame_uniforms.h"
+#include "render/render_job.h"
 #include "render/renderer_compare.h"
 #include "render/renderer_impl.h"
-#include "render/render_job.h"
-
-static const int64_t QUICK_NS = 12 * NS_PER_MS; /* a still picture that a GPU draws in less is drawn as moving ones are */
-/* Of pictures of so many triangles what is hidden is left out: half a millisecond of a slow GPU's. On a processor boxes cost more than they
-   save. */
-enum { LEAST_HIDING = 250000 };
-/* Expected of GL on a processor before anything was measured. */
-static const double FIRST_PIXEL_NS[PASSES] = { 200, 20 };
 
 struct light_key renderer_usual_light(const struct renderer *renderer)
 {
@@ -34,29 +23,17 @@ struct renderer *renderer_create(struct log *log, struct gl *gl, const struct sc
     struct renderer *renderer = mem_new(sizeof(*renderer));
     renderer->gl = gl;
     renderer->scene = scene;
-    memcpy(renderer->pixel_ns, FIRST_PIXEL_NS, sizeof(renderer->pixel_ns));
     renderer->planner = (struct frame_planner){ .gpu_scene = &renderer->gpu_scene, .fields = &renderer->fields, .light = &renderer->light };
     fields_init(&renderer->fields, log, field);
     isolines_init(&renderer->isolines, scene->asset_count);
-    renderer->frame_buffer = mesh_buffer(log, "frame block", sizeof(struct frame_uniforms), NULL, GL_DYNAMIC_STORAGE_BIT);
-    if (!renderer->frame_buffer || !environments_init(&renderer->environments, gl, scene->plant, field_workers(field))) {
+    bool good = environments_init(&renderer->environments, gl, scene->plant, field_workers(field));
+    if (good)
+        environments_bind(&renderer->environments, 0);
+    good = good && gpu_scene_init(&renderer->gpu_scene, gl, scene) &&
+           light_init(&renderer->light, &renderer->gpu_scene, &renderer->environments) && sky_init(&renderer->sky, log) &&
+           render_backend_gl.init(renderer) && (!gl->software || render_backend_soft.init(renderer));
+    if (!good)
         renderer_destroy(&renderer);
-        return NULL;
-    }
-    environments_bind(&renderer->environments, 0);
-    if (!gpu_scene_init(&renderer->gpu_scene, gl, scene) || !light_init(&renderer->light, &renderer->gpu_scene, &renderer->environments) ||
-        !surface_pass_init(&renderer->surface_pass, log) || !sky_init(&renderer->sky, log) || !lines_init(&renderer->lines, log) ||
-        !ghosts_init(&renderer->ghosts, log) || !section_caps_init(&renderer->section_caps, log) ||
-        !frames_in_flight_init(&renderer->frames_in_flight, log)) {
-        renderer_destroy(&renderer);
-        return NULL;
-    }
-    renderer->surface_pass.least_hiding = gl->software ? INT_MAX : LEAST_HIDING;
-    if (gl->software)
-        renderer->soft = soft_create(field_workers(field), &renderer->gpu_scene, &renderer->sky);
-    if (renderer->soft)
-        renderer->refiner =
-            refiner_create(field_workers(field), &renderer->gpu_scene, &renderer->sky, renderer->soft, &renderer->environments);
     return renderer;
 }
 
@@ -65,18 +42,11 @@ void renderer_destroy(struct renderer **renderer_ptr)
     struct renderer *renderer = *renderer_ptr;
     if (!renderer)
         return;
-    refiner_destroy(&renderer->refiner);
-    soft_destroy(&renderer->soft);
-    targets_finish(&renderer->targets);
+    render_backend_soft.finish(renderer);
+    render_backend_gl.finish(renderer);
     shaded_colormap_cache_finish(&renderer->colormaps);
-    glDeleteBuffers(1, &renderer->frame_buffer);
-    frames_in_flight_finish(&renderer->frames_in_flight);
     isolines_finish(&renderer->isolines);
-    ghosts_finish(&renderer->ghosts);
-    section_caps_finish(&renderer->section_caps);
-    lines_finish(&renderer->lines);
     sky_finish(&renderer->sky);
-    surface_pass_finish(&renderer->surface_pass);
     reference_finish(&renderer->reference);
     fields_finish(&renderer->fields);
     light_finish(&renderer->light);
@@ -118,7 +88,8 @@ static int64_t oldest_age_of(const struct frame_context *context)
     return oldest_ns;
 }
 
-struct frame *renderer_start(struct renderer *renderer, const struct frame_plan *plan, struct frame_context *context)
+/* Returns an empty frame with all that the plan says of it. NULL: out of memory, logged. */
+static struct frame *start_frame(struct renderer *renderer, const struct frame_plan *plan, const struct frame_context *context)
 {
     const struct view *view = &plan->view;
     struct frame *frame = frame_create(view->width_px, view->height_px);
@@ -126,7 +97,6 @@ struct frame *renderer_start(struct renderer *renderer, const struct frame_plan 
         log_err(renderer->gl->log, "frame of %dx%d: out of memory", view->width_px, view->height_px);
         return NULL;
     }
-    init_context(renderer, plan, context);
     frame->view = *view;
     frame->data_utc_ns = plan->data_utc_ns;
     frame->oldest_age_ns = oldest_age_of(context);
@@ -148,83 +118,98 @@ void renderer_upload_fields(struct renderer *renderer, const struct frame_plan *
     frame->oldest_age_ns = oldest_age_of(context);
 }
 
-bool renderer_take_up(struct renderer *renderer, struct frame_context *context)
+bool renderer_find_light(struct renderer *renderer, struct frame_context *context)
 {
-    struct frame_uniforms block;
     if (!context->light)
         context->light = light_get(&renderer->light, &context->lit_by);
     context->colormap = shaded_colormap_cache_get(&renderer->colormaps, context->view);
-    if (!context->light || !context->colormap.colors)
-        return false;
-    environments_bind(&renderer->environments, context->lit_by.environment);
-    frame_uniforms_fill(&block, context);
-    glNamedBufferSubData(renderer->frame_buffer, 0, sizeof(block), &block);
-    glBindBufferBase(GL_UNIFORM_BUFFER, 0, renderer->frame_buffer);
-    glViewport(0, 0, context->view->width_px, context->view->height_px);
-    return true;
+    return context->light && context->colormap.colors;
 }
 
-/* --- at once ---------------------------------------------------------------------------------------------------------------- */
-
-/* Fields that there was no memory for. */
-static bool has_lost(const struct frame_context *context)
+bool renderer_light_job(struct renderer *renderer, struct render_job *job)
 {
-    for (size_t i = 0; i < context->visible_count; i++)
-        if (context->fields[context->visible[i]] && !context->fields[context->visible[i]]->slice)
-            return true;
-    return false;
-}
-
-static struct frame *draw_preview(struct renderer *renderer, const struct frame_plan *plan)
-{
-    struct frame_context context;
-    struct frame *frame = renderer_start(renderer, plan, &context);
-    if (frame && has_lost(&context)) { /* only GL hatches without scalars */
-        frame_unref(&frame);
-        return renderer_draw_job(renderer, plan);
+    if (!job->light) {
+        job->light = light_get(&renderer->light, &job->context.lit_by);
+        if (!job->light)
+            return false;
+        light_hold(job->light);
+        job->context.light = job->light;
     }
-    if (!frame)
-        return NULL;
-    int64_t start_ns = clock_mono_ns();
-    context.light = light_get(&renderer->light, &context.lit_by);
-    context.colormap = shaded_colormap_cache_get(&renderer->colormaps, context.view);
-    if (!context.light || !context.colormap.colors || !preview_draw(renderer->soft, &context, &renderer->light, &renderer->isolines, frame))
-        frame_unref(&frame);
-    else
-        frame->render_ns = clock_mono_ns() - start_ns;
-    return frame;
+    return renderer_find_light(renderer, &job->context);
+}
+
+static const struct render_backend *choose_backend(const struct renderer *renderer, const struct frame_context *context)
+{
+    bool soft = renderer->by_soft && !renderer->always_gl && render_backend_soft.can(renderer, context);
+    return soft ? &render_backend_soft : &render_backend_gl;
 }
 
 bool renderer_is_quick(struct renderer *renderer, const struct frame_plan *plan)
 {
     struct frame_context context;
-    if (plan->view.tier == TIER_PREVIEW || !renderer->refiner || renderer->always_gl)
-        return plan->view.tier == TIER_PREVIEW || (renderer->refined_ns > 0 && renderer->refined_ns <= QUICK_NS);
     init_context(renderer, plan, &context);
-    return refiner_know(renderer->refiner, &context);
+    return choose_backend(renderer, &context)->is_quick(renderer, &context);
 }
 
-/* A refined frame that was drawn before and differs in values and colours only. NULL: there is none. */
-static struct frame *draw_again(struct renderer *renderer, const struct frame_plan *plan)
+/* --- jobs ------------------------------------------------------------------------------------------------------------------- */
+
+static struct render_job *begin(struct renderer *renderer, const struct frame_plan *plan, bool at_once)
 {
     struct frame_context context;
-    struct frame *frame = renderer->refiner && renderer_is_quick(renderer, plan) ? renderer_start(renderer, plan, &context) : NULL;
+    init_context(renderer, plan, &context);
+    struct frame *frame = start_frame(renderer, plan, &context);
     if (!frame)
         return NULL;
-    int64_t start_ns = clock_mono_ns();
-    context.light = light_get(&renderer->light, &context.lit_by);
-    context.colormap = shaded_colormap_cache_get(&renderer->colormaps, context.view);
-    struct isoline_points points = { 0 };
-    isolines_collect(&renderer->isolines, &context, &points);
-    if (!context.light || !context.colormap.colors || !refiner_resolve_again(renderer->refiner, &context, &points, frame))
-        frame_unref(&frame);
-    else
-        frame->render_ns = clock_mono_ns() - start_ns;
-    mem_free(points.at);
+    struct render_job *job = mem_new(sizeof(*job));
+    render_job_init(job, &context, frame);
+    job->backend = choose_backend(renderer, &context);
+    bool good = job->backend->begin(renderer, job, plan, at_once);
+    if (good)
+        isolines_collect(&renderer->isolines, &job->context, &job->isolines);
+    if (!good || (!at_once && !render_job_hold_fields(job, job->backend->draws_from_gpu)))
+        renderer_abandon(renderer, &job);
+    return job;
+}
+
+struct render_job *renderer_begin(struct renderer *renderer, const struct frame_plan *plan)
+{
+    return begin(renderer, plan, false);
+}
+
+bool renderer_keeps(const struct render_job *job)
+{
+    return job->keeps;
+}
+
+bool renderer_step(struct renderer *renderer, struct render_job *job, int64_t budget_ns)
+{
+    if (!job->light && !light_step(&renderer->light, &job->context.lit_by, budget_ns))
+        return false;
+    return job->backend->step(renderer, job, budget_ns);
+}
+
+struct frame *renderer_end(struct renderer *renderer, struct render_job **job_ptr)
+{
+    struct render_job *job = *job_ptr;
+    struct frame *frame = job->backend->end(renderer, job) ? job->frame : NULL;
+    if (frame)
+        job->frame = NULL;
+    renderer_abandon(renderer, job_ptr);
     return frame;
 }
 
-/* After a picture: works on the light that it should have had. */
+void renderer_abandon(struct renderer *renderer, struct render_job **job_ptr)
+{
+    struct render_job *job = *job_ptr;
+    if (!job)
+        return;
+    job->backend->abandon(renderer, job);
+    render_job_finish(job);
+    mem_free(job);
+    *job_ptr = NULL;
+}
+
+/* After a frame: works on the light that it should have had. */
 static void bake_wanted_light(struct renderer *renderer, const struct view *view)
 {
     struct light_key wanted = frame_plan_wanted_light(view);
@@ -236,10 +221,8 @@ static void bake_wanted_light(struct renderer *renderer, const struct view *view
 
 struct frame *renderer_draw(struct renderer *renderer, const struct frame_plan *plan)
 {
-    bool soft = renderer->soft && !renderer->always_gl && !renderer->per_fragment && preview_can(renderer->soft, &plan->view);
-    struct frame *frame = plan->view.tier == TIER_REFINED ? draw_again(renderer, plan) : NULL;
-    if (!frame)
-        frame = soft ? draw_preview(renderer, plan) : renderer_draw_job(renderer, plan);
+    struct render_job *job = begin(renderer, plan, true);
+    struct frame *frame = job ? renderer_end(renderer, &job) : NULL;
     if (frame)
         bake_wanted_light(renderer, &plan->view);
     return frame;
@@ -247,12 +230,14 @@ struct frame *renderer_draw(struct renderer *renderer, const struct frame_plan *
 
 bool renderer_submits(const struct renderer *renderer)
 {
-    return (!renderer->gl->software || renderer->always_gl) && !renderer->per_fragment;
+    return (!renderer->by_soft || renderer->always_gl) && !renderer->per_fragment;
 }
 
 struct render_job *renderer_submit(struct renderer *renderer, const struct frame_plan *plan)
 {
-    struct render_job *job = renderer_submit_job(renderer, plan);
+    struct render_job *job = begin(renderer, plan, true);
+    if (job && !job->backend->submit(renderer, job))
+        renderer_abandon(renderer, &job);
     if (job)
         bake_wanted_light(renderer, &plan->view);
     return job;
@@ -260,8 +245,10 @@ struct render_job *renderer_submit(struct renderer *renderer, const struct frame
 
 bool renderer_is_complete(const struct render_job *job)
 {
-    return readback_is_done(&job->in_flight->readback);
+    return job->backend->is_complete(job);
 }
+
+/* --- light ------------------------------------------------------------------------------------------------------------------ */
 
 bool renderer_set_bake_budget(struct renderer *renderer, int64_t bake_ns)
 {
@@ -301,9 +288,10 @@ bool renderer_measure(struct renderer *renderer, const struct view *view, const 
     fields_upload(&renderer->fields, plan->visible, plan->visible_count, plan->fields);
     init_context(renderer, plan, &context);
     context.measured = true;
-    bool good = renderer_take_up(renderer, &context) && measure_target_begin(&measure, renderer->gl->log, view->width_px, view->height_px);
+    bool good =
+        gl_backend_take_up(renderer, &context) && measure_target_begin(&measure, renderer->gl->log, view->width_px, view->height_px);
     if (good) {
-        surface_pass_draw(&renderer->surface_pass, &context);
+        surface_pass_draw(&renderer->by_gl->surface_pass, &context);
         measure_target_read(&measure, out);
     }
     measure_target_finish(&measure);
@@ -314,19 +302,4 @@ bool renderer_measure(struct renderer *renderer, const struct view *view, const 
 void renderer_use_gl(struct renderer *renderer, bool always)
 {
     renderer->always_gl = always;
-}
-
-void renderer_set_occlusion_least(struct renderer *renderer, int least_triangles)
-{
-    renderer->surface_pass.least_hiding = least_triangles;
-}
-
-void renderer_set_batching_off(struct renderer *renderer, bool one_by_one)
-{
-    renderer->surface_pass.one_by_one = one_by_one;
-}
-
-size_t renderer_occluded_count(const struct renderer *renderer)
-{
-    return occlusion_count(&renderer->surface_pass.occlusion, &renderer->surface_pass.opaque);
 }

@@ -14,6 +14,7 @@
 #include "base/mem.h"
 #include "render/soft/kernels.h"
 #include "render/renderer_impl.h"
+#include "render/soft/soft_backend.h"
 #include "tests/support/rig.h"
 #include "value/quality.h"
 
@@ -50,7 +51,7 @@ static void assert_same_pixels(const struct frame *soft, const struct frame *gl,
 static void assert_same(const struct view *view, double may_differ)
 {
     struct frame *soft = draw(view, false), *gl = draw(view, true);
-    assert_true(preview_can(stand.renderer->soft, view));
+    assert_true(preview_can(stand.renderer->by_soft->soft, view));
     assert_same_pixels(soft, gl, may_differ);
     assert_int_equal(soft->marker_count, gl->marker_count);
     assert_true(soft->marker_count > 0 || view->visibility.clip.plane_count > 0);
@@ -373,7 +374,7 @@ enum { OTHER_KERNELS = sizeof(other_kernels) / sizeof(other_kernels[0]) };
 
 static void compare_kernels(const struct view *view, const struct soft_kernels *other)
 {
-    const struct soft_kernels **kernels = &stand.renderer->soft->kernels, *widest = *kernels;
+    const struct soft_kernels **kernels = &stand.renderer->by_soft->soft->kernels, *widest = *kernels;
     struct frame *wide = draw(view, false);
     *kernels = other;
     struct frame *same = draw(view, false); /* the second of its view: drawn, and kept to be coloured again */
@@ -386,7 +387,7 @@ static void compare_kernels(const struct view *view, const struct soft_kernels *
 /* The loops for wider registers leave the same bits as those for any machine. */
 static void test_kernels(void **state)
 {
-    const struct soft_kernels *widest = stand.renderer->soft->kernels;
+    const struct soft_kernels *widest = stand.renderer->by_soft->soft->kernels;
     static const int widths_px[] = { 640, 333, 37, 322, 330 }; /* the last tile is 16 or 8 columns wide, and a row high */
     struct view view;
     (void)state;

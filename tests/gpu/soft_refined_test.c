@@ -12,6 +12,7 @@
 #include <cmocka.h>
 
 #include "base/mem.h"
+#include "render/render_backend.h"
 #include "render/render_job.h"
 #include "tests/support/planned.h"
 #include "tests/support/rig.h"
@@ -33,7 +34,7 @@ static struct frame *draw_anew(const struct view *view)
 {
     struct render_job *job = planned_begin(stand.renderer, view, stand.snapshot);
     assert_non_null(job);
-    assert_non_null(job->refined);
+    assert_ptr_equal(job->backend, &render_backend_soft);
     struct frame *frame = renderer_end(stand.renderer, &job);
     assert_non_null(frame);
     return frame;

@@ -146,9 +146,8 @@ static bool draw_ghosts(struct soft *soft, struct visibility_buffer *buffer)
 }
 
 /* keep: to colour it again, if there is room for that. */
-static bool draw_all(struct soft *soft, struct isolines *isolines, struct frame *frame, bool keep)
+static bool draw_all(struct soft *soft, const struct isoline_points *points, struct frame *frame, bool keep)
 {
-    struct isoline_points points = { 0 };
     if (keep)
         soft->ids = mem_try_array((size_t)soft->pitch_px * (size_t)soft->height_px, sizeof(*soft->ids));
     soft_tiles(soft, SOFT_COLORS);
@@ -156,9 +155,7 @@ static bool draw_all(struct soft *soft, struct isolines *isolines, struct frame 
     mem_free(soft->ids);
     soft->ids = NULL;
     markers_find(soft->context, soft->depth, (size_t)soft->pitch_px, frame);
-    isolines_collect(isolines, soft->context, &points);
-    isolines_find(soft->context, &points, soft->depth, (size_t)soft->pitch_px, frame);
-    mem_free(points.at);
+    isolines_find(soft->context, points, soft->depth, (size_t)soft->pitch_px, frame);
     bool good = draw_ghosts(soft, buffer) && draw_selected(soft, buffer);
     if (buffer && good && visibility_buffer_settle(buffer, soft->workers))
         soft_give(&soft->kept, soft->context, buffer, frame);
@@ -167,7 +164,7 @@ static bool draw_all(struct soft *soft, struct isolines *isolines, struct frame 
     return good;
 }
 
-bool preview_draw(struct soft *soft, const struct frame_context *context, const struct light *light, struct isolines *isolines,
+bool preview_draw(struct soft *soft, const struct frame_context *context, const struct light *light, const struct isoline_points *points,
                   struct frame *frame)
 {
     bool lined = has_lines(context);
@@ -193,5 +190,5 @@ bool preview_draw(struct soft *soft, const struct frame_context *context, const 
     soft_aim(soft, light);
     if (!soft_find(soft))
         return complain(soft);
-    return draw_all(soft, isolines, frame, !lined && is_still(soft, context->shape));
+    return draw_all(soft, points, frame, !lined && is_still(soft, context->shape));
 }

@@ -26,7 +26,7 @@ size_t soft_light_bytes(const struct soft *soft); /* read back */
 void soft_rest(struct soft *soft);                /* drops all three */
 bool preview_can(const struct soft *soft, const struct view *view);
 /* Pixels, markers and labels. False: out of memory, or the GL context is lost; logged. */
-bool preview_draw(struct soft *soft, const struct frame_context *context, const struct light *light, struct isolines *isolines,
+bool preview_draw(struct soft *soft, const struct frame_context *context, const struct light *light, const struct isoline_points *points,
                   struct frame *frame);
 
 #endif
