@@ -69,7 +69,8 @@ modules  := $(bin)/plantcast-images.so
 # Readers of other formats, each where its library is (plantcast import --formats).
 occt     := $(dir $(wildcard /usr/include/opencascade/STEPCAFControl_Reader.hxx))
 occt_libs := $(patsubst %,-lTK%,XDESTEP XDEIGES STEP IGES XSBase RWMesh XCAF LCAF CAF CDF Mesh Prim TopAlgo BRep G3d Math ernel)
-readers  := $(if $(occt),$(bin)/plantcast-import-occt)
+assimp   := $(wildcard /usr/include/assimp/Importer.hpp)
+readers  := $(if $(occt),$(bin)/plantcast-import-occt) $(if $(assimp),$(bin)/plantcast-import-assimp)
 
 .PHONY: all programs run demo test check test-long bench gpu-bench style layers headers deps test-deps golden-update install clean help
 all: $(programs) $(modules) $(readers) clients/web/vendor/uPlot.js clients/web/made/version.js
@@ -94,6 +95,9 @@ $(bin)/plantcast-import-occt: $(call objects,preprocess/import/readers/occt) $(o
 	@mkdir -p $(@D); echo "  LINK $@"
 	@$(CXX) $(ldflags) -pie -o $@ $(filter %.o,$^) -Wl,--start-group $(filter %.a,$^) -Wl,--end-group \
 	    $(occt_libs) -ljansson
+$(bin)/plantcast-import-assimp: $(call objects,preprocess/import/readers/assimp) $(out)/lib/prep.a $(out)/lib/base.a
+	@mkdir -p $(@D); echo "  LINK $@"
+	@$(CXX) $(ldflags) -pie -o $@ $(filter %.o,$^) -Wl,--start-group $(filter %.a,$^) -Wl,--end-group -lassimp -ljansson -lm
 $(bin)/plantcast-match: $(call objects,preprocess/match/main.c) $(out)/lib/match.a $(archives)
 	$(link) -lminizip -lexpat
 $(bin)/plantcast-images.so: $(patsubst %,$(out)/obj/server/base/%.pic.o,image_shim mem)

@@ -23,9 +23,9 @@ static const struct import_format formats[] = {
     { "OBJ", ".obj", FORMAT_PROGRAM, BY_ASSIMP, true, true },
     { "STL", ".stl", FORMAT_PROGRAM, BY_ASSIMP, true, true },
     { "PLY", ".ply", FORMAT_PROGRAM, BY_ASSIMP, true, true },
-    { "FBX", ".fbx", FORMAT_PROGRAM, BY_ASSIMP, true, true },
-    { "COLLADA", ".dae", FORMAT_PROGRAM, BY_ASSIMP, true, true },
-    { "3DS", ".3ds", FORMAT_PROGRAM, BY_ASSIMP, true, true },
+    { "FBX", ".fbx", FORMAT_PROGRAM, BY_ASSIMP, false, false },
+    { "COLLADA", ".dae", FORMAT_PROGRAM, BY_ASSIMP, false, false },
+    { "3DS", ".3ds", FORMAT_PROGRAM, BY_ASSIMP, true, false },
 };
 enum { FORMATS = sizeof(formats) / sizeof(formats[0]) };
 

@@ -1,0 +1,382 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* `plantcast-import-assimp INPUT OUTPUT.glb CHORD_MM UNITS UP`: OBJ, STL, PLY, FBX, COLLADA and 3DS by Assimp, in a process of its own.
+ * UNITS or UP `-`: as the file says, else guessed, and said. Its last line on stderr says why it failed. */
+#include <assimp/DefaultIOSystem.h>
+#include <assimp/Importer.hpp>
+#include <assimp/MemoryIOWrapper.h>
+#include <assimp/material.h>
+#include <assimp/postprocess.h>
+#include <assimp/scene.h>
+
+#include <cmath>
+#include <cstdarg>
+#include <cstdio>
+#include <cstring>
+#include <exception>
+#include <map>
+#include <stdexcept>
+#include <string>
+#include <strings.h>
+#include <vector>
+
+extern "C" {
+#include "base/srgb.h"
+}
+#include "preprocess/glb/glb_scene.h"
+
+namespace
+{
+
+constexpr int MAX_DEPTH = 400;            /* plantcast-prep reads 512 levels */
+constexpr double LONGEST_IN_METRES = 300; /* what is longer was drawn in millimetres */
+
+[[noreturn]] void refuse(const char *fmt, ...) __attribute__((format(printf, 1, 2)));
+void refuse(const char *fmt, ...)
+{
+    char text[300];
+    va_list ap;
+    va_start(ap, fmt);
+    vsnprintf(text, sizeof(text), fmt, ap);
+    va_end(ap);
+    throw std::runtime_error(text);
+}
+
+struct format {
+    const char *ending;
+    const char *unit, *up; /* of what Assimp hands over; NULL: the file does not say */
+    bool own_normals;      /* false: one for each facet, which says nothing of the surface */
+};
+
+/* Assimp turns COLLADA and 3DS to Y up and applies the units of COLLADA. Of FBX, older versions do neither: see fbx_axes. */
+const format formats[] = { { ".obj", nullptr, nullptr, true }, { ".stl", nullptr, nullptr, false }, { ".ply", nullptr, nullptr, true },
+                           { ".fbx", "cm", "y", true },        { ".dae", "m", "y", true },          { ".3ds", nullptr, "y", true } };
+
+struct reader {
+    const aiScene *scene;
+    struct glb_scene *out;
+    std::vector<int> materials;                  /* of each of the scene's; -2: not made yet */
+    std::map<std::vector<unsigned>, int> meshes; /* by the scene's meshes in it */
+    size_t triangles = 0, lost = 0;              /* lost: with corners that are not finite */
+};
+
+/* --- files ---------------------------------------------------------------------------------------------------- */
+
+constexpr char BLANK = 0x1f; /* a blank within a name of an OBJ file, which Assimp would end there */
+
+/* In lines `o NAME` and `g NAME`. */
+void keep_blanks(char *bytes, size_t count)
+{
+    for (size_t i = 0; i < count; i++) {
+        size_t end = i;
+        while (end < count && bytes[end] != '\n' && bytes[end] != '\r')
+            end++;
+        bool named = end - i > 2 && (bytes[i] == 'o' || bytes[i] == 'g') && bytes[i + 1] == ' ';
+        size_t last = end;
+        while (named && last > i && bytes[last - 1] == ' ')
+            last--;
+        for (size_t k = i + 2; named && k < last; k++)
+            if (bytes[k] == ' ' && bytes[k - 1] != ' ')
+                bytes[k] = BLANK;
+        i = end;
+    }
+}
+
+/* Files as they are, but for names in OBJ files. */
+struct files : Assimp::DefaultIOSystem {
+    Assimp::IOStream *Open(const char *path, const char *mode) override
+    {
+        const char *dot = strrchr(path, '.');
+        Assimp::IOStream *file = DefaultIOSystem::Open(path, mode);
+        if (!file || !dot || strcasecmp(dot, ".obj") != 0)
+            return file;
+        size_t count = file->FileSize();
+        std::vector<char> bytes(count);
+        count = count > 0 ? file->Read(bytes.data(), 1, count) : 0;
+        Close(file);
+        keep_blanks(bytes.data(), count);
+        auto *copy = new uint8_t[count + 1];
+        memcpy(copy, bytes.data(), count);
+        return new Assimp::MemoryIOStream(copy, count, true);
+    }
+};
+
+/* --- units and axes ---------------------------------------------------------------------------------------------------- */
+
+double metres_of(const char *unit)
+{
+    const struct {
+        const char *name;
+        double m;
+    } units[] = { { "m", 1 }, { "mm", 1e-3 }, { "cm", 1e-2 }, { "in", 0.0254 }, { "ft", 0.3048 } };
+    for (const auto &known : units)
+        if (!strcmp(known.name, unit))
+            return known.m;
+    refuse("unit %s is unknown", unit);
+}
+
+void grow(const aiScene *scene, const aiNode *node, const aiMatrix4x4 &above, double low[3], double high[3])
+{
+    aiMatrix4x4 world = above * node->mTransformation;
+    for (unsigned m = 0; m < node->mNumMeshes; m++) {
+        const aiMesh *mesh = scene->mMeshes[node->mMeshes[m]];
+        for (unsigned i = 0; i < mesh->mNumVertices; i++) {
+            aiVector3D p = world * mesh->mVertices[i];
+            const double at[3] = { static_cast<double>(p.x), static_cast<double>(p.y), static_cast<double>(p.z) };
+            for (int axis = 0; axis < 3; axis++)
+                if (std::isfinite(at[axis])) {
+                    low[axis] = std::fmin(low[axis], at[axis]);
+                    high[axis] = std::fmax(high[axis], at[axis]);
+                }
+        }
+    }
+    for (unsigned i = 0; i < node->mNumChildren; i++)
+        grow(scene, node->mChildren[i], world, low, high);
+}
+
+double longest_side(const aiScene *scene)
+{
+    double low[3] = { INFINITY, INFINITY, INFINITY }, high[3] = { -INFINITY, -INFINITY, -INFINITY }, longest = 0;
+    grow(scene, scene->mRootNode, aiMatrix4x4(), low, high);
+    for (int axis = 0; axis < 3; axis++)
+        longest = std::fmax(longest, high[axis] - low[axis]);
+    return longest;
+}
+
+/* FBX says centimetres to a unit and which axis is up; newer versions of Assimp have put both into the root node already. */
+double fbx_axes(const aiScene *scene, const char **axis)
+{
+    double centimetres = 1;
+    float single = 1;
+    int32_t up = 1;
+    if (!scene->mMetaData || !scene->mRootNode->mTransformation.IsIdentity())
+        return 1;
+    if (!scene->mMetaData->Get("UnitScaleFactor", centimetres) && scene->mMetaData->Get("UnitScaleFactor", single))
+        centimetres = static_cast<double>(single);
+    if (scene->mMetaData->Get("UpAxis", up) && up == 2)
+        *axis = "z";
+    return std::isfinite(centimetres) && centimetres > 0 ? centimetres : 1;
+}
+
+/* Units and axes as they are asked for, said by the file, or guessed. */
+void root_matrix(const aiScene *scene, const format &from, const char *units, const char *up, double out[16])
+{
+    const char *unit = strcmp(units, "-") != 0 ? units : from.unit;
+    if (!unit) {
+        double longest = longest_side(scene);
+        unit = longest > LONGEST_IN_METRES ? "mm" : "m";
+        printf("it does not say its units: %s is taken, for it is %.4g long; --units says otherwise\n", unit, longest);
+    }
+    const char *axis = strcmp(up, "-") != 0 ? up : from.up;
+    if (!axis) {
+        axis = strcmp(from.ending, ".obj") == 0 ? "y" : "z";
+        printf("it does not say which axis is up: %s is taken, as usual for %s; --up says otherwise\n", axis, from.ending);
+    }
+    double m = metres_of(unit) * (strcmp(from.ending, ".fbx") == 0 ? fbx_axes(scene, &axis) : 1);
+    const double y_up[16] = { m, 0, 0, 0, 0, m, 0, 0, 0, 0, m, 0, 0, 0, 0, 1 },
+                 z_up[16] = { m, 0, 0, 0, 0, 0, -m, 0, 0, m, 0, 0, 0, 0, 0, 1 };
+    memcpy(out, axis[0] == 'y' ? y_up : z_up, sizeof(y_up));
+}
+
+/* --- meshes ---------------------------------------------------------------------------------------------------- */
+
+int material_of(reader *r, unsigned number)
+{
+    if (number >= r->materials.size())
+        return -1;
+    if (r->materials[number] != -2)
+        return r->materials[number];
+    const aiMaterial *material = r->scene->mMaterials[number];
+    aiColor3D color(0.6F, 0.6F, 0.6F);
+    ai_real opacity = 1;
+    material->Get(AI_MATKEY_COLOR_DIFFUSE, color);
+    material->Get(AI_MATKEY_OPACITY, opacity);
+    const double given[4] = { static_cast<double>(color.r), static_cast<double>(color.g), static_cast<double>(color.b),
+                              static_cast<double>(opacity) };
+    double rgba[4];
+    for (int i = 0; i < 4; i++) {
+        double value = std::isfinite(given[i]) ? std::fmin(std::fmax(given[i], 0), 1) : 1;
+        rgba[i] = i < 3 ? linear_from_srgb(value) : value;
+    }
+    return r->materials[number] = glb_scene_material(r->out, rgba);
+}
+
+bool finite(const aiVector3D &v)
+{
+    return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+}
+
+std::vector<uint32_t> corners_of(reader *r, const aiMesh *mesh)
+{
+    std::vector<uint32_t> corners;
+    for (unsigned i = 0; i < mesh->mNumFaces; i++) {
+        const aiFace &face = mesh->mFaces[i];
+        bool good = face.mNumIndices == 3;
+        for (unsigned k = 0; good && k < 3; k++)
+            good = face.mIndices[k] < mesh->mNumVertices && finite(mesh->mVertices[face.mIndices[k]]);
+        if (good)
+            corners.insert(corners.end(), face.mIndices, face.mIndices + 3);
+        else if (face.mNumIndices == 3)
+            r->lost++;
+    }
+    return corners;
+}
+
+void add_primitive(reader *r, int to, const aiMesh *mesh, const std::vector<uint32_t> &corners)
+{
+    std::vector<float> positions, normals;
+    for (unsigned i = 0; i < mesh->mNumVertices; i++) {
+        aiVector3D p = finite(mesh->mVertices[i]) ? mesh->mVertices[i] : aiVector3D(), n(0, 1, 0);
+        if (mesh->mNormals && finite(mesh->mNormals[i]) && mesh->mNormals[i].Length() > 1e-6F)
+            n = aiVector3D(mesh->mNormals[i]).Normalize();
+        positions.insert(positions.end(), { static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z) });
+        normals.insert(normals.end(), { static_cast<float>(n.x), static_cast<float>(n.y), static_cast<float>(n.z) });
+    }
+    const struct glb_scene_triangles triangles = { reinterpret_cast<const float(*)[3]>(positions.data()),
+                                                   mesh->mNormals ? reinterpret_cast<const float(*)[3]>(normals.data()) : nullptr,
+                                                   mesh->mNumVertices,
+                                                   corners.data(),
+                                                   corners.size(),
+                                                   material_of(r, mesh->mMaterialIndex) };
+    glb_scene_add_triangles(r->out, to, &triangles);
+    r->triangles += corners.size() / 3;
+}
+
+/* What Assimp makes up has angle brackets, as <STL_BINARY>. */
+std::string name_of(const aiString &from)
+{
+    std::string name = from.C_Str()[0] == '<' ? "" : from.C_Str();
+    for (char &c : name)
+        c = c == BLANK ? ' ' : c;
+    return name;
+}
+
+/* Returns -1 for a node that shows nothing. */
+int mesh_of(reader *r, const aiNode *node)
+{
+    std::vector<unsigned> parts(node->mMeshes, node->mMeshes + node->mNumMeshes);
+    auto known = r->meshes.find(parts);
+    if (known != r->meshes.end())
+        return known->second;
+    int made = -1;
+    for (unsigned part : parts) {
+        const aiMesh *mesh = r->scene->mMeshes[part];
+        std::vector<uint32_t> corners = corners_of(r, mesh);
+        if (corners.empty())
+            continue;
+        if (made < 0)
+            made = glb_scene_add_mesh(r->out, name_of(mesh->mName).c_str());
+        add_primitive(r, made, mesh, corners);
+    }
+    r->meshes[parts] = made;
+    return made;
+}
+
+/* --- nodes ---------------------------------------------------------------------------------------------------- */
+
+void add_properties(reader *r, int to, const aiMetadata *data)
+{
+    for (unsigned i = 0; data && i < data->mNumProperties; i++) {
+        const aiMetadataEntry &entry = data->mValues[i];
+        char number[64] = "";
+        const char *text = number;
+        switch (entry.mType) {
+        case AI_AISTRING: text = static_cast<const aiString *>(entry.mData)->C_Str(); break;
+        case AI_BOOL: text = *static_cast<const bool *>(entry.mData) ? "true" : "false"; break;
+        case AI_INT32: snprintf(number, sizeof(number), "%d", *static_cast<const int32_t *>(entry.mData)); break;
+        case AI_FLOAT: snprintf(number, sizeof(number), "%.9g", static_cast<double>(*static_cast<const float *>(entry.mData))); break;
+        case AI_DOUBLE: snprintf(number, sizeof(number), "%.15g", *static_cast<const double *>(entry.mData)); break;
+        default: continue;
+        }
+        if (text[0] && strcmp(data->mKeys[i].C_Str(), "IsNull") != 0)
+            glb_scene_set_property(r->out, to, data->mKeys[i].C_Str(), text);
+    }
+}
+
+void matrix_of(const aiNode *node, double matrix[16])
+{
+    for (unsigned row = 0; row < 4; row++)
+        for (unsigned column = 0; column < 4; column++) {
+            matrix[4 * column + row] = static_cast<double>(node->mTransformation[row][column]);
+            if (!std::isfinite(matrix[4 * column + row]))
+                refuse("node '%.80s' has a place that is not finite", node->mName.C_Str());
+        }
+}
+
+void add(reader *r, const aiNode *node, int parent, int depth)
+{
+    double matrix[16];
+    bool made_up = depth == 0 && node->mNumMeshes == 0 && node->mTransformation.IsIdentity(); /* the node around all others */
+    if (depth > MAX_DEPTH)
+        refuse("its nodes are nested deeper than %d levels", MAX_DEPTH);
+    matrix_of(node, matrix);
+    int number = parent;
+    if (!made_up) {
+        number = glb_scene_add_node(r->out, parent, name_of(node->mName).c_str(), mesh_of(r, node),
+                                    node->mTransformation.IsIdentity() ? nullptr : matrix);
+        add_properties(r, number, node->mMetaData);
+    }
+    for (unsigned i = 0; i < node->mNumChildren; i++)
+        add(r, node->mChildren[i], number, depth + 1);
+}
+
+const format &format_of(const char *path)
+{
+    const char *dot = strrchr(path, '.');
+    for (const format &known : formats)
+        if (dot && !strcasecmp(known.ending, dot))
+            return known;
+    refuse("its ending is none of those that are read");
+}
+
+void convert(const char *input, const char *output, const char *units, const char *up)
+{
+    const format &from = format_of(input);
+    Assimp::Importer importer;
+    unsigned steps = aiProcess_Triangulate | aiProcess_JoinIdenticalVertices | aiProcess_SortByPType | aiProcess_ValidateDataStructure;
+    importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE, aiPrimitiveType_LINE | aiPrimitiveType_POINT);
+    importer.SetPropertyInteger(AI_CONFIG_PP_RVC_FLAGS, aiComponent_NORMALS);
+    importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_USE_COLLADA_NAMES, true);
+    importer.SetPropertyBool(AI_CONFIG_IMPORT_FBX_PRESERVE_PIVOTS, false);
+    importer.SetIOHandler(new files); /* and owns it */
+    const aiScene *scene = importer.ReadFile(input, steps | (from.own_normals ? 0U : static_cast<unsigned>(aiProcess_RemoveComponent)));
+    if (!scene || !scene->mRootNode)
+        refuse("%.250s", importer.GetErrorString());
+    reader r = {};
+    r.scene = scene;
+    r.out = glb_scene_create("plantcast-import, Assimp");
+    r.materials.assign(scene->mNumMaterials, -2);
+    const char *slash = strrchr(input, '/'), *base = slash ? slash + 1 : input;
+    double matrix[16];
+    root_matrix(scene, from, units, up, matrix);
+    int root = glb_scene_add_node(r.out, -1, std::string(base, strlen(base) - strlen(from.ending)).c_str(), -1, matrix);
+    add(&r, scene->mRootNode, root, 0);
+    if (r.triangles == 0)
+        refuse("there is no surface in it");
+    int status = glb_scene_write(r.out, output);
+    glb_scene_destroy(&r.out);
+    if (status != 0)
+        refuse("%s", status == -EFBIG ? "a GLB file holds at most 4 GiB" : strerror(-status));
+    if (r.lost > 0)
+        printf("left out: %zu triangles whose corners are not finite\n", r.lost);
+}
+
+} // namespace
+
+int main(int argc, char **argv)
+{
+    if (argc != 6) {
+        fprintf(stderr, "usage: plantcast-import-assimp INPUT OUTPUT.glb CHORD_MM UNITS UP\n");
+        return 2;
+    }
+    try {
+        convert(argv[1], argv[2], argv[4], argv[5]);
+        return 0;
+    } catch (const std::bad_alloc &) {
+        fprintf(stderr, "out of memory\n");
+    } catch (const std::exception &e) {
+        fprintf(stderr, "%s\n", e.what());
+    } catch (...) {
+        fprintf(stderr, "its reader failed\n");
+    }
+    return 1;
+}

@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// OBJ, STL, PLY, FBX, COLLADA and 3DS, brought in by `plantcast import`: names, units, axes, and files that are broken.
+import assert from 'node:assert/strict';
+import { spawnSync } from 'node:child_process';
+import { existsSync, mkdtempSync, readdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
+import { tmpdir } from 'node:os';
+import { join } from 'node:path';
+import { test } from 'node:test';
+import { dae, fbx, mtl, obj, ply, stl, stlBinary, threeDs } from './support/mesh_samples.mjs';
+import { BIN, missing } from './support/tiny_plant.mjs';
+
+const absent = missing();
+const notBuilt = existsSync(join(BIN, 'plantcast-import-assimp')) ? false : 'built without Assimp';
+const skip = absent.length > 0 ? `not built: ${absent.join(', ')}` : notBuilt;
+const plantcast = (...args) => spawnSync(join(BIN, 'plantcast'), args, { encoding: 'utf8', timeout: 120000 });
+
+async function inFolder(f) {
+    const folder = mkdtempSync(join(tmpdir(), 'plantcast-meshes-'));
+    try {
+        writeFileSync(join(folder, 'wedge.mtl'), mtl);
+        await f(folder);
+    } finally {
+        rmSync(folder, { recursive: true });
+    }
+}
+
+const near = (a, b) => a.every((v, k) => Math.abs(v - b[k]) < 0.002);
+const boxed = (folder, name, bytes, ...args) => {
+    writeFileSync(join(folder, name), bytes);
+    const { status, stdout, stderr } = plantcast('nodes', join(folder, name), '--json', ...args);
+    assert.equal(status, 0, stderr);
+    return JSON.parse(stdout);
+};
+
+for (const { name, bytes, named } of [
+    { name: 'a.obj', bytes: obj(), named: 'a/Wedge' }, { name: 'mm.OBJ', bytes: obj(1000, '펌프/P-1 A'), named: 'mm/펌프/P-1 A' },
+    { name: 'mm.stl', bytes: stl(1000) }, { name: 'binary.stl', bytes: stlBinary() }, { name: 'a.ply', bytes: ply() },
+    { name: 'mm.dae', bytes: dae(0.001), named: 'mm/Scene/Feed pump/쐐기' }, { name: 'feet.dae', bytes: dae(0.3048) },
+    { name: 'inch.fbx', bytes: fbx(2.54), named: 'inch/Feed pump' }, { name: 'metres.fbx', bytes: fbx(100) },
+    { name: 'a.3ds', bytes: threeDs(), named: 'a/#1/Wedge' },
+])
+    test(`${name}: its size, its height, its names`, { skip }, () => inFolder((folder) => {
+        const { triangles, size, centre, list } = boxed(folder, name, bytes);
+        assert.equal(triangles, 8);
+        assert.ok(near(size, [2, 1, 0.5]) && near(centre, [1, 0.5, 0.25]), JSON.stringify([size, centre]));
+        if (named)
+            assert.equal(list.at(-1).path, named);
+    }));
+
+test('units and axis are guessed and said, or given', { skip }, () => inFolder((folder) => {
+    writeFileSync(join(folder, 'a.stl'), stl(1000));
+    const said = plantcast('import', join(folder, 'a.stl'), '-o', join(folder, 'plant'));
+    assert.match(said.stdout, /does not say its units: mm is taken, for it is 2000 long; --units says otherwise/);
+    assert.match(said.stdout, /does not say which axis is up: z is taken/);
+    const given = boxed(folder, 'b.stl', stl(10), '--units', 'ft', '--up', 'y');
+    assert.ok(near(given.size, [6.096, 1.524, 3.048]), JSON.stringify(given.size));
+    writeFileSync(join(folder, 'a.dae'), dae());
+    assert.match(plantcast('nodes', join(folder, 'a.dae'), '--units', 'mm').stderr, /COLLADA says itself what its units are/);
+}));
+
+test('a colour is kept', { skip }, () => inFolder((folder) => {
+    writeFileSync(join(folder, 'a.obj'), obj());
+    assert.equal(plantcast('import', join(folder, 'a.obj'), '-o', join(folder, 'plant')).status, 0);
+    const bytes = readFileSync(join(folder, 'plant/a.glb')), { materials } = JSON.parse(bytes.subarray(20, 20 + bytes.readUInt32LE(12)));
+    assert.deepEqual(materials[0].pbrMetallicRoughness.baseColorFactor, [1, 0, 0, 1]);
+}));
+
+const countOf = (bytes, count) => {
+    bytes.writeUInt32LE(count, 80);
+    return bytes;
+};
+const noise = (bytes, every) => Buffer.from(Buffer.from(bytes).map((b, i) => i % every === every - 1 ? 255 - b : b));
+const cyclic = dae().replace('<instance_geometry url="#g"/>', '<instance_geometry url="#g"/><instance_node url="#n1"/>');
+const nested = dae().replace(/<node id="n2".*?<\/node>/, `${'<node>'.repeat(30000)}${'</node>'.repeat(30000)}`);
+const broken = {
+    'huge.stl': countOf(stlBinary(), 0xfffffff0), 'count.stl': countOf(stlBinary(), 9),
+    'huge.ply': ply().replace('vertex 6', 'vertex 4000000000'),
+    'index.ply': ply().replace('3 0 2 1', '3 0 2 1000000'), 'index.obj': obj().replace('f 1 3 2', 'f 1 3 -900000000'),
+    'nan.obj': obj().replaceAll('v 2 0', 'v nan inf'), 'nan.stl': stl().replaceAll('vertex 2', 'vertex nan'),
+    'nan.fbx': fbx().replace('a: 0,', 'a: nan,'),
+    'cyclic.dae': cyclic, 'nested.dae': nested, 'only.dae': '<?xml version="1.0"?><COLLADA/>',
+    'ring.fbx': fbx().replace('"OO",200,0', '"OO",200,200'),
+};
+for (const [ending, bytes] of [['obj', obj()], ['stl', stl()], ['b.stl', stlBinary()], ['ply', ply()], ['dae', dae()], ['fbx', fbx()],
+    ['3ds', threeDs()]])
+    Object.assign(broken, { [`empty.${ending}`]: '', [`half.${ending}`]: bytes.slice(0, bytes.length >> 1),
+        [`noise.${ending}`]: noise(bytes, 29), [`zeros.${ending}`]: Buffer.alloc(5000) });
+
+test('broken files are read or refused in one line, and leave nothing behind', { skip }, () => inFolder((folder) => {
+    let refused = 0;
+    for (const [name, bytes] of Object.entries(broken)) {
+        writeFileSync(join(folder, name), bytes);
+        const before = readdirSync(folder).sort();
+        const { status, stderr, stdout } = plantcast('import', join(folder, name), '-o', join(folder, 'plant'), '--timeout', '6',
+            '--memory', '2000');
+        const told = status === 0 ? stdout.split('\n')[0].replace(/.*: /, 'read: ') : stderr.trim().replace(/.*?: .*?: /, '');
+        console.log(`# ${name}: ${told}`);
+        if (status === 0) {
+            rmSync(join(folder, 'plant'), { recursive: true });
+        } else {
+            refused++;
+            assert.equal(status, 1, name);
+            assert.equal(stderr.trimEnd().split('\n').length, 1, stderr);
+            assert.ok(stderr.includes(name), stderr);
+        }
+        assert.deepEqual(readdirSync(folder).sort(), before);
+        rmSync(join(folder, name));
+    }
+    assert.ok(refused > 15, `${refused} refused`);
+}));
