@@ -125,6 +125,7 @@ static void free_sources(struct plant *plant)
         mem_free(source->device);
         mem_free(source->heartbeat);
         mem_free(source->file);
+        plant_mqtt_finish(&source->mqtt);
     }
     mem_free(plant->sources);
 }
@@ -133,7 +134,8 @@ static void free_tags(struct plant *plant)
 {
     for (size_t i = 0; i < plant->tag_count; i++) {
         struct plant_tag *tag = &plant->tags[i];
-        char *const texts[] = { tag->name, tag->description, tag->unit, tag->own_unit, tag->address, tag->node, tag->lost_asset };
+        char *const texts[] = { tag->name, tag->description, tag->unit, tag->own_unit, tag->address, tag->topic, tag->path, tag->node,
+                                tag->lost_asset };
         for (size_t k = 0; k < sizeof(texts) / sizeof(*texts); k++)
             mem_free(texts[k]);
         expression_destroy(&tag->expression);

@@ -114,8 +114,20 @@ struct plant_colormap { /* out of an image */
 
 enum transport { TRANSPORT_TCP, TRANSPORT_RTU_TCP /* RTU frames through a socket */, TRANSPORT_RTU /* a serial line */ };
 enum { PLANT_HOSTS = 4 };
+enum mqtt_payload { MQTT_NUMBER /* text: one number */, MQTT_JSON };
+
+struct plant_mqtt { /* how values are published to a broker; texts that are not given are NULL */
+    enum mqtt_payload payload;
+    int protocol;                /* 4: MQTT 3.1.1; 5 */
+    bool persistent;             /* the broker keeps what is published while we are away */
+    int qos, keepalive_s;
+    char *client_id;
+    char *topic;                 /* template of the topics of tags whose address has none */
+    char *value, *time, *quality; /* paths in JSON payloads */
+};
+
 struct plant_source {
-    char *id, *kind; /* "modbus", "replay" */
+    char *id, *kind; /* "modbus", "replay", "mqtt" */
     enum transport transport;
     char *hosts[PLANT_HOSTS]; /* of one device: the next is tried where one does not answer */
     int host_count;
@@ -134,6 +146,7 @@ struct plant_source {
     char *file;         /* of a replay */
     double speed;
     bool loop;
+    struct plant_mqtt mqtt;
     bool simulated; /* what it brings was not measured now */
     int line;
 };
@@ -168,7 +181,8 @@ struct plant_tag {
     struct unit_change change; /* from own_unit to unit */
     int source, group, asset;  /* index, or -1 */
     char *lost_asset;          /* the id of an asset that is not there (plant_load_with_orphans), or NULL */
-    char *address;             /* as written: of a register, the name of a series, or = and an expression */
+    char *address;             /* as written: of a register, the name of a series, a topic, or = and an expression */
+    char *topic, *path;        /* of an MQTT source: the topic whole, and where in its payload ("": the source's way); else NULL */
     int modbus_unit;           /* -1: the source's */
     enum register_table table;
     int register_index; /* from 0, as on the wire */

@@ -22,6 +22,10 @@ bool plant_properties_same(const struct plant_asset *a, const struct plant_asset
 /* Reads the list `sources`. */
 void plant_sources_read(struct yaml_reader *reader, yaml_node_t *node, struct plant *plant);
 
+/* Checks what an MQTT source says, and sets what it does not. */
+void plant_mqtt_check(struct yaml_reader *reader, const struct yaml_map *map, struct plant_source *source);
+void plant_mqtt_finish(struct plant_mqtt *mqtt);
+
 /* For lists of records that begin with `char *id`. Allocates records for the items of a list and sets *count; returns NULL if it is no
    list, or too long (reported). */
 void *plant_list_make(struct yaml_reader *reader, yaml_node_t *node, const char *name, int least, size_t bytes_each, int *count);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The list `sources` of a plant file: field devices and replays. PLANT.md describes the form. */
+/* The list `sources` of a plant file: field devices, brokers and replays. PLANT.md describes the form. */
 #include <errno.h>
 #include <string.h>
 #include <unistd.h>
@@ -7,23 +7,26 @@
 #include "base/mem.h"
 #include "plant/plant_impl.h"
 
-enum { BY_SOCKET = 1, BY_LINE = 2, MODBUS = BY_SOCKET | BY_LINE, REPLAY = 4 };
+enum { BY_SOCKET = 1, BY_LINE = 2, MODBUS = BY_SOCKET | BY_LINE, REPLAY = 4, MQTT = 8, BY_HOST = BY_SOCKET | MQTT };
 
 static const struct choice order_choices[] = { { "ABCD", BYTE_ORDER_ABCD }, { "CDAB", BYTE_ORDER_CDAB }, { "BADC", BYTE_ORDER_BADC },
                                                { "DCBA", BYTE_ORDER_DCBA }, { 0 } };
 static const struct choice transport_choices[] = { { "tcp", TRANSPORT_TCP }, { "rtu-over-tcp", TRANSPORT_RTU_TCP },
                                                    { "rtu", TRANSPORT_RTU }, { 0 } };
 static const struct choice parity_choices[] = { { "none", 'N' }, { "even", 'E' }, { "odd", 'O' }, { 0 } };
+static const struct choice payload_choices[] = { { "number", MQTT_NUMBER }, { "json", MQTT_JSON }, { 0 } };
+static const struct choice protocol_choices[] = { { "3.1.1", 4 }, { "5", 5 }, { 0 } };
+static const struct choice session_choices[] = { { "clean", false }, { "persistent", true }, { 0 } };
 static const struct choice yes_choices[] = { { "yes", 1 }, { "no", 0 }, { 0 } };
 
 static void read_kind(struct yaml_reader *reader, yaml_node_t *node, void *record)
 {
     struct plant_source *source = record;
     const char *text = yaml_text(node);
-    if (text && (!strcmp(text, "modbus") || !strcmp(text, "replay")))
+    if (text && (!strcmp(text, "modbus") || !strcmp(text, "mqtt") || !strcmp(text, "replay")))
         source->kind = mem_strdup(text);
     else
-        yaml_expected(reader, node, "type", "modbus or replay");
+        yaml_expected(reader, node, "type", "modbus, mqtt or replay");
 }
 
 static void add_host(struct yaml_reader *reader, yaml_node_t *node, struct plant_source *source)
@@ -88,6 +91,16 @@ static const struct key source_keys[] = {
     { "byte_order", KEY_CHOICE, false, offsetof(struct plant_source, byte_order), 0, 0, order_choices, NULL },
     { "address_base", KEY_INT, false, offsetof(struct plant_source, address_base), 0, 1, NULL, NULL },
     { "heartbeat", KEY_CUSTOM, false, 0, 0, 0, NULL, read_heartbeat },
+    { "protocol", KEY_CHOICE, false, offsetof(struct plant_source, mqtt.protocol), 0, 0, protocol_choices, NULL },
+    { "client_id", KEY_NAME, false, offsetof(struct plant_source, mqtt.client_id), 0, 0, NULL, NULL },
+    { "session", KEY_FLAG, false, offsetof(struct plant_source, mqtt.persistent), 0, 0, session_choices, NULL },
+    { "qos", KEY_INT, false, offsetof(struct plant_source, mqtt.qos), 0, 1, NULL, NULL },
+    { "keepalive_s", KEY_INT, false, offsetof(struct plant_source, mqtt.keepalive_s), 5, 3600, NULL, NULL },
+    { "payload", KEY_CHOICE, false, offsetof(struct plant_source, mqtt.payload), 0, 0, payload_choices, NULL },
+    { "topic", KEY_NAME, false, offsetof(struct plant_source, mqtt.topic), 0, 0, NULL, NULL },
+    { "value", KEY_NAME, false, offsetof(struct plant_source, mqtt.value), 0, 0, NULL, NULL },
+    { "time", KEY_NAME, false, offsetof(struct plant_source, mqtt.time), 0, 0, NULL, NULL },
+    { "quality", KEY_NAME, false, offsetof(struct plant_source, mqtt.quality), 0, 0, NULL, NULL },
     { "file", KEY_NAME, false, offsetof(struct plant_source, file), 0, 0, NULL, NULL },
     { "speed", KEY_NUMBER, false, offsetof(struct plant_source, speed), 1e-3, 1e5, NULL, NULL },
     { "loop", KEY_FLAG, false, offsetof(struct plant_source, loop), 0, 0, yes_choices, NULL },
@@ -98,6 +111,8 @@ static int way_of(const struct plant_source *source)
 {
     if (!strcmp(source->kind, "replay"))
         return REPLAY;
+    if (!strcmp(source->kind, "mqtt"))
+        return MQTT;
     return source->transport == TRANSPORT_RTU ? BY_LINE : BY_SOCKET;
 }
 
@@ -108,12 +123,16 @@ static void check_keys(struct yaml_reader *reader, const struct yaml_map *map, c
         const char *key;
         int ways;
     } belongs[] = {
-        { "transport", MODBUS }, { "host", BY_SOCKET }, { "hosts", BY_SOCKET }, { "port", BY_SOCKET }, { "device", BY_LINE },
+        { "transport", MODBUS }, { "host", BY_HOST }, { "hosts", BY_HOST }, { "port", BY_HOST }, { "device", BY_LINE },
         { "baud", BY_LINE }, { "parity", BY_LINE }, { "stop_bits", BY_LINE }, { "unit", MODBUS }, { "timeout_ms", MODBUS },
         { "pause_ms", MODBUS }, { "max_registers", MODBUS }, { "max_bits", MODBUS }, { "max_gap", MODBUS }, { "byte_order", MODBUS },
         { "address_base", MODBUS }, { "file", REPLAY }, { "speed", REPLAY }, { "loop", REPLAY },
+        { "protocol", MQTT }, { "client_id", MQTT }, { "session", MQTT }, { "qos", MQTT }, { "keepalive_s", MQTT }, { "payload", MQTT },
+        { "topic", MQTT }, { "value", MQTT }, { "time", MQTT }, { "quality", MQTT },
     };
-    const char *what = way_of(source) == REPLAY ? "a replay" : way_of(source) == BY_LINE ? "transport rtu" : "a modbus source over TCP";
+    static const char *const whats[] = { [REPLAY] = "a replay", [MQTT] = "an mqtt source", [BY_LINE] = "transport rtu",
+                                         [BY_SOCKET] = "a modbus source over TCP" };
+    const char *what = whats[way_of(source)];
     for (size_t i = 0; i < sizeof(belongs) / sizeof(*belongs); i++)
         if (yaml_map_good(map, belongs[i].key) && !(belongs[i].ways & way_of(source)))
             yaml_error(reader, yaml_map_place(map, belongs[i].key), "%s: has no meaning for %s", belongs[i].key, what);
@@ -124,7 +143,7 @@ static void check_way(struct yaml_reader *reader, const struct yaml_map *map, co
 {
     bool has_hosts = yaml_map_good(map, "hosts"), has_host = yaml_map_good(map, "host");
     const char *missing = NULL;
-    if (way_of(source) == BY_SOCKET && source->host_count == 0)
+    if (way_of(source) & BY_HOST && source->host_count == 0)
         missing = "host";
     if (way_of(source) == BY_LINE && !source->device)
         missing = "device";
@@ -165,7 +184,8 @@ static void read_source(struct yaml_reader *reader, yaml_node_t *node, struct pl
     struct yaml_map map;
     *source = (struct plant_source){
         .port = 502, .unit = 1, .poll_ms = 1000, .timeout_ms = 1000, .address_base = 1, .baud = 19200, .parity = 'E', .stop_bits = 1,
-        .max_registers = 125, .max_bits = 2000, .heartbeat_tag = -1, .speed = 1, .line = yaml_place(node).line
+        .max_registers = 125, .max_bits = 2000, .heartbeat_tag = -1, .speed = 1, .line = yaml_place(node).line,
+        .mqtt = { .protocol = 5, .qos = 1, .keepalive_s = 10 }
     };
     if (!yaml_map_read(reader, node, "a source", source_keys, source, &map))
         return;
@@ -178,6 +198,8 @@ static void read_source(struct yaml_reader *reader, yaml_node_t *node, struct pl
     check_keys(reader, &map, source);
     check_way(reader, &map, source);
     check_alone(reader, &map, plant, source);
+    if (way_of(source) == MQTT)
+        plant_mqtt_check(reader, &map, source);
 }
 
 void plant_sources_read(struct yaml_reader *reader, yaml_node_t *node, struct plant *plant)

@@ -9,6 +9,7 @@
 
 #include "base/mem.h"
 #include "plant/address.h"
+#include "plant/mqtt_address.h"
 #include "plant/number.h"
 #include "plant/plant_impl.h"
 #include "plant/tag_links.h"
@@ -102,6 +103,25 @@ static void check_base(struct tag_wire *wire, int registers)
                tag->table == TABLE_INPUT ? "ir" : "hr", tag->register_index + 1);
 }
 
+static bool is_published(const struct tag_wire *wire)
+{
+    const char *kind = wire->tag->source >= 0 ? wire->plant->sources[wire->tag->source].kind : NULL;
+    return !tag_is_derived(wire->columns) && kind && !strcmp(kind, "mqtt");
+}
+
+/* A value that is published is a number; whether it is a bit, only the row can say. */
+static void read_published(struct tag_wire *wire)
+{
+    struct plant_tag *tag = wire->tag;
+    const char *text = cell_text(wire->columns, COL_DATA_TYPE);
+    char why[200];
+    tag->type = DATA_FLOAT64;
+    if (*text && strcasecmp(text, "Default") != 0 && !data_type_parse(text, &tag->type))
+        cell_error(wire->columns, COL_DATA_TYPE, "Data Type: unknown type '%.60s'; expected one of: %s", text, data_type_all);
+    if (!mqtt_address_resolve(wire->plant, tag, why))
+        cell_error(wire->columns, COL_ADDRESS, "Address: '%.60s': %s", tag->address, why);
+}
+
 static void read_address(struct tag_wire *wire)
 {
     struct plant_tag *tag = wire->tag;
@@ -110,6 +130,10 @@ static void read_address(struct tag_wire *wire)
     tag->address = mem_strdup(cell_text(wire->columns, COL_ADDRESS));
     if (is_number(wire)) {
         tag->type = DATA_FLOAT64;
+        return;
+    }
+    if (is_published(wire)) {
+        read_published(wire);
         return;
     }
     if (!*tag->address) {

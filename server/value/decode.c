@@ -96,9 +96,8 @@ static bool beyond(double raw, double a, double b)
     return raw < fmin(a, b) || raw > fmax(a, b);
 }
 
-static bool is_sentinel(const struct plant_tag *tag, const uint16_t *words, double raw)
+static bool is_sentinel(const struct plant_tag *tag, uint64_t bits, double raw)
 {
-    uint64_t bits = join_words(tag->byte_order, words, decode_width(tag));
     for (int i = 0; i < tag->sentinel_count; i++)
         if (tag->sentinels[i].is_bits ? tag->sentinels[i].bits == bits : tag->sentinels[i].number == raw)
             return true;
@@ -135,22 +134,48 @@ static double scale(const struct plant_tag *tag, double raw)
     return tag->scaled_low + part * (tag->scaled_high - tag->scaled_low);
 }
 
-void decode_sample(const struct plant_tag *tag, const uint16_t *words, struct sample *out)
+static void fail(struct sample *out)
 {
-    double value = is_bit(tag) ? bit_of(tag, words[0]) : raw_of(tag, words);
-    out->quality = QUALITY_GOOD;
-    if (!isfinite(value) || is_sentinel(tag, words, value)) { /* before scaling, which would hide it */
-        out->value = 0;
-        out->quality = QUALITY_BAD_SENSOR_FAILURE;
+    out->value = 0;
+    out->quality = QUALITY_BAD_SENSOR_FAILURE;
+}
+
+/* bits: those of raw on the wire. */
+static void decode_analog(const struct plant_tag *tag, uint64_t bits, double raw, struct sample *out)
+{
+    if (!isfinite(raw) || is_sentinel(tag, bits, raw)) { /* before scaling, which would hide it */
+        fail(out);
         return;
     }
+    double value = tag->scaling == SCALING_NONE ? raw : scale(tag, raw);
+    out->value = unit_change_value(&tag->change, tag->negate ? -value : value);
+    out->quality = judge_range(tag, raw);
+    if (!isfinite(out->value))
+        fail(out);
+}
+
+void decode_sample(const struct plant_tag *tag, const uint16_t *words, struct sample *out)
+{
+    uint64_t bits = join_words(tag->byte_order, words, decode_width(tag));
+    double raw = is_bit(tag) ? bit_of(tag, words[0]) : raw_of(tag, words);
     if (!is_bit(tag)) {
-        out->quality = judge_range(tag, value);
-        value = tag->scaling == SCALING_NONE ? value : scale(tag, value);
+        decode_analog(tag, bits, raw, out);
+        return;
     }
-    if (!is_bit(tag))
-        value = unit_change_value(&tag->change, tag->negate ? -value : value);
-    out->value = isfinite(value) ? value : 0;
-    if (!isfinite(value))
-        out->quality = QUALITY_BAD_SENSOR_FAILURE;
+    out->value = raw;
+    out->quality = QUALITY_GOOD;
+    if (is_sentinel(tag, bits, raw))
+        fail(out);
+}
+
+void decode_number(const struct plant_tag *tag, double raw, struct sample *out)
+{
+    if (tag->type != DATA_BIT) {
+        decode_analog(tag, fabs(raw) < 9e18 ? (uint64_t)(int64_t)raw : 0, raw, out);
+        return;
+    }
+    out->value = (raw != 0) != tag->negate;
+    out->quality = QUALITY_GOOD;
+    if (!isfinite(raw))
+        fail(out);
 }

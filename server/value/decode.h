@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Decodes the Modbus registers or the bit of a tag into a reading in engineering units. Pure: no I/O, no clock. */
+/* Decodes the Modbus registers or the bit of a tag, or a number that was published, into a reading in engineering units.
+   Pure: no I/O, no clock. */
 #ifndef VALUE_DECODE_H
 #define VALUE_DECODE_H
 #include <stdint.h>
@@ -14,5 +15,8 @@ int decode_width(const struct plant_tag *tag);
    extrapolated); or Bad_SensorFailure for NaN, infinity, invalid BCD, the open-circuit value, and a current that NE 43 defines as a
    failure. The tag's negate inverts a bit, or the sign of a number. */
 void decode_sample(const struct plant_tag *tag, const uint16_t *words, struct sample *out);
+
+/* Decodes a number that came as such, not as registers, in the same way; bits are what has the type bool. */
+void decode_number(const struct plant_tag *tag, double raw, struct sample *out);
 
 #endif

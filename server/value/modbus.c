@@ -116,7 +116,7 @@ static void add_counters(struct modbus_source *modbus, struct counters *counters
     const char *id = modbus->config->id, *reads = "requests to field devices", *up = "1 while readings come in";
     modbus->reads_ok = add_counter(counters, "reads_total", id, ",result=\"ok\"", "counter", reads);
     modbus->reads_failed = add_counter(counters, "reads_total", id, ",result=\"failed\"", "counter", reads);
-    modbus->connects = add_counter(counters, "connects_total", id, "", "counter", "connections made to field devices");
+    modbus->connects = add_counter(counters, "connects_total", id, "", "counter", "connections made to field devices and brokers");
     modbus->up = add_counter(counters, "up", id, "", "gauge", up);
     modbus->host = add_counter(counters, "host", id, "", "gauge", "which of its hosts readings come from, 1: the first; 0: from none");
 }

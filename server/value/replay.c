@@ -170,7 +170,7 @@ static struct source *replay_start(struct log *log, const struct plant *plant, i
     *replay = (struct replay){
         .base.impl = &replay_impl, .log = log, .plant = plant, .config = &plant->sources[source], .index = source, .store = store
     };
-    replay->samples = add_counter(counters, "samples_total", replay->config->id, "counter", "samples given by replays");
+    replay->samples = add_counter(counters, "samples_total", replay->config->id, "counter", "samples given by replays and brokers");
     replay->up = add_counter(counters, "up", replay->config->id, "gauge", "1 while readings come in");
     replay->lanes = mem_array(plant->tag_count, sizeof(*replay->lanes));
     for (size_t i = 0; i < plant->tag_count; i++)

@@ -6,7 +6,7 @@
 
 #include "value/source_impl.h"
 
-static const struct source_impl *const table[] = { &modbus_impl, &replay_impl };
+static const struct source_impl *const table[] = { &modbus_impl, &mqtt_impl, &replay_impl };
 
 struct source *source_start(struct log *log, const struct plant *plant, int source, struct store *store, struct counters *counters)
 {

@@ -16,6 +16,7 @@ struct source { /* first member of the struct of each kind */
 };
 
 extern const struct source_impl modbus_impl; /* Modbus TCP and RTU, read only */
+extern const struct source_impl mqtt_impl;   /* what is published to an MQTT broker; subscribes only */
 extern const struct source_impl replay_impl; /* recorded series from a CSV file (series.h), at the speed that the plant file sets */
 
 #endif

@@ -14,6 +14,7 @@ struct held {
     double value;                              /* the last usable one */
     uint32_t quality;                          /* of the last sample */
     bool has_value, lost;                      /* lost: could not be read since the last sample */
+    bool dead;                                 /* likewise, and what it was before says nothing any more */
     int64_t sampled_mono_ns;                   /* last sample, Bad ones too */
     int64_t received_mono_ns, received_utc_ns; /* last usable value */
     int64_t changed_mono_ns;                   /* when that value was another the last time */
@@ -170,7 +171,7 @@ static uint32_t own_quality(const struct held *held, int64_t now_mono_ns)
     bool stale = held->has_value && now_mono_ns - held->received_mono_ns >= held->stale_ns;
     if (held->lost && !held->has_value)
         return QUALITY_BAD_NO_COMMUNICATION;
-    if (held->lost && (stale || quality_is_bad(held->quality)))
+    if (held->lost && (stale || held->dead || quality_is_bad(held->quality)))
         return QUALITY_BAD_COMMUNICATION_ERROR;
     if (quality_is_bad(held->quality))
         return held->quality;
@@ -236,7 +237,7 @@ static bool hold(struct store *store, const struct sample *sample, int64_t now_m
         return false;
     held->quality = bad || finite ? sample->quality : QUALITY_BAD_SENSOR_FAILURE;
     held->sampled_mono_ns = now_mono_ns;
-    held->lost = false;
+    held->lost = held->dead = false;
     if (!bad && finite) {
         value_changed = !held->has_value || held->value != sample->value;
         held->value = sample->value;
@@ -274,13 +275,14 @@ void store_write(struct store *store, const struct sample *samples, size_t count
     pthread_mutex_unlock(&store->lock);
 }
 
-static void lose(struct store *store, size_t tag, int64_t now_mono_ns)
+static void lose(struct store *store, size_t tag, bool dead, int64_t now_mono_ns)
 {
     struct held *held = &store->tags[tag];
     uint32_t shown = held->shown_quality;
     if (now_mono_ns < held->sampled_mono_ns)
         return;
     held->lost = true;
+    held->dead |= dead;
     count_change(store, tag, false, now_mono_ns);
     if (held->shown_quality != shown && store->has_utc)
         tell(store, tag, held->shown_quality, now_mono_ns, now_mono_ns + store->utc_ahead_ns);
@@ -290,7 +292,15 @@ void store_tags_lost(struct store *store, const int *tags, size_t count, int64_t
 {
     pthread_mutex_lock(&store->lock);
     for (size_t i = 0; i < count; i++)
-        lose(store, (size_t)tags[i], now_mono_ns);
+        lose(store, (size_t)tags[i], false, now_mono_ns);
+    pthread_mutex_unlock(&store->lock);
+}
+
+void store_tags_dead(struct store *store, const int *tags, size_t count, int64_t now_mono_ns)
+{
+    pthread_mutex_lock(&store->lock);
+    for (size_t i = 0; i < count; i++)
+        lose(store, (size_t)tags[i], true, now_mono_ns);
     pthread_mutex_unlock(&store->lock);
 }
 
@@ -308,7 +318,7 @@ void store_link_lost(struct store *store, int source, int64_t now_mono_ns)
     set_link(&store->links[source], false, now_mono_ns);
     for (size_t i = 0; i < store->plant->tag_count; i++)
         if (store->plant->tags[i].source == source)
-            lose(store, i, now_mono_ns);
+            lose(store, i, false, now_mono_ns);
     pthread_mutex_unlock(&store->lock);
 }
 

@@ -45,6 +45,8 @@ void store_write(struct store *store, const struct sample *samples, size_t count
 void store_link_lost(struct store *store, int source, int64_t now_mono_ns);
 /* The same for some tags only: one unit behind a gateway fails while others still answer. */
 void store_tags_lost(struct store *store, const int *tags, size_t count, int64_t now_mono_ns);
+/* The same for some tags whose last values may not be used any more, whatever their age: they are Bad_CommunicationError at once. */
+void store_tags_dead(struct store *store, const int *tags, size_t count, int64_t now_mono_ns);
 /* Records that a source can be read again. Its tags become usable one by one, each with its next sample. */
 void store_link_up(struct store *store, int source, int64_t now_mono_ns);
 /* Sets the alarm that a tag's readings carry from now on (enum alarm_kind) and its state (enum alarm_status). */

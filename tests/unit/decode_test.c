@@ -102,6 +102,27 @@ static void takes_as_many_registers_as_its_type(void **state)
     }
 }
 
+static void numbers_are_decoded_as_registers_are(void **state)
+{
+    (void)state;
+    struct plant_tag tag = { .type = DATA_FLOAT64, .scaling = SCALING_LINEAR, .raw_high = 100, .scaled_high = 10, .has_range = true,
+                             .sentinel_count = 2, .sentinels = { { .number = -99 }, { .is_bits = true, .bits = 0x8000 } } };
+    const struct {
+        double raw, value;
+        uint32_t quality;
+    } numbers[] = { { 50, 5, QUALITY_GOOD }, { 120, 12, QUALITY_UNCERTAIN_UNITS_EXCEEDED }, { -99, 0, QUALITY_BAD_SENSOR_FAILURE },
+                    { 32768, 0, QUALITY_BAD_SENSOR_FAILURE }, { INFINITY, 0, QUALITY_BAD_SENSOR_FAILURE },
+                    { NAN, 0, QUALITY_BAD_SENSOR_FAILURE } };
+    struct sample sample;
+    for (size_t i = 0; i < sizeof(numbers) / sizeof(*numbers); i++) {
+        decode_number(&tag, numbers[i].raw, &sample);
+        assert_true(sample.value == numbers[i].value && sample.quality == numbers[i].quality);
+    }
+    tag = (struct plant_tag){ .type = DATA_BIT, .negate = true };
+    decode_number(&tag, 7, &sample);
+    assert_true(sample.value == 0 && sample.quality == QUALITY_GOOD);
+}
+
 static void bits(void **state)
 {
     (void)state;
@@ -274,6 +295,7 @@ int main(void)
         cmocka_unit_test(an_open_circuit_s_value_is_no_reading),
         cmocka_unit_test(a_range_without_scaling_is_the_instrument_s),
         cmocka_unit_test(takes_as_many_registers_as_its_type),
+        cmocka_unit_test(numbers_are_decoded_as_registers_are),
         cmocka_unit_test(bits),
         cmocka_unit_test(linear_scaling),
         cmocka_unit_test(square_root_scaling),

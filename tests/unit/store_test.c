@@ -178,6 +178,19 @@ static void some_tags_can_be_lost(void **state)
     assert_true(store_link_is_up(s->store, 0));
 }
 
+static void what_is_dead_is_bad_at_once(void **state)
+{
+    struct setup *s = *state;
+    write_one(s, 0, 7, QUALITY_GOOD, 10 * S);
+    store_tags_dead(s->store, (int[]){ 0, 1 }, 2, 12 * S);
+    assert_quality(look(s, 0, 12 * S)->quality, QUALITY_BAD_COMMUNICATION_ERROR);
+    assert_quality(look(s, 1, 12 * S)->quality, QUALITY_BAD_NO_COMMUNICATION); /* never had a value */
+    write_one(s, 0, 8, QUALITY_GOOD, 11 * S); /* stated to be from before */
+    assert_quality(look(s, 0, 12 * S)->quality, QUALITY_GOOD);
+    store_tags_lost(s->store, (int[]){ 0 }, 1, 13 * S);
+    assert_quality(look(s, 0, 13 * S)->quality, QUALITY_UNCERTAIN_NO_COMMUNICATION_LAST_USABLE);
+}
+
 static void counts_every_change(void **state)
 {
     struct setup *s = *state;
@@ -437,6 +450,7 @@ int main(void)
         store_test(link_back_is_not_yet_a_reading),
         store_test(a_refused_tag_that_is_cut_off_says_so),
         store_test(some_tags_can_be_lost),
+        store_test(what_is_dead_is_bad_at_once),
         store_test(counts_every_change),
         store_test(the_newest_sample_wins),
         store_test(the_snapshot_says_when),

@@ -1,0 +1,52 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* A source of type mqtt: what its keys must say together. PLANT.md describes them. */
+#include <string.h>
+
+#include "base/mem.h"
+#include "plant/json_path.h"
+#include "plant/mqtt_address.h"
+#include "plant/plant_impl.h"
+
+enum { PORT = 1883 };
+
+static void check_paths(struct yaml_reader *reader, const struct yaml_map *map, const struct plant_mqtt *mqtt)
+{
+    const struct {
+        const char *key, *path;
+    } paths[] = { { "value", mqtt->value }, { "time", mqtt->time }, { "quality", mqtt->quality } };
+    char why[200];
+    for (size_t i = 0; i < sizeof(paths) / sizeof(*paths); i++)
+        if (paths[i].path && mqtt->payload != MQTT_JSON)
+            yaml_error(reader, yaml_map_place(map, paths[i].key), "%s: has no meaning without payload: json", paths[i].key);
+        else if (paths[i].path && !json_path_check(paths[i].path, why))
+            yaml_error(reader, yaml_map_place(map, paths[i].key), "%s: '%.60s': %s", paths[i].key, paths[i].path, why);
+}
+
+/* What a broker kept while we were away looks fresh, unless it says itself how old it is. */
+static void check_session(struct yaml_reader *reader, const struct yaml_map *map, const struct plant_mqtt *mqtt)
+{
+    if (mqtt->persistent && !mqtt->time)
+        yaml_error(reader, yaml_map_place(map, "session"),
+                   "session: persistent needs payload: json and time, since what the broker has kept would look fresh");
+    if (mqtt->persistent && !mqtt->client_id)
+        yaml_error(reader, yaml_map_place(map, "session"), "session: persistent needs client_id, by which the broker knows the session");
+}
+
+void plant_mqtt_check(struct yaml_reader *reader, const struct yaml_map *map, struct plant_source *source)
+{
+    struct plant_mqtt *mqtt = &source->mqtt;
+    char why[200];
+    if (!yaml_map_good(map, "port"))
+        source->port = PORT;
+    if (mqtt->topic && !mqtt_template_check(mqtt->topic, why))
+        yaml_error(reader, yaml_map_place(map, "topic"), "topic: '%.60s': %s", mqtt->topic, why);
+    check_paths(reader, map, mqtt);
+    check_session(reader, map, mqtt);
+}
+
+void plant_mqtt_finish(struct plant_mqtt *mqtt)
+{
+    char *const texts[] = { mqtt->client_id, mqtt->topic, mqtt->value, mqtt->time, mqtt->quality };
+    for (size_t i = 0; i < sizeof(texts) / sizeof(*texts); i++)
+        mem_free(texts[i]);
+}

@@ -1,0 +1,196 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* An MQTT source: connects, subscribes, and says at once when the broker is gone. It has nothing in it that publishes. */
+#include <errno.h>
+#include <string.h>
+#include <sys/eventfd.h>
+#include <sys/random.h>
+#include <unistd.h>
+
+#include "base/clock.h"
+#include "base/mem.h"
+#include "value/lookup.h"
+#include "value/mqtt/mqtt_impl.h"
+
+static const int64_t CONNECT_NS = 10 * NS_PER_S; /* to a session with the broker; also the time for its answers to subscriptions */
+
+static bool stopping(const struct mqtt_source *mqtt, int64_t until_ns)
+{
+    return wait_for(-1, 0, mqtt->stop_fd, until_ns) == -ECANCELED;
+}
+
+/* --- the link --------------------------------------------------------------------------------------------------------------- */
+
+/* What the broker does not tell any more may have changed: nothing of it is a reading now. */
+static void link_lost(struct mqtt_source *mqtt, const char *why)
+{
+    int64_t now_ns = clock_mono_ns();
+    log_at(mqtt->log, mqtt->link_up || !mqtt->link_known ? LOG_WARN : LOG_DEBUG, "source %s: %s:%d: no readings (%s)", mqtt->config->id,
+           mqtt->config->hosts[mqtt->host_index], mqtt->config->port, why);
+    mqtt->link_up = mqtt->subscribed = false;
+    mqtt->link_known = true;
+    counter_set(mqtt->up, 0);
+    counter_set(mqtt->host, 0);
+    store_tags_dead(mqtt->store, mqtt->topics.tags, mqtt->topics.tag_count, now_ns);
+    store_link_lost(mqtt->store, mqtt->index, now_ns);
+}
+
+static void on_subscribed(void *arg)
+{
+    struct mqtt_source *mqtt = arg;
+    mqtt->subscribed = mqtt->link_up = mqtt->link_known = true;
+    mqtt->backoff = (struct backoff){ 0 };
+    mqtt->hosts_tried = 0;
+    counter_set(mqtt->up, 1);
+    counter_set(mqtt->host, 1 + mqtt->host_index);
+    store_link_up(mqtt->store, mqtt->index, clock_mono_ns());
+    log_info(mqtt->log, "source %s: %s:%d: reading", mqtt->config->id, mqtt->config->hosts[mqtt->host_index], mqtt->config->port);
+}
+
+static void on_connected(void *arg, bool session_present)
+{
+    struct mqtt_source *mqtt = arg;
+    counter_inc(mqtt->connects, 1);
+    log_debug(mqtt->log, "source %s: connected, %s session", mqtt->config->id, session_present ? "with the former" : "a new");
+    mqtt_client_subscribe(mqtt->client, mqtt->subscriptions, mqtt->subscription_count);
+    if (mqtt->subscription_count == 0)
+        on_subscribed(mqtt);
+}
+
+static void on_topic_refused(void *arg, const char *topic)
+{
+    struct mqtt_source *mqtt = arg;
+    const struct mqtt_message message = { .topic = topic };
+    mqtt_refuse(mqtt, &message, "the broker does not let us subscribe");
+}
+
+static void on_message(void *arg, const struct mqtt_message *message)
+{
+    mqtt_take_message(arg, message);
+}
+
+/* --- the thread ------------------------------------------------------------------------------------------------------------- */
+
+/* One connection, until it ends. Returns -ECANCELED when the source is to stop, else why says what happened. */
+static int run_session(struct mqtt_source *mqtt, char why[200])
+{
+    const struct mqtt_client_events events = { .arg = mqtt,
+                                               .connected = on_connected,
+                                               .subscribed = on_subscribed,
+                                               .topic_refused = on_topic_refused,
+                                               .message = on_message };
+    int64_t deadline_ns = clock_mono_ns() + CONNECT_NS;
+    mqtt->client = mqtt_client_start(mqtt->config, mqtt->host_index, mqtt->client_id, &events, why);
+    int status = mqtt->client ? mqtt_client_wait(mqtt->client, mqtt->stop_fd, deadline_ns, why) : -EINVAL;
+    while (status == 0) {
+        int64_t now_ns = clock_mono_ns();
+        status = mqtt_client_serve(mqtt->client, mqtt->stop_fd, now_ns + NS_PER_S, why);
+        if (status == 0 && !mqtt->subscribed && now_ns > deadline_ns) {
+            snprintf(why, 200, "the broker does not answer");
+            status = -ETIMEDOUT;
+        }
+    }
+    mqtt_client_destroy(&mqtt->client);
+    return status;
+}
+
+/* The next host at once, if there is one that was not tried since a session; else after a pause. */
+static int64_t next_host(struct mqtt_source *mqtt)
+{
+    int64_t now_ns = clock_mono_ns();
+    mqtt->host_index = (mqtt->host_index + 1) % mqtt->config->host_count;
+    mqtt->hosts_tried++;
+    return mqtt->hosts_tried % mqtt->config->host_count ? now_ns : now_ns + backoff_next_ns(&mqtt->backoff, (uint64_t)now_ns);
+}
+
+static void *mqtt_main(void *arg)
+{
+    struct mqtt_source *mqtt = arg;
+    int64_t next_ns = 0;
+    while (!stopping(mqtt, next_ns)) {
+        char why[200] = "";
+        if (run_session(mqtt, why) == -ECANCELED)
+            break;
+        link_lost(mqtt, why);
+        next_ns = next_host(mqtt);
+    }
+    return NULL;
+}
+
+static void mqtt_stop(struct source *source)
+{
+    struct mqtt_source *mqtt = (struct mqtt_source *)source;
+    if (mqtt->has_thread) {
+        eventfd_write(mqtt->stop_fd, 1);
+        pthread_join(mqtt->thread, NULL);
+    }
+    if (mqtt->stop_fd >= 0)
+        close(mqtt->stop_fd);
+    mqtt_writer_finish(&mqtt->writer);
+    mqtt_topics_finish(&mqtt->topics);
+    for (size_t i = 0; i < mqtt->subscription_count; i++)
+        mem_free(mqtt->subscriptions[i]);
+    mem_free(mqtt->subscriptions);
+    mem_free(mqtt->client_id);
+    mem_free(mqtt);
+}
+
+static counter *add_counter(struct counters *counters, const char *name, const char *source, const char *more, const char *type,
+                            const char *help)
+{
+    char *full = mem_printf("plantcast_source_%s{source=\"%s\"%s}", name, source, more);
+    counter *added = counters_add(counters, full, type, help);
+    mem_free(full);
+    return added;
+}
+
+static void add_counters(struct mqtt_source *mqtt, struct counters *counters)
+{
+    const char *id = mqtt->config->id, *messages = "messages from brokers";
+    mqtt->messages_ok = add_counter(counters, "messages_total", id, ",result=\"ok\"", "counter", messages);
+    mqtt->messages_refused = add_counter(counters, "messages_total", id, ",result=\"refused\"", "counter", messages);
+    mqtt->samples = add_counter(counters, "samples_total", id, "", "counter", "samples given by replays and brokers");
+    mqtt->connects = add_counter(counters, "connects_total", id, "", "counter", "connections made to field devices and brokers");
+    mqtt->up = add_counter(counters, "up", id, "", "gauge", "1 while readings come in");
+    mqtt->host = add_counter(counters, "host", id, "", "gauge", "which of its hosts readings come from, 1: the first; 0: from none");
+}
+
+/* Two programs must not have one id: the broker would end the connection of the other. */
+static char *make_client_id(const struct plant_source *config)
+{
+    unsigned random = 0;
+    if (config->mqtt.client_id)
+        return mem_strdup(config->mqtt.client_id);
+    (void)!getrandom(&random, sizeof(random), 0);
+    return mem_printf("plantcast-%08x", random);
+}
+
+static void add_topics(struct mqtt_source *mqtt)
+{
+    mqtt_topics_init(&mqtt->topics, mqtt->plant, mqtt->index);
+    mqtt->subscriptions = mem_array(mqtt->topics.count, sizeof(*mqtt->subscriptions));
+    for (size_t i = 0; i < mqtt->topics.count; i++)
+        mqtt->subscriptions[mqtt->subscription_count++] = mem_strdup(mqtt->topics.at[i].name);
+    log_info(mqtt->log, "source %s: %s:%d: %zu tags in %zu topics", mqtt->config->id, mqtt->config->hosts[0], mqtt->config->port,
+             mqtt->topics.tag_count, mqtt->topics.count);
+}
+
+static struct source *mqtt_start(struct log *log, const struct plant *plant, int source, struct store *store, struct counters *counters)
+{
+    struct mqtt_source *mqtt = mem_new(sizeof(*mqtt));
+    *mqtt = (struct mqtt_source){
+        .base.impl = &mqtt_impl, .log = log, .plant = plant, .config = &plant->sources[source], .index = source, .store = store
+    };
+    add_counters(mqtt, counters);
+    add_topics(mqtt);
+    mqtt_writer_init(&mqtt->writer, plant, store);
+    mqtt->client_id = make_client_id(mqtt->config);
+    mqtt->stop_fd = eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
+    mqtt->has_thread = mqtt->stop_fd >= 0 && pthread_create(&mqtt->thread, NULL, mqtt_main, mqtt) == 0;
+    if (mqtt->has_thread)
+        return &mqtt->base;
+    log_err(log, "source %s: no thread: %s", mqtt->config->id, strerror(errno));
+    mqtt_stop(&mqtt->base);
+    return NULL;
+}
+
+const struct source_impl mqtt_impl = { .kind = "mqtt", .start = mqtt_start, .stop = mqtt_stop };

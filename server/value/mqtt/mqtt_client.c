@@ -1,0 +1,272 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* libmosquitto, with our own poll instead of its loop: its select() cannot see descriptors above 1023. */
+#include "value/mqtt/mqtt_client.h"
+
+#include <errno.h>
+#include <mosquitto.h>
+#include <mqtt_protocol.h>
+#include <openssl/ssl.h>
+#include <poll.h>
+#include <pthread.h>
+#include <stdatomic.h>
+#include <stdio.h>
+#include <string.h>
+#include <sys/eventfd.h>
+#include <unistd.h>
+
+#include "base/clock.h"
+#include "base/mem.h"
+#include "value/lookup.h"
+
+enum { TOPICS_AT_ONCE = 8 };                      /* of one request; some brokers refuse more */
+enum { SESSION_KEPT_S = 7 * 86400 };              /* of a persistent session, by the broker */
+static const int64_t CHORES_NS = 500 * NS_PER_MS; /* how often the library looks at its keep-alive timer */
+
+struct mqtt_client {
+    struct mosquitto *library;
+    const struct plant_source *source;
+    const struct mqtt_client_events *events;
+    char *host;           /* the thread that connects may outlive the source */
+    int port, keepalive_s;
+    mosquitto_property *properties;
+    int done_fd;          /* readable once connecting has ended */
+    _Atomic int users;
+    _Atomic int status;   /* of connecting, by the library's numbers; errno_then goes with it */
+    int errno_then;
+    char said[160];       /* the last error that the library logged */
+    /* --- below: of the thread that serves */
+    int refusal;          /* why the broker refused us, else 0 */
+    char *const *topics;
+    size_t topic_count, acknowledged;
+    int *requests;        /* message ids of subscriptions, for TOPICS_AT_ONCE topics each */
+};
+
+static void client_unref(struct mqtt_client *client)
+{
+    if (atomic_fetch_sub(&client->users, 1) != 1)
+        return;
+    if (client->library)
+        mosquitto_destroy(client->library);
+    if (client->done_fd >= 0)
+        close(client->done_fd);
+    mosquitto_property_free_all(&client->properties);
+    mem_free(client->host);
+    mem_free(client->requests);
+    mem_free(client);
+}
+
+/* --- what the library calls ------------------------------------------------------------------------------------------------- */
+
+static void on_log(struct mosquitto *library, void *arg, int level, const char *line)
+{
+    struct mqtt_client *client = arg;
+    (void)library;
+    if (level == MOSQ_LOG_ERR)
+        snprintf(client->said, sizeof(client->said), "%s", line);
+}
+
+static void on_connect(struct mosquitto *library, void *arg, int refusal, int flags, const mosquitto_property *properties)
+{
+    struct mqtt_client *client = arg;
+    (void)library;
+    (void)properties;
+    client->refusal = refusal;
+    if (refusal == 0)
+        client->events->connected(client->events->arg, flags & 1);
+}
+
+static void on_message(struct mosquitto *library, void *arg, const struct mosquitto_message *message, const mosquitto_property *properties)
+{
+    struct mqtt_client *client = arg;
+    const struct mqtt_message ours = { .topic = message->topic,
+                                       .payload = message->payload,
+                                       .count = message->payloadlen > 0 ? (size_t)message->payloadlen : 0,
+                                       .is_retained = message->retain };
+    (void)library;
+    (void)properties;
+    client->events->message(client->events->arg, &ours);
+}
+
+static void on_subscribe(struct mosquitto *library, void *arg, int id, int count, const int *granted, const mosquitto_property *properties)
+{
+    struct mqtt_client *client = arg;
+    size_t request = 0, requests = (client->topic_count + TOPICS_AT_ONCE - 1) / TOPICS_AT_ONCE;
+    (void)library;
+    (void)properties;
+    while (request < requests && client->requests[request] != id)
+        request++;
+    if (request == requests)
+        return;
+    client->requests[request] = 0; /* acknowledged: no id of the library is 0 */
+    for (size_t i = 0, topic = request * TOPICS_AT_ONCE; i < TOPICS_AT_ONCE && topic < client->topic_count; i++, topic++) {
+        client->acknowledged++;
+        if ((int)i >= count || granted[i] >= 128)
+            client->events->topic_refused(client->events->arg, client->topics[topic]);
+    }
+    if (client->acknowledged == client->topic_count)
+        client->events->subscribed(client->events->arg);
+}
+
+/* --- making one ------------------------------------------------------------------------------------------------------------- */
+
+static void init_library(void)
+{
+    mosquitto_lib_init();
+}
+
+static mosquitto_property *connect_properties(const struct plant_mqtt *mqtt)
+{
+    mosquitto_property *properties = NULL;
+    if (mqtt->protocol != 5)
+        return NULL;
+    mosquitto_property_add_int32(&properties, MQTT_PROP_MAXIMUM_PACKET_SIZE, MQTT_MAX_PAYLOAD + 65536 + 64);
+    if (mqtt->persistent)
+        mosquitto_property_add_int32(&properties, MQTT_PROP_SESSION_EXPIRY_INTERVAL, SESSION_KEPT_S);
+    return properties;
+}
+
+static void *connect_main(void *arg)
+{
+    struct mqtt_client *client = arg;
+    int status = mosquitto_connect_bind_v5(client->library, client->host, client->port, client->keepalive_s, NULL, client->properties);
+    client->errno_then = errno;
+    client->status = status;
+    eventfd_write(client->done_fd, 1);
+    client_unref(client);
+    return NULL;
+}
+
+static bool prepare(struct mqtt_client *client, const char *id, char why[200])
+{
+    static pthread_once_t once = PTHREAD_ONCE_INIT;
+    const struct plant_mqtt *mqtt = &client->source->mqtt;
+    pthread_once(&once, init_library);
+    client->library = mosquitto_new(id, !mqtt->persistent, client);
+    if (!client->library) {
+        snprintf(why, 200, "the client id '%.60s' cannot be used: %s", id, strerror(errno));
+        return false;
+    }
+    mosquitto_int_option(client->library, MOSQ_OPT_PROTOCOL_VERSION, mqtt->protocol);
+    mosquitto_log_callback_set(client->library, on_log);
+    mosquitto_connect_v5_callback_set(client->library, on_connect);
+    mosquitto_message_v5_callback_set(client->library, on_message);
+    mosquitto_subscribe_v5_callback_set(client->library, on_subscribe);
+    return true;
+}
+
+struct mqtt_client *mqtt_client_start(const struct plant_source *source, int host, const char *id, const struct mqtt_client_events *events,
+                                      char why[200])
+{
+    pthread_t thread;
+    struct mqtt_client *client = mem_new(sizeof(*client));
+    *client = (struct mqtt_client){ .source = source, .events = events, .host = mem_strdup(source->hosts[host]), .port = source->port,
+                                    .keepalive_s = source->mqtt.keepalive_s, .properties = connect_properties(&source->mqtt), .users = 1 };
+    client->done_fd = eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
+    bool good = client->done_fd >= 0;
+    if (!good)
+        snprintf(why, 200, "eventfd: %s", strerror(errno));
+    good = good && prepare(client, id, why);
+    if (good) {
+        client->users = 2;
+        good = pthread_create(&thread, NULL, connect_main, client) == 0;
+        if (!good) {
+            client->users = 1;
+            snprintf(why, 200, "no thread");
+        }
+    }
+    if (good)
+        pthread_detach(thread);
+    else
+        mqtt_client_destroy(&client);
+    return client;
+}
+
+void mqtt_client_destroy(struct mqtt_client **client)
+{
+    struct mqtt_client *gone = *client;
+    *client = NULL;
+    if (!gone)
+        return;
+    if (gone->done_fd >= 0 && wait_for(gone->done_fd, POLLIN, -1, 0) == 0)
+        mosquitto_disconnect(gone->library); /* no thread of its own has it any more */
+    client_unref(gone);
+}
+
+/* --- serving ---------------------------------------------------------------------------------------------------------------- */
+
+/* What ended a connection, in words. Returns what mqtt_client_serve() returns. */
+static int explain(const struct mqtt_client *client, int status, int errno_then, char why[200])
+{
+    bool is_5 = client->source->mqtt.protocol == 5;
+    if (client->refusal)
+        snprintf(why, 200, "the broker refuses: %s%s",
+                 is_5 ? mosquitto_reason_string(client->refusal) : mosquitto_connack_string(client->refusal),
+                 is_5 && (client->refusal == MQTT_RC_UNSUPPORTED_PROTOCOL_VERSION || client->refusal == 1) ? "; try protocol: 3.1.1"
+                                                                                                            : "");
+    else if (*client->said)
+        snprintf(why, 200, "%s", client->said);
+    else
+        snprintf(why, 200, "%s", status == MOSQ_ERR_ERRNO && errno_then ? strerror(errno_then) : mosquitto_strerror(status));
+    return -ECONNRESET;
+}
+
+int mqtt_client_wait(struct mqtt_client *client, int stop_fd, int64_t deadline_mono_ns, char why[200])
+{
+    int status = wait_for(client->done_fd, POLLIN, stop_fd, deadline_mono_ns);
+    if (status == -ETIMEDOUT)
+        snprintf(why, 200, "%s", strerror(ETIMEDOUT));
+    if (status)
+        return status;
+    return client->status == MOSQ_ERR_SUCCESS ? 0 : explain(client, client->status, client->errno_then, why);
+}
+
+/* TLS may hold more than the socket shows. */
+static bool holds_more(struct mqtt_client *client)
+{
+    SSL *tls = mosquitto_ssl_get(client->library);
+    return tls && SSL_pending(tls) > 0;
+}
+
+static int receive(struct mqtt_client *client)
+{
+    int status;
+    do
+        status = mosquitto_loop_read(client->library, 1);
+    while (status == MOSQ_ERR_SUCCESS && mosquitto_socket(client->library) >= 0 && holds_more(client));
+    return status;
+}
+
+int mqtt_client_serve(struct mqtt_client *client, int stop_fd, int64_t deadline_mono_ns, char why[200])
+{
+    int fd = mosquitto_socket(client->library);
+    if (fd < 0)
+        return explain(client, MOSQ_ERR_CONN_LOST, 0, why);
+    int64_t chores_ns = clock_mono_ns() + CHORES_NS;
+    int ready = wait_for(fd, (short)(POLLIN | (mosquitto_want_write(client->library) ? POLLOUT : 0)), stop_fd,
+                         chores_ns < deadline_mono_ns ? chores_ns : deadline_mono_ns);
+    if (ready == -ECANCELED)
+        return ready;
+    int status = MOSQ_ERR_SUCCESS;
+    errno = 0;
+    if (ready == 0)
+        status = receive(client);
+    if (status == MOSQ_ERR_SUCCESS && mosquitto_want_write(client->library))
+        status = mosquitto_loop_write(client->library, 1);
+    if (status == MOSQ_ERR_SUCCESS)
+        status = mosquitto_loop_misc(client->library);
+    return status == MOSQ_ERR_SUCCESS ? 0 : explain(client, status, errno, why);
+}
+
+bool mqtt_client_subscribe(struct mqtt_client *client, char *const *topics, size_t count)
+{
+    int status = MOSQ_ERR_SUCCESS;
+    client->topics = topics;
+    client->topic_count = count;
+    client->requests = mem_array(count / TOPICS_AT_ONCE + 1, sizeof(*client->requests));
+    for (size_t first = 0; first < count && status == MOSQ_ERR_SUCCESS; first += TOPICS_AT_ONCE) {
+        int some = count - first < TOPICS_AT_ONCE ? (int)(count - first) : TOPICS_AT_ONCE;
+        status = mosquitto_subscribe_multiple(client->library, &client->requests[first / TOPICS_AT_ONCE], some, (char *const *)(topics + first),
+                                              client->source->mqtt.qos, 0, NULL);
+    }
+    return status == MOSQ_ERR_SUCCESS;
+}

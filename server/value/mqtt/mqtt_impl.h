@@ -1,0 +1,46 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* An MQTT source, as its files share it: one thread with one connection. Private to value/mqtt/. Thread: the source's own. */
+#ifndef VALUE_MQTT_IMPL_H
+#define VALUE_MQTT_IMPL_H
+#include <pthread.h>
+
+#include "value/backoff.h"
+#include "value/mqtt/mqtt_client.h"
+#include "value/mqtt/mqtt_topics.h"
+#include "value/mqtt/mqtt_writer.h"
+#include "value/source_impl.h"
+
+struct mqtt_source {
+    struct source base;
+    struct log *log;
+    const struct plant *plant;
+    const struct plant_source *config;
+    int index;
+    struct store *store;
+    counter *messages_ok, *messages_refused, *samples, *connects, *up, *host;
+    int stop_fd;
+    pthread_t thread;
+    bool has_thread;
+    char *client_id;
+    /* --- below: used by the source's thread only */
+    struct mqtt_topics topics;
+    struct mqtt_writer writer;
+    char **subscriptions;
+    size_t subscription_count;
+    struct mqtt_client *client;
+    int host_index;              /* of the host that is being tried */
+    int hosts_tried;             /* one after the other, without a session */
+    struct backoff backoff;
+    bool link_up, link_known;
+    bool subscribed;             /* what comes now was published now, unless it says otherwise */
+    int64_t refusal_said_ns;     /* when a refusal was logged last; 0: never */
+    long refusals_unsaid;
+    int64_t skew_said_ns[2];     /* likewise of clocks that are behind, ahead */
+};
+
+/* Handles a message for the source's tags: refuses it, with words in the log, or writes its values. */
+void mqtt_take_message(struct mqtt_source *mqtt, const struct mqtt_message *message);
+/* Counts a message that is refused and logs it, at most once a second. */
+void mqtt_refuse(struct mqtt_source *mqtt, const struct mqtt_message *message, const char *why);
+
+#endif

@@ -1,0 +1,145 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Numbers as text, and paths walked through JSON. */
+#include "value/mqtt/mqtt_payload.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+#include <strings.h>
+
+#include "base/timestamp.h"
+#include "plant/json_path.h"
+#include "plant/number.h"
+#include "value/quality.h"
+
+enum { NUMBER_BYTES = 64 };
+
+/* --- text ------------------------------------------------------------------------------------------------------------------- */
+
+static bool number_of(const char *text, double *out)
+{
+    bool is_true = !strcasecmp(text, "true"), is_false = !strcasecmp(text, "false");
+    if (is_true || is_false)
+        *out = is_true;
+    return is_true || is_false || number_parse(text, out) == NUMBER_GOOD;
+}
+
+bool mqtt_number_read(const void *bytes, size_t count, double *out)
+{
+    const char *at = bytes;
+    char text[NUMBER_BYTES];
+    while (count > 0 && memchr(" \t\r\n", *at, 4)) {
+        at++;
+        count--;
+    }
+    while (count > 0 && memchr(" \t\r\n", at[count - 1], 4))
+        count--;
+    if (count == 0 || count >= sizeof(text) || memchr(at, 0, count))
+        return false;
+    memcpy(text, at, count);
+    text[count] = 0;
+    return number_of(text, out);
+}
+
+/* --- JSON ------------------------------------------------------------------------------------------------------------------- */
+
+json_t *mqtt_json_parse(const void *bytes, size_t count, char why[200])
+{
+    json_error_t error;
+    json_t *root = json_loadb(bytes, count, JSON_DECODE_ANY | JSON_DECODE_INT_AS_REAL, &error);
+    if (!root)
+        snprintf(why, 200, "no JSON: %.150s", error.text);
+    return root;
+}
+
+static const json_t *find(const json_t *root, const char *path)
+{
+    struct json_path_step step;
+    for (const char *at = json_path_begin(path); root && *at;) {
+        if (!json_path_next(&at, &step))
+            return NULL;
+        root = step.name ? json_object_getn(root, step.name, step.length) : json_array_get(root, step.index);
+    }
+    return root;
+}
+
+static bool read_number(const json_t *json, double *out)
+{
+    if (json_is_boolean(json))
+        *out = json_is_true(json);
+    else if (json_is_number(json))
+        *out = json_number_value(json);
+    else
+        return json_is_string(json) && number_of(json_string_value(json), out);
+    return isfinite(*out);
+}
+
+/* Seconds, milliseconds, microseconds or nanoseconds since 1970: which one, the size of the number says, from 1973 to 5138. */
+static bool read_epoch(double number, int64_t *utc_ns)
+{
+    static const double SECONDS_LOW = 1e8, SECONDS_HIGH = 1e11;
+    double scale_ns = 1e9;
+    for (double high = SECONDS_HIGH; number >= high && scale_ns > 1; high *= 1000)
+        scale_ns /= 1000;
+    bool good = number >= SECONDS_LOW && number * scale_ns < 9e18;
+    if (good)
+        *utc_ns = (int64_t)(number * scale_ns);
+    return good;
+}
+
+static bool read_time(const json_t *json, int64_t *utc_ns)
+{
+    int64_t t_us;
+    double number;
+    if (json_is_string(json) && strchr(json_string_value(json), 'T') && timestamp_parse(json_string_value(json), 0, &t_us)) {
+        *utc_ns = t_us < INT64_MAX / 1000 && t_us > 0 ? t_us * 1000 : 0;
+        return *utc_ns != 0;
+    }
+    return !json_is_boolean(json) && read_number(json, &number) && read_epoch(number, utc_ns);
+}
+
+/* An OPC UA status code, or a word that begins with its severity. What cannot be read is Uncertain. */
+static uint32_t read_quality(const json_t *json)
+{
+    static const struct {
+        const char *word;
+        uint32_t quality;
+    } words[] = { { "good", QUALITY_GOOD }, { "ok", QUALITY_GOOD }, { "bad", QUALITY_BAD } };
+    double number;
+    for (size_t i = 0; json_is_string(json) && i < sizeof(words) / sizeof(*words); i++)
+        if (!strncasecmp(json_string_value(json), words[i].word, strlen(words[i].word)))
+            return words[i].quality;
+    if (json_is_boolean(json))
+        return json_is_true(json) ? QUALITY_GOOD : QUALITY_BAD;
+    bool is_code = read_number(json, &number) && (number == 0 || (number >= 65536 && number <= UINT32_MAX));
+    return is_code ? (uint32_t)number : QUALITY_UNCERTAIN;
+}
+
+/* Of a payload that says nothing else: itself, or its member `value`. */
+static const json_t *value_of(const json_t *root, const struct plant_mqtt *mqtt, const char *path)
+{
+    if (*path || mqtt->value)
+        return find(root, *path ? path : mqtt->value);
+    return json_is_object(root) ? json_object_get(root, "value") : root;
+}
+
+enum mqtt_found mqtt_json_read(const json_t *root, const struct plant_mqtt *mqtt, const char *path, struct mqtt_value *out, char why[200])
+{
+    const json_t *value = value_of(root, mqtt, path), *time = mqtt->time ? find(root, mqtt->time) : NULL;
+    const json_t *quality = mqtt->quality ? find(root, mqtt->quality) : NULL;
+    *out = (struct mqtt_value){ .quality = QUALITY_GOOD };
+    if (!value)
+        return MQTT_ABSENT;
+    if (mqtt->time && (!time || !read_time(time, &out->utc_ns))) {
+        snprintf(why, 200, "%.60s holds no time", mqtt->time);
+        return MQTT_WRONG;
+    }
+    if (mqtt->quality)
+        out->quality = quality ? read_quality(quality) : QUALITY_UNCERTAIN;
+    if (json_is_null(value) && !quality_is_bad(out->quality))
+        out->quality = QUALITY_BAD_SENSOR_FAILURE;
+    if (quality_is_bad(out->quality) || read_number(value, &out->value))
+        return MQTT_FOUND;
+    snprintf(why, 200, "%.60s is no number", *path ? path : mqtt->value ? mqtt->value : "the value");
+    return MQTT_WRONG;
+}

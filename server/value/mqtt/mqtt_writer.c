@@ -1,0 +1,69 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Readings of one time are written together. */
+#include "value/mqtt/mqtt_writer.h"
+
+#include <stdlib.h>
+
+#include "base/mem.h"
+#include "value/decode.h"
+#include "value/quality.h"
+
+void mqtt_writer_init(struct mqtt_writer *writer, const struct plant *plant, struct store *store)
+{
+    *writer = (struct mqtt_writer){ .store = store, .plant = plant };
+    writer->samples = mem_array(plant->tag_count, sizeof(*writer->samples));
+}
+
+void mqtt_writer_finish(struct mqtt_writer *writer)
+{
+    mem_free(writer->samples);
+    *writer = (struct mqtt_writer){ 0 };
+}
+
+void mqtt_writer_begin(struct mqtt_writer *writer, int64_t now_mono_ns, int64_t now_utc_ns)
+{
+    writer->mono_ns = now_mono_ns;
+    writer->utc_ns = writer->at_utc_ns = now_utc_ns;
+    writer->worst_skew_ns = 0;
+    writer->written = 0;
+}
+
+void mqtt_writer_end(struct mqtt_writer *writer)
+{
+    int64_t age_ns = writer->utc_ns - writer->at_utc_ns;
+    if (writer->count > 0)
+        store_write(writer->store, writer->samples, writer->count, writer->mono_ns - age_ns, writer->at_utc_ns);
+    writer->written += writer->count;
+    writer->count = 0;
+}
+
+/* One sample of each tag at most fits a batch. */
+static void add(struct mqtt_writer *writer, const struct sample *sample, int64_t utc_ns)
+{
+    if (utc_ns != writer->at_utc_ns || writer->count == writer->plant->tag_count)
+        mqtt_writer_end(writer);
+    writer->at_utc_ns = utc_ns;
+    writer->samples[writer->count++] = *sample;
+}
+
+void mqtt_writer_add(struct mqtt_writer *writer, int tag, const struct mqtt_value *value, bool was_kept)
+{
+    struct sample sample = { .tag = tag, .quality = value->quality };
+    int64_t utc_ns = value->utc_ns ? value->utc_ns : writer->utc_ns;
+    if (llabs(utc_ns - writer->utc_ns) > llabs(writer->worst_skew_ns) && !was_kept)
+        writer->worst_skew_ns = utc_ns - writer->utc_ns;
+    if (!quality_is_bad(value->quality)) {
+        decode_number(&writer->plant->tags[tag], value->value, &sample);
+        if (value->quality >> 30 > sample.quality >> 30)
+            sample.quality = value->quality;
+        if (was_kept && quality_is_good(sample.quality))
+            sample.quality = QUALITY_UNCERTAIN_LAST_USABLE;
+    }
+    add(writer, &sample, utc_ns < writer->utc_ns ? utc_ns : writer->utc_ns);
+}
+
+void mqtt_writer_add_bad(struct mqtt_writer *writer, int tag, uint32_t quality)
+{
+    const struct sample sample = { .tag = tag, .quality = quality };
+    add(writer, &sample, writer->utc_ns);
+}

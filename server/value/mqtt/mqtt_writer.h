@@ -1,0 +1,30 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Brings readings to the store, each at the time that its sender states. Thread: one. */
+#ifndef VALUE_MQTT_WRITER_H
+#define VALUE_MQTT_WRITER_H
+#include "value/mqtt/mqtt_payload.h"
+#include "value/store.h"
+
+struct mqtt_writer {
+    struct store *store;
+    const struct plant *plant;
+    int64_t mono_ns, utc_ns; /* now: of the message that is being read */
+    int64_t worst_skew_ns;   /* of a time that was stated in it, against ours: > 0 is ahead. 0: none */
+    size_t written;          /* readings of it */
+    struct sample *samples;  /* of one time, not written yet; room for all tags */
+    size_t count;
+    int64_t at_utc_ns;       /* their time */
+};
+
+void mqtt_writer_init(struct mqtt_writer *writer, const struct plant *plant, struct store *store);
+void mqtt_writer_finish(struct mqtt_writer *writer);
+/* Begins a message that has arrived now. */
+void mqtt_writer_begin(struct mqtt_writer *writer, int64_t now_mono_ns, int64_t now_utc_ns);
+/* Takes the value that the message holds for a tag, before scaling. was_kept: the broker kept it, and it may have changed since: it is
+   Uncertain_LastUsableValue at best. A time ahead of ours is taken for now. */
+void mqtt_writer_add(struct mqtt_writer *writer, int tag, const struct mqtt_value *value, bool was_kept);
+/* Takes a quality in place of a value. */
+void mqtt_writer_add_bad(struct mqtt_writer *writer, int tag, uint32_t quality);
+void mqtt_writer_end(struct mqtt_writer *writer); /* writes what is left */
+
+#endif

@@ -1,0 +1,211 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Sources of type mqtt, against Debian's mosquitto: numbers and JSON, times and qualities that are stated, retained values, a broker that
+// is killed, frozen and started again, and payloads that are none.
+import assert from 'node:assert/strict';
+import { writeFileSync } from 'node:fs';
+import { join } from 'node:path';
+import { after, afterEach, before, test } from 'node:test';
+import { Broker, missingBroker } from './support/broker.mjs';
+import { missing, runProgram, TinyPlant } from './support/tiny_plant.mjs';
+
+const absent = missing();
+const options = { skip: absent.length > 0 ? `not built: ${absent.join(', ')}` : missingBroker() ?? false, timeout: 120000 };
+const sleep = (ms) => new Promise((done) => setTimeout(done, ms));
+const HEAD = 'Tag Name,Address,Data Type,Eng Units,Group,Asset,X,Y,Z,Stale s,Scaling,Raw Low,Raw High,Scaled Low,Scaled High';
+const TAGS = {
+    number: ['TI-1,plant/ti1,,°C,temperature,E-101,0.5,0,0,30,,,,,', 'TI-2,,,°C,temperature,E-101,-0.5,0,0,2,,,,,',
+        'PI-1,,,bar,pressure,P-101A,3,0,0.5,30,Linear,0,27648,0,10', 'XS-1,plant/xs1,bool,,,,,,,30,,,,,'],
+    json: ['TI-1,line/temps#left.v[1],,°C,temperature,E-101,0.5,0,0,30,,,,,', 'TI-2,line/temps#right,,°C,temperature,E-101,-0.5,0,0,30,,,,,',
+        'PI-1,,,bar,pressure,P-101A,3,0,0.5,30,,,,,'],
+};
+let broker, plant, publisher;
+
+// A plant of which nothing is prepared but once: the source's keys and the tag list are written anew.
+function write(keys, tags) {
+    const yaml = `plant: { name: Two boxes }
+assets:
+  - { id: E-101, model: box.gltf }
+  - { id: P-101A, model: box.gltf, placement: { translate: [3, 0, 0] } }
+groups:
+  - { id: temperature, quantity: Temperature, unit: °C, min: 0, max: 100 }
+  - { id: pressure, quantity: Pressure, unit: bar, min: 0, max: 10, distance: euclidean }
+sources:
+  - { id: broker, type: mqtt, host: 127.0.0.1, port: ${broker.port}, ${keys} }
+tags: tags.csv
+`;
+    writeFileSync(plant.file, yaml);
+    writeFileSync(join(plant.folder, 'tags.csv'), `${[HEAD, ...tags].join('\n')}\n`);
+}
+
+async function run(keys, tags) {
+    write(keys, tags);
+    const prepared = plant.prepare();
+    assert.equal(prepared.code, 0, prepared.err);
+    await plant.startDaemon();
+    await plant.daemon.line(/source broker: .*: reading/, 15000);
+}
+
+before(async () => {
+    if (options.skip)
+        return;
+    broker = await Broker.start();
+    plant = await TinyPlant.create();
+});
+afterEach(async () => {
+    await plant?.daemon?.stop();
+    publisher?.end(true);
+    publisher = null;
+    await broker?.restart();
+});
+after(async () => {
+    await plant?.destroy();
+    await broker?.destroy();
+});
+
+async function tags() {
+    const { tags: all } = await (await fetch(`http://127.0.0.1:${plant.port}/api/v1/tags`)).json();
+    return Object.fromEntries(all.map((tag) => [tag.name, tag]));
+}
+
+// Until the tag is as said; { quality_name, value } of it that matter.
+async function until(name, wanted, seconds = 10) {
+    for (const end = performance.now() + seconds * 1000; ; await sleep(20)) {
+        const tag = (await tags())[name];
+        if (Object.entries(wanted).every(([key, value]) => (typeof value === 'function' ? value(tag[key]) : tag[key] === value)))
+            return tag;
+        assert.ok(performance.now() < end, `${name} is ${JSON.stringify(tag)}, wanted ${JSON.stringify(wanted)}`);
+    }
+}
+
+const good = { quality_name: 'Good' };
+const metric = async (name) => {
+    const text = await (await fetch(`http://127.0.0.1:${plant.port}/metrics`)).text();
+    return Number(text.split('\n').find((line) => line.startsWith(`plantcast_source_${name}`))?.split(' ').at(-1));
+};
+
+test('numbers come to the tags of their topics, scaled, and as old as they are', options, async () => {
+    await run('topic: "plant/{asset}/{tag}"', TAGS.number);
+    publisher = await broker.client();
+    await publisher.tell('plant/ti1', '21.5');
+    await publisher.tell('plant/E-101/TI-2', ' -3e1\n', { qos: 0 });
+    await publisher.tell('plant/P-101A/PI-1', 13824);
+    await publisher.tell('plant/xs1', 'true');
+    await until('TI-1', { ...good, value: 21.5 });
+    await until('TI-2', { ...good, value: -30 });
+    await until('PI-1', { ...good, value: 5 });
+    await until('XS-1', { ...good, value: 1 });
+    await until('TI-2', { quality_name: 'Bad_CommunicationError' }); // stale after 2 s
+    await until('TI-1', good);
+    for (const [name, value] of [['messages_total{source="broker",result="ok"}', 4], ['messages_total{source="broker",result="refused"}', 0],
+        ['samples_total{source="broker"}', 4], ['connects_total{source="broker"}', 1], ['up{source="broker"}', 1]])
+        assert.equal(await metric(name), value, name);
+});
+
+test('a value that the broker has kept is never shown as fresh', options, async () => {
+    publisher = await broker.client();
+    await publisher.tell('plant/ti1', '21.5', { retain: true });
+    await run('topic: "plant/{asset}/{tag}", protocol: 3.1.1', TAGS.number);
+    await until('TI-1', { quality_name: 'Uncertain_LastUsableValue', value: 21.5 });
+    await publisher.tell('plant/ti1', '21.5', { retain: true });
+    await until('TI-1', { ...good, value: 21.5 });
+    await publisher.tell('plant/ti1', '', { retain: true });
+    await until('TI-1', { quality_name: 'Bad_ConfigurationError' });
+});
+
+for (const protocol of ['5', '3.1.1'])
+    test(`all tags are Bad as soon as the broker is gone, and come back with their next values (${protocol})`, options, async () => {
+        await run(`topic: "plant/{asset}/{tag}", protocol: ${protocol}, keepalive_s: 5`, TAGS.number);
+        publisher = await broker.client({ reconnectPeriod: 100 });
+        await publisher.tell('plant/ti1', 20);
+        await until('TI-1', { ...good, value: 20 });
+        await broker.kill();
+        const killed = performance.now();
+        await until('TI-1', { quality_name: 'Bad_CommunicationError', value: null }, 1);
+        await until('PI-1', { quality_name: 'Bad_NoCommunication' }, 1);
+        assert.ok(performance.now() - killed < 1000, 'at once');
+        assert.equal(await metric('up{source="broker"}'), 0);
+        await broker.restart();
+        for (const end = performance.now() + 20000; await metric('up{source="broker"}') !== 1; await sleep(100))
+            assert.ok(performance.now() < end, 'connected again');
+        await until('TI-1', { quality_name: 'Bad_CommunicationError' }, 1); // the broker being there says nothing of the value
+        await publisher.tell('plant/ti1', 20);
+        await until('TI-1', { ...good, value: 20 }, 20);
+        broker.freeze();
+        await until('TI-1', { quality_name: 'Bad_CommunicationError' }, 20);
+        broker.thaw();
+        await plant.daemon.line(/no readings[^]*reading[^]*no readings[^]*reading/, 20000);
+    });
+
+test('JSON: by path, with the time and the quality that it states', options, async () => {
+    await run('payload: json, topic: "plant/{tag}", time: meta.ts, quality: meta.q', TAGS.json);
+    publisher = await broker.client();
+    const at = (ms, q = 0) => ({ ts: Date.now() + ms, q });
+    await publisher.tell('line/temps', { left: { v: [1, 40.5] }, right: '17.25', meta: at(-3000) });
+    await publisher.tell('plant/PI-1', { value: 4, meta: { ts: new Date().toISOString(), q: 'good' } });
+    const left = await until('TI-1', { ...good, value: 40.5 });
+    assert.ok(left.age_ms >= 3000 && left.age_ms < 9000, `${left.age_ms} ms`);
+    await until('TI-2', { ...good, value: 17.25 });
+    await until('PI-1', { ...good, value: 4 });
+    await publisher.tell('line/temps', { right: 18, meta: at(0, 0x40930000) }); // nothing of the left one
+    await until('TI-2', { quality_name: 'Uncertain_SensorNotAccurate', value: 18 });
+    await until('TI-1', { ...good, value: 40.5 });
+    await publisher.tell('line/temps', { right: 99, meta: at(-60000) }); // older than what is there
+    await publisher.tell('line/temps', { left: { v: [1, null] }, right: 19, meta: at(0) });
+    await until('TI-1', { quality_name: 'Bad_SensorFailure' });
+    await until('TI-2', { ...good, value: 19 });
+    await publisher.tell('line/temps', { left: { v: [1, 5] }, right: 'broken', meta: at(0) });
+    await until('TI-2', { quality_name: 'Bad_ConfigurationError' });
+    await until('TI-1', { ...good, value: 5 });
+    await publisher.tell('line/temps', { left: { v: [1, 5] }, right: 21 }); // without its time
+    await until('TI-1', { quality_name: 'Bad_ConfigurationError' });
+    await publisher.tell('line/temps', { left: { v: [1, 5] }, right: 21, meta: at(3600000) });
+    await plant.daemon.line(/line\/temps: its times are \d+\.\d s ahead of this machine's clock/);
+    assert.ok((await until('TI-2', { ...good, value: 21 })).age_ms < 9000);
+});
+
+test('a persistent session brings what was published meanwhile, as old as it is', options, async () => {
+    const keys = 'payload: json, topic: "plant/{tag}", time: ts, session: persistent, client_id: plantcast-test';
+    await run(keys, TAGS.json);
+    publisher = await broker.client();
+    await publisher.tell('plant/PI-1', { value: 1, ts: Date.now() });
+    await until('PI-1', { ...good, value: 1 });
+    await plant.daemon.stop();
+    await publisher.tell('plant/PI-1', { value: 2, ts: Date.now() });
+    await sleep(1500);
+    await run(keys, TAGS.json);
+    assert.ok((await until('PI-1', { ...good, value: 2 })).age_ms >= 1500);
+});
+
+test('payloads that are none are refused by name, and nothing else suffers', options, async () => {
+    await run('topic: "plant/{asset}/{tag}", protocol: 3.1.1', TAGS.number);
+    publisher = await broker.client();
+    await publisher.tell('plant/xs1', 1);
+    await publisher.tell('plant/ti1', 20);
+    await until('TI-1', good);
+    for (const wrong of ['warm', '21.5 C', 'NaN', '1e999', '', Buffer.from([0, 1, 2, 255]), '1'.repeat(1000), Buffer.alloc(100 << 20, '1')]) {
+        await publisher.tell('plant/ti1', wrong);
+        await until('TI-1', { quality_name: 'Bad_ConfigurationError' }, 60);
+        await publisher.tell('plant/ti1', 20);
+        await until('TI-1', good);
+    }
+    await plant.daemon.line(/plant\/ti1: 4 bytes are refused: expected one number/);
+    await plant.daemon.line(/plant\/ti1: 104857600 bytes are refused: too long/);
+    await until('XS-1', { ...good, value: 1 });
+});
+
+test('what cannot be is said of the plant file', options, async () => {
+    const said = (keys, rows) => {
+        write(keys, rows);
+        const { code, err } = runProgram('plantcastd', ['--check', plant.file]);
+        assert.equal(code, 1, err);
+        return err;
+    };
+    assert.match(said('payload: json, value: "a..b"', TAGS.number), /plant\.yaml:9:\d+: error: value: 'a\.\.b': expected a path/);
+    assert.match(said('time: ts', TAGS.number), /time: has no meaning without payload: json/);
+    assert.match(said('session: persistent', TAGS.number), /would look fresh[^]*needs client_id/);
+    assert.match(said('topic: "plant/+/{tag}"', TAGS.number), /topic: 'plant\/\+\/\{tag\}': \+ and # stand for many topics/);
+    assert.match(said('topic: "plant/{name}"', TAGS.number), /expected \{tag\}, \{asset\}, \{group\} or \{address\}/);
+    assert.match(said('qos: 1', TAGS.number), /tags\.csv:3:6: error: Address: '': expected a topic, or a key topic in the source/);
+    assert.match(said('topic: "a/{tag}"', [TAGS.json[0]]), /a path behind # has no meaning for payload: number/);
+    assert.match(said('baud: 9600', TAGS.number), /baud: has no meaning for an mqtt source/);
+});
