@@ -96,8 +96,8 @@ test('numbers come to the tags of their topics, scaled, and as old as they are',
     await until('XS-1', { ...good, value: 1 });
     await until('TI-2', { quality_name: 'Bad_CommunicationError' }); // stale after 2 s
     await until('TI-1', good);
-    for (const [name, value] of [['messages_total{source="broker",result="ok"}', 4], ['messages_total{source="broker",result="refused"}', 0],
-        ['samples_total{source="broker"}', 4], ['connects_total{source="broker"}', 1], ['up{source="broker"}', 1]])
+    for (const [name, value] of [['messages_total{source="broker",result="ok"}', 4],
+        ['messages_total{source="broker",result="refused"}', 0], ['samples_total{source="broker"}', 4], ['connects_total{source="broker"}', 1], ['up{source="broker"}', 1]])
         assert.equal(await metric(name), value, name);
 });
 
@@ -182,7 +182,8 @@ test('payloads that are none are refused by name, and nothing else suffers', opt
     await publisher.tell('plant/xs1', 1);
     await publisher.tell('plant/ti1', 20);
     await until('TI-1', good);
-    for (const wrong of ['warm', '21.5 C', 'NaN', '1e999', '', Buffer.from([0, 1, 2, 255]), '1'.repeat(1000), Buffer.alloc(100 << 20, '1')]) {
+    const bytes = [Buffer.from([0, 1, 2, 255]), Buffer.alloc(100 << 20, '1')];
+    for (const wrong of ['warm', '21.5 C', 'NaN', '1e999', '', '1'.repeat(1000), ...bytes]) {
         await publisher.tell('plant/ti1', wrong);
         await until('TI-1', { quality_name: 'Bad_ConfigurationError' }, 60);
         await publisher.tell('plant/ti1', 20);
