@@ -173,9 +173,34 @@ static void test_equally_near_ones_go_by_number(void **state)
     trimesh_finish(&mesh);
 }
 
+/* Along a side of a triangle and beside it: but for rounding they would never meet, and rounding puts them anywhere. */
+static void test_a_parallel_segment_crosses_nothing(void **state)
+{
+    size_t crossed = 0;
+    (void)state;
+    for (int n = 0; n < 100000; n++) {
+        double corners[3][3], p[3], q[3], place[3], weights[3], t;
+        for (int i = 0; i < 9; i++)
+            corners[i / 3][i % 3] = between(-1, 1);
+        vec_mix(corners[0], corners[1], between(-0.5, 0.5), p);
+        vec_mix(corners[0], corners[1], between(0.5, 1.5), q);
+        vec_mix(corners[0], corners[2], -0.2, place);
+        for (int axis = 0; axis < 3; axis++) {
+            p[axis] += place[axis] - corners[0][axis];
+            q[axis] += place[axis] - corners[0][axis];
+        }
+        crossed += triangle_crossed(p, q, corners[0], corners[1], corners[2], &t, weights);
+    }
+    assert_int_equal(crossed, 0);
+}
+
 int main(void)
 {
-    const struct CMUnitTest tests[] = { cmocka_unit_test(test_finds_the_nearest), cmocka_unit_test(test_equally_near_ones_go_by_number) };
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_finds_the_nearest),
+        cmocka_unit_test(test_equally_near_ones_go_by_number),
+        cmocka_unit_test(test_a_parallel_segment_crosses_nothing),
+    };
     cmocka_set_message_output(CM_OUTPUT_TAP);
     return cmocka_run_group_tests(tests, set_up, NULL);
 }

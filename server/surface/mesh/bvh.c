@@ -10,6 +10,7 @@
 
 #define LEAF_TRIS 4u
 #define STACK_NODES 128
+#define SAME_PLACE 1e-6 /* of the longest side: where a segment is parallel to a triangle, rounding decides where their planes meet */
 
 static void box_of(const struct bvh *bvh, uint32_t first, uint32_t count, double low[3], double high[3])
 {
@@ -159,9 +160,14 @@ static bool line_meets(const double p[3], const double direction[3], const doubl
 bool triangle_crossed(const double p[3], const double q[3], const double a[3], const double b[3], const double c[3], double *t,
                       double weights[3])
 {
-    double direction[3];
+    double direction[3], at[3], place[3];
     vec_sub(q, p, direction);
-    return line_meets(p, direction, a, b, c, t, weights) && *t >= 0 && *t <= 1;
+    if (!line_meets(p, direction, a, b, c, t, weights) || *t < 0 || *t > 1)
+        return false;
+    vec_mix(p, q, *t, at);
+    for (int axis = 0; axis < 3; axis++)
+        place[axis] = weights[0] * a[axis] + weights[1] * b[axis] + weights[2] * c[axis];
+    return vec_distance(at, place) <= SAME_PLACE * max_of(vec_length(direction), max_of(vec_distance(a, b), vec_distance(a, c)));
 }
 
 static bool box_meets_ray(const struct bvh_node *node, const double origin[3], const double inverse[3])

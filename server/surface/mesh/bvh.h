@@ -37,7 +37,7 @@ void bvh_ray(const struct bvh *bvh, const double origin[3], const double directi
              void *arg);
 
 /* Computes where the segment from p to q passes through a triangle: its fraction t (0..1) and the barycentric weights. Returns false if it
-   does not. */
+   does not, or is parallel to the triangle but for rounding. */
 bool triangle_crossed(const double p[3], const double q[3], const double a[3], const double b[3], const double c[3], double *t,
                       double weights[3]);
 
