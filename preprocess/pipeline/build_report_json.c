@@ -4,7 +4,7 @@
 
 #include <math.h>
 
-enum kind { COUNT32, COUNT, WHOLE, METRES /* double */, SHARE /* float */ };
+enum kind { COUNT32, COUNT, WHOLE, METRES /* double; not a number: null */, SHARE /* float */ };
 
 struct number {
     const char *name;
@@ -96,7 +96,7 @@ static json_t *to_json(const struct number *number, const void *object)
     case COUNT: return json_integer((json_int_t) * (const size_t *)at);
     case WHOLE: return json_integer(*(const int *)at);
     case SHARE: return json_real(isfinite(*(const float *)at) ? (double)*(const float *)at : -1);
-    default: return json_real(isfinite(*(const double *)at) ? *(const double *)at : -1);
+    default: return isnan(*(const double *)at) ? json_null() : json_real(isfinite(*(const double *)at) ? *(const double *)at : -1);
     }
 }
 
@@ -113,14 +113,15 @@ static bool all_from_json(const struct number *numbers, const json_t *from, void
     for (; numbers->name; numbers++) {
         const json_t *value = json_object_get(from, numbers->name);
         char *at = (char *)object + numbers->at;
-        if (!json_is_number(value) || (numbers->kind != SHARE && numbers->kind != METRES && json_integer_value(value) < 0))
+        bool is_null = numbers->kind == METRES && json_is_null(value);
+        if ((!json_is_number(value) && !is_null) || (numbers->kind != SHARE && numbers->kind != METRES && json_integer_value(value) < 0))
             return false;
         switch (numbers->kind) {
         case COUNT32: *(uint32_t *)at = (uint32_t)json_integer_value(value); break;
         case COUNT: *(size_t *)at = (size_t)json_integer_value(value); break;
         case WHOLE: *(int *)at = (int)json_integer_value(value); break;
         case SHARE: *(float *)at = (float)json_number_value(value); break;
-        default: *(double *)at = json_number_value(value); break;
+        default: *(double *)at = is_null ? (double)NAN : json_number_value(value); break;
         }
     }
     return true;

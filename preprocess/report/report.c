@@ -2,6 +2,7 @@
 /* The report as text: what is worth a look first, then tables. */
 #include "preprocess/report/report.h"
 
+#include <math.h>
 #include <stdlib.h>
 
 #include "base/mem.h"
@@ -102,9 +103,13 @@ static void print_surfaces(const struct text_report *report)
         text_table_add(&table, "%s", NUMBER(s->hidden_vertices));
         text_table_add(&table, "%s", NUMBER(asset->report.unreachable_vertices));
         text_table_add(&table, "%s", NUMBER(s->repeated_triangles));
-        text_table_add(&table, "%.2f", 100 * s->heat_disagreement);
+        if (isnan(s->heat_disagreement))
+            text_table_add(&table, "%s", "-");
+        else
+            text_table_add(&table, "%.2f", 100 * s->heat_disagreement);
     }
-    print(report, "Surfaces of assets with sensors, before > after bridging (differ: the two ways to find distances)", &table);
+    print(report, "Surfaces of assets with sensors, before > after bridging (differ: the two ways to find distances; -: not compared)",
+          &table);
 }
 
 static void print_levels(const struct text_report *report)

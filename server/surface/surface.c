@@ -211,11 +211,12 @@ static void join_parts(struct surface *surface, struct parts *parts)
     merge_twins(surface, made.crossings, made.crossing_count);
     char *hidden = mem_array(surface->mesh.tri_count, 1);
     uint32_t *part = parts_spread(&surface->mesh, parts->of_source);
-    interior_find(&surface->mesh, part, parts, made.crossings, made.crossing_count, surface->workers, hidden);
-    interior_islands(&surface->mesh, hidden);
-    mem_free(part);
-    close_rims(surface, parts, &hidden);
-    part = parts_spread(&surface->mesh, parts->of_source);
+    if (interior_find(&surface->mesh, part, parts, made.crossings, made.crossing_count, surface->workers, hidden)) {
+        interior_islands(&surface->mesh, hidden);
+        close_rims(surface, parts, &hidden);
+        mem_free(part);
+        part = parts_spread(&surface->mesh, parts->of_source);
+    }
     thin_out(surface, part, own, hidden);
     size_t visible_count = sort_hidden(&surface->mesh, hidden);
     target = mem_array(surface->mesh.point_count, sizeof(*target));
@@ -332,6 +333,7 @@ struct surface *surface_create(struct log *log, struct workers *workers, const f
     surface->size_m = size_m;
     report->tolerance_m = params->tolerance_m > 0 ? params->tolerance_m : size_m * TOLERANCE_OF_SIZE;
     report->spacing_m = params->spacing_m;
+    report->time_m2 = report->heat_disagreement = (double)NAN;
     if (!weld(surface, positions_m, triangles, triangle_count, size_m, params->why))
         goto error;
     report->weld_s = seconds_since(&since_ns);

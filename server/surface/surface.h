@@ -48,7 +48,8 @@ struct surface_report {
     int k;                    /* neighbours asked for; 0: nothing to bridge */
     size_t samples;           /* points added */
     size_t hidden_vertices;   /* of the model: inside another closed part, or covered by one */
-    double heat_disagreement; /* root mean square difference to the heat method, as a share of the largest distance; worst source checked */
+    double heat_disagreement; /* root mean square difference to the heat method, as a share of the largest distance; worst source checked.
+                                 NaN, as time_m2, until surface_check() */
     double weld_s, bridge_s, sample_s, laplacian_s, factor_s, check_s;
 };
 

@@ -106,6 +106,7 @@ bool surface_check(struct surface *surface, const struct surface_field *field)
     else
         check_block(&check, 0, check.count);
     heat_destroy(&heat);
+    report->heat_disagreement = 0;
     for (size_t i = 0; i < check.count; i++)
         report->heat_disagreement = max_of(report->heat_disagreement, check.disagreement[i]);
     report->time_m2 = decay_m * decay_m;

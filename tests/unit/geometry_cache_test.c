@@ -110,6 +110,22 @@ static void assert_as_fresh(struct prep_case *c, const char *tags, const json_t 
     mem_free(folder);
 }
 
+/* Where each group had one sensor, nothing was drawn from distances, and they were not checked. */
+static void what_was_not_checked_is_checked_once_it_shows(void **state)
+{
+    struct prep_case *c = *state;
+    static const char *const tags[] = { "a,,,,t,A,,1.3,0,0\nc,,,,p,A,,0,1,0.3\n",
+                                        "a,,,,t,A,,1.3,0,0\nb,,,,t,A,,-1.3,0,0\nc,,,,p,A,,0,1,0.3\n" };
+    for (int i = 0; i < 2; i++) {
+        bool model_read;
+        json_t *asset = prepare(c, tags[i], "kept", &model_read), *surface = json_object_get(asset, "surface");
+        assert_true(model_read == (i == 0));
+        assert_int_equal(json_is_number(json_object_get(surface, "heat_disagreement")), i);
+        assert_int_equal(json_is_number(json_object_get(surface, "time_m2")), i);
+        json_decref(asset);
+    }
+}
+
 static int number(const json_t *asset, const char *name)
 {
     return (int)json_integer_value(json_object_get(asset, name));
@@ -538,6 +554,7 @@ int main(void)
     cmocka_set_message_output(CM_OUTPUT_TAP);
     const struct CMUnitTest tests[] = {
         WITH_PLANT(a_changed_sensor_costs_its_own_distances),
+        WITH_PLANT(what_was_not_checked_is_checked_once_it_shows),
         WITH_PLANT(what_is_damaged_is_made_anew),
         WITH_PLANT(points_are_found_once),
         WITH_PLANT(killed_midway_it_goes_on),

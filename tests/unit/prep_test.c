@@ -355,6 +355,9 @@ static void a_field_that_is_constant_needs_no_triangles(void **state)
         prep_case_expect(c, "$PLANT --report json", 0);
         json_t *report = prep_case_json(&c->out);
         triangles[more] = prep_case_number(report, "assets.0.levels.0.triangles");
+        const json_t *surface = json_object_get(json_array_get(json_object_get(report, "assets"), 0), "surface");
+        for (int n = 0; n < 2; n++) /* a second way to find distances is only gone where they show */
+            assert_int_equal(json_is_null(json_object_get(surface, n ? "heat_disagreement" : "time_m2")), more == 0);
         json_decref(report);
     }
     assert_in_range((int)triangles[0], 2 * ACROSS * UP, 2 * ACROSS * UP + 8); /* a vertex for each sensor */

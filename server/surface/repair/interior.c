@@ -366,10 +366,22 @@ struct vote { /* of a region */
     char most;
 };
 
-void interior_find(const struct trimesh *mesh, const uint32_t *part, const struct parts *parts, const uint32_t *crossings,
+/* A closed part hides what is of others, or of itself where it passes through itself. */
+static bool may_hide(const struct parts *parts)
+{
+    for (size_t p = 0; p < parts->count; p++)
+        if (parts->closed[p] && (parts->count > 1 || parts->tangled[p]))
+            return true;
+    return false;
+}
+
+bool interior_find(const struct trimesh *mesh, const uint32_t *part, const struct parts *parts, const uint32_t *crossings,
                    size_t crossing_count, struct workers *workers, char *hidden)
 {
     struct solids solids;
+    memset(hidden, INTERIOR_NOT, mesh->tri_count);
+    if (!may_hide(parts))
+        return false;
     solids_init(&solids, parts);
     char *mixed = mem_array(mesh->point_count, 1);
     mix_parts(mesh, part, mixed);
@@ -415,4 +427,8 @@ void interior_find(const struct trimesh *mesh, const uint32_t *part, const struc
     mem_free(region);
     mem_free(asked);
     mem_free(votes);
+    size_t t = 0;
+    while (t < mesh->tri_count && hidden[t] == INTERIOR_NOT)
+        t++;
+    return t < mesh->tri_count;
 }

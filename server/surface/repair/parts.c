@@ -138,7 +138,7 @@ static void limit_reach(struct parts *parts, double tolerance_m)
 void parts_init(struct parts *parts, const struct trimesh *mesh, size_t source_count, double tolerance_m, bool is_chosen)
 {
     struct parts_finding f = { .parts = parts };
-    *parts = (struct parts){ 0 };
+    *parts = (struct parts){ .source_count = source_count };
     trimesh_copy(&parts->solid, mesh);
     parts->of_tri = mem_array(mesh->tri_count, sizeof(*parts->of_tri));
     parts->side = mem_array(mesh->tri_count, 1);

@@ -19,7 +19,7 @@ struct parts {
     char *thin;                           /* likewise: it is closed, and its reach is less than the tolerance */
     double *reach_m;                      /* likewise: what is nearer touches it */
     double tolerance_m;                   /* the longest reach */
-    size_t count;
+    size_t count, source_count; /* parts; triangles of the model */
 };
 
 /* Finds the parts of `mesh`, the model's source_count triangles after welding and closing seams, with multiplicities. tolerance_m is every

@@ -8,11 +8,11 @@
 #include "base/vec.h"
 #include "surface/repair/mesh_edit.h"
 #include "surface/mesh/bvh.h"
+#include "surface/repair/crossing_faces.h"
 #include "surface/repair/line_of_sight.h"
 #include "surface/repair/repair.h"
 #include "surface/repair/repair_impl.h"
 
-#define CLEAR 0.05    /* of the reach */
 #define PARALLEL 1e-4 /* squared sine of the angle between edges */
 
 struct contacts {
@@ -52,7 +52,7 @@ static bool stands_clear(const struct contacts *c, const uint32_t *v)
     vec_normal(c->mesh->points[v[0]], c->mesh->points[v[1]], c->mesh->points[v[2]], n);
     for (int i = 0; i < 2; i++) {
         vec_sub(c->mesh->points[c->edge[i]], c->mesh->points[v[0]], up);
-        if (fabs(vec_dot(up, n)) < CLEAR * c->parts->reach_m[c->own] * vec_length(n))
+        if (fabs(vec_dot(up, n)) < CROSSING_CLEAR * c->parts->reach_m[c->own] * vec_length(n))
             return false;
     }
     return true;
@@ -109,22 +109,31 @@ static void look_around(struct contacts *c, void (*visit)(void *arg, uint32_t tr
     bvh_overlaps(c->bvh, low, high, margin_m, visit, c);
 }
 
-static void find_crossings(struct contacts *c)
+/* An edge is searched around once, for the first triangle that has it, which says what part it is of; where that one cannot cross anything,
+   no other triangle asks again. may_cross: of the model's triangles, as crossing_faces_find() tells. */
+static void find_crossings(struct contacts *c, const char *may_cross)
 {
     struct edge_table edges;
-    edge_table_init(&edges, c->mesh->tri_count * 3 / 2);
+    char *at_crossing = mem_array(c->mesh->point_count, 1);
+    edge_table_init(&edges, 1024);
+    for (uint32_t t = 0; t < c->mesh->tri_count; t++)
+        for (int i = 0; i < 3 && may_cross[c->mesh->tri_source[t]]; i++)
+            at_crossing[c->mesh->tris[t][i]] = 1;
     for (uint32_t t = 0; t < c->mesh->tri_count; t++)
         for (int i = 0; i < 3; i++) {
             size_t before = edges.count;
             c->edge[0] = c->mesh->tris[t][i];
             c->edge[1] = c->mesh->tris[t][(i + 1) % 3];
+            if (!at_crossing[c->edge[0]] || !at_crossing[c->edge[1]])
+                continue;
             edge_table_add(&edges, c->edge[0], c->edge[1]);
-            if (edges.count == before)
+            if (edges.count == before || !may_cross[c->mesh->tri_source[t]])
                 continue;
             c->own = c->part[t];
             look_around(c, visit_crossed, 0);
         }
     edge_table_finish(&edges);
+    mem_free(at_crossing);
 }
 
 static bool other_body(const void *arg, uint32_t tri)
@@ -154,7 +163,6 @@ static void find_touches(struct contacts *c)
     struct line_of_sight sight;
     line_of_sight_init(&sight, c->mesh, c->parts, c->body, c->bvh);
     char *seen = mem_array(c->mesh->point_count, 1);
-    memset(c->touched, 0xff, c->mesh->point_count * sizeof(*c->touched));
     for (uint32_t t = 0; t < c->mesh->tri_count; t++)
         for (int i = 0; i < 3; i++) {
             uint32_t p = c->mesh->tris[t][i];
@@ -361,28 +369,50 @@ static void cut_along(struct contacts *c)
     mem_free(meetings.at);
 }
 
+static bool is_one_body(const struct contacts *c)
+{
+    size_t t = 0;
+    while (t < c->mesh->tri_count && c->body[t] == c->body[0])
+        t++;
+    return t == c->mesh->tri_count;
+}
+
+/* What is one body can only cross itself. */
+static void find_contacts(struct contacts *c)
+{
+    char *may_cross = crossing_faces_find(c->parts);
+    bool is_one = is_one_body(c);
+    struct bvh *bvh = is_one && !may_cross ? NULL : bvh_create(c->mesh);
+    c->bvh = bvh;
+    memset(c->touched, 0xff, c->mesh->point_count * sizeof(*c->touched));
+    if (!is_one)
+        find_touches(c);
+    if (may_cross)
+        find_crossings(c, may_cross);
+    if (!is_one)
+        find_rims(c);
+    bvh_destroy(&bvh);
+    mem_free(may_cross);
+}
+
 void repair_contacts(struct trimesh *mesh, struct parts *parts, uint32_t *target, struct repair_report *report)
 {
     struct mesh_edit edit;
-    struct bvh *bvh = bvh_create(mesh);
     uint32_t *part = parts_spread(mesh, parts->of_source), *body = parts_spread(mesh, parts->body_of_source);
     size_t target_count = mesh->point_count;
     struct contacts contacts = { .mesh = mesh,
                                  .parts = parts,
                                  .part = part,
                                  .body = body,
-                                 .bvh = bvh,
                                  .edit = &edit,
                                  .touched = mem_array(target_count, sizeof(*contacts.touched)) };
     mesh_edit_init(&edit);
     for (uint32_t i = 0; i < target_count; i++)
         target[i] = i;
-    find_touches(&contacts);
-    find_crossings(&contacts);
-    find_rims(&contacts);
-    bvh_destroy(&bvh);
+    find_contacts(&contacts);
     set_crossings(&contacts, report);
-    cut_along(&contacts);
+    if (contacts.crossing_count)
+        cut_along(&contacts);
     repair_apply(&edit, mesh, target, target_count, contacts.crossing_count, report);
     mem_free(contacts.crossings);
     mem_free(contacts.touched);

@@ -1,0 +1,170 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Pairs of faces, told apart by their planes and, in the plane of one, by its sides. */
+#include "surface/repair/crossing_faces.h"
+
+#include "base/mem.h"
+#include "base/vec.h"
+#include "surface/mesh/bvh.h"
+
+#define ROUNDING 1e-10 /* of the largest coordinate: far more than what sampling moves a point by */
+#define SLIVER 1e-5    /* height, of the model's size: the plane of a lower face is not trusted */
+#define BESIDE 1e-4    /* of a face's longest side: so exactly is known where it cuts a plane */
+
+struct face {
+    const double *at[3];
+    double normal[3], height_m, longest_m; /* normal: of length 1 */
+};
+
+struct search {
+    const struct parts *parts;
+    double rounding_m, sliver_m;
+    uint32_t tri;     /* whose edges are in question */
+    struct face face; /* that */
+    bool crosses;
+};
+
+static void face_init(struct face *face, const struct trimesh *mesh, uint32_t tri)
+{
+    for (int i = 0; i < 3; i++)
+        face->at[i] = mesh->points[mesh->tris[tri][i]];
+    vec_normal(face->at[0], face->at[1], face->at[2], face->normal);
+    face->longest_m = 0;
+    for (int i = 0; i < 3; i++)
+        face->longest_m = max_of(face->longest_m, vec_distance(face->at[i], face->at[(i + 1) % 3]));
+    double doubled_m2 = vec_normalize(face->normal);
+    face->height_m = face->longest_m > 0 ? doubled_m2 / face->longest_m : 0;
+}
+
+/* From the plane of a face to the corners of another one. True: they are all to one side of it, or clear_m from it at most. */
+static bool lies_to_one_side(const struct face *plane, const struct face *face, double clear_m, double heights_m[3])
+{
+    double low_m = INFINITY, high_m = -INFINITY;
+    for (int i = 0; i < 3; i++) {
+        double from[3];
+        vec_sub(face->at[i], plane->at[0], from);
+        heights_m[i] = vec_dot(from, plane->normal);
+        low_m = min_of(low_m, heights_m[i]);
+        high_m = max_of(high_m, heights_m[i]);
+    }
+    return high_m <= clear_m || low_m >= -clear_m;
+}
+
+/* How far a place in a face's plane is beyond its side from corner i to the next one. */
+static double beyond_side(const struct face *face, int i, const double place[3])
+{
+    double along[3], out[3], from[3];
+    vec_sub(face->at[(i + 1) % 3], face->at[i], along);
+    vec_cross(along, face->normal, out);
+    vec_normalize(out);
+    vec_sub(place, face->at[i], from);
+    return vec_dot(from, out);
+}
+
+/* Whether a face lies to one side of the line from a to b, in its plane. */
+static bool lies_beside(const struct face *face, const double a[3], const double b[3], double margin_m)
+{
+    double along[3], across[3], low_m = INFINITY, high_m = -INFINITY;
+    vec_sub(b, a, along);
+    vec_cross(along, face->normal, across);
+    vec_normalize(across);
+    for (int i = 0; i < 3; i++) {
+        double from[3];
+        vec_sub(face->at[i], a, from);
+        low_m = min_of(low_m, vec_dot(from, across));
+        high_m = max_of(high_m, vec_dot(from, across));
+    }
+    return low_m > margin_m || high_m < -margin_m;
+}
+
+/* The corner of a face that is also the other one's; -1: none. */
+static int shared_corner(const struct face *face, const struct face *other)
+{
+    for (int i = 0; i < 3; i++)
+        for (int j = 0; j < 3; j++)
+            if (face->at[i] == other->at[j])
+                return i;
+    return -1;
+}
+
+/* The face, which reaches through the plane of `other`, cuts it along a line: whether that stays clear of `other`, but for a corner that
+   both have. */
+static bool cuts_beside(const struct face *face, const double heights_m[3], const struct face *other, double margin_m)
+{
+    const int shared = shared_corner(face, other), from = shared_corner(other, face);
+    double ends[2][3];
+    int count = 0;
+    for (int i = 0; i < 3; i++) {
+        int j = (i + 1) % 3;
+        if ((heights_m[i] >= 0) == (heights_m[j] >= 0) || i == shared || j == shared)
+            continue;
+        vec_mix(face->at[i], face->at[j], heights_m[i] / (heights_m[i] - heights_m[j]), ends[count++]);
+    }
+    for (int i = 0; i < 3; i++) {
+        bool beyond = count > 0 && (from < 0 || i == from || (i + 1) % 3 == from); /* from a corner, sides at it alone tell */
+        for (int end = 0; end < count; end++)
+            beyond = beyond && beyond_side(other, i, ends[end]) > margin_m;
+        if (beyond)
+            return true;
+    }
+    return shared < 0 && count == 2 && lies_beside(other, ends[0], ends[1], margin_m);
+}
+
+static void visit_face(void *arg, uint32_t tri)
+{
+    struct search *s = arg;
+    const struct parts *parts = s->parts;
+    const uint32_t own = parts->of_source[parts->solid.tri_source[s->tri]], part = parts->of_source[parts->solid.tri_source[tri]];
+    struct face other;
+    double heights_m[3], others_m[3], clear_m = own == part ? CROSSING_CLEAR / 2 * parts->reach_m[own] : 0;
+    if (s->crosses || tri == s->tri)
+        return;
+    face_init(&other, &parts->solid, tri);
+    if (s->face.height_m < s->sliver_m || other.height_m < s->sliver_m) {
+        s->crosses = true;
+        return;
+    }
+    bool clear = clear_m > 4 * s->rounding_m;
+    if (lies_to_one_side(&other, &s->face, clear ? clear_m : -s->rounding_m, heights_m))
+        return;
+    s->crosses = clear ? !cuts_beside(&s->face, heights_m, &other, BESIDE * s->face.longest_m + s->rounding_m)
+                       : !lies_to_one_side(&s->face, &other, -s->rounding_m, others_m);
+}
+
+char *crossing_faces_find(const struct parts *parts)
+{
+    const struct trimesh *mesh = &parts->solid;
+    struct search search = { .parts = parts };
+    struct bvh *bvh = bvh_create(mesh);
+    double low[3], high[3], size_m = 0, coordinate_m = 0;
+    bool any = false;
+    for (int axis = 0; axis < 3; axis++) {
+        double least_m = INFINITY, most_m = -INFINITY;
+        for (size_t p = 0; p < mesh->point_count; p++) {
+            least_m = min_of(least_m, mesh->points[p][axis]);
+            most_m = max_of(most_m, mesh->points[p][axis]);
+        }
+        size_m = max_of(size_m, most_m - least_m);
+        coordinate_m = max_of(coordinate_m, max_of(most_m, -least_m));
+    }
+    search.rounding_m = ROUNDING * coordinate_m;
+    search.sliver_m = SLIVER * size_m;
+    char *crosses = mem_array(parts->source_count, 1);
+    for (uint32_t t = 0; t < mesh->tri_count; t++) {
+        if (crosses[mesh->tri_source[t]])
+            continue;
+        search.tri = t;
+        search.crosses = false;
+        face_init(&search.face, mesh, t);
+        for (int axis = 0; axis < 3; axis++) {
+            low[axis] = min_of(min_of(search.face.at[0][axis], search.face.at[1][axis]), search.face.at[2][axis]);
+            high[axis] = max_of(max_of(search.face.at[0][axis], search.face.at[1][axis]), search.face.at[2][axis]);
+        }
+        bvh_overlaps(bvh, low, high, search.rounding_m, visit_face, &search);
+        crosses[mesh->tri_source[t]] = search.crosses;
+        any = any || search.crosses;
+    }
+    bvh_destroy(&bvh);
+    if (!any)
+        mem_free(crosses);
+    return any ? crosses : NULL;
+}

@@ -1,0 +1,196 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Faces that may pass through others: of every crossing that sampled pieces show, and few besides. */
+#include "surface/repair/crossing_faces.h"
+
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <string.h>
+#include <cmocka.h>
+
+#include "base/mem.h"
+#include "base/vec.h"
+#include "surface/mesh/bvh.h"
+#include "tests/support/cad.h"
+#include "tests/support/sweep.h"
+
+#define AROUND 12
+#define RINGS 24
+#define MOST_FACES 60
+
+static struct cad_random chance;
+
+static int set_up(void **state)
+{
+    (void)state;
+    cad_random_start(&chance);
+    return 0;
+}
+
+static double between(double low, double high)
+{
+    return low + (high - low) * cad_random(&chance);
+}
+
+struct model {
+    float at[AROUND * RINGS][3];
+    uint32_t corners[6 * AROUND * RINGS], vertex_point[AROUND * RINGS];
+    size_t vertex_count, triangle_count;
+    struct trimesh mesh;
+    struct parts parts;
+};
+
+static void model_join(struct model *model, double tolerance_m)
+{
+    size_t degenerate = 0, repeated = 0;
+    assert_true(trimesh_weld(&model->mesh, (const float(*)[3])model->at, model->vertex_count, model->corners, model->triangle_count, 1e-6,
+                             model->vertex_point, &degenerate, &repeated));
+    parts_init(&model->parts, &model->mesh, model->triangle_count, tolerance_m, true);
+    trimesh_stop_counting(&model->mesh);
+}
+
+static void model_finish(struct model *model)
+{
+    parts_finish(&model->parts);
+    trimesh_finish(&model->mesh);
+}
+
+/* A pipe that winds up by rise_m at each turn of 1 m in radius: it passes through itself where that is less than its own width. */
+static void make_coil(struct model *model, double radius_m, double rise_m, double turns)
+{
+    *model = (struct model){ 0 };
+    for (int r = 0; r < RINGS; r++)
+        for (int a = 0; a < AROUND; a++) {
+            double turn = 2 * M_PI * turns * r / (RINGS - 1), angle = 2 * M_PI * a / AROUND, out = 1 + radius_m * cos(angle);
+            float *p = model->at[model->vertex_count++];
+            p[0] = (float)(out * cos(turn));
+            p[1] = (float)(out * sin(turn));
+            p[2] = (float)(radius_m * sin(angle) + rise_m * turn / (2 * M_PI));
+        }
+    for (uint32_t r = 0; r + 1 < RINGS; r++)
+        for (uint32_t a = 0; a < AROUND; a++) {
+            uint32_t p = r * AROUND + a, q = r * AROUND + (a + 1) % AROUND;
+            memcpy(model->corners + 3 * model->triangle_count, (const uint32_t[6]){ p, q, p + AROUND, q, q + AROUND, p + AROUND },
+                   6 * sizeof(uint32_t));
+            model->triangle_count += 2;
+        }
+    model_join(model, 1e-3);
+}
+
+static size_t count_flagged(const struct model *model, const char *crosses)
+{
+    size_t count = 0;
+    for (size_t t = 0; crosses && t < model->triangle_count; t++)
+        count += crosses[t] != 0;
+    return count;
+}
+
+static void a_pipe_that_winds_past_itself_has_none(void **state)
+{
+    struct model *model = mem_new(sizeof(*model));
+    (void)state;
+    for (int n = 0; n < 50; n++) {
+        double radius_m = between(0.02, 0.4);
+        make_coil(model, radius_m, between(2.1, 4) * radius_m, between(0.2, 2));
+        assert_null(crossing_faces_find(&model->parts));
+        model_finish(model);
+    }
+    mem_free(model);
+}
+
+static void a_pipe_that_winds_into_itself_has_some(void **state)
+{
+    struct model *model = mem_new(sizeof(*model));
+    (void)state;
+    make_coil(model, 0.2, 0.3, 1.25); /* the last quarter is in the first */
+    char *crosses = crossing_faces_find(&model->parts);
+    assert_in_range(count_flagged(model, crosses), 20, model->triangle_count / 2);
+    for (size_t t = model->triangle_count * 2 / 5; t < model->triangle_count * 3 / 5; t++)
+        assert_int_equal(crosses[t], 0);
+    mem_free(crosses);
+    model_finish(model);
+    mem_free(model);
+}
+
+/* As repair.h defines a crossing. */
+static bool piece_crosses(const struct model *model, const uint32_t edge[2], uint32_t own, uint32_t tri)
+{
+    const struct trimesh *mesh = &model->mesh;
+    const double *p = mesh->points[edge[0]], *q = mesh->points[edge[1]], *reach_m = model->parts.reach_m;
+    const uint32_t *v = mesh->tris[tri], part = model->parts.of_source[mesh->tri_source[tri]];
+    double t, w[3], n[3], up[3], length = vec_distance(p, q), end_m = min_of(reach_m[own], reach_m[part]);
+    for (int i = 0; i < 3 && own == part; i++)
+        if (v[i] == edge[0] || v[i] == edge[1])
+            return false;
+    if (!triangle_crossed(p, q, mesh->points[v[0]], mesh->points[v[1]], mesh->points[v[2]], &t, w) || fmin(t, 1 - t) * length < end_m)
+        return false;
+    vec_normal(mesh->points[v[0]], mesh->points[v[1]], mesh->points[v[2]], n);
+    for (int i = 0; i < 2 && own == part; i++) {
+        vec_sub(i ? q : p, mesh->points[v[0]], up);
+        if (fabs(vec_dot(up, n)) < CROSSING_CLEAR * reach_m[own] * vec_length(n))
+            return false;
+    }
+    return true;
+}
+
+/* Few points and many triangles between them: these meet at corners and along sides, lie on each other and pass through each other. */
+static void make_tangle(struct model *model, uint32_t points, double flatness)
+{
+    *model = (struct model){ .vertex_count = points, .triangle_count = (size_t)between(4, MOST_FACES) };
+    for (uint32_t p = 0; p < points; p++)
+        for (int axis = 0; axis < 3; axis++)
+            model->at[p][axis] = (float)(between(-1, 1) * (axis == 2 ? flatness : 1));
+    for (size_t c = 0; c < 3 * model->triangle_count; c++)
+        model->corners[c] = (uint32_t)between(0, points - 1e-6);
+    model_join(model, 1e-3);
+}
+
+/* Counts the sampled pieces that edges of a face's own pieces pass through. */
+static size_t count_crossings(const struct model *model, size_t piece)
+{
+    const struct trimesh *mesh = &model->mesh;
+    size_t count = 0;
+    for (uint32_t other = 0; other < mesh->tri_count; other++)
+        for (int i = 0; i < 3; i++) {
+            const uint32_t edge[2] = { mesh->tris[piece][i], mesh->tris[piece][(i + 1) % 3] };
+            count += piece_crosses(model, edge, model->parts.of_source[mesh->tri_source[piece]], other);
+        }
+    return count;
+}
+
+static void no_crossing_of_pieces_is_missed(void **state)
+{
+    struct model *model = mem_new(sizeof(*model));
+    size_t found = 0, flagged = 0, all = 0;
+    (void)state;
+    for (int n = 0; n < sweep(400, 60); n++) {
+        make_tangle(model, (uint32_t)between(5, 40), pow(10, between(-6, 0)));
+        char *crosses = crossing_faces_find(&model->parts);
+        trimesh_sample(&model->mesh, between(0.15, 0.6), 4000);
+        flagged += count_flagged(model, crosses);
+        all += model->triangle_count;
+        for (size_t t = 0; t < model->mesh.tri_count; t++) {
+            size_t crossings = count_crossings(model, t);
+            found += crossings;
+            assert_true(crossings == 0 || (crosses && crosses[model->mesh.tri_source[t]]));
+        }
+        mem_free(crosses);
+        model_finish(model);
+    }
+    print_message("# %zu crossings; %zu of %zu faces may cross\n", found, flagged, all);
+    assert_true(found > 1000 && flagged < all);
+    mem_free(model);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_pipe_that_winds_past_itself_has_none),
+        cmocka_unit_test(a_pipe_that_winds_into_itself_has_some),
+        cmocka_unit_test(no_crossing_of_pieces_is_missed),
+    };
+    cmocka_set_message_output(CM_OUTPUT_TAP);
+    return cmocka_run_group_tests(tests, set_up, NULL);
+}
