@@ -15,7 +15,8 @@ const HEAD = 'Tag Name,Address,Data Type,Eng Units,Group,Asset,X,Y,Z,Stale s,Sca
 const TAGS = {
     number: ['TI-1,plant/ti1,,°C,temperature,E-101,0.5,0,0,30,,,,,', 'TI-2,,,°C,temperature,E-101,-0.5,0,0,2,,,,,',
         'PI-1,,,bar,pressure,P-101A,3,0,0.5,30,Linear,0,27648,0,10', 'XS-1,plant/xs1,bool,,,,,,,30,,,,,'],
-    json: ['TI-1,line/temps#left.v[1],,°C,temperature,E-101,0.5,0,0,30,,,,,', 'TI-2,line/temps#right,,°C,temperature,E-101,-0.5,0,0,30,,,,,',
+    json: ['TI-1,line/temps#left.v[1],,°C,temperature,E-101,0.5,0,0,30,,,,,',
+        'TI-2,line/temps#right,,°C,temperature,E-101,-0.5,0,0,30,,,,,',
         'PI-1,,,bar,pressure,P-101A,3,0,0.5,30,,,,,'],
 };
 let broker, plant, publisher;
@@ -96,8 +97,9 @@ test('numbers come to the tags of their topics, scaled, and as old as they are',
     await until('XS-1', { ...good, value: 1 });
     await until('TI-2', { quality_name: 'Bad_CommunicationError' }); // stale after 2 s
     await until('TI-1', good);
-    for (const [name, value] of [['messages_total{source="broker",result="ok"}', 4],
-        ['messages_total{source="broker",result="refused"}', 0], ['samples_total{source="broker"}', 4], ['connects_total{source="broker"}', 1], ['up{source="broker"}', 1]])
+    const counts = [['messages_total{source="broker",result="ok"}', 4], ['messages_total{source="broker",result="refused"}', 0],
+        ['samples_total{source="broker"}', 4], ['connects_total{source="broker"}', 1], ['up{source="broker"}', 1]];
+    for (const [name, value] of counts)
         assert.equal(await metric(name), value, name);
 });
 

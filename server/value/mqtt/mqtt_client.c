@@ -265,7 +265,7 @@ bool mqtt_client_subscribe(struct mqtt_client *client, char *const *topics, size
     client->requests = mem_array(count / TOPICS_AT_ONCE + 1, sizeof(*client->requests));
     for (size_t first = 0; first < count && status == MOSQ_ERR_SUCCESS; first += TOPICS_AT_ONCE) {
         int some = count - first < TOPICS_AT_ONCE ? (int)(count - first) : TOPICS_AT_ONCE;
-        status = mosquitto_subscribe_multiple(client->library, &client->requests[first / TOPICS_AT_ONCE], some, (char *const *)(topics + first),
+        status = mosquitto_subscribe_multiple(client->library, &client->requests[first / TOPICS_AT_ONCE], some, topics + first,
                                               client->source->mqtt.qos, 0, NULL);
     }
     return status == MOSQ_ERR_SUCCESS;
