@@ -12,6 +12,7 @@
 struct entry {
     char *name, *type, *help;
     counter value;
+    bool microseconds;           /* printed in seconds */
     struct histogram *histogram; /* NULL: a single value */
     struct entry *next;
 };
@@ -77,6 +78,13 @@ struct histogram *counters_add_histogram(struct counters *counters, const char *
     return find_or_add(counters, name, "histogram", help)->histogram;
 }
 
+counter *counters_add_seconds(struct counters *counters, const char *name, const char *type, const char *help)
+{
+    struct entry *e = find_or_add(counters, name, type, help);
+    e->microseconds = true;
+    return &e->value;
+}
+
 static size_t family_length(const char *name)
 {
     return strcspn(name, "{");
@@ -98,10 +106,13 @@ static bool family_printed(const struct entry *first, const struct entry *e)
 
 static void print_entry(struct entry *e, struct text *out)
 {
+    int64_t value = atomic_load_explicit(&e->value, memory_order_relaxed);
     if (e->histogram)
         histogram_print(e->histogram, e->name, out);
+    else if (e->microseconds)
+        text_add(out, "%s %.6f\n", e->name, (double)value / 1e6);
     else
-        text_add(out, "%s %" PRId64 "\n", e->name, atomic_load_explicit(&e->value, memory_order_relaxed));
+        text_add(out, "%s %" PRId64 "\n", e->name, value);
 }
 
 void counters_print(struct counters *counters, struct text *out)

@@ -13,6 +13,8 @@ void counters_destroy(struct counters **counters);
 /* Registers a metric, or finds it if it is registered already. name may have labels: `plantcast_reads_total{source="plc1"}`; type is
    "counter" or "gauge". Returns the number, which lives as long as `counters`. help and type are copied. */
 counter *counters_add(struct counters *counters, const char *name, const char *type, const char *help);
+/* Likewise, of a number that is counted in microseconds and printed in seconds. */
+counter *counters_add_seconds(struct counters *counters, const char *name, const char *type, const char *help);
 /* Likewise, of durations (base/histogram.h); in seconds. */
 struct histogram *counters_add_histogram(struct counters *counters, const char *name, const char *help);
 /* Appends all metrics in the text format of Prometheus. */

@@ -40,9 +40,16 @@ static void text_grows(void **state)
 static void cells_are_no_formulas(void **state)
 {
     (void)state;
-    static const char *const cells[][2] = { { "=1+1", "'=1+1" }, { "@SUM(A1)", "'@SUM(A1)" }, { "+cmd|x", "'+cmd|x" }, { "-2", "'-2" },
-                                            { "-", "-" }, { "", "" }, { "TI-1", "TI-1" }, { "'quoted", "'quoted" },
-                                            { "=\"a\",b", "\"'=\"\"a\"\",b\"" }, { "\t=1", "'\t=1" } };
+    static const char *const cells[][2] = { { "=1+1", "'=1+1" },
+                                            { "@SUM(A1)", "'@SUM(A1)" },
+                                            { "+cmd|x", "'+cmd|x" },
+                                            { "-2", "'-2" },
+                                            { "-", "-" },
+                                            { "", "" },
+                                            { "TI-1", "TI-1" },
+                                            { "'quoted", "'quoted" },
+                                            { "=\"a\",b", "\"'=\"\"a\"\",b\"" },
+                                            { "\t=1", "'\t=1" } };
     for (size_t i = 0; i < sizeof(cells) / sizeof(cells[0]); i++) {
         struct text text = { 0 };
         text_add(&text, "%s", "");
@@ -60,11 +67,18 @@ static void files_are_read_whole_and_replaced_at_once(void **state)
     char *folder = temp_folder_create(), *path = temp_path(folder, "f"), *nowhere = temp_path(folder, "no/f");
     size_t bytes = 99;
     assert_int_equal(atomic_file_put(path, "one\0two", 7), 0);
-    assert_int_equal(atomic_file_put(path, "12\0" "456", 6), 0);
+    assert_int_equal(atomic_file_put(path,
+                                     "12\0"
+                                     "456",
+                                     6),
+                     0);
     char *text = text_read_file(path, 6, &bytes);
     assert_non_null(text);
     assert_int_equal(bytes, 6);
-    assert_memory_equal(text, "12\0" "456", 7); /* one 0 byte more than the file */
+    assert_memory_equal(text,
+                        "12\0"
+                        "456",
+                        7); /* one 0 byte more than the file */
     mem_free(text);
     assert_null(text_read_file(path, 5, &bytes));
     assert_int_equal(errno, EFBIG);
@@ -243,6 +257,18 @@ static void durations_are_counted_by_bucket(void **state)
     counters_destroy(&counters);
 }
 
+static void numbers_of_microseconds_are_printed_in_seconds(void **state)
+{
+    (void)state;
+    struct counters *counters = counters_create();
+    struct text text = { 0 };
+    counter_set(counters_add_seconds(counters, "spent_seconds_total", "counter", "Time."), 12345678);
+    counters_print(counters, &text);
+    assert_string_equal(text.at, "# HELP spent_seconds_total Time.\n# TYPE spent_seconds_total counter\nspent_seconds_total 12.345678\n");
+    text_finish(&text);
+    counters_destroy(&counters);
+}
+
 int main(void)
 {
     cmocka_set_message_output(CM_OUTPUT_TAP);
@@ -254,6 +280,7 @@ int main(void)
         cmocka_unit_test(findings_come_in_the_order_of_the_text),
         cmocka_unit_test(many_warnings_alike_are_one),
         cmocka_unit_test(counters_are_printed_by_family),
+        cmocka_unit_test(numbers_of_microseconds_are_printed_in_seconds),
         cmocka_unit_test(durations_are_counted_by_bucket),
         cmocka_unit_test(repeats_in_the_log_are_counted),
     };

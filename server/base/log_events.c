@@ -1,0 +1,30 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Names and MESSAGE_IDs of events. An identifier never changes, since programs match it. */
+#include <stddef.h>
+
+#include "base/log.h"
+
+static const struct {
+    const char *name, *id;
+} events[EVENT_COUNT] = {
+    [EVENT_READY] = { "ready", "7daf3322e49645a9be1ea095bfc868ba" },
+    [EVENT_STOPPING] = { "stopping", "caee3d5b11564efda8693f43b82fec14" },
+    [EVENT_RELOADED] = { "reloaded", "9f38847d17964894b87f61b33745992d" },
+    [EVENT_RELOAD_REFUSED] = { "reload-refused", "2a53caf377e04e2fbe61b63960bf62b2" },
+    [EVENT_CERTIFICATE_EXPIRES] = { "certificate-expires", "1eaac142fb0c470cbe822dc1829635d2" },
+    [EVENT_CERTIFICATE_REFUSED] = { "certificate-refused", "d9cba2d3e8544de881638a55c7bf0f3d" },
+    [EVENT_LOGIN_REFUSED] = { "login-refused", "c0c82d0d80a14d3e9ab4596a081f50ba" },
+    [EVENT_HISTORY_UNWRITABLE] = { "history-unwritable", "0ac9a44ee73d4f119bb19f44a1971ee5" },
+    [EVENT_HISTORY_WRITTEN] = { "history-written", "c064d741ee4c477bb4d3a87a3b3f7226" },
+    [EVENT_HISTORY_LOST] = { "history-lost", "b6fe244b6ab142f59b086213062634a4" },
+};
+
+const char *log_event_name(enum log_event event)
+{
+    return events[event].name;
+}
+
+const char *log_event_id(enum log_event event)
+{
+    return events[event].id;
+}

@@ -1,0 +1,173 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Datagrams to systemd: sd_notify(3) and "Native Journal Protocol". */
+#include "base/service_manager.h"
+
+#include <errno.h>
+#include <pthread.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/socket.h>
+#include <sys/stat.h>
+#include <sys/un.h>
+#include <unistd.h>
+
+#include "base/clock.h"
+#include "base/mem.h"
+#include "base/text.h"
+
+enum { PATIENCE_S = 60, PATIENCE_EVERY_S = 10 };
+
+/* path: that of a file, or @NAME. */
+static bool send_to(const char *path, const char *bytes, size_t count)
+{
+    struct sockaddr_un to = { .sun_family = AF_UNIX };
+    size_t length = strlen(path);
+    if (length < 2 || length >= sizeof(to.sun_path) || (path[0] != '/' && path[0] != '@'))
+        return false;
+    memcpy(to.sun_path, path, length);
+    if (path[0] == '@')
+        to.sun_path[0] = 0;
+    int fd = socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+    if (fd < 0)
+        return false;
+    ssize_t sent;
+    do
+        sent = sendto(fd, bytes, count, MSG_NOSIGNAL, (struct sockaddr *)&to, (socklen_t)(offsetof(struct sockaddr_un, sun_path) + length));
+    while (sent < 0 && errno == EINTR);
+    close(fd);
+    return sent == (ssize_t)count;
+}
+
+/* --- notification ----------------------------------------------------------------------------------------------------- */
+
+bool service_notify(const char *fmt, ...)
+{
+    const char *path = getenv("NOTIFY_SOCKET");
+    struct text text = { 0 };
+    va_list ap;
+    if (!path)
+        return false;
+    va_start(ap, fmt);
+    text_add_v(&text, fmt, ap);
+    va_end(ap);
+    bool good = send_to(path, text.at, text.length);
+    text_finish(&text);
+    return good;
+}
+
+int64_t service_watchdog_ns(void)
+{
+    const char *us = getenv("WATCHDOG_USEC"), *pid = getenv("WATCHDOG_PID");
+    if (!us || (pid && strtol(pid, NULL, 10) != (long)getpid()))
+        return 0;
+    long long value = strtoll(us, NULL, 10);
+    return value > 0 && value < INT64_MAX / 1000 ? (int64_t)value * 1000 : 0;
+}
+
+struct service_patience {
+    pthread_t thread;
+    pthread_mutex_t lock;
+    pthread_cond_t wake;
+    /* --- below: under lock */
+    char *status;
+    bool ending;
+};
+
+static void *ask_again_and_again(void *arg)
+{
+    struct service_patience *patience = arg;
+    pthread_mutex_lock(&patience->lock);
+    while (!patience->ending) {
+        service_notify("EXTEND_TIMEOUT_USEC=%lld\nSTATUS=%s", PATIENCE_S * 1000000ll, patience->status);
+        int64_t until_ns = clock_mono_ns() + PATIENCE_EVERY_S * NS_PER_S;
+        struct timespec until = { until_ns / NS_PER_S, until_ns % NS_PER_S };
+        pthread_cond_timedwait(&patience->wake, &patience->lock, &until);
+    }
+    pthread_mutex_unlock(&patience->lock);
+    return NULL;
+}
+
+struct service_patience *service_patience_begin(const char *status)
+{
+    if (!getenv("NOTIFY_SOCKET"))
+        return NULL;
+    struct service_patience *patience = mem_new(sizeof(*patience));
+    patience->status = mem_strdup(status);
+    pthread_mutex_init(&patience->lock, NULL);
+    clock_cond_init(&patience->wake);
+    if (pthread_create(&patience->thread, NULL, ask_again_and_again, patience) == 0)
+        return patience;
+    pthread_cond_destroy(&patience->wake);
+    pthread_mutex_destroy(&patience->lock);
+    mem_free(patience->status);
+    mem_free(patience);
+    return NULL;
+}
+
+void service_patience_status(struct service_patience *patience, const char *status)
+{
+    if (!patience)
+        return;
+    pthread_mutex_lock(&patience->lock);
+    mem_free(patience->status);
+    patience->status = mem_strdup(status);
+    pthread_cond_signal(&patience->wake);
+    pthread_mutex_unlock(&patience->lock);
+}
+
+void service_patience_end(struct service_patience **pointer)
+{
+    struct service_patience *patience = *pointer;
+    if (!patience)
+        return;
+    pthread_mutex_lock(&patience->lock);
+    patience->ending = true;
+    pthread_cond_signal(&patience->wake);
+    pthread_mutex_unlock(&patience->lock);
+    pthread_join(patience->thread, NULL);
+    pthread_cond_destroy(&patience->wake);
+    pthread_mutex_destroy(&patience->lock);
+    mem_free(patience->status);
+    mem_free(patience);
+    *pointer = NULL;
+}
+
+/* --- the journal ------------------------------------------------------------------------------------------------------ */
+
+bool service_is_journal(int fd)
+{
+    const char *stream = getenv("JOURNAL_STREAM");
+    unsigned long long device, inode;
+    struct stat st;
+    return stream && sscanf(stream, "%llu:%llu", &device, &inode) == 2 && fstat(fd, &st) == 0 && st.st_dev == (dev_t)device &&
+           st.st_ino == (ino_t)inode;
+}
+
+/* NAME=VALUE, or, with line breaks in it, NAME, the length in 8 bytes, little-endian, and VALUE. */
+static void add_field(struct text *text, const struct service_field *field)
+{
+    size_t length = strlen(field->value);
+    if (!strchr(field->value, '\n')) {
+        text_add(text, "%s=%s\n", field->name, field->value);
+        return;
+    }
+    unsigned char bytes[8];
+    for (int i = 0; i < 8; i++)
+        bytes[i] = (unsigned char)((uint64_t)length >> 8 * i);
+    text_add(text, "%s\n", field->name);
+    text_add_bytes(text, bytes, sizeof(bytes));
+    text_add(text, "%s\n", field->value);
+}
+
+bool service_journal_send(const char *socket_path, const struct service_field *fields, size_t count)
+{
+    struct text text = { 0 };
+    for (size_t i = 0; i < count; i++)
+        if (fields[i].value)
+            add_field(&text, &fields[i]);
+    bool good = text.length > 0 && send_to(socket_path, text.at, text.length);
+    text_finish(&text);
+    return good;
+}

@@ -1,0 +1,212 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The log in its formats, and datagrams to a service manager. */
+#include "base/log.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/socket.h>
+#include <sys/stat.h>
+#include <sys/un.h>
+#include <unistd.h>
+
+#include <cmocka.h>
+#include <jansson.h>
+
+#include "base/clock.h"
+#include "base/mem.h"
+#include "base/service_manager.h"
+#include "tests/support/temp.h"
+
+struct place {
+    char *folder, *path;
+    int fd; /* of a datagram socket at path */
+};
+
+static int set_up(void **state)
+{
+    struct place *place = mem_new(sizeof(*place));
+    struct sockaddr_un here = { .sun_family = AF_UNIX };
+    place->folder = temp_folder_create();
+    place->path = temp_path(place->folder, "socket");
+    snprintf(here.sun_path, sizeof(here.sun_path), "%s", place->path);
+    place->fd = socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
+    *state = place;
+    return bind(place->fd, (struct sockaddr *)&here, sizeof(here));
+}
+
+static int tear_down(void **state)
+{
+    struct place *place = *state;
+    close(place->fd);
+    temp_folder_destroy(&place->folder);
+    mem_free(place->path);
+    mem_free(place);
+    unsetenv("NOTIFY_SOCKET");
+    unsetenv("JOURNAL_STREAM");
+    return 0;
+}
+
+static size_t receive(const struct place *place, char *out, size_t size)
+{
+    ssize_t count = recv(place->fd, out, size - 1, 0);
+    out[count > 0 ? count : 0] = 0;
+    return count > 0 ? (size_t)count : 0;
+}
+
+/* What the log writes to stderr for that event; free() it. */
+static char *written(enum log_format format, const char *socket_path, enum log_level level, enum log_event event, const char *message)
+{
+    fflush(stderr);
+    int kept = dup(STDERR_FILENO), ends[2];
+    assert_int_equal(pipe(ends), 0);
+    dup2(ends[1], STDERR_FILENO);
+    close(ends[1]);
+    struct log *log = log_create(LOG_INFO);
+    log_set_format(log, format, socket_path);
+    log_set_plant(log, "Two boxes");
+    log_event(log, level, event, "%s", message);
+    log_destroy(&log);
+    dup2(kept, STDERR_FILENO);
+    close(kept);
+    char *text = calloc(1, 4096);
+    assert_true(read(ends[0], text, 4095) >= 0);
+    close(ends[0]);
+    return text;
+}
+
+static void an_entry_of_the_journal_has_its_priority_plant_and_message_id(void **state)
+{
+    const struct place *place = *state;
+    char got[2048], want[2048];
+    char *text = written(LOG_JOURNAL, place->path, LOG_ERROR, EVENT_RELOAD_REFUSED, "it is wrong");
+    assert_string_equal(text, "");
+    receive(place, got, sizeof(got));
+    snprintf(want, sizeof(want),
+             "MESSAGE=it is wrong\nPRIORITY=3\nSYSLOG_IDENTIFIER=plantcastd\nPLANT=Two boxes\nEVENT=reload-refused\nMESSAGE_ID=%s\n",
+             log_event_id(EVENT_RELOAD_REFUSED));
+    assert_string_equal(got, want);
+    free(text);
+}
+
+static void a_message_of_two_lines_is_one_entry(void **state)
+{
+    const struct place *place = *state;
+    char got[2048];
+    static const char want[] = "MESSAGE\n\3\0\0\0\0\0\0\0a\nb\nPRIORITY=6\n";
+    char *text = written(LOG_JOURNAL, place->path, LOG_INFO, EVENT_NONE, "a\nb");
+    assert_true(receive(place, got, sizeof(got)) > sizeof(want));
+    assert_memory_equal(got, want, sizeof(want) - 1);
+    free(text);
+}
+
+static void without_the_journals_socket_lines_begin_with_their_priority(void **state)
+{
+    (void)state;
+    static const char *const want[] = { "<3>text\n", "<4>text\n", "<6>text\n" };
+    for (int level = LOG_ERROR; level <= LOG_INFO; level++) {
+        char *text = written(LOG_JOURNAL, "/nowhere/socket", (enum log_level)level, EVENT_NONE, "text");
+        assert_string_equal(text, want[level]);
+        free(text);
+    }
+}
+
+static void a_line_of_json_is_one_object_whatever_the_text(void **state)
+{
+    (void)state;
+    char *text = written(LOG_JSON, NULL, LOG_WARN, EVENT_CERTIFICATE_EXPIRES, "\"a\"\n\xff\xc3\xa4\x01");
+    assert_ptr_equal(strchr(text, '\n'), text + strlen(text) - 1);
+    json_t *object = json_loads(text, 0, NULL);
+    assert_non_null(object);
+    assert_string_equal(json_string_value(json_object_get(object, "level")), "warn");
+    assert_string_equal(json_string_value(json_object_get(object, "message")), "\"a\"\n?\xc3\xa4\x01");
+    assert_string_equal(json_string_value(json_object_get(object, "plant")), "Two boxes");
+    assert_string_equal(json_string_value(json_object_get(object, "event")), "certificate-expires");
+    assert_string_equal(json_string_value(json_object_get(object, "message_id")), log_event_id(EVENT_CERTIFICATE_EXPIRES));
+    assert_int_equal(strlen(json_string_value(json_object_get(object, "time"))), strlen("2026-01-01T00:00:00.000Z"));
+    json_decref(object);
+    free(text);
+}
+
+static void every_event_has_a_name_and_an_id_of_its_own(void **state)
+{
+    (void)state;
+    assert_null(log_event_name(EVENT_NONE));
+    for (int i = 1; i < EVENT_COUNT; i++) {
+        assert_int_equal(strspn(log_event_id((enum log_event)i), "0123456789abcdef"), 32);
+        assert_non_null(log_event_name((enum log_event)i));
+        for (int j = 1; j < i; j++)
+            assert_string_not_equal(log_event_id((enum log_event)i), log_event_id((enum log_event)j));
+    }
+}
+
+static void the_journal_is_known_by_its_stream(void **state)
+{
+    const struct place *place = *state;
+    struct stat st;
+    char stream[64];
+    assert_int_equal(fstat(place->fd, &st), 0);
+    snprintf(stream, sizeof(stream), "%llu:%llu", (unsigned long long)st.st_dev, (unsigned long long)st.st_ino);
+    assert_false(service_is_journal(place->fd));
+    setenv("JOURNAL_STREAM", stream, 1);
+    assert_true(service_is_journal(place->fd));
+    setenv("JOURNAL_STREAM", "1:1", 1);
+    assert_false(service_is_journal(place->fd));
+}
+
+static void the_manager_is_told_and_asked_for_patience(void **state)
+{
+    const struct place *place = *state;
+    char got[256];
+    assert_false(service_notify("READY=1"));
+    assert_null(service_patience_begin("reading"));
+    setenv("NOTIFY_SOCKET", place->path, 1);
+    assert_true(service_notify("READY=%d", 1));
+    receive(place, got, sizeof(got));
+    assert_string_equal(got, "READY=1");
+    struct service_patience *patience = service_patience_begin("reading");
+    for (int i = 0; i < 500 && !receive(place, got, sizeof(got)); i++)
+        usleep(10000);
+    assert_string_equal(got, "EXTEND_TIMEOUT_USEC=60000000\nSTATUS=reading");
+    service_patience_status(patience, "drawing");
+    for (int i = 0; i < 500 && !receive(place, got, sizeof(got)); i++)
+        usleep(10000);
+    assert_string_equal(got, "EXTEND_TIMEOUT_USEC=60000000\nSTATUS=drawing");
+    service_patience_end(&patience);
+    assert_null(patience);
+}
+
+static void a_watchdog_is_ours_only_if_it_names_this_process(void **state)
+{
+    (void)state;
+    char pid[32];
+    setenv("WATCHDOG_USEC", "5000000", 1);
+    assert_int_equal(service_watchdog_ns(), 5 * NS_PER_S);
+    setenv("WATCHDOG_PID", "1", 1);
+    assert_int_equal(service_watchdog_ns(), 0);
+    snprintf(pid, sizeof(pid), "%ld", (long)getpid());
+    setenv("WATCHDOG_PID", pid, 1);
+    assert_int_equal(service_watchdog_ns(), 5 * NS_PER_S);
+    setenv("WATCHDOG_USEC", "none", 1);
+    assert_int_equal(service_watchdog_ns(), 0);
+    unsetenv("WATCHDOG_USEC");
+    unsetenv("WATCHDOG_PID");
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test_setup_teardown(an_entry_of_the_journal_has_its_priority_plant_and_message_id, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(a_message_of_two_lines_is_one_entry, set_up, tear_down),
+        cmocka_unit_test(without_the_journals_socket_lines_begin_with_their_priority),
+        cmocka_unit_test(a_line_of_json_is_one_object_whatever_the_text),
+        cmocka_unit_test(every_event_has_a_name_and_an_id_of_its_own),
+        cmocka_unit_test_setup_teardown(the_journal_is_known_by_its_stream, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(the_manager_is_told_and_asked_for_patience, set_up, tear_down),
+        cmocka_unit_test(a_watchdog_is_ours_only_if_it_names_this_process),
+    };
+    cmocka_set_message_output(CM_OUTPUT_TAP);
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
