@@ -164,6 +164,11 @@ $(gen)/glad/include/glad/gl.h:
 	    c --loader >$(gen)/glad.log 2>&1 || { cat $(gen)/glad.log; exit 1; }
 	@rm -rf $(gen)/glad; mv $(gen)/glad.new $(gen)/glad
 
+# What the programs are built from, for plantcast_build_info; COMMIT=... where there is no repository.
+COMMIT ?= $(or $(shell git rev-parse --short=12 HEAD 2>/dev/null),unknown)
+$(shell mkdir -p $(gen); echo '#define PLANTCAST_COMMIT "$(COMMIT)"' | cmp -s - $(gen)/commit.h || \
+        echo '#define PLANTCAST_COMMIT "$(COMMIT)"' >$(gen)/commit.h)
+
 # Shaders and colour maps, as C strings found by name (server/base/embedded.h).
 embedded_files := $(wildcard shaders/*.vert shaders/*.frag shaders/*.comp shaders/*.glsl shaders/maps/*.csv)
 $(gen)/embedded.c: deploy/embed $(embedded_files)

@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include "base/mem.h"
+#include "base/service_manager.h"
 #include "plant/model_check.h"
 #include "preprocess/debug/debug_views.h"
 #include "preprocess/diff/diff.h"
@@ -224,8 +225,10 @@ static bool run_plant(const struct options *options, struct diag *diag)
         return false;
     struct log *log = log_create(LOG_INFO);
     struct workers *workers = workers_create(0);
+    struct service_patience *patience = service_patience_begin("preparing the plant"); /* before a unit's daemon starts */
     char *folder = options->output ? mem_strdup(options->output) : plant_prepared_folder(plant);
     bool good = (options->distances ? run_distances : run_all)(options, log, workers, plant, folder, diag);
+    service_patience_end(&patience);
     mem_free(folder);
     workers_destroy(&workers);
     plant_destroy(&plant);

@@ -6,7 +6,9 @@
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
+#include <unistd.h>
 
+#include "base/service_manager.h"
 #include "server.h"
 #include "version.h"
 
@@ -17,7 +19,8 @@ static void print_usage(FILE *out)
 {
     fputs("usage: plantcastd PLANT.yaml [--listen ADDR] [--port N] [--gl auto|egl-device|egl-surfaceless|osmesa]\n"
           "                  [--gl-device INDEX|PCI] [--prepared DIR] [--history DIR] [--web DIR]\n"
-          "                  [--log-level error|warn|info|debug] [--threads N] [--memory MB] [--field vertices|per-fragment]\n"
+          "                  [--log-level error|warn|info|debug] [--log-format text|json|journal]\n"
+          "                  [--threads N] [--memory MB] [--field vertices|per-fragment]\n"
           "                  [--h264 ENCODER|off] [--tls-cert FILE --tls-key FILE] [--tokens FILE] [--open-viewers]\n"
           "                  [--trust-local] [--behind-proxy] [--host NAME] [--origin URL] [--limit NAME=N]\n"
           "       plantcastd --check PLANT.yaml [--prepared DIR]\n"
@@ -33,6 +36,7 @@ static void print_usage(FILE *out)
           "  --prepared DIR   the files that plantcast-prep made (beside the plant file)\n"
           "  --history DIR    where readings are recorded (as the plant file says; else beside it)\n"
           "  --web DIR        the web client's files (found from where this program is)\n"
+          "  --log-format F   of lines on stderr: text, json (one object per line), or journal (the default where stderr is the journal)\n"
           "  --threads N      workers for the field and for encoding (one per core)\n"
           "  --memory MB      what it keeps for the next picture goes where all of it would take more (a quarter of the machine, at\n"
           "                   most 2048); the model itself, and what one picture needs, it takes in any case. /metrics says where it is\n"
@@ -78,6 +82,17 @@ static bool parse_level(const char *text, enum log_level *level)
     return false;
 }
 
+static bool parse_format(const char *text, enum log_format *format)
+{
+    static const char *const names[] = { "text", "json", "journal" };
+    for (size_t i = 0; i < sizeof(names) / sizeof(names[0]); i++)
+        if (!strcmp(names[i], text)) {
+            *format = (enum log_format)i;
+            return true;
+        }
+    return false;
+}
+
 static bool parse_field(const char *text, bool *per_fragment)
 {
     *per_fragment = !strcmp(text, "per-fragment");
@@ -118,6 +133,7 @@ enum {
     OPTION_HISTORY,
     OPTION_WEB,
     OPTION_LEVEL,
+    OPTION_FORMAT,
     OPTION_MEMORY,
     OPTION_THREADS,
     OPTION_OPEN,
@@ -147,6 +163,7 @@ static const struct option options[] = {
     { "prepared", required_argument, NULL, OPTION_PREPARED },
     { "web", required_argument, NULL, OPTION_WEB },
     { "log-level", required_argument, NULL, OPTION_LEVEL },
+    { "log-format", required_argument, NULL, OPTION_FORMAT },
     { "memory", required_argument, NULL, OPTION_MEMORY },
     { "threads", required_argument, NULL, OPTION_THREADS },
     { "open-viewers", no_argument, NULL, OPTION_OPEN },
@@ -222,6 +239,7 @@ static int take_option(int option, struct server_params *params, int (**task)(co
     case OPTION_PREPARED: params->prepared = optarg; return -1;
     case OPTION_WEB: params->web = optarg; return -1;
     case OPTION_LEVEL: return parse_level(optarg, &params->log_level) ? -1 : usage_error("--log-level: unknown", optarg);
+    case OPTION_FORMAT: return parse_format(optarg, &params->log_format) ? -1 : usage_error("--log-format: unknown", optarg);
     case OPTION_MEMORY:
         if (!parse_int(optarg, LEAST_MEMORY_MB, MOST_MEMORY_MB, &megabytes))
             return usage_error("--memory: not a number of megabytes from 128 on:", optarg);
@@ -239,7 +257,11 @@ static int take_option(int option, struct server_params *params, int (**task)(co
 
 int main(int argc, char **argv)
 {
-    struct server_params params = { .address = "127.0.0.1", .port = 8080, .log_level = LOG_INFO, .access.quotas = quotas_default() };
+    struct server_params params = { .address = "127.0.0.1",
+                                    .port = 8080,
+                                    .log_level = LOG_INFO,
+                                    .log_format = service_is_journal(STDERR_FILENO) ? LOG_JOURNAL : LOG_TEXT,
+                                    .access.quotas = quotas_default() };
     int (*task)(const struct server_params *params) = server_run;
     for (int option; (option = getopt_long(argc, argv, "", options, NULL)) != -1;) {
         int code = take_option(option, &params, &task);

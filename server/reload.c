@@ -24,6 +24,8 @@ struct reload {
     const struct plant_runtime_context *context;
     struct plant_runtime **runtime;
     struct net *net;
+    struct supervision *supervision;
+    int64_t begun_ns; /* of the reload that is under way */
     pthread_t thread;
     bool started;
     const struct tag_save *saving; /* for whom this is done; NULL: for nobody's list */
@@ -83,6 +85,7 @@ static void answer(struct reload *reload, bool good, json_t *object)
     }
     char *text = json_text(object, 0);
     verdict.text = mem_printf("%s\n", text);
+    supervision_reloaded(reload->supervision, good, reload->begun_ns, text);
     net_call(reload->net, say, &verdict);
     mem_free(verdict.text);
     mem_free(verdict.saved);
@@ -104,7 +107,8 @@ static void refuse(struct reload *reload, const struct diag *diag, const char *w
     }
     if (why)
         json_array_append_new(errors, json_string(why));
-    log_err(log, "reload: the configuration %s stays in force%s%s", (*reload->runtime)->plant->hash, why ? ": " : "", why ? why : "");
+    log_event(log, LOG_ERROR, EVENT_RELOAD_REFUSED, "reload: the configuration %s stays in force%s%s", (*reload->runtime)->plant->hash,
+              why ? ": " : "", why ? why : "");
     answer(reload, false,
            json_pack("{s:b,s:s,s:o}", "reloaded", false, "configuration", (*reload->runtime)->plant->hash, "errors", errors));
 }
@@ -151,7 +155,8 @@ static void say_difference(struct reload *reload, const struct plant_diff *diff,
         log_info(log, "reload: %s", diff->lines[i]);
         json_array_append_new(changes, json_string(diff->lines[i]));
     }
-    log_info(log, "reload: configuration %s in place of %s, after %.1f s", (*reload->runtime)->plant->hash, before, took_s);
+    log_event(log, LOG_INFO, EVENT_RELOADED, "reload: configuration %s in place of %s, after %.1f s", (*reload->runtime)->plant->hash,
+              before, took_s);
     answer(reload, true,
            json_pack("{s:b,s:s,s:s,s:o}", "reloaded", true, "configuration", (*reload->runtime)->plant->hash, "before", before, "changes",
                      changes));
@@ -284,6 +289,7 @@ static void *run(void *arg)
         reload->asked = false;
         reload->save = NULL;
         pthread_mutex_unlock(&reload->lock);
+        reload->begun_ns = clock_mono_ns();
         if (save && !stopping)
             save_now(reload, save);
         tag_save_free(save);
@@ -294,12 +300,14 @@ static void *run(void *arg)
     }
 }
 
-struct reload *reload_create(const struct plant_runtime_context *context, struct plant_runtime **runtime, struct net *net)
+struct reload *reload_create(const struct plant_runtime_context *context, struct plant_runtime **runtime, struct net *net,
+                             struct supervision *supervision)
 {
     struct reload *reload = mem_new(sizeof(*reload));
     reload->context = context;
     reload->runtime = runtime;
     reload->net = net;
+    reload->supervision = supervision;
     pthread_mutex_init(&reload->lock, NULL);
     pthread_cond_init(&reload->wake, NULL);
     int error = pthread_create(&reload->thread, NULL, run, reload);

@@ -3,10 +3,12 @@
 #ifndef RELOAD_H
 #define RELOAD_H
 #include "plant_runtime.h"
+#include "supervision.h"
 
 struct reload;
 /* Starts the thread. *runtime is replaced by each reload. Returns NULL if it cannot start, already logged. */
-struct reload *reload_create(const struct plant_runtime_context *context, struct plant_runtime **runtime, struct net *net);
+struct reload *reload_create(const struct plant_runtime_context *context, struct plant_runtime **runtime, struct net *net,
+                             struct supervision *supervision);
 /* Ends the thread; the loop must have ended. &NULL is fine; leaves NULL. */
 void reload_destroy(struct reload **reload);
 /* Asks for a reload and does not wait; if one is under way, another follows it. reload: a struct reload. Any thread. */

@@ -34,6 +34,7 @@ struct server {
     struct plant_runtime_context context;
     struct plant_runtime *runtime;
     struct reload *reload;
+    struct supervision *supervision;
     pthread_mutex_t wake_lock; /* holds net alive while the render thread wakes it */
     struct net *net;
     char *web; /* folder; NULL: none */
@@ -133,6 +134,11 @@ static void ask_save(void *arg, struct tag_save *save)
     reload_save(((struct server *)arg)->reload, save);
 }
 
+static void on_tick(void *arg, const struct net_status *status)
+{
+    supervision_tick(((struct server *)arg)->supervision, status);
+}
+
 static bool start_net(struct server *server)
 {
     struct net_params params = {
@@ -147,6 +153,7 @@ static bool start_net(struct server *server)
         .version = PLANTCAST_VERSION,
         .reload = ask_reload,
         .save = ask_save,
+        .tick = on_tick,
         .reload_arg = server,
     };
     if (!server->web)
@@ -155,7 +162,7 @@ static bool start_net(struct server *server)
     pthread_mutex_lock(&server->wake_lock);
     server->net = net;
     pthread_mutex_unlock(&server->wake_lock);
-    return net && (server->reload = reload_create(&server->context, &server->runtime, net));
+    return net && (server->reload = reload_create(&server->context, &server->runtime, net, server->supervision));
 }
 
 /* Clocks in pictures show the plant's time. The environment may be changed only while there is one thread. */
@@ -165,13 +172,32 @@ static void set_time_zone(const struct plant *plant)
     tzset();
 }
 
+/* One entry for each line that would be printed. */
+static void log_findings(struct log *log, const struct diag *diag)
+{
+    char *lines = NULL;
+    size_t length;
+    FILE *out = open_memstream(&lines, &length);
+    if (!out)
+        return;
+    diag_print(diag, out);
+    fclose(out);
+    for (char *at = lines, *line; (line = strsep(&at, "\n"));)
+        if (*line)
+            log_at(log, strstr(line, ": error: ") ? LOG_ERROR : LOG_WARN, "%s", line);
+    free(lines);
+}
+
 /* Findings are printed, errors and warnings. */
 static bool read_plant(struct server *server)
 {
     struct diag diag = { 0 };
     server->runtime = plant_runtime_read(&server->context, &diag);
-    diag_print(&diag, stderr);
-    if (diag.errors)
+    if (log_is_text(server->log))
+        diag_print(&diag, stderr);
+    else
+        log_findings(server->log, &diag);
+    if (diag.errors && log_is_text(server->log))
         fprintf(stderr, "plantcastd: %s: %d error%s\n", server->params.plant_path, diag.errors, diag.errors == 1 ? "" : "s");
     diag_finish(&diag);
     return server->runtime != NULL;
@@ -180,11 +206,14 @@ static bool read_plant(struct server *server)
 static bool server_start(struct server *server)
 {
     server->counters = counters_create();
+    server->supervision = supervision_create(server->log, server->counters);
+    supervision_starting(server->supervision, "reading the plant");
     server->context = (struct plant_runtime_context){
         .params = &server->params, .log = server->log, .counters = server->counters, .notify = on_pictures, .notify_arg = server
     };
     if (!read_plant(server))
         return false;
+    log_set_plant(server->log, server->runtime->plant->name);
     set_time_zone(server->runtime->plant);
     colormaps_of_plant(server->runtime->plant);
     if (!net_port_free(server->log, server->params.address, server->params.port) || !net_access_good(server->log, &server->params.access))
@@ -192,6 +221,7 @@ static bool server_start(struct server *server)
     server->context.workers = server->workers = workers_create(server->params.threads);
     server->web = find_web(server->params.web);
     reload_count(server->counters, server->runtime->plant->hash, true);
+    supervision_starting(server->supervision, "drawing the first picture");
     return plant_runtime_start_recording(server->runtime, NULL) && plant_runtime_start_sources(server->runtime) &&
            plant_runtime_start_render_service(server->runtime, NULL, 0) && start_net(server);
 }
@@ -207,6 +237,7 @@ static void server_finish(struct server *server)
     net_destroy(&net);
     plant_runtime_destroy(&server->runtime);
     workers_destroy(&server->workers);
+    supervision_destroy(&server->supervision);
     counters_destroy(&server->counters);
     mem_free(server->web);
     pthread_mutex_destroy(&server->wake_lock);
@@ -227,14 +258,21 @@ static void handle_signals(struct net *net)
 static void say_ready(const struct server *server)
 {
     bool six = strchr(server->params.address, ':') != NULL;
-    printf("plantcastd: ready http%s://%s%s%s:%d/\n", server->params.access.tls_cert_path ? "s" : "", six ? "[" : "",
-           server->params.address, six ? "]" : "", net_port(server->net));
-    fflush(stdout);
+    char *url = mem_printf("http%s://%s%s%s:%d/", server->params.access.tls_cert_path ? "s" : "", six ? "[" : "", server->params.address,
+                           six ? "]" : "", net_port(server->net));
+    if (log_is_text(server->log)) {
+        printf("plantcastd: ready %s\n", url);
+        fflush(stdout);
+    } else {
+        log_event(server->log, LOG_INFO, EVENT_READY, "ready %s", url);
+    }
+    mem_free(url);
 }
 
 int server_run(const struct server_params *params)
 {
     struct server server = { .params = *params, .log = log_create(params->log_level) };
+    log_set_format(server.log, params->log_format, NULL);
     pthread_mutex_init(&server.wake_lock, NULL);
     signal(SIGPIPE, SIG_IGN);
     bool good = server_start(&server);
@@ -243,7 +281,8 @@ int server_run(const struct server_params *params)
         say_ready(&server);
         net_run(server.net);
         atomic_store(&to_stop, NULL);
-        log_info(server.log, "stopping");
+        log_event(server.log, LOG_INFO, EVENT_STOPPING, "stopping");
+        supervision_stopping(server.supervision);
     }
     server_finish(&server);
     return good ? 0 : 1;

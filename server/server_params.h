@@ -20,6 +20,7 @@ struct server_params {
     const char *history;  /* NULL: as the plant file says */
     const char *web;      /* NULL: found from where the program is */
     enum log_level log_level;
+    enum log_format log_format;
     const char *h264;    /* an encoder of libavcodec, or "off"; NULL: the usual one */
     size_t memory_bytes; /* 0: what suits the machine */
     int threads;         /* workers; 0: one per core */

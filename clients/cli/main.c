@@ -33,6 +33,7 @@ static const struct command {
     { "nodes", "what is in a model: nodes, sizes, properties", cmd_import },
     { "probe", "put load on a daemon and print a table of latencies", cmd_probe },
     { "tags", "print the tags of a daemon and their values", cmd_tags },
+    { "reload", "have a daemon of this machine load its plant anew, and say what came of it", cmd_reload },
     { "history", "take series into a plant's history, or print what was recorded", cmd_history },
     { "backup", "history, journal and configuration of a plant, also while its daemon records", cmd_backup },
     { "restore", "what backup made, put in place", cmd_restore },

@@ -194,7 +194,7 @@ static void add_counters(struct alarm_service *service)
     service->counters.chattering =
         counters_add(c, "plantcast_alarms_chattering", "gauge", "Alarms raised three times or more within the last minute.");
     service->counters.held = counters_add(c, "plantcast_alarms_held", "gauge", "Of the active ones, those whose measurement is bad.");
-    service->counters.rate = counters_add(c, "plantcast_alarms_per_10_minutes", "gauge", "Alarms raised within the last ten minutes.");
+    service->counters.rate = counters_add(c, "plantcast_alarms_recent", "gauge", "Alarms raised within the last ten minutes.");
     service->counters.raised = counters_add(c, "plantcast_alarms_raised_total", "counter", "Alarms raised.");
     service->counters.lost = counters_add(c, "plantcast_alarm_samples_lost_total", "counter", "Samples too many to be looked at.");
 }

@@ -311,9 +311,10 @@ static void try_to_write(struct historian *historian, int64_t mono_ns, int64_t u
         historian->retry_after_ns = wait_ns < NS_PER_S ? NS_PER_S : wait_ns > RETRY_MAX_S * NS_PER_S ? RETRY_MAX_S * NS_PER_S : wait_ns;
         historian->retry_ns = mono_ns + historian->retry_after_ns;
         if (!historian->failing)
-            log_err(historian->log, "history: cannot be written (%s); what comes is kept in memory", strerror(-error));
+            log_event(historian->log, LOG_ERROR, EVENT_HISTORY_UNWRITABLE, "history: cannot be written (%s); what comes is kept in memory",
+                      strerror(-error));
     } else if (historian->failing) {
-        log_info(historian->log, "history: is written again");
+        log_event(historian->log, LOG_INFO, EVENT_HISTORY_WRITTEN, "history: is written again");
         historian->retry_after_ns = 0;
     }
     historian->failing = error != 0;

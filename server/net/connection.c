@@ -187,8 +187,8 @@ void connection_log_login(struct server_context *server, struct lws *wsi, const 
     if (login != LOGIN_WRONG && login != LOGIN_WRONG_SLOWS)
         return;
     counter_inc(server->counters.logins_wrong, 1);
-    log_warn(log, "login from %s by %s: token %s, role %s: refused, %s (%d within a minute)", connection->address, way,
-             known ? holder->name : "(unknown)", role, known ? "its time is over" : "nobody's", failures);
+    log_event(log, LOG_WARN, EVENT_LOGIN_REFUSED, "login from %s by %s: token %s, role %s: refused, %s (%d within a minute)",
+              connection->address, way, known ? holder->name : "(unknown)", role, known ? "its time is over" : "nobody's", failures);
     if (login == LOGIN_WRONG_SLOWS)
         log_warn(log, "login from %s: slowed, to one token in %d s, until there was no wrong one for a minute", connection->address,
                  LOGIN_WAIT_S);

@@ -76,6 +76,16 @@ static void look_at_processors(struct net *net, int64_t now_ns)
     net->server.session_context.cpu_used = 1 - cpu_meter_free(&net->cpu, stat);
 }
 
+static void say_status(const struct server_context *server)
+{
+    if (server->params.tick)
+        server->params.tick(server->params.reload_arg, &(struct net_status){
+                                                           .render_service = server->params.plant.render_service,
+                                                           .sessions = (size_t)server->stream_count,
+                                                           .certificate_ends_s = server->tls ? tls_ends_s(server->tls) : 0,
+                                                       });
+}
+
 static void on_tick(lws_sorted_usec_list_t *sul)
 {
     struct net *net = lws_container_of(sul, struct net, tick);
@@ -95,6 +105,7 @@ static void on_tick(lws_sorted_usec_list_t *sul)
         render_service_on_data(net->server.params.plant.render_service);
     streams_on_tick(&net->server, data_changed, links_changed);
     net_wake_render_service(&net->server);
+    say_status(&net->server);
     lws_sul_schedule(net->server.lws, 0, sul, on_tick, TICK_NS / 1000);
 }
 

@@ -25,6 +25,12 @@ struct net_plant { /* what belongs to one loaded plant; a reload brings another 
     const char *history_folder;      /* NULL: nothing is recorded */
 };
 
+struct net_status { /* what the loop says of itself with each tick */
+    struct render_service *render_service;
+    size_t sessions;
+    int64_t certificate_ends_s; /* seconds of UTC since 1970; 0: there is none */
+};
+
 struct net_params {
     struct log *log;
     struct net_plant plant;
@@ -37,7 +43,8 @@ struct net_params {
     const char *version;
     void (*reload)(void *arg);                      /* called in the loop: load the plant anew. NULL: it cannot be */
     void (*save)(void *arg, struct tag_save *save); /* called in the loop: put another tag list in force; takes it. NULL: it cannot be */
-    void *reload_arg;                               /* of both */
+    void (*tick)(void *arg, const struct net_status *status); /* called in the loop, ten times a second. NULL: nobody asks */
+    void *reload_arg;                                         /* of these three */
 };
 
 #endif

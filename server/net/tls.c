@@ -6,6 +6,7 @@
 #include <openssl/err.h>
 #include <openssl/x509v3.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
 #include <time.h>
@@ -13,12 +14,15 @@
 #include "base/mem.h"
 #include "access/file_watch.h"
 
+enum { DAY_S = 24 * 3600, SOON_S = 14 * DAY_S };
+
 struct tls {
     struct log *log;
     char *cert_path, *key_path;
     struct file_watch cert_watch, key_watch;
     SSL_CTX *checked; /* ours: the newest that can be served */
     SSL_CTX *served;  /* of lws */
+    time_t warned_s;  /* that it expires; 0: not yet */
 };
 
 static const char *why(char out[200])
@@ -49,17 +53,30 @@ static void mark_read(struct file_watch *watch, const char *path)
     file_watch_read(watch, stat(path, &st) == 0 ? &st : NULL);
 }
 
-static void warn(const struct tls *tls)
+int64_t tls_ends_s(const struct tls *tls)
+{
+    struct tm utc;
+    const X509 *cert = SSL_CTX_get0_certificate(tls->checked);
+    return cert && ASN1_TIME_to_tm(X509_get0_notAfter(cert), &utc) == 1 ? (int64_t)timegm(&utc) : 0;
+}
+
+static void warn_of_end(struct tls *tls, time_t now_s)
+{
+    int64_t left_s = tls_ends_s(tls) - (int64_t)now_s;
+    tls->warned_s = now_s;
+    if (left_s < 0)
+        log_event(tls->log, LOG_ERROR, EVENT_CERTIFICATE_EXPIRES, "%s: this certificate's time is over", tls->cert_path);
+    else if (left_s < SOON_S)
+        log_event(tls->log, LOG_WARN, EVENT_CERTIFICATE_EXPIRES, "%s: this certificate's time is over within 14 days, in %.1f",
+                  tls->cert_path, (double)left_s / DAY_S);
+}
+
+static void warn(struct tls *tls)
 {
     struct stat st;
-    const X509 *cert = SSL_CTX_get0_certificate(tls->checked);
-    time_t soon = time(NULL) + 14 * 24 * 3600;
     if (stat(tls->key_path, &st) == 0 && (st.st_mode & S_IROTH))
         log_warn(tls->log, "%s: everyone on this machine may read the private key: chmod 640 or less", tls->key_path);
-    if (X509_cmp_current_time(X509_get0_notAfter(cert)) < 0)
-        log_warn(tls->log, "%s: this certificate's time is over", tls->cert_path);
-    else if (X509_cmp_time(X509_get0_notAfter(cert), &soon) < 0)
-        log_warn(tls->log, "%s: this certificate's time is over within 14 days", tls->cert_path);
+    warn_of_end(tls, time(NULL));
 }
 
 /* False: logged. */
@@ -71,7 +88,7 @@ static bool check(struct tls *tls)
     mark_read(&tls->cert_watch, tls->cert_path);
     mark_read(&tls->key_watch, tls->key_path);
     if (!context || !load(context, tls, &at)) {
-        log_err(tls->log, "TLS: %s: %s", at, why(text));
+        log_event(tls->log, LOG_ERROR, EVENT_CERTIFICATE_REFUSED, "TLS: %s: %s", at, why(text));
         SSL_CTX_free(context);
         return false;
     }
@@ -113,6 +130,9 @@ void tls_look(struct tls *tls)
 {
     char text[200];
     const char *at;
+    time_t now_s = time(NULL);
+    if (llabs((long long)(now_s - tls->warned_s)) >= DAY_S)
+        warn_of_end(tls, now_s);
     bool cert = file_watch_changed(&tls->cert_watch, tls->cert_path), key = file_watch_changed(&tls->key_watch, tls->key_path);
     if ((!cert && !key) || !check(tls) || !tls->served)
         return;

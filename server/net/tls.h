@@ -4,6 +4,7 @@
 #define NET_TLS_H
 #include <openssl/ssl.h>
 #include <stdbool.h>
+#include <stdint.h>
 
 #include "base/log.h"
 
@@ -13,8 +14,11 @@ struct tls *tls_create(struct log *log, const char *cert_path, const char *key_p
 void tls_destroy(struct tls **tls); /* &NULL is fine; leaves NULL */
 /* Has the OpenSSL context use the certificate, now and whenever it changes. */
 void tls_serve(struct tls *tls, SSL_CTX *context);
-/* Reads the files again if they changed. A certificate that cannot be served leaves the old one in force; logged. */
+/* Reads the files again if they changed. A certificate that cannot be served leaves the old one in force; logged. Warns once a day of one
+   that expires within 14 days. */
 void tls_look(struct tls *tls);
+/* Returns when the certificate in force expires, in seconds of UTC since 1970. */
+int64_t tls_ends_s(const struct tls *tls);
 /* Returns whether the certificate is for that host name. */
 bool tls_is_called(const struct tls *tls, const char *name);
 

@@ -59,13 +59,13 @@ static void add_counters(struct encode_queue *queue)
     for (int codec = WIRE_CODEC_JPEG; codec < CODECS; codec++) {
         const char *name = name_of(names_codec, codec);
         char *encodes = mem_printf("plantcast_encodes_total{codec=\"%s\"}", name);
-        char *us = mem_printf("plantcast_encode_us_total{codec=\"%s\"}", name);
+        char *seconds = mem_printf("plantcast_encode_seconds_total{codec=\"%s\"}", name);
         char *bytes = mem_printf("plantcast_encode_bytes_total{codec=\"%s\"}", name);
         queue->encodes[codec] = counters_add(counters, encodes, "counter", "Pictures encoded.");
-        queue->encode_us[codec] = counters_add(counters, us, "counter", "Microseconds spent encoding.");
+        queue->encode_us[codec] = counters_add_seconds(counters, seconds, "counter", "Time spent encoding.");
         queue->bytes[codec] = counters_add(counters, bytes, "counter", "Bytes that pictures were encoded to.");
         mem_free(encodes);
-        mem_free(us);
+        mem_free(seconds);
         mem_free(bytes);
     }
     queue->failures = counters_add(counters, "plantcast_encode_failures_total", "counter", "Pictures that could not be encoded.");

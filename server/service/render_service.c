@@ -6,6 +6,8 @@
 #include "base/mem.h"
 #include "service/render_service_impl.h"
 
+static const int64_t STUCK_NS = 12 * NS_PER_S, REBUILDING_NS = 120 * NS_PER_S; /* without a sign of life of the render thread */
+
 /* --- requests, from any thread ---------------------------------------------------------------------------------------- */
 
 /* The newer view stands; what made the older one urgent stays. */
@@ -97,6 +99,17 @@ bool render_service_ready(struct render_service *service)
     return ready;
 }
 
+bool render_service_is_stuck(struct render_service *service, int64_t now_ns)
+{
+    pthread_mutex_lock(&service->lock);
+    bool stuck = service->asked_ns && now_ns - service->asked_ns > (service->lost ? REBUILDING_NS : STUCK_NS);
+    if (!service->asked_ns)
+        service->asked_ns = now_ns;
+    pthread_cond_broadcast(&service->wake);
+    pthread_mutex_unlock(&service->lock);
+    return stuck;
+}
+
 void render_service_lose_context(struct render_service *service)
 {
     pthread_mutex_lock(&service->lock);
@@ -134,14 +147,14 @@ static void thread_stop(struct render_service *service)
 static void add_counters(struct render_service *service, struct counters *counters)
 {
     service->renders = counters_add(counters, "plantcast_renders_total", "counter", "Pictures drawn.");
-    service->render_us = counters_add(counters, "plantcast_render_us_total", "counter", "Microseconds spent drawing.");
+    service->render_us = counters_add_seconds(counters, "plantcast_render_seconds_total", "counter", "Time spent drawing.");
     service->same = counters_add(counters, "plantcast_renders_saved_total", "counter", "Pictures not drawn: nothing had changed.");
     service->shared = counters_add(counters, "plantcast_renders_shared_total", "counter", "Pictures that had just been drawn for another.");
     service->failures = counters_add(counters, "plantcast_render_failures_total", "counter", "Pictures that could not be drawn.");
     service->steps = counters_add(counters, "plantcast_render_steps_total", "counter", "Parts of pictures that take long.");
     service->abandoned = counters_add(counters, "plantcast_renders_abandoned_total", "counter", "Pictures given up: nobody wanted them.");
     service->picked = counters_add(counters, "plantcast_picks_total", "counter", "Questions about a pixel that were answered.");
-    service->pick_us = counters_add(counters, "plantcast_pick_us_total", "counter", "Microseconds spent answering them.");
+    service->pick_us = counters_add_seconds(counters, "plantcast_pick_seconds_total", "counter", "Time spent answering them.");
     service->losses = counters_add(counters, "plantcast_gl_losses_total", "counter", "GL contexts that were lost and made again.");
 }
 

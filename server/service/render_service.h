@@ -56,6 +56,9 @@ void render_service_set_loop_checks(struct render_service *service, const struct
 void render_service_on_data(struct render_service *service);
 /* Returns false while a lost GL context is being made again; requests wait meanwhile. */
 bool render_service_ready(struct render_service *service);
+/* Returns whether the render thread has given no sign of life for 12 s, or 2 minutes while a lost GL context is made again, and asks it for
+   one. To be called every few seconds. */
+bool render_service_is_stuck(struct render_service *service, int64_t now_ns);
 /* Destroys the GL context in the middle of the next frame, as a GPU reset does. For tests. */
 void render_service_lose_context(struct render_service *service);
 /* Asks what is at a pixel. Each question brings one answer, unless the client asks another or is forgotten. Answered between frames. */

@@ -33,6 +33,7 @@ struct render_service {
     bool new_data;                         /* readings changed since the last snapshot */
     const struct loop_checks *loop_checks; /* NULL: no tag is marked as unchecked */
     bool lost;                             /* the GL context is being made anew */
+    int64_t asked_ns;                      /* since when a sign of life is waited for; 0: there was one */
     bool lose;                             /* a test wants it lost in the middle of the next frame */
     struct render_client **clients;        /* by id, ascending */
     size_t client_count, client_capacity;

@@ -444,6 +444,7 @@ static void set_lost(struct render_service *service, bool lost)
 {
     pthread_mutex_lock(&service->lock);
     service->lost = lost;
+    service->asked_ns = 0;
     pthread_mutex_unlock(&service->lock);
 }
 
@@ -452,8 +453,10 @@ static bool pause_for(struct render_service *service, int64_t pause_ns)
 {
     int64_t until_ns = clock_mono_ns() + pause_ns;
     pthread_mutex_lock(&service->lock);
-    while (service->state == RUNNING && clock_mono_ns() < until_ns)
+    while (service->state == RUNNING && clock_mono_ns() < until_ns) {
+        service->asked_ns = 0;
         render_thread_wait(service, until_ns);
+    }
     bool running = service->state == RUNNING;
     pthread_mutex_unlock(&service->lock);
     return running;
@@ -518,6 +521,7 @@ void *render_thread_main(void *arg)
     struct render_thread thread;
     struct request_group group = { 0 };
     struct scheduler scheduler = { 0 };
+    pthread_setname_np(pthread_self(), "render");
     bool good = render_thread_init(&thread, service);
     if (good) {
         render_thread_bound_memory(&thread);

@@ -178,6 +178,7 @@ bool render_thread_next(struct render_thread *thread, const struct scheduler *sc
     group->count = 0;
     pthread_mutex_lock(&service->lock);
     while (service->state == RUNNING) {
+        service->asked_ns = 0;
         if (pick_queue_has_query(service->picks)) {
             pthread_mutex_unlock(&service->lock);
             answer_pick(thread);

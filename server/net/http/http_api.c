@@ -6,6 +6,7 @@
 #include "base/clock.h"
 #include "base/mem.h"
 #include "base/memory.h"
+#include "base/process_counters.h"
 #include "net/http/http_impl.h"
 #include "net/connection.h"
 #include "session/reply.h"
@@ -123,8 +124,6 @@ static void count_memory(struct server_context *server)
     struct counters *counters = server->params.counters;
     struct memory_use use;
     memory_measure(&use);
-    counter_set(counters_add(counters, "process_resident_memory_bytes", "gauge", "Resident memory, mapped files and all."),
-                (int64_t)use.resident);
     counter_set(counters_add(counters, "plantcast_anonymous_bytes", "gauge", "Resident memory that is no file's."), (int64_t)use.anonymous);
     counter_set(counters_add(counters, "plantcast_heap_bytes", "gauge", "Memory that malloc has handed out."), (int64_t)use.allocated);
 }
@@ -133,6 +132,7 @@ int metrics(struct server_context *server, struct request *request)
 {
     struct text text = { 0 };
     count_memory(server);
+    process_counters_set(server->params.counters);
     counters_print(server->params.counters, &text);
     return request_answer(request, HTTP_STATUS_OK, "text/plain; version=0.0.4; charset=utf-8", text.at, text.length, NULL, NULL);
 }

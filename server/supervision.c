@@ -1,0 +1,140 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* State of the daemon for the service manager, metrics and `plantcast reload`. */
+#include "supervision.h"
+
+#include <inttypes.h>
+#include <stdatomic.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/atomic_file.h"
+#include "base/clock.h"
+#include "base/mem.h"
+#include "base/service_manager.h"
+#include "commit.h"
+#include "version.h"
+
+static const int64_t LOOK_NS = 2 * NS_PER_S; /* at the render thread, and so often the watchdog is fed at most */
+
+struct supervision {
+    struct log *log;
+    struct counters *all;
+    struct {
+        counter *reload_good, *reloaded_s;
+    } counters;
+    struct service_patience *patience; /* until the daemon is ready */
+    char *runtime;                     /* folder; NULL: there is none */
+    int64_t watchdog_ns;               /* 0: nobody waits for a sign of life */
+    _Atomic bool refused, reloaded;    /* the last reload was; there was one whose result was not told yet */
+    /* --- below: of the loop */
+    int64_t looked_ns;
+    bool ready, stuck, said_refused;
+    size_t said_sessions;
+};
+
+struct supervision *supervision_create(struct log *log, struct counters *counters)
+{
+    struct supervision *supervision = mem_new(sizeof(*supervision));
+    const char *runtime = getenv("RUNTIME_DIRECTORY");
+    supervision->log = log;
+    supervision->all = counters;
+    supervision->counters.reload_good = counters_add(counters, "plantcast_reload_good", "gauge", "1 unless the last reload was refused.");
+    supervision->counters.reloaded_s =
+        counters_add(counters, "plantcast_configuration_loaded_timestamp_seconds", "gauge", "When the configuration in force was loaded.");
+    counter_set(supervision->counters.reload_good, 1);
+    counter_set(supervision->counters.reloaded_s, clock_utc_ns() / NS_PER_S);
+    counter_set(counters_add(counters, "plantcast_build_info{version=\"" PLANTCAST_VERSION "\",commit=\"" PLANTCAST_COMMIT "\"}", "gauge",
+                             "1: what this program was built from."),
+                1);
+    if (runtime && *runtime)
+        supervision->runtime = mem_printf("%.*s", (int)strcspn(runtime, ":"), runtime);
+    supervision->watchdog_ns = service_watchdog_ns();
+    supervision->patience = service_patience_begin("starting");
+    return supervision;
+}
+
+void supervision_destroy(struct supervision **pointer)
+{
+    struct supervision *supervision = *pointer;
+    if (!supervision)
+        return;
+    service_patience_end(&supervision->patience);
+    mem_free(supervision->runtime);
+    mem_free(supervision);
+    *pointer = NULL;
+}
+
+void supervision_starting(struct supervision *supervision, const char *what)
+{
+    service_patience_status(supervision->patience, what);
+}
+
+static void say_ready(struct supervision *supervision)
+{
+    service_patience_end(&supervision->patience);
+    service_notify("READY=1\nSTATUS=ready");
+    supervision->ready = true;
+}
+
+static void say_status(struct supervision *supervision, size_t sessions)
+{
+    bool refused = atomic_load(&supervision->refused);
+    if (!atomic_exchange(&supervision->reloaded, false) && refused == supervision->said_refused && sessions == supervision->said_sessions)
+        return;
+    supervision->said_refused = refused;
+    supervision->said_sessions = sessions;
+    service_notify("STATUS=%zu session%s%s", sessions, sessions == 1 ? "" : "s",
+                   refused ? "; the last reload was refused, an older configuration is in force" : "");
+}
+
+/* The loop feeds it, and only while the render thread is alive too: whichever hangs, the manager starts the daemon again. */
+static void look(struct supervision *supervision, struct render_service *render_service, int64_t now_ns)
+{
+    bool stuck = render_service_is_stuck(render_service, now_ns);
+    if (stuck && !supervision->stuck)
+        log_err(supervision->log, "render thread: no sign of life%s",
+                supervision->watchdog_ns ? "; the service manager will start the daemon again" : "");
+    supervision->stuck = stuck;
+    if (!stuck && supervision->watchdog_ns)
+        service_notify("WATCHDOG=1");
+}
+
+void supervision_tick(struct supervision *supervision, const struct net_status *status)
+{
+    int64_t now_ns = clock_mono_ns(), every_ns = supervision->watchdog_ns ? supervision->watchdog_ns / 4 : LOOK_NS;
+    if (!supervision->ready && render_service_ready(status->render_service))
+        say_ready(supervision);
+    if (!supervision->ready || now_ns - supervision->looked_ns < (every_ns < LOOK_NS ? every_ns : LOOK_NS))
+        return;
+    supervision->looked_ns = now_ns;
+    say_status(supervision, status->sessions);
+    look(supervision, status->render_service, now_ns);
+    if (status->certificate_ends_s)
+        counter_set(counters_add(supervision->all, "plantcast_certificate_expiry_timestamp_seconds", "gauge",
+                                 "When the certificate that is served expires."),
+                    status->certificate_ends_s);
+}
+
+void supervision_reloaded(struct supervision *supervision, bool good, int64_t begun_ns, const char *json)
+{
+    atomic_store(&supervision->refused, !good);
+    atomic_store(&supervision->reloaded, true);
+    counter_set(supervision->counters.reload_good, good);
+    if (good)
+        counter_set(supervision->counters.reloaded_s, clock_utc_ns() / NS_PER_S);
+    if (!supervision->runtime)
+        return;
+    char *path = mem_printf("%s/reload.json", supervision->runtime);
+    char *text = mem_printf("{\"begun_ns\":%" PRId64 ",\"result\":%s}\n", begun_ns, json);
+    int error = atomic_file_put(path, text, strlen(text));
+    if (error)
+        log_warn(supervision->log, "%s: %s", path, strerror(-error));
+    mem_free(text);
+    mem_free(path);
+}
+
+void supervision_stopping(struct supervision *supervision)
+{
+    service_patience_end(&supervision->patience);
+    service_notify("STOPPING=1\nSTATUS=stopping");
+}

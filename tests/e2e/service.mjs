@@ -1,0 +1,188 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The daemon as a service: what it tells its manager, who starts it again, what its log and its metrics look like, and what a reload
+// that was refused leaves to be seen.
+import assert from 'node:assert/strict';
+import { spawn, spawnSync } from 'node:child_process';
+import { existsSync, mkdtempSync, readFileSync, rmSync, statSync, writeFileSync } from 'node:fs';
+import { createServer } from 'node:net';
+import { tmpdir } from 'node:os';
+import { join } from 'node:path';
+import { after, before, test } from 'node:test';
+import { get } from './support/plain_client.mjs';
+import { freePort } from './support/ports.mjs';
+import { BIN, missing, runProgram, TinyPlant } from './support/tiny_plant.mjs';
+
+const absent = missing(), skip = absent.length > 0 ? `not built: ${absent.join(', ')}` : false;
+const has = (program) => spawnSync('which', [program]).status === 0;
+const WATCHDOG_S = 10, WITHIN_S = 30; // as in the unit
+let plant, runtime;
+const running = new Set();
+
+// plantcastd below a service manager: { lines of the manager, err of the daemon, pid, order(), ended }.
+function serve(args, managed = []) {
+    const child = spawn('tests/support/service_manager.py', [...managed, join(BIN, 'plantcastd'), plant.file, ...args],
+        { stdio: 'pipe', env: { ...process.env, RUNTIME_DIRECTORY: runtime } });
+    const service = { out: '', err: '', child, order: (line) => child.stdin.write(`${line}\n`) };
+    child.stdout.on('data', (chunk) => { service.out += chunk; });
+    child.stderr.on('data', (chunk) => { service.err += chunk; });
+    service.ended = new Promise((done) => child.once('exit', (code) => { running.delete(child); done(code); }));
+    service.said = async (pattern, timeoutMs = 60000) => {
+        for (const end = performance.now() + timeoutMs; performance.now() < end; await new Promise((done) => setTimeout(done, 20))) {
+            const found = service.out.match(pattern);
+            if (found)
+                return found;
+            if (child.exitCode !== null)
+                break;
+        }
+        throw new Error(`no ${pattern} in:\n${service.out}\n${service.err}`);
+    };
+    service.stop = () => { child.kill('SIGTERM'); return service.ended; };
+    service.pid = async () => Number((await service.said(/^started: (\d+)$/m))[1]);
+    running.add(child);
+    return service;
+}
+
+before(async () => {
+    if (skip)
+        return;
+    plant = await TinyPlant.create();
+    runtime = mkdtempSync(join(tmpdir(), 'plantcast-runtime-'));
+    assert.equal(plant.prepare().code, 0);
+});
+after(async () => {
+    for (const child of running)
+        child.kill('SIGTERM');
+    await plant?.destroy();
+    if (runtime)
+        rmSync(runtime, { recursive: true });
+});
+
+test('the manager hears that it starts, that it is ready once /readyz is, and that it ends', { skip }, async () => {
+    const port = await freePort(), service = serve(['--port', String(port)]);
+    await service.said(/^notify: EXTEND_TIMEOUT_USEC=60000000$/m);
+    await assert.rejects(get(port, '/readyz'), 'not yet');
+    await service.said(/^notify: READY=1$/m);
+    assert.equal((await get(port, '/readyz')).status, 200);
+    assert.equal(await service.stop(), 0, service.err);
+    assert.match(service.out, /notify: STATUS=drawing the first picture\n[^]*notify: READY=1\n[^]*notify: STOPPING=1\n/);
+});
+
+test('plantcast-prep asks for time while it works', { skip }, () => {
+    const { status, stdout } = spawnSync('tests/support/service_manager.py', [join(BIN, 'plantcast-prep'), plant.file],
+        { encoding: 'utf8', timeout: 60000 });
+    assert.equal(status, 0);
+    assert.match(stdout, /^notify: EXTEND_TIMEOUT_USEC=60000000\nnotify: STATUS=preparing/m);
+});
+
+for (const [thread, what] of [['render', 'the render thread'], ['plantcastd', 'the loop']])
+    test(`if ${what} hangs, the watchdog ends the daemon within ${WITHIN_S} s; before, it lives`, { skip, timeout: 120000 }, async () => {
+        const service = serve(['--port', '0'], ['--watchdog', String(WATCHDOG_S)]);
+        await service.said(/^notify: READY=1$/m);
+        await service.said(/(notify: WATCHDOG=1[^]*){6}/, WATCHDOG_S * 1500);
+        service.order(`freeze ${thread}`);
+        await service.said(new RegExp(`^frozen: ${thread}$`, 'm'));
+        const began = performance.now();
+        assert.equal(await service.ended, 99, service.out);
+        const took = (performance.now() - began) / 1000;
+        console.log(`# ${what}: ended after ${took.toFixed(1)} s`);
+        assert.ok(took < WITHIN_S, `${took} s`);
+        if (thread === 'render')
+            assert.match(service.err, /render thread: no sign of life; the service manager will start the daemon again/);
+    });
+
+test('a port that is taken ends it, before it is ready', { skip }, async () => {
+    const other = createServer().listen(0, '127.0.0.1');
+    await new Promise((done) => other.once('listening', done));
+    const service = serve(['--port', String(other.address().port)]);
+    assert.equal(await service.ended, 1);
+    assert.doesNotMatch(service.out, /READY=1/);
+    assert.match(service.err, /error listen 127\.0\.0\.1 port \d+: Address already in use/);
+    other.close();
+});
+
+test('lines for the journal begin with their priority, and have no time of their own', {
+    skip: skip || (existsSync('/run/systemd/journal/socket') ? 'a journal takes them on this machine' : false),
+}, async () => {
+    const service = serve(['--port', '0', '--log-format', 'journal']);
+    await service.said(/^notify: READY=1$/m);
+    await service.stop();
+    const lines = service.err.trim().split('\n');
+    for (const line of lines)
+        assert.match(line, /^<[3467]>(?!\d{4}-)/);
+    for (const wanted of [/^<6>ready http:/m, /^<4>source plc1: .*no readings/m])
+        assert.match(service.err, wanted);
+});
+
+test('lines of JSON are objects, those of a faulty plant file too', { skip }, async () => {
+    const service = serve(['--port', '0', '--log-format', 'json']);
+    await service.said(/^notify: READY=1$/m);
+    await service.stop();
+    const lines = service.err.trim().split('\n').map((line) => JSON.parse(line));
+    assert.deepEqual(lines.filter(({ event }) => event).map(({ event, level, plant: name }) => [event, level, name]),
+        [['ready', 'info', 'Two boxes'], ['stopping', 'info', 'Two boxes']]);
+    const faulty = join(plant.folder, 'faulty.yaml');
+    writeFileSync(faulty, readFileSync(plant.file, 'utf8').replace('assets:', 'asset:'));
+    const { code, err } = runProgram('plantcastd', [faulty, '--port', '0', '--log-format', 'json']);
+    assert.equal(code, 1);
+    const errors = err.trim().split('\n').map((line) => JSON.parse(line)).filter(({ level }) => level === 'error');
+    assert.ok(errors.some(({ message }) => /faulty\.yaml:\d+.*asset/.test(message)), err);
+});
+
+test('`plantcast reload` fails after a refused reload, and says why; metrics and status line show it too', { skip }, async () => {
+    const port = await freePort(), service = serve(['--port', String(port)]), pid = await service.pid();
+    const reload = () => runProgram('plantcast', ['reload', String(pid), '--runtime', runtime]);
+    const metric = async (name) => Number((await get(port, '/metrics')).body.toString().match(new RegExp(`^${name} (.*)$`, 'm'))[1]);
+    const good = readFileSync(plant.file, 'utf8');
+    await service.said(/^notify: READY=1$/m);
+    assert.equal(await metric('plantcast_reload_good'), 1);
+    writeFileSync(plant.file, good.replace('max: 100', 'max: warm'));
+    try {
+        const { code, err } = reload();
+        assert.equal(code, 1);
+        assert.match(err, /plant\.yaml:\d+:\d+: .*\n.*not reloaded: configuration \w+ stays in force/);
+    } finally {
+        writeFileSync(plant.file, good);
+    }
+    assert.equal(await metric('plantcast_reload_good'), 0);
+    await service.said(/^notify: STATUS=.*the last reload was refused/m);
+    const { code, out, err } = reload();
+    assert.equal(code, 0, err);
+    assert.match(out, /^reloaded: configuration \w+$/m);
+    assert.equal(await metric('plantcast_reload_good'), 1);
+    await service.stop();
+    assert.equal(reload().code, 1, 'it has ended');
+});
+
+test('metrics: build, process and certificate; no old name of one that was renamed', { skip }, async () => {
+    const [cert, key] = ['cert.pem', 'key.pem'].map((name) => join(plant.folder, name));
+    const made = spawnSync('openssl', ['req', '-x509', '-newkey', 'ec', '-pkeyopt', 'ec_paramgen_curve:prime256v1', '-nodes', '-days', '3',
+        '-keyout', key, '-out', cert, '-subj', '/CN=localhost', '-addext', 'subjectAltName=DNS:localhost,IP:127.0.0.1']);
+    assert.equal(made.status, 0, String(made.stderr));
+    const port = await freePort(), service = serve(['--port', String(port), '--tls-cert', cert, '--tls-key', key]);
+    await service.said(/^notify: READY=1$/m);
+    await new Promise((done) => setTimeout(done, 3000)); // one look of the supervision
+    const text = spawnSync('curl', ['-s', '--cacert', cert, `https://127.0.0.1:${port}/metrics`], { encoding: 'utf8' }).stdout;
+    const number = (name) => Number(text.match(new RegExp(`^${name} (.*)$`, 'm'))?.[1]);
+    assert.match(text, /^plantcast_build_info\{version="[\d.]+",commit="\w+"\} 1$/m);
+    const left = number('plantcast_certificate_expiry_timestamp_seconds') - Date.now() / 1000;
+    assert.ok(left > 2.9 * 86400 && left < 3.1 * 86400, String(left));
+    const ago = Date.now() / 1000 - number('process_start_time_seconds');
+    assert.ok(ago > 0 && ago < 60, String(ago));
+    assert.ok(number('process_cpu_seconds_total') > 0 && number('process_threads') > 3);
+    assert.ok(number('process_max_fds') >= number('process_open_fds'));
+    assert.ok(number('process_open_fds') > 5 && number('process_virtual_memory_bytes') > number('process_resident_memory_bytes'));
+    assert.doesNotMatch(text, /_us_total|per_10_minutes/);
+    writeFileSync(join(runtime, 'metrics'), text);
+    await service.stop();
+    assert.match(service.err, /warn .*cert\.pem: this certificate's time is over within 14 days, in 3\.0/);
+});
+
+test('promtool has nothing to say about them', {
+    skip: skip || (has('promtool') ? false : 'promtool (of the package prometheus) is not installed'),
+}, () => {
+    const { status, stdout, stderr } = spawnSync('promtool', ['check', 'metrics'],
+        { input: readFileSync(join(runtime, 'metrics')), encoding: 'utf8' });
+    assert.equal(status, 0, stdout + stderr);
+    assert.equal(stdout + stderr, '');
+    assert.ok(statSync(join(runtime, 'metrics')).size > 5000);
+});
