@@ -74,10 +74,14 @@ assimp   := $(wildcard /usr/include/assimp/Importer.hpp)
 readers  := $(if $(occt),$(bin)/plantcast-import-occt) $(if $(assimp),$(bin)/plantcast-import-assimp)
 
 .PHONY: all programs run demo test check test-long bench gpu-bench style layers headers deps test-deps golden-update install clean help
-all: $(programs) $(modules) $(readers) clients/web/vendor/uPlot.js clients/web/made/version.js
+all: $(programs) $(modules) $(readers) $(bin)/plantcast-import-ifc/ifc.mjs clients/web/vendor/uPlot.js clients/web/made/version.js
 # The page's charts: asked for again with each make until they are there.
 clients/web/vendor/uPlot.js: clients/web/package-lock.json
 	@echo "  NPM  $(@D)"; deploy/vendor $(build)/npm; [ ! -f $@ ] || touch $@
+# The reader of IFC, likewise.
+ifc := $(addprefix preprocess/import/readers/,package-lock.json glb_writer.mjs ifc.mjs)
+$(bin)/plantcast-import-ifc/ifc.mjs: $(ifc)
+	@echo "  NPM  $(@D)"; deploy/vendor_ifc $(build)/npm-ifc $(@D); [ ! -f $@ ] || touch $@
 # Icons of the page, and its version.
 page := $(filter-out clients/web/made/%,$(wildcard clients/web/*.* clients/web/*/*.* clients/web/*/*/*.*))
 clients/web/made/version.js: deploy/stamp $(page) clients/web/vendor/uPlot.js

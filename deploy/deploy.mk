@@ -26,4 +26,5 @@ install: all
 	install -m 755 $(modules) $(DESTDIR)$(prefix)/lib/plantcast
 	install -d $(DESTDIR)$(prefix)/libexec/plantcast
 	$(if $(readers),install -m 755 $(readers) $(DESTDIR)$(prefix)/libexec/plantcast)
+	[ ! -d $(bin)/plantcast-import-ifc ] || cp -r $(bin)/plantcast-import-ifc $(DESTDIR)$(prefix)/libexec/plantcast/
 	cp -r clients/web $(DESTDIR)$(prefix)/share/plantcast/

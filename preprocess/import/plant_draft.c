@@ -93,8 +93,15 @@ static bool is_type(const struct model_outline *outline, int node, const char *t
 /* Sites, buildings, storeys and rooms hold the elements of an IFC model. */
 static bool is_spatial(const char *class)
 {
-    static const char *const spatial[] = { "IfcProject",  "IfcSite",         "IfcBuilding",    "IfcBuildingStorey",        "IfcSpace",
-                                           "IfcFacility", "IfcFacilityPart", "IfcSpatialZone", "IfcExternalSpatialElement" };
+    static const char *const spatial[] = { "IfcProject",        "IfcSite",
+                                           "IfcBuilding",       "IfcBuildingStorey",
+                                           "IfcSpace",          "IfcFacility",
+                                           "IfcFacilityPart",   "IfcFacilityPartCommon",
+                                           "IfcRoad",           "IfcRoadPart",
+                                           "IfcBridge",         "IfcBridgePart",
+                                           "IfcRailway",        "IfcRailwayPart",
+                                           "IfcMarineFacility", "IfcMarinePart",
+                                           "IfcSpatialZone",    "IfcExternalSpatialElement" };
     for (size_t i = 0; i < sizeof(spatial) / sizeof(spatial[0]); i++)
         if (!strcmp(class, spatial[i]))
             return true;

@@ -8,6 +8,7 @@
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
 
+#include <cerrno>
 #include <cmath>
 #include <cstdarg>
 #include <cstdio>
@@ -328,10 +329,28 @@ const format &format_of(const char *path)
     refuse("its ending is none of those that are read");
 }
 
+/* Assimp takes what is there of a text that is cut off. */
+void check_end_of_stl(const char *path)
+{
+    char head[512] = "", tail[512] = "";
+    FILE *file = fopen(path, "rb");
+    if (!file)
+        refuse("%s", strerror(errno));
+    size_t read = fread(head, 1, sizeof(head) - 1, file);
+    if (fseek(file, -static_cast<long>(sizeof(tail) - 1), SEEK_END) != 0)
+        rewind(file);
+    read += fread(tail, 1, sizeof(tail) - 1, file);
+    fclose(file);
+    if (read > 0 && !strncmp(head, "solid", 5) && strstr(head, "facet") && !strstr(tail, "endsolid"))
+        refuse("it is cut off: it does not end with endsolid");
+}
+
 void convert(const char *input, const char *output, const char *units, const char *up)
 {
     const format &from = format_of(input);
     Assimp::Importer importer;
+    if (strcmp(from.ending, ".stl") == 0)
+        check_end_of_stl(input);
     unsigned steps = aiProcess_Triangulate | aiProcess_JoinIdenticalVertices | aiProcess_SortByPType | aiProcess_ValidateDataStructure;
     importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE, aiPrimitiveType_LINE | aiPrimitiveType_POINT);
     importer.SetPropertyInteger(AI_CONFIG_PP_RVC_FLAGS, aiComponent_NORMALS);

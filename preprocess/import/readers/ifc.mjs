@@ -1,0 +1,214 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// `node ifc.mjs INPUT OUTPUT.glb CHORD_MM UNITS UP`: IFC by web-ifc, which lies beside this file, in a process of its own. The spatial
+// tree becomes nodes with GUID, class, storey and property sets; geometry that several elements have is there once. Its last line on
+// stderr says why it failed.
+import { createRequire } from 'node:module';
+import { readFileSync, writeFileSync } from 'node:fs';
+import { basename, dirname, extname } from 'node:path';
+import { fileURLToPath } from 'node:url';
+import { GlbWriter, relativeTo } from './glb_writer.mjs';
+
+const CORNERS = 24; // of a circle
+const MAX_DEPTH = 400; // plantcast-prep reads 512 levels
+const NOT_SHOWN = new Set(['IfcOpeningElement', 'IfcOpeningStandardCase', 'IfcSpace', 'IfcDistributionPort', 'IfcVirtualElement']);
+
+const webIfc = createRequire(import.meta.url)('./web-ifc-api-node.js');
+
+const textOf = (value) => {
+    const plain = value?.value ?? value;
+    return plain === null || plain === undefined || typeof plain === 'object' ? '' : String(plain);
+};
+
+class Model {
+    constructor(api, id) {
+        Object.assign(this, { api, id });
+        this.children = new Map();
+        this.sets = new Map(); // property sets, by element
+        this.types = new Map();
+        this.lines = new Map();
+    }
+
+    line(id) {
+        if (!this.lines.has(id)) {
+            let line = null;
+            try {
+                line = this.api.GetLine(this.id, id);
+            } catch {
+                line = null; // what refers to nothing
+            }
+            this.lines.set(id, line);
+        }
+        return this.lines.get(id);
+    }
+
+    *ofType(type) {
+        const ids = this.api.GetLineIDsWithType(this.id, type, true);
+        for (let i = 0; i < ids.size(); i++)
+            yield ids.get(i);
+    }
+
+    // Calls f(relating, related) for each pair of a relation.
+    relate(type, one, many, f) {
+        for (const id of this.ofType(type)) {
+            const line = this.line(id), relating = line?.[one]?.value, related = [line?.[many] ?? []].flat();
+            for (const { value } of related.filter(Boolean))
+                if (Number.isInteger(relating) && Number.isInteger(value))
+                    f(relating, value);
+        }
+    }
+
+    readRelations() {
+        const append = (map) => (key, value) => map.set(key, [...map.get(key) ?? [], value]);
+        const below = append(this.children), define = append(this.sets);
+        this.relate(webIfc.IFCRELAGGREGATES, 'RelatingObject', 'RelatedObjects', below);
+        this.relate(webIfc.IFCRELNESTS, 'RelatingObject', 'RelatedObjects', below);
+        this.relate(webIfc.IFCRELCONTAINEDINSPATIALSTRUCTURE, 'RelatingStructure', 'RelatedElements', below);
+        this.relate(webIfc.IFCRELDEFINESBYPROPERTIES, 'RelatingPropertyDefinition', 'RelatedObjects',
+            (set, element) => define(element, set));
+        this.relate(webIfc.IFCRELDEFINESBYTYPE, 'RelatingType', 'RelatedObjects', (type, element) => this.types.set(element, type));
+    }
+
+    classOf(id) {
+        const name = this.api.GetNameFromTypeCode(this.api.GetLineType(this.id, id));
+        return typeof name === 'string' ? name : '';
+    }
+
+    nameOf(id) {
+        const line = this.line(id);
+        return textOf(line?.Name) || textOf(line?.LongName) || textOf(line?.ObjectType) || '';
+    }
+
+    valuesOf(set) {
+        const values = {}, line = this.line(set);
+        for (const reference of [...line?.HasProperties ?? [], ...line?.Quantities ?? []]) {
+            const property = this.line(reference?.value);
+            const name = textOf(property?.Name);
+            const value = ['NominalValue', 'LengthValue', 'AreaValue', 'VolumeValue', 'CountValue', 'WeightValue', 'TimeValue']
+                .map((key) => textOf(property?.[key])).find(Boolean) ?? [property?.EnumerationValues ?? property?.ListValues ?? []].flat()
+                .map(textOf).filter(Boolean).join(', ');
+            if (name && value)
+                values[name] = value;
+        }
+        return values;
+    }
+
+    propertiesOf(id, storey) {
+        const line = this.line(id), type = this.line(this.types.get(id));
+        const out = { GlobalId: textOf(line?.GlobalId), IfcClass: this.classOf(id), Storey: storey, Type: textOf(type?.Name),
+            Tag: textOf(line?.Tag), Description: textOf(line?.Description), ObjectType: textOf(line?.ObjectType) };
+        for (const key of Object.keys(out))
+            if (!out[key])
+                delete out[key];
+        for (const set of [...[type?.HasPropertySets ?? []].flat().map((reference) => reference?.value), ...this.sets.get(id) ?? []]) {
+            const name = textOf(this.line(set)?.Name) || 'Properties', values = this.valuesOf(set);
+            if (Object.keys(values).length > 0)
+                out[name] = { ...typeof out[name] === 'object' ? out[name] : {}, ...values };
+        }
+        return out;
+    }
+}
+
+// One mesh for an element, in the frame of its first part; of elements with equal parts, one for all.
+function meshOf(glb, geometries, parts, name) {
+    const frame = parts[0].flatTransformation;
+    const placed = parts.map((part) => ({ ...part, place: relativeTo(frame, part.flatTransformation) }));
+    const key = JSON.stringify(placed.map(({ geometryExpressID, color: { x, y, z, w }, place }) =>
+        [geometryExpressID, x, y, z, w, place.map((v) => Math.round(v * 1e6) / 1e6)]));
+    if (!geometries.made.has(key)) {
+        const primitives = placed.map(({ geometryExpressID, color: { x, y, z, w }, place }) =>
+            glb.addPrimitive(geometries.of(geometryExpressID), place, [x, y, z, w])).filter(Boolean);
+        geometries.made.set(key, primitives.length > 0 ? glb.addMesh(name, primitives) : -1);
+    }
+    return { mesh: geometries.made.get(key), matrix: frame };
+}
+
+// Geometry is there only while its mesh is streamed.
+function readGeometry(api, id, model) {
+    const shown = new Map(), known = new Map();
+    const copy = (geometryId) => {
+        const geometry = api.GetGeometry(id, geometryId);
+        const vertices = api.GetVertexArray(geometry.GetVertexData(), geometry.GetVertexDataSize()).slice();
+        const corners = api.GetIndexArray(geometry.GetIndexData(), geometry.GetIndexDataSize()).slice();
+        geometry.delete?.();
+        return { vertices, corners };
+    };
+    api.StreamAllMeshes(id, (mesh) => {
+        if (NOT_SHOWN.has(model.classOf(mesh.expressID)))
+            return;
+        const parts = [];
+        for (let i = 0; i < mesh.geometries.size(); i++) {
+            const { color, geometryExpressID, flatTransformation } = mesh.geometries.get(i), place = Array.from(flatTransformation);
+            if (!place.every(Number.isFinite))
+                continue;
+            if (!known.has(geometryExpressID))
+                known.set(geometryExpressID, copy(geometryExpressID));
+            parts.push({ color: { ...color }, geometryExpressID, flatTransformation: place });
+        }
+        if (parts.length > 0)
+            shown.set(mesh.expressID, parts);
+    });
+    return { shown, geometries: { of: (geometryId) => known.get(geometryId), made: new Map() } };
+}
+
+function addTree(glb, model, { shown, geometries }, root) {
+    const seen = new Set();
+    let elements = 0, storeys = 0;
+    const add = (id, parent, storey, depth) => {
+        if (depth > MAX_DEPTH)
+            throw new Error(`its elements are nested deeper than ${MAX_DEPTH} levels`);
+        const kind = model.classOf(id);
+        if (seen.has(id) || NOT_SHOWN.has(kind) && !model.children.has(id))
+            return;
+        seen.add(id);
+        const name = model.nameOf(id), below = model.children.get(id) ?? [], parts = shown.get(id);
+        storeys += kind === 'IfcBuildingStorey';
+        const within = kind === 'IfcBuildingStorey' ? name : storey;
+        const node = glb.addNode(parent, name, model.propertiesOf(id, within));
+        if (parts) {
+            const { mesh, matrix } = meshOf(glb, geometries, parts, name);
+            if (mesh >= 0)
+                glb.place(below.length > 0 ? glb.addNode(node, '', null) : node, mesh, matrix);
+            elements += mesh >= 0;
+        }
+        for (const child of below)
+            add(child, node, within, depth + 1);
+    };
+    for (const id of model.ofType(webIfc.IFCPROJECT))
+        add(id, root, '', 0);
+    for (const id of shown.keys())
+        add(id, root, '', 0); // what the tree does not hold
+    return { elements, storeys };
+}
+
+async function main([input, output]) {
+    const bytes = readFileSync(input), folder = dirname(fileURLToPath(import.meta.url));
+    if (!bytes.subarray(0, 4096).toString('latin1').includes('ISO-10303-21'))
+        throw new Error('it is no IFC file: it does not begin with ISO-10303-21');
+    if (!bytes.subarray(-4096).toString('latin1').includes('END-ISO-10303-21'))
+        throw new Error('it is cut off: it does not end with END-ISO-10303-21');
+    const api = new webIfc.IfcAPI();
+    api.SetWasmPath(`${folder}/`, true);
+    await api.Init();
+    api.SetLogLevel(webIfc.LogLevel.LOG_LEVEL_OFF);
+    const id = api.OpenModel(bytes, { COORDINATE_TO_ORIGIN: false, CIRCLE_SEGMENTS: CORNERS });
+    if (id < 0 || !api.IsModelOpen(id))
+        throw new Error('it is no IFC file of a known schema, or is cut off');
+    const schema = api.GetModelSchema(id);
+    const model = new Model(api, id);
+    model.readRelations();
+    const glb = new GlbWriter('plantcast-import, web-ifc');
+    const root = glb.addNode(-1, basename(input, extname(input)), null);
+    const { elements, storeys } = addTree(glb, model, readGeometry(api, id, model), root);
+    if (elements === 0)
+        throw new Error('there is no surface in it');
+    writeFileSync(output, glb.finished());
+    const openings = [...model.ofType(webIfc.IFCRELVOIDSELEMENT)].length;
+    process.stdout.write(`${schema}: ${elements} elements with a shape, ${storeys} storeys, ${openings} openings cut; circles have ` +
+        `${CORNERS} corners (--chord does not apply)\n`);
+}
+
+main(process.argv.slice(2)).catch((error) => {
+    const reason = String(error?.message ?? error).split('\n')[0], ours = error?.constructor === Error; // else of web-ifc itself
+    process.stderr.write(`${ours && reason ? reason : `its content could not be read (${reason || 'no reason is known'})`}\n`);
+    process.exit(1);
+});
