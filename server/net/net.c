@@ -18,7 +18,7 @@
 #include "net/connection.h"
 #include "net/net_impl.h"
 
-static const int64_t TICK_NS = 100 * NS_PER_MS;
+static const int64_t TICK_NS = 100 * NS_PER_MS, REST_NS = NS_PER_S; /* between ticks; when no session waits for anything */
 static const int64_t GOODBYE_NS = 500 * NS_PER_MS; /* for the close frames to leave */
 static const int64_t LOOK_NS = NS_PER_S;           /* at the files of tokens and certificate, so often */
 enum { SPARE_FILES = 256 };                        /* beside connections: models, sources, the database */
@@ -86,27 +86,47 @@ static void say_status(const struct server_context *server)
                                                        });
 }
 
-static void on_tick(lws_sorted_usec_list_t *sul)
+static void tick(struct net *net, int64_t now_ns)
 {
-    struct net *net = lws_container_of(sul, struct net, tick);
-    int64_t now_ns = clock_mono_ns();
     look_at_files(net, now_ns);
     look_at_processors(net, now_ns);
     admission_on_tick(&net->server.admission, now_ns);
     counter_set(net->server.counters.busy, admission_busy_percent(&net->server.admission));
     counter_set(net->server.counters.connections, net->server.connection_count);
     counter_set(net->server.counters.logins_slowed, login_throttle_slowed(net->server.login_throttle, now_ns));
-    bool data_changed = net_take_snapshot(&net->server), links_changed = net_check_links(&net->server);
     if (net->server.history_loader)
         net->server.session_context.history_first_us = history_loader_first_us(net->server.history_loader);
-    if (data_changed)
-        net->server.session_context.changed_ns = net->server.snapshot->taken_mono_ns;
-    if (data_changed)
-        render_service_on_data(net->server.params.plant.render_service);
-    streams_on_tick(&net->server, data_changed, links_changed);
+    if (net_check_links(&net->server))
+        streams_on_readings(&net->server, false, true);
+    streams_on_tick(&net->server);
     net_wake_render_service(&net->server);
     say_status(&net->server);
-    lws_sul_schedule(net->server.lws, 0, sul, on_tick, TICK_NS / 1000);
+    net->ticked_ns = now_ns;
+}
+
+static void on_timer(lws_sorted_usec_list_t *sul)
+{
+    lws_container_of(sul, struct net, timer)->timer_ns = 0;
+}
+
+static void set_timer(struct net *net, int64_t at_ns)
+{
+    int64_t now_ns = clock_mono_ns();
+    if (at_ns == net->timer_ns)
+        return;
+    net->timer_ns = at_ns;
+    lws_sul_schedule(net->server.lws, 0, &net->timer, on_timer, at_ns > now_ns ? (at_ns - now_ns) / 1000 + 1 : 1);
+}
+
+/* Does what is due by now, and has the loop woken for what is due next. lws waits by whole milliseconds, rounded down, and asks again and
+   again in the last one: so what is due within that one is done already. */
+static void do_what_is_due(struct net *net)
+{
+    int64_t soon_ns = clock_mono_ns() + NS_PER_MS, readings_ns = net_update_readings(net, soon_ns);
+    if (soon_ns - net->ticked_ns >= (net->server.restless ? TICK_NS : REST_NS))
+        tick(net, soon_ns);
+    int64_t tick_ns = net->ticked_ns + (net->server.restless ? TICK_NS : REST_NS);
+    set_timer(net, tick_ns < readings_ns ? tick_ns : readings_ns);
 }
 
 static void collect_picks(struct server_context *server)
@@ -171,6 +191,8 @@ static void collect(struct net *net)
 {
     struct server_context *server = &net->server;
     net_calls_run(net);
+    if (atomic_load(&net->look))
+        look_at_files(net, clock_mono_ns());
     look_at_alarms(server);
     collect_picks(server);
     collect_recalled(server);
@@ -185,6 +207,7 @@ static void collect(struct net *net)
             http_on_frame(server, encoded);
     }
     net_wake_render_service(server);
+    do_what_is_due(net);
 }
 
 /* --- life ------------------------------------------------------------------------------------------------------------- */
@@ -349,7 +372,7 @@ void net_destroy(struct net **net_ptr)
     struct net *net = *net_ptr;
     if (!net)
         return;
-    lws_sul_cancel(&net->tick);
+    lws_sul_cancel(&net->timer);
     history_queries_destroy(&net->server.history_queries); /* before what they wake */
     history_loader_destroy(&net->server.history_loader);
     if (net->server.lws)
@@ -383,11 +406,14 @@ int net_port(const struct net *net)
 void net_run(struct net *net)
 {
     struct server_context *server = &net->server;
-    on_tick(&net->tick);
+    net_watch_readings(net);
+    do_what_is_due(net);
     while (!atomic_load(&net->stopping) && lws_service(server->lws, 0) >= 0)
         collect(net);
     net_calls_close(net);
+    net_unwatch_readings(net);
     streams_close(server);
+    set_timer(net, clock_mono_ns() + GOODBYE_NS);
     for (int64_t end_ns = clock_mono_ns() + GOODBYE_NS; server->stream_count > 0 && clock_mono_ns() < end_ns;)
         lws_service(server->lws, 0);
 }

@@ -45,6 +45,7 @@ void net_release_plant(struct net *net)
     for (struct stream *stream = server->streams; stream; stream = stream->next)
         stream->carried = session_carry(stream->session);
     http_release_plant(server);
+    net_unwatch_readings(net);
     history_queries_destroy(&server->history_queries);
     history_loader_destroy(&server->history_loader);
     resumes_forget_gone(server->session_context.resumes);
@@ -75,6 +76,7 @@ bool net_take_plant(struct net *net, const struct net_plant *plant)
         known_markers_finish(&stream->known);
         stream->known = (struct known_markers){ 0 };
     }
+    net_watch_readings(net);
     streams_on_alarms(server);
     net_wake_render_service(server);
     return good;

@@ -23,9 +23,10 @@ struct server_context {
     struct net_params params;
     struct session_context session_context; /* what all sessions see */
     struct snapshot *snapshot;
-    uint32_t *changes; /* reading.changes at the last tick, by tag */
-    int64_t data_ns;   /* monotonic: when the oldest reading that changed in the last tick came in */
-    bool *links_up;    /* by source */
+    uint32_t *changes;      /* reading.changes in the last snapshot, by tag */
+    int64_t data_ns;        /* monotonic: when the oldest reading that the last snapshot showed to have changed came in */
+    int64_t next_change_ns; /* monotonic: when time alone changes a quality next; INT64_MAX: it does not */
+    bool *links_up;         /* by source */
     struct lws_context *lws;
     struct history_queries *history_queries; /* NULL: nothing is recorded */
     struct history_loader *history_loader;   /* likewise */
@@ -47,6 +48,7 @@ struct server_context {
     int64_t looked_ns; /* when the files of tokens and certificate were last looked at */
     uint64_t next_client;
     bool asked;                         /* requests were made: net_wake_render_service is due */
+    bool restless;                      /* a session waits for what time brings: a tick is due soon */
     int64_t still_ns;                   /* what the last refined frame cost that was drawn anew */
     uint8_t out[LWS_PRE + SLICE_BYTES]; /* lws writes its framing in front of what is sent */
     struct tag_text_cache tag_texts;
@@ -72,6 +74,11 @@ bool net_write(struct server_context *server, struct lws *wsi, const void *bytes
 /* Lets the render thread begin with the requests that were made. To be called at the end of each event. */
 void net_wake_render_service(struct server_context *server);
 
+/* --- readings.c --- */
+
+/* Takes a new snapshot if the last one is older than 100 ms: to be called before its ages are told, or a message is acted on. */
+void net_refresh_readings(struct server_context *server);
+
 /* --- stream.c, stream_table.c: connections to /stream --- */
 
 /* Handles the events of a connection to /stream, for lws. */
@@ -87,8 +94,10 @@ void stream_on_gaps(struct server_context *server, const struct sensor_coverage_
 void stream_say(struct server_context *server, uint64_t client, const char *text);
 /* Tells sessions whose sensors are placed on trial that distances were computed. */
 void streams_on_placed(struct server_context *server);
-/* Lets all sessions act on a tick: 100 ms have gone by, readings or the state of links may have changed. */
-void streams_on_tick(struct server_context *server, bool data_changed, bool links_changed);
+/* Lets all sessions act on the time, and notes in server->restless whether any waits for it. */
+void streams_on_tick(struct server_context *server);
+/* Tells all sessions that readings, or the states of links, changed. */
+void streams_on_readings(struct server_context *server, bool data_changed, bool links_changed);
 /* Has changed alarms sent to all sessions. */
 void streams_on_alarms(struct server_context *server);
 /* Closes sessions whose token is not valid any more. */

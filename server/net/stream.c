@@ -156,6 +156,7 @@ static void pump(struct server_context *server, struct stream *stream)
     }
     if (stream_has_output(stream, now_ns))
         lws_callback_on_writable(stream->wsi);
+    server->restless |= stream->sending || stream->cut || !session_rests(session, now_ns);
 }
 
 /* When every session is refined for every change of a reading, and there is one each second. */
@@ -195,9 +196,20 @@ static void watch_stall(struct server_context *server, struct stream *stream, in
     lws_set_timeout(stream->wsi, PENDING_TIMEOUT_CLOSE_SEND, LAST_WORDS_S); /* its socket may take not even that */
 }
 
-void streams_on_tick(struct server_context *server, bool data_changed, bool links_changed)
+void streams_on_readings(struct server_context *server, bool data_changed, bool links_changed)
+{
+    for (struct stream *stream = server->streams; stream; stream = stream->next) {
+        if (data_changed && session_view(stream->session)->at_us == 0)
+            session_on_data(stream->session, server->data_ns);
+        stream->session->owed.status |= links_changed;
+        pump(server, stream);
+    }
+}
+
+void streams_on_tick(struct server_context *server)
 {
     int64_t now_ns = clock_mono_ns(), patience_ns = server->quotas->at[QUOTA_PATIENCE_S] * NS_PER_S;
+    server->restless = false;
     server->session_context.overloaded = is_loaded(server);
     count_moving(server, now_ns);
     follow_share_steps(server);
@@ -206,9 +218,6 @@ void streams_on_tick(struct server_context *server, bool data_changed, bool link
         session_on_tick(stream->session, now_ns);
         if (stream->in_count > 0 && now_ns - stream->in_begin_ns > patience_ns)
             session_close(stream->session, 1008, "half a message, and for too long no more of it");
-        if (data_changed && session_view(stream->session)->at_us == 0)
-            session_on_data(stream->session, server->data_ns);
-        stream->session->owed.status |= links_changed;
         count(server, stream);
         watch_stall(server, stream, now_ns);
         pump(server, stream);
@@ -317,6 +326,7 @@ static void on_message(struct server_context *server, struct stream *stream)
     bool was_in = session->hello || session->close.code;
     if (!address_limits_count_message(server->limits, stream->usage, now_ns))
         session_too_fast(session, server->quotas->at[QUOTA_ADDRESS_MESSAGES], "of this address ");
+    net_refresh_readings(server);
     if (stream->in_count > (size_t)server->quotas->at[QUOTA_MESSAGE_BYTES])
         session_on_oversize(session, stream->in_count, now_ns);
     else

@@ -262,6 +262,8 @@ bool stream_send(struct server_context *server, struct stream *stream)
     if (ping_due(stream, now_ns))
         return write_ping(server, stream, now_ns);
     padded(&text);
+    if (session_tags_due(session, now_ns))
+        net_refresh_readings(server);
     if (session_next_text(session, now_ns, clock_utc_ns(), &text)) {
         note_first(stream, text.length, now_ns);
         good = write_text(stream, text.at + LWS_PRE, text.length - LWS_PRE);

@@ -253,6 +253,21 @@ void session_on_tick(struct session *session, int64_t now_ns)
         session->hello && session->context->snapshot_cache && session->context->history_first_us && !session->owed.told_beginning;
 }
 
+bool session_rests(const struct session *session, int64_t now_ns)
+{
+    const struct frame_demand *demand = &session->demand;
+    const struct pacer *pacer = &session->delivery.pacer;
+    if (session->rate.exceeded || pacer->asked > 0 || pacer->flight_count > 0 || session->delivery.ready ||
+        session->following.followers_changed)
+        return false;
+    if (!session->hello || session->hidden)
+        return true;
+    bool frame_due = demand->input || demand->data || demand->any || demand->refined != REFINED_FULL;
+    bool moved = now_ns - demand->input_ns < NS_PER_S; /* counts for others, too */
+    bool plays = session->travel.speed != 0 || session->travel.wanted_us;
+    return !frame_due && !moved && !plays && (!session->owed.tags || session_is_open(session));
+}
+
 void session_on_data(struct session *session, int64_t data_ns)
 {
     if (!session->demand.data)

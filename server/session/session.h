@@ -80,8 +80,10 @@ void session_on_oversize(struct session *session, size_t count, int64_t now_ns);
 /* Tells the client that it sends too much; the loop reads nothing more from it until this second is over. whose: "" or
    "of this address ". */
 void session_too_fast(struct session *session, int64_t count, const char *whose);
-/* Does what time alone brings. Every 100 ms or so. */
+/* Does what time alone brings. To be called every 100 ms or so, or once a second while all sessions rest. */
 void session_on_tick(struct session *session, int64_t now_ns);
+/* Returns whether time alone brings nothing that could not wait for a second: no frame is wanted or under way, no text is owed. */
+bool session_rests(const struct session *session, int64_t now_ns);
 /* Notes that a reading which it is shown changed at data_ns. */
 void session_on_data(struct session *session, int64_t data_ns);
 
@@ -112,6 +114,8 @@ void session_on_pong(struct session *session, int64_t rtt_ns, int64_t now_ns);
 
 /* Returns whether session_next_text would return one now. */
 bool session_has_text(const struct session *session, int64_t now_ns);
+/* Returns whether that text may list readings: the context's snapshot should be up to date. */
+bool session_tags_due(const struct session *session, int64_t now_ns);
 /* Appends the next text message to send to `out`. Returns false if none is due. */
 bool session_next_text(struct session *session, int64_t now_ns, int64_t now_utc_ns, struct text *out);
 /* Queues a text about something that the client asked for. */

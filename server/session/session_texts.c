@@ -25,7 +25,7 @@ static void add_reply(struct session *session, struct text *out)
     memmove(session->owed.replies, session->owed.replies + 1, (size_t)session->owed.reply_count * sizeof(session->owed.replies[0]));
 }
 
-static bool tags_due(const struct session *session, int64_t now_ns)
+bool session_tags_due(const struct session *session, int64_t now_ns)
 {
     return session->hello && !session->hidden && !session_is_open(session) &&
            (session->owed.tags_all || (session->owed.tags && now_ns - session->owed.tags_ns >= TAGS_NS));
@@ -62,7 +62,7 @@ bool session_has_text(const struct session *session, int64_t now_ns)
 {
     return session->owed.welcome || session->owed.reply_count > 0 || session->owed.params || session->owed.following ||
            session->owed.time || session->following.followers_text || loop_checks_due(session) || status_due(session) ||
-           alarms_due(session) || tags_due(session, now_ns);
+           alarms_due(session) || session_tags_due(session, now_ns);
 }
 
 static void add_tags(struct session *session, int64_t now_ns, struct text *out)
@@ -104,7 +104,7 @@ bool session_next_text(struct session *session, int64_t now_ns, int64_t now_utc_
     } else if (alarms_due(session)) {
         add_owned(out, alarms_text(context->alarm_texts, context->alarm_service, context->plant, now_utc_ns, &session->owed.alarms_number));
         session->owed.alarms_sent = true;
-    } else if (tags_due(session, now_ns)) {
+    } else if (session_tags_due(session, now_ns)) {
         add_tags(session, now_ns, out);
     } else {
         return false;

@@ -40,6 +40,11 @@ struct store {
         store_listener *hear;
         void *arg;
     } listeners[STORE_LISTENERS];
+    struct {
+        void (*changed)(void *arg); /* NULL: nobody watches */
+        void *arg;
+        bool told; /* since the last store_take */
+    } watch;
     int64_t utc_ahead_ns; /* of the monotonic clock, when a sample came last */
     bool has_utc;         /* one came */
 };
@@ -157,6 +162,23 @@ void store_unlisten(struct store *store, store_listener *listener, void *arg)
     pthread_mutex_unlock(&store->lock);
 }
 
+void store_watch(struct store *store, void (*changed)(void *arg), void *arg)
+{
+    pthread_mutex_lock(&store->lock);
+    store->watch.changed = changed;
+    store->watch.arg = arg;
+    store->watch.told = false;
+    pthread_mutex_unlock(&store->lock);
+}
+
+static void tell_watch(struct store *store)
+{
+    if (store->watch.told || !store->watch.changed)
+        return;
+    store->watch.told = true;
+    store->watch.changed(store->watch.arg);
+}
+
 static void tell(struct store *store, size_t tag, uint32_t quality, int64_t mono_ns, int64_t utc_ns)
 {
     const struct sample_event event = { (int)tag, quality_is_bad(quality) ? NAN : store->tags[tag].value, quality, mono_ns, utc_ns };
@@ -220,13 +242,15 @@ static uint32_t quality_now(const struct store *store, size_t tag, int64_t now_m
     return quality;
 }
 
-static void count_change(struct store *store, size_t tag, bool value_changed, int64_t now_mono_ns)
+/* Returns whether it changed. */
+static bool count_change(struct store *store, size_t tag, bool value_changed, int64_t now_mono_ns)
 {
     struct held *held = &store->tags[tag];
     uint32_t quality = quality_now(store, tag, now_mono_ns);
-    if (value_changed || quality != held->shown_quality)
-        held->changes++;
+    bool changed = value_changed || quality != held->shown_quality;
+    held->changes += changed;
     held->shown_quality = quality;
+    return changed;
 }
 
 static bool hold(struct store *store, const struct sample *sample, int64_t now_mono_ns, int64_t now_utc_ns)
@@ -247,7 +271,8 @@ static bool hold(struct store *store, const struct sample *sample, int64_t now_m
         held->received_mono_ns = now_mono_ns;
         held->received_utc_ns = now_utc_ns;
     }
-    count_change(store, (size_t)sample->tag, value_changed, now_mono_ns);
+    if (count_change(store, (size_t)sample->tag, value_changed, now_mono_ns))
+        tell_watch(store);
     return true;
 }
 
@@ -255,10 +280,10 @@ static bool hold(struct store *store, const struct sample *sample, int64_t now_m
 static void tell_vouched(struct store *store, int tag, int64_t now_mono_ns, int64_t now_utc_ns)
 {
     for (int i = store->tags[tag].first_vouched; i >= 0; i = store->tags[i].next_vouched) {
-        uint32_t shown = store->tags[i].shown_quality;
-        count_change(store, (size_t)i, false, now_mono_ns);
-        if (store->tags[i].shown_quality != shown)
-            tell(store, (size_t)i, store->tags[i].shown_quality, now_mono_ns, now_utc_ns);
+        if (!count_change(store, (size_t)i, false, now_mono_ns))
+            continue;
+        tell_watch(store);
+        tell(store, (size_t)i, store->tags[i].shown_quality, now_mono_ns, now_utc_ns);
     }
 }
 
@@ -278,13 +303,13 @@ void store_write(struct store *store, const struct sample *samples, size_t count
 static void lose(struct store *store, size_t tag, bool dead, int64_t now_mono_ns)
 {
     struct held *held = &store->tags[tag];
-    uint32_t shown = held->shown_quality;
     if (now_mono_ns < held->sampled_mono_ns)
         return;
+    if (!held->lost || (dead && !held->dead)) /* even if its own quality stays, that of a tag that it vouches for may not */
+        tell_watch(store);
     held->lost = true;
     held->dead |= dead;
-    count_change(store, tag, false, now_mono_ns);
-    if (held->shown_quality != shown && store->has_utc)
+    if (count_change(store, tag, false, now_mono_ns) && store->has_utc)
         tell(store, tag, held->shown_quality, now_mono_ns, now_mono_ns + store->utc_ahead_ns);
 }
 
@@ -304,10 +329,13 @@ void store_tags_dead(struct store *store, const int *tags, size_t count, int64_t
     pthread_mutex_unlock(&store->lock);
 }
 
-static void set_link(struct link *link, bool up, int64_t now_mono_ns)
+static void set_link(struct store *store, int source, bool up, int64_t now_mono_ns)
 {
+    struct link *link = &store->links[source];
     if (now_mono_ns < link->changed_mono_ns)
         return;
+    if (link->up != up)
+        tell_watch(store);
     link->up = up;
     link->changed_mono_ns = now_mono_ns;
 }
@@ -315,7 +343,7 @@ static void set_link(struct link *link, bool up, int64_t now_mono_ns)
 void store_link_lost(struct store *store, int source, int64_t now_mono_ns)
 {
     pthread_mutex_lock(&store->lock);
-    set_link(&store->links[source], false, now_mono_ns);
+    set_link(store, source, false, now_mono_ns);
     for (size_t i = 0; i < store->plant->tag_count; i++)
         if (store->plant->tags[i].source == source)
             lose(store, i, false, now_mono_ns);
@@ -325,7 +353,7 @@ void store_link_lost(struct store *store, int source, int64_t now_mono_ns)
 void store_link_up(struct store *store, int source, int64_t now_mono_ns)
 {
     pthread_mutex_lock(&store->lock);
-    set_link(&store->links[source], true, now_mono_ns);
+    set_link(store, source, true, now_mono_ns);
     pthread_mutex_unlock(&store->lock);
 }
 
@@ -333,7 +361,10 @@ void store_set_alarm(struct store *store, int tag, int alarm, int status)
 {
     struct held *held = &store->tags[tag];
     pthread_mutex_lock(&store->lock);
-    held->changes += held->alarm != alarm || held->alarm_status != status;
+    if (held->alarm != alarm || held->alarm_status != status) {
+        held->changes++;
+        tell_watch(store);
+    }
     held->alarm = (uint8_t)alarm;
     held->alarm_status = (uint8_t)status;
     pthread_mutex_unlock(&store->lock);
@@ -364,12 +395,51 @@ static void read_held(struct store *store, size_t tag, int64_t now_mono_ns, stru
     };
 }
 
+static void read_all(struct store *store, int64_t now_mono_ns, int64_t now_utc_ns, struct snapshot *into)
+{
+    for (size_t i = 0; i < store->plant->tag_count; i++)
+        read_held(store, i, now_mono_ns, &into->readings[i]);
+    into->taken_mono_ns = now_mono_ns;
+    into->taken_utc_ns = now_utc_ns;
+}
+
 void store_snapshot(struct store *store, int64_t now_mono_ns, int64_t now_utc_ns, struct snapshot *into)
 {
     pthread_mutex_lock(&store->lock);
-    for (size_t i = 0; i < store->plant->tag_count; i++)
-        read_held(store, i, now_mono_ns, &into->readings[i]);
+    read_all(store, now_mono_ns, now_utc_ns, into);
     pthread_mutex_unlock(&store->lock);
-    into->taken_mono_ns = now_mono_ns;
-    into->taken_utc_ns = now_utc_ns;
+}
+
+/* The first of two instants after now: of `next`, and of when what began at since_ns is after_ns old. */
+static int64_t sooner(int64_t next_ns, int64_t since_ns, int64_t after_ns, int64_t now_mono_ns)
+{
+    bool comes = after_ns < INT64_MAX && since_ns + after_ns > now_mono_ns;
+    return comes && since_ns + after_ns < next_ns ? since_ns + after_ns : next_ns;
+}
+
+/* When the next reading gets stale, or the next heartbeat counts as stopped. */
+static int64_t next_change_ns(const struct store *store, int64_t now_mono_ns)
+{
+    int64_t next_ns = INT64_MAX;
+    for (size_t i = 0; i < store->plant->tag_count; i++) {
+        const struct held *held = &store->tags[i];
+        if (held->has_value && !quality_is_bad(held->quality))
+            next_ns = sooner(next_ns, held->received_mono_ns, held->stale_ns, now_mono_ns);
+    }
+    for (size_t i = 0; i < store->plant->source_count; i++) {
+        const struct plant_source *source = &store->plant->sources[i];
+        if (source->heartbeat_s > 0 && store->tags[source->heartbeat_tag].has_value)
+            next_ns = sooner(next_ns, store->tags[source->heartbeat_tag].changed_mono_ns, ns_of(source->heartbeat_s), now_mono_ns);
+    }
+    return next_ns;
+}
+
+int64_t store_take(struct store *store, int64_t now_mono_ns, int64_t now_utc_ns, struct snapshot *into)
+{
+    pthread_mutex_lock(&store->lock);
+    read_all(store, now_mono_ns, now_utc_ns, into);
+    store->watch.told = false;
+    int64_t next_ns = next_change_ns(store, now_mono_ns);
+    pthread_mutex_unlock(&store->lock);
+    return next_ns;
 }

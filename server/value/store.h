@@ -38,6 +38,10 @@ void store_adopt(struct store *store, struct store *before);
 void store_listen(struct store *store, store_listener *listener, void *arg);
 /* Removes a listener; it is not called any more once this has returned. */
 void store_unlisten(struct store *store, store_listener *listener, void *arg);
+/* Has `changed` called when readings, alarms or links change: by the thread that writes, under the store's lock; once, and not again before
+   store_take. It is not called when age alone makes a reading stale: store_take returns when that will be. NULL: nobody is told any more
+   once this has returned. */
+void store_watch(struct store *store, void (*changed)(void *arg), void *arg);
 /* Writes samples that arrived at the given time. A failed read is no sample: see store_link_lost(). */
 void store_write(struct store *store, const struct sample *samples, size_t count, int64_t now_mono_ns, int64_t now_utc_ns);
 /* Records that a source cannot be read from now on. Its tags keep their last values: Uncertain_NoCommunicationLastUsableValue until
@@ -54,5 +58,8 @@ void store_set_alarm(struct store *store, int tag, int alarm, int status);
 bool store_link_is_up(const struct store *store, int source);
 /* Copies all readings, with their qualities as of now, into a snapshot that was made for the same plant. */
 void store_snapshot(struct store *store, int64_t now_mono_ns, int64_t now_utc_ns, struct snapshot *into);
+/* Likewise, for whoever watches (store_watch), who is told of changes after this one. Returns the monotonic time of the next change of a
+   quality that time alone brings; INT64_MAX: there is none. */
+int64_t store_take(struct store *store, int64_t now_mono_ns, int64_t now_utc_ns, struct snapshot *into);
 
 #endif

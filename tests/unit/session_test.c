@@ -219,6 +219,39 @@ static void first_picture_comes_at_once_then_refined_then_nothing(void **state)
     assert_false(ask(f, &request));
 }
 
+static void rests_once_nothing_waits_for_time(void **state)
+{
+    struct session_case *f = *state;
+    struct frame_request request;
+    assert_true(session_rests(f->session, f->now_ns)); /* no hello yet */
+    greet(f);
+    assert_false(session_rests(f->session, f->now_ns)); /* a frame is wanted, */
+    assert_true(ask(f, &request));
+    assert_false(session_rests(f->session, f->now_ns)); /* drawn, */
+    paint(f, &request, false);
+    assert_false(session_rests(f->session, f->now_ns));
+    uint32_t seq = send_picture(f);
+    assert_false(session_rests(f->session, f->now_ns)); /* under way, */
+    ack(f, seq);
+    assert_false(session_rests(f->session, f->now_ns)); /* to be refined */
+    f->now_ns += 250 * MS;
+    show(f);
+    assert_false(session_rests(f->session, f->now_ns)); /* counts as moving */
+    f->now_ns += NS_PER_S;
+    assert_true(session_rests(f->session, f->now_ns));
+    session_on_data(f->session, f->now_ns);
+    assert_false(session_rests(f->session, f->now_ns));
+    show(f);
+    assert_false(session_rests(f->session, f->now_ns)); /* the values, too */
+    expect(f, "tags ");
+    assert_true(session_rests(f->session, f->now_ns));
+    session_on_data(f->session, f->now_ns);
+    say(f, "{\"type\":\"visible\",\"visible\":false}");
+    assert_true(session_rests(f->session, f->now_ns));
+    say(f, "{\"type\":\"visible\",\"visible\":true}");
+    assert_false(session_rests(f->session, f->now_ns));
+}
+
 static void newest_camera_wins_and_the_last_state_arrives(void **state)
 {
     struct session_case *f = *state;
@@ -860,6 +893,7 @@ int main(void)
         TEST(nothing_before_hello),
         TEST(welcome_tells_the_plant_and_no_addresses),
         TEST(first_picture_comes_at_once_then_refined_then_nothing),
+        TEST(rests_once_nothing_waits_for_time),
         TEST(newest_camera_wins_and_the_last_state_arrives),
         TEST(a_full_window_only_replaces),
         TEST(equal_pictures_free_their_place),

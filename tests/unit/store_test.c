@@ -5,6 +5,8 @@
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
 #include <cmocka.h>
 
 #include "tests/support/plant_by_hand.h"
@@ -431,6 +433,106 @@ static void a_step_of_the_wall_clock_makes_nothing_fresh_or_stale(void **state)
     assert_true(s->snapshot->readings[0].value == 8 && s->snapshot->readings[0].age_ns == S);
 }
 
+static void count_call(void *arg)
+{
+    ++*(int *)arg;
+}
+
+static int64_t take(struct setup *s, int64_t now_ns)
+{
+    return store_take(s->store, now_ns, now_ns + 1000 * S, s->snapshot);
+}
+
+static void whoever_watches_is_told_once_until_the_next_look(void **state)
+{
+    struct setup *s = *state;
+    int told = 0, wanted = 0;
+    store_watch(s->store, count_call, &told);
+    write_one(s, 0, 20, QUALITY_GOOD, S);
+    write_one(s, 1, 30, QUALITY_GOOD, S);
+    assert_int_equal(told, ++wanted);
+    take(s, S);
+    write_one(s, 0, 20, QUALITY_GOOD, 2 * S); /* the same again: only younger */
+    assert_int_equal(told, wanted);
+    write_one(s, 0, 21, QUALITY_GOOD, 2 * S);
+    look(s, 0, 2 * S); /* somebody else looks */
+    write_one(s, 0, 22, QUALITY_GOOD, 2 * S);
+    assert_int_equal(told, ++wanted);
+    take(s, 2 * S);
+    store_set_alarm(s->store, 0, 1, 1);
+    assert_int_equal(told, ++wanted);
+    take(s, 2 * S);
+    store_set_alarm(s->store, 0, 1, 1);
+    assert_int_equal(told, wanted);
+    store_link_up(s->store, 0, 2 * S);
+    assert_int_equal(told, ++wanted);
+    take(s, 2 * S);
+    store_tags_lost(s->store, (int[]){ 1 }, 1, 2 * S);
+    assert_int_equal(told, ++wanted);
+    take(s, 2 * S);
+    store_watch(s->store, NULL, NULL);
+    store_link_lost(s->store, 0, 3 * S);
+    write_one(s, 0, 1, QUALITY_GOOD, 3 * S);
+    assert_int_equal(told, wanted);
+}
+
+static void says_when_a_reading_gets_stale(void **state)
+{
+    struct setup *s = *state;
+    assert_true(take(s, 0) == INT64_MAX);
+    write_one(s, 0, 20, QUALITY_GOOD, 1 * S);
+    write_one(s, 1, 20, QUALITY_GOOD, 3 * S);
+    assert_true(take(s, 3 * S) == 6 * S);
+    write_one(s, 0, 20, QUALITY_GOOD, 4 * S);
+    assert_true(take(s, 4 * S) == 8 * S);
+    assert_true(take(s, 8 * S) == 9 * S);
+    assert_true(take(s, 9 * S) == INT64_MAX); /* both are */
+}
+
+/* Random writes, losses and alarms, and time between them: nothing that a snapshot shows changes unless it was told, or announced. */
+static void nothing_changes_unannounced(void **state)
+{
+    struct setup *s = *state;
+    struct snapshot *last = snapshot_create(3);
+    const uint32_t qualities[] = { QUALITY_GOOD, QUALITY_UNCERTAIN_UNITS_EXCEEDED, QUALITY_BAD_SENSOR_FAILURE };
+    int told = 0, announced = 0;
+    s->plant->sources[0].heartbeat_s = 3;
+    s->plant->sources[0].heartbeat_tag = 1;
+    s->plant->tags[2].quality = (struct plant_quality_tag){ .tag = 0, .mask = 1, .want = 1 };
+    set_up_again(s);
+    store_watch(s->store, count_call, &told);
+    srand(1);
+    int64_t now_ns = S, next_ns = INT64_MAX;
+    for (int i = 0; i < 20000; i++) {
+        int tag = rand() % 3, what = rand() % 40;
+        now_ns += rand() % (what == 39 ? 4 * S : S / 2);
+        if (what < 20)
+            write_one(s, tag, rand() % 3, qualities[what % 3], now_ns);
+        else if (what == 20)
+            store_tags_lost(s->store, &tag, 1, now_ns);
+        else if (what == 21)
+            store_link_lost(s->store, tag % 2, now_ns);
+        else if (what == 22)
+            store_link_up(s->store, tag % 2, now_ns);
+        else if (what == 23)
+            store_tags_dead(s->store, &tag, 1, now_ns);
+        else if (what == 24)
+            store_set_alarm(s->store, tag, rand() % 2, 1);
+        look(s, 0, now_ns);
+        for (int j = 0; j < 3; j++)
+            if (s->snapshot->readings[j].changes != last->readings[j].changes) {
+                assert_true(told || now_ns >= next_ns);
+                announced += !told;
+            }
+        told = 0;
+        next_ns = take(s, now_ns);
+        assert_true(next_ns > now_ns);
+        memcpy(last->readings, s->snapshot->readings, 3 * sizeof(*last->readings));
+    }
+    assert_true(announced > 100);
+    snapshot_destroy(&last);
+}
+
 int main(void)
 {
     cmocka_set_message_output(CM_OUTPUT_TAP);
@@ -456,6 +558,9 @@ int main(void)
         store_test(the_snapshot_says_when),
         store_test(all_who_listen_hear_until_they_leave),
         store_test(what_is_lost_at_first_is_not_told_at_a_wrong_time),
+        store_test(whoever_watches_is_told_once_until_the_next_look),
+        store_test(says_when_a_reading_gets_stale),
+        store_test(nothing_changes_unannounced),
         store_test(readings_go_on_in_another_plant),
         cmocka_unit_test(qualities_have_names_and_classes),
     };

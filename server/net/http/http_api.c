@@ -167,6 +167,7 @@ int api_tags(struct server_context *server, struct request *request)
     size_t first = 0, count = TAGS_PAGE;
     if (!request_args(request->wsi, &args, &error) || !read_page(&args, &first, &count))
         return request_answer_text(request, HTTP_STATUS_BAD_REQUEST, "expected first=N and count=N, 1 to 5000\n");
+    net_refresh_readings(server);
     return request_answer_json(request, reply_api_tags_text(&server->session_context, first, count));
 }
 

@@ -1,0 +1,64 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The loop's snapshot of the readings: taken when the store says that something changed, or when a reading gets stale, while there are
+   clients; and when a request reads it. */
+#include "base/clock.h"
+#include "net/net.h"
+#include "net/net_impl.h"
+
+static const int64_t BETWEEN_NS = 100 * NS_PER_MS; /* two snapshots at least, however often readings change */
+static const int64_t GATHER_NS = 10 * NS_PER_MS;   /* what a device sends in one go is shown by one frame */
+
+static int64_t later(int64_t a_ns, int64_t b_ns)
+{
+    return a_ns > b_ns ? a_ns : b_ns;
+}
+
+static void take(struct net *net)
+{
+    struct server_context *server = &net->server;
+    bool data_changed = net_take_snapshot(server), links_changed = net_check_links(server);
+    if (data_changed) {
+        server->session_context.changed_ns = server->snapshot->taken_mono_ns;
+        render_service_on_data(server->params.plant.render_service);
+    }
+    if (data_changed || links_changed)
+        streams_on_readings(server, data_changed, links_changed);
+    net_wake_render_service(server);
+    int64_t stale_ns = server->next_change_ns < INT64_MAX ? server->next_change_ns + NS_PER_MS : INT64_MAX; /* the loop may be early */
+    net->readings_ns = later(stale_ns, server->snapshot->taken_mono_ns + BETWEEN_NS);
+}
+
+static void on_change(void *arg)
+{
+    struct net *net = arg;
+    atomic_store(&net->readings_changed, true);
+    net_wake(net);
+}
+
+void net_watch_readings(struct net *net)
+{
+    store_watch(net->server.params.plant.store, on_change, net);
+    take(net);
+}
+
+void net_unwatch_readings(struct net *net)
+{
+    store_watch(net->server.params.plant.store, NULL, NULL);
+}
+
+int64_t net_update_readings(struct net *net, int64_t now_ns)
+{
+    if (atomic_exchange(&net->readings_changed, false))
+        net->readings_ns = later(now_ns + GATHER_NS, net->server.session_context.changed_ns + BETWEEN_NS);
+    if (net->server.stream_count == 0)
+        return INT64_MAX;
+    if (now_ns >= net->readings_ns)
+        take(net);
+    return net->readings_ns;
+}
+
+void net_refresh_readings(struct server_context *server)
+{
+    if (clock_mono_ns() - server->snapshot->taken_mono_ns > BETWEEN_NS)
+        take(lws_container_of(server, struct net, server));
+}

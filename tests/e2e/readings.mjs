@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Readings that change are shown at once, readings that do not cost next to nothing, and a reading gets stale without anyone writing it.
+import assert from 'node:assert/strict';
+import { readFileSync } from 'node:fs';
+import { after, before, test } from 'node:test';
+import { PlainClient, get } from './support/plain_client.mjs';
+import { missing, TinyPlant } from './support/tiny_plant.mjs';
+import { median, sanitized, sleep } from './support/crowd.mjs';
+
+const FLAG_STILL = 2, FLAG_MORE = 8, FLAG_DATA = 16, CHANGES = 12;
+const absent = missing();
+const options = { skip: absent.length > 0 ? `not built: ${absent.join(', ')}` : false, timeout: 120000 };
+let plant, client;
+
+before(async () => {
+    if (options.skip)
+        return;
+    plant = await TinyPlant.running();
+    client = await PlainClient.open(plant.port);
+    await client.hello({ width: 320, height: 240 });
+    await client.frameWhere('a refined frame', (f) => (f.flags & FLAG_STILL) !== 0);
+});
+after(async () => {
+    client?.close();
+    await plant?.destroy();
+});
+
+// Of the loop: how often it went to sleep, in a second.
+async function sleeps(seconds) {
+    const { pid } = plant.daemon.child;
+    const count = () => Number(readFileSync(`/proc/${pid}/task/${pid}/status`, 'utf8').match(/^voluntary_ctxt_switches:\s*(\d+)/m)[1]);
+    const start = count();
+    await sleep(seconds * 1000);
+    return (count() - start) / seconds;
+}
+
+test('a loop with nothing to do sleeps', options, async () => {
+    await sleep(2000);
+    const rate = await sleeps(5);
+    assert.ok(rate < 5, `woken ${rate} times a second`); // ten times, were it to ask every tenth of a second
+});
+
+// The device is read every 100 ms, so the oldest reading of a frame is as old as the change that the frame was made for.
+test('a changed reading does not wait for a tick', options, async () => {
+    const ages = [];
+    for (let i = 0; i < CHANGES; i++) {
+        const shown = client.frames.length;
+        await plant.tell(`set TI-1 ${60 + i % 2}`);
+        const made = (f) => client.frames.indexOf(f) >= shown && (f.flags & FLAG_DATA) !== 0 && (f.flags & FLAG_MORE) === 0;
+        ages.push((await client.frameWhere(`change ${i}`, made)).oldest_age_ms);
+        await sleep(350 + 37 * (i % 5));
+    }
+    const typical = median(ages);
+    console.log(`# from a reading to its frame: ${typical} ms (${ages.join(', ')})`);
+    assert.ok(sanitized || typical < 35, `${typical} ms`); // 50, were it to ask every tenth of a second
+});
+
+test('what is asked for between changes is of now', options, async () => {
+    await sleep(1500);
+    const page = JSON.parse((await get(plant.port, '/api/v1/tags')).body.toString());
+    assert.ok(Math.abs(page.time_us / 1000 - Date.now()) < 500, 'the time of the page');
+    assert.ok(page.tags.every((tag) => tag.age_ms < 500), JSON.stringify(page.tags.map((tag) => tag.age_ms)));
+    client.say({ type: 'ping', t: 1 });
+    const pong = await client.until('a pong', (c) => c.texts.find((text) => text.type === 'pong'));
+    assert.ok(pong.oldest_age_ms < 500, `${pong.oldest_age_ms} ms`);
+});
+
+test('a reading gets stale when its time is over, though nobody writes it', options, async () => {
+    const told = client.texts.length, bad = (row) => row[2] === 'bad';
+    await plant.tell('pause');
+    await client.until('all readings bad', (c) => {
+        const rows = c.texts.slice(told).filter((text) => text.type === 'tags').flatMap((text) => text.values);
+        const last = new Map(rows.map((row) => [row[0], row]));
+        return last.size === 3 && [...last.values()].every(bad);
+    }, 5000);
+    await plant.tell('resume');
+    await client.until('links', (c) => c.texts.filter((text) => text.type === 'status').at(-1)?.links.every((link) => link.up));
+});
