@@ -11,7 +11,7 @@
 #include "base/json_text.h"
 #include "base/mem.h"
 #include "base/timestamp.h"
-#include "message/json_number.h"
+#include "message/json_values.h"
 
 enum { ROWS_DEFAULT = 1000, ROWS_MOST = 10000, DIGITS = 7 };
 
@@ -19,12 +19,6 @@ static const char *mode_name(enum alarm_mode mode)
 {
     static const char *const names[] = { [ALARMS_DISPLAY] = "display", [ALARMS_MIRROR] = "mirror", [ALARMS_LOCAL] = "local" };
     return names[mode];
-}
-
-static json_t *string(const char *text)
-{
-    json_t *value = json_string(text);
-    return value ? value : json_string("(not UTF-8)");
 }
 
 static json_t *instant(int64_t utc_ns)

@@ -5,6 +5,7 @@
 #include <math.h>
 
 #include "message/json_fields.h"
+#include "message/json_values.h"
 #include "render/overlay/overlay.h"
 
 bool fit_parse(const struct plant *plant, const json_t *o, struct fit *out, struct message_error *error)
@@ -33,11 +34,6 @@ void fit_apply(const struct scene *scene, const struct fit *fit, const struct vi
     if (fit->projection != PROJECTION_AS_IT_IS)
         camera->height_m = fit->projection == PROJECTION_ORTHOGRAPHIC;
     framing_look(scene, &fit->framing, (double)half.width_px / half.height_px, camera);
-}
-
-static json_t *vector(const double v[3])
-{
-    return json_pack("[f,f,f]", v[0], v[1], v[2]);
 }
 
 /* The plant's own camera, as a client would ask for it. */

@@ -9,7 +9,7 @@
 #include "base/json_text.h"
 #include "base/mem.h"
 #include "base/text.h"
-#include "message/json_number.h"
+#include "message/json_values.h"
 #include "value/quality.h"
 
 enum { DIGITS = 7 };

@@ -9,6 +9,7 @@
 #include "base/json_text.h"
 #include "base/mem.h"
 #include "message/json_fields.h"
+#include "message/json_values.h"
 #include "plant/tag_edit.h"
 #include "plant/transform.h"
 #include "scene/far_sensors.h"
@@ -66,11 +67,6 @@ bool save_tags_parse(const struct plant *plant, const json_t *o, struct message 
 }
 
 /* --- what is answered ---------------------------------------------------------------------------------------------------------- */
-
-static json_t *vector(const double v[3])
-{
-    return json_pack("[f,f,f]", v[0], v[1], v[2]);
-}
 
 char *placed_text(const struct plant *plant, const struct place_set *set, uint32_t seq)
 {

@@ -8,7 +8,7 @@
 #include "base/json_text.h"
 #include "base/mem.h"
 #include "message/json_fields.h"
-#include "message/json_number.h"
+#include "message/json_values.h"
 #include "value/quality.h"
 
 bool prove_parse(const struct plant *plant, const json_t *o, struct message *out, struct message_error *error)

@@ -17,6 +17,7 @@
 #include "net/tls.h"
 #include "net/connection.h"
 #include "net/net_impl.h"
+#include "session/resume.h"
 
 static const int64_t TICK_NS = 100 * NS_PER_MS, REST_NS = NS_PER_S; /* between ticks; when no session waits for anything */
 static const int64_t GOODBYE_NS = 500 * NS_PER_MS; /* for the close frames to leave */

@@ -7,6 +7,7 @@
 #include "net/net.h"
 #include "net/net_impl.h"
 #include "net/stream.h"
+#include "session/resume.h"
 
 /* --- what will be looked at ------------------------------------------------------------------------------------------- */
 

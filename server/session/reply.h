@@ -3,8 +3,7 @@
    after; mem_free. Pure. Thread: the loop. */
 #ifndef SESSION_REPLY_H
 #define SESSION_REPLY_H
-#include "message/message.h"
-#include "session/session.h"
+#include "session/session_context.h"
 
 char *reply_welcome_text(const struct session *session, int64_t now_utc_ns);
 /* open: for clients without a token, who are told no names of tags and baselines. */

@@ -7,7 +7,7 @@
 #include <string.h>
 
 #include "base/mem.h"
-#include "session/session.h"
+#include "session/session_state.h"
 
 struct kept {
     char secret[RESUME_CHARS + 1];

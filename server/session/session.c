@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* One client: its view, what it is owed, what it may have. */
 #include "session/session_impl.h"
+#include "session/resume.h"
 
 #include <math.h>
 #include <string.h>

@@ -4,43 +4,11 @@
 #ifndef SESSION_SESSION_H
 #define SESSION_SESSION_H
 #include "base/text.h"
-#include "scene/scene.h"
-#include "session/resume.h"
+#include "session/session_context.h"
 #include "session/session_state.h"
+#include "session/session_view.h"
 
 #define SESSION_MAX_INPUT_BYTES (1024 * 1024) /* beyond that the connection is closed */
-
-/* What all sessions have in common. Set by the loop; sessions change only the members that say so. */
-struct session_context {
-    const struct plant *plant;
-    const struct scene *scene;
-    const struct snapshot *snapshot; /* the newest readings */
-    struct baselines *baselines;
-    struct snapshot_cache *snapshot_cache; /* readings of past instants; NULL: nothing is recorded */
-    int64_t history_first_us;              /* where recorded history begins; 0: nothing is recorded yet */
-    int64_t changed_ns;                    /* monotonic: when a snapshot last differed from the one before */
-    struct alarm_service *alarm_service;   /* NULL: no alarms */
-    struct alarm_text_cache *alarm_texts;  /* NULL: each text is made anew */
-    struct placing *placing;               /* NULL: sensors cannot be placed */
-    const char *tag_list;                  /* the text in force; NULL: it could not be read */
-    bool saving;                           /* a saved list is being put in force */
-    struct loop_checks *loop_checks;       /* NULL: loops cannot be checked */
-    const bool *links_up;                  /* by source */
-    bool live;                             /* a source is connected */
-    bool clock_is_set;                     /* the wall clock is synchronised */
-    int64_t moving_until_ns;               /* some camera moves until then; refined frames of others would make it stutter */
-    bool overloaded;                       /* refined frames for all, at each change of readings, are more than can be drawn */
-    unsigned codecs;                       /* a bit, 1 << enum wire_codec, for each that works here; 0: JPEG and PNG */
-    double cpu_used;                       /* share of all processors of the machine, 0..1 */
-    const char *version;
-    const struct quotas *quotas;
-    const struct tokens *tokens;           /* NULL: none are configured */
-    struct login_throttle *login_throttle; /* changed by hello; NULL: wrong tokens are not counted */
-    struct resumes *resumes;               /* changed by hello */
-    struct admission *admission;           /* its pixels are changed by hello, resize and visible */
-    struct tag_text_cache *tag_texts;      /* NULL: each text is made anew */
-    char **lists_said; /* two parts of `welcome` that sessions share: with names, and for open viewers; NULL: likewise */
-};
 
 /* --- life ------------------------------------------------------------------------------------------------------------- */
 
@@ -55,11 +23,6 @@ void session_close(struct session *session, int code, const char *text);
 void session_check_token(struct session *session, int64_t now_utc_ns);
 /* Returns the last state of pacing: a client that takes nothing is first sent nothing, then to be disconnected. */
 enum pacer_state session_state(const struct session *session, int64_t now_ns);
-/* Returns whether it has no token and is let in to look only: it gets frames, and no readings, tags or names of people. */
-static inline bool session_is_open(const struct session *session)
-{
-    return session->identity.role == ROLE_OPEN;
-}
 
 /* --- the plant is loaded anew ----------------------------------------------------------------------------------------- */
 
@@ -127,13 +90,6 @@ void session_say(struct session *session, const char *text);
 bool session_next_pick(struct session *session, struct pick_query *query);
 /* Queues the answer. */
 void session_on_pick(struct session *session, const struct pick_answer *answer);
-
-/* --- what it is shown ------------------------------------------------------------------------------------------------- */
-
-/* Returns the view that it is shown: its own, or its leader's. */
-const struct view *session_view(const struct session *session);
-/* Returns the readings that it is shown: of now, or of an instant. */
-const struct snapshot *session_snapshot(const struct session *session);
 
 /* --- time travel ------------------------------------------------------------------------------------------------------ */
 

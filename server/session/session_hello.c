@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "session/session_impl.h"
+#include "session/resume.h"
 
 static bool judge_token(struct session *session, const char *token, int64_t now_ns, int64_t now_utc_ns, struct message_error *error)
 {

@@ -15,11 +15,6 @@ void session_on_input(struct session *session, int64_t now_ns);
 /* Returns the user's name, for journals and lists; "local" without a token. */
 const char *session_who(const struct session *session);
 
-/* --- session_view.c --------------------------------------------------------------------------------------------------- */
-
-/* Returns the view to draw: session_view, without what a leader has moved on trial. */
-struct view session_shown(const struct session *session);
-
 /* --- session_hello.c -------------------------------------------------------------------------------------------------- */
 
 /* Acts on `hello`: checks the token, admits the session and sets its first view. Returns false with *error, and session->close set if it is

@@ -157,4 +157,10 @@ struct session {
     struct session_stats stats;
 };
 
+/* Returns whether it has no token and is let in to look only: it gets frames, and no readings, tags or names of people. */
+static inline bool session_is_open(const struct session *session)
+{
+    return session->identity.role == ROLE_OPEN;
+}
+
 #endif

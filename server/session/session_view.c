@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What a session is shown: its own view or its leader's, of now or of an instant. */
-#include "session/session_impl.h"
+#include "session/session_view.h"
+
+#include "session/session_context.h"
 
 const struct view *session_view(const struct session *session)
 {

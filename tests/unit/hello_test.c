@@ -13,6 +13,7 @@
 #include "base/atomic_file.h"
 #include "base/clock.h"
 #include "base/mem.h"
+#include "session/resume.h"
 #include "tests/support/small_scene.h"
 #include "tests/support/temp.h"
 

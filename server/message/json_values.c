@@ -1,0 +1,28 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "message/json_values.h"
+
+#include <math.h>
+
+json_t *number(double value)
+{
+    return isfinite(value) ? json_real(value + 0.0) : json_null(); /* of -0.0 it makes 0.0 */
+}
+
+json_t *string(const char *text)
+{
+    json_t *value = text ? json_string(text) : json_null();
+    return value ? value : json_string("(not UTF-8)");
+}
+
+json_t *vector(const double v[3])
+{
+    return json_pack("[o,o,o]", number(v[0]), number(v[1]), number(v[2]));
+}
+
+json_t *number_list(const double *values, int count)
+{
+    json_t *list = count > 0 ? json_array() : json_null();
+    for (int i = 0; i < count; i++)
+        json_array_append_new(list, number(values[i]));
+    return list;
+}

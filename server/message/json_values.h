@@ -1,0 +1,16 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Values as messages write them. Each function returns a new JSON value, which the caller owns. Pure; any thread. */
+#ifndef MESSAGE_JSON_VALUES_H
+#define MESSAGE_JSON_VALUES_H
+#include <jansson.h>
+
+/* Returns a number, never -0.0; null where the value is not finite. */
+json_t *number(double value);
+/* Returns a string; null for NULL; "(not UTF-8)" for a text that is not. */
+json_t *string(const char *text);
+/* Returns an array of three numbers. */
+json_t *vector(const double v[3]);
+/* Returns an array of numbers; null where there are none. */
+json_t *number_list(const double *values, int count);
+
+#endif
