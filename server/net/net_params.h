@@ -43,7 +43,7 @@ struct net_params {
     const char *version;
     void (*reload)(void *arg);                      /* called in the loop: load the plant anew. NULL: it cannot be */
     void (*save)(void *arg, struct tag_save *save); /* called in the loop: put another tag list in force; takes it. NULL: it cannot be */
-    void (*tick)(void *arg, const struct net_status *status); /* called in the loop, ten times a second. NULL: nobody asks */
+    void (*tick)(void *arg, const struct net_status *status); /* called in the loop, once a second or more often. NULL: nobody asks */
     void *reload_arg;                                         /* of these three */
 };
 

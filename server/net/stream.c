@@ -47,15 +47,16 @@ static uint64_t new_number(const struct server_context *server)
 
 static void on_open(struct server_context *server, struct lws *wsi, struct stream **slot)
 {
+    const struct connection *connection = connection_of(wsi);
     struct stream *stream = mem_new(sizeof(*stream));
     *stream = (struct stream){ .wsi = wsi };
     stream->session = session_create(&server->session_context, server->next_client++, clock_mono_ns());
-    stream->session->identity.number = new_number(server);
-    stream->session->demand.starting = true;
-    stream->usage = connection_of(wsi)->client;
-    memcpy(stream->session->identity.address, stream->usage->address, sizeof(stream->session->identity.address));
-    stream->session->identity.role = connection_of(wsi)->role;
-    stream->session->identity.holder = connection_of(wsi)->holder;
+    stream->usage = connection->client;
+    session_introduce(stream->session, &(struct session_client){ .number = new_number(server),
+                                                                 .address = stream->usage->address,
+                                                                 .role = connection->role,
+                                                                 .holder = &connection->holder,
+                                                                 .share = &stream->usage->share });
     *slot = stream;
     stream_table_add(server, stream);
     counter_set(server->counters.sessions, server->stream_count);
@@ -63,8 +64,7 @@ static void on_open(struct server_context *server, struct lws *wsi, struct strea
     tune_socket(wsi);
     bool address_full = !address_limits_may_stream(server->limits, stream->usage);
     stream->usage->sessions++;
-    stream->session->room.share = &stream->usage->share;
-    admission_join(&server->admission, stream->session->room.share);
+    admission_join(&server->admission, &stream->usage->share);
     if (address_full)
         session_close(stream->session, 1013, "full: this address has as many sessions as one may have; try again later");
     else if (server->stream_count > server->quotas->at[QUOTA_SESSIONS])
@@ -106,7 +106,7 @@ static void on_close(struct server_context *server, struct stream **slot)
         history_loader_forget(server->history_loader, stream->session->id);
     stream->usage->sessions--;
     session_leave(stream->session, may_return(stream), clock_mono_ns());
-    admission_leave(&server->admission, stream->session->room.share);
+    admission_leave(&server->admission, &stream->usage->share);
     session_destroy(&stream->session);
     encoded_frame_destroy(&stream->sending);
     text_finish(&stream->in);
@@ -173,7 +173,7 @@ static void count_moving(const struct server_context *server, int64_t now_ns)
     for (struct address_share *share = server->admission.shares; share; share = share->next)
         share->moving = 0;
     for (const struct stream *stream = server->streams; stream; stream = stream->next)
-        stream->session->room.share->moving += stream->session->hello && now_ns - stream->session->demand.input_ns < NS_PER_S;
+        stream->usage->share.moving += session_moves(stream->session, now_ns);
 }
 
 void streams_check_tokens(struct server_context *server, int64_t now_utc_ns)
@@ -201,7 +201,8 @@ void streams_on_readings(struct server_context *server, bool data_changed, bool 
     for (struct stream *stream = server->streams; stream; stream = stream->next) {
         if (data_changed && session_view(stream->session)->at_us == 0)
             session_on_data(stream->session, server->data_ns);
-        stream->session->owed.status |= links_changed;
+        if (links_changed)
+            session_on_links(stream->session);
         pump(server, stream);
     }
 }
@@ -242,7 +243,7 @@ void stream_on_frame(struct server_context *server, struct encoded_frame *encode
     const struct frame *frame = encoded->packet ? encoded->packet->frame : NULL;
     if (frame && frame->view.tier == TIER_REFINED && encoded->request.urgency >= URGENCY_REFINE)
         server->still_ns = frame->render_ns + frame->readback_ns;
-    admission_on_frame(&server->admission, stream->session->room.share, encoded);
+    admission_on_frame(&server->admission, &stream->usage->share, encoded);
     session_on_frame(stream->session, encoded);
     pump(server, stream);
 }
@@ -310,10 +311,9 @@ static void note_login(struct server_context *server, struct stream *stream, boo
 /* It goes to the thread that loads the plant anew. */
 static void save_resolve(struct server_context *server, struct session *session)
 {
-    struct tag_save *save = session->placement.save;
+    struct tag_save *save = session_take_save(session);
     if (!save)
         return;
-    session->placement.save = NULL;
     save->client = session->id;
     server->session_context.saving = true;
     server->params.save(server->params.reload_arg, save);
@@ -334,9 +334,9 @@ static void on_message(struct server_context *server, struct stream *stream)
     note_login(server, stream, was_in);
     follow_resolve(server, stream);
     save_resolve(server, session);
-    if (session->delivery.measured)
-        latency_stages_shown(&server->latency, &session->delivery.pacer);
-    session->delivery.measured = false;
+    const struct pacer *pacer = session_take_shown(session);
+    if (pacer)
+        latency_stages_shown(&server->latency, pacer);
     if (session->demand.input_ns == now_ns) {
         server->session_context.moving_until_ns = now_ns + MOVING_NS;
         if (follow_spread(server, stream))

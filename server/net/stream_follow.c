@@ -1,7 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Who follows whom. A leader follows nobody: who follows a follower follows its leader. */
-#include <string.h>
-
 #include "base/clock.h"
 #include "base/mem.h"
 #include "net/stream.h"
@@ -29,12 +27,12 @@ static void hand_over(struct server_context *server, const struct session *from,
 }
 
 /* What all of them see does not change, but who moves it does. */
-static void resolve_lead(struct server_context *server, struct session *session)
+static void resolve_lead(struct server_context *server, struct session *session, uint64_t number)
 {
-    const struct stream *other = stream_called(server, session->following.heir_wanted);
+    const struct stream *other = stream_called(server, number);
     struct session *heir = other ? other->session : NULL;
     if (!heir || heir->following.leader != session) {
-        session_lead_nobody(session);
+        session_lead_nobody(session, number);
         return;
     }
     session_inherit(heir, session);
@@ -43,27 +41,28 @@ static void resolve_lead(struct server_context *server, struct session *session)
     session_follow(session, heir, clock_mono_ns());
 }
 
-void follow_resolve(struct server_context *server, struct stream *stream)
+static void resolve_follow(struct server_context *server, struct session *session, uint64_t number)
 {
-    struct session *session = stream->session;
-    if (session->identity.returned)
-        take_back(server, session);
-    session->identity.returned = false;
-    if (session->following.heir_wanted)
-        resolve_lead(server, session);
-    session->following.heir_wanted = 0;
-    if (!session->following.asked)
-        return;
-    session->following.asked = false;
-    struct stream *other = session->following.wanted ? stream_called(server, session->following.wanted) : NULL;
+    const struct stream *other = number ? stream_called(server, number) : NULL;
     struct session *leader = other ? other->session->following.leader ? other->session->following.leader : other->session : NULL;
-    if (session->following.wanted && (!leader || leader == session || !leader->hello)) {
+    if (number && (!leader || leader == session || !leader->hello)) {
         session_follow_nobody(session);
         return;
     }
     if (leader)
         hand_over(server, session, leader);
     session_follow(session, leader, clock_mono_ns());
+}
+
+void follow_resolve(struct server_context *server, struct stream *stream)
+{
+    struct follow_request request = session_take_follow_request(stream->session);
+    if (request.returned)
+        take_back(server, stream->session);
+    if (request.heir)
+        resolve_lead(server, stream->session, request.heir);
+    if (request.asked)
+        resolve_follow(server, stream->session, request.wanted);
 }
 
 bool follow_spread(struct server_context *server, const struct stream *leader)
@@ -87,8 +86,6 @@ void follow_forget(struct server_context *server, const struct stream *leader)
             session_follow(stream->session, again, clock_mono_ns());
         else if (stream->session->following.leader == leader->session)
             session_leader_gone(stream->session, clock_mono_ns());
-    if (leader->session->following.leader)
-        leader->session->following.leader->following.followers_changed = true;
 }
 
 void follow_tell(struct server_context *server, int64_t now_ns)
@@ -110,21 +107,10 @@ void follow_tell(struct server_context *server, int64_t now_ns)
     }
 }
 
-/* Whose view it sees. */
-static struct session *seen(struct session *session)
-{
-    return session->following.leader ? session->following.leader : session;
-}
-
 void follow_share_steps(struct server_context *server)
 {
-    struct stream *stream;
-    for (stream = server->streams; stream; stream = stream->next)
-        memset(stream->session->delivery.steps, 0, sizeof(stream->session->delivery.steps));
-    for (stream = server->streams; stream; stream = stream->next)
-        if (stream->session->delivery.pacer.ladder.known)
-            seen(stream->session)->delivery.steps[stream->session->delivery.pacer.ladder.step]++;
-    for (stream = server->streams; stream; stream = stream->next)
-        stream->session->delivery.common_step =
-            quality_ladder_common(&seen(stream->session)->delivery.pacer.ladder, seen(stream->session)->delivery.steps);
+    void (*const steps[])(struct session *) = { session_clear_steps, session_count_step, session_choose_step };
+    for (int i = 0; i < 3; i++)
+        for (struct stream *stream = server->streams; stream; stream = stream->next)
+            steps[i](stream->session);
 }

@@ -24,6 +24,16 @@ struct session *session_create(const struct session_context *context, uint64_t i
     return session;
 }
 
+void session_introduce(struct session *session, const struct session_client *client)
+{
+    session->identity.number = client->number;
+    memcpy(session->identity.address, client->address, sizeof(session->identity.address));
+    session->identity.role = client->role;
+    session->identity.holder = *client->holder;
+    session->room.share = client->share;
+    session->demand.starting = true;
+}
+
 void session_destroy(struct session **session_ptr)
 {
     struct session *session = *session_ptr;
@@ -43,6 +53,8 @@ void session_destroy(struct session **session_ptr)
 void session_leave(struct session *session, bool keep, int64_t now_ns)
 {
     session_release_pixels(session);
+    if (session->following.leader)
+        session->following.leader->following.followers_changed = true;
     resumes_close(session->context->resumes, session, keep, now_ns);
 }
 
@@ -254,6 +266,16 @@ void session_on_tick(struct session *session, int64_t now_ns)
         session->hello && session->context->snapshot_cache && session->context->history_first_us && !session->owed.told_beginning;
 }
 
+bool session_moves(const struct session *session, int64_t now_ns)
+{
+    return session->hello && now_ns - session->demand.input_ns < NS_PER_S;
+}
+
+void session_on_links(struct session *session)
+{
+    session->owed.status = true;
+}
+
 bool session_rests(const struct session *session, int64_t now_ns)
 {
     const struct frame_demand *demand = &session->demand;
@@ -264,9 +286,8 @@ bool session_rests(const struct session *session, int64_t now_ns)
     if (!session->hello || session->hidden)
         return true;
     bool frame_due = demand->input || demand->data || demand->any || demand->refined != REFINED_FULL;
-    bool moved = now_ns - demand->input_ns < NS_PER_S; /* counts for others, too */
     bool plays = session->travel.speed != 0 || session->travel.wanted_us;
-    return !frame_due && !moved && !plays && (!session->owed.tags || session_is_open(session));
+    return !frame_due && !session_moves(session, now_ns) && !plays && (!session->owed.tags || session_is_open(session));
 }
 
 void session_on_data(struct session *session, int64_t data_ns)

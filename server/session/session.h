@@ -15,7 +15,11 @@
 /* Makes the session of a new connection. Never NULL. */
 struct session *session_create(const struct session_context *context, uint64_t id, int64_t now_ns);
 void session_destroy(struct session **session); /* &NULL is fine; leaves NULL */
-/* Notes that its connection is lost, before session_destroy. keep: its view is kept, for the client's return. */
+/* Says who connected; copies it, but client->share must outlive the session. Without it the client may do anything. From then on the first
+   frame waits for session_begin, for a second at most. */
+void session_introduce(struct session *session, const struct session_client *client);
+/* Notes that its connection is lost, before session_destroy: gives its pixels back, and has its leader told. keep: its view is kept for the
+   client's return. */
 void session_leave(struct session *session, bool keep, int64_t now_ns);
 /* Has the connection closed once the texts owed are sent. text: static. The first reason stands. */
 void session_close(struct session *session, int code, const char *text);
@@ -49,6 +53,10 @@ void session_on_tick(struct session *session, int64_t now_ns);
 bool session_rests(const struct session *session, int64_t now_ns);
 /* Notes that a reading which it is shown changed at data_ns. */
 void session_on_data(struct session *session, int64_t data_ns);
+/* Notes that sources were connected or lost. */
+void session_on_links(struct session *session);
+/* Returns whether its client moved within the last second. */
+bool session_moves(const struct session *session, int64_t now_ns);
 
 /* --- frames ----------------------------------------------------------------------------------------------------------- */
 
@@ -70,6 +78,8 @@ bool session_gives_up(const struct session *session, const struct encoded_frame 
 void session_gave_up(struct session *session);
 /* Takes the first measure of the bandwidth: so many bytes of texts had arrived after took_ns. The first frame is made accordingly. */
 void session_begin(struct session *session, size_t bytes, int64_t took_ns);
+/* Returns the pacer if its `acked` is a frame that the client has shown since the last call; else NULL. */
+const struct pacer *session_take_shown(struct session *session);
 /* Takes a measured round trip. */
 void session_on_pong(struct session *session, int64_t rtt_ns, int64_t now_ns);
 
@@ -112,8 +122,15 @@ void session_on_leader(struct session *session, int64_t now_ns);
 void session_leader_gone(struct session *session, int64_t now_ns);
 /* Gives the heir the view of the session, at the heir's own size. */
 void session_inherit(struct session *heir, const struct session *session);
-/* Refuses to hand over the lead: that session does not follow this one. */
-void session_lead_nobody(struct session *session);
+/* Refuses to hand over the lead to `heir`: that session does not follow this one. */
+void session_lead_nobody(struct session *session, uint64_t heir);
+/* Takes out what the client asked about following since the last call. */
+struct follow_request session_take_follow_request(struct session *session);
+/* Three steps by which all who see one view take the same step of the quality ladder: each of them is to be called for all sessions before
+   the next one is. */
+void session_clear_steps(struct session *session);
+void session_count_step(struct session *session);
+void session_choose_step(struct session *session);
 /* Has the client told who follows it, by numbers. */
 void session_say_followers(struct session *session, const uint64_t *sessions, size_t count, int64_t now_ns);
 
@@ -121,6 +138,8 @@ void session_say_followers(struct session *session, const uint64_t *sessions, si
 
 /* Shows new places of its sensors, if distances for them were computed. */
 void session_on_placed(struct session *session, int64_t now_ns);
+/* Takes out the tag list that is to be put in force; the caller then owns it. NULL: none. */
+struct tag_save *session_take_save(struct session *session);
 /* Queues the answer to `gaps`. */
 void session_on_gaps(struct session *session, const struct sensor_coverage_answer *answer);
 

@@ -1,5 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A session that is shown the view of another one. Its own camera, parameters and size go on beneath. */
+#include <string.h>
+
 #include "base/clock.h"
 #include "base/mem.h"
 #include "session/reply.h"
@@ -71,11 +73,20 @@ void session_inherit(struct session *heir, const struct session *session)
     session_time_inherit(heir, session);
 }
 
-void session_lead_nobody(struct session *session)
+void session_lead_nobody(struct session *session, uint64_t heir)
 {
     struct message_error error = { .about = "lead" };
-    message_fail(&error, "bad_field", "session: %llu does not follow this one", (unsigned long long)session->following.heir_wanted);
+    message_fail(&error, "bad_field", "session: %llu does not follow this one", (unsigned long long)heir);
     session_reply_error(session, &error);
+}
+
+struct follow_request session_take_follow_request(struct session *session)
+{
+    struct session_following *following = &session->following;
+    struct follow_request request = { session->identity.returned, following->heir_wanted, following->asked, following->wanted };
+    session->identity.returned = following->asked = false;
+    following->heir_wanted = 0;
+    return request;
 }
 
 void session_say_followers(struct session *session, const uint64_t *sessions, size_t count, int64_t now_ns)
@@ -104,4 +115,27 @@ void session_on_leader(struct session *session, int64_t now_ns)
     size_px[1] = view->height_px;
     session_tell_time(session);
     session_on_input(session, now_ns);
+}
+
+static struct session *seen(struct session *session)
+{
+    return session->following.leader ? session->following.leader : session;
+}
+
+void session_clear_steps(struct session *session)
+{
+    memset(session->delivery.steps, 0, sizeof(session->delivery.steps));
+}
+
+void session_count_step(struct session *session)
+{
+    const struct quality_ladder *ladder = &session->delivery.pacer.ladder;
+    if (ladder->known)
+        seen(session)->delivery.steps[ladder->step]++;
+}
+
+void session_choose_step(struct session *session)
+{
+    const struct frame_delivery *delivery = &seen(session)->delivery;
+    session->delivery.common_step = quality_ladder_common(&delivery->pacer.ladder, delivery->steps);
 }

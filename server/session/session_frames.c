@@ -310,6 +310,13 @@ void session_on_shown(struct session *session)
     session->delivery.measured = true;
 }
 
+const struct pacer *session_take_shown(struct session *session)
+{
+    bool measured = session->delivery.measured;
+    session->delivery.measured = false;
+    return measured ? &session->delivery.pacer : NULL;
+}
+
 void session_begin(struct session *session, size_t bytes, int64_t took_ns)
 {
     const struct view *view = session_view(session);

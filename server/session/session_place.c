@@ -72,6 +72,13 @@ void session_on_gaps(struct session *session, const struct sensor_coverage_answe
     session_reply(session, gaps_text(session->context->scene, session->placement.set, answer));
 }
 
+struct tag_save *session_take_save(struct session *session)
+{
+    struct tag_save *save = session->placement.save;
+    session->placement.save = NULL;
+    return save;
+}
+
 bool session_save_tags(struct session *session, const struct message *message, struct message_error *error)
 {
     const struct session_context *context = session->context;

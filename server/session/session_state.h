@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The state of one client's session, in parts by concern. The loop reads it; only the functions of session.h change it, except where a
-   member says otherwise. Thread: the loop. */
+/* The state of one client's session, in parts by concern. The loop reads it; only functions of session.h change it. Thread: the loop. */
 #ifndef SESSION_SESSION_STATE_H
 #define SESSION_SESSION_STATE_H
 #include "access/login_throttle.h"
@@ -25,7 +24,16 @@ struct session_identity {
     struct token_holder holder;           /* of that token; role ROLE_NOBODY: no token was given, or none was accepted */
     char resume_secret[RESUME_CHARS + 1]; /* lets the client take its view up again over another connection */
     bool resumed;                         /* this session took up another's view, as `welcome` says */
-    bool returned;                        /* likewise, and its followers have yet to be moved here; the loop clears it */
+    bool returned;                        /* likewise, and its followers have yet to be moved here */
+};
+
+/* Who connected. */
+struct session_client {
+    uint64_t number; /* as in struct session_identity */
+    const uint8_t *address;
+    enum role role;
+    const struct token_holder *holder;
+    struct address_share *share;
 };
 
 /* Why the connection is to be closed once the texts owed have been sent. */
@@ -36,7 +44,7 @@ struct session_close {
 
 /* The pixels that the session's view takes of the server's limits (session_admission.c). */
 struct session_room {
-    struct address_share *share; /* of the client's address; NULL: none. The loop owns it, and joins and leaves it */
+    struct address_share *share; /* of the client's address; NULL: none */
     int64_t pixels;              /* counted in the admission's totals; 0: given back while the page was hidden */
     int64_t hidden_ns;           /* when the page was last hidden or shown */
 };
@@ -67,19 +75,27 @@ struct frame_delivery {
     struct pacer pacer;
     uint64_t newest_number;          /* of the frames that were received from the render service */
     struct encoded_frame *ready;     /* to be sent next, oldest first: a frame that stands alone replaces all before it */
-    bool measured;                   /* pacer.acked is new; the loop clears it */
+    bool measured;                   /* pacer.acked is new (session_take_shown) */
     int steps[QUALITY_LADDER_STEPS]; /* how many who see this view, itself too, are at each step of the quality ladder */
-    int common_step;                 /* the step that they share; negative: each its own. Set by the loop, as steps are */
+    int common_step;                 /* the step that they share; negative: each its own */
 };
 
-/* Who is shown whose view (session_follow.c). The loop resolves numbers to sessions. */
+/* What a client asked about following, by numbers of sessions. The loop finds those. */
+struct follow_request {
+    bool returned;    /* it took up another's view: whose followers are to follow it again */
+    uint64_t heir;    /* who is to have the lead; 0: it stays */
+    bool asked;       /* to follow `wanted` */
+    uint64_t wanted;  /* 0: nobody */
+};
+
+/* Who is shown whose view (session_follow.c). */
 struct session_following {
     struct session *leader;   /* whose view is shown; NULL: its own. Kept right by the loop */
-    bool asked;               /* the client asked to follow `wanted`; the loop answers */
+    bool asked;               /* the client asked to follow `wanted` */
     uint64_t wanted;          /* a session's number; 0: nobody */
     uint64_t left;            /* number of the leader who has gone and whose last view is shown; 0: none */
     struct view own_view;     /* its own view meanwhile */
-    uint64_t heir_wanted;     /* who is to have the lead, as asked; 0: it stays. The loop answers */
+    uint64_t heir_wanted;     /* who is to have the lead, as asked; 0: it stays */
     bool followers_changed;   /* the list of its followers is to be sent again */
     int64_t followers_ns;     /* when it was last made */
     char *followers_text;     /* that text, to be sent; NULL: none */
@@ -117,7 +133,7 @@ struct owed_texts {
 struct session_placement {
     struct place_set *set; /* of this session; NULL: nothing was moved */
     uint32_t seq;          /* of the newest `place` */
-    struct tag_save *save; /* a tag list that is to be put in force; the loop takes it */
+    struct tag_save *save; /* a tag list that is to be put in force (session_take_save) */
 };
 
 struct session_pick { /* a question about a pixel */
