@@ -74,6 +74,9 @@ static void say_counts(struct text *said, const struct rvm_counts *counts)
                      { counts->unknown_kinds, "primitives of an unknown kind" },
                      { counts->unknown_chunks, "unknown chunks" } };
     text_add(said, "%zu primitives\n", counts->primitives);
+    if (counts->covered_faces > 0)
+        text_add(said, "left out: %zu faces, %.1f m2, that lie on a neighbour's face and cannot be seen (--keep-covered keeps them)\n",
+                 counts->covered_faces, counts->covered_m2);
     for (size_t i = 0; i < sizeof(left_out) / sizeof(left_out[0]); i++)
         if (left_out[i].count > 0)
             text_add(said, "left out: %zu %s\n", left_out[i].count, left_out[i].what);
@@ -87,9 +90,10 @@ static bool convert_rvm(const char *path, const char *glb, const struct conversi
     char *bytes = text_read_file(path, max_bytes, &length);
     if (!bytes)
         return fail(why, "%s", strerror(errno));
+    const struct rvm_params how = { .chord_m = params->chord_m, .keep_covered = params->keep_covered };
     struct cad_model *model = cad_model_create();
     char *attributes = attributes_beside(path), *stem = file_name_stem(path);
-    bool good = rvm_read(model, bytes, length, params->chord_m, &counts, why, CONVERSION_WHY_BYTES);
+    bool good = rvm_read(model, bytes, length, &how, &counts, why, CONVERSION_WHY_BYTES);
     mem_free(bytes);
     if (good)
         say_counts(said, &counts);

@@ -361,12 +361,14 @@ static void leave_out_covered_faces(struct reader *r)
                 if (!(*open & bit) && face->primitive != cover->primitive && covers(&cover->flat, &face->flat)) {
                     *open |= bit;
                     r->counts->covered_faces++;
+                    r->counts->covered_m2 += face->flat.radius_m > 0 ? M_PI * face->flat.radius_m * face->flat.radius_m
+                                                                     : 4 * face->flat.half_m[0] * face->flat.half_m[1];
                 }
             }
 }
 
-bool rvm_read(struct cad_model *model, const void *bytes, size_t count, double chord_m, struct rvm_counts *counts, char *why,
-              size_t why_bytes)
+bool rvm_read(struct cad_model *model, const void *bytes, size_t count, const struct rvm_params *params, struct rvm_counts *counts,
+              char *why, size_t why_bytes)
 {
     struct reader *r = mem_new(sizeof(*r));
     *r = (struct reader){ .bytes = bytes, .count = count, .model = model, .counts = counts, .why = why, .why_bytes = why_bytes };
@@ -379,9 +381,10 @@ bool rvm_read(struct cad_model *model, const void *bytes, size_t count, double c
             if (r->points) /* else its contours have none */
                 r->primitives[i].shape.points = (const double(*)[3])(r->points + r->primitives[i].first_point);
         }
-    leave_out_covered_faces(r);
+    if (!params->keep_covered)
+        leave_out_covered_faces(r);
     for (size_t i = 0; good && i < r->primitive_count; i++)
-        counts->empty += !rvm_shape_tessellate(&r->primitives[i].shape, chord_m, &model->nodes[r->primitives[i].node]);
+        counts->empty += !rvm_shape_tessellate(&r->primitives[i].shape, params->chord_m, &model->nodes[r->primitives[i].node]);
     mem_free(r->primitives);
     mem_free(r->contours);
     mem_free(r->points);

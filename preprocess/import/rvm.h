@@ -8,15 +8,21 @@
 struct rvm_counts {
     size_t primitives;
     size_t covered_faces;                 /* lie on a neighbour's face: left out */
+    double covered_m2;                    /* how large they are, together */
     size_t empty;                         /* primitives without extent, or with numbers that are not finite: left out */
     size_t obstructions, insulations;     /* left out: volumes kept free, and lagging */
     size_t unknown_chunks, unknown_kinds; /* skipped */
 };
 
-/* Appends the file's groups and their triangles, no chord further than chord_m from the surface, to the model. `bytes` is the whole file.
+struct rvm_params {
+    double chord_m;    /* no chord is further from the surface */
+    bool keep_covered; /* faces that lie on a neighbour's face stay */
+};
+
+/* Appends the file's groups and their triangles to the model. `bytes` is the whole file.
  * Returns false if the file is broken: `why` says what is wrong and at which byte, and the model may hold a part of it. */
-bool rvm_read(struct cad_model *model, const void *bytes, size_t count, double chord_m, struct rvm_counts *counts, char *why,
-              size_t why_bytes);
+bool rvm_read(struct cad_model *model, const void *bytes, size_t count, const struct rvm_params *params, struct rvm_counts *counts,
+              char *why, size_t why_bytes);
 
 /* Whether the bytes begin as an RVM file does. */
 bool rvm_is(const void *bytes, size_t count);

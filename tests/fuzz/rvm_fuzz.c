@@ -27,6 +27,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t count)
     struct rvm_counts counts;
     struct attribute_counts attributes;
     char why[256] = "";
+    const struct rvm_params params = { .chord_m = 0.01 };
     if (count < 1)
         return 0;
     struct cad_model *model = cad_model_create();
@@ -35,7 +36,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t count)
         cad_model_add_node(model, 0, "/A/B");
         if (!cad_attributes_read(model, (const char *)bytes + 1, count - 1, &attributes, why, sizeof(why)))
             require(why[0], "what is refused says why");
-    } else if (!rvm_read(model, bytes + 1, count - 1, 0.01, &counts, why, sizeof(why))) {
+    } else if (!rvm_read(model, bytes + 1, count - 1, &params, &counts, why, sizeof(why))) {
         require(why[0], "what is refused says why");
     }
     check_model(model);

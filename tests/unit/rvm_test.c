@@ -17,7 +17,7 @@
 #include "base/vec.h"
 #include "preprocess/import/rvm_shape.h"
 
-static const double chord_m = 1e-4;
+static const struct rvm_params params = { .chord_m = 1e-4 };
 
 static void add_word(struct text *file, uint32_t word)
 {
@@ -117,7 +117,7 @@ static struct cad_model *read_text(const struct text *file, struct rvm_counts *c
 {
     char why[256];
     struct cad_model *model = cad_model_create();
-    if (!rvm_read(model, file->at, file->length, chord_m, counts, why, sizeof(why)))
+    if (!rvm_read(model, file->at, file->length, &params, counts, why, sizeof(why)))
         fail_msg("%s", why);
     return model;
 }
@@ -380,7 +380,7 @@ static void test_broken_files_are_refused_at_a_byte(void **state)
         if (i >= file.length)
             copy[i - file.length] = (char)0xff;
         struct cad_model *model = cad_model_create();
-        if (!rvm_read(model, copy, length, chord_m, &counts, why, sizeof(why))) {
+        if (!rvm_read(model, copy, length, &params, &counts, why, sizeof(why))) {
             assert_true(strncmp(why, "byte ", 5) == 0);
             refused++;
         }

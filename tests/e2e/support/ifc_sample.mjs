@@ -48,6 +48,8 @@ export function ifc(schema = 'IFC4', pumpNames = ['P-101A', '펌프/P-101 B']) {
     const set = add(`IFCPROPERTYSET(${guid(41)},${owner},'Pset_PumpCommon',$,(${single('FlowRate', 'IFCREAL(12.5)')},${
         single('Reference', "IFCLABEL('NK 50')")}))`);
     add(`IFCRELDEFINESBYPROPERTIES(${guid(42)},${owner},$,$,(${pumps.join(',')}),${set})`);
-    return `ISO-10303-21;\nHEADER;\nFILE_DESCRIPTION((''),'2;1');\nFILE_NAME('a.ifc','2025-01-01T00:00:00',(''),(''),'','','');\n` +
-        `FILE_SCHEMA(('${schema}'));\nENDSEC;\nDATA;\n${lines.map((line, i) => `#${i + 1}=${line};`).join('\n')}\nENDSEC;\nEND-ISO-10303-21;\n`;
+    return `ISO-10303-21;\nHEADER;\nFILE_DESCRIPTION((''),'2;1');\n` +
+        `FILE_NAME('a.ifc','2025-01-01T00:00:00',(''),(''),'','','');\n` +
+        `FILE_SCHEMA(('${schema}'));\nENDSEC;\nDATA;\n` +
+        `${lines.map((line, i) => `#${i + 1}=${line};`).join('\n')}\nENDSEC;\nEND-ISO-10303-21;\n`;
 }
