@@ -23,8 +23,8 @@ out := $(build)/$(config)
 gen := $(build)/gen
 bin := $(if $(filter release,$(config)),$(build),$(out)/bin)
 
-packages := yaml-0.1 jansson sqlite3 libmodbus libmosquitto libwebsockets libssl libcrypto libturbojpeg libjpeg libpng cairo libxxhash \
-            OpenImageIO
+packages := yaml-0.1 jansson sqlite3 libcurl libmodbus libmosquitto libwebsockets libssl libcrypto libturbojpeg libjpeg libpng cairo \
+            libxxhash OpenImageIO
 ifneq ($(filter-out jpeg h264,$(CODECS))$(if $(filter jpeg,$(CODECS)),,none),)
 $(error CODECS=$(CODECS) is unknown: jpeg, or jpeg h264)
 endif
@@ -46,7 +46,7 @@ cxxflags = -std=c++17 -D_GNU_SOURCE $(warn) $(common) $(CXXFLAGS)
 ldflags  = $(flags_$(config)) -pthread -Wl,--as-needed -Wl,-z,relro,-z,now $(LDFLAGS)
 
 # --- what is built: one archive per layer, left to right ------------------------------------------------------------------
-layers   := base plant surface value history alarm loopcheck scene field placing gpu render encode message service access session net
+layers   := base plant surface value history alarm notify loopcheck scene field placing gpu render encode message service access session net
 layers   := $(foreach l,$(layers),$(if $(wildcard server/$(l)/*.c),$(l)))
 without  := $(if $(filter h264,$(CODECS)),,$(wildcard server/encode/h264*))
 archives := $(foreach l,$(layers),$(out)/lib/$(l).a) $(out)/lib/protocol.a

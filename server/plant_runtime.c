@@ -89,6 +89,16 @@ static bool start_alarm_service(struct plant_runtime *runtime, struct alarm_serv
     return (runtime->alarm_service = alarm_service_start(&params));
 }
 
+static bool start_notifier(struct plant_runtime *runtime)
+{
+    const struct notifier_params params = { .log = runtime->context->log,
+                                            .counters = runtime->context->counters,
+                                            .plant = runtime->plant,
+                                            .alarm_service = runtime->alarm_service,
+                                            .folder = runtime->history };
+    return !runtime->plant->notify || (runtime->notifier = notifier_start(&params));
+}
+
 /* Made from what is loaded; works only once somebody asks. */
 static void start_placing(struct plant_runtime *runtime)
 {
@@ -115,7 +125,8 @@ bool plant_runtime_start_recording(struct plant_runtime *runtime, struct plant_r
         runtime->loop_checks = loop_checks_open(runtime->context->log, runtime->plant, runtime->history);
     if (runtime->render_service)
         render_service_set_loop_checks(runtime->render_service, runtime->loop_checks);
-    return start_historian(runtime, before != NULL) && start_alarm_service(runtime, before ? before->alarm_service : NULL);
+    return start_historian(runtime, before != NULL) && start_alarm_service(runtime, before ? before->alarm_service : NULL) &&
+           start_notifier(runtime);
 }
 
 bool plant_runtime_start_sources(struct plant_runtime *runtime)
@@ -178,6 +189,7 @@ void plant_runtime_hand_over(struct plant_runtime *runtime, const struct plant *
 {
     stop_sources(runtime);
     historian_end(&runtime->historian, next);
+    notifier_stop(&runtime->notifier);
     alarm_service_halt(runtime->alarm_service);
 }
 
@@ -207,6 +219,7 @@ void plant_runtime_destroy(struct plant_runtime **pointer)
     loop_checks_close(&runtime->loop_checks);
     mem_free(runtime->tag_list);
     stop_sources(runtime);
+    notifier_stop(&runtime->notifier);
     alarm_service_stop(&runtime->alarm_service);
     historian_stop(&runtime->historian);
     store_destroy(&runtime->store);

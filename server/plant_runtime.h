@@ -6,6 +6,7 @@
 #include "base/workers.h"
 #include "history/historian.h"
 #include "net/net.h"
+#include "notify/notifier.h"
 #include "placing/placing.h"
 #include "server_params.h"
 #include "value/derived.h"
@@ -29,6 +30,7 @@ struct plant_runtime {
     struct snapshot_cache *snapshot_cache;
     struct historian *historian; /* NULL: nothing is recorded */
     struct alarm_service *alarm_service;
+    struct notifier *notifier;   /* NULL: nobody is told of alarms */
     struct source **sources; /* by index in plant->sources */
     struct source *derived;  /* computes derived tags; NULL: there are none */
     struct render_service *render_service;

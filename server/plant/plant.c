@@ -164,6 +164,7 @@ void plant_destroy(struct plant **plant_ptr)
         mem_free(plant->links[i].name);
         mem_free(plant->links[i].url);
     }
+    plant_notify_free(&plant->notify);
     mem_free(plant->history.folder);
     mem_free(plant->path);
     mem_free(plant->folder);

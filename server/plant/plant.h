@@ -242,6 +242,7 @@ struct plant {
     size_t link_count;
     struct plant_history history;
     enum alarm_mode alarms;
+    struct plant_notify *notify; /* who is told of alarms (plant/notification.h); NULL: nobody */
     struct plant_asset *assets;
     struct plant_group *groups;
     struct plant_source *sources;

@@ -416,6 +416,11 @@ static void read_history(struct yaml_reader *reader, yaml_node_t *node, void *re
     plant_resolve_path(plant, &plant->history.folder);
 }
 
+static void read_notify(struct yaml_reader *reader, yaml_node_t *node, void *record)
+{
+    plant_notify_read(reader, node, ((struct plant_file *)record)->plant);
+}
+
 /* --- the whole file --------------------------------------------------------------------------------------------------------- */
 
 void plant_file_read(struct plant *plant, struct diag *diag)
@@ -429,6 +434,7 @@ void plant_file_read(struct plant *plant, struct diag *diag)
                                        { "links", KEY_CUSTOM, false, 0, 0, 0, NULL, read_links },
                                        { "history", KEY_CUSTOM, false, 0, 0, 0, NULL, read_history },
                                        { "alarms", KEY_CUSTOM, false, 0, 0, 0, NULL, read_alarms },
+                                       { "notify", KEY_CUSTOM, false, 0, 0, 0, NULL, read_notify },
                                        { "tags", KEY_NAME, true, offsetof(struct plant_file, tags), 0, 0, NULL, NULL },
                                        { 0 } };
     struct plant_file file = { .plant = plant };
@@ -441,6 +447,8 @@ void plant_file_read(struct plant *plant, struct diag *diag)
         return;
     yaml_map_read(&reader, yaml_document_get_root_node(&reader.doc), "the plant file", keys, &file, &map);
     plant_alarms_check(&reader, yaml_map_place(&map, "alarms"), plant);
+    if (plant->notify && plant->history.off)
+        yaml_error(&reader, yaml_map_place(&map, "notify"), "notify needs `record: yes` in `history`: what was sent is written there");
     if (!plant->time_zone)
         plant->time_zone = mem_strdup("UTC");
     stand_upright(plant);

@@ -13,6 +13,9 @@ void plant_file_read(struct plant *plant, struct diag *diag);
 void plant_environments_read(struct yaml_reader *reader, yaml_node_t *node, struct plant *plant);
 /* Reads the list `links`. */
 void plant_links_read(struct yaml_reader *reader, yaml_node_t *node, struct plant *plant);
+/* Reads the key `notify`. */
+void plant_notify_read(struct yaml_reader *reader, yaml_node_t *node, struct plant *plant);
+void plant_notify_free(struct plant_notify **notify); /* &NULL is fine; leaves NULL */
 /* Reads an asset's `nodes`: a pattern, or a list of them. */
 void plant_nodes_read(struct yaml_reader *reader, yaml_node_t *node, struct plant_asset *asset);
 /* Reads an asset's `properties`. */

@@ -1,0 +1,228 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* SMTP and HTTP by libcurl. */
+#include "notify/delivery.h"
+
+#include <curl/curl.h>
+#include <errno.h>
+#include <string.h>
+
+#include "base/mem.h"
+#include "base/text.h"
+
+enum { SECRET_BYTES = 4096, CONNECT_S = 10 };
+
+struct transfer {
+    CURL *handle; /* NULL: idle */
+    struct curl_slist *list;
+    char *body;
+    size_t bytes, at;
+    char why[CURL_ERROR_SIZE];
+};
+
+struct delivery {
+    struct log *log;
+    const struct plant_notify *notify;
+    CURLM *multi;
+    struct transfer *transfers; /* by recipient */
+};
+
+struct delivery *delivery_create(struct log *log, const struct plant_notify *notify)
+{
+    struct delivery *delivery = mem_new(sizeof(*delivery));
+    delivery->log = log;
+    delivery->notify = notify;
+    delivery->transfers = mem_array(notify->recipient_count + 1, sizeof(*delivery->transfers));
+    if (curl_global_init(CURL_GLOBAL_DEFAULT) != CURLE_OK || !(delivery->multi = curl_multi_init())) {
+        log_err(log, "notify: libcurl cannot be used");
+        delivery_destroy(&delivery);
+    }
+    return delivery;
+}
+
+static void end_transfer(struct delivery *delivery, struct transfer *transfer)
+{
+    if (transfer->handle) {
+        curl_multi_remove_handle(delivery->multi, transfer->handle);
+        curl_easy_cleanup(transfer->handle);
+    }
+    curl_slist_free_all(transfer->list);
+    mem_free(transfer->body);
+    *transfer = (struct transfer){ 0 };
+}
+
+void delivery_destroy(struct delivery **pointer)
+{
+    struct delivery *delivery = *pointer;
+    if (!delivery)
+        return;
+    for (size_t i = 0; i < delivery->notify->recipient_count; i++)
+        end_transfer(delivery, &delivery->transfers[i]);
+    curl_multi_cleanup(delivery->multi);
+    mem_free(delivery->transfers);
+    mem_free(delivery);
+    *pointer = NULL;
+}
+
+bool delivery_is_idle(const struct delivery *delivery, int recipient)
+{
+    return !delivery->transfers[recipient].handle;
+}
+
+/* --- what is sent ----------------------------------------------------------------------------------------------------------- */
+
+/* The first line of a file. NULL: *why (mem_free). */
+static char *read_secret(const char *path, char **why)
+{
+    size_t bytes;
+    char *text = text_read_file(path, SECRET_BYTES, &bytes);
+    if (!text) {
+        *why = mem_printf("%s cannot be read: %s", path, strerror(errno));
+        return NULL;
+    }
+    text[strcspn(text, "\r\n")] = 0;
+    return text;
+}
+
+static void free_secret(char *secret)
+{
+    if (secret)
+        explicit_bzero(secret, strlen(secret));
+    mem_free(secret);
+}
+
+static size_t give_body(char *buffer, size_t size, size_t count, void *arg)
+{
+    struct transfer *transfer = arg;
+    size_t left = transfer->bytes - transfer->at, room = size * count, given = left < room ? left : room;
+    memcpy(buffer, transfer->body + transfer->at, given);
+    transfer->at += given;
+    return given;
+}
+
+static size_t drop_answer(char *bytes, size_t size, size_t count, void *arg)
+{
+    (void)bytes;
+    (void)arg;
+    return size * count;
+}
+
+static void set_common(struct delivery *delivery, struct transfer *transfer, const char *ca_file)
+{
+    CURL *handle = transfer->handle;
+    curl_easy_setopt(handle, CURLOPT_NOSIGNAL, 1L);
+    curl_easy_setopt(handle, CURLOPT_ERRORBUFFER, transfer->why);
+    curl_easy_setopt(handle, CURLOPT_WRITEFUNCTION, drop_answer);
+    curl_easy_setopt(handle, CURLOPT_CONNECTTIMEOUT, (long)CONNECT_S);
+    curl_easy_setopt(handle, CURLOPT_TIMEOUT_MS, (long)(delivery->notify->timeout_s * 1000));
+    curl_easy_setopt(handle, CURLOPT_SSLVERSION, (long)CURL_SSLVERSION_TLSv1_2);
+    curl_easy_setopt(handle, CURLOPT_QUICK_EXIT, 1L); /* a name server that hangs does not keep the daemon from ending */
+    if (ca_file)
+        curl_easy_setopt(handle, CURLOPT_CAINFO, ca_file);
+}
+
+static bool is_this_machine(const char *url)
+{
+    const char *host = strstr(url, "://");
+    return host && (!strncmp(host + 3, "localhost", 9) || !strncmp(host + 3, "127.0.0.1", 9) || !strncmp(host + 3, "[::1]", 5));
+}
+
+static char *set_mail(struct delivery *delivery, struct transfer *transfer, const struct notify_recipient *recipient)
+{
+    const struct notify_mail *mail = &delivery->notify->mail;
+    CURL *handle = transfer->handle;
+    char *why = NULL, *password = mail->password_file ? read_secret(mail->password_file, &why) : NULL;
+    if (why)
+        return why;
+    if (password) {
+        curl_easy_setopt(handle, CURLOPT_USERNAME, mail->user);
+        curl_easy_setopt(handle, CURLOPT_PASSWORD, password);
+    }
+    free_secret(password);
+    set_common(delivery, transfer, mail->ca_file);
+    curl_easy_setopt(handle, CURLOPT_PROTOCOLS_STR, "smtp,smtps");
+    curl_easy_setopt(handle, CURLOPT_URL, mail->server);
+    curl_easy_setopt(handle, CURLOPT_USE_SSL, (long)(is_this_machine(mail->server) ? CURLUSESSL_TRY : CURLUSESSL_ALL));
+    curl_easy_setopt(handle, CURLOPT_MAIL_FROM, mail->from);
+    for (size_t i = 0; i < recipient->addresses.count; i++)
+        transfer->list = curl_slist_append(transfer->list, recipient->addresses.at[i]);
+    curl_easy_setopt(handle, CURLOPT_MAIL_RCPT, transfer->list);
+    curl_easy_setopt(handle, CURLOPT_MAIL_RCPT_ALLLOWFAILS, 1L); /* one mailbox that is gone does not keep it from the others */
+    curl_easy_setopt(handle, CURLOPT_UPLOAD, 1L);
+    curl_easy_setopt(handle, CURLOPT_READFUNCTION, give_body);
+    curl_easy_setopt(handle, CURLOPT_READDATA, transfer);
+    return NULL;
+}
+
+static char *set_http(struct delivery *delivery, struct transfer *transfer, const struct notify_recipient *recipient)
+{
+    CURL *handle = transfer->handle;
+    char *why = NULL, *token = recipient->token_file ? read_secret(recipient->token_file, &why) : NULL;
+    if (why)
+        return why;
+    transfer->list = curl_slist_append(transfer->list, "Content-Type: application/json");
+    transfer->list = curl_slist_append(transfer->list, "Expect:");
+    if (token) {
+        char *header = mem_printf("Authorization: Bearer %s", token);
+        transfer->list = curl_slist_append(transfer->list, header);
+        free_secret(header);
+    }
+    free_secret(token);
+    set_common(delivery, transfer, recipient->ca_file);
+    size_t length = strlen(recipient->url);
+    bool slash = length > 0 && recipient->url[length - 1] == '/';
+    char *url = recipient->kind == NOTIFY_ALERTMANAGER ? mem_printf("%s%sapi/v2/alerts", recipient->url, slash ? "" : "/")
+                                                       : mem_strdup(recipient->url);
+    curl_easy_setopt(handle, CURLOPT_PROTOCOLS_STR, "http,https");
+    curl_easy_setopt(handle, CURLOPT_URL, url);
+    mem_free(url);
+    curl_easy_setopt(handle, CURLOPT_USERAGENT, "plantcastd");
+    curl_easy_setopt(handle, CURLOPT_HTTPHEADER, transfer->list);
+    curl_easy_setopt(handle, CURLOPT_POSTFIELDSIZE_LARGE, (curl_off_t)transfer->bytes);
+    curl_easy_setopt(handle, CURLOPT_POSTFIELDS, transfer->body);
+    curl_easy_setopt(handle, CURLOPT_FAILONERROR, 1L);
+    return NULL;
+}
+
+char *delivery_start(struct delivery *delivery, int recipient, char *body, size_t bytes)
+{
+    const struct notify_recipient *to = &delivery->notify->recipients[recipient];
+    struct transfer *transfer = &delivery->transfers[recipient];
+    *transfer = (struct transfer){ .handle = curl_easy_init(), .body = body, .bytes = bytes };
+    char *why = !transfer->handle             ? mem_strdup("out of memory")
+                : to->kind == NOTIFY_EMAIL ? set_mail(delivery, transfer, to)
+                                           : set_http(delivery, transfer, to);
+    if (!why) {
+        curl_easy_setopt(transfer->handle, CURLOPT_PRIVATE, (void *)transfer);
+        if (curl_multi_add_handle(delivery->multi, transfer->handle) != CURLM_OK)
+            why = mem_strdup("libcurl does not take it");
+    }
+    if (why)
+        end_transfer(delivery, transfer);
+    return why;
+}
+
+/* --- the wait --------------------------------------------------------------------------------------------------------------- */
+
+void delivery_wait(struct delivery *delivery, int timeout_ms, void (*each)(void *arg, int recipient, const char *why), void *arg)
+{
+    int running, left;
+    curl_multi_perform(delivery->multi, &running);
+    curl_multi_poll(delivery->multi, NULL, 0, timeout_ms, NULL);
+    curl_multi_perform(delivery->multi, &running);
+    for (CURLMsg *message; (message = curl_multi_info_read(delivery->multi, &left));) {
+        if (message->msg != CURLMSG_DONE)
+            continue;
+        CURLcode code = message->data.result;
+        struct transfer *transfer = NULL;
+        curl_easy_getinfo(message->easy_handle, CURLINFO_PRIVATE, (char **)&transfer);
+        char *why = code == CURLE_OK ? NULL : mem_strdup(transfer->why[0] ? transfer->why : curl_easy_strerror(code));
+        end_transfer(delivery, transfer);
+        each(arg, (int)(transfer - delivery->transfers), why);
+        mem_free(why);
+    }
+}
+
+void delivery_wake(struct delivery *delivery)
+{
+    curl_multi_wakeup(delivery->multi);
+}

@@ -1,0 +1,240 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The thread that tells of alarms. */
+#include "notify/notifier.h"
+
+#include <errno.h>
+#include <pthread.h>
+#include <stdatomic.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "base/atomic_file.h"
+#include "base/clock.h"
+#include "base/json_text.h"
+#include "base/mem.h"
+#include "notify/delivery.h"
+#include "notify/notify_text.h"
+#include "notify/outbox.h"
+
+enum { TICK_MS = 1000, FILE_BYTES = 64 << 20 };
+
+struct recipient_counters {
+    counter *sent, *failed, *waiting;
+};
+
+struct notifier {
+    struct notifier_params params;
+    char *path;
+    pthread_t thread;
+    bool started;
+    _Atomic bool stopping;
+    struct delivery *delivery;
+    /* --- below: of the thread */
+    struct outbox *outbox;
+    struct recipient_counters *counters; /* by recipient */
+    counter *lost, *spool_good;
+    bool *failing;       /* by recipient */
+    uint64_t number;     /* of the last change that was looked at */
+    bool looked, unsaved;
+    int64_t lost_before; /* by outboxes before a reload */
+};
+
+static int64_t now_us(void)
+{
+    return clock_utc_ns() / 1000;
+}
+
+/* --- the file --------------------------------------------------------------------------------------------------------------- */
+
+static void save(struct notifier *notifier)
+{
+    notifier->unsaved |= outbox_is_changed(notifier->outbox);
+    if (!notifier->unsaved)
+        return;
+    char *text = json_text(outbox_save(notifier->outbox), 0);
+    struct atomic_file file;
+    int error = atomic_file_begin(&file, notifier->path, 0600);
+    if (!error && (error = atomic_file_write(&file, text, strlen(text))))
+        atomic_file_abandon(&file);
+    else if (!error)
+        error = atomic_file_commit(&file, true);
+    mem_free(text);
+    if (error)
+        log_err(notifier->params.log, "notify: %s cannot be written (%s): after a restart, alarms may be told twice or not at all",
+                notifier->path, strerror(-error));
+    counter_set(notifier->spool_good, !error);
+    notifier->unsaved = error != 0;
+}
+
+static void restore(struct notifier *notifier)
+{
+    size_t bytes;
+    char *text = text_read_file(notifier->path, FILE_BYTES, &bytes);
+    json_t *saved = text ? json_loadb(text, bytes, 0, NULL) : NULL;
+    if ((!text && errno != ENOENT) || (text && !(saved && outbox_restore(notifier->outbox, saved))))
+        log_warn(notifier->params.log, "notify: %s cannot be used and is begun anew; alarms that stand are told again", notifier->path);
+    json_decref(saved);
+    mem_free(text);
+}
+
+/* --- sending ---------------------------------------------------------------------------------------------------------------- */
+
+static const struct notify_recipient *recipient_of(const struct notifier *notifier, int recipient)
+{
+    return &notifier->params.plant->notify->recipients[recipient];
+}
+
+static void on_end(void *arg, int recipient, const char *why)
+{
+    struct notifier *notifier = arg;
+    struct log *log = notifier->params.log;
+    const char *id = recipient_of(notifier, recipient)->id;
+    if (why) {
+        outbox_failed(notifier->outbox, recipient, now_us());
+        counter_inc(notifier->counters[recipient].failed, 1);
+        if (!notifier->failing[recipient])
+            log_err(log, "notify: %s cannot be told: %s; messages are kept and tried again", id, why);
+    } else {
+        outbox_sent(notifier->outbox, recipient, now_us());
+        save(notifier); /* at once: were the daemon killed before, it would send it again */
+        counter_inc(notifier->counters[recipient].sent, 1);
+        if (notifier->failing[recipient])
+            log_info(log, "notify: %s is told again", id);
+    }
+    notifier->failing[recipient] = why != NULL;
+}
+
+static char *compose(const struct notifier *notifier, int recipient, const struct outbox_message *message, size_t *bytes)
+{
+    const struct plant *plant = notifier->params.plant;
+    const struct notify_recipient *to = recipient_of(notifier, recipient);
+    struct text mail = { 0 };
+    char *json = NULL;
+    switch (to->kind) {
+    case NOTIFY_EMAIL: notify_mail_text(&mail, plant, to, message, now_us()); break;
+    case NOTIFY_WEBHOOK: json = notify_webhook_text(plant, to, message); break;
+    case NOTIFY_ALERTMANAGER: json = notify_alerts_text(plant, message, now_us()); break;
+    }
+    *bytes = json ? strlen(json) : mail.length;
+    return json ? json : mail.at;
+}
+
+/* A message is in the file before it is sent, so that it is the same one if the daemon ends meanwhile. */
+static void send_due(struct notifier *notifier)
+{
+    for (int i = 0; i < (int)notifier->params.plant->notify->recipient_count; i++) {
+        struct outbox_message message;
+        if (!delivery_is_idle(notifier->delivery, i) || !outbox_next(notifier->outbox, i, now_us(), &message))
+            continue;
+        size_t bytes;
+        char *body = compose(notifier, i, &message, &bytes);
+        save(notifier);
+        char *why = delivery_start(notifier->delivery, i, body, bytes);
+        if (why)
+            on_end(notifier, i, why);
+        mem_free(why);
+    }
+}
+
+/* --- the thread ------------------------------------------------------------------------------------------------------------- */
+
+static void on_alarm(void *arg, const struct alarm *alarm)
+{
+    struct notifier *notifier = arg;
+    outbox_put(notifier->outbox, alarm, !notifier->looked, now_us());
+}
+
+static void count(struct notifier *notifier)
+{
+    for (int i = 0; i < (int)notifier->params.plant->notify->recipient_count; i++)
+        counter_set(notifier->counters[i].waiting, outbox_counts(notifier->outbox, i).waiting);
+    int64_t lost = outbox_counts(notifier->outbox, 0).lost;
+    if (lost > notifier->lost_before) {
+        log_err(notifier->params.log, "notify: %lld alarms could not be kept, or not be delivered within a day, and are lost",
+                (long long)(lost - notifier->lost_before));
+        counter_inc(notifier->lost, lost - notifier->lost_before);
+    }
+    notifier->lost_before = lost;
+}
+
+static void *run(void *arg)
+{
+    struct notifier *notifier = arg;
+    while (!atomic_load(&notifier->stopping)) {
+        notifier->number = alarm_service_changes(notifier->params.alarm_service, notifier->number, on_alarm, notifier);
+        notifier->looked = true;
+        outbox_tick(notifier->outbox, now_us());
+        send_due(notifier);
+        save(notifier);
+        count(notifier);
+        delivery_wait(notifier->delivery, TICK_MS, on_end, notifier);
+    }
+    save(notifier);
+    return NULL;
+}
+
+/* --- life ------------------------------------------------------------------------------------------------------------------- */
+
+static counter *add_counter(const struct notifier *notifier, const char *name, const char *recipient, const char *type, const char *help)
+{
+    char *whole = mem_printf("%s{recipient=\"%s\"}", name, recipient);
+    counter *added = counters_add(notifier->params.counters, whole, type, help);
+    mem_free(whole);
+    return added;
+}
+
+static void add_counters(struct notifier *notifier)
+{
+    const struct plant_notify *notify = notifier->params.plant->notify;
+    struct counters *counters = notifier->params.counters;
+    notifier->counters = mem_array(notify->recipient_count + 1, sizeof(*notifier->counters));
+    notifier->failing = mem_array(notify->recipient_count + 1, sizeof(*notifier->failing));
+    for (size_t i = 0; i < notify->recipient_count; i++) {
+        const char *id = notify->recipients[i].id;
+        notifier->counters[i].sent = add_counter(notifier, "plantcast_notify_sent_total", id, "counter", "Messages delivered.");
+        notifier->counters[i].failed = add_counter(notifier, "plantcast_notify_failed_total", id, "counter", "Deliveries that failed.");
+        notifier->counters[i].waiting = add_counter(notifier, "plantcast_notify_waiting", id, "gauge", "Alarms that wait to be told.");
+    }
+    notifier->lost = counters_add(counters, "plantcast_notify_lost_total", "counter", "Alarms that somebody should have been told of.");
+    notifier->spool_good = counters_add(counters, "plantcast_notify_spool_good", "gauge", "1 while what waits can be kept on disk.");
+    counter_set(notifier->spool_good, 1);
+}
+
+struct notifier *notifier_start(const struct notifier_params *params)
+{
+    struct notifier *notifier = mem_new(sizeof(*notifier));
+    notifier->params = *params;
+    notifier->path = mem_printf("%s/" NOTIFIER_FILE, params->folder);
+    notifier->outbox = outbox_create(params->plant);
+    add_counters(notifier);
+    restore(notifier);
+    notifier->delivery = delivery_create(params->log, params->plant->notify);
+    int error = notifier->delivery ? pthread_create(&notifier->thread, NULL, run, notifier) : 0;
+    notifier->started = notifier->delivery && !error;
+    if (error)
+        log_err(params->log, "notify: no thread: %s", strerror(error));
+    if (!notifier->started)
+        notifier_stop(&notifier);
+    return notifier;
+}
+
+void notifier_stop(struct notifier **pointer)
+{
+    struct notifier *notifier = *pointer;
+    if (!notifier)
+        return;
+    atomic_store(&notifier->stopping, true);
+    if (notifier->started) {
+        delivery_wake(notifier->delivery);
+        pthread_join(notifier->thread, NULL);
+    }
+    delivery_destroy(&notifier->delivery);
+    for (size_t i = 0; i < notifier->params.plant->notify->recipient_count; i++)
+        counter_set(notifier->counters[i].waiting, 0);
+    outbox_destroy(&notifier->outbox);
+    mem_free(notifier->counters);
+    mem_free(notifier->failing);
+    mem_free(notifier->path);
+    mem_free(notifier);
+    *pointer = NULL;
+}

@@ -1,0 +1,25 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Tells people and programs outside of alarms, as the plant file's `notify` says. Its thread looks at the alarm service once a second,
+   keeps what is to be sent in notify.json beside the history, and delivers it; nothing else waits for it. Thread: one. */
+#ifndef NOTIFY_NOTIFIER_H
+#define NOTIFY_NOTIFIER_H
+#include "alarm/alarm_service.h"
+
+#define NOTIFIER_FILE "notify.json"
+
+struct notifier_params {
+    struct log *log;
+    struct counters *counters;
+    const struct plant *plant;      /* with a `notify` */
+    struct alarm_service *alarm_service; /* plant and alarm service must outlive the notifier */
+    const char *folder;             /* of the file; made by the journal */
+};
+
+struct notifier;
+/* Returns NULL if it cannot be started (logged). */
+struct notifier *notifier_start(const struct notifier_params *params);
+/* Cuts off what is being sent, which is sent again after the next start, and waits until the file is written. &NULL is fine; leaves
+   NULL. */
+void notifier_stop(struct notifier **notifier);
+
+#endif

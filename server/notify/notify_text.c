@@ -1,0 +1,272 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Alarms in words, for people and for programs. */
+#include "notify/notify_text.h"
+
+#include <math.h>
+#include <openssl/evp.h>
+#include <string.h>
+#include <time.h>
+
+#include "base/json_text.h"
+#include "base/mem.h"
+#include "base/timestamp.h"
+
+enum { BASE64_LINE = 57 /* bytes, 76 characters */, WORD = 42 /* bytes of an encoded word: a line of 77 characters with its name */ };
+
+static const struct plant_tag *tag_of(const struct plant *plant, const struct outbox_item *item)
+{
+    return item->tag < 0 ? NULL : &plant->tags[item->tag];
+}
+
+static const struct plant_asset *asset_of(const struct plant *plant, const struct outbox_item *item)
+{
+    int asset = item->tag < 0 ? -1 : plant->tags[item->tag].asset;
+    return asset < 0 ? NULL : &plant->assets[asset];
+}
+
+static const char *unit_of(const struct plant *plant, const struct outbox_item *item)
+{
+    const struct plant_tag *tag = tag_of(plant, item);
+    return tag && tag->unit ? tag->unit : "";
+}
+
+static const char *kind_in_words(enum alarm_kind kind)
+{
+    static const char *const words[ALARM_KINDS] = { [ALARM_NONE] = "", [ALARM_LL] = "low low", [ALARM_L] = "low", [ALARM_H] = "high",
+                                                    [ALARM_HH] = "high high", [ALARM_ON] = "alarm", [ALARM_BAD] = "bad measurement",
+                                                    [ALARM_LINK] = "no connection" };
+    return words[kind];
+}
+
+/* --- e-mail ----------------------------------------------------------------------------------------------------------------- */
+
+static void add_base64(struct text *out, const char *bytes, size_t count)
+{
+    unsigned char line[4 * (BASE64_LINE / 3 + 1) + 1];
+    int length = EVP_EncodeBlock(line, (const unsigned char *)bytes, (int)count);
+    text_add_bytes(out, line, (size_t)length);
+}
+
+static bool is_plain(const char *text)
+{
+    for (; *text; text++)
+        if ((unsigned char)*text < ' ' || (unsigned char)*text > '~')
+            return false;
+    return true;
+}
+
+/* As it is where it is short ASCII, else in encoded words (RFC 2047), none of which splits a character. */
+static void add_header(struct text *out, const char *name, const char *value)
+{
+    text_add(out, "%s:", name);
+    if (is_plain(value) && strlen(value) < 900 && !strstr(value, "=?")) {
+        text_add(out, " %s\r\n", value);
+        return;
+    }
+    for (size_t length; *value; value += length) {
+        for (length = strlen(value); length > WORD || (value[length] & 0xC0) == 0x80;)
+            length = length > WORD ? WORD : length - 1;
+        text_add(out, " =?UTF-8?B?");
+        add_base64(out, value, length);
+        text_add(out, "?=\r\n");
+    }
+}
+
+static void add_local_time(struct text *out, const char *format, int64_t utc_us)
+{
+    char text[64] = "";
+    time_t s = (time_t)(utc_us / 1000000);
+    struct tm local;
+    if (localtime_r(&s, &local))
+        strftime(text, sizeof(text), format, &local);
+    text_add(out, "%s", text);
+}
+
+/* In English, whatever the locale is. */
+static void add_date(struct text *out, int64_t utc_us)
+{
+    static const char *const days[] = { "Sun", "Mon", "Tue", "Wed", "Thu", "Fri", "Sat" };
+    static const char *const months[] = { "Jan", "Feb", "Mar", "Apr", "May", "Jun", "Jul", "Aug", "Sep", "Oct", "Nov", "Dec" };
+    time_t s = (time_t)(utc_us / 1000000);
+    struct tm utc;
+    if (gmtime_r(&s, &utc))
+        text_add(out, "Date: %s, %d %s %d %02d:%02d:%02d +0000\r\n", days[utc.tm_wday], utc.tm_mday, months[utc.tm_mon], 1900 + utc.tm_year,
+                 utc.tm_hour, utc.tm_min, utc.tm_sec);
+}
+
+static void add_name(struct text *out, const struct plant *plant, const struct outbox_item *item)
+{
+    const struct plant_tag *tag = tag_of(plant, item);
+    text_add(out, "%s %s", item->name, kind_in_words(item->kind));
+    if (tag && tag->description && *tag->description)
+        text_add(out, ", %s", tag->description);
+}
+
+static void add_line(struct text *out, const struct plant *plant, const struct outbox_item *item)
+{
+    const struct plant_asset *asset = asset_of(plant, item);
+    const char *unit = unit_of(plant, item), *space = *unit ? " " : "";
+    text_add(out, "P%d  ", item->priority);
+    add_local_time(out, "%Y-%m-%d %H:%M:%S", item->raised_us);
+    text_add(out, "  ");
+    add_name(out, plant, item);
+    if (isfinite(item->value) && item->kind != ALARM_ON && item->kind != ALARM_BAD)
+        text_add(out, ": %.6g%s%s", item->value, space, unit);
+    if (isfinite(item->limit))
+        text_add(out, " (limit %.6g%s%s)", item->limit, space, unit);
+    if (asset)
+        text_add(out, "; %s%s%s", asset->tag, *asset->area ? ", " : "", asset->area);
+    if (item->step > 0)
+        text_add(out, "; not acknowledged since");
+    if (item->ended_us)
+        text_add(out, item->status == ALARM_ACKNOWLEDGED ? "; acknowledged since" : "; no longer present");
+    text_add(out, "\r\n");
+}
+
+static void add_subject(struct text *out, const struct plant *plant, const struct outbox_message *message)
+{
+    int most_urgent = message->items[0].priority;
+    size_t of_it = 0;
+    while (of_it < message->count && message->items[of_it].priority == most_urgent)
+        of_it++;
+    text_add(out, "[%s] ", plant->name);
+    if (message->count == 1) {
+        text_add(out, "%sP%d ", message->items[0].step > 0 ? "Not acknowledged: " : "", most_urgent);
+        add_name(out, plant, &message->items[0]);
+    } else {
+        text_add(out, "%zu alarms, %zu of priority %d", message->count, of_it, most_urgent);
+    }
+}
+
+static void add_body(struct text *out, const struct plant *plant, const struct outbox_message *message)
+{
+    text_add(out, "%s: %zu alarm%s\r\n\r\n", plant->name, message->count, message->count == 1 ? "" : "s");
+    for (size_t i = 0; i < message->count && i < NOTIFY_LINES; i++)
+        add_line(out, plant, &message->items[i]);
+    if (message->count > NOTIFY_LINES)
+        text_add(out, "... and %zu more\r\n", message->count - NOTIFY_LINES);
+    if (message->left_out > 0)
+        text_add(out, "\r\n%lld more could not be kept while messages could not be delivered.\r\n", (long long)message->left_out);
+    text_add(out, "\r\nTimes are of %s.", plant->time_zone);
+    if (plant->notify->link)
+        text_add(out, " %s", plant->notify->link);
+    text_add(out, "\r\n");
+}
+
+void notify_mail_text(struct text *out, const struct plant *plant, const struct notify_recipient *recipient,
+                      const struct outbox_message *message, int64_t now_us)
+{
+    struct text subject = { 0 }, body = { 0 };
+    const char *domain = strchr(plant->notify->mail.from, '@');
+    add_subject(&subject, plant, message);
+    add_body(&body, plant, message);
+    text_add(out, "From: %s\r\n", plant->notify->mail.from);
+    for (size_t i = 0; i < recipient->addresses.count; i++)
+        text_add(out, i == 0 ? "To: %s" : ",\r\n %s", recipient->addresses.at[i]);
+    text_add(out, "\r\n");
+    add_header(out, "Subject", subject.at);
+    add_date(out, now_us);
+    text_add(out, "Message-ID: <%s.%s%s>\r\n", message->id, plant->hash, domain ? domain : "@plantcast");
+    text_add(out, "Auto-Submitted: auto-generated\r\nX-Priority: %d\r\nMIME-Version: 1.0\r\n", message->items[0].priority == 1 ? 1 : 3);
+    text_add(out, "Content-Type: text/plain; charset=utf-8\r\nContent-Transfer-Encoding: base64\r\n\r\n");
+    for (size_t at = 0; at < body.length; at += BASE64_LINE) {
+        add_base64(out, body.at + at, body.length - at < BASE64_LINE ? body.length - at : BASE64_LINE);
+        text_add(out, "\r\n");
+    }
+    text_finish(&subject);
+    text_finish(&body);
+}
+
+/* --- JSON ------------------------------------------------------------------------------------------------------------------- */
+
+static void set_text(json_t *object, const char *key, const char *value)
+{
+    if (value && *value)
+        json_object_set_new(object, key, json_string(value));
+}
+
+static void set_time(json_t *object, const char *key, int64_t utc_us)
+{
+    char text[TIMESTAMP_BYTES];
+    timestamp_print(utc_us, text);
+    json_object_set_new(object, key, json_string(text));
+}
+
+static void set_number(json_t *object, const char *key, double value)
+{
+    if (isfinite(value))
+        json_object_set_new(object, key, json_real(value));
+}
+
+static json_t *webhook_alarm(const struct plant *plant, const struct outbox_item *item)
+{
+    const struct plant_tag *tag = tag_of(plant, item);
+    const struct plant_asset *asset = asset_of(plant, item);
+    json_t *alarm = json_pack("{s:s,s:s,s:i,s:s,s:i}", item->tag < 0 ? "device" : "tag", item->name, "kind", alarm_kind_name(item->kind),
+                              "priority", item->priority, "state", alarm_status_name(item->status), "escalation", item->step);
+    set_time(alarm, "raised", item->raised_us);
+    if (item->ended_us)
+        set_time(alarm, "ended", item->ended_us);
+    set_number(alarm, "value", item->value);
+    set_number(alarm, "limit", item->limit);
+    set_text(alarm, "unit", unit_of(plant, item));
+    set_text(alarm, "description", tag ? tag->description : NULL);
+    set_text(alarm, "asset", asset ? asset->tag : NULL);
+    set_text(alarm, "area", asset ? asset->area : NULL);
+    return alarm;
+}
+
+char *notify_webhook_text(const struct plant *plant, const struct notify_recipient *recipient, const struct outbox_message *message)
+{
+    json_t *alarms = json_array();
+    for (size_t i = 0; i < message->count; i++)
+        json_array_append_new(alarms, webhook_alarm(plant, &message->items[i]));
+    json_t *body = json_pack("{s:i,s:s,s:s,s:s}", "version", 1, "id", message->id, "plant", plant->name, "recipient", recipient->id);
+    set_time(body, "made", message->made_us);
+    set_text(body, "link", plant->notify->link);
+    if (message->left_out > 0)
+        json_object_set_new(body, "left_out", json_integer((json_int_t)message->left_out));
+    json_object_set_new(body, "alarms", alarms);
+    return json_text(body, 10);
+}
+
+static const char *severity_of(int priority)
+{
+    return priority == 1 ? "critical" : priority == 2 ? "error" : priority == 3 ? "warning" : "info";
+}
+
+static json_t *alert(const struct plant *plant, const struct outbox_item *item, int64_t now_us)
+{
+    const struct plant_tag *tag = tag_of(plant, item);
+    const struct plant_asset *asset = asset_of(plant, item);
+    char priority[2] = { (char)('0' + item->priority), 0 };
+    struct text summary = { 0 };
+    add_name(&summary, plant, item);
+    json_t *labels = json_pack("{s:s,s:s,s:s,s:s,s:s,s:s}", "alertname", "PlantAlarm", "plant", plant->name,
+                               item->tag < 0 ? "device" : "tag", item->name, "kind", alarm_kind_name(item->kind), "priority", priority,
+                               "severity", severity_of(item->priority));
+    set_text(labels, "asset", asset ? asset->tag : NULL);
+    set_text(labels, "area", asset ? asset->area : NULL);
+    json_t *annotations = json_pack("{s:s,s:s}", "summary", summary.at, "state", alarm_status_name(item->status));
+    set_text(annotations, "description", tag ? tag->description : NULL);
+    if (isfinite(item->value)) {
+        char *value = mem_printf("%.6g", item->value);
+        set_text(annotations, "value", value);
+        set_text(annotations, "unit", unit_of(plant, item));
+        mem_free(value);
+    }
+    json_t *one = json_pack("{s:o,s:o}", "labels", labels, "annotations", annotations);
+    set_time(one, "startsAt", item->raised_us);
+    set_time(one, "endsAt", item->ended_us ? item->ended_us : now_us + OUTBOX_ALERT_US);
+    set_text(one, "generatorURL", plant->notify->link);
+    text_finish(&summary);
+    return one;
+}
+
+char *notify_alerts_text(const struct plant *plant, const struct outbox_message *message, int64_t now_us)
+{
+    json_t *alerts = json_array();
+    for (size_t i = 0; i < message->count; i++)
+        json_array_append_new(alerts, alert(plant, &message->items[i], now_us));
+    return json_text(alerts, 0);
+}

@@ -1,0 +1,279 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Alarms that leave the browser: by e-mail with TLS, webhook and Alertmanager, all servers on loopback; floods, outages, kills.
+import assert from 'node:assert/strict';
+import { spawn, spawnSync } from 'node:child_process';
+import { readFileSync, writeFileSync } from 'node:fs';
+import { join } from 'node:path';
+import { test } from 'node:test';
+import { Client } from './conformance/client.mjs';
+import { freePort } from './support/ports.mjs';
+import { HookServer, MailServer, makeCertificate } from './support/receivers.mjs';
+import { missing, runProgram, TinyPlant } from './support/tiny_plant.mjs';
+
+const absent = missing();
+const options = { skip: absent.length > 0 ? `not built: ${absent.join(', ')}` : false, timeout: 240000 };
+const sleep = (ms) => new Promise((done) => setTimeout(done, ms));
+const until = async (what, holds, ms = 60000) => {
+    for (const end = Date.now() + ms; Date.now() < end; await sleep(50)) {
+        const found = await holds();
+        if (found)
+            return found;
+    }
+    throw new Error(`not within ${ms} ms: ${what}`);
+};
+
+// Two boxes and their three tags; extra: so many more. Limits: what is above 50 is an alarm.
+async function createPlant(notify, extra = 0) {
+    const plant = await TinyPlant.create(), tags = join(plant.folder, 'tags.csv');
+    const rows = Array.from({ length: extra }, (_, i) => `X-${i},${410001 + 2 * i},Float,°C,"more, of it",temperature,E-101,0.5,0,0,5\n`);
+    const text = (readFileSync(tags, 'utf8') + rows.join('')).trim().split('\n');
+    writeFileSync(tags, `${[`${text[0]},H,HH`, ...text.slice(1).map((row) => `${row},50,60`)].join('\n')}\n`);
+    makeCertificate(plant.folder);
+    writeFileSync(join(plant.folder, 'password'), 'öpen sesame\n', { mode: 0o600 });
+    writeFileSync(plant.file, `${readFileSync(plant.file, 'utf8').replace('E-101, model', 'E-101, area: Tank farm, model')}${notify}`);
+    const { code, err } = plant.prepare();
+    assert.equal(code, 0, err);
+    await plant.startSim();
+    return plant;
+}
+const limits = { calm: 20, high: 55, veryHigh: 70 };
+const set = (plant, tag, value) => plant.tell(`set ${tag} ${value}`);
+async function calm(plant, extra = 0) {
+    for (const tag of ['TI-1', 'TI-2', 'PI-1', ...Array.from({ length: extra }, (_, i) => `X-${i}`)])
+        await set(plant, tag, limits.calm);
+}
+const metric = async (plant, name) => Number((await (await fetch(`http://127.0.0.1:${plant.port}/metrics`)).text())
+    .split('\n').find((line) => line.startsWith(`${name} `))?.split(' ').at(-1) ?? NaN);
+async function acknowledge(plant, tag, kinds) {
+    const client = await Client.open(plant.port);
+    await client.hello({});
+    await client.text('alarms');
+    client.say('alarm', { seq: 1, action: 'acknowledge', alarms: kinds.map((kind) => [tag, kind]), name: 'Kim' });
+    assert.equal((await client.text('alarmed')).done, kinds.length);
+    client.close();
+}
+
+for (const starttls of [false, true]) {
+    test(`an e-mail comes by ${starttls ? 'STARTTLS' : 'TLS'}, with a name and password, and once over a kill`, options, async () => {
+        const port = await freePort();
+        const plant = await createPlant(`alarms: local
+notify:
+  gather_s: 1
+  pause_s: 1
+  link: https://p.example/
+  mail: { server: "${starttls ? 'smtp' : 'smtps'}://localhost:${port}", from: plant@p.example, user: plant, password_file: password,
+          ca_file: mail.pem }
+  recipients: [{ id: ops, email: [ops@p.example, night@p.example] }]
+  rules: [{ id: tanks, areas: "Tank*", to: ops }]
+`), mail = new MailServer(plant.folder, { starttls, user: 'plant', password: 'öpen sesame' });
+        try {
+            await mail.listen(port);
+            await calm(plant);
+            await plant.startDaemon();
+            await set(plant, 'PI-1', limits.high); // of another area
+            await set(plant, 'TI-1', limits.high);
+            const [first] = await until('a mail', () => mail.mails.length > 0 && mail.mails);
+            assert.deepEqual(first.to, ['ops@p.example', 'night@p.example']);
+            assert.ok(first.secure);
+            assert.equal(first.subject, '[Two boxes] P3 TI-1 high, left');
+            assert.match(first.body, /^P3 {2}[\d-]+ [\d:]+ {2}TI-1 high, left: 55 °C \(limit 50 °C\); E-101, Tank farm\r$/m);
+            assert.match(first.body, /https:\/\/p\.example\//);
+            await until('it is counted', async () => await metric(plant, 'plantcast_notify_sent_total{recipient="ops"}') === 1);
+            await plant.daemon.stop('SIGKILL');
+            await plant.startDaemon();
+            await sleep(4000); // as long as a message takes, and more
+            assert.equal(mail.mails.length, 1, 'the alarm still stands, and is known');
+            await set(plant, 'TI-2', limits.high);
+            await until('the next mail', () => mail.mails.length > 1);
+            assert.match(mail.mails[1].subject, /TI-2/);
+            assert.notEqual(mail.mails[1].headers['message-id'], first.headers['message-id']);
+        } finally {
+            await mail.close();
+            await plant.destroy();
+        }
+    });
+}
+
+test('a certificate that nobody trusts gets no mail, and no password', options, async () => {
+    const plant = await createPlant(''), mail = new MailServer(plant.folder, { user: 'plant', password: 'x' });
+    await mail.listen();
+    writeFileSync(plant.file, `${readFileSync(plant.file, 'utf8')}notify:
+  gather_s: 0
+  mail: { server: "smtps://localhost:${mail.port}", from: plant@p.example, user: plant, password_file: password }
+  recipients: [{ id: ops, email: ops@p.example }]
+  rules: [{ id: all, to: ops }]
+`);
+    try {
+        await calm(plant);
+        await set(plant, 'TI-1', limits.high);
+        await plant.startDaemon();
+        await until('it fails', async () => await metric(plant, 'plantcast_notify_failed_total{recipient="ops"}') >= 1);
+        assert.match(plant.daemon.said, /ops cannot be told: .*certificate/i);
+        assert.equal(mail.mails.length, 0);
+        assert.ok(!plant.daemon.said.includes('sesame'));
+    } finally {
+        await mail.close();
+        await plant.destroy();
+    }
+});
+
+test('500 alarms in one second are one message, while a mail server hangs and a hook is refused', options, async () => {
+    const hook = new HookServer(), EXTRA = 500;
+    await hook.listen();
+    const port = await freePort();
+    const plant = await createPlant(`alarms: local
+notify:
+  gather_s: 3
+  timeout_s: 2
+  mail: { server: "smtps://localhost:${port}", from: plant@p.example, ca_file: mail.pem }
+  recipients:
+    - { id: ops, email: ops@p.example }
+    - { id: hook, webhook: "http://127.0.0.1:${hook.port}/plant?x=1", token_file: password }
+  rules: [{ id: all, to: [ops, hook] }]
+`, EXTRA), mail = new MailServer(plant.folder);
+    mail.mode = 'hang';
+    try {
+        await mail.listen(port);
+        await calm(plant, EXTRA);
+        await plant.startDaemon();
+        await sleep(1500);
+        for (let i = 0; i < EXTRA; i++)
+            await set(plant, `X-${i}`, limits.high);
+        const [post] = await until('a post', () => hook.posts.length > 0 && hook.posts);
+        assert.equal(post.url, '/plant?x=1');
+        assert.equal(post.headers.authorization, `Bearer ${Buffer.from('öpen sesame').toString('latin1')}`);
+        assert.equal(post.body.version, 1);
+        assert.equal(new Set(post.body.alarms.map(({ tag }) => tag)).size, EXTRA);
+        const { tag, ...alarm } = post.body.alarms[0];
+        assert.match(tag, /^X-\d+$/);
+        assert.match(alarm.raised, /^\d{4}-\d\d-\d\dT/);
+        assert.deepEqual({ ...alarm, raised: '' }, { kind: 'H', priority: 3, state: 'unacknowledged', escalation: 0, raised: '', value: 55,
+            limit: 50, unit: '°C', description: 'more, of it', asset: 'E-101', area: 'Tank farm' });
+        await until('the other one has given up', async () => await metric(plant, 'plantcast_notify_failed_total{recipient="ops"}') >= 2);
+        assert.equal(await metric(plant, 'plantcast_notify_waiting{recipient="ops"}'), EXTRA);
+        const asked = performance.now();
+        await fetch(`http://127.0.0.1:${plant.port}/api/v1/alarms?limit=1`);
+        assert.ok(performance.now() - asked < 1000, 'nothing else waits for it');
+        const stopping = performance.now(), { code } = await plant.daemon.stop();
+        assert.equal(code, 0);
+        assert.ok(performance.now() - stopping < 10000, 'nor does the end');
+        mail.mode = 'take';
+        await plant.startDaemon();
+        const [{ subject, body }] = await until('after the outage', () => mail.mails.length > 0 && mail.mails);
+        assert.equal(subject, `[Two boxes] ${EXTRA} alarms, ${EXTRA} of priority 3`);
+        assert.match(body, /\.\.\. and 450 more/);
+        await sleep(3000);
+        assert.equal(mail.mails.length, 1);
+        assert.equal(hook.posts.length, 1);
+    } finally {
+        await mail.close();
+        await hook.close();
+        await plant.destroy();
+    }
+});
+
+test('it goes to the next recipient until somebody acknowledges', options, async () => {
+    const hooks = [new HookServer(), new HookServer(), new HookServer()];
+    for (const hook of hooks)
+        await hook.listen();
+    const plant = await createPlant(`alarms: local
+notify:
+  gather_s: 0
+  pause_s: 0
+  recipients:
+${hooks.map(({ port }, i) => `    - { id: h${i}, webhook: "http://127.0.0.1:${port}/" }`).join('\n')}
+  rules: [{ id: all, to: h0, escalate: [{ after_min: 0.1, to: h1 }, { after_min: 0.3, to: h2 }] }]
+`);
+    try {
+        await calm(plant);
+        await plant.startDaemon();
+        hooks[0].status = 503; // the first tries are in vain
+        await set(plant, 'TI-1', limits.high);
+        await until('a try', () => hooks[0].posts.length > 0);
+        hooks[0].status = 200;
+        await until('it is told', () => hooks[0].taken.length > 0);
+        assert.equal(hooks[0].posts[0].body.id, hooks[0].taken[0].id, 'the same message');
+        const [next] = await until('the next one is told', () => hooks[1].taken.length > 0 && hooks[1].taken);
+        assert.deepEqual(next.alarms.map(({ tag, escalation }) => [tag, escalation]), [['TI-1', 1]]);
+        await acknowledge(plant, 'TI-1', ['H']);
+        await sleep(15000);
+        assert.deepEqual(hooks.map(({ taken }) => taken.length), [1, 1, 0]);
+    } finally {
+        for (const hook of hooks)
+            await hook.close();
+        await plant.destroy();
+    }
+});
+
+test('a reload keeps what was told and takes new rules', options, async () => {
+    const hook = new HookServer();
+    await hook.listen();
+    const plant = await createPlant(`alarms: local
+notify:
+  gather_s: 0
+  pause_s: 0
+  recipients: [{ id: hook, webhook: "http://127.0.0.1:${hook.port}/" }]
+  rules: [{ id: boxes, areas: "Tank*", to: hook }]
+`);
+    try {
+        await calm(plant);
+        await plant.startDaemon();
+        await set(plant, 'TI-1', limits.high);
+        await until('it is told', () => hook.taken.length > 0);
+        writeFileSync(plant.file, readFileSync(plant.file, 'utf8').replace('areas: "Tank*", ', ''));
+        assert.equal((await fetch(`http://127.0.0.1:${plant.port}/api/v1/reload`, { method: 'POST' })).status, 200);
+        await set(plant, 'PI-1', limits.high);
+        await until('the other area is told', () => hook.taken.length > 1);
+        assert.deepEqual(hook.taken.map(({ alarms }) => alarms.map(({ tag }) => tag)), [['TI-1'], ['PI-1']]);
+        writeFileSync(plant.file, readFileSync(plant.file, 'utf8').replace('to: hook', 'to: nobody'));
+        const checked = runProgram('plantcastd', ['--check', plant.file]);
+        assert.equal(checked.code, 1);
+        assert.match(checked.err, /plant\.yaml:\d+:\d+: error: to: there is no recipient 'nobody'/);
+    } finally {
+        await hook.close();
+        await plant.destroy();
+    }
+});
+
+const alertmanager = spawnSync('prometheus-alertmanager', ['--version']).status === 0;
+test('Prometheus Alertmanager knows what stands, and when it ends', { ...options,
+    skip: options.skip || (!alertmanager && 'prometheus-alertmanager is not installed') }, async () => {
+    const port = await freePort(), hook = new HookServer();
+    await hook.listen();
+    const plant = await createPlant(`alarms: local
+notify:
+  gather_s: 0
+  recipients: [{ id: am, alertmanager: "http://127.0.0.1:${port}" }]
+  rules: [{ id: all, to: am }]
+`);
+    writeFileSync(join(plant.folder, 'am.yml'), `route: { receiver: hook, group_wait: 1s, group_by: [plant] }
+receivers: [{ name: hook, webhook_configs: [{ url: "http://127.0.0.1:${hook.port}/" }] }]
+`);
+    const manager = spawn('prometheus-alertmanager', [`--config.file=${join(plant.folder, 'am.yml')}`,
+        `--storage.path=${join(plant.folder, 'am')}`, `--web.listen-address=127.0.0.1:${port}`, '--cluster.listen-address='],
+    { stdio: 'ignore' });
+    const alerts = async () => (await (await fetch(`http://127.0.0.1:${port}/api/v2/alerts`)).json());
+    try {
+        await calm(plant);
+        await plant.startDaemon();
+        await set(plant, 'TI-1', limits.veryHigh);
+        const known = await until('both alarms', async () => {
+            const found = await alerts().catch(() => []);
+            return found.length === 2 && found;
+        });
+        const { labels, annotations, status } = known.find((alert) => alert.labels.kind === 'HH');
+        assert.deepEqual(labels, { alertname: 'PlantAlarm', plant: 'Two boxes', tag: 'TI-1', kind: 'HH', priority: '2', severity: 'error',
+            asset: 'E-101', area: 'Tank farm' });
+        assert.equal(annotations.summary, 'TI-1 high high, left');
+        assert.equal(status.state, 'active');
+        await until('it tells others', () => hook.posts.length > 0);
+        assert.equal(hook.posts[0].body.status, 'firing');
+        await set(plant, 'TI-1', limits.calm);
+        await acknowledge(plant, 'TI-1', ['H', 'HH']);
+        await until('none stands any more', async () => (await alerts()).length === 0);
+    } finally {
+        manager.kill();
+        await hook.close();
+        await plant.destroy();
+    }
+});

@@ -1,0 +1,428 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Who is told of which alarms: floods, shifts and areas, escalation, outages, restarts; and what the messages say. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+#include <cmocka.h>
+
+#include "base/mem.h"
+#include "base/text.h"
+#include "notify/notify_text.h"
+#include "notify/outbox.h"
+#include "notify/shift.h"
+#include "tests/support/plant_case.h"
+
+#define S INT64_C(1000000)
+#define MIN (60 * S)
+#define T0 (INT64_C(1795000000) * S) /* Wednesday 2026-11-18 11:06:40 UTC */
+enum { TAGS = 6000, OPS = 0, BOSS = 1, AM = 2 };
+
+struct fixture {
+    struct plant_case *c;
+    struct outbox *outbox;
+};
+
+static void load(struct fixture *f, const char *rules)
+{
+    struct text yaml = { 0 }, csv = { 0 };
+    text_add(&yaml, "plant: { name: \"Werk Süd\", time_zone: Europe/Berlin }\n"
+                    "assets: [{ id: E-1, model: m.glb, area: Tank farm }, { id: E-2, model: m.glb }]\n"
+                    "groups: [{ id: t, unit: degC, min: 0, max: 1 }]\nsources: [{ id: a, type: modbus, host: h }]\ntags: tags.csv\n"
+                    "notify:\n  gather_s: 3\n  pause_s: 60\n  link: https://p.example/\n"
+                    "  mail: { server: \"smtps://m.example\", from: plant@p.example }\n  recipients:\n"
+                    "  - { id: ops, email: [ops@p.example, b@p.example] }\n  - { id: boss, webhook: \"https://h.example/\" }\n"
+                    "  - { id: am, alertmanager: \"http://127.0.0.1:9093\" }\n  rules:\n%s",
+             rules);
+    text_add(&csv, "Tag Name,Address,Source,Group,Asset,X,Y,Z,Description\n");
+    for (int i = 0; i < TAGS; i++)
+        text_add(&csv, "T%04d,%d,a,t,E-%d,0,0,0,%s\n", i, 40001 + i, 1 + i % 2, i == 0 ? "\"Kessel 1, heiß\"" : "");
+    outbox_destroy(&f->outbox);
+    plant_case_load(f->c, yaml.at, csv.at);
+    if (!f->c->plant)
+        diag_print(&f->c->diag, stderr);
+    assert_non_null(f->c->plant);
+    f->outbox = outbox_create(f->c->plant);
+    text_finish(&yaml);
+    text_finish(&csv);
+}
+
+static int set_up(void **state)
+{
+    struct fixture *f = mem_new(sizeof(*f));
+    setenv("TZ", "Europe/Berlin", 1);
+    tzset();
+    *state = f;
+    return plant_case_set_up((void **)&f->c);
+}
+
+static int tear_down(void **state)
+{
+    struct fixture *f = *state;
+    outbox_destroy(&f->outbox);
+    plant_case_tear_down((void **)&f->c);
+    mem_free(f);
+    return 0;
+}
+
+enum { LOCAL, DISPLAY };
+
+static struct alarm alarm_of(const struct fixture *f, int tag, int mode, bool active, bool unacknowledged, int64_t raised_us)
+{
+    return (struct alarm){ .name = f->c->plant->tags[tag].name,
+                           .tag = tag,
+                           .kind = ALARM_HH,
+                           .priority = 1 + tag % 4,
+                           .limit = 90,
+                           .value = 95.5,
+                           .rule = { .acknowledges = mode == LOCAL },
+                           .state = { .active = active, .unacknowledged = mode == LOCAL && unacknowledged },
+                           .raised_utc_ns = raised_us * 1000 };
+}
+
+static void put(struct fixture *f, int tag, int mode, bool active, bool unacknowledged, int64_t raised_us, int64_t now_us)
+{
+    struct alarm alarm = alarm_of(f, tag, mode, active, unacknowledged, raised_us);
+    outbox_put(f->outbox, &alarm, false, now_us);
+}
+
+/* How many alarms a message has that is due and then delivered; 0: none is. */
+static size_t deliver(struct fixture *f, int recipient, int64_t now_us)
+{
+    struct outbox_message message;
+    outbox_tick(f->outbox, now_us);
+    if (!outbox_next(f->outbox, recipient, now_us, &message))
+        return 0;
+    size_t count = message.count;
+    outbox_sent(f->outbox, recipient, now_us);
+    return count;
+}
+
+static void restart(struct fixture *f)
+{
+    json_t *saved = outbox_save(f->outbox);
+    assert_non_null(saved);
+    outbox_destroy(&f->outbox);
+    f->outbox = outbox_create(f->c->plant);
+    assert_true(outbox_restore(f->outbox, saved));
+    json_decref(saved);
+}
+
+static void a_flood_is_one_message(void **state)
+{
+    struct fixture *f = *state;
+    load(f, "  - { id: all, to: ops }\n  - { id: too, priority: 2, to: ops }\n");
+    for (int i = 0; i < 500; i++)
+        put(f, i, LOCAL, true, true, T0, T0 + i * S / 500);
+    assert_int_equal(deliver(f, OPS, T0 + 2 * S), 0);
+    assert_int_equal(deliver(f, OPS, T0 + 4 * S), 500); /* once each, although two rules fit some */
+    for (int s = 5; s < 200; s++)
+        assert_int_equal(deliver(f, OPS, T0 + s * S), 0);
+    assert_int_equal(outbox_counts(f->outbox, OPS).waiting, 0);
+}
+
+static void what_is_more_urgent_does_not_wait_for_the_pause(void **state)
+{
+    struct fixture *f = *state;
+    load(f, "  - { id: all, to: ops }\n");
+    put(f, 3, LOCAL, true, true, T0, T0); /* priority 4 */
+    assert_int_equal(deliver(f, OPS, T0 + 3 * S), 1);
+    put(f, 7, LOCAL, true, true, T0 + 5 * S, T0 + 5 * S);
+    assert_int_equal(deliver(f, OPS, T0 + 10 * S), 0);
+    put(f, 0, LOCAL, true, true, T0 + 10 * S, T0 + 10 * S); /* priority 1 */
+    assert_int_equal(deliver(f, OPS, T0 + 13 * S), 2);
+    put(f, 4, LOCAL, true, true, T0 + 14 * S, T0 + 14 * S); /* as urgent as the last */
+    assert_int_equal(deliver(f, OPS, T0 + 72 * S), 0);
+    assert_int_equal(deliver(f, OPS, T0 + 73 * S), 1);
+}
+
+static void rules_choose_by_priority_area_and_shift(void **state)
+{
+    struct fixture *f = *state;
+    load(f, "  - { id: urgent, priority: 1, to: ops }\n"
+            "  - { id: tanks, areas: \"Tank*\", hours: \"06:00-14:00\", days: mon-fri, to: boss }\n");
+    const struct plant *plant = f->c->plant;
+    const int64_t noon = T0; /* 12:06 in Berlin */
+    assert_int_equal(rules_for(plant, "T0000", 0, 1, noon), 3);
+    assert_int_equal(rules_for(plant, "T0001", 1, 1, noon), 1); /* of E-2, which is elsewhere */
+    assert_int_equal(rules_for(plant, "T0002", 2, 2, noon), 2);
+    assert_int_equal(rules_for(plant, "T0002", 2, 2, noon + 2 * 3600 * S), 0);
+    assert_int_equal(rules_for(plant, "T0002", 2, 2, noon + 3 * 86400 * S), 0); /* Saturday */
+    assert_int_equal(rules_for(plant, "plc1", -1, 2, noon), 0);
+    assert_int_equal(rules_for(plant, "Tank plc", -1, 2, noon), 2);
+}
+
+static bool on(const struct notify_shift *shift, const char *utc)
+{
+    struct tm tm = { 0 };
+    assert_non_null(strptime(utc, "%Y-%m-%dT%H:%M", &tm));
+    return shift_is_on(shift, (int64_t)timegm(&tm) * S);
+}
+
+static void shifts_keep_to_the_wall_clock(void **state)
+{
+    (void)state;
+    const struct notify_shift friday_night = { .days = 1 << 4, .from_min = 22 * 60, .to_min = 6 * 60 };
+    assert_false(on(&friday_night, "2026-11-20T20:59")); /* Friday, 21:59 in Berlin */
+    assert_true(on(&friday_night, "2026-11-20T21:00"));
+    assert_true(on(&friday_night, "2026-11-21T04:59"));
+    assert_false(on(&friday_night, "2026-11-21T05:00"));
+    assert_false(on(&friday_night, "2026-11-20T04:00")); /* the night that began on Thursday */
+    const struct notify_shift sunday_night = { .days = 1 << 5, .from_min = 22 * 60, .to_min = 6 * 60 };
+    assert_true(on(&sunday_night, "2026-10-25T04:59")); /* clocks went back at 01:00 UTC */
+    assert_false(on(&sunday_night, "2026-10-25T05:00"));
+    const struct notify_shift all_day = { .days = 1 << 6 };
+    assert_true(on(&all_day, "2026-11-22T10:00"));
+    assert_false(on(&all_day, "2026-11-23T10:00"));
+}
+
+static void it_escalates_until_acknowledged(void **state)
+{
+    struct fixture *f = *state;
+    load(f, "  - { id: all, to: ops, escalate: [{ after_min: 10, to: boss }, { after_min: 20, to: [ops, boss] }] }\n");
+    put(f, 0, LOCAL, true, true, T0, T0);
+    put(f, 1, LOCAL, true, true, T0, T0);
+    assert_int_equal(deliver(f, OPS, T0 + 3 * S), 2);
+    put(f, 1, LOCAL, true, false, T0, T0 + 5 * MIN);  /* acknowledged */
+    put(f, 0, LOCAL, false, true, T0, T0 + 6 * MIN);  /* gone, but nobody has acknowledged it */
+    assert_int_equal(deliver(f, BOSS, T0 + 10 * MIN - S), 0);
+    restart(f);
+    assert_int_equal(deliver(f, BOSS, T0 + 10 * MIN), 0);
+    assert_int_equal(deliver(f, BOSS, T0 + 10 * MIN + 3 * S), 1);
+    assert_int_equal(deliver(f, OPS, T0 + 20 * MIN), 0);
+    assert_int_equal(deliver(f, OPS, T0 + 20 * MIN + 3 * S), 1);
+    put(f, 0, LOCAL, false, false, T0, T0 + 21 * MIN);
+    assert_int_equal(deliver(f, OPS, T0 + 60 * MIN), 0);
+    assert_int_equal(deliver(f, BOSS, T0 + 60 * MIN), 1); /* of the second escalation, which waited */
+    assert_int_equal(deliver(f, BOSS, T0 + 90 * MIN), 0);
+    put(f, 0, LOCAL, true, true, T0 + 91 * MIN, T0 + 91 * MIN); /* anew */
+    assert_int_equal(deliver(f, OPS, T0 + 91 * MIN + 3 * S), 1);
+}
+
+static void nobody_is_told_twice_after_a_restart(void **state)
+{
+    struct fixture *f = *state;
+    load(f, "  - { id: all, to: [ops, boss] }\n");
+    put(f, 0, LOCAL, true, true, T0, T0);
+    assert_int_equal(deliver(f, OPS, T0 + 3 * S), 1);
+    struct outbox_message message;
+    assert_true(outbox_next(f->outbox, BOSS, T0 + 3 * S, &message)); /* the daemon is killed while this one is sent */
+    char id[OUTBOX_ID_BYTES];
+    memcpy(id, message.id, sizeof(id));
+    restart(f);
+    struct alarm old = alarm_of(f, 0, LOCAL, true, true, T0), settled = alarm_of(f, 1, LOCAL, true, false, T0 - S);
+    struct alarm missed = alarm_of(f, 2, LOCAL, true, true, T0 + 4 * S);
+    outbox_put(f->outbox, &old, true, T0 + 10 * S);
+    outbox_put(f->outbox, &settled, true, T0 + 10 * S); /* acknowledged before anybody was to be told */
+    outbox_put(f->outbox, &missed, true, T0 + 10 * S);  /* raised just before the end, in the journal alone */
+    assert_true(outbox_next(f->outbox, BOSS, T0 + 10 * S, &message));
+    assert_int_equal(message.count, 1);
+    assert_string_equal(message.id, id); /* the receiver knows it */
+    outbox_sent(f->outbox, BOSS, T0 + 10 * S);
+    assert_int_equal(deliver(f, OPS, T0 + 70 * S), 1);
+    assert_int_equal(deliver(f, BOSS, T0 + 70 * S), 1);
+    assert_int_equal(deliver(f, OPS, T0 + 300 * S), 0);
+}
+
+static void an_outage_delays_and_does_not_multiply(void **state)
+{
+    struct fixture *f = *state;
+    load(f, "  - { id: all, to: ops }\n");
+    struct outbox_message message;
+    int tries = 0;
+    put(f, 0, LOCAL, true, true, T0, T0);
+    for (int s = 3; s < 600; s++) {
+        if (s % 10 == 0)
+            put(f, s, LOCAL, true, true, T0 + s * S, T0 + s * S);
+        outbox_tick(f->outbox, T0 + s * S);
+        if (!outbox_next(f->outbox, OPS, T0 + s * S, &message))
+            continue;
+        tries++;
+        assert_int_equal(message.count, 1);
+        outbox_failed(f->outbox, OPS, T0 + s * S);
+        if (tries % 8 == 0)
+            restart(f);
+    }
+    assert_in_range(tries, 10, 40);
+    assert_int_equal(deliver(f, OPS, T0 + 660 * S), 1);
+    assert_int_equal(deliver(f, OPS, T0 + 720 * S), 59);
+    assert_int_equal(deliver(f, OPS, T0 + 900 * S), 0);
+    assert_int_equal(outbox_counts(f->outbox, OPS).lost, 0);
+}
+
+static void what_waits_is_bounded_and_said(void **state)
+{
+    struct fixture *f = *state;
+    load(f, "  - { id: all, to: ops }\n");
+    struct outbox_message message;
+    put(f, 5999, LOCAL, true, true, T0, T0);
+    assert_true(outbox_next(f->outbox, OPS, T0 + 3 * S, &message));
+    outbox_failed(f->outbox, OPS, T0 + 3 * S);
+    for (int i = 0; i < 5998; i++)
+        put(f, i, LOCAL, true, true, T0 + 4 * S, T0 + 4 * S);
+    assert_int_equal(outbox_counts(f->outbox, OPS).waiting, OUTBOX_ITEMS);
+    assert_int_equal(outbox_counts(f->outbox, OPS).lost, 999);
+    assert_true(outbox_next(f->outbox, OPS, T0 + 60 * S, &message));
+    assert_int_equal(message.left_out, 999);
+    outbox_sent(f->outbox, OPS, T0 + 60 * S);
+    assert_int_equal(deliver(f, OPS, T0 + 200 * S), OUTBOX_ITEMS - 1);
+    put(f, 5998, LOCAL, true, true, T0 + 300 * S, T0 + 300 * S); /* and a server that does not come back within a day */
+    assert_true(outbox_next(f->outbox, OPS, T0 + 303 * S, &message));
+    outbox_failed(f->outbox, OPS, T0 + 303 * S);
+    outbox_tick(f->outbox, T0 + 303 * S + OUTBOX_KEEP_US + S);
+    assert_int_equal(outbox_counts(f->outbox, OPS).waiting, 0);
+    assert_int_equal(outbox_counts(f->outbox, OPS).lost, 1000);
+}
+
+static void what_chatters_is_told_once_in_ten_minutes(void **state)
+{
+    struct fixture *f = *state;
+    load(f, "  - { id: all, to: ops }\n");
+    size_t told = 0;
+    for (int s = 0; s < 1500; s++) {
+        put(f, 0, DISPLAY, s % 20 < 10, false, T0 + s / 20 * 20 * S, T0 + s * S);
+        told += deliver(f, OPS, T0 + s * S);
+    }
+    assert_int_equal(told, 3);
+}
+
+static void what_came_and_went_between_two_looks_is_told(void **state)
+{
+    struct fixture *f = *state;
+    load(f, "  - { id: all, to: ops }\n");
+    put(f, 0, DISPLAY, false, false, T0, T0 + S / 2);
+    struct outbox_message message;
+    assert_true(outbox_next(f->outbox, OPS, T0 + 4 * S, &message));
+    assert_int_equal(message.count, 1);
+    assert_true(message.items[0].ended_us > 0);
+}
+
+static void what_is_set_aside_is_not_told(void **state)
+{
+    struct fixture *f = *state;
+    load(f, "  - { id: all, to: ops }\n");
+    struct alarm alarm = alarm_of(f, 0, LOCAL, true, true, T0);
+    outbox_put(f->outbox, &alarm, false, T0);
+    alarm.state.unacknowledged = false;
+    alarm.state.aside = ALARM_ASIDE_CARRIED; /* its device is lost, which is told once */
+    outbox_put(f->outbox, &alarm, false, T0 + S);
+    assert_int_equal(deliver(f, OPS, T0 + 4 * S), 0);
+    assert_int_equal(outbox_counts(f->outbox, OPS).waiting, 0);
+}
+
+static void alertmanager_hears_what_stands_and_what_has_ended(void **state)
+{
+    struct fixture *f = *state;
+    load(f, "  - { id: all, to: am }\n");
+    struct outbox_message message;
+    put(f, 0, LOCAL, true, true, T0, T0);
+    put(f, 1, LOCAL, true, true, T0, T0);
+    assert_int_equal(deliver(f, AM, T0 + 3 * S), 2);
+    put(f, 1, LOCAL, true, false, T0, T0 + 10 * S); /* acknowledged: it still stands */
+    assert_int_equal(deliver(f, AM, T0 + 13 * S), 2);
+    put(f, 1, LOCAL, false, false, T0, T0 + 20 * S);
+    assert_true(outbox_next(f->outbox, AM, T0 + 23 * S, &message));
+    char *text = notify_alerts_text(f->c->plant, &message, T0 + 23 * S);
+    json_t *alerts = json_loads(text, 0, NULL);
+    assert_int_equal(json_array_size(alerts), 2);
+    const json_t *one = json_array_get(alerts, 0), *two = json_array_get(alerts, 1);
+    assert_string_equal(json_string_value(json_object_get(json_object_get(one, "labels"), "tag")), "T0000");
+    assert_string_equal(json_string_value(json_object_get(json_object_get(one, "labels"), "area")), "Tank farm");
+    assert_string_equal(json_string_value(json_object_get(one, "startsAt")), "2026-11-18T11:06:40.000Z");
+    assert_string_equal(json_string_value(json_object_get(one, "endsAt")), "2026-11-18T11:12:03.000Z"); /* unless it hears more */
+    assert_string_equal(json_string_value(json_object_get(two, "endsAt")), "2026-11-18T11:07:00.000Z");
+    json_decref(alerts);
+    mem_free(text);
+    outbox_sent(f->outbox, AM, T0 + 23 * S);
+    assert_int_equal(deliver(f, AM, T0 + 60 * S), 0);
+    assert_int_equal(deliver(f, AM, T0 + 83 * S), 1);
+}
+
+static char *decoded(const char *base64)
+{
+    static const char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    struct text out = { 0 };
+    unsigned bits = 0;
+    int count = 0;
+    for (; *base64; base64++) {
+        const char *digit = strchr(digits, *base64);
+        if (!digit)
+            continue;
+        bits = bits << 6 | (unsigned)(digit - digits);
+        if ((count += 6) >= 8)
+            text_add_bytes(&out, &(char){ (char)(bits >> (count -= 8)) }, 1);
+    }
+    return out.at;
+}
+
+static void a_mail_says_what_and_since_when(void **state)
+{
+    struct fixture *f = *state;
+    load(f, "  - { id: all, to: [ops, boss] }\n");
+    struct outbox_message message;
+    struct text mail = { 0 };
+    put(f, 0, LOCAL, true, true, T0, T0);
+    assert_true(outbox_next(f->outbox, OPS, T0 + 3 * S, &message));
+    notify_mail_text(&mail, f->c->plant, &f->c->plant->notify->recipients[OPS], &message, T0 + 3 * S);
+    assert_non_null(strstr(mail.at, "From: plant@p.example\r\nTo: ops@p.example,\r\n b@p.example\r\nSubject: =?UTF-8?B?"));
+    assert_non_null(strstr(mail.at, "\r\nDate: Wed, 18 Nov 2026 11:06:43 +0000\r\nMessage-ID: <"));
+    for (const char *line = mail.at, *end; (end = strstr(line, "\r\n")); line = end + 2)
+        assert_true(end - line <= 78);
+    char *subject = decoded(strstr(mail.at, "?B?") + 3), *body = decoded(strstr(mail.at, "\r\n\r\n"));
+    assert_int_equal(strncmp(subject, "[Werk Süd] P1 T0000 high high", strlen("[Werk Süd] P1 T0000 high high")), 0);
+    assert_non_null(strstr(body, "P1  2026-11-18 12:06:40  T0000 high high, Kessel 1, heiß: 95.5 degC (limit 90 degC); E-1, Tank "
+                                 "farm\r\n"));
+    assert_non_null(strstr(body, "Times are of Europe/Berlin. https://p.example/\r\n"));
+    char *json = notify_webhook_text(f->c->plant, &f->c->plant->notify->recipients[BOSS], &message);
+    assert_non_null(strstr(json, "\"plant\":\"Werk Süd\""));
+    assert_non_null(strstr(json, "\"raised\":\"2026-11-18T11:06:40.000Z\",\"value\":95.5,\"limit\":90.0,\"unit\":\"degC\""));
+    mem_free(json);
+    mem_free(subject);
+    mem_free(body);
+    text_finish(&mail);
+}
+
+static void a_damaged_file_is_refused(void **state)
+{
+    struct fixture *f = *state;
+    load(f, "  - { id: all, to: ops }\n");
+    static const char *const texts[] = { "{}", "[]", "{\"version\":2}",
+                                         "{\"version\":1,\"alarms\":[1,{\"name\":\"T0000\",\"kind\":\"XX\"},{\"name\":\"T0000\",\"kind\":"
+                                         "\"HH\",\"priority\":99,\"steps\":{\"all\":-7}}],\"recipients\":{\"ops\":{\"waiting\":[{}],"
+                                         "\"message\":[[]],\"last_priority\":-5}}}" };
+    for (int i = 0; i < 4; i++) {
+        json_t *saved = json_loads(texts[i], 0, NULL);
+        assert_non_null(saved);
+        assert_int_equal(outbox_restore(f->outbox, saved), i == 3);
+        json_decref(saved);
+    }
+    put(f, 0, LOCAL, true, true, T0, T0);
+    deliver(f, OPS, T0 + 4 * S);
+}
+
+int main(void)
+{
+    cmocka_set_message_output(CM_OUTPUT_TAP);
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test_setup_teardown(a_flood_is_one_message, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(what_is_more_urgent_does_not_wait_for_the_pause, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(rules_choose_by_priority_area_and_shift, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(shifts_keep_to_the_wall_clock, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(it_escalates_until_acknowledged, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(nobody_is_told_twice_after_a_restart, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(an_outage_delays_and_does_not_multiply, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(what_waits_is_bounded_and_said, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(what_chatters_is_told_once_in_ten_minutes, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(what_came_and_went_between_two_looks_is_told, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(what_is_set_aside_is_not_told, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(alertmanager_hears_what_stands_and_what_has_ended, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(a_mail_says_what_and_since_when, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(a_damaged_file_is_refused, set_up, tear_down),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
