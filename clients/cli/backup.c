@@ -155,6 +155,17 @@ static void remove_folder(const char *folder)
 }
 
 /* The folder has its name once all is in it. */
+/* By its time the daemon says in /metrics when the last backup was. Who may only read the history leaves none. */
+static void leave_stamp(const char *history)
+{
+    char *path = mem_printf("%s/" HISTORY_BACKUP_STAMP, history), now[TIMESTAMP_BYTES + 1];
+    timestamp_print(clock_utc_ns() / 1000, now);
+    strcat(now, "\n");
+    if (access(history, W_OK) == 0)
+        atomic_file_put(path, now, strlen(now));
+    mem_free(path);
+}
+
 static bool back_up(struct job *job, const struct plant *plant, const char *out)
 {
     const char *tags = base_name(plant->tags_path);
@@ -175,8 +186,10 @@ static bool back_up(struct job *job, const struct plant *plant, const char *out)
         if (!good)
             remove_folder(part);
     }
-    if (good)
+    if (good) {
+        leave_stamp(history);
         printf("%s: %zu files\n", out, json_array_size(job->files));
+    }
     mem_free(history);
     mem_free(part);
     return good;

@@ -24,7 +24,7 @@ struct alarm_service {
     struct alarm_service_params params;
     struct journal *journal;
     struct {
-        counter *statuses[ALARM_STATUSES], *active, *standing, *chattering, *held, *rate, *raised, *lost;
+        counter *statuses[ALARM_STATUSES], *priorities[ALARM_PRIORITIES], *active, *standing, *chattering, *held, *rate, *raised, *lost;
     } counters;
     pthread_t thread;
     _Atomic bool started;
@@ -110,6 +110,8 @@ static void count(struct alarm_service *service, const struct alarm_counts *coun
 {
     for (int i = 0; i < ALARM_STATUSES; i++)
         counter_set(service->counters.statuses[i], counts->statuses[i]);
+    for (int i = 0; i < ALARM_PRIORITIES; i++)
+        counter_set(service->counters.priorities[i], counts->priorities[i]);
     counter_set(service->counters.active, counts->active);
     counter_set(service->counters.standing, counts->standing);
     counter_set(service->counters.chattering, counts->chattering);
@@ -187,6 +189,11 @@ static void add_counters(struct alarm_service *service)
     for (int i = 0; i < ALARM_STATUSES; i++) {
         char *name = mem_printf("plantcast_alarms{state=\"%s\"}", alarm_status_name((enum alarm_status)i));
         service->counters.statuses[i] = counters_add(c, name, "gauge", "Alarms by their state.");
+        mem_free(name);
+    }
+    for (int i = 0; i < ALARM_PRIORITIES; i++) {
+        char *name = mem_printf("plantcast_alarms_shown{priority=\"%d\"}", i + 1);
+        service->counters.priorities[i] = counters_add(c, name, "gauge", "Alarms that are to be seen, by priority; 1 is the most urgent.");
         mem_free(name);
     }
     service->counters.active = counters_add(c, "plantcast_alarms_active", "gauge", "Alarms that are to be seen and whose cause is there.");

@@ -94,6 +94,7 @@ struct alarm_counts {
     int standing;    /* of these, for longer than a day */
     int chattering;  /* raised three times or more within the last minute */
     int held;
+    int priorities[ALARM_PRIORITIES]; /* annunciated, by priority; the first is 1 */
 };
 #define ALARM_STANDING_NS (86400 * INT64_C(1000000000))
 #define ALARM_CHATTERING_NS (60 * INT64_C(1000000000))

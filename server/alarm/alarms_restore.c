@@ -102,6 +102,7 @@ void alarms_counts(const struct alarms *alarms, int64_t now_mono_ns, struct alar
         out->statuses[status]++;
         out->active += calls && !alarm_status_is_cleared(status);
         out->held += calls && alarm->held;
+        out->priorities[alarm->priority - 1] += calls;
         out->standing += calls && alarm->state.active && now_mono_ns - alarm->raised_mono_ns >= ALARM_STANDING_NS;
         out->chattering += chatters(alarm, now_mono_ns);
     }

@@ -6,6 +6,8 @@
 
 #include "base/log.h"
 
+#define HISTORY_BACKUP_STAMP "last-backup" /* beside the months: its time is that of the last backup */
+
 enum { COPY_HASH_BYTES = 33 }; /* 32 hexadecimal digits and a 0 */
 
 /* Both functions follow no symbolic link and read no file whose owner is neither that of its folder nor the caller, so root can copy out of

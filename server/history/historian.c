@@ -7,10 +7,12 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
+#include <sys/statvfs.h>
 #include <time.h>
 
 #include "base/clock.h"
 #include "base/mem.h"
+#include "history/copy.h"
 #include "history/history.h"
 #include "history/retention.h"
 #include "history/month.h"
@@ -40,7 +42,7 @@ struct historian {
     struct store *store;
     char *folder;
     struct {
-        counter *samples, *points, *lost, *waiting, *good, *bytes;
+        counter *samples, *points, *lost, *waiting, *good, *bytes, *free, *backup;
     } counters;
     pthread_t thread;
     bool started;
@@ -265,6 +267,19 @@ static int write_second(struct historian *historian)
     return error ? error : write_rows(historian, held, true);
 }
 
+/* What others have done: how full the disk is, and when `plantcast backup` was here. */
+static void look_around(struct historian *historian)
+{
+    struct statvfs disk;
+    struct stat backup;
+    char *path = mem_printf("%s/" HISTORY_BACKUP_STAMP, historian->folder);
+    if (statvfs(historian->folder, &disk) == 0)
+        counter_set(historian->counters.free, (int64_t)(disk.f_bavail * disk.f_frsize));
+    if (stat(path, &backup) == 0)
+        counter_set(historian->counters.backup, (int64_t)backup.st_mtime);
+    mem_free(path);
+}
+
 static int apply_retention(struct historian *historian, int64_t mono_ns, int64_t utc_ns)
 {
     int error = 0;
@@ -276,6 +291,7 @@ static int apply_retention(struct historian *historian, int64_t mono_ns, int64_t
         const struct retention_limits limits = { historian->plant->history.keep_days, historian->plant->history.keep_gb * 1e9 };
         historian->kept_ns = mono_ns;
         counter_set(historian->counters.bytes, retention_apply(historian->log, historian->folder, &limits, utc_ns / 1000));
+        look_around(historian);
     }
     return error;
 }
@@ -422,6 +438,9 @@ static void add_counters(struct historian *historian, struct counters *counters)
     historian->counters.waiting = counters_add(counters, "plantcast_history_waiting_points", "gauge", "Points that wait to be written.");
     historian->counters.good = counters_add(counters, "plantcast_history_good", "gauge", "1 while history can be written.");
     historian->counters.bytes = counters_add(counters, "plantcast_history_bytes", "gauge", "What all months take on disk.");
+    historian->counters.free = counters_add(counters, "plantcast_history_free_bytes", "gauge", "What is free on that disk.");
+    historian->counters.backup =
+        counters_add(counters, "plantcast_backup_timestamp_seconds", "gauge", "When the last backup was made; 0: not known.");
 }
 
 struct historian *historian_start(const struct historian_params *params)

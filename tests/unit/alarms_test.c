@@ -362,6 +362,8 @@ static void counts_are_what_there_is(void **unused)
     assert_int_equal(counts.statuses[ALARM_NORMAL], (int)alarms_count(s.alarms) - 2);
     assert_int_equal(counts.active, 1); /* what has returned is not */
     assert_int_equal(counts.chattering, 1);
+    assert_int_equal(counts.priorities[0] + counts.priorities[1] + counts.priorities[2] + counts.priorities[3], 2);
+    assert_int_equal(counts.priorities[alarms_at(s.alarms, alarms_find(s.alarms, 0, ALARM_L))->priority - 1], 2); /* H and L */
     assert_int_equal(counts.standing, 0);
     alarms_counts(s.alarms, 20 * S + ALARM_STANDING_NS, &counts);
     assert_int_equal(counts.standing, 1);
