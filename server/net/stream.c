@@ -7,6 +7,7 @@
 
 #include "base/clock.h"
 #include "base/mem.h"
+#include "base/utf8.h"
 #include "net/stream.h"
 #include "net/connection.h"
 
@@ -348,6 +349,17 @@ static void on_message(struct server_context *server, struct stream *stream)
         text_finish(&stream->in);
 }
 
+static bool is_utf8(const struct text *text)
+{
+    size_t at = 0, length = 1;
+    while (at < text->length && length > 0) {
+        length = text->at[at] ? utf8_length(text->at + at, text->length - at) : 1;
+        at += length;
+    }
+    return length > 0;
+}
+
+/* libwebsockets would look at text itself, but after text at the bytes of a pong, too, which need be none. */
 static void on_receive(struct server_context *server, struct stream *stream, const void *bytes, size_t len)
 {
     if (stream->in_count == 0)
@@ -358,10 +370,17 @@ static void on_receive(struct server_context *server, struct stream *stream, con
         lws_rx_flow_control(stream->wsi, 0);
         return;
     }
-    if (stream->in_count <= (size_t)server->quotas->at[QUOTA_MESSAGE_BYTES])
+    bool is_whole = stream->in_count <= (size_t)server->quotas->at[QUOTA_MESSAGE_BYTES];
+    if (is_whole)
         text_add_bytes(&stream->in, bytes, len);
-    if (lws_remaining_packet_payload(stream->wsi) == 0 && lws_is_final_fragment(stream->wsi))
+    if (lws_remaining_packet_payload(stream->wsi) == 0 && lws_is_final_fragment(stream->wsi)) {
+        if (is_whole && !lws_frame_is_binary(stream->wsi) && !is_utf8(&stream->in)) {
+            close_with(stream, LWS_CLOSE_STATUS_INVALID_PAYLOAD, "text that is not UTF-8");
+            lws_rx_flow_control(stream->wsi, 0);
+            return;
+        }
         on_message(server, stream);
+    }
     pump(server, stream);
 }
 
