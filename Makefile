@@ -23,8 +23,8 @@ out := $(build)/$(config)
 gen := $(build)/gen
 bin := $(if $(filter release,$(config)),$(build),$(out)/bin)
 
-packages := yaml-0.1 jansson sqlite3 libcurl libmodbus libmosquitto libwebsockets libssl libcrypto libturbojpeg libjpeg libpng cairo \
-            libxxhash OpenImageIO
+packages := yaml-0.1 jansson sqlite3 libcurl libmodbus libmosquitto libprotobuf-c libwebsockets libssl libcrypto libturbojpeg \
+            libjpeg libpng cairo libxxhash OpenImageIO
 ifneq ($(filter-out jpeg h264,$(CODECS))$(if $(filter jpeg,$(CODECS)),,none),)
 $(error CODECS=$(CODECS) is unknown: jpeg, or jpeg h264)
 endif
@@ -159,6 +159,13 @@ $(out)/obj/%.pic.o: %.cc Makefile
 $(out)/obj/gen/%.o: $(gen)/%.c
 	@mkdir -p $(@D)
 	@$(CC) $(cflags) -w -c -o $@ $<
+
+# What Sparkplug B is on the wire (server/value/mqtt/).
+$(gen)/sparkplug_b.pb-c.c: server/value/mqtt/sparkplug_b.proto
+	@mkdir -p $(@D); echo "  PB   $<"; protoc-c --proto_path=$(<D) --c_out=$(@D) $<
+$(gen)/sparkplug_b.pb-c.h: $(gen)/sparkplug_b.pb-c.c ;
+$(out)/obj/server/value/mqtt/sparkplug_payload.o: | $(gen)/sparkplug_b.pb-c.h
+$(out)/lib/value.a: $(out)/obj/gen/sparkplug_b.pb-c.o
 
 # The GL and EGL loaders, made without a network.
 $(gen)/glad/src/gl.c $(gen)/glad/src/egl.c: $(gen)/glad/include/glad/gl.h

@@ -519,7 +519,10 @@ void alarms_put(struct alarms *alarms, const struct sample_event *event, size_t 
 
 static bool is_waiting_too_long(struct alarms *alarms, int tag, int64_t mono_ns)
 {
-    return (double)(mono_ns - alarms->begun_ns) >= alarms->plant->tags[tag].stale_s * 1e9;
+    double stale_s = alarms->plant->tags[tag].stale_s;
+    if (stale_s >= PLANT_NEVER_STALE_S)
+        stale_s = LONGEST_RETURN_S;
+    return (double)(mono_ns - alarms->begun_ns) >= stale_s * 1e9;
 }
 
 /* Nobody hears it, or it is as it was. */

@@ -65,7 +65,19 @@ static bool fill_template(const struct plant *plant, const struct plant_tag *tag
     return true;
 }
 
-static bool check_topic(const char *topic, char why[200])
+/* GROUP/NODE or GROUP/NODE/DEVICE. */
+static bool is_sparkplug(const char *topic)
+{
+    int parts = 1;
+    for (const char *at = topic; *at; at++) {
+        parts += *at == '/';
+        if (*at == '/' && (at == topic || !at[1] || at[1] == '/'))
+            return false;
+    }
+    return parts == 2 || parts == 3;
+}
+
+static bool check_topic(const char *topic, bool sparkplug, char why[200])
 {
     if (!*topic)
         snprintf(why, 200, "expected a topic, or a key topic in the source");
@@ -73,6 +85,8 @@ static bool check_topic(const char *topic, char why[200])
         snprintf(why, 200, "the topic has %zu bytes; expected at most %d", strlen(topic), MQTT_TOPIC_BYTES);
     else if (strpbrk(topic, "+#"))
         snprintf(why, 200, "a topic with + or # would be many");
+    else if (sparkplug && !is_sparkplug(topic))
+        snprintf(why, 200, "expected GROUP/NODE#METRIC or GROUP/NODE/DEVICE#METRIC");
     else
         return true;
     return false;
@@ -87,8 +101,8 @@ bool mqtt_address_resolve(const struct plant *plant, struct plant_tag *tag, char
     bool by_template = mqtt->topic && (!*address || strstr(mqtt->topic, field_names[FIELD_ADDRESS]));
     bool good = !by_template || fill_template(plant, tag, address, &topic, why);
     tag->topic = mem_strdup(by_template && topic.at ? topic.at : address);
-    tag->path = mem_strdup(sharp ? sharp + 1 : "");
-    good = good && check_topic(tag->topic, why);
+    tag->path = mem_strdup(sharp && sharp[1] ? sharp + 1 : mqtt->payload == MQTT_SPARKPLUG ? tag->name : "");
+    good = good && check_topic(tag->topic, mqtt->payload == MQTT_SPARKPLUG, why);
     if (good && *tag->path && mqtt->payload == MQTT_NUMBER) {
         snprintf(why, 200, "a path behind # has no meaning for payload: number");
         good = false;

@@ -114,7 +114,8 @@ struct plant_colormap { /* out of an image */
 
 enum transport { TRANSPORT_TCP, TRANSPORT_RTU_TCP /* RTU frames through a socket */, TRANSPORT_RTU /* a serial line */ };
 enum { PLANT_HOSTS = 4 };
-enum mqtt_payload { MQTT_NUMBER /* text: one number */, MQTT_JSON };
+#define PLANT_NEVER_STALE_S 1e9
+enum mqtt_payload { MQTT_NUMBER /* text: one number */, MQTT_JSON, MQTT_SPARKPLUG /* Sparkplug B */ };
 
 struct plant_mqtt { /* how values are published to a broker; texts that are not given are NULL */
     enum mqtt_payload payload;
@@ -124,6 +125,7 @@ struct plant_mqtt { /* how values are published to a broker; texts that are not 
     char *client_id;
     char *topic;                 /* template of the topics of tags whose address has none */
     char *value, *time, *quality; /* paths in JSON payloads */
+    bool rebirth;                /* a Sparkplug node may be asked for its birth certificate: all that is ever published */
 };
 
 struct plant_source {
@@ -182,7 +184,8 @@ struct plant_tag {
     int source, group, asset;  /* index, or -1 */
     char *lost_asset;          /* the id of an asset that is not there (plant_load_with_orphans), or NULL */
     char *address;             /* as written: of a register, the name of a series, a topic, or = and an expression */
-    char *topic, *path;        /* of an MQTT source: the topic whole, and where in its payload ("": the source's way); else NULL */
+    char *topic, *path;        /* of an MQTT source: the topic whole, and where in its payload ("": the source's way); else NULL. Of
+                                  Sparkplug: GROUP/NODE[/DEVICE], and the metric */
     int modbus_unit;           /* -1: the source's */
     enum register_table table;
     int register_index; /* from 0, as on the wire */

@@ -42,6 +42,8 @@ void plant_mqtt_check(struct yaml_reader *reader, const struct yaml_map *map, st
         yaml_error(reader, yaml_map_place(map, "topic"), "topic: '%.60s': %s", mqtt->topic, why);
     check_paths(reader, map, mqtt);
     check_session(reader, map, mqtt);
+    if (mqtt->rebirth && mqtt->payload != MQTT_SPARKPLUG)
+        yaml_error(reader, yaml_map_place(map, "rebirth"), "rebirth: has no meaning without payload: sparkplug");
 }
 
 void plant_mqtt_finish(struct plant_mqtt *mqtt)

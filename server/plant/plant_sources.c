@@ -14,7 +14,8 @@ static const struct choice order_choices[] = { { "ABCD", BYTE_ORDER_ABCD }, { "C
 static const struct choice transport_choices[] = { { "tcp", TRANSPORT_TCP }, { "rtu-over-tcp", TRANSPORT_RTU_TCP },
                                                    { "rtu", TRANSPORT_RTU }, { 0 } };
 static const struct choice parity_choices[] = { { "none", 'N' }, { "even", 'E' }, { "odd", 'O' }, { 0 } };
-static const struct choice payload_choices[] = { { "number", MQTT_NUMBER }, { "json", MQTT_JSON }, { 0 } };
+static const struct choice payload_choices[] = { { "number", MQTT_NUMBER }, { "json", MQTT_JSON }, { "sparkplug", MQTT_SPARKPLUG },
+                                                 { 0 } };
 static const struct choice protocol_choices[] = { { "3.1.1", 4 }, { "5", 5 }, { 0 } };
 static const struct choice session_choices[] = { { "clean", false }, { "persistent", true }, { 0 } };
 static const struct choice yes_choices[] = { { "yes", 1 }, { "no", 0 }, { 0 } };
@@ -101,6 +102,7 @@ static const struct key source_keys[] = {
     { "value", KEY_NAME, false, offsetof(struct plant_source, mqtt.value), 0, 0, NULL, NULL },
     { "time", KEY_NAME, false, offsetof(struct plant_source, mqtt.time), 0, 0, NULL, NULL },
     { "quality", KEY_NAME, false, offsetof(struct plant_source, mqtt.quality), 0, 0, NULL, NULL },
+    { "rebirth", KEY_FLAG, false, offsetof(struct plant_source, mqtt.rebirth), 0, 0, yes_choices, NULL },
     { "file", KEY_NAME, false, offsetof(struct plant_source, file), 0, 0, NULL, NULL },
     { "speed", KEY_NUMBER, false, offsetof(struct plant_source, speed), 1e-3, 1e5, NULL, NULL },
     { "loop", KEY_FLAG, false, offsetof(struct plant_source, loop), 0, 0, yes_choices, NULL },
@@ -128,7 +130,7 @@ static void check_keys(struct yaml_reader *reader, const struct yaml_map *map, c
         { "pause_ms", MODBUS }, { "max_registers", MODBUS }, { "max_bits", MODBUS }, { "max_gap", MODBUS }, { "byte_order", MODBUS },
         { "address_base", MODBUS }, { "file", REPLAY }, { "speed", REPLAY }, { "loop", REPLAY },
         { "protocol", MQTT }, { "client_id", MQTT }, { "session", MQTT }, { "qos", MQTT }, { "keepalive_s", MQTT }, { "payload", MQTT },
-        { "topic", MQTT }, { "value", MQTT }, { "time", MQTT }, { "quality", MQTT },
+        { "topic", MQTT }, { "value", MQTT }, { "time", MQTT }, { "quality", MQTT }, { "rebirth", MQTT },
     };
     static const char *const whats[] = { [REPLAY] = "a replay", [MQTT] = "an mqtt source", [BY_LINE] = "transport rtu",
                                          [BY_SOCKET] = "a modbus source over TCP" };

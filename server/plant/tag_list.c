@@ -155,6 +155,13 @@ static void read_limits(struct tag_list *list)
                    list->tag->change.converts ? list->tag->unit : "");
 }
 
+/* A Sparkplug node says nothing while nothing changes, and its death certificate says when it is gone. */
+static bool is_announced(const struct tag_list *list)
+{
+    const struct plant_source *source = list->tag->source >= 0 ? &list->plant->sources[list->tag->source] : NULL;
+    return source && source->kind && !strcmp(source->kind, "mqtt") && source->mqtt.payload == MQTT_SPARKPLUG;
+}
+
 static void read_timing(struct tag_list *list)
 {
     struct plant_tag *tag = list->tag;
@@ -163,7 +170,7 @@ static void read_timing(struct tag_list *list)
         cell_number(&list->columns, COL_SCAN_RATE, 10, 86400000, &scan_ms);
     tag->scan_ms = (int)ceil(scan_ms);
     int poll_ms = tag->scan_ms ? tag->scan_ms : tag->source >= 0 ? list->plant->sources[tag->source].poll_ms : 1000;
-    tag->stale_s = fmax(5, 3 * poll_ms / 1000.0);
+    tag->stale_s = is_announced(list) ? PLANT_NEVER_STALE_S : fmax(5, 3 * poll_ms / 1000.0);
     tag->states_stale = cell_number(&list->columns, COL_STALE, 1e-3, 1e6, &tag->stale_s);
     cell_number(&list->columns, COL_FLATLINE, 1e-3, 1e8, &tag->flatline_s);
 }

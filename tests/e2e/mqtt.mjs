@@ -2,16 +2,14 @@
 // Sources of type mqtt, against Debian's mosquitto: numbers and JSON, times and qualities that are stated, retained values, a broker that
 // is killed, frozen and started again, and payloads that are none.
 import assert from 'node:assert/strict';
-import { writeFileSync } from 'node:fs';
-import { join } from 'node:path';
 import { after, afterEach, before, test } from 'node:test';
 import { Broker, missingBroker } from './support/broker.mjs';
-import { missing, runProgram, TinyPlant } from './support/tiny_plant.mjs';
+import { PublishedPlant } from './support/published_plant.mjs';
+import { missing, runProgram } from './support/tiny_plant.mjs';
 
 const absent = missing();
 const options = { skip: absent.length > 0 ? `not built: ${absent.join(', ')}` : missingBroker() ?? false, timeout: 120000 };
 const sleep = (ms) => new Promise((done) => setTimeout(done, ms));
-const HEAD = 'Tag Name,Address,Data Type,Eng Units,Group,Asset,X,Y,Z,Stale s,Scaling,Raw Low,Raw High,Scaled Low,Scaled High';
 const TAGS = {
     number: ['TI-1,plant/ti1,,°C,temperature,E-101,0.5,0,0,30,,,,,', 'TI-2,,,°C,temperature,E-101,-0.5,0,0,2,,,,,',
         'PI-1,,,bar,pressure,P-101A,3,0,0.5,30,Linear,0,27648,0,10', 'XS-1,plant/xs1,bool,,,,,,,30,,,,,'],
@@ -21,36 +19,11 @@ const TAGS = {
 };
 let broker, plant, publisher;
 
-// A plant of which nothing is prepared but once: the source's keys and the tag list are written anew.
-function write(keys, tags) {
-    const yaml = `plant: { name: Two boxes }
-assets:
-  - { id: E-101, model: box.gltf }
-  - { id: P-101A, model: box.gltf, placement: { translate: [3, 0, 0] } }
-groups:
-  - { id: temperature, quantity: Temperature, unit: °C, min: 0, max: 100 }
-  - { id: pressure, quantity: Pressure, unit: bar, min: 0, max: 10, distance: euclidean }
-sources:
-  - { id: broker, type: mqtt, host: 127.0.0.1, port: ${broker.port}, ${keys} }
-tags: tags.csv
-`;
-    writeFileSync(plant.file, yaml);
-    writeFileSync(join(plant.folder, 'tags.csv'), `${[HEAD, ...tags].join('\n')}\n`);
-}
-
-async function run(keys, tags) {
-    write(keys, tags);
-    const prepared = plant.prepare();
-    assert.equal(prepared.code, 0, prepared.err);
-    await plant.startDaemon();
-    await plant.daemon.line(/source broker: .*: reading/, 15000);
-}
-
 before(async () => {
     if (options.skip)
         return;
     broker = await Broker.start();
-    plant = await TinyPlant.create();
+    plant = await PublishedPlant.create(broker);
 });
 afterEach(async () => {
     await plant?.daemon?.stop();
@@ -63,26 +36,8 @@ after(async () => {
     await broker?.destroy();
 });
 
-async function tags() {
-    const { tags: all } = await (await fetch(`http://127.0.0.1:${plant.port}/api/v1/tags`)).json();
-    return Object.fromEntries(all.map((tag) => [tag.name, tag]));
-}
-
-// Until the tag is as said; { quality_name, value } of it that matter.
-async function until(name, wanted, seconds = 10) {
-    for (const end = performance.now() + seconds * 1000; ; await sleep(20)) {
-        const tag = (await tags())[name];
-        if (Object.entries(wanted).every(([key, value]) => (typeof value === 'function' ? value(tag[key]) : tag[key] === value)))
-            return tag;
-        assert.ok(performance.now() < end, `${name} is ${JSON.stringify(tag)}, wanted ${JSON.stringify(wanted)}`);
-    }
-}
-
 const good = { quality_name: 'Good' };
-const metric = async (name) => {
-    const text = await (await fetch(`http://127.0.0.1:${plant.port}/metrics`)).text();
-    return Number(text.split('\n').find((line) => line.startsWith(`plantcast_source_${name}`))?.split(' ').at(-1));
-};
+const until = (...args) => plant.until(...args), metric = (name) => plant.metric(name), run = (...args) => plant.run(...args);
 
 test('numbers come to the tags of their topics, scaled, and as old as they are', options, async () => {
     await run('topic: "plant/{asset}/{tag}"', TAGS.number);
@@ -198,7 +153,7 @@ test('payloads that are none are refused by name, and nothing else suffers', opt
 
 test('what cannot be is said of the plant file', options, async () => {
     const said = (keys, rows) => {
-        write(keys, rows);
+        plant.write(keys, rows);
         const { code, err } = runProgram('plantcastd', ['--check', plant.file]);
         assert.equal(code, 1, err);
         return err;
@@ -210,5 +165,7 @@ test('what cannot be is said of the plant file', options, async () => {
     assert.match(said('topic: "plant/{name}"', TAGS.number), /expected \{tag\}, \{asset\}, \{group\} or \{address\}/);
     assert.match(said('qos: 1', TAGS.number), /tags\.csv:3:6: error: Address: '': expected a topic, or a key topic in the source/);
     assert.match(said('topic: "a/{tag}"', [TAGS.json[0]]), /a path behind # has no meaning for payload: number/);
+    assert.match(said('topic: "a/{tag}", rebirth: yes', TAGS.number), /rebirth: has no meaning without payload: sparkplug/);
+    assert.match(said('payload: sparkplug', ['TI-1,U100#TI-1,,,,,,,,,,,,,']), /expected GROUP\/NODE#METRIC or GROUP\/NODE\/DEVICE#METRIC/);
     assert.match(said('baud: 9600', TAGS.number), /baud: has no meaning for an mqtt source/);
 });

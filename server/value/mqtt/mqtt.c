@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* An MQTT source: connects, subscribes, and says at once when the broker is gone. It has nothing in it that publishes. */
+/* An MQTT source: connects, subscribes, and says at once when the broker is gone. All it can publish
+   is the request for a Sparkplug birth certificate, where the plant file allows that. */
 #include <errno.h>
 #include <string.h>
 #include <sys/eventfd.h>
@@ -43,6 +44,8 @@ static void on_subscribed(void *arg)
     counter_set(mqtt->up, 1);
     counter_set(mqtt->host, 1 + mqtt->host_index);
     store_link_up(mqtt->store, mqtt->index, clock_mono_ns());
+    if (mqtt->sparkplug)
+        sparkplug_on_subscribed(mqtt->sparkplug, clock_mono_ns());
     log_info(mqtt->log, "source %s: %s:%d: reading", mqtt->config->id, mqtt->config->hosts[mqtt->host_index], mqtt->config->port);
 }
 
@@ -63,6 +66,13 @@ static void on_topic_refused(void *arg, const char *topic)
     mqtt_refuse(mqtt, &message, "the broker does not let us subscribe");
 }
 
+static void ask_rebirth(void *arg, const char *group, const char *node)
+{
+    struct mqtt_source *mqtt = arg;
+    counter_inc(mqtt->rebirths, 1);
+    mqtt_client_ask_rebirth(mqtt->client, group, node);
+}
+
 static void on_message(void *arg, const struct mqtt_message *message)
 {
     mqtt_take_message(arg, message);
@@ -78,7 +88,7 @@ static int run_session(struct mqtt_source *mqtt, char why[200])
                                                .subscribed = on_subscribed,
                                                .topic_refused = on_topic_refused,
                                                .message = on_message };
-    int64_t deadline_ns = clock_mono_ns() + CONNECT_NS;
+    int64_t deadline_ns = clock_mono_ns() + CONNECT_NS, tick_ns = 0;
     mqtt->client = mqtt_client_start(mqtt->config, mqtt->host_index, mqtt->client_id, &events, why);
     int status = mqtt->client ? mqtt_client_wait(mqtt->client, mqtt->stop_fd, deadline_ns, why) : -EINVAL;
     while (status == 0) {
@@ -87,6 +97,10 @@ static int run_session(struct mqtt_source *mqtt, char why[200])
         if (status == 0 && !mqtt->subscribed && now_ns > deadline_ns) {
             snprintf(why, 200, "the broker does not answer");
             status = -ETIMEDOUT;
+        }
+        if (status == 0 && mqtt->sparkplug && mqtt->subscribed && now_ns > tick_ns) {
+            sparkplug_on_tick(mqtt->sparkplug, now_ns);
+            tick_ns = now_ns + NS_PER_S;
         }
     }
     mqtt_client_destroy(&mqtt->client);
@@ -125,6 +139,7 @@ static void mqtt_stop(struct source *source)
     }
     if (mqtt->stop_fd >= 0)
         close(mqtt->stop_fd);
+    sparkplug_destroy(&mqtt->sparkplug);
     mqtt_writer_finish(&mqtt->writer);
     mqtt_topics_finish(&mqtt->topics);
     for (size_t i = 0; i < mqtt->subscription_count; i++)
@@ -150,6 +165,11 @@ static void add_counters(struct mqtt_source *mqtt, struct counters *counters)
     mqtt->messages_refused = add_counter(counters, "messages_total", id, ",result=\"refused\"", "counter", messages);
     mqtt->samples = add_counter(counters, "samples_total", id, "", "counter", "samples given by replays and brokers");
     mqtt->connects = add_counter(counters, "connects_total", id, "", "counter", "connections made to field devices and brokers");
+    if (mqtt->config->mqtt.payload == MQTT_SPARKPLUG) {
+        mqtt->gaps = add_counter(counters, "gaps_total", id, "", "counter", "messages of Sparkplug nodes out of their sequence");
+        mqtt->historical = add_counter(counters, "historical_total", id, "", "counter", "historical values of Sparkplug nodes, not read");
+        mqtt->rebirths = add_counter(counters, "rebirths_total", id, "", "counter", "requests for Sparkplug birth certificates");
+    }
     mqtt->up = add_counter(counters, "up", id, "", "gauge", "1 while readings come in");
     mqtt->host = add_counter(counters, "host", id, "", "gauge", "which of its hosts readings come from, 1: the first; 0: from none");
 }
@@ -164,12 +184,33 @@ static char *make_client_id(const struct plant_source *config)
     return mem_printf("plantcast-%08x", random);
 }
 
+static void add_sparkplug(struct mqtt_source *mqtt)
+{
+    const struct sparkplug_params params = { .log = mqtt->log,
+                                             .source = mqtt->config->id,
+                                             .plant = mqtt->plant,
+                                             .topics = &mqtt->topics,
+                                             .store = mqtt->store,
+                                             .writer = &mqtt->writer,
+                                             .gaps = mqtt->gaps,
+                                             .historical = mqtt->historical,
+                                             .rebirth = mqtt->config->mqtt.rebirth,
+                                             .ask = ask_rebirth,
+                                             .arg = mqtt };
+    mqtt->sparkplug = sparkplug_create(&params);
+    mqtt->subscriptions = sparkplug_subscriptions(mqtt->sparkplug, &mqtt->subscription_count);
+}
+
 static void add_topics(struct mqtt_source *mqtt)
 {
     mqtt_topics_init(&mqtt->topics, mqtt->plant, mqtt->index);
-    mqtt->subscriptions = mem_array(mqtt->topics.count, sizeof(*mqtt->subscriptions));
-    for (size_t i = 0; i < mqtt->topics.count; i++)
-        mqtt->subscriptions[mqtt->subscription_count++] = mem_strdup(mqtt->topics.at[i].name);
+    if (mqtt->config->mqtt.payload == MQTT_SPARKPLUG) {
+        add_sparkplug(mqtt);
+    } else {
+        mqtt->subscriptions = mem_array(mqtt->topics.count, sizeof(*mqtt->subscriptions));
+        for (size_t i = 0; i < mqtt->topics.count; i++)
+            mqtt->subscriptions[mqtt->subscription_count++] = mem_strdup(mqtt->topics.at[i].name);
+    }
     log_info(mqtt->log, "source %s: %s:%d: %zu tags in %zu topics", mqtt->config->id, mqtt->config->hosts[0], mqtt->config->port,
              mqtt->topics.tag_count, mqtt->topics.count);
 }

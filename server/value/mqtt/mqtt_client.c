@@ -17,6 +17,7 @@
 #include "base/clock.h"
 #include "base/mem.h"
 #include "value/lookup.h"
+#include "value/mqtt/sparkplug_payload.h"
 
 enum { TOPICS_AT_ONCE = 8 };                      /* of one request; some brokers refuse more */
 enum { SESSION_KEPT_S = 7 * 86400 };              /* of a persistent session, by the broker */
@@ -269,4 +270,13 @@ bool mqtt_client_subscribe(struct mqtt_client *client, char *const *topics, size
                                               client->source->mqtt.qos, 0, NULL);
     }
     return status == MOSQ_ERR_SUCCESS;
+}
+
+void mqtt_client_ask_rebirth(struct mqtt_client *client, const char *group, const char *node)
+{
+    uint8_t payload[SPARKPLUG_REBIRTH_BYTES];
+    size_t count = sparkplug_rebirth_write(payload, clock_utc_ns());
+    char *topic = mem_printf("spBv1.0/%s/NCMD/%s", group, node);
+    mosquitto_publish(client->library, NULL, topic, (int)count, payload, 0, false);
+    mem_free(topic);
 }

@@ -43,4 +43,7 @@ int mqtt_client_serve(struct mqtt_client *client, int stop_fd, int64_t deadline_
 /* Asks for topics, which must outlive the client; once for a client. Returns false if it cannot be sent: serve says why. */
 bool mqtt_client_subscribe(struct mqtt_client *client, char *const *topics, size_t count);
 
+/* Asks a Sparkplug node for its birth certificate: nothing else can be published here. */
+void mqtt_client_ask_rebirth(struct mqtt_client *client, const char *group, const char *node);
+
 #endif

@@ -8,6 +8,7 @@
 #include "value/mqtt/mqtt_client.h"
 #include "value/mqtt/mqtt_topics.h"
 #include "value/mqtt/mqtt_writer.h"
+#include "value/mqtt/sparkplug.h"
 #include "value/source_impl.h"
 
 struct mqtt_source {
@@ -17,7 +18,7 @@ struct mqtt_source {
     const struct plant_source *config;
     int index;
     struct store *store;
-    counter *messages_ok, *messages_refused, *samples, *connects, *up, *host;
+    counter *messages_ok, *messages_refused, *samples, *connects, *up, *host, *gaps, *historical, *rebirths;
     int stop_fd;
     pthread_t thread;
     bool has_thread;
@@ -25,6 +26,7 @@ struct mqtt_source {
     /* --- below: used by the source's thread only */
     struct mqtt_topics topics;
     struct mqtt_writer writer;
+    struct sparkplug *sparkplug; /* NULL: other payloads */
     char **subscriptions;
     size_t subscription_count;
     struct mqtt_client *client;
@@ -33,14 +35,15 @@ struct mqtt_source {
     struct backoff backoff;
     bool link_up, link_known;
     bool subscribed;             /* what comes now was published now, unless it says otherwise */
-    int64_t refusal_said_ns;     /* when a refusal was logged last; 0: never */
+    int64_t refusals_ns;         /* since when refusals are counted: a second at most */
+    int refusals_said;           /* of this second */
     long refusals_unsaid;
     int64_t skew_said_ns[2];     /* likewise of clocks that are behind, ahead */
 };
 
 /* Handles a message for the source's tags: refuses it, with words in the log, or writes its values. */
 void mqtt_take_message(struct mqtt_source *mqtt, const struct mqtt_message *message);
-/* Counts a message that is refused and logs it, at most once a second. */
+/* Counts a message that is refused and logs it, at most eight times a second. */
 void mqtt_refuse(struct mqtt_source *mqtt, const struct mqtt_message *message, const char *why);
 
 #endif

@@ -8,6 +8,7 @@
 #include "value/mqtt/mqtt_impl.h"
 #include "value/quality.h"
 
+enum { REFUSALS_SAID = 8 }; /* a second */
 static const int64_t SKEW_NS = 5 * NS_PER_S, SKEW_SAID_NS = 60 * NS_PER_S;
 
 /* For a log line: short, and without what would break it. */
@@ -25,7 +26,11 @@ void mqtt_refuse(struct mqtt_source *mqtt, const struct mqtt_message *message, c
     char topic[64], more[60] = "";
     int64_t now_ns = clock_mono_ns();
     counter_inc(mqtt->messages_refused, 1);
-    if (mqtt->refusal_said_ns && now_ns - mqtt->refusal_said_ns < NS_PER_S) {
+    if (now_ns - mqtt->refusals_ns > NS_PER_S) {
+        mqtt->refusals_ns = now_ns;
+        mqtt->refusals_said = 0;
+    }
+    if (++mqtt->refusals_said > REFUSALS_SAID) {
         mqtt->refusals_unsaid++;
         return;
     }
@@ -34,7 +39,6 @@ void mqtt_refuse(struct mqtt_source *mqtt, const struct mqtt_message *message, c
     log_warn(mqtt->log, "source %s: %s: %zu bytes are refused: %s%s", mqtt->config->id, shown(message->topic, topic), message->count, why,
              more);
     mqtt->refusals_unsaid = 0;
-    mqtt->refusal_said_ns = now_ns;
 }
 
 static void report_skew(struct mqtt_source *mqtt, const char *topic)
@@ -42,6 +46,8 @@ static void report_skew(struct mqtt_source *mqtt, const char *topic)
     int64_t skew_ns = mqtt->writer.worst_skew_ns, now_ns = mqtt->writer.mono_ns;
     char name[64];
     int64_t *said_ns = &mqtt->skew_said_ns[skew_ns > 0];
+    if (mqtt->sparkplug && skew_ns < 0) /* metrics are as old as their last changes */
+        return;
     if ((skew_ns < SKEW_NS && skew_ns > -SKEW_NS) || (*said_ns && now_ns - *said_ns < SKEW_SAID_NS))
         return;
     *said_ns = now_ns;
@@ -61,7 +67,7 @@ static bool take_number(struct mqtt_source *mqtt, const struct mqtt_topic *topic
     if (!mqtt_number_read(message->payload, message->count, &value.value))
         return false;
     for (size_t i = 0; i < topic->tag_count; i++)
-        mqtt_writer_add(&mqtt->writer, topic->tags[i], &value, was_kept);
+        mqtt_writer_add(&mqtt->writer, topic->tags[i], &value, was_kept, false);
     return true;
 }
 
@@ -75,7 +81,7 @@ static bool take_json(struct mqtt_source *mqtt, const struct mqtt_topic *topic, 
         int tag = topic->tags[i];
         enum mqtt_found found = mqtt_json_read(root, &mqtt->config->mqtt, mqtt->plant->tags[tag].path, &value, why);
         if (found == MQTT_FOUND)
-            mqtt_writer_add(&mqtt->writer, tag, &value, message->is_retained || (!mqtt->subscribed && !value.utc_ns));
+            mqtt_writer_add(&mqtt->writer, tag, &value, message->is_retained || (!mqtt->subscribed && !value.utc_ns), false);
         else if (found == MQTT_WRONG)
             mqtt_writer_add_bad(&mqtt->writer, tag, QUALITY_BAD_CONFIGURATION);
         all_good &= found != MQTT_WRONG;
@@ -108,14 +114,14 @@ static bool take(struct mqtt_source *mqtt, const struct mqtt_topic *topic, const
 
 void mqtt_take_message(struct mqtt_source *mqtt, const struct mqtt_message *message)
 {
-    const struct mqtt_topic *topic = mqtt_topics_find(&mqtt->topics, message->topic);
+    const struct mqtt_topic *topic = mqtt->sparkplug ? NULL : mqtt_topics_find(&mqtt->topics, message->topic);
     char why[200];
-    if (!topic) {
+    if (!topic && !mqtt->sparkplug) {
         mqtt_refuse(mqtt, message, "no tag has this topic");
         return;
     }
     mqtt_writer_begin(&mqtt->writer, clock_mono_ns(), clock_utc_ns());
-    bool good = take(mqtt, topic, message, why);
+    bool good = mqtt->sparkplug ? sparkplug_take(mqtt->sparkplug, message, why) : take(mqtt, topic, message, why);
     mqtt_writer_end(&mqtt->writer);
     counter_inc(mqtt->samples, (int64_t)mqtt->writer.written);
     report_skew(mqtt, message->topic);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Tags sorted by topic; those of one topic stand together. */
+/* Tags sorted by topic, then by path; those of one topic stand together. */
 #include "value/mqtt/mqtt_topics.h"
 
 #include <stdlib.h>
@@ -12,6 +12,8 @@ static int by_topic(const void *pa, const void *pb, void *tags_ptr)
     const struct plant_tag *tags = tags_ptr;
     int a = *(const int *)pa, b = *(const int *)pb;
     int order = strcmp(tags[a].topic, tags[b].topic);
+    if (order == 0)
+        order = strcmp(tags[a].path, tags[b].path);
     return order ? order : (a > b) - (a < b);
 }
 

@@ -8,7 +8,7 @@
 
 struct mqtt_topic {
     const char *name; /* the plant's */
-    const int *tags;  /* indices in plant->tags */
+    const int *tags;  /* indices in plant->tags, by path */
     size_t tag_count;
 };
 

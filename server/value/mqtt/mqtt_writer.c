@@ -12,11 +12,13 @@ void mqtt_writer_init(struct mqtt_writer *writer, const struct plant *plant, str
 {
     *writer = (struct mqtt_writer){ .store = store, .plant = plant };
     writer->samples = mem_array(plant->tag_count, sizeof(*writer->samples));
+    writer->last = mem_array(plant->tag_count, sizeof(*writer->last));
 }
 
 void mqtt_writer_finish(struct mqtt_writer *writer)
 {
     mem_free(writer->samples);
+    mem_free(writer->last);
     *writer = (struct mqtt_writer){ 0 };
 }
 
@@ -30,23 +32,40 @@ void mqtt_writer_begin(struct mqtt_writer *writer, int64_t now_mono_ns, int64_t 
 
 void mqtt_writer_end(struct mqtt_writer *writer)
 {
-    int64_t age_ns = writer->utc_ns - writer->at_utc_ns;
     if (writer->count > 0)
-        store_write(writer->store, writer->samples, writer->count, writer->mono_ns - age_ns, writer->at_utc_ns);
+        store_write(writer->store, writer->samples, writer->count, writer->at_mono_ns, writer->at_utc_ns);
     writer->written += writer->count;
     writer->count = 0;
+}
+
+/* The two clocks are never read at one instant: of equal times, the second must not come before the first. */
+static int64_t mono_of(const struct mqtt_writer *writer, int tag, int64_t utc_ns)
+{
+    int64_t mono_ns = writer->mono_ns - (writer->utc_ns - utc_ns);
+    return utc_ns >= writer->last[tag].utc_ns && mono_ns < writer->last[tag].mono_ns ? writer->last[tag].mono_ns : mono_ns;
 }
 
 /* One sample of each tag at most fits a batch. */
 static void add(struct mqtt_writer *writer, const struct sample *sample, int64_t utc_ns)
 {
-    if (utc_ns != writer->at_utc_ns || writer->count == writer->plant->tag_count)
+    int64_t mono_ns = mono_of(writer, sample->tag, utc_ns);
+    if (utc_ns != writer->at_utc_ns || mono_ns != writer->at_mono_ns || writer->count == writer->plant->tag_count)
         mqtt_writer_end(writer);
     writer->at_utc_ns = utc_ns;
+    writer->at_mono_ns = mono_ns;
     writer->samples[writer->count++] = *sample;
+    if (utc_ns < writer->last[sample->tag].utc_ns)
+        return;
+    writer->last[sample->tag].utc_ns = utc_ns;
+    writer->last[sample->tag].mono_ns = mono_ns;
 }
 
-void mqtt_writer_add(struct mqtt_writer *writer, int tag, const struct mqtt_value *value, bool was_kept)
+static int64_t bad_since_ns(const struct mqtt_writer *writer, int tag)
+{
+    return writer->last[tag].is_stated ? writer->last[tag].utc_ns : writer->utc_ns;
+}
+
+void mqtt_writer_add(struct mqtt_writer *writer, int tag, const struct mqtt_value *value, bool was_kept, bool in_order)
 {
     struct sample sample = { .tag = tag, .quality = value->quality };
     int64_t utc_ns = value->utc_ns ? value->utc_ns : writer->utc_ns;
@@ -59,11 +78,14 @@ void mqtt_writer_add(struct mqtt_writer *writer, int tag, const struct mqtt_valu
         if (was_kept && quality_is_good(sample.quality))
             sample.quality = QUALITY_UNCERTAIN_LAST_USABLE;
     }
+    writer->last[tag].is_stated = value->utc_ns != 0;
+    if (in_order && utc_ns < writer->last[tag].utc_ns)
+        utc_ns = writer->last[tag].utc_ns;
     add(writer, &sample, utc_ns < writer->utc_ns ? utc_ns : writer->utc_ns);
 }
 
 void mqtt_writer_add_bad(struct mqtt_writer *writer, int tag, uint32_t quality)
 {
     const struct sample sample = { .tag = tag, .quality = quality };
-    add(writer, &sample, writer->utc_ns);
+    add(writer, &sample, bad_since_ns(writer, tag));
 }

@@ -13,7 +13,11 @@ struct mqtt_writer {
     size_t written;          /* readings of it */
     struct sample *samples;  /* of one time, not written yet; room for all tags */
     size_t count;
-    int64_t at_utc_ns;       /* their time */
+    int64_t at_utc_ns, at_mono_ns; /* their time */
+    struct {
+        int64_t utc_ns, mono_ns; /* of its last sample, by tag */
+        bool is_stated;          /* the time is its sender's */
+    } *last;
 };
 
 void mqtt_writer_init(struct mqtt_writer *writer, const struct plant *plant, struct store *store);
@@ -21,9 +25,11 @@ void mqtt_writer_finish(struct mqtt_writer *writer);
 /* Begins a message that has arrived now. */
 void mqtt_writer_begin(struct mqtt_writer *writer, int64_t now_mono_ns, int64_t now_utc_ns);
 /* Takes the value that the message holds for a tag, before scaling. was_kept: the broker kept it, and it may have changed since: it is
-   Uncertain_LastUsableValue at best. A time ahead of ours is taken for now. */
-void mqtt_writer_add(struct mqtt_writer *writer, int tag, const struct mqtt_value *value, bool was_kept);
-/* Takes a quality in place of a value. */
+   Uncertain_LastUsableValue at best. A time ahead of ours is taken for now. in_order: a time
+   before that of the tag's last sample is taken for that one; else such a sample is passed over. */
+void mqtt_writer_add(struct mqtt_writer *writer, int tag, const struct mqtt_value *value, bool was_kept, bool in_order);
+/* Takes a quality in place of a value, from now on; where times are stated, from the last one on: by a clock that is behind,
+   what comes next would be older than now. */
 void mqtt_writer_add_bad(struct mqtt_writer *writer, int tag, uint32_t quality);
 void mqtt_writer_end(struct mqtt_writer *writer); /* writes what is left */
 

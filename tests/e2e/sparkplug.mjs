@@ -1,0 +1,230 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Sparkplug B, against Debian's mosquitto and the Eclipse project's own client: births, deaths, aliases, types, gaps and rebirths; a node
+// and a broker that are killed.
+import assert from 'node:assert/strict';
+import { after, afterEach, before, test } from 'node:test';
+import sparkplug from 'sparkplug-client';
+import payloads from 'sparkplug-payload';
+import { Broker, missingBroker } from './support/broker.mjs';
+import { PublishedPlant } from './support/published_plant.mjs';
+import { missing } from './support/tiny_plant.mjs';
+
+const absent = missing();
+const options = { skip: absent.length > 0 ? `not built: ${absent.join(', ')}` : missingBroker() ?? false, timeout: 120000 };
+const sleep = (ms) => new Promise((done) => setTimeout(done, ms));
+const encode = (payload) => Buffer.from(payloads.get('spBv1.0').encodePayload(payload));
+const ROWS = ['TI-1,U100/edge#Inlet/Temperature,,°C,temperature,E-101,0.5,0,0,,,,,,',
+    'TI-2,U100/edge/skid#TI-2,,°C,temperature,E-101,-0.5,0,0,,,,,,',
+    'PI-1,U100/edge/skid#Raw,,bar,pressure,P-101A,3,0,0.5,,Linear,0,27648,0,10', 'XS-1,U100/edge/skid#Running,bool,,,,,,,,,,,,'];
+const good = { quality_name: 'Good' }, dead = { quality_name: 'Bad_CommunicationError', value: null };
+let broker, plant, nodes = [];
+const until = (...args) => plant.until(...args), metric = (name) => plant.metric(name);
+
+// A node with one device; births: how often it was asked for them, or gave them.
+async function startNode(more = {}) {
+    const node = sparkplug.newClient({ serverUrl: `mqtt://127.0.0.1:${broker.port}`, username: '', password: '', groupId: 'U100',
+        edgeNode: 'edge', clientId: `edge${Math.random()}`, ...more });
+    nodes.push(node);
+    node.births = 0;
+    node.bear = () => {
+        node.births++;
+        node.publishNodeBirth({ timestamp: Date.now(), metrics: [
+            { name: 'Node Control/Rebirth', type: 'Boolean', value: false },
+            { name: 'Inlet/Temperature', alias: 1, type: 'Double', value: 20.5 }] });
+        node.publishDeviceBirth('skid', { timestamp: Date.now(), metrics: [
+            { name: 'TI-2', alias: 2, type: 'Float', value: -7.5, timestamp: Date.now() - 2000 },
+            { name: 'Raw', alias: 3, type: 'UInt16', value: 13824 },
+            { name: 'Running', alias: 4, type: 'Boolean', value: true },
+            { name: 'Other', alias: 5, type: 'String', value: 'text' }] });
+    };
+    node.on('ncmd', ({ metrics }) => {
+        if (metrics.some(({ name, value }) => name === 'Node Control/Rebirth' && value === true))
+            node.bear();
+    });
+    await new Promise((done) => node.once('birth', done));
+    node.bear();
+    node.on('birth', node.bear);
+    return node;
+}
+
+// Gone without a word: the broker publishes the death certificate.
+const kill = (node) => node.client.stream.destroy();
+
+before(async () => {
+    if (options.skip)
+        return;
+    broker = await Broker.start();
+    plant = await PublishedPlant.create(broker);
+});
+afterEach(async () => {
+    await plant?.daemon?.stop();
+    nodes.forEach((node) => node.client.end(true));
+    nodes = [];
+    await broker?.restart();
+});
+after(async () => {
+    await plant?.destroy();
+    await broker?.destroy();
+});
+
+test('births and data, by name and by alias, of every kind of number', options, async () => {
+    await plant.run('payload: sparkplug', ROWS);
+    const node = await startNode();
+    await until('TI-1', { ...good, value: 20.5 });
+    const older = await until('TI-2', { ...good, value: -7.5 });
+    assert.ok(older.age_ms >= 2000 && older.age_ms < 10000, `${older.age_ms} ms`);
+    await until('PI-1', { ...good, value: 5 });
+    await until('XS-1', { ...good, value: 1 });
+    node.publishNodeData({ timestamp: Date.now(), metrics: [{ alias: 1, type: 'Double', value: 21.25 }] });
+    node.publishDeviceData('skid', { timestamp: Date.now(), metrics: [{ alias: 4, type: 'Boolean', value: false },
+        { name: 'TI-2', type: 'Float', value: 3.5, properties: { Quality: { type: 'Int32', value: 500 } } },
+        { alias: 3, type: 'UInt16', value: 0, isHistorical: true }, { alias: 5, type: 'String', value: 'more' }] });
+    await until('TI-1', { ...good, value: 21.25 });
+    await until('XS-1', { ...good, value: 0 });
+    await until('TI-2', { quality_name: 'Uncertain_NoCommunicationLastUsableValue', value: 3.5 });
+    await until('PI-1', { ...good, value: 5 }); // history is not now
+    assert.equal(await metric('historical_total'), 1);
+    node.publishDeviceData('skid', { timestamp: Date.now(), metrics: [{ alias: 3, type: 'UInt16', value: null, isNull: true },
+        { alias: 4, type: 'Boolean', value: true, properties: { Quality: { type: 'Int32', value: 0 } } }] });
+    await until('PI-1', { quality_name: 'Bad_SensorFailure' });
+    await until('XS-1', { quality: 'bad' });
+    assert.equal(await metric('gaps_total'), 0);
+    assert.equal(await metric('rebirths_total'), 0);
+});
+
+test('the death of a device and of a node makes all its tags Bad at once', options, async () => {
+    await plant.run('payload: sparkplug', ROWS);
+    const node = await startNode();
+    await until('XS-1', { ...good, value: 1 });
+    node.publishDeviceDeath('skid', { timestamp: Date.now() });
+    for (const name of ['TI-2', 'PI-1', 'XS-1'])
+        await until(name, dead, 1);
+    await until('TI-1', good, 1);
+    node.bear();
+    await until('XS-1', { ...good, value: 1 });
+    kill(node);
+    for (const name of ['TI-1', 'TI-2', 'PI-1', 'XS-1'])
+        await until(name, dead, 1);
+    await until('TI-1', { ...good, value: 20.5 }); // it has come back by itself
+});
+
+test('an old death certificate is ignored', options, async () => {
+    await plant.run('payload: sparkplug', ROWS);
+    const node = await startNode();
+    await until('XS-1', { ...good, value: 1 });
+    const late = await broker.client();
+    const death = (bdSeq) => encode({ timestamp: Date.now(), metrics: [{ name: 'bdSeq', type: 'UInt64', value: bdSeq }] });
+    await late.tell('spBv1.0/U100/NDEATH/edge', death(node.bdSeq + 1));
+    await plant.daemon.line(/U100\/edge: an old death certificate \(1, its birth has 0\) is ignored/);
+    await until('TI-1', good, 1);
+    await late.tell('spBv1.0/U100/NDEATH/edge', death(node.bdSeq));
+    await until('TI-1', dead, 1);
+    await late.leave();
+});
+
+test('a lost message leaves no value Good; the node is asked for its birth only where that is allowed', options, async () => {
+    for (const rebirth of ['no', 'yes']) {
+        await plant.run(`payload: sparkplug, rebirth: ${rebirth}`, ROWS);
+        const node = await startNode();
+        await until('XS-1', { ...good, value: 1 });
+        const births = node.births;
+        node.seq += 3;
+        node.publishNodeData({ timestamp: Date.now(), metrics: [{ alias: 1, type: 'Double', value: 30 }] });
+        if (rebirth === 'no')
+            for (const [name, value] of [['TI-2', -7.5], ['PI-1', 5], ['XS-1', 1]])
+                await until(name, { quality_name: 'Uncertain_LastUsableValue', value });
+        await plant.daemon.line(/U100\/edge: messages are missing: number 5 came, 2 was next/);
+        for (const end = performance.now() + 20000; rebirth === 'yes' && node.births === births; await sleep(100))
+            assert.ok(performance.now() < end, 'asked for its birth');
+        await until('TI-1', { ...good, value: rebirth === 'no' ? 30 : 20.5 });
+        await until('XS-1', { quality_name: rebirth === 'no' ? 'Uncertain_LastUsableValue' : 'Good', value: 1 });
+        await sleep(500);
+        assert.equal(node.births > births, rebirth === 'yes');
+        assert.equal(await metric('gaps_total'), 1);
+        await plant.daemon.stop();
+        node.stop();
+    }
+});
+
+test('who was born before we came is read once its birth is known', options, async () => {
+    const node = await startNode(), stranger = await broker.client();
+    await stranger.tell('spBv1.0/U100/NBIRTH/edge', encode({ seq: 0, metrics: [{ name: 'Inlet/Temperature', type: 'Double', value: 9 }] }),
+        { retain: true });
+    await plant.run('payload: sparkplug', ROWS);
+    await plant.daemon.line(/NBIRTH\/edge: \d+ bytes are refused: a message that the broker has kept says nothing of now/);
+    await stranger.tell('spBv1.0/U100/NBIRTH/edge', '', { retain: true });
+    await stranger.leave();
+    await sleep(200);
+    node.publishNodeData({ timestamp: Date.now(), metrics: [{ name: 'Inlet/Temperature', type: 'Double', value: 30 }] });
+    await plant.daemon.line(/U100\/edge: its birth certificate is not known, so its values are not read; rebirth: yes would ask for it/);
+    await until('TI-1', { quality_name: 'Bad_WaitingForInitialData' });
+    await plant.daemon.stop();
+    await plant.run('payload: sparkplug, rebirth: yes', ROWS);
+    await until('XS-1', { ...good, value: 1 });
+    assert.equal(node.births, 2);
+});
+
+test('the broker is killed and comes back; so do node and tags', options, async () => {
+    await plant.run('payload: sparkplug, rebirth: yes', ROWS);
+    await startNode({ mqttOptions: { reconnectPeriod: 200 } });
+    await until('XS-1', { ...good, value: 1 });
+    await broker.kill();
+    for (const name of ['TI-1', 'TI-2', 'PI-1', 'XS-1'])
+        await until(name, dead, 1);
+    await broker.restart();
+    await until('XS-1', { ...good, value: 1 }, 30);
+    await until('TI-1', good);
+});
+
+test('what is no Sparkplug, and metrics that change their type, are refused by name', options, async () => {
+    await plant.run('payload: sparkplug', ROWS);
+    const node = await startNode();
+    await until('XS-1', { ...good, value: 1 });
+    const stranger = await broker.client();
+    await stranger.tell('spBv1.0/U100/NDATA/edge', Buffer.from([0xff, 0xff, 0xff, 0xff, 0x0f, 1, 2, 3]));
+    await plant.daemon.line(/NDATA\/edge: 8 bytes are refused: no Sparkplug B payload/);
+    await stranger.tell(`spBv1.0/U100/DDATA/edge/${'x'.repeat(65000)}`, encode({ metrics: [] }));
+    await plant.daemon.line(/U100\/DDATA\/edge\/x+\.\.\.: \d+ bytes are refused/);
+    await stranger.tell('spBv1.0/U100/NDATA/edge', Buffer.alloc(5 << 20)).catch(() => {});
+    await stranger.leave();
+    node.bear();
+    await until('TI-1', { ...good, value: 20.5 });
+    node.publishDeviceData('skid', { timestamp: Date.now(), metrics: [{ alias: 2, type: 'Int32', value: 5 },
+        { alias: 4, type: 'Boolean', value: false }] });
+    await until('TI-2', { quality_name: 'Bad_ConfigurationError' });
+    await until('XS-1', { ...good, value: 0 });
+    await plant.daemon.line(/DDATA\/edge\/skid: \d+ bytes are refused: metric TI-2 was born as Float and is Int32 now/);
+    node.publishDeviceBirth('skid', { timestamp: Date.now(), metrics: [{ name: 'TI-2', type: 'Int32', value: -5 }] });
+    await until('TI-2', { ...good, value: -5 }); // it may be born anew
+    await until('PI-1', { quality_name: 'Bad_ConfigurationError' });
+    await plant.daemon.line(/U100\/edge\/skid: its birth certificate has no metric 'Raw', and not some others/);
+});
+
+// Each of 4,000 metrics five times a second, in messages of so many.
+for (const each of [4000, 40])
+    test(`20,000 metrics a second, ${each} in a message`, options, async () => {
+        const MANY = 4000, SECONDS = 4, name = (i) => `N-${i}`;
+        const numbers = Array.from({ length: MANY }, (_, i) => i);
+        await plant.run('payload: sparkplug', [ROWS[0], ...numbers.map((i) => `${name(i)},U100/edge#${name(i)},,,,,,,,,,,,,`)]);
+        const node = await startNode();
+        const born = numbers.map((i) => ({ name: name(i), alias: i, type: 'Float', value: -1 }));
+        node.publishNodeBirth({ timestamp: Date.now(), metrics: born });
+        await until(name(MANY - 1), { ...good, value: -1 });
+        const before = await metric('samples_total'), begun = performance.now();
+        let sent = 0, round = 0;
+        for (; round < 5 * SECONDS; round++) {
+            for (let first = 0; first < MANY; first += each) {
+                const metrics = numbers.slice(first, first + each).map((i) => ({ alias: i, type: 'Float', value: (i + round) % 1000 }));
+                node.publishNodeData({ timestamp: Date.now(), metrics });
+                sent += each;
+            }
+            await sleep(Math.max(0, begun + (round + 1) * 200 - performance.now()));
+        }
+        const seconds = (performance.now() - begun) / 1000;
+        await until(name(MANY - 1), { ...good, value: (MANY + round - 2) % 1000 }, 20);
+        const caught = (performance.now() - begun) / 1000;
+        assert.equal(await metric('samples_total') - before, sent);
+        assert.equal(await metric('gaps_total'), 0);
+        const rate = Math.round(sent / seconds);
+        console.log(`${sent} metrics sent in ${seconds.toFixed(2)} s (${rate} a second), read after ${caught.toFixed(2)} s`);
+    });

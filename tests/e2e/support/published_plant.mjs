@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A plant of two boxes whose only source is a broker, and how its tags are read.
+import assert from 'node:assert/strict';
+import { writeFileSync } from 'node:fs';
+import { join } from 'node:path';
+import { TinyPlant } from './tiny_plant.mjs';
+
+const HEAD = 'Tag Name,Address,Data Type,Eng Units,Group,Asset,X,Y,Z,Stale s,Scaling,Raw Low,Raw High,Scaled Low,Scaled High';
+const sleep = (ms) => new Promise((done) => setTimeout(done, ms));
+
+export class PublishedPlant {
+    static async create(broker) {
+        const published = new PublishedPlant();
+        published.broker = broker;
+        published.plant = await TinyPlant.create();
+        return published;
+    }
+
+    get file() { return this.plant.file; }
+    get folder() { return this.plant.folder; }
+    get daemon() { return this.plant.daemon; }
+
+    // The source's keys and the rows of the tag list, anew.
+    write(keys, rows) {
+        writeFileSync(this.file, `plant: { name: Two boxes }
+assets:
+  - { id: E-101, model: box.gltf }
+  - { id: P-101A, model: box.gltf, placement: { translate: [3, 0, 0] } }
+groups:
+  - { id: temperature, quantity: Temperature, unit: °C, min: 0, max: 100 }
+  - { id: pressure, quantity: Pressure, unit: bar, min: 0, max: 10, distance: euclidean }
+sources:
+  - { id: broker, type: mqtt, host: 127.0.0.1, port: ${this.broker.port}, ${keys} }
+tags: tags.csv
+`);
+        writeFileSync(join(this.folder, 'tags.csv'), `${[HEAD, ...rows].join('\n')}\n`);
+    }
+
+    // The same, prepared, with a daemon that has subscribed.
+    async run(keys, rows) {
+        this.write(keys, rows);
+        const prepared = this.plant.prepare();
+        assert.equal(prepared.code, 0, prepared.err);
+        await this.plant.startDaemon();
+        await this.daemon.line(/source broker: .*: reading/, 15000);
+    }
+
+    async get(path) {
+        return (await fetch(`http://127.0.0.1:${this.plant.port}${path}`)).json();
+    }
+
+    // By name; of at most 5,000.
+    async tags() {
+        return Object.fromEntries((await this.get('/api/v1/tags?count=5000')).tags.map((tag) => [tag.name, tag]));
+    }
+
+    // Waits until the tag is as said; returns it.
+    async until(name, wanted, seconds = 10) {
+        for (const end = performance.now() + seconds * 1000; ; await sleep(20)) {
+            const tag = (await this.tags())[name];
+            if (Object.entries(wanted).every(([key, value]) => tag[key] === value))
+                return tag;
+            assert.ok(performance.now() < end, `${name} is ${JSON.stringify(tag)}, wanted ${JSON.stringify(wanted)}`);
+        }
+    }
+
+    // A number of /metrics, by the beginning of its line.
+    async metric(name) {
+        const text = await (await fetch(`http://127.0.0.1:${this.plant.port}/metrics`)).text();
+        return Number(text.split('\n').find((line) => line.startsWith(`plantcast_source_${name}`))?.split(' ').at(-1));
+    }
+
+    destroy() {
+        return this.plant.destroy();
+    }
+}
