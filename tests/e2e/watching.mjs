@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What watches a server: the rules of deploy/prometheus and the panels of deploy/grafana, in a real Prometheus that reads a real daemon.
+import assert from 'node:assert/strict';
+import { spawn, spawnSync } from 'node:child_process';
+import { mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
+import { tmpdir } from 'node:os';
+import { join, resolve } from 'node:path';
+import { test } from 'node:test';
+import { freePort } from './support/ports.mjs';
+import { missing, TinyPlant } from './support/tiny_plant.mjs';
+
+const RULES = resolve('deploy/prometheus'), absent = missing();
+const noPrometheus = spawnSync('promtool', ['--version']).status !== 0 && 'prometheus is not installed';
+const sleep = (ms) => new Promise((done) => setTimeout(done, ms));
+const promtool = (...args) => spawnSync('promtool', args, { cwd: RULES, encoding: 'utf8', timeout: 60000 });
+
+test('every rule is one to promtool, fires when it should, and has its place in the runbook', { skip: noPrometheus }, () => {
+    for (const args of [['check', 'rules', 'rules.yml'], ['test', 'rules', 'rules.test.yml'], ['check', 'config', 'prometheus.yml']]) {
+        const { status, stdout, stderr } = promtool(...args);
+        assert.equal(status, 0, `${args.join(' ')}: ${stdout}${stderr}`);
+    }
+    const rules = readFileSync(join(RULES, 'rules.yml'), 'utf8'), runbook = readFileSync(join(RULES, 'RUNBOOK.md'), 'utf8');
+    const alerts = [...rules.matchAll(/- alert: (\w+)/g)].map(([, name]) => name);
+    const links = [...rules.matchAll(/runbook_url: RUNBOOK\.md#(\w+)/g)].map(([, name]) => name);
+    assert.deepEqual(links, alerts.map((name) => name.toLowerCase()));
+    assert.deepEqual([...runbook.matchAll(/^## (\w+)$/gm)].map(([, name]) => name), alerts);
+});
+
+// Of a plant without notifications, a certificate or a backup, and without clients: these are empty.
+const EMPTY = /notify|certificate|backup|histogram_quantile|\[1d|predict_linear/;
+
+test('Prometheus reads a daemon, takes the rules, and every panel asks for what there is',
+    { skip: noPrometheus || (absent.length > 0 ? `not built: ${absent.join(', ')}` : false), timeout: 200000 }, async () => {
+        const folder = mkdtempSync(join(tmpdir(), 'plantcast-prometheus-')), port = await freePort(), plant = await TinyPlant.running();
+        writeFileSync(join(folder, 'prometheus.yml'), readFileSync(join(RULES, 'prometheus.yml'), 'utf8').replace('15s', '1s')
+            .replace('15s', '1s').replace('rules.yml', join(RULES, 'rules.yml')).replace('127.0.0.1:8080', `127.0.0.1:${plant.port}`));
+        const prometheus = spawn('prometheus', [`--config.file=${join(folder, 'prometheus.yml')}`, `--storage.tsdb.path=${join(folder, 'data')}`,
+            `--web.listen-address=127.0.0.1:${port}`], { stdio: 'ignore' });
+        const ask = async (path) => (await fetch(`http://127.0.0.1:${port}/api/v1/${path}`)).json();
+        const query = (expr) => ask(`query?query=${encodeURIComponent(expr)}`);
+        try {
+            for (const end = Date.now() + 90000; Date.now() < end; await sleep(500)) {
+                const { data } = await query('count_over_time(plantcast_build_info[1m])').catch(() => ({}));
+                if (Number(data?.result?.[0]?.value?.[1]) >= 10)
+                    break;
+            }
+            const { data: { groups } } = await ask('rules');
+            for (const rule of groups.flatMap(({ rules }) => rules))
+                assert.equal(rule.health, 'ok', `${rule.name}: ${rule.lastError}`);
+            for (const name of ['operations', 'alarms']) {
+                const { panels, templating } = JSON.parse(readFileSync(resolve(`deploy/grafana/${name}.json`), 'utf8'));
+                assert.deepEqual(templating.list.map(({ type }) => type), ['datasource', 'query']);
+                for (const { title, targets } of panels)
+                    for (const { expr } of targets) {
+                        const { status, error, data } = await query(expr.replaceAll('$instance', '.+'));
+                        assert.equal(status, 'success', `${title}: ${expr}: ${error}`);
+                        assert.ok(EMPTY.test(expr) || data.result.length > 0, `${name}, ${title}: nothing for ${expr}`);
+                    }
+            }
+        } finally {
+            prometheus.kill();
+            await plant.destroy();
+            rmSync(folder, { recursive: true, force: true });
+        }
+    });
+
+const noGrafana = spawnSync('grafana-server', ['-v']).status !== 0 && 'grafana-server is not installed (Debian has none)';
+test('Grafana takes the dashboards as they are', { skip: noGrafana, timeout: 120000 }, async () => {
+    const folder = mkdtempSync(join(tmpdir(), 'plantcast-grafana-')), port = await freePort();
+    const grafana = spawn('grafana-server', ['--homepath', '/usr/share/grafana'], { stdio: 'ignore', env: { ...process.env,
+        GF_SERVER_HTTP_PORT: String(port), GF_SERVER_HTTP_ADDR: '127.0.0.1', GF_PATHS_DATA: folder, GF_PATHS_LOGS: folder } });
+    const call = (path, init) => fetch(`http://127.0.0.1:${port}/api/${path}`, { ...init,
+        headers: { authorization: `Basic ${Buffer.from('admin:admin').toString('base64')}`, 'content-type': 'application/json' } });
+    try {
+        for (const end = Date.now() + 60000; Date.now() < end && !(await call('health').catch(() => ({}))).ok;)
+            await sleep(500);
+        for (const name of ['operations', 'alarms']) {
+            const dashboard = JSON.parse(readFileSync(resolve(`deploy/grafana/${name}.json`), 'utf8'));
+            const answer = await call('dashboards/db', { method: 'POST', body: JSON.stringify({ dashboard, overwrite: true }) });
+            assert.equal(answer.status, 200, await answer.text());
+        }
+    } finally {
+        grafana.kill();
+        rmSync(folder, { recursive: true, force: true });
+    }
+});
