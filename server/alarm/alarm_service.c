@@ -161,9 +161,8 @@ static bool wait_for_tick(struct alarm_service *service, int64_t *next_ns)
 {
     int64_t now_ns = clock_mono_ns();
     *next_ns = *next_ns + TICK_NS < now_ns ? now_ns : *next_ns + TICK_NS;
-    struct timespec until = { *next_ns / NS_PER_S, *next_ns % NS_PER_S };
     pthread_mutex_lock(&service->lock);
-    while (!service->stopping && pthread_cond_timedwait(&service->wake, &service->lock, &until) != ETIMEDOUT)
+    while (!service->stopping && clock_cond_wait(&service->wake, &service->lock, *next_ns))
         continue;
     bool stopping = service->stopping;
     pthread_mutex_unlock(&service->lock);
@@ -238,11 +237,7 @@ struct alarm_service *alarm_service_start(const struct alarm_service_params *par
 {
     struct alarm_service *service = mem_new(sizeof(*service));
     const struct alarms_listener listener = { on_change, on_tag, service };
-    pthread_condattr_t attributes;
-    pthread_condattr_init(&attributes);
-    pthread_condattr_setclock(&attributes, CLOCK_MONOTONIC);
-    pthread_cond_init(&service->wake, &attributes);
-    pthread_condattr_destroy(&attributes);
+    clock_cond_init(&service->wake);
     pthread_mutex_init(&service->lock, NULL);
     pthread_mutex_init(&service->queue_lock, NULL);
     service->params = *params;

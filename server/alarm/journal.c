@@ -104,10 +104,9 @@ static void take(struct journal *journal)
 /* Until there is something, and then a moment more: what comes together is written together. */
 static bool wait_for_work(struct journal *journal)
 {
-    int64_t now_ns = clock_mono_ns(), until_ns = now_ns + GATHER_NS;
-    struct timespec until = { until_ns / NS_PER_S, until_ns % NS_PER_S };
+    int64_t until_ns = clock_mono_ns() + GATHER_NS;
     pthread_mutex_lock(&journal->lock);
-    while (!journal->stopping && pthread_cond_timedwait(&journal->wake, &journal->lock, &until) != ETIMEDOUT)
+    while (!journal->stopping && clock_cond_wait(&journal->wake, &journal->lock, until_ns))
         continue;
     while (!journal->stopping && !journal->waiting.count && !journal->taken.count)
         pthread_cond_wait(&journal->wake, &journal->lock);
@@ -217,11 +216,7 @@ static void add_counters(struct journal *journal, struct counters *counters)
 struct journal *journal_start(const struct journal_params *params, struct alarms *alarms, struct instant now)
 {
     struct journal *journal = mem_new(sizeof(*journal));
-    pthread_condattr_t attributes;
-    pthread_condattr_init(&attributes);
-    pthread_condattr_setclock(&attributes, CLOCK_MONOTONIC);
-    pthread_cond_init(&journal->wake, &attributes);
-    pthread_condattr_destroy(&attributes);
+    clock_cond_init(&journal->wake);
     pthread_mutex_init(&journal->lock, NULL);
     journal->log = params->log;
     journal->folder = mem_strdup(params->folder);

@@ -2,6 +2,7 @@
 /* The two clocks. */
 #include "base/clock.h"
 
+#include <errno.h>
 #include <sys/timex.h>
 #include <time.h>
 
@@ -43,4 +44,12 @@ void clock_cond_init(pthread_cond_t *cond)
     pthread_condattr_setclock(&attributes, CLOCK_MONOTONIC);
     pthread_cond_init(cond, &attributes);
     pthread_condattr_destroy(&attributes);
+}
+
+bool clock_cond_wait(pthread_cond_t *cond, pthread_mutex_t *lock, int64_t until_mono_ns)
+{
+    const struct timespec until = { .tv_sec = until_mono_ns / NS_PER_S, .tv_nsec = until_mono_ns % NS_PER_S };
+    if (until_mono_ns == INT64_MAX)
+        return pthread_cond_wait(cond, lock) == 0;
+    return pthread_cond_timedwait(cond, lock, &until) != ETIMEDOUT;
 }

@@ -13,6 +13,8 @@ int64_t clock_mono_ns(void); /* returns monotonic time, for ages and deadlines *
 int64_t clock_utc_ns(void);  /* returns UTC since 1970, for what is shown and stored */
 bool clock_utc_is_set(void); /* returns whether NTP or PTP synchronizes the clock, according to the kernel */
 void clock_cond_init(pthread_cond_t *cond); /* initializes a condition variable whose timed waits use clock_mono_ns() */
+/* Waits for that condition, or until then; INT64_MAX: without limit. Returns false when that time has come. Under the lock. */
+bool clock_cond_wait(pthread_cond_t *cond, pthread_mutex_t *lock, int64_t until_mono_ns);
 int64_t clock_work_ns(void); /* returns the CPU time of this process, of all threads */
 
 #endif

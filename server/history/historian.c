@@ -400,13 +400,10 @@ static void tick(struct historian *historian, bool last)
 
 static bool wait_for_tick(struct historian *historian, int64_t *next_ns)
 {
-    *next_ns += TICK_NS;
     int64_t now_ns = clock_mono_ns();
-    if (*next_ns < now_ns)
-        *next_ns = now_ns;
-    struct timespec until = { *next_ns / NS_PER_S, *next_ns % NS_PER_S };
+    *next_ns = *next_ns + TICK_NS < now_ns ? now_ns : *next_ns + TICK_NS;
     pthread_mutex_lock(&historian->lock);
-    while (!historian->stopping && pthread_cond_timedwait(&historian->wake, &historian->lock, &until) != ETIMEDOUT)
+    while (!historian->stopping && clock_cond_wait(&historian->wake, &historian->lock, *next_ns))
         continue;
     bool stopping = historian->stopping;
     pthread_mutex_unlock(&historian->lock);
@@ -446,11 +443,7 @@ static void add_counters(struct historian *historian, struct counters *counters)
 struct historian *historian_start(const struct historian_params *params)
 {
     struct historian *historian = mem_new(sizeof(*historian));
-    pthread_condattr_t attributes;
-    pthread_condattr_init(&attributes);
-    pthread_condattr_setclock(&attributes, CLOCK_MONOTONIC);
-    pthread_cond_init(&historian->wake, &attributes);
-    pthread_condattr_destroy(&attributes);
+    clock_cond_init(&historian->wake);
     pthread_mutex_init(&historian->lock, NULL);
     historian->log = params->log;
     historian->plant = params->plant;

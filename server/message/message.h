@@ -29,9 +29,9 @@ enum message_type {
     MESSAGE_ALARM,
     MESSAGE_TIME,
     MESSAGE_PLACE,
-    MESSAGE_GAPS,
+    MESSAGE_COVERAGE,
     MESSAGE_SAVE_TAGS,
-    MESSAGE_PROVE
+    MESSAGE_LOOP_CHECK
 };
 
 enum { TOKEN_MAX_CHARS = 128, RESUME_CHARS = 32 };
@@ -136,12 +136,12 @@ struct place_request {
     size_t count;
 };
 
-struct gaps_request {
+struct coverage_request {
     int group;    /* -1: the group that is shown */
     double far_m; /* 0: the default */
 };
 
-struct prove_request {
+struct loop_check_request {
     int tag;
     double expected, tolerance;
     bool fail; /* failed, whatever the value is */
@@ -169,9 +169,9 @@ struct message {
     struct alarm_request alarm;
     struct time_request time; /* time, hello */
     struct place_request place;
-    struct gaps_request gaps;
+    struct coverage_request coverage;
     char confirm[17]; /* save_tags: hash of the list that was seen; "": none yet */
-    struct prove_request prove;
+    struct loop_check_request loop_check;
 };
 
 /* Reads an instant (base/timestamp.h) of the argument `name` into *out, in microseconds UTC. Returns false, with *error set, for any other

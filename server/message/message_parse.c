@@ -11,7 +11,7 @@
 #include "message/json_fields.h"
 #include "message/fit_message.h"
 #include "message/place_message.h"
-#include "message/prove_message.h"
+#include "message/loop_check_message.h"
 
 static bool size_parse(const json_t *o, struct message *out, struct message_error *error)
 {
@@ -208,9 +208,9 @@ static const struct {
     { "lead", MESSAGE_LEAD, parse_lead },
     { "time", MESSAGE_TIME, parse_time },
     { "place", MESSAGE_PLACE, place_parse },
-    { "gaps", MESSAGE_GAPS, gaps_parse },
+    { "gaps", MESSAGE_COVERAGE, coverage_parse },
     { "save_tags", MESSAGE_SAVE_TAGS, save_tags_parse },
-    { "prove", MESSAGE_PROVE, prove_parse },
+    { "prove", MESSAGE_LOOP_CHECK, loop_check_parse },
 };
 
 static bool parse_object(const struct plant *plant, const json_t *o, struct message *out, struct message_error *error)

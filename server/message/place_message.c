@@ -48,16 +48,16 @@ bool place_parse(const struct plant *plant, const json_t *o, struct message *out
     return true;
 }
 
-bool gaps_parse(const struct plant *plant, const json_t *o, struct message *out, struct message_error *error)
+bool coverage_parse(const struct plant *plant, const json_t *o, struct message *out, struct message_error *error)
 {
     const char *group = json_string_value(json_object_get(o, "group"));
     char name[48];
-    out->gaps.group = group ? plant_find_group(plant, group) : -1;
-    if (group && out->gaps.group < 0) {
+    out->coverage.group = group ? plant_find_group(plant, group) : -1;
+    if (group && out->coverage.group < 0) {
         message_fail(error, "bad_field", "group: there is no group '%s'", quoted(group, name));
         return false;
     }
-    return need_seq(o, &out->seq, error) && may_number(o, "far_m", 1e-3, 1e6, &out->gaps.far_m, NULL, error);
+    return need_seq(o, &out->seq, error) && may_number(o, "far_m", 1e-3, 1e6, &out->coverage.far_m, NULL, error);
 }
 
 bool save_tags_parse(const struct plant *plant, const json_t *o, struct message *out, struct message_error *error)
@@ -109,18 +109,19 @@ static json_t *far_list(const struct scene *scene, const struct place_set *set, 
     return list;
 }
 
-char *gaps_text(const struct scene *scene, const struct place_set *set, const struct sensor_coverage_answer *answer)
+char *coverage_text(const struct scene *scene, const struct place_set *set, const struct sensor_coverage_answer *answer)
 {
     const struct plant *plant = scene->plant;
     json_t *assets = json_array();
     for (size_t i = 0; i < answer->count; i++) {
-        const struct sensor_coverage *gaps = &answer->assets[i].gaps;
-        const int *pair = gaps->next_tags;
+        const struct sensor_coverage *coverage = &answer->assets[i].coverage;
+        const int *pair = coverage->next_tags;
         json_t *next = pair[0] < 0 ? json_null() : json_pack("[s,s]", plant->tags[pair[0]].name, plant->tags[pair[1]].name);
-        json_t *said = json_pack("{s:s,s:i,s:f,s:f,s:o}", "asset", plant->assets[answer->assets[i].asset].id, "sensors", (int)gaps->sensors,
-                                 "far_m", gaps->far_m, "farthest_m", gaps->farthest_m, "farthest_at", vector(gaps->farthest_at_m));
-        json_object_update_new(said, json_pack("{s:f,s:f,s:f,s:o}", "far_share", gaps->far_share, "lost_share", gaps->lost_share, "next_m",
-                                               gaps->next_m, "next", next));
+        json_t *said =
+            json_pack("{s:s,s:i,s:f,s:f,s:o}", "asset", plant->assets[answer->assets[i].asset].id, "sensors", (int)coverage->sensors,
+                      "far_m", coverage->far_m, "farthest_m", coverage->farthest_m, "farthest_at", vector(coverage->farthest_at_m));
+        json_object_update_new(said, json_pack("{s:f,s:f,s:f,s:o}", "far_share", coverage->far_share, "lost_share", coverage->lost_share,
+                                               "next_m", coverage->next_m, "next", next));
         json_array_append_new(assets, said);
     }
     return json_text(json_pack("{s:s,s:I,s:s,s:o,s:o}", "type", "gaps", "seq", (json_int_t)answer->seq, "group",

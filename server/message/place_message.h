@@ -5,15 +5,15 @@
 #include "message/message.h"
 #include "placing/tag_file.h"
 
-/* Parse a message into out->place, out->gaps, out->confirm. Return false with *error saying what is wrong. */
+/* Parse a message into out->place, out->coverage, out->confirm. Return false with *error saying what is wrong. */
 bool place_parse(const struct plant *plant, const json_t *o, struct message *out, struct message_error *error);
-bool gaps_parse(const struct plant *plant, const json_t *o, struct message *out, struct message_error *error);
+bool coverage_parse(const struct plant *plant, const json_t *o, struct message *out, struct message_error *error);
 bool save_tags_parse(const struct plant *plant, const json_t *o, struct message *out, struct message_error *error);
 
 /* Returns `placed`, the answer to `place`: where the sensors are by now; mem_free. */
 char *placed_text(const struct plant *plant, const struct place_set *set, uint32_t seq);
 /* Returns `gaps`, the answer to it: surfaces that no sensor covers; mem_free. */
-char *gaps_text(const struct scene *scene, const struct place_set *set, const struct sensor_coverage_answer *answer);
+char *coverage_text(const struct scene *scene, const struct place_set *set, const struct sensor_coverage_answer *answer);
 /* Returns how the list in force, `before`, would change by the moves of the set, for the client to confirm; mem_free. If the message
    confirms that very list, *order is a request to put it in force (tag_save_free); else NULL. who: the user's name. */
 char *tags_diff_text(const struct plant *plant, const char *before, const struct place_set *set, const struct message *message,

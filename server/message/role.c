@@ -48,8 +48,8 @@ bool role_may_send(enum role role, const struct message *message, struct message
     }
     if (message->type == MESSAGE_ALARM)
         return alarm_allowed(role, message, error);
-    bool engineers = message->type == MESSAGE_PLACE || message->type == MESSAGE_GAPS || message->type == MESSAGE_SAVE_TAGS ||
-                     message->type == MESSAGE_PROVE;
+    bool engineers = message->type == MESSAGE_PLACE || message->type == MESSAGE_COVERAGE || message->type == MESSAGE_SAVE_TAGS ||
+                     message->type == MESSAGE_LOOP_CHECK;
     if (engineers && role < ROLE_ENGINEER) {
         message_fail(error, "not_allowed", "to place or prove sensors takes the role engineer, not %s", name_of(names_role, role));
         return false;

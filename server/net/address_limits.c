@@ -24,16 +24,16 @@ struct address_limits *address_limits_create(const struct quotas *quotas, bool e
     return limits;
 }
 
-void address_limits_destroy(struct address_limits **peers_ptr)
+void address_limits_destroy(struct address_limits **limits_ptr)
 {
-    struct address_limits *limits = *peers_ptr;
+    struct address_limits *limits = *limits_ptr;
     if (!limits)
         return;
     for (size_t i = 0; i < limits->count; i++)
         mem_free(limits->all[i]);
     mem_free(limits->all);
     mem_free(limits);
-    *peers_ptr = NULL;
+    *limits_ptr = NULL;
 }
 
 static void read_address(const char *text, struct address_usage *out)

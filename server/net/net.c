@@ -20,9 +20,9 @@
 #include "session/resume.h"
 
 static const int64_t TICK_NS = 100 * NS_PER_MS, REST_NS = NS_PER_S; /* between ticks; when no session waits for anything */
-static const int64_t GOODBYE_NS = 500 * NS_PER_MS; /* for the close frames to leave */
-static const int64_t LOOK_NS = NS_PER_S;           /* at the files of tokens and certificate, so often */
-enum { SPARE_FILES = 256 };                        /* beside connections: models, sources, the database */
+static const int64_t GOODBYE_NS = 500 * NS_PER_MS;                  /* for the close frames to leave */
+static const int64_t LOOK_NS = NS_PER_S;                            /* at the files of tokens and certificate, so often */
+enum { SPARE_FILES = 256 };                                         /* beside connections: models, sources, the database */
 
 static const struct lws_protocols protocols[] = {
     { .name = "http", .callback = http_callback, .per_session_data_size = sizeof(void *) },
@@ -142,13 +142,13 @@ static void collect_picks(struct server_context *server)
     }
 }
 
-static void collect_recalled(struct server_context *server)
+static void collect_history_answers(struct server_context *server)
 {
-    struct history_answer *recalled = server->history_queries ? history_queries_collect(server->history_queries) : NULL;
-    for (struct history_answer *next; recalled; recalled = next) {
-        next = recalled->next;
-        http_on_history_answer(server, recalled);
-        history_answer_free(&recalled);
+    struct history_answer *answer = server->history_queries ? history_queries_collect(server->history_queries) : NULL;
+    for (struct history_answer *next; answer; answer = next) {
+        next = answer->next;
+        http_on_history_answer(server, answer);
+        history_answer_free(&answer);
     }
 }
 
@@ -161,7 +161,7 @@ static void look_at_alarms(struct server_context *server)
     streams_on_alarms(server);
 }
 
-static void collect_moments(struct server_context *server)
+static void collect_historical_snapshots(struct server_context *server)
 {
     struct history_loader_answer *answer = server->history_loader ? history_loader_collect(server->history_loader) : NULL;
     if (answer)
@@ -176,12 +176,12 @@ static void collect_moments(struct server_context *server)
     }
 }
 
-static void collect_places(struct server_context *server)
+static void collect_coverage(struct server_context *server)
 {
     struct sensor_coverage_answer *answer = server->params.plant.placing ? placing_collect(server->params.plant.placing) : NULL;
     for (struct sensor_coverage_answer *next; answer; answer = next) {
         next = answer->next;
-        stream_on_gaps(server, answer);
+        stream_on_coverage(server, answer);
         sensor_coverage_answer_free(answer);
     }
     if (server->params.plant.placing)
@@ -196,9 +196,9 @@ static void collect(struct net *net)
         look_at_files(net, clock_mono_ns());
     look_at_alarms(server);
     collect_picks(server);
-    collect_recalled(server);
-    collect_moments(server);
-    collect_places(server);
+    collect_history_answers(server);
+    collect_historical_snapshots(server);
+    collect_coverage(server);
     for (struct encoded_frame *encoded = render_service_collect(server->params.plant.render_service), *next; encoded; encoded = next) {
         next = encoded->next;
         encoded->next = NULL;

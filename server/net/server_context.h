@@ -90,7 +90,7 @@ void stream_on_frame(struct server_context *server, struct encoded_frame *encode
 void stream_on_pick(struct server_context *server, const struct pick_answer *answer);
 void stream_on_historical_snapshot(struct server_context *server, const struct history_loader_answer *answer);
 /* Hand coverage of sensors, or a text, to the stream that asked, and copy it; do nothing if that has gone meanwhile. */
-void stream_on_gaps(struct server_context *server, const struct sensor_coverage_answer *answer);
+void stream_on_coverage(struct server_context *server, const struct sensor_coverage_answer *answer);
 void stream_say(struct server_context *server, uint64_t client, const char *text);
 /* Tells sessions whose sensors are placed on trial that distances were computed. */
 void streams_on_placed(struct server_context *server);

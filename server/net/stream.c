@@ -265,12 +265,12 @@ static void pump_followers(struct server_context *server, const struct stream *l
             pump(server, stream);
 }
 
-void stream_on_gaps(struct server_context *server, const struct sensor_coverage_answer *answer)
+void stream_on_coverage(struct server_context *server, const struct sensor_coverage_answer *answer)
 {
     struct stream *stream = stream_find(server, answer->client);
     if (!stream)
         return;
-    session_on_gaps(stream->session, answer);
+    session_on_coverage(stream->session, answer);
     pump(server, stream);
 }
 

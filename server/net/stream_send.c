@@ -160,7 +160,7 @@ static bool write_slice(struct server_context *server, struct stream *stream)
     return good;
 }
 
-static bool write_picture(struct server_context *server, struct stream *stream)
+static bool write_frame(struct server_context *server, struct stream *stream)
 {
     if (stream->step == SEND_MARKERS) {
         bool wrote, good = write_markers(server, stream, &wrote);
@@ -258,7 +258,7 @@ bool stream_send(struct server_context *server, struct stream *stream)
     if (stream->cut)
         return write_end(server, stream);
     if (stream->sending)
-        return write_picture(server, stream);
+        return write_frame(server, stream);
     if (ping_due(stream, now_ns))
         return write_ping(server, stream, now_ns);
     padded(&text);
@@ -272,7 +272,7 @@ bool stream_send(struct server_context *server, struct stream *stream)
         stream->step = SEND_MARKERS;
         stream->sent = stream->sent_all = 0;
         stream->packet = stream->part = 0;
-        good = write_picture(server, stream);
+        good = write_frame(server, stream);
     }
     text_finish(&text);
     return good;

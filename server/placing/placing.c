@@ -57,7 +57,7 @@ struct placing {
     /* --- below: under lock */
     struct ask *done;
     struct sensor_coverage_answer *answers, **answers_last;
-    int jobs; /* for gaps */
+    int jobs; /* for coverage */
 };
 
 /* --- life ------------------------------------------------------------------------------------------------------------------- */
@@ -394,7 +394,7 @@ struct sensor_coverage_answer *placing_collect(struct placing *placing)
 {
     pthread_mutex_lock(&placing->lock);
     struct ask *done = placing->done;
-    struct sensor_coverage_answer *gaps = placing->answers;
+    struct sensor_coverage_answer *answers = placing->answers;
     placing->done = NULL;
     placing->answers = NULL;
     placing->answers_last = &placing->answers;
@@ -402,10 +402,10 @@ struct sensor_coverage_answer *placing_collect(struct placing *placing)
     for (struct ask *ask = done; ask; ask = ask->next)
         take(placing, ask);
     forget_done(done);
-    return gaps;
+    return answers;
 }
 
-/* --- gaps --------------------------------------------------------------------------------------------------------------------- */
+/* --- coverage ----------------------------------------------------------------------------------------------------------------- */
 
 struct sensor_coverage_job {
     struct placing *placing;
@@ -423,7 +423,7 @@ static void find_gaps(void *arg)
     answer->assets = mem_array(scene->asset_count, sizeof(*answer->assets));
     for (size_t a = 0; a < scene->asset_count; a++) {
         job->order.asset = answer->assets[answer->count].asset = (int)a;
-        answer->count += sensor_coverage_find(&job->order, &answer->assets[answer->count].gaps);
+        answer->count += sensor_coverage_find(&job->order, &answer->assets[answer->count].coverage);
     }
     trials_give(placing->trials, &job->order.trial);
     mem_free(job->good);

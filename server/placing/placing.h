@@ -67,7 +67,7 @@ struct sensor_coverage_answer {
     size_t count;
     struct {
         int asset;
-        struct sensor_coverage gaps;
+        struct sensor_coverage coverage;
     } * assets; /* those with sensors of the group */
     struct sensor_coverage_answer *next;
 };

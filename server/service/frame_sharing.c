@@ -65,7 +65,7 @@ static void answer_with(struct render_service *service, struct frame *frame, str
 }
 
 /* To those for whom it is drawn goes who asks for it meanwhile. */
-static void join_flying(struct render_thread *thread, struct request_group *group, uint64_t content)
+static void join_awaited(struct render_thread *thread, struct request_group *group, uint64_t content)
 {
     struct awaited_frame *flight = awaited_frames_find(&thread->in_flight, content);
     if (!flight)
@@ -84,7 +84,7 @@ void frame_sharing_answer_unchanged(struct render_thread *thread, uint64_t conte
     if (frame)
         answer_with(thread->service, frame, group);
     else if (!overlay)
-        join_flying(thread, group, content);
+        join_awaited(thread, group, content);
 }
 
 void frame_sharing_answer_from_recent(struct render_thread *thread, struct request_group *group)

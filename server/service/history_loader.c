@@ -94,7 +94,7 @@ int64_t history_loader_first_us(struct history_loader *loader)
 
 /* --- the thread ------------------------------------------------------------------------------------------------------- */
 
-static bool read_moment(struct history_loader *loader, int64_t at_us)
+static bool read_instant(struct history_loader *loader, int64_t at_us)
 {
     const struct historical_snapshot *there = snapshot_cache_take(loader->params.snapshot_cache, at_us);
     if (there) {
@@ -129,15 +129,10 @@ static void look_at_span(struct history_loader *loader)
 static bool next_wanted(struct history_loader *loader, struct wanted *out, bool *stopping)
 {
     int64_t until_ns = clock_mono_ns() + LOOK_NS;
-    struct timespec until = { .tv_sec = until_ns / NS_PER_S, .tv_nsec = until_ns % NS_PER_S };
-    int status = 0;
     pthread_mutex_lock(&loader->lock);
-    while (!loader->stopping && loader->count == 0 && status != ETIMEDOUT) {
-        if (loader->first_us)
-            pthread_cond_wait(&loader->wake, &loader->lock);
-        else
-            status = pthread_cond_timedwait(&loader->wake, &loader->lock, &until);
-    }
+    while (!loader->stopping && loader->count == 0 &&
+           clock_cond_wait(&loader->wake, &loader->lock, loader->first_us ? INT64_MAX : until_ns))
+        continue;
     *stopping = loader->stopping;
     bool any = !*stopping && loader->count > 0;
     if (any) {
@@ -152,7 +147,7 @@ static void give_answer(struct history_loader *loader, const struct wanted *want
 {
     struct history_loader_answer *answer = mem_new(sizeof(*answer));
     *answer =
-        (struct history_loader_answer){ .client = wanted->client, .at_us = wanted->at_us, .good = read_moment(loader, wanted->at_us) };
+        (struct history_loader_answer){ .client = wanted->client, .at_us = wanted->at_us, .good = read_instant(loader, wanted->at_us) };
     pthread_mutex_lock(&loader->lock);
     *loader->last = answer;
     loader->last = &answer->next;

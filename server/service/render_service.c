@@ -122,7 +122,7 @@ void render_service_lose_context(struct render_service *service)
 static bool thread_start(struct render_service *service)
 {
     if (pthread_create(&service->thread, NULL, render_thread_main, service) != 0) {
-        log_err(service->params.log, "painter: no thread could be started");
+        log_err(service->params.log, "render service: no thread could be started");
         return false;
     }
     service->has_thread = true;

@@ -86,8 +86,8 @@ static void deliver(struct render_thread *thread, struct frame *frame, const str
 /* --- frames that a GPU draws while another one's pixels come ---------------------------------------------------------- */
 
 /* The instant, if it is one, goes over to it. */
-static void fly(struct render_thread *thread, struct request_group *group, const struct historical_snapshot **historical,
-                const struct split_plan *plan)
+static void submit(struct render_thread *thread, struct request_group *group, const struct historical_snapshot **historical,
+                   const struct split_plan *plan)
 {
     struct awaited_frame encoded = { .historical = *historical, .content = plan->content };
     encoded.split = split_view_submit(thread->renderer, plan);
@@ -100,7 +100,7 @@ static void fly(struct render_thread *thread, struct request_group *group, const
     thread->stale |= !encoded.historical;
 }
 
-static void flying_gone(struct render_thread *thread)
+static void drop_oldest(struct render_thread *thread)
 {
     if (thread->in_flight.at[0].historical)
         snapshot_cache_give(thread->service->params.snapshot_cache, &thread->in_flight.at[0].historical);
@@ -108,7 +108,7 @@ static void flying_gone(struct render_thread *thread)
 }
 
 /* The oldest: waits for it. */
-static void land(struct render_thread *thread)
+static void finish_oldest(struct render_thread *thread)
 {
     struct awaited_frame *encoded = &thread->in_flight.at[0];
     struct frame *frame = split_view_end(thread->renderer, &encoded->split);
@@ -116,15 +116,15 @@ static void land(struct render_thread *thread)
         deliver(thread, frame, awaited_frames_readings(encoded), &encoded->group);
     else
         fail(thread, &encoded->group);
-    flying_gone(thread);
+    drop_oldest(thread);
 }
 
 /* Those that came, and where there is room for no other the oldest. */
-static void land_some(struct render_thread *thread)
+static void finish_complete(struct render_thread *thread)
 {
     struct awaited_frames *in_flight = &thread->in_flight;
     while (in_flight->count > 0 && (in_flight->count == AWAITED_FRAMES_MOST || split_view_is_complete(in_flight->at[0].split)))
-        land(thread);
+        finish_oldest(thread);
 }
 
 /* --- frames that take long -------------------------------------------------------------------------------------------- */
@@ -142,7 +142,7 @@ static void stay(struct render_service *service, const struct request_group *gro
 }
 
 /* The instant, if it is one, goes over to it. */
-static void slow_swap(struct render_thread *thread)
+static void long_job_swap(struct render_thread *thread)
 {
     struct long_job parked = thread->parked;
     thread->parked = thread->long_job;
@@ -150,7 +150,7 @@ static void slow_swap(struct render_thread *thread)
 }
 
 /* Makes the place free, if whoever is first in the group may have it at once. */
-static void slow_park(struct render_thread *thread, const struct request_group *group)
+static void long_job_park(struct render_thread *thread, const struct request_group *group)
 {
     struct render_service *service = thread->service;
     pthread_mutex_lock(&service->lock);
@@ -158,7 +158,7 @@ static void slow_park(struct render_thread *thread, const struct request_group *
     bool overtakes = client && render_thread_overtakes(thread, client);
     pthread_mutex_unlock(&service->lock);
     if (overtakes)
-        slow_swap(thread);
+        long_job_swap(thread);
 }
 
 static int64_t spent_by(struct render_service *service, uint64_t id)
@@ -170,8 +170,8 @@ static int64_t spent_by(struct render_service *service, uint64_t id)
     return spent_ns;
 }
 
-static void slow_begin(struct render_thread *thread, struct request_group *group, const struct historical_snapshot **historical,
-                       const struct split_plan *plan)
+static void long_job_begin(struct render_thread *thread, struct request_group *group, const struct historical_snapshot **historical,
+                           const struct split_plan *plan)
 {
     const struct frame_request *request = &group->tickets[0].request;
     thread->long_job.split = split_view_begin(thread->renderer, plan);
@@ -202,7 +202,7 @@ static void slow_begin(struct render_thread *thread, struct request_group *group
 }
 
 /* Its clients may have got newer readings meanwhile: the refined frame shows them too, and is the newest. NULL: it cannot. */
-static struct frame *slow_again(struct render_thread *thread)
+static struct frame *long_job_with_new_readings(struct render_thread *thread)
 {
     struct render_service *service = thread->service;
     struct request_group *group = &thread->long_job.group;
@@ -227,19 +227,19 @@ static struct frame *slow_again(struct render_thread *thread)
     return frame;
 }
 
-static const struct snapshot *slow_readings(const struct render_thread *thread)
+static const struct snapshot *long_job_readings(const struct render_thread *thread)
 {
     return thread->long_job.historical ? &thread->long_job.historical->snapshot : thread->long_job.snapshot;
 }
 
-static void slow_forget_moment(struct render_thread *thread)
+static void long_job_forget_instant(struct render_thread *thread)
 {
     if (thread->long_job.historical)
         snapshot_cache_give(thread->service->params.snapshot_cache, &thread->long_job.historical);
 }
 
 /* True: it is done. */
-static bool slow_step(struct render_thread *thread)
+static bool long_job_step(struct render_thread *thread)
 {
     int64_t start_ns = clock_mono_ns();
     bool drawn = split_view_step(thread->renderer, thread->long_job.split, STEP_NS);
@@ -250,17 +250,17 @@ static bool slow_step(struct render_thread *thread)
         return false;
     struct frame *frame = split_view_end(thread->renderer, &thread->long_job.split);
     if (is_good(thread, frame)) {
-        struct frame *newer = slow_again(thread);
+        struct frame *newer = long_job_with_new_readings(thread);
         if (newer) {
             newer->field_ns += frame->field_ns;
             newer->render_ns += frame->render_ns;
             frame_unref(&frame);
         }
-        deliver(thread, newer ? newer : frame, newer ? thread->snapshot : slow_readings(thread), &thread->long_job.group);
+        deliver(thread, newer ? newer : frame, newer ? thread->snapshot : long_job_readings(thread), &thread->long_job.group);
     } else {
         fail(thread, &thread->long_job.group);
     }
-    slow_forget_moment(thread);
+    long_job_forget_instant(thread);
     thread->long_job.group.count = 0;
     return true;
 }
@@ -273,7 +273,7 @@ static bool has_left(const struct request_ticket *ticket, void *arg)
 }
 
 /* Who moved on gets no more of it; when nobody is left it is given up. */
-static void slow_leave(struct render_thread *thread)
+static void long_job_leave(struct render_thread *thread)
 {
     struct render_service *service = thread->service;
     if (!thread->long_job.split)
@@ -286,7 +286,7 @@ static void slow_leave(struct render_thread *thread)
         return;
     counter_inc(service->abandoned, 1);
     split_view_abandon(thread->renderer, &thread->long_job.split);
-    slow_forget_moment(thread);
+    long_job_forget_instant(thread);
 }
 
 /* A refined frame was asked for if it were quick, and it is not: the other one that was asked for then. */
@@ -308,12 +308,12 @@ static void draw_plan(struct render_thread *thread, struct request_group *group,
                       const struct historical_snapshot **historical, const struct split_plan *plan, bool quick)
 {
     if (!quick && !thread->long_job.split) {
-        slow_begin(thread, group, historical, plan);
+        long_job_begin(thread, group, historical, plan);
         return;
     }
     lose_on_demand(thread);
     if (renderer_submits(thread->renderer)) {
-        fly(thread, group, historical, plan);
+        submit(thread, group, historical, plan);
         return;
     }
     struct frame *frame = split_view_draw(thread->renderer, plan);
@@ -337,7 +337,7 @@ static bool draw_of(struct render_thread *thread, struct request_group *group, c
     }
     quick = quick || request->urgency < URGENCY_REFINE;
     if (ready && !quick && thread->long_job.split)
-        slow_park(thread, group);
+        long_job_park(thread, group);
     if ((!ready || (!quick && thread->long_job.split)) && deferred_requests_push(&thread->deferred, group)) {
         split_plan_destroy(&plan);
         counter_inc(thread->service->steps, 1);
@@ -398,12 +398,12 @@ static bool gl_begin(struct render_thread *thread, enum gl_kind kind, bool hardw
 
 static void gl_end(struct render_thread *thread)
 {
-    for (; thread->in_flight.count > 0; flying_gone(thread))
+    for (; thread->in_flight.count > 0; drop_oldest(thread))
         split_view_abandon(thread->renderer, &thread->in_flight.at[0].split);
-    for (int i = 0; i < 2; i++, slow_swap(thread)) {
+    for (int i = 0; i < 2; i++, long_job_swap(thread)) {
         if (thread->renderer)
             split_view_abandon(thread->renderer, &thread->long_job.split);
-        slow_forget_moment(thread);
+        long_job_forget_instant(thread);
     }
     renderer_destroy(&thread->renderer);
     gl_destroy(&thread->gl);
@@ -455,7 +455,7 @@ static bool pause_for(struct render_service *service, int64_t pause_ns)
     pthread_mutex_lock(&service->lock);
     while (service->state == RUNNING && clock_mono_ns() < until_ns) {
         service->asked_ns = 0;
-        render_thread_wait(service, until_ns);
+        clock_cond_wait(&service->wake, &service->lock, until_ns);
     }
     bool running = service->state == RUNNING;
     pthread_mutex_unlock(&service->lock);
@@ -498,17 +498,17 @@ static void turn(struct render_thread *thread, struct scheduler *scheduler, stru
     enum urgency urgency = group->count > 0 ? group->tickets[0].request.urgency : thread->long_job.urgency;
     bool done = true;
     if (!thread->long_job.split && thread->parked.split)
-        slow_swap(thread);
-    slow_leave(thread);
+        long_job_swap(thread);
+    long_job_leave(thread);
     if (group->count == 0 && !thread->long_job.split && thread->in_flight.count > 0) {
-        land(thread);
+        finish_oldest(thread);
         return;
     }
     if (group->count > 0)
         done = draw(thread, group);
     else if (thread->long_job.split)
-        done = slow_step(thread);
-    land_some(thread);
+        done = long_job_step(thread);
+    finish_complete(thread);
     if (urgency >= URGENCY_REFINE)
         scheduler_stepped(scheduler);
     if (done && !(urgency >= URGENCY_REFINE && thread->long_job.split))

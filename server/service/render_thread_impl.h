@@ -95,7 +95,5 @@ void render_thread_refresh(struct render_thread *thread);
    with *historical NULL. Returns NULL if the instant is not in the cache any more; then nobody waits for that view. */
 const struct snapshot *render_thread_readings(struct render_thread *thread, const struct view *view,
                                               const struct historical_snapshot **historical);
-/* Sleeps until the service is woken or the monotonic clock reaches mono_ns; INT64_MAX: no limit. Under the service's lock. */
-void render_thread_wait(struct render_service *service, int64_t mono_ns);
 
 #endif

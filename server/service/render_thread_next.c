@@ -7,7 +7,7 @@ static const int64_t OWN_DATA_NS = 1 * NS_PER_S; /* changed readings wait so lon
 enum { OVERTAKE_SMALLER = 4 }; /* times, in pixels, than what it overtakes: one more of that size may be in memory, not two */
 static const int64_t SNAPSHOT_MAX_AGE_NS = 100 * NS_PER_MS; /* the clock in the frame, and ages, are no older than this */
 
-static bool slow_is_for(const struct long_job *long_job, const struct render_client *client)
+static bool long_job_is_for(const struct long_job *long_job, const struct render_client *client)
 {
     for (size_t i = 0; long_job->split && i < long_job->group.count; i++)
         if (long_job->group.tickets[i].client == client->id)
@@ -16,13 +16,13 @@ static bool slow_is_for(const struct long_job *long_job, const struct render_cli
 }
 
 /* Under lock. Its long job is under way and still good: what it wants besides can wait for it. */
-static bool waits_for_slow(const struct render_thread *thread, const struct render_client *client, int64_t now_ns)
+static bool waits_for_long_job(const struct render_thread *thread, const struct render_client *client, int64_t now_ns)
 {
     bool moving = client->request.view.tier == TIER_PREVIEW || client->request.or_moving;
     bool soon = client->request.urgency == URGENCY_DATA && moving && now_ns - client->request.asked_ns >= OWN_DATA_NS;
     if (client->left || client->request.urgency == URGENCY_INPUT || soon)
         return false;
-    return slow_is_for(&thread->long_job, client) || slow_is_for(&thread->parked, client);
+    return long_job_is_for(&thread->long_job, client) || long_job_is_for(&thread->parked, client);
 }
 
 struct turn {
@@ -55,7 +55,7 @@ static bool goes_before(const struct render_thread *thread, const struct render_
                         int64_t now_ns)
 {
     enum urgency urgency = client->request.urgency;
-    if (!client->pending || waits_for_slow(thread, client, now_ns))
+    if (!client->pending || waits_for_long_job(thread, client, now_ns))
         return false;
     if (thread->long_job.split && urgency >= URGENCY_REFINE && !render_thread_overtakes(thread, client))
         return false;
@@ -85,15 +85,6 @@ static struct turn next_turn(const struct render_thread *thread, const struct sc
     turn.step = busy && long_job && !over;
     turn.client = busy && long_job ? over : first[urgency];
     return turn;
-}
-
-void render_thread_wait(struct render_service *service, int64_t mono_ns)
-{
-    struct timespec until = { .tv_sec = mono_ns / NS_PER_S, .tv_nsec = mono_ns % NS_PER_S };
-    if (mono_ns == INT64_MAX)
-        pthread_cond_wait(&service->wake, &service->lock);
-    else
-        pthread_cond_timedwait(&service->wake, &service->lock, &until);
 }
 
 /* Under lock. What it had under way is not wanted any more, unless it will show new readings too. */
@@ -203,7 +194,7 @@ bool render_thread_next(struct render_thread *thread, const struct scheduler *sc
             pthread_mutex_lock(&service->lock);
             continue;
         }
-        render_thread_wait(service, turn.wait_until_ns);
+        clock_cond_wait(&service->wake, &service->lock, turn.wait_until_ns);
     }
     bool running = service->state == RUNNING;
     bool deferred = deferred_requests_due(&thread->deferred, turn.step || turn.client);

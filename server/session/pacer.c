@@ -29,7 +29,7 @@ static bool is_writing(const struct pacer *pacer)
     return pacer->flight_count > 0 && !pacer->flight[pacer->flight_count - 1].written;
 }
 
-static int most_pictures(const struct pacer *pacer)
+static int most_frames(const struct pacer *pacer)
 {
     int64_t most = PACER_LEAST + channel_rtt_ns(&pacer->channel) / AHEAD_NS;
     return most > PACER_MOST ? PACER_MOST : (int)most;
@@ -50,7 +50,7 @@ bool pacer_may_ask(const struct pacer *pacer, int64_t now_ns)
         return false;
     if (under_way == 0)
         return true;
-    if (is_writing(pacer) || under_way >= most_pictures(pacer) || pacer_state(pacer, now_ns) != PACER_FLOWS ||
+    if (is_writing(pacer) || under_way >= most_frames(pacer) || pacer_state(pacer, now_ns) != PACER_FLOWS ||
         channel_rtt_is_old(&pacer->channel, now_ns))
         return false;
     return fits_window(pacer);

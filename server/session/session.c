@@ -187,9 +187,9 @@ static bool act(struct session *session, const struct message *message, int64_t 
     case MESSAGE_CODECS: return session_choose_codec(session, &message->codecs, error);
     case MESSAGE_TIME: return session_on_time(session, &message->time, now_ns, now_utc_ns, error);
     case MESSAGE_PLACE: return session_on_place(session, message, now_ns, error);
-    case MESSAGE_GAPS: return session_ask_gaps(session, message, error);
+    case MESSAGE_COVERAGE: return session_ask_coverage(session, message, error);
     case MESSAGE_SAVE_TAGS: return session_save_tags(session, message, error);
-    case MESSAGE_PROVE: return session_prove(session, message, error);
+    case MESSAGE_LOOP_CHECK: return session_check_loop(session, message, error);
     case MESSAGE_PING: session_reply(session, reply_pong_text(session_snapshot(session), message->t, now_utc_ns)); return true;
     }
     return true;

@@ -141,6 +141,6 @@ void session_on_placed(struct session *session, int64_t now_ns);
 /* Takes out the tag list that is to be put in force; the caller then owns it. NULL: none. */
 struct tag_save *session_take_save(struct session *session);
 /* Queues the answer to `gaps`. */
-void session_on_gaps(struct session *session, const struct sensor_coverage_answer *answer);
+void session_on_coverage(struct session *session, const struct sensor_coverage_answer *answer);
 
 #endif

@@ -75,9 +75,9 @@ void session_ask_lead(struct session *session, const struct message *message);
 
 /* Act on `place`, `gaps`, `save_tags` and `prove`. Return false with *error if they are refused. */
 bool session_on_place(struct session *session, const struct message *message, int64_t now_ns, struct message_error *error);
-bool session_ask_gaps(struct session *session, const struct message *message, struct message_error *error);
+bool session_ask_coverage(struct session *session, const struct message *message, struct message_error *error);
 bool session_save_tags(struct session *session, const struct message *message, struct message_error *error);
-bool session_prove(struct session *session, const struct message *message, struct message_error *error);
+bool session_check_loop(struct session *session, const struct message *message, struct message_error *error);
 /* Drops sensors moved on trial; nothing of the plant is used any more. */
 void session_place_leave(struct session *session);
 

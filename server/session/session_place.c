@@ -2,7 +2,7 @@
 /* A session whose engineer places and proves sensors. Nobody else sees what is tried out. */
 #include "base/mem.h"
 #include "message/place_message.h"
-#include "message/prove_message.h"
+#include "message/loop_check_message.h"
 #include "session/session_impl.h"
 
 void session_say(struct session *session, const char *text)
@@ -56,20 +56,20 @@ void session_on_placed(struct session *session, int64_t now_ns)
         show(session, now_ns);
 }
 
-bool session_ask_gaps(struct session *session, const struct message *message, struct message_error *error)
+bool session_ask_coverage(struct session *session, const struct message *message, struct message_error *error)
 {
     const struct session_context *context = session->context;
-    int group = message->gaps.group >= 0 ? message->gaps.group : session->view.field.group;
+    int group = message->coverage.group >= 0 ? message->coverage.group : session->view.field.group;
     if (!can_place(session, error))
         return false;
-    placing_request_coverage(context->placing, session->placement.set, group, message->gaps.far_m, context->snapshot, session->id,
+    placing_request_coverage(context->placing, session->placement.set, group, message->coverage.far_m, context->snapshot, session->id,
                              message->seq);
     return true;
 }
 
-void session_on_gaps(struct session *session, const struct sensor_coverage_answer *answer)
+void session_on_coverage(struct session *session, const struct sensor_coverage_answer *answer)
 {
-    session_reply(session, gaps_text(session->context->scene, session->placement.set, answer));
+    session_reply(session, coverage_text(session->context->scene, session->placement.set, answer));
 }
 
 struct tag_save *session_take_save(struct session *session)
@@ -103,13 +103,13 @@ bool session_save_tags(struct session *session, const struct message *message, s
     return true;
 }
 
-bool session_prove(struct session *session, const struct message *message, struct message_error *error)
+bool session_check_loop(struct session *session, const struct message *message, struct message_error *error)
 {
     const struct session_context *context = session->context;
     if (!context->loop_checks) {
         message_fail(error, "no_history", "this daemon records nothing (history: record: no): proofs are kept beside the history");
         return false;
     }
-    session_reply(session, prove_do(context->loop_checks, context->plant, context->snapshot, message, session_who(session)));
+    session_reply(session, loop_check_do(context->loop_checks, context->plant, context->snapshot, message, session_who(session)));
     return true;
 }

@@ -82,10 +82,10 @@ struct frame_delivery {
 
 /* What a client asked about following, by numbers of sessions. The loop finds those. */
 struct follow_request {
-    bool returned;    /* it took up another's view: whose followers are to follow it again */
-    uint64_t heir;    /* who is to have the lead; 0: it stays */
-    bool asked;       /* to follow `wanted` */
-    uint64_t wanted;  /* 0: nobody */
+    bool returned;   /* it took up another's view: whose followers are to follow it again */
+    uint64_t heir;   /* who is to have the lead; 0: it stays */
+    bool asked;      /* to follow `wanted` */
+    uint64_t wanted; /* 0: nobody */
 };
 
 /* Who is shown whose view (session_follow.c). */

@@ -5,7 +5,7 @@
 #include "base/clock.h"
 #include "base/mem.h"
 #include "message/alarm_text.h"
-#include "message/prove_message.h"
+#include "message/loop_check_message.h"
 #include "session/reply.h"
 #include "session/session_impl.h"
 #include "session/tag_text_cache.h"
@@ -50,7 +50,7 @@ static bool loop_checks_due(const struct session *session)
            (session->owed.loop_checks || loop_checks_number(loop_checks) > session->owed.loop_checks_sent);
 }
 
-static void add_proofs(struct session *session, struct text *out)
+static void add_loop_checks(struct session *session, struct text *out)
 {
     const struct session_context *context = session->context;
     add_owned(out, loop_checks_text(context->loop_checks, context->plant, session->owed.loop_checks_sent, session->owed.loop_checks));
@@ -97,7 +97,7 @@ bool session_next_text(struct session *session, int64_t now_ns, int64_t now_utc_
         add_owned(out, session->following.followers_text);
         session->following.followers_text = NULL;
     } else if (loop_checks_due(session)) {
-        add_proofs(session, out);
+        add_loop_checks(session, out);
     } else if (status_due(session)) {
         add_owned(out, reply_status_text(context, now_utc_ns));
         session->owed.status = false;

@@ -180,9 +180,9 @@ static void test_gaps_are_of_what_the_set_has_moved(void **state)
         struct sensor_coverage_answer *answer = collect(f, true);
         assert_non_null(answer);
         assert_true(answer->client == 7 && answer->seq == 3 + (uint32_t)moved && answer->count == 1);
-        assert_int_equal(answer->assets[0].gaps.sensors, TAGS);
-        assert_true(moved ? answer->assets[0].gaps.next_m < 0.2 : answer->assets[0].gaps.next_m >= 1);
-        assert_true(moved ? answer->assets[0].gaps.far_share > 0.3 : answer->assets[0].gaps.far_share < 0.2);
+        assert_int_equal(answer->assets[0].coverage.sensors, TAGS);
+        assert_true(moved ? answer->assets[0].coverage.next_m < 0.2 : answer->assets[0].coverage.next_m >= 1);
+        assert_true(moved ? answer->assets[0].coverage.far_share > 0.3 : answer->assets[0].coverage.far_share < 0.2);
         sensor_coverage_answer_free(answer);
     }
 }

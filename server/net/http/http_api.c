@@ -11,7 +11,7 @@
 #include "net/connection.h"
 #include "session/reply.h"
 
-static int await_recalled(struct server_context *server, struct request *request, struct history_query *query)
+static int await_history(struct server_context *server, struct request *request, struct history_query *query)
 {
     struct address_usage *usage = connection_of(request->wsi)->client;
     query->client = server->next_client;
@@ -38,7 +38,7 @@ static int ask_recorded(struct server_context *server, struct request *request, 
         !(gaps ? history_query_parse_gaps(args.list, args.count, now_us, &query, &error)
                : history_query_parse(server->params.plant.scene->plant, args.list, args.count, now_us, &query, &error)))
         return request_answer_error(request, &error);
-    return await_recalled(server, request, &query);
+    return await_history(server, request, &query);
 }
 
 int ask_history(struct server_context *server, struct request *request)
@@ -80,7 +80,7 @@ int ask_journal(struct server_context *server, struct request *request)
         return request_answer_text(request, HTTP_STATUS_NOT_FOUND, HTTP_NOTHING_RECORDED);
     if (!read_alarm_query(server, request, true, &query.alarms, &error))
         return request_answer_error(request, &error);
-    return await_recalled(server, request, &query);
+    return await_history(server, request, &query);
 }
 
 /* The first piece of several, or one that follows. */
@@ -100,22 +100,22 @@ static int answer_whole(struct request *request, struct history_answer *answer, 
     return request_answer(request, HTTP_STATUS_OK, type, text, answer->length, NULL, NULL);
 }
 
-void http_on_history_answer(struct server_context *server, struct history_answer *recalled)
+void http_on_history_answer(struct server_context *server, struct history_answer *answer)
 {
-    struct request *request = request_find(server, recalled->client);
-    const char *type = recalled->csv ? "text/csv; charset=utf-8" : "application/json";
-    bool whole = recalled->first && recalled->last;
+    struct request *request = request_find(server, answer->client);
+    const char *type = answer->csv ? "text/csv; charset=utf-8" : "application/json";
+    bool whole = answer->first && answer->last;
     if (!request)
         return;
-    if (recalled->text && !whole && !request->head) {
-        request_answered(request, take_piece(request, recalled, type));
+    if (answer->text && !whole && !request->head) {
+        request_answered(request, take_piece(request, answer, type));
         return;
     }
     request_forget(server, request);
-    if (!recalled->text) /* what was begun cannot be taken back, but it can be seen not to be whole */
-        request_answered(request, recalled->first ? request_answer_text(request, HTTP_STATUS_INTERNAL_SERVER_ERROR, HTTP_UNREADABLE) : -1);
+    if (!answer->text) /* what was begun cannot be taken back, but it can be seen not to be whole */
+        request_answered(request, answer->first ? request_answer_text(request, HTTP_STATUS_INTERNAL_SERVER_ERROR, HTTP_UNREADABLE) : -1);
     else
-        request_answered(request, whole ? answer_whole(request, recalled, type) : chunked_begin(request, type));
+        request_answered(request, whole ? answer_whole(request, answer, type) : chunked_begin(request, type));
 }
 
 /* Of the whole process, when somebody asks. */
@@ -171,7 +171,7 @@ int api_tags(struct server_context *server, struct request *request)
     return request_answer_json(request, reply_api_tags_text(&server->session_context, first, count));
 }
 
-int api_proofs(struct server_context *server, struct request *request)
+int api_loop_checks(struct server_context *server, struct request *request)
 {
     struct text text = { 0 };
     if (!server->params.plant.loop_checks)

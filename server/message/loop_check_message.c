@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A tag is judged by what arrives here, not by what somebody says. */
-#include "message/prove_message.h"
+#include "message/loop_check_message.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -11,48 +11,48 @@
 #include "message/json_values.h"
 #include "value/quality.h"
 
-bool prove_parse(const struct plant *plant, const json_t *o, struct message *out, struct message_error *error)
+bool loop_check_parse(const struct plant *plant, const json_t *o, struct message *out, struct message_error *error)
 {
-    struct prove_request *prove = &out->prove;
+    struct loop_check_request *request = &out->loop_check;
     const char *tag = json_string_value(json_object_get(o, "tag"));
     const json_t *fail = json_object_get(o, "fail");
     char name[48];
-    prove->tag = tag ? plant_find_tag(plant, tag) : -1;
-    prove->fail = json_is_true(fail);
-    if (prove->tag < 0)
+    request->tag = tag ? plant_find_tag(plant, tag) : -1;
+    request->fail = json_is_true(fail);
+    if (request->tag < 0)
         message_fail(error, "bad_field", "tag: there is no tag '%s'", quoted(tag ? tag : "", name));
-    else if (plant->tags[prove->tag].source < 0)
+    else if (plant->tags[request->tag].source < 0)
         message_fail(error, "bad_field", "tag: %s is computed from others; prove those", quoted(tag, name));
     else if (fail && !json_is_boolean(fail))
         message_fail(error, "bad_field", "fail: true or false expected");
     else
-        return need_seq(o, &out->seq, error) && need_number(o, "expected", -1e30, 1e30, &prove->expected, error) &&
-               need_number(o, "tolerance", 0, 1e30, &prove->tolerance, error) &&
-               need_words(o, "remark", false, prove->remark, sizeof(prove->remark), error);
+        return need_seq(o, &out->seq, error) && need_number(o, "expected", -1e30, 1e30, &request->expected, error) &&
+               need_number(o, "tolerance", 0, 1e30, &request->tolerance, error) &&
+               need_words(o, "remark", false, request->remark, sizeof(request->remark), error);
     return false;
 }
 
-char *prove_do(struct loop_checks *loop_checks, const struct plant *plant, const struct snapshot *now, const struct message *message,
-               const char *who)
+char *loop_check_do(struct loop_checks *loop_checks, const struct plant *plant, const struct snapshot *now, const struct message *message,
+                    const char *who)
 {
-    const struct prove_request *prove = &message->prove;
-    const struct reading *reading = &now->readings[prove->tag];
+    const struct loop_check_request *request = &message->loop_check;
+    const struct reading *reading = &now->readings[request->tag];
     bool good = !quality_is_bad(reading->quality) && !quality_is_uncertain(reading->quality) && isfinite(reading->value);
-    bool near = good && fabs(reading->value - prove->expected) <= prove->tolerance;
-    struct loop_check check = { .state = near && !prove->fail ? LOOP_CHECK_PASSED : LOOP_CHECK_FAILED,
+    bool near = good && fabs(reading->value - request->expected) <= request->tolerance;
+    struct loop_check check = { .state = near && !request->fail ? LOOP_CHECK_PASSED : LOOP_CHECK_FAILED,
                                 .time_us = now->taken_utc_ns / 1000,
                                 .value = good ? reading->value : NAN,
-                                .expected = prove->expected,
-                                .tolerance = prove->tolerance };
+                                .expected = request->expected,
+                                .tolerance = request->tolerance };
     snprintf(check.who, sizeof(check.who), "%s", who);
-    snprintf(check.remark, sizeof(check.remark), "%s", prove->remark);
-    const char *why = loop_checks_add(loop_checks, prove->tag, &check);
+    snprintf(check.remark, sizeof(check.remark), "%s", request->remark);
+    const char *why = loop_checks_add(loop_checks, request->tag, &check);
     const char *because = why    ? why
-                          : near ? (prove->fail ? "said to have failed" : "")
+                          : near ? (request->fail ? "said to have failed" : "")
                           : good ? "the value is beyond the tolerance"
                                  : "the reading is not good";
     return json_text(json_pack("{s:s,s:I,s:s,s:b,s:b,s:o,s:s}", "type", "proved", "seq", (json_int_t)message->seq, "tag",
-                               plant->tags[prove->tag].name, "kept", !why, "passed", check.state == LOOP_CHECK_PASSED && !why, "value",
+                               plant->tags[request->tag].name, "kept", !why, "passed", check.state == LOOP_CHECK_PASSED && !why, "value",
                                number(check.value), "why", because),
                      9);
 }

@@ -1,15 +1,15 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The message `prove`: loop checks. Thread: the loop. */
-#ifndef MESSAGE_PROVE_MESSAGE_H
-#define MESSAGE_PROVE_MESSAGE_H
+#ifndef MESSAGE_LOOP_CHECK_MESSAGE_H
+#define MESSAGE_LOOP_CHECK_MESSAGE_H
 #include "loopcheck/loop_checks.h"
 #include "message/message.h"
 #include "value/snapshot.h"
 
-/* Parses the message into out->prove. Returns false with *error saying what is wrong. */
-bool prove_parse(const struct plant *plant, const json_t *o, struct message *out, struct message_error *error);
+/* Parses the message into out->loop_check. Returns false with *error saying what is wrong. */
+bool loop_check_parse(const struct plant *plant, const json_t *o, struct message *out, struct message_error *error);
 /* Checks the tag's reading of now against what is expected and records the result. who: the user's name. Returns the answer; mem_free. */
-char *prove_do(struct loop_checks *loop_checks, const struct plant *plant, const struct snapshot *now, const struct message *message,
+char *loop_check_do(struct loop_checks *loop_checks, const struct plant *plant, const struct snapshot *now, const struct message *message,
                const char *who);
 /* Returns the message `proofs`: all loop checks, or those after the number `since`; mem_free. */
 char *loop_checks_text(const struct loop_checks *loop_checks, const struct plant *plant, uint64_t since, bool all);
