@@ -9,6 +9,7 @@
 #include <sys/stat.h>
 #include <sys/statvfs.h>
 #include <time.h>
+#include <unistd.h>
 
 #include "base/clock.h"
 #include "base/mem.h"
@@ -17,6 +18,7 @@
 #include "history/retention.h"
 #include "history/month.h"
 #include "history/recorder.h"
+#include "history/spool.h"
 #include "value/quality.h"
 
 enum {
@@ -51,6 +53,8 @@ struct historian {
     struct recorder *recorder;
     struct snapshot *snapshot;
     struct recorder_rows waiting, held;
+    struct spool_rows spooled; /* of the last run; written before anything else */
+    char *spool_path;          /* where they are; NULL: nowhere */
     struct month_file *file;
     struct event_queue taken;
     bool recovered, failing;
@@ -296,9 +300,38 @@ static int apply_retention(struct historian *historian, int64_t mono_ns, int64_t
     return error;
 }
 
+/* As somebody who did not end properly: what is held stays, for recover(). */
+static int leave_file(struct historian *historian)
+{
+    int error = month_file_tidy(historian->file);
+    if (!error)
+        month_file_close(&historian->file);
+    return error;
+}
+
+/* What the last run could not write goes where it belongs, before anybody looks where that run ended. */
+static int write_spooled(struct historian *historian)
+{
+    if (!historian->spool_path)
+        return 0;
+    make_folder(historian);
+    int error = write_rows(historian, &historian->spooled.kept, false);
+    if (!error)
+        error = write_rows(historian, &historian->spooled.held, true);
+    if (error)
+        return error;
+    log_event(historian->log, LOG_INFO, EVENT_HISTORY_WRITTEN, "history: %s is written, and deleted", historian->spool_path);
+    unlink(historian->spool_path);
+    mem_free(historian->spool_path);
+    historian->spool_path = NULL;
+    return historian->file && !historian->recovered ? leave_file(historian) : 0;
+}
+
 static int write_all(struct historian *historian, int64_t mono_ns, int64_t utc_ns)
 {
-    int error = 0;
+    int error = write_spooled(historian);
+    if (error)
+        return error;
     if (!historian->file) {
         if (!historian->waiting.count)
             return 0; /* an empty folder is no history */
@@ -410,6 +443,65 @@ static bool wait_for_tick(struct historian *historian, int64_t *next_ns)
     return !stopping;
 }
 
+/* A run between two that could not be written ended there. */
+static void end_spooled_lines(struct spool_rows *rows)
+{
+    struct recorder_rows *kept = &rows->kept;
+    mem_grow(&kept->at, &kept->capacity, kept->count + 2 * rows->held.count + 1, sizeof(*kept->at));
+    for (size_t i = 0; i < rows->held.count; i++) {
+        const struct history_row *held = &rows->held.at[i];
+        kept->at[kept->count++] = *held;
+        kept->at[kept->count++] = (struct history_row){ held->tag, { held->point.t_us + 1, NAN, QUALITY_BAD_NO_COMMUNICATION } };
+    }
+    rows->held.count = 0;
+}
+
+/* The disk does not take what waits: another place may, for the next start. */
+static void spool(struct historian *historian)
+{
+    char **places = spool_places(historian->folder);
+    struct spool_rows *rows = &historian->spooled; /* those of the run before first, if they are still there */
+    end_spooled_lines(rows);
+    size_t before = rows->kept.count;
+    mem_grow(&rows->kept.at, &rows->kept.capacity, before + historian->waiting.count + 1, sizeof(*rows->kept.at));
+    memcpy(rows->kept.at + before, historian->waiting.at, historian->waiting.count * sizeof(*rows->kept.at));
+    rows->kept.count += historian->waiting.count;
+    recorder_hold_again(historian->recorder);
+    recorder_held(historian->recorder, &rows->held);
+    int error = -ENOENT;
+    char **place = places;
+    while (*place && (error = spool_write(*place, historian->plant, rows)))
+        place++;
+    if (error)
+        log_event(historian->log, LOG_ERROR, EVENT_HISTORY_LOST,
+                  "history: %zu points could not be written and are lost, nor could a spool (%s)", rows->kept.count + rows->held.count,
+                  strerror(-error));
+    else
+        log_event(historian->log, LOG_WARN, EVENT_HISTORY_UNWRITABLE,
+                  "history: %zu points could not be written; they are in %s until the next start", rows->kept.count + rows->held.count,
+                  *place);
+    if (!error && historian->spool_path && strcmp(historian->spool_path, *place) != 0)
+        unlink(historian->spool_path); /* it is in the new one */
+    spool_places_free(places);
+}
+
+static void take_spool(struct historian *historian)
+{
+    char **places = spool_places(historian->folder);
+    for (char **place = places; *place && !historian->spool_path; place++) {
+        size_t foreign = 0;
+        int error = spool_read(*place, historian->plant, &historian->spooled, &foreign);
+        if (error && error != -ENOENT && error != -ENOTDIR)
+            log_err(historian->log, "history: %s is left there: %s", *place, strerror(-error));
+        if (foreign)
+            log_warn(historian->log, "history: %s: %zu points are of tags that are not in the list any more; they are left out", *place,
+                     foreign);
+        if (!error)
+            historian->spool_path = mem_strdup(*place);
+    }
+    spool_places_free(places);
+}
+
 static void *run(void *arg)
 {
     struct historian *historian = arg;
@@ -422,8 +514,8 @@ static void *run(void *arg)
         month_file_tidy(historian->file);
     if (historian->file && historian->next)
         month_file_clear_held(historian->file);
-    if (historian->waiting.count)
-        log_err(historian->log, "history: %zu points could not be written and are lost", historian->waiting.count);
+    if (historian->failing || historian->waiting.count)
+        spool(historian);
     return NULL;
 }
 
@@ -453,6 +545,7 @@ struct historian *historian_start(const struct historian_params *params)
     historian->tags = history_tags(params->plant);
     historian->recorder = recorder_create(params->plant);
     historian->snapshot = snapshot_create(params->plant->tag_count);
+    take_spool(historian);
     add_counters(historian, params->counters);
     store_listen(params->store, on_sample, historian);
     int error = pthread_create(&historian->thread, NULL, run, historian);
@@ -482,6 +575,9 @@ void historian_stop(struct historian **pointer)
     mem_free(historian->tags);
     mem_free(historian->waiting.at);
     mem_free(historian->held.at);
+    mem_free(historian->spooled.kept.at);
+    mem_free(historian->spooled.held.at);
+    mem_free(historian->spool_path);
     mem_free(historian->queue.at);
     mem_free(historian->taken.at);
     mem_free(historian->folder);

@@ -64,11 +64,13 @@ static int set_up(void **state)
     s.counters = counters_create();
     s.plant = plant_by_hand_create(TAGS);
     s.plant->history = (struct plant_history){ .override_s = 600 };
+    s.plant->tags_by_name = mem_array(TAGS, sizeof(int));
     plant_by_hand_source(s.plant, "plc", 502);
     for (int i = 0; i < TAGS; i++) {
         char name[16];
-        snprintf(name, sizeof(name), "T-%d", i);
+        snprintf(name, sizeof(name), "T-%02d", i);
         plant_by_hand_tag(s.plant, name, TABLE_HOLDING, 2 * i, DATA_FLOAT32)->deadband = 0;
+        s.plant->tags_by_name[i] = i;
     }
     s.store = store_create(s.plant);
     s.tags = history_tags(s.plant);
@@ -93,6 +95,8 @@ static int tear_down(void **state)
     historian_stop(&s->historian);
     mem_free(s->tags);
     store_destroy(&s->store);
+    mem_free(s->plant->tags_by_name);
+    s->plant->tags_by_name = NULL;
     plant_by_hand_destroy(&s->plant);
     counters_destroy(&s->counters);
     log_destroy(&s->log);
@@ -306,8 +310,6 @@ static void a_folder_that_comes_later_is_used(void **state)
     mem_free(path);
 }
 
-/* --- clocks ------------------------------------------------------------------------------------------------------------------- */
-
 static bool has_point(const struct history_series *series, int64_t utc_ns, double value)
 {
     for (size_t i = 0; i < series->points.count; i++)
@@ -315,6 +317,49 @@ static bool has_point(const struct history_series *series, int64_t utc_ns, doubl
             return true;
     return false;
 }
+
+static void expect_spooled_run(struct setup *s, int64_t first_ns, int64_t last_ns)
+{
+    struct history_series series;
+    start(s);
+    for (int i = 0; i < 200 && counted(s, "plantcast_history_good") != 1; i++)
+        sleep_ns(20 * NS_PER_MS);
+    historian_stop(&s->historian);
+    assert_true(points_of(s, 3, &series) >= 2);
+    assert_true(has_point(&series, first_ns, 5 + 3) && has_point(&series, last_ns, 7 + 3));
+    history_series_finish(&series);
+    struct snapshot *snapshot = snapshot_create(TAGS);
+    look(s, last_ns, snapshot);
+    assert_true(snapshot->readings[3].value == 10);
+    snapshot_destroy(&snapshot);
+    assert_true(events_of(s, "gap", last_ns) >= 1); /* from the end of that run on nothing was recorded */
+}
+
+/* The folder cannot be used until after the daemon has ended: what waits is kept where else there is room. */
+static void what_waits_at_the_end_comes_with_the_next_start(void **state)
+{
+    struct setup *s = *state;
+    char *path = temp_write_text(s->folder, "history", "not a folder"), *spool = temp_path(s->folder, "history.spool");
+    setenv("RUNTIME_DIRECTORY", s->folder, 1);
+    start(s);
+    int64_t first_ns = write_all(s, 5);
+    sleep_ns(1300 * NS_PER_MS);
+    int64_t last_ns = write_all(s, 7);
+    historian_stop(&s->historian);
+    assert_int_equal(access(spool, R_OK), 0);
+    start(s); /* once more without room: nothing of it goes */
+    sleep_ns(300 * NS_PER_MS);
+    historian_stop(&s->historian);
+    assert_int_equal(access(spool, R_OK), 0);
+    assert_int_equal(unlink(path), 0);
+    expect_spooled_run(s, first_ns, last_ns);
+    assert_int_not_equal(access(spool, R_OK), 0);
+    unsetenv("RUNTIME_DIRECTORY");
+    mem_free(path);
+    mem_free(spool);
+}
+
+/* --- clocks ------------------------------------------------------------------------------------------------------------------- */
 
 /* An hour forward: what was read before and after is there, and nothing is drawn over the hour that never was. */
 static void a_clock_set_forward_leaves_its_hour_empty(void **state)
@@ -529,6 +574,7 @@ int main(void)
         cmocka_unit_test_setup_teardown(quiet_readers_see_the_last_second, set_up, tear_down),
         cmocka_unit_test_setup_teardown(a_kill_takes_at_most_a_second, set_up, tear_down),
         cmocka_unit_test_setup_teardown(a_full_disk_loses_nothing, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(what_waits_at_the_end_comes_with_the_next_start, set_up, tear_down),
         cmocka_unit_test_setup_teardown(a_folder_that_comes_later_is_used, set_up, tear_down),
         cmocka_unit_test_setup_teardown(a_clock_set_forward_leaves_its_hour_empty, set_up, tear_down),
         cmocka_unit_test_setup_teardown(a_clock_set_back_loses_nothing, set_up, tear_down),

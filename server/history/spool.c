@@ -1,0 +1,118 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* A line for each row: kept or held, time, value, quality, name of the tag. */
+#include "history/spool.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <inttypes.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+#include <xxhash.h>
+
+#include "base/atomic_file.h"
+#include "base/mem.h"
+#include "base/text.h"
+
+static const char HEAD[] = "plantcast spool 1\n";
+enum { PLACES = 3 };
+
+char **spool_places(const char *folder)
+{
+    char **places = mem_array(PLACES + 1, sizeof(*places)), *real = realpath(folder, NULL);
+    const char *runtime = getenv("RUNTIME_DIRECTORY"), *whole = real ? real : folder;
+    size_t count = 0;
+    places[count++] = mem_printf("%s/unwritten.spool", folder);
+    if (runtime && *runtime)
+        places[count++] = mem_printf("%.*s/history.spool", (int)strcspn(runtime, ":"), runtime);
+    places[count++] = mem_printf("/var/tmp/plantcast-%016" PRIx64 ".spool", (uint64_t)XXH64(whole, strlen(whole), 0));
+    places[count] = NULL;
+    free(real);
+    return places;
+}
+
+void spool_places_free(char **places)
+{
+    for (char **place = places; *place; place++)
+        mem_free(*place);
+    mem_free(places);
+}
+
+static void add_rows(struct text *text, const struct plant *plant, const struct recorder_rows *rows, char kind)
+{
+    for (size_t i = 0; i < rows->count; i++) {
+        const struct history_row *row = &rows->at[i];
+        text_add(text, "%c %" PRId64 " %.17g %" PRIu32 " %s\n", kind, row->point.t_us, row->point.value, row->point.quality,
+                 plant->tags[row->tag].name);
+    }
+}
+
+int spool_write(const char *path, const struct plant *plant, const struct spool_rows *rows)
+{
+    struct text text = { 0 };
+    struct atomic_file file;
+    text_add(&text, "%s", HEAD);
+    add_rows(&text, plant, &rows->kept, 'k');
+    add_rows(&text, plant, &rows->held, 'h');
+    int error = atomic_file_begin(&file, path, 0600);
+    if (!error) {
+        error = atomic_file_write(&file, text.at, text.length);
+        if (!error)
+            error = atomic_file_commit(&file, true);
+        atomic_file_abandon(&file);
+    }
+    text_finish(&text);
+    return error;
+}
+
+static void add_line(const char *line, const struct plant *plant, struct spool_rows *rows, size_t *foreign)
+{
+    struct history_point point;
+    char kind, *end;
+    int at = 0;
+    if (sscanf(line, "%c %" SCNd64 " %n", &kind, &point.t_us, &at) != 2 || at == 0 || (kind != 'k' && kind != 'h'))
+        return;
+    point.value = strtod(line + at, &end);
+    point.quality = (uint32_t)strtoul(end, &end, 10);
+    int tag = *end == ' ' ? plant_find_tag(plant, end + 1) : -1;
+    if (tag < 0) {
+        ++*foreign;
+        return;
+    }
+    struct recorder_rows *to = kind == 'k' ? &rows->kept : &rows->held;
+    mem_grow(&to->at, &to->capacity, to->count + 1, sizeof(*to->at));
+    to->at[to->count++] = (struct history_row){ tag, point };
+}
+
+/* NULL: errno says why. */
+static char *read_own(const char *path)
+{
+    struct stat st;
+    int fd = open(path, O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
+    if (fd < 0)
+        return NULL;
+    bool good = fstat(fd, &st) == 0 && S_ISREG(st.st_mode) && st.st_uid == geteuid() && !(st.st_mode & (S_IWGRP | S_IWOTH));
+    char *text = good ? mem_try_array((size_t)st.st_size + 1, 1) : NULL;
+    size_t have = 0;
+    for (ssize_t n = 1; text && n > 0 && have<(size_t)st.st_size; have += n> 0 ? (size_t)n : 0)
+        n = read(fd, text + have, (size_t)st.st_size - have);
+    if (text)
+        text[have] = 0;
+    close(fd);
+    errno = good ? ENOMEM : EPERM;
+    return text;
+}
+
+int spool_read(const char *path, const struct plant *plant, struct spool_rows *rows, size_t *foreign)
+{
+    char *text = read_own(path), *at = text;
+    if (!text)
+        return -errno;
+    bool known = !strncmp(text, HEAD, sizeof(HEAD) - 1);
+    for (char *line; known && (line = strsep(&at, "\n"));)
+        add_line(line, plant, rows, foreign);
+    mem_free(text);
+    return known ? 0 : -EBADMSG;
+}
