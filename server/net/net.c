@@ -14,6 +14,7 @@
 
 #include "base/clock.h"
 #include "base/mem.h"
+#include "net/http/site.h"
 #include "net/tls.h"
 #include "net/connection.h"
 #include "net/net_impl.h"
@@ -363,6 +364,7 @@ struct net *net_create(const struct net_params *params)
     add_counters(server);
     net_bind_plant(net);
     raise_file_limit(params->log, server->quotas);
+    server->site = site_create(params->log, params->web_folder);
     if (!open_access(net) || !open_context(net) || !net_open_history(net))
         net_destroy(&net);
     return net;
@@ -381,6 +383,7 @@ void net_destroy(struct net **net_ptr)
     atomic_store(&lws_log_to, NULL);
     tls_destroy(&net->server.tls);
     tokens_destroy(&net->server.tokens);
+    site_destroy(&net->server.site);
     mem_free(net->server.content_policy);
     address_limits_destroy(&net->server.limits);
     login_throttle_destroy(&net->server.login_throttle);

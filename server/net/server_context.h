@@ -18,6 +18,7 @@ enum { SLICE_BYTES = 32 * 1024 };
 
 struct stream;  /* stream.h */
 struct request; /* http_impl.h */
+struct site;    /* site.h */
 
 struct server_context {
     struct net_params params;
@@ -40,6 +41,7 @@ struct server_context {
     int connection_count;
     struct tokens *tokens; /* NULL: none are configured */
     struct login_throttle *login_throttle;
+    struct site *site;    /* the page's files */
     char *content_policy; /* Content-Security-Policy of every answer */
     struct tls *tls;      /* NULL: no TLS */
     struct admission admission;

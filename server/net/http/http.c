@@ -30,16 +30,15 @@ static int stream_without_upgrade(struct server_context *server, struct request 
 
 static int file(struct server_context *server, struct request *request, const char *path)
 {
-    struct site_file found;
+    const struct site_file *found = site_find(server->site, path);
     char seen[64] = "";
-    bool cached = false;
-    if (lws_hdr_copy(request->wsi, seen, sizeof(seen), WSI_TOKEN_HTTP_IF_NONE_MATCH) > 0)
-        cached = site_read(server->params.web_folder, path, true, &found) && !strcmp(seen, found.etag);
-    if (cached)
-        return request_answer(request, HTTP_STATUS_NOT_MODIFIED, found.type, NULL, 0, "etag:", found.etag);
-    if (!site_read(server->params.web_folder, path, false, &found))
+    if (!found)
         return request_answer_text(request, HTTP_STATUS_NOT_FOUND, "not found\n");
-    return request_answer(request, HTTP_STATUS_OK, found.type, found.bytes, found.count, "etag:", found.etag);
+    if (lws_hdr_copy(request->wsi, seen, sizeof(seen), WSI_TOKEN_HTTP_IF_NONE_MATCH) > 0 && !strcmp(seen, found->etag))
+        return request_answer(request, HTTP_STATUS_NOT_MODIFIED, found->type, NULL, 0, "etag:", found->etag);
+    char *bytes = mem_array(found->count + 1, 1); /* the answer takes its own */
+    memcpy(bytes, found->bytes, found->count);
+    return request_answer(request, HTTP_STATUS_OK, found->type, bytes, found->count, "etag:", found->etag);
 }
 
 static const struct {

@@ -3,11 +3,14 @@
 #include "net/http/site.h"
 
 #include <ctype.h>
+#include <dirent.h>
+#include <errno.h>
 #include <inttypes.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
+#include <xxhash.h>
 
 #include "base/mem.h"
 #include "base/text.h"
@@ -86,22 +89,88 @@ static size_t drop_comments(char *bytes, size_t count)
     return out;
 }
 
-bool site_read(const char *folder, const char *path, bool only_etag, struct site_file *out)
+struct site {
+    char *folder;
+    struct site_file *files; /* by path, ascending */
+    size_t count, capacity;
+};
+
+static void add_file(struct site *site, struct log *log, const char *full, const char *path)
 {
-    struct stat st;
-    *out = (struct site_file){ 0 };
-    if (!folder || !path_harmless(path))
-        return false;
-    char *full = mem_printf("%s%s%s", folder, path, path[strlen(path) - 1] == '/' ? "index.html" : "");
-    bool good = inside(folder, full) && stat(full, &st) == 0 && S_ISREG(st.st_mode) && (out->type = type_of(full)) != NULL;
-    if (good) {
-        snprintf(out->etag, sizeof(out->etag), "\"%" PRIx64 "-%" PRIx64 "\"", (uint64_t)st.st_size,
-                 (uint64_t)st.st_mtim.tv_sec * 1000000000u + (uint64_t)st.st_mtim.tv_nsec);
-        if (!only_etag)
-            good = (out->bytes = text_read_file(full, MAX_FILE_BYTES, &out->count)) != NULL;
-        if (out->bytes && is_own_script(path))
-            out->count = drop_comments(out->bytes, out->count);
+    struct site_file file = { .type = type_of(path) };
+    if (!file.type || !path_harmless(path) || !inside(site->folder, full))
+        return;
+    file.bytes = text_read_file(full, MAX_FILE_BYTES, &file.count);
+    if (!file.bytes) {
+        log_err(log, "%s: %s", full, strerror(errno));
+        return;
     }
+    if (is_own_script(path))
+        file.count = drop_comments(file.bytes, file.count);
+    file.path = mem_strdup(path);
+    snprintf(file.etag, sizeof(file.etag), "\"%016" PRIx64 "\"", (uint64_t)XXH3_64bits(file.bytes, file.count));
+    mem_grow(&site->files, &site->capacity, site->count + 1, sizeof(*site->files));
+    site->files[site->count++] = file;
+}
+
+/* path: of the folder in the site, without a slash at its end. */
+static void add_folder(struct site *site, struct log *log, const char *path)
+{
+    char *full = mem_printf("%s%s", site->folder, path);
+    DIR *folder = opendir(full);
+    for (struct dirent *entry; folder && (entry = readdir(folder));) {
+        struct stat st = { 0 };
+        char *one = mem_printf("%s/%s", full, entry->d_name), *below = mem_printf("%s/%s", path, entry->d_name);
+        if (entry->d_name[0] != '.' && stat(one, &st) == 0 && S_ISDIR(st.st_mode) && inside(site->folder, one))
+            add_folder(site, log, below);
+        else if (entry->d_name[0] != '.' && S_ISREG(st.st_mode))
+            add_file(site, log, one, below);
+        mem_free(one);
+        mem_free(below);
+    }
+    if (folder)
+        closedir(folder);
     mem_free(full);
-    return good;
+}
+
+static int by_path(const void *a, const void *b)
+{
+    return strcmp(((const struct site_file *)a)->path, ((const struct site_file *)b)->path);
+}
+
+struct site *site_create(struct log *log, const char *folder)
+{
+    struct site *site = mem_new(sizeof(*site));
+    if (!folder)
+        return site;
+    site->folder = mem_strdup(folder);
+    add_folder(site, log, "");
+    if (site->count)
+        qsort(site->files, site->count, sizeof(*site->files), by_path);
+    return site;
+}
+
+void site_destroy(struct site **pointer)
+{
+    struct site *site = *pointer;
+    if (!site)
+        return;
+    for (size_t i = 0; i < site->count; i++) {
+        mem_free(site->files[i].path);
+        mem_free(site->files[i].bytes);
+    }
+    mem_free(site->files);
+    mem_free(site->folder);
+    mem_free(site);
+    *pointer = NULL;
+}
+
+const struct site_file *site_find(const struct site *site, const char *path)
+{
+    size_t length = strlen(path);
+    char *whole = length && path[length - 1] == '/' ? mem_printf("%sindex.html", path) : NULL;
+    const struct site_file wanted = { .path = whole ? whole : (char *)(uintptr_t)path };
+    const struct site_file *found = site->count ? bsearch(&wanted, site->files, site->count, sizeof(*site->files), by_path) : NULL;
+    mem_free(whole);
+    return found;
 }
