@@ -64,17 +64,31 @@ const char *daemon_authorization(void)
     return authorization[0] ? authorization : NULL;
 }
 
+/* path: without the first slash. False: it is too long, or has a query. */
+static bool take_base(struct daemon_url *url, const char *path)
+{
+    size_t length = strlen(path);
+    while (length > 0 && path[length - 1] == '/')
+        length--;
+    if (length + 2 > sizeof(url->base) || strpbrk(path, "?#"))
+        return false;
+    snprintf(url->base, sizeof(url->base), "%s%.*s", length ? "/" : "", (int)length, path);
+    return true;
+}
+
 bool daemon_url_parse(const char *text, struct daemon_url *url)
 {
     const char *scheme, *host, *path;
     char *copy = mem_strdup(text);
-    bool good = lws_parse_uri(copy, &scheme, &host, &url->port, &path) == 0 && host[0] && strlen(host) < sizeof(url->host);
+    bool good =
+        lws_parse_uri(copy, &scheme, &host, &url->port, &path) == 0 && host[0] && strlen(host) < sizeof(url->host) && take_base(url, path);
     url->tls = good && (!strcmp(scheme, "https") || !strcmp(scheme, "wss"));
     good = good && (url->tls || !strcmp(scheme, "http") || !strcmp(scheme, "ws"));
     if (good)
         strcpy(url->host, host);
     else
-        fprintf(stderr, "plantcast: '%s' is not http://HOST:PORT/ or https://HOST:PORT/\n", text);
+        fprintf(stderr, "plantcast: '%s' is not http://HOST:PORT/ or https://HOST:PORT/, with a path where a proxy serves it below one\n",
+                text);
     mem_free(copy);
     return good;
 }
@@ -153,9 +167,10 @@ int daemon_get(const struct daemon_url *url, const char *path, struct text *body
     lws_set_log_level(0, NULL);
     daemon_prepare_context(url, &info);
     struct lws_context *context = lws_create_context(&info);
+    char *whole = mem_printf("%s%s", url->base, path);
     struct lws_client_connect_info connect = {
         .context = context,
-        .path = path,
+        .path = whole,
         .method = "GET",
         .userdata = &exchange,
         .protocol = "http",
@@ -166,11 +181,12 @@ int daemon_get(const struct daemon_url *url, const char *path, struct text *body
     while (!exchange.done)
         lws_service(context, 0);
     if (!exchange.status)
-        fprintf(stderr, "plantcast: http%s://%s:%d%s: %s%s\n", url->tls ? "s" : "", url->host, url->port, path,
+        fprintf(stderr, "plantcast: http%s://%s:%d%s: %s%s\n", url->tls ? "s" : "", url->host, url->port, whole,
                 exchange.why[0] ? exchange.why : "no answer",
                 strstr(exchange.why, "SSL") ? "; is its certificate trusted here? --ca FILE names one that is" : "");
     if (context)
         lws_context_destroy(context);
+    mem_free(whole);
     return exchange.status;
 }
 

@@ -11,13 +11,14 @@ struct daemon_url {
     char host[256];
     int port;
     bool tls;
+    char base[256]; /* path in front of all others, where a proxy serves the daemon below one: "/b", or "" */
 };
 
 /* Removes --token-file and --ca, which all commands share, from the command line and remembers them. Returns false with the reason printed.
    Before any thread starts. */
 bool daemon_take_options(int *argc, char **argv);
 
-/* Parses http://HOST[:PORT][/] or https:// (also ws://, wss://). Returns false with the reason printed. */
+/* Parses http://HOST[:PORT][/BASE][/] or https:// (also ws://, wss://). Returns false with the reason printed. */
 bool daemon_url_parse(const char *text, struct daemon_url *url);
 /* Requests GET path and appends the response body to *body (zero-initialised; free with text_finish()). Returns the HTTP status, or 0 if
    there was no answer, with the reason printed. */

@@ -71,9 +71,9 @@ struct raw_websocket *raw_websocket_connect(const struct daemon_url *url, const 
     struct raw_websocket *raw = mem_new(sizeof(*raw));
     raw->fd = fd;
     snprintf(raw->request, sizeof(raw->request),
-             "GET /stream HTTP/1.1\r\nHost: %s%s%s:%d\r\nUpgrade: websocket\r\nConnection: Upgrade\r\nSec-WebSocket-Key: %s\r\n"
+             "GET %s/stream HTTP/1.1\r\nHost: %s%s%s:%d\r\nUpgrade: websocket\r\nConnection: Upgrade\r\nSec-WebSocket-Key: %s\r\n"
              "Sec-WebSocket-Version: 13\r\nSec-WebSocket-Protocol: %s\r\n%s%s%s\r\n",
-             six ? "[" : "", url->host, six ? "]" : "", url->port, KEY, WIRE_SUBPROTOCOL, authorization ? "Authorization: " : "",
+             url->base, six ? "[" : "", url->host, six ? "]" : "", url->port, KEY, WIRE_SUBPROTOCOL, authorization ? "Authorization: " : "",
              authorization ? authorization : "", authorization ? "\r\n" : "");
     return raw;
 }

@@ -319,9 +319,11 @@ void viewer_prepare_context(const struct viewer *viewer, struct lws_context_crea
 
 void viewer_connect(struct viewer *viewer, struct lws_context *context)
 {
+    char path[sizeof(viewer->params.url->base) + 16];
+    snprintf(path, sizeof(path), "%s/stream", viewer->params.url->base);
     struct lws_client_connect_info connect = {
         .context = context,
-        .path = "/stream",
+        .path = path,
         .protocol = WIRE_SUBPROTOCOL,
         .userdata = viewer,
     };

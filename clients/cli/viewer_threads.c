@@ -33,7 +33,9 @@ static void *worker_main(void *arg)
     return NULL;
 }
 
-static bool worker_start(struct worker *worker)
+/* All before the first thread connects: libwebsockets keeps one number for all contexts by which a TLS connection finds its own, and each
+   new context changes it. */
+static bool worker_prepare(struct worker *worker)
 {
     struct lws_context_creation_info info = {
         .port = CONTEXT_PORT_NO_LISTEN,
@@ -44,11 +46,7 @@ static bool worker_start(struct worker *worker)
     };
     viewer_prepare_context(worker->viewers[0], &info);
     worker->context = lws_create_context(&info);
-    if (worker->context && pthread_create(&worker->thread, NULL, worker_main, worker) == 0)
-        return true;
-    if (worker->context)
-        lws_context_destroy(worker->context);
-    return false;
+    return worker->context != NULL;
 }
 
 void viewer_threads_raise_file_limit(void)
@@ -63,14 +61,18 @@ void viewer_threads_raise_file_limit(void)
 bool viewer_threads_run(struct viewer **viewers, int count)
 {
     struct worker workers[MAX_THREADS];
-    int threads = count < MAX_THREADS ? count : MAX_THREADS, started = 0;
+    int threads = count < MAX_THREADS ? count : MAX_THREADS, prepared = 0, started = 0;
     lws_set_log_level(0, NULL);
     viewer_threads_raise_file_limit();
-    for (; started < threads; started++) {
-        workers[started] = (struct worker){ .viewers = viewers + started, .count = count - started, .stride = threads };
-        if (!worker_start(&workers[started]))
+    for (; prepared < threads; prepared++) {
+        workers[prepared] = (struct worker){ .viewers = viewers + prepared, .count = count - prepared, .stride = threads };
+        if (!worker_prepare(&workers[prepared]))
             break;
     }
+    while (started < prepared && pthread_create(&workers[started].thread, NULL, worker_main, &workers[started]) == 0)
+        started++;
+    for (int i = started; i < prepared; i++)
+        lws_context_destroy(workers[i].context);
     for (int i = 0; i < started; i++)
         pthread_join(workers[i].thread, NULL);
     if (started < threads)

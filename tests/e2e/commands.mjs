@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The command line as a client of a daemon: many at once over https, and through a proxy that serves the daemon below a path.
+import assert from 'node:assert/strict';
+import { spawn, spawnSync } from 'node:child_process';
+import { connect, createServer } from 'node:net';
+import { join } from 'node:path';
+import { after, before, test } from 'node:test';
+import { BIN, missing, TinyPlant } from './support/tiny_plant.mjs';
+
+const absent = missing(), skip = absent.length > 0 ? `not built: ${absent.join(', ')}` : false;
+const SESSIONS = 10, PROBES = 10, TOGETHER = 2;
+let plant, proxy, cert;
+
+// A proxy of one sort of request: what begins with /b/ goes on without it, all else is not found.
+function serveBelow(base, port) {
+    return createServer((client) => {
+        client.once('data', (head) => {
+            const text = head.toString('latin1');
+            if (!text.startsWith(`GET ${base}/`))
+                return client.end('HTTP/1.1 404 Not Found\r\nContent-Length: 0\r\n\r\n');
+            const server = connect(port, '127.0.0.1', () => server.write(Buffer.from(text.replace(`GET ${base}/`, 'GET /'), 'latin1')));
+            server.on('error', () => client.destroy());
+            client.pipe(server).pipe(client);
+            return undefined;
+        });
+        client.on('error', () => {});
+    });
+}
+
+const run = (...args) => new Promise((done) => {
+    const child = spawn(join(BIN, 'plantcast'), args, { stdio: ['ignore', 'pipe', 'pipe'] });
+    let out = '', err = '';
+    child.stdout.on('data', (chunk) => { out += chunk; });
+    child.stderr.on('data', (chunk) => { err += chunk; });
+    child.once('exit', (code) => done({ code, out, err }));
+});
+
+before(async () => {
+    if (skip)
+        return;
+    plant = await TinyPlant.create();
+    assert.equal(plant.prepare().code, 0);
+    cert = join(plant.folder, 'cert.pem');
+    const made = spawnSync('openssl', ['req', '-x509', '-newkey', 'ec', '-pkeyopt', 'ec_paramgen_curve:prime256v1', '-nodes', '-days', '30',
+        '-keyout', join(plant.folder, 'key.pem'), '-out', cert, '-subj', '/CN=localhost', '-addext', 'subjectAltName=DNS:localhost,IP:127.0.0.1']);
+    assert.equal(made.status, 0, String(made.stderr));
+});
+after(async () => {
+    proxy?.close();
+    await plant?.destroy();
+});
+
+test(`${SESSIONS * PROBES} connections over https, ${SESSIONS * TOGETHER} at once: none fails`, { skip, timeout: 300000 }, async () => {
+    await plant.startDaemon('--tls-cert', cert, '--tls-key', join(plant.folder, 'key.pem'));
+    const probe = () => run('probe', `https://localhost:${plant.port}/`, '--ca', cert, '--sessions', String(SESSIONS), '--seconds', '0.2',
+        '--motion', 'still', '--size', '64x36');
+    for (let i = 0; i < PROBES; i += TOGETHER)
+        for (const { code, err } of await Promise.all(Array.from({ length: TOGETHER }, probe)))
+            assert.deepEqual([code, err], [0, '']);
+    await plant.daemon.stop();
+});
+
+test('a path in front of the daemon\'s own is kept: tags, snapshot and stream', { skip, timeout: 100000 }, async () => {
+    await plant.startDaemon();
+    proxy = serveBelow('/b', plant.port).listen(0, '127.0.0.1');
+    await new Promise((done) => proxy.once('listening', done));
+    const at = `http://127.0.0.1:${proxy.address().port}`;
+    for (const url of [`${at}/b`, `${at}/b/`]) {
+        const tags = await run('tags', url);
+        assert.equal(tags.code, 0, tags.err);
+        assert.match(tags.out, /TI-1/);
+    }
+    for (const more of [[], ['--blind']]) {
+        const probe = await run('probe', `${at}/b/`, '--sessions', '1', '--seconds', '0.5', '--motion', 'still', ...more);
+        assert.equal(probe.code, 0, probe.err);
+    }
+    const wrong = await run('tags', at);
+    assert.equal(wrong.code, 1);
+    assert.match(wrong.err, /404/);
+    assert.equal((await run('tags', `${at}/b?x=1`)).code, 1, 'a query is no path');
+});
