@@ -186,7 +186,7 @@ int cmd_history(int argc, char **argv)
     }
     options.plant = argv[optind + 1];
     options.csv = import ? argv[optind + 2] : NULL;
-    struct plant *plant = plant_load_or_print(options.plant);
+    struct plant *plant = (import ? plant_load_or_print : plant_load_without_models)(options.plant);
     if (!plant)
         return 1;
     struct log *log = log_create(LOG_WARN);

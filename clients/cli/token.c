@@ -13,6 +13,7 @@
 #include "base/clock.h"
 #include "base/mem.h"
 #include "base/text.h"
+#include "base/timestamp.h"
 #include "commands.h"
 #include "message/names.h"
 #include "access/tokens.h"
@@ -152,6 +153,15 @@ static int add(const char *path, struct token_holder *holder)
     return result;
 }
 
+static void print_holder(const struct token_holder *holder)
+{
+    char until[TIMESTAMP_BYTES] = "";
+    if (holder->until_utc_ns < INT64_MAX)
+        timestamp_print(holder->until_utc_ns / 1000, until);
+    printf("%-10s %s%s%s%s\n", name_of(names_role, (int)holder->role), holder->name, *until ? "  until " : "", until,
+           holder->until_utc_ns <= clock_utc_ns() ? "  (its time is over)" : "");
+}
+
 static int list(const char *path)
 {
     char *old = read_file(path, false);
@@ -161,8 +171,7 @@ static int list(const char *path)
         const char *why;
         int found = tokens_parse_line(line, &holder, &why);
         if (found == 1)
-            printf("%-10s %s%s\n", name_of(names_role, (int)holder.role), holder.name,
-                   holder.until_utc_ns <= clock_utc_ns() ? "  (its time is over)" : "");
+            print_holder(&holder);
         if (found < 0) {
             fprintf(stderr, "plantcast: %s:%d: %s\n", path, number, why);
             result = 1;

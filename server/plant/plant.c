@@ -53,11 +53,12 @@ static void sort_assets(struct plant *plant)
     qsort_r(plant->assets_by_id, plant->asset_count, sizeof(*plant->assets_by_id), compare_ids, plant->assets);
 }
 
-static struct plant *load(const char *path, bool keeps_orphans, struct diag *diag)
+static struct plant *load(const char *path, bool keeps_orphans, bool without_models, struct diag *diag)
 {
     int errors = diag->errors;
     struct plant *plant = mem_new(sizeof(*plant));
     plant->keeps_orphans = keeps_orphans;
+    plant->without_models = without_models;
     plant->path = mem_strdup(path);
     plant->folder = folder_of(path);
     plant_file_read(plant, diag);
@@ -73,22 +74,32 @@ static struct plant *load(const char *path, bool keeps_orphans, struct diag *dia
 
 struct plant *plant_load(const char *path, struct diag *diag)
 {
-    return load(path, false, diag);
+    return load(path, false, false, diag);
 }
 
-struct plant *plant_load_or_print(const char *path)
+static struct plant *load_or_print(const char *path, bool without_models)
 {
     struct diag diag = { 0 };
-    struct plant *plant = plant_load(path, &diag);
+    struct plant *plant = load(path, false, without_models, &diag);
     if (!plant)
         diag_print(&diag, stderr);
     diag_finish(&diag);
     return plant;
 }
 
+struct plant *plant_load_or_print(const char *path)
+{
+    return load_or_print(path, false);
+}
+
+struct plant *plant_load_without_models(const char *path)
+{
+    return load_or_print(path, true);
+}
+
 struct plant *plant_load_with_orphans(const char *path, struct diag *diag)
 {
-    return load(path, true, diag);
+    return load(path, true, false, diag);
 }
 
 static void free_assets(struct plant *plant)

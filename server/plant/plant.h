@@ -235,6 +235,7 @@ struct plant {
     char *tags_path;
     char hash[17];          /* of both files, hexadecimal: which configuration this is */
     bool keeps_orphans;     /* while it is loaded: tags of assets that are not there are no error */
+    bool without_models;    /* likewise: nor are models that are not there */
     char *name, *time_zone; /* IANA name; default UTC */
     enum axis up;           /* of the plant frame */
     struct plant_view view;
@@ -261,7 +262,9 @@ struct plant {
 /* Loads a plant file and its tag list. Findings go to diag. Returns NULL if there was any error. */
 struct plant *plant_load(const char *path, struct diag *diag);
 struct plant *plant_load_or_print(const char *path); /* the same; prints findings to standard error */
-/* The same, but accepts tags that name an asset that does not exist: they have no asset, and lost_asset is set. */
+/* The same, for what needs no models: those that are not there are no error. */
+struct plant *plant_load_without_models(const char *path);
+/* The same as plant_load, but accepts tags that name an asset that does not exist: they have no asset, and lost_asset is set. */
 struct plant *plant_load_with_orphans(const char *path, struct diag *diag);
 void plant_destroy(struct plant **plant); /* &NULL is fine; leaves NULL */
 

@@ -209,7 +209,7 @@ static void read_asset(struct yaml_reader *reader, yaml_node_t *node, struct pla
     if (asset->start != PLANT_START_SHOWN && plant->asset_count > PLANT_STARTS)
         yaml_error(reader, yaml_map_place(&map, "start"), "start: only the first %d assets can be hidden or ghosts", PLANT_STARTS);
     plant_resolve_path(plant, &asset->model);
-    if (yaml_map_good(&map, "model"))
+    if (yaml_map_good(&map, "model") && !plant->without_models)
         check_model(reader, &map, asset->model);
     if (!asset->tag && asset->id)
         asset->tag = mem_strdup(asset->id);
