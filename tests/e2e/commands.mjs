@@ -42,7 +42,8 @@ before(async () => {
     assert.equal(plant.prepare().code, 0);
     cert = join(plant.folder, 'cert.pem');
     const made = spawnSync('openssl', ['req', '-x509', '-newkey', 'ec', '-pkeyopt', 'ec_paramgen_curve:prime256v1', '-nodes', '-days', '30',
-        '-keyout', join(plant.folder, 'key.pem'), '-out', cert, '-subj', '/CN=localhost', '-addext', 'subjectAltName=DNS:localhost,IP:127.0.0.1']);
+        '-keyout', join(plant.folder, 'key.pem'), '-out', cert, '-subj', '/CN=localhost',
+        '-addext', 'subjectAltName=DNS:localhost,IP:127.0.0.1']);
     assert.equal(made.status, 0, String(made.stderr));
 });
 after(async () => {

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The files of the web client, as they were when the daemon started: read into memory from one folder, so that an upgrade of the files never
-   meets the daemon of before. Thread: one makes it; immutable from then on. */
+/* The files of the web client, as they were when the daemon started: read into memory from one folder, so that an upgrade of
+   the files never meets the daemon of before. Thread: one makes it; immutable from then on. */
 #ifndef NET_SITE_H
 #define NET_SITE_H
 #include <stdbool.h>
