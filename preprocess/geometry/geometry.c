@@ -221,9 +221,30 @@ static size_t prefer_own(const struct gltf_model *model, const struct geometry_p
     return own > 0 ? own : count;
 }
 
+static bool middle_of_asset(const struct gltf_model *model, const struct geometry_params *params, double place_m[3],
+                            char why[MODEL_WHY_BYTES])
+{
+    struct box box = empty_box;
+    bool *taken = taken_nodes(model, params->nodes, why);
+    for (uint32_t i = 0; taken && i < model->node_count; i++) {
+        const struct gltf_node *node = &model->nodes[i];
+        double world[16];
+        primitive_world(params, node, world);
+        for (uint32_t p = 0; taken[i] && node->mesh >= 0 && p < model->meshes[node->mesh].primitive_count; p++)
+            box_add_primitive(&box, &model->primitives[model->meshes[node->mesh].first_primitive + p], world);
+    }
+    for (int axis = 0; axis < 3; axis++)
+        place_m[axis] = box.low[axis] <= box.high[axis] ? (box.low[axis] + box.high[axis]) / 2 : 0;
+    bool good = taken != NULL;
+    mem_free(taken);
+    return good;
+}
+
 bool geometry_node_place(const struct gltf_model *model, const struct geometry_params *params, const char *pattern, double place_m[3],
                          char why[MODEL_WHY_BYTES])
 {
+    if (!*pattern)
+        return middle_of_asset(model, params, place_m, why);
     struct model_node *nodes = nodes_of(model);
     uint32_t *found = mem_array(model->node_count, sizeof(*found));
     size_t count = nodes_find(pattern, nodes, model->node_count, found, why, MODEL_WHY_BYTES);

@@ -52,8 +52,8 @@ uint64_t geometry_triangles(const struct gltf_model *model, const struct geometr
 double (*geometry_node_boxes(const struct gltf_model *model, const struct geometry_params *params))[2][3];
 
 /* Finds the position, in the asset frame, of the node that `pattern` names: the centre of its sub-tree's bounding box, or its origin if it
-   has no mesh. Nodes inside the asset are preferred. Returns false with the reason in why if there is none, or several in different
-   positions. */
+   has no mesh; of the whole asset for "". Nodes inside the asset are preferred. Returns false with the reason in why if there is none, or
+   several in different positions. */
 bool geometry_node_place(const struct gltf_model *model, const struct geometry_params *params, const char *pattern, double place_m[3],
                          char why[MODEL_WHY_BYTES]);
 

@@ -28,7 +28,8 @@ static void hash_text(XXH3_state_t *state, const char *text)
 static bool is_alone(const struct plant *plant, const struct plant_sensor *sensors, size_t count, size_t sensor)
 {
     for (size_t i = 0; i < count; i++)
-        if (i != sensor && plant->tags[sensors[i].tag].group == plant->tags[sensors[sensor].tag].group)
+        if (i != sensor && plant->tags[sensors[i].tag].group == plant->tags[sensors[sensor].tag].group &&
+            !plant->tags[sensors[i].tag].place_assumed)
             return false;
     return true;
 }
@@ -55,6 +56,8 @@ static void hash_field(XXH3_state_t *state, const struct plant *plant, const str
         XXH3_64bits_update(state, &group->reach_m, sizeof(group->reach_m));
     if (is_alone(plant, sensors, count, sensor) && !straight_looks_at_paper(group, 1))
         XXH3_64bits_update(state, "s", 1);
+    if (tag->place_assumed)
+        XXH3_64bits_update(state, "e", 1);
 }
 
 uint64_t build_recipe(uint64_t model_hash, const struct geometry_params *geometry)

@@ -6,6 +6,7 @@
    parts of the range. It is taken over every group with sensors on the asset, both interpolations and both kinds of distance, with the
    plant file's parameters.
 
+   Sensors whose place is assumed are left out: they paint nothing, or all of the asset evenly.
    Where no sensor of a group reaches, there is no data, and the nearest sensor's value is carried on. Thread: any, once initialised. */
 #ifndef PREPROCESS_SUBDIVISION_LINEAR_ERROR_H
 #define PREPROCESS_SUBDIVISION_LINEAR_ERROR_H

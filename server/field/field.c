@@ -147,10 +147,10 @@ static bool grow_state(struct field *field, struct state *state, size_t count)
     return true;
 }
 
-/* -1: it does not stand on the asset. */
+/* -1: it does not stand on the asset, or nobody knows where. */
 static int find_sensor(const struct layout *layout, int tag)
 {
-    for (size_t i = 0; layout && i < layout->sensor_count; i++)
+    for (size_t i = 0; layout && !layout->assumed && i < layout->sensor_count; i++)
         if (layout->sensors[i].tag == tag)
             return (int)i;
     return -1;
@@ -177,6 +177,13 @@ bool field_covers(struct field *field, int asset, const struct field_params *par
 {
     const struct layout *layout = field_layout(field, asset, params);
     return params->show == SHOW_DISTANCE ? find_sensor(layout, params->sensor) >= 0 : layout != NULL;
+}
+
+bool field_is_assumed(struct field *field, int asset, const struct field_params *params)
+{
+    struct field_params room;
+    const struct layout *layout = field_layout(field, asset, field_params_of(field, asset, params, &room));
+    return layout && layout->assumed;
 }
 
 static void read_inputs(const struct field *field, struct state *state, const struct snapshot *snapshot)

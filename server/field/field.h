@@ -11,6 +11,9 @@
    weights of Franke and Nielson, 1980), so that the field has no edge where a sensor leaves the sums. The nearest one's is never seen to
    fade, since weights are divided by their sum.
    In shepard a sensor of strength 0 never takes part; a common factor on all strengths cancels out, and decay has no part.
+   Sensors whose place is assumed (`Place: equipment`) never paint a gradient. Where the group has a sensor on the asset whose place is
+   known, they take no part. Where it has none, one of them stands for the whole asset, evenly: the one whose reading is nearest to trouble
+   (by its own limits, else the farthest from the middle of the group's range), never a mean; while all are Bad there is no data.
    There is no data where nobody takes part, and where a configured sensor that does not is nearer than all that do (`fill` may ask to
    have such places filled; they are flagged uncertain). The value there is carried on from the nearest that takes part; else MIN.
 
@@ -50,7 +53,7 @@ void field_set_baselines(struct field *field, struct baselines *baselines);
    where the plant has them. */
 void field_set_trials(struct field *field, struct trials *trials);
 /* Returns the parameters under which the field of this asset is cached: params, or a copy in *room without the trial, where the trial moves
-   nothing on this asset. */
+   nothing on this asset, and with those of a constant field, where the places of all sensors are assumed. */
 const struct field_params *field_params_of(struct field *field, int asset, const struct field_params *params, struct field_params *room);
 /* Returns the trial that params name, held until field_give_trial(); NULL if there is none. */
 const struct trial *field_take_trial(struct field *field, const struct field_params *params);
@@ -87,6 +90,8 @@ void field_update_all(struct field *field, const int *assets, const size_t *coun
 bool field_advance(struct field *field, int asset, const struct field_params *params, const struct snapshot *snapshot, size_t count,
                    double work);
 
+/* Returns whether one sensor stands for the whole asset, since the places of all are assumed. */
+bool field_is_assumed(struct field *field, int asset, const struct field_params *params);
 /* Returns whether there is anything to show on the asset with these parameters, given enough memory. */
 bool field_covers(struct field *field, int asset, const struct field_params *params);
 

@@ -1,5 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Fields of sensors whose places are tried out: their layouts, kept as long as somebody may ask for them. */
+#include <math.h>
+
 #include "base/mem.h"
 #include "field/field_impl.h"
 
@@ -54,7 +56,25 @@ static struct trial_layout *find(const struct field *field, int asset, const str
     return tried;
 }
 
-const struct field_params *field_params_of(struct field *field, int asset, const struct field_params *params, struct field_params *room)
+/* One value for all of the asset, whatever the group says: no place is known that it could depend on. */
+static const struct field_params *even_params(struct field *field, int asset, const struct field_params *params, struct field_params *room)
+{
+    const struct layout *layout = field_layout(field, asset, params);
+    if (!layout || !layout->assumed || params->show == SHOW_DISTANCE)
+        return params;
+    if (room != params)
+        *room = *params;
+    room->interpolation = INTERPOLATION_SHEPARD;
+    room->distance = DISTANCE_EUCLIDEAN;
+    room->reach_m = INFINITY;
+    room->fill = FILL_NONE;
+    room->strength = room->decay = 1;
+    room->radius_m = 0;
+    room->override_count = 0;
+    return room;
+}
+
+static const struct field_params *trial_params(struct field *field, int asset, const struct field_params *params, struct field_params *room)
 {
     if (!params->trial || find(field, asset, params))
         return params;
@@ -72,6 +92,11 @@ const struct field_params *field_params_of(struct field *field, int asset, const
     *room = *params;
     room->trial = 0;
     return room;
+}
+
+const struct field_params *field_params_of(struct field *field, int asset, const struct field_params *params, struct field_params *room)
+{
+    return even_params(field, asset, trial_params(field, asset, params, room), room);
 }
 
 struct layout *field_trial_layout(struct field *field, int asset, const struct field_params *params)

@@ -14,6 +14,20 @@ static bool of_group(const struct scene *scene, const struct scene_sensor *senso
     return scene->plant->tags[sensor->tag].group == group;
 }
 
+/* Those whose place is known; where there are none, those whose place is assumed. A place that is tried out is known. */
+static bool has_known(const struct scene *scene, int asset, int group, const struct trial *trial)
+{
+    const struct scene_asset *from = &scene->assets[asset];
+    for (size_t i = 0; i < from->sensor_count; i++)
+        if (of_group(scene, &from->sensors[i], group) && !scene->plant->tags[from->sensors[i].tag].place_assumed &&
+            !trial_find(trial, from->sensors[i].tag))
+            return true;
+    for (size_t i = 0; trial && i < trial->count; i++)
+        if (trial->sensors[i].asset == asset && scene->plant->tags[trial->sensors[i].tag].group == group)
+            return true;
+    return false;
+}
+
 static float not_negative(double x)
 {
     return x > 0 && x < 1e30 ? (float)x : 0.0f;
@@ -32,7 +46,7 @@ bool layout_is_touched(const struct scene *scene, int asset, int group, const st
 static void add(struct layout *layout, struct layout_sensor sensor)
 {
     const struct plant_tag *tag = &layout->tags[sensor.tag];
-    sensor.strength = not_negative(tag->strength);
+    sensor.strength = layout->assumed ? 1 : not_negative(tag->strength);
     sensor.decay = not_negative(tag->decay);
     layout->sensors[layout->sensor_count++] = sensor;
 }
@@ -68,9 +82,11 @@ struct layout *layout_create(const struct scene *scene, int asset, int group, co
     layout->tags = scene->plant->tags;
     layout->vertex_count = from->file->view.header->vertex_count;
     layout->trial = trial ? trial->id : 0;
+    layout->assumed = !has_known(scene, asset, group, trial);
     layout->sensors = mem_array(from->sensor_count + (trial ? trial->count : 0), sizeof(*layout->sensors));
     for (size_t i = 0; i < from->sensor_count; i++)
-        if (of_group(scene, &from->sensors[i], group) && !trial_find(trial, from->sensors[i].tag))
+        if (of_group(scene, &from->sensors[i], group) && !trial_find(trial, from->sensors[i].tag) &&
+            (layout->assumed || !scene->plant->tags[from->sensors[i].tag].place_assumed))
             add_prepared(layout, &from->sensors[i]);
     for (size_t i = 0; trial && i < trial->count; i++)
         if (trial->sensors[i].asset == asset && scene->plant->tags[trial->sensors[i].tag].group == group)

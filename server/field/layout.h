@@ -22,6 +22,7 @@ struct layout {
     const struct plant_tag *tags; /* of the plant */
     struct layout_sensor *sensors;
     size_t sensor_count, vertex_count;
+    bool assumed;       /* the places of all of them are: one of them stands for the whole asset, evenly (field.h) */
     float largest_m[2]; /* by distance_mode; 0: not looked for yet */
     uint32_t trial;     /* of which some of the places are; 0: none */
 };

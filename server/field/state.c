@@ -143,6 +143,33 @@ static struct state_input less(struct state_input now, struct state_input then)
     };
 }
 
+/* How near a reading is to trouble: by its tag's limits, where it has any, else by how far it is from the middle of the group's range. */
+static double severity_of(const struct plant_group *group, const struct plant_tag *tag, double reading)
+{
+    double place = limit_place(group, tag, reading), middle = (group->min + group->max) / 2;
+    return isfinite(place) ? fabs(place) : fmin(fabs(reading - middle) / (group->max - middle), 0.999);
+}
+
+/* Of several sensors whose place is assumed the one that is nearest to trouble stands for the asset; of equal ones the first. */
+static void choose_one(struct state *state, const struct snapshot *snapshot)
+{
+    const struct layout *layout = state->layout;
+    double most = -1;
+    size_t chosen = layout->sensor_count;
+    for (size_t i = 0; i < layout->sensor_count; i++) {
+        int tag = layout->sensors[i].tag;
+        double reading = snapshot->readings[tag].value;
+        double severity = state->now[i].usable == SENSOR_USED ? severity_of(layout->group, &layout->tags[tag], reading) : -1;
+        if (severity > most) {
+            most = severity;
+            chosen = i;
+        }
+    }
+    for (size_t i = 0; i < layout->sensor_count && chosen < layout->sensor_count; i++)
+        if (i != chosen)
+            state->now[i] = (struct state_input){ .usable = SENSOR_ASIDE };
+}
+
 void state_read(struct state *state, const struct snapshot *snapshot, const struct snapshot *baseline)
 {
     int64_t oldest_ns = -1;
@@ -154,8 +181,13 @@ void state_read(struct state *state, const struct snapshot *snapshot, const stru
         const struct state_input nothing = { 0 };
         if (state->params.show == SHOW_DIFFERENCE)
             state->now[i] = less(state->now[i], baseline ? input_of(state, described, &baseline->readings[tag]) : nothing);
+    }
+    if (state->layout->assumed)
+        choose_one(state, snapshot);
+    for (size_t i = 0; i < state->layout->sensor_count; i++) {
+        const struct reading *reading = &snapshot->readings[state->layout->sensors[i].tag];
         state->usable[i] = state->now[i].usable;
-        if (state->usable[i] && reading->age_ns > oldest_ns)
+        if (state->usable[i] && state->usable[i] != SENSOR_ASIDE && reading->age_ns > oldest_ns)
             oldest_ns = reading->age_ns;
     }
     state->scalars.oldest_age_ns = oldest_ns >= 0 ? oldest_ns : INT64_MAX;

@@ -85,7 +85,7 @@ static void choose_members(struct weights *weights, const struct field_params *p
     for (size_t i = 0; i < layout->sensor_count; i++) {
         weights->strength[i] = strength_of(&layout->sensors[i], params);
         weights->decay[i] = decay_of(&layout->sensors[i], params);
-        weights->configured[i] = weights->interpolation == INTERPOLATION_PAPER || weights->strength[i] > 0;
+        weights->configured[i] = (weights->interpolation == INTERPOLATION_PAPER || weights->strength[i] > 0) && usable[i] != SENSOR_ASIDE;
         if (usable[i] == SENSOR_NO_LIMITS && weights->configured[i])
             weights->configured[i] = SENSOR_NO_LIMITS;
         if (usable[i] == SENSOR_USED && weights->configured[i])

@@ -12,7 +12,8 @@
 enum sensor_use {
     SENSOR_LOST, /* takes no part; its place has no data */
     SENSOR_USED,
-    SENSOR_NO_LIMITS /* takes no part, but its place is known to be well measured */
+    SENSOR_NO_LIMITS, /* takes no part, but its place is known to be well measured */
+    SENSOR_ASIDE      /* takes no part, as if it were not there: another stands for the asset */
 };
 
 /* How the nearest sensors stand to a vertex. */

@@ -191,6 +191,11 @@ static bool may_show(const struct plant *plant, const struct field_params *field
     char group[48], asset[48];
     int first;
     const struct plant_group *of = &plant->groups[field->group];
+    if (field->show == SHOW_DISTANCE && plant->tags[field->sensor].place_assumed) {
+        message_fail(error, "bad_field", "sensor: nobody has said where on '%s' it is, so there are no distances from it",
+                     quoted(plant->assets[plant->tags[field->sensor].asset].id, asset));
+        return false;
+    }
     if (plant_cuts_singles(of))
         return true;
     size_t count = field->interpolation == INTERPOLATION_PAPER ? plant_singles(plant, field->group, &first) : 0;

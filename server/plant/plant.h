@@ -183,6 +183,7 @@ struct plant_tag {
     struct unit_change change; /* from own_unit to unit */
     int source, group, asset;  /* index, or -1 */
     char *lost_asset;          /* the id of an asset that is not there (plant_load_with_orphans), or NULL */
+    bool place_assumed;        /* Place: equipment. It is somewhere on its asset, and stands for all of it (field/field.h) */
     char *address;             /* as written: of a register, the name of a series, a topic, or = and an expression */
     char *topic, *path;        /* of an MQTT source: the topic whole, and where in its payload ("": the source's way); else NULL. Of
                                   Sparkplug: GROUP/NODE[/DEVICE], and the metric */

@@ -75,7 +75,10 @@ static void compare_tags(struct plant_diff *diff, const struct plant *before, co
     add(what, sizeof(what), !same_text(source_of(before, a), source_of(after, b)), "source");
     add(what, sizeof(what), !same_text(group_of(before, a), group_of(after, b)), "group");
     add(what, sizeof(what), !same_text(asset_of(before, a), asset_of(after, b)), "asset");
-    add(what, sizeof(what), !same_text(a->node, b->node) || memcmp(a->position_m, b->position_m, sizeof(a->position_m)) != 0, "place");
+    add(what, sizeof(what),
+        !same_text(a->node, b->node) || memcmp(a->position_m, b->position_m, sizeof(a->position_m)) != 0 ||
+            a->place_assumed != b->place_assumed,
+        "place");
     add(what, sizeof(what),
         a->scaling != b->scaling || a->raw_low != b->raw_low || a->raw_high != b->raw_high || a->scaled_low != b->scaled_low ||
             a->scaled_high != b->scaled_high || a->negate != b->negate,

@@ -30,10 +30,12 @@ size_t plant_sensors(const struct plant *plant, int asset, struct plant_sensor *
             continue;
         sensor->tag = (int)i;
         if (!tag->has_position) {
-            sensor->node = tag->node;
-            sensor->node_hash = XXH3_64bits(tag->node, strlen(tag->node));
+            sensor->node = tag->node ? tag->node : "";
+            sensor->node_hash = XXH3_64bits_withSeed(sensor->node, strlen(sensor->node), tag->place_assumed);
         } else {
             transform_point(of->sensors_in_asset_frame ? transform_identity : asset_from_plant, tag->position_m, sensor->position_m);
+            if (tag->place_assumed)
+                sensor->node_hash = XXH3_64bits_withSeed(sensor->position_m, sizeof(sensor->position_m), tag->place_assumed);
         }
         sensor++;
     }

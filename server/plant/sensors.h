@@ -9,8 +9,8 @@
 
 struct plant_sensor {
     int tag;               /* index in plant->tags */
-    const char *node;      /* the model node whose place it has; NULL: position_m. Belongs to the plant */
-    uint64_t node_hash;    /* XXH3-64 of node; 0: position_m */
+    const char *node;      /* the model node whose place it has; "": the middle of the asset; NULL: position_m. Belongs to the plant */
+    uint64_t node_hash;    /* XXH3-64 of node; 0: position_m. Of an assumed place, of node or position_m with another seed */
     double position_m[3];  /* asset frame (metres, Z up); 0 where node is set */
 };
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Assets with a single sensor of a group. By shepard the group's field is constant there, and plantcast-prep leaves their triangles whole,
-   unless the plant file asks for paper or says `singles: cut`. On whole triangles neither paper nor distances can be drawn truly. Thread:
-   any. */
+   unless the plant file asks for paper or says `singles: cut`. On whole triangles neither paper nor distances can be drawn truly. Sensors
+   whose place is assumed do not count. Thread: any. */
 #ifndef PLANT_SINGLES_H
 #define PLANT_SINGLES_H
 #include "plant/plant.h"

@@ -60,6 +60,7 @@ static const struct column_name column_names[] = { /* the first name of a column
     { "Latch", COL_LATCH },
     { "Suppressed By", COL_SUPPRESSED_BY },
     { "Mirrors", COL_MIRRORS },
+    { "Place", COL_PLACE },
 };
 enum { NAME_COUNT = sizeof(column_names) / sizeof(*column_names) };
 

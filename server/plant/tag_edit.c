@@ -11,8 +11,8 @@
 #include "base/text.h"
 #include "plant/csv.h"
 
-enum edited { EDIT_NAME, EDIT_ASSET, EDIT_GROUP, EDIT_NODE, EDIT_X, EDIT_Y, EDIT_Z, EDIT_COLUMNS };
-static const char *const names[EDIT_COLUMNS] = { "Tag Name", "Asset", "Group", "Node", "X", "Y", "Z" };
+enum edited { EDIT_NAME, EDIT_ASSET, EDIT_GROUP, EDIT_NODE, EDIT_PLACE, EDIT_X, EDIT_Y, EDIT_Z, EDIT_COLUMNS };
+static const char *const names[EDIT_COLUMNS] = { "Tag Name", "Asset", "Group", "Node", "Place", "X", "Y", "Z" };
 
 struct span { /* a cell as it stands, quotes and blanks taken in */
     const char *begin, *end;
@@ -158,6 +158,7 @@ static bool wanted(const struct list *list, const struct tag_edit *edit, size_t 
             return true;
         }
     *out = list->column[EDIT_NODE] == (int)column    ? ""
+           : list->column[EDIT_PLACE] == (int)column ? ""
            : list->column[EDIT_ASSET] == (int)column ? edit->asset
            : list->column[EDIT_GROUP] == (int)column ? edit->group
                                                      : NULL;

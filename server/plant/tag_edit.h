@@ -9,7 +9,7 @@
 struct tag_edit {
     const char *tag;
     const char *asset, *group; /* ids; NULL: unchanged */
-    double position_m[3];      /* in the frame that the asset states; written to the millimetre. The cell Node is cleared */
+    double position_m[3];      /* in the frame that the asset states; written to the millimetre. The cells Node and Place are cleared */
 };
 
 struct tag_line { /* one line that differs */

@@ -4,6 +4,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 
 #include "base/mem.h"
 #include "plant/plant_alarms.h"
@@ -82,7 +83,11 @@ static void read_place(struct tag_list *list)
 {
     struct tag_columns *columns = &list->columns;
     struct plant_tag *tag = list->tag;
+    const char *place = cell_text(columns, COL_PLACE);
     read_position(list);
+    tag->place_assumed = !strcasecmp(place, "equipment");
+    if (*place && !tag->place_assumed && strcasecmp(place, "position") != 0)
+        cell_error(columns, COL_PLACE, "Place: expected position or equipment, found '%.60s'", place);
     bool has_xyz = cell_given(columns, COL_X) || cell_given(columns, COL_Y) || cell_given(columns, COL_Z);
     if (cell_given(columns, COL_NODE))
         tag->node = mem_strdup(cell_text(columns, COL_NODE));
@@ -93,9 +98,9 @@ static void read_place(struct tag_list *list)
     if (!cell_given(columns, COL_ASSET))
         cell_warning(columns, columns->at[COL_ASSET] >= 0 ? COL_ASSET : COL_GROUP, "'%.60s' has a group but no asset, so it is in no field",
                      tag->name);
-    else if (!has_xyz && !tag->node)
+    else if (!has_xyz && !tag->node && !tag->place_assumed)
         cell_error(columns, columns->at[COL_NODE] >= 0 ? COL_NODE : COL_ASSET,
-                   "'%.60s' has a group and an asset but no place: expected Node, or X, Y and Z", tag->name);
+                   "'%.60s' has a group and an asset but no place: expected Node, or X, Y and Z, or Place: equipment", tag->name);
 }
 
 /* --- meaning ---------------------------------------------------------------------------------------------------------------- */

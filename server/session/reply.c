@@ -44,6 +44,8 @@ char *reply_picked_text(const struct plant *plant, const struct pick_answer *ans
     json_object_set_new(object, "uncertain", json_boolean(told && pick->uncertain));
     json_object_set_new(object, "inside", json_boolean(found && pick->inside));
     json_object_set_new(object, "nearest", nearest(plant, pick));
+    if (told && pick->assumed)
+        json_object_set_new(object, "place", json_string("equipment"));
     json_object_set_new(object, "sensor", pick->sensor < 0 ? json_null() : string(plant->tags[pick->sensor].name));
     json_object_set_new(object, "occluded", json_boolean(pick->sensor >= 0 && pick->sensor_occluded));
     return json_text(object, DIGITS);

@@ -458,6 +458,83 @@ static void test_one_sensor_is_everywhere(void **state)
     rig_finish(&rig);
 }
 
+static void assert_even(const struct rig *rig, float value)
+{
+    const struct scalars *scalars = show(rig);
+    for (size_t j = 0; j < scalars->count; j++)
+        if (scalars->at[j].value != value || scalars->at[j].no_data || scalars->at[j].lacking || scalars->at[j].uncertain)
+            fail_msg("vertex %zu of %zu: %g, no data %d", j, scalars->count, (double)scalars->at[j].value, scalars->at[j].no_data);
+}
+
+/* Whatever the group or whoever looks asks for, a place that nobody knows makes no gradient. */
+static void test_an_assumed_place_is_the_whole_asset_evenly(void **state)
+{
+    (void)state;
+    struct rig rig = rig_create(synthetic_create(.vertices = 700, .sensors = 1, .island = 100));
+    rig.plant->plant.tags[0].place_assumed = true;
+    rig.plant->plant.tags[0].strength = 0;
+    set(&rig, 0, 41.7, QUALITY_GOOD);
+    for (int i = 0; i < 4; i++) {
+        rig.params.interpolation = i & 1 ? INTERPOLATION_PAPER : INTERPOLATION_SHEPARD;
+        rig.params.distance = i & 2 ? DISTANCE_GEODESIC : DISTANCE_EUCLIDEAN;
+        rig.params.reach_m = 0.1;
+        assert_even(&rig, 41.7f);
+        assert_true(field_is_assumed(rig.field, 0, &rig.params));
+    }
+    rig.params.show = SHOW_DISTANCE;
+    rig.params.sensor = 0;
+    assert_null(field_scalars(rig.field, 0, &rig.params, rig.plant->snapshot));
+    assert_false(field_covers(rig.field, 0, &rig.params));
+    rig_finish(&rig);
+}
+
+static void test_of_assumed_places_the_nearest_to_trouble_stands_for_all(void **state)
+{
+    (void)state;
+    struct rig rig = rig_create(synthetic_create(.vertices = 700, .sensors = 3));
+    for (int i = 0; i < 3; i++) {
+        rig.plant->plant.tags[i].place_assumed = true;
+        for (int limit = 0; limit < LIMIT_COUNT; limit++)
+            rig.plant->plant.tags[i].limits[limit] = NAN;
+    }
+    set(&rig, 0, 40, QUALITY_GOOD);
+    set(&rig, 1, 75, QUALITY_GOOD);
+    set(&rig, 2, 30, QUALITY_GOOD);
+    assert_even(&rig, 75); /* of 0 to 100, without limits: the farthest from 50 */
+    set(&rig, 2, 5, QUALITY_GOOD);
+    assert_even(&rig, 5);
+    rig.plant->plant.tags[0].limits[LIMIT_H] = 35;
+    assert_even(&rig, 40); /* beyond its own limit */
+    assert_as_fresh(&rig);
+    set(&rig, 0, 40, QUALITY_BAD_NO_COMMUNICATION);
+    assert_even(&rig, 5);
+    set(&rig, 1, 75, QUALITY_BAD_NO_COMMUNICATION);
+    set(&rig, 2, 5, QUALITY_BAD_NO_COMMUNICATION);
+    const struct scalars *scalars = show(&rig);
+    for (size_t j = 0; j < scalars->count; j++)
+        assert_int_equal(scalars->at[j].no_data, 255);
+    rig_finish(&rig);
+}
+
+static void test_beside_a_known_place_an_assumed_one_paints_nothing(void **state)
+{
+    (void)state;
+    struct rig with = rig_create(synthetic_create(.vertices = 700, .sensors = 3)), without = with;
+    with.plant->plant.tags[2].place_assumed = true;
+    set(&with, 2, 99, QUALITY_GOOD);
+    without.plant = synthetic_create(.vertices = 700, .sensors = 3);
+    without.field = field_create(workers, &without.plant->scene);
+    without.plant->plant.tags[2].group = -1; /* as if it were not there */
+    const struct scalars *got = show(&with), *want = show(&without);
+    assert_memory_equal(got->at, want->at, want->count * sizeof(*want->at));
+    assert_false(field_is_assumed(with.field, 0, &with.params));
+    set(&with, 2, 99, QUALITY_BAD_NO_COMMUNICATION);
+    got = show(&with);
+    assert_memory_equal(got->at, want->at, want->count * sizeof(*want->at));
+    rig_finish(&with);
+    rig_finish(&without);
+}
+
 static void test_over_range_passes_shepard_and_not_paper(void **state)
 {
     (void)state;
@@ -1456,6 +1533,9 @@ int main(void)
         cmocka_unit_test(test_zero_is_a_reading),
         cmocka_unit_test(test_all_bad_is_no_data),
         cmocka_unit_test(test_one_sensor_is_everywhere),
+        cmocka_unit_test(test_an_assumed_place_is_the_whole_asset_evenly),
+        cmocka_unit_test(test_of_assumed_places_the_nearest_to_trouble_stands_for_all),
+        cmocka_unit_test(test_beside_a_known_place_an_assumed_one_paints_nothing),
         cmocka_unit_test(test_over_range_passes_shepard_and_not_paper),
         cmocka_unit_test(test_equal_readings_make_exactly_that),
         cmocka_unit_test(test_not_a_number_does_not_poison),

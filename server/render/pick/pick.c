@@ -158,13 +158,15 @@ static void read_sensors(const struct spot *spot, struct field *field, const str
             insert(out,
                    &(struct pick_sensor){ .tag = tag, .distance_m = distance_m, .value = reading->value, .quality = reading->quality });
     }
+    out->assumed = field_is_assumed(field, spot->hit.asset, params);
     mem_free(sensors);
 }
 
 static bool is_measured(const struct spot *spot, const struct field_params *params, const struct pick *pick)
 {
     return pick->state == PICK_BETWEEN && params->interpolation == INTERPOLATION_SHEPARD && params->show != SHOW_DISTANCE &&
-           pick->nearest_count > 0 && pick->nearest[0].distance_m <= fmax(MEASURED_M, MEASURED_PX * spot->meter_per_pixel);
+           pick->nearest_count > 0 && !pick->assumed &&
+           pick->nearest[0].distance_m <= fmax(MEASURED_M, MEASURED_PX * spot->meter_per_pixel);
 }
 
 static void read_place(struct spot *spot, struct field *field, struct pick *out)

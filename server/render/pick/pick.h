@@ -29,6 +29,7 @@ struct pick {
     } nearest[PICK_NEAREST]; /* those that take part there, nearest first */
     int sensor;              /* the tag whose marker is at the pixel, or -1; one in sight if there is any */
     bool sensor_occluded;
+    bool assumed; /* nobody knows where on the asset `nearest` is: its reading stands for all of it */
     int64_t data_utc_ns;
 };
 
