@@ -194,7 +194,7 @@ $(out)/tests/unit/accuracy_test $(out)/tests/unit/contact_test: $(call objects,$
 $(out)/tests/unit/accuracy_test $(out)/tests/unit/contact_test: pkg_libs += -lgmp -lmpfr
 $(out)/tests/unit/rvm_test: $(out)/lib/import.a
 $(out)/tests/unit/rvm_test: pkg_libs += -lGLU
-match_tests := $(foreach t,tag_export,$(out)/tests/unit/$(t)_test)
+match_tests := $(foreach t,match tag_export,$(out)/tests/unit/$(t)_test)
 $(match_tests): $(out)/lib/match.a
 $(match_tests): pkg_libs += -lminizip -lexpat
 # Writes STEP and IGES files to be read again.

@@ -9,18 +9,29 @@
 #include "commands.h"
 #include "daemon.h"
 
-/* Another program beside this one reads what strangers' programs wrote, so that this one does not. */
-static int cmd_import(int argc, char **argv)
+/* Another program beside this one reads what strangers' programs wrote, so that this one does not. `ending`: of its name. */
+static int run_beside(const char *ending, char **argv)
 {
     char path[PATH_MAX];
-    ssize_t length = readlink("/proc/self/exe", path, sizeof(path) - sizeof("-import"));
-    (void)argc;
+    ssize_t length = readlink("/proc/self/exe", path, sizeof(path) - strlen(ending) - 1);
     if (length > 0) {
-        memcpy(path + length, "-import", sizeof("-import"));
+        memcpy(path + length, ending, strlen(ending) + 1);
         execv(path, argv);
     }
-    fprintf(stderr, "plantcast: %s: %s\n", length > 0 ? path : "plantcast-import", strerror(errno));
+    fprintf(stderr, "plantcast: %s%s: %s\n", length > 0 ? path : "plantcast", length > 0 ? "" : ending, strerror(errno));
     return 1;
+}
+
+static int cmd_import(int argc, char **argv)
+{
+    (void)argc;
+    return run_beside("-import", argv);
+}
+
+static int cmd_match(int argc, char **argv)
+{
+    (void)argc;
+    return run_beside("-match", argv);
 }
 
 static const struct command {
@@ -31,6 +42,7 @@ static const struct command {
     { "clip", "a film of what was recorded, as MP4", cmd_clip },
     { "import", "a CAD export into a plant's folder: model, names, attributes, plant file", cmd_import },
     { "nodes", "what is in a model: nodes, sizes, properties", cmd_import },
+    { "match", "a control system's tag list to the equipment of an imported plant", cmd_match },
     { "probe", "put load on a daemon and print a table of latencies", cmd_probe },
     { "tags", "print the tags of a daemon and their values", cmd_tags },
     { "reload", "have a daemon of this machine load its plant anew, and say what came of it", cmd_reload },

@@ -1,0 +1,164 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Rows of matches.csv. */
+#include "preprocess/match/decisions.h"
+
+#include <errno.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+#include <unistd.h>
+#include <xxhash.h>
+
+#include "base/mem.h"
+#include "preprocess/match/charset.h"
+#include "preprocess/match/table.h"
+
+enum { TAG, STATUS, ASSET, PLACE, CONFIDENCE, REASON, CHECK, COLUMNS };
+static const char *const names[COLUMNS] = { "Tag", "Status", "Asset", "Place", "Confidence", "Reason", "Check" };
+static const size_t max_bytes = (size_t)256 << 20;
+static const char special[] = "\",;\t\r\n";
+static const char by_hand_reason[] = "by hand";
+
+static void add_cell(struct text *out, const char *cell)
+{
+    if (strpbrk(cell, special) || *cell == ' ')
+        text_add_quoted(out, cell);
+    else
+        text_add(out, "%s", cell);
+}
+
+/* The status as written, and a hash of it with the asset. */
+static void find_check(const char *tag, const char *status, const char *asset, char check[16])
+{
+    char *all = mem_printf("%s\n%s\n%s", tag, status, asset);
+    snprintf(check, 16, "%c%06x", status[0], (unsigned)(XXH3_64bits(all, strlen(all)) & 0xffffff));
+    mem_free(all);
+}
+
+void decisions_add_header(struct text *out)
+{
+    for (int i = 0; i < COLUMNS; i++)
+        text_add(out, "%s%s", i > 0 ? "," : "", names[i]);
+    text_add(out, "\n");
+}
+
+void decisions_add_row(struct text *out, const char *tag, const struct match *match, const char *asset, const char *place, bool by_hand)
+{
+    char confidence[16] = "", check[16];
+    const char *status = match_status_names[match->status];
+    if (!by_hand && match->status != MATCH_NONE)
+        snprintf(confidence, sizeof(confidence), "%.2f", match->confidence);
+    find_check(tag, status, asset, check);
+    const char *const cells[COLUMNS] = { tag, status, asset, place, confidence, by_hand ? by_hand_reason : match->reason, check };
+    for (int i = 0; i < COLUMNS; i++) {
+        text_add(out, "%s", i > 0 ? "," : "");
+        add_cell(out, cells[i]);
+    }
+    text_add(out, "\n");
+}
+
+static bool find_columns(const struct table_row *header, int columns[COLUMNS], char why[MATCH_WHY_BYTES])
+{
+    for (int i = 0; i < COLUMNS; i++) {
+        columns[i] = -1;
+        for (size_t c = 0; c < header->count; c++)
+            if (!strcasecmp(header->cells[c], names[i]))
+                columns[i] = (int)c;
+    }
+    for (int i = TAG; i <= ASSET; i++)
+        if (columns[i] < 0) {
+            snprintf(why, MATCH_WHY_BYTES, "line %d: the header has no column '%s'", header->line, names[i]);
+            return false;
+        }
+    return true;
+}
+
+/* Which of the two a person changed is told by the first sign of the check, the status as it was written. */
+static bool read_row(struct decision *out, const struct table_row *row, const int columns[COLUMNS], char why[MATCH_WHY_BYTES])
+{
+    const char *status = table_cell(row, columns[STATUS]), *asset = table_cell(row, columns[ASSET]),
+               *written = table_cell(row, columns[CHECK]);
+    char check[16];
+    int found = -1;
+    for (int i = 0; i < 3; i++)
+        if (!strcasecmp(status, match_status_names[i]))
+            found = i;
+    if (found < 0 && *status) {
+        snprintf(why, MATCH_WHY_BYTES, "line %d: Status: expected sure, likely or none, found '%.40s'", row->line, status);
+        return false;
+    }
+    *out = (struct decision){ .tag = mem_strdup(table_cell(row, columns[TAG])), .asset = mem_strdup(asset) };
+    find_check(out->tag, found < 0 ? "" : match_status_names[found], asset, check);
+    bool changed = strcmp(check, written) != 0, same_status = found >= 0 && written[0] == match_status_names[found][0];
+    out->edited = changed;
+    out->by_hand = changed || !strcmp(table_cell(row, columns[REASON]), by_hand_reason);
+    out->status = found < 0 || (changed && same_status) ? (*asset ? MATCH_SURE : MATCH_NONE) : (enum match_status)found;
+    return true;
+}
+
+static int by_tag(const void *pa, const void *pb, void *rows_ptr)
+{
+    const struct decision *rows = rows_ptr;
+    int a = *(const int *)pa, b = *(const int *)pb, order = strcasecmp(rows[a].tag, rows[b].tag);
+    return order ? order : a - b;
+}
+
+bool decisions_read(struct decisions *decisions, const char *path, char why[MATCH_WHY_BYTES])
+{
+    struct charset_text text;
+    struct table table = { 0 };
+    size_t count;
+    int columns[COLUMNS];
+    if (access(path, F_OK) != 0 && errno == ENOENT)
+        return true;
+    char *bytes = text_read_file(path, max_bytes, &count);
+    if (!bytes) {
+        snprintf(why, MATCH_WHY_BYTES, "%s", strerror(errno));
+        return false;
+    }
+    charset_decode(bytes, count, &text);
+    bool good = table_read_csv(&table, text.utf8, table_separator(text.utf8), why, MATCH_WHY_BYTES) && table.count > 0 &&
+                find_columns(&table.rows[0], columns, why);
+    for (size_t i = 1; i < table.count && good; i++) {
+        mem_grow(&decisions->at, &decisions->capacity, decisions->count + 1, sizeof(*decisions->at));
+        good = read_row(&decisions->at[decisions->count], &table.rows[i], columns, why);
+        decisions->count += good;
+    }
+    decisions->by_tag = mem_array(decisions->count, sizeof(*decisions->by_tag));
+    for (size_t i = 0; i < decisions->count; i++)
+        decisions->by_tag[i] = (int)i;
+    qsort_r(decisions->by_tag, decisions->count, sizeof(*decisions->by_tag), by_tag, decisions->at);
+    table_finish(&table);
+    mem_free(text.utf8);
+    mem_free(bytes);
+    return good;
+}
+
+const struct decision *decisions_of(const struct decisions *decisions, const char *tag)
+{
+    size_t low = 0, high = decisions->count;
+    while (low < high) {
+        size_t middle = (low + high) / 2;
+        const struct decision *at = &decisions->at[decisions->by_tag[middle]];
+        int order = strcasecmp(tag, at->tag);
+        if (order == 0)
+            return at;
+        if (order < 0)
+            high = middle;
+        else
+            low = middle + 1;
+    }
+    return NULL;
+}
+
+void decisions_finish(struct decisions *decisions)
+{
+    for (size_t i = 0; i < decisions->count; i++) {
+        mem_free(decisions->at[i].tag);
+        mem_free(decisions->at[i].asset);
+    }
+    mem_free(decisions->at);
+    mem_free(decisions->by_tag);
+    *decisions = (struct decisions){ 0 };
+}

@@ -1,0 +1,30 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* matches.csv: what each tag was matched to, and why; what people change in it is kept and obeyed. Thread: one. */
+#ifndef PREPROCESS_MATCH_DECISIONS_H
+#define PREPROCESS_MATCH_DECISIONS_H
+#include "base/text.h"
+#include "preprocess/match/matcher.h"
+
+struct decision { /* a row, as it was */
+    char *tag, *asset;
+    enum match_status status; /* of a row by hand what it means now */
+    bool by_hand, edited;     /* edited: since it was written */
+};
+
+struct decisions {       /* zero-initialise */
+    struct decision *at; /* in the order of the file */
+    int *by_tag;         /* sorted; upper and lower case taken as one */
+    size_t count, capacity;
+};
+
+/* Reads a file that decisions_add_row() wrote, perhaps changed since. A file that is not there has none. Returns false with the reason. */
+bool decisions_read(struct decisions *decisions, const char *path, char why[MATCH_WHY_BYTES]);
+/* Returns the decision about a tag, or NULL. */
+const struct decision *decisions_of(const struct decisions *decisions, const char *tag);
+void decisions_finish(struct decisions *decisions);
+
+/* Appends the header, and a row. A row that people changed is told by its last cell, which depends on what was written. */
+void decisions_add_header(struct text *out);
+void decisions_add_row(struct text *out, const char *tag, const struct match *match, const char *asset, const char *place, bool by_hand);
+
+#endif

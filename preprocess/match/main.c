@@ -1,0 +1,94 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* `plantcast-match`: tags of a control system to equipment of a model. `plantcast match` runs it. */
+#include <getopt.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+
+#include "base/mem.h"
+#include "plant/address.h"
+#include "preprocess/match/matching.h"
+
+static void print_usage(FILE *out)
+{
+    fputs("usage: plantcast match PLANT TAGS [options]\n"
+          "\n"
+          "Matches the tag list that a control system exports to the equipment of an imported plant, and writes into the plant's folder\n"
+          "tags.csv, matches.csv (what was matched, and why) and, in plant.yaml, groups. What people changed there stays.\n"
+          "  PLANT                 the plant's folder, or its plant.yaml\n"
+          "  TAGS                  Kepware, Ignition, AVEVA, Emerson, Honeywell, plain CSV or .xlsx\n"
+          "  --equipment CHOICE    what becomes an asset: level=N, a pattern of names, or @FILE of names; may be repeated\n"
+          "  --rules FILE          ordered patterns, CSV: Tag,Equipment (match_rules.csv in the folder)\n"
+          "  --aliases FILE        what people call equipment, CSV: Alias,Equipment (aliases.csv in the folder)\n"
+          "  --source ID           of plant.yaml, where these tags are read\n"
+          "  --modbus HOST[:PORT]  makes that source, of type modbus\n"
+          "  --byte-order ORDER    of that source: ABCD, CDAB, BADC, DCBA\n"
+          "  --address-base N      of that source: what the first register is called, 0 or 1 (1)\n"
+          "  --dry-run             says what it would do\n"
+          "Exit status: 0 good, 1 something cannot be read or would not be valid (nothing is written), 2 usage.\n",
+          out);
+}
+
+enum { EQUIPMENT_MOST = 100 };
+
+int main(int argc, char **argv)
+{
+    enum { RULES = 1, ALIASES, SOURCE, MODBUS, ORDER, BASE, EQUIPMENT, DRY, HELP };
+    static const struct option options[] = { { "rules", required_argument, NULL, RULES },
+                                             { "aliases", required_argument, NULL, ALIASES },
+                                             { "source", required_argument, NULL, SOURCE },
+                                             { "modbus", required_argument, NULL, MODBUS },
+                                             { "byte-order", required_argument, NULL, ORDER },
+                                             { "address-base", required_argument, NULL, BASE },
+                                             { "equipment", required_argument, NULL, EQUIPMENT },
+                                             { "dry-run", no_argument, NULL, DRY },
+                                             { "help", no_argument, NULL, HELP },
+                                             { 0 } };
+    const char *equipment[EQUIPMENT_MOST];
+    struct matching_params params = { .address_base = 1, .equipment = equipment };
+    enum byte_order order;
+    for (int option; (option = getopt_long(argc, argv, "", options, NULL)) != -1;)
+        switch (option) {
+        case RULES: params.rules = optarg; break;
+        case ALIASES: params.aliases = optarg; break;
+        case SOURCE: params.source = optarg; break;
+        case MODBUS: params.modbus = optarg; break;
+        case ORDER:
+            params.byte_order = optarg;
+            if (!byte_order_parse(optarg, &order)) {
+                fprintf(stderr, "plantcast match: --byte-order %s: ABCD, CDAB, BADC or DCBA\n", optarg);
+                return 2;
+            }
+            break;
+        case BASE:
+            params.address_base = !strcmp(optarg, "1");
+            if (!params.address_base && strcmp(optarg, "0") != 0) {
+                fprintf(stderr, "plantcast match: --address-base %s: 0 or 1\n", optarg);
+                return 2;
+            }
+            break;
+        case EQUIPMENT:
+            if (params.equipment_count == EQUIPMENT_MOST) {
+                fprintf(stderr, "plantcast match: --equipment: %d at most; put names into a file, @FILE\n", EQUIPMENT_MOST);
+                return 2;
+            }
+            equipment[params.equipment_count++] = optarg;
+            break;
+        case DRY: params.dry_run = true; break;
+        case HELP: print_usage(stdout); return 0;
+        default: print_usage(stderr); return 2;
+        }
+    if (argc - optind != 2) {
+        print_usage(stderr);
+        return 2;
+    }
+    struct stat st;
+    bool folder = stat(argv[optind], &st) == 0 && S_ISDIR(st.st_mode);
+    char *plant = folder ? mem_printf("%s/plant.yaml", argv[optind]) : mem_strdup(argv[optind]);
+    params.plant = plant;
+    params.tags = argv[optind + 1];
+    int status = matching_run(&params);
+    mem_free(plant);
+    return status;
+}

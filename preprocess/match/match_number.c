@@ -1,0 +1,214 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The way by number: loops have the number of their equipment, perhaps with a digit or two behind (ISA-5.1, 4.2; ISA-5.1-2009 annex A). */
+#include <stdio.h>
+#include <string.h>
+
+#include "preprocess/match/match_ways.h"
+
+static bool has_token(const struct name_tokens *tokens, const struct name_token *token)
+{
+    for (int i = 0; i < tokens->count; i++)
+        if (tokens->at[i].digits == token->digits && !strcmp(tokens->at[i].text, token->text))
+            return true;
+    return false;
+}
+
+/* How what stands before the letters fits: 2 it is in the asset's name or area, 1 it says nothing, 0 it is another area. */
+static int rate_prefix(const struct matcher *matcher, const struct match_subject *subject, int asset)
+{
+    const struct isa_name *name = &subject->name;
+    const struct plant_asset *of = &matcher->site->plant->assets[asset];
+    struct name_tokens area;
+    char key[NAME_KEY_BYTES];
+    bool all = name->letters > 0;
+    name_tokens_read(&area, of->area);
+    for (int i = 0; i < name->letters; i++)
+        all &= has_token(&matcher->site->assets[asset].tokens, &name->tokens.at[i]) || has_token(&area, &name->tokens.at[i]);
+    if (all)
+        return 2;
+    name_tokens_key(&name->tokens, 0, name->letters, key);
+    const char *number = name->tokens.at[name->number].text;
+    bool leads = name->letters == 1 && name->tokens.at[0].digits && strncmp(number, key, strlen(key)) == 0 && strlen(key) < strlen(number);
+    return name->letters <= 0 || leads || (*matcher->common_prefix && !strcmp(key, matcher->common_prefix));
+}
+
+/* The letter behind the equipment's number that tells A from B, or "". */
+static const char *suffix_of(const struct indexed_asset *asset)
+{
+    int at = asset->number + 1;
+    const char *text = at == asset->tokens.count - 1 ? asset->tokens.at[at].text : "";
+    return *text >= 'A' && *text <= 'F' && !text[1] ? text : "";
+}
+
+/* What descriptions call equipment, and letters that its names have. */
+static const struct {
+    const char *word, *letters;
+} classes[] = {
+    { "PUMP", "P PU PO PMP PP MP" },
+    { "POMPE", "PO P" },
+    { "펌프", "P PU" },
+    { "TANK", "T TK BA V D TA" },
+    { "VESSEL", "V D BA" },
+    { "DRUM", "D V BA" },
+    { "SEPARATOR", "V S D SP" },
+    { "EXCHANGER", "E HE HX EX EC" },
+    { "HEATER", "E H HX HE F" },
+    { "COOLER", "E HX HE EC A" },
+    { "CONDENSER", "E C CD HX" },
+    { "REBOILER", "E HX" },
+    { "PREHEATER", "E HX" },
+    { "열교환기", "E HE HX" },
+    { "COMPRESSOR", "K C CO CP" },
+    { "COLUMN", "C T CO" },
+    { "TOWER", "T C CT" },
+    { "REACTOR", "R RE RX" },
+    { "FURNACE", "F H" },
+    { "BOILER", "B BL F" },
+    { "FAN", "FN K B VE" },
+    { "BLOWER", "B K BL" },
+    { "FILTER", "F S FL FI" },
+    { "TURBINE", "TU ST GT KT" },
+    { "PIPE", "TY L" },
+    { "MIXER", "M A MX" },
+    { "AGITATOR", "A M AG" },
+};
+
+static bool has_word(const char *list, const char *word)
+{
+    size_t length = strlen(word);
+    for (const char *at = strstr(list, word); at; at = strstr(at + 1, word))
+        if ((at == list || at[-1] == ' ') && (at[length] == ' ' || !at[length]))
+            return true;
+    return false;
+}
+
+/* Whether the description has a word for the asset's letters. */
+static bool fits_class(const struct matcher *matcher, const struct match_subject *subject, int asset)
+{
+    const struct indexed_asset *of = &matcher->site->assets[asset];
+    for (int d = 0; d < subject->description.count; d++)
+        for (size_t c = 0; c < sizeof(classes) / sizeof(*classes); c++)
+            if (!strcmp(classes[c].word, subject->description.at[d].text))
+                for (int i = of->number - 1; i <= of->number + 1; i += 2)
+                    if (i >= 0 && i < of->tokens.count && has_word(classes[c].letters, of->tokens.at[i].text))
+                        return true;
+    return false;
+}
+
+enum filter { PREFIX_FITS, SAME_SUFFIX, NO_SUFFIX, FITS_CLASS };
+
+/* Keeps those that pass, if there are any. */
+static void keep(const struct matcher *matcher, const struct match_subject *subject, struct candidates *list, enum filter filter)
+{
+    struct candidates kept = { .more = list->more };
+    for (int i = 0; i < list->count; i++) {
+        const char *suffix = suffix_of(&matcher->site->assets[list->assets[i]]);
+        bool good = filter == PREFIX_FITS   ? rate_prefix(matcher, subject, list->assets[i]) == 2
+                    : filter == SAME_SUFFIX ? !strcmp(suffix, subject->name.suffix)
+                    : filter == NO_SUFFIX   ? !*suffix
+                                            : fits_class(matcher, subject, list->assets[i]);
+        if (good)
+            candidates_add(&kept, list->assets[i], -1);
+    }
+    if (kept.count > 0)
+        *list = kept;
+}
+
+/* Drops equipment with another letter behind its number. */
+static void drop_other_suffix(const struct matcher *matcher, const struct match_subject *subject, struct candidates *list)
+{
+    struct candidates kept = { .more = list->more };
+    for (int i = 0; i < list->count; i++) {
+        const char *suffix = suffix_of(&matcher->site->assets[list->assets[i]]);
+        if (!*suffix || !*subject->name.suffix || !strcmp(suffix, subject->name.suffix))
+            candidates_add(&kept, list->assets[i], -1);
+    }
+    *list = kept;
+}
+
+bool way_number(const struct matcher *matcher, const struct match_subject *subject, struct proposal *out)
+{
+    const struct isa_name *name = &subject->name;
+    if (name->letters < 0)
+        return false;
+    const struct name_token *number = &name->tokens.at[name->number];
+    bool digits = false, letters = false; /* before the instrument's own: then equipment is named, and its number is that */
+    for (int i = 0; i < name->letters; i++) {
+        digits |= name->tokens.at[i].digits && name->tokens.at[i].raw_length >= 3;
+        letters |= !name->tokens.at[i].digits;
+    }
+    if (digits && letters)
+        return false;
+    struct candidates *list = &out->candidates;
+    char text[sizeof(number->text)];
+    int length = (int)strlen(number->text), cut = 0;
+    memcpy(text, number->text, sizeof(text));
+    candidates_find(list, &matcher->site->numbers, text);
+    while (list->count == 0 && cut < 2 && number->raw_length == length && length - cut - 1 >= 3) {
+        text[length - ++cut] = 0;
+        candidates_find(list, &matcher->site->numbers, text);
+    }
+    drop_other_suffix(matcher, subject, list);
+    if (list->count == 0)
+        return false;
+    keep(matcher, subject, list, PREFIX_FITS);
+    keep(matcher, subject, list, SAME_SUFFIX);
+    keep(matcher, subject, list, NO_SUFFIX);
+    if (list->count > 1 && !list->more)
+        keep(matcher, subject, list, FITS_CLASS);
+    const struct indexed_asset *asset = &matcher->site->assets[list->assets[0]];
+    bool same_width = asset->number >= 0 && asset->tokens.at[asset->number].raw_length == number->raw_length - cut;
+    bool other_area = rate_prefix(matcher, subject, list->assets[0]) == 0;
+    out->confidence = other_area || !same_width ? 0.6 : cut ? 0.9 : 0.93;
+    snprintf(out->reason, sizeof(out->reason), "loop %.30s: equipment number %.30s%s", number->text, text,
+             other_area   ? ", but what stands before it is not of that equipment"
+             : same_width ? ""
+                          : ", written with another number of zeros");
+    return true;
+}
+
+/* --- parts of a name ---------------------------------------------------------------------------------------------------------- */
+
+/* Whether the tokens, without those of the instrument, stand in the asset's name in this order. */
+static bool is_part(const struct isa_name *name, const struct name_tokens *of)
+{
+    int at = 0;
+    bool letters = false; /* of the asset's name */
+    for (int i = 0; i < name->tokens.count; i++) {
+        const struct name_token *token = &name->tokens.at[i];
+        int next = at;
+        if (i == name->letters || i == name->number)
+            continue;
+        while (next < of->count && (of->at[next].digits != token->digits || strcmp(of->at[next].text, token->text) != 0))
+            next++;
+        bool instrument = !token->digits && (isa_are_letters(token->text) || (strlen(token->text) == 1 && i == name->tokens.count - 1));
+        if (next == of->count && !instrument)
+            return false;
+        letters |= next < of->count && !token->digits;
+        at = next < of->count ? next + 1 : at;
+    }
+    return letters;
+}
+
+/* The equipment's number with some of its name, but not all: RADIATOR-583216, 0001-F2. */
+bool way_parts(const struct matcher *matcher, const struct match_subject *subject, struct proposal *out)
+{
+    const struct isa_name *name = &subject->name;
+    const struct key_map *map = &matcher->site->numbers;
+    for (int i = 0; i < name->tokens.count; i++) {
+        const struct name_token *number = &name->tokens.at[i];
+        if (i == name->number || !number->digits || number->raw_length < 3)
+            continue;
+        for (int k = key_map_find(map, number->text); k >= 0; k = key_map_next(map, k)) {
+            const struct indexed_asset *of = &matcher->site->assets[map->things[k].asset];
+            if (of->number >= 0 && of->tokens.at[of->number].raw_length == number->raw_length && is_part(name, &of->tokens))
+                candidates_add(&out->candidates, map->things[k].asset, -1);
+        }
+    }
+    if (out->candidates.count == 0)
+        return false;
+    out->confidence = 0.9;
+    snprintf(out->reason, sizeof(out->reason), "its name has the number and other parts of '%.60s'",
+             matcher->site->plant->assets[out->candidates.assets[0]].id);
+    return true;
+}

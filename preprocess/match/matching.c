@@ -1,0 +1,408 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Reads, matches, composes the files, and writes them if the plant that they make can be loaded. */
+#include "preprocess/match/matching.h"
+
+#include <errno.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+#include <unistd.h>
+
+#include "base/atomic_file.h"
+#include "base/mem.h"
+#include "preprocess/match/equipment.h"
+#include "preprocess/match/plant_edit.h"
+#include "preprocess/match/tag_rows.h"
+
+static const size_t max_plant_bytes = (size_t)64 << 20;
+
+struct run {
+    const struct matching_params *params;
+    struct plant *plant;
+    struct model_index site;
+    struct tag_export list;
+    struct matcher matcher;
+    struct match *matches;
+    struct decisions before;
+    struct quantities quantities;
+    struct place_proposal *places;
+    struct tag_rows rows;
+    struct tag_source source;
+    char *plant_text, *new_text; /* the plant file as it is, and as it will be */
+    struct text tags_text, matches_text;
+    size_t by_hand, left_out, written, assumed, own_nodes;
+};
+
+static bool fail_at(const char *path, const char *why)
+{
+    fprintf(stderr, "plantcast match: %s: %s\n", path, why);
+    return false;
+}
+
+static char *beside(const struct run *run, const char *name)
+{
+    return mem_printf("%s/%s", run->plant->folder, name);
+}
+
+/* --- trying what is not written yet ------------------------------------------------------------------------------------------ */
+
+/* Loads a plant from texts: they are put beside the plant file for as long as that takes. tags NULL: the tag list as it is. */
+static struct plant *load_text(const struct plant *plant, const char *text, const char *tags)
+{
+    struct diag diag = { 0 };
+    char *path = mem_printf("%s/.match.%d.yaml", plant->folder, (int)getpid()),
+         *list = mem_printf("%s/.match.%d.csv", plant->folder, (int)getpid());
+    char *changed = NULL;
+    struct plant *loaded = NULL;
+    if (tags) {
+        const char *key = strstr(text, "\ntags:");
+        const char *end = key ? key + 1 + strcspn(key + 1, "\n") : NULL;
+        changed = key ? mem_printf("%.*s\ntags: .match.%d.csv%s", (int)(key - text), text, (int)getpid(), end) : mem_strdup(text);
+    }
+    const char *all = changed ? changed : text;
+    int status = atomic_file_put(path, all, strlen(all));
+    if (status == 0 && tags)
+        status = atomic_file_put(list, tags, strlen(tags));
+    if (status != 0)
+        fail_at(path, strerror(-status));
+    else
+        loaded = plant_load(path, &diag);
+    if (status == 0 && !loaded) {
+        fprintf(stderr, "plantcast match: the plant that this makes is not valid; nothing was written:\n");
+        diag_print(&diag, stderr);
+    }
+    diag_finish(&diag);
+    unlink(path);
+    unlink(list);
+    mem_free(changed);
+    mem_free(path);
+    mem_free(list);
+    return loaded;
+}
+
+/* --- reading ---------------------------------------------------------------------------------------------------------------- */
+
+static void print_list(const struct run *run)
+{
+    const struct tag_export *list = &run->list;
+    const char *path = run->params->tags, separator = list->separator;
+    printf("%s: %s", path, list->format);
+    if (list->encoding)
+        printf(", %s", list->encoding);
+    if (separator)
+        printf(", separated by %s", separator == ',' ? "commas" : separator == ';' ? "semicolons" : separator == '\t' ? "tabs" : "bars");
+    printf("; %zu tags\n", list->count);
+    if (list->same > 0)
+        printf("%s: %zu rows repeat a tag word for word: taken once\n", path, list->same);
+    if (list->differing > 0)
+        printf("%s: %zu rows repeat a tag with other contents: the first counts: %s%s\n", path, list->differing, list->differing_lines,
+               list->differing > 5 ? ", ..." : "");
+    if (list->renamed > 0)
+        printf("%s: %zu tags have the name of a tag in another folder: called by their path\n", path, list->renamed);
+    if (list->nameless > 0)
+        printf("%s: %zu rows have no name: left out\n", path, list->nameless);
+    if (list->control > 0)
+        printf("%s: %zu control characters: read as blanks\n", path, list->control);
+    if (list->damaged > 0)
+        printf("%s: %zu characters are not %s: shown as \xef\xbf\xbd\n", path, list->damaged, list->encoding ? list->encoding : "text");
+}
+
+/* Assets are chosen anew, unless the tag list names some: what people placed would lose its equipment. */
+static bool choose_equipment(struct run *run)
+{
+    char why[MODEL_INDEX_WHY_BYTES];
+    struct text lines = { 0 };
+    for (size_t i = 0; i < run->plant->tag_count; i++)
+        if (run->plant->tags[i].asset >= 0)
+            return fail_at(run->params->plant,
+                           "--equipment would replace its assets, but tags are on them; change the list of assets by hand");
+    int count = equipment_choose(&run->site, run->params->equipment, run->params->equipment_count, &lines, why);
+    char *text = count < 0 ? NULL : plant_edit_replace(run->plant_text, "assets", lines.at);
+    if (count >= 0 && !text)
+        snprintf(why, sizeof(why), "its list of assets is not one item a line");
+    struct plant *plant = text ? load_text(run->plant, text, NULL) : NULL;
+    text_finish(&lines);
+    if (!text)
+        return fail_at(run->params->plant, why);
+    model_index_finish(&run->site);
+    mem_free(run->plant_text);
+    run->plant_text = text;
+    if (!plant)
+        return false;
+    plant_destroy(&run->plant);
+    run->plant = plant;
+    printf("%s: %d assets chosen\n", run->params->plant, count);
+    return model_index_read(&run->site, run->plant, why) || fail_at(run->params->plant, why);
+}
+
+/* The file that is stated, or the one in the plant's folder if it is there. Returns false if it cannot be read. */
+static bool read_optional(struct run *run, const char *stated, const char *name,
+                          bool (*read)(struct matcher *matcher, const char *path, char why[MATCH_WHY_BYTES]))
+{
+    char why[MATCH_WHY_BYTES], *path = stated ? mem_strdup(stated) : beside(run, name);
+    bool good = (!stated && access(path, F_OK) != 0) || read(&run->matcher, path, why) || fail_at(path, why);
+    mem_free(path);
+    return good;
+}
+
+static bool read_all(struct run *run)
+{
+    const struct matching_params *params = run->params;
+    char why[MODEL_INDEX_WHY_BYTES];
+    size_t bytes;
+    run->plant = plant_load_or_print(params->plant);
+    if (!run->plant)
+        return false;
+    run->plant_text = text_read_file(params->plant, max_plant_bytes, &bytes);
+    if (!run->plant_text)
+        return fail_at(params->plant, strerror(errno));
+    if (!model_index_read(&run->site, run->plant, why))
+        return fail_at(params->plant, why);
+    if (params->equipment_count > 0 && !choose_equipment(run))
+        return false;
+    if (!tag_export_read(&run->list, params->tags, why, sizeof(why)))
+        return fail_at(params->tags, why);
+    print_list(run);
+    run->matcher.site = &run->site;
+    char *path = beside(run, "matches.csv");
+    bool good = decisions_read(&run->before, path, why) || fail_at(path, why);
+    mem_free(path);
+    return good && read_optional(run, params->rules, "match_rules.csv", matcher_read_rules) &&
+           read_optional(run, params->aliases, "aliases.csv", matcher_read_aliases) &&
+           (tag_rows_read(&run->rows, run->plant->tags_path, why) || fail_at(run->plant->tags_path, why));
+}
+
+/* --- deciding --------------------------------------------------------------------------------------------------------------- */
+
+/* What people decided counts for more than what was found. */
+static bool obey(struct run *run)
+{
+    char *path = beside(run, "matches.csv"), why[200];
+    bool good = true;
+    for (size_t i = 0; i < run->list.count && good; i++) {
+        const struct decision *decision = decisions_of(&run->before, run->list.tags[i].fields[EXPORT_NAME]);
+        struct match *match = &run->matches[i];
+        if (!decision || !decision->by_hand)
+            continue;
+        int asset = *decision->asset ? matcher_find_asset(&run->matcher, decision->asset) : -1;
+        if (*decision->asset && asset < 0) {
+            snprintf(why, sizeof(why), "tag %.60s: no asset is called '%.80s'", decision->tag, decision->asset);
+            good = fail_at(path, why);
+        }
+        mem_free(match->reason);
+        *match = (struct match){ .status = asset < 0 ? MATCH_NONE : decision->status,
+                                 .asset = asset,
+                                 .node = match->asset == asset ? match->node : -1,
+                                 .confidence = match->asset == asset ? match->confidence : 1,
+                                 .reason = mem_strdup("by hand") };
+        if (match->node < 0 && match->confidence > 0.98)
+            match->confidence = 0.95; /* a place is still assumed */
+        run->by_hand++;
+    }
+    mem_free(path);
+    return good;
+}
+
+/* The source of these tags: the one that is stated, made or the only one. */
+static bool find_source(struct run *run)
+{
+    const struct matching_params *params = run->params;
+    const struct plant_source *found = NULL;
+    const char *id = params->source ? params->source : params->modbus ? "plc" : NULL;
+    for (size_t i = 0; i < run->plant->source_count; i++)
+        if (id ? !strcmp(run->plant->sources[i].id, id) : run->plant->source_count == 1)
+            found = &run->plant->sources[i];
+    if (found)
+        run->source = (struct tag_source){ found->id, !strcmp(found->kind, "modbus"), found->address_base };
+    else if (params->modbus)
+        run->source = (struct tag_source){ id, true, params->address_base };
+    else if (params->source || run->plant->source_count > 1)
+        return fail_at(params->plant,
+                       params->source ? "--source: it has no source of that id" : "it has several sources; say which by --source ID");
+    return true;
+}
+
+static void put_rows(struct run *run)
+{
+    decisions_add_header(&run->matches_text);
+    for (size_t i = 0; i < run->list.count; i++) {
+        static const char *const places[] = { "", "own node", "at ", "spread" };
+        const struct export_tag *tag = &run->list.tags[i];
+        const struct match *match = &run->matches[i];
+        const struct decision *before = decisions_of(&run->before, tag->fields[EXPORT_NAME]);
+        const struct place_proposal *place = &run->places[i];
+        int quantity = run->quantities.of_tag[i];
+        const char *asset = tag_rows_put(&run->rows, &(struct tag_row_input){ .site = &run->site,
+                                                                              .tag = tag,
+                                                                              .match = match,
+                                                                              .before = before,
+                                                                              .place = place,
+                                                                              .group = quantity < 0 ? "" : run->quantities.at[quantity].id,
+                                                                              .source = &run->source });
+        const char *found = match->asset < 0 ? "" : run->plant->assets[match->asset].id;
+        bool kept = asset && (!before || !before->edited) && match->status == MATCH_SURE && strcmp(asset, found) != 0;
+        struct match shown = *match;
+        if (kept) { /* the tag list was changed by hand: it goes before */
+            shown.status = *asset ? MATCH_SURE : MATCH_NONE;
+            found = asset;
+        }
+        const char *node = place->kind == PLACE_AT_NODE && place->node >= 0
+                               ? run->site.models[run->site.assets[match->asset].model].nodes[place->node].name
+                               : "";
+        char *where = kept || (before && before->by_hand) ? mem_strdup("") : mem_printf("%s%s", places[place->kind], node);
+        decisions_add_row(&run->matches_text, tag->fields[EXPORT_NAME], &shown, found, where, kept || (before && before->by_hand));
+        mem_free(where);
+        run->left_out += !asset;
+        run->written += asset != NULL;
+        run->own_nodes += asset && place->kind == PLACE_OWN_NODE;
+        run->assumed += asset && (place->kind == PLACE_AT_NODE || place->kind == PLACE_SPREAD);
+    }
+}
+
+/* --- the plant file --------------------------------------------------------------------------------------------------------- */
+
+/* A range of a legend: as the scaled limits have it. */
+static void add_group(const struct quantity *quantity, struct text *lines)
+{
+    bool known = quantity->low < quantity->high;
+    text_add(lines, "  - { id: ");
+    plant_edit_add_quoted(lines, quantity->id);
+    text_add(lines, ", quantity: ");
+    plant_edit_add_quoted(lines, quantity->name);
+    text_add(lines, ", unit: ");
+    plant_edit_add_quoted(lines, quantity->unit);
+    text_add(lines, ", min: %.6g, max: %.6g } # %zu tags; ", known ? quantity->low : 0, known ? quantity->high : 100, quantity->tags);
+    text_add(lines, known ? "the range of their scaled limits" : "the range is a guess: none of them has scaled limits");
+    if (quantity->blank > 0)
+        text_add(lines, "; %zu of them have no unit of their own", quantity->blank);
+    text_add(lines, "\n");
+}
+
+static bool take_text(struct run *run, char *text)
+{
+    if (!text)
+        return fail_at(run->params->plant, "its lists of groups and sources have to be one item a line");
+    mem_free(run->new_text);
+    run->new_text = text;
+    return true;
+}
+
+static bool add_source(struct run *run)
+{
+    const struct matching_params *params = run->params;
+    for (size_t i = 0; i < run->plant->source_count; i++)
+        if (!strcmp(run->plant->sources[i].id, run->source.id))
+            return true;
+    const char *colon = strchr(params->modbus, ':');
+    char *line = mem_printf("  - { id: %s, type: modbus, host: %.*s%s%s, address_base: %d%s%s }\n", run->source.id,
+                            (int)(colon ? colon - params->modbus : (long)strlen(params->modbus)), params->modbus, colon ? ", port: " : "",
+                            colon ? colon + 1 : "", params->address_base, params->byte_order ? ", byte_order: " : "",
+                            params->byte_order ? params->byte_order : "");
+    char *text = plant_edit_append(run->new_text, "sources", "# Where values come from.\n", line);
+    mem_free(line);
+    return take_text(run, text);
+}
+
+static bool compose_plant(struct run *run, bool placeholder)
+{
+    struct text lines = { 0 };
+    size_t used = 0;
+    run->new_text = mem_strdup(run->plant_text);
+    for (size_t i = 0; i < run->quantities.count; i++)
+        if (run->quantities.at[i].is_new) {
+            add_group(&run->quantities.at[i], &lines);
+            used++;
+        }
+    bool good = used == 0 || take_text(run, plant_edit_append(run->new_text, "groups", "# What is measured.\n", lines.at));
+    text_finish(&lines);
+    if (good && used > 0 && placeholder)
+        good = take_text(run, plant_edit_remove_line(run->new_text, plant_edit_placeholder));
+    return good && (!run->params->modbus || add_source(run));
+}
+
+/* --- writing ---------------------------------------------------------------------------------------------------------------- */
+
+static bool write_one(const char *path, const char *text)
+{
+    size_t length = 0;
+    char *now = text_read_file(path, max_plant_bytes * 4, &length);
+    bool same = now && !strcmp(now, text);
+    int status = same ? 0 : atomic_file_put(path, text, strlen(text));
+    mem_free(now);
+    printf("%s: %s\n", path, same ? "stays as it is" : "written");
+    return status == 0 || fail_at(path, strerror(-status));
+}
+
+static void print_result(const struct run *run)
+{
+    size_t counts[3] = { 0 };
+    for (size_t i = 0; i < run->list.count; i++)
+        counts[run->matches[i].status]++;
+    printf("%zu tags: %zu sure, %zu likely, %zu none", run->list.count, counts[MATCH_SURE], counts[MATCH_LIKELY], counts[MATCH_NONE]);
+    printf(run->by_hand > 0 ? "; %zu of them by hand\n" : "\n", run->by_hand);
+    printf("places: %zu at a node of their own, %zu assumed\n", run->own_nodes, run->assumed);
+    if (run->left_out > 0)
+        printf("%zu tags are not in the tag list: they are texts, or have no address that %s can read\n", run->left_out,
+               run->source.id ? run->source.id : "a source");
+    if (!run->source.id)
+        printf("there is no source yet, so the tag list has no addresses: --modbus HOST makes one\n");
+    for (size_t i = 0; i < run->quantities.count; i++)
+        if (run->quantities.at[i].is_new)
+            printf("group %s: %zu tags\n", run->quantities.at[i].id, run->quantities.at[i].tags);
+}
+
+static bool write_all(struct run *run)
+{
+    char *matches_path = beside(run, "matches.csv");
+    struct plant *loaded = load_text(run->plant, run->new_text, run->tags_text.at);
+    bool good = loaded != NULL;
+    plant_destroy(&loaded);
+    if (good)
+        print_result(run);
+    if (good && !run->params->dry_run)
+        good = write_one(run->plant->tags_path, run->tags_text.at) && write_one(matches_path, run->matches_text.at) &&
+               write_one(run->params->plant, run->new_text);
+    mem_free(matches_path);
+    return good;
+}
+
+static void finish(struct run *run)
+{
+    matches_free(run->matches, run->list.count);
+    quantities_finish(&run->quantities);
+    mem_free(run->places);
+    tag_export_finish(&run->list);
+    matcher_finish(&run->matcher);
+    decisions_finish(&run->before);
+    tag_rows_finish(&run->rows);
+    model_index_finish(&run->site);
+    plant_destroy(&run->plant);
+    text_finish(&run->tags_text);
+    text_finish(&run->matches_text);
+    mem_free(run->plant_text);
+    mem_free(run->new_text);
+}
+
+int matching_run(const struct matching_params *params)
+{
+    struct run run = { .params = params };
+    bool good = read_all(&run) && find_source(&run);
+    if (good) {
+        run.matches = matcher_run(&run.matcher, &run.list);
+        good = obey(&run);
+    }
+    if (good) {
+        bool placeholder = strstr(run.plant_text, plant_edit_placeholder) != NULL;
+        for (size_t i = 0; i < run.plant->tag_count; i++)
+            placeholder &= run.plant->tags[i].group < 0;
+        quantities_find(&run.quantities, run.plant, placeholder ? "temperature" : NULL, &run.list, run.matches);
+        run.places = places_find(&run.site, &run.list, run.matches, &run.quantities);
+        put_rows(&run);
+        tag_rows_write(&run.rows, &run.tags_text);
+        good = compose_plant(&run, placeholder) && write_all(&run);
+    }
+    finish(&run);
+    return good ? 0 : 1;
+}

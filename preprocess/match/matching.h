@@ -1,0 +1,23 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* One run of `plantcast match`: a plant's folder and an export of tags become plant.yaml, tags.csv and matches.csv. Thread: one. */
+#ifndef PREPROCESS_MATCH_MATCHING_H
+#define PREPROCESS_MATCH_MATCHING_H
+#include <stdbool.h>
+
+struct matching_params {
+    const char *plant;            /* the plant file */
+    const char *tags;             /* the export */
+    const char *rules, *aliases;  /* NULL: match_rules.csv, aliases.csv in the plant's folder, if they are there */
+    const char *const *equipment; /* what becomes an asset (equipment.h); none: the plant file's assets stay */
+    int equipment_count;
+    const char *source;     /* id; NULL: the only one, or `plc` where --modbus makes it */
+    const char *modbus;     /* HOST or HOST:PORT of a source that is to be made; NULL: none */
+    const char *byte_order; /* of that source; NULL: none */
+    int address_base;       /* likewise */
+    bool dry_run;           /* says what it found, and writes nothing */
+};
+
+/* Returns the exit status: 0, or 1 with one line on standard error for each thing that is wrong; then nothing was written. */
+int matching_run(const struct matching_params *params);
+
+#endif

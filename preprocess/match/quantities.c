@@ -1,0 +1,180 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What tags measure. */
+#include "preprocess/match/quantities.h"
+
+#include <ctype.h>
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+#include <strings.h>
+
+#include "base/mem.h"
+#include "plant/number.h"
+#include "plant/units.h"
+#include "preprocess/match/isa.h"
+
+enum { NAME_BYTES = 48 };
+
+static bool has_any(const char *text, const char *const *words, size_t count)
+{
+    for (size_t i = 0; i < count; i++)
+        if (!strcasecmp(text, words[i]))
+            return true;
+    return false;
+}
+
+/* Bits and texts paint nothing. */
+static bool is_number(const char *type)
+{
+    static const char *const others[] = { "Boolean",  "Bool", "Bit",      "String",  "Text", "Char",
+                                          "DateTime", "Date", "Discrete", "Digital", "DI",   "DO" };
+    return !has_any(type, others, sizeof(others) / sizeof(*others));
+}
+
+/* What a unit is of, where that serves one variable only; else "". */
+static const char *word_of_unit(const char *unit)
+{
+    static const char *const plain[] = { "temperature", "density", "conductivity", "power", "energy", "force" };
+    const char *kind = *unit ? unit_kind(unit) : NULL;
+    if (!kind)
+        return "";
+    return strstr(kind, "pressure")                               ? "Pressure"
+           : strstr(kind, "flow")                                 ? "Flow"
+           : has_any(kind, plain, sizeof(plain) / sizeof(*plain)) ? kind
+                                                                  : "";
+}
+
+/* What it measures: "" for states and settings, and where neither unit nor letters tell. */
+static void name_of(const struct export_tag *tag, char name[NAME_BYTES])
+{
+    struct isa_name isa;
+    isa_read(&isa, tag->fields[EXPORT_NAME]);
+    const char *unit = tag->fields[EXPORT_UNIT], *word = word_of_unit(unit), *quantity = isa.variable ? isa_quantity(isa.variable) : NULL;
+    const char *kind = *unit ? unit_kind(unit) : NULL;
+    name[0] = 0;
+    if (isa.role != ISA_MEASURED || !is_number(tag->fields[EXPORT_TYPE]))
+        return;
+    if (isa.variable == 'd' && (!*word || !strcmp(word, "Pressure")))
+        word = quantity;
+    snprintf(name, NAME_BYTES, "%s", *word ? word : quantity ? quantity : kind ? kind : unit);
+    name[0] = (char)toupper((unsigned char)name[0]);
+}
+
+static bool unit_fits(const char *unit, const char *of_group)
+{
+    struct unit_change change;
+    enum unit_match match = *unit ? units_compare(unit, of_group, &change) : UNITS_SAME;
+    return match == UNITS_SAME || match == UNITS_CONVERT;
+}
+
+static void make_id(const struct quantities *quantities, const char *name, char id[NAME_BYTES + 8])
+{
+    size_t length = 0;
+    for (const char *c = name; *c && length < NAME_BYTES; c++)
+        if (isalnum((unsigned char)*c) || (unsigned char)*c >= 0x80)
+            id[length++] = (char)tolower((unsigned char)*c);
+        else if (length > 0 && id[length - 1] != '-')
+            id[length++] = '-';
+    while (length > 0 && id[length - 1] == '-')
+        length--;
+    id[length] = 0;
+    for (int number = 2;; number++) {
+        bool taken = false;
+        for (size_t i = 0; i < quantities->count; i++)
+            taken |= !strcmp(quantities->at[i].id, id);
+        if (!taken)
+            return;
+        snprintf(id + length, 8, "-%d", number % 100000);
+    }
+}
+
+static struct quantity *add(struct quantities *quantities, const char *id, const char *name, const char *unit, bool is_new)
+{
+    mem_grow(&quantities->at, &quantities->capacity, quantities->count + 1, sizeof(*quantities->at));
+    struct quantity *quantity = &quantities->at[quantities->count++];
+    *quantity = (struct quantity){
+        .id = mem_strdup(id), .name = mem_strdup(name), .unit = mem_strdup(unit), .is_new = is_new, .low = INFINITY, .high = -INFINITY
+    };
+    return quantity;
+}
+
+/* One whose name and unit fit; of the plant's own also one whose unit alone fits, if no other does. */
+static int find(const struct quantities *quantities, const char *name, const char *unit)
+{
+    int by_unit = -1, fitting = 0;
+    for (size_t i = 0; i < quantities->count; i++) {
+        const struct quantity *of = &quantities->at[i];
+        if (!unit_fits(unit, of->unit))
+            continue;
+        if (!strcasecmp(of->name, name) || !strcasecmp(of->id, name))
+            return (int)i;
+        if (!of->is_new && *unit) {
+            by_unit = (int)i;
+            fitting++;
+        }
+    }
+    return fitting == 1 ? by_unit : -1;
+}
+
+static void take_range(struct quantity *quantity, const struct export_tag *tag)
+{
+    const char *unit = tag->fields[EXPORT_UNIT];
+    struct unit_change change = { 0 };
+    double low, high;
+    if (*unit)
+        units_compare(unit, quantity->unit, &change);
+    if (number_parse(tag->fields[EXPORT_SCALED_LOW], &low) != NUMBER_GOOD ||
+        number_parse(tag->fields[EXPORT_SCALED_HIGH], &high) != NUMBER_GOOD || low >= high)
+        return;
+    quantity->low = fmin(quantity->low, unit_change_value(&change, low));
+    quantity->high = fmax(quantity->high, unit_change_value(&change, high));
+}
+
+static void take(struct quantities *quantities, const struct tag_export *list, size_t i)
+{
+    const struct export_tag *tag = &list->tags[i];
+    const char *unit = tag->fields[EXPORT_UNIT];
+    char name[NAME_BYTES], id[NAME_BYTES + 8];
+    name_of(tag, name);
+    if (!*name)
+        return;
+    int at = find(quantities, name, unit);
+    if (at < 0) {
+        make_id(quantities, name, id);
+        add(quantities, id, name, unit, true);
+        at = (int)quantities->count - 1;
+    }
+    quantities->of_tag[i] = at;
+    quantities->at[at].tags++;
+    quantities->at[at].blank += !*unit;
+    take_range(&quantities->at[at], tag);
+}
+
+void quantities_find(struct quantities *quantities, const struct plant *plant, const char *unused, const struct tag_export *list,
+                     const struct match *matches)
+{
+    quantities->of_tag = mem_array(list->count, sizeof(*quantities->of_tag));
+    for (size_t g = 0; g < plant->group_count; g++)
+        if (!unused || strcmp(unused, plant->groups[g].id) != 0)
+            add(quantities, plant->groups[g].id, plant->groups[g].quantity, plant->groups[g].unit, false);
+    /* Those without a unit come last: then it is known what the others have. */
+    for (int blank = 0; blank < 2; blank++)
+        for (size_t i = 0; i < list->count; i++) {
+            if (blank == 0)
+                quantities->of_tag[i] = -1;
+            if (matches[i].status == MATCH_SURE && blank == !*list->tags[i].fields[EXPORT_UNIT])
+                take(quantities, list, i);
+        }
+}
+
+void quantities_finish(struct quantities *quantities)
+{
+    for (size_t i = 0; i < quantities->count; i++) {
+        mem_free(quantities->at[i].id);
+        mem_free(quantities->at[i].name);
+        mem_free(quantities->at[i].unit);
+    }
+    mem_free(quantities->at);
+    mem_free(quantities->of_tag);
+    *quantities = (struct quantities){ 0 };
+}

@@ -1,0 +1,200 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// `plantcast match`: tag lists made from the names of real plants, matched and counted against the truth; lists that are in a bad way; what
+// people change by hand and a second run; and the whole way from an export of a CAD system to a picture.
+import assert from 'node:assert/strict';
+import { spawnSync } from 'node:child_process';
+import { copyFileSync, existsSync, mkdtempSync, readdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
+import { tmpdir } from 'node:os';
+import { join } from 'node:path';
+import { test } from 'node:test';
+import { formats, makeTagList } from './support/tag_lists.mjs';
+import { BIN, missing } from './support/tiny_plant.mjs';
+
+const absent = missing();
+const DATA = join(import.meta.dirname, '../../../shared/data');
+const notBuilt = absent.length > 0 ? `not built: ${absent.join(', ')}` : false;
+const noData = notBuilt || (existsSync(join(DATA, 'cad')) ? false : 'no ../shared/data/cad');
+const run = (program, ...args) => spawnSync(join(BIN, program), args, { encoding: 'utf8', timeout: 300000 });
+const good = (said) => (assert.equal(said.status, 0, said.stderr), said);
+const seed = Number(process.env.SEED ?? Date.now() % 1000000);
+
+async function inFolder(f) {
+    const folder = mkdtempSync(join(tmpdir(), 'plantcast-match-'));
+    try {
+        await f(folder);
+    } finally {
+        rmSync(folder, { recursive: true });
+    }
+}
+
+const cells = (line) => [...line.matchAll(/(?:^|,)(?:"((?:[^"]|"")*)"|([^,]*))/g)].map((m) => (m[1] ?? m[2]).replaceAll('""', '"'));
+function table(path) {
+    const [header, ...rows] = readFileSync(path, 'utf8').trim().split('\n').map(cells);
+    return rows.map((row) => Object.fromEntries(header.map((name, i) => [name, row[i] ?? ''])));
+}
+const assetsOf = (plant) =>
+    [...readFileSync(join(plant, 'plant.yaml'), 'utf8').matchAll(/\{ id: "((?:[^"\\]|\\.)+)"/g)].map(([, id]) => id);
+
+// A plant of boxes with these names, without a CAD system.
+function boxPlant(folder, names) {
+    const positions = Buffer.from(new Float32Array([0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0, 0, 0, 1, 1, 0, 1, 1, 1, 1, 0, 1, 1]).buffer);
+    const corners = Buffer.from(new Uint16Array([0, 2, 1, 0, 3, 2, 4, 5, 6, 4, 6, 7, 0, 1, 5, 0, 5, 4, 1, 2, 6, 1, 6, 5, 2, 3, 7, 2, 7, 6,
+        3, 0, 4, 3, 4, 7]).buffer);
+    const bytes = Buffer.concat([positions, corners]);
+    writeFileSync(join(folder, 'model.gltf'), JSON.stringify({ asset: { version: '2.0' }, scene: 0, scenes: [{ nodes: [0] }],
+        nodes: [{ name: 'plant', children: names.map((_, i) => i + 1) },
+            ...names.map((name, i) => ({ name, mesh: 0, translation: [2 * (i % 50), 0, 2 * Math.floor(i / 50)] }))],
+        meshes: [{ primitives: [{ attributes: { POSITION: 0 }, indices: 1 }] }],
+        accessors: [{ bufferView: 0, componentType: 5126, count: 8, type: 'VEC3', min: [0, 0, 0], max: [1, 1, 1] },
+            { bufferView: 1, componentType: 5123, count: 36, type: 'SCALAR' }],
+        bufferViews: [{ buffer: 0, byteLength: positions.length }, { buffer: 0, byteOffset: positions.length, byteLength: corners.length }],
+        buffers: [{ byteLength: bytes.length, uri: `data:application/octet-stream;base64,${bytes.toString('base64')}` }] }));
+    writeFileSync(join(folder, 'plant.yaml'), `plant: { name: Boxes }\n\nassets:\n  - { id: all, model: model.gltf }\n\n` +
+        'groups:\n  - { id: temperature, quantity: Temperature, unit: °C, min: 0, max: 100 }\n\ntags: tags.csv\n');
+    writeFileSync(join(folder, 'tags.csv'), 'Tag Name,Address\n');
+}
+
+function count(plant, truth) {
+    const counts = { sure: [0, 0], likely: [0, 0], none: [0, 0] };
+    let wrong = '';
+    for (const { Tag, Status, Asset, Reason } of table(join(plant, 'matches.csv'))) {
+        const want = truth.get(Tag.replace(/\s+/g, ' '));
+        assert.notEqual(want, undefined, `a tag of its own: ${Tag}`);
+        const right = Status === 'none' ? want === null : Asset === want;
+        counts[Status][right ? 0 : 1]++;
+        if (Status === 'sure' && !right)
+            wrong += `\n#   ${Tag}: ${Asset} (${Reason}), in truth ${want}`;
+    }
+    const own = [...truth.values()].filter((asset) => asset !== null).length, [right, not] = counts.sure;
+    return { counts, wrong, own, precision: right / (right + not), recall: right / own };
+}
+
+// Each real plant: brought in, matched with 5,000 tags, counted.
+for (const { plant, format, bring } of [
+    { plant: 'plm-sample', format: 'kepware', bring: (out) => run('plantcast', 'import', join(DATA, 'cad/plm-sample.rvm'), '-o', out) },
+    { plant: 'huldra_WD1-PSUP', format: 'intouch',
+        bring: (out) => run('plantcast', 'import', join(DATA, 'cad/huldra_WD1-PSUP.rvm'), '-o', out) },
+    { plant: 'duplex_mep', format: 'honeywell', equipment: ['M_*:*'], bring: (out) => {
+        spawnSync('mkdir', ['-p', out]);
+        copyFileSync(join(DATA, 'models/duplex_mep.glb'), join(out, 'duplex_mep.glb'));
+        writeFileSync(join(out, 'plant.yaml'), 'plant: { name: Duplex }\nassets:\n- { id: all, model: duplex_mep.glb }\ngroups:\n' +
+            '- { id: temperature, unit: °C, min: 0, max: 100 }\ntags: tags.csv\n');
+        writeFileSync(join(out, 'tags.csv'), 'Tag Name,Address\n');
+        writeFileSync(join(out, 'none.csv'), 'Tag Name\nnothing\n');
+        const choice = ['M_*Boiler*', 'M_*Pump*', 'M_Radiator*', 'M_*Fan*', 'M_*Valve*', 'M_Backflow*', 'M_Water Closet*', 'M_Lavatory*',
+            'M_Thermostat*', 'M_*Tub*', 'M_Sink*', 'M_Range*', 'M_Refrigerator*'].flatMap((pattern) => ['--equipment', pattern]);
+        return run('plantcast', 'match', out, join(out, 'none.csv'), ...choice);
+    } },
+])
+    test(`${plant}: 5,000 tags made from its names`, { skip: noData }, () => inFolder((folder) => {
+        const out = join(folder, 'plant'), list = join(folder, 'export');
+        good(bring(out));
+        rmSync(join(out, 'matches.csv'), { force: true });
+        writeFileSync(join(out, 'tags.csv'), 'Tag Name,Address\n');
+        const equipment = assetsOf(out), { rows, truth } = makeTagList(equipment, { seed });
+        writeFileSync(list, formats[format](rows));
+        const before = Date.now(), said = good(run('plantcast', 'match', out, list)), ms = Date.now() - before;
+        const { counts, wrong, own, precision, recall } = count(out, truth);
+        console.log(`# ${plant}, seed ${seed}: ${equipment.length} assets, ${truth.size} tags (${own} of this plant) in ${ms} ms`);
+        for (const [status, [right, not]] of Object.entries(counts))
+            console.log(`#   ${status}: ${right} right, ${not} ${status === 'none' ? 'missed' : 'wrong'}`);
+        console.log(`#   precision ${(100 * precision).toFixed(2)} %, recall ${(100 * recall).toFixed(2)} %${wrong}`);
+        assert.ok(precision >= 0.995, 'precision');
+        assert.ok(recall >= 0.9, 'recall');
+        assert.match(said.stdout, /rows repeat a tag word for word: taken once/);
+        good(run('plantcastd', '--check', join(out, 'plant.yaml')));
+    }));
+
+test('2,000 assets and 5,000 tags take no more than 2 minutes', { skip: notBuilt }, () => inFolder((folder) => {
+    const names = Array.from({ length: 2000 }, (_, i) => `${'PEVKC'[i % 5]}-${10 + i % 40}${100 + Math.floor(i / 5)}`);
+    boxPlant(folder, names);
+    const list = join(folder, 'export'), { rows, truth } = makeTagList(names, { seed, foreign: 0.05 });
+    writeFileSync(list, formats.ignition(rows));
+    const before = Date.now(), said = good(run('plantcast', 'match', folder, list, '--equipment', 'level=2')), ms = Date.now() - before;
+    const { precision, recall } = count(folder, truth);
+    console.log(`# ${ms} ms; precision ${(100 * precision).toFixed(2)} %, recall ${(100 * recall).toFixed(2)} %`);
+    assert.match(said.stdout, /2000 assets chosen/);
+    assert.ok(ms < 120000);
+}));
+
+test('a list in a bad way: repeated rows, Korean, slashes, blanks, control characters', { skip: notBuilt }, () => inFolder((folder) => {
+    boxPlant(folder, ['열교환기-101', 'P-102 A/B', 'V 201']);
+    const rows = [['열교환기-101/TT-01', '열교환기 입구 온도'], ['P-102 A/B_PT01', ''], [' V 201 . LT\u0001 01 ', 'level'],
+        ['', 'nothing'], ['X\u0007', '']];
+    const all = [...rows, ...rows, ...rows].map(([name, text], i) => `"${name}",${i === 6 ? 7 : 1},"${text}"`);
+    writeFileSync(join(folder, 'export.csv'), ['Tag Name,Address,Description', ...all].join('\r\n'));
+    const said = good(run('plantcast', 'match', folder, join(folder, 'export.csv'), '--equipment', 'level=2'));
+    assert.match(said.stdout, /7 rows repeat a tag word for word: taken once/);
+    assert.match(said.stdout, /1 rows repeat a tag with other contents: the first counts: P-102 A\/B_PT01 \(lines 3 and 8\)/);
+    assert.match(said.stdout, /3 rows have no name: left out/);
+    assert.match(said.stdout, /6 control characters: read as blanks/);
+    const found = Object.fromEntries(table(join(folder, 'matches.csv')).map(({ Tag, Status, Asset }) => [Tag, `${Status} ${Asset}`]));
+    assert.deepEqual(found, { '열교환기-101/TT-01': 'sure 열교환기-101', 'P-102 A/B_PT01': 'sure P-102 A/B',
+        'V 201 . LT  01': 'sure V 201', X: 'none ' });
+}));
+
+test('what people change stays; a second run changes nothing', { skip: notBuilt }, () => inFolder((folder) => {
+    boxPlant(folder, ['E-101', 'P-101', 'V-201']);
+    const list = join(folder, 'export.csv'), match = (...more) => good(run('plantcast', 'match', folder, list, ...more)).stdout;
+    const texts = () => ['plant.yaml', 'tags.csv', 'matches.csv'].map((name) => readFileSync(join(folder, name), 'utf8'));
+    const edit = (name, from, to) => {
+        const path = join(folder, name), text = readFileSync(path, 'utf8');
+        assert.ok(text.includes(from), `${name}: ${text}`);
+        writeFileSync(path, text.replace(from, to));
+    };
+    const rows = () => Object.fromEntries(table(join(folder, 'tags.csv')).map((row) => [row['Tag Name'], `${row.Asset} ${row.Place}`]));
+    writeFileSync(list, 'Tag Name,Eng Units,Scaled Low,Scaled High,Description\nE-101.TT-01,degC,0,250,Inlet\n' +
+        'E-101.TT-02,degC,0,150,Outlet\nLT-201,%,0,100,Level\nPT-101,bar,0,10,Pressure\nFT-999,m3/h,0,10,Flow\n');
+    match('--equipment', 'level=2');
+    assert.deepEqual(rows(), { 'E-101.TT-01': 'E-101 equipment', 'E-101.TT-02': 'E-101 equipment', 'LT-201': 'V-201 equipment',
+        'PT-101': ' ', 'FT-999': ' ' });
+    assert.match(readFileSync(join(folder, 'plant.yaml'), 'utf8'),
+        /- \{ id: "temperature", quantity: "Temperature", unit: "degC", min: 0, max: 250 \}/);
+    const first = texts();
+    match();
+    assert.deepEqual(texts(), first);
+    // In matches.csv: an asset for one, none for another. In tags.csv: a place that is confirmed, and another asset.
+    edit('matches.csv', 'PT-101,none,,', 'PT-101,none,P-101,');
+    edit('matches.csv', 'LT-201,sure,V-201', 'LT-201,none,V-201');
+    edit('tags.csv', ',E-101,equipment,', ',E-101,,');
+    edit('tags.csv', ',E-101,equipment,', ',V-201,equipment,');
+    edit('plant.yaml', 'max: 250', 'max: 300');
+    match();
+    assert.deepEqual(rows(), { 'E-101.TT-01': 'E-101 ', 'E-101.TT-02': 'V-201 equipment', 'LT-201': ' ',
+        'PT-101': 'P-101 equipment', 'FT-999': ' ' });
+    assert.match(readFileSync(join(folder, 'plant.yaml'), 'utf8'), /max: 300/);
+    const second = texts();
+    assert.match(second[2], /PT-101,sure,P-101,.*by hand/);
+    assert.match(second[2], /E-101\.TT-02,sure,V-201,.*by hand/);
+    match();
+    assert.deepEqual(texts(), second);
+    // Rules and aliases.
+    writeFileSync(join(folder, 'match_rules.csv'), 'Tag,Equipment\n"^FT-9([0-9])9$",P-10\\1\n^FT-999$,P-101\n');
+    match();
+    assert.match(readFileSync(join(folder, 'matches.csv'), 'utf8'), /FT-999,sure,P-101,.*rule 2 makes 'P-101' of it/);
+    writeFileSync(join(folder, 'match_rules.csv'), 'Tag,Equipment\n[,x\n');
+    const said = run('plantcast', 'match', folder, list);
+    assert.equal(said.status, 1);
+    assert.match(said.stderr, /match_rules\.csv: line 2: '\[' is no regular expression/);
+    rmSync(join(folder, 'match_rules.csv'));
+    writeFileSync(join(folder, 'aliases.csv'), 'Alias,Equipment\nfeed tank,V-201\n');
+    writeFileSync(list, `${readFileSync(list, 'utf8')}XT_7,degC,0,90,Feed tank shell\n`);
+    match();
+    assert.match(readFileSync(join(folder, 'matches.csv'), 'utf8'), /XT_7,sure,V-201,.*alias 'feed tank'/);
+}));
+
+test('what cannot be read is one line, and nothing is written', { skip: notBuilt }, () => inFolder((folder) => {
+    boxPlant(folder, ['E-101']);
+    const list = join(folder, 'export.csv'), before = readdirSync(folder);
+    for (const [text, why] of [['', 'no header'], ['a,b\n1,2\n', 'no header'], ['Tag Name\n"x\n', 'a quote does not end'],
+        ['PK\x03\x04', 'not a spreadsheet'], ['{"tags": [', 'not JSON']]) {
+        writeFileSync(list, text);
+        const said = run('plantcast', 'match', folder, list);
+        assert.equal(said.status, 1);
+        assert.equal(said.stderr.trim().split('\n').length, 1);
+        assert.ok(said.stderr.includes(why), said.stderr);
+    }
+    rmSync(list);
+    assert.deepEqual(readdirSync(folder), before);
+    assert.equal(run('plantcast', 'match', folder).status, 2);
+}));

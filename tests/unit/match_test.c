@@ -1,0 +1,214 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Matching tags to equipment, way by way; names taken apart; plant files changed as a person would. */
+#include "preprocess/match/matcher.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <string.h>
+#include <cmocka.h>
+
+#include "base/mem.h"
+#include "preprocess/match/isa.h"
+#include "preprocess/match/plant_edit.h"
+#include "tests/support/temp.h"
+
+static const char model[] = "{\"asset\":{\"version\":\"2.0\"},\"scene\":0,\"scenes\":[{\"nodes\":[0]}],\"nodes\":["
+                            "{\"name\":\"plant\",\"children\":[1,2,3,4,5,6,7,8]},{\"name\":\"/"
+                            "E-101\",\"children\":[9,10]},{\"name\":\"P-101\"},{\"name\":\"P-205A\"},"
+                            "{\"name\":\"P-205B\"},{\"name\":\"-ART1105BA-\"},{\"name\":\"/"
+                            "20-V-330\"},{\"name\":\"StorageTank\"},{\"name\":\"M_Radiator:25:583216\"},"
+                            "{\"name\":\"TT-1011\"},{\"name\":\"/E-101/N1\",\"extras\":{\"Tag\":\"10-FT-7788\"}}]}";
+static const char plant_text[] =
+    "plant: { name: P }\nassets:\n- { id: E-101, description: Feed preheater, model: m.gltf, nodes: /E-101 }\n- { id: P-101, model: "
+    "m.gltf, nodes: P-101 }\n"
+    "- { id: P-205A, model: m.gltf, nodes: P-205A }\n- { id: P-205B, model: m.gltf, nodes: P-205B }\n"
+    "- { id: -ART1105BA-, model: m.gltf, nodes: -ART1105BA- }\n- { id: 20-V-330, model: m.gltf, nodes: /20-V-330 }\n"
+    "- { id: StorageTank, model: m.gltf, nodes: StorageTank }\n- { id: \"M_Radiator:25:583216\", model: m.gltf, nodes: "
+    "\"M_Radiator:25:583216\" }\n"
+    "groups: [{ id: g, unit: K, min: 0, max: 1 }]\ntags: tags.csv\n";
+
+struct fixture {
+    char *folder;
+    struct plant *plant;
+    struct model_index site;
+    struct matcher matcher;
+};
+
+static int set_up(void **state)
+{
+    struct fixture *f = mem_new(sizeof(*f));
+    char why[MODEL_INDEX_WHY_BYTES] = "";
+    f->folder = temp_folder_create();
+    mem_free(temp_write_text(f->folder, "m.gltf", model));
+    mem_free(temp_write_text(f->folder, "tags.csv", "Tag Name\n"));
+    char *path = temp_write_text(f->folder, "plant.yaml", plant_text);
+    f->plant = plant_load_or_print(path);
+    mem_free(path);
+    if (!f->plant || !model_index_read(&f->site, f->plant, why))
+        return -1;
+    f->matcher.site = &f->site;
+    *state = f;
+    return 0;
+}
+
+static int tear_down(void **state)
+{
+    struct fixture *f = *state;
+    matcher_finish(&f->matcher);
+    model_index_finish(&f->site);
+    plant_destroy(&f->plant);
+    temp_folder_destroy(&f->folder);
+    mem_free(f);
+    return 0;
+}
+
+/* asset NULL: none. why: in the reason. */
+static void expect(struct fixture *f, const char *name, const char *description, enum match_status status, const char *asset,
+                   const char *why)
+{
+    struct tag_export list = { 0 };
+    struct export_tag *tag = tag_export_add(&list, 1);
+    export_tag_set(tag, EXPORT_NAME, name);
+    export_tag_set(tag, EXPORT_DESCRIPTION, description);
+    tag_export_join(&list);
+    struct match *match = matcher_run(&f->matcher, &list);
+    const char *got = match->asset < 0 ? "none" : f->plant->assets[match->asset].id;
+    if (match->status != status || strcmp(got, asset ? asset : "none") != 0 || !strstr(match->reason, why))
+        fail_msg("%s: %s, %s, %s", name, match_status_names[match->status], got, match->reason);
+    matches_free(match, 1);
+    tag_export_finish(&list);
+}
+
+static void test_by_name(void **state)
+{
+    struct fixture *f = *state;
+    expect(f, "TT-1011.PV", "", MATCH_SURE, "E-101", "node 'TT-1011' has its name");
+    expect(f, "E101_TIC_01", "", MATCH_SURE, "E-101", "its name has 'E-101' in it");
+    expect(f, "Plant/e_101/PT-7", "", MATCH_SURE, "E-101", "its name has 'E-101' in it");
+    expect(f, "P-205-A.PV", "", MATCH_SURE, "P-205A", "has its name");
+    expect(f, "E-101-B_TT01", "", MATCH_LIKELY, "E-101", "grown together");
+    expect(f, "TT_Radiator-583216", "", MATCH_SURE, "M_Radiator:25:583216", "number and other parts");
+    expect(f, "ART11O5BA-TT01", "", MATCH_SURE, "-ART1105BA-", "O for 0");
+    expect(f, "ARTT1105BA.TT01", "", MATCH_SURE, "-ART1105BA-", "");
+    expect(f, "ATR1105BA.PV", "", MATCH_SURE, "-ART1105BA-", "one letter wrong");
+    expect(f, "1105BA_LT", "", MATCH_SURE, "-ART1105BA-", "");
+}
+
+static void test_by_number(void **state)
+{
+    struct fixture *f = *state;
+    expect(f, "TE-330A", "", MATCH_SURE, "20-V-330", "loop 330: equipment number 330");
+    expect(f, "20-LT-3302", "", MATCH_SURE, "20-V-330", "loop 3302: equipment number 330");
+    expect(f, "40-LT-330", "", MATCH_LIKELY, "20-V-330", "what stands before it is not of that equipment");
+    expect(f, "PT-205B", "", MATCH_SURE, "P-205B", "");
+    expect(f, "PT-205C", "", MATCH_NONE, NULL, "nothing in the model");
+    expect(f, "PT-205", "", MATCH_NONE, NULL, "P-205A or P-205B");
+    expect(f, "TT-101", "", MATCH_NONE, NULL, "E-101 or P-101");
+    expect(f, "TT-101", "pump bearing temperature", MATCH_SURE, "P-101", "");
+    expect(f, "TT-101", "Outlet of E-101", MATCH_SURE, "E-101", "the description names E-101; loop 101");
+    expect(f, "TT-330", "Outlet of E-101", MATCH_LIKELY, "20-V-330", ", but the description names E-101");
+    expect(f, "ART1705BA_TT330", "", MATCH_NONE, NULL, ""); /* the number of equipment that is not there counts, not the instrument's */
+}
+
+static void test_by_text(void **state)
+{
+    struct fixture *f = *state;
+    char *path, why[MATCH_WHY_BYTES];
+    expect(f, "10-FT-7788", "", MATCH_SURE, "E-101", "an attribute of 'E-101'");
+    expect(f, "XT_9", "from P-101 to E-101", MATCH_NONE, NULL, "P-101 or E-101");
+    expect(f, "XT_9", "Level of storage tank", MATCH_SURE, "StorageTank", "2 words");
+    expect(f, "XT_9", "preheater of feed, shell", MATCH_SURE, "E-101", "2 words");
+    expect(f, "PLC1.Heartbeat", "", MATCH_NONE, NULL, "nothing in the model has its name, number or words");
+    path = temp_write_text(f->folder, "aliases.csv", "Alias;Equipment\nThe big one;V-330\n");
+    assert_false(matcher_read_aliases(&f->matcher, path, why));
+    assert_string_equal(why, "line 2: no asset is called 'V-330'");
+    mem_free(path);
+    path = temp_write_text(f->folder, "aliases.csv", "Alias;Equipment\nThe big one;20-V-330\n");
+    assert_true(matcher_read_aliases(&f->matcher, path, why));
+    mem_free(path);
+    expect(f, "XT_9", "top of the big one", MATCH_SURE, "20-V-330", "alias 'The big one'");
+    path = temp_write_text(f->folder, "rules.csv", "Tag,Equipment\n^XT_([0-9])$,P-20\\1A\n^XT_.*,E-101\n");
+    assert_true(matcher_read_rules(&f->matcher, path, why));
+    mem_free(path);
+    expect(f, "xt_5", "", MATCH_SURE, "P-205A", "rule 1 makes 'P-205A' of it");
+    expect(f, "XT_77", "", MATCH_SURE, "E-101", "rule 2");
+}
+
+static void test_isa_names(void **state)
+{
+    static const struct {
+        const char *name, *letters, *number, *suffix;
+        char variable;
+        enum isa_role role;
+    } cases[] = {
+        { "TE-101A", "TE", "101", "A", 'T', ISA_MEASURED },      { "10-PDT-1012", "PDT", "1012", "", 'd', ISA_MEASURED },
+        { "TIC0101.SP", "TIC", "101", "", 'T', ISA_SETTING },    { "LSHH-330", "LSHH", "330", "", 'L', ISA_STATE },
+        { "FI101.DACA.PV", "FI", "101", "", 'F', ISA_MEASURED }, { "TAH-101", "TAH", "101", "", 'T', ISA_STATE },
+        { "E101_TT_07", "TT", "7", "", 'T', ISA_MEASURED },      { "FV-101", "FV", "101", "", 'F', ISA_SETTING },
+        { "P-101.RUN", NULL, NULL, "", 0, ISA_STATE },
+    };
+    (void)state;
+    for (size_t i = 0; i < sizeof(cases) / sizeof(*cases); i++) {
+        struct isa_name name;
+        isa_read(&name, cases[i].name);
+        assert_int_equal(name.letters >= 0, cases[i].letters != NULL);
+        if (cases[i].letters) {
+            assert_string_equal(name.tokens.at[name.letters].text, cases[i].letters);
+            assert_string_equal(name.tokens.at[name.number].text, cases[i].number);
+            assert_string_equal(name.suffix, cases[i].suffix);
+        }
+        assert_int_equal(name.variable, cases[i].variable);
+        assert_int_equal(name.role, cases[i].role);
+    }
+}
+
+static void test_slips(void **state)
+{
+    (void)state;
+    assert_int_equal(name_slip("ARTBA", "ARTBA"), NAME_SAME);
+    assert_int_equal(name_slip("ARRTBA", "ARTBA"), NAME_SLIP);
+    assert_int_equal(name_slip("ATBA", "ARTBA"), NAME_SLIP);
+    assert_int_equal(name_slip("ATRBA", "ARTBA"), NAME_SLIP);
+    assert_int_equal(name_slip("ARTBB", "ARTBA"), NAME_OTHER_LETTER);
+    assert_int_equal(name_slip("ARTB", "BARTBA"), NAME_DIFFERENT);
+}
+
+static void expect_text(char *got, const char *want)
+{
+    assert_non_null(got);
+    assert_string_equal(got, want);
+    mem_free(got);
+}
+
+static void test_plant_files_keep_what_people_wrote(void **state)
+{
+    static const char before[] =
+        "# mine\ngroups: # all\n    - { id: a }   # first\n\n    # second\n    - { id: b }\n\n# then\ntags: t.csv\n";
+    (void)state;
+    expect_text(
+        plant_edit_append(before, "groups", "", "  - { id: c }\n"),
+        "# mine\ngroups: # all\n    - { id: a }   # first\n\n    # second\n    - { id: b }\n    - { id: c }\n\n# then\ntags: t.csv\n");
+    expect_text(plant_edit_replace(before, "groups", "- { id: c }\n- { id: d }\n"),
+                "# mine\ngroups: # all\n    - { id: c }\n    - { id: d }\n\n# then\ntags: t.csv\n");
+    expect_text(plant_edit_append("tags: t.csv\n", "sources", "# From where.\n", "  - { id: s }\n"),
+                "# From where.\nsources:\n  - { id: s }\n\ntags: t.csv\n");
+    assert_null(plant_edit_append("groups: [{ id: a }]\n", "groups", "", "- { id: c }\n"));
+    expect_text(plant_edit_remove_line("a\n  - b\nc\n", "  - b"), "a\nc\n");
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test_setup_teardown(test_by_name, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(test_by_number, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(test_by_text, set_up, tear_down),
+        cmocka_unit_test(test_isa_names),
+        cmocka_unit_test(test_slips),
+        cmocka_unit_test(test_plant_files_keep_what_people_wrote),
+    };
+    cmocka_set_message_output(CM_OUTPUT_TAP);
+    return cmocka_run_group_tests_name("match", tests, NULL, NULL);
+}
