@@ -5,7 +5,7 @@
 
 #include "base/mem.h"
 #include "base/text.h"
-#include "preprocess/match/match_ways.h"
+#include "preprocess/match/matcher_impl.h"
 
 void candidates_add(struct candidates *list, int asset, int node)
 {

@@ -3,7 +3,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "preprocess/match/match_ways.h"
+#include "preprocess/match/matcher_impl.h"
 
 static bool has_token(const struct name_tokens *tokens, const struct name_token *token)
 {

@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "base/mem.h"
-#include "preprocess/match/match_ways.h"
+#include "preprocess/match/matcher_impl.h"
 
 bool way_attributes(const struct matcher *matcher, const struct match_subject *subject, struct proposal *out)
 {

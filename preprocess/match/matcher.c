@@ -11,7 +11,7 @@
 #include "base/mem.h"
 #include "base/text.h"
 #include "preprocess/match/charset.h"
-#include "preprocess/match/match_ways.h"
+#include "preprocess/match/matcher_impl.h"
 #include "preprocess/match/table.h"
 
 const char *const match_status_names[3] = { "none", "likely", "sure" };

@@ -206,6 +206,28 @@ static void sensors_are_given_in_the_asset_frame(void **state)
     mem_free(s);
 }
 
+static void an_assumed_place_is_another_than_the_same_place_known(void **state)
+{
+    struct plant_case *f = *state;
+    struct plant_sensor *s;
+    plant_case_load(f,
+         "plant: { name: P }\nassets: [{ id: A, model: m.glb }]\ngroups: [{ id: g, unit: K, min: 0, max: 1 }]\n"
+         "sources: [{ id: s, type: modbus, host: h }]\ntags: tags.csv\n",
+         "Tag Name,Address,Group,Asset,Place,Node,X,Y,Z\na,hr:1,g,A,equipment,,,,\nb,hr:2,g,A,Equipment,,1,2,3\n"
+         "c,hr:3,g,A,position,,1,2,3\nd,hr:4,g,A,equipment,N,,,\ne,hr:5,g,A,,N,,,\n");
+    plant_case_assert_loaded(f, 0);
+    assert_int_equal(plant_sensors(f->plant, 0, &s), 5);
+    assert_string_equal(s[0].node, "");
+    assert_true(s[0].node_hash != 0 && f->plant->tags[0].place_assumed);
+    assert_null(s[1].node);
+    assert_true(s[1].node_hash != 0 && f->plant->tags[1].place_assumed);
+    assert_point(s[1].position_m, 1, 2, 3);
+    assert_true(s[2].node_hash == 0 && !f->plant->tags[2].place_assumed);
+    assert_string_equal(s[3].node, "N");
+    assert_true(s[3].node_hash != s[4].node_hash);
+    mem_free(s);
+}
+
 static void an_asset_stands_upright_in_a_plant_that_is_y_up(void **state)
 {
     struct plant_case *f = *state;
@@ -720,6 +742,7 @@ int main(void)
         TEST(names_of_a_long_list_are_found),
         TEST(nodes_are_a_pattern_or_a_list),
         TEST(sensors_are_given_in_the_asset_frame),
+        TEST(an_assumed_place_is_another_than_the_same_place_known),
         TEST(an_asset_stands_upright_in_a_plant_that_is_y_up),
         TEST(the_locale_changes_nothing),
         TEST(unknown_keys_are_named),

@@ -50,6 +50,13 @@ static void test_columns_that_are_not_there(void **state)
     expect("Tag Name,Address\na,hr:1\nb\nc,hr:3", &to, 1, "Tag Name,Address,Asset,Group,X,Y,Z\na,hr:1\nb,,\"E,1\",t,1,2,3\nc,hr:3");
 }
 
+static void test_a_place_is_no_longer_assumed(void **state)
+{
+    (void)state;
+    const struct tag_edit to = { "a", NULL, NULL, { 4, 5, 6 } };
+    expect("Tag Name,Place,X,Y,Z\na,equipment,1,2,3\nb,equipment,,,\n", &to, 1, "Tag Name,Place,X,Y,Z\na,,4,5,6\nb,equipment,,,\n");
+}
+
 static void test_several_and_none(void **state)
 {
     (void)state;
@@ -181,6 +188,7 @@ int main(void)
         cmocka_unit_test(test_one_row),
         cmocka_unit_test(test_the_rest_stays_to_the_byte),
         cmocka_unit_test(test_columns_that_are_not_there),
+        cmocka_unit_test(test_a_place_is_no_longer_assumed),
         cmocka_unit_test(test_several_and_none),
         cmocka_unit_test(test_what_is_not_there_is_refused),
         cmocka_unit_test(test_lines),

@@ -225,7 +225,7 @@ static void places_are_whole(void **state)
                     "H,40001,temp,,,,,\n"
                     "I,40001,,E-101,,,,\n");
     assert_null(c->plant);
-    FOUND(c, { "tags.csv", 2, 20, "'A' has a group and an asset but no place: expected Node, or X, Y and Z" },
+    FOUND(c, { "tags.csv", 2, 20, "'A' has a group and an asset but no place: expected Node, or X, Y and Z, or Place: equipment" },
           { "tags.csv", 3, 23, "Y: expected a number, since a position needs X, Y and Z" },
           { "tags.csv", 4, 23, "Y: expected a finite number, found 'nan'" }, { "tags.csv", 5, 25, "Z: expected a number, found 'abc'" },
           { "tags.csv", 6, 25, "Z: expected a number with a decimal point, found '3,5'" },

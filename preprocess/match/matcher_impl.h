@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The ways to match a tag. Each proposes one asset, or several that it cannot tell apart, or nothing. Private to matcher.c. Thread: any. */
-#ifndef PREPROCESS_MATCH_MATCH_WAYS_H
-#define PREPROCESS_MATCH_MATCH_WAYS_H
+/* The ways to match a tag. Each proposes one asset, or several that it cannot tell apart, or nothing. For matcher.c and match_*.c only.
+ * Thread: any. */
+#ifndef PREPROCESS_MATCH_MATCHER_IMPL_H
+#define PREPROCESS_MATCH_MATCHER_IMPL_H
 #include "preprocess/match/isa.h"
 #include "preprocess/match/matcher.h"
 
