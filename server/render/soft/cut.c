@@ -65,12 +65,12 @@ static int last_pixel(float x, int high)
 static void add_face(struct soft_tile *tile, int triangle, bool any_side, int i, int j, int k)
 {
     const float *x = tile->corners.x, *y = tile->corners.y;
-    float area = (x[j] - x[i]) * (y[k] - y[i]) - (x[k] - x[i]) * (y[j] - y[i]);
+    float area = (x[j] - x[i]) * (y[k] - y[i]) - (x[k] - x[i]) * (y[j] - y[i]), reach = tile->reach_px;
     bool turned = area > 0, back = turned != tile->mesh->mirrored;
-    int left = first_pixel(fminf(fminf(x[i], x[j]), x[k]), tile->rect.left);
-    int right = last_pixel(fmaxf(fmaxf(x[i], x[j]), x[k]), tile->rect.right);
-    int top = first_pixel(fminf(fminf(y[i], y[j]), y[k]), tile->rect.top);
-    int bottom = last_pixel(fmaxf(fmaxf(y[i], y[j]), y[k]), tile->rect.bottom);
+    int left = first_pixel(fminf(fminf(x[i], x[j]), x[k]) - reach, tile->rect.left);
+    int right = last_pixel(fmaxf(fmaxf(x[i], x[j]), x[k]) + reach, tile->rect.right);
+    int top = first_pixel(fminf(fminf(y[i], y[j]), y[k]) - reach, tile->rect.top);
+    int bottom = last_pixel(fmaxf(fmaxf(y[i], y[j]), y[k]) + reach, tile->rect.bottom);
     if (area == 0 || (!any_side && back) || left > right || top > bottom)
         return;
     tile->faces[tile->face_count++] = (struct soft_face){

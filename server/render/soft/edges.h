@@ -64,15 +64,4 @@ SOFT_INLINE lanes plane_at(const struct plane *plane, lanes x, float y, bool thi
     return thin ? lanes_clamp(value, plane->low, plane->high) : value;
 }
 
-SOFT_INLINE int clip_low(float x, int low)
-{
-    int first = x > 0 ? (int)(x + 0.4999f) : 0;
-    return first > low ? first : low;
-}
-
-SOFT_INLINE int clip_high(float x, int high)
-{
-    return x < (float)high + 0.5f ? (int)(x + 0.5f) - 1 : high;
-}
-
 #endif

@@ -236,7 +236,7 @@ void soft_find_faces(struct soft_tile *tile, const struct soft_mesh *mesh, const
 {
     const struct soft_corners *corners = &tile->corners;
     const struct soft_parts *parts = found->parts;
-    const float *planes = soft_part_planes(parts, part);
+    const float *planes = soft_part_planes(parts, part), reach = tile->reach_px;
     bool both_sides = found->both_sides, one_side = !both_sides && !part->double_sided && !mesh->mirrored;
     const uint8_t *first = parts->corners + part->first_corner, *second = first + part->rounded, *third = second + part->rounded;
     lanes_int any_side = (lanes_int){ 0 } - (int)(both_sides || part->double_sided), mirrored = (lanes_int){ 0 } - (int)mesh->mirrored;
@@ -252,10 +252,10 @@ void soft_find_faces(struct soft_tile *tile, const struct soft_mesh *mesh, const
         lanes_int turned = area > 0.0f;
         struct eight eight = {
             .corners = { p, lanes_choose_int(turned, q, r), lanes_choose_int(turned, r, q) },
-            .left = first_pixel(least_of(x0, x1, x2), tile->rect.left),
-            .right = last_pixel(most_of(x0, x1, x2), tile->rect.right),
-            .top = first_pixel(least_of(y0, y1, y2), tile->rect.top),
-            .bottom = last_pixel(most_of(y0, y1, y2), tile->rect.bottom),
+            .left = first_pixel(least_of(x0, x1, x2) - reach, tile->rect.left),
+            .right = last_pixel(most_of(x0, x1, x2) + reach, tile->rect.right),
+            .top = first_pixel(least_of(y0, y1, y2) - reach, tile->rect.top),
+            .bottom = last_pixel(most_of(y0, y1, y2) + reach, tile->rect.bottom),
         };
         eight.kept = (area != 0.0f) & (any_side | ~(turned ^ mirrored)) & (eight.left <= eight.right) & (eight.top <= eight.bottom);
         if (!lanes_any(eight.kept))
@@ -267,14 +267,16 @@ void soft_find_faces(struct soft_tile *tile, const struct soft_mesh *mesh, const
 
 /* --- what they leave behind ---------------------------------------------------------------------------------------------------- */
 
+/* left, top: in the tile. */
 SOFT_INLINE float farthest_in(const struct soft_tile *tile, int left, int top)
 {
-    int bottom = top + BLOCK_PX - 1 < tile->rect.bottom ? top + BLOCK_PX - 1 : tile->rect.bottom;
+    int bottom = top + BLOCK_PX - 1 < tile->rect.bottom - tile->rect.top ? top + BLOCK_PX - 1 : tile->rect.bottom - tile->rect.top;
     lanes least = (lanes){ 0 } + 1.0f;
-    for (int row = top; row <= bottom; row++) {
-        lanes here = *(const lanes *)(tile->soft->depth + (size_t)row * (size_t)tile->soft->pitch_px + left);
-        least = lanes_least(here, least);
-    }
+    for (int s = 0; s < tile->sample_count; s++)
+        for (int row = top; row <= bottom; row++) {
+            lanes here = *(const lanes *)(tile->samples[s].depth + (size_t)row * (size_t)tile->pitch_px + left);
+            least = lanes_least(here, least);
+        }
     float farthest = least[0];
     for (int i = 1; i < LANES; i++)
         farthest = least[i] < farthest ? least[i] : farthest;
@@ -285,5 +287,5 @@ void soft_look_again(struct soft_tile *tile, const struct soft_rect *blocks)
 {
     for (int row = blocks->top; row <= blocks->bottom; row++)
         for (int column = blocks->left; column <= blocks->right; column++)
-            tile->farthest[row][column] = farthest_in(tile, tile->rect.left + column * BLOCK_PX, tile->rect.top + row * BLOCK_PX);
+            tile->farthest[row][column] = farthest_in(tile, column * BLOCK_PX, row * BLOCK_PX);
 }

@@ -36,10 +36,11 @@ SOFT_INLINE bool project(const struct soft *soft, const struct soft_mesh *mesh, 
         bottom = py[i] > bottom ? py[i] : bottom;
         nearest = depth[i] > nearest ? depth[i] : nearest;
     }
-    left += 0.5f - SLACK_PX; /* whose middles lie within */
-    top += 0.5f - SLACK_PX;
-    last += 0.5f + SLACK_PX;
-    bottom += 0.5f + SLACK_PX;
+    const float slack = SLACK_PX + soft->reach_px;
+    left += 0.5f - slack; /* whose middles lie within */
+    top += 0.5f - slack;
+    last += 0.5f + slack;
+    bottom += 0.5f + slack;
     if (last < 1 || bottom < 1 || left >= (float)soft->width_px || top >= (float)soft->height_px || nearest < 0)
         return false;
     rect->left = left > 0 ? (int)left : 0;
@@ -103,7 +104,7 @@ static void find_meshes(void *arg, size_t begin, size_t end)
 /* NULL: out of memory. */
 static const struct soft_parts *parts_of(struct soft *soft, const struct model *model, const struct model_level *level)
 {
-    struct soft_parts **of_model = &soft->parts[model - soft->gpu_scene->models];
+    struct soft_parts **of_model = &soft->keeper->parts[model - soft->gpu_scene->models];
     if (!*of_model)
         *of_model = mem_array(model->level_count, sizeof(**of_model));
     struct soft_parts *parts = &(*of_model)[level - model->levels];
@@ -123,6 +124,36 @@ static void find_eye(const struct soft *soft, double eye_m[3])
                                                   : constants->eye_m[c];
 }
 
+/* An asset, its vertices counted on from soft->vertex_count. */
+static void fill_mesh(struct soft *soft, struct soft_mesh *mesh, int index, const struct model_level *level)
+{
+    const struct frame_context *context = soft->context;
+    const struct scene_asset *asset = &context->gpu_scene->scene->assets[index];
+    double clip[16], half[2] = { 0.5 * soft->width_px, 0.5 * soft->height_px };
+    *mesh = (struct soft_mesh){
+        .asset = index,
+        .file = &asset->file->view,
+        .has_field = context->fields[index] != NULL,
+        .scalars = context->fields[index] ? context->fields[index]->shown : NULL,
+        .baked = (const uint8_t(*)[4])soft->light->baked[index],
+        .first_vertex = (uint32_t)soft->vertex_count,
+        .vertex_count = level->vertex_count,
+        .mirrored = scene_asset_mirrored(asset),
+        .cut = clip_touches(&context->view->visibility.clip, asset->bounds_min_m, asset->bounds_max_m),
+    };
+    if (mesh->cut)
+        matrix_normals(asset->placement, mesh->turn);
+    matrix_multiply(context->constants.clip_from_plant, asset->placement, clip);
+    view_constants_bring_forward(&context->constants, asset, clip);
+    for (int c = 0; c < 4; c++) {
+        mesh->place[c][0] = (float)(half[0] * (clip[4 * c + 3] + clip[4 * c]) - (double)soft->shift_px[0] * clip[4 * c + 3]);
+        mesh->place[c][1] = (float)(half[1] * (clip[4 * c + 3] - clip[4 * c + 1]) - (double)soft->shift_px[1] * clip[4 * c + 3]);
+        mesh->place[c][2] = (float)clip[4 * c + 2];
+        mesh->place[c][3] = (float)clip[4 * c + 3];
+    }
+    soft->vertex_count += level->vertex_count;
+}
+
 static bool add_asset(struct soft *soft, int asset, const struct model_level *level, bool both_sides)
 {
     const struct model *model = soft->gpu_scene->of_asset[asset];
@@ -130,7 +161,7 @@ static bool add_asset(struct soft *soft, int asset, const struct model_level *le
     mem_grow(&soft->meshes, &soft->mesh_capacity, soft->mesh_count + 1, sizeof(*soft->meshes));
     mem_grow(&soft->found, &soft->found_capacity, soft->mesh_count + 1, sizeof(*soft->found));
     const struct soft_mesh *mesh = &soft->meshes[soft->mesh_count];
-    soft_fill_mesh(soft, &soft->meshes[soft->mesh_count], asset, level);
+    fill_mesh(soft, &soft->meshes[soft->mesh_count], asset, level);
     struct soft_found *found = &soft->found[soft->mesh_count++];
     found->parts = parts_of(soft, model, level);
     found->ramp = soft->ramp_of_model[model - soft->gpu_scene->models];
@@ -142,16 +173,16 @@ static bool add_asset(struct soft *soft, int asset, const struct model_level *le
         found->eye_m[c] = (float)eye[c];
     if (!found->parts || !mesh->cut || !soft->counts_bodies)
         return found->parts != NULL;
-    return soft_parts_close(&soft->parts[model - soft->gpu_scene->models][level - model->levels], mesh->file,
+    return soft_parts_close(&soft->keeper->parts[model - soft->gpu_scene->models][level - model->levels], mesh->file,
                             asset_closed(model->file, (uint32_t)(level - model->levels)), level->vertex_count);
 }
 
-bool soft_find(struct soft *soft)
+bool soft_find(struct soft *soft, bool bodies)
 {
     const struct frame_context *context = soft->context;
     bool good = true;
     soft->mesh_count = soft->vertex_count = 0;
-    soft->counts_bodies = soft->cut_count > 0;
+    soft->counts_bodies = bodies && soft->cut_count > 0;
     for (size_t i = 0; i < context->visible_count && good; i++)
         good = add_asset(soft, context->visible[i], frame_level(context, context->visible[i]), false);
     if (!good)

@@ -25,10 +25,11 @@ static const struct soft_kernels *choose_kernels(void)
     return &soft_kernels_plain;
 }
 
-struct soft *soft_create(struct workers *workers, const struct gpu_scene *gpu_scene, const struct sky *sky)
+struct soft *soft_create(struct workers *workers, const struct gpu_scene *gpu_scene, const struct sky *sky, struct soft *keeper)
 {
     struct soft *soft = mem_new(sizeof(*soft));
     soft->workers = workers;
+    soft->keeper = keeper ? keeper : soft;
     soft->kernels = choose_kernels();
     soft->gpu_scene = gpu_scene;
     soft->kept.bound_bytes = KEPT_BYTES;
@@ -68,13 +69,11 @@ static bool has_lines(const struct frame_context *context)
 }
 
 /* Rows end in whole lanes. */
-bool soft_make_room(struct soft *soft, const struct frame *frame, int band_rows)
+bool soft_make_room(struct soft *soft, const struct frame *frame)
 {
     soft->width_px = frame->width_px;
     soft->height_px = frame->height_px;
     soft->pitch_px = (frame->width_px + LANES - 1) / LANES * LANES;
-    soft->band_rows = band_rows;
-    soft->band_count = (frame->height_px + band_rows - 1) / band_rows;
     size_t pixels = (size_t)soft->pitch_px * (size_t)frame->height_px;
     if (pixels <= soft->pixel_capacity)
         return true;
@@ -97,8 +96,7 @@ static bool is_selected_shown(const struct frame_context *context)
 
 static bool complain(const struct soft *soft)
 {
-    log_err(soft->gpu_scene->gl->log, "moving picture of %dx%d, %zu vertices: out of memory", soft->width_px, soft->height_px,
-            soft->vertex_count);
+    log_err(soft->gpu_scene->gl->log, "preview of %dx%d, %zu vertices: out of memory", soft->width_px, soft->height_px, soft->vertex_count);
     return false;
 }
 
@@ -175,7 +173,7 @@ bool preview_draw(struct soft *soft, const struct frame_context *context, const 
     if (!soft->light)
         return false;
     soft_read_palette(soft, &context->colormap, context->view->look == LOOK_GLOSSY);
-    if (!soft_make_room(soft, frame, BAND_ROWS))
+    if (!soft_make_room(soft, frame))
         return complain(soft);
     frame_uniforms_fill(&soft->block, context);
     if (context->view->look == LOOK_GLOSSY) { /* rows are steps of light */
@@ -188,7 +186,7 @@ bool preview_draw(struct soft *soft, const struct frame_context *context, const 
     soft->out_stride_bytes = (size_t)frame->stride_bytes;
     soft_aim_cuts(soft);
     soft_aim(soft, light);
-    if (!soft_find(soft))
+    if (!soft_find(soft, true))
         return complain(soft);
     return draw_all(soft, points, frame, !lined && is_still(soft, context->shape));
 }

@@ -8,12 +8,13 @@
 #include "render/soft/sixteen.h"
 
 /* Which triangle a pixel shows, where that is asked for. */
-SOFT_INLINE void keep_id(const struct soft_tile *tile, const struct soft_face *face, size_t at, lanes_int seen)
+SOFT_INLINE void keep_id(const struct soft_tile *tile, const struct soft_sample *sample, const struct soft_face *face, size_t at,
+                         lanes_int seen)
 {
-    if (!tile->soft->ids)
+    if (!sample->ids)
         return;
-    lanes_int *ids = (lanes_int *)(tile->soft->ids + at);
-    *ids = lanes_choose_int(seen, (lanes_int){ 0 } + (int32_t)(tile->first_id + (face->triangle & FACE_TRIANGLE)), *ids);
+    lanes_int *ids = (lanes_int *)(sample->ids + at);
+    *ids = lanes_choose_int(seen, (lanes_int){ 0 } + id_of(tile, face), *ids);
 }
 
 /* --- any face --------------------------------------------------------------------------------------------------------------- */
@@ -31,7 +32,7 @@ struct setup {
 SOFT_INLINE struct soft_vertex vertex_of(const struct soft_corners *corners, int i)
 {
     return (struct soft_vertex){ corners->x[i], corners->y[i], corners->depth[i], corners->inverse_w[i],
-                                 corners->a[i], corners->b[i], corners->flags[i], 0 };
+                                 corners->a[i], corners->b[i], corners->flags[i] };
 }
 
 /* part: of each corner, 0..1. */
@@ -142,13 +143,14 @@ SOFT_INLINE void narrow(const struct setup *setup, float y, int *left, int *righ
     }
 }
 
-SOFT_INLINE void draw_face(const struct soft_tile *tile, const struct soft_face *face, const struct setup *setup, const struct ink *ink)
+SOFT_INLINE void draw_face(const struct soft_tile *tile, const struct soft_sample *sample, const struct soft_face *face,
+                           const struct setup *setup, const struct ink *ink)
 {
     bool wide = face->right - face->left >= 2 * LANES;
     int last = tile->rect.right + 1 - LANES; /* beyond the tile another thread draws */
     for (int row = face->top; row <= face->bottom; row++) {
-        size_t start = (size_t)row * (size_t)tile->soft->pitch_px;
-        float y = (float)row + 0.5f, from_y = y - setup->y, sides[3];
+        size_t start = place_in(tile, tile->rect.left, row);
+        float y = (float)row + 0.5f + sample->y, from_y = y - setup->y, sides[3];
         int left = face->left, right = face->right;
         if (wide)
             narrow(setup, y, &left, &right);
@@ -156,18 +158,21 @@ SOFT_INLINE void draw_face(const struct soft_tile *tile, const struct soft_face 
             sides[e] = edge_row(&setup->edges[e], y);
         for (int column = left; column <= right; column += LANES) {
             column = column < last ? column : last;
-            lanes x = LANES_IOTA + ((float)column + 0.5f), from_x = x - setup->x;
+            lanes x = LANES_IOTA + ((float)column + 0.5f + sample->x), from_x = x - setup->x;
             lanes_int side = edge_side(&setup->edges[0], sides[0], x) | edge_side(&setup->edges[1], sides[1], x) |
                              edge_side(&setup->edges[2], sides[2], x);
-            lanes *depth = (lanes *)(tile->soft->depth + start + column);
+            size_t place = start + (size_t)(column - tile->rect.left);
+            lanes *depth = (lanes *)(sample->depth + place);
             lanes here = plane_at(&setup->depth, from_x, from_y, setup->thin);
             lanes_int seen = (side >= 0) & (here >= *depth);
             if (!lanes_any(seen))
                 continue;
-            lanes_int *marks = (lanes_int *)(tile->soft->marks + start + column), mark = marks_at(setup, ink, x, y);
+            if (sample->marks) {
+                lanes_int *marks = (lanes_int *)(sample->marks + place), mark = marks_at(setup, ink, x, y);
+                *marks = lanes_choose_int(seen, mark, *marks);
+            }
             *depth = lanes_choose(seen, here, *depth);
-            *marks = lanes_choose_int(seen, mark, *marks);
-            keep_id(tile, face, start + (size_t)column, seen);
+            keep_id(tile, sample, face, place, seen);
         }
     }
 }
@@ -175,16 +180,37 @@ SOFT_INLINE void draw_face(const struct soft_tile *tile, const struct soft_face 
 /* --- small ones ------------------------------------------------------------------------------------------------------------- */
 
 /* What is at most four wide, two rows of it. */
-SOFT_INLINE void draw_by_one(const struct soft_tile *tile, const struct soft_face *face, const struct small *small, int l, int top,
-                             uint32_t mark, const struct ink *ink)
+SOFT_INLINE void draw_by_one(const struct soft_tile *tile, const struct soft_sample *sample, const struct soft_face *face,
+                             const struct small *small, int l, int top, uint32_t mark, const struct ink *ink)
 {
     int last_left = tile->rect.right + 1 - LANES / 2, last_top = tile->rect.bottom - 1;
     int left = face->left < last_left ? face->left : last_left;
-    draw_stamp(tile, face, small, l, left, top < last_top ? top : last_top, mark, ink, true, true);
+    draw_stamp(tile, sample, face, small, l, left, top < last_top ? top : last_top, mark, ink, true, true);
 }
 
 /* Kind by kind, or the processor would guess wrong with each. In this order on every machine: of what lies at one depth the last one
    stays. */
+SOFT_INLINE void draw_kinds(const struct soft_tile *tile, const struct soft_sample *sample, const struct soft_face *const faces[LANES],
+                            const struct small *small, const struct kinds *kinds, uint32_t rows, uint32_t mark, const struct ink *ink)
+{
+    for (uint32_t bits = kinds->one; bits; bits &= bits - 1)
+        draw_by_one(tile, sample, faces[__builtin_ctz(bits)], small, __builtin_ctz(bits), faces[__builtin_ctz(bits)]->top, mark, ink);
+    if (can_draw_sixteen(tile, ink)) {
+        draw_sixteen(tile, sample, faces, small, kinds, rows, mark, ink);
+        return;
+    }
+    for (uint32_t bits = kinds->four; bits; bits &= bits - 1)
+        for (int half = 0; half < 4; half += 2)
+            draw_by_one(tile, sample, faces[__builtin_ctz(bits)], small, __builtin_ctz(bits), faces[__builtin_ctz(bits)]->top + half, mark,
+                        ink);
+    for (uint32_t bits = kinds->two; bits; bits &= bits - 1)
+        draw_small(tile, sample, faces[__builtin_ctz(bits)], small, __builtin_ctz(bits), mark, ink, true);
+    uint32_t row[] = { kinds->low, rows };
+    for (int i = 0; i < 2; i++)
+        for (uint32_t bits = row[i]; bits; bits &= bits - 1)
+            draw_small(tile, sample, faces[__builtin_ctz(bits)], small, __builtin_ctz(bits), mark, ink, false);
+}
+
 SOFT_INLINE void draw_eight(const struct soft_tile *tile, const struct soft_face *const faces[LANES], int count, uint32_t mark,
                             const struct ink *ink)
 {
@@ -192,22 +218,9 @@ SOFT_INLINE void draw_eight(const struct soft_tile *tile, const struct soft_face
     struct eight_faces eight = read_faces(faces);
     struct kinds kinds = kinds_of(tile, &eight, count);
     uint32_t rows = ((1u << count) - 1) & ~(kinds.one | kinds.four | kinds.two | kinds.low);
-    small_init(&small, &tile->corners, eight.corners);
-    for (uint32_t bits = kinds.one; bits; bits &= bits - 1)
-        draw_by_one(tile, faces[__builtin_ctz(bits)], &small, __builtin_ctz(bits), faces[__builtin_ctz(bits)]->top, mark, ink);
-    if (can_draw_sixteen(tile, ink)) {
-        draw_sixteen(tile, faces, &small, &kinds, rows, mark, ink);
-        return;
-    }
-    for (uint32_t bits = kinds.four; bits; bits &= bits - 1)
-        for (int half = 0; half < 4; half += 2)
-            draw_by_one(tile, faces[__builtin_ctz(bits)], &small, __builtin_ctz(bits), faces[__builtin_ctz(bits)]->top + half, mark, ink);
-    for (uint32_t bits = kinds.two; bits; bits &= bits - 1)
-        draw_small(tile, faces[__builtin_ctz(bits)], &small, __builtin_ctz(bits), mark, ink, true);
-    uint32_t row[] = { kinds.low, rows };
-    for (int i = 0; i < 2; i++)
-        for (uint32_t bits = row[i]; bits; bits &= bits - 1)
-            draw_small(tile, faces[__builtin_ctz(bits)], &small, __builtin_ctz(bits), mark, ink, false);
+    small_init(&small, &tile->corners, eight.corners, tile->samples[0].marks != NULL);
+    for (int s = 0; s < tile->sample_count; s++)
+        draw_kinds(tile, &tile->samples[s], faces, &small, &kinds, rows, mark, ink);
 }
 
 /* --- all -------------------------------------------------------------------------------------------------------------------- */
@@ -222,7 +235,8 @@ static void draw_any(const struct soft_tile *tile, const struct soft_face *face,
         patterns[i] = patterns_of(&tile->corners, face->corners[i]);
     }
     setup_init(&setup, v, patterns, mark);
-    draw_face(tile, face, &setup, ink);
+    for (int s = 0; s < tile->sample_count; s++)
+        draw_face(tile, &tile->samples[s], face, &setup, ink);
 }
 
 /* Of the inner side of what is cut. */

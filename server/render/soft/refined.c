@@ -13,7 +13,7 @@
 #include "render/gl/ghosts.h"
 
 /* Of a step, for each core: some milliseconds' worth. */
-enum { VERTICES = 65536, CHUNKS = 32, SHADED_BANDS = 1, BANDS = 16 };
+enum { SHADED_BANDS = 1, BANDS = 8 };
 static const size_t KEPT_BYTES = (size_t)256 << 20; /* some ten pictures of 1920 x 1080 */
 static const double OFF_SURFACE_TEXELS = 2.58;      /* as sun_visibility in shaders/shadow.glsl */
 
@@ -35,6 +35,21 @@ static void find_models(struct refiner *refiner)
     }
 }
 
+static lanes material_of(const struct asset_material *material)
+{
+    return (lanes){ material->base_color[0], material->base_color[1], material->base_color[2], material->metallic,
+                    material->roughness,     material->emissive[0],   material->emissive[1],   material->emissive[2] };
+}
+
+static void find_materials(struct refiner *refiner)
+{
+    const struct gpu_scene *gpu_scene = refiner->gpu_scene;
+    refiner->materials = mem_array(refiner->soft->ramp_count, sizeof(*refiner->materials));
+    for (size_t m = 0; m < gpu_scene->model_count; m++)
+        for (size_t i = 0; i < gpu_scene->models[m].material_count; i++)
+            refiner->materials[refiner->soft->ramp_of_model[m] + i] = material_of(&gpu_scene->models[m].file->view.materials[i]);
+}
+
 static void find_tones(struct refiner *refiner)
 {
     for (int i = 0; i <= TONES; i++) {
@@ -50,6 +65,7 @@ struct refiner *refiner_create(struct workers *workers, const struct gpu_scene *
     *refiner = (struct refiner){ .workers = workers, .gpu_scene = gpu_scene, .sky = sky, .soft = soft, .environments = environments };
     refiner->kept.bound_bytes = KEPT_BYTES;
     find_models(refiner);
+    find_materials(refiner);
     find_tones(refiner);
     return refiner;
 }
@@ -62,8 +78,7 @@ static void destroy(struct refined **refined_ptr)
     soft_destroy(&refined->soft);
     visibility_buffer_destroy(&refined->buffer);
     mem_free(refined->normals);
-    mem_free(refined->draws);
-    mem_free(refined->attributes);
+    mem_free(refined->parts);
     mem_free(refined->caps);
     mem_free(refined);
     *refined_ptr = NULL;
@@ -79,6 +94,7 @@ void refiner_destroy(struct refiner **refiner_ptr)
     mem_free(refiner->textured);
     mem_free(refiner->masked);
     mem_free(refiner->blended);
+    mem_free(refiner->materials);
     mem_free(refiner->surroundings.texels);
     mem_free(refiner->light.open);
     mem_free(refiner);
@@ -100,8 +116,7 @@ size_t refiner_room_bytes(const struct refiner *refiner)
     const struct refined *spare = refiner->spare;
     if (!spare)
         return 0;
-    return soft_room_bytes(spare->soft) + spare->attribute_capacity * sizeof(*spare->attributes) +
-           spare->mesh_capacity * sizeof(*spare->normals) + spare->draw_capacity * sizeof(*spare->draws);
+    return soft_room_bytes(spare->soft) + spare->mesh_capacity * sizeof(*spare->normals) + spare->part_capacity * sizeof(*spare->parts);
 }
 
 size_t refiner_light_bytes(const struct refiner *refiner)
@@ -146,7 +161,7 @@ struct refined *refined_begin(struct refiner *refiner)
     if (!refined) {
         refined = mem_new(sizeof(*refined));
         refined->refiner = refiner;
-        refined->soft = soft_create(refiner->workers, refiner->gpu_scene, refiner->sky);
+        refined->soft = soft_create(refiner->workers, refiner->gpu_scene, refiner->sky, refiner->soft);
         if (!refined->soft)
             destroy(&refined);
     }
@@ -217,28 +232,25 @@ static bool take_up(struct refined *refined, const struct frame_context *context
     soft_aim_cuts(soft);
     soft->out = frame->bgrx;
     soft->out_stride_bytes = (size_t)frame->stride_bytes;
-    if (refined->step > REFINED_COLLECT && refined->step < REFINED_INK) /* those of its caps are gone by then */
+    if (refined->step > REFINED_FIND && refined->step < REFINED_INK) /* those of its caps are gone by then */
         for (size_t m = 0; m < soft->mesh_count; m++)
             soft->meshes[m].baked = (const uint8_t(*)[4])soft->light->baked[soft->meshes[m].asset];
     return true;
 }
 
-static lanes material_of(const struct asset_material *material)
-{
-    return (lanes){ material->base_color[0], material->base_color[1], material->base_color[2], material->metallic,
-                    material->roughness,     material->emissive[0],   material->emissive[1],   material->emissive[2] };
-}
-
-/* The preview's meshes and draws, with what a refined frame needs of them besides. Marks become numbers of draws. */
+/* What was found, with what a refined frame needs of it besides. */
 static void note_meshes(struct refined *refined)
 {
-    struct soft *soft = refined->soft;
-    const struct gpu_scene *gpu_scene = refined->refiner->gpu_scene;
+    const struct soft *soft = refined->soft;
+    size_t count = 0;
     mem_grow(&refined->normals, &refined->mesh_capacity, soft->mesh_count, sizeof(*refined->normals));
-    mem_grow(&refined->draws, &refined->draw_capacity, soft->draw_count, sizeof(*refined->draws));
     for (size_t m = 0; m < soft->mesh_count; m++) {
         const struct soft_mesh *mesh = &soft->meshes[m];
-        matrix_normals(gpu_scene->scene->assets[mesh->asset].placement, refined->normals[m]);
+        const struct soft_found *found = &soft->found[m];
+        matrix_normals(refined->refiner->gpu_scene->scene->assets[mesh->asset].placement, refined->normals[m]);
+        mem_grow(&refined->parts, &refined->part_capacity, count + found->count, sizeof(*refined->parts));
+        for (size_t i = 0; i < found->count; i++)
+            refined->parts[count++] = (struct part_place){ (uint32_t)m, found->items[i].part };
         if (mesh->has_field)
             visibility_buffer_add_mesh(refined->buffer, &(struct visibility_mesh){
                                                             .asset = mesh->asset,
@@ -246,39 +258,23 @@ static void note_meshes(struct refined *refined)
                                                             .vertex_count = mesh->vertex_count,
                                                         });
     }
-    for (size_t d = 0; d < soft->draw_count; d++) {
-        struct soft_draw *draw = &soft->draws[d];
-        const struct model *model = gpu_scene->of_asset[soft->meshes[draw->mesh].asset];
-        bool field = draw->mark == MARK_FIELD;
-        size_t row = draw->mark >> 16 & (MOST_RAMPS - 1), material = row - soft->ramp_of_model[model - gpu_scene->models];
-        refined->draws[d] = (struct refined_draw){ .mesh = draw->mesh, .field = field, .cut = soft->meshes[draw->mesh].cut };
-        if (!field)
-            refined->draws[d].material = material_of(&model->file->view.materials[material]);
-        draw->mark = (uint32_t)d;
-        draw->back = MARK_BACK;
-    }
 }
 
-static bool collect(struct refined *refined, const struct frame *frame, const struct light *light)
+static bool find(struct refined *refined, const struct frame *frame, const struct light *light)
 {
     struct soft *soft = refined->soft;
-    soft->reach_px = 0.5f;
-    if (!soft_make_room(soft, frame, REFINED_ROWS))
+    if (!soft_make_room(soft, frame))
         return false;
-    soft_aim_cuts(soft);
     refined->buffer = visibility_buffer_create(frame->width_px, frame->height_px, REFINED_ROWS);
-    if (refined->buffer)
-        refined->buffer->lined = refined->context->colormap.lines != 0;
-    if (!refined->buffer || !soft_collect(soft) || soft->chunk_count > ID_NOTHING >> ID_BITS)
+    soft->reach_px = 0.5f;
+    bool good = refined->buffer && soft_find(soft, false);
+    soft->reach_px = 0;
+    if (!good)
         return false;
+    refined->buffer->lined = refined->context->colormap.lines != 0;
     note_meshes(refined);
     aim(refined, light);
-    if (!refined->attributes || refined->attribute_capacity < soft->vertex_count) { /* also of a first picture that shows nothing */
-        mem_free(refined->attributes);
-        refined->attributes = mem_try_array(soft->vertex_capacity, sizeof(*refined->attributes));
-        refined->attribute_capacity = refined->attributes ? soft->vertex_capacity : 0;
-    }
-    return refined->attributes;
+    return true;
 }
 
 /* Which samples of each pixel a body that is cut open covers: those of one number, by a picture that is moved so far. */
@@ -287,9 +283,9 @@ static bool find_caps(struct refined *refined, const struct frame *frame, size_t
     struct soft *soft = refined->soft;
     size_t pitch, rows = (size_t)frame->height_px;
     memcpy(soft->shift_px, refined_samples[sample], sizeof(soft->shift_px));
-    bool good = soft_make_room(soft, frame, BAND_ROWS);
+    bool good = soft_make_room(soft, frame);
     soft_aim_cuts(soft);
-    good = good && soft_find(soft);
+    good = good && soft_find(soft, true);
     memset(soft->shift_px, 0, sizeof(soft->shift_px));
     if (!good)
         return false;
@@ -325,43 +321,13 @@ static bool find_ghosts(struct refined *refined, const struct frame *frame)
     if (!ghosts_any(soft->context))
         return true;
     buffer->veil = mem_try_array((size_t)buffer->width_px * (size_t)buffer->height_px, 1);
-    return buffer->veil && soft_make_room(soft, frame, BAND_ROWS) && soft_ghosts(soft, buffer->veil, buffer->veil_bgr);
-}
-
-static void place_mesh(const struct refined *refined, size_t m, size_t begin, size_t end)
-{
-    const struct soft_mesh *mesh = &refined->soft->meshes[m];
-    const float *turn = refined->normals[m];
-    for (size_t v = begin; v < end; v++) {
-        const float *n = mesh->file->normals[v];
-        const uint8_t *baked = mesh->baked[v], *color = mesh->file->colors ? mesh->file->colors[v] : NULL;
-        lanes *to = &refined->attributes[mesh->first_vertex + v];
-        for (int r = 0; r < 3; r++) {
-            (*to)[NORMAL_X + r] = turn[r] * n[0] + turn[3 + r] * n[1] + turn[6 + r] * n[2];
-            (*to)[TINT + r] = color ? (float)color[r] * (1 / 255.0f) : 1;
-        }
-        (*to)[AMBIENT] = (float)baked[1] * (1 / 255.0f);
-        (*to)[OPEN] = (float)baked[2] * (1 / 255.0f);
-    }
+    return buffer->veil && soft_make_room(soft, frame) && soft_ghosts(soft, buffer->veil, buffer->veil_bgr);
 }
 
 struct piece {
     struct refined *refined;
     size_t first;
 };
-
-static void place_some(void *arg, size_t begin, size_t end)
-{
-    const struct piece *piece = arg;
-    const struct soft *soft = piece->refined->soft;
-    begin += piece->first;
-    end += piece->first;
-    for (size_t m = 0; m < soft->mesh_count; m++) {
-        size_t first = soft->meshes[m].first_vertex, last = first + soft->meshes[m].vertex_count;
-        if (first < end && last > begin)
-            place_mesh(piece->refined, m, (begin > first ? begin : first) - first, (end < last ? end : last) - first);
-    }
-}
 
 static void shade_some(void *arg, size_t begin, size_t end)
 {
@@ -401,7 +367,7 @@ static bool is_selected_shown(const struct frame_context *context)
 static bool mark(struct refined *refined, const struct frame *frame)
 {
     struct soft *soft = refined->soft;
-    if (!soft_make_room(soft, frame, BAND_ROWS) || !soft_find_only(soft, refined->context->view->selected_asset))
+    if (!soft_make_room(soft, frame) || !soft_find_only(soft, refined->context->view->selected_asset))
         return false;
     soft_tiles(soft, SOFT_DEPTH);
     return true;
@@ -409,7 +375,7 @@ static bool mark(struct refined *refined, const struct frame *frame)
 
 static bool complain(struct refined *refined)
 {
-    log_err(refined->refiner->gpu_scene->gl->log, "still picture of %dx%d, %zu vertices: out of memory", refined->soft->width_px,
+    log_err(refined->refiner->gpu_scene->gl->log, "refined frame of %dx%d, %zu vertices: out of memory", refined->soft->width_px,
             refined->soft->height_px, refined->soft->vertex_count);
     refined->failed = true;
     return true;
@@ -436,19 +402,9 @@ bool refined_step(struct refined *refined, const struct frame_context *context, 
             return complain(refined);
         refined->at %= SAMPLES;
         break;
-    case REFINED_COLLECT:
-        if (!collect(refined, frame, light))
+    case REFINED_FIND:
+        if (!find(refined, frame, light))
             return complain(refined);
-        break;
-    case REFINED_PLACE:
-        done = advance(refined, soft->vertex_count, VERTICES, &begin, &end);
-        piece.first = begin;
-        soft_place(soft, begin, end);
-        workers_for(workers, end - begin, 4096, place_some, &piece);
-        break;
-    case REFINED_SORT:
-        done = advance(refined, soft->chunk_count, CHUNKS, &begin, &end);
-        soft_sort(soft, begin, end);
         break;
     case REFINED_SHADE:
         done = advance(refined, bands, SHADED_BANDS, &begin, &end);

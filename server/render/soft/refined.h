@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Still pictures on machines without a GPU, drawn in small steps on all cores as previews are (render/soft/soft.h): four samples to a pixel
-   say which triangles it shows, then each surface in a pixel is shaded once, as shaders/refined.frag does. What it cannot show is left
-   to GL. Thread: the one of the GL context; it spreads its work over the workers. */
+/* Refined frames on machines without a GPU, drawn in small steps on all cores by the rasterizer that draws previews
+   (render/soft/soft.h): four samples to a pixel say which triangles it shows, then each surface in a pixel is shaded once, as
+   shaders/refined.frag does. What it cannot show is left to GL. Thread: the one of the GL context; it spreads its work over the workers.
+   */
 #ifndef RENDER_SOFT_REFINED_H
 #define RENDER_SOFT_REFINED_H
 #include "render/soft/soft.h"

@@ -6,26 +6,19 @@
 #include "render/soft/lanes.h"
 #include "render/light/environment.h"
 #include "render/soft/refined.h"
+#include "render/soft/tile.h"
 #include "render/soft/visibility_store.h"
 
-enum { REFINED_ROWS = 8, SAMPLES = VISIBILITY_SHARES, BRDF_PX = 48, TONES = 4096 };
+enum { REFINED_ROWS = 16, SAMPLES = VISIBILITY_SHARES, BRDF_PX = 48, TONES = 4096 };
 /* From a pixel's middle: a square turned so that edges of any slant take all steps. */
 extern const float refined_samples[SAMPLES][2];
 
-/* Samples: number of the chunk and of the triangle in it. */
-enum { ID_BITS = 12 };
+/* Of samples, besides those of triangles (render/soft/tile.h). */
 #define ID_NOTHING 0xffffffffu
-#define ID_CAP 0xfffffffeu    /* a body that is cut open */
-#define MARK_BACK 0x80000000u /* | number of the draw; a triangle that looks away */
+#define ID_CAP 0xfffffffeu /* a body that is cut open */
 
 enum { NORMAL_X, NORMAL_Y, NORMAL_Z, AMBIENT, OPEN, TINT }; /* of a vertex, in `lanes`: eight numbers */
 enum { BASE, METALLIC = 3, ROUGHNESS, EMISSIVE };           /* of a material, likewise */
-
-struct refined_draw {
-    lanes material;
-    uint32_t mesh;
-    bool field, cut; /* cut: triangles that look away show the inner side */
-};
 
 struct refined_light { /* what previews do not have of it */
     uint64_t id;
@@ -47,6 +40,7 @@ struct refiner {
     struct soft *soft; /* keeps the light */
     const struct environments *environments;
     bool *textured, *masked, *blended; /* by model */
+    lanes *materials;                  /* BASE ...; by soft->ramp_of_model and number in the model */
     struct refined_surroundings surroundings;
     struct refined_light light;
     float tones[TONES + 1]; /* sRGB of linear light, 0..1 */
@@ -56,12 +50,10 @@ struct refiner {
 
 struct refined {
     struct refiner *refiner;
-    struct soft *soft; /* vertices, triangles, depth */
+    struct soft *soft; /* parts, depth */
     enum {
         REFINED_CAPS,
-        REFINED_COLLECT,
-        REFINED_PLACE,
-        REFINED_SORT,
+        REFINED_FIND,
         REFINED_SHADE,
         REFINED_INK,
         REFINED_GHOSTS,
@@ -74,9 +66,10 @@ struct refined {
     size_t at; /* in the step */
     bool failed;
     float (*normals)[9]; /* per mesh, columns: plant from file */
-    struct refined_draw *draws;
-    lanes *attributes; /* per vertex */
-    size_t mesh_capacity, draw_capacity, attribute_capacity;
+    struct part_place {  /* of the part that these ids are of: id / PART_TRIANGLES */
+        uint32_t mesh, part;
+    } * parts;
+    size_t mesh_capacity, part_capacity;
     uint8_t *caps; /* per pixel, rows of pitch_px: a bit for each sample. NULL: nothing is cut */
     struct visibility_buffer *buffer;
     /* --- of the picture, worked out anew at each step */
@@ -86,13 +79,14 @@ struct refined {
     float ground_step[3];                              /* likewise off the ground */
 };
 
-struct samples { /* of a band; rows of pitch_px */
-    float *depth[SAMPLES];
-    uint32_t *ids[SAMPLES];
+struct triangle {
+    uint32_t id; /* of its samples */
+    uint32_t mesh, material;
+    uint32_t vertices[3]; /* of the file */
 };
 
 struct item { /* a surface in a pixel */
-    uint32_t id;
+    struct triangle triangle;
     float x, y;    /* in the picture, where it is shaded */
     uint8_t share; /* of SAMPLES */
 };
@@ -102,14 +96,10 @@ struct shaded_items { /* per item of the field */
     uint8_t *rows;
 };
 
-SOFT_INLINE const struct soft_triangle *refined_triangle(const struct soft *soft, uint32_t id)
-{
-    return &soft->chunks[id >> ID_BITS].triangles[id & ((1u << ID_BITS) - 1)];
-}
-
 bool refined_read_light(struct refiner *refiner, const struct light_set *set);
 bool refined_read_surroundings(struct refiner *refiner, int number);
-void refined_raster_band(const struct refined *refined, int band, const struct samples *samples);
+/* Which triangle is nearest at each sample of a band; rows of pitch_px. */
+void refined_raster_band(const struct refined *refined, int band, const struct soft_sample samples[SAMPLES]);
 bool refined_shade_band(const struct refined *refined, int band); /* false: out of memory */
 void refined_ink_band(const struct refined *refined, int band);
 /* Eight items or fewer at a time. */

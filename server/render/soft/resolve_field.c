@@ -11,19 +11,17 @@ static uint32_t pack_weights(float w1, float w2)
 }
 
 /* In the band. */
-static uint32_t number_triangle(const struct refined *refined, struct visibility_band *band, const struct item *item,
-                                const uint32_t vertices[3])
+static uint32_t number_triangle(const struct refined *refined, struct visibility_band *band, const struct triangle *triangle)
 {
+    const struct soft_mesh *mesh = &refined->soft->meshes[triangle->mesh];
+    const uint32_t *v = triangle->vertices, first = mesh->first_vertex;
     size_t before = band->triangle_count;
-    uint32_t number = visibility_add_triangle(band, vertices);
-    if (!refined->buffer->lined || band->triangle_count == before)
-        return number;
-    const struct refined_draw *draw = &refined->draws[refined_triangle(refined->soft, item->id)->mark & ~MARK_BACK];
-    const struct soft_mesh *mesh = &refined->soft->meshes[draw->mesh];
-    double weights[3][3];
-    uint32_t first = mesh->first_vertex, of_file[3] = { vertices[0] - first, vertices[1] - first, vertices[2] - first };
-    soft_weights(mesh, of_file, weights);
-    visibility_add_slopes(band, weights);
+    uint32_t number = visibility_add_triangle(band, (uint32_t[3]){ first + v[0], first + v[1], first + v[2] });
+    if (refined->buffer->lined && band->triangle_count > before) {
+        double weights[3][3];
+        soft_weights(mesh, v, weights);
+        visibility_add_slopes(band, weights);
+    }
     return number;
 }
 
@@ -42,7 +40,7 @@ SOFT_KERNEL void refined_shade_field(const struct refined *refined, struct visib
         lanes light = lanes_clamp(0.52f * spot.attributes[AMBIENT] + 0.48f * sun, 0, 1);
         lanes_int row = lanes_whole(lanes_clamp(light * shade[0] + shade[1], 0, shade[2]));
         for (size_t i = 0; i < some; i++) {
-            out->triangles[first + i] = number_triangle(refined, band, &items[first + i], spot.vertices[i]);
+            out->triangles[first + i] = number_triangle(refined, band, &items[first + i].triangle);
             out->weights[first + i] = pack_weights(spot.weights[1][i], spot.weights[2][i]);
             out->rows[first + i] = (uint8_t)row[i];
         }

@@ -8,7 +8,7 @@
 #include "render/soft/refined_impl.h"
 
 struct group { /* samples of a pixel that show one surface */
-    uint32_t id;
+    const struct triangle *triangle;
     float x, y; /* sums of where they are */
     uint8_t share;
 };
@@ -58,29 +58,66 @@ static bool row_init(struct row *row, int pitch_px)
     return true;
 }
 
-static bool share_edge(const struct soft *soft, uint32_t a, uint32_t b)
+/* --- triangles ----------------------------------------------------------------------------------------------------------------- */
+
+enum { RECENT = 512 };
+struct recent { /* by id: neighbours in a row, and the rows above, show the same triangles */
+    const struct refined *refined;
+    struct triangle triangles[RECENT];
+};
+
+static void find_triangle(const struct refined *refined, uint32_t id, struct triangle *out)
 {
-    const uint32_t *p = refined_triangle(soft, a)->vertices, *q = refined_triangle(soft, b)->vertices;
+    const struct soft *soft = refined->soft;
+    uint32_t number = id & ~ID_BACK, in_part = number % PART_TRIANGLES;
+    const struct part_place *place = &refined->parts[number / PART_TRIANGLES];
+    const struct soft_found *found = &soft->found[place->mesh];
+    const struct soft_part *part = &found->parts->parts[place->part];
+    const uint8_t *corners = found->parts->corners + part->first_corner + in_part;
+    out->id = id;
+    out->mesh = place->mesh;
+    out->material = found->ramp + part->material;
+    for (int i = 0; i < 3; i++)
+        out->vertices[i] = found->parts->vertices[part->first_vertex + corners[i * part->rounded]];
+}
+
+static const struct triangle *triangle_of(struct recent *recent, uint32_t id)
+{
+    struct triangle *triangle = &recent->triangles[(id ^ id >> 9) % RECENT];
+    if (triangle->id != id)
+        find_triangle(recent->refined, id, triangle);
+    return triangle;
+}
+
+static bool share_edge(const struct triangle *a, const struct triangle *b)
+{
+    const uint32_t *p = a->vertices, *q = b->vertices;
     int shared = 0;
     for (int i = 0; i < 3; i++)
         shared += p[i] == q[0] || p[i] == q[1] || p[i] == q[2];
-    return shared >= 2 && (a >> ID_BITS == b >> ID_BITS || !((p[0] | p[1] | p[2]) & EXTRA_VERTEX));
+    return a->mesh == b->mesh && shared >= 2;
 }
 
-static int group_samples(const struct soft *soft, const struct samples *samples, size_t at, struct group groups[SAMPLES])
+/* triangles: room for those of the groups. */
+static int group_samples(struct recent *recent, const struct soft_sample samples[SAMPLES], size_t at, struct triangle triangles[SAMPLES],
+                         struct group groups[SAMPLES])
 {
     int count = 0;
     for (int s = 0; s < SAMPLES; s++) {
-        uint32_t id = samples->ids[s][at];
+        uint32_t id = samples[s].ids[at];
         int g = 0;
         if (id == ID_NOTHING || id == ID_CAP)
             continue;
-        while (g < count && groups[g].id != id && !share_edge(soft, groups[g].id, id))
+        const struct triangle *triangle = triangle_of(recent, id);
+        while (g < count && groups[g].triangle->id != id && !share_edge(groups[g].triangle, triangle))
             g++;
-        if (g == count)
-            groups[count++] = (struct group){ .id = id };
-        groups[g].x += refined_samples[s][0];
-        groups[g].y += refined_samples[s][1];
+        if (g == count) {
+            triangles[count] = *triangle;
+            groups[count] = (struct group){ .triangle = &triangles[count] };
+            count++;
+        }
+        groups[g].x += samples[s].x;
+        groups[g].y += samples[s].y;
         groups[g].share++;
     }
     return count;
@@ -88,10 +125,8 @@ static int group_samples(const struct soft *soft, const struct samples *samples,
 
 static void add_item(const struct refined *refined, struct row *row, const struct item *item, int column)
 {
-    const struct soft_triangle *triangle = refined_triangle(refined->soft, item->id);
-    const struct refined_draw *draw = &refined->draws[triangle->mark & ~MARK_BACK];
-    bool inside = draw->cut && triangle->mark & MARK_BACK;
-    if (draw->field && !inside) {
+    const struct soft_mesh *mesh = &refined->soft->meshes[item->triangle.mesh];
+    if (mesh->has_field && !(item->triangle.id & ID_BACK)) {
         row->field_columns[row->field_count] = column;
         row->field[row->field_count++] = *item;
     } else {
@@ -100,45 +135,47 @@ static void add_item(const struct refined *refined, struct row *row, const struc
     }
 }
 
-static void add_mixed(const struct refined *refined, struct row *row, const struct samples *samples, size_t at, int column, int y)
+static void add_mixed(struct recent *recent, struct row *row, const struct soft_sample samples[SAMPLES], size_t at, int column, int y)
 {
+    struct triangle triangles[SAMPLES];
     struct group groups[SAMPLES];
-    int count = group_samples(refined->soft, samples, at, groups), covered = 0;
+    int count = group_samples(recent, samples, at, triangles, groups), covered = 0;
     struct mixed *mixed = &row->mixed[row->mixed_count++];
     *mixed = (struct mixed){ .column = column, .first_field = (uint32_t)row->field_count, .first_surface = (uint32_t)row->surface_count };
     for (int g = 0; g < count; g++) {
         float over = 1.0f / (float)groups[g].share;
         float at_x = (float)column + 0.5f + groups[g].x * over, at_y = (float)y + 0.5f + groups[g].y * over;
-        struct item item = { groups[g].id, at_x, at_y, groups[g].share };
+        struct item item = { *groups[g].triangle, at_x, at_y, groups[g].share };
         covered += groups[g].share;
         if (count == 1 && covered == SAMPLES) { /* one surface after all */
             row->mixed_count--;
-            add_item(refined, row, &item, column);
+            add_item(recent->refined, row, &item, column);
             return;
         }
-        add_item(refined, row, &item, -1);
+        add_item(recent->refined, row, &item, -1);
     }
     mixed->field_count = (uint8_t)(row->field_count - mixed->first_field);
     mixed->surface_count = (uint8_t)(row->surface_count - mixed->first_surface);
     for (int s = 0; s < SAMPLES; s++)
-        mixed->cap += samples->ids[s][at] == ID_CAP;
+        mixed->cap += samples[s].ids[at] == ID_CAP;
     mixed->sky = (uint8_t)(SAMPLES - covered - mixed->cap);
     row->sky[column] = mixed->sky > 0;
     row->any_sky |= mixed->sky > 0;
 }
 
-static void sort_row(const struct refined *refined, struct row *row, const struct samples *samples, size_t start, int y)
+static void sort_row(struct recent *recent, struct row *row, const struct soft_sample samples[SAMPLES], size_t start, int y)
 {
+    const struct soft *soft = recent->refined->soft;
     row->field_count = row->surface_count = row->mixed_count = 0;
     row->any_sky = row->any_cap = false;
-    memset(row->sky, 0, (size_t)refined->soft->pitch_px);
-    memset(row->caps, 0, (size_t)refined->soft->pitch_px);
-    for (int column = 0; column < refined->soft->width_px; column++) {
+    memset(row->sky, 0, (size_t)soft->pitch_px);
+    memset(row->caps, 0, (size_t)soft->pitch_px);
+    for (int column = 0; column < soft->width_px; column++) {
         size_t at = start + (size_t)column;
-        uint32_t first = samples->ids[0][at];
-        bool alike = first == samples->ids[1][at] && first == samples->ids[2][at] && first == samples->ids[3][at];
+        uint32_t first = samples[0].ids[at];
+        bool alike = first == samples[1].ids[at] && first == samples[2].ids[at] && first == samples[3].ids[at];
         if (!alike) {
-            add_mixed(refined, row, samples, at, column, y);
+            add_mixed(recent, row, samples, at, column, y);
         } else if (first == ID_CAP) {
             row->caps[column] = 1;
             row->any_cap = true;
@@ -146,7 +183,8 @@ static void sort_row(const struct refined *refined, struct row *row, const struc
             row->sky[column] = 1;
             row->any_sky = true;
         } else {
-            add_item(refined, row, &(struct item){ first, (float)column + 0.5f, (float)y + 0.5f, SAMPLES }, column);
+            struct item item = { *triangle_of(recent, first), (float)column + 0.5f, (float)y + 0.5f, SAMPLES };
+            add_item(recent->refined, row, &item, column);
         }
     }
 }
@@ -214,39 +252,46 @@ static void keep_row(const struct refined *refined, struct visibility_band *band
         surfaces[row->mixed[i].column] = keep_mixed(refined, band, row, &row->mixed[i], y);
 }
 
-static void shade_rows(const struct refined *refined, int number, const struct samples *samples, struct row *row)
+static void shade_rows(struct recent *recent, int number, const struct soft_sample samples[SAMPLES], struct row *row)
 {
+    const struct refined *refined = recent->refined;
     const struct soft *soft = refined->soft;
     struct visibility_band *band = &refined->buffer->bands[number];
     int top = number * REFINED_ROWS, end = top + REFINED_ROWS < soft->height_px ? top + REFINED_ROWS : soft->height_px;
     for (int y = top; y < end; y++) {
         size_t start = (size_t)(y - top) * (size_t)soft->pitch_px;
         struct shaded_items shaded = { row->triangles, row->weights, row->rows };
-        sort_row(refined, row, samples, start, y);
+        sort_row(recent, row, samples, start, y);
         refined_shade_field(refined, band, row->field, row->field_count, &shaded);
         refined_shade_surfaces(refined, row->surfaces, row->surface_count, row->colors);
         if (row->any_sky)
             refined_shade_sky(refined, y, row->sky, row->sky_colors);
         keep_row(refined, band, row, y);
-        memcpy(soft->depth + (size_t)y * (size_t)soft->pitch_px, samples->depth[0] + start, (size_t)soft->pitch_px * sizeof(float));
+        memcpy(soft->depth + (size_t)y * (size_t)soft->pitch_px, samples[0].depth + start, (size_t)soft->pitch_px * sizeof(float));
     }
 }
 
 bool refined_shade_band(const struct refined *refined, int number)
 {
     size_t pixels = REFINED_ROWS * (size_t)refined->soft->pitch_px;
-    struct samples samples;
+    struct soft_sample samples[SAMPLES];
     struct row row;
     float *memory = mem_try_array(pixels, SAMPLES * (sizeof(float) + sizeof(uint32_t)));
+    struct recent *recent = mem_new(sizeof(*recent));
     bool good = row_init(&row, refined->soft->pitch_px) && memory;
+    recent->refined = refined;
+    for (int i = 0; i < RECENT; i++)
+        recent->triangles[i].id = ID_NOTHING;
+    for (int s = 0; s < SAMPLES && good; s++)
+        samples[s] = (struct soft_sample){ .depth = memory + (size_t)s * pixels,
+                                           .ids = (uint32_t *)(memory + (size_t)(SAMPLES + s) * pixels),
+                                           .x = refined_samples[s][0],
+                                           .y = refined_samples[s][1] };
     if (good) {
-        for (int s = 0; s < SAMPLES; s++) {
-            samples.depth[s] = memory + (size_t)s * pixels;
-            samples.ids[s] = (uint32_t *)(memory + (size_t)(SAMPLES + s) * pixels);
-        }
-        refined_raster_band(refined, number, &samples);
-        shade_rows(refined, number, &samples, &row);
+        refined_raster_band(refined, number, samples);
+        shade_rows(recent, number, samples, &row);
     }
+    mem_free(recent);
     mem_free(memory);
     mem_free(row.memory);
     return good;

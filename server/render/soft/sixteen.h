@@ -96,32 +96,32 @@ SOFT_INLINE sixteen_int many_within(sixteen x, int32_t high)
 }
 
 /* As draw_stamp. */
-SOFT_INLINE void draw_many(const struct soft_tile *tile, const struct soft_face *face, const struct small *small, int l, int left, int top,
-                           uint32_t mark, const struct ink *ink, int width, bool thin)
+SOFT_INLINE void draw_many(const struct soft_tile *tile, const struct soft_sample *sample, const struct soft_face *face,
+                           const struct small *small, int l, int left, int top, uint32_t mark, const struct ink *ink, int width, bool thin)
 {
-    const struct soft *soft = tile->soft;
-    size_t pitch = (size_t)soft->pitch_px, place = (size_t)top * pitch + (size_t)left;
-    sixteen x = many_x(width) + ((float)left + 0.5f), y = many_y(width) + ((float)top + 0.5f);
+    size_t pitch = (size_t)tile->pitch_px, place = place_in(tile, left, top);
+    sixteen x = many_x(width) + ((float)left + 0.5f + sample->x), y = many_y(width) + ((float)top + 0.5f + sample->y);
     sixteen from_x = x - small->x[l], from_y = y - small->y[l];
     sixteen_int side = many_side(small, l, 0, x, y) | many_side(small, l, 1, x, y) | many_side(small, l, 2, x, y);
-    sixteen depth = many_floats(soft->depth + place, pitch, width), here = many_value(small, l, 0, from_x, from_y, thin);
+    sixteen depth = many_floats(sample->depth + place, pitch, width), here = many_value(small, l, 0, from_x, from_y, thin);
     __mmask16 within = (__mmask16)~_mm512_movepi32_mask((__m512i)side);
     __mmask16 seen = _mm512_mask_cmp_ps_mask(within, (__m512)here, (__m512)depth, _CMP_GE_OS);
-    sixteen a = many_value(small, l, 1, from_x, from_y, thin), b = many_value(small, l, 2, from_x, from_y, thin);
-    sixteen_int marks;
-    if (mark != MARK_FIELD)
-        marks = __builtin_convertvector(a + 0.5f, sixteen_int) << 8 | __builtin_convertvector(b + 0.5f, sixteen_int) | (int32_t)mark;
-    else
-        marks = (many_within(b, ink->last_row) * COLORMAP_COLUMNS + many_within(a, COLORMAP_PLACES + 1)) | (int32_t)MARK_FIELD;
-    many_put_ints(soft->marks + place, pitch, width, seen, marks);
-    many_put_floats(soft->depth + place, pitch, width, (sixteen)_mm512_mask_mov_ps((__m512)depth, seen, (__m512)here));
-    if (soft->ids)
-        many_put_ints(soft->ids + place, pitch, width, seen,
-                      (sixteen_int){ 0 } + (int32_t)(tile->first_id + (face->triangle & FACE_TRIANGLE)));
+    if (sample->marks) {
+        sixteen a = many_value(small, l, 1, from_x, from_y, thin), b = many_value(small, l, 2, from_x, from_y, thin);
+        sixteen_int marks;
+        if (mark != MARK_FIELD)
+            marks = __builtin_convertvector(a + 0.5f, sixteen_int) << 8 | __builtin_convertvector(b + 0.5f, sixteen_int) | (int32_t)mark;
+        else
+            marks = (many_within(b, ink->last_row) * COLORMAP_COLUMNS + many_within(a, COLORMAP_PLACES + 1)) | (int32_t)MARK_FIELD;
+        many_put_ints(sample->marks + place, pitch, width, seen, marks);
+    }
+    many_put_floats(sample->depth + place, pitch, width, (sixteen)_mm512_mask_mov_ps((__m512)depth, seen, (__m512)here));
+    if (sample->ids)
+        many_put_ints(sample->ids + place, pitch, width, seen, (sixteen_int){ 0 } + id_of(tile, face));
 }
 
-SOFT_INLINE void draw_by_many(const struct soft_tile *tile, const struct soft_face *face, const struct small *small, int l, uint32_t mark,
-                              const struct ink *ink, int width)
+SOFT_INLINE void draw_by_many(const struct soft_tile *tile, const struct soft_sample *sample, const struct soft_face *face,
+                              const struct small *small, int l, uint32_t mark, const struct ink *ink, int width)
 {
     int height = MANY / width, last_left = tile->rect.right + 1 - width, last_top = tile->rect.bottom + 1 - height;
     for (int y = face->top; y <= face->bottom; y += height) {
@@ -129,9 +129,9 @@ SOFT_INLINE void draw_by_many(const struct soft_tile *tile, const struct soft_fa
         for (int x = face->left; x <= face->right; x += width) {
             int left = x < last_left ? x : last_left;
             if (small->thin[l])
-                draw_many(tile, face, small, l, left, top, mark, ink, width, true);
+                draw_many(tile, sample, face, small, l, left, top, mark, ink, width, true);
             else
-                draw_many(tile, face, small, l, left, top, mark, ink, width, false);
+                draw_many(tile, sample, face, small, l, left, top, mark, ink, width, false);
         }
     }
 }
@@ -142,21 +142,21 @@ SOFT_INLINE bool can_draw_sixteen(const struct soft_tile *tile, const struct ink
     return !ink->rich && tile->rect.right - tile->rect.left >= MANY - 1 && tile->rect.bottom - tile->rect.top >= 3;
 }
 
-SOFT_INLINE void draw_sixteen(const struct soft_tile *tile, const struct soft_face *const faces[LANES], const struct small *small,
-                              const struct kinds *kinds, uint32_t rows, uint32_t mark, const struct ink *ink)
+SOFT_INLINE void draw_sixteen(const struct soft_tile *tile, const struct soft_sample *sample, const struct soft_face *const faces[LANES],
+                              const struct small *small, const struct kinds *kinds, uint32_t rows, uint32_t mark, const struct ink *ink)
 {
     int last_left = tile->rect.right - 3, last_top = tile->rect.bottom - 3;
     for (uint32_t bits = kinds->four; bits; bits &= bits - 1) {
         int l = __builtin_ctz(bits);
         int left = faces[l]->left < last_left ? faces[l]->left : last_left, top = faces[l]->top < last_top ? faces[l]->top : last_top;
-        draw_many(tile, faces[l], small, l, left, top, mark, ink, 4, true);
+        draw_many(tile, sample, faces[l], small, l, left, top, mark, ink, 4, true);
     }
     for (uint32_t bits = kinds->two; bits; bits &= bits - 1)
-        draw_by_many(tile, faces[__builtin_ctz(bits)], small, __builtin_ctz(bits), mark, ink, 4);
+        draw_by_many(tile, sample, faces[__builtin_ctz(bits)], small, __builtin_ctz(bits), mark, ink, 4);
     for (uint32_t bits = kinds->low; bits; bits &= bits - 1)
-        draw_by_many(tile, faces[__builtin_ctz(bits)], small, __builtin_ctz(bits), mark, ink, MANY);
+        draw_by_many(tile, sample, faces[__builtin_ctz(bits)], small, __builtin_ctz(bits), mark, ink, MANY);
     for (uint32_t bits = rows; bits; bits &= bits - 1)
-        draw_by_many(tile, faces[__builtin_ctz(bits)], small, __builtin_ctz(bits), mark, ink, MANY / 2);
+        draw_by_many(tile, sample, faces[__builtin_ctz(bits)], small, __builtin_ctz(bits), mark, ink, MANY / 2);
 }
 
 #else
@@ -168,10 +168,10 @@ SOFT_INLINE bool can_draw_sixteen(const struct soft_tile *tile, const struct ink
     return false;
 }
 
-SOFT_INLINE void draw_sixteen(const struct soft_tile *tile, const struct soft_face *const faces[LANES], const struct small *small,
-                              const struct kinds *kinds, uint32_t rows, uint32_t mark, const struct ink *ink)
+SOFT_INLINE void draw_sixteen(const struct soft_tile *tile, const struct soft_sample *sample, const struct soft_face *const faces[LANES],
+                              const struct small *small, const struct kinds *kinds, uint32_t rows, uint32_t mark, const struct ink *ink)
 {
-    (void)tile, (void)faces, (void)small, (void)kinds, (void)rows, (void)mark, (void)ink;
+    (void)tile, (void)sample, (void)faces, (void)small, (void)kinds, (void)rows, (void)mark, (void)ink;
 }
 
 #endif

@@ -60,7 +60,8 @@ SOFT_INLINE struct eight_faces read_faces(const struct soft_face *const faces[LA
     };
 }
 
-SOFT_INLINE void small_init(struct small *small, const struct soft_corners *corners, const lanes_int at[3])
+/* shaded: with a and b. */
+SOFT_INLINE void small_init(struct small *small, const struct soft_corners *corners, const lanes_int at[3], bool shaded)
 {
     lanes x[3], y[3];
     for (int i = 0; i < 3; i++) {
@@ -83,7 +84,7 @@ SOFT_INLINE void small_init(struct small *small, const struct soft_corners *corn
     small->x = x[0];
     small->y = y[0];
     const float *tables[3] = { corners->depth, corners->a, corners->b };
-    for (int p = 0; p < 3; p++) {
+    for (int p = 0; p < (shaded ? 3 : 1); p++) {
         lanes v0 = lanes_look_up(tables[p], at[0]), v1 = lanes_look_up(tables[p], at[1]), v2 = lanes_look_up(tables[p], at[2]);
         lanes d1 = v1 - v0, d2 = v2 - v0, low = lanes_least(v1, v0), high = lanes_most(v1, v0);
         small->at[p] = v0;
@@ -141,39 +142,51 @@ SOFT_INLINE lanes small_value(const struct small *small, int l, int p, lanes fro
     return thin ? lanes_clamp(value, small->low[p][l], small->high[p][l]) : value;
 }
 
-/* left, top: of the stamp. two, thin: constants. */
-SOFT_INLINE void draw_stamp(const struct soft_tile *tile, const struct soft_face *face, const struct small *small, int l, int left, int top,
-                            uint32_t mark, const struct ink *ink, bool two, bool thin)
+/* Of a pixel of the picture, in the samples' rows. */
+SOFT_INLINE size_t place_in(const struct soft_tile *tile, int column, int row)
 {
-    const struct soft *soft = tile->soft;
-    size_t pitch = (size_t)soft->pitch_px, place = (size_t)top * pitch + (size_t)left;
-    lanes x = (two ? (lanes){ 0, 1, 2, 3, 0, 1, 2, 3 } : LANES_IOTA) + ((float)left + 0.5f);
-    lanes y = (two ? (lanes){ 0, 0, 0, 0, 1, 1, 1, 1 } : (lanes){ 0 }) + ((float)top + 0.5f);
+    return (size_t)(row - tile->rect.top) * (size_t)tile->pitch_px + (size_t)(column - tile->rect.left);
+}
+
+SOFT_INLINE int32_t id_of(const struct soft_tile *tile, const struct soft_face *face)
+{
+    uint32_t back = face->triangle & FACE_BACK ? ID_BACK : 0;
+    return (int32_t)((tile->first_id + (face->triangle & FACE_TRIANGLE)) | back);
+}
+
+/* left, top: of the stamp. two, thin: constants. */
+SOFT_INLINE void draw_stamp(const struct soft_tile *tile, const struct soft_sample *sample, const struct soft_face *face,
+                            const struct small *small, int l, int left, int top, uint32_t mark, const struct ink *ink, bool two, bool thin)
+{
+    size_t pitch = (size_t)tile->pitch_px, place = place_in(tile, left, top);
+    lanes x = (two ? (lanes){ 0, 1, 2, 3, 0, 1, 2, 3 } : LANES_IOTA) + ((float)left + 0.5f + sample->x);
+    lanes y = (two ? (lanes){ 0, 0, 0, 0, 1, 1, 1, 1 } : (lanes){ 0 }) + ((float)top + 0.5f + sample->y);
     lanes from_x = x - small->x[l], from_y = y - small->y[l];
     lanes_int side = small_side(small, l, 0, x, y) | small_side(small, l, 1, x, y) | small_side(small, l, 2, x, y);
-    lanes depth = stamp_floats(soft->depth + place, pitch, two), here = small_value(small, l, 0, from_x, from_y, thin), none = { 0 };
+    lanes depth = stamp_floats(sample->depth + place, pitch, two), here = small_value(small, l, 0, from_x, from_y, thin), none = { 0 };
     lanes_int seen = (side >= 0) & (here >= depth);
     if (!LANES_CHOOSE_AT_ONCE && !lanes_any(seen)) /* else all else costs less than a wrong guess: nearly half of them show nothing */
         return;
-    lanes a = small_value(small, l, 1, from_x, from_y, thin), b = small_value(small, l, 2, from_x, from_y, thin);
-    lanes_int marks;
-    if (mark != MARK_FIELD)
-        marks = context_mark(a, b, mark);
-    else if (ink->rich)
-        marks = rich_mark(a, none + small->dx[1][l], none + small->dy[1][l], b, ink);
-    else
-        marks = field_mark(a, b, ink->last_row);
-    stamp_put_ints(soft->marks + place, pitch, two, lanes_choose_int(seen, marks, stamp_ints(soft->marks + place, pitch, two)));
-    stamp_put_floats(soft->depth + place, pitch, two, lanes_choose(seen, here, depth));
-    if (soft->ids)
-        stamp_put_ints(soft->ids + place, pitch, two,
-                       lanes_choose_int(seen, (lanes_int){ 0 } + (int32_t)(tile->first_id + (face->triangle & FACE_TRIANGLE)),
-                                        stamp_ints(soft->ids + place, pitch, two)));
+    if (sample->marks) {
+        lanes a = small_value(small, l, 1, from_x, from_y, thin), b = small_value(small, l, 2, from_x, from_y, thin);
+        lanes_int marks;
+        if (mark != MARK_FIELD)
+            marks = context_mark(a, b, mark);
+        else if (ink->rich)
+            marks = rich_mark(a, none + small->dx[1][l], none + small->dy[1][l], b, ink);
+        else
+            marks = field_mark(a, b, ink->last_row);
+        stamp_put_ints(sample->marks + place, pitch, two, lanes_choose_int(seen, marks, stamp_ints(sample->marks + place, pitch, two)));
+    }
+    stamp_put_floats(sample->depth + place, pitch, two, lanes_choose(seen, here, depth));
+    if (sample->ids)
+        stamp_put_ints(sample->ids + place, pitch, two,
+                       lanes_choose_int(seen, (lanes_int){ 0 } + id_of(tile, face), stamp_ints(sample->ids + place, pitch, two)));
 }
 
 /* Stamps do not leave the tile, where another thread draws: the last ones cover some pixels twice, which changes nothing. */
-SOFT_INLINE void draw_small(const struct soft_tile *tile, const struct soft_face *face, const struct small *small, int l, uint32_t mark,
-                            const struct ink *ink, bool two)
+SOFT_INLINE void draw_small(const struct soft_tile *tile, const struct soft_sample *sample, const struct soft_face *face,
+                            const struct small *small, int l, uint32_t mark, const struct ink *ink, bool two)
 {
     int width = two ? LANES / 2 : LANES, height = two ? 2 : 1;
     int last_left = tile->rect.right + 1 - width, last_top = tile->rect.bottom + 1 - height;
@@ -182,9 +195,9 @@ SOFT_INLINE void draw_small(const struct soft_tile *tile, const struct soft_face
         for (int x = face->left; x <= face->right; x += width) {
             int left = x < last_left ? x : last_left;
             if (small->thin[l])
-                draw_stamp(tile, face, small, l, left, top, mark, ink, two, true);
+                draw_stamp(tile, sample, face, small, l, left, top, mark, ink, two, true);
             else
-                draw_stamp(tile, face, small, l, left, top, mark, ink, two, false);
+                draw_stamp(tile, sample, face, small, l, left, top, mark, ink, two, false);
         }
     }
 }

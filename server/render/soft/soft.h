@@ -1,10 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Moving pictures on machines without a GPU: from triangles to pixels on all cores, with SIMD, where a software GL would bring every
-   triangle through one thread. Shows what shaders/moving.* show, within rounding. What it cannot show is left to GL.
+/* Previews on machines without a GPU: from triangles to pixels on all cores, with SIMD, where a software GL would bring every triangle
+   through one thread. Shows what shaders/preview.* show, within rounding. What it cannot show is left to GL.
 
-   Vertices are placed in the picture; triangles that can be seen are sorted into bands of rows; each band is drawn (a depth and a
-   32-bit mark per pixel) and then coloured by marks: what is hidden is never coloured. The order of bands and threads does not matter
-   to the result.
+   Parts of models that can be seen are drawn into tiles, nearest first (a depth and a 32-bit mark per pixel), and pixels are then coloured
+   by their marks: what is hidden is never coloured. The order of tiles and threads does not matter to the result.
    Thread: the one of the GL context; it spreads its work over `workers`. */
 #ifndef RENDER_SOFT_H
 #define RENDER_SOFT_H
@@ -16,8 +15,9 @@
 
 struct soft;
 
-/* NULL: the GL context is lost. workers and gpu_scene must outlive it. */
-struct soft *soft_create(struct workers *workers, const struct gpu_scene *gpu_scene, const struct sky *sky);
+/* Returns NULL if the GL context is lost. All arguments must outlive it. keeper: keeps the parts of models for this one too; NULL: they are
+   its own. */
+struct soft *soft_create(struct workers *workers, const struct gpu_scene *gpu_scene, const struct sky *sky, struct soft *keeper);
 void soft_destroy(struct soft **soft);            /* &NULL is fine; leaves NULL */
 void soft_bound(struct soft *soft, size_t bytes); /* of pictures of cameras that stand still */
 size_t soft_kept_bytes(const struct soft *soft);  /* of these */

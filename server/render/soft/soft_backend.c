@@ -16,7 +16,7 @@ static bool init(struct renderer *renderer)
     struct workers *workers = field_workers(renderer->fields.field);
     struct soft_backend *backend = mem_new(sizeof(*backend));
     renderer->by_soft = backend;
-    backend->soft = soft_create(workers, &renderer->gpu_scene, &renderer->sky);
+    backend->soft = soft_create(workers, &renderer->gpu_scene, &renderer->sky, NULL);
     if (backend->soft)
         backend->refiner = refiner_create(workers, &renderer->gpu_scene, &renderer->sky, backend->soft, &renderer->environments);
     return backend->refiner != NULL;

@@ -10,7 +10,7 @@
 #include "render/soft/visibility_buffer.h"
 #include "render/soft/visibility_store.h"
 
-enum { BAND_ROWS = 32, CHUNK_TRIANGLES = 2048, RAMP_STEPS = MODEL_LIGHT_STEPS, SOFT_STRETCH_MOST = 64, SOFT_STRETCH_LEAST = 8 };
+enum { BAND_ROWS = 32, RAMP_STEPS = MODEL_LIGHT_STEPS, SOFT_STRETCH_MOST = 64, SOFT_STRETCH_LEAST = 8 };
 
 /* Marks of pixels. 0: nothing. Else a colour of the colormap, or a material and the light on it, to be looked up. */
 #define MARK_FIELD 0x40000000u /* | colormap row * COLORMAP_COLUMNS + column (MARK_PLACE) | so much of an isoline << MARK_LINE (8 bits) */
@@ -27,7 +27,6 @@ struct soft_vertex {
     float inverse_w;   /* 0: nearer than the near plane, or beyond the band (near.h) */
     float a, b;        /* field: column and row of the colormap (logarithmic: value and row); context: ambient, facing the sun */
     uint32_t flags;    /* soft_flags */
-    uint32_t source;   /* of one that a cut made: first index of the triangle that was cut */
 };
 
 struct soft_mesh { /* one asset in this picture */
@@ -41,31 +40,6 @@ struct soft_mesh { /* one asset in this picture */
     bool mirrored;
     bool cut;      /* something of it is cut away: what is left shows its inner side */
     float turn[9]; /* of one that is cut: columns, plant from file, for normals */
-};
-
-struct soft_draw { /* neighbouring triangles of one material */
-    float near_m;  /* from the eye to the ball around them; less than 0: within */
-    uint32_t mesh, first_index, index_count;
-    uint32_t mark; /* MARK_FIELD, or MARK_CONTEXT with its ramp */
-    uint32_t back; /* added to it on triangles that look away; previews: 0 */
-    bool double_sided;
-};
-
-struct soft_triangle {
-    uint32_t vertices[3]; /* of the picture, or EXTRA_VERTEX | number in the chunk */
-    uint32_t mark;
-};
-#define EXTRA_VERTEX 0x80000000u
-
-struct soft_chunk { /* what one job sorts into bands; kept from picture to picture */
-    size_t first_draw, draw_count;
-    struct soft_triangle *triangles;
-    struct soft_vertex *extra; /* where triangles are cut */
-    uint32_t *bands;           /* of each triangle: first | last << 16 */
-    uint16_t *sorted;          /* triangles, band by band */
-    uint32_t *starts;          /* in sorted, by band; one more at the end */
-    size_t triangle_count, extra_count;
-    size_t triangle_capacity, extra_capacity, band_capacity, sorted_capacity, start_capacity;
 };
 
 struct soft_rect { /* pixels, the last ones included */
@@ -120,6 +94,7 @@ struct soft {
     struct visibility_store kept; /* struct visibility_buffer, of cameras that stand still */
     uint64_t shapes[SOFT_SHAPES]; /* content_hash_shape of the last pictures drawn */
     size_t shape_count;
+    struct soft *keeper;       /* of the parts that it draws: itself, or another */
     struct soft_parts **parts; /* by number of the model, level; made when they are first needed */
     /* --- of the picture being drawn */
     const struct frame_context *context;
@@ -129,14 +104,10 @@ struct soft {
     struct soft_mesh *meshes;
     struct soft_found *found; /* by mesh */
     size_t found_capacity;
-    struct soft_draw *draws;
-    struct soft_vertex *vertices;
-    struct soft_chunk *chunks;
-    size_t mesh_count, draw_count, chunk_count, vertex_count;
-    size_t mesh_capacity, draw_capacity, chunk_capacity, vertex_capacity;
-    int width_px, height_px, pitch_px, band_count; /* pitch: a multiple of LANES */
-    int band_rows;
-    float reach_px; /* so far from a pixel's middle it is looked at; previews: 0 */
+    size_t mesh_count, vertex_count;
+    size_t mesh_capacity;
+    int width_px, height_px, pitch_px; /* pitch: a multiple of LANES */
+    float reach_px;                    /* of parts that are found: so far from a pixel's middle it is looked at; previews: 0 */
     float *depth;
     uint32_t *marks;
     uint32_t *ids; /* NULL: not asked for; else, where there is a mark: first_id of the part found + triangle of it */
@@ -166,19 +137,15 @@ bool soft_is_cut_off(const struct soft *soft, const float at[4], int planes); /*
 bool soft_cuts_box(const struct soft *soft, const struct soft_mesh *mesh, int plane, const float low[3], const float high[3], bool *cut);
 /* Where the ray of that place in the picture comes into what is left: depth. 0: nowhere, or its eye is within. */
 float soft_entry_depth(const struct soft *soft, float x, float y);
-bool soft_collect(struct soft *soft); /* meshes, draws and chunks: what may be seen. False: out of memory */
-/* An asset, its vertices counted on from soft->vertex_count. */
-void soft_fill_mesh(struct soft *soft, struct soft_mesh *mesh, int asset, const struct model_level *level);
-bool soft_find(struct soft *soft);                 /* meshes, and which of their parts may be seen. False: out of memory */
+/* Meshes, and which of their parts may be seen; bodies: or bound what is cut open. False: out of memory. */
+bool soft_find(struct soft *soft, bool bodies);
 bool soft_find_only(struct soft *soft, int asset); /* the same of one, from both sides */
 bool soft_find_ghosts(struct soft *soft);          /* of what is only hinted at; and below, how much of a line each pixel has, of 255 */
 bool soft_ghosts(struct soft *soft, uint8_t *veil, uint8_t bgr[3]); /* rows of width_px; marks are lost. False: out of memory */
 void soft_paint_ghosts(const struct soft *soft, const uint8_t *veil, const uint8_t bgr[3]);
-enum soft_output { SOFT_CAPS, SOFT_DEPTH, SOFT_COLORS };                          /* only marks of caps; marks and depth; and colours */
-void soft_tiles(struct soft *soft, enum soft_output output);                      /* of what was found */
-bool soft_make_room(struct soft *soft, const struct frame *frame, int band_rows); /* false: out of memory */
-void soft_place(struct soft *soft, size_t begin, size_t end);                     /* vertices */
-void soft_sort(struct soft *soft, size_t begin, size_t end);                      /* triangles of chunks into bands */
+enum soft_output { SOFT_CAPS, SOFT_DEPTH, SOFT_COLORS };           /* only marks of caps; marks and depth; and colours */
+void soft_tiles(struct soft *soft, enum soft_output output);       /* of what was found */
+bool soft_make_room(struct soft *soft, const struct frame *frame); /* false: out of memory */
 enum soft_rim { RIM_NONE, RIM_LIGHT, RIM_DARK };
 const uint8_t *soft_rim(const struct soft *soft); /* per pixel, rows of pitch_px; in place of depth */
 /* What is needed to colour it again, while soft->ids says what is seen and the frame has all but rims: no ink and no markers yet. NULL:

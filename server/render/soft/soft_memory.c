@@ -13,13 +13,6 @@ size_t soft_kept_bytes(const struct soft *soft)
     return soft->kept.bytes;
 }
 
-static size_t chunk_bytes(const struct soft_chunk *chunk)
-{
-    return sizeof(*chunk) + chunk->triangle_capacity * sizeof(*chunk->triangles) + chunk->extra_capacity * sizeof(*chunk->extra) +
-           chunk->band_capacity * sizeof(*chunk->bands) + chunk->sorted_capacity * sizeof(*chunk->sorted) +
-           chunk->start_capacity * sizeof(*chunk->starts);
-}
-
 static size_t parts_bytes(const struct soft_parts *parts)
 {
     return parts->part_capacity * sizeof(*parts->parts) + parts->vertex_capacity * sizeof(*parts->vertices) +
@@ -29,11 +22,8 @@ static size_t parts_bytes(const struct soft_parts *parts)
 
 size_t soft_room_bytes(const struct soft *soft)
 {
-    size_t bytes = soft->pixel_capacity * (sizeof(*soft->depth) + sizeof(*soft->marks)) + soft->vertex_capacity * sizeof(*soft->vertices) +
-                   soft->mesh_capacity * sizeof(*soft->meshes) + soft->draw_capacity * sizeof(*soft->draws) +
+    size_t bytes = soft->pixel_capacity * (sizeof(*soft->depth) + sizeof(*soft->marks)) + soft->mesh_capacity * sizeof(*soft->meshes) +
                    soft->found_capacity * sizeof(*soft->found);
-    for (size_t i = 0; i < soft->chunk_capacity; i++)
-        bytes += chunk_bytes(&soft->chunks[i]);
     for (size_t i = 0; i < soft->found_capacity; i++)
         bytes += soft->found[i].capacity * sizeof(*soft->found[i].items);
     for (size_t m = 0; m < soft->gpu_scene->model_count; m++)
@@ -55,20 +45,6 @@ size_t soft_light_bytes(const struct soft *soft)
     return bytes;
 }
 
-static void drop_chunks(struct soft *soft)
-{
-    for (size_t i = 0; i < soft->chunk_capacity; i++) {
-        mem_free(soft->chunks[i].triangles);
-        mem_free(soft->chunks[i].extra);
-        mem_free(soft->chunks[i].bands);
-        mem_free(soft->chunks[i].sorted);
-        mem_free(soft->chunks[i].starts);
-    }
-    mem_free(soft->chunks);
-    soft->chunks = NULL;
-    soft->chunk_count = soft->chunk_capacity = 0;
-}
-
 static void drop_parts(struct soft *soft)
 {
     for (size_t m = 0; soft->parts && m < soft->gpu_scene->model_count; m++) {
@@ -87,22 +63,17 @@ static void drop_parts(struct soft *soft)
 static void drop_room(struct soft *soft)
 {
     mem_free(soft->meshes);
-    mem_free(soft->draws);
-    mem_free(soft->vertices);
     mem_free(soft->depth);
     mem_free(soft->marks);
     soft->meshes = NULL;
-    soft->draws = NULL;
-    soft->vertices = NULL;
     soft->depth = NULL;
     soft->marks = NULL;
-    soft->mesh_count = soft->draw_count = soft->vertex_count = 0;
-    soft->mesh_capacity = soft->draw_capacity = soft->vertex_capacity = soft->pixel_capacity = 0;
+    soft->mesh_count = soft->vertex_count = 0;
+    soft->mesh_capacity = soft->pixel_capacity = 0;
 }
 
 void soft_rest(struct soft *soft)
 {
-    drop_chunks(soft);
     drop_parts(soft);
     drop_room(soft);
     for (int i = 0; i < SOFT_LIGHTS; i++)

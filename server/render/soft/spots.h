@@ -17,9 +17,9 @@ struct spot {            /* eight of them */
     lanes material[8];
     lanes x, y, depth; /* in the picture */
     lanes weights[3];
-    uint32_t vertices[LANES][3];
-    lanes_int back; /* -1: looks away */
-    lanes_int cut;  /* with the material: -1: what looks away shows the inner side of what is cut */
+    lanes_int back;     /* -1: looks away */
+    lanes_int mirrored; /* -1: of a mesh that is turned inside out */
+    lanes_int cut;      /* with the material: -1: what looks away shows the inner side of what is cut */
     vec normal;
 };
 
@@ -84,43 +84,29 @@ struct corners {                    /* of eight triangles, seen from the spots: 
     float z[3][LANES], g[3][LANES]; /* depth times g, and g: 1, or w */
 };
 
-/* A triangle that was cut: its corners may lie behind the eye. */
-static inline void see_cut_corner(const struct soft_mesh *mesh, uint32_t v, const struct item *item, int k, int i, struct corners *out)
-{
-    const float *p = mesh->file->positions_m[v];
-    float at[4];
-    for (int r = 0; r < 4; r++)
-        at[r] = mesh->place[0][r] * p[0] + mesh->place[1][r] * p[1] + mesh->place[2][r] * p[2] + mesh->place[3][r];
-    out->a[k][i] = at[0] - item->x * at[3];
-    out->b[k][i] = at[1] - item->y * at[3];
-    out->w[k][i] = 1;
-    out->z[k][i] = at[2];
-    out->g[k][i] = at[3];
-}
-
-SOFT_INLINE void see_corners(const struct refined *refined, const struct item *item, int i, struct spot *spot, struct corners *out)
+/* As place_part in faces.c; a corner that has no place in the picture may lie behind the eye. */
+SOFT_INLINE void see_corners(const struct refined *refined, const struct item *item, int i, struct corners *out)
 {
     const struct soft *soft = refined->soft;
-    const struct soft_triangle *triangle = refined_triangle(soft, item->id);
-    bool is_cut = (triangle->vertices[0] | triangle->vertices[1] | triangle->vertices[2]) & EXTRA_VERTEX;
-    if (is_cut) {
-        const struct soft_mesh *mesh = &soft->meshes[refined->draws[triangle->mark & ~MARK_BACK].mesh];
-        const struct soft_chunk *chunk = &soft->chunks[item->id >> ID_BITS];
-        const uint32_t *source = mesh->file->indices + chunk->extra[triangle->vertices[0] & ~EXTRA_VERTEX].source;
-        for (int k = 0; k < 3; k++) {
-            spot->vertices[i][k] = mesh->first_vertex + source[k];
-            see_cut_corner(mesh, source[k], item, k, i, out);
-        }
-        return;
+    const struct soft_mesh *mesh = &soft->meshes[item->triangle.mesh];
+    const quad *place = (const quad *)mesh->place;
+    float width = (float)soft->width_px, height = (float)soft->height_px;
+    quad at[3];
+    bool placed = true;
+    for (int k = 0; k < 3; k++) {
+        const float *p = mesh->file->positions_m[item->triangle.vertices[k]];
+        at[k] = place[0] * p[0] + place[1] * p[1] + place[2] * p[2] + place[3];
+        float w = at[k][3];
+        placed &= w > 0 && at[k][2] <= w && at[k][0] >= w * -width && at[k][0] <= w * (2 * width) && at[k][1] >= w * -height &&
+                  at[k][1] <= w * (2 * height);
     }
     for (int k = 0; k < 3; k++) {
-        const struct soft_vertex *vertex = &soft->vertices[triangle->vertices[k]];
-        spot->vertices[i][k] = triangle->vertices[k];
-        out->a[k][i] = vertex->x - item->x;
-        out->b[k][i] = vertex->y - item->y;
-        out->w[k][i] = vertex->inverse_w;
-        out->z[k][i] = vertex->depth;
-        out->g[k][i] = 1;
+        float w = at[k][3], inverse = placed ? 1 / w : 1;
+        out->a[k][i] = placed ? at[k][0] * inverse - item->x : at[k][0] - item->x * w;
+        out->b[k][i] = placed ? at[k][1] * inverse - item->y : at[k][1] - item->y * w;
+        out->w[k][i] = inverse;
+        out->z[k][i] = at[k][2] * inverse;
+        out->g[k][i] = placed ? 1 : w;
     }
 }
 
@@ -161,6 +147,7 @@ SOFT_INLINE void weigh(struct spot *spot, const struct corners *corners)
         e[k] = load(corners->a[p]) * load(corners->b[q]) - load(corners->a[q]) * load(corners->b[p]);
     }
     lanes sign = lanes_choose(e[0] + e[1] + e[2] < 0.0f, all(-1), all(1));
+    spot->back = (e[0] * load(corners->g[0]) + e[1] * load(corners->g[1]) + e[2] * load(corners->g[2]) > 0.0f) ^ spot->mirrored;
     for (int k = 0; k < 3; k++)
         e[k] *= sign;
     keep_within(corners, e);
@@ -189,6 +176,40 @@ SOFT_INLINE void turn(float rows[LANES][8], lanes columns[8])
             columns[c][i] = rows[i][c];
 }
 
+SOFT_INLINE quad quad_of_bytes(const uint8_t bytes[4])
+{
+    lanes_bytes eight = { bytes[0], bytes[1], bytes[2], bytes[3] };
+    lanes all_of = __builtin_convertvector(eight, lanes);
+    return __builtin_shufflevector(all_of, all_of, 0, 1, 2, 3);
+}
+
+/* NORMAL_X ... of a place on a triangle. */
+SOFT_INLINE void attributes_at(const struct refined *refined, const struct triangle *triangle, const float weights[3], bool with_tint,
+                               float out[8])
+{
+    const struct soft_mesh *mesh = &refined->soft->meshes[triangle->mesh];
+    const float *turn = refined->normals[triangle->mesh];
+    float n[3] = { 0, 0, 0 };
+    quad baked = { 0, 0, 0, 0 }, tint = { 255, 255, 255, 255 };
+    for (int k = 0; k < 3; k++) {
+        const float *of_file = mesh->file->normals[triangle->vertices[k]];
+        for (int r = 0; r < 3; r++)
+            n[r] += of_file[r] * weights[k];
+        baked += quad_of_bytes(mesh->baked[triangle->vertices[k]]) * weights[k];
+    }
+    if (with_tint && mesh->file->colors) {
+        tint = (quad){ 0, 0, 0, 0 };
+        for (int k = 0; k < 3; k++)
+            tint += quad_of_bytes(mesh->file->colors[triangle->vertices[k]]) * weights[k];
+    }
+    for (int r = 0; r < 3; r++) {
+        out[NORMAL_X + r] = turn[r] * n[0] + turn[3 + r] * n[1] + turn[6 + r] * n[2];
+        out[TINT + r] = tint[r] * (1 / 255.0f);
+    }
+    out[AMBIENT] = baked[1] * (1 / 255.0f);
+    out[OPEN] = baked[2] * (1 / 255.0f);
+}
+
 /* Up to eight items; the last one fills what is left. */
 SOFT_INLINE void look(const struct refined *refined, const struct item *items, size_t count, bool with_material, struct spot *spot)
 {
@@ -196,22 +217,21 @@ SOFT_INLINE void look(const struct refined *refined, const struct item *items, s
     float rows[LANES][8], materials[LANES][8];
     for (int i = 0; i < LANES; i++) {
         const struct item *item = &items[(size_t)i < count ? (size_t)i : count - 1];
-        see_corners(refined, item, i, spot, &corners);
+        const struct soft_mesh *mesh = &refined->soft->meshes[item->triangle.mesh];
+        see_corners(refined, item, i, &corners);
         spot->x[i] = item->x;
         spot->y[i] = item->y;
-        uint32_t mark = refined_triangle(refined->soft, item->id)->mark;
-        spot->back[i] = mark & MARK_BACK ? -1 : 0;
+        spot->mirrored[i] = mesh->mirrored ? -1 : 0;
         if (with_material) {
-            memcpy(materials[i], &refined->draws[mark & ~MARK_BACK].material, sizeof(lanes));
-            spot->cut[i] = refined->draws[mark & ~MARK_BACK].cut ? -1 : 0;
+            memcpy(materials[i], &refined->refiner->materials[item->triangle.material], sizeof(lanes));
+            spot->cut[i] = mesh->cut ? -1 : 0;
         }
     }
     weigh(spot, &corners);
     for (int i = 0; i < LANES; i++) {
-        lanes sum = all(0);
-        for (int k = 0; k < 3; k++)
-            sum += refined->attributes[spot->vertices[i][k]] * spot->weights[k][i];
-        memcpy(rows[i], &sum, sizeof(sum));
+        const struct item *item = &items[(size_t)i < count ? (size_t)i : count - 1];
+        float weights[3] = { spot->weights[0][i], spot->weights[1][i], spot->weights[2][i] };
+        attributes_at(refined, &item->triangle, weights, with_material, rows[i]);
     }
     turn(rows, spot->attributes);
     if (with_material)

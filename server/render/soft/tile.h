@@ -29,9 +29,21 @@ struct soft_face { /* a triangle that faces the eye and covers a pixel's middle 
 
 enum { FACE_BACK = 0x8000, FACE_TRIANGLE = PART_TRIANGLES - 1 }; /* the former: it looks away */
 
+enum { MOST_SAMPLES = 4 };
+struct soft_sample { /* of each pixel of a tile, row by row, from the tile's upper left one */
+    float *depth;
+    uint32_t *marks; /* NULL: not asked for; and below */
+    uint32_t *ids;   /* first_id of the part + triangle of it | ID_BACK */
+    float x, y;      /* so far from the pixel's middle */
+};
+#define ID_BACK 0x80000000u /* of a mesh that is cut: the triangle looks away */
+
 struct soft_tile {
     const struct soft *soft;
-    struct soft_rect rect;                     /* whole lanes wide */
+    struct soft_rect rect; /* whole lanes wide */
+    struct soft_sample samples[MOST_SAMPLES];
+    int sample_count, pitch_px;                /* pitch: of their rows */
+    float reach_px;                            /* samples lie no farther from a pixel's middle, along either axis */
     float farthest[BLOCK_ROWS][BLOCK_COLUMNS]; /* depth in each block: what lies behind it is hidden */
     struct soft_corners corners;
     struct soft_face faces[MOST_FACES];
@@ -43,6 +55,11 @@ struct soft_tile {
     const struct soft_parts *parts;
     const struct soft_part *part;
 };
+
+/* Rasterizes what was found in a rectangle (whole lanes wide, no larger than a tile) into these samples, which hold the depth of what hides
+   it already. Nothing but depth and ids is written. On a worker. */
+void soft_raster_samples(const struct soft *soft, const struct soft_rect *rect, const struct soft_sample samples[MOST_SAMPLES],
+                         int pitch_px, float reach_px);
 
 /* The closed bodies that a part bounds, into the marks. */
 void soft_count_part(struct soft_tile *tile, const struct soft_found *found, const struct soft_item *item);

@@ -96,6 +96,26 @@ static void begin_part(struct soft_tile *tile, const struct soft_found *found, c
     tile->cuts = cuts;
 }
 
+/* What is not shaded here: nothing is carried, nor are there patterns. */
+static void carry_nothing(struct soft_tile *tile)
+{
+    size_t count = (size_t)tile->corners.count;
+    tile->corners.all_flags = 0;
+    if (!tile->corners.cut)
+        return;
+    memset(tile->corners.a, 0, count * sizeof(float));
+    memset(tile->corners.b, 0, count * sizeof(float));
+    memset(tile->corners.flags, 0, count * sizeof(uint32_t));
+}
+
+static void carry(struct soft_tile *tile, const struct soft_found *found)
+{
+    if (tile->samples[0].marks)
+        tile->soft->kernels->carry_part(tile, tile->mesh, found->parts, tile->part);
+    else
+        carry_nothing(tile);
+}
+
 static void draw_part(struct soft_tile *tile, const struct soft_found *found, const struct soft_item *item)
 {
     const struct soft_mesh *mesh = tile->mesh;
@@ -108,12 +128,12 @@ static void draw_part(struct soft_tile *tile, const struct soft_found *found, co
     if (item->cut)
         soft_cut_corners(tile);
     if (tile->corners.cut) {
-        kernels->carry_part(tile, mesh, found->parts, part);
+        carry(tile, found);
         soft_cut_faces(tile, found->both_sides);
     } else {
         kernels->find_faces(tile, mesh, found, part);
         if (tile->face_count > 0)
-            kernels->carry_part(tile, mesh, found->parts, part);
+            carry(tile, found);
     }
     if (tile->face_count == 0)
         return;
@@ -122,6 +142,23 @@ static void draw_part(struct soft_tile *tile, const struct soft_found *found, co
     struct soft_rect rect = faces_rect(tile);
     blocks = blocks_of(tile, &rect);
     kernels->look_again(tile, &blocks);
+}
+
+static void draw_list(struct soft_tile *tile, const struct list *list)
+{
+    const struct soft *soft = tile->soft;
+    for (size_t i = 0; i < list->count; i++) {
+        const struct soft_found *found = &soft->found[list->entries[i].mesh];
+        const struct soft_item *item = &found->items[list->entries[i].item];
+        begin_part(tile, found, item, soft->cut_count);
+        draw_part(tile, found, item);
+    }
+}
+
+static void look_at_all(struct soft_tile *tile)
+{
+    struct soft_rect blocks = blocks_of(tile, &tile->rect);
+    tile->soft->kernels->look_again(tile, &blocks);
 }
 
 /* Before all else: what is behind a body that is cut open is hidden. */
@@ -135,8 +172,7 @@ static void draw_caps(struct soft_tile *tile, const struct list *list)
         soft_count_part(tile, found, item);
     }
     soft_cap_tile(tile);
-    struct soft_rect blocks = blocks_of(tile, &tile->rect);
-    soft->kernels->look_again(tile, &blocks);
+    look_at_all(tile);
 }
 
 static void clear(const struct soft_tile *tile)
@@ -164,17 +200,35 @@ static void draw_tile(const struct soft *soft, int number, enum soft_output outp
         tile.rect.right = soft->pitch_px - 1;
     if (tile.rect.bottom >= soft->height_px)
         tile.rect.bottom = soft->height_px - 1;
+    size_t first = (size_t)top * (size_t)soft->pitch_px + (size_t)left;
+    tile.samples[0] = (struct soft_sample){ soft->depth + first, soft->marks + first, soft->ids ? soft->ids + first : NULL, 0, 0 };
+    tile.sample_count = 1;
+    tile.pitch_px = soft->pitch_px;
+    tile.reach_px = 0;
     memset(tile.farthest, 0, sizeof(tile.farthest));
     clear(&tile);
     fill_list(&tile, list);
     if (soft->counts_bodies)
         draw_caps(&tile, list);
-    for (size_t i = 0; i < list->count && output != SOFT_CAPS; i++) {
-        const struct soft_found *found = &soft->found[list->entries[i].mesh];
-        const struct soft_item *item = &found->items[list->entries[i].item];
-        begin_part(&tile, found, item, soft->cut_count);
-        draw_part(&tile, found, item);
-    }
+    if (output != SOFT_CAPS)
+        draw_list(&tile, list);
+}
+
+void soft_raster_samples(const struct soft *soft, const struct soft_rect *rect, const struct soft_sample samples[MOST_SAMPLES],
+                         int pitch_px, float reach_px)
+{
+    struct soft_tile tile;
+    struct list list = { 0 };
+    tile.soft = soft;
+    tile.rect = *rect;
+    memcpy(tile.samples, samples, sizeof(tile.samples));
+    tile.sample_count = MOST_SAMPLES;
+    tile.pitch_px = pitch_px;
+    tile.reach_px = reach_px;
+    look_at_all(&tile);
+    fill_list(&tile, &list);
+    draw_list(&tile, &list);
+    mem_free(list.entries);
 }
 
 struct drawing {
