@@ -42,13 +42,13 @@ void net_calls_close(struct net *net);
 void net_bind_plant(struct net *net);
 /* Starts the readers of the plant's history, if there is one. Returns false if they cannot start, already logged. */
 bool net_open_history(struct net *net);
+
+/* --- readings.c; thread: the loop --- */
+
 /* Brings server->snapshot and next_change_ns up to date. Returns whether readings changed since the last time. */
 bool net_take_snapshot(struct server_context *server);
 /* Notes which sources are connected and whether the clock is set. Returns whether any of that changed. */
 bool net_check_links(struct server_context *server);
-
-/* --- readings.c; thread: the loop --- */
-
 /* Has the loop woken by changes in the plant's store from now on, and takes a first snapshot. */
 void net_watch_readings(struct net *net);
 /* Ends that: the store may be destroyed. */

@@ -4,6 +4,7 @@
 #include "base/clock.h"
 #include "net/net.h"
 #include "net/net_impl.h"
+#include "value/quality.h"
 
 static const int64_t BETWEEN_NS = 100 * NS_PER_MS; /* two snapshots at least, however often readings change */
 static const int64_t GATHER_NS = 10 * NS_PER_MS;   /* what a device sends in one go is shown by one frame */
@@ -11,6 +12,47 @@ static const int64_t GATHER_NS = 10 * NS_PER_MS;   /* what a device sends in one
 static int64_t later(int64_t a_ns, int64_t b_ns)
 {
     return a_ns > b_ns ? a_ns : b_ns;
+}
+
+/* A reading that went stale changed just now, whenever it came in. */
+static int64_t changed_ns(const struct snapshot *snapshot, const struct reading *reading)
+{
+    bool usable = !quality_is_bad(reading->quality) && reading->age_ns < NS_PER_S;
+    return snapshot->taken_mono_ns - (usable ? reading->age_ns : 0);
+}
+
+bool net_take_snapshot(struct server_context *server)
+{
+    bool changed = false;
+    server->next_change_ns = store_take(server->params.plant.store, clock_mono_ns(), clock_utc_ns(), server->snapshot);
+    server->data_ns = server->snapshot->taken_mono_ns;
+    for (size_t i = 0; i < server->snapshot->count; i++) {
+        const struct reading *reading = &server->snapshot->readings[i];
+        if (server->changes[i] == reading->changes)
+            continue;
+        int64_t at_ns = changed_ns(server->snapshot, reading);
+        server->data_ns = at_ns < server->data_ns ? at_ns : server->data_ns;
+        server->changes[i] = reading->changes;
+        changed = true;
+    }
+    return changed;
+}
+
+bool net_check_links(struct server_context *server)
+{
+    bool changed = false, any = false;
+    for (size_t i = 0; i < server->session_context.plant->source_count; i++) {
+        bool up = store_link_is_up(server->params.plant.store, (int)i);
+        changed |= server->links_up[i] != up;
+        server->links_up[i] = up;
+        any |= up;
+    }
+    server->session_context.live = any;
+    bool set = clock_utc_is_set();
+    changed |= server->session_context.clock_is_set != set;
+    server->session_context.clock_is_set = set;
+    counter_set(server->counters.clock_set, set);
+    return changed;
 }
 
 static void take(struct net *net)

@@ -51,6 +51,9 @@ struct render_client *render_service_find(struct render_service *service, uint64
 struct render_client *render_service_add_client(struct render_service *service, uint64_t id, uint64_t account);
 /* Removes the client, if it is there. Under lock. */
 void render_service_remove_client(struct render_service *service, uint64_t id);
+
+/* --- render_service.c ------------------------------------------------------------------------------------------------- */
+
 /* Answers each request of the group without a frame: nothing new is to be seen, or drawing failed. Any thread. */
 void render_service_answer_without_frame(struct render_service *service, const struct request_group *group, bool failed);
 /* Takes what the encode queue made of a ticket (encode_queue_params.done). arg: the service. Thread: a worker. */

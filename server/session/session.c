@@ -289,10 +289,3 @@ bool session_rests(const struct session *session, int64_t now_ns)
     bool plays = session->travel.speed != 0 || session->travel.wanted_us;
     return !frame_due && !session_moves(session, now_ns) && !plays && (!session->owed.tags || session_is_open(session));
 }
-
-void session_on_data(struct session *session, int64_t data_ns)
-{
-    if (!session->demand.data)
-        session->demand.data_ns = data_ns;
-    session->demand.data = session->owed.tags = true;
-}

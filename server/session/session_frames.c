@@ -82,6 +82,13 @@ void session_drop_ready(struct session *session)
     session->delivery.ready = NULL;
 }
 
+void session_on_data(struct session *session, int64_t data_ns)
+{
+    if (!session->demand.data)
+        session->demand.data_ns = data_ns;
+    session->demand.data = session->owed.tags = true;
+}
+
 /* --- requests --------------------------------------------------------------------------------------------------------- */
 
 /* A refined frame would hold up for long what comes after it. */
