@@ -37,6 +37,15 @@ pkg_cflags := $(shell pkg-config --cflags $(packages) 2>/dev/null)
 pkg_libs   := $(shell pkg-config --libs $(packages) 2>/dev/null) -lflann -lcholmod -lopenblas -lmeshoptimizer -ltinygltf -ldraco \
               $(libyuv) -lm -ldl
 
+# What does not ask for packages needs them: without, say so at once.
+ifneq ($(filter-out deps test-deps run test check test-long clean style layers deb,$(or $(MAKECMDGOALS),all)),)
+missing := $(foreach p,$(packages),$(if $(shell pkg-config --exists $(p) 2>/dev/null && echo yes),,$(p))) \
+           $(if $(wildcard /usr/bin/glad),,python3-glad)
+ifneq ($(strip $(missing)),)
+$(error packages are missing (make deps installs them): $(strip $(missing)))
+endif
+endif
+
 warn   := -Wall -Wextra -Wshadow -Wpointer-arith -Wvla -Wundef -Wno-psabi
 include := -I. -Iserver -I$(gen) -isystem $(gen)/glad/include -isystem /usr/include/suitesparse $(pkg_cflags)
 common := $(flags_$(config)) $(defines) $(include) -MMD -MP -pthread -fno-math-errno -fPIE
@@ -74,10 +83,11 @@ assimp   := $(wildcard /usr/include/assimp/Importer.hpp)
 readers  := $(if $(occt),$(bin)/plantcast-import-occt) $(if $(assimp),$(bin)/plantcast-import-assimp)
 
 .PHONY: all programs run demo test check test-long bench gpu-bench style layers headers deps test-deps golden-update install clean help
-all: $(programs) $(modules) $(readers) $(bin)/plantcast-import-ifc/ifc.mjs clients/web/vendor/uPlot.js clients/web/made/version.js
-# The page's charts: asked for again with each make until they are there.
+all: $(programs) $(bin)/plantcast-init $(modules) $(readers) $(if $(PACKED),,$(bin)/plantcast-import-ifc/ifc.mjs) \
+    clients/web/vendor/uPlot.js clients/web/made/version.js
+# The page's charts. Without them nothing is built.
 clients/web/vendor/uPlot.js: clients/web/package-lock.json
-	@echo "  NPM  $(@D)"; deploy/vendor $(build)/npm; [ ! -f $@ ] || touch $@
+	@echo "  NPM  $(@D)"; deploy/vendor $(build)/npm && touch $@
 # The reader of IFC, likewise.
 ifc := $(addprefix preprocess/import/readers/,package-lock.json glb_writer.mjs ifc.mjs)
 $(bin)/plantcast-import-ifc/ifc.mjs: $(ifc)
@@ -87,6 +97,8 @@ page := $(filter-out clients/web/made/%,$(wildcard clients/web/*.* clients/web/*
 clients/web/made/version.js: deploy/stamp $(page) clients/web/vendor/uPlot.js
 	@echo "  WEB  $(@D)"; deploy/stamp clients/web
 programs: all
+$(bin)/plantcast-init: deploy/init
+	@mkdir -p $(@D); cp $< $@
 
 $(bin)/plantcastd: $(call objects,$(wildcard server/*.c)) $(archives)
 	$(link)

@@ -20,11 +20,27 @@ $(build)/demo/plant.yaml: $(bin)/plantcast-demo
 	@mkdir -p $(@D); $(bin)/plantcast-demo $(@D)
 
 prefix ?= /usr/local
+root   := $(DESTDIR)$(prefix)
+units  := $(wildcard deploy/systemd/*.service deploy/systemd/*.timer)
+only_demo := $(bin)/plantcast-sim $(bin)/plantcast-demo
 install: all
-	install -d $(DESTDIR)$(prefix)/bin $(DESTDIR)$(prefix)/lib/plantcast $(DESTDIR)$(prefix)/share/plantcast
-	install -m 755 $(programs) $(DESTDIR)$(prefix)/bin
-	install -m 755 $(modules) $(DESTDIR)$(prefix)/lib/plantcast
-	install -d $(DESTDIR)$(prefix)/libexec/plantcast
-	$(if $(readers),install -m 755 $(readers) $(DESTDIR)$(prefix)/libexec/plantcast)
-	[ ! -d $(bin)/plantcast-import-ifc ] || cp -r $(bin)/plantcast-import-ifc $(DESTDIR)$(prefix)/libexec/plantcast/
-	cp -r clients/web $(DESTDIR)$(prefix)/share/plantcast/
+	install -d $(root)/bin $(root)/lib/plantcast $(root)/libexec/plantcast $(root)/share/plantcast $(root)/share/doc/plantcast
+	install -m 755 $(filter-out $(only_demo),$(programs)) $(root)/bin
+	install -m 755 deploy/init $(root)/bin/plantcast-init
+	install -m 755 $(modules) deploy/systemd/certbot-hook $(root)/lib/plantcast
+	$(if $(readers),install -m 755 $(readers) $(root)/libexec/plantcast)
+	[ ! -d $(bin)/plantcast-import-ifc ] || cp -r $(bin)/plantcast-import-ifc $(root)/libexec/plantcast/
+	cp -r clients/web $(root)/share/plantcast/
+	install -m 644 deploy/LICENSE deploy/INSTALL.md $(root)/share/doc/plantcast
+	install -d $(root)/lib/systemd/system $(root)/lib/sysusers.d $(root)/lib/tmpfiles.d $(root)/share/bash-completion/completions
+	for unit in $(units); do \
+	    sed 's|/usr/bin/plantcast|$(prefix)/bin/plantcast|g' $$unit >$(root)/lib/systemd/system/$${unit##*/} || exit 1; \
+	done
+	install -m 644 deploy/systemd/sysusers.conf $(root)/lib/sysusers.d/plantcast.conf
+	install -m 644 deploy/systemd/tmpfiles.conf $(root)/lib/tmpfiles.d/plantcast.conf
+	install -m 644 deploy/completion $(root)/share/bash-completion/completions/plantcast
+# The simulator and the demo plant, for who wants to try it.
+install-demo: all
+	install -d $(root)/bin
+	install -m 755 $(only_demo) $(root)/bin
+.PHONY: install-demo

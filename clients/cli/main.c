@@ -34,6 +34,12 @@ static int cmd_match(int argc, char **argv)
     return run_beside("-match", argv);
 }
 
+static int cmd_init(int argc, char **argv)
+{
+    (void)argc;
+    return run_beside("-init", argv);
+}
+
 static const struct command {
     const char *name, *help;
     int (*run)(int argc, char **argv);
@@ -45,6 +51,7 @@ static const struct command {
     { "match", "a control system's tag list to the equipment of an imported plant", cmd_match },
     { "probe", "put load on a daemon and print a table of latencies", cmd_probe },
     { "tags", "print the tags of a daemon and their values", cmd_tags },
+    { "init", "make what the service plantcastd@NAME reads, with a certificate and first tokens", cmd_init },
     { "reload", "have a daemon of this machine load its plant anew, and say what came of it", cmd_reload },
     { "history", "take series into a plant's history, or print what was recorded", cmd_history },
     { "backup", "history, journal and configuration of a plant, also while its daemon records", cmd_backup },

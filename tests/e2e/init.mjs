@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A first run: `plantcast init` makes all that an instance of the service reads, and the daemon starts with it; a renewed certificate comes
+// by certbot's hook; a build without the charts of the page fails.
+import assert from 'node:assert/strict';
+import { spawn, spawnSync } from 'node:child_process';
+import { cpSync, existsSync, mkdirSync, mkdtempSync, readFileSync, rmSync, statSync, writeFileSync } from 'node:fs';
+import { tmpdir } from 'node:os';
+import { join } from 'node:path';
+import { after, before, test } from 'node:test';
+import { BIN, missing, runProgram, TinyPlant } from './support/tiny_plant.mjs';
+import { freePort } from './support/ports.mjs';
+
+const absent = missing();
+if (!existsSync(join(BIN, 'plantcast-init')))
+    absent.push('plantcast-init');
+const skip = absent.length > 0 ? `not built: ${absent.join(', ')}` : false;
+let plant, root;
+
+before(async () => {
+    root = mkdtempSync(join(tmpdir(), 'plantcast-root-'));
+    if (!skip)
+        plant = await TinyPlant.create();
+});
+after(async () => {
+    await plant?.destroy();
+    rmSync(root, { recursive: true });
+});
+const init = (...args) => runProgram('plantcast', ['init', ...args, '--root', root]);
+const etc = (...names) => join(root, 'etc/plantcast', ...names), mode = (path) => (statSync(path).mode & 0o777).toString(8);
+
+test('init makes folders, plant file, certificate and tokens, and the daemon serves with them', { skip, timeout: 100000 }, async () => {
+    const port = await freePort();
+    const { code, out, err } = init('one', '--plant', plant.folder, '--host', 'localhost', '--port', String(port));
+    assert.equal(code, 0, err);
+    const said = Object.fromEntries(out.trim().split('\n').map((line) => line.split(/ {2,}/)));
+    assert.equal(said.address, `https://localhost:${port}/`);
+    assert.deepEqual([mode(etc('one')), mode(etc('one/tokens')), mode(etc('one/tls/privkey.pem'))], ['750', '640', '640']);
+    assert.ok(existsSync(join(root, 'var/lib/plantcast/one/tags.csv')) && !existsSync(etc('one/tags.csv')));
+    assert.equal(runProgram('plantcastd', ['--check', etc('one/plant.yaml')]).code, 0);
+    const prepared = join(root, 'prepared');
+    assert.equal(runProgram('plantcast-prep', ['-o', prepared, etc('one/plant.yaml')], 60000).code, 0);
+    const [, options] = readFileSync(etc('one/options'), 'utf8').match(/^PLANTCAST_OPTIONS="(.*)"$/m);
+    const daemon = spawn(join(BIN, 'plantcastd'), [etc('one/plant.yaml'), '--prepared', prepared, ...options.split(' ')],
+        { stdio: 'pipe' });
+    try {
+        await new Promise((done, fail) => {
+            daemon.stdout.once('data', done);
+            daemon.once('exit', () => fail(new Error('it ended')));
+        });
+        const ask = (token) => spawnSync('curl', ['-s', '-o', '/dev/null', '-w', '%{http_code}', '--cacert', etc('one/tls/fullchain.pem'),
+            '-H', `Authorization: Bearer ${token}`, `${said.address}api/v1/tags`], { encoding: 'utf8' }).stdout;
+        assert.deepEqual([ask(said.engineer), ask(said.viewer), ask('x'.repeat(43))], ['200', '200', '401']);
+    } finally {
+        daemon.kill();
+    }
+});
+
+test('init touches nothing that is there, and gives the next plant another port', { skip }, () => {
+    const options = readFileSync(etc('one/options'), 'utf8');
+    const again = init('one', '--plant', plant.folder);
+    assert.equal(again.code, 1);
+    assert.match(again.err, /is there already/);
+    assert.equal(readFileSync(etc('one/options'), 'utf8'), options);
+    for (const [name, port] of [['two', 8443], ['three', 8444]]) {
+        const { out, err } = init(name, '--plant', plant.folder, '--host', 'plant.example');
+        assert.match(out, new RegExp(`https://plant.example:${port}/`), err);
+    }
+    for (const wrong of [['../x'], [], ['a', 'b'], ['four', '--plant', root], ['four', '--host', 'a b', '--plant', plant.folder]])
+        assert.notEqual(init(...wrong).code, 0, wrong.join(' '));
+    assert.ok(!existsSync(etc('four')));
+});
+
+test('a certificate that certbot renewed is copied to the plants that name it', { skip }, () => {
+    const lineage = join(root, 'live/plant.example');
+    mkdirSync(lineage, { recursive: true });
+    for (const part of ['fullchain', 'privkey'])
+        writeFileSync(join(lineage, `${part}.pem`), `new ${part}`, { mode: 0o600 });
+    writeFileSync(etc('two/certbot'), 'plant.example\n');
+    writeFileSync(etc('three/certbot'), 'other.example\n');
+    const { status, stderr } = spawnSync('deploy/systemd/certbot-hook', [],
+        { encoding: 'utf8', env: { ...process.env, PLANTCAST_ETC: etc(), RENEWED_LINEAGE: lineage } });
+    assert.equal(status, 0, stderr);
+    assert.equal(readFileSync(etc('two/tls/privkey.pem'), 'utf8'), 'new privkey');
+    assert.equal(mode(etc('two/tls/privkey.pem')), '640');
+    assert.match(readFileSync(etc('three/tls/privkey.pem'), 'utf8'), /BEGIN PRIVATE KEY/);
+});
+
+test('without npm or a network no page without charts is built', () => {
+    const tree = join(root, 'tree'), bin = join(root, 'bin');
+    mkdirSync(join(tree, 'clients/web'), { recursive: true });
+    mkdirSync(join(tree, 'deploy'));
+    mkdirSync(bin);
+    cpSync('deploy/vendor', join(tree, 'deploy/vendor'));
+    for (const name of ['package.json', 'package-lock.json'])
+        cpSync(join('clients/web', name), join(tree, 'clients/web', name));
+    const run = (PATH) => spawnSync('/bin/sh', [join(tree, 'deploy/vendor'), join(root, 'scratch')], { encoding: 'utf8', env: { PATH } });
+    const without = run(bin);
+    assert.notEqual(without.status, 0);
+    writeFileSync(join(bin, 'npm'), '#!/bin/sh\nexit 1\n', { mode: 0o755 });
+    const offline = run(`${bin}:/usr/bin:/bin`);
+    assert.notEqual(offline.status, 0);
+    assert.match(offline.stderr, /could not fetch uPlot/);
+});
