@@ -9,6 +9,7 @@
 #include "base/mem.h"
 #include "base/service_manager.h"
 #include "plant/model_check.h"
+#include "preprocess/convert/convert.h"
 #include "preprocess/debug/debug_views.h"
 #include "preprocess/diff/diff.h"
 #include "preprocess/report/distances.h"
@@ -227,7 +228,8 @@ static bool run_plant(const struct options *options, struct diag *diag)
     struct workers *workers = workers_create(0);
     struct service_patience *patience = service_patience_begin("preparing the plant"); /* before a unit's daemon starts */
     char *folder = options->output ? mem_strdup(options->output) : plant_prepared_folder(plant);
-    bool good = (options->distances ? run_distances : run_all)(options, log, workers, plant, folder, diag);
+    bool good = convert_run(plant, folder, stderr, diag) &&
+                (options->distances ? run_distances : run_all)(options, log, workers, plant, folder, diag);
     service_patience_end(&patience);
     mem_free(folder);
     workers_destroy(&workers);

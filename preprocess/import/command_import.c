@@ -10,7 +10,7 @@
 #include "preprocess/import/formats.h"
 #include "preprocess/import/options.h"
 #include "preprocess/import/plant_draft.h"
-#include "preprocess/import/work_folder.h"
+#include "preprocess/child/work_folder.h"
 #include "preprocess/model/gltf_shim.h"
 
 enum { RVM_ITEM_LEVEL = 3 }; /* the file, its sites, their zones, and what is in them */

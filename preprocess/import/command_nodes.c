@@ -8,7 +8,7 @@
 #include "preprocess/import/formats.h"
 #include "preprocess/import/node_list.h"
 #include "preprocess/import/options.h"
-#include "preprocess/import/work_folder.h"
+#include "preprocess/child/work_folder.h"
 
 static void print_usage(FILE *out)
 {

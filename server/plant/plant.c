@@ -176,6 +176,12 @@ void plant_destroy(struct plant **plant_ptr)
         mem_free(plant->links[i].url);
     }
     plant_notify_free(&plant->notify);
+    for (size_t i = 0; i < plant->conversion_count; i++) {
+        mem_free(plant->conversions[i].model);
+        mem_free(plant->conversions[i].from);
+        mem_free(plant->conversions[i].command);
+    }
+    mem_free(plant->conversions);
     mem_free(plant->history.folder);
     mem_free(plant->path);
     mem_free(plant->folder);

@@ -231,6 +231,13 @@ struct plant_link { /* where else one reads about an asset, or a tag */
     bool of_tags;
 };
 
+struct plant_conversion { /* a model that plantcast-prep makes by another program */
+    char *model;          /* the glTF file that is made */
+    char *from, *command; /* out of which file, and by what */
+    double timeout_s;
+    int line;
+};
+
 struct plant {
     char *path, *folder; /* of the plant file; folder without trailing slash */
     char *tags_path;
@@ -245,6 +252,8 @@ struct plant {
     size_t environment_count;
     struct plant_link links[PLANT_LINKS];
     size_t link_count;
+    struct plant_conversion *conversions;
+    size_t conversion_count;
     struct plant_history history;
     enum alarm_mode alarms;
     struct plant_notify *notify; /* who is told of alarms (plant/notification.h); NULL: nobody */

@@ -147,10 +147,20 @@ void plant_resolve_path(const struct plant *plant, char **path)
     *path = whole;
 }
 
-static void check_model(struct yaml_reader *reader, const struct yaml_map *map, const char *path)
+static bool will_be_made(const struct plant *plant, const char *path)
+{
+    for (size_t i = 0; i < plant->conversion_count; i++)
+        if (plant->conversions[i].model && !strcmp(plant->conversions[i].model, path))
+            return true;
+    return false;
+}
+
+static void check_model(struct yaml_reader *reader, const struct yaml_map *map, const struct plant *plant, const char *path)
 {
     struct stat st;
     FILE *file = NULL;
+    if (will_be_made(plant, path) && access(path, F_OK) != 0)
+        return;
     if (stat(path, &st) != 0 || (S_ISREG(st.st_mode) && !(file = fopen(path, "rb"))))
         yaml_error(reader, yaml_map_place(map, "model"), "model: '%s' cannot be read: %s", path, strerror(errno));
     else if (!S_ISREG(st.st_mode))
@@ -210,7 +220,7 @@ static void read_asset(struct yaml_reader *reader, yaml_node_t *node, struct pla
         yaml_error(reader, yaml_map_place(&map, "start"), "start: only the first %d assets can be hidden or ghosts", PLANT_STARTS);
     plant_resolve_path(plant, &asset->model);
     if (yaml_map_good(&map, "model") && !plant->without_models)
-        check_model(reader, &map, asset->model);
+        check_model(reader, &map, plant, asset->model);
     if (!asset->tag && asset->id)
         asset->tag = mem_strdup(asset->id);
     if (!asset->description)
@@ -388,6 +398,27 @@ static void read_environment(struct yaml_reader *reader, yaml_node_t *node, void
     plant_environments_read(reader, node, ((struct plant_file *)record)->plant);
 }
 
+/* They have been read. */
+static void skip_conversions(struct yaml_reader *reader, yaml_node_t *node, void *record)
+{
+    (void)reader;
+    (void)node;
+    (void)record;
+}
+
+/* Before the assets, wherever they stand: a model that is made need not be there yet. */
+static void read_conversions(struct yaml_reader *reader, const yaml_node_t *root, struct plant *plant)
+{
+    if (!root || root->type != YAML_MAPPING_NODE)
+        return;
+    for (yaml_node_pair_t *pair = root->data.mapping.pairs.start; pair < root->data.mapping.pairs.top; pair++) {
+        const char *key = yaml_text(yaml_document_get_node(&reader->doc, pair->key));
+        yaml_node_t *value = yaml_document_get_node(&reader->doc, pair->value);
+        if (key && !strcmp(key, "convert") && !yaml_is_null(value) && !plant->conversions)
+            plant_conversions_read(reader, value, plant);
+    }
+}
+
 static void read_links(struct yaml_reader *reader, yaml_node_t *node, void *record)
 {
     plant_links_read(reader, node, ((struct plant_file *)record)->plant);
@@ -431,6 +462,7 @@ void plant_file_read(struct plant *plant, struct diag *diag)
                                        { "sources", KEY_CUSTOM, false, 0, 0, 0, NULL, read_sources },
                                        { "colormaps", KEY_CUSTOM, false, 0, 0, 0, NULL, read_colormaps },
                                        { "environment", KEY_CUSTOM, false, 0, 0, 0, NULL, read_environment },
+                                       { "convert", KEY_CUSTOM, false, 0, 0, 0, NULL, skip_conversions },
                                        { "links", KEY_CUSTOM, false, 0, 0, 0, NULL, read_links },
                                        { "history", KEY_CUSTOM, false, 0, 0, 0, NULL, read_history },
                                        { "alarms", KEY_CUSTOM, false, 0, 0, 0, NULL, read_alarms },
@@ -445,6 +477,7 @@ void plant_file_read(struct plant *plant, struct diag *diag)
     plant->history = (struct plant_history){ .keep_days = 400, .keep_gb = 20, .deadband_percent = 0.2, .override_s = 600 };
     if (!yaml_reader_open(&reader, plant->path, diag))
         return;
+    read_conversions(&reader, yaml_document_get_root_node(&reader.doc), plant);
     yaml_map_read(&reader, yaml_document_get_root_node(&reader.doc), "the plant file", keys, &file, &map);
     plant_alarms_check(&reader, yaml_map_place(&map, "alarms"), plant);
     if (plant->notify && plant->history.off)

@@ -11,6 +11,8 @@
 void plant_file_read(struct plant *plant, struct diag *diag);
 /* Reads the value of the key `environment`; the folder is set. */
 void plant_environments_read(struct yaml_reader *reader, yaml_node_t *node, struct plant *plant);
+/* Reads the list `convert`. */
+void plant_conversions_read(struct yaml_reader *reader, yaml_node_t *node, struct plant *plant);
 /* Reads the list `links`. */
 void plant_links_read(struct yaml_reader *reader, yaml_node_t *node, struct plant *plant);
 /* Reads the key `notify`. */

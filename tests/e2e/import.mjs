@@ -109,12 +109,13 @@ for (const { file, as, chordMm, nodes, counted, assets } of [
         // The other program leaves out fewer of the faces that lie on each other: not those of which one is larger, and of ducts none.
         const all = run('plantcast', 'import', model, '-o', join(folder, 'all'), '--chord', String(chordMm), '--keep-covered');
         assert.equal(all.status, 0, all.stderr);
-        const kept = shapes(join(folder, `all/${file}.glb`)), total = (of, names) => names.reduce((sum, name) => sum + of.get(name).area, 0);
+        const kept = shapes(join(folder, `all/${file}.glb`));
+        const total = (of, names) => names.reduce((sum, name) => sum + of.get(name).area, 0);
         const whole = common.filter((name) => Math.abs(kept.get(name).area - ours.get(name).area) < 1e-6 * ours.get(name).area);
         const ratio = total(ours, whole) / total(theirs, whole), named = [...ours.keys()];
         const covered = Number(/left out: \d+ faces, ([\d.]+) m2/.exec(said.stdout)[1]), measured = total(kept, named) - total(ours, named);
-        console.log(`# ${whole.length} shapes that are whole: area ${((ratio - 1) * 100).toFixed(3)} %; ${covered} m2 said to be covered, ` +
-            `${measured.toFixed(2)} measured; all faces ${total(kept, common).toFixed(2)} m2`);
+        console.log(`# ${whole.length} shapes that are whole: area ${((ratio - 1) * 100).toFixed(3)} %; ` +
+            `${covered} m2 said to be covered, ${measured.toFixed(2)} measured; all faces ${total(kept, common).toFixed(2)} m2`);
         assert.ok(Math.abs(ratio - 1) < 0.005, 'areas');
         assert.ok(areas[0] <= areas[1] && areas[1] <= total(kept, common), 'the other program leaves out a part of what we do');
         assert.ok(Math.abs(covered - measured) < 0.05 + 0.01 * measured, 'the area that is said to be left out');

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* mkdtemp, and its end. */
-#include "preprocess/import/work_folder.h"
+#include "preprocess/child/work_folder.h"
 
 #include <errno.h>
 #include <ftw.h>

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A folder for what is made, until all of it is good: then its files are moved to where they belong, else nothing stays. Thread: any. */
-#ifndef PREPROCESS_IMPORT_WORK_FOLDER_H
-#define PREPROCESS_IMPORT_WORK_FOLDER_H
+#ifndef PREPROCESS_CHILD_WORK_FOLDER_H
+#define PREPROCESS_CHILD_WORK_FOLDER_H
 #include <stdbool.h>
 
 struct work_folder {

@@ -1,0 +1,129 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Hashes of what went in and what came out decide what is made again. */
+#include "preprocess/convert/convert.h"
+
+#include <errno.h>
+#include <inttypes.h>
+#include <jansson.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <xxhash.h>
+
+#include "base/atomic_file.h"
+#include "base/json_text.h"
+#include "base/mem.h"
+#include "base/text.h"
+#include "plant/model_header.h"
+#include "preprocess/child/child.h"
+#include "preprocess/child/work_folder.h"
+
+static const size_t max_bytes = (size_t)16 << 30, memory_bytes = (size_t)12 << 30;
+
+/* Appends the hash of a file as text. Returns false, with errno, if it cannot be read. */
+static bool add_hash(const char *path, const char *also, struct text *out)
+{
+    size_t size;
+    char *bytes = text_read_file(path, max_bytes, &size);
+    if (!bytes)
+        return false;
+    text_add(out, "%016" PRIx64, XXH3_64bits(bytes, size) ^ XXH3_64bits(also, strlen(also)));
+    mem_free(bytes);
+    return true;
+}
+
+static bool is_made(const json_t *made, const struct plant_conversion *how, const char *input_hash)
+{
+    const json_t *entry = json_object_get(made, how->model);
+    const char *from = json_string_value(json_object_get(entry, "from")), *to = json_string_value(json_object_get(entry, "model"));
+    struct text hash = { 0 };
+    bool same = from && to && !strcmp(from, input_hash) && add_hash(how->model, "", &hash) && !strcmp(to, hash.at);
+    text_finish(&hash);
+    return same;
+}
+
+/* In a folder beside the model, so that it comes to its name whole. */
+static bool make(const struct plant_conversion *how, char why[CHILD_WHY_BYTES])
+{
+    struct work_folder work;
+    struct model_header header;
+    struct text said = { 0 };
+    char *folder = mem_strdup(how->model), *slash = strrchr(folder, '/');
+    if (slash)
+        *slash = 0;
+    int status = work_folder_begin(&work, slash ? folder : ".");
+    mem_free(folder);
+    if (status != 0) {
+        snprintf(why, CHILD_WHY_BYTES, "%s", strerror(-status));
+        return false;
+    }
+    char *output = mem_printf("%s/output.glb", work.path), *input = realpath(how->from, NULL);
+    const char *const argv[] = { "/bin/sh", "-c", how->command, "convert", input ? input : how->from, output, NULL };
+    const struct child_params child = { .argv = argv, .folder = work.path, .timeout_s = (int)how->timeout_s, .memory_bytes = memory_bytes };
+    bool good = child_run(&child, &said, why);
+    if (good && !model_header_read(&header, output, why, CHILD_WHY_BYTES)) {
+        char reason[CHILD_WHY_BYTES];
+        snprintf(reason, sizeof(reason), "%.300s", why);
+        snprintf(why, CHILD_WHY_BYTES, "what it wrote to $2: %.300s", reason);
+        good = false;
+    } else if (good) {
+        model_header_finish(&header);
+        good = rename(output, how->model) == 0;
+        if (!good)
+            snprintf(why, CHILD_WHY_BYTES, "%s", strerror(errno));
+    }
+    text_finish(&said);
+    mem_free(output);
+    free(input);
+    work_folder_end(&work, true);
+    return good;
+}
+
+static bool convert_one(const struct plant *plant, const struct plant_conversion *how, json_t *made, FILE *progress, struct diag *diag)
+{
+    char why[CHILD_WHY_BYTES];
+    struct text from = { 0 }, to = { 0 };
+    bool good = add_hash(how->from, how->command, &from);
+    if (!good) {
+        diag_error(diag, plant->path, how->line, 0, "convert: '%s' cannot be read: %s", how->from, strerror(errno));
+    } else if (!is_made(made, how, from.at)) {
+        fprintf(progress, "plantcast-prep: making %s from %s\n", how->model, how->from);
+        good = make(how, why) && add_hash(how->model, "", &to);
+        if (good)
+            json_object_set_new(made, how->model, json_pack("{s:s,s:s}", "from", from.at, "model", to.at));
+        else
+            diag_error(diag, plant->path, how->line, 0, "convert: '%s' could not be made: %s", how->model, why);
+    }
+    text_finish(&from);
+    text_finish(&to);
+    return good;
+}
+
+bool convert_run(const struct plant *plant, const char *folder, FILE *progress, struct diag *diag)
+{
+    if (plant->conversion_count == 0)
+        return true;
+    char *path = mem_printf("%s/conversions.json", folder);
+    json_t *made = json_load_file(path, 0, NULL);
+    bool good = true;
+    if (!json_is_object(made)) { /* none yet, or damaged: all is made */
+        json_decref(made);
+        made = json_object();
+    }
+    json_t *before = json_deep_copy(made);
+    for (size_t i = 0; i < plant->conversion_count && good; i++)
+        good = convert_one(plant, &plant->conversions[i], made, progress, diag);
+    if (!json_equal(before, made)) {
+        mkdir(folder, 0777);
+        char *text = json_text(json_incref(made), 0);
+        int status = atomic_file_put(path, text, strlen(text));
+        if (status != 0)
+            diag_error(diag, plant->path, 0, 0, "'%s' cannot be written: %s", path, strerror(-status));
+        good = good && status == 0;
+        mem_free(text);
+    }
+    json_decref(before);
+    json_decref(made);
+    mem_free(path);
+    return good;
+}

@@ -1,0 +1,39 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The plant file's `convert`: models that are made by a program of the site's. */
+#include <string.h>
+
+#include "base/mem.h"
+#include "plant/plant_impl.h"
+
+enum { DEFAULT_TIMEOUT_S = 900 };
+
+static void check(struct yaml_reader *reader, const struct yaml_map *map, const struct plant *plant, const struct plant_conversion *made)
+{
+    if (made->model && made->from && !strcmp(made->model, made->from))
+        yaml_error(reader, yaml_map_place(map, "from"), "from: expected another file than model");
+    for (const struct plant_conversion *other = plant->conversions; made->model && other < made; other++)
+        if (other->model && !strcmp(other->model, made->model))
+            yaml_error(reader, yaml_map_place(map, "model"), "model: '%s' is made twice (first at line %d)", made->model, other->line);
+}
+
+void plant_conversions_read(struct yaml_reader *reader, yaml_node_t *node, struct plant *plant)
+{
+    static const struct key keys[] = { { "model", KEY_NAME, true, offsetof(struct plant_conversion, model), 0, 0, NULL, NULL },
+                                       { "from", KEY_NAME, true, offsetof(struct plant_conversion, from), 0, 0, NULL, NULL },
+                                       { "command", KEY_NAME, true, offsetof(struct plant_conversion, command), 0, 0, NULL, NULL },
+                                       { "timeout_s", KEY_NUMBER, false, offsetof(struct plant_conversion, timeout_s), 1, 86400, NULL,
+                                         NULL },
+                                       { 0 } };
+    int count;
+    plant->conversions = plant_list_make(reader, node, "convert", 0, sizeof(*plant->conversions), &count);
+    for (int i = 0; i < count; i++) {
+        yaml_node_t *item = yaml_list_item(reader, node, i);
+        struct plant_conversion *made = &plant->conversions[plant->conversion_count++];
+        struct yaml_map map;
+        *made = (struct plant_conversion){ .timeout_s = DEFAULT_TIMEOUT_S, .line = yaml_place(item).line };
+        yaml_map_read(reader, item, "a conversion", keys, made, &map);
+        plant_resolve_path(plant, &made->model);
+        plant_resolve_path(plant, &made->from);
+        check(reader, &map, plant, made);
+    }
+}

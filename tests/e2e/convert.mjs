@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// `convert` in a plant file: models that plantcast-prep has made by another program.
+import assert from 'node:assert/strict';
+import { spawnSync } from 'node:child_process';
+import { mkdtempSync, readdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
+import { tmpdir } from 'node:os';
+import { join } from 'node:path';
+import { test } from 'node:test';
+import { BIN, missing } from './support/tiny_plant.mjs';
+
+const absent = missing();
+const skip = absent.length > 0 ? `not built: ${absent.join(', ')}` : false;
+
+// A square of this side, as a glTF file.
+function square(side) {
+    const bytes = Buffer.from(new Float32Array([0, 0, 0, side, 0, 0, side, side, 0, 0, 0, 0, side, side, 0, 0, side, 0]).buffer);
+    return JSON.stringify({
+        asset: { version: '2.0' }, scene: 0, scenes: [{ nodes: [0] }], nodes: [{ mesh: 0 }],
+        meshes: [{ primitives: [{ attributes: { POSITION: 0 } }] }],
+        accessors: [{ bufferView: 0, componentType: 5126, count: 6, type: 'VEC3', min: [0, 0, 0], max: [side, side, 0] }],
+        bufferViews: [{ buffer: 0, byteLength: 72 }],
+        buffers: [{ byteLength: 72, uri: `data:application/octet-stream;base64,${bytes.toString('base64')}` }],
+    });
+}
+
+async function withPlant(f) {
+    const folder = mkdtempSync(join(tmpdir(), 'plantcast-convert-'));
+    const write = (command, more = '') => writeFileSync(join(folder, 'plant.yaml'), `plant: { name: Made }
+convert:
+  - { model: plate.glb, from: plate.cad, command: ${JSON.stringify(command)}${more} }
+assets:
+  - { id: PLATE, model: plate.glb }
+groups:
+  - { id: t, unit: °C, min: 0, max: 100 }
+tags: tags.csv
+`);
+    const prep = () => spawnSync(join(BIN, 'plantcast-prep'), [join(folder, 'plant.yaml')], { encoding: 'utf8', timeout: 60000 });
+    try {
+        writeFileSync(join(folder, 'tags.csv'), 'Tag Name,Address,Data Type,Eng Units,Description,Source,Group,Asset,Node,X,Y,Z\n');
+        writeFileSync(join(folder, 'plate.cad'), square(1));
+        await f({ folder, write, prep });
+    } finally {
+        rmSync(folder, { recursive: true });
+    }
+}
+
+const COPY = 'cp "$1" "$2"; echo . >>"${1%/*}/runs"';
+
+test('a model is made when it must be, and only then', { skip }, () => withPlant(({ folder, write, prep }) => {
+    const runs = () => readFileSync(join(folder, 'runs'), 'utf8').length / 2;
+    write(COPY);
+    let said = prep();
+    assert.equal(said.status, 0, said.stderr);
+    assert.match(said.stderr, /making .*plate\.glb from .*plate\.cad/);
+    assert.equal(readFileSync(join(folder, 'plate.glb'), 'utf8'), square(1));
+    assert.match(said.stdout, /1 built/);
+    said = prep();
+    assert.equal(said.status, 0, said.stderr);
+    assert.equal(runs(), 1, 'nothing has changed');
+    assert.match(said.stdout, /1 unchanged/);
+    writeFileSync(join(folder, 'plate.cad'), square(2));
+    assert.match(prep().stdout, /1 built/);
+    assert.equal(runs(), 2, 'the input has changed');
+    write(`${COPY} `);
+    prep();
+    assert.equal(runs(), 3, 'the command has changed');
+    writeFileSync(join(folder, 'plate.glb'), square(3));
+    prep();
+    assert.equal(runs(), 4, 'the model has changed');
+    assert.equal(readFileSync(join(folder, 'plate.glb'), 'utf8'), square(2));
+    rmSync(join(folder, 'plate.glb'));
+    prep();
+    assert.equal(runs(), 5, 'the model is gone');
+}));
+
+test('what fails is one line, and leaves the model as it was', { skip }, () => withPlant(({ folder, write, prep }) => {
+    for (const [command, why, more] of [['echo first >&2; echo no licence >&2; exit 3', /could not be made: no licence/],
+        ['kill -SEGV $$', /crashed \(Segmentation fault\)/], ['sleep 1000', /took longer than 1 s/, ', timeout_s: 1'],
+        ['true', /what it wrote to \$2: No such file/], ['echo x >"$2"', /what it wrote to \$2: is no glTF/],
+        ["python3 -c 'import socket; socket.socket()'", /Permission denied/]]) {
+        write(command, more);
+        writeFileSync(join(folder, 'plate.glb'), square(5));
+        const { status, stderr } = prep();
+        assert.equal(status, 1);
+        assert.match(stderr, why);
+        assert.match(stderr, /plant\.yaml:3: error: convert: /);
+        assert.equal(readFileSync(join(folder, 'plate.glb'), 'utf8'), square(5));
+        assert.deepEqual(readdirSync(folder).sort(), ['plant.yaml', 'plate.cad', 'plate.glb', 'tags.csv']);
+    }
+    write(COPY);
+    rmSync(join(folder, 'plate.cad'));
+    assert.match(prep().stderr, /plant\.yaml:3: error: convert: '.*plate\.cad' cannot be read: No such file/);
+}));
+
+test('the plant file is checked', { skip }, () => withPlant(({ folder, write }) => {
+    const check = () => spawnSync(join(BIN, 'plantcastd'), ['--check', join(folder, 'plant.yaml')], { encoding: 'utf8' }).stderr;
+    write('true', '}\n  - { model: plate.glb, from: plate.glb, command: ""');
+    const said = check();
+    assert.match(said, /:4:\d+: error: .*command/);
+    assert.match(said, /from: expected another file than model/);
+    assert.match(said, /model: '.*plate\.glb' is made twice \(first at line 3\)/);
+}));
