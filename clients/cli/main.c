@@ -56,6 +56,7 @@ static const struct command {
     { "history", "take series into a plant's history, or print what was recorded", cmd_history },
     { "backup", "history, journal and configuration of a plant, also while its daemon records", cmd_backup },
     { "restore", "what backup made, put in place", cmd_restore },
+    { "fleet", "one page and one /metrics over the servers of many plants", cmd_fleet },
     { "token", "make, list and revoke what lets people and programs in", cmd_token },
 };
 enum { COMMANDS = sizeof(commands) / sizeof(commands[0]) };

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Shaders and colour maps that are embedded in the program, by name relative to shaders/. Immutable. Thread: any. */
+/* Text files that are embedded in the program: shaders and colour maps, by name relative to shaders/, and the fleet page, by its path.
+   Immutable. Thread: any. */
 #ifndef BASE_EMBEDDED_H
 #define BASE_EMBEDDED_H
 

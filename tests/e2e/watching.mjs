@@ -34,8 +34,8 @@ test('Prometheus reads a daemon, takes the rules, and every panel asks for what 
         const folder = mkdtempSync(join(tmpdir(), 'plantcast-prometheus-')), port = await freePort(), plant = await TinyPlant.running();
         writeFileSync(join(folder, 'prometheus.yml'), readFileSync(join(RULES, 'prometheus.yml'), 'utf8').replace('15s', '1s')
             .replace('15s', '1s').replace('rules.yml', join(RULES, 'rules.yml')).replace('127.0.0.1:8080', `127.0.0.1:${plant.port}`));
-        const prometheus = spawn('prometheus', [`--config.file=${join(folder, 'prometheus.yml')}`, `--storage.tsdb.path=${join(folder, 'data')}`,
-            `--web.listen-address=127.0.0.1:${port}`], { stdio: 'ignore' });
+        const prometheus = spawn('prometheus', [`--config.file=${join(folder, 'prometheus.yml')}`,
+            `--storage.tsdb.path=${join(folder, 'data')}`, `--web.listen-address=127.0.0.1:${port}`], { stdio: 'ignore' });
         const ask = async (path) => (await fetch(`http://127.0.0.1:${port}/api/v1/${path}`)).json();
         const query = (expr) => ask(`query?query=${encodeURIComponent(expr)}`);
         try {

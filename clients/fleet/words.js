@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The words of the fleet page, in English, Korean and German.
+const WORDS = {
+    en: {
+        answer: '{count} of {all} plants answer', only: 'Only what needs attention', stale: 'This page gets no news since {time}',
+        none: 'No alarms', priority: 'Priority {priority}', since: 'No answer since {time}', never: 'No answer yet',
+        first: 'Asked for the first time',
+        links: 'Links', down: '{down} of {all} down', up: '{all} up', version: 'Version', certificate: 'Certificate', disk: 'Free disk',
+        backup: 'Last backup', unknown: 'not known', off: 'none', recorded: 'Recording', broken: 'cannot be written', works: 'works',
+        refused: 'the plant file has errors', configuration: 'Configuration', expired: 'expired', acknowledge: '{count} to acknowledge',
+    },
+    ko: {
+        answer: '설비 {all}곳 중 {count}곳 응답', only: '조치가 필요한 곳만',
+        stale: '{time} 이후 새 정보가 없습니다',
+        none: '알람 없음', priority: '우선순위 {priority}', since: '{time}부터 응답 없음', never: '아직 응답 없음',
+        first: '처음 조회하는 중',
+        links: '통신 연결', down: '{all}개 중 {down}개 끊김', up: '{all}개 정상', version: '버전',
+        certificate: '인증서', disk: '디스크 여유',
+        backup: '마지막 백업', unknown: '알 수 없음', off: '없음', recorded: '기록', broken: '기록할 수 없음',
+        works: '정상',
+        refused: '설비 파일에 오류가 있음', configuration: '설정', expired: '만료됨',
+        acknowledge: '확인 대기 {count}건',
+    },
+    de: {
+        answer: '{count} von {all} Anlagen antworten', only: 'Nur was Aufmerksamkeit braucht',
+        stale: 'Diese Seite erfährt seit {time} nichts Neues',
+        none: 'Keine Alarme', priority: 'Priorität {priority}', since: 'Keine Antwort seit {time}', never: 'Noch keine Antwort',
+        first: 'Zum ersten Mal gefragt', links: 'Verbindungen', down: '{down} von {all} gestört', up: '{all} in Ordnung',
+        version: 'Version',
+        certificate: 'Zertifikat', disk: 'Freier Speicher', backup: 'Letzte Sicherung', unknown: 'nicht bekannt', off: 'keines',
+        recorded: 'Aufzeichnung', broken: 'kann nicht schreiben', works: 'in Ordnung', refused: 'die Anlagendatei hat Fehler',
+        configuration: 'Konfiguration', expired: 'abgelaufen', acknowledge: '{count} zu quittieren',
+    },
+};
+
+// The first language that is wished for and that there is; `?lang=` goes before the browser's.
+export function chooseLanguage(search, preferred) {
+    const wished = [new URLSearchParams(search).get('lang'), ...preferred].filter(Boolean).map((tag) => tag.slice(0, 2).toLowerCase());
+    return wished.find((tag) => tag in WORDS) ?? 'en';
+}
+
+export const languages = Object.keys(WORDS);
+export const keys = (language) => Object.keys(WORDS[language]);
+
+// say(key, values): the words, with values put in.
+export const wordsOf = (language) => (key, values = {}) => WORDS[language][key].replace(/\{(\w+)\}/g, (_, name) => values[name]);

@@ -1,0 +1,193 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The fleet page: what it says of real servers, of those that are silent, and of two hundred; how often it asks, and what it costs.
+import assert from 'node:assert/strict';
+import { spawn } from 'node:child_process';
+import { mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
+import { createServer } from 'node:http';
+import { tmpdir } from 'node:os';
+import { join } from 'node:path';
+import { after, before, test } from 'node:test';
+import { chooseLanguage, keys, languages } from '../../clients/fleet/words.js';
+import { openPage, shoot } from './support/browser.mjs';
+import { freePort } from './support/ports.mjs';
+import { BIN, missing, runProgram, TinyPlant } from './support/tiny_plant.mjs';
+
+const absent = missing();
+const options = { skip: absent.length > 0 ? `not built: ${absent.join(', ')}` : false, timeout: 240000 };
+const sleep = (ms) => new Promise((done) => setTimeout(done, ms));
+const until = async (what, holds, ms = 60000) => {
+    for (const end = Date.now() + ms; Date.now() < end; await sleep(100)) {
+        const found = await holds();
+        if (found)
+            return found;
+    }
+    throw new Error(`not within ${ms} ms: ${what}`);
+};
+let folder;
+before(() => { folder = mkdtempSync(join(tmpdir(), 'plantcast-fleet-')); });
+after(() => rmSync(folder, { recursive: true, force: true }));
+
+const write = (text) => {
+    writeFileSync(join(folder, 'fleet.yaml'), text);
+    return join(folder, 'fleet.yaml');
+};
+
+async function serve(file) {
+    const child = spawn(join(BIN, 'plantcast'), ['fleet', file, '--serve', '--port', '0'], { stdio: ['ignore', 'pipe', 'inherit'] });
+    const url = await new Promise((done, fail) => {
+        child.stdout.on('data', (text) => done(String(text).match(/http:\/\/\S+/)[0]));
+        child.on('exit', (code) => fail(new Error(`it ended with ${code}`)));
+    });
+    return { url, pid: child.pid, state: async () => (await fetch(`${url}fleet.json`)).json(),
+        stop: () => new Promise((done) => { child.removeAllListeners('exit').on('exit', done); child.kill(); }) };
+}
+
+// A server as /metrics shows it; asked: when. The picture is a real PNG.
+const PNG = Buffer.from('iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAYAAAAfFcSJAAAADUlEQVR42mNk+M9QDwADhgGAWjR9awAAAABJRU5ErkJggg==', 'base64');
+async function pretend(metrics = '', status = 200, headers = {}) {
+    const asked = { metrics: [], picture: [] };
+    const server = createServer((request, response) => {
+        const isPicture = request.url.startsWith('/snapshot.png');
+        asked[isPicture ? 'picture' : 'metrics'].push(Date.now());
+        asked.token = request.headers.authorization;
+        response.writeHead(status, headers).end(isPicture ? PNG : `plantcast_sessions 1\n${metrics}`);
+    });
+    await new Promise((done) => server.listen(0, '127.0.0.1', done));
+    return { asked, server, url: `http://127.0.0.1:${server.address().port}/`,
+        close: () => { server.closeAllConnections(); server.close(); } };
+}
+
+test('the page says the same in each language', () => {
+    assert.deepEqual(languages, ['en', 'ko', 'de']);
+    for (const language of languages)
+        assert.deepEqual(keys(language).sort(), keys('en').sort());
+    assert.equal(chooseLanguage('?lang=ko', ['de-DE']), 'ko');
+    assert.equal(chooseLanguage('', ['fr', 'de-DE', 'en']), 'de');
+});
+
+test('a fleet file is checked, and each mistake has its line', options, () => {
+    const check = (text) => runProgram('plantcast', ['fleet', write(text)]);
+    const good = check('name: Works\nplants:\n- { id: a, url: "https://a.example" }\n'
+        + '- { id: b, url: "https://b.example:8443/", poll_s: 60 }\n');
+    assert.equal(good.code, 0, good.err);
+    assert.match(good.out, /2 plants/);
+    const bad = check('plants:\n- { id: a, url: "https://a.example" }\n- { id: b, url: "HTTPS://A.example:443/" }\n'
+        + '- { id: a, url: "http://c.example/" }\n- { id: d/e, url: "ftp://d/" }\n- { id: f, url: "http://me:pw@f/" }\n'
+        + '- { url: "http://g/", poll_s: 0 }\n');
+    assert.equal(bad.code, 1);
+    for (const line of [/fleet\.yaml:3:\d+: error: url: the plant at https:\/\/a\.example\/ is there twice \(first at line 2\)/,
+        /fleet\.yaml:4:\d+: error: id: plant 'a' is there twice \(first at line 2\)/, /fleet\.yaml:5:\d+: error: id: expected/,
+        /fleet\.yaml:5:\d+: error: url: it begins neither/, /fleet\.yaml:6:\d+: error: url: a password does not stand here/,
+        /fleet\.yaml:7:\d+: error: .*needs the key 'id'/, /fleet\.yaml:7:\d+: error: poll_s: expected/])
+        assert.match(bad.err, line);
+    assert.ok(!bad.err.includes('me:pw'));
+    assert.equal(runProgram('plantcast', ['fleet', join(folder, 'fleet.yaml'), '--serve', '--address', '0.0.0.0']).code, 2);
+});
+
+test('a real plant, one that is in trouble, one that is silent: on the page and in the metrics', options, async () => {
+    const plant = await TinyPlant.running(), now = Math.floor(Date.now() / 1000), gone = await freePort();
+    writeFileSync(join(folder, 'token'), 'tok-1\n');
+    const bad = await pretend(`plantcast_alarms_shown{priority="1"} 2\nplantcast_alarms_shown{priority="3"} 14
+plantcast_alarms{state="unacknowledged"} 9\nplantcast_source_up{source="a"} 0\nplantcast_source_up{source="b"} 1
+plantcast_certificate_expiry_timestamp_seconds ${now + 5.5 * 86400}\nplantcast_backup_timestamp_seconds ${now - 6 * 86400}
+plantcast_history_free_bytes 900000000\nplantcast_history_good 0\nplantcast_build_info{version="9.8.7",commit="x"} 1\n`);
+    const fleet = await serve(write(`name: Works of the north\npoll_s: 1\npicture_s: 2\nplants:
+- { id: boxes, name: Two boxes, url: "http://127.0.0.1:${plant.port}" }
+- { id: trouble, name: "Cracker 2 <b>", url: "${bad.url}", token_file: token }
+- { id: gone, name: Tank farm, url: "http://127.0.0.1:${gone}/" }\n`));
+    let browser;
+    try {
+        const state = await until('all have been asked', async () => {
+            const { plants } = await fleet.state();
+            return plants[0].picture && plants[1].picture && plants[2].why && plants;
+        });
+        assert.deepEqual(state.map(({ answers }) => answers), [true, true, false]);
+        assert.equal(state[0].links, 1);
+        assert.match(state[0].version, /^\d/);
+        assert.deepEqual(state[1].alarms, [2, 0, 14, 0]);
+        assert.equal(bad.asked.token, 'Bearer tok-1');
+        assert.match(state[2].why, /connect/i);
+        assert.equal(state[2].answered_us, 0);
+        const metrics = await (await fetch(`${fleet.url}metrics`)).text();
+        assert.match(metrics, /^plantcast_fleet_up\{plant="gone"\} 0$/m);
+        assert.match(metrics, /^plantcast_fleet_alarms\{plant="trouble",priority="3"\} 14$/m);
+        assert.ok(!metrics.includes('plantcast_fleet_links_down{plant="gone"}'));
+        assert.equal((await fetch(`${fleet.url}../../etc/passwd`)).status, 404);
+        assert.equal((await fetch(fleet.url, { method: 'POST' })).status, 404);
+
+        browser = await openPage(fleet.url, { viewport: { width: 1280, height: 800 } });
+        const { page } = browser, card = (id) => page.locator(`[data-plant="${id}"]`);
+        await card('trouble').locator('.count.p1').waitFor();
+        assert.equal(await card('trouble').locator('h2').textContent(), 'Cracker 2 <b>');
+        assert.deepEqual(await card('trouble').locator('.wrong').allTextContents(),
+            ['1 of 2 down', 'cannot be written', '5 days', '0.9 GB', '6 days ago']);
+        assert.equal(await card('boxes').locator('a').getAttribute('href'), `http://127.0.0.1:${plant.port}/`);
+        assert.equal(await card('gone').locator('.away').textContent(), 'No answer yet');
+        assert.ok(await card('boxes').locator('img').evaluate((img) => img.complete && img.naturalWidth === 320));
+        await plant.daemon.stop();
+        await until('that it is silent', async () => /No answer since \d/.test(await card('boxes').locator('.away').textContent()));
+        await shoot(page, 'fleet');
+        await page.locator('#only').check();
+        assert.ok(await card('boxes').isVisible());
+        await page.locator('#only').uncheck();
+        for (const [language, words] of [['ko', '부터 응답 없음'], ['de', 'Keine Antwort seit']]) {
+            await page.goto(`${fleet.url}?lang=${language}`);
+            await card('trouble').locator('.count.p1').waitFor();
+            assert.ok((await card('boxes').locator('.away').textContent()).includes(words));
+            await shoot(page, `fleet-${language}`);
+        }
+        assert.deepEqual(browser.errors, []);
+    } finally {
+        await browser?.close();
+        await fleet.stop();
+        bad.close();
+        await plant.destroy();
+    }
+});
+
+test('nothing is asked faster than it allows, and who asks for patience gets it', options, async () => {
+    const [quick, slow, busy] = [await pretend(), await pretend(), await pretend('', 503, { 'Retry-After': '5' })];
+    const fleet = await serve(write(`poll_s: 1\npicture_s: 0\nplants:\n- { id: quick, url: "${quick.url}" }
+- { id: slow, url: "${slow.url}", poll_s: 4, picture_s: 6 }\n- { id: busy, url: "${busy.url}" }\n`));
+    try {
+        await sleep(12000);
+        const least = (times) => Math.min(...times.slice(1).map((at, i) => at - times[i]));
+        assert.ok(quick.asked.metrics.length >= 6);
+        assert.ok(least(quick.asked.metrics) > 900);
+        assert.equal(quick.asked.picture.length, 0);
+        assert.ok(least(slow.asked.metrics) > 3900 && slow.asked.metrics.length >= 2);
+        assert.ok(least(slow.asked.picture) > 5900 && slow.asked.picture.length >= 1);
+        assert.ok(least(busy.asked.metrics) > 4900);
+        assert.match((await fleet.state()).plants[2].why, /503/);
+    } finally {
+        await fleet.stop();
+        for (const one of [quick, slow, busy])
+            one.close();
+    }
+});
+
+test('two hundred plants take two hundredths of a core', options, async () => {
+    const COUNT = 200, SECONDS = 30, all = [];
+    const lines = Array.from({ length: 400 }, (_, i) => `plantcast_stage_seconds_bucket{le="${i}"} ${i}`);
+    for (let i = 0; i < COUNT; i++)
+        all.push(await pretend(`${lines.join('\n')}\nplantcast_alarms_shown{priority="2"} ${i % 3}\n`));
+    const fleet = await serve(write(`plants:\n${all.map(({ url }, i) => `- { id: p${i}, url: "${url}" }`).join('\n')}\n`));
+    const ticks = () => readFileSync(`/proc/${fleet.pid}/stat`, 'utf8').split(') ')[1].split(' ').slice(11, 13)
+        .reduce((sum, each) => sum + Number(each), 0);
+    try {
+        await until('all answer', async () => (await fleet.state()).plants.every(({ answers }) => answers));
+        await sleep(2000);
+        const before = ticks();
+        for (let s = 0; s < SECONDS; s += 5) { // as a page does
+            await fleet.state();
+            await sleep(5000);
+        }
+        const percent = (ticks() - before) / SECONDS; // of hundredths of a second
+        console.log(`# fleet of ${COUNT}: ${percent.toFixed(2)} % of a core`);
+        assert.ok(percent <= 2, `${percent} %`);
+    } finally {
+        await fleet.stop();
+        for (const one of all)
+            one.close();
+    }
+});
