@@ -213,6 +213,7 @@ $(match_tests): pkg_libs += -lminizip -lexpat
 $(out)/obj/tests/cad/step_samples.o: CXXFLAGS += -isystem $(occt)
 $(out)/tests/cad/step_samples: $(call objects,tests/cad/step_samples)
 	@mkdir -p $(@D); echo "  LINK $@"; $(CXX) $(ldflags) -pie -o $@ $^ $(occt_libs)
+$(out)/tests/bench/field_degree: $(call objects,tests/bench/cut_mesh)
 $(out)/tests/%: $(out)/obj/tests/%.o $(support) $(archives) $(out)/lib/prep.a $(sim_archive)
 	$(link) -lcmocka
 # Draws as the command line does.
