@@ -130,6 +130,17 @@ static void take_range(struct quantity *quantity, const struct export_tag *tag)
     quantity->high = fmax(quantity->high, unit_change_value(&change, high));
 }
 
+/* As people write it in a legend. */
+static const char *written(const char *unit)
+{
+    static const char *const usual[] = { "°C", "°F" };
+    struct unit_change change;
+    for (size_t i = 0; i < sizeof(usual) / sizeof(*usual); i++)
+        if (*unit && units_compare(unit, usual[i], &change) == UNITS_SAME)
+            return usual[i];
+    return unit;
+}
+
 static void take(struct quantities *quantities, const struct tag_export *list, size_t i)
 {
     const struct export_tag *tag = &list->tags[i];
@@ -141,7 +152,7 @@ static void take(struct quantities *quantities, const struct tag_export *list, s
     int at = find(quantities, name, unit);
     if (at < 0) {
         make_id(quantities, name, id);
-        add(quantities, id, name, unit, true);
+        add(quantities, id, name, written(unit), true);
         at = (int)quantities->count - 1;
     }
     quantities->of_tag[i] = at;

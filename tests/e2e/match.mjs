@@ -8,7 +8,8 @@ import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { test } from 'node:test';
 import { formats, makeTagList } from './support/tag_lists.mjs';
-import { BIN, missing } from './support/tiny_plant.mjs';
+import { openPage, waitForPicture } from './support/browser.mjs';
+import { BIN, missing, TinyPlant } from './support/tiny_plant.mjs';
 
 const absent = missing();
 const DATA = join(import.meta.dirname, '../../../shared/data');
@@ -149,7 +150,7 @@ test('what people change stays; a second run changes nothing', { skip: notBuilt 
     assert.deepEqual(rows(), { 'E-101.TT-01': 'E-101 equipment', 'E-101.TT-02': 'E-101 equipment', 'LT-201': 'V-201 equipment',
         'PT-101': ' ', 'FT-999': ' ' });
     assert.match(readFileSync(join(folder, 'plant.yaml'), 'utf8'),
-        /- \{ id: "temperature", quantity: "Temperature", unit: "degC", min: 0, max: 250 \}/);
+        /- \{ id: "temperature", quantity: "Temperature", unit: "°C", min: 0, max: 250 \}/);
     const first = texts();
     match();
     assert.deepEqual(texts(), first);
@@ -182,6 +183,78 @@ test('what people change stays; a second run changes nothing', { skip: notBuilt 
     match();
     assert.match(readFileSync(join(folder, 'matches.csv'), 'utf8'), /XT_7,sure,V-201,.*alias 'feed tank'/);
 }));
+
+// Kepware's export of a device, of a plant that PDMS drew: no line of either is changed by hand.
+const ROOM = `Tag Name,Address,Data Type,Respect Data Type,Client Access,Scan Rate,Scaling,Raw Low,Raw High,Scaled Low,Scaled High,\
+Eng Units,Description
+"ART1105BA_TT01",400001,Float,1,R/O,100,None,,,0,150,"degC","Tank ART1105BA shell top temperature"
+"ART1105BA_TT02",400003,Float,1,R/O,100,None,,,0,150,"degC","Tank ART1105BA shell bottom temperature"
+"TT-1101",400005,Float,1,R/O,100,None,,,0,120,"degC","Pump ART1101PO bearing DE temperature"
+"art1111po.TE-03",400007,Float,1,R/O,100,None,,,0,120,"degC","Bearing temperature"
+"ART1010TY_TI_01",400009,Float,1,R/O,100,None,,,0,200,"degC","Feed line"
+"DWX12O1GL-TT-01",400011,Float,1,R/O,100,None,,,0,100,"degC","Duct"
+"ART1101PO_PT01",400013,Float,1,R/O,100,None,,,0,16,"bar(g)","Discharge pressure"
+"ART1101PO_RUN",000001,Boolean,1,R/O,100,None,,,,,"","Running"
+"TT-9011",400015,Float,1,R/O,100,None,,,0,90,"degC","Cooling tower, another unit"
+"ART1101PO_TEXT",400017,String,1,R/O,100,None,,,,,"","Last operator"
+`;
+
+test('from exports of two systems to a live picture', { skip: noData, timeout: 240000 }, async () => {
+    const tiny = await TinyPlant.create(), out = tiny.folder;
+    for (const name of readdirSync(out))
+        rmSync(join(out, name), { recursive: true });
+    good(run('plantcast', 'import', join(DATA, 'cad/plm-sample.rvm'), '-o', out));
+    writeFileSync(join(out, 'kepware.csv'), ROOM);
+    const source = ['--modbus', `127.0.0.1:${tiny.modbusPort}`, '--byte-order', 'CDAB'];
+    const said = good(run('plantcast', 'match', out, join(out, 'kepware.csv'), ...source));
+    assert.match(said.stdout, /10 tags: 9 sure, 0 likely, 1 none/);
+    assert.match(said.stdout, /1 tags are not in the tag list: they are texts/);
+    const rows = table(join(out, 'tags.csv'));
+    assert.deepEqual(rows.map(({ 'Tag Name': name, Asset, Group, Place }) => [name, Asset, Group, Place].join(' ')), [
+        'ART1105BA_TT01 -ART1105BA- temperature equipment', 'ART1105BA_TT02 -ART1105BA- temperature equipment',
+        'TT-1101 -ART1101PO- temperature equipment', 'art1111po.TE-03 -ART1111PO- temperature equipment',
+        'ART1010TY_TI_01 -ART1010TY- temperature equipment', 'DWX12O1GL-TT-01 -DWX1201GL- temperature equipment',
+        'ART1101PO_PT01 -ART1101PO- pressure equipment', 'ART1101PO_RUN -ART1101PO-  ', 'TT-9011   ']);
+    const before = ['plant.yaml', 'tags.csv', 'matches.csv'].map((name) => readFileSync(join(out, name), 'utf8'));
+    good(run('plantcast', 'match', out, join(out, 'kepware.csv')));
+    assert.deepEqual(['plant.yaml', 'tags.csv', 'matches.csv'].map((name) => readFileSync(join(out, name), 'utf8')), before);
+    good(run('plantcastd', '--check', tiny.file));
+    assert.equal(tiny.prepare().code, 0);
+    let own;
+    try {
+        await tiny.startSim();
+        await tiny.startDaemon();
+        for (const [tag, value] of [['ART1105BA_TT01', 70], ['ART1105BA_TT02', 135], ['TT-1101', 95], ['art1111po.TE-03', 40],
+            ['ART1010TY_TI_01', 160], ['DWX12O1GL-TT-01', 25], ['ART1101PO_PT01', 6]])
+            await tiny.tell(`set ${tag} ${value}`);
+        const url = `http://127.0.0.1:${tiny.port}/`, { tags } = await (await fetch(`${url}api/v1/tags`)).json();
+        assert.deepEqual(tags.filter(({ place }) => place === 'equipment').length, 7);
+        own = await openPage(url, { viewport: { width: 1280, height: 800 } });
+        const { page } = own;
+        await waitForPicture(page);
+        await page.waitForFunction(() => globalThis.plantcast.session.model.tag('ART1105BA_TT02')?.index !== undefined &&
+            globalThis.plantcast.session.model.readings[globalThis.plantcast.session.model.tag('ART1105BA_TT02').index].value > 130);
+        await page.locator('.legend').getByText('Place assumed').waitFor();
+        await page.evaluate(() => { location.hash = '#tag=ART1105BA_TT02'; });
+        await page.locator('#card').getByText('Place assumed').waitFor();
+        // Without the walls.
+        const walls = ['-HZA05-B', '-HZB05-B', '-HZC05-B', '-HAA01---B', 'IMAGE-DALLE', '-HZ0501M-', 'ORIGINE_BATIMENT'];
+        const view = `width=1280&height=800&group=temperature&hidden=${walls.map(encodeURIComponent).join(',')}`;
+        const bare = await fetch(`${url}snapshot.png?${view}`);
+        assert.equal(bare.status, 200, await (bare.status === 200 ? '' : bare.text()));
+        const refused = await fetch(`${url}snapshot.png?width=160&height=100&group=temperature&show=distance&sensor=TT-1101`);
+        assert.equal(refused.status, 400);
+        assert.match(await refused.text(), /nobody has said where on '-ART1101PO-' it is/);
+        if (process.env.PLANTCAST_SHOTS) {
+            await page.waitForTimeout(2500);
+            await page.screenshot({ path: join(BIN, 'screenshots/match_page.png') });
+            writeFileSync(join(BIN, 'screenshots/match_snapshot.png'), Buffer.from(await bare.arrayBuffer()));
+        }
+    } finally {
+        await own?.close();
+        await tiny.destroy();
+    }
+});
 
 test('what cannot be read is one line, and nothing is written', { skip: notBuilt }, () => inFolder((folder) => {
     boxPlant(folder, ['E-101']);

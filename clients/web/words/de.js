@@ -212,4 +212,5 @@ partly: Teilweise simuliert
 
 [proof]
 none: Ungeprüft
+assumed: Ort angenommen
 `;

@@ -212,4 +212,5 @@ partly: Partly simulated
 
 [proof]
 none: Unproven
+assumed: Place assumed
 `;

@@ -210,4 +210,5 @@ partly: 일부 시뮬레이션
 
 [proof]
 none: 미확인
+assumed: 위치 추정
 `;

@@ -142,6 +142,7 @@ measured: Hier gemessen
 between: Zwischen Messpunkten
 no data: Keine Daten: der nächste Sensor ist gestört, oder keiner reicht hin
 context: Kein Sensor dieser Messgröße daran
+equipment: Ein Sensor steht für das Ganze: sein Ort ist angenommen
 inside: Inneres des Aufgeschnittenen
 uncertain: {state}, unsicher
 hide: Ausblenden

@@ -142,6 +142,7 @@ measured: Measured here
 between: Between sensors
 no data: No data: its nearest sensor is bad, or none reaches
 context: No sensor of this quantity on it
+equipment: One sensor stands for all of it: its place is assumed
 inside: Inside of what is cut open
 uncertain: {state}, uncertain
 hide: Hide

@@ -141,6 +141,7 @@ measured: 측정된 곳
 between: 센서 사이
 no data: 데이터 없음: 가장 가까운 센서가 불량이거나 닿는 센서가 없음
 context: 이 측정량의 센서가 없는 설비
+equipment: 센서 하나가 설비 전체를 나타냄: 위치는 추정
 inside: 잘린 설비의 내부
 uncertain: {state}, 불확실
 hide: 숨기기

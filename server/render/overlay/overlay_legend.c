@@ -9,9 +9,9 @@
 #include "render/overlay/overlay_pen.h"
 #include "render/shaded_colormap.h"
 
-enum { NOTES = 4, ROWS = 4 + ALARM_PRIORITIES };
+enum { NOTES = 4, ROWS = 5 + ALARM_PRIORITIES };
 static const double ROW = 1.5, NOTE = 1.3; /* heights, in text_px */
-enum row { ROW_BELOW, ROW_NO_LIMITS, ROW_NO_DATA, ROW_UNCERTAIN, ROW_UNPROVEN, ROW_ALARM /* and the other priorities */ };
+enum row { ROW_BELOW, ROW_NO_LIMITS, ROW_NO_DATA, ROW_UNCERTAIN, ROW_UNPROVEN, ROW_ASSUMED, ROW_ALARM /* and the other priorities */ };
 /* What it says, and where its parts lie. */
 struct legend {
     char title[160], above[60], below[60], since[120];
@@ -61,6 +61,14 @@ static bool shows_unproven(const struct pen *pen)
     return false;
 }
 
+static bool shows_assumed(const struct pen *pen)
+{
+    for (size_t i = 0; i < pen->frame->marker_count && !pen->bare; i++)
+        if (pen->frame->markers[i].half == pen->half && pen->scene->plant->tags[pen->frame->markers[i].tag].place_assumed)
+            return true;
+    return false;
+}
+
 /* A distance is never below 0, nor uncertain. */
 static void choose_rows(const struct pen *pen, struct legend *legend)
 {
@@ -73,6 +81,8 @@ static void choose_rows(const struct pen *pen, struct legend *legend)
     memcpy(legend->rows, rows, (size_t)legend->row_count * sizeof(*rows));
     if (shows_unproven(pen))
         legend->rows[legend->row_count++] = ROW_UNPROVEN;
+    if (shows_assumed(pen))
+        legend->rows[legend->row_count++] = ROW_ASSUMED;
     unsigned priorities = priorities_shown(pen);
     for (int i = 1; i <= ALARM_PRIORITIES; i++)
         if (priorities & 1u << i)
@@ -127,6 +137,7 @@ static const char *row_text(const struct legend *legend, enum row row)
                                          "no data",
                                          "uncertain",
                                          "unproven",
+                                         "place assumed",
                                          "alarm, priority 1",
                                          "alarm, priority 2",
                                          "alarm, priority 3",
@@ -233,6 +244,11 @@ static void draw_swatch(struct pen *pen, const struct box *box, enum row row)
     case ROW_UNPROVEN:
         pen_ink(pen, 1);
         overlay_outline(pen, box->x + box->width / 2, box->y + box->height / 2, 0.4 * box->height, true);
+        break;
+    case ROW_ASSUMED:
+        pen_ink(pen, 1);
+        overlay_outline(pen, box->x + box->width / 2, box->y + box->height / 2, 0.27 * box->height, false);
+        overlay_outline(pen, box->x + box->width / 2, box->y + box->height / 2, 0.47 * box->height, false);
         break;
     default:
         overlay_ring(pen, box->x + box->width / 2, box->y + box->height / 2, 0.5 * box->height, (int)row - ROW_ALARM + 1, ALARM_ACTIVE);

@@ -25,7 +25,7 @@ void overlay_outline(struct pen *pen, double x, double y, double radius, bool br
     cairo_set_dash(pen->cairo, NULL, 0, 0);
 }
 
-/* Filled: in sight. Hollow: something stands before it. Crossed: bad. Broken: unproven. */
+/* Filled: in sight. Hollow: something stands before it. Crossed: bad. Broken: unproven. Twofold: its place is assumed. */
 static void draw_mark(struct pen *pen, const struct frame_marker *marker, bool bad)
 {
     double radius = 4.2 * pen->unit, x = marker->x_px, y = marker->y_px;
@@ -35,6 +35,8 @@ static void draw_mark(struct pen *pen, const struct frame_marker *marker, bool b
     cairo_fill(pen->cairo);
     pen_ink(pen, marker->occluded ? 0.7 : 1);
     overlay_outline(pen, x, y, radius, overlay_unproven(pen, marker->tag));
+    if (pen->scene->plant->tags[marker->tag].place_assumed && !marker->occluded)
+        overlay_outline(pen, x, y, 1.75 * radius, false); /* somewhere here */
     if (bad) {
         double arm = 0.62 * radius;
         cairo_move_to(pen->cairo, x - arm, y - arm);

@@ -49,6 +49,7 @@ export class Card {
         setText(this.age, ageText(model.ageMs(tag.index, clock.now())));
         const unproven = model.unproven(tag);
         setText(this.proof, unproven ? say(`proof.${unproven}`) : '');
+        setText(this.assumed, tag.place === 'equipment' ? say('proof.assumed') : '');
         this.adds.hidden = !this.modules.there('trends')?.takes(tag);
         const alarm = model.alarms.gravest(tag.index);
         this.limit.hidden = !alarm;
@@ -63,13 +64,15 @@ export class Card {
         this.value = make('p', { class: 'value' });
         this.limit = make('p', { class: 'limit', hidden: true });
         this.proof = make('p', { class: 'proof' });
+        this.assumed = make('p', { class: 'proof assumed' });
         this.quality = make('dd');
         this.age = make('dd');
         const trend = (name, f, key) => make('button', { type: 'button', class: name, onclick: () => f(tag) }, say(key));
         this.adds = trend('add-trend', this.addTrend, 'card.add');
         fill(this.element,
             closeButton('close', () => this.selectTag(null)),
-            make('h3', {}, tag.name), make('p', { class: 'about' }, tag.description ?? ''), this.value, this.limit, this.proof,
+            make('h3', {}, tag.name), make('p', { class: 'about' }, tag.description ?? ''), this.value, this.limit,
+            this.proof, this.assumed,
             make('dl', {}, make('dt', {}, say('card.quality')), this.quality, make('dt', {}, say('card.age')), this.age,
                 make('dt', {}, say('card.on')), make('dd', {}, on)),
             this.session.recorded ? make('div', { class: 'trends-of' }, trend('trend', this.showTrend, 'card.trend'), this.adds) : null,

@@ -91,12 +91,13 @@ export class Place {
     }
 
     build() {
-        const { state, value, unit, uncertain, inside, nearest } = this.picked;
+        const { state, value, unit, uncertain, inside, nearest, place } = this.picked;
         const asset = this.session.model.asset(this.picked.asset);
-        const found = say(`place.${state}`);
+        const found = say(`place.${place ?? state}`);
         const words = inside ? say('place.inside') : uncertain ? say('place.uncertain', { state: found }) : found;
+        const away = (metres) => (place ? '' : say('distance.metres', { metres: numberText(metres, metres < 10 ? 2 : 1) }));
         const rows = nearest.map(({ tag, distance_m, value: reading, quality }) => make('li', {}, glyph(quality), make('span', {}, tag),
-            make('span', {}, say('distance.metres', { metres: numberText(distance_m, distance_m < 10 ? 2 : 1) })),
+            make('span', {}, away(distance_m)),
             make('b', {}, this.number(reading))));
         const button = (how) => make('button', { type: 'button', onclick: () => this.showOnly(how, asset) }, say(`place.${how}`));
         fill(this.element,

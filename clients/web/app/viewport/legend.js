@@ -36,6 +36,17 @@ const brokenMark = (c, width, height) => {
     c.stroke();
 };
 
+// Likewise of a tag whose place is assumed.
+const doubleMark = (c, width, height) => {
+    for (const [radius, line] of [[0.26, 0.11], [0.45, 0.07]]) {
+        c.beginPath();
+        c.arc(width / 2, height / 2, radius * height, 0, 2 * Math.PI);
+        c.lineWidth = line * height;
+        c.strokeStyle = '#1d252d';
+        c.stroke();
+    }
+};
+
 const pixels = (colourAt) => (c, width, height) => {
     const image = c.createImageData(width, height);
     for (let y = 0; y < height; y++) {
@@ -83,7 +94,7 @@ export class Legend {
     contents(params) {
         const { group, show, sensor, colormap, ramp_interval, scale, breaks, isolines, look, unit } = params;
         return JSON.stringify([group, show, sensor, this.since(params), colormap, ramp_interval, this.session.rangeOf(params), scale,
-            breaks, isolines, look, unit, this.unproven(params)]);
+            breaks, isolines, look, unit, this.unproven(params), this.assumed(params)]);
     }
 
     show(again = false) {
@@ -209,6 +220,10 @@ export class Legend {
         return model.tags.some((tag) => tag.group === group && tag.position && model.unproven(tag));
     }
 
+    assumed({ group }) {
+        return this.session.model.tags.some((tag) => tag.group === group && tag.position && tag.place === 'equipment');
+    }
+
     // In small, the pattern is drawn no coarser than can be recognised.
     keys(params, colour) {
         const { show } = params;
@@ -220,6 +235,7 @@ export class Legend {
             ...(show === 'operator' ? [swatch(18, 14, noLimits), make('span', {}, say('legend.nolimits'))] : []),
             swatch(18, 14, noData), make('span', {}, say('legend.nodata')),
             ...(show === 'distance' ? [] : [swatch(18, 14, uncertain), make('span', {}, say('legend.uncertain'))]),
-            ...(this.unproven(params) ? [swatch(18, 14, brokenMark), make('span', {}, say('proof.none'))] : []));
+            ...(this.unproven(params) ? [swatch(18, 14, brokenMark), make('span', {}, say('proof.none'))] : []),
+            ...(this.assumed(params) ? [swatch(18, 14, doubleMark), make('span', {}, say('proof.assumed'))] : []));
     }
 }

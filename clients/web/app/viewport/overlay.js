@@ -261,6 +261,12 @@ export class Overlay {
         c.strokeStyle = INK;
         c.stroke();
         c.setLineDash([]);
+        if (tag.place === 'equipment' && (!occluded || chosen)) { // a second ring: somewhere here
+            c.beginPath();
+            c.arc(0, 0, radius + 3, 0, 2 * Math.PI);
+            c.lineWidth = 1;
+            c.stroke();
+        }
         this.drawTried?.(tag);
         if (reading.quality === 'bad' && !occluded) {
             c.beginPath();
