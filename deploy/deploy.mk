@@ -43,4 +43,7 @@ install: all
 install-demo: all
 	install -d $(root)/bin
 	install -m 755 $(only_demo) $(root)/bin
-.PHONY: install-demo
+# Debian packages, of what is committed.
+deb: clients/web/vendor/uPlot.js
+	@deploy/deb $(build)/deb "$(COMMIT)"
+.PHONY: install-demo deb
