@@ -46,11 +46,11 @@ static void limit(int resource, rlim_t most)
 }
 
 /* After the fork. Data is limited rather than address space, of which WebAssembly reserves much more than it uses. */
-static void become(const struct child_params *params, int out, int errors, const sigset_t *mask)
+static void become(const struct child_params *params, int out, int errors, const sigset_t *signals)
 {
     setpgid(0, 0);
     prctl(PR_SET_PDEATHSIG, SIGKILL);
-    sigprocmask(SIG_SETMASK, mask, NULL);
+    sigprocmask(SIG_UNBLOCK, signals, NULL);
     int nothing = open("/dev/null", O_RDONLY);
     dup2(nothing, STDIN_FILENO);
     dup2(out, STDOUT_FILENO);
@@ -75,18 +75,18 @@ static void become(const struct child_params *params, int out, int errors, const
 static bool start(struct child *child, const struct child_params *params)
 {
     int out[2] = { -1, -1 }, errors[2] = { -1, -1 };
-    sigset_t ours, before;
+    sigset_t ours;
     sigemptyset(&ours);
     sigaddset(&ours, SIGINT);
     sigaddset(&ours, SIGTERM);
     if (pipe2(out, O_CLOEXEC) != 0 || pipe2(errors, O_CLOEXEC) != 0)
         goto error;
-    sigprocmask(SIG_BLOCK, &ours, &before);
+    sigprocmask(SIG_BLOCK, &ours, NULL);
     child->fds[SIGNALS] = signalfd(-1, &ours, SFD_CLOEXEC | SFD_NONBLOCK);
     fflush(NULL);
     child->pid = fork();
     if (child->pid == 0)
-        become(params, out[1], errors[1], &before);
+        become(params, out[1], errors[1], &ours);
     if (child->pid > 0)
         child->fds[END] = (int)syscall(SYS_pidfd_open, child->pid, 0);
     if (child->pid < 0 || child->fds[END] < 0)

@@ -12,14 +12,34 @@
 
 #include "base/mem.h"
 
+static sigset_t waiting_signals(void)
+{
+    sigset_t set;
+    sigemptyset(&set);
+    sigaddset(&set, SIGINT);
+    sigaddset(&set, SIGTERM);
+    return set;
+}
+
+bool work_folder_interrupted(void)
+{
+    sigset_t pending;
+    return sigpending(&pending) == 0 && (sigismember(&pending, SIGINT) || sigismember(&pending, SIGTERM));
+}
+
 int work_folder_begin(struct work_folder *work, const char *target)
 {
     const char *temporary = getenv("TMPDIR");
     *work = (struct work_folder){ 0 };
+    sigset_t waiting = waiting_signals();
+    sigprocmask(SIG_BLOCK, &waiting, &work->before);
     if (target) {
         work->created = mkdir(target, 0777) == 0;
-        if (!work->created && errno != EEXIST)
-            return -errno;
+        if (!work->created && errno != EEXIST) {
+            int status = -errno;
+            work_folder_end(work, false);
+            return status;
+        }
         work->target = mem_strdup(target);
     }
     char *real = realpath(target ? target : temporary && temporary[0] ? temporary : "/tmp", NULL);
@@ -50,5 +70,7 @@ void work_folder_end(struct work_folder *work, bool keep)
         rmdir(work->target);
     mem_free(work->path);
     mem_free(work->target);
+    sigset_t before = work->before;
     *work = (struct work_folder){ 0 };
+    sigprocmask(SIG_SETMASK, &before, NULL); /* what waited comes now */
 }

@@ -128,6 +128,8 @@ static int run(struct import *import)
     import->models = mem_array((size_t)import->count, sizeof(*import->models));
     for (int i = 0; i < import->count && status == 0; i++)
         status = convert(import, i);
+    if (status == 0 && work_folder_interrupted())
+        status = fail_at(import->folder, "interrupted");
     if (status == 0)
         status = move_all(import);
     if (status == 0)

@@ -45,7 +45,8 @@ static bool read_model(const char *path, const struct conversion_params *params,
         good =
             status == 0 && conversion_run(path, glb, work.path, params, &said, why) && model_outline_read(outline, glb, why, sizeof(why));
         mem_free(glb);
-        work_folder_end(&work, false);
+        if (status == 0)
+            work_folder_end(&work, false);
     }
     if (!good)
         fprintf(stderr, "plantcast nodes: %s: %s\n", path, why);

@@ -148,6 +148,13 @@ bool model_outline_extent(const struct model_box *box, double size[3], double ce
     return true;
 }
 
+/* What import made out of a format that says its units, or after it said what it took them for. */
+static bool knows_units(const struct model_outline *outline)
+{
+    const char *generator = json_string_value(json_object_get(json_object_get(outline->header.json, "asset"), "generator"));
+    return generator && !strncmp(generator, "plantcast-import", strlen("plantcast-import"));
+}
+
 void model_outline_summary(const struct model_outline *outline, struct text *out)
 {
     const struct plant_asset metres = { .unit_m = 1 };
@@ -163,6 +170,6 @@ void model_outline_summary(const struct model_outline *outline, struct text *out
     text_add(out, "; %.1f x %.1f x %.1f m if metres, up y; %.0f m from the origin", size[0], size[1], size[2], vec_length(centre));
     if (outline->header.partial)
         text_add(out, " (some boxes are unknown: instances, or positions without a range)");
-    if (asset_size_doubtful(&metres, size, 0, why))
+    if (!knows_units(outline) && asset_size_doubtful(&metres, size, 0, why))
         text_add(out, "\n%s", why);
 }

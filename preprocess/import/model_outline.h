@@ -40,7 +40,7 @@ void model_outline_add_printable(struct text *out, const char *text);
 void model_outline_path(const struct model_outline *outline, size_t node, struct text *out);
 
 /* Appends what a person must know first: "4,679 nodes, 592 unnamed; 52,830 triangles; 21.5 x 22.6 x 3.9 m if metres, up y; 310 m from the
- * origin", and a question if that cannot be the size of a plant. No line end. */
+ * origin", and a question if that is hardly the size of a plant and the units may be others. No line end. */
 void model_outline_summary(const struct model_outline *outline, struct text *out);
 
 /* Turns a box into size and centre in the frame of a plant: Z up, the last number is the height. Returns false for an empty box. */

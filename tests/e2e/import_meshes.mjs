@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // OBJ, STL, PLY, FBX, COLLADA and 3DS, brought in by `plantcast import`: names, units, axes, and files that are broken.
 import assert from 'node:assert/strict';
-import { spawnSync } from 'node:child_process';
+import { spawn, spawnSync } from 'node:child_process';
+import { once } from 'node:events';
 import { existsSync, mkdtempSync, readdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { test } from 'node:test';
+import { setTimeout } from 'node:timers/promises';
 import { dae, fbx, mtl, obj, ply, stl, stlBinary, threeDs } from './support/mesh_samples.mjs';
 import { BIN, missing } from './support/tiny_plant.mjs';
 
@@ -22,6 +24,11 @@ async function inFolder(f) {
     } finally {
         rmSync(folder, { recursive: true });
     }
+}
+
+async function until(f) {
+    for (let i = 0; i < 300 && !f(); i++)
+        await setTimeout(20);
 }
 
 const near = (a, b) => a.every((v, k) => Math.abs(v - b[k]) < 0.002);
@@ -56,6 +63,21 @@ test('units and axis are guessed and said, or given', { skip }, () => inFolder((
     assert.ok(near(given.size, [6.096, 1.524, 3.048]), JSON.stringify(given.size));
     writeFileSync(join(folder, 'a.dae'), dae());
     assert.match(plantcast('nodes', join(folder, 'a.dae'), '--units', 'mm').stderr, /COLLADA says itself what its units are/);
+}));
+
+test('a signal ends it, and nothing is left behind', { skip }, () => inFolder(async (folder) => {
+    writeFileSync(join(folder, 'a.ply'), ply().slice(0, 200)); // on which Assimp hangs
+    const program = spawn(join(BIN, 'plantcast'), ['import', join(folder, 'a.ply'), '-o', join(folder, 'plant')]);
+    let said = '';
+    program.stderr.on('data', (bytes) => said += bytes);
+    const ended = once(program, 'close');
+    await until(() => existsSync(join(folder, 'plant')) && readdirSync(join(folder, 'plant')).length > 0);
+    await setTimeout(300); // for the reader to begin
+    program.kill('SIGINT');
+    const [code] = await ended;
+    assert.equal(code, 1, said);
+    assert.match(said, /a\.ply: interrupted/);
+    assert.deepEqual(readdirSync(folder).sort(), ['a.ply', 'wedge.mtl']);
 }));
 
 test('a colour is kept', { skip }, () => inFolder((folder) => {

@@ -71,6 +71,9 @@ test('a part of them, a tree, JSON', { skip }, () => {
 test('millimetres taken for metres are doubted', { skip }, () => {
     assert.match(nodes(model([{ mesh: 0 }], 2500)).stdout, /are its units right\? If its numbers are in mm/);
     assert.doesNotMatch(nodes(model([{ mesh: 0 }], 25)).stdout, /units right/);
+    const ours = model([{ mesh: 0 }], 2500);
+    ours.asset.generator = 'plantcast-import';
+    assert.doesNotMatch(nodes(ours).stdout, /units right/, 'import knows');
 });
 
 test('100,000 nodes take seconds', { skip }, () => {

@@ -14,6 +14,7 @@
 #include <cmocka.h>
 
 #include "preprocess/child/child.h"
+#include "preprocess/child/work_folder.h"
 
 static struct text output;
 static char why[CHILD_WHY_BYTES];
@@ -110,6 +111,39 @@ static void test_a_signal_ends_it(void **state)
     assert_true(seconds < 5);
 }
 
+static bool gone_when_signalled;
+static char path_of_work[256];
+
+static void on_signal(int signal)
+{
+    (void)signal;
+    gone_when_signalled = access(path_of_work, F_OK) != 0;
+}
+
+static void test_a_signal_waits_for_the_work_folder(void **state)
+{
+    (void)state;
+    char target[] = "/tmp/plantcast-work-XXXXXX", inside[300];
+    struct work_folder work;
+    assert_non_null(mkdtemp(target));
+    assert_int_equal(rmdir(target), 0);
+    signal(SIGTERM, on_signal);
+    assert_int_equal(work_folder_begin(&work, target), 0);
+    snprintf(path_of_work, sizeof(path_of_work), "%s", work.path);
+    snprintf(inside, sizeof(inside), "%s/file", work.path);
+    FILE *file = fopen(inside, "w");
+    assert_non_null(file);
+    fclose(file);
+    assert_false(work_folder_interrupted());
+    raise(SIGTERM);
+    assert_true(work_folder_interrupted());
+    assert_int_equal(access(inside, F_OK), 0);
+    work_folder_end(&work, false);
+    signal(SIGTERM, SIG_DFL);
+    assert_true(gone_when_signalled);
+    assert_int_not_equal(access(target, F_OK), 0);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -121,6 +155,7 @@ int main(void)
         cmocka_unit_test(test_memory_is_limited),
         cmocka_unit_test(test_there_is_no_network),
         cmocka_unit_test(test_a_signal_ends_it),
+        cmocka_unit_test(test_a_signal_waits_for_the_work_folder),
     };
     cmocka_set_message_output(CM_OUTPUT_TAP);
     int failed = cmocka_run_group_tests_name("child", tests, NULL, NULL);
