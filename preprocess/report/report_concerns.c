@@ -33,10 +33,10 @@ static void add_sensors(struct concerns *concerns, const struct prepare *prepare
 {
     for (size_t s = 0; asset->surface_distances_m && s < asset->sensor_count; s++) {
         double distance_m = (double)asset->surface_distances_m[s];
-        if (distance_m > asset->far_m)
+        const struct plant_tag *tag = &prepare->plant->tags[asset->sensors[s].tag];
+        if (distance_m > asset->far_m && !tag->place_assumed)
             add(concerns, asset, 1000 + distance_m / asset->far_m,
-                mem_printf("%s is %.3f m from its surface (more than %.3f m)", prepare->plant->tags[asset->sensors[s].tag].name, distance_m,
-                           asset->far_m));
+                mem_printf("%s is %.3f m from its surface (more than %.3f m)", tag->name, distance_m, asset->far_m));
     }
 }
 
