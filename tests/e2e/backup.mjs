@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Backup while a daemon records, restore elsewhere, and the two compared; what is damaged or in the way is refused by name.
 import assert from 'node:assert/strict';
-import { appendFileSync, existsSync, mkdirSync, readdirSync, readFileSync, writeFileSync } from 'node:fs';
+import { appendFileSync, existsSync, mkdirSync, readdirSync, readFileSync, statSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
 import { PlainClient } from './support/plain_client.mjs';
@@ -52,6 +52,8 @@ test('what was recorded comes back elsewhere, point by point', { skip }, async (
     assert.ok(names.filter((name) => /^history-\d{4}-\d\d\.sqlite$/.test(name)).length >= 2, names.join(' '));
     assert.ok(names.includes('backup.json') && names.includes('plant.yaml') && names.includes('tags.csv'));
     assert.ok(!names.some((name) => /-wal|-shm|part/.test(name)), names.join(' '));
+    const stamp = statSync(join(plant.file.replace(/yaml$/, 'history'), 'last-backup')).mtimeMs; // which the daemon says in its metrics
+    assert.ok(Math.abs(Date.now() - stamp) < 60000);
     mkdirSync(folder('elsewhere'));
     const other = join(folder('elsewhere'), 'other.yaml');
     const restored = runProgram('plantcast', ['restore', folder('three'), other]);

@@ -103,6 +103,12 @@ plantcast_history_free_bytes 900000000\nplantcast_history_good 0\nplantcast_buil
         });
         assert.deepEqual(state.map(({ answers }) => answers), [true, true, false]);
         assert.equal(state[0].links, 1);
+        await until('how much of the disk is free', async () => (await fleet.state()).plants[0].free_bytes > 0);
+        const backup = runProgram('plantcast', ['backup', plant.file, '-o', join(folder, 'copy')]);
+        assert.equal(backup.code, 0, backup.err);
+        await plant.daemon.stop();
+        await plant.startDaemon('--port', String(plant.port));
+        await until('when the backup was', async () => (await fleet.state()).plants[0].backup_s >= now);
         assert.match(state[0].version, /^\d/);
         assert.deepEqual(state[1].alarms, [2, 0, 14, 0]);
         assert.equal(bad.asked.token, 'Bearer tok-1');
