@@ -79,12 +79,13 @@ static void *ask_again_and_again(void *arg)
 {
     struct service_patience *patience = arg;
     pthread_mutex_lock(&patience->lock);
-    while (!patience->ending) {
+    do { /* once in any case: what was quick has a status too */
         service_notify("EXTEND_TIMEOUT_USEC=%lld\nSTATUS=%s", PATIENCE_S * 1000000ll, patience->status);
         int64_t until_ns = clock_mono_ns() + PATIENCE_EVERY_S * NS_PER_S;
         struct timespec until = { until_ns / NS_PER_S, until_ns % NS_PER_S };
-        pthread_cond_timedwait(&patience->wake, &patience->lock, &until);
-    }
+        if (!patience->ending)
+            pthread_cond_timedwait(&patience->wake, &patience->lock, &until);
+    } while (!patience->ending);
     pthread_mutex_unlock(&patience->lock);
     return NULL;
 }
