@@ -123,6 +123,10 @@ struct plant_mqtt { /* how values are published to a broker; texts that are not 
     bool persistent;             /* the broker keeps what is published while we are away */
     int qos, keepalive_s;
     char *client_id;
+    char *login;                 /* file: a line with the user, one with the password */
+    bool has_tls;
+    char *ca, *certificate, *key; /* of TLS, PEM files; ca NULL: those that the system trusts */
+    char *will;                  /* topic where the broker says "offline" for us once we are gone */
     char *topic;                 /* template of the topics of tags whose address has none */
     char *value, *time, *quality; /* paths in JSON payloads */
     bool rebirth;                /* a Sparkplug node may be asked for its birth certificate: all that is ever published */

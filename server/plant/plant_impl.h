@@ -27,8 +27,10 @@ bool plant_properties_same(const struct plant_asset *a, const struct plant_asset
 /* Reads the list `sources`. */
 void plant_sources_read(struct yaml_reader *reader, yaml_node_t *node, struct plant *plant);
 
+/* Reads a source's `tls`. */
+void plant_mqtt_read_tls(struct yaml_reader *reader, yaml_node_t *node, void *source);
 /* Checks what an MQTT source says, and sets what it does not. */
-void plant_mqtt_check(struct yaml_reader *reader, const struct yaml_map *map, struct plant_source *source);
+void plant_mqtt_check(struct yaml_reader *reader, const struct yaml_map *map, const struct plant *plant, struct plant_source *source);
 void plant_mqtt_finish(struct plant_mqtt *mqtt);
 
 /* For lists of records that begin with `char *id`. Allocates records for the items of a list and sets *count; returns NULL if it is no

@@ -102,6 +102,9 @@ static const struct key source_keys[] = {
     { "value", KEY_NAME, false, offsetof(struct plant_source, mqtt.value), 0, 0, NULL, NULL },
     { "time", KEY_NAME, false, offsetof(struct plant_source, mqtt.time), 0, 0, NULL, NULL },
     { "quality", KEY_NAME, false, offsetof(struct plant_source, mqtt.quality), 0, 0, NULL, NULL },
+    { "login", KEY_NAME, false, offsetof(struct plant_source, mqtt.login), 0, 0, NULL, NULL },
+    { "tls", KEY_CUSTOM, false, 0, 0, 0, NULL, plant_mqtt_read_tls },
+    { "will", KEY_NAME, false, offsetof(struct plant_source, mqtt.will), 0, 0, NULL, NULL },
     { "rebirth", KEY_FLAG, false, offsetof(struct plant_source, mqtt.rebirth), 0, 0, yes_choices, NULL },
     { "file", KEY_NAME, false, offsetof(struct plant_source, file), 0, 0, NULL, NULL },
     { "speed", KEY_NUMBER, false, offsetof(struct plant_source, speed), 1e-3, 1e5, NULL, NULL },
@@ -130,7 +133,8 @@ static void check_keys(struct yaml_reader *reader, const struct yaml_map *map, c
         { "pause_ms", MODBUS }, { "max_registers", MODBUS }, { "max_bits", MODBUS }, { "max_gap", MODBUS }, { "byte_order", MODBUS },
         { "address_base", MODBUS }, { "file", REPLAY }, { "speed", REPLAY }, { "loop", REPLAY },
         { "protocol", MQTT }, { "client_id", MQTT }, { "session", MQTT }, { "qos", MQTT }, { "keepalive_s", MQTT }, { "payload", MQTT },
-        { "topic", MQTT }, { "value", MQTT }, { "time", MQTT }, { "quality", MQTT }, { "rebirth", MQTT },
+        { "topic", MQTT }, { "value", MQTT }, { "time", MQTT }, { "quality", MQTT }, { "rebirth", MQTT }, { "login", MQTT }, { "tls", MQTT },
+        { "will", MQTT },
     };
     static const char *const whats[] = { [REPLAY] = "a replay", [MQTT] = "an mqtt source", [BY_LINE] = "transport rtu",
                                          [BY_SOCKET] = "a modbus source over TCP" };
@@ -201,7 +205,7 @@ static void read_source(struct yaml_reader *reader, yaml_node_t *node, struct pl
     check_way(reader, &map, source);
     check_alone(reader, &map, plant, source);
     if (way_of(source) == MQTT)
-        plant_mqtt_check(reader, &map, source);
+        plant_mqtt_check(reader, &map, plant, source);
 }
 
 void plant_sources_read(struct yaml_reader *reader, yaml_node_t *node, struct plant *plant)

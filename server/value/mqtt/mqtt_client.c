@@ -16,11 +16,14 @@
 
 #include "base/clock.h"
 #include "base/mem.h"
+#include "base/text.h"
 #include "value/lookup.h"
 #include "value/mqtt/sparkplug_payload.h"
 
 enum { TOPICS_AT_ONCE = 8 };                      /* of one request; some brokers refuse more */
 enum { SESSION_KEPT_S = 7 * 86400 };              /* of a persistent session, by the broker */
+enum { LOGIN_BYTES = 4096 };
+static const char SYSTEM_CERTIFICATES[] = "/etc/ssl/certs";
 static const int64_t CHORES_NS = 500 * NS_PER_MS; /* how often the library looks at its keep-alive timer */
 
 struct mqtt_client {
@@ -137,6 +140,58 @@ static void *connect_main(void *arg)
     return NULL;
 }
 
+/* A key that wants a passphrase: nobody is there to be asked. */
+static int no_passphrase(char *out, int bytes, int for_writing, void *arg)
+{
+    (void)out;
+    (void)bytes;
+    (void)for_writing;
+    (void)arg;
+    return 0;
+}
+
+static bool use_tls(struct mqtt_client *client, char why[200])
+{
+    const struct plant_mqtt *mqtt = &client->source->mqtt;
+    if (!mqtt->has_tls)
+        return true;
+    int status = mosquitto_tls_set(client->library, mqtt->ca, mqtt->ca ? NULL : SYSTEM_CERTIFICATES, mqtt->certificate, mqtt->key,
+                                   no_passphrase);
+    if (status != MOSQ_ERR_SUCCESS)
+        snprintf(why, 200, "the files of tls cannot be used: %s", mosquitto_strerror(status));
+    return status == MOSQ_ERR_SUCCESS;
+}
+
+/* Read for each connection: a password may have been changed. */
+static bool log_in(struct mqtt_client *client, char why[200])
+{
+    const char *file = client->source->mqtt.login;
+    size_t bytes;
+    if (!file)
+        return true;
+    char *text = text_read_file(file, LOGIN_BYTES, &bytes), *rest = text;
+    const char *user = text ? strsep(&rest, "\r\n") : NULL;
+    rest += rest && *rest == '\n'; /* behind a carriage return */
+    const char *password = rest ? strsep(&rest, "\r\n") : NULL;
+    bool good = user && *user && mosquitto_username_pw_set(client->library, user, password) == MOSQ_ERR_SUCCESS;
+    if (!good)
+        snprintf(why, 200, "%.100s: %s", file, text ? "expected a line with the user and one with the password" : strerror(errno));
+    if (text)
+        explicit_bzero(text, bytes);
+    mem_free(text);
+    return good;
+}
+
+static bool leave_will(struct mqtt_client *client, char why[200])
+{
+    static const char OFFLINE[] = "offline";
+    const char *topic = client->source->mqtt.will;
+    int status = topic ? mosquitto_will_set(client->library, topic, (int)strlen(OFFLINE), OFFLINE, 1, false) : MOSQ_ERR_SUCCESS;
+    if (status != MOSQ_ERR_SUCCESS)
+        snprintf(why, 200, "will: %s", mosquitto_strerror(status));
+    return status == MOSQ_ERR_SUCCESS;
+}
+
 static bool prepare(struct mqtt_client *client, const char *id, char why[200])
 {
     static pthread_once_t once = PTHREAD_ONCE_INIT;
@@ -152,7 +207,7 @@ static bool prepare(struct mqtt_client *client, const char *id, char why[200])
     mosquitto_connect_v5_callback_set(client->library, on_connect);
     mosquitto_message_v5_callback_set(client->library, on_message);
     mosquitto_subscribe_v5_callback_set(client->library, on_subscribe);
-    return true;
+    return use_tls(client, why) && log_in(client, why) && leave_will(client, why);
 }
 
 struct mqtt_client *mqtt_client_start(const struct plant_source *source, int host, const char *id, const struct mqtt_client_events *events,

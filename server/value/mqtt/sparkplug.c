@@ -127,7 +127,8 @@ static void ask(struct sparkplug *sparkplug, struct node *node, int64_t now_ns)
         return;
     node->is_wanted = false;
     node->asked_ns = now_ns;
-    log_info(sparkplug->params.log, "source %s: %s/%s is asked for its birth certificate", sparkplug->params.source, node->group, node->name);
+    log_info(sparkplug->params.log, "source %s: %s/%s is asked for its birth certificate", sparkplug->params.source, node->group,
+             node->name);
     sparkplug->params.ask(sparkplug->params.arg, node->group, node->name);
 }
 

@@ -17,8 +17,8 @@ enum { TYPE_INT8 = 1, TYPE_INT16, TYPE_INT32, TYPE_INT64, TYPE_UINT8, TYPE_UINT1
 static const char *const type_names[] = { [TYPE_INT8] = "Int8",     [TYPE_INT16] = "Int16",   [TYPE_INT32] = "Int32",
                                           [TYPE_INT64] = "Int64",   [TYPE_UINT8] = "UInt8",   [TYPE_UINT16] = "UInt16",
                                           [TYPE_UINT32] = "UInt32", [TYPE_UINT64] = "UInt64", [TYPE_FLOAT] = "Float",
-                                          [TYPE_DOUBLE] = "Double", [TYPE_BOOLEAN] = "Boolean", "String", "DateTime", "Text", "UUID", "DataSet",
-                                          "Bytes", "File", "Template", "PropertySet", "PropertySetList" };
+                                          [TYPE_DOUBLE] = "Double", [TYPE_BOOLEAN] = "Boolean", "String", "DateTime", "Text", "UUID",
+                                          "DataSet", "Bytes", "File", "Template", "PropertySet", "PropertySetList" };
 
 const char *sparkplug_type_name(uint32_t type)
 {

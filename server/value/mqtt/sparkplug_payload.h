@@ -6,7 +6,15 @@
 #include <stddef.h>
 #include <stdint.h>
 
-enum sparkplug_form { SPARKPLUG_NOTHING, SPARKPLUG_INT, SPARKPLUG_LONG, SPARKPLUG_FLOAT, SPARKPLUG_DOUBLE, SPARKPLUG_BOOLEAN, SPARKPLUG_OTHER };
+enum sparkplug_form { /* of a value on the wire */
+                      SPARKPLUG_NOTHING,
+                      SPARKPLUG_INT,
+                      SPARKPLUG_LONG,
+                      SPARKPLUG_FLOAT,
+                      SPARKPLUG_DOUBLE,
+                      SPARKPLUG_BOOLEAN,
+                      SPARKPLUG_OTHER
+};
 
 struct sparkplug_metric {
     const char *name; /* NULL: by its alias */

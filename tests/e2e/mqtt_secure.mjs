@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Brokers that let only some in: TLS with certificates of both sides, users with passwords, topics that are not for us; the last will.
+import assert from 'node:assert/strict';
+import { spawnSync } from 'node:child_process';
+import { mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
+import { tmpdir } from 'node:os';
+import { join } from 'node:path';
+import { after, afterEach, before, test } from 'node:test';
+import { Broker, makeCertificates, missingBroker } from './support/broker.mjs';
+import { PublishedPlant } from './support/published_plant.mjs';
+import { missing, runProgram } from './support/tiny_plant.mjs';
+
+const absent = missing();
+const options = { skip: absent.length > 0 ? `not built: ${absent.join(', ')}` : missingBroker() ?? false, timeout: 60000 };
+const ROWS = ['TI-1,plant/ti1,,°C,temperature,E-101,0.5,0,0,30,,,,,', 'TI-2,secret/ti2,,°C,temperature,E-101,-0.5,0,0,30,,,,,'];
+const good = { quality_name: 'Good' };
+let folder, broker, plant, publisher;
+const path = (name) => join(folder, name), pem = (name) => readFileSync(path(name));
+
+before(async () => {
+    if (options.skip)
+        return;
+    folder = mkdtempSync(join(tmpdir(), 'plantcast-secrets-'));
+    makeCertificates(folder);
+    makeCertificates(folder, 'other');
+    writeFileSync(path('acl'), 'user reader\ntopic read plant/#\nuser boss\ntopic readwrite #\n');
+    for (const [user, password] of [['reader', 'right'], ['boss', 'bossy']])
+        assert.equal(spawnSync('mosquitto_passwd', [...(user === 'reader' ? ['-c'] : []), '-b', path('users'), user, password]).status, 0);
+    plant = await PublishedPlant.create({ port: 0 });
+});
+afterEach(async () => {
+    publisher?.end(true);
+    publisher = null;
+    await plant?.daemon?.stop();
+    await broker?.destroy();
+});
+after(async () => {
+    await plant?.destroy();
+    if (folder)
+        rmSync(folder, { recursive: true, force: true });
+});
+
+async function start(...more) {
+    broker = plant.broker = await Broker.start(more);
+}
+
+// A daemon that gets no readings, for the reason said.
+async function refused(keys, why) {
+    plant.write(keys, ROWS);
+    assert.equal(plant.plant.prepare().code, 0);
+    await plant.plant.startDaemon();
+    await plant.daemon.line(why, 20000);
+    await plant.until('TI-1', { quality_name: 'Bad_NoCommunication' });
+    await plant.daemon.stop();
+}
+
+test('TLS: the broker has to be who it should be, and so have we', options, async () => {
+    await start(`cafile ${path('ca.crt')}`, `certfile ${path('ca-server.crt')}`, `keyfile ${path('ca-server.key')}`,
+        'require_certificate true');
+    const own = `certificate: ${path('ca-client.crt')}, key: ${path('ca-client.key')}`;
+    await plant.run(`tls: { ca: ${path('ca.crt')}, ${own} }`, ROWS);
+    publisher = await broker.client({ ca: pem('ca.crt'), cert: pem('ca-client.crt'), key: pem('ca-client.key') });
+    await publisher.tell('plant/ti1', 21.5);
+    await plant.until('TI-1', { ...good, value: 21.5 });
+    await publisher.tell('plant/ti1', '5'.repeat(3 << 20)); // more than one record of TLS
+    await plant.until('TI-1', { quality_name: 'Bad_ConfigurationError' });
+    await publisher.tell('plant/ti1', 22);
+    await plant.until('TI-1', { ...good, value: 22 });
+    await plant.daemon.stop();
+    await refused(`tls: { ca: ${path('other.crt')}, ${own} }`, /no readings \(.*certificate verify failed/);
+    await refused(`tls: { ca: system, ${own} }`, /no readings \(.*certificate verify failed/);
+    await refused(`tls: { ca: ${path('ca.crt')} }`, /no readings \(/);
+    await refused(`tls: { ca: ${path('ca.crt')}, certificate: ${path('other-client.crt')}, key: ${path('other-client.key')} }`,
+        /no readings \(/);
+    await refused('payload: number', /no readings \(/);
+});
+
+test('user and password from a file, and a topic that is not for this user', options, async () => {
+    await start(`password_file ${path('users')}`, `acl_file ${path('acl')}`, 'allow_anonymous false');
+    for (const protocol of ['5', '3.1.1']) {
+        writeFileSync(path('login'), 'reader\nwrong\n');
+        plant.write(`login: ${path('login')}, protocol: ${protocol}`, ROWS);
+        assert.equal(plant.plant.prepare().code, 0);
+        await plant.plant.startDaemon();
+        await plant.daemon.line(/no readings \(the broker refuses: .*(not|Not) auth/);
+        writeFileSync(path('login'), 'reader\r\nright\r\n');
+        await plant.daemon.line(/source broker: .*: reading/, 20000);
+        publisher = await broker.client({ username: 'boss', password: 'bossy' });
+        await publisher.tell('plant/ti1', 21.5);
+        await publisher.tell('secret/ti2', 21.5);
+        await plant.until('TI-1', { ...good, value: 21.5 });
+        await plant.until('TI-2', { quality_name: 'Bad_NoCommunication' });
+        await publisher.leave();
+        await plant.daemon.stop();
+    }
+    writeFileSync(path('login'), '\n');
+    await refused(`login: ${path('login')}`, /no readings \(.*login: expected a line with the user and one with the password\)/);
+    rmSync(path('login'));
+    await refused(`login: ${path('login')}`, /no readings \(.*login: No such file or directory\)/);
+});
+
+test('the last will is published when the daemon is killed, and not when it ends', options, async () => {
+    await start();
+    const heard = [];
+    publisher = await broker.client();
+    publisher.on('message', (topic, payload) => heard.push(`${topic} ${payload}`));
+    await new Promise((done) => publisher.subscribe('#', done));
+    await plant.run('will: plantcast/two-boxes', ROWS);
+    await plant.daemon.stop('SIGTERM');
+    await plant.run('will: plantcast/two-boxes', ROWS);
+    assert.deepEqual(heard, []);
+    await plant.daemon.stop('SIGKILL');
+    for (const end = performance.now() + 10000; heard.length === 0 && performance.now() < end;)
+        await new Promise((done) => setTimeout(done, 50));
+    assert.deepEqual(heard, ['plantcast/two-boxes offline'], 'and nothing else was ever published');
+    plant.write('will: plant/ti1', ROWS);
+    assert.match(runProgram('plantcastd', ['--check', plant.file]).err, /will: expected a topic that begins with plantcast\//);
+    plant.write('tls: { ca: system, key: x }', ROWS);
+    assert.match(runProgram('plantcastd', ['--check', plant.file]).err, /tls: expected certificate and key, or neither/);
+});
