@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* plantcast-sim: the devices of a plant as Modbus TCP servers, fed by a simulated process or by recorded series. */
+/* plantcast-sim: the devices of a plant as Modbus TCP servers, and what is published over MQTT, fed by a simulated process or by recorded
+   series. */
 #include "sim.h"
 
 #include <arpa/inet.h>
@@ -35,6 +36,8 @@ static const char usage_text[] =
     "                   Without it, PLANT.map beside PLANT.yaml is read where there is one\n"
     "  --speed X        run X times as fast (1)\n"
     "  --loop           start recorded series again at their end; else they stay at their last value\n"
+    "  --mqtt HOST:PORT publish the tags of MQTT sources, as numbers or JSON, to this broker: one of your own, where nobody\n"
+    "                   takes them for measured\n"
     "  --control PORT   take commands there, on 127.0.0.1 only\n"
     "  --help           print this\n"
     "\n"
@@ -42,7 +45,7 @@ static const char usage_text[] =
     "The column `Sim Loop` says where in the process a tag is; any word will do. Upsets, one after the other:\n";
 
 struct options {
-    const char *plant, *bind, *map_file;
+    const char *plant, *bind, *map_file, *broker;
     int port, control;
     double speed;
     bool loop;
@@ -94,6 +97,7 @@ static bool take_option(struct options *options, int option, const char *text, s
     case 'm': sim_map_add(&options->map, text, "--map", 0, diag); return true;
     case 'f': options->map_file = text; return true;
     case 'l': options->loop = true; return true;
+    case 'q': options->broker = text; return true;
     default: return false;
     }
 }
@@ -106,6 +110,7 @@ static int read_options(struct options *options, int argc, char **argv)
         { "values", required_argument, NULL, 'v' },   { "map", required_argument, NULL, 'm' },
         { "map-file", required_argument, NULL, 'f' }, { "speed", required_argument, NULL, 's' },
         { "loop", no_argument, NULL, 'l' },           { "control", required_argument, NULL, 'c' },
+        { "mqtt", required_argument, NULL, 'q' },
         { "help", no_argument, NULL, 'h' },           { 0 },
     };
     struct diag diag = { 0 };
@@ -176,6 +181,8 @@ static void serve(struct sim *sim, struct sim_port *ports, size_t count, double 
         int64_t now_ns = clock_mono_ns();
         sim_values_step(sim->values, (double)(now_ns - last_ns) / 1e9 * speed);
         sim_update(sim);
+        if (sim->mqtt && !sim->mqtt_paused)
+            sim_mqtt_step(sim->mqtt, sim->values, now_ns, clock_utc_ns());
         last_ns = now_ns;
     }
 }
@@ -194,6 +201,8 @@ static bool listen_and_serve(struct sim *sim, const struct options *options)
     }
     for (size_t i = 0; good && i < sim->device_count; i++)
         printf("plantcast-sim: listening on %s:%d, %zu tags\n", options->bind, sim->devices[i].listen_port, sim->devices[i].tag_count);
+    if (good && sim->mqtt)
+        printf("plantcast-sim: publishing %zu tags to %s\n", sim_mqtt_tag_count(sim->mqtt), options->broker);
     fflush(stdout);
     if (good)
         serve(sim, ports, count, speed);
@@ -217,7 +226,7 @@ static int run(struct options *options)
     }
     if (diag.errors)
         diag_print(&diag, stderr);
-    if (values && sim_init(&sim, plant, values, options->port))
+    if (values && sim_init(&sim, plant, values, options->port, options->broker))
         good = listen_and_serve(&sim, options);
     sim_finish(&sim);
     sim_values_destroy(&values);

@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The simulated Modbus devices of a plant: one for each port that its sources name. Thread: one. */
+/* The simulated Modbus devices of a plant, one for each port that its sources name, and what it publishes. Thread: one. */
 #ifndef DEMO_SIM_H
 #define DEMO_SIM_H
 #include "sim_modbus.h"
+#include "sim_mqtt.h"
 #include "sim_values.h"
 
 struct sim_device {
@@ -17,12 +18,15 @@ struct sim {
     struct sim_values *values;
     struct sim_device *devices;
     size_t device_count;
+    struct sim_mqtt *mqtt; /* NULL: nothing is published */
+    bool mqtt_paused;
     bool quit;
 };
 
 /* Makes devices with registers for all tags of Modbus sources. port > 0: the first device listens there, the others on the ports after it.
-   Returns false if there is nothing to serve, or no memory (printed to stderr). */
-bool sim_init(struct sim *sim, const struct plant *plant, struct sim_values *values, int port);
+   broker: HOST:PORT where tags of MQTT sources are published, or NULL. Returns false if there is nothing to serve, or no memory (printed to
+   stderr). */
+bool sim_init(struct sim *sim, const struct plant *plant, struct sim_values *values, int port, const char *broker);
 void sim_finish(struct sim *sim);
 /* Writes the present values of all tags to the registers. */
 void sim_update(struct sim *sim);

@@ -13,7 +13,7 @@ const char sim_control_help[] =
     "  get TAG         say its present value\n"
     "  fail TAG        refuse every request that touches its registers (exception 2, illegal address)\n"
     "  release TAG     undo set and fail\n"
-    "  pause, resume   stop answering (connections stay open), answer again\n"
+    "  pause, resume   stop answering and publishing (connections stay open), go on\n"
     "  stats           say how much was read and refused, and which upset is running\n"
     "  quit            end plantcast-sim\n"
     "  Every line is answered with `ok`, `ok ...` or `error: ...`.\n";
@@ -37,6 +37,23 @@ static void set_tag(struct sim *sim, size_t tag, const char *text, char *reply, 
         sim_values_force(sim->values, tag, value);
 }
 
+/* Without a device. */
+static void do_with_published(struct sim *sim, const struct command *command, size_t tag, char *reply, size_t bytes)
+{
+    char *end;
+    double value = strtod(command->value, &end);
+    if (!strcmp(command->name, "get"))
+        snprintf(reply, bytes, "ok %.9g", sim_values_at(sim->values, tag));
+    else if (!strcmp(command->name, "release"))
+        sim_values_release(sim->values, tag);
+    else if (!strcmp(command->name, "fail"))
+        snprintf(reply, bytes, "error: %s is not on Modbus", command->tag);
+    else if (end == command->value || *end)
+        snprintf(reply, bytes, "error: %s is not a number", command->value);
+    else
+        sim_values_force(sim->values, tag, value);
+}
+
 static void fail_tag(struct sim *sim, size_t tag, bool failing)
 {
     int unit;
@@ -47,7 +64,9 @@ static void fail_tag(struct sim *sim, size_t tag, bool failing)
 static void do_with_tag(struct sim *sim, const struct command *command, char *reply, size_t bytes)
 {
     int tag = plant_find_tag(sim->plant, command->tag), unit;
-    if (tag < 0 || !sim_device_of(sim, &sim->plant->tags[tag], &unit)) {
+    if (tag >= 0 && sim->mqtt && sim_mqtt_has(sim->plant, (size_t)tag)) {
+        do_with_published(sim, command, (size_t)tag, reply, bytes);
+    } else if (tag < 0 || !sim_device_of(sim, &sim->plant->tags[tag], &unit)) {
         snprintf(reply, bytes, "error: no tag %s", command->tag);
     } else if (!strcmp(command->name, "set")) {
         set_tag(sim, (size_t)tag, command->value, reply, bytes);
@@ -66,6 +85,7 @@ static void pause_all(struct sim *sim, bool paused)
 {
     for (size_t i = 0; i < sim->device_count; i++)
         sim->devices[i].modbus.paused = paused;
+    sim->mqtt_paused = paused;
 }
 
 static void say_stats(const struct sim *sim, char *reply, size_t bytes)

@@ -44,16 +44,18 @@ static bool add_devices(struct sim *sim, int port)
         if (!sim_modbus_init(&device->modbus))
             return false;
     }
-    return sim->device_count > 0;
+    return true;
 }
 
-bool sim_init(struct sim *sim, const struct plant *plant, struct sim_values *values, int port)
+bool sim_init(struct sim *sim, const struct plant *plant, struct sim_values *values, int port, const char *broker)
 {
     *sim = (struct sim){ .plant = plant, .values = values };
-    if (!add_devices(sim, port)) {
+    if (!add_devices(sim, port) || (sim->device_count == 0 && !broker)) {
         fprintf(stderr, "plantcast-sim: %s: no Modbus TCP source to simulate\n", plant->path);
         return false;
     }
+    if (broker && !(sim->mqtt = sim_mqtt_create(plant, broker)))
+        return false;
     for (size_t i = 0; i < plant->tag_count; i++) {
         int unit;
         struct sim_device *device = sim_device_of(sim, &plant->tags[i], &unit);
@@ -68,6 +70,7 @@ bool sim_init(struct sim *sim, const struct plant *plant, struct sim_values *val
 
 void sim_finish(struct sim *sim)
 {
+    sim_mqtt_destroy(&sim->mqtt);
     for (size_t i = 0; i < sim->device_count; i++)
         sim_modbus_finish(&sim->devices[i].modbus);
     mem_free(sim->devices);

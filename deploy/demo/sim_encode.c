@@ -32,6 +32,11 @@ static double unscale(const struct plant_tag *tag, double value)
     return tag->raw_low + share * (tag->raw_high - tag->raw_low);
 }
 
+double sim_encode_raw(const struct plant_tag *tag, double value)
+{
+    return tag->type == DATA_BIT ? (value != 0) != tag->negate : unscale(tag, value);
+}
+
 static uint64_t whole(double raw, double low, double high)
 {
     raw = nearbyint(raw);

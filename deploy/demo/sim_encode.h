@@ -9,6 +9,8 @@
 
 /* Returns how many registers a tag occupies: 1, 2 or 4; 1 for a coil or a discrete input. */
 int sim_encode_width(const struct plant_tag *tag);
+/* Returns the number that a value in engineering units is before scaling; of a bit, 0 or 1. */
+double sim_encode_raw(const struct plant_tag *tag, double value);
 /* Writes the value to `words` (0 or 1 for coils and discrete inputs; for a bit of a register, that bit only). Clamps it to the data type.
    Returns false, with words unchanged, if the type cannot hold NaN or infinity. */
 bool sim_encode(const struct plant_tag *tag, double value, uint16_t *words);

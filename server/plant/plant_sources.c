@@ -133,8 +133,8 @@ static void check_keys(struct yaml_reader *reader, const struct yaml_map *map, c
         { "pause_ms", MODBUS }, { "max_registers", MODBUS }, { "max_bits", MODBUS }, { "max_gap", MODBUS }, { "byte_order", MODBUS },
         { "address_base", MODBUS }, { "file", REPLAY }, { "speed", REPLAY }, { "loop", REPLAY },
         { "protocol", MQTT }, { "client_id", MQTT }, { "session", MQTT }, { "qos", MQTT }, { "keepalive_s", MQTT }, { "payload", MQTT },
-        { "topic", MQTT }, { "value", MQTT }, { "time", MQTT }, { "quality", MQTT }, { "rebirth", MQTT }, { "login", MQTT }, { "tls", MQTT },
-        { "will", MQTT },
+        { "topic", MQTT }, { "value", MQTT }, { "time", MQTT }, { "quality", MQTT }, { "rebirth", MQTT }, { "login", MQTT },
+        { "tls", MQTT }, { "will", MQTT },
     };
     static const char *const whats[] = { [REPLAY] = "a replay", [MQTT] = "an mqtt source", [BY_LINE] = "transport rtu",
                                          [BY_SOCKET] = "a modbus source over TCP" };

@@ -151,6 +151,23 @@ test('payloads that are none are refused by name, and nothing else suffers', opt
     await until('XS-1', { ...good, value: 1 });
 });
 
+test('plantcast-sim publishes what the tags of MQTT sources find', options, async () => {
+    const sim = async (...args) => plant.plant.startSim('--mqtt', `127.0.0.1:${broker.port}`, ...args);
+    for (const [keys, rows, values] of [['topic: "plant/{asset}/{tag}", poll_ms: 100', TAGS.number, [['PI-1', 5], ['XS-1', 1]]],
+        ['payload: json, topic: "plant/{tag}", time: meta.ts, quality: meta.q, poll_ms: 100', TAGS.json, [['TI-1', 40.5], ['PI-1', 5]]]]) {
+        await run(keys, rows);
+        await sim();
+        await until('TI-2', good);
+        for (const [name, value] of values) {
+            assert.equal(await plant.plant.tell(`set ${name} ${value}`), 'ok');
+            await until(name, { ...good, value });
+        }
+        assert.match(await plant.plant.tell('fail PI-1'), /^error: PI-1 is not on Modbus/);
+        await plant.plant.sim.stop();
+        await plant.daemon.stop();
+    }
+});
+
 test('what cannot be is said of the plant file', options, async () => {
     const said = (keys, rows) => {
         plant.write(keys, rows);

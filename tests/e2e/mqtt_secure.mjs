@@ -11,7 +11,7 @@ import { PublishedPlant } from './support/published_plant.mjs';
 import { missing, runProgram } from './support/tiny_plant.mjs';
 
 const absent = missing();
-const options = { skip: absent.length > 0 ? `not built: ${absent.join(', ')}` : missingBroker() ?? false, timeout: 60000 };
+const options = { skip: absent.length > 0 ? `not built: ${absent.join(', ')}` : missingBroker() ?? false, timeout: 240000 };
 const ROWS = ['TI-1,plant/ti1,,°C,temperature,E-101,0.5,0,0,30,,,,,', 'TI-2,secret/ti2,,°C,temperature,E-101,-0.5,0,0,30,,,,,'];
 const good = { quality_name: 'Good' };
 let folder, broker, plant, publisher;

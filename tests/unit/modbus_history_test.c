@@ -187,7 +187,7 @@ static void make_plant(struct replay *r)
     r->port = r->plant->sources[0].port = free_port();
     r->plant->sources[0].poll_ms = 100;
     r->plant->sources[0].timeout_ms = 500;
-    assert_true(sim_init(&r->sim, r->plant, r->values, 0));
+    assert_true(sim_init(&r->sim, r->plant, r->values, 0, NULL));
     r->held = mem_array(r->plant->tag_count, sizeof(*r->held));
     r->told = mem_array(r->plant->tag_count, sizeof(*r->told));
     r->spike = -1;

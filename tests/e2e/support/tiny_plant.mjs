@@ -138,7 +138,7 @@ export class TinyPlant {
     async startSim(...args) {
         this.controlPort = await freePort();
         this.sim = new Program('plantcast-sim', [this.file, '--control', String(this.controlPort), ...args]);
-        await this.sim.line(/^plantcast-sim: listening/m);
+        await this.sim.line(/^plantcast-sim: (listening|publishing)/m);
     }
 
     // From now on the daemon is somebody whom the rights of files hold for, as its service is; root they do not.
