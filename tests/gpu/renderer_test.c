@@ -408,13 +408,15 @@ static void draw_much(void)
         view.width_px = sizes[i % 3][0];
         view.height_px = sizes[i % 3][1];
         view.tier = i % 2 ? TIER_REFINED : TIER_PREVIEW;
-        view.look = i % 5 == 4 ? LOOK_MATERIALS : i % 5 == 3 ? LOOK_GLOSSY : LOOK_DEFAULT; /* glossy and refined: by GL on any machine */
+        view.look = i % 5 == 4 ? LOOK_MATERIALS : i % 5 == 3 ? LOOK_GLOSSY : LOOK_DEFAULT;
+        renderer_use_gl(stand.renderer, i % 5 == 3); /* on any machine */
         view.light_dir[0] = i % 4 == 3 ? 0.6 : 0;
         view.light_dir[1] = 0;
         view.light_dir[2] = i % 4 == 3 ? 0.8 : 1;
         struct frame *frame = stand_draw(&stand, &view);
         frame_unref(&frame);
     }
+    renderer_use_gl(stand.renderer, false);
 }
 
 static size_t caches(void)

@@ -93,6 +93,8 @@ static void test_home(void **state)
     assert_like_gl(&view, 0.005);
     view.look = LOOK_MATERIALS;
     assert_like_gl(&view, 0.01);
+    view.look = LOOK_GLOSSY;
+    assert_like_gl(&view, 0.01);
     view.look = LOOK_DEFAULT;
     view.range_min = 10;
     view.color_scale.log = true;
@@ -157,7 +159,7 @@ static void test_lines_and_scales(void **state)
             view.range_min = 10;
             view.color_scale.log = true;
         }
-        view.look = i % 4 == 3 ? LOOK_FLAT : LOOK_DEFAULT;
+        view.look = i % 4 == 3 ? LOOK_FLAT : i >= 5 ? LOOK_GLOSSY : LOOK_DEFAULT;
         assert_like_gl(&view, 0.02);
     }
 }

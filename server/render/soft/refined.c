@@ -56,6 +56,8 @@ static void find_tones(struct refiner *refiner)
         double x = (double)i / TONES;
         refiner->tones[i] = (float)srgb_from_linear(x);
     }
+    for (int i = 0; i < 256; i++)
+        refiner->linear[i] = (float)linear_from_srgb(i / 255.0);
 }
 
 struct refiner *refiner_create(struct workers *workers, const struct gpu_scene *gpu_scene, const struct sky *sky, struct soft *soft,
@@ -140,13 +142,14 @@ void refiner_rest(struct refiner *refiner)
 bool refiner_can(const struct refiner *refiner, const struct frame_context *context)
 {
     const struct view *view = context->view;
-    if (view->tier != TIER_REFINED || view->look == LOOK_GLOSSY || context->reference)
+    if (view->tier != TIER_REFINED || context->reference)
         return false;
     for (size_t i = 0; i < context->visible_count; i++) {
         int asset = context->visible[i];
         size_t model = (size_t)(context->gpu_scene->of_asset[asset] - context->gpu_scene->models);
         bool field = context->fields[asset] != NULL, lost = field && !context->fields[asset]->slice; /* only GL hatches without scalars */
-        if (lost || refiner->masked[model] || (!field && (refiner->textured[model] || refiner->blended[model])))
+        bool textures = refiner->textured[model] && (!field || view->look == LOOK_GLOSSY);
+        if (lost || refiner->masked[model] || textures || (!field && refiner->blended[model]))
             return false;
     }
     return true;
@@ -251,7 +254,7 @@ static void note_meshes(struct refined *refined)
         mem_grow(&refined->parts, &refined->part_capacity, count + found->count, sizeof(*refined->parts));
         for (size_t i = 0; i < found->count; i++)
             refined->parts[count++] = (struct part_place){ (uint32_t)m, found->items[i].part };
-        if (mesh->has_field)
+        if (mesh->has_field && refined->context->view->look != LOOK_GLOSSY)
             visibility_buffer_add_mesh(refined->buffer, &(struct visibility_mesh){
                                                             .asset = mesh->asset,
                                                             .first_vertex = mesh->first_vertex,
@@ -462,7 +465,10 @@ bool refiner_keep(struct refiner *refiner, struct refined *refined, const struct
     refined->buffer = NULL;
     if (buffer->lined)
         isolines_find(context, points, buffer->depth, (size_t)buffer->width_px, frame);
-    soft_give(&refiner->kept, context, buffer, frame);
+    if (context->view->look == LOOK_GLOSSY) /* colours of the field are mixed with light */
+        visibility_buffer_destroy(&buffer);
+    else
+        soft_give(&refiner->kept, context, buffer, frame);
     return true;
 }
 

@@ -44,6 +44,7 @@ struct refiner {
     struct refined_surroundings surroundings;
     struct refined_light light;
     float tones[TONES + 1]; /* sRGB of linear light, 0..1 */
+    float linear[256];      /* the other way round, of bytes */
     struct refined *spare;
     struct visibility_store kept; /* struct visibility_buffer */
 };

@@ -7,6 +7,7 @@
 
 struct coloring {
     const struct visibility_buffer *buffer;
+    const float *scale;
     const uint32_t *colormap;
     struct resolve_lines lines;
     float pattern_px;
@@ -60,7 +61,7 @@ static float slope_at(const struct coloring *coloring, const struct visibility_s
     float by_y = d1 * (slopes->w1_y - w1 * slopes->sum_y) + d2 * (slopes->w2_y - w2 * slopes->sum_y);
     float slope = hypotf(by_x, by_y) * fabsf(over);
     if (coloring->log)
-        return here > 1e-30f ? slope * coloring->buffer->scale[1] * 1.44269504f / here : 0;
+        return here > 1e-30f ? slope * coloring->scale[1] * 1.44269504f / here : 0;
     return slope * (1 / COLUMNS_OF_RANGE);
 }
 
@@ -81,23 +82,27 @@ static uint32_t lined(uint32_t color, float part)
 
 static inline float column_of_carried(const struct coloring *coloring, float carried)
 {
-    return coloring->log ? column_of(lanes_log2((lanes){ 0 } + carried)[0], coloring->buffer->scale) : carried;
+    return coloring->log ? column_of(lanes_log2((lanes){ 0 } + carried)[0], coloring->scale) : carried;
 }
 
-/* Where a corner has flags, or a line may run. */
-static uint32_t flagged_color(const struct coloring *coloring, const struct visibility_band *band, uint32_t triangle, uint32_t weights,
-                              uint8_t row, float x, float y)
+struct place { /* of the field: what its corners carry, and their weights */
+    float carried[3], weights[3];
+    uint32_t flags[3];
+    const struct visibility_slopes *slopes;
+    uint8_t row;
+    float x, y;
+};
+
+static uint32_t color_of_place(const struct coloring *coloring, const struct place *place)
 {
-    const struct visibility_buffer *buffer = coloring->buffer;
-    const uint32_t *colors = coloring->colormap + row * COLORMAP_COLUMNS, *vertices = band->triangles[triangle];
-    float w1 = (float)(weights & 0xffff) * WEIGHT, w2 = (float)(weights >> 16) * WEIGHT, w[3] = { 1 - w1 - w2, w1, w2 };
-    float at[3], carried = 0, none = 0, little = 0, free = 0;
+    const uint32_t *colors = coloring->colormap + place->row * COLORMAP_COLUMNS;
+    const float *w = place->weights;
+    float carried = 0, none = 0, little = 0, free = 0, x = place->x, y = place->y;
     for (int i = 0; i < 3; i++) {
-        at[i] = buffer->plain[vertices[i]];
-        carried += w[i] * at[i];
-        none += w[i] * soft_lacking(buffer->flags[vertices[i]]);
-        little += w[i] * soft_uncertain(buffer->flags[vertices[i]]);
-        free += w[i] * soft_no_limits(buffer->flags[vertices[i]]);
+        carried += w[i] * place->carried[i];
+        none += w[i] * soft_lacking(place->flags[i]);
+        little += w[i] * soft_uncertain(place->flags[i]);
+        free += w[i] * soft_no_limits(place->flags[i]);
     }
     if (none > 0.5f)
         return mix(colors[COLORMAP_PATTERNS + PATTERN_HATCH_LIGHT], colors[COLORMAP_PATTERNS + PATTERN_HATCH_DARK],
@@ -111,7 +116,43 @@ static uint32_t flagged_color(const struct coloring *coloring, const struct visi
         color = mix(color, colors[COLORMAP_PATTERNS + PATTERN_STIPPLE], clamped(stipple(x, y, coloring->pattern_px), 0, 1));
     if (!(coloring->lines.line_px > 0))
         return color;
-    return lined(color, line_part(coloring, column, slope_at(coloring, &band->slopes[triangle], at, w1, w2, carried, x, y)));
+    return lined(color, line_part(coloring, column, slope_at(coloring, place->slopes, place->carried, w[1], w[2], carried, x, y)));
+}
+
+/* Where a corner has flags, or a line may run. */
+static uint32_t flagged_color(const struct coloring *coloring, const struct visibility_band *band, uint32_t triangle, uint32_t weights,
+                              uint8_t row, float x, float y)
+{
+    float w1 = (float)(weights & 0xffff) * WEIGHT, w2 = (float)(weights >> 16) * WEIGHT;
+    struct place place = { .weights = { 1 - w1 - w2, w1, w2 }, .row = row, .x = x, .y = y };
+    for (int i = 0; i < 3; i++) {
+        place.carried[i] = coloring->buffer->plain[band->triangles[triangle][i]];
+        place.flags[i] = coloring->buffer->flags[band->triangles[triangle][i]];
+    }
+    if (coloring->lines.line_px > 0)
+        place.slopes = &band->slopes[triangle];
+    return color_of_place(coloring, &place);
+}
+
+uint32_t resolve_place(const float scale[4], const uint32_t *colormap, const struct resolve_lines *lines, float pattern_px,
+                       const struct resolve_place *at)
+{
+    bool log = is_log(scale);
+    struct coloring coloring = {
+        .scale = scale,
+        .colormap = colormap,
+        .lines = *lines,
+        .pattern_px = pattern_px,
+        .log = log,
+        .rich = log || lines->line_px > 0,
+    };
+    struct place place = { .slopes = &at->slopes, .row = at->row, .x = at->x, .y = at->y };
+    for (int i = 0; i < 3; i++) {
+        place.carried[i] = log ? at->scalars[i]->value : column_of(at->scalars[i]->value, scale);
+        place.flags[i] = soft_flags(at->scalars[i]);
+        place.weights[i] = at->weights[i];
+    }
+    return color_of_place(&coloring, &place);
 }
 
 /* Four rows of four, the first three columns of them. */
@@ -172,9 +213,9 @@ SOFT_INLINE lanes_int may_be_lined(const struct coloring *coloring, const struct
     lanes slope = lanes_root((by_x * by_x + by_y * by_y) * over * over), column = carried;
     if (coloring->log) {
         lanes_int counts = carried > 1e-30f;
-        slope *= coloring->buffer->scale[1] * 1.44269504f;
+        slope *= coloring->scale[1] * 1.44269504f;
         slope = lanes_choose(counts, slope / lanes_choose(counts, carried, none + 1.0f), none);
-        column = columns_of_logs(carried, coloring->buffer->scale);
+        column = columns_of_logs(carried, coloring->scale);
     } else {
         slope *= 1 / COLUMNS_OF_RANGE;
     }
@@ -194,7 +235,7 @@ SOFT_INLINE lanes_int field_colors(const struct coloring *coloring, const struct
     *known = carried == carried;
     carried = lanes_choose(*known, carried, (lanes){ 0 });
     if (coloring->log)
-        carried = columns_of_logs(carried, coloring->buffer->scale);
+        carried = columns_of_logs(carried, coloring->scale);
     lanes_int columns = lanes_whole(lanes_clamp(carried, 0, COLORMAP_PLACES + 1));
     for (int i = 0; i < LANES; i++)
         colors[i] = (int32_t)coloring->colormap[(rows >> (8 * i) & 0xff) * COLORMAP_COLUMNS + (uint32_t)columns[i]];
@@ -355,6 +396,8 @@ void resolve_colors(const struct visibility_buffer *buffer, const uint32_t *colo
                     struct workers *workers, int first, int count, struct frame *frame)
 {
     bool log = is_log(buffer->scale);
-    struct coloring coloring = { buffer, colormap, *lines, pattern_px, log, log || lines->line_px > 0, frame, (size_t)first };
+    struct coloring coloring = {
+        buffer, buffer->scale, colormap, *lines, pattern_px, log, log || lines->line_px > 0, frame, (size_t)first
+    };
     workers_for(workers, (size_t)count, 2, color_bands, &coloring);
 }

@@ -126,7 +126,7 @@ static int group_samples(struct recent *recent, const struct soft_sample samples
 static void add_item(const struct refined *refined, struct row *row, const struct item *item, int column)
 {
     const struct soft_mesh *mesh = &refined->soft->meshes[item->triangle.mesh];
-    if (mesh->has_field && !(item->triangle.id & ID_BACK)) {
+    if (mesh->has_field && !(item->triangle.id & ID_BACK) && refined->context->view->look != LOOK_GLOSSY) {
         row->field_columns[row->field_count] = column;
         row->field[row->field_count++] = *item;
     } else {

@@ -169,6 +169,47 @@ SOFT_INLINE vec mute(vec c)
     return between(grey(grey_of(c)), grey(all(0.88f)), all(0.48f));
 }
 
+/* --- glossy ------------------------------------------------------------------------------------------------------------------- */
+
+static uint32_t color_of_field(const struct refined *refined, const struct item *item, const struct spot *spot, size_t lane)
+{
+    static const struct scalar nothing = { .lacking = 255 };
+    const struct soft *soft = refined->soft;
+    const struct soft_mesh *mesh = &soft->meshes[item->triangle.mesh];
+    struct resolve_lines lines = { soft->block.lines[0], soft->lines };
+    struct resolve_place place = { .row = (uint8_t)soft->block.shade[1], .x = item->x, .y = item->y };
+    for (int k = 0; k < 3; k++) {
+        place.scalars[k] = mesh->scalars ? &mesh->scalars[item->triangle.vertices[k]] : &nothing;
+        place.weights[k] = spot->weights[k][lane];
+    }
+    if (lines.line_px > 0) {
+        double weights[3][3];
+        soft_weights(mesh, item->triangle.vertices, weights);
+        place.slopes = visibility_slopes_of(weights);
+    }
+    return resolve_place(soft->block.scale, soft->colormap, &lines, soft->block.scale[3], &place);
+}
+
+/* Where a glossy frame shows the field, that is the surface's colour: GLOSSY in shaders/refined.frag. Returns where. */
+SOFT_INLINE lanes_int gloss(const struct refined *refined, const struct item *items, size_t count, const struct spot *spot,
+                            struct surface *surface)
+{
+    const float *linear = refined->refiner->linear;
+    lanes_int glossy = { 0 };
+    for (size_t i = 0; i < count && refined->context->view->look == LOOK_GLOSSY; i++) {
+        if (!refined->soft->meshes[items[i].triangle.mesh].has_field)
+            continue;
+        uint32_t color = color_of_field(refined, &items[i], spot, i);
+        glossy[i] = -1;
+        surface->base.x[i] = linear[color >> 16 & 0xff];
+        surface->base.y[i] = linear[color >> 8 & 0xff];
+        surface->base.z[i] = linear[color & 0xff];
+    }
+    surface->metallic = lanes_choose(glossy, all(0), surface->metallic);
+    surface->open = lanes_choose(glossy, 0.3f + 0.7f * surface->open, surface->open);
+    return glossy;
+}
+
 SOFT_KERNEL void refined_shade_surfaces(const struct refined *refined, const struct item *items, size_t count, uint32_t *colors)
 {
     const struct refiner *refiner = refined->refiner;
@@ -190,12 +231,14 @@ SOFT_KERNEL void refined_shade_surfaces(const struct refined *refined, const str
         };
         if (lanes_any(dot(n, l) > 0.0f))
             surface.sun_visible = sun_at(refined, &spot, n);
-        vec c = plus(sky_shade(&refiner->surroundings, &surface, v), sun_shade(&surface, v, l));
+        lanes_int glossy = gloss(refined, items + first, some, &spot, &surface);
+        lanes sky_part = lanes_choose(glossy, all(1.45f), all(1)), sun_part = lanes_choose(glossy, all(0.75f), all(1));
+        vec c = plus(times(sky_shade(&refiner->surroundings, &surface, v), sky_part), times(sun_shade(&surface, v, l), sun_part));
         c = tone_map(plus(c, (vec){ m[EMISSIVE], m[EMISSIVE + 1], m[EMISSIVE + 2] }));
         c = (vec){ srgb_from_linear(refiner, c.x), srgb_from_linear(refiner, c.y), srgb_from_linear(refiner, c.z) };
-        c = bright > 0 ? times(mute(c), all(bright)) : c;
-        c = greys ? grey(grey_of(c)) : c;
-        lanes_int packed = pack_color(c.x, c.y, c.z);
+        vec muted = bright > 0 ? times(mute(c), all(bright)) : c;
+        muted = greys ? grey(grey_of(muted)) : muted;
+        lanes_int packed = lanes_choose_int(glossy, pack_color(c.x, c.y, c.z), pack_color(muted.x, muted.y, muted.z));
         if (lanes_any(spot.back & spot.cut)) {
             lanes_int inside = inside_color((lanes[3]){ v.x, v.y, v.z }, (lanes[3]){ spot.normal.x, spot.normal.y, spot.normal.z },
                                             refined->soft->block.up);

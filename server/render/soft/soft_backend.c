@@ -63,7 +63,7 @@ static bool begin(struct renderer *renderer, struct render_job *job, const struc
         job->of.soft->refined = refined_begin(refiner);
         if (!job->of.soft->refined)
             return false;
-        job->keeps = true;
+        job->keeps = job->view.look != LOOK_GLOSSY;
     }
     return true;
 }

@@ -80,13 +80,12 @@ uint32_t visibility_add_triangle(struct visibility_band *band, const uint32_t ve
     return (uint32_t)band->triangle_count++;
 }
 
-void visibility_add_slopes(struct visibility_band *band, const double weights[3][3])
+struct visibility_slopes visibility_slopes_of(const double weights[3][3])
 {
     double sum[3];
     for (int c = 0; c < 3; c++)
         sum[c] = weights[0][c] + weights[1][c] + weights[2][c];
-    mem_grow(&band->slopes, &band->slope_capacity, band->triangle_count, sizeof(*band->slopes));
-    band->slopes[band->triangle_count - 1] = (struct visibility_slopes){
+    return (struct visibility_slopes){
         .w1_x = (float)weights[1][0],
         .w1_y = (float)weights[1][1],
         .w2_x = (float)weights[2][0],
@@ -95,6 +94,12 @@ void visibility_add_slopes(struct visibility_band *band, const double weights[3]
         .sum_y = (float)sum[1],
         .sum = (float)sum[2],
     };
+}
+
+void visibility_add_slopes(struct visibility_band *band, const double weights[3][3])
+{
+    mem_grow(&band->slopes, &band->slope_capacity, band->triangle_count, sizeof(*band->slopes));
+    band->slopes[band->triangle_count - 1] = visibility_slopes_of(weights);
 }
 
 void visibility_buffer_add_mesh(struct visibility_buffer *buffer, const struct visibility_mesh *mesh)

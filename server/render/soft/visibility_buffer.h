@@ -97,4 +97,18 @@ void visibility_add_slopes(struct visibility_band *band, const double weights[3]
 void resolve_colors(const struct visibility_buffer *buffer, const uint32_t *colormap, const struct resolve_lines *lines, float pattern_px,
                     struct workers *workers, int first, int count, struct frame *frame);
 
+/* Weights of a triangle's corners over the picture, as planes, up to a factor. */
+struct visibility_slopes visibility_slopes_of(const double weights[3][3]);
+
+struct resolve_place {               /* of the field, in a pixel */
+    const struct scalar *scalars[3]; /* of the corners of its triangle */
+    float weights[3];
+    struct visibility_slopes slopes; /* looked at where there are isolines */
+    uint8_t row;                     /* of the colour map */
+    float x, y;                      /* in the picture */
+};
+/* Returns the colour of a place. scale: of struct frame_uniforms; the rest as resolve_colors(). Any thread. */
+uint32_t resolve_place(const float scale[4], const uint32_t *colormap, const struct resolve_lines *lines, float pattern_px,
+                       const struct resolve_place *place);
+
 #endif
