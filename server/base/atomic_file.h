@@ -21,7 +21,7 @@ int atomic_file_write(struct atomic_file *file, const void *bytes, size_t count)
 int atomic_file_commit(struct atomic_file *file, bool durable);
 void atomic_file_abandon(struct atomic_file *file); /* removes it; none is fine */
 
-/* Writes all at once, with the usual rights, and commits; not durable. */
+/* Writes a whole file (mode 0666 less the umask) and commits it; not durable. Returns 0, or -errno. */
 int atomic_file_put(const char *path, const void *bytes, size_t count);
 struct atomic_file_part {
     const void *bytes;

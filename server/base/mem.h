@@ -12,7 +12,9 @@ char *mem_printf(const char *fmt, ...) __attribute__((format(printf, 1, 2)));
 /* Grows an array, `*(T **)array_ptr` with elements of bytes_each, to hold at least `need` elements. New elements are zeroed. */
 void mem_grow(void *array_ptr, size_t *capacity, size_t need, size_t bytes_each);
 
-void *mem_try_array(size_t count, size_t bytes_each); /* returns NULL if too large or out of memory */
+/* Returns zeroed memory, or NULL if it is too large or out of memory. */
+void *mem_try_array(size_t count, size_t bytes_each);
+/* Frees what any of these returned; accepts NULL. */
 void mem_free(void *p);
 
 #endif

@@ -24,7 +24,7 @@ struct camera_window { /* a part of the picture, each way from -1 to 1. Zero: al
    height is chosen. It fills that window. */
 void camera_fit_along(struct camera *camera, const double forward[3], const double min_m[3], const double max_m[3], double aspect,
                       const struct camera_window *window);
-/* The same for places, at least one, in perspective; else for the box around them. */
+/* Does the same for count >= 1 points: a perspective camera fits the points themselves, an orthographic one their bounding box. */
 void camera_fit_points(struct camera *camera, const double forward[3], const double (*points_m)[3], size_t count, double aspect,
                        const struct camera_window *window);
 /* Unit vectors of the picture. */

@@ -49,7 +49,7 @@ void session_on_oversize(struct session *session, size_t count, int64_t now_ns);
 void session_too_fast(struct session *session, int64_t count, const char *whose);
 /* Does what time alone brings. To be called every 100 ms or so, or once a second while all sessions rest. */
 void session_on_tick(struct session *session, int64_t now_ns);
-/* Returns whether time alone brings nothing that could not wait for a second: no frame is wanted or under way, no text is owed. */
+/* Returns whether session_on_tick() has nothing to do within the next second: no frame is wanted or under way, and no text is due. */
 bool session_rests(const struct session *session, int64_t now_ns);
 /* Notes that a reading which it is shown changed at data_ns. */
 void session_on_data(struct session *session, int64_t data_ns);

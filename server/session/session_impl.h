@@ -44,7 +44,7 @@ bool session_reserve_pixels(struct session *session, int width_px, int height_px
 void session_release_pixels(struct session *session);
 /* Returns whether its view is counted, so that frames may be drawn. */
 bool session_has_pixels(const struct session *session);
-/* Acts on `visible`. */
+/* Acts on the message `visible`, which says whether the client's page is on a screen: a hidden one gets no frames. */
 void session_on_visible(struct session *session, bool visible, int64_t now_ns);
 /* Gives pixels back while the page is hidden, and takes them again. Every tick. */
 void session_keep_pixels(struct session *session, int64_t now_ns);

@@ -66,7 +66,8 @@ int request_answer_error(struct request *request, const struct message_error *er
 void request_hold(struct request *request, char *body, size_t count);
 /* Writes status line and headers. Returns false when the connection is gone. */
 bool request_write_head(struct request *request, int status, const char *type, const char *extra_name, const char *extra);
-/* Ends the request, whose answer was sent completely. */
+/* Ends the request once its answer is sent completely, and frees what it holds. Returns what the callback of libwebsockets returns: 0 keeps
+   the connection, -1 closes it. */
 int request_done(struct request *request);
 /* Decodes the arguments of the query. Returns false with *error saying what is wrong. */
 bool request_args(struct lws *wsi, struct args *args, struct message_error *error);

@@ -64,7 +64,7 @@ void soft_raster_samples(const struct soft *soft, const struct soft_rect *rect, 
 /* The closed bodies that a part bounds, into the marks. */
 void soft_count_part(struct soft_tile *tile, const struct soft_found *found, const struct soft_item *item);
 void soft_cap_tile(struct soft_tile *tile); /* from these: marks and depth of what is cut open */
-/* Vertices of a part that lie beyond a plane that cuts are to be cut off. */
+/* Marks the vertices of the tile's part that a section plane cuts off (inverse_w 0). */
 void soft_cut_corners(struct soft_tile *tile);
 /* The faces of a part out of corners that were placed, some of them to be cut off, and that carry. */
 void soft_cut_faces(struct soft_tile *tile, bool both_sides);
