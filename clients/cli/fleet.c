@@ -7,18 +7,21 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 
+#include "access/access.h"
 #include "base/clock.h"
 #include "base/embedded.h"
 #include "base/mem.h"
 #include "commands.h"
 #include "fleet_poll.h"
 
-enum { PORT = 8090, HEADER_BYTES = 2048, CHUNK = 16384 };
+enum { PORT = 8090, HEADER_BYTES = 2048, CHUNK = 16384, NAME_BYTES = 256 };
 
 struct site {
     struct fleet_poll *poll;
     const struct fleet_file *file;
+    const char *host; /* a name that it is reached by besides local ones; NULL: none */
 };
 
 struct answer { /* of one connection */
@@ -32,11 +35,12 @@ static atomic_bool ending;
 static void print_usage(FILE *out)
 {
     fputs("usage: plantcast fleet FLEET.yaml [--check]\n"
-          "       plantcast fleet FLEET.yaml --serve [--address ADDRESS] [--port PORT]\n"
+          "       plantcast fleet FLEET.yaml --serve [--address ADDRESS] [--port PORT] [--host NAME]\n"
           "\n"
           "Serves one page, and one /metrics, over the servers of many plants: a small picture of each, alarms by priority, links that\n"
           "are down, version, certificate, disk, last backup. A plant that does not answer says since when. The page has no log-in:\n"
           "ADDRESS is one of this machine (127.0.0.1, the default, or ::1); a proxy before it decides who may see it.\n"
+          "NAME is what people reach that proxy by; requests for other names are refused, since a foreign page may have sent them.\n"
           "PORT: default 8090; 0: any that is free. INSTALL.md describes the file.\n",
           out);
 }
@@ -102,18 +106,27 @@ static int begin_answer(struct lws *wsi, struct answer *answer, int status, cons
     return 0;
 }
 
+/* A page of a foreign name that leads here (DNS rebinding) may not ask. */
+static bool is_for_us(const struct site *site, struct lws *wsi)
+{
+    char host[NAME_BYTES], name[NAME_BYTES];
+    if (lws_hdr_copy(wsi, host, sizeof(host), WSI_TOKEN_HOST) <= 0 || !access_host_name(host, name, sizeof(name)))
+        return false;
+    return access_name_is_local(name) || (site->host && !strcasecmp(site->host, name));
+}
+
 static int on_request(struct lws *wsi, struct answer *answer, const char *path)
 {
     const struct site *site = lws_context_user(lws_get_context(wsi));
     const char *type = "text/plain; charset=utf-8";
-    bool gets = lws_hdr_total_length(wsi, WSI_TOKEN_GET_URI) > 0;
+    bool may = is_for_us(site, wsi), gets = lws_hdr_total_length(wsi, WSI_TOKEN_GET_URI) > 0;
     mem_free(answer->body);
     *answer = (struct answer){ 0 };
-    char *body = gets ? answer_to(site, path, &answer->bytes, &type) : NULL;
-    int status = body ? HTTP_STATUS_OK : HTTP_STATUS_NOT_FOUND;
+    char *body = may && gets ? answer_to(site, path, &answer->bytes, &type) : NULL;
+    int status = body ? HTTP_STATUS_OK : may ? HTTP_STATUS_NOT_FOUND : HTTP_STATUS_FORBIDDEN;
     if (!body) {
         type = "text/plain; charset=utf-8";
-        body = mem_strdup("There is nothing here.\n");
+        body = mem_strdup(may ? "There is nothing here.\n" : "This name is not served here; see --host.\n");
         answer->bytes = strlen(body);
     }
     answer->body = mem_array(LWS_PRE + answer->bytes + 1, 1);
@@ -170,10 +183,10 @@ static void on_signal(int number)
         lws_cancel_service(context);
 }
 
-static int serve(const struct fleet_file *file, const char *address, int port)
+static int serve(const struct fleet_file *file, const char *address, int port, const char *host)
 {
     static const struct lws_protocols protocols[] = { { "http", on_event, sizeof(struct answer), 0, 0, NULL, 0 }, { 0 } };
-    struct site site = { fleet_poll_start(file), file };
+    struct site site = { fleet_poll_start(file), file, host };
     struct lws_context_creation_info info = { .port = port,
                                               .iface = address,
                                               .protocols = protocols,
@@ -221,9 +234,10 @@ int cmd_fleet(int argc, char **argv)
                                              { "check", no_argument, NULL, 'c' },
                                              { "address", required_argument, NULL, 'a' },
                                              { "port", required_argument, NULL, 'p' },
+                                             { "host", required_argument, NULL, 'n' },
                                              { "help", no_argument, NULL, 'h' },
                                              { NULL, 0, NULL, 0 } };
-    const char *address = "127.0.0.1";
+    const char *address = "127.0.0.1", *host = NULL;
     int port = PORT;
     bool serves = false;
     char *end = "";
@@ -233,6 +247,7 @@ int cmd_fleet(int argc, char **argv)
         case 'c': break;
         case 'a': address = optarg; break;
         case 'p': port = (int)strtol(optarg, &end, 10); break;
+        case 'n': host = optarg; break;
         case 'h': print_usage(stdout); return 0;
         default: print_usage(stderr); return 2;
         }
@@ -246,7 +261,7 @@ int cmd_fleet(int argc, char **argv)
         return 1;
     int code = 0;
     if (serves)
-        code = serve(file, address, port);
+        code = serve(file, address, port, host);
     else
         printf("%s: %zu plants\n", file->path, file->count);
     fleet_file_free(&file);

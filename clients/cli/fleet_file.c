@@ -3,9 +3,11 @@
 #include "fleet_file.h"
 
 #include <ctype.h>
+#include <stdio.h>
 #include <string.h>
 #include <strings.h>
 
+#include "access/access.h"
 #include "base/mem.h"
 #include "plant/yaml_reader.h"
 
@@ -38,6 +40,16 @@ static const char *wrong_with(const char *url)
     if (strpbrk(url, "?# \t\"<>"))
         return "it is the address of the page, without ?, # and white space";
     return NULL;
+}
+
+/* Whether what is sent there can be read on the way. */
+static bool is_in_clear(const char *plain_url)
+{
+    char host[256], name[256];
+    if (!strncmp(plain_url, "https://", 8))
+        return false;
+    snprintf(host, sizeof(host), "%.*s", (int)strcspn(plain_url + 7, "/"), plain_url + 7);
+    return !access_host_name(host, name, sizeof(name)) || !access_name_is_local(name);
 }
 
 /* What can stand in an address and in a metric as it is. */
@@ -90,10 +102,12 @@ static void read_one(struct yaml_reader *reader, yaml_node_t *node, struct fleet
     const char *wrong = plant->url ? wrong_with(plant->url) : NULL;
     if (wrong)
         yaml_error(reader, yaml_map_place(&map, "url"), "url: %s", wrong);
-    else if (plant->url) {
+    if (plant->url && !wrong) {
         char *plain = plain_url(plant->url);
         mem_free(plant->url);
         plant->url = plain;
+        if (plant->token_file && is_in_clear(plain))
+            yaml_error(reader, yaml_map_place(&map, "url"), "url: a token is sent by https:// only, or to this machine");
     }
     if (!plant->name && plant->id)
         plant->name = mem_strdup(plant->id);

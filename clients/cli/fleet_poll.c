@@ -30,6 +30,7 @@ struct request {
 struct picture {
     char *at;
     size_t bytes;
+    uint64_t number; /* counts those that came */
 };
 
 struct fleet_poll {
@@ -102,28 +103,41 @@ static CURL *make_handle(const struct fleet_plant *plant, struct request *reques
     return handle;
 }
 
-static void note_answer(struct fleet_poll *poll, struct request *request)
+/* Returns NULL, or what is wrong with an answer that came whole. */
+static const char *note_answer(struct fleet_poll *poll, struct request *request)
 {
     struct fleet_plant_state *known = &poll->states[request->plant];
     struct picture *picture = &poll->pictures[request->plant];
-    if (request->kind == PICTURE && request->answer.length > 8 && !memcmp(request->answer.at, "\x89PNG\r\n\x1a\n", 8)) {
+    if (request->kind == PICTURE) {
+        if (request->answer.length <= 8 || memcmp(request->answer.at, "\x89PNG\r\n\x1a\n", 8) != 0)
+            return "its picture is none";
         mem_free(picture->at);
-        *picture = (struct picture){ request->answer.at, request->answer.length };
+        *picture = (struct picture){ request->answer.at, request->answer.length, picture->number + 1 };
         request->answer = (struct text){ 0 };
-        known->picture++;
-    } else if (request->kind == METRICS && fleet_state_read(request->answer.at ? request->answer.at : "", &known->state)) {
-        known->answers = true;
-        known->answered_us = clock_utc_ns() / 1000;
-        known->silent_us = 0;
-        known->why[0] = 0;
+        known->picture = picture->number;
+        return NULL;
     }
+    struct fleet_state state;
+    if (!fleet_state_read(request->answer.at ? request->answer.at : "", &state))
+        return "it is no server of Plantcast";
+    known->state = state;
+    known->answers = true;
+    known->answered_us = clock_utc_ns() / 1000;
+    known->silent_us = 0;
+    known->why[0] = 0;
+    return NULL;
 }
 
 static void note_failure(struct fleet_poll *poll, const struct request *request, const char *why)
 {
     struct fleet_plant_state *known = &poll->states[request->plant];
-    if (request->kind != METRICS)
+    struct picture *picture = &poll->pictures[request->plant];
+    if (request->kind == PICTURE) { /* an old one would pass for how the plant is now */
+        mem_free(picture->at);
+        picture->at = NULL;
+        known->picture = 0;
         return;
+    }
     known->answers = false;
     if (!known->silent_us)
         known->silent_us = clock_utc_ns() / 1000;
@@ -145,12 +159,10 @@ static void on_end(struct fleet_poll *poll, struct request *request, CURLcode co
 {
     const char *why = code == CURLE_OK ? NULL : request->why[0] ? request->why : curl_easy_strerror(code);
     pthread_mutex_lock(&poll->lock);
+    if (!why)
+        why = note_answer(poll, request);
     if (why)
         note_failure(poll, request, why);
-    else
-        note_answer(poll, request);
-    if (!why && request->kind == METRICS && !poll->states[request->plant].answered_us)
-        note_failure(poll, request, "it is no server of Plantcast");
     pthread_mutex_unlock(&poll->lock);
     text_finish(&request->answer);
     request->running = false;

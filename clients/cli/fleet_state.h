@@ -26,7 +26,7 @@ struct fleet_plant_state {
     bool answers;
     int64_t answered_us;        /* when it last did; 0: never */
     int64_t silent_us;          /* since when it does not; 0: it does */
-    uint64_t picture;           /* number of its picture; 0: none yet */
+    uint64_t picture;           /* number of its picture; 0: none, or the last request for one failed */
     char why[256];              /* it does not answer */
     int64_t asked;              /* how often it was */
 };

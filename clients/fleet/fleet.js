@@ -74,8 +74,8 @@ function show(plant, nowS) {
     if (plant.picture && card.picture !== plant.picture) {
         card.picture = plant.picture;
         card.image.src = `picture/${plant.id}?${plant.picture}`;
-        card.image.hidden = false;
     }
+    card.image.hidden = !plant.picture;
     const shown = known ? counts(plant.alarms) : [];
     const open = plant.unacknowledged > 0 ? say('acknowledge', { count: plant.unacknowledged }) : '';
     const rest = !known ? '' : shown.length === 0 ? say('none') : open;

@@ -3,7 +3,7 @@
 import assert from 'node:assert/strict';
 import { spawn } from 'node:child_process';
 import { mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
-import { createServer } from 'node:http';
+import { createServer, get } from 'node:http';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
@@ -50,7 +50,10 @@ async function pretend(metrics = '', status = 200, headers = {}) {
         const isPicture = request.url.startsWith('/snapshot.png');
         asked[isPicture ? 'picture' : 'metrics'].push(Date.now());
         asked.token = request.headers.authorization;
-        response.writeHead(status, headers).end(isPicture ? PNG : `plantcast_sessions 1\n${metrics}`);
+        if (isPicture && asked.broken)
+            response.writeHead(503).end();
+        else
+            response.writeHead(status, headers).end(isPicture ? PNG : asked.page ?? `plantcast_sessions 1\n${metrics}`);
     });
     await new Promise((done) => server.listen(0, '127.0.0.1', done));
     return { asked, server, url: `http://127.0.0.1:${server.address().port}/`,
@@ -73,15 +76,41 @@ test('a fleet file is checked, and each mistake has its line', options, () => {
     assert.match(good.out, /2 plants/);
     const bad = check('plants:\n- { id: a, url: "https://a.example" }\n- { id: b, url: "HTTPS://A.example:443/" }\n'
         + '- { id: a, url: "http://c.example/" }\n- { id: d/e, url: "ftp://d/" }\n- { id: f, url: "http://me:pw@f/" }\n'
-        + '- { url: "http://g/", poll_s: 0 }\n');
+        + '- { url: "http://g/", poll_s: 0 }\n- { id: h, url: "http://h.example/", token_file: t }\n'
+        + '- { id: i, url: "http://127.0.0.1:8080/", token_file: t }\n');
     assert.equal(bad.code, 1);
     for (const line of [/fleet\.yaml:3:\d+: error: url: the plant at https:\/\/a\.example\/ is there twice \(first at line 2\)/,
         /fleet\.yaml:4:\d+: error: id: plant 'a' is there twice \(first at line 2\)/, /fleet\.yaml:5:\d+: error: id: expected/,
         /fleet\.yaml:5:\d+: error: url: it begins neither/, /fleet\.yaml:6:\d+: error: url: a password does not stand here/,
-        /fleet\.yaml:7:\d+: error: .*needs the key 'id'/, /fleet\.yaml:7:\d+: error: poll_s: expected/])
+        /fleet\.yaml:7:\d+: error: .*needs the key 'id'/, /fleet\.yaml:7:\d+: error: poll_s: expected/,
+        /fleet\.yaml:8:\d+: error: url: a token is sent by https/])
         assert.match(bad.err, line);
-    assert.ok(!bad.err.includes('me:pw'));
+    assert.ok(!bad.err.includes('me:pw') && !bad.err.includes('fleet.yaml:9'));
     assert.equal(runProgram('plantcast', ['fleet', join(folder, 'fleet.yaml'), '--serve', '--address', '0.0.0.0']).code, 2);
+});
+
+test('a page instead of metrics is silence, an old picture is none, a foreign name is refused', options, async () => {
+    const plant = await pretend('plantcast_alarms_shown{priority="1"} 3\n');
+    const fleet = await serve(write(`poll_s: 1\npicture_s: 1\nplants:\n- { id: a, url: "${plant.url}" }\n`));
+    const first = async () => (await fleet.state()).plants[0];
+    const status = (host) => new Promise((done, fail) => get(`${fleet.url}fleet.json`, { headers: { host } },
+        (response) => done(response.resume().statusCode)).on('error', fail));
+    try {
+        await until('its picture', async () => (await first()).picture);
+        plant.asked.broken = true;
+        await until('that there is none', async () => (await first()).picture === 0);
+        assert.equal((await fetch(`${fleet.url}picture/a`)).status, 404);
+        plant.asked.page = '<html>We are back soon.</html>';
+        const silent = await until('silence', async () => { const now = await first(); return !now.answers && now; });
+        assert.match(silent.why, /no server of Plantcast/);
+        assert.deepEqual(silent.alarms, [3, 0, 0, 0]);
+        assert.match(await (await fetch(`${fleet.url}metrics`)).text(), /^plantcast_fleet_up\{plant="a"\} 0$/m);
+        assert.equal(await status('evil.example:8090'), 403);
+        assert.equal(await status('localhost'), 200);
+    } finally {
+        await fleet.stop();
+        plant.close();
+    }
 });
 
 test('a real plant, one that is in trouble, one that is silent: on the page and in the metrics', options, async () => {
