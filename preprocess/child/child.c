@@ -20,7 +20,7 @@
 
 #include "preprocess/child/child_confine.h"
 
-enum { MAX_OUTPUT = 1 << 20, MAX_FILES = 512, EXIT_NOT_STARTED = 127 };
+enum { MAX_OUTPUT = 1 << 20, PIPE_BYTES = 1 << 20 /* the most that a pipe may hold */, MAX_FILES = 512, EXIT_NOT_STARTED = 127 };
 enum watched { OUTPUT, ERRORS, END, SIGNALS, WATCHED };
 
 struct child {
@@ -114,13 +114,18 @@ static bool take(int fd, struct text *text)
     return count > 0 || (count < 0 && (errno == EINTR || errno == EAGAIN));
 }
 
-/* What is in the pipes when the child is gone; a process that it left behind may hold them open. */
+/* What is in the pipes when the child is gone; a process that it left behind may hold them open, and fill them for ever. */
 static void drain(int fd, struct text *text)
 {
+    char bytes[4096];
     fcntl(fd, F_SETFL, O_NONBLOCK);
-    for (char byte; read(fd, &byte, 1) == 1;)
-        if (text->length < MAX_OUTPUT)
-            text_add_bytes(text, &byte, 1);
+    for (size_t left = PIPE_BYTES; left > 0 && text->length < MAX_OUTPUT;) {
+        ssize_t count = read(fd, bytes, left < sizeof(bytes) ? left : sizeof(bytes));
+        if (count <= 0)
+            break;
+        text_add_bytes(text, bytes, (size_t)count);
+        left -= (size_t)count;
+    }
 }
 
 static void wait_for(struct child *child, int timeout_s, struct text *out)

@@ -23,13 +23,14 @@ static void add_properties(struct text *out, const json_t *extras, int level)
         }
         char *other = json_is_string(value) ? NULL : json_dumps(value, JSON_COMPACT | JSON_ENCODE_ANY | JSON_REAL_PRECISION(9));
         const char *text = other ? other : json_string_value(value);
-        if (text && text[0] && strcmp(text, "unset") != 0)
-            text_add(out, "%s%s=%s", out->length ? "; " : "", key, text);
+        if (text && text[0] && strcmp(text, "unset") != 0) {
+            text_add(out, "%s", out->length ? "; " : "");
+            model_outline_add_printable(out, key);
+            text_add(out, "=");
+            model_outline_add_printable(out, text);
+        }
         free(other);
     }
-    for (size_t i = 0; i < out->length; i++)
-        if ((unsigned char)out->at[i] < 32)
-            out->at[i] = ' ';
 }
 
 static bool wanted(const struct node_list_params *params, const char *path, const struct text *properties)

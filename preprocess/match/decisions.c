@@ -118,8 +118,8 @@ bool decisions_read(struct decisions *decisions, const char *path, char why[MATC
         return false;
     }
     charset_decode(bytes, count, &text);
-    bool good = table_read_csv(&table, text.utf8, table_separator(text.utf8), why, MATCH_WHY_BYTES) && table.count > 0 &&
-                find_columns(&table.rows[0], columns, why);
+    bool good = table_read_csv(&table, text.utf8, table_separator(text.utf8), why, MATCH_WHY_BYTES) &&
+                (table.count == 0 || find_columns(&table.rows[0], columns, why));
     for (size_t i = 1; i < table.count && good; i++) {
         mem_grow(&decisions->at, &decisions->capacity, decisions->count + 1, sizeof(*decisions->at));
         good = read_row(&decisions->at[decisions->count], &table.rows[i], columns, why);

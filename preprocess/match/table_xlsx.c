@@ -11,7 +11,7 @@
 #include "base/mem.h"
 #include "base/text.h"
 
-enum { MAX_SHEETS = 64 };
+enum { MAX_SHEETS = 64, MAX_BYTES = 1 << 28 /* of all cells; a shared string counts in each */ };
 static const size_t max_part_bytes = (size_t)512 << 20;
 
 struct sheet {
@@ -22,6 +22,7 @@ struct sheet {
     struct text text; /* of the cell, or of the string */
     int column, last_row;
     char type; /* of the cell: 's' shared, 'i' inline, 0 as it stands */
+    size_t bytes; /* of all cells so far */
     bool in_value, in_phonetic, too_large;
     XML_Parser parser;
 };
@@ -101,14 +102,17 @@ static void finish_cell(struct sheet *sheet)
     size_t index = sheet->type == 's' ? strtoul(value, NULL, 10) : 0;
     if (sheet->type == 's')
         value = index < sheet->string_count ? sheet->strings[index] : "";
-    if (sheet->column < 0 || sheet->column > TABLE_MAX_CELLS || sheet->table->count >= TABLE_MAX_ROWS) {
+    size_t bytes = strlen(value);
+    sheet->bytes += bytes + 1;
+    if (sheet->column < 0 || sheet->column > TABLE_MAX_CELLS || sheet->row.count > TABLE_MAX_CELLS || sheet->bytes > MAX_BYTES ||
+        sheet->table->count >= TABLE_MAX_ROWS) {
         sheet->too_large = true;
         XML_StopParser(sheet->parser, XML_FALSE);
         return;
     }
     while ((int)sheet->row.count < sheet->column)
         table_add_cell(sheet->table, &sheet->row, "", 0);
-    table_add_cell(sheet->table, &sheet->row, value, strlen(value));
+    table_add_cell(sheet->table, &sheet->row, value, bytes);
 }
 
 static void cell_ends(void *data, const char *name)

@@ -330,14 +330,12 @@ static int write_spooled(struct historian *historian)
 static int write_all(struct historian *historian, int64_t mono_ns, int64_t utc_ns)
 {
     int error = write_spooled(historian);
-    if (error)
-        return error;
-    if (!historian->file) {
+    if (!error && !historian->file) {
         if (!historian->waiting.count)
             return 0; /* an empty folder is no history */
         make_folder(historian);
     }
-    if (!historian->recovered)
+    if (!error && !historian->recovered)
         error = recover(historian);
     if (!error)
         error = write_second(historian);

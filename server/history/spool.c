@@ -98,10 +98,13 @@ static char *read_own(const char *path)
     size_t have = 0;
     for (ssize_t n = 1; text && n > 0 && have<(size_t)st.st_size; have += n> 0 ? (size_t)n : 0)
         n = read(fd, text + have, (size_t)st.st_size - have);
-    if (text)
-        text[have] = 0;
+    int error = !good ? EPERM : !text ? ENOMEM : have < (size_t)st.st_size ? EIO : 0;
     close(fd);
-    errno = good ? ENOMEM : EPERM;
+    if (error) {
+        mem_free(text);
+        text = NULL;
+    }
+    errno = error;
     return text;
 }
 

@@ -106,9 +106,12 @@ static void tick(struct net *net, int64_t now_ns)
     net->ticked_ns = now_ns;
 }
 
+/* lws runs timers that are due before it waits: so that it does not wait then, with no timer set, it is woken at once. */
 static void on_timer(lws_sorted_usec_list_t *sul)
 {
-    lws_container_of(sul, struct net, timer)->timer_ns = 0;
+    struct net *net = lws_container_of(sul, struct net, timer);
+    net->timer_ns = 0;
+    lws_cancel_service(net->server.lws);
 }
 
 static void set_timer(struct net *net, int64_t at_ns)

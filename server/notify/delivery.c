@@ -5,6 +5,7 @@
 #include <curl/curl.h>
 #include <errno.h>
 #include <string.h>
+#include <strings.h>
 
 #include "base/mem.h"
 #include "base/text.h"
@@ -122,8 +123,14 @@ static void set_common(struct delivery *delivery, struct transfer *transfer, con
 
 static bool is_this_machine(const char *url)
 {
+    static const char *const names[] = { "localhost", "127.0.0.1", "[::1]" };
     const char *host = strstr(url, "://");
-    return host && (!strncmp(host + 3, "localhost", 9) || !strncmp(host + 3, "127.0.0.1", 9) || !strncmp(host + 3, "[::1]", 5));
+    for (size_t i = 0; host && i < sizeof(names) / sizeof(*names); i++) {
+        size_t length = strlen(names[i]);
+        if (!strncmp(host + 3, names[i], length) && (!host[3 + length] || strchr(":/", host[3 + length])))
+            return true;
+    }
+    return false;
 }
 
 static char *set_mail(struct delivery *delivery, struct transfer *transfer, const struct notify_recipient *recipient)
@@ -203,6 +210,19 @@ char *delivery_start(struct delivery *delivery, int recipient, char *body, size_
 
 /* --- the wait --------------------------------------------------------------------------------------------------------------- */
 
+/* Returns NULL, or why a transfer that ended did not reach its recipient (mem_free). A page somewhere else is no answer: it may be a log-in. */
+static char *why_not(const struct transfer *transfer, CURLcode code)
+{
+    long status = 0;
+    char *scheme = NULL;
+    if (code != CURLE_OK)
+        return mem_strdup(transfer->why[0] ? transfer->why : curl_easy_strerror(code));
+    curl_easy_getinfo(transfer->handle, CURLINFO_RESPONSE_CODE, &status);
+    curl_easy_getinfo(transfer->handle, CURLINFO_SCHEME, &scheme);
+    bool is_http = scheme && !strncasecmp(scheme, "http", 4);
+    return is_http && (status < 200 || status > 299) ? mem_printf("the answer is status %ld", status) : NULL;
+}
+
 void delivery_wait(struct delivery *delivery, int timeout_ms, void (*each)(void *arg, int recipient, const char *why), void *arg)
 {
     int running, left;
@@ -215,7 +235,7 @@ void delivery_wait(struct delivery *delivery, int timeout_ms, void (*each)(void 
         CURLcode code = message->data.result;
         struct transfer *transfer = NULL;
         curl_easy_getinfo(message->easy_handle, CURLINFO_PRIVATE, (char **)&transfer);
-        char *why = code == CURLE_OK ? NULL : mem_strdup(transfer->why[0] ? transfer->why : curl_easy_strerror(code));
+        char *why = why_not(transfer, code);
         end_transfer(delivery, transfer);
         each(arg, (int)(transfer - delivery->transfers), why);
         mem_free(why);

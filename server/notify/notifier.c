@@ -162,6 +162,8 @@ static void *run(void *arg)
     struct notifier *notifier = arg;
     while (!atomic_load(&notifier->stopping)) {
         notifier->number = alarm_service_changes(notifier->params.alarm_service, notifier->number, on_alarm, notifier);
+        if (!notifier->looked)
+            outbox_end_unseen(notifier->outbox, now_us());
         notifier->looked = true;
         outbox_tick(notifier->outbox, now_us());
         send_due(notifier);

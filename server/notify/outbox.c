@@ -142,6 +142,8 @@ static void tell(struct outbox *outbox, struct episode *episode, const struct no
 static void advance(struct outbox *outbox, struct episode *episode, int64_t now_us)
 {
     const struct plant_notify *notify = outbox->plant->notify;
+    if (episode->began_us > now_us + OUTBOX_REPEAT_US) /* the clock was set back */
+        episode->began_us = now_us;
     for (size_t i = 0; i < notify->rule_count; i++) {
         const struct notify_rule *rule = &notify->rules[i];
         while (episode->rules >> i & 1 && episode->steps[i] < rule->step_count &&
@@ -207,6 +209,7 @@ void outbox_put(struct outbox *outbox, const struct alarm *alarm, bool restored,
     bool begins = (needed && (!known || episode->ended_us)) || came_and_went;
     if (episode->status != status || begins)
         mark_alertmanagers(outbox, now_us);
+    episode->seen = true;
     episode->priority = alarm->priority;
     episode->status = status;
     episode->value = alarm->value;
@@ -221,6 +224,20 @@ void outbox_put(struct outbox *outbox, const struct alarm *alarm, bool restored,
     if (!needed && !episode->ended_us)
         end(episode, alarm, now_us);
     outbox->dirty = true;
+}
+
+void outbox_end_unseen(struct outbox *outbox, int64_t now_us)
+{
+    for (size_t i = 0; i < outbox->count; i++) {
+        struct episode *episode = &outbox->episodes[i];
+        if (episode->seen || (episode->ended_us && episode->cleared_us))
+            continue;
+        episode->status = ALARM_NORMAL;
+        episode->ended_us = episode->ended_us ? episode->ended_us : now_us;
+        episode->cleared_us = episode->cleared_us ? episode->cleared_us : now_us;
+        mark_alertmanagers(outbox, now_us);
+        outbox->dirty = true;
+    }
 }
 
 /* --- time ------------------------------------------------------------------------------------------------------------------- */
@@ -246,7 +263,8 @@ void outbox_tick(struct outbox *outbox, int64_t now_us)
     }
     for (size_t i = 0; i < outbox->plant->notify->recipient_count; i++) {
         struct box *box = &outbox->boxes[i];
-        if (box->batch_count > 0 && box->attempts > 0 && now_us - box->batch_us > OUTBOX_KEEP_US)
+        bool keeps = outbox->plant->notify->recipients[i].kind == NOTIFY_ALERTMANAGER; /* it is told what is, not what was */
+        if (!keeps && box->batch_count > 0 && box->attempts > 0 && now_us - box->batch_us > OUTBOX_KEEP_US)
             give_up(outbox, box);
     }
 }

@@ -40,6 +40,9 @@ void outbox_destroy(struct outbox **outbox); /* &NULL is fine; leaves NULL */
 
 /* Takes an alarm as it is now. restored: it is as the journal had it, so that one that nobody needs to act on is not told. */
 void outbox_put(struct outbox *outbox, const struct alarm *alarm, bool restored, int64_t now_us);
+/* Ends the alarms that were restored and not put since: they returned to normal, or their limits went, while nobody looked. To be called
+   once all that are not normal have been put. */
+void outbox_end_unseen(struct outbox *outbox, int64_t now_us);
 /* Lets time pass: escalation, and what is given up. */
 void outbox_tick(struct outbox *outbox, int64_t now_us);
 

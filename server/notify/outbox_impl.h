@@ -20,6 +20,7 @@ struct episode { /* an alarm from when it first needs somebody until nobody is n
     uint32_t told;       /* bits: recipients */
     uint8_t steps[NOTIFY_RULES]; /* how many of each rule have been taken */
     bool aside;          /* shelved, suppressed or out of service */
+    bool seen;           /* since the start: it was put, not only restored */
 };
 
 struct item {

@@ -125,6 +125,8 @@ void store_adopt(struct store *store, struct store *before)
             continue;
         const struct held own = *to;
         *to = before->tags[i];
+        to->alarm = own.alarm; /* its limits may have changed: whoever owns alarms says again which stand */
+        to->alarm_status = own.alarm_status;
         to->stale_ns = own.stale_ns;
         to->flatline_ns = own.flatline_ns;
         to->first_vouched = own.first_vouched;

@@ -343,6 +343,53 @@ static void alertmanager_hears_what_stands_and_what_has_ended(void **state)
     assert_int_equal(deliver(f, AM, T0 + 83 * S), 1);
 }
 
+static void what_ended_while_nobody_looked_is_over(void **state)
+{
+    struct fixture *f = *state;
+    load(f, "  - { id: all, to: [ops, am], escalate: [{ after_min: 10, to: boss }] }\n");
+    put(f, 0, LOCAL, true, true, T0, T0);
+    put(f, 1, LOCAL, true, true, T0, T0);
+    assert_int_equal(deliver(f, OPS, T0 + 3 * S), 2);
+    assert_int_equal(deliver(f, AM, T0 + 3 * S), 2);
+    restart(f);
+    struct alarm stands = alarm_of(f, 1, LOCAL, true, true, T0);
+    outbox_put(f->outbox, &stands, true, T0 + 60 * S); /* the other one has no limit any more */
+    outbox_end_unseen(f->outbox, T0 + 60 * S);
+    assert_int_equal(deliver(f, BOSS, T0 + 10 * MIN), 0);
+    assert_int_equal(deliver(f, BOSS, T0 + 10 * MIN + 3 * S), 1);
+    assert_int_equal(deliver(f, AM, T0 + 10 * MIN + 3 * S), 2); /* it hears that one has ended */
+    assert_int_equal(deliver(f, AM, T0 + 30 * MIN), 1);
+}
+
+static void it_escalates_after_the_clock_was_set_back(void **state)
+{
+    struct fixture *f = *state;
+    int64_t before = T0 - 24 * 60 * MIN;
+    load(f, "  - { id: all, to: ops, escalate: [{ after_min: 10, to: boss }] }\n");
+    put(f, 0, LOCAL, true, true, T0, T0);
+    assert_int_equal(deliver(f, OPS, T0 + 3 * S), 1);
+    assert_int_equal(deliver(f, BOSS, before), 0);
+    assert_int_equal(deliver(f, BOSS, before + 10 * MIN), 0);
+    assert_int_equal(deliver(f, BOSS, before + 10 * MIN + 3 * S), 1);
+}
+
+static void a_clock_that_jumps_ahead_loses_nothing_later(void **state)
+{
+    struct fixture *f = *state;
+    struct outbox_message message;
+    int64_t later = T0 + 48 * 60 * MIN;
+    load(f, "  - { id: all, to: [ops, am] }\n");
+    put(f, 0, LOCAL, true, true, T0, T0);
+    assert_int_equal(deliver(f, OPS, T0 + 3 * S), 1);
+    assert_true(outbox_next(f->outbox, AM, T0 + 3 * S, &message));
+    outbox_failed(f->outbox, AM, T0 + 4 * S);
+    assert_true(outbox_next(f->outbox, AM, T0 + 2 * MIN, &message));
+    outbox_tick(f->outbox, later); /* while it is sent again */
+    put(f, 1, LOCAL, true, true, later, later);
+    assert_int_equal(deliver(f, OPS, later + 3 * S), 1);
+    assert_int_equal(outbox_counts(f->outbox, OPS).lost, 0);
+}
+
 static char *decoded(const char *base64)
 {
     static const char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
@@ -421,6 +468,9 @@ int main(void)
         cmocka_unit_test_setup_teardown(what_came_and_went_between_two_looks_is_told, set_up, tear_down),
         cmocka_unit_test_setup_teardown(what_is_set_aside_is_not_told, set_up, tear_down),
         cmocka_unit_test_setup_teardown(alertmanager_hears_what_stands_and_what_has_ended, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(what_ended_while_nobody_looked_is_over, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(it_escalates_after_the_clock_was_set_back, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(a_clock_that_jumps_ahead_loses_nothing_later, set_up, tear_down),
         cmocka_unit_test_setup_teardown(a_mail_says_what_and_since_when, set_up, tear_down),
         cmocka_unit_test_setup_teardown(a_damaged_file_is_refused, set_up, tear_down),
     };

@@ -10,6 +10,7 @@
 #include <cmocka.h>
 
 #include "tests/support/plant_by_hand.h"
+#include "value/alarm.h"
 #include "value/quality.h"
 #include "value/store.h"
 
@@ -253,12 +254,14 @@ static void readings_go_on_in_another_plant(void **state)
     plant_by_hand_tag(plant, "a1", TABLE_HOLDING, 1, DATA_INT16)->stale_s = 60;
     plant->tags_by_name = by_name;
     write_one(s, 1, 42, QUALITY_GOOD, 10 * S);
+    store_set_alarm(s->store, 1, ALARM_HH, ALARM_UNACKNOWLEDGED);
     store_link_up(s->store, 0, 10 * S);
     struct store *store = store_create(plant);
     struct snapshot *snapshot = snapshot_create(2);
     store_adopt(store, s->store);
     store_snapshot(store, 30 * S, 1030 * S, snapshot);
     assert_true(snapshot->readings[1].value == 42);
+    assert_int_equal(snapshot->readings[1].alarm, ALARM_NONE); /* until it is said that it stands there, too */
     assert_quality(snapshot->readings[1].quality, QUALITY_GOOD); /* by its new patience */
     assert_true(snapshot->readings[1].age_ns == 20 * S);
     assert_quality(snapshot->readings[0].quality, QUALITY_BAD_WAITING);

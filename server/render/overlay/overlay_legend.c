@@ -61,10 +61,12 @@ static bool shows_unproven(const struct pen *pen)
     return false;
 }
 
+/* Of the group, whether or not a mark of it is in sight: its equipment may be. */
 static bool shows_assumed(const struct pen *pen)
 {
-    for (size_t i = 0; i < pen->frame->marker_count && !pen->bare; i++)
-        if (pen->frame->markers[i].half == pen->half && pen->scene->plant->tags[pen->frame->markers[i].tag].place_assumed)
+    const struct plant *plant = pen->scene->plant;
+    for (size_t i = 0; i < plant->tag_count; i++)
+        if (plant->tags[i].place_assumed && plant->tags[i].asset >= 0 && plant->tags[i].group == pen->view.field.group)
             return true;
     return false;
 }

@@ -261,7 +261,7 @@ export class Overlay {
         c.strokeStyle = INK;
         c.stroke();
         c.setLineDash([]);
-        if (tag.place === 'equipment' && (!occluded || chosen)) { // a second ring: somewhere here
+        if (tag.place === 'equipment') { // a second ring: somewhere here
             c.beginPath();
             c.arc(0, 0, radius + 3, 0, 2 * Math.PI);
             c.lineWidth = 1;
