@@ -210,7 +210,8 @@ char *delivery_start(struct delivery *delivery, int recipient, char *body, size_
 
 /* --- the wait --------------------------------------------------------------------------------------------------------------- */
 
-/* Returns NULL, or why a transfer that ended did not reach its recipient (mem_free). A page somewhere else is no answer: it may be a log-in. */
+/* Returns NULL, or why a transfer that ended did not reach its recipient (mem_free). A redirection is no delivery: it may lead to a
+   log-in. */
 static char *why_not(const struct transfer *transfer, CURLcode code)
 {
     long status = 0;

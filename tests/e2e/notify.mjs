@@ -172,6 +172,30 @@ notify:
     }
 });
 
+test('a hook that leads elsewhere was not told, and is asked again', options, async () => {
+    const hook = Object.assign(new HookServer(), { status: 302 });
+    await hook.listen();
+    const plant = await createPlant(`alarms: local
+notify:
+  gather_s: 1
+  recipients: [{ id: hook, webhook: "http://127.0.0.1:${hook.port}/" }]
+  rules: [{ id: all, to: hook }]
+`, 1);
+    try {
+        await calm(plant, 1);
+        await plant.startDaemon();
+        await sleep(1500);
+        await set(plant, 'X-0', limits.high);
+        await until('a failure', async () => await metric(plant, 'plantcast_notify_failed_total{recipient="hook"}') >= 1);
+        assert.equal(await metric(plant, 'plantcast_notify_waiting{recipient="hook"}'), 1);
+        hook.status = 200;
+        await until('that it is told', () => hook.taken.length > 0);
+    } finally {
+        await hook.close();
+        await plant.destroy();
+    }
+});
+
 test('it goes to the next recipient until somebody acknowledges', options, async () => {
     const hooks = [new HookServer(), new HookServer(), new HookServer()];
     for (const hook of hooks)
