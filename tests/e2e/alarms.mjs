@@ -50,7 +50,7 @@ test('what comes beyond its limit is counted, marked and listed, the most urgent
     await page.waitForFunction(
         (hot) => globalThis.plantcast.session.model.alarms.list().some(({ tag, kind }) => tag.name === hot && kind === 'HH'),
         HOT, { timeout: 30000 });
-    assert.match(await words(), /^\d+ active alarms, \d+ to be acknowledged$/);
+    await waitForWords('^\\d+ active alarms, \\d+ to be acknowledged$');
     assert.match(await page.locator('#alarm-mode').textContent(), /Local alarms of this site/);
     await waitForRing(HOT);
     assert.deepEqual((({ kind, state }) => [kind, state])(await ring(HOT)), ['HH', 'unacknowledged']);

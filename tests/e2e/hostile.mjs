@@ -139,7 +139,7 @@ test('all at once: nobody else is slowed, and each has its answer', { skip }, as
     for (const end = performance.now() + 5000; descriptors() > filesBefore && performance.now() < end;)
         await sleep(100);
     assert.ok(descriptors() <= filesBefore, `${filesBefore} descriptors before, ${descriptors()} after`);
-    await sleep(300); // it counts ten times a second
+    await sleep(1200); // it counts once a second at least
     assert.equal(await metric('plantcast_sessions'), 0);
     assert.ok(await metric('plantcast_connections') <= 1, 'but the one that asks');
 });

@@ -215,7 +215,7 @@ test('every token that is let in, or is not, is a line in the log; ten wrong one
     assert.equal((await late.text('error')).retry_after_s, 5);
     assert.equal((await late.until('a close', (c) => c.closed)).code, 1013);
     assert.equal((await ask('/api/v1/tags', bearer(tokens.viewer))).status, 200, 'who was let in before is not held up');
-    await new Promise((done) => setTimeout(done, 200)); // gauges are set ten times a second
+    await new Promise((done) => setTimeout(done, 1200)); // gauges are set once a second at least
     assert.equal(await metric('plantcast_logins_slowed_addresses'), 1);
     assert.equal(await metric('plantcast_logins_held_total'), 2);
     await plant.daemon.line(/: slowed/);
