@@ -4,10 +4,6 @@
 
 #include <errno.h>
 #include <math.h>
-#include <pthread.h>
-#include <string.h>
-#include <sys/eventfd.h>
-#include <unistd.h>
 
 #include "base/clock.h"
 #include "base/mem.h"
@@ -31,11 +27,7 @@ struct derived_state {
 
 struct derived_source {
     struct source base;
-    struct store *store;
     struct derived_state *state;
-    int stop_fd;
-    pthread_t thread;
-    bool has_thread;
 };
 
 struct derived_state *derived_create(const struct plant *plant)
@@ -113,40 +105,33 @@ void derived_compute(struct derived_state *state, struct store *store, int64_t n
     }
 }
 
-static void *derived_main(void *arg)
-{
-    struct derived_source *derived = arg;
-    while (wait_for(-1, 0, derived->stop_fd, clock_mono_ns() + ROUND_NS) != -ECANCELED)
-        derived_compute(derived->state, derived->store, clock_mono_ns(), clock_utc_ns());
-    return NULL;
-}
-
-static void derived_stop(struct source *source)
+static void derived_run(struct source *source)
 {
     struct derived_source *derived = (struct derived_source *)source;
-    if (derived->has_thread) {
-        eventfd_write(derived->stop_fd, 1);
-        pthread_join(derived->thread, NULL);
-    }
-    if (derived->stop_fd >= 0)
-        close(derived->stop_fd);
+    while (wait_for(-1, 0, source->stop_fd, clock_mono_ns() + ROUND_NS) != -ECANCELED)
+        derived_compute(derived->state, source->store, clock_mono_ns(), clock_utc_ns());
+}
+
+static struct source *derived_make(const struct source *base, struct counters *counters)
+{
+    struct derived_source *derived = mem_new(sizeof(*derived));
+    (void)counters; /* it has none */
+    derived->base = *base;
+    derived->state = derived_create(base->plant);
+    return &derived->base;
+}
+
+static void derived_free(struct source *source)
+{
+    struct derived_source *derived = (struct derived_source *)source;
     derived_destroy(&derived->state);
     mem_free(derived);
 }
 
-static const struct source_impl derived_impl = { .kind = "derived", .stop = derived_stop };
+static const struct source_impl derived_impl = { .kind = "derived", .create = derived_make, .run = derived_run, .destroy = derived_free };
 
 struct source *derived_start(struct log *log, const struct plant *plant, struct store *store)
 {
-    struct derived_source *derived = mem_new(sizeof(*derived));
-    derived->base.impl = &derived_impl;
-    derived->store = store;
-    derived->state = derived_create(plant);
-    derived->stop_fd = eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
-    derived->has_thread = derived->stop_fd >= 0 && pthread_create(&derived->thread, NULL, derived_main, derived) == 0;
-    if (derived->has_thread)
-        return &derived->base;
-    log_err(log, "derived tags: no thread: %s", strerror(errno));
-    derived_stop(&derived->base);
-    return NULL;
+    const struct source base = { .impl = &derived_impl, .log = log, .plant = plant, .index = -1, .store = store };
+    return source_begin(&base, "derived tags", NULL);
 }

@@ -5,8 +5,6 @@
 #include <errno.h>
 #include <stdio.h>
 #include <string.h>
-#include <sys/eventfd.h>
-#include <unistd.h>
 
 #include "base/clock.h"
 #include "base/mem.h"
@@ -14,7 +12,7 @@
 
 static bool stopping(const struct modbus_source *modbus)
 {
-    return wait_for(-1, 0, modbus->stop_fd, 0) == -ECANCELED;
+    return wait_for(-1, 0, modbus->base.stop_fd, 0) == -ECANCELED;
 }
 
 static void read_block(struct modbus_source *modbus, size_t index)
@@ -23,8 +21,8 @@ static void read_block(struct modbus_source *modbus, size_t index)
     uint16_t words[READ_PLAN_MAX_BITS];
     if (!modbus_link_is_open(modbus->link) && !modbus_connect_link(modbus))
         return;
-    if (modbus->config->pause_ms > 0 &&
-        wait_for(-1, 0, modbus->stop_fd, modbus->asked_ns + modbus->config->pause_ms * NS_PER_MS) == -ECANCELED)
+    if (modbus->base.config->pause_ms > 0 &&
+        wait_for(-1, 0, modbus->base.stop_fd, modbus->asked_ns + modbus->base.config->pause_ms * NS_PER_MS) == -ECANCELED)
         return;
     int status = modbus_link_read(modbus->link, block->unit, block->table, block->first, block->count, words);
     if (status < 0 && stopping(modbus))
@@ -69,31 +67,28 @@ static size_t choose_block(const struct modbus_source *modbus, int64_t now_ns, i
     return chosen;
 }
 
-static void *modbus_main(void *arg)
+static void modbus_run(struct source *source)
 {
-    struct modbus_source *modbus = arg;
+    struct modbus_source *modbus = (struct modbus_source *)source;
     while (!stopping(modbus)) {
         int64_t wake_ns;
         size_t chosen = choose_block(modbus, clock_mono_ns(), &wake_ns);
         if (chosen < modbus->plan.block_count)
             read_block(modbus, chosen);
         else
-            wait_for(-1, 0, modbus->stop_fd, wake_ns);
+            wait_for(-1, 0, modbus->base.stop_fd, wake_ns);
     }
-    return NULL;
 }
 
-static void modbus_stop(struct source *source)
+static void modbus_interrupt(struct source *source)
+{
+    modbus_link_interrupt(((struct modbus_source *)source)->link);
+}
+
+static void modbus_destroy(struct source *source)
 {
     struct modbus_source *modbus = (struct modbus_source *)source;
-    if (modbus->has_thread) {
-        eventfd_write(modbus->stop_fd, 1);
-        modbus_link_interrupt(modbus->link);
-        pthread_join(modbus->thread, NULL);
-    }
     modbus_link_destroy(&modbus->link);
-    if (modbus->stop_fd >= 0)
-        close(modbus->stop_fd);
     read_plan_finish(&modbus->plan);
     mem_free(modbus->units);
     mem_free(modbus->refused);
@@ -102,66 +97,48 @@ static void modbus_stop(struct source *source)
     mem_free(modbus);
 }
 
-static counter *add_counter(struct counters *counters, const char *name, const char *source, const char *more, const char *type,
-                            const char *help)
-{
-    char *full = mem_printf("plantcast_source_%s{source=\"%s\"%s}", name, source, more);
-    counter *added = counters_add(counters, full, type, help);
-    mem_free(full);
-    return added;
-}
-
 static void add_counters(struct modbus_source *modbus, struct counters *counters)
 {
-    const char *id = modbus->config->id, *reads = "requests to field devices", *up = "1 while readings come in";
-    modbus->reads_ok = add_counter(counters, "reads_total", id, ",result=\"ok\"", "counter", reads);
-    modbus->reads_failed = add_counter(counters, "reads_total", id, ",result=\"failed\"", "counter", reads);
-    modbus->connects = add_counter(counters, "connects_total", id, "", "counter", "connections made to field devices and brokers");
-    modbus->up = add_counter(counters, "up", id, "", "gauge", up);
-    modbus->host = add_counter(counters, "host", id, "", "gauge", "which of its hosts readings come from, 1: the first; 0: from none");
+    const struct source *base = &modbus->base;
+    const char *reads = "requests to field devices", *up = "1 while readings come in";
+    modbus->reads_ok = source_counter(base, counters, "reads_total", ",result=\"ok\"", "counter", reads);
+    modbus->reads_failed = source_counter(base, counters, "reads_total", ",result=\"failed\"", "counter", reads);
+    modbus->connects = source_counter(base, counters, "connects_total", "", "counter", "connections made to field devices and brokers");
+    modbus->up = source_counter(base, counters, "up", "", "gauge", up);
+    modbus->host = source_counter(base, counters, "host", "", "gauge", "which of its hosts readings come from, 1: the first; 0: from none");
 }
 
 static void add_plan(struct modbus_source *modbus)
 {
-    read_plan_init(&modbus->plan, modbus->plant, modbus->index);
+    read_plan_init(&modbus->plan, modbus->base.plant, modbus->base.index);
     modbus->units = mem_array(modbus->plan.unit_count, sizeof(*modbus->units));
     for (size_t i = 0; i < modbus->plan.unit_count; i++)
         modbus->units[i].id = modbus->plan.units[i];
-    modbus->refused = mem_array(modbus->plant->tag_count, sizeof(*modbus->refused));
+    modbus->refused = mem_array(modbus->base.plant->tag_count, sizeof(*modbus->refused));
     modbus->samples = mem_array(modbus->plan.tag_count, sizeof(*modbus->samples));
     modbus->lost = mem_array(modbus->plan.tag_count, sizeof(*modbus->lost));
-    log_info(modbus->log, "source %s: %s: %zu tags in %zu requests", modbus->config->id, modbus_link_name(modbus->link),
+    log_info(modbus->base.log, "source %s: %s: %zu tags in %zu requests", modbus->base.config->id, modbus_link_name(modbus->link),
              modbus->plan.tag_count, modbus->plan.block_count);
 }
 
-static struct source *modbus_start(struct log *log, const struct plant *plant, int source, struct store *store, struct counters *counters)
+static struct source *modbus_create(const struct source *base, struct counters *counters)
 {
     struct modbus_source *modbus = mem_new(sizeof(*modbus));
-    modbus->base.impl = &modbus_impl;
-    modbus->log = log;
-    modbus->plant = plant;
-    modbus->config = &plant->sources[source];
-    modbus->index = source;
-    modbus->store = store;
-    modbus->stop_fd = eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
-    if (modbus->stop_fd < 0) {
-        log_err(log, "source %s: eventfd: %s", modbus->config->id, strerror(errno));
-        goto error;
+    modbus->base = *base;
+    modbus->link = modbus_link_create(base->log, base->config, base->stop_fd);
+    if (!modbus->link) {
+        modbus_destroy(&modbus->base);
+        return NULL;
     }
-    modbus->link = modbus_link_create(log, modbus->config, modbus->stop_fd);
-    if (!modbus->link)
-        goto error;
     add_counters(modbus, counters);
     add_plan(modbus);
-    modbus->has_thread = pthread_create(&modbus->thread, NULL, modbus_main, modbus) == 0;
-    if (!modbus->has_thread) {
-        log_err(log, "source %s: no thread", modbus->config->id);
-        goto error;
-    }
     return &modbus->base;
-error:
-    modbus_stop(&modbus->base);
-    return NULL;
 }
 
-const struct source_impl modbus_impl = { .kind = "modbus", .start = modbus_start, .stop = modbus_stop };
+const struct source_impl modbus_impl = {
+    .kind = "modbus",
+    .create = modbus_create,
+    .run = modbus_run,
+    .interrupt = modbus_interrupt,
+    .destroy = modbus_destroy,
+};

@@ -20,12 +20,12 @@ static bool note_refused(struct modbus_source *modbus, const struct read_plan_bl
     for (size_t i = 0; i < block->tag_count; i++) {
         int tag = modbus->plan.tags[block->first_tag + i];
         if (modbus->refused[tag] != refused && changed++ == 0)
-            first = modbus->plant->tags[tag].name;
+            first = modbus->base.plant->tags[tag].name;
         modbus->refused[tag] = refused;
     }
     if (changed)
-        log_at(modbus->log, refused ? LOG_WARN : LOG_INFO, "source %s: unit %d: %s%s (%d from %d): %s", modbus->config->id, block->unit,
-               first, changed > 1 ? " and others" : "", block->count, block->first, why);
+        log_at(modbus->base.log, refused ? LOG_WARN : LOG_INFO, "source %s: unit %d: %s%s (%d from %d): %s", modbus->base.config->id,
+               block->unit, first, changed > 1 ? " and others" : "", block->count, block->first, why);
     return changed > 0;
 }
 
@@ -33,13 +33,13 @@ void modbus_take_values(struct modbus_source *modbus, struct read_plan_block *bl
 {
     for (size_t i = 0; i < block->tag_count; i++) {
         int index = modbus->plan.tags[block->first_tag + i];
-        const struct plant_tag *tag = &modbus->plant->tags[index];
+        const struct plant_tag *tag = &modbus->base.plant->tags[index];
         modbus->samples[i].tag = index;
         decode_sample(tag, words + (tag->register_index - block->first), &modbus->samples[i]);
     }
     block->busy_count = block->refused_count = 0;
     block->answered = true;
-    store_write(modbus->store, modbus->samples, block->tag_count, clock_mono_ns(), clock_utc_ns());
+    store_write(modbus->base.store, modbus->samples, block->tag_count, clock_mono_ns(), clock_utc_ns());
     bool repaired = note_refused(modbus, block, false, "read again");
     modbus_unit_is_up(modbus, modbus_unit_of(modbus, block)); /* may make the plan anew: block is of the old one then */
     if (repaired)
@@ -50,7 +50,7 @@ static void take_refusal(struct modbus_source *modbus, const struct read_plan_bl
 {
     for (size_t i = 0; i < block->tag_count; i++)
         modbus->samples[i] = (struct sample){ .tag = modbus->plan.tags[block->first_tag + i], .quality = quality };
-    store_write(modbus->store, modbus->samples, block->tag_count, clock_mono_ns(), clock_utc_ns());
+    store_write(modbus->base.store, modbus->samples, block->tag_count, clock_mono_ns(), clock_utc_ns());
     note_refused(modbus, block, true, why);
 }
 
@@ -96,7 +96,7 @@ void modbus_take_exception(struct modbus_source *modbus, size_t index, int code,
     modbus->plan_cut = true;
     if (code != MODBUS_EXCEPTION_ILLEGAL_FUNCTION && block->tag_count > 1) {
         block->due_ns = now_ns; /* both halves at once, and so on down to the register that is to blame */
-        read_plan_split(&modbus->plan, modbus->plant, index);
+        read_plan_split(&modbus->plan, modbus->base.plant, index);
         return;
     }
     if (quality == QUALITY_BAD_CONFIGURATION)
@@ -107,6 +107,6 @@ void modbus_take_exception(struct modbus_source *modbus, size_t index, int code,
 void modbus_replan(struct modbus_source *modbus)
 {
     read_plan_finish(&modbus->plan);
-    read_plan_init(&modbus->plan, modbus->plant, modbus->index);
+    read_plan_init(&modbus->plan, modbus->base.plant, modbus->base.index);
     modbus->plan_cut = false;
 }

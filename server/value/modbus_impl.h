@@ -3,8 +3,6 @@
    (modbus_answers.c). Thread: the source's own. */
 #ifndef VALUE_MODBUS_IMPL_H
 #define VALUE_MODBUS_IMPL_H
-#include <pthread.h>
-
 #include "value/backoff.h"
 #include "value/modbus_link.h"
 #include "value/read_plan.h"
@@ -21,15 +19,7 @@ struct unit { /* a device behind the address; a gateway or a serial line has sev
 
 struct modbus_source {
     struct source base;
-    struct log *log;
-    const struct plant *plant;
-    const struct plant_source *config;
-    int index;
-    struct store *store;
     counter *reads_ok, *reads_failed, *connects, *up, *host;
-    int stop_fd;
-    pthread_t thread;
-    bool has_thread;
     struct modbus_link *link;
     /* --- below: used by the source's thread only */
     struct read_plan plan;

@@ -17,13 +17,13 @@ struct unit *modbus_unit_of(const struct modbus_source *modbus, const struct rea
 static void link_lost(struct modbus_source *modbus, const char *why)
 {
     int64_t now_ns = clock_mono_ns();
-    log_at(modbus->log, modbus->link_up || !modbus->link_known ? LOG_WARN : LOG_DEBUG, "source %s: %s: no readings (%s)",
-           modbus->config->id, modbus_link_name(modbus->link), why);
+    log_at(modbus->base.log, modbus->link_up || !modbus->link_known ? LOG_WARN : LOG_DEBUG, "source %s: %s: no readings (%s)",
+           modbus->base.config->id, modbus_link_name(modbus->link), why);
     modbus->link_up = false;
     modbus->link_known = true;
     counter_set(modbus->up, 0);
     counter_set(modbus->host, 0);
-    store_link_lost(modbus->store, modbus->index, now_ns);
+    store_link_lost(modbus->base.store, modbus->base.index, now_ns);
 }
 
 void modbus_unit_is_up(struct modbus_source *modbus, struct unit *unit)
@@ -31,7 +31,7 @@ void modbus_unit_is_up(struct modbus_source *modbus, struct unit *unit)
     if (unit->state == UNIT_DOWN && modbus->plan_cut)
         modbus_replan(modbus); /* it may have come back another */
     if (unit->state == UNIT_DOWN && modbus->link_up)
-        log_info(modbus->log, "source %s: unit %d answers again", modbus->config->id, unit->id);
+        log_info(modbus->base.log, "source %s: unit %d answers again", modbus->base.config->id, unit->id);
     unit->state = UNIT_UP;
     unit->backoff = modbus->backoff = (struct backoff){ 0 };
     if (modbus->link_up)
@@ -39,8 +39,8 @@ void modbus_unit_is_up(struct modbus_source *modbus, struct unit *unit)
     modbus->link_up = modbus->link_known = true;
     counter_set(modbus->up, 1);
     counter_set(modbus->host, 1 + modbus_link_host(modbus->link));
-    store_link_up(modbus->store, modbus->index, clock_mono_ns());
-    log_info(modbus->log, "source %s: %s: reading", modbus->config->id, modbus_link_name(modbus->link));
+    store_link_up(modbus->base.store, modbus->base.index, clock_mono_ns());
+    log_info(modbus->base.log, "source %s: %s: reading", modbus->base.config->id, modbus_link_name(modbus->link));
 }
 
 static bool any_unit_up(const struct modbus_source *modbus)
@@ -59,7 +59,7 @@ static void lose_tags_of(struct modbus_source *modbus, const struct unit *unit)
         for (size_t t = 0; block->unit == unit->id && t < block->tag_count; t++)
             modbus->lost[count++] = modbus->plan.tags[block->first_tag + t];
     }
-    store_tags_lost(modbus->store, modbus->lost, count, clock_mono_ns());
+    store_tags_lost(modbus->base.store, modbus->lost, count, clock_mono_ns());
 }
 
 /* The next host at once, if there is one that was not tried since a unit answered; else after a pause. */
@@ -79,11 +79,12 @@ void modbus_unit_is_down(struct modbus_source *modbus, struct unit *unit, const 
     unit->retry_ns = clock_mono_ns() + backoff_next_ns(&unit->backoff, (uint64_t)clock_mono_ns());
     if (!any_unit_up(modbus)) {
         link_lost(modbus, why);
-        if (modbus->config->host_count > 1)
+        if (modbus->base.config->host_count > 1)
             try_elsewhere(modbus);
         return;
     }
-    log_at(modbus->log, was_up ? LOG_WARN : LOG_DEBUG, "source %s: unit %d does not answer (%s)", modbus->config->id, unit->id, why);
+    log_at(modbus->base.log, was_up ? LOG_WARN : LOG_DEBUG, "source %s: unit %d does not answer (%s)", modbus->base.config->id,
+           unit->id, why);
     lose_tags_of(modbus, unit);
 }
 

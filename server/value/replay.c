@@ -3,11 +3,8 @@
 #include "value/source_impl.h"
 
 #include <errno.h>
-#include <pthread.h>
 #include <stdio.h>
 #include <string.h>
-#include <sys/eventfd.h>
-#include <unistd.h>
 
 #include "base/clock.h"
 #include "base/mem.h"
@@ -28,15 +25,7 @@ struct lane { /* a tag and its series */
 
 struct replay {
     struct source base;
-    struct log *log;
-    const struct plant *plant;
-    const struct plant_source *config;
-    int index;
-    struct store *store;
     counter *samples, *up;
-    int stop_fd;
-    pthread_t thread;
-    bool has_thread;
     /* --- below: the thread's own */
     struct lane *lanes;
     size_t lane_count;
@@ -45,42 +34,42 @@ struct replay {
 
 static bool stopping(const struct replay *replay, int64_t until_ns)
 {
-    return wait_for(-1, 0, replay->stop_fd, until_ns) == -ECANCELED;
+    return wait_for(-1, 0, replay->base.stop_fd, until_ns) == -ECANCELED;
 }
 
 static void read_lane(struct replay *replay, struct lane *lane)
 {
-    const struct plant_tag *tag = &replay->plant->tags[lane->tag];
+    const struct plant_tag *tag = &replay->base.plant->tags[lane->tag];
     char why[200];
     bool found;
     lane->change = tag->change;
-    if (series_read(&lane->series, replay->config->file, *tag->address ? tag->address : tag->name, &found, why) && found) {
+    if (series_read(&lane->series, replay->base.config->file, *tag->address ? tag->address : tag->name, &found, why) && found) {
         const char *unit = lane->series.unit;
         if (!unit || !*unit || units_compare(unit, tag->unit, &lane->change) <= UNITS_CONVERT)
             return;
         snprintf(why, sizeof(why), "'%.60s', as the file says, cannot be converted to '%.60s'", unit, tag->unit);
         series_finish(&lane->series);
     }
-    log_err(replay->log, "source %s: %s: %s", replay->config->id, tag->name, why);
+    log_err(replay->base.log, "source %s: %s: %s", replay->base.config->id, tag->name, why);
     const struct sample none = { .tag = lane->tag, .quality = QUALITY_BAD_CONFIGURATION };
-    store_write(replay->store, &none, 1, clock_mono_ns(), clock_utc_ns());
+    store_write(replay->base.store, &none, 1, clock_mono_ns(), clock_utc_ns());
 }
 
 static int64_t due_ns(const struct replay *replay, const struct lane *lane, size_t at)
 {
     double time_s = lane->series.time_s[at] + (double)lane->rounds * lane->series.length_s;
-    return replay->start_mono_ns + (int64_t)(time_s / replay->config->speed * 1e9);
+    return replay->start_mono_ns + (int64_t)(time_s / replay->base.config->speed * 1e9);
 }
 
 static bool ended(const struct replay *replay, const struct lane *lane)
 {
-    return lane->series.count == 0 || (!replay->config->loop && lane->next == lane->series.count);
+    return lane->series.count == 0 || (!replay->base.config->loop && lane->next == lane->series.count);
 }
 
 /* Moves on; after the last comes the first. */
 static void step(const struct replay *replay, struct lane *lane)
 {
-    if (++lane->next < lane->series.count || !replay->config->loop)
+    if (++lane->next < lane->series.count || !replay->base.config->loop)
         return;
     lane->next = 0;
     lane->rounds++;
@@ -92,7 +81,7 @@ static void play_lane(struct replay *replay, struct lane *lane, int64_t now_mono
         if (now_mono_ns - due > LATEST_NS)
             continue;
         const struct sample sample = { .tag = lane->tag, .value = unit_change_value(&lane->change, lane->series.value[lane->next]) };
-        store_write(replay->store, &sample, 1, due, now_utc_ns - (now_mono_ns - due));
+        store_write(replay->base.store, &sample, 1, due, now_utc_ns - (now_mono_ns - due));
         counter_inc(replay->samples, 1);
     }
 }
@@ -101,9 +90,9 @@ static void set_up(struct replay *replay, bool up)
 {
     counter_set(replay->up, up);
     if (up)
-        store_link_up(replay->store, replay->index, clock_mono_ns());
+        store_link_up(replay->base.store, replay->base.index, clock_mono_ns());
     else
-        store_link_lost(replay->store, replay->index, clock_mono_ns());
+        store_link_lost(replay->base.store, replay->base.index, clock_mono_ns());
 }
 
 static bool all_ended(const struct replay *replay)
@@ -114,20 +103,21 @@ static bool all_ended(const struct replay *replay)
     return true;
 }
 
-static void *replay_main(void *arg)
+static void replay_run(struct source *source)
 {
-    struct replay *replay = arg;
+    struct replay *replay = (struct replay *)source;
     for (size_t i = 0; i < replay->lane_count; i++) {
         if (stopping(replay, 0))
-            return NULL;
+            return;
         read_lane(replay, &replay->lanes[i]);
     }
     if (all_ended(replay)) {
         set_up(replay, false);
-        return NULL;
+        return;
     }
     set_up(replay, true);
-    log_info(replay->log, "source %s: replays %s at %g times its speed", replay->config->id, replay->config->file, replay->config->speed);
+    log_info(replay->base.log, "source %s: replays %s at %g times its speed", replay->base.config->id, replay->base.config->file,
+             replay->base.config->speed);
     replay->start_mono_ns = clock_mono_ns();
     do {
         int64_t mono_ns = clock_mono_ns(), utc_ns = clock_utc_ns();
@@ -135,54 +125,31 @@ static void *replay_main(void *arg)
             play_lane(replay, &replay->lanes[i], mono_ns, utc_ns);
     } while (!all_ended(replay) && !stopping(replay, clock_mono_ns() + ROUND_NS));
     if (all_ended(replay)) {
-        log_info(replay->log, "source %s: %s has ended", replay->config->id, replay->config->file);
+        log_info(replay->base.log, "source %s: %s has ended", replay->base.config->id, replay->base.config->file);
         set_up(replay, false);
     }
-    return NULL;
 }
 
-static void replay_stop(struct source *source)
+static void replay_destroy(struct source *source)
 {
     struct replay *replay = (struct replay *)source;
-    if (replay->has_thread) {
-        eventfd_write(replay->stop_fd, 1);
-        pthread_join(replay->thread, NULL);
-    }
-    if (replay->stop_fd >= 0)
-        close(replay->stop_fd);
     for (size_t i = 0; i < replay->lane_count; i++)
         series_finish(&replay->lanes[i].series);
     mem_free(replay->lanes);
     mem_free(replay);
 }
 
-static counter *add_counter(struct counters *counters, const char *format, const char *id, const char *type, const char *help)
-{
-    char *name = mem_printf("plantcast_source_%s{source=\"%s\"}", format, id);
-    counter *added = counters_add(counters, name, type, help);
-    mem_free(name);
-    return added;
-}
-
-static struct source *replay_start(struct log *log, const struct plant *plant, int source, struct store *store, struct counters *counters)
+static struct source *replay_create(const struct source *base, struct counters *counters)
 {
     struct replay *replay = mem_new(sizeof(*replay));
-    *replay = (struct replay){
-        .base.impl = &replay_impl, .log = log, .plant = plant, .config = &plant->sources[source], .index = source, .store = store
-    };
-    replay->samples = add_counter(counters, "samples_total", replay->config->id, "counter", "samples given by replays and brokers");
-    replay->up = add_counter(counters, "up", replay->config->id, "gauge", "1 while readings come in");
-    replay->lanes = mem_array(plant->tag_count, sizeof(*replay->lanes));
-    for (size_t i = 0; i < plant->tag_count; i++)
-        if (plant->tags[i].source == source)
+    replay->base = *base;
+    replay->samples = source_counter(base, counters, "samples_total", "", "counter", "samples given by replays and brokers");
+    replay->up = source_counter(base, counters, "up", "", "gauge", "1 while readings come in");
+    replay->lanes = mem_array(base->plant->tag_count, sizeof(*replay->lanes));
+    for (size_t i = 0; i < base->plant->tag_count; i++)
+        if (base->plant->tags[i].source == base->index)
             replay->lanes[replay->lane_count++].tag = (int)i;
-    replay->stop_fd = eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
-    replay->has_thread = replay->stop_fd >= 0 && pthread_create(&replay->thread, NULL, replay_main, replay) == 0;
-    if (replay->has_thread)
-        return &replay->base;
-    log_err(log, "source %s: no thread: %s", replay->config->id, strerror(errno));
-    replay_stop(&replay->base);
-    return NULL;
+    return &replay->base;
 }
 
-const struct source_impl replay_impl = { .kind = "replay", .start = replay_start, .stop = replay_stop };
+const struct source_impl replay_impl = { .kind = "replay", .create = replay_create, .run = replay_run, .destroy = replay_destroy };

@@ -1,26 +1,92 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The table of sources. */
+/* The table of sources, and what all of them share: the thread of each, and how it is told to end. */
 #include "value/source.h"
 
+#include <errno.h>
 #include <string.h>
+#include <sys/eventfd.h>
+#include <unistd.h>
 
+#include "base/mem.h"
 #include "value/source_impl.h"
 
 static const struct source_impl *const table[] = { &modbus_impl, &mqtt_impl, &replay_impl };
 
-struct source *source_start(struct log *log, const struct plant *plant, int source, struct store *store, struct counters *counters)
+counter *source_counter(const struct source *source, struct counters *counters, const char *name, const char *more, const char *type,
+                        const char *help)
 {
-    const struct plant_source *wanted = &plant->sources[source];
+    char *full = mem_printf("plantcast_source_%s{source=\"%s\"%s}", name, source->config->id, more);
+    counter *added = counters_add(counters, full, type, help);
+    mem_free(full);
+    return added;
+}
+
+static const struct source_impl *find_impl(const char *kind)
+{
     for (size_t i = 0; i < sizeof(table) / sizeof(table[0]); i++)
-        if (!strcmp(table[i]->kind, wanted->kind))
-            return table[i]->start(log, plant, source, store, counters);
-    log_err(log, "source %s: unknown kind %s", wanted->id, wanted->kind);
+        if (!strcmp(table[i]->kind, kind))
+            return table[i];
     return NULL;
 }
 
-void source_stop(struct source **source)
+static void *thread_main(void *arg)
 {
-    if (*source)
-        (*source)->impl->stop(*source);
-    *source = NULL;
+    struct source *source = arg;
+    source->impl->run(source);
+    return NULL;
+}
+
+struct source *source_begin(const struct source *params, const char *what, struct counters *counters)
+{
+    struct source base = *params;
+    base.stop_fd = eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
+    if (base.stop_fd < 0) {
+        log_err(base.log, "%s: eventfd: %s", what, strerror(errno));
+        return NULL;
+    }
+    struct source *made = base.impl->create(&base, counters);
+    if (!made) {
+        close(base.stop_fd);
+        return NULL;
+    }
+    int error = pthread_create(&made->thread, NULL, thread_main, made);
+    made->has_thread = !error;
+    if (error) {
+        log_err(base.log, "%s: no thread: %s", what, strerror(error));
+        source_stop(&made);
+    }
+    return made;
+}
+
+struct source *source_start(struct log *log, const struct plant *plant, int source, struct store *store, struct counters *counters)
+{
+    const struct plant_source *config = &plant->sources[source];
+    const struct source base = {
+        .impl = find_impl(config->kind), .log = log, .plant = plant, .config = config, .index = source, .store = store
+    };
+    if (!base.impl) {
+        log_err(log, "source %s: unknown kind %s", config->id, config->kind);
+        return NULL;
+    }
+    char *what = mem_printf("source %s", config->id);
+    struct source *made = source_begin(&base, what, counters);
+    mem_free(what);
+    return made;
+}
+
+void source_stop(struct source **source_ptr)
+{
+    struct source *source = *source_ptr;
+    if (!source)
+        return;
+    int stop_fd = source->stop_fd;
+    if (source->has_thread) {
+        eventfd_write(stop_fd, 1);
+        if (source->impl->interrupt)
+            source->impl->interrupt(source);
+        pthread_join(source->thread, NULL);
+    }
+    source->impl->destroy(source);
+    close(stop_fd);
+    *source_ptr = NULL;
 }

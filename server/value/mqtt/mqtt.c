@@ -3,9 +3,7 @@
    is the request for a Sparkplug birth certificate, where the plant file allows that. */
 #include <errno.h>
 #include <string.h>
-#include <sys/eventfd.h>
 #include <sys/random.h>
-#include <unistd.h>
 
 #include "base/clock.h"
 #include "base/mem.h"
@@ -16,7 +14,7 @@ static const int64_t CONNECT_NS = 10 * NS_PER_S; /* to a session with the broker
 
 static bool stopping(const struct mqtt_source *mqtt, int64_t until_ns)
 {
-    return wait_for(-1, 0, mqtt->stop_fd, until_ns) == -ECANCELED;
+    return wait_for(-1, 0, mqtt->base.stop_fd, until_ns) == -ECANCELED;
 }
 
 /* --- the link --------------------------------------------------------------------------------------------------------------- */
@@ -25,14 +23,14 @@ static bool stopping(const struct mqtt_source *mqtt, int64_t until_ns)
 static void link_lost(struct mqtt_source *mqtt, const char *why)
 {
     int64_t now_ns = clock_mono_ns();
-    log_at(mqtt->log, mqtt->link_up || !mqtt->link_known ? LOG_WARN : LOG_DEBUG, "source %s: %s:%d: no readings (%s)", mqtt->config->id,
-           mqtt->config->hosts[mqtt->host_index], mqtt->config->port, why);
+    log_at(mqtt->base.log, mqtt->link_up || !mqtt->link_known ? LOG_WARN : LOG_DEBUG, "source %s: %s:%d: no readings (%s)",
+           mqtt->base.config->id, mqtt->base.config->hosts[mqtt->host_index], mqtt->base.config->port, why);
     mqtt->link_up = mqtt->subscribed = false;
     mqtt->link_known = true;
     counter_set(mqtt->up, 0);
     counter_set(mqtt->host, 0);
-    store_tags_dead(mqtt->store, mqtt->topics.tags, mqtt->topics.tag_count, now_ns);
-    store_link_lost(mqtt->store, mqtt->index, now_ns);
+    store_tags_dead(mqtt->base.store, mqtt->topics.tags, mqtt->topics.tag_count, now_ns);
+    store_link_lost(mqtt->base.store, mqtt->base.index, now_ns);
 }
 
 static void on_subscribed(void *arg)
@@ -43,17 +41,18 @@ static void on_subscribed(void *arg)
     mqtt->hosts_tried = 0;
     counter_set(mqtt->up, 1);
     counter_set(mqtt->host, 1 + mqtt->host_index);
-    store_link_up(mqtt->store, mqtt->index, clock_mono_ns());
+    store_link_up(mqtt->base.store, mqtt->base.index, clock_mono_ns());
     if (mqtt->sparkplug)
         sparkplug_on_subscribed(mqtt->sparkplug, clock_mono_ns());
-    log_info(mqtt->log, "source %s: %s:%d: reading", mqtt->config->id, mqtt->config->hosts[mqtt->host_index], mqtt->config->port);
+    log_info(mqtt->base.log, "source %s: %s:%d: reading", mqtt->base.config->id, mqtt->base.config->hosts[mqtt->host_index],
+             mqtt->base.config->port);
 }
 
 static void on_connected(void *arg, bool session_present)
 {
     struct mqtt_source *mqtt = arg;
     counter_inc(mqtt->connects, 1);
-    log_debug(mqtt->log, "source %s: connected, %s session", mqtt->config->id, session_present ? "with the former" : "a new");
+    log_debug(mqtt->base.log, "source %s: connected, %s session", mqtt->base.config->id, session_present ? "with the former" : "a new");
     mqtt_client_subscribe(mqtt->client, mqtt->subscriptions, mqtt->subscription_count);
     if (mqtt->subscription_count == 0)
         on_subscribed(mqtt);
@@ -89,11 +88,11 @@ static int run_session(struct mqtt_source *mqtt, char why[200])
                                                .topic_refused = on_topic_refused,
                                                .message = on_message };
     int64_t deadline_ns = clock_mono_ns() + CONNECT_NS, tick_ns = 0;
-    mqtt->client = mqtt_client_start(mqtt->config, mqtt->host_index, mqtt->client_id, &events, why);
-    int status = mqtt->client ? mqtt_client_wait(mqtt->client, mqtt->stop_fd, deadline_ns, why) : -EINVAL;
+    mqtt->client = mqtt_client_start(mqtt->base.config, mqtt->host_index, mqtt->client_id, &events, why);
+    int status = mqtt->client ? mqtt_client_wait(mqtt->client, mqtt->base.stop_fd, deadline_ns, why) : -EINVAL;
     while (status == 0) {
         int64_t now_ns = clock_mono_ns();
-        status = mqtt_client_serve(mqtt->client, mqtt->stop_fd, now_ns + NS_PER_S, why);
+        status = mqtt_client_serve(mqtt->client, mqtt->base.stop_fd, now_ns + NS_PER_S, why);
         if (status == 0 && !mqtt->subscribed && now_ns > deadline_ns) {
             snprintf(why, 200, "the broker does not answer");
             status = -ETIMEDOUT;
@@ -111,14 +110,14 @@ static int run_session(struct mqtt_source *mqtt, char why[200])
 static int64_t next_host(struct mqtt_source *mqtt)
 {
     int64_t now_ns = clock_mono_ns();
-    mqtt->host_index = (mqtt->host_index + 1) % mqtt->config->host_count;
+    mqtt->host_index = (mqtt->host_index + 1) % mqtt->base.config->host_count;
     mqtt->hosts_tried++;
-    return mqtt->hosts_tried % mqtt->config->host_count ? now_ns : now_ns + backoff_next_ns(&mqtt->backoff, (uint64_t)now_ns);
+    return mqtt->hosts_tried % mqtt->base.config->host_count ? now_ns : now_ns + backoff_next_ns(&mqtt->backoff, (uint64_t)now_ns);
 }
 
-static void *mqtt_main(void *arg)
+static void mqtt_run(struct source *source)
 {
-    struct mqtt_source *mqtt = arg;
+    struct mqtt_source *mqtt = (struct mqtt_source *)source;
     int64_t next_ns = 0;
     while (!stopping(mqtt, next_ns)) {
         char why[200] = "";
@@ -127,18 +126,11 @@ static void *mqtt_main(void *arg)
         link_lost(mqtt, why);
         next_ns = next_host(mqtt);
     }
-    return NULL;
 }
 
-static void mqtt_stop(struct source *source)
+static void mqtt_destroy(struct source *source)
 {
     struct mqtt_source *mqtt = (struct mqtt_source *)source;
-    if (mqtt->has_thread) {
-        eventfd_write(mqtt->stop_fd, 1);
-        pthread_join(mqtt->thread, NULL);
-    }
-    if (mqtt->stop_fd >= 0)
-        close(mqtt->stop_fd);
     sparkplug_destroy(&mqtt->sparkplug);
     mqtt_writer_finish(&mqtt->writer);
     mqtt_topics_finish(&mqtt->topics);
@@ -149,29 +141,22 @@ static void mqtt_stop(struct source *source)
     mem_free(mqtt);
 }
 
-static counter *add_counter(struct counters *counters, const char *name, const char *source, const char *more, const char *type,
-                            const char *help)
-{
-    char *full = mem_printf("plantcast_source_%s{source=\"%s\"%s}", name, source, more);
-    counter *added = counters_add(counters, full, type, help);
-    mem_free(full);
-    return added;
-}
-
 static void add_counters(struct mqtt_source *mqtt, struct counters *counters)
 {
-    const char *id = mqtt->config->id, *messages = "messages from brokers";
-    mqtt->messages_ok = add_counter(counters, "messages_total", id, ",result=\"ok\"", "counter", messages);
-    mqtt->messages_refused = add_counter(counters, "messages_total", id, ",result=\"refused\"", "counter", messages);
-    mqtt->samples = add_counter(counters, "samples_total", id, "", "counter", "samples given by replays and brokers");
-    mqtt->connects = add_counter(counters, "connects_total", id, "", "counter", "connections made to field devices and brokers");
-    if (mqtt->config->mqtt.payload == MQTT_SPARKPLUG) {
-        mqtt->gaps = add_counter(counters, "gaps_total", id, "", "counter", "messages of Sparkplug nodes out of their sequence");
-        mqtt->historical = add_counter(counters, "historical_total", id, "", "counter", "historical values of Sparkplug nodes, not read");
-        mqtt->rebirths = add_counter(counters, "rebirths_total", id, "", "counter", "requests for Sparkplug birth certificates");
+    const struct source *base = &mqtt->base;
+    const char *messages = "messages from brokers";
+    mqtt->messages_ok = source_counter(base, counters, "messages_total", ",result=\"ok\"", "counter", messages);
+    mqtt->messages_refused = source_counter(base, counters, "messages_total", ",result=\"refused\"", "counter", messages);
+    mqtt->samples = source_counter(base, counters, "samples_total", "", "counter", "samples given by replays and brokers");
+    mqtt->connects = source_counter(base, counters, "connects_total", "", "counter", "connections made to field devices and brokers");
+    if (base->config->mqtt.payload == MQTT_SPARKPLUG) {
+        mqtt->gaps = source_counter(base, counters, "gaps_total", "", "counter", "messages of Sparkplug nodes out of their sequence");
+        mqtt->historical =
+            source_counter(base, counters, "historical_total", "", "counter", "historical values of Sparkplug nodes, not read");
+        mqtt->rebirths = source_counter(base, counters, "rebirths_total", "", "counter", "requests for Sparkplug birth certificates");
     }
-    mqtt->up = add_counter(counters, "up", id, "", "gauge", "1 while readings come in");
-    mqtt->host = add_counter(counters, "host", id, "", "gauge", "which of its hosts readings come from, 1: the first; 0: from none");
+    mqtt->up = source_counter(base, counters, "up", "", "gauge", "1 while readings come in");
+    mqtt->host = source_counter(base, counters, "host", "", "gauge", "which of its hosts readings come from, 1: the first; 0: from none");
 }
 
 /* Two programs must not have one id: the broker would end the connection of the other. */
@@ -186,15 +171,15 @@ static char *make_client_id(const struct plant_source *config)
 
 static void add_sparkplug(struct mqtt_source *mqtt)
 {
-    const struct sparkplug_params params = { .log = mqtt->log,
-                                             .source = mqtt->config->id,
-                                             .plant = mqtt->plant,
+    const struct sparkplug_params params = { .log = mqtt->base.log,
+                                             .source = mqtt->base.config->id,
+                                             .plant = mqtt->base.plant,
                                              .topics = &mqtt->topics,
-                                             .store = mqtt->store,
+                                             .store = mqtt->base.store,
                                              .writer = &mqtt->writer,
                                              .gaps = mqtt->gaps,
                                              .historical = mqtt->historical,
-                                             .rebirth = mqtt->config->mqtt.rebirth,
+                                             .rebirth = mqtt->base.config->mqtt.rebirth,
                                              .ask = ask_rebirth,
                                              .arg = mqtt };
     mqtt->sparkplug = sparkplug_create(&params);
@@ -203,35 +188,28 @@ static void add_sparkplug(struct mqtt_source *mqtt)
 
 static void add_topics(struct mqtt_source *mqtt)
 {
-    mqtt_topics_init(&mqtt->topics, mqtt->plant, mqtt->index);
-    if (mqtt->config->mqtt.payload == MQTT_SPARKPLUG) {
+    mqtt_topics_init(&mqtt->topics, mqtt->base.plant, mqtt->base.index);
+    if (mqtt->base.config->mqtt.payload == MQTT_SPARKPLUG) {
         add_sparkplug(mqtt);
     } else {
         mqtt->subscriptions = mem_array(mqtt->topics.count, sizeof(*mqtt->subscriptions));
         for (size_t i = 0; i < mqtt->topics.count; i++)
             mqtt->subscriptions[mqtt->subscription_count++] = mem_strdup(mqtt->topics.at[i].name);
     }
-    log_info(mqtt->log, "source %s: %s:%d: %zu tags in %zu topics", mqtt->config->id, mqtt->config->hosts[0], mqtt->config->port,
-             mqtt->topics.tag_count, mqtt->topics.count);
+    const struct plant_source *config = mqtt->base.config;
+    log_info(mqtt->base.log, "source %s: %s:%d: %zu tags in %zu topics", config->id, config->hosts[0], config->port, mqtt->topics.tag_count,
+             mqtt->topics.count);
 }
 
-static struct source *mqtt_start(struct log *log, const struct plant *plant, int source, struct store *store, struct counters *counters)
+static struct source *mqtt_create(const struct source *base, struct counters *counters)
 {
     struct mqtt_source *mqtt = mem_new(sizeof(*mqtt));
-    *mqtt = (struct mqtt_source){
-        .base.impl = &mqtt_impl, .log = log, .plant = plant, .config = &plant->sources[source], .index = source, .store = store
-    };
+    mqtt->base = *base;
     add_counters(mqtt, counters);
     add_topics(mqtt);
-    mqtt_writer_init(&mqtt->writer, plant, store);
-    mqtt->client_id = make_client_id(mqtt->config);
-    mqtt->stop_fd = eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
-    mqtt->has_thread = mqtt->stop_fd >= 0 && pthread_create(&mqtt->thread, NULL, mqtt_main, mqtt) == 0;
-    if (mqtt->has_thread)
-        return &mqtt->base;
-    log_err(log, "source %s: no thread: %s", mqtt->config->id, strerror(errno));
-    mqtt_stop(&mqtt->base);
-    return NULL;
+    mqtt_writer_init(&mqtt->writer, base->plant, base->store);
+    mqtt->client_id = make_client_id(base->config);
+    return &mqtt->base;
 }
 
-const struct source_impl mqtt_impl = { .kind = "mqtt", .start = mqtt_start, .stop = mqtt_stop };
+const struct source_impl mqtt_impl = { .kind = "mqtt", .create = mqtt_create, .run = mqtt_run, .destroy = mqtt_destroy };

@@ -2,8 +2,6 @@
 /* An MQTT source, as its files share it: one thread with one connection. Private to value/mqtt/. Thread: the source's own. */
 #ifndef VALUE_MQTT_IMPL_H
 #define VALUE_MQTT_IMPL_H
-#include <pthread.h>
-
 #include "value/backoff.h"
 #include "value/mqtt/mqtt_client.h"
 #include "value/mqtt/mqtt_topics.h"
@@ -13,15 +11,7 @@
 
 struct mqtt_source {
     struct source base;
-    struct log *log;
-    const struct plant *plant;
-    const struct plant_source *config;
-    int index;
-    struct store *store;
     counter *messages_ok, *messages_refused, *samples, *connects, *up, *host, *gaps, *historical, *rebirths;
-    int stop_fd;
-    pthread_t thread;
-    bool has_thread;
     char *client_id;
     /* --- below: used by the source's thread only */
     struct mqtt_topics topics;

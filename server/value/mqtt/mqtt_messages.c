@@ -36,8 +36,8 @@ void mqtt_refuse(struct mqtt_source *mqtt, const struct mqtt_message *message, c
     }
     if (mqtt->refusals_unsaid > 0)
         snprintf(more, sizeof(more), " (and %ld more refused since)", mqtt->refusals_unsaid);
-    log_warn(mqtt->log, "source %s: %s: %zu bytes are refused: %s%s", mqtt->config->id, shown(message->topic, topic), message->count, why,
-             more);
+    log_warn(mqtt->base.log, "source %s: %s: %zu bytes are refused: %s%s", mqtt->base.config->id, shown(message->topic, topic),
+             message->count, why, more);
     mqtt->refusals_unsaid = 0;
 }
 
@@ -51,7 +51,7 @@ static void report_skew(struct mqtt_source *mqtt, const char *topic)
     if ((skew_ns < SKEW_NS && skew_ns > -SKEW_NS) || (*said_ns && now_ns - *said_ns < SKEW_SAID_NS))
         return;
     *said_ns = now_ns;
-    log_warn(mqtt->log, "source %s: %s: its times are %.1f s %s this machine's clock", mqtt->config->id, shown(topic, name),
+    log_warn(mqtt->base.log, "source %s: %s: its times are %.1f s %s this machine's clock", mqtt->base.config->id, shown(topic, name),
              (double)(skew_ns > 0 ? skew_ns : -skew_ns) / 1e9, skew_ns > 0 ? "ahead of" : "behind");
 }
 
@@ -79,7 +79,7 @@ static bool take_json(struct mqtt_source *mqtt, const struct mqtt_topic *topic, 
     for (size_t i = 0; i < topic->tag_count; i++) {
         struct mqtt_value value;
         int tag = topic->tags[i];
-        enum mqtt_found found = mqtt_json_read(root, &mqtt->config->mqtt, mqtt->plant->tags[tag].path, &value, why);
+        enum mqtt_found found = mqtt_json_read(root, &mqtt->base.config->mqtt, mqtt->base.plant->tags[tag].path, &value, why);
         if (found == MQTT_FOUND)
             mqtt_writer_add(&mqtt->writer, tag, &value, message->is_retained || (!mqtt->subscribed && !value.utc_ns), false);
         else if (found == MQTT_WRONG)
@@ -98,7 +98,7 @@ static bool take(struct mqtt_source *mqtt, const struct mqtt_topic *topic, const
         return false;
     }
     snprintf(why, 200, "expected one number");
-    if (mqtt->config->mqtt.payload == MQTT_NUMBER) {
+    if (mqtt->base.config->mqtt.payload == MQTT_NUMBER) {
         bool good = take_number(mqtt, topic, message, message->is_retained || !mqtt->subscribed);
         if (!good)
             all_bad(mqtt, topic);
