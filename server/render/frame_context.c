@@ -11,6 +11,15 @@ const struct model_level *frame_level(const struct frame_context *context, int a
     return lod_level(context->gpu_scene, &context->constants, asset, context->error_px);
 }
 
+bool frame_shows_selected(const struct frame_context *context)
+{
+    int selected = context->view->selected_asset;
+    for (size_t i = 0; i < context->visible_count && selected >= 0; i++)
+        if (context->visible[i] == selected)
+            return true;
+    return false;
+}
+
 int frame_triangles(const struct frame_context *context)
 {
     int count = 0;

@@ -29,6 +29,8 @@ struct frame_context {
 
 /* Returns the level of an asset that the frame plan chose. */
 const struct model_level *frame_level(const struct frame_context *context, int asset);
+/* Returns whether the selected asset is among the visible ones. */
+bool frame_shows_selected(const struct frame_context *context);
 /* Returns the number of triangles of the planned levels of all visible assets. */
 int frame_triangles(const struct frame_context *context);
 /* Returns by how much previews move surfaces towards the sun against shadow acne, in depth of the shadow map. */

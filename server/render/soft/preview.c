@@ -85,15 +85,6 @@ bool soft_make_room(struct soft *soft, const struct frame *frame)
     return soft->pixel_capacity > 0;
 }
 
-static bool is_selected_shown(const struct frame_context *context)
-{
-    int selected = context->view->selected_asset;
-    for (size_t i = 0; i < context->visible_count && selected >= 0; i++)
-        if (context->visible[i] == selected)
-            return true;
-    return false;
-}
-
 static bool complain(const struct soft *soft)
 {
     log_err(soft->gpu_scene->gl->log, "preview of %dx%d, %zu vertices: out of memory", soft->width_px, soft->height_px, soft->vertex_count);
@@ -112,7 +103,7 @@ static bool is_still(struct soft *soft, uint64_t shape)
 
 static bool draw_selected(struct soft *soft, struct visibility_buffer *buffer)
 {
-    if (!is_selected_shown(soft->context))
+    if (!frame_shows_selected(soft->context))
         return true;
     if (!soft_find_only(soft, soft->context->view->selected_asset))
         return complain(soft);

@@ -357,15 +357,6 @@ static bool advance(struct refined *refined, size_t all, size_t some, size_t *be
     return *end == all;
 }
 
-static bool is_selected_shown(const struct frame_context *context)
-{
-    int selected = context->view->selected_asset;
-    for (size_t i = 0; i < context->visible_count && selected >= 0; i++)
-        if (context->visible[i] == selected)
-            return true;
-    return false;
-}
-
 /* Of the selected asset. */
 static bool mark(struct refined *refined, const struct frame *frame)
 {
@@ -430,11 +421,11 @@ bool refined_step(struct refined *refined, const struct frame_context *context, 
             return complain(refined);
         break;
     case REFINED_MARK:
-        if (is_selected_shown(context) && !mark(refined, frame))
+        if (frame_shows_selected(context) && !mark(refined, frame))
             return complain(refined);
         break;
     case REFINED_RIM:
-        if (is_selected_shown(context))
+        if (frame_shows_selected(context))
             soft_keep_rim(refined->soft, refined->buffer);
         break;
     case REFINED_SETTLE:
