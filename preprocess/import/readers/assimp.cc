@@ -10,12 +10,9 @@
 
 #include <cerrno>
 #include <cmath>
-#include <cstdarg>
 #include <cstdio>
 #include <cstring>
-#include <exception>
 #include <map>
-#include <stdexcept>
 #include <string>
 #include <strings.h>
 #include <vector>
@@ -24,23 +21,13 @@ extern "C" {
 #include "base/srgb.h"
 }
 #include "preprocess/glb/glb_scene.h"
+#include "preprocess/import/readers/reader.hh"
 
 namespace
 {
 
 constexpr int MAX_DEPTH = 400;            /* plantcast-prep reads 512 levels */
 constexpr double LONGEST_IN_METRES = 300; /* what is longer was drawn in millimetres */
-
-[[noreturn]] void refuse(const char *fmt, ...) __attribute__((format(printf, 1, 2)));
-void refuse(const char *fmt, ...)
-{
-    char text[300];
-    va_list ap;
-    va_start(ap, fmt);
-    vsnprintf(text, sizeof(text), fmt, ap);
-    va_end(ap);
-    throw std::runtime_error(text);
-}
 
 struct format {
     const char *ending;
@@ -371,10 +358,7 @@ void convert(const char *input, const char *output, const char *units, const cha
     add(&r, scene->mRootNode, root, 0);
     if (r.triangles == 0)
         refuse("there is no surface in it");
-    int status = glb_scene_write(r.out, output);
-    glb_scene_destroy(&r.out);
-    if (status != 0)
-        refuse("%s", status == -EFBIG ? "a GLB file holds at most 4 GiB" : strerror(-status));
+    write_scene(&r.out, output, "");
     if (r.lost > 0)
         printf("left out: %zu triangles whose corners are not finite\n", r.lost);
 }
@@ -383,19 +367,7 @@ void convert(const char *input, const char *output, const char *units, const cha
 
 int main(int argc, char **argv)
 {
-    if (argc != 6) {
-        fprintf(stderr, "usage: plantcast-import-assimp INPUT OUTPUT.glb CHORD_MM UNITS UP\n");
-        return 2;
-    }
-    try {
-        convert(argv[1], argv[2], argv[4], argv[5]);
-        return 0;
-    } catch (const std::bad_alloc &) {
-        fprintf(stderr, "out of memory\n");
-    } catch (const std::exception &e) {
-        fprintf(stderr, "%s\n", e.what());
-    } catch (...) {
-        fprintf(stderr, "its reader failed\n");
-    }
-    return 1;
+    return reader_main(argc, argv, "plantcast-import-assimp", [](char **arguments) {
+        convert(arguments[0], arguments[1], arguments[3], arguments[4]);
+    });
 }

@@ -24,17 +24,15 @@
 
 #include <array>
 #include <cmath>
-#include <cstdarg>
 #include <cstdio>
 #include <cstring>
-#include <exception>
 #include <map>
-#include <stdexcept>
 #include <string>
 #include <strings.h>
 #include <vector>
 
 #include "preprocess/glb/glb_scene.h"
+#include "preprocess/import/readers/reader.hh"
 
 namespace
 {
@@ -43,17 +41,6 @@ constexpr int MAX_DEPTH = 400;          /* plantcast-prep reads 512 levels */
 constexpr size_t MAX_NODES = 2'000'000; /* an assembly of assemblies of ... grows without bounds */
 constexpr double ANGLE_RAD = 0.5;       /* between neighbouring facets, where the chord error would allow more */
 const double PLAIN[4] = { 0.35, 0.35, 0.35, 1 };
-
-[[noreturn]] void refuse(const char *fmt, ...) __attribute__((format(printf, 1, 2)));
-void refuse(const char *fmt, ...)
-{
-    char text[256];
-    va_list ap;
-    va_start(ap, fmt);
-    vsnprintf(text, sizeof(text), fmt, ap);
-    va_end(ap);
-    throw std::runtime_error(text);
-}
 
 /* --- names, colours, places ------------------------------------------------------------------------------------------------------- */
 
@@ -339,10 +326,7 @@ void convert(const char *input, const char *output, double chord_mm, bool y_up)
         add(&r, free.Value(i), root, XCAFPrs_Style(), 0);
     if (r.places == 0)
         refuse("there is no surface in it");
-    int status = glb_scene_write(r.scene, output);
-    glb_scene_destroy(&r.scene);
-    if (status != 0)
-        refuse("%s", status == -EFBIG ? "a GLB file holds at most 4 GiB: a larger --chord makes it smaller" : strerror(-status));
+    write_scene(&r.scene, output, ": a larger --chord makes it smaller");
     size_t made = 0;
     for (const auto &entry : r.parts)
         made += entry.second.mesh >= 0;
@@ -355,25 +339,23 @@ void convert(const char *input, const char *output, double chord_mm, bool y_up)
         printf("left out: %zu parts without a surface\n", r.empty_parts);
 }
 
+/* OCCT throws what is no std::exception. */
+void convert_or_refuse(char **arguments)
+{
+    try {
+        convert(arguments[0], arguments[1], strtod(arguments[2], nullptr), !strcmp(arguments[4], "y"));
+    } catch (const Standard_Failure &e) {
+        refuse("its shapes could not be read: %s", e.GetMessageString());
+    } catch (const std::exception &) {
+        throw;
+    } catch (...) {
+        refuse("its shapes could not be read");
+    }
+}
+
 } // namespace
 
 int main(int argc, char **argv)
 {
-    if (argc != 6) {
-        fprintf(stderr, "usage: plantcast-import-occt INPUT OUTPUT.glb CHORD_MM UNITS UP\n");
-        return 2;
-    }
-    try {
-        convert(argv[1], argv[2], strtod(argv[3], nullptr), !strcmp(argv[5], "y"));
-        return 0;
-    } catch (const std::bad_alloc &) {
-        fprintf(stderr, "out of memory\n");
-    } catch (const std::exception &e) {
-        fprintf(stderr, "%s\n", e.what());
-    } catch (const Standard_Failure &e) {
-        fprintf(stderr, "its shapes could not be read: %s\n", e.GetMessageString());
-    } catch (...) {
-        fprintf(stderr, "its shapes could not be read\n");
-    }
-    return 1;
+    return reader_main(argc, argv, "plantcast-import-occt", convert_or_refuse);
 }

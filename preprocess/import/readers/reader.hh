@@ -1,0 +1,58 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What the readers in C++ share: how one refuses a file, writes its scene, and ends. Thread: one. */
+#ifndef PREPROCESS_IMPORT_READERS_READER_HH
+#define PREPROCESS_IMPORT_READERS_READER_HH
+#include <cerrno>
+#include <cstdarg>
+#include <cstdio>
+#include <cstring>
+#include <exception>
+#include <new>
+#include <stdexcept>
+
+#include "preprocess/glb/glb_scene.h"
+
+/* Ends the reading with these words as its reason: reader_main() prints them. */
+[[noreturn]] inline void refuse(const char *fmt, ...) __attribute__((format(printf, 1, 2)));
+inline void refuse(const char *fmt, ...)
+{
+    char text[300];
+    va_list ap;
+    va_start(ap, fmt);
+    vsnprintf(text, sizeof(text), fmt, ap);
+    va_end(ap);
+    throw std::runtime_error(text);
+}
+
+/* Writes the scene, frees it and leaves NULL. advice: what makes a file smaller that is too large, or "". */
+inline void write_scene(struct glb_scene **scene, const char *output, const char *advice)
+{
+    int status = glb_scene_write(*scene, output);
+    glb_scene_destroy(scene);
+    if (status == -EFBIG)
+        refuse("a GLB file holds at most 4 GiB%s", advice);
+    if (status != 0)
+        refuse("%s", strerror(-status));
+}
+
+/* The main function: convert takes INPUT OUTPUT.glb CHORD_MM UNITS UP. Returns the exit status; the last line on stderr says why it failed. */
+inline int reader_main(int argc, char **argv, const char *name, void (*convert)(char **arguments))
+{
+    if (argc != 6) {
+        fprintf(stderr, "usage: %s INPUT OUTPUT.glb CHORD_MM UNITS UP\n", name);
+        return 2;
+    }
+    try {
+        convert(argv + 1);
+        return 0;
+    } catch (const std::bad_alloc &) {
+        fprintf(stderr, "out of memory\n");
+    } catch (const std::exception &e) {
+        fprintf(stderr, "%s\n", e.what());
+    } catch (...) {
+        fprintf(stderr, "its reader failed\n");
+    }
+    return 1;
+}
+
+#endif
