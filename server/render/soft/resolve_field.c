@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Light on what shows the field, and on sky and ground, eight pixels at a time: shaders/refined.frag, shadow.glsl, sky.frag and ground.frag
    once more. */
-#include "render/soft/spots.h"
+#include "render/soft/surface_points.h"
 
 /* --- the field --------------------------------------------------------------------------------------------------------------- */
 

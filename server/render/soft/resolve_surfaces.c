@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Light on surfaces without a field, eight at a time: shaders/refined.frag, light.glsl, pbr.glsl and environment.glsl once more. */
 #include "render/soft/section_colors.h"
-#include "render/soft/spots.h"
+#include "render/soft/surface_points.h"
 
 static const float OPEN_BEHIND = 0.7f; /* as in shaders/refined.frag */
 

@@ -3,7 +3,7 @@
    raster.c. */
 #ifndef RENDER_SOFT_SMALL_H
 #define RENDER_SOFT_SMALL_H
-#include "render/soft/marks.h"
+#include "render/soft/pixel_marks.h"
 #include "render/soft/tile.h"
 #include "render/soft/edges.h"
 

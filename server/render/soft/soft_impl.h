@@ -24,7 +24,7 @@ enum { MOST_RAMPS = 1 << 14 };
 
 struct soft_vertex {
     float x, y, depth; /* pixels from the top left; 1 near, 0 far */
-    float inverse_w;   /* 0: nearer than the near plane, or beyond the band (near.h) */
+    float inverse_w;   /* 0: nearer than the near plane, or beyond the band (clip.h) */
     float a, b;        /* field: column and row of the colormap (logarithmic: value and row); context: ambient, facing the sun */
     uint32_t flags;    /* soft_flags */
 };

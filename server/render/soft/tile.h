@@ -2,7 +2,7 @@
 /* A rectangle of the picture while one thread draws it, part by part, nearest first. Private to soft/. */
 #ifndef RENDER_SOFT_TILE_H
 #define RENDER_SOFT_TILE_H
-#include "render/soft/near.h"
+#include "render/soft/clip.h"
 #include "render/soft/lanes.h"
 
 enum { TILE_WIDTH_PX = 320, TILE_HEIGHT_PX = 184, BLOCK_SHIFT = 3, BLOCK_PX = 1 << BLOCK_SHIFT };

@@ -2,7 +2,7 @@
 /* One triangle against the near plane, the band and the planes that cut. */
 #include <string.h>
 
-#include "render/soft/near.h"
+#include "render/soft/clip.h"
 
 struct near_corner near_corner_of(const struct soft_mesh *mesh, uint32_t vertex, float a, float b, uint32_t flags)
 {

@@ -2,8 +2,8 @@
 /* Triangles that the near plane cuts, or the edge of the band about the picture (one picture wide to either side, one high above and
    below), or a plane that something is cut away by. Corners farther out, as those that lie just before the eye, would leave an edge too few
    digits. Private to soft/. */
-#ifndef RENDER_SOFT_NEAR_H
-#define RENDER_SOFT_NEAR_H
+#ifndef RENDER_SOFT_CLIP_H
+#define RENDER_SOFT_CLIP_H
 #include "render/soft/soft_impl.h"
 
 /* The latter: what all planes may make of one triangle. */

@@ -2,7 +2,7 @@
 /* Triangles of a part that the near plane, the edge of the band or a plane that something is cut away by may cut. */
 #include <math.h>
 
-#include "render/soft/near.h"
+#include "render/soft/clip.h"
 #include "render/soft/tile.h"
 
 static uint32_t flags_of(const struct near_patterns *patterns)

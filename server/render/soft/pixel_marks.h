@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Marks of pixels (render/soft/soft_impl.h), eight at a time. Private to soft/. */
-#ifndef RENDER_SOFT_MARKS_H
-#define RENDER_SOFT_MARKS_H
+#ifndef RENDER_SOFT_PIXEL_MARKS_H
+#define RENDER_SOFT_PIXEL_MARKS_H
 #include "render/soft/soft_impl.h"
 #include "render/soft/lanes.h"
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Spots of surfaces, eight at a time: where they are, which way they look, and how much of the sun they see. Private to soft/. */
-#ifndef RENDER_SOFT_SPOTS_H
-#define RENDER_SOFT_SPOTS_H
+#ifndef RENDER_SOFT_SURFACE_POINTS_H
+#define RENDER_SOFT_SURFACE_POINTS_H
 #include <math.h>
 #include <string.h>
 
