@@ -101,10 +101,11 @@ export async function settle(page, quietMs = 0) {
     }
 }
 
-// Until the picture has the size that it has in the page, and nothing flies any more.
+// Until the picture on the screen is of the page's camera and size, and nothing flies any more: what is clicked is where it is drawn.
 export const land = (page) => page.waitForFunction(() => {
-    const { cameraController, session: { picture, size }, viewport } = globalThis.plantcast, ratio = devicePixelRatio;
-    return !cameraController?.fly && Math.abs(size.width - viewport.width * ratio) <= 2 &&
+    const { cameraController, session, viewport } = globalThis.plantcast, { picture, size } = session, ratio = devicePixelRatio;
+    return !cameraController?.fly && !session.cameraNews && picture.cameraSeq === session.cameraSeq &&
+        Math.abs(size.width - viewport.width * ratio) <= 2 &&
         Math.abs(size.height - viewport.height * ratio) <= 2 &&
         picture.fullWidth === size.width && picture.fullHeight === size.height;
 }, null, { timeout: 60000 });

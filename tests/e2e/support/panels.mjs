@@ -44,10 +44,6 @@ export async function everyPanel(page, f) {
     await page.waitForFunction(() => globalThis.plantcast.overlay.markers.some(({ tag }) => tag.name === 'TI-1'));
     const at = await Promise.all(places.map((place) => drawnAt(page, place)));
     await page.mouse.click(at[0].x, at[0].y);
-    await page.locator('#card').waitFor({ timeout: 10000 }).catch(async () => { // what opened meanwhile lay over it
-        await page.keyboard.press('Escape');
-        await page.mouse.click(at[0].x, at[0].y);
-    });
     await page.locator('#card').waitFor();
     await f('card');
     await page.mouse.click(at[1].x - 6, at[1].y + 30);
