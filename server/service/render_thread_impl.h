@@ -10,7 +10,9 @@
 
 struct thread_memory { /* what drawing keeps in caches (render_thread_memory.c) */
     counter *stores[RENDER_STORES], *fields, *frames, *bound;
+    size_t other;           /* peak of what the process held beside models and caches, fading */
     int64_t looked_ns;      /* when it was last counted */
+    int64_t trimmed_ns;     /* when free heap was last returned to the system */
     int64_t alone_since_ns; /* since when there has been no client; 0: there is one */
     bool released;          /* nothing was drawn since the caches were released */
 };

@@ -9,8 +9,11 @@
 static const int64_t LOOK_NS = 1 * NS_PER_S;  /* between counts */
 static const int64_t REST_NS = 10 * NS_PER_S; /* nobody is there for so long */
 static const double FIELD_SHARE = 0.3;        /* of the bound: values and weights of all fields */
-/* Beside models and caches: shaders, threads, the plant; and what is made while a frame, or a light, is under way. */
-static const size_t OWN_BYTES = (size_t)576 << 20;
+/* Beside models and caches, at least: shaders, threads, the plant; and what is made while a frame, or a light, is under way. */
+static const size_t OTHER_BYTES = (size_t)576 << 20;
+static const size_t FREE_BYTES = (size_t)64 << 20; /* free in the heap and still resident: worth returning */
+static const int64_t TRIM_NS = 5 * NS_PER_S;       /* between two times of it */
+static const size_t FADES = 64;                    /* a peak of other memory loses 1 / FADES of what it exceeds the present by, each time */
 
 static counter *add(struct render_service *service, const char *of)
 {
@@ -30,19 +33,39 @@ void render_thread_memory_init(struct thread_memory *memory, struct render_servi
                                  "What all of these may hold together, but for what the picture that is drawn needs.");
 }
 
-/* What models and the program itself leave of what the daemon may take; a quarter of it in any case. */
-static size_t bound_of(size_t all, size_t models)
+/* Returns what the process needs beside `counted`, the bytes of models and caches: its recent peak. Near the limit `all`, what is free in
+   the heap is returned to the system first. */
+static size_t other_bytes(struct thread_memory *memory, size_t all, size_t counted)
 {
-    size_t own = models + OWN_BYTES;
-    return own < all - all / 4 ? all - own : all / 4;
+    struct memory_use use;
+    int64_t now_ns = clock_mono_ns();
+    memory_measure(&use);
+    if (use.anonymous > all - all / 8 && use.anonymous > use.allocated + FREE_BYTES && now_ns - memory->trimmed_ns > TRIM_NS) {
+        memory_trim();
+        memory_measure(&use);
+        memory->trimmed_ns = now_ns;
+    }
+    size_t other = use.anonymous > counted ? use.anonymous - counted : 0;
+    memory->other = other > memory->other ? other : memory->other - (memory->other - other) / FADES;
+    return memory->other > OTHER_BYTES ? memory->other : OTHER_BYTES;
+}
+
+/* Returns what models and other memory leave of `all`; a quarter of it in any case. */
+static size_t bound_of(size_t all, size_t models, size_t other)
+{
+    return models + other < all - all / 4 ? all - models - other : all / 4;
 }
 
 void render_thread_bound_memory(struct render_thread *thread)
 {
     struct thread_memory *memory = &thread->memory;
-    size_t bytes[RENDER_STORES], all = thread->service->params.memory_bytes;
+    size_t bytes[RENDER_STORES], all = thread->service->params.memory_bytes, frames = frame_bytes();
+    size_t counted = field_bytes(thread->field) + frames;
     renderer_measure_memory(thread->renderer, bytes);
-    size_t bound = bound_of(all ? all : memory_default_bytes(), bytes[STORE_MODELS]), frames = frame_bytes();
+    for (int i = 0; i < RENDER_STORES; i++)
+        counted += bytes[i];
+    all = all ? all : memory_default_bytes();
+    size_t bound = bound_of(all, bytes[STORE_MODELS], other_bytes(memory, all, counted));
     size_t caches = bound > 2 * frames ? bound - frames : bound / 2; /* frames are as many as sessions need */
     field_set_cache_limit(thread->field, (size_t)(FIELD_SHARE * (double)caches));
     renderer_bound_memory(thread->renderer, caches - (size_t)(FIELD_SHARE * (double)caches));
@@ -95,6 +118,7 @@ void render_thread_release_memory(struct render_thread *thread)
     encode_queue_drop_idle(thread->service->queue);
     frame_drop_spares();
     memory_trim();
+    thread->memory.other = 0;
     render_thread_bound_memory(thread);
     thread->memory.released = true;
 }

@@ -145,6 +145,31 @@ static void test_the_nearest_sun_stands_in(void **state)
     gpu_scene_finish(&gpu_scene);
 }
 
+/* Of the usual light's key and others: the usual one, if it is cached. */
+static void test_one_light_stays(void **state)
+{
+    struct gpu_scene gpu_scene;
+    struct light light;
+    const struct light_key usual = sun(0), others[2] = { sun(1), sun(4) };
+    (void)state;
+    assert_true(gpu_scene_init(&gpu_scene, rig.gl, &stand.toy->scene) && light_init(&light, &gpu_scene, &environments));
+    light.bound_bytes = 3 * bake_bytes(&gpu_scene);
+    for (int cached = 1; cached >= 0; cached--) {
+        for (int i = 0; i < 2; i++)
+            light_get(&light, &others[i]);
+        if (cached)
+            light_get(&light, &usual);
+        light_drop(&light, &usual);
+        assert_true(light.bytes == bake_bytes(&gpu_scene));
+        assert_true((light_near(&light, &usual)->key.towards[0] == usual.towards[0]) == cached);
+        light_drop(&light, &others[0]); /* the usual one goes */
+        light_get(&light, &others[0]);
+        light_drop(&light, &others[0]);
+    }
+    light_finish(&light);
+    gpu_scene_finish(&gpu_scene);
+}
+
 static bool same_pixels(const struct frame *a, const struct frame *b)
 {
     return !memcmp(a->bgrx, b->bgrx, (size_t)a->stride_bytes * (size_t)a->height_px);
@@ -228,7 +253,7 @@ int main(void)
         cmocka_unit_test(test_bits_make_the_same_light),       cmocka_unit_test(test_large_faces_are_lit_within),
         cmocka_unit_test(test_many_lights_fit_in_a_bound),     cmocka_unit_test(test_the_nearest_sun_stands_in),
         cmocka_unit_test(test_a_moving_session_does_not_wait), cmocka_unit_test(test_a_still_picture_waits_for_its_light),
-        cmocka_unit_test(test_the_first_light_is_rough),
+        cmocka_unit_test(test_the_first_light_is_rough),       cmocka_unit_test(test_one_light_stays),
     };
     cmocka_set_message_output(CM_OUTPUT_TAP);
     if (!rig_init(&rig, "light_test"))

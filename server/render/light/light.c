@@ -97,11 +97,11 @@ void light_bound(struct light *light, size_t bytes)
 
 void light_drop(struct light *light, const struct light_key *usual)
 {
-    bool known = find(light, usual) != NULL;
+    struct light_set *known = find(light, usual), *kept = known ? known : light_near(light, usual);
     if (light->bake && (known || !same(bake_key(light->bake), usual)))
         bake_abandon(&light->bake);
-    for (int i = 0; i < LIGHT_SETS && known; i++) /* where it is not, a rough one may stand for it */
-        if (light->sets[i].id && !light->sets[i].holds && !same(&light->sets[i].key, usual))
+    for (int i = 0; i < LIGHT_SETS; i++)
+        if (light->sets[i].id && !light->sets[i].holds && &light->sets[i] != kept)
             drop(light, &light->sets[i]);
 }
 

@@ -33,7 +33,7 @@ struct light_set *light_near(struct light *light, const struct light_key *key);
 bool light_step(struct light *light, const struct light_key *key, int64_t budget_ns);
 /* Sets the memory limit and drops sets above it, but keeps two: one to show while the next is baked. */
 void light_bound(struct light *light, size_t bytes);
-/* Drops all sets but the one for `usual`, and abandons a bake in progress. */
+/* Drops all sets but the one for `usual`, or, where that is not cached, the one most similar to it; abandons a bake of any other. */
 void light_drop(struct light *light, const struct light_key *usual);
 /* Hold and release a set; a held set is not dropped. light_release() accepts NULL. */
 void light_hold(struct light_set *set);
