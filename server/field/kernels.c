@@ -17,7 +17,6 @@
 #endif
 
 #define TINY 1e-37f
-#define LINE 16 /* floats that come from memory at a time */
 
 /* log2 of x, or of TINY where x is less; to 1e-7, exactly 0 at 1. Minimax polynomial of log2(1 + x)/x over
    [sqrt(1/2) - 1, sqrt(2) - 1]. Limits are put on integers: a limit on floats splits the loop into paths, which ends SIMD. */
@@ -242,10 +241,10 @@ KERNEL void kernel_add(double *restrict sum, const float *const *columns, const 
             add_one(sum, columns[i], factors[i], count);
         return;
     }
-    for (; next && begin + LINE <= count; begin += LINE) {
+    for (; next && begin + KERNEL_LINE <= count; begin += KERNEL_LINE) {
         for (int k = 0; k < KERNEL_COLUMNS; k++)
             __builtin_prefetch(next[k] + begin, 0, 2);
-        add_eight(sum, columns, factors, begin, begin + LINE);
+        add_eight(sum, columns, factors, begin, begin + KERNEL_LINE);
     }
     add_eight(sum, columns, factors, begin, count);
 }

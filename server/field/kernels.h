@@ -9,6 +9,7 @@
 
 #define KERNEL_BLOCK 256         /* vertices done at a time: what a block needs stays in the nearest cache */
 #define KERNEL_COLUMNS 8         /* columns added at a time */
+#define KERNEL_LINE 16           /* floats that come from memory at a time */
 #define KERNEL_FACTOR_LIMIT 1e4f /* of strength and decay: exponents stay within what the loops can turn into integers */
 
 struct scalar;

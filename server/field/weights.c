@@ -372,6 +372,16 @@ static const float *const *columns_after(const struct weights *weights, size_t b
     return room;
 }
 
+/* Distances of the terms that are added next, from the asset file: each sensor's are elsewhere in memory, in pages of their own. */
+static void ask_for_distances(const struct weights *weights, size_t begin, size_t count, const struct weights_terms *terms, size_t next)
+{
+    for (size_t k = next; k < next + KERNEL_COLUMNS && k < terms->count; k++) {
+        const struct layout_sensor *sensor = &weights->layout->sensors[weights->members[terms->members[k]]];
+        for (size_t j = 0; j < count && sensor->along_m && weights->distance == DISTANCE_GEODESIC; j += KERNEL_LINE)
+            __builtin_prefetch(sensor->along_m + begin + j);
+    }
+}
+
 void weights_add(struct weights *weights, size_t begin, size_t count, const struct weights_terms *terms, const struct weights_sums *sums)
 {
     static const double ones[KERNEL_COLUMNS] = { 1, 1, 1, 1, 1, 1, 1, 1 };
@@ -383,6 +393,8 @@ void weights_add(struct weights *weights, size_t begin, size_t count, const stru
     for (size_t first = 0; first < terms->count; first += KERNEL_COLUMNS) {
         size_t left = terms->count - first, number = left < KERNEL_COLUMNS ? left : KERNEL_COLUMNS;
         const float *columns[KERNEL_COLUMNS], *heavy[KERNEL_COLUMNS], *after[KERNEL_COLUMNS];
+        if (!keeps)
+            ask_for_distances(weights, begin, count, terms, first + number);
         for (size_t k = 0; k < number; k++) {
             uint32_t member = terms->members[first + k];
             float *column = keeps ? weights->columns + (before + member) * KERNEL_BLOCK : room.terms[k];

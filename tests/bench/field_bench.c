@@ -164,11 +164,23 @@ static void measure_plant(struct workers *workers, size_t sensors)
     synthetic_destroy(&bench.plant);
 }
 
+/* So many columns are not kept but made anew from distances for each change. */
+static void measure_many(struct workers *workers, size_t sensors)
+{
+    struct bench bench = { .plant = synthetic_create(.vertices = VERTICES, .sensors = sensors, .seed = 1), .sensors = sensors };
+    bench.field = field_create(workers, &bench.plant->scene);
+    field_params_default(&bench.plant->plant, 0, &bench.params);
+    measure_named(&bench, "all_readings", change_all, 300);
+    field_destroy(&bench.field);
+    synthetic_destroy(&bench.plant);
+}
+
 int main(void)
 {
     struct workers *workers = workers_create(0);
     measure_plant(workers, 5);
     measure_plant(workers, 512);
+    measure_many(workers, 4096);
     workers_destroy(&workers);
     return 0;
 }
