@@ -37,6 +37,7 @@ struct frame {
     bool clock_unset;                         /* nothing kept the clock right that told it */
     int64_t oldest_age_ns;                    /* INT64_MAX: no value takes part */
     int64_t field_ns, render_ns, readback_ns; /* stage times */
+    int64_t turn_ns;                          /* of the render thread for it, whatever held it up; 0: drawn elsewhere */
     struct baseline baseline;                 /* of a difference; id 0: none */
     uint64_t content;                         /* equal for equal pictures: hash of view and field versions, without seq numbers and times */
     int triangles;

@@ -70,6 +70,9 @@ static const struct loop_checks *loop_checks_now(struct render_service *service)
 static void deliver(struct render_thread *thread, struct frame *frame, const struct snapshot *snapshot, struct request_group *group)
 {
     struct render_service *service = thread->service;
+    int64_t now_ns = clock_mono_ns();
+    frame->turn_ns = now_ns - thread->turn_began_ns;
+    thread->turn_began_ns = now_ns;
     frame_read_markers(frame, snapshot, service->params.baselines);
     frame->clock_unset = !frame->view.at_us && !clock_utc_is_set();
     if (group->tickets[0].request.overlay)
@@ -78,7 +81,7 @@ static void deliver(struct render_thread *thread, struct frame *frame, const str
     counter_inc(service->renders, 1);
     counter_inc(service->render_us, (frame->render_ns + frame->readback_ns) / 1000);
     if (!group->tickets[0].request.overlay)
-        recent_frames_add(&thread->recent, frame, snapshot->taken_mono_ns, clock_mono_ns());
+        recent_frames_add(&thread->recent, frame, snapshot->taken_mono_ns, now_ns);
     frame_sharing_submit(service, frame, group, frame->field_ns + frame->render_ns + frame->readback_ns);
     frame_unref(&frame);
 }
@@ -243,7 +246,8 @@ static bool long_job_step(struct render_thread *thread)
 {
     int64_t start_ns = clock_mono_ns();
     bool drawn = split_view_step(thread->renderer, thread->long_job.split, STEP_NS);
-    thread->long_job.spent_ns += clock_mono_ns() - start_ns;
+    thread->turn_began_ns = clock_mono_ns();
+    thread->long_job.spent_ns += thread->turn_began_ns - start_ns;
     counter_inc(thread->service->steps, 1);
     lose_on_demand(thread);
     if (!drawn && !gl_lost(thread->gl))
@@ -412,7 +416,7 @@ static void gl_end(struct render_thread *thread)
 static bool render_thread_init(struct render_thread *thread, struct render_service *service)
 {
     const struct render_service_params *params = &service->params;
-    *thread = (struct render_thread){ .service = service };
+    *thread = (struct render_thread){ .service = service, .turn_began_ns = clock_mono_ns() };
     thread->field = field_create(params->workers, params->scene);
     field_set_baselines(thread->field, params->baselines);
     field_set_trials(thread->field, params->trials);

@@ -42,6 +42,7 @@ struct render_thread {
     struct long_job long_job;
     struct long_job parked; /* a large one that waits for a small one of another address */
     bool warm;              /* the warm-up is complete */
+    int64_t turn_began_ns;  /* when the thread last had waited, or had done something else than what it now does */
     struct awaited_frames in_flight;
     struct deferred_requests deferred; /* whose field is not computed yet; each is worked on in its turn */
     struct thread_memory memory;

@@ -157,7 +157,8 @@ static void answer_pick(struct render_thread *thread)
         snapshot_cache_give(service->params.snapshot_cache, &historical);
     render_thread_note_work(thread);
     counter_inc(service->picked, 1);
-    counter_inc(service->pick_us, (clock_mono_ns() - start_ns) / 1000);
+    thread->turn_began_ns = clock_mono_ns();
+    counter_inc(service->pick_us, (thread->turn_began_ns - start_ns) / 1000);
     if (pick_queue_answer(service->picks, &query, &pick))
         service->params.notify(service->params.notify_arg);
 }
@@ -185,6 +186,7 @@ bool render_thread_next(struct render_thread *thread, const struct scheduler *sc
         if (!thread->warm) {
             pthread_mutex_unlock(&service->lock);
             render_thread_warm_up(thread);
+            thread->turn_began_ns = clock_mono_ns();
             pthread_mutex_lock(&service->lock);
             continue;
         }
@@ -195,6 +197,7 @@ bool render_thread_next(struct render_thread *thread, const struct scheduler *sc
             continue;
         }
         clock_cond_wait(&service->wake, &service->lock, turn.wait_until_ns);
+        thread->turn_began_ns = clock_mono_ns();
     }
     bool running = service->state == RUNNING;
     bool deferred = deferred_requests_due(&thread->deferred, turn.step || turn.client);

@@ -33,7 +33,7 @@ void admission_leave(struct admission *admission, struct address_share *share)
 static void count(struct admission_window *window, const struct encoded_frame *encoded, bool drawn)
 {
     const struct frame *frame = encoded->packet->frame;
-    int64_t cost_ns = drawn ? frame->render_ns + frame->readback_ns + frame->field_ns : 0;
+    int64_t cost_ns = drawn ? frame->turn_ns : 0;
     bool moves = encoded->request.urgency == URGENCY_INPUT;
     window->drawing_ns += cost_ns;
     window->moving_ns += moves ? cost_ns : 0;
