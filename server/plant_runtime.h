@@ -36,6 +36,7 @@ struct plant_runtime {
     struct render_service *render_service;
     char *history; /* its folder; NULL: nothing is recorded */
     struct placing *placing;
+    struct named_views *named_views;
     struct loop_checks *loop_checks; /* NULL: nothing is recorded */
     char *tag_list;                  /* its text; NULL: it could not be read */
 };

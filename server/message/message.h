@@ -11,6 +11,7 @@
 #include "loopcheck/loop_checks.h"
 #include "render/view.h"
 #include "scene/framing.h"
+#include "views/named_views.h"
 
 enum message_type {
     MESSAGE_HELLO,
@@ -31,7 +32,9 @@ enum message_type {
     MESSAGE_PLACE,
     MESSAGE_COVERAGE,
     MESSAGE_SAVE_TAGS,
-    MESSAGE_LOOP_CHECK
+    MESSAGE_LOOP_CHECK,
+    MESSAGE_SAVE_VIEW,
+    MESSAGE_REMOVE_VIEW
 };
 
 enum { TOKEN_MAX_CHARS = 128, RESUME_CHARS = 32 };
@@ -172,6 +175,7 @@ struct message {
     struct coverage_request coverage;
     char confirm[17]; /* save_tags: hash of the list that was seen; "": none yet */
     struct loop_check_request loop_check;
+    struct named_view_edit view_edit; /* save_view; remove_view: its id */
 };
 
 /* Reads an instant (base/timestamp.h) of the argument `name` into *out, in microseconds UTC. Returns false, with *error set, for any other

@@ -12,6 +12,7 @@
 #include "message/fit_message.h"
 #include "message/place_message.h"
 #include "message/loop_check_message.h"
+#include "message/views_message.h"
 
 static bool size_parse(const json_t *o, struct message *out, struct message_error *error)
 {
@@ -211,6 +212,8 @@ static const struct {
     { "gaps", MESSAGE_COVERAGE, coverage_parse },
     { "save_tags", MESSAGE_SAVE_TAGS, save_tags_parse },
     { "prove", MESSAGE_LOOP_CHECK, loop_check_parse },
+    { "save_view", MESSAGE_SAVE_VIEW, save_view_parse },
+    { "remove_view", MESSAGE_REMOVE_VIEW, remove_view_parse },
 };
 
 static bool parse_object(const struct plant *plant, const json_t *o, struct message *out, struct message_error *error)

@@ -54,6 +54,10 @@ bool role_may_send(enum role role, const struct message *message, struct message
         message_fail(error, "not_allowed", "to place or prove sensors takes the role engineer, not %s", name_of(names_role, role));
         return false;
     }
+    if ((message->type == MESSAGE_SAVE_VIEW || message->type == MESSAGE_REMOVE_VIEW) && role < ROLE_OPERATOR) {
+        message_fail(error, "not_allowed", "to save or remove views takes the role operator, not %s", name_of(names_role, role));
+        return false;
+    }
     if (message->type != MESSAGE_PARAMS && !message->has_params)
         return true;
     return params_allowed(role, &message->params, error) && params_allowed(role, &message->split.right, error);

@@ -9,6 +9,7 @@
 #include "base/counters.h"
 #include "base/log.h"
 #include "loopcheck/loop_checks.h"
+#include "views/named_views.h"
 #include "placing/tag_file.h"
 #include "service/render_service.h"
 
@@ -20,6 +21,7 @@ struct net_plant { /* what belongs to one loaded plant; a reload brings another 
     struct snapshot_cache *snapshot_cache;
     struct alarm_service *alarm_service;
     struct placing *placing;         /* NULL: sensors cannot be placed */
+    struct named_views *named_views;
     struct loop_checks *loop_checks; /* NULL: loops cannot be checked */
     const char *tag_list;            /* the text in force; NULL: not known */
     const char *history_folder;      /* NULL: nothing is recorded */

@@ -64,6 +64,8 @@ static struct plant *load(const char *path, bool keeps_orphans, bool without_mod
     plant_file_read(plant, diag);
     if (plant->tags_path)
         tag_list_read(plant, diag);
+    if (plant->tags_path && diag->errors == errors)
+        plant_walls_check(plant, diag);
     hash_files(plant);
     if (diag->errors != errors)
         plant_destroy(&plant);
@@ -175,6 +177,8 @@ void plant_destroy(struct plant **plant_ptr)
         mem_free(plant->links[i].name);
         mem_free(plant->links[i].url);
     }
+    plant_views_free(plant);
+    plant_walls_free(plant);
     plant_notify_free(&plant->notify);
     for (size_t i = 0; i < plant->conversion_count; i++) {
         mem_free(plant->conversions[i].model);

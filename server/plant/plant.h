@@ -260,6 +260,9 @@ struct plant {
     size_t conversion_count;
     struct plant_history history;
     enum alarm_mode alarms;
+    struct named_view *views;    /* plant/wall.h, as the next */
+    struct wall *walls;
+    size_t view_count, wall_count;
     struct plant_notify *notify; /* who is told of alarms (plant/notification.h); NULL: nobody */
     struct plant_asset *assets;
     struct plant_group *groups;

@@ -452,6 +452,16 @@ static void read_notify(struct yaml_reader *reader, yaml_node_t *node, void *rec
     plant_notify_read(reader, node, ((struct plant_file *)record)->plant);
 }
 
+static void read_views(struct yaml_reader *reader, yaml_node_t *node, void *record)
+{
+    plant_views_read(reader, node, ((struct plant_file *)record)->plant);
+}
+
+static void read_walls(struct yaml_reader *reader, yaml_node_t *node, void *record)
+{
+    plant_walls_read(reader, node, ((struct plant_file *)record)->plant);
+}
+
 /* --- the whole file --------------------------------------------------------------------------------------------------------- */
 
 void plant_file_read(struct plant *plant, struct diag *diag)
@@ -467,6 +477,8 @@ void plant_file_read(struct plant *plant, struct diag *diag)
                                        { "history", KEY_CUSTOM, false, 0, 0, 0, NULL, read_history },
                                        { "alarms", KEY_CUSTOM, false, 0, 0, 0, NULL, read_alarms },
                                        { "notify", KEY_CUSTOM, false, 0, 0, 0, NULL, read_notify },
+                                       { "views", KEY_CUSTOM, false, 0, 0, 0, NULL, read_views },
+                                       { "walls", KEY_CUSTOM, false, 0, 0, 0, NULL, read_walls },
                                        { "tags", KEY_NAME, true, offsetof(struct plant_file, tags), 0, 0, NULL, NULL },
                                        { 0 } };
     struct plant_file file = { .plant = plant };

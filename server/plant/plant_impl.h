@@ -18,6 +18,13 @@ void plant_links_read(struct yaml_reader *reader, yaml_node_t *node, struct plan
 /* Reads the key `notify`. */
 void plant_notify_read(struct yaml_reader *reader, yaml_node_t *node, struct plant *plant);
 void plant_notify_free(struct plant_notify **notify); /* &NULL is fine; leaves NULL */
+/* Read the lists `views` and `walls`. */
+void plant_views_read(struct yaml_reader *reader, yaml_node_t *node, struct plant *plant);
+void plant_walls_read(struct yaml_reader *reader, yaml_node_t *node, struct plant *plant);
+/* Reports tags and views that panes name and that are not there; the tag list has been read. */
+void plant_walls_check(const struct plant *plant, struct diag *diag);
+void plant_views_free(struct plant *plant);
+void plant_walls_free(struct plant *plant);
 /* Reads an asset's `nodes`: a pattern, or a list of them. */
 void plant_nodes_read(struct yaml_reader *reader, yaml_node_t *node, struct plant_asset *asset);
 /* Reads an asset's `properties`. */

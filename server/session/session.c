@@ -8,6 +8,7 @@
 
 #include "base/clock.h"
 #include "base/mem.h"
+#include "message/views_message.h"
 #include "message/message_parse.h"
 #include "message/alarm_message.h"
 #include "message/fit_message.h"
@@ -190,6 +191,10 @@ static bool act(struct session *session, const struct message *message, int64_t 
     case MESSAGE_COVERAGE: return session_ask_coverage(session, message, error);
     case MESSAGE_SAVE_TAGS: return session_save_tags(session, message, error);
     case MESSAGE_LOOP_CHECK: return session_check_loop(session, message, error);
+    case MESSAGE_SAVE_VIEW:
+    case MESSAGE_REMOVE_VIEW:
+        session_reply(session, view_edit_do(session->context->named_views, message, session_who(session), now_utc_ns / 1000));
+        return true;
     case MESSAGE_PING: session_reply(session, reply_pong_text(session_snapshot(session), message->t, now_utc_ns)); return true;
     }
     return true;

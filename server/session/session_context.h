@@ -20,6 +20,7 @@ struct session_context {
     const char *tag_list;                  /* the text in force; NULL: it could not be read */
     bool saving;                           /* a saved list is being put in force */
     struct loop_checks *loop_checks;       /* NULL: loops cannot be checked */
+    struct named_views *named_views;       /* changed by save_view and remove_view */
     const bool *links_up;                  /* by source */
     bool live;                             /* a source is connected */
     bool clock_is_set;                     /* the wall clock is synchronised */

@@ -122,6 +122,7 @@ struct owed_texts {
     uint32_t *tag_changes;                                                      /* reading.changes as last sent, by tag */
     bool alarms_sent;                                                           /* at least once */
     uint64_t alarms_number;                                                     /* of the last change of alarms that was sent */
+    uint64_t views_sent; /* likewise of the views with names */
     uint64_t loop_checks_sent;                                                  /* number of the newest loop check that was sent */
     int64_t told_at_us;                                                         /* the instant that is shown, as last told; 0: now */
     bool told_beginning;                                                        /* the last `time` said where recorded history begins */

@@ -50,6 +50,12 @@ static bool loop_checks_due(const struct session *session)
            (session->owed.loop_checks || loop_checks_number(loop_checks) > session->owed.loop_checks_sent);
 }
 
+static bool views_due(const struct session *session)
+{
+    return session->hello && !session_is_open(session) && session->context->named_views &&
+           named_views_number(session->context->named_views) > session->owed.views_sent;
+}
+
 static void add_loop_checks(struct session *session, struct text *out)
 {
     const struct session_context *context = session->context;
@@ -61,7 +67,8 @@ static void add_loop_checks(struct session *session, struct text *out)
 bool session_has_text(const struct session *session, int64_t now_ns)
 {
     return session->owed.welcome || session->owed.reply_count > 0 || session->owed.params || session->owed.following ||
-           session->owed.time || session->following.followers_text || loop_checks_due(session) || status_due(session) ||
+           session->owed.time || session->following.followers_text || loop_checks_due(session) || views_due(session) ||
+           status_due(session) ||
            alarms_due(session) || session_tags_due(session, now_ns);
 }
 
@@ -98,6 +105,9 @@ bool session_next_text(struct session *session, int64_t now_ns, int64_t now_utc_
         session->following.followers_text = NULL;
     } else if (loop_checks_due(session)) {
         add_loop_checks(session, out);
+    } else if (views_due(session)) {
+        add_owned(out, named_views_text(context->named_views, NULL));
+        session->owed.views_sent = named_views_number(context->named_views);
     } else if (status_due(session)) {
         add_owned(out, reply_status_text(context, now_utc_ns));
         session->owed.status = false;

@@ -20,6 +20,7 @@ int session_case_set_up(void **state)
     c->admission.quotas = c->context.quotas = &c->quotas;
     c->context.admission = &c->admission;
     c->context.resumes = resumes_create();
+    c->context.named_views = named_views_open(NULL, c->context.plant, NULL);
     c->now_ns = 1000 * NS_PER_S;
     c->session = session_create(&c->context, 7, c->now_ns);
     *state = c;
@@ -33,6 +34,7 @@ int session_case_tear_down(void **state)
     snapshot_destroy(&c->snapshot);
     baselines_destroy(&c->context.baselines);
     resumes_destroy(&c->context.resumes);
+    named_views_close(&c->context.named_views);
     mem_free(c);
     return 0;
 }

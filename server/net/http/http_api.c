@@ -9,6 +9,7 @@
 #include "base/process_counters.h"
 #include "net/http/http_impl.h"
 #include "net/connection.h"
+#include "message/views_message.h"
 #include "session/reply.h"
 
 static int await_history(struct server_context *server, struct request *request, struct history_query *query)
@@ -169,6 +170,21 @@ int api_tags(struct server_context *server, struct request *request)
         return request_answer_text(request, HTTP_STATUS_BAD_REQUEST, "expected first=N and count=N, 1 to 5000\n");
     net_refresh_readings(server);
     return request_answer_json(request, reply_api_tags_text(&server->session_context, first, count));
+}
+
+/* All views; with the query id=ID also the earlier versions of that one. */
+int api_views(struct server_context *server, struct request *request)
+{
+    struct message_error error = { 0 };
+    struct args args;
+    if (!request_args(request->wsi, &args, &error) || args.count > 1 || (args.count == 1 && strncmp(args.list[0], "id=", 3) != 0))
+        return request_answer_text(request, HTTP_STATUS_BAD_REQUEST, "expected nothing, or id=ID\n");
+    return request_answer_json(request, named_views_text(server->params.plant.named_views, args.count ? args.list[0] + 3 : NULL));
+}
+
+int api_walls(struct server_context *server, struct request *request)
+{
+    return request_answer_json(request, walls_text(server->params.plant.scene->plant));
 }
 
 int api_loop_checks(struct server_context *server, struct request *request)

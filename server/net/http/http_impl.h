@@ -90,6 +90,8 @@ int ask_journal(struct server_context *server, struct request *request);
 int ask_reload(struct server_context *server, struct request *request);
 int api_alarms(struct server_context *server, struct request *request);
 int api_plant(struct server_context *server, struct request *request);
+int api_views(struct server_context *server, struct request *request);
+int api_walls(struct server_context *server, struct request *request);
 int api_loop_checks(struct server_context *server, struct request *request);
 int api_tags(struct server_context *server, struct request *request);
 int metrics(struct server_context *server, struct request *request);

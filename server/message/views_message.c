@@ -1,0 +1,84 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Views that people save, and what the displays of a control room show. */
+#include "message/views_message.h"
+
+#include <string.h>
+
+#include "base/json_text.h"
+#include "message/json_fields.h"
+#include "message/json_values.h"
+
+static bool parse_id(const json_t *o, struct message *out, struct message_error *error)
+{
+    struct named_view_edit *edit = &out->view_edit;
+    if (!need_seq(o, &out->seq, error) || !need_words(o, "id", true, edit->id, sizeof(edit->id), error))
+        return false;
+    if (named_view_id_valid(edit->id))
+        return true;
+    message_fail(error, "bad_field", "id: letters, digits, '_', '-' and '.' expected");
+    return false;
+}
+
+bool save_view_parse(const struct plant *plant, const json_t *o, struct message *out, struct message_error *error)
+{
+    struct named_view_edit *edit = &out->view_edit;
+    double at = -1;
+    (void)plant;
+    if (!parse_id(o, out, error) || !need_words(o, "title", true, edit->title, sizeof(edit->title), error) ||
+        !need_words(o, "view", true, edit->address, sizeof(edit->address), error) ||
+        !may_number(o, "at", 0, NAMED_VIEWS, &at, NULL, error))
+        return false;
+    edit->at = (int)at;
+    const char *wrong = named_view_address_wrong(edit->address);
+    if (wrong)
+        message_fail(error, "bad_field", "view: %s", wrong);
+    return !wrong;
+}
+
+bool remove_view_parse(const struct plant *plant, const json_t *o, struct message *out, struct message_error *error)
+{
+    (void)plant;
+    return parse_id(o, out, error);
+}
+
+char *view_edit_do(struct named_views *views, const struct message *message, const char *who, int64_t time_us)
+{
+    const struct named_view_edit *edit = &message->view_edit;
+    const char *why = message->type == MESSAGE_SAVE_VIEW ? named_views_save(views, edit, who, time_us) : named_views_remove(views, edit->id);
+    return json_text(json_pack("{s:s,s:I,s:s,s:b,s:s}", "type", "view_saved", "seq", (json_int_t)message->seq, "id", edit->id, "kept", !why,
+                               "why", why ? why : ""),
+                     0);
+}
+
+static json_t *pane_of(const struct wall_pane *pane)
+{
+    json_t *items = json_array();
+    for (size_t i = 0; i < pane->item_count; i++)
+        json_array_append_new(items, json_string(pane->items[i]));
+    return json_pack("{s:s,s:s,s:o,s:o,s:f,s:f,s:b}", "area", pane->area, "kind", pane_kind_names[pane->kind], "title", string(pane->title),
+                     "items", items, "every_s", pane->every_s, "hours", pane->hours, "on_alarm", pane->on_alarm);
+}
+
+static json_t *display_of(const struct wall_display *display)
+{
+    json_t *rows = json_array(), *panes = json_array();
+    for (size_t i = 0; i < display->row_count; i++)
+        json_array_append_new(rows, json_string(display->rows[i]));
+    for (size_t i = 0; i < display->pane_count; i++)
+        json_array_append_new(panes, pane_of(&display->panes[i]));
+    return json_pack("{s:o,s:o}", "grid", rows, "panes", panes);
+}
+
+char *walls_text(const struct plant *plant)
+{
+    json_t *walls = json_array();
+    for (size_t i = 0; i < plant->wall_count; i++) {
+        const struct wall *wall = &plant->walls[i];
+        json_t *displays = json_array();
+        for (size_t d = 0; d < wall->display_count; d++)
+            json_array_append_new(displays, display_of(&wall->displays[d]));
+        json_array_append_new(walls, json_pack("{s:s,s:f,s:f,s:o}", "id", wall->id, "inches", wall->inches, "distance_m", wall->metres,
+                                               "displays", displays));
+    }
+    return json_text(json_pack("{s:o}", "walls", walls), 9);
+}

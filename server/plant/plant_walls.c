@@ -1,0 +1,225 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The plant file's `walls`: what each display of a control room shows. */
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/mem.h"
+#include "plant/plant_impl.h"
+#include "plant/suggest.h"
+#include "plant/wall.h"
+
+const char *const pane_kind_names[] = { [PANE_VIEWS] = "views",   [PANE_TREND] = "trend", [PANE_ALARMS] = "alarms",
+                                        [PANE_TILES] = "tiles", [PANE_CLOCK] = "clock", [PANE_TEXT] = "text" };
+
+static void add_item(struct wall_pane *pane, const yaml_node_t *node)
+{
+    struct place place = yaml_place(node);
+    pane->item_lines[pane->item_count] = place.line;
+    pane->item_columns[pane->item_count] = place.column;
+    pane->items[pane->item_count++] = mem_strdup(yaml_text(node));
+}
+
+/* One text, or a list of them. */
+static void read_items(struct yaml_reader *reader, yaml_node_t *node, struct wall_pane *pane)
+{
+    const char *name = pane_kind_names[pane->kind];
+    bool one = node->type == YAML_SCALAR_NODE;
+    int count = one ? 1 : yaml_list_count(reader, node, name);
+    if (count == 0 || count > PANE_ITEMS)
+        yaml_error(reader, yaml_place(node), "%s: expected 1 to %d, found %d", name, PANE_ITEMS, count);
+    for (int i = 0; i < count && i < PANE_ITEMS; i++) {
+        yaml_node_t *item = one ? node : yaml_list_item(reader, node, i);
+        if (yaml_text(item) && *yaml_text(item))
+            add_item(pane, item);
+        else
+            yaml_expected(reader, item, name, "text");
+    }
+}
+
+#define READ_AS(name, of_kind)                                                            \
+    static void name(struct yaml_reader *reader, yaml_node_t *node, void *record)         \
+    {                                                                                     \
+        ((struct wall_pane *)record)->kind = (of_kind);                                   \
+        read_items(reader, node, record);                                                 \
+    }
+READ_AS(read_views, PANE_VIEWS)
+READ_AS(read_trend, PANE_TREND)
+READ_AS(read_tiles, PANE_TILES)
+READ_AS(read_text, PANE_TEXT)
+READ_AS(read_alarms, PANE_ALARMS)
+READ_AS(read_clock, PANE_CLOCK)
+
+static bool grid_has(const struct wall_display *display, const char *area)
+{
+    size_t length = strlen(area);
+    for (size_t i = 0; i < display->row_count; i++)
+        for (const char *at = display->rows[i]; *at; at += strspn(at, " ")) {
+            size_t word = strcspn(at, " ");
+            if (word == length && !strncmp(at, area, length))
+                return true;
+            at += word;
+        }
+    return false;
+}
+
+static void read_pane(struct yaml_reader *reader, yaml_node_t *node, struct wall_display *display, struct wall_pane *pane)
+{
+    static const struct choice yes[] = { { "no", 0 }, { "yes", 1 }, { 0 } };
+    static const struct key keys[] = {
+        { "area", KEY_NAME, true, offsetof(struct wall_pane, area), 0, 0, NULL, NULL },
+        { "title", KEY_NAME, false, offsetof(struct wall_pane, title), 0, 0, NULL, NULL },
+        { "every_s", KEY_NUMBER, false, offsetof(struct wall_pane, every_s), 5, 86400, NULL, NULL },
+        { "hours", KEY_NUMBER, false, offsetof(struct wall_pane, hours), 0.1, 24 * 31, NULL, NULL },
+        { "on_alarm", KEY_FLAG, false, offsetof(struct wall_pane, on_alarm), 0, 0, yes, NULL },
+        { "views", KEY_CUSTOM, false, 0, 0, 0, NULL, read_views },
+        { "trend", KEY_CUSTOM, false, 0, 0, 0, NULL, read_trend },
+        { "alarms", KEY_CUSTOM, false, 0, 0, 0, NULL, read_alarms },
+        { "tiles", KEY_CUSTOM, false, 0, 0, 0, NULL, read_tiles },
+        { "clock", KEY_CUSTOM, false, 0, 0, 0, NULL, read_clock },
+        { "text", KEY_CUSTOM, false, 0, 0, 0, NULL, read_text },
+        { 0 }
+    };
+    struct yaml_map map;
+    int kinds = 0;
+    *pane = (struct wall_pane){ .every_s = 30, .hours = 8 };
+    if (!yaml_map_read(reader, node, "a pane", keys, pane, &map))
+        return;
+    for (size_t i = 0; i < sizeof(pane_kind_names) / sizeof(*pane_kind_names); i++)
+        kinds += yaml_map_has(&map, pane_kind_names[i]);
+    if (kinds != 1)
+        yaml_error(reader, map.place, "a pane: expected one of views, trend, alarms, tiles, clock and text, found %d", kinds);
+    else if (pane->kind != PANE_VIEWS && (yaml_map_has(&map, "every_s") || pane->on_alarm))
+        yaml_error(reader, yaml_map_place(&map, pane->on_alarm ? "on_alarm" : "every_s"), "%s: only a pane of views has it",
+                   pane->on_alarm ? "on_alarm" : "every_s");
+    if (!pane->area)
+        return;
+    if (!grid_has(display, pane->area))
+        yaml_error(reader, yaml_map_place(&map, "area"), "area: the grid has no '%.40s'", pane->area);
+    size_t other = 0;
+    while (&display->panes[other] < pane && (!display->panes[other].area || strcmp(display->panes[other].area, pane->area) != 0))
+        other++;
+    if (&display->panes[other] < pane)
+        yaml_error(reader, yaml_map_place(&map, "area"), "area: '%.40s' has two panes", pane->area);
+}
+
+static void read_grid(struct yaml_reader *reader, yaml_node_t *node, void *record)
+{
+    struct wall_display *display = record;
+    int count = yaml_list_count(reader, node, "grid");
+    if (count == 0 || count > WALL_ROWS)
+        yaml_error(reader, yaml_place(node), "grid: expected 1 to %d rows, found %d", WALL_ROWS, count);
+    for (int i = 0; i < count && i < WALL_ROWS; i++) {
+        yaml_node_t *row = yaml_list_item(reader, node, i);
+        const char *text = yaml_text(row);
+        if (!text || text[strspn(text, "abcdefghijklmnopqrstuvwxyz0123456789. ")] || strlen(text) > 400)
+            yaml_expected(reader, row, "grid", "areas in lower case with blanks between them, such as 'main main alarms'");
+        else
+            display->rows[display->row_count++] = mem_strdup(text);
+    }
+}
+
+static void read_panes(struct yaml_reader *reader, yaml_node_t *node, void *record)
+{
+    struct wall_display *display = record;
+    int count = yaml_list_count(reader, node, "panes");
+    if (count > WALL_PANES)
+        yaml_error(reader, yaml_place(node), "panes: expected at most %d, found %d", WALL_PANES, count);
+    for (int i = 0; i < count && i < WALL_PANES; i++)
+        read_pane(reader, yaml_list_item(reader, node, i), display, &display->panes[display->pane_count++]);
+}
+
+static void read_displays(struct yaml_reader *reader, yaml_node_t *node, void *record)
+{
+    static const struct key keys[] = { { "grid", KEY_CUSTOM, true, 0, 0, 0, NULL, read_grid },
+                                       { "panes", KEY_CUSTOM, true, 0, 0, 0, NULL, read_panes },
+                                       { 0 } };
+    struct wall *wall = record;
+    int count;
+    wall->displays = plant_list_make(reader, node, "displays", 1, sizeof(*wall->displays), &count);
+    if (count > WALL_DISPLAYS)
+        yaml_error(reader, yaml_place(node), "displays: expected at most %d, found %d", WALL_DISPLAYS, count);
+    for (int i = 0; i < count && i < WALL_DISPLAYS; i++) {
+        struct yaml_map map;
+        yaml_map_read(reader, yaml_list_item(reader, node, i), "a display", keys, &wall->displays[wall->display_count++], &map);
+    }
+}
+
+void plant_walls_read(struct yaml_reader *reader, yaml_node_t *node, struct plant *plant)
+{
+    static const struct key keys[] = { { "id", KEY_NAME, true, offsetof(struct wall, id), 0, 0, NULL, NULL },
+                                       { "inches", KEY_NUMBER, false, offsetof(struct wall, inches), 10, 400, NULL, NULL },
+                                       { "distance_m", KEY_NUMBER, false, offsetof(struct wall, metres), 0.5, 50, NULL, NULL },
+                                       { "displays", KEY_CUSTOM, true, 0, 0, 0, NULL, read_displays },
+                                       { 0 } };
+    int count;
+    plant->walls = plant_list_make(reader, node, "walls", 0, sizeof(*plant->walls), &count);
+    if (count > WALLS)
+        yaml_error(reader, yaml_place(node), "walls: expected at most %d, found %d", WALLS, count);
+    for (int i = 0; i < count && i < WALLS; i++) {
+        struct wall *wall = &plant->walls[plant->wall_count++];
+        struct yaml_map map;
+        *wall = (struct wall){ .inches = 55, .metres = 3, .line = yaml_place(yaml_list_item(reader, node, i)).line };
+        if (!yaml_map_read(reader, yaml_list_item(reader, node, i), "a wall", keys, wall, &map))
+            continue;
+        if (wall->id && !named_view_id_valid(wall->id))
+            yaml_error(reader, yaml_map_place(&map, "id"), "id: expected letters, digits, '_', '-' and '.', found '%.60s'", wall->id);
+        plant_list_check_id(reader, &map, "wall", plant->walls, plant->wall_count, sizeof(*wall), offsetof(struct wall, line));
+    }
+}
+
+/* --- what panes name -------------------------------------------------------------------------------------------------------- */
+
+static void check_items(const struct plant *plant, const struct wall_pane *pane, struct diag *diag)
+{
+    for (size_t i = 0; i < pane->item_count; i++) {
+        const char *name = pane->items[i], *near = NULL;
+        if (pane->kind == PANE_TREND || pane->kind == PANE_TILES) {
+            if (plant_find_tag(plant, name) >= 0)
+                continue;
+            near = suggest_nearest(name, plant->tags, plant->tag_count, sizeof(*plant->tags));
+            diag_error(diag, plant->path, pane->item_lines[i], pane->item_columns[i], "%s: there is no tag '%.60s'%s%s%s",
+                       pane_kind_names[pane->kind], name, near ? "; did you mean '" : "", near ? near : "", near ? "'?" : "");
+        } else if (pane->kind == PANE_VIEWS) {
+            size_t k = 0;
+            while (k < plant->view_count && (!plant->views[k].id || strcmp(plant->views[k].id, name) != 0))
+                k++;
+            if (k < plant->view_count)
+                continue;
+            near = suggest_nearest(name, plant->views, plant->view_count, sizeof(*plant->views));
+            diag_warning(diag, plant->path, pane->item_lines[i], pane->item_columns[i],
+                         "views: `views` has no '%.60s', unless it is saved in the page%s%s%s", name, near ? "; did you mean '" : "",
+                         near ? near : "", near ? "'?" : "");
+        }
+    }
+}
+
+void plant_walls_check(const struct plant *plant, struct diag *diag)
+{
+    for (size_t w = 0; w < plant->wall_count; w++)
+        for (size_t d = 0; d < plant->walls[w].display_count; d++)
+            for (size_t p = 0; p < plant->walls[w].displays[d].pane_count; p++)
+                check_items(plant, &plant->walls[w].displays[d].panes[p], diag);
+}
+
+static void free_display(struct wall_display *display)
+{
+    for (size_t i = 0; i < display->row_count; i++)
+        mem_free(display->rows[i]);
+    for (size_t i = 0; i < display->pane_count; i++) {
+        mem_free(display->panes[i].area);
+        mem_free(display->panes[i].title);
+        for (size_t k = 0; k < display->panes[i].item_count; k++)
+            mem_free(display->panes[i].items[k]);
+    }
+}
+
+void plant_walls_free(struct plant *plant)
+{
+    for (size_t i = 0; i < plant->wall_count; i++) {
+        for (size_t d = 0; d < plant->walls[i].display_count; d++)
+            free_display(&plant->walls[i].displays[d]);
+        mem_free(plant->walls[i].displays);
+        mem_free(plant->walls[i].id);
+    }
+    mem_free(plant->walls);
+}

@@ -1,0 +1,54 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What the plant file's `views` and `walls` say: views with names, and the displays of a control room. Immutable once loaded. Thread: any. */
+#ifndef PLANT_WALL_H
+#define PLANT_WALL_H
+#include <stdbool.h>
+#include <stddef.h>
+
+enum {
+    NAMED_VIEW_ID_BYTES = 49, NAMED_VIEW_TITLE_BYTES = 121, NAMED_VIEW_ADDRESS_BYTES = 2049, /* with their 0 */
+    NAMED_VIEWS = 256, WALLS = 16, WALL_DISPLAYS = 16, WALL_PANES = 24, WALL_ROWS = 12, PANE_ITEMS = 16
+};
+
+struct named_view {
+    char *id, *title;
+    char *address; /* what the page's address has after `#`: camera, group, parameters */
+    int line;
+};
+
+enum pane_kind { PANE_VIEWS, PANE_TREND, PANE_ALARMS, PANE_TILES, PANE_CLOCK, PANE_TEXT };
+extern const char *const pane_kind_names[]; /* by pane_kind: keys of a pane */
+
+struct wall_pane {
+    char *area, *title; /* letters of the grid; title NULL: none */
+    enum pane_kind kind;
+    char *items[PANE_ITEMS]; /* names of views, in turn; tags of a trend or of tiles; the text */
+    size_t item_count;
+    int item_lines[PANE_ITEMS], item_columns[PANE_ITEMS];
+    double every_s; /* of views: how long each is shown */
+    double hours;   /* of a trend */
+    bool on_alarm;  /* of views: the view of an alarm comes here */
+};
+
+struct wall_display {
+    char *rows[WALL_ROWS]; /* of the grid: names of areas, with blanks between them */
+    size_t row_count;
+    struct wall_pane panes[WALL_PANES];
+    size_t pane_count;
+};
+
+struct wall {
+    char *id;
+    double inches, metres; /* of each display: its diagonal, and from how far it is read */
+    struct wall_display *displays;
+    size_t display_count;
+    int line;
+};
+
+/* Returns whether an id may stand in an address: letters, digits, `_`, `-` and `.`, at most NAMED_VIEW_ID_BYTES - 1. */
+bool named_view_id_valid(const char *id);
+/* Returns what is wrong with a title or with an address (static), or NULL. */
+const char *named_view_title_wrong(const char *title);
+const char *named_view_address_wrong(const char *address);
+
+#endif

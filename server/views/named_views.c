@@ -1,0 +1,209 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The views are kept as the JSON that their file has. */
+#include "views/named_views.h"
+
+#include <errno.h>
+#include <jansson.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "base/atomic_file.h"
+#include "base/json_text.h"
+#include "base/mem.h"
+
+struct named_views {
+    struct log *log;
+    const struct plant *plant;
+    const char *folder;
+    char *path;   /* NULL: none can be saved */
+    json_t *list; /* those that people saved: { id, title, view, by, time_us, before: [{ title, view, by, time_us }, ...] } */
+    uint64_t number;
+    bool unreadable;
+};
+
+static const struct named_view *find_fixed(const struct plant *plant, const char *id)
+{
+    for (size_t i = 0; i < plant->view_count; i++)
+        if (!strcmp(plant->views[i].id, id))
+            return &plant->views[i];
+    return NULL;
+}
+
+static size_t find(const json_t *list, const char *id)
+{
+    size_t i = 0;
+    while (i < json_array_size(list) && strcmp(json_string_value(json_object_get(json_array_get(list, i), "id")), id) != 0)
+        i++;
+    return i;
+}
+
+/* --- the file --------------------------------------------------------------------------------------------------------------- */
+
+static bool good_version(const json_t *view)
+{
+    const char *title = json_string_value(json_object_get(view, "title")), *address = json_string_value(json_object_get(view, "view"));
+    return title && address && !named_view_title_wrong(title) && !named_view_address_wrong(address) &&
+           json_is_string(json_object_get(view, "by")) && json_is_integer(json_object_get(view, "time_us"));
+}
+
+static bool good_list(const json_t *list)
+{
+    if (!json_is_array(list) || json_array_size(list) > NAMED_VIEWS)
+        return false;
+    for (size_t i = 0; i < json_array_size(list); i++) {
+        const json_t *view = json_array_get(list, i), *before = json_object_get(view, "before");
+        const char *id = json_string_value(json_object_get(view, "id"));
+        if (!id || !named_view_id_valid(id) || !good_version(view) || !json_is_array(before) || find(list, id) != i)
+            return false;
+        for (size_t k = 0; k < json_array_size(before); k++)
+            if (!good_version(json_array_get(before, k)))
+                return false;
+    }
+    return true;
+}
+
+static void read_file(struct named_views *views)
+{
+    json_error_t error = { 0 };
+    json_t *file = json_load_file(views->path, JSON_REJECT_DUPLICATES, &error);
+    json_t *list = json_object_get(file, "views");
+    views->unreadable = !good_list(list);
+    if (views->unreadable)
+        log_err(views->log, "%s:%d: %s; no view is read from it, and it stays as it is", views->path, file ? 1 : error.line,
+                file ? "not a list of views with id, title, view, by, time_us and before" : error.text);
+    else
+        json_array_extend(views->list, list);
+    json_decref(file);
+}
+
+/* A list that was changed goes in force once it is on disk. */
+static const char *put(struct named_views *views, json_t *list)
+{
+    json_t *file = json_pack("{s:i,s:O}", "version", 1, "views", list);
+    char *text = json_dumps(file, JSON_INDENT(1));
+    mkdir(views->folder, 0777); /* where it cannot be made, writing says why */
+    int error = text ? atomic_file_put(views->path, text, strlen(text)) : -ENOMEM;
+    free(text);
+    json_decref(file);
+    if (error) {
+        log_err(views->log, "%s: %s", views->path, strerror(-error));
+        json_decref(list);
+        return "it could not be kept on disk; the log says why";
+    }
+    json_decref(views->list);
+    views->list = list;
+    views->number++;
+    return NULL;
+}
+
+struct named_views *named_views_open(struct log *log, const struct plant *plant, const char *folder)
+{
+    struct named_views *views = mem_new(sizeof(*views));
+    *views = (struct named_views){ .log = log, .plant = plant, .folder = folder, .list = json_array() };
+    views->path = folder ? mem_printf("%s/" NAMED_VIEWS_FILE, folder) : NULL;
+    if (views->path && access(views->path, F_OK) == 0)
+        read_file(views);
+    views->number = plant->view_count + json_array_size(views->list) > 0;
+    return views;
+}
+
+void named_views_close(struct named_views **pointer)
+{
+    struct named_views *views = *pointer;
+    if (!views)
+        return;
+    json_decref(views->list);
+    mem_free(views->path);
+    mem_free(views);
+    *pointer = NULL;
+}
+
+/* --- changes ---------------------------------------------------------------------------------------------------------------- */
+
+static const char *refusal(const struct named_views *views, const char *id)
+{
+    return !views->path                  ? "this daemon records nothing (history: record: no): views are kept beside the history"
+           : views->unreadable           ? "views.json cannot be read; the log says why"
+           : find_fixed(views->plant, id) ? "this view is in the plant file, and is changed there"
+                                         : NULL;
+}
+
+/* The versions of a view once it is another: those of before, and itself first. */
+static json_t *versions(const json_t *view)
+{
+    json_t *all = json_copy(json_object_get(view, "before"));
+    json_t *last = json_pack("{s:O,s:O,s:O,s:O}", "title", json_object_get(view, "title"), "view", json_object_get(view, "view"), "by",
+                             json_object_get(view, "by"), "time_us", json_object_get(view, "time_us"));
+    json_array_insert_new(all, 0, last);
+    while (json_array_size(all) > NAMED_VIEW_VERSIONS)
+        json_array_remove(all, NAMED_VIEW_VERSIONS);
+    return all;
+}
+
+static bool same(const json_t *view, const struct named_view_edit *edit)
+{
+    return !strcmp(json_string_value(json_object_get(view, "title")), edit->title) &&
+           !strcmp(json_string_value(json_object_get(view, "view")), edit->address);
+}
+
+const char *named_views_save(struct named_views *views, const struct named_view_edit *edit, const char *who, int64_t time_us)
+{
+    const char *why = refusal(views, edit->id);
+    size_t count = json_array_size(views->list), at = find(views->list, edit->id);
+    json_t *old = json_array_get(views->list, at), *list, *view;
+    if (why || (!old && count >= NAMED_VIEWS))
+        return why ? why : "there are as many views as there may be; remove one";
+    view = old && same(old, edit) ? json_incref(old)
+                                  : json_pack("{s:s,s:s,s:s,s:s,s:I,s:o}", "id", edit->id, "title", edit->title, "view", edit->address, "by",
+                                              who, "time_us", (json_int_t)time_us, "before", old ? versions(old) : json_array());
+    if (!view)
+        return "it is no UTF-8";
+    list = json_copy(views->list);
+    if (old)
+        json_array_remove(list, at);
+    count = json_array_size(list);
+    if (edit->at >= 0)
+        at = (size_t)edit->at;
+    json_array_insert_new(list, at < count ? at : count, view);
+    return put(views, list);
+}
+
+const char *named_views_remove(struct named_views *views, const char *id)
+{
+    const char *why = refusal(views, id);
+    size_t at = find(views->list, id);
+    if (why || at == json_array_size(views->list))
+        return why ? why : "there is no such view";
+    json_t *list = json_copy(views->list);
+    json_array_remove(list, at);
+    return put(views, list);
+}
+
+/* --- what there is ---------------------------------------------------------------------------------------------------------- */
+
+uint64_t named_views_number(const struct named_views *views)
+{
+    return views->number;
+}
+
+char *named_views_text(const struct named_views *views, const char *id)
+{
+    json_t *list = json_array();
+    for (size_t i = 0; i < views->plant->view_count; i++) {
+        const struct named_view *view = &views->plant->views[i];
+        json_array_append_new(list, json_pack("{s:s,s:s,s:s,s:b}", "id", view->id, "title", view->title ? view->title : view->id, "view",
+                                              view->address, "fixed", true));
+    }
+    for (size_t i = 0; i < json_array_size(views->list); i++) {
+        json_t *view = json_copy(json_array_get(views->list, i));
+        const char *name = json_string_value(json_object_get(view, "id"));
+        if (!id || strcmp(name, id) != 0)
+            json_object_del(view, "before");
+        if (find_fixed(views->plant, name))
+            json_decref(view);
+        else
+            json_array_append_new(list, view);
+    }
+    return json_text(json_pack("{s:s,s:o}", "type", "views", "list", list), 0);
+}

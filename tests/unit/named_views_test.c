@@ -1,0 +1,192 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Views with names outlive the daemon, keep what they were, and share an order; those of the plant file stay as they are there. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+#include <jansson.h>
+
+#include "base/mem.h"
+#include "tests/support/temp.h"
+#include "views/named_views.h"
+
+enum { NOON_S = 1767268800 };
+struct fixture {
+    struct log *log;
+    struct plant plant;
+    char *folder, *history;
+    struct named_views *views;
+};
+
+static int set_up(void **state)
+{
+    static struct named_view fixed = { .id = "all", .title = "All", .address = "group=t" };
+    struct fixture *f = mem_new(sizeof(*f));
+    f->log = log_create(LOG_ERROR);
+    f->plant = (struct plant){ .views = &fixed, .view_count = 1 };
+    f->folder = temp_folder_create();
+    f->history = mem_printf("%s/history", f->folder);
+    f->views = named_views_open(f->log, &f->plant, f->history);
+    *state = f;
+    return 0;
+}
+
+static int tear_down(void **state)
+{
+    struct fixture *f = *state;
+    named_views_close(&f->views);
+    temp_folder_destroy(&f->folder);
+    mem_free(f->history);
+    log_destroy(&f->log);
+    mem_free(f);
+    return 0;
+}
+
+static void open_again(struct fixture *f)
+{
+    named_views_close(&f->views);
+    f->views = named_views_open(f->log, &f->plant, f->history);
+}
+
+static const char *save(struct fixture *f, const char *id, const char *title, int at)
+{
+    struct named_view_edit edit = { .at = at, .address = "group=t&show=value" };
+    snprintf(edit.id, sizeof(edit.id), "%s", id);
+    snprintf(edit.title, sizeof(edit.title), "%s", title);
+    return named_views_save(f->views, &edit, "kim", INT64_C(1000000) * NOON_S);
+}
+
+/* The ids in their order, with blanks between them; then compared. */
+static void assert_order(struct fixture *f, const char *expected)
+{
+    char *text = named_views_text(f->views, NULL), found[400] = "";
+    json_t *message = json_loads(text, 0, NULL), *list = json_object_get(message, "list");
+    for (size_t i = 0; i < json_array_size(list); i++)
+        snprintf(found + strlen(found), sizeof(found) - strlen(found), "%s%s", i ? " " : "",
+                 json_string_value(json_object_get(json_array_get(list, i), "id")));
+    json_decref(message);
+    mem_free(text);
+    assert_string_equal(found, expected);
+}
+
+static size_t versions_of(struct fixture *f, const char *id, size_t index)
+{
+    char *text = named_views_text(f->views, id);
+    json_t *message = json_loads(text, 0, NULL), *list = json_object_get(message, "list");
+    size_t count = json_array_size(json_object_get(json_array_get(list, index), "before"));
+    json_decref(message);
+    mem_free(text);
+    return count;
+}
+
+static void they_are_kept_in_order(void **state)
+{
+    struct fixture *f = *state;
+    uint64_t number = named_views_number(f->views);
+    assert_true(number == 1);
+    assert_null(save(f, "b", "B", -1));
+    assert_null(save(f, "c", "C", -1));
+    assert_null(save(f, "a", "A", 0));
+    assert_order(f, "all a b c");
+    assert_null(save(f, "a", "A", 2));
+    assert_order(f, "all b c a");
+    assert_null(save(f, "b", "Other", -1)); /* stays where it is */
+    assert_true(named_views_number(f->views) == number + 5);
+    open_again(f);
+    assert_order(f, "all b c a");
+    assert_null(named_views_remove(f->views, "c"));
+    assert_non_null(named_views_remove(f->views, "c"));
+    open_again(f);
+    assert_order(f, "all b a");
+}
+
+static void what_they_were_is_kept(void **state)
+{
+    struct fixture *f = *state;
+    char title[8];
+    assert_null(save(f, "a", "0", -1));
+    assert_int_equal(versions_of(f, "a", 1), 0);
+    assert_null(save(f, "a", "0", 0)); /* nothing but its place */
+    assert_int_equal(versions_of(f, "a", 1), 0);
+    for (int i = 1; i < 2 * NAMED_VIEW_VERSIONS; i++) {
+        snprintf(title, sizeof(title), "%d", i);
+        assert_null(save(f, "a", title, -1));
+    }
+    open_again(f);
+    assert_int_equal(versions_of(f, "a", 1), NAMED_VIEW_VERSIONS);
+    assert_int_equal(versions_of(f, NULL, 1), 0);
+}
+
+static void the_plant_file_has_its_own(void **state)
+{
+    struct fixture *f = *state;
+    assert_non_null(save(f, "all", "Mine", -1));
+    assert_non_null(named_views_remove(f->views, "all"));
+    assert_null(save(f, "mine", "Mine", -1));
+    f->plant.view_count = 0;
+    assert_null(save(f, "all", "Mine", -1));
+    f->plant.view_count = 1; /* has it again: that one counts */
+    assert_order(f, "all mine");
+}
+
+static void there_is_a_limit(void **state)
+{
+    struct fixture *f = *state;
+    char id[8];
+    for (int i = 0; i < NAMED_VIEWS; i++) {
+        snprintf(id, sizeof(id), "v%d", i);
+        assert_null(save(f, id, "V", -1));
+    }
+    assert_non_null(save(f, "more", "V", -1));
+    assert_null(save(f, "v0", "Other", -1));
+}
+
+static void what_cannot_be_read_is_not_written_over(void **state)
+{
+    static const char *const files[] = { "{", "[]", "{\"views\":[{\"id\":\"a\"}]}", "{\"views\":[{\"id\":\"a b\",\"title\":\"\",\"view\":\"\","
+                                         "\"by\":\"\",\"time_us\":1,\"before\":[]}]}" };
+    struct fixture *f = *state;
+    for (size_t i = 0; i < sizeof(files) / sizeof(*files); i++) {
+        char *path = temp_write_text(f->folder, "history/" NAMED_VIEWS_FILE, files[i]), text[200] = "";
+        open_again(f);
+        assert_order(f, "all");
+        assert_non_null(save(f, "a", "A", -1));
+        FILE *file = fopen(path, "re");
+        assert_non_null(file);
+        text[fread(text, 1, sizeof(text) - 1, file)] = 0;
+        fclose(file);
+        assert_string_equal(text, files[i]);
+        mem_free(path);
+    }
+}
+
+static void without_a_folder_none_is_saved(void **state)
+{
+    struct fixture *f = *state;
+    struct named_views *views = named_views_open(f->log, &f->plant, NULL);
+    struct named_view_edit edit = { .id = "a", .title = "A", .address = "group=t", .at = -1 };
+    assert_non_null(named_views_save(views, &edit, "kim", 1));
+    named_views_close(&views);
+    edit.title[0] = (char)0xff; /* no UTF-8: refused, and nothing changes */
+    assert_non_null(named_views_save(f->views, &edit, "kim", 1));
+    assert_order(f, "all");
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test_setup_teardown(they_are_kept_in_order, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(what_they_were_is_kept, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(the_plant_file_has_its_own, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(there_is_a_limit, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(what_cannot_be_read_is_not_written_over, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(without_a_folder_none_is_saved, set_up, tear_down),
+    };
+    cmocka_set_message_output(CM_OUTPUT_TAP);
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

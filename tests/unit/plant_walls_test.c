@@ -1,0 +1,91 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The plant file's `views` and `walls`: what is read, and that what is wrong is said at its place. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <cmocka.h>
+
+#include "base/mem.h"
+#include "base/text.h"
+#include "message/views_message.h"
+#include "plant/wall.h"
+#include "tests/support/plant_case.h"
+
+static void load(struct plant_case *c, const char *more)
+{
+    struct text yaml = { 0 };
+    text_add(&yaml, "plant: { name: P }\nassets: [{ id: E-1, model: m.glb }]\n"
+                    "groups: [{ id: t, unit: degC, min: 0, max: 1 }]\ntags: tags.csv\nsources: [{ id: a, type: modbus, host: h }]\n%s\n",
+             more);
+    plant_case_load(c, yaml.at, "Tag Name,Address,Source\nTI-1,40001,a\nTI-2,40003,a\n");
+    text_finish(&yaml);
+}
+
+static void all_keys_are_read(void **state)
+{
+    struct plant_case *c = *state;
+    load(c, "walls:\n"
+            "- id: room\n  inches: 65\n  distance_m: 4.5\n  displays:\n"
+            "  - grid: [main main side, main main low]\n    panes:\n"
+            "    - { area: main, views: [all, near], every_s: 20, on_alarm: yes, title: Plant }\n"
+            "    - { area: side, alarms: yes }\n"
+            "    - { area: low, tiles: [TI-1, TI-2] }\n"
+            "  - grid: [a b, c .]\n    panes: [{ area: a, trend: TI-1, hours: 2 }, { area: b, clock: UTC }, { area: c, text: Hello }]\n"
+            "views: [{ id: all, view: group=t }, { id: near, title: \"Near by\", view: \"group=t&camera=1,2,3\" }]");
+    plant_case_assert_loaded(c, 0);
+    assert_int_equal(c->plant->view_count, 2);
+    assert_string_equal(c->plant->views[1].title, "Near by");
+    assert_int_equal(c->plant->wall_count, 1);
+    char *text = walls_text(c->plant);
+    assert_string_equal(text,
+                        "{\"walls\":[{\"id\":\"room\",\"inches\":65.0,\"distance_m\":4.5,\"displays\":[{\"grid\":[\"main main side\","
+                        "\"main main low\"],\"panes\":[{\"area\":\"main\",\"kind\":\"views\",\"title\":\"Plant\",\"items\":[\"all\",\"near\"],"
+                        "\"every_s\":20.0,\"hours\":8.0,\"on_alarm\":true},{\"area\":\"side\",\"kind\":\"alarms\",\"title\":null,\"items\":"
+                        "[\"yes\"],\"every_s\":30.0,\"hours\":8.0,\"on_alarm\":false},{\"area\":\"low\",\"kind\":\"tiles\",\"title\":null,"
+                        "\"items\":[\"TI-1\",\"TI-2\"],\"every_s\":30.0,\"hours\":8.0,\"on_alarm\":false}]},{\"grid\":[\"a b\",\"c .\"],"
+                        "\"panes\":[{\"area\":\"a\",\"kind\":\"trend\",\"title\":null,\"items\":[\"TI-1\"],\"every_s\":30.0,\"hours\":2.0,"
+                        "\"on_alarm\":false},{\"area\":\"b\",\"kind\":\"clock\",\"title\":null,\"items\":[\"UTC\"],\"every_s\":30.0,"
+                        "\"hours\":8.0,\"on_alarm\":false},{\"area\":\"c\",\"kind\":\"text\",\"title\":null,\"items\":[\"Hello\"],\"every_s\":"
+                        "30.0,\"hours\":8.0,\"on_alarm\":false}]}]}]}");
+    mem_free(text);
+}
+
+static void what_is_wrong_is_said_at_its_place(void **state)
+{
+    struct plant_case *c = *state;
+    load(c, "views:\n- { id: a b, view: x }\n- { id: v, view: \"a b\" }\n- { id: v, view: \"#x\" }\n- { id: w }\n"
+            "walls:\n- { id: r, displays: [] }\n- id: r\n  inches: 5\n  displays:\n  - grid: [A b]\n    panes: [{ area: b }]\n"
+            "  - grid: [b b]\n    panes: [{ area: b, clock: yes, text: x }, { area: b, views: v }, { area: z, clock: yes, every_s: 9 },"
+            " { area: b, tiles: [] }]");
+    FOUND(c, { "plant.yaml", 7, 9, "id: expected letters, digits" }, { "plant.yaml", 8, 18, "something in it that does not stand" },
+          { "plant.yaml", 9, 18, "it begins after the #" }, { "plant.yaml", 9, 9, "view 'v' is there twice (first at line 8)" },
+          { "plant.yaml", 10, 3, "view" }, { "plant.yaml", 12, 22, "displays: expected at least one" },
+          { "plant.yaml", 14, 11, "inches" }, { "plant.yaml", 16, 12, "areas in lower case" },
+          { "plant.yaml", 17, 13, "expected one of views, trend, alarms" }, { "plant.yaml", 17, 21, "the grid has no 'b'" },
+          { "plant.yaml", 19, 13, "expected one of views" }, { "plant.yaml", 19, 55, "'b' has two panes" },
+          { "plant.yaml", 19, 102, "only a pane of views has it" }, { "plant.yaml", 19, 78, "the grid has no 'z'" },
+          { "plant.yaml", 19, 125, "tiles: expected 1 to 16, found 0" }, { "plant.yaml", 19, 115, "'b' has two panes" },
+          { "plant.yaml", 13, 7, "wall 'r' is there twice" });
+}
+
+static void what_panes_name_must_be_there(void **state)
+{
+    struct plant_case *c = *state;
+    load(c, "walls:\n- id: r\n  displays:\n  - grid: [a b]\n    panes: [{ area: a, tiles: [TI-1, TI-3] }, { area: b, trend: none }]");
+    FOUND(c, { "plant.yaml", 10, 38, "tiles: there is no tag 'TI-3'; did you mean 'TI-1'?" },
+          { "plant.yaml", 10, 65, "trend: there is no tag 'none'" });
+    load(c, "views: [{ id: all, view: x }]\nwalls:\n- id: r\n  displays:\n  - grid: [a]\n    panes: [{ area: a, views: [all, al] }]");
+    plant_case_assert_loaded(c, 1); /* it may be saved in the page */
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test_setup_teardown(all_keys_are_read, plant_case_set_up, plant_case_tear_down),
+        cmocka_unit_test_setup_teardown(what_is_wrong_is_said_at_its_place, plant_case_set_up, plant_case_tear_down),
+        cmocka_unit_test_setup_teardown(what_panes_name_must_be_there, plant_case_set_up, plant_case_tear_down),
+    };
+    cmocka_set_message_output(CM_OUTPUT_TAP);
+    return cmocka_run_group_tests_name("walls", tests, NULL, NULL);
+}
