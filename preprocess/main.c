@@ -15,7 +15,10 @@
 #include "preprocess/report/distances.h"
 #include "preprocess/report/report.h"
 
-enum { GRACE_S = 5 }; /* what stops services and containers kills after 10 s and more */
+enum {
+    GRACE_S = 5,          /* what stops services and containers kills after 10 s and more */
+    ASSET_LIMIT_S = 3600, /* an asset that takes longer, or reading the models, hangs */
+};
 
 static const char usage[] =
     "usage: plantcast-prep PLANT.yaml [--output DIR] [--report text|json]\n"
@@ -182,10 +185,12 @@ static void say_early(const struct plant *plant)
 }
 
 static bool run_all(const struct options *options, struct log *log, struct workers *workers, const struct plant *plant, const char *folder,
-                    struct diag *diag)
+                    struct service_patience *patience, struct diag *diag)
 {
     struct prepare prepare;
-    struct prepare_params params = { .folder = folder, .only = options->asset, .progress = stderr, .stop = &interrupted };
+    struct prepare_params params = {
+        .folder = folder, .only = options->asset, .progress = stderr, .patience = patience, .stop = &interrupted
+    };
     if (options->asset && plant_find_asset(plant, options->asset) < 0) {
         diag_error(diag, plant->path, 0, 0, "there is no asset %s", options->asset);
         return false;
@@ -226,10 +231,13 @@ static bool run_plant(const struct options *options, struct diag *diag)
         return false;
     struct log *log = log_create(LOG_INFO);
     struct workers *workers = workers_create(0);
-    struct service_patience *patience = service_patience_begin("preparing the plant"); /* before a unit's daemon starts */
+    struct service_patience *patience = service_patience_begin("preparing the plant", ASSET_LIMIT_S); /* before a unit's daemon starts */
     char *folder = options->output ? mem_strdup(options->output) : plant_prepared_folder(plant);
-    bool good = convert_run(plant, folder, stderr, diag) &&
-                (options->distances ? run_distances : run_all)(options, log, workers, plant, folder, diag);
+    bool good = convert_run(plant, folder, stderr, diag);
+    if (good && options->distances)
+        good = run_distances(options, log, workers, plant, folder, diag);
+    else if (good)
+        good = run_all(options, log, workers, plant, folder, patience, diag);
     service_patience_end(&patience);
     mem_free(folder);
     workers_destroy(&workers);

@@ -15,6 +15,7 @@
 #include "version.h"
 
 static const int64_t LOOK_NS = 2 * NS_PER_S; /* at the render thread, and so often the watchdog is fed at most */
+enum { START_LIMIT_S = 600 }; /* that a step of the start may last */
 
 struct supervision {
     struct log *log;
@@ -49,7 +50,7 @@ struct supervision *supervision_create(struct log *log, struct counters *counter
     if (runtime && *runtime)
         supervision->runtime = mem_printf("%.*s", (int)strcspn(runtime, ":"), runtime);
     supervision->watchdog_ns = service_watchdog_ns();
-    supervision->patience = service_patience_begin("starting");
+    supervision->patience = service_patience_begin("starting", START_LIMIT_S);
     return supervision;
 }
 

@@ -13,6 +13,7 @@
 
 #include "base/clock.h"
 #include "base/mem.h"
+#include "base/service_manager.h"
 #include "plant/recipe.h"
 #include "preprocess/cache/model_cache.h"
 #include "preprocess/cache/folder.h"
@@ -307,6 +308,15 @@ static bool is_built(struct run *run, const struct prepare_asset *asset, bool go
     return good && status == 0;
 }
 
+/* Under lock. */
+static void say_status(struct run *run)
+{
+    const struct progress *progress = &run->progress;
+    char *text = mem_printf("preparing the plant: %zu of %zu assets", progress->there + progress->done, progress->total);
+    service_patience_status(run->params->patience, text);
+    mem_free(text);
+}
+
 static void build_one(struct run *run, struct prepare_asset *asset)
 {
     struct build_input input = { .model = &run->prepare->models.at[asset->model].parsed,
@@ -337,6 +347,7 @@ static void build_one(struct run *run, struct prepare_asset *asset)
     if (!good)
         asset->missing = mem_strdup(why);
     progress_step(&run->progress, asset->work, clock_mono_ns());
+    say_status(run);
     pthread_mutex_unlock(&run->lock);
 }
 

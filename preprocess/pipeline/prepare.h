@@ -46,9 +46,10 @@ struct prepare {
 
 struct prepare_params {
     const char *folder;
-    const char *only;        /* this asset alone; the manifest is left as it is. NULL: all */
-    FILE *progress;          /* NULL: silent */
-    const atomic_bool *stop; /* no asset is begun any more once it is true. NULL: never */
+    const char *only;                  /* this asset alone; the manifest is left as it is. NULL: all */
+    FILE *progress;                    /* NULL: silent */
+    struct service_patience *patience; /* gets the status after each asset; NULL: nobody waits */
+    const atomic_bool *stop;           /* no asset is begun any more once it is true. NULL: never */
 };
 
 /* Prepares the plant's assets into params->folder, one process at a time per folder. Errors go to diag, by line of the plant file or tag

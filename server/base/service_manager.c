@@ -2,6 +2,7 @@
 /* Datagrams to systemd: sd_notify(3) and "Native Journal Protocol". */
 #include "base/service_manager.h"
 
+#include <dirent.h>
 #include <errno.h>
 #include <pthread.h>
 #include <stdarg.h>
@@ -11,13 +12,15 @@
 #include <sys/socket.h>
 #include <sys/stat.h>
 #include <sys/un.h>
+#include <time.h>
 #include <unistd.h>
 
 #include "base/clock.h"
 #include "base/mem.h"
 #include "base/text.h"
 
-enum { PATIENCE_S = 60, PATIENCE_EVERY_S = 10 };
+enum { PATIENCE_S = 60, PATIENCE_EVERY_S = 10, PATIENCE_ASKS = 60 /* at least, within the limit */ };
+static const int64_t AT_WORK_NS = 20 * NS_PER_MS; /* of a processor since the last time: less is no work */
 
 /* path: that of a file, or @NAME. */
 static bool send_to(const char *path, const char *bytes, size_t count)
@@ -70,32 +73,76 @@ struct service_patience {
     pthread_t thread;
     pthread_mutex_t lock;
     pthread_cond_t wake;
+    int64_t limit_ns, every_ns;
+    int64_t used_ns; /* of its thread */
     /* --- below: under lock */
     char *status;
+    int64_t since_ns; /* when it got this status */
     bool ending;
 };
 
+/* What the process with this entry of /proc, and those that it waited for, have used of a processor; 0: it is of another session. */
+static int64_t used_by(const char *id)
+{
+    char path[32], line[1024];
+    int session;
+    unsigned long ticks[4];
+    snprintf(path, sizeof(path), "/proc/%.20s/stat", id);
+    FILE *file = fopen(path, "re");
+    const char *after = file && fgets(line, sizeof(line), file) ? strrchr(line, ')') : NULL;
+    bool known = after && sscanf(after, ") %*c %*d %*d %d %*d %*d %*u %*u %*u %*u %*u %lu %lu %lu %lu", &session, &ticks[0], &ticks[1],
+                                 &ticks[2], &ticks[3]) == 5;
+    if (file)
+        fclose(file);
+    return known && session == getsid(0) ? (int64_t)(ticks[0] + ticks[1] + ticks[2] + ticks[3]) * (NS_PER_S / sysconf(_SC_CLK_TCK)) : 0;
+}
+
+/* Returns whether this process, or one that it started, has worked since the last call. */
+static bool is_at_work(struct service_patience *patience)
+{
+    struct timespec own;
+    int64_t used_ns = 0;
+    DIR *folder = opendir("/proc");
+    for (struct dirent *entry; folder && (entry = readdir(folder));)
+        if (entry->d_name[0] >= '1' && entry->d_name[0] <= '9')
+            used_ns += used_by(entry->d_name);
+    if (folder)
+        closedir(folder);
+    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &own); /* to look is no work */
+    used_ns -= own.tv_sec * NS_PER_S + own.tv_nsec;
+    bool works = !folder || used_ns - patience->used_ns >= AT_WORK_NS;
+    patience->used_ns = used_ns;
+    return works;
+}
+
+/* What hangs is not waited for: it uses no processor, or its status stays for too long. */
 static void *ask_again_and_again(void *arg)
 {
     struct service_patience *patience = arg;
+    bool works = true; /* once in any case: what was quick has a status too */
     pthread_mutex_lock(&patience->lock);
-    do { /* once in any case: what was quick has a status too */
-        service_notify("EXTEND_TIMEOUT_USEC=%lld\nSTATUS=%s", PATIENCE_S * 1000000ll, patience->status);
-        int64_t until_ns = clock_mono_ns() + PATIENCE_EVERY_S * NS_PER_S;
+    do {
+        if (works && clock_mono_ns() - patience->since_ns < patience->limit_ns)
+            service_notify("EXTEND_TIMEOUT_USEC=%lld\nSTATUS=%s", PATIENCE_S * 1000000ll, patience->status);
+        int64_t until_ns = clock_mono_ns() + patience->every_ns;
         struct timespec until = { until_ns / NS_PER_S, until_ns % NS_PER_S };
-        if (!patience->ending)
-            pthread_cond_timedwait(&patience->wake, &patience->lock, &until);
+        works = patience->ending || pthread_cond_timedwait(&patience->wake, &patience->lock, &until) != ETIMEDOUT;
+        if (!works)
+            works = is_at_work(patience);
     } while (!patience->ending);
     pthread_mutex_unlock(&patience->lock);
     return NULL;
 }
 
-struct service_patience *service_patience_begin(const char *status)
+struct service_patience *service_patience_begin(const char *status, int limit_s)
 {
     if (!getenv("NOTIFY_SOCKET"))
         return NULL;
     struct service_patience *patience = mem_new(sizeof(*patience));
     patience->status = mem_strdup(status);
+    patience->limit_ns = limit_s * NS_PER_S;
+    patience->every_ns = limit_s < PATIENCE_EVERY_S * PATIENCE_ASKS ? patience->limit_ns / PATIENCE_ASKS : PATIENCE_EVERY_S * NS_PER_S;
+    patience->since_ns = clock_mono_ns();
     pthread_mutex_init(&patience->lock, NULL);
     clock_cond_init(&patience->wake);
     if (pthread_create(&patience->thread, NULL, ask_again_and_again, patience) == 0)
@@ -114,6 +161,7 @@ void service_patience_status(struct service_patience *patience, const char *stat
     pthread_mutex_lock(&patience->lock);
     mem_free(patience->status);
     patience->status = mem_strdup(status);
+    patience->since_ns = clock_mono_ns();
     pthread_cond_signal(&patience->wake);
     pthread_mutex_unlock(&patience->lock);
 }

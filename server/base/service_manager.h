@@ -12,9 +12,11 @@ bool service_notify(const char *fmt, ...) __attribute__((format(printf, 1, 2)));
 /* Returns within what time the manager wants a sign of life again and again (WATCHDOG_USEC, if meant for this process); 0: it does not. */
 int64_t service_watchdog_ns(void);
 /* Starts a thread that asks the manager every few seconds to wait longer, for what takes long before the service is ready, and has it
-   show that status. Returns NULL if nobody is there to be asked; service_patience_end() takes that too. status is copied. */
+   show that status. It stops asking while neither this process nor those of its session use a processor, and once one status has lasted
+   longer than limit_s, so that a manager ends a start that hangs. Returns NULL if nobody is there to be asked; service_patience_end() takes
+   that too. status is copied. */
 struct service_patience;
-struct service_patience *service_patience_begin(const char *status);
+struct service_patience *service_patience_begin(const char *status, int limit_s);
 void service_patience_status(struct service_patience *patience, const char *status); /* from now on; NULL patience is fine */
 void service_patience_end(struct service_patience **patience);                       /* leaves NULL */
 

@@ -161,12 +161,12 @@ static void the_manager_is_told_and_asked_for_patience(void **state)
     const struct place *place = *state;
     char got[256];
     assert_false(service_notify("READY=1"));
-    assert_null(service_patience_begin("reading"));
+    assert_null(service_patience_begin("reading", 600));
     setenv("NOTIFY_SOCKET", place->path, 1);
     assert_true(service_notify("READY=%d", 1));
     receive(place, got, sizeof(got));
     assert_string_equal(got, "READY=1");
-    struct service_patience *patience = service_patience_begin("reading");
+    struct service_patience *patience = service_patience_begin("reading", 600);
     for (int i = 0; i < 500 && !receive(place, got, sizeof(got)); i++)
         usleep(10000);
     assert_string_equal(got, "EXTEND_TIMEOUT_USEC=60000000\nSTATUS=reading");

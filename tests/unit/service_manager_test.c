@@ -1,0 +1,125 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What asks a service manager for more time does so while there is work, and no longer. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/socket.h>
+#include <sys/un.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cmocka.h>
+
+#include "base/clock.h"
+#include "base/mem.h"
+#include "base/service_manager.h"
+#include "tests/support/temp.h"
+
+enum { EVERY_MS = 500, LIMIT_S = 30 }; /* asked sixty times within the limit */
+
+struct setup {
+    char *folder, *path;
+    int fd;
+};
+
+static int set_up(void **state)
+{
+    struct setup *s = *state = mem_new(sizeof(*s));
+    struct sockaddr_un address = { .sun_family = AF_UNIX };
+    setsid(); /* as a service manager starts it; in a session of many, others' work would count */
+    s->folder = temp_folder_create();
+    s->path = temp_path(s->folder, "notify");
+    memcpy(address.sun_path, s->path, strlen(s->path));
+    s->fd = socket(AF_UNIX, SOCK_DGRAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
+    assert_int_equal(bind(s->fd, (struct sockaddr *)&address, sizeof(address)), 0);
+    return setenv("NOTIFY_SOCKET", s->path, 1);
+}
+
+static int tear_down(void **state)
+{
+    struct setup *s = *state;
+    close(s->fd);
+    mem_free(s->path);
+    temp_folder_destroy(&s->folder);
+    mem_free(s);
+    return unsetenv("NOTIFY_SOCKET");
+}
+
+/* How often it was asked since the last time. */
+static int asked(const struct setup *s)
+{
+    char line[200];
+    int count = 0;
+    for (ssize_t n; (n = recv(s->fd, line, sizeof(line) - 1, 0)) >= 0;) {
+        line[n] = 0;
+        count += strstr(line, "EXTEND_TIMEOUT_USEC=60000000\nSTATUS=") != NULL;
+    }
+    return count;
+}
+
+static void work_ms(int ms)
+{
+    int64_t end_ns = clock_mono_ns() + ms * NS_PER_MS;
+    for (volatile unsigned i = 0; clock_mono_ns() < end_ns;)
+        i++;
+}
+
+static void rest_ms(int ms)
+{
+    usleep((useconds_t)ms * 1000);
+}
+
+static void it_asks_while_it_works_and_not_while_it_hangs(void **state)
+{
+    struct setup *s = *state;
+    struct service_patience *patience = service_patience_begin("working", LIMIT_S);
+    work_ms(5 * EVERY_MS);
+    assert_true(asked(s) >= 3);
+    rest_ms(EVERY_MS + EVERY_MS / 2); /* what was worked before counts once more */
+    asked(s);
+    rest_ms(3 * EVERY_MS);
+    assert_int_equal(asked(s), 0);
+    service_patience_status(patience, "the next step");
+    rest_ms(EVERY_MS);
+    assert_int_equal(asked(s), 1);
+    service_patience_end(&patience);
+}
+
+static void what_it_started_works_for_it(void **state)
+{
+    struct setup *s = *state;
+    struct service_patience *patience = service_patience_begin("waiting", LIMIT_S);
+    pid_t child = fork();
+    if (child == 0) {
+        setpgid(0, 0);
+        work_ms(5 * EVERY_MS);
+        _exit(0);
+    }
+    assert_int_equal(waitpid(child, NULL, 0), child);
+    assert_true(asked(s) >= 3);
+    service_patience_end(&patience);
+}
+
+static void one_step_may_not_last_for_ever(void **state)
+{
+    struct setup *s = *state;
+    struct service_patience *patience = service_patience_begin("going round in circles", 3);
+    work_ms(3100);
+    assert_true(asked(s) >= 5);
+    work_ms(1000);
+    assert_int_equal(asked(s), 0);
+    service_patience_end(&patience);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test_setup_teardown(it_asks_while_it_works_and_not_while_it_hangs, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(what_it_started_works_for_it, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(one_step_may_not_last_for_ever, set_up, tear_down),
+    };
+    cmocka_set_message_output(CM_OUTPUT_TAP);
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
