@@ -186,10 +186,10 @@ static int open_to_write(struct database *database, int *version)
     /* FULL: what was committed outlives a loss of power too. */
     static const char set_up[] = "PRAGMA journal_mode = WAL; PRAGMA synchronous = FULL";
     int code = open_handle(database, database->path, SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE);
+    if (code == SQLITE_OK) /* first: some settings are only for files that have no page yet */
+        code = sqlite3_exec(database->handle, database->format->set_up, NULL, NULL, NULL);
     if (code == SQLITE_OK)
         code = sqlite3_exec(database->handle, set_up, NULL, NULL, NULL);
-    if (code == SQLITE_OK)
-        code = sqlite3_exec(database->handle, database->format->set_up, NULL, NULL, NULL);
     if (code == SQLITE_OK)
         code = read_version(database, version);
     return code == SQLITE_OK && *version < database->format->version ? migrate(database, *version) : code;

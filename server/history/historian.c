@@ -27,7 +27,7 @@ enum {
     TIDY_ROWS = 200000,
     RETRY_MAX_S = 30,
 };
-static const int64_t TICK_NS = NS_PER_S, TIDY_NS = 60 * NS_PER_S, KEEP_NS = 600 * NS_PER_S, STEP_NS = 2 * NS_PER_S,
+static const int64_t TICK_NS = NS_PER_S, TIDY_NS = 60 * NS_PER_S, KEEP_NS = 60 * NS_PER_S, STEP_NS = 2 * NS_PER_S,
                      LOOK_NS = 20 * NS_PER_MS;
 
 struct event_queue {
@@ -271,11 +271,12 @@ static int write_second(struct historian *historian)
     return error ? error : write_rows(historian, held, true);
 }
 
-/* What others have done: how full the disk is, and when `plantcast backup` was here. */
+/* What others have done: how full the disk is, and when `plantcast backup` was here. A reserve that was used is made again. */
 static void look_around(struct historian *historian)
 {
     struct statvfs disk;
     struct stat backup;
+    spool_reserve(historian->folder);
     char *path = mem_printf("%s/" HISTORY_BACKUP_STAMP, historian->folder);
     if (statvfs(historian->folder, &disk) == 0)
         counter_set(historian->counters.free, (int64_t)(disk.f_bavail * disk.f_frsize));

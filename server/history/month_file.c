@@ -64,13 +64,25 @@ static const char *const sql[SQL_COUNT] = {
     [SQL_ROLLUPS] = "SELECT t, low, high, mean, first, last, good_us, bad_us, q FROM rollup"
                     " WHERE level_s = ? AND tag = ? AND t > ? AND t <= ? ORDER BY t",
     [SQL_RECENT_ALL] = "SELECT tag, t, v, q FROM recent UNION ALL SELECT tag, t, v, q FROM held",
+    [SQL_ALL_TAGS] = "SELECT id FROM tag",
+    [SQL_CUT_SAMPLES] = "DELETE FROM sample WHERE tag = ? AND t < ?",
+    [SQL_CUT_ROLLUPS] = "DELETE FROM rollup WHERE level_s = ?2 AND tag = ?1 AND t < ?3",
+    [SQL_CUT_EVENTS] = "DELETE FROM event WHERE t < ?",
+    [SQL_SIZE] = "SELECT page_size, page_count, freelist_count, auto_vacuum FROM pragma_page_size, pragma_page_count,"
+                 " pragma_freelist_count, pragma_auto_vacuum",
+    [SQL_SHRINK] = "PRAGMA incremental_vacuum",
     [SQL_WAITING] = "SELECT count(*) FROM recent",
     [SQL_SPAN] = "SELECT min(a), max(b) FROM (SELECT min(t) AS a, max(t) AS b FROM recent UNION ALL SELECT min(t), max(t) FROM held"
                  " UNION ALL SELECT (SELECT min(t) FROM sample WHERE tag = id), (SELECT max(t) FROM sample WHERE tag = id) FROM tag)",
 };
 
 static const struct database_format format = {
-    APPLICATION_ID, HISTORY_VERSION, "PRAGMA cache_size = -16000; PRAGMA wal_autocheckpoint = 4000", schemas, sql, SQL_COUNT,
+    APPLICATION_ID,
+    HISTORY_VERSION,
+    "PRAGMA auto_vacuum = INCREMENTAL; PRAGMA cache_size = -16000; PRAGMA wal_autocheckpoint = 4000",
+    schemas,
+    sql,
+    SQL_COUNT,
 };
 
 /* --- for the other files ------------------------------------------------------------------------------------------------------ */

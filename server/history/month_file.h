@@ -65,6 +65,14 @@ int month_file_import(struct month_file *file, int tag, const struct history_poi
 /* Recovers from a writer that did not end properly: records its newest samples, each followed by a gap. *ended_us: when it ended. */
 int month_file_recover(struct month_file *file, uint32_t gap_quality, int64_t *ended_us);
 int month_file_clear_held(struct month_file *file); /* deletes the newest samples: all are recorded, the month is over */
+/* Deletes what is older than a time, as far as it has been tidied. The room that it leaves is for what comes next; with `shrink`, the disk
+   gets it back, if the file was begun with auto_vacuum (struct month_file_size, shrinks). */
+int month_file_cut(struct month_file *file, int64_t until_us, bool shrink);
+struct month_file_size {
+    int64_t bytes, free_bytes; /* on disk; of these, for what comes next */
+    bool shrinks;
+};
+int month_file_size(struct month_file *file, struct month_file_size *size);
 int month_file_note(struct month_file *file, int64_t t_us, const char *kind, const char *text); /* writes a row of the table of events */
 
 /* Begin and end a read transaction: all that is read between is consistent, whatever is written meanwhile. */

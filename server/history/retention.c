@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Deletes months by age and size. */
+/* Deletes months by age and size, and the oldest part of what is left where that suffices. */
 #include "history/retention.h"
 
 #include <errno.h>
@@ -10,9 +10,12 @@
 
 #include "base/mem.h"
 #include "history/month.h"
+#include "history/month_file.h"
 
 static const char *const parts[] = { "", "-wal", "-shm" };
-enum { PARTS = sizeof(parts) / sizeof(parts[0]) };
+enum { PARTS = sizeof(parts) / sizeof(parts[0]), CUT_BYTES = 16000000 /* at once: whoever records waits */ };
+static const int64_t NEWEST_US = 600 * US_PER_S; /* is never cut off */
+#define CUT_BELOW 0.01                           /* of the limit, so that it is not reached again at once */
 
 static char *path_of(const char *folder, int month, int part)
 {
@@ -21,16 +24,12 @@ static char *path_of(const char *folder, int month, int part)
     return mem_printf("%s/%s%s", folder, name, parts[part]);
 }
 
-static int64_t bytes_of(const char *folder, int month)
+static int64_t part_bytes(const char *folder, int month, int part)
 {
-    int64_t bytes = 0;
-    for (int part = 0; part < PARTS; part++) {
-        struct stat st;
-        char *path = path_of(folder, month, part);
-        if (stat(path, &st) == 0)
-            bytes += st.st_size;
-        mem_free(path);
-    }
+    struct stat st;
+    char *path = path_of(folder, month, part);
+    int64_t bytes = stat(path, &st) == 0 ? st.st_size : 0;
+    mem_free(path);
     return bytes;
 }
 
@@ -50,25 +49,72 @@ static bool delete_month(struct log *log, const char *folder, int month, const c
     return gone;
 }
 
+/* Returns how many bytes of it hold something; room for what comes next is in the file of the newest month. */
+static int64_t used_bytes(struct log *log, const char *folder, int month, bool newest)
+{
+    struct month_file_size size = { 0 };
+    int error;
+    struct month_file *file = newest ? month_file_read(log, folder, month, &error) : NULL;
+    if (!file || month_file_size(file, &size))
+        size.bytes = part_bytes(folder, month, 0);
+    month_file_close(&file);
+    return size.bytes - size.free_bytes;
+}
+
+/* Deletes the oldest part of a month, some of the bytes that are too many. Returns false if this cannot be done. */
+static bool cut_month(struct log *log, const char *folder, int month, bool newest, int64_t too_many)
+{
+    struct month_file_size size;
+    int64_t first_us = INT64_MAX, last_us = INT64_MIN;
+    int error;
+    struct month_file *file = month_file_read(log, folder, month, &error); /* which leaves alone what is damaged */
+    bool can = file && !month_file_size(file, &size) && !month_file_span(file, &first_us, &last_us) && (size.shrinks || newest);
+    month_file_close(&file);
+    if (!can || first_us > last_us || !(file = month_file_open(log, folder, month, NULL, 0, &error)))
+        return false;
+    if (!newest) /* the disk gets that back in any case */
+        too_many = too_many > size.free_bytes ? too_many - size.free_bytes : 0;
+    double share = (double)(too_many < CUT_BYTES ? too_many : CUT_BYTES) / (double)(size.bytes - size.free_bytes);
+    int64_t until_us = first_us + (int64_t)((double)(last_us - first_us) * share), latest_us = last_us - NEWEST_US;
+    bool good = month_file_cut(file, until_us < latest_us ? until_us : latest_us, !newest) == 0;
+    month_file_close(&file);
+    return good;
+}
+
+/* The size of all months without what SQLite keeps beside them, which is bounded. */
+static int64_t all_used(struct log *log, const char *folder, const int *months, size_t count)
+{
+    int64_t bytes = 0;
+    for (size_t i = 0; i < count; i++)
+        bytes += used_bytes(log, folder, months[i], i + 1 == count);
+    return bytes;
+}
+
 int64_t retention_apply(struct log *log, const char *folder, const struct retention_limits *limits, int64_t now_us)
 {
     size_t count;
     int *months = month_list(folder, &count);
-    int64_t bytes = 0, oldest_us = now_us - (int64_t)(limits->days * 86400 * US_PER_S);
-    for (size_t i = 0; i < count; i++)
-        bytes += bytes_of(folder, months[i]);
-    for (size_t i = 0; i + 1 < count; i++) {
-        bool old = limits->days > 0 && month_begin_us(months[i] + 1) <= oldest_us;
-        bool large = limits->bytes > 0 && (double)bytes > limits->bytes;
-        if (!old && !large)
+    int64_t left = 0, used = all_used(log, folder, months, count), oldest_us = now_us - (int64_t)(limits->days * 86400 * US_PER_S);
+    for (size_t i = 0; i < count; i++) {
+        bool newest = i + 1 == count, old = limits->days > 0 && month_begin_us(months[i] + 1) <= oldest_us && !newest;
+        double too_many = limits->bytes > 0 ? (double)used - limits->bytes : 0;
+        int64_t of_month = part_bytes(folder, months[i], 0);
+        if (!old && too_many <= 0)
             break;
-        int64_t of_month = bytes_of(folder, months[i]);
+        bool whole = old || (!newest && too_many >= (double)of_month);
+        if (!whole && cut_month(log, folder, months[i], newest, (int64_t)(too_many + limits->bytes * CUT_BELOW)))
+            break;
+        if (newest)
+            break;
         char *why = old ? mem_printf("older than %g days", limits->days)
-                        : mem_printf("history takes %.1f MB, more than %.1f MB", (double)bytes / 1e6, limits->bytes / 1e6);
+                        : mem_printf("history takes %.1f MB, more than %.1f MB", (double)used / 1e6, limits->bytes / 1e6);
         if (delete_month(log, folder, months[i], why))
-            bytes -= of_month;
+            used -= of_month;
         mem_free(why);
     }
+    for (size_t i = 0; i < count; i++)
+        for (int part = 0; part < PARTS; part++)
+            left += part_bytes(folder, months[i], part);
     mem_free(months);
-    return bytes;
+    return left;
 }

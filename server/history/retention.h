@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Retention of history: deletes whole months, oldest first, never the newest. */
+/* Retention of history: deletes the oldest, whole months where they are too old or more is too much, else the oldest part of a month. The
+   last minutes always stay. Thread: that of whoever records. */
 #ifndef HISTORY_RETENTION_H
 #define HISTORY_RETENTION_H
 #include <stdint.h>
@@ -9,7 +10,8 @@
 struct retention_limits {
     double days, bytes; /* 0: no limit */
 };
-/* Deletes the months beyond the limits (logged). Returns the size in bytes of those that are left. */
+/* Deletes what is beyond the limits: whole months (logged), and 16 MB at a time of a month. To be called every minute. Returns the size on
+   disk of what is left, in bytes. */
 int64_t retention_apply(struct log *log, const char *folder, const struct retention_limits *limits, int64_t now_us);
 
 #endif

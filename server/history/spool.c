@@ -9,6 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
+#include <sys/statvfs.h>
 #include <unistd.h>
 #include <xxhash.h>
 
@@ -17,7 +18,7 @@
 #include "base/text.h"
 
 static const char HEAD[] = "plantcast spool 1\n";
-enum { PLACES = 3 };
+enum { PLACES = 3, RESERVE_BYTES = 8 << 20, PLENTY = 10 /* times the reserve */ };
 
 char **spool_places(const char *folder)
 {
@@ -38,6 +39,56 @@ void spool_places_free(char **places)
     for (char **place = places; *place; place++)
         mem_free(*place);
     mem_free(places);
+}
+
+static char *reserve_of(const char *folder, int length)
+{
+    return mem_printf("%.*s/spool.reserve", length, folder);
+}
+
+int spool_reserve(const char *folder)
+{
+    struct statvfs disk;
+    char *path = reserve_of(folder, (int)strlen(folder));
+    int error = statvfs(folder, &disk) ? -errno : 0, fd = -1;
+    if (!error && access(path, F_OK) != 0) {
+        if (disk.f_bavail * disk.f_frsize < (unsigned long)RESERVE_BYTES * PLENTY)
+            error = -ENOSPC;
+        else if ((fd = open(path, O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0600)) < 0)
+            error = -errno;
+        else
+            error = -posix_fallocate(fd, 0, RESERVE_BYTES);
+        if (fd >= 0)
+            close(fd);
+        if (error && fd >= 0)
+            unlink(path);
+    }
+    mem_free(path);
+    return error;
+}
+
+/* In the blocks that the file of the reserve has already; then it gets the spool's name. */
+static int write_into_reserve(const char *path, const struct text *text)
+{
+    const char *slash = strrchr(path, '/');
+    char *reserve = reserve_of(path, slash ? (int)(slash - path) : 0);
+    struct stat st;
+    int fd = open(reserve, O_WRONLY | O_NOFOLLOW | O_CLOEXEC), error = fd < 0 ? -errno : 0;
+    if (!error && (fstat(fd, &st) != 0 || !S_ISREG(st.st_mode) || (size_t)st.st_size < text->length))
+        error = -ENOSPC;
+    for (size_t done = 0; !error && done < text->length;) {
+        ssize_t n = pwrite(fd, text->at + done, text->length - done, (off_t)done);
+        if (n > 0)
+            done += (size_t)n;
+        else if (n == 0 || errno != EINTR)
+            error = n == 0 ? -EIO : -errno;
+    }
+    if (!error && (ftruncate(fd, (off_t)text->length) != 0 || fsync(fd) != 0 || rename(reserve, path) != 0))
+        error = -errno;
+    if (fd >= 0)
+        close(fd);
+    mem_free(reserve);
+    return error;
 }
 
 static void add_rows(struct text *text, const struct plant *plant, const struct recorder_rows *rows, char kind)
@@ -63,6 +114,8 @@ int spool_write(const char *path, const struct plant *plant, const struct spool_
             error = atomic_file_commit(&file, true);
         atomic_file_abandon(&file);
     }
+    if (error && write_into_reserve(path, &text) == 0)
+        error = 0;
     text_finish(&text);
     return error;
 }

@@ -12,7 +12,10 @@ struct spool_rows {
    with spool_places_free. */
 char **spool_places(const char *folder);
 void spool_places_free(char **places);
-/* Writes all rows to the file, for its owner only. Returns 0 or -errno. */
+/* Reserves room in the folder while the disk has plenty, so that even a full disk takes a spool, which then outlives a reboot. Does nothing
+   where there is a reserve. Returns 0 or -errno; -ENOSPC: there is not plenty. */
+int spool_reserve(const char *folder);
+/* Writes all rows to the file, for its owner only; where the disk is full, into what was reserved beside it. Returns 0 or -errno. */
 int spool_write(const char *path, const struct plant *plant, const struct spool_rows *rows);
 /* Appends what the file holds of tags that are still in the plant, and says of how many rows the tags are not. A file of somebody else is
    refused. Returns 0 or -errno; -ENOENT: there is none. */

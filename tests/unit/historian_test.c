@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The historian at work: what the store was told lies on disk a second later, also after kill -9, when the disk was full, read-only,
    slow or damaged, and when the clock was set. */
+#include <fcntl.h>
 #include <glob.h>
 #include <sched.h>
 #include <setjmp.h>
@@ -451,7 +452,68 @@ static void summer_time_comes_and_goes(void **state)
 static bool mount_disk(const char *folder)
 {
     return mkdir(folder, 0777) == 0 && unshare(CLONE_NEWNS) == 0 && mount("none", "/", NULL, MS_REC | MS_PRIVATE, NULL) == 0 &&
-           mount("history", folder, "tmpfs", 0, NULL) == 0;
+           mount("history", folder, "tmpfs", 0, "size=100m") == 0;
+}
+
+/* Takes all that is left of it. */
+static char *fill_disk(const char *folder)
+{
+    char *path = temp_path(folder, "filler");
+    int fd = open(path, O_WRONLY | O_CREAT, 0600);
+    assert_true(fd >= 0);
+    off_t at = 0;
+    for (off_t step = 1 << 20; step >= 4096;)
+        if (posix_fallocate(fd, at, step) == 0)
+            at += step;
+        else
+            step /= 2;
+    close(fd);
+    return path;
+}
+
+/* Without another place than the disk that is full, and as after a reboot: what was reserved takes what waits. */
+static void a_full_disk_has_room_for_a_spool(void **state)
+{
+    struct setup *s = *state;
+    char *folder = temp_path(s->folder, "history");
+    if (!mount_disk(folder)) {
+        print_message("# no file system can be mounted here\n");
+        mem_free(folder);
+        skip();
+    }
+    char *reserve = temp_path(folder, "spool.reserve"), *spool = temp_path(folder, "unwritten.spool");
+    start(s);
+    write_all(s, 1);
+    for (int i = 0; i < 500 && access(reserve, F_OK) != 0; i++)
+        sleep_ns(10 * NS_PER_MS);
+    assert_int_equal(access(reserve, F_OK), 0);
+    char *filler = fill_disk(folder);
+    int64_t times_ns[400];
+    for (int i = 0; i < 400; i++) {
+        times_ns[i] = write_all(s, i * i * 7919 % 1009);
+        sleep_ns(5 * NS_PER_MS);
+    }
+    historian_stop(&s->historian);
+    assert_int_equal(access(spool, R_OK), 0);
+    assert_int_not_equal(access(reserve, F_OK), 0);
+    assert_int_equal(unlink(filler), 0);
+    start(s);
+    for (int i = 0; i < 500 && access(reserve, F_OK) != 0; i++) /* for the next time */
+        sleep_ns(10 * NS_PER_MS);
+    historian_stop(&s->historian);
+    assert_int_not_equal(access(spool, R_OK), 0);
+    assert_int_equal(access(reserve, F_OK), 0);
+    struct history_series series;
+    points_of(s, 3, &series);
+    for (int i = 0; i < 400; i++)
+        assert_true(has_point(&series, times_ns[i], i * i * 7919 % 1009 + 3));
+    history_series_finish(&series);
+    assert_true(counted(s, "plantcast_history_lost_total") == 0);
+    assert_int_equal(umount2(folder, MNT_DETACH), 0);
+    mem_free(filler);
+    mem_free(reserve);
+    mem_free(spool);
+    mem_free(folder);
 }
 
 static void a_read_only_disk_loses_nothing(void **state)
@@ -580,6 +642,7 @@ int main(void)
         cmocka_unit_test_setup_teardown(a_clock_set_back_loses_nothing, set_up, tear_down),
         cmocka_unit_test_setup_teardown(summer_time_comes_and_goes, set_up, tear_down),
         cmocka_unit_test_setup_teardown(a_read_only_disk_loses_nothing, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(a_full_disk_has_room_for_a_spool, set_up, tear_down),
         cmocka_unit_test_setup_teardown(a_corrupt_month_is_set_aside_and_recording_goes_on, set_up, tear_down),
         cmocka_unit_test_setup_teardown(a_disk_that_hangs_holds_up_nobody, set_up, tear_down),
     };

@@ -9,6 +9,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <unistd.h>
 #include <cmocka.h>
 #include <sqlite3.h>
@@ -513,6 +514,98 @@ static void old_and_large_months_go(void **state)
     mem_free(months);
 }
 
+/* --- one month alone is too large ---------------------------------------------------------------------------------------------- */
+
+enum { LOT = 60000 };
+static const int64_t LIMIT = 5000000;
+
+/* Two tags, a point a second each, of which none is on the line of the others. */
+static void record_a_lot(struct setup *s, int64_t from_us)
+{
+    int error;
+    struct month_file *file = month_file_open(s->log, s->folder, month_of(from_us), s->tags, TAGS, &error);
+    struct history_row *rows = mem_array(2 * LOT, sizeof(*rows));
+    assert_non_null(file);
+    for (int i = 0; i < 2 * LOT; i++)
+        rows[i] = (struct history_row){ i % 2, { from_us + i / 2 * US_PER_S, i * 7919 % 1009, QUALITY_GOOD } };
+    assert_int_equal(month_file_write(file, rows, 2 * LOT, NULL, 0), 0);
+    assert_int_equal(month_file_tidy(file), 0);
+    month_file_close(&file);
+    mem_free(rows);
+}
+
+static int64_t size_of_month(const struct setup *s, int64_t t_us)
+{
+    struct stat st;
+    char name[MONTH_NAME_BYTES];
+    month_name(month_of(t_us), name);
+    char *path = temp_path(s->folder, name);
+    int64_t size = stat(path, &st) == 0 ? st.st_size : 0;
+    mem_free(path);
+    return size;
+}
+
+static void apply_for_some_minutes(struct setup *s, int64_t limit, int64_t now_us)
+{
+    for (int minute = 0; minute < 10; minute++)
+        retention_apply(s->log, s->folder, &(struct retention_limits){ .bytes = (double)limit }, now_us);
+}
+
+static void check_what_is_left(struct setup *s, int64_t last_us)
+{
+    struct history_reader *reader = history_reader_create(s->log, s->folder);
+    struct history_series series;
+    int64_t first_us, end_us;
+    assert_true(history_span(reader, &first_us, &end_us));
+    printf("# %.1f h of history are left\n", (double)(end_us - first_us) / US_PER_S / 3600);
+    assert_int_equal(end_us, last_us);
+    assert_true(end_us - first_us > 5 * 3600 * US_PER_S);
+    assert_int_equal(history_series(reader, s->tags[0].name, last_us - 3600 * US_PER_S, last_us, 1000000, &series), 0);
+    assert_true(series.points.count >= 3600);
+    history_series_finish(&series);
+    history_reader_destroy(&reader);
+}
+
+/* Recording goes on for three times of what may be kept: the newest stays, the file never gets much larger than the limit. */
+static void a_month_that_is_too_large_loses_its_beginning(void **state)
+{
+    struct setup *s = *state;
+    int64_t from_us = NOVEMBER;
+    for (int day = 0; day < 4; day++, from_us += LOT * US_PER_S) {
+        record_a_lot(s, from_us);
+        printf("# %.1f MB\n", (double)size_of_month(s, NOVEMBER) / 1e6);
+        if (day > 0)
+            assert_true(size_of_month(s, NOVEMBER) < LIMIT * 3); /* a day here is twice what may be kept */
+        apply_for_some_minutes(s, LIMIT, from_us);
+    }
+    int64_t large = size_of_month(s, NOVEMBER);
+    record_a_lot(s, from_us); /* into the room that was left */
+    assert_true(size_of_month(s, NOVEMBER) < large + LIMIT);
+    apply_for_some_minutes(s, LIMIT, from_us);
+    check_what_is_left(s, from_us + (LOT - 1) * US_PER_S);
+}
+
+/* Not the whole month goes as soon as the next one begins: it gives back what the next one takes. */
+static void a_month_that_is_over_shrinks(void **state)
+{
+    struct setup *s = *state;
+    int64_t december_us = month_begin_us(month_of(NOVEMBER) + 1);
+    int error;
+    record_a_lot(s, NOVEMBER);
+    struct month_file *file = month_file_open(s->log, s->folder, month_of(december_us), s->tags, TAGS, &error);
+    assert_non_null(file);
+    struct history_row row = { 0, { december_us, 1, QUALITY_GOOD } };
+    assert_int_equal(month_file_write(file, &row, 1, NULL, 0), 0);
+    month_file_close(&file);
+    assert_true(size_of_month(s, NOVEMBER) > LIMIT);
+    for (int64_t limit = LIMIT; limit > LIMIT / 4; limit /= 2) { /* at first by the room alone that it does not need */
+        apply_for_some_minutes(s, limit, december_us);
+        int64_t left = size_of_month(s, NOVEMBER);
+        printf("# %.1f MB\n", (double)left / 1e6);
+        assert_true(left < limit && left > limit / 2);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -529,6 +622,8 @@ int main(void)
         cmocka_unit_test_setup_teardown(an_older_version_is_read_and_brought_up, set_up, tear_down),
         cmocka_unit_test_setup_teardown(what_cannot_be_brought_up_stays_as_it_was, set_up, tear_down),
         cmocka_unit_test_setup_teardown(old_and_large_months_go, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(a_month_that_is_too_large_loses_its_beginning, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(a_month_that_is_over_shrinks, set_up, tear_down),
     };
     cmocka_set_message_output(CM_OUTPUT_TAP);
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -1,0 +1,60 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Cutting off the oldest part of a month's file. */
+#include "history/month.h"
+#include "history/month_file_impl.h"
+
+int month_file_size(struct month_file *file, struct month_file_size *size)
+{
+    sqlite3_stmt *statement = month_sql(file, SQL_SIZE);
+    int code = database_step(&file->db, statement);
+    if (code == SQLITE_ROW) {
+        int64_t page = sqlite3_column_int64(statement, 0);
+        size->bytes = page * sqlite3_column_int64(statement, 1);
+        size->free_bytes = page * sqlite3_column_int64(statement, 2);
+        size->shrinks = sqlite3_column_int(statement, 3) != 0;
+    }
+    sqlite3_reset(statement);
+    return database_fail(&file->db, code, "cannot be measured");
+}
+
+static int cut_tag(struct month_file *file, int64_t id, int64_t until_us)
+{
+    sqlite3_stmt *samples = month_sql(file, SQL_CUT_SAMPLES);
+    sqlite3_bind_int64(samples, 1, id);
+    sqlite3_bind_int64(samples, 2, until_us);
+    int error = month_run(file, samples, "cannot delete samples");
+    for (int level = 0; level < LEVEL_COUNT && !error; level++) {
+        sqlite3_stmt *rollups = month_sql(file, SQL_CUT_ROLLUPS);
+        sqlite3_bind_int64(rollups, 1, id);
+        sqlite3_bind_int64(rollups, 2, history_level_us[level] / US_PER_S);
+        sqlite3_bind_int64(rollups, 3, until_us - history_level_us[level]);
+        error = month_run(file, rollups, "cannot delete rollups");
+    }
+    return error;
+}
+
+static int cut_tags(struct month_file *file, int64_t until_us)
+{
+    sqlite3_stmt *tags = month_sql(file, SQL_ALL_TAGS), *events = month_sql(file, SQL_CUT_EVENTS);
+    int code = SQLITE_DONE, error = 0;
+    while (!error && (code = database_step(&file->db, tags)) == SQLITE_ROW)
+        error = cut_tag(file, sqlite3_column_int64(tags, 0), until_us);
+    sqlite3_reset(tags);
+    if (!error)
+        error = database_fail(&file->db, code, "cannot read tags");
+    sqlite3_bind_int64(events, 1, until_us);
+    return error ? error : month_run(file, events, "cannot delete events");
+}
+
+int month_file_cut(struct month_file *file, int64_t until_us, bool shrink)
+{
+    int error = month_run(file, month_sql(file, SQL_BEGIN), "cannot begin to write");
+    if (error)
+        return error;
+    error = cut_tags(file, until_us);
+    if (!error)
+        error = month_run(file, month_sql(file, SQL_COMMIT), "cannot commit");
+    if (!sqlite3_get_autocommit(file->db.handle))
+        database_run(&file->db, month_sql(file, SQL_ROLLBACK));
+    return error || !shrink ? error : month_run(file, month_sql(file, SQL_SHRINK), "cannot be made smaller");
+}
