@@ -44,7 +44,8 @@ bool remove_view_parse(const struct plant *plant, const json_t *o, struct messag
 char *view_edit_do(struct named_views *views, const struct message *message, const char *who, int64_t time_us)
 {
     const struct named_view_edit *edit = &message->view_edit;
-    const char *why = message->type == MESSAGE_SAVE_VIEW ? named_views_save(views, edit, who, time_us) : named_views_remove(views, edit->id);
+    bool saves = message->type == MESSAGE_SAVE_VIEW;
+    const char *why = saves ? named_views_save(views, edit, who, time_us) : named_views_remove(views, edit->id);
     return json_text(json_pack("{s:s,s:I,s:s,s:b,s:s}", "type", "view_saved", "seq", (json_int_t)message->seq, "id", edit->id, "kept", !why,
                                "why", why ? why : ""),
                      0);

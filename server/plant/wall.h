@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What the plant file's `views` and `walls` say: views with names, and the displays of a control room. Immutable once loaded. Thread: any. */
+/* What the plant file's `views` and `walls` say: views with names, and displays of a control room. Immutable once loaded. Thread: any. */
 #ifndef PLANT_WALL_H
 #define PLANT_WALL_H
 #include <stdbool.h>

@@ -154,9 +154,11 @@ const char *named_views_save(struct named_views *views, const struct named_view_
     json_t *old = json_array_get(views->list, at), *list, *view;
     if (why || (!old && count >= NAMED_VIEWS))
         return why ? why : "there are as many views as there may be; remove one";
-    view = old && same(old, edit) ? json_incref(old)
-                                  : json_pack("{s:s,s:s,s:s,s:s,s:I,s:o}", "id", edit->id, "title", edit->title, "view", edit->address, "by",
-                                              who, "time_us", (json_int_t)time_us, "before", old ? versions(old) : json_array());
+    if (old && same(old, edit)) /* only its place */
+        view = json_incref(old);
+    else
+        view = json_pack("{s:s,s:s,s:s,s:s,s:I,s:o}", "id", edit->id, "title", edit->title, "view", edit->address, "by", who, "time_us",
+                         (json_int_t)time_us, "before", old ? versions(old) : json_array());
     if (!view)
         return "it is no UTF-8";
     list = json_copy(views->list);

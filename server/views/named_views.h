@@ -26,7 +26,8 @@ void named_views_close(struct named_views **views); /* &NULL is fine; leaves NUL
 const char *named_views_save(struct named_views *views, const struct named_view_edit *edit, const char *who, int64_t time_us);
 /* Removes a saved view, with its earlier versions, and writes the file. Returns NULL, or why it could not (static). */
 const char *named_views_remove(struct named_views *views, const char *id);
-uint64_t named_views_number(const struct named_views *views); /* returns a number that increases with each change; 0: there has been no view */
+/* Returns a number that increases with each change; 0: there has been no view. */
+uint64_t named_views_number(const struct named_views *views);
 /* Returns the message `views` with all of them, without earlier versions, or with those of the view `id` as `before` (NULL: of none). Free
    with mem_free. */
 char *named_views_text(const struct named_views *views, const char *id);

@@ -40,14 +40,14 @@ static void all_keys_are_read(void **state)
     char *text = walls_text(c->plant);
     assert_string_equal(text,
                         "{\"walls\":[{\"id\":\"room\",\"inches\":65.0,\"distance_m\":4.5,\"displays\":[{\"grid\":[\"main main side\","
-                        "\"main main low\"],\"panes\":[{\"area\":\"main\",\"kind\":\"views\",\"title\":\"Plant\",\"items\":[\"all\",\"near\"],"
-                        "\"every_s\":20.0,\"hours\":8.0,\"on_alarm\":true},{\"area\":\"side\",\"kind\":\"alarms\",\"title\":null,\"items\":"
-                        "[\"yes\"],\"every_s\":30.0,\"hours\":8.0,\"on_alarm\":false},{\"area\":\"low\",\"kind\":\"tiles\",\"title\":null,"
-                        "\"items\":[\"TI-1\",\"TI-2\"],\"every_s\":30.0,\"hours\":8.0,\"on_alarm\":false}]},{\"grid\":[\"a b\",\"c .\"],"
-                        "\"panes\":[{\"area\":\"a\",\"kind\":\"trend\",\"title\":null,\"items\":[\"TI-1\"],\"every_s\":30.0,\"hours\":2.0,"
-                        "\"on_alarm\":false},{\"area\":\"b\",\"kind\":\"clock\",\"title\":null,\"items\":[\"UTC\"],\"every_s\":30.0,"
-                        "\"hours\":8.0,\"on_alarm\":false},{\"area\":\"c\",\"kind\":\"text\",\"title\":null,\"items\":[\"Hello\"],\"every_s\":"
-                        "30.0,\"hours\":8.0,\"on_alarm\":false}]}]}]}");
+                        "\"main main low\"],\"panes\":[{\"area\":\"main\",\"kind\":\"views\",\"title\":\"Plant\",\"items\":[\"all\","
+                        "\"near\"],\"every_s\":20.0,\"hours\":8.0,\"on_alarm\":true},{\"area\":\"side\",\"kind\":\"alarms\",\"title\""
+                        ":null,\"items\":[\"yes\"],\"every_s\":30.0,\"hours\":8.0,\"on_alarm\":false},{\"area\":\"low\",\"kind\":\"ti"
+                        "les\",\"title\":null,\"items\":[\"TI-1\",\"TI-2\"],\"every_s\":30.0,\"hours\":8.0,\"on_alarm\":false}]},{\"g"
+                        "rid\":[\"a b\",\"c .\"],\"panes\":[{\"area\":\"a\",\"kind\":\"trend\",\"title\":null,\"items\":[\"TI-1\"],\""
+                        "every_s\":30.0,\"hours\":2.0,\"on_alarm\":false},{\"area\":\"b\",\"kind\":\"clock\",\"title\":null,\"items\""
+                        ":[\"UTC\"],\"every_s\":30.0,\"hours\":8.0,\"on_alarm\":false},{\"area\":\"c\",\"kind\":\"text\",\"title\":nu"
+                        "ll,\"items\":[\"Hello\"],\"every_s\":30.0,\"hours\":8.0,\"on_alarm\":false}]}]}]}");
     mem_free(text);
 }
 

@@ -26,6 +26,7 @@ const MODULES = {
     measure: { file: 'measure/measure', type: 'Measure', styles: ['measure/measure', 'sharing/following'] },
     cameraController: { file: 'input/camera_controller', type: 'CameraController', wordless: true },
     picture: { file: 'picture/picture', type: 'Picture', styles: ['common/panel'], fills: 'picture-panel' },
+    namedViews: { file: 'views/named_views', type: 'NamedViews', styles: ['common/panel', 'views/named_views'] },
     place: { file: 'cards/place', type: 'Place', styles: ['cards/card', 'common/panel'] },
     rows: { file: 'assets/rows', type: 'Rows', wordless: true },
     share: { file: 'sharing/share', type: 'Share', styles: ['common/panel', 'help/help', 'sharing/share'] },

@@ -137,6 +137,15 @@ session.on('followers', () => modules.get('share'));
 session.on('following', () => session.leader !== null && modules.get('following'));
 session.on('ignored', (what) => console.warn(`ignored: ${what}`));
 
+// A view that the address names, once the server has said which there are.
+let named = new URLSearchParams(location.hash.slice(1)).get('view');
+session.on('views', () => {
+    const id = named;
+    if (id)
+        modules.use('views', (views) => views.openNamed(id));
+    named = null;
+});
+
 // Where a link leads, and what of it, or of the view before, is not in this plant.
 let arrived = false, astray = [];
 session.on('astray', (text) => astray.push(text));

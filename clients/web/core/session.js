@@ -61,6 +61,7 @@ export class Session {
         this.leader = null;      // whom to follow once there is a connection, and that one
         this.lent = null;        // the camera is that of the picture: another's, or what he left us
         this.followers = { count: 0, sessions: [] }; // who follows us
+        this.views = []; // with names: { id, title, view, fixed } or { ..., by, time_us }
         this.time = { ...NOW, ...wanted.time }; // what the server shows: atUs null: now; fromUs null: nothing is recorded
         connection.onOpen = () => {
             const compares = this.params.show === 'difference' && this.params.baseline?.name;
@@ -489,6 +490,11 @@ const HANDLERS = {
         this.emit('proofs', message);
     },
 
+    views(message) {
+        this.views = message.list;
+        this.emit('views');
+    },
+
     status(message) {
         this.model.links = message.links;
         this.model.live = message.live;
@@ -523,6 +529,6 @@ const HANDLERS = {
         this.emit('error', message);
     },
 
-    ...Object.fromEntries(['alarmed', 'gaps', 'tags_diff', 'tags_saved', 'proved'].map((type) =>
+    ...Object.fromEntries(['alarmed', 'gaps', 'tags_diff', 'tags_saved', 'proved', 'view_saved'].map((type) =>
         [type, function passOn(message) { this.emit(type, message); }])),
 };

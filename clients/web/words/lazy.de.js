@@ -68,6 +68,20 @@ SW: SW
 W: W
 NW: NW
 
+[named]
+legend: Benannte Ansichten
+title: Name für das Gezeigte
+save: Speichern
+unknown: Eine Ansicht „{id}“ gibt es hier nicht
+more: Mehr zu {title}
+by: {who}, {time}
+update: Gezeigtes hier speichern
+up: Nach oben
+down: Nach unten
+remove: Entfernen
+look: Zeigen
+back: Zurückholen
+
 [views]
 from: Blick von
 projection: Projektion

@@ -68,6 +68,20 @@ SW: SW
 W: W
 NW: NW
 
+[named]
+legend: Views with names
+title: Name for what is seen
+save: Save
+unknown: There is no view '{id}' here
+more: More about {title}
+by: {who}, {time}
+update: Save what is seen here
+up: Up
+down: Down
+remove: Remove
+look: Show
+back: Take back
+
 [views]
 from: Look from
 projection: Projection

@@ -68,6 +68,20 @@ SW: 남서
 W: 서
 NW: 북서
 
+[named]
+legend: 저장된 뷰
+title: 현재 화면의 이름
+save: 저장
+unknown: '{id}' 뷰가 없습니다
+more: {title} 더 보기
+by: {who}, {time}
+update: 현재 화면으로 저장
+up: 위로
+down: 아래로
+remove: 삭제
+look: 보기
+back: 되돌리기
+
 [views]
 from: 보는 방향
 projection: 투영

@@ -9,6 +9,8 @@
 #include "session/reply.h"
 #include "net/connection.h"
 
+enum { LEGEND_LEAST_PX = 256 }; /* a narrower picture has no room for what would be read from it */
+
 static const struct encoder_params LOSSLESS = { .quality = 100, .full_chroma = true };
 
 /* place: x and y of a pick; NULL: none is asked. */
@@ -74,6 +76,8 @@ int ask_snapshot(struct server_context *server, struct request *request)
     frame_request.overlay = connection_of(request->wsi)->role == ROLE_OPEN ? OVERLAY_BARE : OVERLAY_FULL;
     if (!read_query(server, request->wsi, &frame_request.view, NULL, &error))
         return request_answer_error(request, &error);
+    if (frame_request.view.width_px < LEGEND_LEAST_PX)
+        frame_request.overlay = OVERLAY_NONE;
     if (!may_ask(server, request, &frame_request.view, &result))
         return result;
     frame_request.asked_ns = frame_request.view.input_ns = clock_mono_ns();

@@ -15,7 +15,7 @@ const STEPS = 500, LARGEST_BOX = 2;
 
 export class Views {
     constructor({ session, modules, viewport }) {
-        Object.assign(this, { session, viewport });
+        Object.assign(this, { session, viewport, modules });
         this.panel = byId('views');
         this.at = byId('cut-at');
         const sides = choices('side', 'top', 'front', 'right', 'back', 'left', 'iso');
@@ -31,11 +31,19 @@ export class Views {
         byId('shows').append(make('div', { class: 'buttons' },
             ...shows.map(([how, text]) => make('button', { type: 'button', 'data-how': how, onclick: () => this.show(how) }, text)),
             make('button', { type: 'button', id: 'show-all', onclick: () => this.showAll() }, say('views.all'))));
-        Object.assign(this, collapsiblePanel(this.panel, byId('views-toggle'), () => this.update()));
+        Object.assign(this, collapsiblePanel(this.panel, byId('views-toggle'), () => {
+            this.update();
+            modules.use('namedViews', (named) => named.draw(), 'draw');
+        }));
         session.on('fitted', (camera) => modules.use('cameraController', (cameraController) => cameraController.flyTo(camera)));
         session.on('params', () => this.update());
         session.on('camera', () => this.update());
         session.on('welcome', () => this.update());
+    }
+
+    // Goes to a view with a name.
+    openNamed(id, fly) {
+        this.modules.use('namedViews', (named) => named.open(id, fly), 'open');
     }
 
     close() {

@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The list of views with names: going to one, and, for who may, saving what is seen, putting one elsewhere, going back to what one was.
+import { ask } from '../../core/history.js';
+import { idFor, pictureQuery, textOf, viewOf } from '../../core/named_views.js';
+import { zoneClock } from '../../core/format.js';
+import { say } from '../../core/words.js';
+import { byId, make, setText } from '../common/dom.js';
+
+const PICTURE = { width: 160, height: 90 }, PICTURES_MS = 60000, MOST_PICTURES = 24;
+const MAY = ['operator', 'engineer'];
+
+export class NamedViews {
+    constructor({ session, selection, modules, tell }) {
+        Object.assign(this, { session, selection, modules, tell, pictures: new Map(), opened: null });
+        this.list = make('ul', { id: 'named-list' });
+        this.title = make('input', { id: 'named-title', maxlength: 60, placeholder: say('named.title'), 'aria-label': say('named.title') });
+        this.save = make('form', { class: 'line', id: 'named-save', onsubmit: (event) => this.onSave(event) }, this.title,
+            make('button', { type: 'submit' }, say('named.save')));
+        this.element = make('fieldset', { id: 'named' }, make('legend', {}, say('named.legend')), this.list, this.save);
+        byId('views').prepend(this.element);
+        session.on('views', () => this.show());
+        session.on('welcome', () => this.show());
+        session.on('view_saved', ({ kept, why }) => (kept ? this.onKept() : tell(why)));
+        this.show();
+    }
+
+    get may() {
+        return MAY.includes(this.session.role);
+    }
+
+    // --- going there
+
+    // fly: with a flight; else at once.
+    open(id, fly = true) {
+        const view = this.session.views.find((one) => one.id === id);
+        if (!view) {
+            this.tell(say('named.unknown', { id }));
+            return;
+        }
+        this.look(view.view, fly);
+        this.opened = id;
+        this.mark();
+    }
+
+    look(text, fly = true) {
+        const { session, modules } = this, { camera, params, tag } = viewOf(session, text), found = session.model.tag(tag);
+        session.setParams(params);
+        modules.use('commands', (commands) => commands.selectTag(found));
+        if (camera && fly)
+            modules.use('cameraController', (cameraController) => cameraController.flyTo(camera));
+        else if (camera)
+            session.setCamera(camera);
+    }
+
+    // --- saving
+
+    onSave(event) {
+        event.preventDefault();
+        const title = this.title.value.trim();
+        if (!title)
+            return;
+        const same = this.session.views.find((view) => view.title === title && !view.fixed);
+        this.keep({ id: same?.id ?? idFor(title, this.session.views), title });
+    }
+
+    keep(fields) {
+        this.session.post({ type: 'save_view', seq: ++this.session.toldSeq, view: textOf(this.session, this.selection.tag), ...fields });
+    }
+
+    onKept() {
+        this.title.value = '';
+        this.title.blur();
+    }
+
+    remove(id) {
+        this.session.post({ type: 'remove_view', seq: ++this.session.toldSeq, id });
+    }
+
+    // --- the list
+
+    show() {
+        const { views } = this.session;
+        this.save.hidden = !this.may;
+        this.element.hidden = views.length === 0 && !this.may;
+        const saved = views.filter(({ fixed }) => !fixed);
+        this.list.replaceChildren(...views.map((view) => this.rowOf(view, saved)));
+        this.mark();
+        if (byId('views').classList.contains('open'))
+            this.draw();
+    }
+
+    rowOf(view, saved) {
+        const picture = make('img', { alt: '', width: PICTURE.width, height: PICTURE.height, loading: 'lazy' });
+        const known = this.pictures.get(view.view);
+        if (known)
+            picture.src = known.url;
+        const open = make('button', { type: 'button', class: 'named-open', onclick: () => this.open(view.id) }, picture,
+            make('span', {}, view.title));
+        return make('li', { 'data-id': view.id }, open, !view.fixed && this.may ? this.moreOf(view, saved) : null);
+    }
+
+    moreOf(view, saved) {
+        const at = saved.indexOf(view), { id, title, view: text } = view;
+        const button = (name, onclick, disabled = false) => make('button', { type: 'button', onclick, disabled }, say(`named.${name}`));
+        const move = (to) => () => this.keep({ id, title, view: text, at: to });
+        const before = make('ol', { class: 'named-before' });
+        const more = make('details', { ontoggle: () => more.open && this.showBefore(id, title, before) },
+            make('summary', { 'aria-label': say('named.more', { title }) }, '…'),
+            make('p', { class: 'note' }, this.when(view)),
+            make('div', { class: 'buttons' }, button('update', () => this.keep({ id, title })), button('up', move(at - 1), at === 0),
+                button('down', move(at + 1), at === saved.length - 1), button('remove', () => this.remove(id))), before);
+        return more;
+    }
+
+    when({ by, time_us: us }) {
+        const { date, time } = zoneClock(this.session.model.plant.time_zone)(us / 1000);
+        return say('named.by', { who: by, time: `${date} ${time.slice(0, 5)}` });
+    }
+
+    async showBefore(id, title, list) {
+        try {
+            const answer = await ask('api/v1/views', { id }, this.session.token);
+            const { before = [] } = (await answer.json()).list.find((view) => view.id === id) ?? {};
+            list.replaceChildren(...before.map((old) => make('li', {}, make('span', {}, this.when(old)),
+                make('button', { type: 'button', onclick: () => this.look(old.view) }, say('named.look')),
+                make('button', { type: 'button', onclick: () => this.keep({ id, title: old.title, view: old.view }) }, say('named.back')))));
+        } catch (error) {
+            setText(list, error.message);
+        }
+    }
+
+    mark() {
+        for (const row of this.list.children)
+            row.querySelector('.named-open').toggleAttribute('aria-current', row.dataset.id === this.opened);
+    }
+
+    // --- small pictures, one after the other
+
+    async draw() {
+        if (this.drawing)
+            return;
+        this.drawing = true;
+        for (const { view: text, id } of this.session.views.slice(0, MOST_PICTURES)) {
+            const query = pictureQuery(text, PICTURE), known = this.pictures.get(text);
+            if (!query || (known && performance.now() - known.at < PICTURES_MS))
+                continue;
+            try {
+                const url = URL.createObjectURL(await (await ask('snapshot.png', query, this.session.token)).blob());
+                if (known)
+                    URL.revokeObjectURL(known.url);
+                this.pictures.set(text, { url, at: performance.now() });
+                const image = [...this.list.children].find((row) => row.dataset.id === id)?.querySelector('img');
+                if (image)
+                    image.src = url;
+            } catch {
+                break; // its name is enough
+            }
+        }
+        this.drawing = false;
+    }
+}

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Views with names: from the text that one is kept as, to what a session shows and to the query of its picture; and the other way.
+import { addressOf, readAddress } from './address.js';
+import { snapshotQuery } from './query.js';
+import { ENGINEERS } from './session.js';
+
+const ID_CHARS = 48;
+
+// The text that keeps what a session shows now: without the instant, which has gone by when it is looked at again.
+export const textOf = (session, tag = null) => {
+    const { camera, params, ownParams } = session;
+    return addressOf({ camera, params, time: null, ownParams }, tag).slice(1);
+};
+
+// { camera or null, params, tag } that bring a session to that view, whatever it shows.
+export function viewOf(session, text) {
+    const { camera, params, tag } = readAddress(text), { model, role } = session;
+    const plain = { range: null, ramp_interval: 0, breaks: null, isolines: null, split: null, selected: null, clip: null, strength: 1, decay: 1,
+        sensors: null, ...model.start };
+    const all = { ...plain, ...params };
+    if (role !== 'engineer')
+        ENGINEERS.forEach((name) => delete all[name]);
+    return { camera, params: all, tag };
+}
+
+// The query for a small picture of it.
+export function pictureQuery(text, size) {
+    const { camera, params } = readAddress(text);
+    ENGINEERS.forEach((name) => delete params[name]);
+    return camera && snapshotQuery({ carried: { ...params, selected: null }, camera, size, time: { atUs: null } });
+}
+
+// An id for a title, which no other view has.
+export function idFor(title, views) {
+    const plain = title.normalize('NFKD').replace(/\p{M}/gu, '').toLowerCase().replace(/[^a-z0-9]+/g, '-').replace(/^-+|-+$/g, '');
+    const base = (plain || 'view').slice(0, ID_CHARS - 4), taken = new Set(views.map(({ id }) => id));
+    let id = base;
+    for (let n = 2; taken.has(id); n++)
+        id = `${base}-${n}`;
+    return id;
+}

@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Views with names: those of the plant file and those that somebody saves in the page, for all, in one order, with what they were before.
+import assert from 'node:assert/strict';
+import { after, before, test } from 'node:test';
+import { openPage, settle, shoot, view, waitForPicture } from './support/browser.mjs';
+import { missing, startPlant } from './support/plant.mjs';
+
+const why = missing();
+const options = { skip: why ?? false, timeout: 200000 };
+const FROM_ABOVE = 'group=temperature&colormap=turbo&camera=8,2,30,8,6,0,0,0,1,45';
+let plant, browser, page;
+
+before(async () => {
+    if (why)
+        return;
+    plant = await startPlant(`views:\n- { id: above, title: From above, view: "${FROM_ABOVE}" }\n`);
+    browser = await openPage(plant.url, { viewport: { width: 1200, height: 720 } });
+    page = browser.page;
+    await waitForPicture(page);
+});
+after(async () => {
+    await browser?.close();
+    await plant?.stop();
+});
+
+const rows = (at) => at.locator('#named-list li .named-open span').allTextContents();
+const isFrom = (at, eye) => at.waitForFunction((wanted) =>
+    globalThis.plantcast?.session.picture?.camera.eye.every((m, i) => Math.abs(m - wanted[i]) < 0.01), eye, { timeout: 60000 });
+const views = async () => (await (await fetch(new URL('api/v1/views', plant.url))).json()).list;
+
+test('those of the plant file are there, each with its picture', options, async () => {
+    await page.click('#views-toggle');
+    await page.locator('#named-list li').waitFor();
+    assert.deepEqual(await rows(page), ['From above']);
+    await page.waitForFunction(() => document.querySelector('#named-list img').naturalWidth === 160, null, { timeout: 60000 });
+    await page.evaluate(() => globalThis.plantcast.session.setParams({ clip: { planes: [[0, 0, -1, 3]] }, selected: 'TK-101' }));
+    await page.click('#named-list li .named-open');
+    await isFrom(page, [8, 2, 30]);
+    const { clip, selected, colormap } = await page.evaluate(() => globalThis.plantcast.session.params);
+    assert.deepEqual([clip, selected, colormap], [null, null, 'turbo'], 'nothing is left of what was shown');
+    assert.equal(await page.locator('#named summary').count(), 0, 'the plant file keeps it');
+});
+
+test('what is seen is saved under a name, for all', options, async () => {
+    const other = await openPage(plant.url, { viewport: { width: 1200, height: 720 } });
+    await page.evaluate(() => globalThis.plantcast.session.setParams({ selected: 'TK-101', look: 'glossy' }));
+    await page.fill('#named-title', 'Tank, von Süden');
+    await page.keyboard.press('Enter');
+    await page.waitForFunction(() => document.querySelectorAll('#named-list li').length === 2);
+    await waitForPicture(other.page);
+    await other.page.click('#views-toggle');
+    await other.page.waitForFunction(() => document.querySelectorAll('#named-list li').length === 2, null, { timeout: 60000 });
+    assert.deepEqual(await rows(other.page), ['From above', 'Tank, von Süden']);
+    const { look } = await other.page.evaluate(() => globalThis.plantcast.session.params);
+    assert.equal(look, 'default');
+    await other.page.click('#named-list li:nth-child(2) .named-open');
+    await other.page.waitForFunction(() => globalThis.plantcast.session.confirmed.look === 'glossy');
+    await other.close();
+    const [, saved] = await views();
+    assert.equal(saved.id, 'tank-von-suden');
+    assert.ok(saved.by && saved.time_us > 0);
+});
+
+test('one that is changed keeps what it was, and can be taken back', options, async () => {
+    await page.click('#named-list li:nth-child(1) .named-open');
+    await isFrom(page, [8, 2, 30]);
+    await page.click('#named-list summary');
+    await page.getByRole('button', { name: 'Save what is seen here' }).click();
+    await page.waitForFunction(() => globalThis.plantcast.session.views[1].view.includes('camera=8,2,30'));
+    await page.click('#named-list summary');
+    await page.locator('.named-before li').waitFor();
+    await settle(page);
+    await shoot(page, 'named-views');
+    await page.getByRole('button', { name: 'Take back' }).click();
+    await page.waitForFunction(() => globalThis.plantcast.session.views[1].view.includes('look=glossy'));
+    assert.equal((await views())[1].view.includes('look=glossy'), true);
+});
+
+test('an address names one; one that is not there is said', options, async () => {
+    const there = await openPage(`${plant.url}#view=above`, { viewport: { width: 800, height: 600 } });
+    await isFrom(there.page, [8, 2, 30]);
+    await there.close();
+    const gone = await openPage(`${plant.url}#view=nowhere`, { viewport: { width: 800, height: 600 } });
+    await gone.page.locator('#toast', { hasText: 'There is no view' }).waitFor();
+    assert.match(await gone.page.locator('#toast').textContent(), /'nowhere'/);
+    await gone.close();
+    assert.ok((await view(page)).camera);
+});
+
+test('they are put in another order, removed, and outlive the page', options, async () => {
+    await page.fill('#named-title', 'Second');
+    await page.keyboard.press('Enter');
+    await page.waitForFunction(() => document.querySelectorAll('#named-list li').length === 3);
+    await page.click('#named-list li:nth-child(3) summary');
+    await page.locator('#named-list li:nth-child(3)').getByRole('button', { name: 'Up' }).click();
+    await page.waitForFunction(() => globalThis.plantcast.session.views[1].id === 'second');
+    await page.click('#named-list li:nth-child(2) summary');
+    await page.locator('#named-list li:nth-child(2)').getByRole('button', { name: 'Remove' }).click();
+    await page.waitForFunction(() => globalThis.plantcast.session.views.length === 2);
+    assert.deepEqual((await views()).map(({ id }) => id), ['above', 'tank-von-suden']);
+});
