@@ -55,8 +55,8 @@ cxxflags = -std=c++17 -D_GNU_SOURCE $(warn) $(common) $(CXXFLAGS)
 ldflags  = $(flags_$(config)) -pthread -Wl,--as-needed -Wl,-z,relro,-z,now $(LDFLAGS)
 
 # --- what is built: one archive per layer, left to right ------------------------------------------------------------------
-layers   := base plant surface value history alarm notify loopcheck views scene field placing gpu render encode message \
-            service access session net
+layers   := base audit plant surface value history alarm notify loopcheck views scene field placing gpu render encode \
+            message service access session net
 layers   := $(foreach l,$(layers),$(if $(wildcard server/$(l)/*.c),$(l)))
 without  := $(if $(filter h264,$(CODECS)),,$(wildcard server/encode/h264*))
 archives := $(foreach l,$(layers),$(out)/lib/$(l).a) $(out)/lib/protocol.a

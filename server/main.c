@@ -23,6 +23,8 @@ static void print_usage(FILE *out)
           "                  [--threads N] [--memory MB] [--field vertices|per-fragment]\n"
           "                  [--h264 ENCODER|off] [--tls-cert FILE --tls-key FILE] [--tokens FILE] [--open-viewers]\n"
           "                  [--trust-local] [--behind-proxy] [--host NAME] [--origin URL] [--limit NAME=N]\n"
+          "                  [--audit FILE [--audit-size MB] [--audit-syslog HOST[:PORT] [--audit-ca FILE]\n"
+          "                  [--audit-cert FILE --audit-key FILE]]]\n"
           "       plantcastd --check PLANT.yaml [--prepared DIR]\n"
           "       plantcastd --dump-plan PLANT.yaml\n"
           "       plantcastd --list-gl-devices | --version | --help\n"
@@ -56,6 +58,10 @@ static void print_usage(FILE *out)
           "  --behind-proxy   a proxy on this machine speaks for others, and says for whom in X-Forwarded-For; takes --host\n"
           "  --host NAME      a name by which browsers ask for this server, beside its own; up to 16 times\n"
           "  --origin URL     a page of another host that may connect, and show ours in a frame: https://portal.example; up to 16 times\n"
+          "  --audit FILE     record who came in, was refused or changed what; `plantcast audit verify FILE` finds what was altered\n"
+          "  --audit-size MB  a file of it that is larger is kept beside it, and a new one begun (64)\n"
+          "  --audit-syslog HOST[:PORT]   send it to a syslog server, too, by TLS (6514); --audit-ca FILE: certificates trusted with it;\n"
+          "                   --audit-cert FILE, --audit-key FILE: ours for it\n"
           "  --limit NAME=N   how much clients may have, again and again:\n",
           out);
     quotas_print(out);
@@ -145,6 +151,12 @@ enum {
     OPTION_HOST,
     OPTION_ORIGIN,
     OPTION_LIMIT,
+    OPTION_AUDIT,
+    OPTION_AUDIT_SYSLOG,
+    OPTION_AUDIT_CA,
+    OPTION_AUDIT_CERT,
+    OPTION_AUDIT_KEY,
+    OPTION_AUDIT_SIZE,
     OPTION_CHECK,
     OPTION_PLAN,
     OPTION_VERSION,
@@ -175,6 +187,12 @@ static const struct option options[] = {
     { "host", required_argument, NULL, OPTION_HOST },
     { "origin", required_argument, NULL, OPTION_ORIGIN },
     { "limit", required_argument, NULL, OPTION_LIMIT },
+    { "audit", required_argument, NULL, OPTION_AUDIT },
+    { "audit-syslog", required_argument, NULL, OPTION_AUDIT_SYSLOG },
+    { "audit-ca", required_argument, NULL, OPTION_AUDIT_CA },
+    { "audit-cert", required_argument, NULL, OPTION_AUDIT_CERT },
+    { "audit-key", required_argument, NULL, OPTION_AUDIT_KEY },
+    { "audit-size", required_argument, NULL, OPTION_AUDIT_SIZE },
     { "check", no_argument, NULL, OPTION_CHECK },
     { "dump-plan", no_argument, NULL, OPTION_PLAN },
     { "version", no_argument, NULL, OPTION_VERSION },
@@ -219,6 +237,26 @@ static int take_access_option(int option, struct access_params *access)
 }
 
 /* -1: go on; else the exit code. */
+static int take_audit_option(int option, struct server_params *params)
+{
+    struct audit_params *audit = &params->audit;
+    int megabytes;
+    switch (option) {
+    case OPTION_AUDIT: audit->path = optarg; return -1;
+    case OPTION_AUDIT_SYSLOG: audit->syslog = optarg; return -1;
+    case OPTION_AUDIT_CA: audit->syslog_ca = optarg; return -1;
+    case OPTION_AUDIT_CERT: audit->syslog_cert = optarg; return -1;
+    case OPTION_AUDIT_KEY: audit->syslog_key = optarg; return -1;
+    case OPTION_AUDIT_SIZE:
+        if (!parse_int(optarg, 1, 1024, &megabytes))
+            return usage_error("--audit-size: not a number of megabytes from 1 to 1024:", optarg);
+        audit->most_bytes = (size_t)megabytes << 20;
+        return -1;
+    default: return take_access_option(option, &params->access);
+    }
+}
+
+/* -1: go on; else the exit code. */
 static int take_option(int option, struct server_params *params, int (**task)(const struct server_params *params))
 {
     int megabytes;
@@ -251,7 +289,7 @@ static int take_option(int option, struct server_params *params, int (**task)(co
     case OPTION_PLAN: *task = server_dump_plan; return -1;
     case OPTION_VERSION: puts("plantcastd " PLANTCAST_VERSION); return GOOD;
     case OPTION_HELP: print_usage(stdout); return GOOD;
-    default: return take_access_option(option, &params->access);
+    default: return take_audit_option(option, params);
     }
 }
 
@@ -274,6 +312,10 @@ int main(int argc, char **argv)
     if (task != server_run)
         return task(&params);
     const char *why;
+    if ((params.audit.syslog && !params.audit.path) || !params.audit.syslog_cert != !params.audit.syslog_key) {
+        fputs("plantcastd: --audit-syslog needs --audit FILE; --audit-cert and --audit-key belong together.\n", stderr);
+        return FAILED;
+    }
     if (!access_allowed_at(&params.access, is_loopback(params.address), &why)) {
         fprintf(stderr, "plantcastd: --listen %s: %s.\n", params.address, why);
         return FAILED;

@@ -16,6 +16,7 @@ struct plant_runtime_context { /* what a reload keeps */
     const struct server_params *params;
     struct log *log;
     struct counters *counters;
+    struct audit *audit; /* NULL: nothing is recorded */
     struct workers *workers;
     void (*notify)(void *arg); /* called when frames, or changes of alarms, can be collected; any thread */
     void *notify_arg;

@@ -8,11 +8,13 @@
 #include <pthread.h>
 #include <signal.h>
 #include <spawn.h>
+#include <stdio.h>
 #include <string.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "access/tokens.h"
 #include "base/clock.h"
 #include "base/json_text.h"
 #include "base/mem.h"
@@ -28,12 +30,14 @@ struct reload {
     int64_t begun_ns; /* of the reload that is under way */
     pthread_t thread;
     bool started;
+    char by[TOKEN_NAME_BYTES];     /* who asked for the one that is under way */
     const struct tag_save *saving; /* for whom this is done; NULL: for nobody's list */
     const char *kept;              /* the list before it */
     pthread_mutex_t lock;
     pthread_cond_t wake;
     /* --- below: under lock */
     bool asked, stopping;
+    char who[TOKEN_NAME_BYTES]; /* asked last */
     struct tag_save *save; /* NULL: none is asked for */
 };
 
@@ -75,10 +79,25 @@ static char *saved_text(const struct reload *reload, bool good, const json_t *ob
     return json_text(said, 0);
 }
 
+static void record(const struct reload *reload, bool good, const json_t *object)
+{
+    const char *configuration = json_string_value(json_object_get(object, "configuration"));
+    const char *error = json_string_value(json_array_get(json_object_get(object, "errors"), 0));
+    char *what = mem_printf("%sconfiguration %s is in force", reload->saving ? "tag list saved: " : "", configuration);
+    audit_say(reload->context->audit, &(struct audit_entry){ .event = "reload",
+                                                             .result = good ? "done" : "failed",
+                                                             .who = reload->by,
+                                                             .what = what,
+                                                             .why = error });
+    mem_free(what);
+}
+
 /* Takes the object. */
 static void answer(struct reload *reload, bool good, json_t *object)
 {
     struct verdict verdict = { reload->net, good, NULL, 0, NULL };
+    json_object_set_new(object, "by", json_string(reload->by));
+    record(reload, good, object);
     if (reload->saving) {
         verdict.client = reload->saving->client;
         verdict.saved = saved_text(reload, good, object);
@@ -155,8 +174,8 @@ static void say_difference(struct reload *reload, const struct plant_diff *diff,
         log_info(log, "reload: %s", diff->lines[i]);
         json_array_append_new(changes, json_string(diff->lines[i]));
     }
-    log_event(log, LOG_INFO, EVENT_RELOADED, "reload: configuration %s in place of %s, after %.1f s", (*reload->runtime)->plant->hash,
-              before, took_s);
+    log_event(log, LOG_INFO, EVENT_RELOADED, "reload: configuration %s in place of %s, after %.1f s, by %s",
+              (*reload->runtime)->plant->hash, before, took_s, reload->by);
     answer(reload, true,
            json_pack("{s:b,s:s,s:s,s:o}", "reloaded", true, "configuration", (*reload->runtime)->plant->hash, "before", before, "changes",
                      changes));
@@ -280,6 +299,7 @@ static void save_now(struct reload *reload, const struct tag_save *save)
 static void *run(void *arg)
 {
     struct reload *reload = arg;
+    char who[TOKEN_NAME_BYTES];
     for (;;) {
         pthread_mutex_lock(&reload->lock);
         while (!reload->asked && !reload->save && !reload->stopping)
@@ -288,13 +308,16 @@ static void *run(void *arg)
         struct tag_save *save = reload->save;
         reload->asked = false;
         reload->save = NULL;
+        snprintf(who, sizeof(who), "%s", reload->who);
         pthread_mutex_unlock(&reload->lock);
+        snprintf(reload->by, sizeof(reload->by), "%s", save ? save->who : who);
         reload->begun_ns = clock_mono_ns();
         if (save && !stopping)
             save_now(reload, save);
         tag_save_free(save);
         if (stopping)
             return NULL;
+        snprintf(reload->by, sizeof(reload->by), "%s", who);
         if (asked)
             reload_now(reload);
     }
@@ -337,11 +360,11 @@ void reload_destroy(struct reload **pointer)
     *pointer = NULL;
 }
 
-void reload_ask(void *arg)
+void reload_ask(struct reload *reload, const char *who)
 {
-    struct reload *reload = arg;
     pthread_mutex_lock(&reload->lock);
     reload->asked = true;
+    snprintf(reload->who, sizeof(reload->who), "%s", who);
     pthread_cond_signal(&reload->wake);
     pthread_mutex_unlock(&reload->lock);
 }

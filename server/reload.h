@@ -11,8 +11,8 @@ struct reload *reload_create(const struct plant_runtime_context *context, struct
                              struct supervision *supervision);
 /* Ends the thread; the loop must have ended. &NULL is fine; leaves NULL. */
 void reload_destroy(struct reload **reload);
-/* Asks for a reload and does not wait; if one is under way, another follows it. reload: a struct reload. Any thread. */
-void reload_ask(void *reload);
+/* Asks for a reload and does not wait; if one is under way, another follows it. who: asks; copied. Any thread. */
+void reload_ask(struct reload *reload, const char *who);
 /* Puts another tag list in force: the file takes the list's name, plantcast-prep runs, and the plant is loaded anew; if any of that fails,
    the old list is put back. Takes save; one at a time. Any thread. */
 void reload_save(struct reload *reload, struct tag_save *save);

@@ -35,6 +35,7 @@ struct server {
     struct plant_runtime *runtime;
     struct reload *reload;
     struct supervision *supervision;
+    struct audit *audit; /* NULL: nothing is recorded */
     pthread_mutex_t wake_lock; /* holds net alive while the render thread wakes it */
     struct net *net;
     char *web; /* folder; NULL: none */
@@ -124,9 +125,9 @@ static unsigned find_codecs(const struct server *server)
 }
 
 /* In the loop, which begins once there is a reload. */
-static void ask_reload(void *arg)
+static void ask_reload(void *arg, const char *who)
 {
-    reload_ask(((struct server *)arg)->reload);
+    reload_ask(((struct server *)arg)->reload, who);
 }
 
 static void ask_save(void *arg, struct tag_save *save)
@@ -145,6 +146,7 @@ static bool start_net(struct server *server)
         .log = server->log,
         .plant = plant_runtime_net_plant(server->runtime),
         .counters = server->counters,
+        .audit = server->audit,
         .address = server->params.address,
         .port = server->params.port,
         .access = server->params.access,
@@ -203,6 +205,26 @@ static bool read_plant(struct server *server)
     return server->runtime != NULL;
 }
 
+static void record(const struct server *server, const char *event)
+{
+    char *what = mem_printf("plantcastd " PLANTCAST_VERSION ", configuration %s", server->runtime->plant->hash);
+    audit_say(server->audit, &(struct audit_entry){ .event = event, .result = "done", .what = what });
+    mem_free(what);
+}
+
+static bool start_audit(struct server *server)
+{
+    struct audit_params params = server->params.audit;
+    if (!params.path)
+        return true;
+    params.log = server->log;
+    params.counters = server->counters;
+    server->context.audit = server->audit = audit_start(&params);
+    if (server->audit)
+        record(server, "start");
+    return server->audit != NULL;
+}
+
 static bool server_start(struct server *server)
 {
     server->counters = counters_create();
@@ -214,6 +236,8 @@ static bool server_start(struct server *server)
     if (!read_plant(server))
         return false;
     log_set_plant(server->log, server->runtime->plant->name);
+    if (!start_audit(server))
+        return false;
     set_time_zone(server->runtime->plant);
     colormaps_of_plant(server->runtime->plant);
     if (!net_port_free(server->log, server->params.address, server->params.port) || !net_access_good(server->log, &server->params.access))
@@ -235,6 +259,9 @@ static void server_finish(struct server *server)
     pthread_mutex_unlock(&server->wake_lock);
     reload_destroy(&server->reload);
     net_destroy(&net);
+    if (server->audit)
+        record(server, "stop");
+    audit_stop(&server->audit);
     plant_runtime_destroy(&server->runtime);
     workers_destroy(&server->workers);
     supervision_destroy(&server->supervision);
@@ -275,6 +302,7 @@ int server_run(const struct server_params *params)
     log_set_format(server.log, params->log_format, NULL);
     pthread_mutex_init(&server.wake_lock, NULL);
     signal(SIGPIPE, SIG_IGN);
+    signal(SIGXFSZ, SIG_IGN); /* a file that may not grow is an error of writing, as a full disk is */
     bool good = server_start(&server);
     if (good) {
         handle_signals(server.net);

@@ -6,6 +6,7 @@
 #include <stddef.h>
 
 #include "access/access.h"
+#include "audit/audit.h"
 #include "base/log.h"
 #include "gpu/gl.h"
 
@@ -25,6 +26,7 @@ struct server_params {
     size_t memory_bytes; /* 0: what suits the machine */
     int threads;         /* workers; 0: one per core */
     struct access_params access;
+    struct audit_params audit; /* path NULL: nothing is recorded */
     bool per_fragment; /* the field anew at each fragment; for comparison */
 };
 

@@ -26,6 +26,8 @@ int cmd_backup(int argc, char **argv);
 int cmd_restore(int argc, char **argv);
 /* Watches the servers of many plants, and serves a page of them. */
 int cmd_fleet(int argc, char **argv);
+/* Verifies the audit trail of a daemon. */
+int cmd_audit(int argc, char **argv);
 /* Makes, lists and revokes access tokens of a daemon. */
 int cmd_token(int argc, char **argv);
 

@@ -17,6 +17,11 @@ static const struct {
     [EVENT_HISTORY_UNWRITABLE] = { "history-unwritable", "0ac9a44ee73d4f119bb19f44a1971ee5" },
     [EVENT_HISTORY_WRITTEN] = { "history-written", "c064d741ee4c477bb4d3a87a3b3f7226" },
     [EVENT_HISTORY_LOST] = { "history-lost", "b6fe244b6ab142f59b086213062634a4" },
+    [EVENT_AUDIT] = { "audit", "7a27c336fe9f2b6273eb4eb3326da376" },
+    [EVENT_AUDIT_UNWRITABLE] = { "audit-unwritable", "3466dd222f962bef08faa5bb4b9969af" },
+    [EVENT_AUDIT_WRITTEN] = { "audit-written", "c621267e1d782dc40803f391bdf13121" },
+    [EVENT_AUDIT_BROKEN] = { "audit-broken", "6d23628aa3f59791d7339053f3d4784e" },
+    [EVENT_AUDIT_NOT_SENT] = { "audit-not-sent", "d2b34ca0d711ea0bb2b3f29d9eb80181" },
 };
 
 const char *log_event_name(enum log_event event)

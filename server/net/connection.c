@@ -172,6 +172,47 @@ static bool find_token(struct lws *wsi, char token[TOKEN_MAX_CHARS + 1])
     return true;
 }
 
+const char *connection_who(const struct connection *connection)
+{
+    return connection->holder.name[0] ? connection->holder.name : "local";
+}
+
+void connection_record_refusal(const struct server_context *server, struct lws *wsi, const char *path, const char *why)
+{
+    const struct connection *connection = connection_of(wsi);
+    if (connection->role == ROLE_NOBODY)
+        return;
+    audit_say(server->params.audit, &(struct audit_entry){ .event = "access",
+                                                           .result = "refused",
+                                                           .who = connection_who(connection),
+                                                           .role = name_of(names_role, (int)connection->role),
+                                                           .from = connection->address,
+                                                           .how = "HTTP",
+                                                           .what = path,
+                                                           .why = why });
+}
+
+/* Those that are held are counted: whoever tries thousands does not fill the trail. */
+static void record_login(struct server_context *server, const struct connection *connection, const char *way,
+                         const struct token_holder *holder, enum login login)
+{
+    bool good = login_is_good(login), known = holder->role != ROLE_NOBODY;
+    if (login == LOGIN_HELD)
+        server->logins_held++;
+    if (login == LOGIN_HELD || login == LOGIN_GOOD)
+        return;
+    audit_say(server->params.audit, &(struct audit_entry){ .event = "login",
+                                                           .result = good ? "done" : "refused",
+                                                           .who = holder->name[0] ? holder->name : good ? "local" : NULL,
+                                                           .role = known ? name_of(names_role, (int)holder->role) : NULL,
+                                                           .from = connection->address,
+                                                           .how = way,
+                                                           .why = good                          ? NULL
+                                                                  : known                       ? "its time is over"
+                                                                  : login == LOGIN_WRONG_SLOWS ? "nobody's token; the address is slowed"
+                                                                                               : "nobody's token" });
+}
+
 void connection_log_login(struct server_context *server, struct lws *wsi, const char *way, const struct token_holder *holder,
                           enum login login)
 {
@@ -180,6 +221,7 @@ void connection_log_login(struct server_context *server, struct lws *wsi, const 
     bool known = holder->role != ROLE_NOBODY;
     const char *role = known ? name_of(names_role, (int)holder->role) : "none", *name = holder->name[0] ? holder->name : "(none)";
     int failures = login_throttle_failures(server->login_throttle, connection->client->address, clock_mono_ns());
+    record_login(server, connection, way, holder, login);
     if (login == LOGIN_NONE || login == LOGIN_GOOD_NEW)
         log_info(log, "login from %s by %s: token %s, role %s: let in", connection->address, way, name, role);
     if (login == LOGIN_HELD)

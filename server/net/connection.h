@@ -26,6 +26,10 @@ struct refusal {
 };
 /* Reads the headers of a request and sets role, client and holder by them. Returns false with *refusal holding the answer. */
 bool connection_identify(struct server_context *server, struct lws *wsi, struct refusal *refusal);
+/* Returns the name of whoever made the last request, for journals and lists; "local" without one. */
+const char *connection_who(const struct connection *connection);
+/* Records that a request was refused to somebody who is known. */
+void connection_record_refusal(const struct server_context *server, struct lws *wsi, const char *path, const char *why);
 /* Logs and counts what became of a token, or of a session that needed none. way: static; holder: of the token; role ROLE_NOBODY: it is
    not in the file. */
 void connection_log_login(struct server_context *server, struct lws *wsi, const char *way, const struct token_holder *holder,

@@ -22,6 +22,7 @@
 
 static const int64_t TICK_NS = 100 * NS_PER_MS, REST_NS = NS_PER_S; /* between ticks; when no session waits for anything */
 static const int64_t GOODBYE_NS = 500 * NS_PER_MS;                  /* for the close frames to leave */
+static const int64_t HELD_NS = 60 * NS_PER_S;                       /* between two lines on tokens that were held */
 static const int64_t LOOK_NS = NS_PER_S;                            /* at the files of tokens and certificate, so often */
 enum { SPARE_FILES = 256 };                                         /* beside connections: models, sources, the database */
 
@@ -54,13 +55,25 @@ static void look_at_files(struct net *net, int64_t now_ns)
         return;
     server->looked_ns = now_ns;
     if (asked && server->params.reload)
-        server->params.reload(server->params.reload_arg);
+        server->params.reload(server->params.reload_arg, "signal");
     if (server->tls)
         tls_look(server->tls);
     if (server->tokens) {
         tokens_look(server->tokens);
         streams_check_tokens(server, clock_utc_ns());
     }
+}
+
+/* Once a minute. */
+static void record_held(struct server_context *server, int64_t now_ns)
+{
+    if (!server->logins_held || now_ns - server->held_ns < HELD_NS)
+        return;
+    char *what = mem_printf("%lld tokens of slowed addresses were not looked at", (long long)server->logins_held);
+    audit_say(server->params.audit, &(struct audit_entry){ .event = "login", .result = "refused", .what = what });
+    mem_free(what);
+    server->logins_held = 0;
+    server->held_ns = now_ns;
 }
 
 /* Once a second: what the machine has left. */
@@ -92,6 +105,7 @@ static void tick(struct net *net, int64_t now_ns)
 {
     look_at_files(net, now_ns);
     look_at_processors(net, now_ns);
+    record_held(&net->server, now_ns);
     admission_on_tick(&net->server.admission, now_ns);
     counter_set(net->server.counters.busy, admission_busy_percent(&net->server.admission));
     counter_set(net->server.counters.connections, net->server.connection_count);
@@ -363,6 +377,7 @@ struct net *net_create(const struct net_params *params)
         .resumes = resumes_create(),
         .admission = &server->admission,
         .login_throttle = server->login_throttle,
+        .audit = params->audit,
     };
     add_counters(server);
     net_bind_plant(net);

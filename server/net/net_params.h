@@ -6,6 +6,7 @@
 
 #include "access/access.h"
 #include "alarm/alarm_service.h"
+#include "audit/audit.h"
 #include "base/counters.h"
 #include "base/log.h"
 #include "loopcheck/loop_checks.h"
@@ -37,13 +38,14 @@ struct net_params {
     struct log *log;
     struct net_plant plant;
     struct counters *counters;
+    struct audit *audit; /* NULL: nothing is recorded */
     const char *address; /* to listen on, numeric */
     int port;            /* 0: any that is free */
     struct access_params access;
     unsigned codecs;        /* a bit, 1 << enum wire_codec, for each that works here */
     const char *web_folder; /* the page's files; NULL: no page is served */
     const char *version;
-    void (*reload)(void *arg);                      /* called in the loop: load the plant anew. NULL: it cannot be */
+    void (*reload)(void *arg, const char *who);     /* called in the loop: load the plant anew, as who asks. NULL: it cannot be */
     void (*save)(void *arg, struct tag_save *save); /* called in the loop: put another tag list in force; takes it. NULL: it cannot be */
     void (*tick)(void *arg, const struct net_status *status); /* called in the loop, once a second or more often. NULL: nobody asks */
     void *reload_arg;                                         /* of these three */

@@ -47,6 +47,7 @@ struct server_context {
     struct admission admission;
     bool local_only;   /* bound to a loopback address, and no proxy is in front */
     char machine[256]; /* the machine's host name; "": none */
+    int64_t logins_held, held_ns; /* tokens that were not judged, and not recorded yet; when such were recorded last */
     int64_t looked_ns; /* when the files of tokens and certificate were last looked at */
     uint64_t next_client;
     bool asked;                         /* requests were made: net_wake_render_service is due */

@@ -55,6 +55,7 @@ static void on_open(struct server_context *server, struct lws *wsi, struct strea
     stream->usage = connection->client;
     session_introduce(stream->session, &(struct session_client){ .number = new_number(server),
                                                                  .address = stream->usage->address,
+                                                                 .from = connection->address,
                                                                  .role = connection->role,
                                                                  .holder = &connection->holder,
                                                                  .share = &stream->usage->share });
@@ -100,6 +101,8 @@ static void on_close(struct server_context *server, struct stream **slot)
     counter_set(server->counters.sessions, server->stream_count);
     count(server, stream);
     follow_forget(server, stream);
+    if (stream->session->hello)
+        session_record_leave(stream->session, stream->close_text);
     log_debug(server->params.log, "session %llu: closed (%lld messages, %lld errors)", (unsigned long long)stream->session->id,
               (long long)stream->messages, (long long)stream->errors);
     render_service_forget(server->params.plant.render_service, stream->session->id);

@@ -4,6 +4,7 @@
 #include "session/resume.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 #include "base/clock.h"
@@ -29,6 +30,8 @@ void session_introduce(struct session *session, const struct session_client *cli
 {
     session->identity.number = client->number;
     memcpy(session->identity.address, client->address, sizeof(session->identity.address));
+    if (client->from)
+        snprintf(session->identity.from, sizeof(session->identity.from), "%s", client->from);
     session->identity.role = client->role;
     session->identity.holder = *client->holder;
     session->room.share = client->share;
@@ -87,6 +90,7 @@ static bool on_params(struct session *session, const struct message *message, st
     if (!session_apply_params(session, message, &session->view, error))
         return false;
     session->view.params_seq = session->owed.params_seq = message->params.seq;
+    session_record_params(session, message);
     session->owed.params = true;
     return true;
 }
@@ -163,7 +167,9 @@ static bool on_alarm(struct session *session, const struct message *message, str
         message_fail(error, "not_allowed", "alarms are another system's here: nothing can be acknowledged or shelved");
         return false;
     }
-    session_reply(session, alarm_do(context->alarm_service, context->plant, message, session_who(session)));
+    char *answer = alarm_do(context->alarm_service, context->plant, message, session_who(session));
+    session_record_alarm(session, message, answer);
+    session_reply(session, answer);
     return true;
 }
 
@@ -244,8 +250,10 @@ void session_on_message(struct session *session, const char *text, size_t count,
     if (!login_is_good(session->identity.login)) /* it is being closed */
         return;
     if (!message_parse(session->context->plant, text, count, &message, &error) || !in_order(session, &message, &error) ||
-        !act(session, &message, now_ns, now_utc_ns, &error))
+        !act(session, &message, now_ns, now_utc_ns, &error)) {
+        session_record_refusal(session, &error);
         session_reply_error(session, &error);
+    }
 }
 
 void session_on_oversize(struct session *session, size_t count, int64_t now_ns)

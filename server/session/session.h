@@ -21,6 +21,8 @@ void session_introduce(struct session *session, const struct session_client *cli
 /* Notes that its connection is lost, before session_destroy: gives its pixels back, and has its leader told. keep: its view is kept for the
    client's return. */
 void session_leave(struct session *session, bool keep, int64_t now_ns);
+/* Records its end in the audit trail. why: static; NULL: the client went. */
+void session_record_leave(const struct session *session, const char *why);
 /* Has the connection closed once the texts owed are sent. text: static. The first reason stands. */
 void session_close(struct session *session, int code, const char *text);
 /* Closes the session if its token was revoked or has expired; else updates its role. */

@@ -2,6 +2,7 @@
 /* What all sessions have in common. Thread: the loop. */
 #ifndef SESSION_SESSION_CONTEXT_H
 #define SESSION_SESSION_CONTEXT_H
+#include "audit/audit.h"
 #include "scene/scene.h"
 #include "session/session_state.h"
 
@@ -32,6 +33,7 @@ struct session_context {
     const struct quotas *quotas;
     const struct tokens *tokens;           /* NULL: none are configured */
     struct login_throttle *login_throttle; /* changed by hello; NULL: wrong tokens are not counted */
+    struct audit *audit;                   /* NULL: nothing is recorded */
     struct resumes *resumes;               /* changed by hello */
     struct admission *admission;           /* its pixels are changed by hello, resize and visible */
     struct tag_text_cache *tag_texts;      /* NULL: each text is made anew */

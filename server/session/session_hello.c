@@ -121,6 +121,8 @@ bool session_hello(struct session *session, const struct message *message, int64
     if (back)
         take_over(session, &resumed, message->resume);
     session->view = view;
+    if (message->has_params)
+        session_record_params(session, message);
     if (message->time.has_at)
         session_time_begin(session, message->time.at_us, message->time.speed);
     else if (before)

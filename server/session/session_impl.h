@@ -15,6 +15,18 @@ void session_on_input(struct session *session, int64_t now_ns);
 /* Returns the user's name, for journals and lists; "local" without a token. */
 const char *session_who(const struct session *session);
 
+/* --- session_audit.c: the audit trail is told --------------------------------------------------------------------------- */
+
+/* Record what was done to alarms, or a loop check. answer: the message that the client is sent. */
+void session_record_alarm(const struct session *session, const struct message *message, const char *answer);
+void session_record_loop_check(const struct session *session, const struct message *message, const char *answer);
+/* Records that a tag list with so many sensors at other places is to be put in force. */
+void session_record_save(const struct session *session, size_t moved);
+/* Records baselines that were kept or forgotten for all, if the message's parameters do that. */
+void session_record_params(const struct session *session, const struct message *message);
+/* Records an error, if it says that the client may not do what it asked for. */
+void session_record_refusal(const struct session *session, const struct message_error *error);
+
 /* --- session_hello.c -------------------------------------------------------------------------------------------------- */
 
 /* Acts on `hello`: checks the token, admits the session and sets its first view. Returns false with *error, and session->close set if it is

@@ -100,6 +100,8 @@ bool session_save_tags(struct session *session, const struct message *message, s
     tag_save_free(session->placement.save);
     session_reply(session, tags_diff_text(context->plant, context->tag_list, session->placement.set, message, session_who(session),
                                           &session->placement.save));
+    if (session->placement.save)
+        session_record_save(session, place_set_get(session->placement.set, &placed));
     return true;
 }
 
@@ -110,6 +112,8 @@ bool session_check_loop(struct session *session, const struct message *message, 
         message_fail(error, "no_history", "this daemon records nothing (history: record: no): proofs are kept beside the history");
         return false;
     }
-    session_reply(session, loop_check_do(context->loop_checks, context->plant, context->snapshot, message, session_who(session)));
+    char *answer = loop_check_do(context->loop_checks, context->plant, context->snapshot, message, session_who(session));
+    session_record_loop_check(session, message, answer);
+    session_reply(session, answer);
     return true;
 }

@@ -20,6 +20,7 @@ struct session_identity {
     uint64_t number; /* by which other clients name this session; random; a resumed session keeps the number it had */
     enum role role;
     uint8_t address[16];                  /* of the client, as in struct address_usage */
+    char from[64];                        /* likewise, as text; "": not known */
     enum login login;                     /* the verdict on the token in hello */
     struct token_holder holder;           /* of that token; role ROLE_NOBODY: no token was given, or none was accepted */
     char resume_secret[RESUME_CHARS + 1]; /* lets the client take its view up again over another connection */
@@ -31,6 +32,7 @@ struct session_identity {
 struct session_client {
     uint64_t number; /* as in struct session_identity */
     const uint8_t *address;
+    const char *from; /* the same as text */
     enum role role;
     const struct token_holder *holder;
     struct address_share *share;

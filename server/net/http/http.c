@@ -90,8 +90,10 @@ static const struct refusal FOREIGN = { HTTP_STATUS_FORBIDDEN, "pages of other s
 static int serve_route(struct server_context *server, struct request *request, size_t i)
 {
     enum role role = connection_of(request->wsi)->role;
-    if (role < routes[i].least)
+    if (role < routes[i].least) {
+        connection_record_refusal(server, request->wsi, routes[i].path, "pictures only");
         return refuse(request, role == ROLE_NOBODY ? &NEED_TOKEN : &NOT_FOR_YOU);
+    }
     if (routes[i].least > ROLE_NOBODY && is_foreign_page(request->wsi))
         return refuse(request, &FOREIGN);
     return routes[i].serve(server, request);
@@ -101,8 +103,10 @@ static int serve_reload(struct server_context *server, struct request *request)
 {
     enum role role = connection_of(request->wsi)->role;
     request->close = true;
-    if (role < ROLE_ENGINEER)
+    if (role < ROLE_ENGINEER) {
+        connection_record_refusal(server, request->wsi, RELOAD_PATH, "it takes the role engineer");
         return refuse(request, role == ROLE_NOBODY ? &NEED_TOKEN : &NOT_ENGINEER);
+    }
     return is_foreign_page(request->wsi) ? refuse(request, &FOREIGN) : ask_reload(server, request);
 }
 

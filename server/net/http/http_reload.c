@@ -23,7 +23,7 @@ int ask_reload(struct server_context *server, struct request *request)
         return request_answer_text(request, HTTP_STATUS_NOT_FOUND, "this plant cannot be loaded anew\n");
     request->reloads = true;
     request_await(server, request);
-    server->params.reload(server->params.reload_arg);
+    server->params.reload(server->params.reload_arg, connection_who(connection_of(request->wsi)));
     return 0;
 }
 

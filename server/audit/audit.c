@@ -1,0 +1,255 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The thread that writes the audit trail. */
+#include "audit/audit.h"
+
+#include <inttypes.h>
+#include <pthread.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "audit/audit_file.h"
+#include "audit/audit_syslog.h"
+#include "base/clock.h"
+#include "base/mem.h"
+
+enum { MOST_WAITING = 10000, FILE_BYTES = 64 << 20 };
+static const int64_t RETRY_NS = NS_PER_S;
+
+struct waiting {
+    struct audit_entry entry; /* its texts lie behind it */
+    int64_t utc_us;
+    bool said; /* in the log, since it could not be written */
+    struct waiting *next;
+};
+
+struct audit {
+    struct audit_params params;
+    char *path;
+    struct audit_file file; /* of the thread */
+    struct audit_syslog *syslog;
+    pthread_t thread;
+    bool failing; /* of the thread */
+    counter *good, *lines, *lost;
+    pthread_mutex_t lock;
+    pthread_cond_t wake;
+    /* --- below: under lock */
+    struct waiting *first, **last;
+    size_t count;
+    int64_t lost_count; /* since entries were last written */
+    bool stopping;
+};
+
+/* --- entries that wait ---------------------------------------------------------------------------------------------------- */
+
+static struct waiting *copy_entry(const struct audit_entry *entry)
+{
+    const char *const texts[] = { entry->event, entry->result, entry->who, entry->role, entry->from, entry->how, entry->what, entry->why };
+    enum { COUNT = sizeof(texts) / sizeof(*texts) };
+    size_t bytes = 0, lengths[COUNT];
+    for (size_t i = 0; i < COUNT; i++)
+        bytes += lengths[i] = texts[i] ? strlen(texts[i]) + 1 : 0;
+    struct waiting *waiting = mem_new(sizeof(*waiting) + bytes);
+    const char **members[COUNT] = { &waiting->entry.event, &waiting->entry.result, &waiting->entry.who,  &waiting->entry.role,
+                                    &waiting->entry.from,  &waiting->entry.how,    &waiting->entry.what, &waiting->entry.why };
+    char *at = (char *)(waiting + 1);
+    for (size_t i = 0; i < COUNT; at += lengths[i++])
+        if (texts[i])
+            *members[i] = memcpy(at, texts[i], lengths[i]);
+    waiting->utc_us = clock_utc_ns() / 1000;
+    return waiting;
+}
+
+void audit_say(struct audit *audit, const struct audit_entry *entry)
+{
+    if (!audit)
+        return;
+    pthread_mutex_lock(&audit->lock);
+    if (audit->count >= MOST_WAITING) {
+        counter_inc(audit->lost, 1);
+        audit->lost_count++;
+    } else {
+        struct waiting *waiting = copy_entry(entry);
+        *audit->last = waiting;
+        audit->last = &waiting->next;
+        audit->count++;
+        pthread_cond_signal(&audit->wake);
+    }
+    pthread_mutex_unlock(&audit->lock);
+}
+
+/* --- writing -------------------------------------------------------------------------------------------------------------- */
+
+static bool is_good(const struct audit_entry *entry)
+{
+    return !strcmp(entry->result, "done");
+}
+
+static void log_entry(struct audit *audit, const struct audit_entry *entry, const char *head, const char *tail)
+{
+    const char *what = entry->what ? entry->what : "", *why = entry->why ? entry->why : "";
+    log_event(audit->params.log, LOG_INFO, EVENT_AUDIT, "%s: %s %s: %s%s%s from %s%s%s%s%s%s%s%s%s", head, entry->event, entry->result,
+              entry->who ? entry->who : "(nobody)", entry->role ? ", " : "", entry->role ? entry->role : "",
+              entry->from ? entry->from : "this daemon", entry->how ? " by " : "", entry->how ? entry->how : "", *what ? ": " : "", what,
+              *why ? ": " : "", why, *tail ? "; " : "", tail);
+}
+
+static void say_written(struct audit *audit, const char *why)
+{
+    if (why && !audit->failing)
+        log_event(audit->params.log, LOG_ERROR, EVENT_AUDIT_UNWRITABLE,
+                  "audit: %s cannot be written (%s); what happens is kept in memory and said here", audit->path, why);
+    else if (!why && audit->failing)
+        log_event(audit->params.log, LOG_WARN, EVENT_AUDIT_WRITTEN, "audit: %s is written again", audit->path);
+    audit->failing = why != NULL;
+    counter_set(audit->good, !audit->failing);
+}
+
+/* Returns whether it is on the disk. */
+static bool write_entry(struct audit *audit, const struct audit_entry *entry, int64_t utc_us)
+{
+    struct text line = { 0 };
+    char *finding;
+    int error = audit_file_append(&audit->file, entry, utc_us, &line, &finding);
+    if (finding)
+        audit_say(audit, &(struct audit_entry){ .event = "audit", .result = "failed", .what = finding });
+    mem_free(finding);
+    say_written(audit, error ? strerror(-error) : NULL);
+    if (!error) {
+        char head[32], tail[80];
+        snprintf(head, sizeof(head), "audit %" PRIu64, audit->file.chain.seq);
+        snprintf(tail, sizeof(tail), "hash %s", audit->file.chain.hash);
+        counter_inc(audit->lines, 1);
+        log_entry(audit, entry, head, tail);
+        if (audit->syslog)
+            audit_syslog_send(audit->syslog, entry->event, is_good(entry), utc_us, line.at, line.length - 1);
+    }
+    text_finish(&line);
+    return !error;
+}
+
+/* Under the lock. */
+static void free_first(struct audit *audit)
+{
+    struct waiting *first = audit->first;
+    audit->first = first->next;
+    if (!audit->first)
+        audit->last = &audit->first;
+    audit->count--;
+    mem_free(first);
+}
+
+/* Those that came while the file cannot be written. Under the lock; only this thread takes entries out. */
+static void log_waiting(struct audit *audit)
+{
+    for (struct waiting *waiting = audit->first; waiting; waiting = waiting->next) {
+        if (!waiting->said)
+            log_entry(audit, &waiting->entry, "audit, not written", "");
+        waiting->said = true;
+    }
+}
+
+/* Under the lock. */
+static void say_lost(struct audit *audit)
+{
+    int64_t lost = audit->lost_count;
+    audit->lost_count = 0;
+    if (!lost)
+        return;
+    char *what = mem_printf("%" PRId64 " entries were lost while the file could not be written", lost);
+    pthread_mutex_unlock(&audit->lock);
+    audit_say(audit, &(struct audit_entry){ .event = "audit", .result = "failed", .what = what });
+    pthread_mutex_lock(&audit->lock);
+    mem_free(what);
+}
+
+static void *run(void *arg)
+{
+    struct audit *audit = arg;
+    pthread_mutex_lock(&audit->lock);
+    for (;;) {
+        while (!audit->first && !audit->stopping)
+            pthread_cond_wait(&audit->wake, &audit->lock);
+        struct waiting *first = audit->first;
+        if (!first)
+            break;
+        pthread_mutex_unlock(&audit->lock);
+        bool written = write_entry(audit, &first->entry, first->utc_us);
+        pthread_mutex_lock(&audit->lock);
+        if (written) {
+            free_first(audit);
+            say_lost(audit);
+        } else if (audit->stopping) {
+            log_waiting(audit);
+            break;
+        } else {
+            log_waiting(audit);
+            clock_cond_wait(&audit->wake, &audit->lock, clock_mono_ns() + RETRY_NS);
+        }
+    }
+    pthread_mutex_unlock(&audit->lock);
+    return NULL;
+}
+
+/* --- life ----------------------------------------------------------------------------------------------------------------- */
+
+static void finish(struct audit *audit)
+{
+    audit_syslog_stop(&audit->syslog);
+    while (audit->first)
+        free_first(audit);
+    audit_file_close(&audit->file);
+    pthread_cond_destroy(&audit->wake);
+    pthread_mutex_destroy(&audit->lock);
+    mem_free(audit->path);
+    mem_free(audit);
+}
+
+static bool start(struct audit *audit)
+{
+    const struct audit_params *params = &audit->params;
+    char *finding;
+    int error = audit_file_open(&audit->file, params->path, params->most_bytes ? params->most_bytes : FILE_BYTES, &finding);
+    if (finding) {
+        log_event(params->log, LOG_ERROR, EVENT_AUDIT_BROKEN, "audit: %s", finding);
+        audit_say(audit, &(struct audit_entry){ .event = "audit", .result = "failed", .what = finding });
+    }
+    mem_free(finding);
+    if (error)
+        log_err(params->log, "audit: %s: %s", params->path, strerror(-error));
+    if (error || (params->syslog && !(audit->syslog = audit_syslog_start(params))))
+        return false;
+    error = pthread_create(&audit->thread, NULL, run, audit);
+    if (error)
+        log_err(params->log, "audit: no thread: %s", strerror(error));
+    return !error;
+}
+
+struct audit *audit_start(const struct audit_params *params)
+{
+    struct audit *audit = mem_new(sizeof(*audit));
+    *audit = (struct audit){ .params = *params, .path = mem_strdup(params->path), .file.fd = -1, .last = &audit->first };
+    audit->good = counters_add(params->counters, "plantcast_audit_good", "gauge", "1 while the audit trail can be written.");
+    audit->lines = counters_add(params->counters, "plantcast_audit_lines_total", "counter", "Lines of the audit trail written.");
+    audit->lost = counters_add(params->counters, "plantcast_audit_lost_total", "counter", "Entries that the audit trail lacks.");
+    counter_set(audit->good, 1);
+    pthread_mutex_init(&audit->lock, NULL);
+    clock_cond_init(&audit->wake);
+    if (start(audit))
+        return audit;
+    finish(audit);
+    return NULL;
+}
+
+void audit_stop(struct audit **pointer)
+{
+    struct audit *audit = *pointer;
+    if (!audit)
+        return;
+    pthread_mutex_lock(&audit->lock);
+    audit->stopping = true;
+    pthread_cond_signal(&audit->wake);
+    pthread_mutex_unlock(&audit->lock);
+    pthread_join(audit->thread, NULL);
+    finish(audit);
+    *pointer = NULL;
+}

@@ -1,0 +1,28 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The audit trail: a thread writes what happened to the trail's file, the log and a syslog server. Whoever records never waits for any of
+   them. While the file cannot be written, entries wait in memory, and the log and the metrics say so. */
+#ifndef AUDIT_AUDIT_H
+#define AUDIT_AUDIT_H
+#include "audit/audit_chain.h"
+#include "base/counters.h"
+#include "base/log.h"
+
+struct audit_params {
+    struct log *log;
+    struct counters *counters;
+    const char *path;                         /* of the trail's file */
+    size_t most_bytes;                        /* a file that has so many is rotated; 0: 64 MB */
+    const char *syslog;                       /* HOST[:PORT] of a server of syslog over TLS; NULL: none */
+    const char *syslog_ca;                    /* certificates that are trusted with it, PEM; NULL: the machine's own */
+    const char *syslog_cert, *syslog_key;     /* our certificate for it, PEM; NULL: none */
+};
+
+struct audit;
+/* Opens the file and starts the thread. Returns NULL if that fails, already logged. */
+struct audit *audit_start(const struct audit_params *params);
+/* Writes what waits, if it can be written, and ends. &NULL is fine; leaves NULL. */
+void audit_stop(struct audit **audit);
+/* Records an entry, which is copied. audit NULL: does nothing. Any thread. */
+void audit_say(struct audit *audit, const struct audit_entry *entry);
+
+#endif

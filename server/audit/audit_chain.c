@@ -1,0 +1,102 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Lines of the audit trail and their hashes. */
+#include "audit/audit_chain.h"
+
+#include <jansson.h>
+#include <openssl/evp.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "base/json_text.h"
+#include "base/mem.h"
+#include "base/timestamp.h"
+#include "base/utf8.h"
+
+enum { FIELD_BYTES = 1024 };
+static const char HASH_KEY[] = ",\"hash\":\"", END[] = "\"}";
+
+void audit_chain_init(struct audit_chain *chain)
+{
+    chain->seq = 0;
+    memset(chain->hash, '0', AUDIT_HASH_CHARS);
+    chain->hash[AUDIT_HASH_CHARS] = 0;
+}
+
+static void hash_of(const char *bytes, size_t count, char out[AUDIT_HASH_CHARS + 1])
+{
+    unsigned char hash[AUDIT_HASH_CHARS / 2] = { 0 };
+    EVP_Digest(bytes, count, hash, NULL, EVP_sha256(), NULL);
+    for (size_t i = 0; i < sizeof(hash); i++)
+        snprintf(out + 2 * i, 3, "%02x", hash[i]);
+}
+
+/* Strangers choose some of these texts: control characters, and what is no UTF-8, become '?'. */
+static void set_field(json_t *object, const char *key, const char *text)
+{
+    char copy[FIELD_BYTES + 1];
+    size_t at = 0;
+    if (!text || !*text)
+        return;
+    for (size_t left = strlen(text), length; left > 0 && at < FIELD_BYTES; text += length, left -= length) {
+        length = utf8_length(text, left);
+        if (length > FIELD_BYTES - at)
+            break;
+        if (length > 0 && (unsigned char)*text >= ' ' && *text != 0x7f)
+            memcpy(copy + at, text, length);
+        else
+            copy[at] = '?';
+        length += length == 0;
+        at += length;
+    }
+    json_object_set_new(object, key, json_stringn(copy, at));
+}
+
+void audit_chain_add(struct audit_chain *chain, const struct audit_entry *entry, int64_t utc_us, struct text *out)
+{
+    char at[TIMESTAMP_BYTES], hash[AUDIT_HASH_CHARS + 1];
+    size_t begin = out->length;
+    timestamp_print(utc_us, at);
+    json_t *object = json_pack("{s:I,s:s}", "seq", (json_int_t)(chain->seq + 1), "at", at);
+    set_field(object, "event", entry->event);
+    set_field(object, "result", entry->result);
+    set_field(object, "who", entry->who);
+    set_field(object, "role", entry->role);
+    set_field(object, "from", entry->from);
+    set_field(object, "how", entry->how);
+    set_field(object, "what", entry->what);
+    set_field(object, "why", entry->why);
+    json_object_set_new(object, "prev", json_string(chain->hash));
+    char *text = json_text(object, 0);
+    text_add_bytes(out, text, strlen(text) - 1); /* without its brace */
+    mem_free(text);
+    hash_of(out->at + begin, out->length - begin, hash);
+    text_add(out, "%s%s%s\n", HASH_KEY, hash, END);
+    chain->seq++;
+    memcpy(chain->hash, hash, sizeof(hash));
+}
+
+bool audit_chain_check(struct audit_chain *chain, const char *line, size_t count, bool first, const char **why)
+{
+    const size_t tail = strlen(HASH_KEY) + AUDIT_HASH_CHARS + strlen(END);
+    char hash[AUDIT_HASH_CHARS + 1];
+    if (count < tail || count >= AUDIT_LINE_BYTES || memcmp(line + count - tail, HASH_KEY, strlen(HASH_KEY)) != 0) {
+        *why = "it is no line of an audit trail";
+        return false;
+    }
+    const char *said = line + count - strlen(END) - AUDIT_HASH_CHARS;
+    hash_of(line, count - tail, hash);
+    json_t *object = memcmp(hash, said, AUDIT_HASH_CHARS) == 0 ? json_loadb(line, count, JSON_REJECT_DUPLICATES, NULL) : NULL;
+    const char *prev = json_string_value(json_object_get(object, "prev"));
+    json_int_t seq = json_integer_value(json_object_get(object, "seq"));
+    *why = !object                                                  ? "it was changed: its hash is another"
+           : !prev || seq < 1                                       ? "it has no number, or no predecessor"
+           : !first && (uint64_t)seq != chain->seq + 1              ? "lines before it are missing, or were put in"
+           : !first && strcmp(prev, chain->hash) != 0               ? "it does not follow the line before"
+                                                                    : NULL;
+    json_decref(object);
+    if (*why)
+        return false;
+    chain->seq = (uint64_t)seq;
+    memcpy(chain->hash, hash, sizeof(hash));
+    return true;
+}

@@ -1,0 +1,120 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Verifying an audit trail. */
+#include <dirent.h>
+#include <errno.h>
+#include <inttypes.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "audit/audit_file.h"
+#include "audit/audit_head.h"
+#include "base/mem.h"
+
+struct walk {
+    struct audit_report *report;
+    const struct audit_chain *known;
+    struct audit_chain head; /* seq 0: none */
+};
+
+static void set_fault(struct audit_report *report, char *text)
+{
+    if (report->text)
+        mem_free(text);
+    else
+        report->text = text;
+    report->good = false;
+}
+
+/* A line whose number is known from elsewhere must be the same one. */
+static void compare(struct walk *walk, const struct audit_chain *with, const char *path, const char *whose)
+{
+    const struct audit_chain *end = &walk->report->end;
+    if (with->seq == end->seq && strcmp(with->hash, end->hash) != 0)
+        set_fault(walk->report, mem_printf("%s: line %" PRIu64 " is not the one that %s has", path, end->seq, whose));
+}
+
+static void verify_file(struct walk *walk, const char *path)
+{
+    struct audit_report *report = walk->report;
+    FILE *file = fopen(path, "re");
+    char *line = NULL;
+    size_t capacity = 0, number = 0;
+    if (!file) {
+        set_fault(report, mem_printf("%s: %s", path, strerror(errno)));
+        return;
+    }
+    report->files++;
+    for (ssize_t n; report->good && (n = getline(&line, &capacity, file)) > 0;) {
+        const char *why = "it is cut short";
+        number++;
+        if (line[n - 1] != '\n' || !audit_chain_check(&report->end, line, (size_t)n - 1, report->lines == 0, &why)) {
+            set_fault(report, mem_printf("%s:%zu: %s", path, number, why));
+            break;
+        }
+        if (report->lines++ == 0)
+            report->first_seq = report->end.seq;
+        compare(walk, &walk->head, path, "the file .head");
+        compare(walk, walk->known, path, "whoever kept it");
+    }
+    free(line);
+    fclose(file);
+}
+
+static int is_number(const char *text)
+{
+    return *text && text[strspn(text, "0123456789")] == 0;
+}
+
+static int by_number(const void *a, const void *b)
+{
+    uint64_t x = strtoull(strrchr(*(char *const *)a, '.') + 1, NULL, 10), y = strtoull(strrchr(*(char *const *)b, '.') + 1, NULL, 10);
+    return (x > y) - (x < y);
+}
+
+static void verify_full(struct walk *walk, const char *path)
+{
+    const char *slash = strrchr(path, '/'), *base = slash ? slash + 1 : path;
+    char *folder = slash ? mem_printf("%.*s", slash > path ? (int)(slash - path) : 1, path) : mem_strdup("."), **names = NULL;
+    size_t count = 0, capacity = 0, length = strlen(base);
+    DIR *entries = opendir(folder);
+    for (struct dirent *entry; entries && (entry = readdir(entries));)
+        if (!strncmp(entry->d_name, base, length) && entry->d_name[length] == '.' && is_number(entry->d_name + length + 1)) {
+            mem_grow(&names, &capacity, count + 1, sizeof(*names));
+            names[count++] = mem_printf("%s/%s", folder, entry->d_name);
+        }
+    if (entries)
+        closedir(entries);
+    if (count)
+        qsort(names, count, sizeof(*names), by_number);
+    for (size_t i = 0; i < count; i++) {
+        if (walk->report->good)
+            verify_file(walk, names[i]);
+        mem_free(names[i]);
+    }
+    mem_free(names);
+    mem_free(folder);
+}
+
+void audit_file_verify(const char *path, const struct audit_chain *known, struct audit_report *report)
+{
+    struct walk walk = { .report = report, .known = known };
+    char *head_path = mem_printf("%s.head", path);
+    *report = (struct audit_report){ .good = true };
+    audit_chain_init(&report->end);
+    audit_chain_init(&walk.head);
+    bool has_head = audit_head_read(head_path, &walk.head);
+    verify_full(&walk, path);
+    if (report->good)
+        verify_file(&walk, path);
+    if (report->good && !has_head && report->lines > 0)
+        set_fault(report, mem_printf("%s: is not there: nobody can say whether last lines were removed", head_path));
+    if (report->good && walk.head.seq > report->end.seq)
+        set_fault(report, mem_printf("%s: ends at line %" PRIu64 "; the last %" PRIu64 " lines were removed (%s)", path, report->end.seq,
+                                     walk.head.seq - report->end.seq, head_path));
+    if (report->good && known->seq > report->end.seq)
+        set_fault(report, mem_printf("%s: ends at line %" PRIu64 ", before the known line %" PRIu64, path, report->end.seq, known->seq));
+    if (report->good && known->seq && known->seq < report->first_seq)
+        set_fault(report, mem_printf("%s: begins at line %" PRIu64 ", after the known line %" PRIu64, path, report->first_seq, known->seq));
+    mem_free(head_path);
+}

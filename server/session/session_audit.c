@@ -1,0 +1,101 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What the audit trail is told of a session's messages: who changed what, and who was refused. */
+#include <jansson.h>
+#include <string.h>
+
+#include "alarm/devices.h"
+#include "audit/audit.h"
+#include "base/mem.h"
+#include "message/names.h"
+#include "session/session_impl.h"
+
+static void record(const struct session *session, const char *event, const char *result, const char *what, const char *why)
+{
+    const struct session_identity *identity = &session->identity;
+    audit_say(session->context->audit, &(struct audit_entry){ .event = event,
+                                                              .result = result,
+                                                              .who = session_who(session),
+                                                              .role = name_of(names_role, (int)identity->role),
+                                                              .from = identity->from,
+                                                              .how = "stream",
+                                                              .what = what,
+                                                              .why = why });
+}
+
+static void add_alarms(struct text *what, const struct plant *plant, const struct alarm_request *request)
+{
+    struct devices *devices = devices_create(plant);
+    text_add(what, "%s", alarm_event_name((enum alarm_event)request->action));
+    for (int i = 0; i < request->count; i++) {
+        enum alarm_kind kind = (enum alarm_kind)request->kinds[i];
+        text_add(what, "%s %s %s", i ? "," : "", kind == ALARM_LINK ? devices->list[request->tags[i]].name : plant->tags[request->tags[i]].name,
+                 alarm_kind_name(kind));
+    }
+    if (request->for_s > 0)
+        text_add(what, " for %.0f s", request->for_s);
+    devices_destroy(&devices);
+}
+
+void session_record_alarm(const struct session *session, const struct message *message, const char *answer)
+{
+    const struct alarm_request *request = &message->alarm;
+    struct text what = { 0 };
+    json_t *said = json_loads(answer, 0, NULL), *refused = json_object_get(said, "refused");
+    bool done = json_integer_value(json_object_get(said, "done")) > 0;
+    char *why = json_array_size(refused) ? json_dumps(refused, JSON_COMPACT) : NULL;
+    add_alarms(&what, session->context->plant, request);
+    if (request->name[0])
+        text_add(&what, " as %s", request->name);
+    if (request->reason[0])
+        text_add(&what, ": %s", request->reason);
+    record(session, "alarm", done ? "done" : "failed", what.at, why);
+    free(why);
+    json_decref(said);
+    text_finish(&what);
+}
+
+void session_record_loop_check(const struct session *session, const struct message *message, const char *answer)
+{
+    json_t *said = json_loads(answer, 0, NULL);
+    bool kept = json_is_true(json_object_get(said, "kept"));
+    const char *because = json_string_value(json_object_get(said, "why"));
+    char *what = mem_printf("%s: %s", session->context->plant->tags[message->loop_check.tag].name,
+                            json_is_true(json_object_get(said, "passed")) ? "passed" : "not passed");
+    record(session, "proof", kept ? "done" : "failed", what, because);
+    mem_free(what);
+    json_decref(said);
+}
+
+void session_record_leave(const struct session *session, const char *why)
+{
+    record(session, "leave", "done", NULL, why);
+}
+
+void session_record_save(const struct session *session, size_t moved)
+{
+    char *what = mem_printf("tag list: %zu sensor%s placed; it is put in force", moved, moved == 1 ? "" : "s");
+    record(session, "place", "done", what, NULL);
+    mem_free(what);
+}
+
+static void record_baseline(const struct session *session, const struct params_change *change)
+{
+    bool removed = change->baseline == BASELINE_REMOVE;
+    if (change->baseline != BASELINE_SET && change->baseline != BASELINE_NOW && !removed)
+        return;
+    char *what = mem_printf("%s %s", removed ? "forget" : "keep", change->baseline_name[0] ? change->baseline_name : "now");
+    record(session, "baseline", "done", what, NULL);
+    mem_free(what);
+}
+
+void session_record_params(const struct session *session, const struct message *message)
+{
+    record_baseline(session, &message->params);
+    record_baseline(session, &message->split.right);
+}
+
+void session_record_refusal(const struct session *session, const struct message_error *error)
+{
+    if (!strcmp(error->code, "not_allowed"))
+        record(session, "access", "refused", NULL, error->text);
+}

@@ -1,0 +1,228 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The audit trail: what people do stands in it with name, place and result; what is done to it is found; a syslog server gets it by TLS;
+// a disk that is full is said, and nothing is lost.
+import assert from 'node:assert/strict';
+import { spawnSync } from 'node:child_process';
+import { appendFileSync, existsSync, readFileSync, statSync, writeFileSync } from 'node:fs';
+import { createServer } from 'node:tls';
+import { join } from 'node:path';
+import { after, before, test } from 'node:test';
+import { http, PlainClient } from './support/plain_client.mjs';
+import { missing, runProgram, TinyPlant } from './support/tiny_plant.mjs';
+
+const absent = missing();
+const skip = absent.length > 0 ? `not built: ${absent.join(', ')}` : false;
+const sleep = (ms) => new Promise((done) => setTimeout(done, ms));
+let plant, trail, tokens, syslog;
+
+const path = (name) => join(plant.folder, name);
+const lines = () => readFileSync(trail, 'utf8').trim().split('\n').map((line) => JSON.parse(line));
+const verify = (...args) => runProgram('plantcast', ['audit', 'verify', trail, ...args]);
+const bearer = (token) => `Authorization: Bearer ${token}\r\n`;
+const ask = (url, token, { method = 'GET', localAddress } = {}) =>
+    http(plant.port, `${method} ${url} HTTP/1.1\r\nHost: localhost\r\n${token ? bearer(token) : ''}\r\n`, { localAddress });
+async function found(what, where) {
+    for (let i = 0; i < 100; i++, await sleep(50)) {
+        const line = lines().find(where);
+        if (line)
+            return line;
+    }
+    throw new Error(`${what} is not in the trail:\n${readFileSync(trail, 'utf8')}`);
+}
+
+// One that takes RFC 5425 apart: messages with their length in front.
+class SyslogServer {
+    constructor(key, cert) {
+        this.messages = [];
+        this.sockets = new Set();
+        this.server = createServer({ key, cert }, (socket) => {
+            let bytes = Buffer.alloc(0);
+            this.sockets.add(socket);
+            socket.on('error', () => {});
+            socket.on('data', (chunk) => {
+                bytes = Buffer.concat([bytes, chunk]);
+                for (let head; (head = /^(\d+) /.exec(bytes.subarray(0, 12).toString())) &&
+                    bytes.length >= head[0].length + Number(head[1]);) {
+                    this.messages.push(bytes.subarray(head[0].length, head[0].length + Number(head[1])).toString());
+                    bytes = bytes.subarray(head[0].length + Number(head[1]));
+                }
+            });
+        });
+        this.server.on('tlsClientError', () => {});
+    }
+
+    listen(port = 0) {
+        return new Promise((done) => this.server.listen(port, '127.0.0.1', () => { this.port = this.server.address().port; done(); }));
+    }
+
+    close() {
+        for (const socket of this.sockets)
+            socket.destroy();
+        return new Promise((done) => this.server.close(done));
+    }
+
+    async until(what, where) {
+        for (let i = 0; i < 200; i++, await sleep(50)) {
+            const message = this.messages.find(where);
+            if (message)
+                return message;
+        }
+        throw new Error(`${what} did not come:\n${this.messages.join('\n')}`);
+    }
+}
+
+async function start(...args) {
+    await plant.daemon?.stop();
+    await plant.startDaemon('--tokens', path('tokens'), '--audit', trail, ...args);
+}
+
+before(async () => {
+    if (skip)
+        return;
+    plant = await TinyPlant.create();
+    appendFileSync(plant.file, 'alarms: local\n');
+    writeFileSync(path('tags.csv'), readFileSync(path('tags.csv'), 'utf8').replace('Stale s', 'Stale s,H').replace(/,1$/gm, ',1,90'));
+    assert.equal(plant.prepare().code, 0);
+    trail = path('audit.log');
+    tokens = {};
+    for (const role of ['viewer', 'operator', 'engineer'])
+        tokens[role] = runProgram('plantcast', ['token', 'add', path('tokens'), '--role', role, '--name', `${role}-1`]).out.trim();
+    assert.equal(spawnSync('openssl', ['req', '-x509', '-newkey', 'ec', '-pkeyopt', 'ec_paramgen_curve:prime256v1', '-nodes', '-keyout',
+        path('log.key'), '-out', path('log.pem'), '-days', '30', '-subj', '/CN=localhost', '-addext',
+        'subjectAltName=DNS:localhost']).status, 0);
+});
+after(async () => {
+    await syslog?.close();
+    await plant?.destroy();
+});
+
+test('what is done stands in it: who, from where, what, with what result', { skip }, async () => {
+    await start();
+    await found('the start', (line) => line.event === 'start');
+    const engineer = await PlainClient.open(plant.port, { localAddress: '127.0.0.5' });
+    await engineer.hello({ token: tokens.engineer });
+    const login = await found('the log-in', (line) => line.event === 'login' && line.who === 'engineer-1');
+    assert.deepEqual([login.result, login.role, login.from, login.how], ['done', 'engineer', '127.0.0.5', 'stream']);
+    engineer.say({ type: 'alarm', seq: 1, action: 'shelve', alarms: [['TI-1', 'H']], for_s: 60, reason: 'works on it' });
+    await engineer.text('alarmed');
+    const shelf = await found('the shelf', (line) => line.event === 'alarm');
+    assert.deepEqual([shelf.who, shelf.what], ['engineer-1', 'shelve TI-1 H for 60 s: works on it']);
+    engineer.say({ type: 'params', seq: 2, baseline: { set: 'then' } });
+    await engineer.text('params');
+    assert.equal((await found('the baseline', (line) => line.event === 'baseline')).what, 'keep then');
+    engineer.say({ type: 'prove', seq: 3, tag: 'TI-1', expected: 5, tolerance: 1 });
+    assert.equal((await found('the proof', (line) => line.event === 'proof')).what, 'TI-1: not passed');
+    engineer.close();
+    await found('the end', (line) => line.event === 'leave' && line.who === 'engineer-1');
+    const viewer = await PlainClient.open(plant.port);
+    await viewer.hello({ token: tokens.viewer });
+    viewer.say({ type: 'params', seq: 1, power: 3 });
+    await viewer.text('error');
+    const refused = await found('the refusal', (line) => line.event === 'access' && line.how === 'stream');
+    assert.deepEqual([refused.result, refused.who, /takes the role engineer/.test(refused.why)], ['refused', 'viewer-1', true]);
+    viewer.close();
+    assert.equal((await ask('/api/v1/reload', tokens.operator, { method: 'POST' })).status, 403);
+    await found('the refused reload', (line) => line.event === 'access' && line.who === 'operator-1' && line.what === '/api/v1/reload');
+    const reload = await ask('/api/v1/reload', tokens.engineer, { method: 'POST' });
+    assert.equal(JSON.parse(reload.body).by, 'engineer-1');
+    await found('the reload', (line) => line.event === 'reload' && line.result === 'done' && line.who === 'engineer-1');
+    assert.equal(verify().code, 0, verify().err);
+    assert.ok(!Object.values(tokens).some((token) => readFileSync(trail, 'utf8').includes(token)));
+});
+
+test('ten thousand wrong tokens: few lines, and others come in meanwhile', { skip }, async () => {
+    const before_ = lines().length;
+    let slowest = 0, refused = 0;
+    const wrong = async () => {
+        for (let i = 0; i < 500; i++) {
+            const { status } = await ask('/api/v1/tags', 'pc_wrong', { localAddress: '127.0.0.9' });
+            refused += status === 429 || status === 401;
+        }
+    };
+    const right = async () => {
+        for (let i = 0; i < 20; i++, await sleep(50)) {
+            const began = performance.now();
+            assert.equal((await ask('/api/v1/tags', tokens.viewer, { localAddress: '127.0.0.6' })).status, 200);
+            slowest = Math.max(slowest, performance.now() - began);
+        }
+    };
+    await Promise.all([...Array.from({ length: 20 }, wrong), right()]);
+    assert.equal(refused, 10000);
+    assert.ok(slowest < 5000, `${slowest} ms`);
+    await found('the slowing', (line) => /slowed/.test(line.why ?? ''));
+    const held = await found('those not looked at', (line) => /tokens of slowed addresses were not looked at/.test(line.what ?? ''));
+    assert.equal(held.result, 'refused');
+    assert.ok(lines().length - before_ < 60, `${lines().length - before_} lines`);
+});
+
+test('a changed byte and removed lines are found, also by the next start', { skip }, async () => {
+    await plant.daemon.stop();
+    const good = readFileSync(trail);
+    assert.match(verify().out, /: good: lines 1 to \d+ in 1 file/);
+    const text = good.toString().replace('engineer-1', 'engineer-2');
+    writeFileSync(trail, text);
+    assert.match(verify().err, /audit\.log:2: it was changed/);
+    const end = good.toString().trimEnd().split('\n');
+    writeFileSync(trail, `${end.slice(0, -3).join('\n')}\n`);
+    assert.match(verify().err, /the last 3 lines were removed/);
+    const { seq, hash } = JSON.parse(end.at(-1));
+    writeFileSync(trail, good);
+    assert.equal(verify('--known', `${seq}:${hash}`).code, 0);
+    assert.equal(verify('--known', `${seq + 1}:${hash}`).code, 1);
+    writeFileSync(trail, `${end.slice(0, -1).join('\n')}\n`);
+    await start();
+    await plant.daemon.line(/lines were removed/);
+    await found('the finding', (line) => line.event === 'audit' && /lines were removed/.test(line.what));
+    await plant.daemon.stop();
+    assert.equal(verify().code, 1, 'the gap stays');
+    writeFileSync(trail, '');
+    writeFileSync(`${trail}.head`, '');
+    assert.equal(runProgram('plantcast', ['audit', 'verify']).code, 2);
+});
+
+test('a disk that is full is said, in the log and the metrics, and nothing is lost', { skip }, async (t) => {
+    if (!existsSync('/usr/bin/prlimit'))
+        return t.skip('no prlimit');
+    await start();
+    await found('the start', (line) => line.event === 'start');
+    await sleep(200);
+    const limit = (bytes) => spawnSync('prlimit', ['--pid', String(plant.daemon.child.pid), `--fsize=${bytes}`]);
+    limit(`${statSync(trail).size + 20}:unlimited`);
+    const count = lines().length;
+    await ask('/api/v1/tags', 'pc_wrong', { localAddress: '127.0.0.20' });
+    await plant.daemon.line(/audit: .*audit\.log cannot be written \(File too large\)/);
+    await plant.daemon.line(/audit, not written: login refused: \(nobody\) from 127\.0\.0\.20/);
+    assert.match((await ask('/metrics', tokens.viewer)).body.toString(), /^plantcast_audit_good 0$/m);
+    assert.equal(lines().length, count);
+    assert.equal(verify().code, 0);
+    limit('unlimited:unlimited');
+    await plant.daemon.line(/audit: .*audit\.log is written again/);
+    await found('what waited', (line) => line.from === '127.0.0.20');
+    assert.match((await ask('/metrics', tokens.viewer)).body.toString(), /^plantcast_audit_good 1$/m);
+    assert.equal(verify().code, 0);
+});
+
+test('syslog by TLS: each line as RFC 5424, after an outage too, and only to whom a certificate vouches for', { skip }, async () => {
+    const key = readFileSync(path('log.key')), cert = readFileSync(path('log.pem'));
+    syslog = new SyslogServer(key, cert);
+    await syslog.listen();
+    await start('--audit-syslog', `localhost:${syslog.port}`, '--audit-ca', path('log.pem'));
+    const first = await syslog.until('the start', (text) => / start - /.test(text));
+    const [, head, json] = /^(.*?) - (\{.*)$/.exec(first);
+    assert.match(head, /^<109>1 \d{4}-\d\d-\d\dT\d\d:\d\d:\d\d\.\d+Z \S+ plantcastd \d+ start$/);
+    assert.deepEqual(JSON.parse(json), lines().find(({ seq }) => seq === JSON.parse(json).seq));
+    const { port } = syslog;
+    await syslog.close();
+    await ask('/api/v1/tags', 'pc_wrong', { localAddress: '127.0.0.21' });
+    await ask('/api/v1/tags', 'pc_wrong', { localAddress: '127.0.0.22' });
+    await plant.daemon.line(/audit: localhost:\d+ cannot be told/);
+    syslog = new SyslogServer(key, cert);
+    await syslog.listen(port);
+    for (const address of ['127.0.0.21', '127.0.0.22'])
+        assert.match(await syslog.until(address, (text) => text.includes(`"from":"${address}"`)), /^<108>1 /);
+    await start('--audit-syslog', `localhost:${syslog.port}`);
+    await plant.daemon.line(/audit: localhost:\d+ cannot be told: SSL/);
+    const wrong = runProgram('plantcastd', [plant.file, '--audit-syslog', 'localhost']);
+    assert.equal(wrong.code, 1);
+    assert.match(wrong.err, /needs --audit/);
+});

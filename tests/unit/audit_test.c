@@ -1,0 +1,352 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The audit trail: its chain, what was done to its file, rotation, a full disk, and messages of syslog. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/resource.h>
+#include <signal.h>
+#include <sys/stat.h>
+#include <unistd.h>
+#include <cmocka.h>
+
+#include "audit/audit.h"
+#include "audit/audit_file.h"
+#include "audit/audit_head.h"
+#include "audit/audit_syslog.h"
+#include "base/mem.h"
+
+static const int64_t AT_US = INT64_C(1795000000000000);
+static const struct audit_entry ENTRY = { .event = "alarm", .result = "done", .who = "Kim \"A\"", .what = "acknowledge TT-101 HH" };
+
+static char *folder(void)
+{
+    char *path = mem_strdup("/tmp/plantcast-audit-XXXXXX");
+    assert_non_null(mkdtemp(path));
+    return path;
+}
+
+static void clean(char *path)
+{
+    char *command = mem_printf("rm -r %s", path);
+    assert_int_equal(system(command), 0);
+    mem_free(command);
+    mem_free(path);
+}
+
+/* Appends so many lines, as one run of a daemon. Returns the finding (mem_free). */
+static char *write_lines(const char *path, int count, size_t most_bytes)
+{
+    struct audit_file file;
+    struct text lines = { 0 };
+    char *found, *later;
+    assert_int_equal(audit_file_open(&file, path, most_bytes, &found), 0);
+    for (int i = 0; i < count; i++) {
+        assert_int_equal(audit_file_append(&file, &ENTRY, AT_US + i, &lines, &later), 0);
+        assert_null(later);
+    }
+    text_finish(&lines);
+    audit_file_close(&file);
+    return found;
+}
+
+static void expect_good(const char *path, size_t files, size_t lines)
+{
+    struct audit_chain none;
+    struct audit_report report;
+    audit_chain_init(&none);
+    audit_file_verify(path, &none, &report);
+    if (report.text)
+        fprintf(stderr, "%s\n", report.text);
+    assert_true(report.good);
+    assert_int_equal(report.files, files);
+    assert_int_equal(report.lines, lines);
+    mem_free(report.text);
+}
+
+static void expect_fault(const char *path, const struct audit_chain *known, const char *text)
+{
+    struct audit_chain none;
+    struct audit_report report;
+    audit_chain_init(&none);
+    audit_file_verify(path, known ? known : &none, &report);
+    assert_false(report.good);
+    if (!strstr(report.text, text))
+        fprintf(stderr, "'%s' is not in '%s'\n", text, report.text);
+    assert_non_null(strstr(report.text, text));
+    mem_free(report.text);
+}
+
+static void put(const char *path, const char *bytes, size_t count)
+{
+    FILE *out = fopen(path, "w");
+    assert_non_null(out);
+    assert_int_equal(fwrite(bytes, 1, count, out), count);
+    fclose(out);
+}
+
+static void test_any_changed_byte(void **state)
+{
+    (void)state;
+    char *dir = folder(), *path = mem_printf("%s/a", dir);
+    size_t count;
+    struct audit_chain none;
+    assert_null(write_lines(path, 5, 1 << 20));
+    expect_good(path, 1, 5);
+    audit_chain_init(&none);
+    char *bytes = text_read_file(path, 1 << 20, &count);
+    for (size_t i = 0; i < count; i++) {
+        struct audit_report report;
+        bytes[i] ^= 1;
+        put(path, bytes, count);
+        audit_file_verify(path, &none, &report);
+        if (report.good)
+            fprintf(stderr, "byte %zu of %zu may be changed\n", i, count);
+        assert_false(report.good);
+        mem_free(report.text);
+        bytes[i] ^= 1;
+    }
+    put(path, bytes, count);
+    expect_good(path, 1, 5);
+    mem_free(bytes);
+    mem_free(path);
+    clean(dir);
+}
+
+/* Lines begin at these places; the last is the end. */
+static size_t starts_of(const char *bytes, size_t count, size_t starts[])
+{
+    size_t found = 0;
+    for (size_t i = 0; i < count; i++)
+        if (i == 0 || bytes[i - 1] == '\n')
+            starts[found++] = i;
+    starts[found] = count;
+    return found;
+}
+
+static void test_lines_removed_and_moved(void **state)
+{
+    (void)state;
+    char *dir = folder(), *path = mem_printf("%s/a", dir), *head_path = mem_printf("%s.head", path);
+    size_t count, starts[8];
+    mem_free(write_lines(path, 5, 1 << 20));
+    char *bytes = text_read_file(path, 1 << 20, &count), *copy = mem_array(count, 1);
+    assert_int_equal(starts_of(bytes, count, starts), 5);
+    /* the third */
+    memcpy(copy, bytes, starts[2]);
+    memcpy(copy + starts[2], bytes + starts[3], count - starts[3]);
+    put(path, copy, count - (starts[3] - starts[2]));
+    expect_fault(path, NULL, ":3: lines before it are missing");
+    /* the first: what is older may lie elsewhere, and is said */
+    struct audit_chain known, none;
+    struct audit_report report;
+    audit_chain_init(&none);
+    put(path, bytes + starts[1], count - starts[1]);
+    audit_file_verify(path, &none, &report);
+    assert_true(report.good);
+    assert_int_equal(report.first_seq, 2);
+    /* the last two */
+    put(path, bytes, starts[3]);
+    expect_fault(path, NULL, "the last 2 lines were removed");
+    /* and the head with them: only who kept a line elsewhere finds that */
+    known = report.end;
+    unlink(head_path);
+    expect_fault(path, NULL, "nobody can say");
+    mem_free(write_lines(path, 0, 1 << 20));
+    audit_file_verify(path, &none, &report);
+    assert_false(report.good);
+    mem_free(report.text);
+    struct audit_chain third;
+    audit_chain_init(&third);
+    const char *why;
+    assert_true(audit_chain_check(&third, bytes + starts[2], starts[3] - starts[2] - 1, true, &why));
+    assert_true(audit_head_write(head_path, &third));
+    expect_good(path, 1, 3);
+    expect_fault(path, &known, "before the known line 5");
+    memset(third.hash, 'a', AUDIT_HASH_CHARS);
+    expect_fault(path, &third, "line 3 is not the one that whoever kept it has");
+    mem_free(copy);
+    mem_free(bytes);
+    mem_free(head_path);
+    mem_free(path);
+    clean(dir);
+}
+
+/* A daemon that starts on a trail that was cut says so, and the gap stays. */
+static void test_next_start(void **state)
+{
+    (void)state;
+    char *dir = folder(), *path = mem_printf("%s/a", dir), *finding;
+    size_t count, starts[8];
+    mem_free(write_lines(path, 3, 1 << 20));
+    assert_null(write_lines(path, 2, 1 << 20));
+    expect_good(path, 1, 5);
+    char *bytes = text_read_file(path, 1 << 20, &count);
+    starts_of(bytes, count, starts);
+    assert_int_equal(truncate(path, (off_t)starts[3]), 0);
+    finding = write_lines(path, 1, 1 << 20);
+    assert_non_null(strstr(finding, "lines were removed"));
+    mem_free(finding);
+    expect_fault(path, NULL, ":4: lines before it are missing");
+    /* half a line, after a crash */
+    put(path, bytes, count - 10);
+    char *head_path = mem_printf("%s.head", path);
+    struct audit_chain fourth;
+    const char *why;
+    audit_chain_init(&fourth);
+    assert_true(audit_chain_check(&fourth, bytes + starts[3], starts[4] - starts[3] - 1, true, &why));
+    audit_head_write(head_path, &fourth);
+    finding = write_lines(path, 1, 1 << 20);
+    assert_non_null(strstr(finding, "half a line"));
+    mem_free(finding);
+    expect_good(path, 1, 5);
+    mem_free(head_path);
+    mem_free(bytes);
+    mem_free(path);
+    clean(dir);
+}
+
+static void test_rotation(void **state)
+{
+    (void)state;
+    char *dir = folder(), *path = mem_printf("%s/a", dir), *full = mem_printf("%s.000000000004", path), *later;
+    struct text lines = { 0 };
+    struct audit_file file;
+    assert_null(write_lines(path, 10, 1000)); /* of some 280 bytes each */
+    assert_int_equal(access(full, F_OK), 0);
+    expect_good(path, 3, 10);
+    assert_null(write_lines(path, 1, 1000));
+    expect_good(path, 3, 11);
+    /* by another program, while it is open */
+    char *moved = mem_printf("%s.000000000012", path);
+    assert_int_equal(audit_file_open(&file, path, 1 << 20, &later), 0);
+    assert_int_equal(audit_file_append(&file, &ENTRY, AT_US, &lines, &later), 0);
+    assert_int_equal(rename(path, moved), 0);
+    assert_int_equal(audit_file_append(&file, &ENTRY, AT_US, &lines, &later), 0);
+    assert_null(later);
+    expect_good(path, 4, 13);
+    /* cut, while it is open */
+    assert_int_equal(truncate(path, 0), 0);
+    assert_int_equal(audit_file_append(&file, &ENTRY, AT_US, &lines, &later), 0);
+    assert_non_null(strstr(later, "somebody else changed it"));
+    mem_free(later);
+    expect_fault(path, NULL, "lines before it are missing");
+    /* removed, while it is open */
+    unlink(path);
+    assert_int_equal(audit_file_append(&file, &ENTRY, AT_US, &lines, &later), 0);
+    assert_non_null(strstr(later, "was removed"));
+    mem_free(later);
+    audit_file_close(&file);
+    /* one of the full ones */
+    unlink(full);
+    unlink(moved);
+    expect_fault(path, NULL, "lines before it are missing");
+    text_finish(&lines);
+    mem_free(moved);
+    mem_free(full);
+    mem_free(path);
+    clean(dir);
+}
+
+/* A file that may not grow takes nothing of a line; once it may, nothing is missing. */
+static void test_full_disk(void **state)
+{
+    (void)state;
+    char *dir = folder(), *path = mem_printf("%s/a", dir), *later;
+    struct rlimit before, less;
+    struct text lines = { 0 };
+    struct audit_file file;
+    signal(SIGXFSZ, SIG_IGN);
+    assert_int_equal(audit_file_open(&file, path, 1 << 20, &later), 0);
+    assert_int_equal(audit_file_append(&file, &ENTRY, AT_US, &lines, &later), 0);
+    size_t bytes = lines.length;
+    getrlimit(RLIMIT_FSIZE, &before);
+    less = before;
+    less.rlim_cur = bytes + 100;
+    setrlimit(RLIMIT_FSIZE, &less);
+    for (int i = 0; i < 3; i++)
+        assert_true(audit_file_append(&file, &ENTRY, AT_US, &lines, &later) < 0);
+    assert_int_equal(lines.length, bytes);
+    setrlimit(RLIMIT_FSIZE, &before);
+    expect_good(path, 1, 1);
+    assert_int_equal(audit_file_append(&file, &ENTRY, AT_US, &lines, &later), 0);
+    assert_null(later);
+    expect_good(path, 1, 2);
+    audit_file_close(&file);
+    text_finish(&lines);
+    mem_free(path);
+    clean(dir);
+}
+
+/* What strangers send stands in a line, and stays one line of JSON. */
+static void test_strangers_texts(void **state)
+{
+    (void)state;
+    struct audit_chain chain, read;
+    struct text out = { 0 };
+    char *longest = mem_array(5001, 1);
+    const char *why;
+    memset(longest, '"', 5000);
+    audit_chain_init(&chain);
+    audit_chain_init(&read);
+    const struct audit_entry entry = { .event = "login", .result = "refused", .who = "a\nb\xff\x01\xed\xa0\x80", .what = longest };
+    audit_chain_add(&chain, &entry, AT_US, &out);
+    assert_int_equal(strcspn(out.at, "\n"), out.length - 1);
+    assert_non_null(strstr(out.at, "\"who\":\"a?b??"));
+    assert_true(out.length < AUDIT_LINE_BYTES);
+    assert_true(audit_chain_check(&read, out.at, out.length - 1, false, &why));
+    mem_free(longest);
+    text_finish(&out);
+}
+
+static void test_syslog_frame(void **state)
+{
+    (void)state;
+    struct text out = { 0 };
+    audit_syslog_frame(&out, "host.example", 17, "login", false, AT_US, "{}", 2);
+    assert_int_equal(atoi(out.at), strlen(strchr(out.at, ' ') + 1));
+    assert_string_equal(strchr(out.at, ' ') + 1, "<108>1 2026-11-18T11:06:40.000Z host.example plantcastd 17 login - {}");
+    text_finish(&out);
+    audit_syslog_frame(&out, "-", 17, "login", true, AT_US, "{}", 2);
+    assert_non_null(strstr(out.at, "<109>1 "));
+    text_finish(&out);
+}
+
+/* Threads record at once; all of it is there, in order. */
+static void test_daemon(void **state)
+{
+    (void)state;
+    char *dir = folder(), *path = mem_printf("%s/a", dir);
+    struct log *log = log_create(LOG_ERROR);
+    struct counters *counters = counters_create();
+    struct audit *audit = audit_start(&(struct audit_params){ .log = log, .counters = counters, .path = path });
+    assert_non_null(audit);
+    for (int i = 0; i < 200; i++)
+        audit_say(audit, &ENTRY);
+    audit_say(NULL, &ENTRY);
+    audit_stop(&audit);
+    expect_good(path, 1, 200);
+    assert_null(audit_start(&(struct audit_params){ .log = log, .counters = counters, .path = "/nowhere/a" }));
+    struct text metrics = { 0 };
+    counters_print(counters, &metrics);
+    assert_non_null(strstr(metrics.at, "plantcast_audit_lines_total 200"));
+    text_finish(&metrics);
+    counters_destroy(&counters);
+    log_destroy(&log);
+    mem_free(path);
+    clean(dir);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_any_changed_byte), cmocka_unit_test(test_lines_removed_and_moved), cmocka_unit_test(test_next_start),
+        cmocka_unit_test(test_rotation),         cmocka_unit_test(test_full_disk),               cmocka_unit_test(test_strangers_texts),
+        cmocka_unit_test(test_syslog_frame),     cmocka_unit_test(test_daemon),
+    };
+    cmocka_set_message_output(CM_OUTPUT_TAP);
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
