@@ -56,7 +56,7 @@ bool render_job_hold_fields(struct render_job *job, bool on_gpu)
     for (size_t i = 0; i < job->context.visible_count; i++) {
         int asset = job->visible[i];
         const struct fields_entry *from = job->fields[asset];
-        if (!from || !from->slice)
+        if (!from || !(on_gpu ? from->slice != NULL : from->shown != NULL))
             continue;
         if (!copy_field(job, from, on_gpu, &job->copies[asset]))
             return false;

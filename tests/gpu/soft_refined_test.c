@@ -1,104 +1,32 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Still pictures without a GPU against the same ones drawn by GL; and pictures that are coloured once more against new ones. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include "base/mem.h"
-#include "render/render_backend.h"
-#include "render/render_job.h"
 #include "tests/support/planned.h"
-#include "tests/support/rig.h"
+#include "tests/support/soft_case.h"
 #include "value/quality.h"
 
 static struct rig rig;
 static struct stand stand;
 
-static struct frame *draw_by_gl(const struct view *view)
-{
-    renderer_use_gl(stand.renderer, true);
-    struct frame *frame = stand_draw(&stand, view);
-    renderer_use_gl(stand.renderer, false);
-    return frame;
-}
-
-/* Whatever was drawn before. */
-static struct frame *draw_anew(const struct view *view)
-{
-    struct render_job *job = planned_begin(stand.renderer, view, stand.snapshot);
-    assert_non_null(job);
-    assert_ptr_equal(job->backend, &render_backend_soft);
-    struct frame *frame = renderer_end(stand.renderer, &job);
-    assert_non_null(frame);
-    return frame;
-}
-
-static int difference(const struct frame *a, const struct frame *b, int pixel)
-{
-    int most = 0;
-    for (int c = 0; c < 3; c++)
-        most = abs(a->bgrx[4 * pixel + c] - b->bgrx[4 * pixel + c]) > most ? abs(a->bgrx[4 * pixel + c] - b->bgrx[4 * pixel + c]) : most;
-    return most;
-}
-
-/* Rims of shadows and lines of a pixel's width may differ. */
-static void assert_like_gl(const struct view *view, double may_differ)
-{
-    struct frame *refined = draw_anew(view), *gl = draw_by_gl(view);
-    int far = 0, pixels = view->width_px * view->height_px;
-    double sum = 0;
-    for (int i = 0; i < pixels; i++) {
-        int by = difference(refined, gl, i);
-        far += by > 8;
-        sum += by;
-    }
-    if (far > may_differ * pixels || sum > (1 + 20 * may_differ) * pixels)
-        print_message("# %d of %d pixels differ by more than 8, all by %.2f on average\n", far, pixels, sum / pixels);
-    assert_true(far <= may_differ * pixels && sum <= (1 + 20 * may_differ) * pixels);
-    assert_int_equal(refined->marker_count, gl->marker_count);
-    assert_true(refined->marker_count > 0 || view->visibility.clip.plane_count > 0);
-    assert_int_equal(refined->label_count, gl->label_count);
-    for (size_t i = 0; i < gl->label_count; i++)
-        assert_true(refined->labels[i].value == gl->labels[i].value && fabsf(refined->labels[i].x_px - gl->labels[i].x_px) < 0.11f);
-    for (size_t i = 0; i < gl->marker_count; i++) {
-        assert_int_equal(refined->markers[i].tag, gl->markers[i].tag);
-        assert_int_equal(refined->markers[i].occluded, gl->markers[i].occluded);
-        assert_true(fabsf(refined->markers[i].x_px - gl->markers[i].x_px) < 0.01f);
-    }
-    assert_int_equal(refined->content, gl->content);
-    frame_unref(&refined);
-    frame_unref(&gl);
-}
-
-static void start_view(struct view *view, int width_px, int height_px)
-{
-    view_default(&stand.toy->scene, width_px, height_px, view);
-    view->tier = TIER_REFINED;
-}
-
 static void test_home(void **state)
 {
     struct view view;
     (void)state;
-    start_view(&view, 640, 360);
-    assert_like_gl(&view, 0.005);
+    soft_start_view(&stand, TIER_REFINED, 640, 360, &view);
+    soft_assert_like_gl(&stand, &view, 0.005);
     view.look = LOOK_FLAT;
-    assert_like_gl(&view, 0.005);
+    soft_assert_like_gl(&stand, &view, 0.005);
     view.look = LOOK_MATERIALS;
-    assert_like_gl(&view, 0.01);
+    soft_assert_like_gl(&stand, &view, 0.01);
     view.look = LOOK_GLOSSY;
-    assert_like_gl(&view, 0.01);
+    soft_assert_like_gl(&stand, &view, 0.01);
     view.look = LOOK_DEFAULT;
     view.range_min = 10;
     view.color_scale.log = true;
-    assert_like_gl(&view, 0.005);
+    soft_assert_like_gl(&stand, &view, 0.005);
 }
 
 static void test_sizes(void **state)
@@ -107,8 +35,8 @@ static void test_sizes(void **state)
     (void)state;
     for (size_t i = 0; i < sizeof(sizes) / sizeof(sizes[0]); i++) {
         struct view view;
-        start_view(&view, sizes[i][0], sizes[i][1]);
-        assert_like_gl(&view, 0.08);
+        soft_start_view(&stand, TIER_REFINED, sizes[i][0], sizes[i][1], &view);
+        soft_assert_like_gl(&stand, &view, 0.08);
     }
 }
 
@@ -117,10 +45,10 @@ static void test_cameras(void **state)
 {
     struct view view;
     (void)state;
-    start_view(&view, 320, 240);
+    soft_start_view(&stand, TIER_REFINED, 320, 240, &view);
     for (int i = 0; i < 12; i++) {
         stand_look(&stand, i, &view);
-        assert_like_gl(&view, 0.02);
+        soft_assert_like_gl(&stand, &view, 0.02);
     }
 }
 
@@ -130,17 +58,11 @@ static void test_orthographic(void **state)
     (void)state;
     for (int i = 0; i < 12; i++) {
         struct view view;
-        start_view(&view, 320, 240);
+        soft_start_view(&stand, TIER_REFINED, 320, 240, &view);
         stand_look(&stand, i, &view);
         view.camera.height_m = i % 3 ? 6 : 1.5;
-        assert_like_gl(&view, 0.02);
+        soft_assert_like_gl(&stand, &view, 0.02);
     }
-}
-
-static void draw_lines_every(struct view *view, double step)
-{
-    for (double line = step; line < 100 && view->color_scale.line_count < VIEW_LINES; line += step)
-        view->color_scale.lines[view->color_scale.line_count++] = line;
 }
 
 /* Lines, bands and logarithms. Rims of lines differ by the way slopes are measured. */
@@ -149,18 +71,18 @@ static void test_lines_and_scales(void **state)
     (void)state;
     for (int i = 0; i < 8; i++) {
         struct view view;
-        start_view(&view, 400, 300);
+        soft_start_view(&stand, TIER_REFINED, 400, 300, &view);
         stand_look(&stand, i, &view);
         view.camera.height_m = i == 7 ? 6 : 0;
         if (i % 4 != 1)
-            draw_lines_every(&view, 10);
+            soft_lines_every(&view, 10);
         view.ramp_interval = i % 4 == 1 ? 20 : 0;
         if (i % 4 == 2) {
             view.range_min = 10;
             view.color_scale.log = true;
         }
         view.look = i % 4 == 3 ? LOOK_FLAT : i >= 5 ? LOOK_GLOSSY : LOOK_DEFAULT;
-        assert_like_gl(&view, 0.02);
+        soft_assert_like_gl(&stand, &view, 0.02);
     }
 }
 
@@ -179,20 +101,14 @@ static void test_operator(void **state)
     struct view view;
     (void)state;
     set_limits(true);
-    start_view(&view, 400, 300);
+    soft_start_view(&stand, TIER_REFINED, 400, 300, &view);
     view.field.show = SHOW_OPERATOR;
     view_default_scale(&stand.toy->scene, &view);
     for (int camera = 0; camera < 6; camera++) {
-        assert_like_gl(&view, 0.02);
+        soft_assert_like_gl(&stand, &view, 0.02);
         stand_look(&stand, 2 * camera, &view);
     }
     set_limits(false);
-}
-
-static void cut_at(struct view *view, double x, double y, double z, double d)
-{
-    memcpy(view->visibility.clip.planes[0], (double[4]){ x, y, z, d }, 4 * sizeof(double));
-    view->visibility.clip.plane_count = 1;
 }
 
 /* Bodies that are closed have caps, the inner side of others shows. */
@@ -201,16 +117,16 @@ static void test_cuts(void **state)
     (void)state;
     for (int i = 0; i < 12; i++) {
         struct view view;
-        start_view(&view, 320, 240);
+        soft_start_view(&stand, TIER_REFINED, 320, 240, &view);
         stand_look(&stand, i, &view);
         view.camera.height_m = i % 5 == 4 ? 6 : 0;
         if (i % 3 == 0)
-            cut_at(&view, 0, 0, -1, 0.2 + 0.1 * i);
+            soft_cut_at(&view, 0, 0, 0, -1, 0.2 + 0.1 * i);
         if (i % 3 == 1)
-            cut_at(&view, 0.6, 0.64, -0.48, 0.3);
+            soft_cut_at(&view, 0, 0.6, 0.64, -0.48, 0.3);
         if (i % 3 == 2)
             clip_box(&view.visibility.clip, (double[3]){ -0.8, -0.5, -0.2 }, (double[3]){ 2.1, 0.3, 1.1 });
-        assert_like_gl(&view, 0.02);
+        soft_assert_like_gl(&stand, &view, 0.02);
     }
 }
 
@@ -219,15 +135,15 @@ static void test_ghosts(void **state)
     (void)state;
     for (int i = 0; i < 8; i++) {
         struct view view;
-        start_view(&view, 320, 240);
+        soft_start_view(&stand, TIER_REFINED, 320, 240, &view);
         stand_look(&stand, i, &view);
         view.dark = i % 2;
         view.camera.height_m = i == 6 ? 6 : 0;
         asset_set_add(&view.visibility.ghosts, i % 4);
         asset_set_add(&view.visibility.ghosts, 1);
         if (i == 5)
-            cut_at(&view, 0.6, 0.64, -0.48, 0.3);
-        assert_like_gl(&view, 0.02);
+            soft_cut_at(&view, 0, 0.6, 0.64, -0.48, 0.3);
+        soft_assert_like_gl(&stand, &view, 0.02);
     }
 }
 
@@ -235,11 +151,11 @@ static void test_suns(void **state)
 {
     struct view view;
     (void)state;
-    start_view(&view, 400, 300);
+    soft_start_view(&stand, TIER_REFINED, 400, 300, &view);
     for (int i = 0; i < 4; i++) {
         double towards[3] = { 0.6 * cos(i), 0.6 * sin(i), 0.8 };
         memcpy(view.light_dir, towards, sizeof(towards));
-        assert_like_gl(&view, 0.01);
+        soft_assert_like_gl(&stand, &view, 0.01);
     }
 }
 
@@ -247,10 +163,10 @@ static void test_outlines(void **state)
 {
     struct view view;
     (void)state;
-    start_view(&view, 640, 360);
+    soft_start_view(&stand, TIER_REFINED, 640, 360, &view);
     for (int asset = 0; asset < (int)stand.toy->scene.asset_count; asset++) {
         view.selected_asset = asset;
-        assert_like_gl(&view, 0.02);
+        soft_assert_like_gl(&stand, &view, 0.02);
     }
 }
 
@@ -258,9 +174,9 @@ static void test_hidden_assets(void **state)
 {
     struct view view;
     (void)state;
-    start_view(&view, 320, 240);
+    soft_start_view(&stand, TIER_REFINED, 320, 240, &view);
     asset_set_add(&view.visibility.hidden, 1);
-    assert_like_gl(&view, 0.01);
+    soft_assert_like_gl(&stand, &view, 0.01);
 }
 
 /* A floor of 8 m, cut into strips that share their edges. */
@@ -293,9 +209,9 @@ static struct frame *draw_box_over_floor(uint32_t strips, const double light[3])
     toy_add(toy, "FLOOR", &floor, (double[3]){ 0, 0, 0 }, NULL, 0);
     toy_add(toy, "BOX", &box, (double[3]){ 0, 0, 0.5 }, NULL, 0);
     stand_init(&stand, &rig, toy);
-    start_view(&view, 400, 300);
+    soft_start_view(&stand, TIER_REFINED, 400, 300, &view);
     memcpy(view.light_dir, light, sizeof(view.light_dir));
-    struct frame *frame = draw_anew(&view);
+    struct frame *frame = soft_draw_anew(&stand, &view);
     stand_finish(&stand);
     stand = others;
     return frame;
@@ -307,12 +223,12 @@ static void test_nothing_in_sight(void **state)
 {
     (void)state;
     struct view view;
-    start_view(&view, 320, 180);
+    soft_start_view(&stand, TIER_REFINED, 320, 180, &view);
     for (int c = 0; c < 3; c++) /* the sky behind */
         view.camera.target_m[c] = 2 * view.camera.eye_m[c] - view.camera.target_m[c];
     struct render_job *first = planned_begin(stand.renderer, &view, stand.snapshot);
     assert_non_null(first);
-    assert_like_gl(&view, 0);
+    soft_assert_like_gl(&stand, &view, 0);
     struct frame *frame = renderer_end(stand.renderer, &first);
     assert_non_null(frame);
     frame_unref(&frame);
@@ -326,7 +242,7 @@ static void test_shadows_on_slivers(void **state)
         struct frame *slivers = draw_box_over_floor(1000, towards), *whole = draw_box_over_floor(1, towards);
         int far = 0, pixels = slivers->width_px * slivers->height_px;
         for (int i = 0; i < pixels; i++)
-            far += difference(slivers, whole, i) > 8;
+            far += soft_difference(slivers, whole, i) > 8;
         assert_in_range(far, 0, pixels / 1000);
         frame_unref(&slivers);
         frame_unref(&whole);
@@ -354,9 +270,9 @@ static void test_thin_poles_have_no_beads(void **state)
     shape_box(&pole, TOY_STEEL, (double[3]){ -0.056, -0.056, 0 }, (double[3]){ 0.056, 0.056, 8 });
     toy_add(toy, "POLE", &pole, (double[3]){ 0, 0, 0 }, NULL, 0);
     stand_init(&stand, &rig, toy);
-    start_view(&view, 200, 300);
+    soft_start_view(&stand, TIER_REFINED, 200, 300, &view);
     view.camera = (struct camera){ .eye_m = { 0, -30, 4 }, .target_m = { 0, 0, 4 }, .up = { 0.05, 0, 1 }, .fov_deg = 17.6 };
-    struct frame *frames[] = { draw_anew(&view), draw_by_gl(&view) };
+    struct frame *frames[] = { soft_draw_anew(&stand, &view), soft_draw_by_gl(&stand, &view) };
     for (int by_gl = 0; by_gl < 2; by_gl++) {
         int least = 255, most = 0;
         for (int y = FIRST; y < LAST; y++) {
@@ -382,7 +298,7 @@ static bool is_quick(const struct view *view)
 static void assert_same_anew(const struct view *view)
 {
     assert_true(is_quick(view));
-    struct frame *again = stand_draw(&stand, view), *anew = draw_anew(view);
+    struct frame *again = stand_draw(&stand, view), *anew = soft_draw_anew(&stand, view);
     assert_memory_equal(again->bgrx, anew->bgrx, (size_t)again->height_px * (size_t)again->stride_bytes);
     assert_int_equal(again->content, anew->content);
     assert_int_equal(again->label_count, anew->label_count);
@@ -401,9 +317,9 @@ static void test_new_readings_are_a_new_picture(void **state)
 {
     struct view view;
     (void)state;
-    start_view(&view, 501, 300);
+    soft_start_view(&stand, TIER_REFINED, 501, 300, &view);
     view.selected_asset = 0;
-    struct frame *first = draw_anew(&view);
+    struct frame *first = soft_draw_anew(&stand, &view);
     toy_set(stand.snapshot, 0, 75, QUALITY_GOOD);
     toy_set(stand.snapshot, 3, 20, QUALITY_GOOD);
     assert_same_anew(&view);
@@ -425,11 +341,11 @@ static void test_lines_again(void **state)
 {
     struct view view;
     (void)state;
-    start_view(&view, 501, 300);
-    draw_lines_every(&view, 10);
+    soft_start_view(&stand, TIER_REFINED, 501, 300, &view);
+    soft_lines_every(&view, 10);
     asset_set_add(&view.visibility.ghosts, 2);
-    cut_at(&view, 0, 0, -1, 1.2);
-    struct frame *first = draw_anew(&view);
+    soft_cut_at(&view, 0, 0, 0, -1, 1.2);
+    struct frame *first = soft_draw_anew(&stand, &view);
     assert_true(first->label_count > 0);
     frame_unref(&first);
     toy_set(stand.snapshot, 0, 75, QUALITY_GOOD);
@@ -439,7 +355,7 @@ static void test_lines_again(void **state)
     assert_same_anew(&view);
     view.color_scale.line_count = 0;
     assert_same_anew(&view);
-    draw_lines_every(&view, 20);
+    soft_lines_every(&view, 20);
     assert_false(is_quick(&view)); /* that last picture had none */
     toy_fill(stand.snapshot, 0);
 }
@@ -448,8 +364,8 @@ static void test_new_colors_too(void **state)
 {
     struct view view;
     (void)state;
-    start_view(&view, 300, 200);
-    struct frame *frame = draw_anew(&view);
+    soft_start_view(&stand, TIER_REFINED, 300, 200, &view);
+    struct frame *frame = soft_draw_anew(&stand, &view);
     frame_unref(&frame);
     view.colormap = (int)colormap_count() - 1;
     view.range_min = 30;
@@ -467,8 +383,8 @@ static void test_what_else_changes_is_drawn(void **state)
 {
     struct view view, other;
     (void)state;
-    start_view(&view, 300, 200);
-    struct frame *frame = draw_anew(&view);
+    soft_start_view(&stand, TIER_REFINED, 300, 200, &view);
+    struct frame *frame = soft_draw_anew(&stand, &view);
     frame_unref(&frame);
     assert_true(is_quick(&view));
     other = view;
@@ -494,9 +410,9 @@ static void test_few_large_ones_are_kept(void **state)
     struct view views[4];
     (void)state;
     for (int i = 0; i < 4; i++) {
-        start_view(&views[i], 3000, 2600);
+        soft_start_view(&stand, TIER_REFINED, 3000, 2600, &views[i]);
         views[i].camera.eye_m[0] += i;
-        struct frame *frame = draw_anew(&views[i]);
+        struct frame *frame = soft_draw_anew(&stand, &views[i]);
         frame_unref(&frame);
     }
     assert_false(is_quick(&views[0]));
@@ -526,18 +442,5 @@ int main(void)
         cmocka_unit_test(test_what_else_changes_is_drawn),
         cmocka_unit_test(test_few_large_ones_are_kept),
     };
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    if (!rig_init(&rig, "refined_test"))
-        return 0;
-    if (!rig.gl->software) {
-        printf("TAP version 13\n1..1\nok 1 - refined_test # SKIP a GPU draws still pictures itself\n");
-        rig_finish(&rig);
-        return 0;
-    }
-    stand_init(&stand, &rig, toy_unit());
-    toy_fill(stand.snapshot, 0);
-    int failed = cmocka_run_group_tests(tests, NULL, NULL);
-    stand_finish(&stand);
-    rig_finish(&rig);
-    return failed;
+    return soft_run("refined_test", &rig, &stand, toy_unit, tests, sizeof(tests) / sizeof(tests[0]));
 }

@@ -28,8 +28,6 @@ bool soft_read_textures(struct soft *soft, const struct sky *sky)
     for (size_t m = 0; m < gpu_scene->model_count; m++) {
         soft->ramp_of_model[m] = (uint32_t)rows;
         rows += gpu_scene->models[m].material_count;
-        for (size_t i = 0; i < gpu_scene->models[m].material_count; i++)
-            soft->has_holes |= gpu_scene->models[m].materials[i].masked;
     }
     soft->ramp_count = rows;
     soft->muted_ramps = mem_array(rows * RAMP_STEPS, sizeof(*soft->muted_ramps));

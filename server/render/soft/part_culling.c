@@ -4,7 +4,7 @@
 #include <math.h>
 
 #include "base/mem.h"
-#include "render/soft/soft_impl.h"
+#include "render/soft/tile.h"
 #include "render/soft/lanes.h"
 #include "render/matrix.h"
 #include "render/gl/ghosts.h"
@@ -171,18 +171,25 @@ static bool add_asset(struct soft *soft, int asset, const struct model_level *le
     matrix_point(file_from_plant, eye_m, eye);
     for (int c = 0; c < 3; c++)
         found->eye_m[c] = (float)eye[c];
+    soft->blends |= found->parts && found->parts->blended && !mesh->has_field;
     if (!found->parts || !mesh->cut || !soft->counts_bodies)
         return found->parts != NULL;
     return soft_parts_close(&soft->keeper->parts[model - soft->gpu_scene->models][level - model->levels], mesh->file,
                             asset_closed(model->file, (uint32_t)(level - model->levels)), level->vertex_count);
 }
 
+static void start(struct soft *soft, bool counts_bodies)
+{
+    soft->mesh_count = soft->vertex_count = 0;
+    soft->blends = false;
+    soft->counts_bodies = counts_bodies;
+}
+
 bool soft_find(struct soft *soft, bool bodies)
 {
     const struct frame_context *context = soft->context;
     bool good = true;
-    soft->mesh_count = soft->vertex_count = 0;
-    soft->counts_bodies = bodies && soft->cut_count > 0;
+    start(soft, bodies && soft->cut_count > 0);
     for (size_t i = 0; i < context->visible_count && good; i++)
         good = add_asset(soft, context->visible[i], frame_level(context, context->visible[i]), false);
     if (!good)
@@ -198,8 +205,7 @@ bool soft_find(struct soft *soft, bool bodies)
 
 bool soft_find_only(struct soft *soft, int asset)
 {
-    soft->mesh_count = soft->vertex_count = 0;
-    soft->counts_bodies = false;
+    start(soft, false);
     if (!add_asset(soft, asset, frame_level(soft->context, asset), true))
         return false;
     find_meshes(soft, 0, 1);
@@ -208,8 +214,7 @@ bool soft_find_only(struct soft *soft, int asset)
 
 bool soft_find_ghosts(struct soft *soft)
 {
-    soft->mesh_count = soft->vertex_count = 0;
-    soft->counts_bodies = false;
+    start(soft, false);
     for (size_t i = 0; i < soft->gpu_scene->scene->asset_count; i++) {
         if (!ghosts_shows(soft->context, i))
             continue;
@@ -219,4 +224,31 @@ bool soft_find_ghosts(struct soft *soft)
     }
     workers_for(soft->workers, soft->mesh_count, 1, find_meshes, soft);
     return true;
+}
+
+/* The mesh that has this id. */
+static size_t mesh_of(const struct soft *soft, uint32_t id)
+{
+    size_t low = 0, high = soft->mesh_count;
+    while (high - low > 1) {
+        size_t middle = (low + high) / 2;
+        if (soft->found[middle].first_id <= id)
+            low = middle;
+        else
+            high = middle;
+    }
+    return low;
+}
+
+void soft_find_triangle(const struct soft *soft, uint32_t id, struct soft_triangle *triangle)
+{
+    uint32_t number = id & ~ID_BACK;
+    size_t mesh = mesh_of(soft, number);
+    const struct soft_found *found = &soft->found[mesh];
+    uint32_t local = number - found->first_id;
+    const struct soft_part *part = &found->parts->parts[found->items[local / PART_TRIANGLES].part];
+    triangle->id = id;
+    triangle->mesh = (uint32_t)mesh;
+    triangle->material = found->ramp + part->material;
+    soft_part_triangle(found->parts, part, local % PART_TRIANGLES, triangle->vertices);
 }

@@ -154,6 +154,7 @@ static void end_part(struct maker *maker, struct soft_part *part)
     }
     write_triangles(maker, part);
     write_places(maker, part);
+    parts->blended |= part->blended;
     mem_grow(&parts->parts, &parts->part_capacity, parts->part_count + 1, sizeof(*parts->parts));
     parts->parts[parts->part_count++] = *part;
 }
@@ -167,6 +168,7 @@ static void add_cluster(struct maker *maker, const struct asset_cluster *cluster
             .first_vertex = (uint32_t)maker->parts->vertex_count,
             .material = (uint16_t)primitive->material,
             .double_sided = maker->file->materials[primitive->material].double_sided != 0,
+            .blended = maker->file->materials[primitive->material].alpha == ASSET_ALPHA_BLEND,
         };
         uint32_t begin = done;
         while (done < cluster->index_count && add_triangle(maker, &part, maker->file->indices + cluster->first_index + done))

@@ -16,6 +16,7 @@ struct soft_part {
     uint16_t rounded; /* triangles, up to whole lanes; what is beyond has no area */
     uint16_t material;
     bool double_sided;
+    bool blended; /* its material is, where no field is shown */
 };
 
 struct soft_parts {
@@ -25,6 +26,7 @@ struct soft_parts {
     uint8_t *corners;   /* vertices of the part */
     float *planes;      /* four for three corners: each part's normals (x, then y, then z), then how far along them its triangles lie */
     uint8_t *closed;    /* as vertices: 1 where they are of a closed body. NULL: not asked for yet */
+    bool blended;       /* some part is */
     size_t part_count, vertex_count, corner_count;
     size_t part_capacity, vertex_capacity, place_capacity, corner_capacity, plane_capacity;
 };
@@ -37,6 +39,14 @@ static inline const float *soft_part_places(const struct soft_parts *parts, cons
 static inline const float *soft_part_planes(const struct soft_parts *parts, const struct soft_part *part)
 {
     return parts->planes + 4 * (size_t)(part->first_corner / 3);
+}
+
+/* Vertices of the file, of one of its triangles. */
+static inline void soft_part_triangle(const struct soft_parts *parts, const struct soft_part *part, uint32_t triangle, uint32_t vertices[3])
+{
+    const uint8_t *corners = parts->corners + part->first_corner + triangle;
+    for (int i = 0; i < 3; i++)
+        vertices[i] = parts->vertices[part->first_vertex + corners[i * part->rounded]];
 }
 
 /* False: out of memory. Finish in both cases. */

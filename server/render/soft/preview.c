@@ -34,8 +34,12 @@ struct soft *soft_create(struct workers *workers, const struct gpu_scene *gpu_sc
     soft->gpu_scene = gpu_scene;
     soft->kept.bound_bytes = KEPT_BYTES;
     soft->parts = mem_array(gpu_scene->model_count, sizeof(*soft->parts));
-    if (!soft_read_textures(soft, sky))
+    if (!soft_read_textures(soft, sky) ||
+        (!keeper && !soft_materials_init(&soft->own_materials, gpu_scene->models, gpu_scene->model_count, workers))) {
         soft_destroy(&soft);
+        return NULL;
+    }
+    soft->materials = soft->keeper->own_materials.at;
     return soft;
 }
 
@@ -45,6 +49,7 @@ void soft_destroy(struct soft **soft_ptr)
     if (!soft)
         return;
     soft_rest(soft);
+    soft_materials_finish(&soft->own_materials);
     mem_free(soft->parts);
     mem_free(soft->muted_ramps);
     mem_free(soft->own_ramps);
@@ -56,10 +61,9 @@ void soft_destroy(struct soft **soft_ptr)
     *soft_ptr = NULL;
 }
 
-/* Holes need textures; what is see-through is another pass's work. */
-bool preview_can(const struct soft *soft, const struct view *view)
+bool preview_can(const struct soft *soft)
 {
-    return view->tier == TIER_PREVIEW && soft->ramp_count <= MOST_RAMPS && !soft->has_holes;
+    return soft->ramp_count <= MOST_RAMPS;
 }
 
 /* Lines are worked out with the triangles: such a picture is drawn anew each time. */

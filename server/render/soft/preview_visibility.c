@@ -16,20 +16,6 @@ struct spot { /* a triangle, in the picture */
     double weights[3][3]; /* of x, y and 1: of its corners, up to a factor */
 };
 
-/* The mesh that has this id. */
-static size_t mesh_of(const struct soft *soft, uint32_t id)
-{
-    size_t low = 0, high = soft->mesh_count;
-    while (high - low > 1) {
-        size_t middle = (low + high) / 2;
-        if (soft->found[middle].first_id <= id)
-            low = middle;
-        else
-            high = middle;
-    }
-    return low;
-}
-
 void soft_weights(const struct soft_mesh *mesh, const uint32_t vertices[3], double weights[3][3])
 {
     double at[3][3]; /* x w, y w, w */
@@ -51,20 +37,15 @@ void soft_weights(const struct soft_mesh *mesh, const uint32_t vertices[3], doub
 static void find_spot(const struct keeping *keeping, struct visibility_band *band, uint32_t id, struct spot *spot)
 {
     const struct soft *soft = keeping->soft;
-    size_t m = mesh_of(soft, id);
-    const struct soft_found *found = &soft->found[m];
-    const struct soft_mesh *mesh = &soft->meshes[m];
-    uint32_t local = id - found->first_id;
-    const struct soft_part *part = &found->parts->parts[found->items[local / PART_TRIANGLES].part];
-    const uint8_t *corners = found->parts->corners + part->first_corner + local % PART_TRIANGLES;
-    uint32_t vertices[3], of_picture[3];
-    for (int i = 0; i < 3; i++) {
-        vertices[i] = found->parts->vertices[part->first_vertex + corners[i * part->rounded]];
-        of_picture[i] = mesh->first_vertex + vertices[i];
-    }
+    struct soft_triangle triangle;
+    soft_find_triangle(soft, id, &triangle);
+    const struct soft_mesh *mesh = &soft->meshes[triangle.mesh];
+    uint32_t of_picture[3];
+    for (int i = 0; i < 3; i++)
+        of_picture[i] = mesh->first_vertex + triangle.vertices[i];
     spot->id = id;
     spot->number = visibility_add_triangle(band, of_picture);
-    soft_weights(mesh, vertices, spot->weights);
+    soft_weights(mesh, triangle.vertices, spot->weights);
 }
 
 static uint32_t weights_at(const struct spot *spot, double x, double y)

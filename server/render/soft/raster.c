@@ -14,7 +14,7 @@ SOFT_INLINE void keep_id(const struct soft_tile *tile, const struct soft_sample 
     if (!sample->ids)
         return;
     lanes_int *ids = (lanes_int *)(sample->ids + at);
-    *ids = lanes_choose_int(seen, (lanes_int){ 0 } + id_of(tile, face), *ids);
+    *ids = lanes_choose_int(seen, (lanes_int){ 0 } + (int32_t)soft_id(tile, face), *ids);
 }
 
 /* --- any face --------------------------------------------------------------------------------------------------------------- */
@@ -143,8 +143,19 @@ SOFT_INLINE void narrow(const struct setup *setup, float y, int *left, int *righ
     }
 }
 
+/* Of eight pixels from column on: those that are no holes. */
+SOFT_INLINE lanes_int leave_out_holes(const struct soft_cutout *cutout, lanes x, float y, lanes_int seen)
+{
+    for (uint32_t bits = lanes_bits(seen); bits; bits &= bits - 1) {
+        int i = __builtin_ctz(bits);
+        seen[i] = soft_is_hole(cutout, x[i], y) ? 0 : -1;
+    }
+    return seen;
+}
+
+/* cutout: NULL: it has no holes. */
 SOFT_INLINE void draw_face(const struct soft_tile *tile, const struct soft_sample *sample, const struct soft_face *face,
-                           const struct setup *setup, const struct ink *ink)
+                           const struct setup *setup, const struct soft_cutout *cutout, const struct ink *ink)
 {
     bool wide = face->right - face->left >= 2 * LANES;
     int last = tile->rect.right + 1 - LANES; /* beyond the tile another thread draws */
@@ -156,8 +167,8 @@ SOFT_INLINE void draw_face(const struct soft_tile *tile, const struct soft_sampl
             narrow(setup, y, &left, &right);
         for (int e = 0; e < 3; e++)
             sides[e] = edge_row(&setup->edges[e], y);
-        for (int column = left; column <= right; column += LANES) {
-            column = column < last ? column : last;
+        for (int wanted = left; wanted <= right; wanted += LANES) {
+            int column = wanted < last ? wanted : last;
             lanes x = LANES_IOTA + ((float)column + 0.5f + sample->x), from_x = x - setup->x;
             lanes_int side = edge_side(&setup->edges[0], sides[0], x) | edge_side(&setup->edges[1], sides[1], x) |
                              edge_side(&setup->edges[2], sides[2], x);
@@ -165,8 +176,17 @@ SOFT_INLINE void draw_face(const struct soft_tile *tile, const struct soft_sampl
             lanes *depth = (lanes *)(sample->depth + place);
             lanes here = plane_at(&setup->depth, from_x, from_y, setup->thin);
             lanes_int seen = (side >= 0) & (here >= *depth);
+            if (cutout)
+                seen = leave_out_holes(cutout, x, y, seen);
             if (!lanes_any(seen))
                 continue;
+            if (tile->draws == DRAW_BLENDED) {
+                for (uint32_t bits = lanes_bits(seen) >> (wanted - column) << (wanted - column); bits; bits &= bits - 1) {
+                    int i = __builtin_ctz(bits);
+                    soft_add_fragment(tile, (int)(sample - tile->samples), face, column + i, row, here[i]);
+                }
+                continue;
+            }
             if (sample->marks) {
                 lanes_int *marks = (lanes_int *)(sample->marks + place), mark = marks_at(setup, ink, x, y);
                 *marks = lanes_choose_int(seen, mark, *marks);
@@ -230,13 +250,17 @@ static void draw_any(const struct soft_tile *tile, const struct soft_face *face,
     struct soft_vertex v[3];
     struct near_patterns patterns[3];
     struct setup setup;
+    struct soft_cutout cutout;
+    bool has_holes = tile->material->cut_out;
     for (int i = 0; i < 3; i++) {
         v[i] = vertex_of(&tile->corners, face->corners[i]);
         patterns[i] = patterns_of(&tile->corners, face->corners[i]);
     }
     setup_init(&setup, v, patterns, mark);
+    if (has_holes)
+        soft_cutout_init(&cutout, tile, face);
     for (int s = 0; s < tile->sample_count; s++)
-        draw_face(tile, &tile->samples[s], face, &setup, ink);
+        draw_face(tile, &tile->samples[s], face, &setup, has_holes ? &cutout : NULL, ink);
 }
 
 /* Of the inner side of what is cut. */
@@ -251,6 +275,7 @@ static uint32_t mark_of_back(const struct soft_tile *tile, const struct soft_fac
 void soft_raster_faces(const struct soft_tile *tile, uint32_t mark)
 {
     struct ink ink = ink_of(tile->soft);
+    bool one_by_one = tile->material->cut_out || tile->draws == DRAW_BLENDED;
     const struct soft_face *waiting[LANES];
     int count = 0;
     for (int i = 0; i < tile->face_count; i++) {
@@ -259,7 +284,7 @@ void soft_raster_faces(const struct soft_tile *tile, uint32_t mark)
             draw_any(tile, face, mark_of_back(tile, face), &ink);
             continue;
         }
-        if (!is_small(face) || !is_plain(&tile->corners, face)) {
+        if (one_by_one || !is_small(face) || !is_plain(&tile->corners, face)) {
             draw_any(tile, face, mark, &ink);
             continue;
         }

@@ -19,22 +19,6 @@ static const double OFF_SURFACE_TEXELS = 2.58;      /* as sun_visibility in shad
 
 /* --- what refined frames share ------------------------------------------------------------------------------------------------------- */
 
-static void find_models(struct refiner *refiner)
-{
-    const struct gpu_scene *gpu_scene = refiner->gpu_scene;
-    refiner->textured = mem_array(gpu_scene->model_count, sizeof(bool));
-    refiner->masked = mem_array(gpu_scene->model_count, sizeof(bool));
-    refiner->blended = mem_array(gpu_scene->model_count, sizeof(bool));
-    for (size_t m = 0; m < gpu_scene->model_count; m++) {
-        const struct model *model = &gpu_scene->models[m];
-        for (size_t i = 0; i < model->material_count; i++) {
-            refiner->textured[m] |= model->materials[i].mask != 0;
-            refiner->masked[m] |= model->materials[i].masked && model->materials[i].mask;
-            refiner->blended[m] |= model->file->view.materials[i].alpha == ASSET_ALPHA_BLEND;
-        }
-    }
-}
-
 static lanes material_of(const struct asset_material *material)
 {
     return (lanes){ material->base_color[0], material->base_color[1], material->base_color[2], material->metallic,
@@ -66,7 +50,6 @@ struct refiner *refiner_create(struct workers *workers, const struct gpu_scene *
     struct refiner *refiner = mem_new(sizeof(*refiner));
     *refiner = (struct refiner){ .workers = workers, .gpu_scene = gpu_scene, .sky = sky, .soft = soft, .environments = environments };
     refiner->kept.bound_bytes = KEPT_BYTES;
-    find_models(refiner);
     find_materials(refiner);
     find_tones(refiner);
     return refiner;
@@ -80,7 +63,6 @@ static void destroy(struct refined **refined_ptr)
     soft_destroy(&refined->soft);
     visibility_buffer_destroy(&refined->buffer);
     mem_free(refined->normals);
-    mem_free(refined->parts);
     mem_free(refined->caps);
     mem_free(refined);
     *refined_ptr = NULL;
@@ -93,9 +75,6 @@ void refiner_destroy(struct refiner **refiner_ptr)
         return;
     destroy(&refiner->spare);
     visibility_store_finish(&refiner->kept);
-    mem_free(refiner->textured);
-    mem_free(refiner->masked);
-    mem_free(refiner->blended);
     mem_free(refiner->materials);
     mem_free(refiner->surroundings.texels);
     mem_free(refiner->light.open);
@@ -118,7 +97,7 @@ size_t refiner_room_bytes(const struct refiner *refiner)
     const struct refined *spare = refiner->spare;
     if (!spare)
         return 0;
-    return soft_room_bytes(spare->soft) + spare->mesh_capacity * sizeof(*spare->normals) + spare->part_capacity * sizeof(*spare->parts);
+    return soft_room_bytes(spare->soft) + spare->mesh_capacity * sizeof(*spare->normals);
 }
 
 size_t refiner_light_bytes(const struct refiner *refiner)
@@ -137,22 +116,6 @@ void refiner_rest(struct refiner *refiner)
     visibility_store_finish(&refiner->kept);
     mem_free(refiner->light.open);
     refiner->light = (struct refined_light){ 0 };
-}
-
-bool refiner_can(const struct refiner *refiner, const struct frame_context *context)
-{
-    const struct view *view = context->view;
-    if (view->tier != TIER_REFINED || context->reference)
-        return false;
-    for (size_t i = 0; i < context->visible_count; i++) {
-        int asset = context->visible[i];
-        size_t model = (size_t)(context->gpu_scene->of_asset[asset] - context->gpu_scene->models);
-        bool field = context->fields[asset] != NULL, lost = field && !context->fields[asset]->slice; /* only GL hatches without scalars */
-        bool textures = refiner->textured[model] && (!field || view->look == LOOK_GLOSSY);
-        if (lost || refiner->masked[model] || textures || (!field && refiner->blended[model]))
-            return false;
-    }
-    return true;
 }
 
 /* --- life -------------------------------------------------------------------------------------------------------------------- */
@@ -245,15 +208,10 @@ static bool take_up(struct refined *refined, const struct frame_context *context
 static void note_meshes(struct refined *refined)
 {
     const struct soft *soft = refined->soft;
-    size_t count = 0;
     mem_grow(&refined->normals, &refined->mesh_capacity, soft->mesh_count, sizeof(*refined->normals));
     for (size_t m = 0; m < soft->mesh_count; m++) {
         const struct soft_mesh *mesh = &soft->meshes[m];
-        const struct soft_found *found = &soft->found[m];
         matrix_normals(refined->refiner->gpu_scene->scene->assets[mesh->asset].placement, refined->normals[m]);
-        mem_grow(&refined->parts, &refined->part_capacity, count + found->count, sizeof(*refined->parts));
-        for (size_t i = 0; i < found->count; i++)
-            refined->parts[count++] = (struct part_place){ (uint32_t)m, found->items[i].part };
         if (mesh->has_field && refined->context->view->look != LOOK_GLOSSY)
             visibility_buffer_add_mesh(refined->buffer, &(struct visibility_mesh){
                                                             .asset = mesh->asset,
@@ -466,12 +424,12 @@ bool refiner_keep(struct refiner *refiner, struct refined *refined, const struct
 bool refiner_know(struct refiner *refiner, const struct frame_context *context)
 {
     double lines[VIEW_ALL_LINES];
-    const struct visibility_buffer *buffer = refiner_can(refiner, context) ? visibility_store_find(&refiner->kept, context->shape) : NULL;
+    const struct visibility_buffer *buffer = visibility_store_find(&refiner->kept, context->shape);
     return buffer && (buffer->lined || view_lines(context->view, lines) == 0);
 }
 
 bool refiner_resolve_again(struct refiner *refiner, const struct frame_context *context, const struct isoline_points *points,
                            struct frame *frame)
 {
-    return refiner_can(refiner, context) && soft_resolve_again(refiner->soft, &refiner->kept, context, points, frame);
+    return soft_resolve_again(refiner->soft, &refiner->kept, context, points, frame);
 }

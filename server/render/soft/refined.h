@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Refined frames on machines without a GPU, drawn in small steps on all cores by the rasterizer that draws previews
    (render/soft/soft.h): four samples to a pixel say which triangles it shows, then each surface in a pixel is shaded once, as
-   shaders/refined.frag does. What it cannot show is left to GL. Thread: the one of the GL context; it spreads its work over the workers.
+   shaders/refined.frag does. Thread: the one of the GL context; it spreads its work over the workers.
    */
 #ifndef RENDER_SOFT_REFINED_H
 #define RENDER_SOFT_REFINED_H
@@ -16,8 +16,6 @@ struct refined; /* one picture */
 struct refiner *refiner_create(struct workers *workers, const struct gpu_scene *gpu_scene, const struct sky *sky, struct soft *soft,
                                const struct environments *environments);
 void refiner_destroy(struct refiner **refiner); /* &NULL is fine; leaves NULL */
-/* picture: its view, fields and what is visible. */
-bool refiner_can(const struct refiner *refiner, const struct frame_context *context);
 
 /* NULL: the GL context is lost. */
 struct refined *refined_begin(struct refiner *refiner);

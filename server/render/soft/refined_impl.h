@@ -9,7 +9,7 @@
 #include "render/soft/tile.h"
 #include "render/soft/visibility_store.h"
 
-enum { REFINED_ROWS = 16, SAMPLES = VISIBILITY_SHARES, BRDF_PX = 48, TONES = 4096 };
+enum { REFINED_ROWS = 16, SAMPLES = VISIBILITY_MOST_PARTS, BRDF_PX = 48, TONES = 4096 };
 /* From a pixel's middle: a square turned so that edges of any slant take all steps. */
 extern const float refined_samples[SAMPLES][2];
 
@@ -39,7 +39,6 @@ struct refiner {
     const struct sky *sky;
     struct soft *soft; /* keeps the light */
     const struct environments *environments;
-    bool *textured, *masked, *blended; /* by model */
     lanes *materials;                  /* BASE ...; by soft->ramp_of_model and number in the model */
     struct refined_surroundings surroundings;
     struct refined_light light;
@@ -67,10 +66,7 @@ struct refined {
     size_t at; /* in the step */
     bool failed;
     float (*normals)[9]; /* per mesh, columns: plant from file */
-    struct part_place {  /* of the part that these ids are of: id / PART_TRIANGLES */
-        uint32_t mesh, part;
-    } * parts;
-    size_t mesh_capacity, part_capacity;
+    size_t mesh_capacity;
     uint8_t *caps; /* per pixel, rows of pitch_px: a bit for each sample. NULL: nothing is cut */
     struct visibility_buffer *buffer;
     /* --- of the picture, worked out anew at each step */
@@ -80,16 +76,10 @@ struct refined {
     float ground_step[3];                              /* likewise off the ground */
 };
 
-struct triangle {
-    uint32_t id; /* of its samples */
-    uint32_t mesh, material;
-    uint32_t vertices[3]; /* of the file */
-};
-
 struct item { /* a surface in a pixel */
-    struct triangle triangle;
-    float x, y;    /* in the picture, where it is shaded */
-    uint8_t share; /* of SAMPLES */
+    struct soft_triangle triangle;
+    float x, y;     /* in the picture, where it is shaded */
+    uint16_t share; /* of VISIBILITY_SHARES */
 };
 
 struct shaded_items { /* per item of the field */
@@ -99,14 +89,16 @@ struct shaded_items { /* per item of the field */
 
 bool refined_read_light(struct refiner *refiner, const struct light_set *set);
 bool refined_read_surroundings(struct refiner *refiner, int number);
-/* Which triangle is nearest at each sample of a band; rows of pitch_px. */
-void refined_raster_band(const struct refined *refined, int band, const struct soft_sample samples[SAMPLES]);
+/* Which triangle is nearest at each sample of a band; rows of pitch_px. fragments: of what is blended before it. */
+void refined_raster_band(const struct refined *refined, int band, const struct soft_sample samples[SAMPLES],
+                         struct soft_fragments *fragments);
 bool refined_shade_band(const struct refined *refined, int band); /* false: out of memory */
 void refined_ink_band(const struct refined *refined, int band);
 /* Eight items or fewer at a time. */
 void refined_shade_field(const struct refined *refined, struct visibility_band *band, const struct item *items, size_t count,
                          const struct shaded_items *out);
-void refined_shade_surfaces(const struct refined *refined, const struct item *items, size_t count, uint32_t *colors);
+/* alphas: NULL: not asked for. */
+void refined_shade_surfaces(const struct refined *refined, const struct item *items, size_t count, uint32_t *colors, float *alphas);
 void refined_shade_sky(const struct refined *refined, int row, const uint8_t *wanted, uint32_t *colors);
 
 #endif

@@ -25,7 +25,8 @@ static void draw_caps(const struct refined *refined, int top, int bottom, const 
     }
 }
 
-void refined_raster_band(const struct refined *refined, int band, const struct soft_sample samples[SAMPLES])
+void refined_raster_band(const struct refined *refined, int band, const struct soft_sample samples[SAMPLES],
+                         struct soft_fragments *fragments)
 {
     const struct soft *soft = refined->soft;
     int top = band * REFINED_ROWS, bottom = top + REFINED_ROWS < soft->height_px ? top + REFINED_ROWS - 1 : soft->height_px - 1;
@@ -44,6 +45,7 @@ void refined_raster_band(const struct refined *refined, int band, const struct s
             of_tile[s].depth += left;
             of_tile[s].ids += left;
         }
-        soft_raster_samples(soft, &(struct soft_rect){ left, top, right, bottom }, of_tile, soft->pitch_px, REACH_PX);
+        soft_raster_samples(soft, &(struct soft_rect){ left, top, right, bottom }, of_tile, soft->pitch_px, REACH_PX,
+                            fragments);
     }
 }

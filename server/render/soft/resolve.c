@@ -252,7 +252,7 @@ struct ahead {
     size_t first, end;
     bool all_known;                                   /* no corner has flags */
     uint32_t known[PARTS_AHEAD];                      /* 0: one has */
-    uint64_t colors[PARTS_AHEAD + VISIBILITY_SHARES]; /* times share */
+    uint64_t colors[PARTS_AHEAD + VISIBILITY_MOST_PARTS]; /* times share */
 };
 
 static inline uint64_t spread(uint32_t color)

@@ -11,7 +11,7 @@ static uint32_t pack_weights(float w1, float w2)
 }
 
 /* In the band. */
-static uint32_t number_triangle(const struct refined *refined, struct visibility_band *band, const struct triangle *triangle)
+static uint32_t number_triangle(const struct refined *refined, struct visibility_band *band, const struct soft_triangle *triangle)
 {
     const struct soft_mesh *mesh = &refined->soft->meshes[triangle->mesh];
     const uint32_t *v = triangle->vertices, first = mesh->first_vertex;

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* One band of a refined frame: from samples to what each pixel shows. Triangles that share an edge are one surface: a pixel that shows no
-   other is shaded once. */
+   other is shaded once. What is blended is shaded triangle by triangle, and laid over them sample by sample. */
+#include <stdlib.h>
 #include <string.h>
 
 #include "base/mem.h"
@@ -8,14 +9,19 @@
 #include "render/soft/refined_impl.h"
 
 struct group { /* samples of a pixel that show one surface */
-    const struct triangle *triangle;
+    const struct soft_triangle *triangle;
     float x, y; /* sums of where they are */
-    uint8_t share;
+    int count;
+    uint16_t share;
 };
+
+enum { SAMPLE_SHARE = VISIBILITY_SHARES / SAMPLES };
 
 struct mixed { /* a pixel with several surfaces: its items in the row */
     int column;
-    uint8_t sky, cap, field_count, surface_count;
+    uint8_t field_count, surface_count;
+    uint16_t sky, cap; /* shares */
+    uint16_t over[3];  /* blue, green, red of what is blended, times share */
     uint32_t first_field, first_surface;
 };
 
@@ -63,33 +69,18 @@ static bool row_init(struct row *row, int pitch_px)
 enum { RECENT = 512 };
 struct recent { /* by id: neighbours in a row, and the rows above, show the same triangles */
     const struct refined *refined;
-    struct triangle triangles[RECENT];
+    struct soft_triangle triangles[RECENT];
 };
 
-static void find_triangle(const struct refined *refined, uint32_t id, struct triangle *out)
+static const struct soft_triangle *triangle_of(struct recent *recent, uint32_t id)
 {
-    const struct soft *soft = refined->soft;
-    uint32_t number = id & ~ID_BACK, in_part = number % PART_TRIANGLES;
-    const struct part_place *place = &refined->parts[number / PART_TRIANGLES];
-    const struct soft_found *found = &soft->found[place->mesh];
-    const struct soft_part *part = &found->parts->parts[place->part];
-    const uint8_t *corners = found->parts->corners + part->first_corner + in_part;
-    out->id = id;
-    out->mesh = place->mesh;
-    out->material = found->ramp + part->material;
-    for (int i = 0; i < 3; i++)
-        out->vertices[i] = found->parts->vertices[part->first_vertex + corners[i * part->rounded]];
-}
-
-static const struct triangle *triangle_of(struct recent *recent, uint32_t id)
-{
-    struct triangle *triangle = &recent->triangles[(id ^ id >> 9) % RECENT];
+    struct soft_triangle *triangle = &recent->triangles[(id ^ id >> 9) % RECENT];
     if (triangle->id != id)
-        find_triangle(recent->refined, id, triangle);
+        soft_find_triangle(recent->refined->soft, id, triangle);
     return triangle;
 }
 
-static bool share_edge(const struct triangle *a, const struct triangle *b)
+static bool share_edge(const struct soft_triangle *a, const struct soft_triangle *b)
 {
     const uint32_t *p = a->vertices, *q = b->vertices;
     int shared = 0;
@@ -98,9 +89,9 @@ static bool share_edge(const struct triangle *a, const struct triangle *b)
     return a->mesh == b->mesh && shared >= 2;
 }
 
-/* triangles: room for those of the groups. */
-static int group_samples(struct recent *recent, const struct soft_sample samples[SAMPLES], size_t at, struct triangle triangles[SAMPLES],
-                         struct group groups[SAMPLES])
+/* under: shares of the samples. triangles: room for those of the groups. */
+static int group_samples(struct recent *recent, const struct soft_sample samples[SAMPLES], size_t at, const uint16_t under[SAMPLES],
+                         struct soft_triangle triangles[SAMPLES], struct group groups[SAMPLES])
 {
     int count = 0;
     for (int s = 0; s < SAMPLES; s++) {
@@ -108,7 +99,7 @@ static int group_samples(struct recent *recent, const struct soft_sample samples
         int g = 0;
         if (id == ID_NOTHING || id == ID_CAP)
             continue;
-        const struct triangle *triangle = triangle_of(recent, id);
+        const struct soft_triangle *triangle = triangle_of(recent, id);
         while (g < count && groups[g].triangle->id != id && !share_edge(groups[g].triangle, triangle))
             g++;
         if (g == count) {
@@ -118,10 +109,95 @@ static int group_samples(struct recent *recent, const struct soft_sample samples
         }
         groups[g].x += samples[s].x;
         groups[g].y += samples[s].y;
-        groups[g].share++;
+        groups[g].count++;
+        groups[g].share = (uint16_t)(groups[g].share + under[s]);
     }
     return count;
 }
+
+/* --- what is blended ----------------------------------------------------------------------------------------------------------- */
+
+struct layers {                      /* of a band */
+    struct soft_fragments fragments; /* pixel by pixel, nearest first */
+    struct item *items;              /* by layer: a triangle in a pixel */
+    uint32_t *colors;
+    float *alphas;
+    size_t count, item_capacity, color_capacity, alpha_capacity;
+};
+
+static int by_triangle(const void *a, const void *b)
+{
+    const struct soft_fragment *x = a, *y = b;
+    return x->pixel != y->pixel ? (x->pixel > y->pixel) - (x->pixel < y->pixel) : (x->id > y->id) - (x->id < y->id);
+}
+
+static int by_depth(const void *a, const void *b)
+{
+    const struct soft_fragment *x = a, *y = b;
+    if (x->pixel != y->pixel)
+        return x->pixel > y->pixel ? 1 : -1;
+    return x->depth != y->depth ? (x->depth < y->depth ? 1 : -1) : (x->layer > y->layer) - (x->layer < y->layer);
+}
+
+/* Also hides edges of what is behind it: it has a depth. */
+static void shade_layers(struct recent *recent, struct layers *layers, int top, const struct soft_sample samples[SAMPLES])
+{
+    const struct refined *refined = recent->refined;
+    size_t pitch = (size_t)refined->soft->pitch_px, count = layers->fragments.count;
+    struct soft_fragment *fragments = layers->fragments.at;
+    qsort(fragments, count, sizeof(*fragments), by_triangle);
+    for (size_t i = 0, end; i < count; i = end) {
+        float x = 0, y = 0;
+        for (end = i; end < count && by_triangle(&fragments[i], &fragments[end]) == 0; end++) {
+            const struct soft_sample *sample = &samples[fragments[end].sample];
+            x += sample->x;
+            y += sample->y;
+            fragments[end].layer = (uint32_t)layers->count;
+            if (fragments[end].sample == 0 && fragments[end].depth > sample->depth[fragments[end].pixel])
+                sample->depth[fragments[end].pixel] = fragments[end].depth;
+        }
+        float over = 1.0f / (float)(end - i);
+        mem_grow(&layers->items, &layers->item_capacity, layers->count + 1, sizeof(*layers->items));
+        layers->items[layers->count++] = (struct item){ .triangle = *triangle_of(recent, fragments[i].id),
+                                                        .x = (float)(fragments[i].pixel % pitch) + 0.5f + x * over,
+                                                        .y = (float)((size_t)top + fragments[i].pixel / pitch) + 0.5f + y * over };
+    }
+    mem_grow(&layers->colors, &layers->color_capacity, layers->count, sizeof(*layers->colors));
+    mem_grow(&layers->alphas, &layers->alpha_capacity, layers->count, sizeof(*layers->alphas));
+    refined_shade_surfaces(refined, layers->items, layers->count, layers->colors, layers->alphas);
+    qsort(fragments, count, sizeof(*fragments), by_depth);
+}
+
+static void layers_finish(struct layers *layers)
+{
+    mem_free(layers->fragments.at);
+    mem_free(layers->items);
+    mem_free(layers->colors);
+    mem_free(layers->alphas);
+}
+
+/* over: what these fragments of a pixel show, times their shares; under: what they leave of those of the samples. */
+static void blend(const struct layers *layers, size_t first, size_t end, uint16_t over[3], uint16_t under[SAMPLES])
+{
+    float left[SAMPLES] = { 1, 1, 1, 1 }, sum[3] = { 0 }, gone = 0;
+    int shares = VISIBILITY_SHARES;
+    for (size_t i = first; i < end; i++) {
+        const struct soft_fragment *fragment = &layers->fragments.at[i];
+        float part = layers->alphas[fragment->layer] * left[fragment->sample];
+        left[fragment->sample] -= part;
+        gone += part;
+        for (int c = 0; c < 3; c++)
+            sum[c] += part * (float)(layers->colors[fragment->layer] >> (8 * c) & 0xff);
+    }
+    for (int s = 0; s < SAMPLES; s++) {
+        under[s] = (uint16_t)(left[s] * SAMPLE_SHARE + 0.5f);
+        shares -= under[s];
+    }
+    for (int c = 0; c < 3 && gone > 0; c++)
+        over[c] = (uint16_t)(sum[c] * ((float)shares / gone));
+}
+
+/* --- rows ------------------------------------------------------------------------------------------------------------------------ */
 
 static void add_item(const struct refined *refined, struct row *row, const struct item *item, int column)
 {
@@ -135,19 +211,23 @@ static void add_item(const struct refined *refined, struct row *row, const struc
     }
 }
 
-static void add_mixed(struct recent *recent, struct row *row, const struct soft_sample samples[SAMPLES], size_t at, int column, int y)
+/* first, end: what is blended over it. */
+static void add_mixed(struct recent *recent, struct row *row, const struct soft_sample samples[SAMPLES], size_t at, int column, int y,
+                      const struct layers *layers, size_t first, size_t end)
 {
-    struct triangle triangles[SAMPLES];
+    struct soft_triangle triangles[SAMPLES];
     struct group groups[SAMPLES];
-    int count = group_samples(recent, samples, at, triangles, groups), covered = 0;
+    uint16_t under[SAMPLES] = { SAMPLE_SHARE, SAMPLE_SHARE, SAMPLE_SHARE, SAMPLE_SHARE };
     struct mixed *mixed = &row->mixed[row->mixed_count++];
     *mixed = (struct mixed){ .column = column, .first_field = (uint32_t)row->field_count, .first_surface = (uint32_t)row->surface_count };
+    if (end > first)
+        blend(layers, first, end, mixed->over, under);
+    int count = group_samples(recent, samples, at, under, triangles, groups);
     for (int g = 0; g < count; g++) {
-        float over = 1.0f / (float)groups[g].share;
+        float over = 1.0f / (float)groups[g].count;
         float at_x = (float)column + 0.5f + groups[g].x * over, at_y = (float)y + 0.5f + groups[g].y * over;
         struct item item = { *groups[g].triangle, at_x, at_y, groups[g].share };
-        covered += groups[g].share;
-        if (count == 1 && covered == SAMPLES) { /* one surface after all */
+        if (item.share == VISIBILITY_SHARES) { /* one surface after all */
             row->mixed_count--;
             add_item(recent->refined, row, &item, column);
             return;
@@ -156,14 +236,17 @@ static void add_mixed(struct recent *recent, struct row *row, const struct soft_
     }
     mixed->field_count = (uint8_t)(row->field_count - mixed->first_field);
     mixed->surface_count = (uint8_t)(row->surface_count - mixed->first_surface);
-    for (int s = 0; s < SAMPLES; s++)
-        mixed->cap += samples[s].ids[at] == ID_CAP;
-    mixed->sky = (uint8_t)(SAMPLES - covered - mixed->cap);
+    for (int s = 0; s < SAMPLES; s++) {
+        mixed->cap = (uint16_t)(mixed->cap + (samples[s].ids[at] == ID_CAP ? under[s] : 0));
+        mixed->sky = (uint16_t)(mixed->sky + (samples[s].ids[at] == ID_NOTHING ? under[s] : 0));
+    }
     row->sky[column] = mixed->sky > 0;
     row->any_sky |= mixed->sky > 0;
 }
 
-static void sort_row(struct recent *recent, struct row *row, const struct soft_sample samples[SAMPLES], size_t start, int y)
+/* layered: the first of the layers' fragments in this row; moved on. */
+static void sort_row(struct recent *recent, struct row *row, const struct soft_sample samples[SAMPLES], size_t start, int y,
+                     const struct layers *layers, size_t *layered)
 {
     const struct soft *soft = recent->refined->soft;
     row->field_count = row->surface_count = row->mixed_count = 0;
@@ -173,9 +256,12 @@ static void sort_row(struct recent *recent, struct row *row, const struct soft_s
     for (int column = 0; column < soft->width_px; column++) {
         size_t at = start + (size_t)column;
         uint32_t first = samples[0].ids[at];
+        size_t over = *layered;
+        while (*layered < layers->fragments.count && layers->fragments.at[*layered].pixel == at)
+            ++*layered;
         bool alike = first == samples[1].ids[at] && first == samples[2].ids[at] && first == samples[3].ids[at];
-        if (!alike) {
-            add_mixed(recent, row, samples, at, column, y);
+        if (!alike || *layered > over) {
+            add_mixed(recent, row, samples, at, column, y, layers, over, *layered);
         } else if (first == ID_CAP) {
             row->caps[column] = 1;
             row->any_cap = true;
@@ -183,7 +269,7 @@ static void sort_row(struct recent *recent, struct row *row, const struct soft_s
             row->sky[column] = 1;
             row->any_sky = true;
         } else {
-            struct item item = { *triangle_of(recent, first), (float)column + 0.5f, (float)y + 0.5f, SAMPLES };
+            struct item item = { *triangle_of(recent, first), (float)column + 0.5f, (float)y + 0.5f, VISIBILITY_SHARES };
             add_item(recent->refined, row, &item, column);
         }
     }
@@ -208,6 +294,8 @@ static uint32_t keep_mixed(const struct refined *refined, struct visibility_band
         .first_part = (uint32_t)band->part_count,
         .x = (uint16_t)from->column,
         .row = (uint16_t)(y % REFINED_ROWS),
+        .blue_red = from->over[0] | (uint32_t)from->over[2] << 16,
+        .green = from->over[1],
     };
     if (from->sky)
         add_color(&mixed, row->sky_colors[from->column], from->sky);
@@ -252,8 +340,10 @@ static void keep_row(const struct refined *refined, struct visibility_band *band
         surfaces[row->mixed[i].column] = keep_mixed(refined, band, row, &row->mixed[i], y);
 }
 
-static void shade_rows(struct recent *recent, int number, const struct soft_sample samples[SAMPLES], struct row *row)
+static void shade_rows(struct recent *recent, int number, const struct soft_sample samples[SAMPLES], struct row *row,
+                       const struct layers *layers)
 {
+    size_t layered = 0;
     const struct refined *refined = recent->refined;
     const struct soft *soft = refined->soft;
     struct visibility_band *band = &refined->buffer->bands[number];
@@ -261,9 +351,9 @@ static void shade_rows(struct recent *recent, int number, const struct soft_samp
     for (int y = top; y < end; y++) {
         size_t start = (size_t)(y - top) * (size_t)soft->pitch_px;
         struct shaded_items shaded = { row->triangles, row->weights, row->rows };
-        sort_row(recent, row, samples, start, y);
+        sort_row(recent, row, samples, start, y, layers, &layered);
         refined_shade_field(refined, band, row->field, row->field_count, &shaded);
-        refined_shade_surfaces(refined, row->surfaces, row->surface_count, row->colors);
+        refined_shade_surfaces(refined, row->surfaces, row->surface_count, row->colors, NULL);
         if (row->any_sky)
             refined_shade_sky(refined, y, row->sky, row->sky_colors);
         keep_row(refined, band, row, y);
@@ -276,6 +366,7 @@ bool refined_shade_band(const struct refined *refined, int number)
     size_t pixels = REFINED_ROWS * (size_t)refined->soft->pitch_px;
     struct soft_sample samples[SAMPLES];
     struct row row;
+    struct layers layers = { 0 };
     float *memory = mem_try_array(pixels, SAMPLES * (sizeof(float) + sizeof(uint32_t)));
     struct recent *recent = mem_new(sizeof(*recent));
     bool good = row_init(&row, refined->soft->pitch_px) && memory;
@@ -288,9 +379,12 @@ bool refined_shade_band(const struct refined *refined, int number)
                                            .x = refined_samples[s][0],
                                            .y = refined_samples[s][1] };
     if (good) {
-        refined_raster_band(refined, number, samples);
-        shade_rows(recent, number, samples, &row);
+        refined_raster_band(refined, number, samples, &layers.fragments);
+        if (layers.fragments.count > 0)
+            shade_layers(recent, &layers, number * REFINED_ROWS, samples);
+        shade_rows(recent, number, samples, &row, &layers);
     }
+    layers_finish(&layers);
     mem_free(recent);
     mem_free(memory);
     mem_free(row.memory);

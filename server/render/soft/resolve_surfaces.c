@@ -210,7 +210,115 @@ SOFT_INLINE lanes_int gloss(const struct refined *refined, const struct item *it
     return glossy;
 }
 
-SOFT_KERNEL void refined_shade_surfaces(const struct refined *refined, const struct item *items, size_t count, uint32_t *colors)
+/* --- textures ------------------------------------------------------------------------------------------------------------------ */
+
+/* How the place on the plant changes from pixel to pixel. */
+static void place_slopes(const struct refined *refined, const struct soft_triangle *triangle, const float by[3], float out[3])
+{
+    const struct soft_mesh *mesh = &refined->soft->meshes[triangle->mesh];
+    const double *placement = refined->refiner->gpu_scene->scene->assets[mesh->asset].placement;
+    float of_file[3] = { 0 };
+    for (int i = 0; i < 3; i++)
+        for (int c = 0; c < 3; c++)
+            of_file[c] += by[i] * mesh->file->positions_m[triangle->vertices[i]][c];
+    for (int r = 0; r < 3; r++)
+        out[r] = (float)placement[r] * of_file[0] + (float)placement[4 + r] * of_file[1] + (float)placement[8 + r] * of_file[2];
+}
+
+static void cross(const float a[3], const float b[3], float out[3])
+{
+    for (int i = 0; i < 3; i++)
+        out[i] = a[(i + 1) % 3] * b[(i + 2) % 3] - a[(i + 2) % 3] * b[(i + 1) % 3];
+}
+
+static float dot_of(const float a[3], const float b[3])
+{
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+/* As mapped_normal in shaders/refined.frag. */
+static void map_normal(const float dx[3], const float dy[3], float uv[3][2], const float texel[4], float scale, float n[3])
+{
+    float cross_y[3], cross_x[3], t[3], b[3], m[3];
+    cross(dy, n, cross_y);
+    cross(n, dx, cross_x);
+    for (int i = 0; i < 3; i++) {
+        t[i] = cross_y[i] * uv[1][0] + cross_x[i] * uv[2][0];
+        b[i] = cross_y[i] * uv[1][1] + cross_x[i] * uv[2][1];
+        m[i] = (2 * texel[i] - 1) * (i < 2 ? scale : 1);
+    }
+    float size = fmaxf(dot_of(t, t), dot_of(b, b)), turned = dot_of(dx, cross_y) < 0 ? -1 : 1;
+    if (size < 1e-20f)
+        return;
+    float over = turned / sqrtf(size);
+    for (int i = 0; i < 3; i++)
+        t[i] = over * (t[i] * m[0] - b[i] * m[1]) + n[i] * m[2];
+    over = 1 / sqrtf(fmaxf(dot_of(t, t), 1e-30f));
+    for (int i = 0; i < 3; i++)
+        n[i] = t[i] * over;
+}
+
+static void wear_maps(const struct refined *refined, const struct soft_triangle *triangle, const struct soft_spread *spread, size_t i,
+                      struct surface *surface, vec *glow)
+{
+    const struct soft_material *material = &refined->soft->materials[triangle->material];
+    const struct asset_view *file = refined->soft->meshes[triangle->mesh].file;
+    float uv[2][3][2], texels[MODEL_MAPS][4];
+    soft_spread_coordinates(file->texcoords, triangle->vertices, spread, uv[0]);
+    soft_spread_coordinates(file->second_texcoords, triangle->vertices, spread, uv[1]);
+    for (int map = 0; map < MODEL_MAPS; map++)
+        if (material->maps[map])
+            soft_texture_color(material->maps[map], uv[material->of->second >> map & 1], texels[map]);
+    if (material->maps[MODEL_BASE_COLOR]) {
+        surface->base.x[i] *= texels[MODEL_BASE_COLOR][0];
+        surface->base.y[i] *= texels[MODEL_BASE_COLOR][1];
+        surface->base.z[i] *= texels[MODEL_BASE_COLOR][2];
+    }
+    if (material->maps[MODEL_METALLIC_ROUGHNESS]) {
+        surface->roughness[i] *= texels[MODEL_METALLIC_ROUGHNESS][1];
+        surface->metallic[i] *= texels[MODEL_METALLIC_ROUGHNESS][2];
+    }
+    if (material->maps[MODEL_NORMAL]) {
+        float dx[3], dy[3], n[3] = { surface->normal.x[i], surface->normal.y[i], surface->normal.z[i] };
+        place_slopes(refined, triangle, spread->by_x, dx);
+        place_slopes(refined, triangle, spread->by_y, dy);
+        map_normal(dx, dy, uv[material->of->second >> MODEL_NORMAL & 1], texels[MODEL_NORMAL], material->of->normal_scale, n);
+        surface->normal.x[i] = n[0];
+        surface->normal.y[i] = n[1];
+        surface->normal.z[i] = n[2];
+    }
+    if (material->maps[MODEL_OCCLUSION])
+        surface->open[i] *= 1 + material->of->occlusion_strength * (texels[MODEL_OCCLUSION][0] - 1);
+    if (material->maps[MODEL_EMISSIVE]) {
+        glow->x[i] *= texels[MODEL_EMISSIVE][0];
+        glow->y[i] *= texels[MODEL_EMISSIVE][1];
+        glow->z[i] *= texels[MODEL_EMISSIVE][2];
+    }
+}
+
+/* What textures make of these surfaces. alphas: NULL: not asked for. */
+SOFT_INLINE void wear(const struct refined *refined, const struct item *items, size_t count, const struct spot *spot,
+                      struct surface *surface, vec *glow, float *alphas)
+{
+    for (size_t i = 0; i < count; i++) {
+        const struct soft_triangle *triangle = &items[i].triangle;
+        const struct soft_material *material = &refined->soft->materials[triangle->material];
+        const struct soft_mesh *mesh = &refined->soft->meshes[triangle->mesh];
+        struct soft_spread spread;
+        double weights[3][3];
+        if (!material->mapped && !alphas)
+            continue;
+        soft_weights(mesh, triangle->vertices, weights);
+        soft_spread_at(weights, (double)spot->x[i], (double)spot->y[i], &spread);
+        if (material->mapped)
+            wear_maps(refined, triangle, &spread, i, surface, glow);
+        if (alphas)
+            alphas[i] = spot->back[i] & spot->cut[i] ? 1 : soft_alpha(material, mesh->file, triangle->vertices, &spread);
+    }
+}
+
+SOFT_KERNEL void refined_shade_surfaces(const struct refined *refined, const struct item *items, size_t count, uint32_t *colors,
+                                        float *alphas)
 {
     const struct refiner *refiner = refined->refiner;
     float bright = refined->soft->block.up[3]; /* of context; 0: as it is */
@@ -229,12 +337,14 @@ SOFT_KERNEL void refined_shade_surfaces(const struct refined *refined, const str
             .open = lanes_choose(is_turned(&spot, v), most_of(spot.attributes[OPEN], all(OPEN_BEHIND)), spot.attributes[OPEN]),
             .sun_visible = all(0),
         };
+        vec glow = { m[EMISSIVE], m[EMISSIVE + 1], m[EMISSIVE + 2] };
         if (lanes_any(dot(n, l) > 0.0f))
             surface.sun_visible = sun_at(refined, &spot, n);
+        wear(refined, items + first, some, &spot, &surface, &glow, alphas ? alphas + first : NULL);
         lanes_int glossy = gloss(refined, items + first, some, &spot, &surface);
         lanes sky_part = lanes_choose(glossy, all(1.45f), all(1)), sun_part = lanes_choose(glossy, all(0.75f), all(1));
         vec c = plus(times(sky_shade(&refiner->surroundings, &surface, v), sky_part), times(sun_shade(&surface, v, l), sun_part));
-        c = tone_map(plus(c, (vec){ m[EMISSIVE], m[EMISSIVE + 1], m[EMISSIVE + 2] }));
+        c = tone_map(plus(c, glow));
         c = (vec){ srgb_from_linear(refiner, c.x), srgb_from_linear(refiner, c.y), srgb_from_linear(refiner, c.z) };
         vec muted = bright > 0 ? times(mute(c), all(bright)) : c;
         muted = greys ? grey(grey_of(muted)) : muted;

@@ -117,7 +117,7 @@ SOFT_INLINE void draw_many(const struct soft_tile *tile, const struct soft_sampl
     }
     many_put_floats(sample->depth + place, pitch, width, (sixteen)_mm512_mask_mov_ps((__m512)depth, seen, (__m512)here));
     if (sample->ids)
-        many_put_ints(sample->ids + place, pitch, width, seen, (sixteen_int){ 0 } + id_of(tile, face));
+        many_put_ints(sample->ids + place, pitch, width, seen, (sixteen_int){ 0 } + (int32_t)soft_id(tile, face));
 }
 
 SOFT_INLINE void draw_by_many(const struct soft_tile *tile, const struct soft_sample *sample, const struct soft_face *face,

@@ -148,12 +148,6 @@ SOFT_INLINE size_t place_in(const struct soft_tile *tile, int column, int row)
     return (size_t)(row - tile->rect.top) * (size_t)tile->pitch_px + (size_t)(column - tile->rect.left);
 }
 
-SOFT_INLINE int32_t id_of(const struct soft_tile *tile, const struct soft_face *face)
-{
-    uint32_t back = face->triangle & FACE_BACK ? ID_BACK : 0;
-    return (int32_t)((tile->first_id + (face->triangle & FACE_TRIANGLE)) | back);
-}
-
 /* left, top: of the stamp. two, thin: constants. */
 SOFT_INLINE void draw_stamp(const struct soft_tile *tile, const struct soft_sample *sample, const struct soft_face *face,
                             const struct small *small, int l, int left, int top, uint32_t mark, const struct ink *ink, bool two, bool thin)
@@ -181,7 +175,8 @@ SOFT_INLINE void draw_stamp(const struct soft_tile *tile, const struct soft_samp
     stamp_put_floats(sample->depth + place, pitch, two, lanes_choose(seen, here, depth));
     if (sample->ids)
         stamp_put_ints(sample->ids + place, pitch, two,
-                       lanes_choose_int(seen, (lanes_int){ 0 } + id_of(tile, face), stamp_ints(sample->ids + place, pitch, two)));
+                       lanes_choose_int(seen, (lanes_int){ 0 } + (int32_t)soft_id(tile, face),
+                                        stamp_ints(sample->ids + place, pitch, two)));
 }
 
 /* Stamps do not leave the tile, where another thread draws: the last ones cover some pixels twice, which changes nothing. */

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Previews on machines without a GPU: from triangles to pixels on all cores, with SIMD, where a software GL would bring every triangle
-   through one thread. Shows what shaders/preview.* show, within rounding. What it cannot show is left to GL.
+   through one thread. Shows what shaders/preview.* show, within rounding.
 
    Parts of models that can be seen are drawn into tiles, nearest first (a depth and a 32-bit mark per pixel), and pixels are then coloured
    by their marks: what is hidden is never coloured. The order of tiles and threads does not matter to the result.
@@ -24,7 +24,7 @@ size_t soft_kept_bytes(const struct soft *soft);  /* of these */
 size_t soft_room_bytes(const struct soft *soft);  /* to draw in */
 size_t soft_light_bytes(const struct soft *soft); /* read back */
 void soft_rest(struct soft *soft);                /* drops all three */
-bool preview_can(const struct soft *soft, const struct view *view);
+bool preview_can(const struct soft *soft); /* there are not too many materials */
 /* Pixels, markers and labels. False: out of memory, or the GL context is lost; logged. */
 bool preview_draw(struct soft *soft, const struct frame_context *context, const struct light *light, const struct isoline_points *points,
                   struct frame *frame);

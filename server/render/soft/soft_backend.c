@@ -32,21 +32,9 @@ static void finish(struct renderer *renderer)
     renderer->by_soft = NULL;
 }
 
-/* Fields that there was no memory for: only GL hatches without scalars. */
-static bool has_lost(const struct frame_context *context)
-{
-    for (size_t i = 0; i < context->visible_count; i++)
-        if (context->fields[context->visible[i]] && !context->fields[context->visible[i]]->slice)
-            return true;
-    return false;
-}
-
 static bool can(const struct renderer *renderer, const struct frame_context *context)
 {
-    const struct soft_backend *backend = renderer->by_soft;
-    if (context->reference || has_lost(context))
-        return false;
-    return context->view->tier == TIER_PREVIEW ? preview_can(backend->soft, context->view) : refiner_can(backend->refiner, context);
+    return !context->reference && (context->view->tier == TIER_REFINED || preview_can(renderer->by_soft->soft));
 }
 
 static bool is_quick(struct renderer *renderer, const struct frame_context *context)

@@ -5,6 +5,7 @@
 #include "render/soft/flags.h"
 #include "render/soft/soft.h"
 #include "render/soft/parts.h"
+#include "render/soft/textures.h"
 #include "render/gl/frame_uniforms.h"
 #include "render/shaded_colormap.h"
 #include "render/soft/visibility_buffer.h"
@@ -83,7 +84,7 @@ struct soft {
     const struct gpu_scene *gpu_scene;
     uint32_t *muted_ramps, *own_ramps, *ramp_of_model; /* colours, RAMP_STEPS to a row; first row, by number of the model */
     size_t ramp_count;
-    bool has_holes;      /* some material cuts them by a texture */
+    const struct soft_material *materials; /* the keeper's; as rows of ramps */
     uint32_t *backdrops; /* as render/light/sky.c makes them */
     uint32_t *colormap;
     float *lines; /* by place of the scale: the nearest place that has a line */
@@ -94,7 +95,8 @@ struct soft {
     struct visibility_store kept; /* struct visibility_buffer, of cameras that stand still */
     uint64_t shapes[SOFT_SHAPES]; /* content_hash_shape of the last pictures drawn */
     size_t shape_count;
-    struct soft *keeper;       /* of the parts that it draws: itself, or another */
+    struct soft *keeper;       /* of the parts and materials that it draws: itself, or another */
+    struct soft_materials own_materials;
     struct soft_parts **parts; /* by number of the model, level; made when they are first needed */
     /* --- of the picture being drawn */
     const struct frame_context *context;
@@ -118,6 +120,7 @@ struct soft {
     int cut_count, entry_count;
     float shift_px[2];  /* pixels are looked at so far from their middles */
     bool counts_bodies; /* planes that cut show which bodies are solid (caps.c) */
+    bool blends;        /* some of what was found is blended */
     bool has_ground;
     bool greys;                                                                /* context has no colours */
     float sun_from_pixel[4][4], ground_from_pixel[3][3], ray_from_pixel[3][3]; /* columns */
@@ -158,6 +161,13 @@ void soft_give(struct visibility_store *store, const struct frame_context *conte
 /* Pixels, markers and labels, if the store has such a picture. points: of its isolines. False: it has not. */
 bool soft_resolve_again(struct soft *soft, struct visibility_store *store, const struct frame_context *context,
                         const struct isoline_points *points, struct frame *frame);
+struct soft_triangle {
+    uint32_t id; /* of struct soft_sample, or of soft->ids */
+    uint32_t mesh, material;
+    uint32_t vertices[3]; /* of the file */
+};
+/* Which triangle of what was found has that id. */
+void soft_find_triangle(const struct soft *soft, uint32_t id, struct soft_triangle *triangle);
 /* Of the corners of a triangle (vertices of the file), planes over the picture: up to a factor, the parts that they have of a place. */
 void soft_weights(const struct soft_mesh *mesh, const uint32_t vertices[3], double weights[3][3]);
 void soft_outline(const struct soft *soft); /* of all that has a mark; depth is lost */

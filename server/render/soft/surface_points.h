@@ -184,7 +184,7 @@ SOFT_INLINE quad quad_of_bytes(const uint8_t bytes[4])
 }
 
 /* NORMAL_X ... of a place on a triangle. */
-SOFT_INLINE void attributes_at(const struct refined *refined, const struct triangle *triangle, const float weights[3], bool with_tint,
+SOFT_INLINE void attributes_at(const struct refined *refined, const struct soft_triangle *triangle, const float weights[3], bool with_tint,
                                float out[8])
 {
     const struct soft_mesh *mesh = &refined->soft->meshes[triangle->mesh];

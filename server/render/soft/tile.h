@@ -38,6 +38,18 @@ struct soft_sample { /* of each pixel of a tile, row by row, from the tile's upp
 };
 #define ID_BACK 0x80000000u /* of a mesh that is cut: the triangle looks away */
 
+struct soft_fragment { /* of what is blended, at a sample */
+    uint32_t pixel;    /* in the samples' rows */
+    uint32_t id, layer;
+    float depth;
+    uint8_t sample;
+};
+
+struct soft_fragments { /* zero-initialise; mem_free at */
+    struct soft_fragment *at;
+    size_t count, capacity;
+};
+
 struct soft_tile {
     const struct soft *soft;
     struct soft_rect rect; /* whole lanes wide */
@@ -50,16 +62,37 @@ struct soft_tile {
     int face_count;
     uint32_t first_id; /* of the part's triangles, in soft->ids */
     int cuts;          /* planes that cut, of those of soft->cuts */
+    enum { DRAW_ALL, DRAW_OPAQUE, DRAW_BLENDED } draws;
+    struct soft_fragments *fragments; /* DRAW_BLENDED: what is drawn, instead of what is nearest */
     /* --- of the part being drawn */
     const struct soft_mesh *mesh;
     const struct soft_parts *parts;
     const struct soft_part *part;
+    const struct soft_material *material;
 };
 
+static inline uint32_t soft_id(const struct soft_tile *tile, const struct soft_face *face)
+{
+    return (tile->first_id + (face->triangle & FACE_TRIANGLE)) | (face->triangle & FACE_BACK ? ID_BACK : 0);
+}
+
 /* Rasterizes what was found in a rectangle (whole lanes wide, no larger than a tile) into these samples, which hold the depth of what hides
-   it already. Nothing but depth and ids is written. On a worker. */
+   it already. Nothing but depth and ids is written; what is blended is added to the fragments, where nothing opaque hides it. On a
+   worker. */
 void soft_raster_samples(const struct soft *soft, const struct soft_rect *rect, const struct soft_sample samples[MOST_SAMPLES],
-                         int pitch_px, float reach_px);
+                         int pitch_px, float reach_px, struct soft_fragments *fragments);
+
+/* A triangle whose texture cuts holes. */
+struct soft_cutout {
+    const struct soft_material *material;
+    const struct asset_view *file;
+    uint32_t vertices[3];
+    double weights[3][3];
+};
+void soft_cutout_init(struct soft_cutout *cutout, const struct soft_tile *tile, const struct soft_face *face);
+bool soft_is_hole(const struct soft_cutout *cutout, float x, float y); /* a place in the picture */
+/* column, row: in the picture. */
+void soft_add_fragment(const struct soft_tile *tile, int sample, const struct soft_face *face, int column, int row, float depth);
 
 /* The closed bodies that a part bounds, into the marks. */
 void soft_count_part(struct soft_tile *tile, const struct soft_found *found, const struct soft_item *item);

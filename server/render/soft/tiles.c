@@ -93,6 +93,7 @@ static void begin_part(struct soft_tile *tile, const struct soft_found *found, c
     tile->mesh = &tile->soft->meshes[found - tile->soft->found];
     tile->parts = found->parts;
     tile->part = &found->parts->parts[item->part];
+    tile->material = &tile->soft->materials[found->ramp + tile->part->material];
     tile->cuts = cuts;
 }
 
@@ -144,6 +145,13 @@ static void draw_part(struct soft_tile *tile, const struct soft_found *found, co
     kernels->look_again(tile, &blocks);
 }
 
+/* A field is never blended: it would mix its colours. */
+static bool is_drawn(const struct soft_tile *tile)
+{
+    bool blended = tile->part->blended && !tile->mesh->has_field;
+    return tile->draws == DRAW_ALL || blended == (tile->draws == DRAW_BLENDED);
+}
+
 static void draw_list(struct soft_tile *tile, const struct list *list)
 {
     const struct soft *soft = tile->soft;
@@ -151,7 +159,8 @@ static void draw_list(struct soft_tile *tile, const struct list *list)
         const struct soft_found *found = &soft->found[list->entries[i].mesh];
         const struct soft_item *item = &found->items[list->entries[i].item];
         begin_part(tile, found, item, soft->cut_count);
-        draw_part(tile, found, item);
+        if (is_drawn(tile))
+            draw_part(tile, found, item);
     }
 }
 
@@ -205,6 +214,7 @@ static void draw_tile(const struct soft *soft, int number, enum soft_output outp
     tile.sample_count = 1;
     tile.pitch_px = soft->pitch_px;
     tile.reach_px = 0;
+    tile.draws = DRAW_ALL;
     memset(tile.farthest, 0, sizeof(tile.farthest));
     clear(&tile);
     fill_list(&tile, list);
@@ -215,7 +225,7 @@ static void draw_tile(const struct soft *soft, int number, enum soft_output outp
 }
 
 void soft_raster_samples(const struct soft *soft, const struct soft_rect *rect, const struct soft_sample samples[MOST_SAMPLES],
-                         int pitch_px, float reach_px)
+                         int pitch_px, float reach_px, struct soft_fragments *fragments)
 {
     struct soft_tile tile;
     struct list list = { 0 };
@@ -225,9 +235,15 @@ void soft_raster_samples(const struct soft *soft, const struct soft_rect *rect, 
     tile.sample_count = MOST_SAMPLES;
     tile.pitch_px = pitch_px;
     tile.reach_px = reach_px;
+    tile.draws = soft->blends ? DRAW_OPAQUE : DRAW_ALL;
+    tile.fragments = fragments;
     look_at_all(&tile);
     fill_list(&tile, &list);
     draw_list(&tile, &list);
+    if (soft->blends) {
+        tile.draws = DRAW_BLENDED;
+        draw_list(&tile, &list);
+    }
     mem_free(list.entries);
 }
 

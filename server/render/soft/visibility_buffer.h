@@ -18,9 +18,10 @@ enum { VISIBILITY_INK = 253, VISIBILITY_RIM_DARK, VISIBILITY_RIM_LIGHT };
 
 struct visibility_part { /* of a pixel that shows several surfaces: one of the field */
     uint32_t triangle, weights;
-    uint8_t row, share; /* of VISIBILITY_SHARES */
+    uint8_t row;
+    uint16_t share; /* of VISIBILITY_SHARES */
 };
-enum { VISIBILITY_SHARES = 4 };
+enum { VISIBILITY_SHARES = 256, VISIBILITY_MOST_PARTS = 4 };
 
 struct visibility_mixed {
     uint32_t blue_red, first_part; /* of what is fixed: blue and red times share, 16 bits each */
