@@ -68,7 +68,7 @@ sim_sources      := $(filter-out %/generate.c,$(wildcard deploy/demo/*.c))
 generate_sources := $(wildcard deploy/demo/generate*.c deploy/demo/generate/*.c)
 sim_sources      := $(filter-out $(generate_sources),$(sim_sources))
 sim_archive      := $(if $(sim_sources),$(out)/lib/sim.a)
-import_sources   := $(wildcard preprocess/import/*.c)
+import_sources   := $(wildcard preprocess/import/*.c preprocess/import/revision/*.c)
 match_sources    := $(wildcard preprocess/match/*.c)
 prep_sources     := $(filter-out %/main.c %/image_lazy.c $(import_sources) $(match_sources), \
                     $(wildcard preprocess/*.c preprocess/*/*.c preprocess/*/*.cc))
@@ -106,7 +106,7 @@ $(bin)/plantcastd: $(call objects,$(wildcard server/*.c)) $(archives)
 $(bin)/plantcast-prep: $(call objects,preprocess/main.c preprocess/image_lazy.c) $(out)/lib/prep.a $(archives) | $(modules)
 	$(link)
 # Reads what strangers' programs wrote: neither the daemon nor plantcast-prep links it.
-$(bin)/plantcast-import: $(call objects,preprocess/import/main.c) $(out)/lib/import.a $(out)/lib/prep.a $(archives)
+$(bin)/plantcast-import: $(call objects,preprocess/import/main.c) $(out)/lib/import.a $(out)/lib/match.a $(out)/lib/prep.a $(archives)
 	$(link) -lGLU
 $(out)/obj/preprocess/import/readers/occt.o: CXXFLAGS += -isystem $(occt)
 $(bin)/plantcast-import-occt: $(call objects,preprocess/import/readers/occt) $(out)/lib/prep.a $(out)/lib/base.a
@@ -206,7 +206,9 @@ support    := $(call objects,$(wildcard tests/support/*.c tests/support/*.cc))
 $(out)/tests/unit/accuracy_test $(out)/tests/unit/contact_test: $(call objects,$(wildcard tests/oracle/*.cc))
 $(out)/tests/unit/accuracy_test $(out)/tests/unit/contact_test: pkg_libs += -lgmp -lmpfr
 $(out)/tests/unit/rvm_test: $(out)/lib/import.a
-$(out)/tests/unit/rvm_test: pkg_libs += -lGLU
+$(out)/tests/unit/revision_test: $(out)/lib/import.a $(out)/lib/match.a
+$(out)/tests/unit/rvm_test $(out)/tests/unit/revision_test: pkg_libs += -lGLU
+$(out)/tests/unit/revision_test: pkg_libs += -lminizip -lexpat
 match_tests := $(foreach t,match tag_export,$(out)/tests/unit/$(t)_test)
 $(match_tests): $(out)/lib/match.a
 $(match_tests): pkg_libs += -lminizip -lexpat

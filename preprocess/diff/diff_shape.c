@@ -8,11 +8,11 @@
 #include "base/mem.h"
 #include "base/vec.h"
 #include "plant/transform.h"
+#include "preprocess/geometry/rigid_fit.h"
 #include "surface/mesh/bvh.h"
 
 #define SPREAD 100.0     /* places on a triangle are so many to the diagonal */
 #define PLACES_MAX 64    /* along a side of one triangle */
-#define POWER_STEPS 2000 /* of the iteration that finds a turn */
 
 struct diff_shape {
     struct trimesh mesh;
@@ -147,86 +147,11 @@ double diff_shape_apart(const struct diff_shape *a, const struct diff_shape *b, 
 
 /* --- motions ------------------------------------------------------------------------------------------------------------------------ */
 
-static void middle_of(const struct trimesh *mesh, double middle[3])
-{
-    memset(middle, 0, 3 * sizeof(*middle));
-    for (size_t v = 0; v < mesh->point_count; v++)
-        for (int axis = 0; axis < 3; axis++)
-            middle[axis] += mesh->points[v][axis] / (double)mesh->point_count;
-}
-
-/* Horn 1987: the turn that takes b's points to a's is the eigenvector of this matrix with the largest eigenvalue, as a quaternion. */
-static void horn_matrix(const struct trimesh *a, const struct trimesh *b, const double am[3], const double bm[3], double n[4][4])
-{
-    double s[3][3] = { { 0 } };
-    for (size_t v = 0; v < a->point_count; v++)
-        for (int i = 0; i < 3; i++)
-            for (int j = 0; j < 3; j++)
-                s[i][j] += (b->points[v][i] - bm[i]) * (a->points[v][j] - am[j]);
-    const double m[4][4] = {
-        { s[0][0] + s[1][1] + s[2][2], s[1][2] - s[2][1], s[2][0] - s[0][2], s[0][1] - s[1][0] },
-        { s[1][2] - s[2][1], s[0][0] - s[1][1] - s[2][2], s[0][1] + s[1][0], s[2][0] + s[0][2] },
-        { s[2][0] - s[0][2], s[0][1] + s[1][0], -s[0][0] + s[1][1] - s[2][2], s[1][2] + s[2][1] },
-        { s[0][1] - s[1][0], s[2][0] + s[0][2], s[1][2] + s[2][1], -s[0][0] - s[1][1] + s[2][2] },
-    };
-    memcpy(n, m, sizeof(m));
-}
-
-/* Power iteration; shifted, so that the largest eigenvalue is also the largest by amount. */
-static void largest_eigenvector(double n[4][4], double q[4])
-{
-    double shift = 0;
-    for (int i = 0; i < 4; i++)
-        for (int j = 0; j < 4; j++)
-            shift += fabs(n[i][j]);
-    for (int i = 0; i < 4; i++) {
-        n[i][i] += shift;
-        q[i] = 0.5 + 0.1 * i;
-    }
-    for (int step = 0; step < POWER_STEPS; step++) {
-        double next[4] = { 0 }, length = 0;
-        for (int i = 0; i < 4; i++) {
-            for (int j = 0; j < 4; j++)
-                next[i] += n[i][j] * q[j];
-            length += next[i] * next[i];
-        }
-        length = sqrt(length);
-        for (int i = 0; i < 4; i++)
-            q[i] = length > 0 ? next[i] / length : q[i];
-    }
-}
-
 bool diff_shape_motion(const struct diff_shape *a, const struct diff_shape *b, double b_to_a[16])
 {
-    double am[3], bm[3], n[4][4], q[4];
     if (a->mesh.point_count != b->mesh.point_count || a->mesh.point_count == 0)
         return false;
-    middle_of(&a->mesh, am);
-    middle_of(&b->mesh, bm);
-    horn_matrix(&a->mesh, &b->mesh, am, bm, n);
-    largest_eigenvector(n, q);
-    const double w = q[0], x = q[1], y = q[2], z = q[3];
-    const double turn[16] = { 1 - 2 * (y * y + z * z),
-                              2 * (x * y + w * z),
-                              2 * (x * z - w * y),
-                              0,
-                              2 * (x * y - w * z),
-                              1 - 2 * (x * x + z * z),
-                              2 * (y * z + w * x),
-                              0,
-                              2 * (x * z + w * y),
-                              2 * (y * z - w * x),
-                              1 - 2 * (x * x + y * y),
-                              0,
-                              0,
-                              0,
-                              0,
-                              1 };
-    double turned[3];
-    memcpy(b_to_a, turn, sizeof(turn));
-    transform_point(turn, bm, turned);
-    for (int axis = 0; axis < 3; axis++)
-        b_to_a[12 + axis] = am[axis] - turned[axis];
+    rigid_fit((const double(*)[3])b->mesh.points, (const double(*)[3])a->mesh.points, a->mesh.point_count, b_to_a);
     return true;
 }
 

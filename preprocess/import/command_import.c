@@ -3,6 +3,7 @@
 #include <errno.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "base/mem.h"
 #include "preprocess/import/commands.h"
@@ -10,6 +11,8 @@
 #include "preprocess/import/formats.h"
 #include "preprocess/import/options.h"
 #include "preprocess/import/plant_draft.h"
+#include "preprocess/import/revision/revise.h"
+#include "preprocess/import/revision/revision_files.h"
 #include "preprocess/child/work_folder.h"
 #include "preprocess/model/gltf_shim.h"
 
@@ -17,6 +20,7 @@ enum { RVM_ITEM_LEVEL = 3 }; /* the file, its sites, their zones, and what is in
 
 struct import {
     const char *folder, *name;
+    bool undo, force, dry_run;
     struct conversion_params conversion;
     struct work_folder work;
     char **paths;
@@ -27,13 +31,18 @@ struct import {
 static void print_usage(FILE *out)
 {
     fputs(
-        "usage: plantcast import MODEL... -o FOLDER [--name NAME]\n"
+        "usage: plantcast import MODEL... -o FOLDER [--name NAME] [--dry-run]\n"
+        "       plantcast import --undo [--force] -o FOLDER\n"
         "\n"
         "Reads CAD exports and writes into FOLDER a GLB file for each, with names, hierarchy and attributes, and plant.yaml, which names\n"
-        "them. What is there already of plant.yaml stays as it is.\n"
+        "them. Where FOLDER has a plant, these are new exports: assets and sensors follow what they are on, and a review says what was\n"
+        "added, removed, moved or renamed, and which tags lost their place (IMPORT.md).\n"
         "  MODEL             .glb .gltf; .rvm (AVEVA PDMS, E3D, Marine), with its attributes beside it as .att or .txt of the same name;\n"
         "                    .step .stp .iges .igs; .ifc; .obj .stl .ply .fbx .dae .3ds\n"
-        "  --name NAME       of the plant; else the first model's file name\n",
+        "  --name NAME       of the plant; else the first model's file name\n"
+        "  --dry-run         of a new export: only says what it would change\n"
+        "  --undo            puts models, plant file, tag list and matches back as they were before the last new export\n"
+        "  --force           undoes it although people have changed these since; what they have now stays beside, as NAME.undone\n",
         out);
     options_print(out);
     fputs("Exit status: 0 good, 1 a model could not be read (nothing is written for any of them), 2 usage.\n", out);
@@ -120,26 +129,46 @@ static int write_plant(const struct import *import)
     return status == 0 ? 0 : fail_at(import->folder, strerror(-status));
 }
 
+static int bring_in(struct import *import)
+{
+    char *plant = mem_printf("%s/plant.yaml", import->folder);
+    bool there = access(plant, F_OK) == 0;
+    mem_free(plant);
+    if (there)
+        return revise(&(struct revise_params){ .folder = import->folder,
+                                               .work = import->work.path,
+                                               .models = import->models,
+                                               .count = (size_t)import->count,
+                                               .dry_run = import->dry_run });
+    int status = import->dry_run ? fail_at(import->folder, "there is no plant yet that this could change") : 0;
+    if (status == 0)
+        status = move_all(import);
+    return status == 0 ? write_plant(import) : status;
+}
+
 static int run(struct import *import)
 {
     int status = work_folder_begin(&import->work, import->folder);
     if (status != 0)
         return fail_at(import->folder, strerror(-status));
+    int lock = revision_files_lock(import->folder, import->work.path);
+    if (lock < 0)
+        status = fail_at(import->folder, lock == -EWOULDBLOCK ? "another import is at work in it" : strerror(-lock));
     import->models = mem_array((size_t)import->count, sizeof(*import->models));
     for (int i = 0; i < import->count && status == 0; i++)
         status = convert(import, i);
     if (status == 0 && work_folder_interrupted())
         status = fail_at(import->folder, "interrupted");
     if (status == 0)
-        status = move_all(import);
-    if (status == 0)
-        status = write_plant(import);
+        status = bring_in(import);
     for (int i = 0; i < import->count; i++) {
         mem_free(import->models[i].file);
         model_outline_finish(&import->models[i].outline);
     }
     mem_free(import->models);
     work_folder_end(&import->work, status == 0);
+    if (lock >= 0)
+        close(lock);
     return status;
 }
 
@@ -162,13 +191,17 @@ static bool two_alike(char **paths, int count)
 int command_import(int argc, char **argv)
 {
     static const struct option options[] = {
-        { "output", required_argument, NULL, 'o' }, { "name", required_argument, NULL, 'n' }, OPTIONS_OF_CONVERSION, { 0 }
+        { "output", required_argument, NULL, 'o' }, { "name", required_argument, NULL, 'n' }, { "dry-run", no_argument, NULL, 'd' },
+        { "undo", no_argument, NULL, 'x' },         { "force", no_argument, NULL, 'f' },      OPTIONS_OF_CONVERSION, { 0 }
     };
     struct import import = { .conversion = options_default };
     for (int option; (option = getopt_long(argc, argv, "o:", options, NULL)) != -1;)
         switch (option) {
         case 'o': import.folder = optarg; break;
         case 'n': import.name = optarg; break;
+        case 'd': import.dry_run = true; break;
+        case 'x': import.undo = true; break;
+        case 'f': import.force = true; break;
         case 'F': import_formats_print(stdout); return 0;
         case 'h': print_usage(stdout); return 0;
         default:
@@ -177,10 +210,12 @@ int command_import(int argc, char **argv)
         }
     import.count = argc - optind;
     import.paths = argv + optind;
-    if (import.count < 1 || !import.folder) {
+    if ((import.count < 1) != import.undo || !import.folder || (import.force && !import.undo) || (import.dry_run && import.undo)) {
         print_usage(stderr);
         return 2;
     }
+    if (import.undo)
+        return revise_undo(import.folder, import.force);
     if (two_alike(import.paths, import.count))
         return 1;
     char *stem = file_name_stem(import.paths[0]);

@@ -191,6 +191,24 @@ static int write_new(const struct plant_draft *draft, const char *file, const ch
     return status;
 }
 
+size_t plant_draft_add_assets(const struct plant_draft_model *model, const bool *wanted, json_t *ids, struct text *out)
+{
+    const struct model_outline *outline = &model->outline;
+    struct choice choice = { .item = mem_array(outline->header.count + 1, sizeof(bool)),
+                             .unique = mem_array(outline->header.count + 1, sizeof(bool)) };
+    size_t added = 0;
+    find_unique(outline, choice.unique);
+    choose(model, &choice);
+    for (size_t i = 0; i < outline->header.count; i++)
+        if (choice.item[i] && (!wanted || wanted[i])) {
+            add_asset(out, model, i, choice.unique[i], ids);
+            added++;
+        }
+    mem_free(choice.item);
+    mem_free(choice.unique);
+    return added;
+}
+
 int plant_draft_write(const struct plant_draft *draft)
 {
     struct text out = { 0 };
@@ -199,20 +217,8 @@ int plant_draft_write(const struct plant_draft *draft)
     text_add(&out, "%s  name: ", head);
     add_quoted(&out, draft->name);
     text_add(&out, "\n\nassets:\n");
-    for (size_t m = 0; m < draft->count; m++) {
-        const struct model_outline *outline = &draft->models[m].outline;
-        struct choice choice = { .item = mem_array(outline->header.count + 1, sizeof(bool)),
-                                 .unique = mem_array(outline->header.count + 1, sizeof(bool)) };
-        find_unique(outline, choice.unique);
-        choose(&draft->models[m], &choice);
-        for (size_t i = 0; i < outline->header.count; i++)
-            if (choice.item[i]) {
-                add_asset(&out, &draft->models[m], i, choice.unique[i], ids);
-                assets++;
-            }
-        mem_free(choice.item);
-        mem_free(choice.unique);
-    }
+    for (size_t m = 0; m < draft->count; m++)
+        assets += plant_draft_add_assets(&draft->models[m], NULL, ids, &out);
     json_decref(ids);
     text_add(&out, "%s", tail);
     int status = write_new(draft, "plant.yaml", out.at);

@@ -17,6 +17,10 @@ struct plant_draft {
     size_t count;
 };
 
+/* Appends a line for each asset that the model is to have, of those whose nodes `wanted` marks (NULL: all), to a list of assets. ids are
+ * the keys of an object; new ones are added to it. Returns how many there are. */
+size_t plant_draft_add_assets(const struct plant_draft_model *model, const bool *wanted, json_t *ids, struct text *out);
+
 /* Writes FOLDER/plant.yaml, unless it is there: then a person may have changed it, and it stays. Returns 0 or -errno. */
 int plant_draft_write(const struct plant_draft *draft);
 

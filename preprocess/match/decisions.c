@@ -58,6 +58,17 @@ void decisions_add_row(struct text *out, const char *tag, const struct match *ma
     text_add(out, "\n");
 }
 
+static char *row_text(const struct table_row *row, const int columns[COLUMNS])
+{
+    struct text out = { 0 };
+    for (int i = 0; i < COLUMNS; i++) {
+        text_add(&out, "%s", i > 0 ? "," : "");
+        add_cell(&out, columns[i] < 0 ? "" : table_cell(row, columns[i]));
+    }
+    text_add(&out, "\n");
+    return out.at;
+}
+
 static bool find_columns(const struct table_row *header, int columns[COLUMNS], char why[MATCH_WHY_BYTES])
 {
     for (int i = 0; i < COLUMNS; i++) {
@@ -88,7 +99,9 @@ static bool read_row(struct decision *out, const struct table_row *row, const in
         snprintf(why, MATCH_WHY_BYTES, "line %d: Status: expected sure, likely or none, found '%.40s'", row->line, status);
         return false;
     }
-    *out = (struct decision){ .tag = mem_strdup(table_cell(row, columns[TAG])), .asset = mem_strdup(asset) };
+    *out = (struct decision){ .tag = mem_strdup(table_cell(row, columns[TAG])),
+                              .asset = mem_strdup(asset),
+                              .row = row_text(row, columns) };
     find_check(out->tag, found < 0 ? "" : match_status_names[found], asset, check);
     bool changed = strcmp(check, written) != 0, same_status = found >= 0 && written[0] == match_status_names[found][0];
     out->edited = changed;
@@ -152,11 +165,54 @@ const struct decision *decisions_of(const struct decisions *decisions, const cha
     return NULL;
 }
 
+static bool is_one_of(const char *tag, const char *const *tags, size_t count)
+{
+    bool found = false;
+    for (size_t i = 0; i < count && !found; i++)
+        found = !strcmp(tag, tags[i]);
+    return found;
+}
+
+static const char *line_at(const char *at, int from, int line)
+{
+    for (; from < line && *at; from++) {
+        at += strcspn(at, "\n");
+        at += *at == '\n';
+    }
+    return at;
+}
+
+char *decisions_without(const char *text, const char *const *tags, size_t count)
+{
+    struct table table = { 0 };
+    struct text out = { 0 };
+    char why[MATCH_WHY_BYTES];
+    int columns[COLUMNS], line = 1;
+    const char *at = text;
+    bool good = table_read_csv(&table, text, table_separator(text), why, sizeof(why)) && table.count > 0 &&
+                find_columns(&table.rows[0], columns, why);
+    for (size_t i = 1; i < table.count && good; i++) {
+        if (!is_one_of(table_cell(&table.rows[i], columns[TAG]), tags, count))
+            continue;
+        const char *begin = line_at(at, line, table.rows[i].line);
+        int next = i + 1 < table.count ? table.rows[i + 1].line : table.rows[i].line + 1;
+        text_add_bytes(&out, at, (size_t)(begin - at));
+        at = line_at(begin, table.rows[i].line, next);
+        line = next;
+    }
+    text_add(&out, "%s", at);
+    table_finish(&table);
+    if (!good)
+        text_finish(&out);
+    return out.at;
+}
+
 void decisions_finish(struct decisions *decisions)
 {
     for (size_t i = 0; i < decisions->count; i++) {
         mem_free(decisions->at[i].tag);
         mem_free(decisions->at[i].asset);
+        mem_free(decisions->at[i].row);
     }
     mem_free(decisions->at);
     mem_free(decisions->by_tag);

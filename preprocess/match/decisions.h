@@ -9,6 +9,7 @@ struct decision { /* a row, as it was */
     char *tag, *asset;
     enum match_status status; /* of a row by hand what it means now */
     bool by_hand, edited;     /* edited: since it was written */
+    char *row;                /* all of it, with its line end */
 };
 
 struct decisions {       /* zero-initialise */
@@ -22,6 +23,9 @@ bool decisions_read(struct decisions *decisions, const char *path, char why[MATC
 /* Returns the decision about a tag, or NULL. */
 const struct decision *decisions_of(const struct decisions *decisions, const char *tag);
 void decisions_finish(struct decisions *decisions);
+
+/* Returns the file's text without the rows of these tags (mem_free), so that they are matched anew; NULL if it cannot be read. */
+char *decisions_without(const char *text, const char *const *tags, size_t count);
 
 /* Appends the header, and a row. A row that people changed is told by its last cell, which depends on what was written. */
 void decisions_add_header(struct text *out);

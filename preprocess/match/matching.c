@@ -14,6 +14,7 @@
 #include "base/mem.h"
 #include "preprocess/match/equipment.h"
 #include "preprocess/match/plant_edit.h"
+#include "preprocess/match/plant_trial.h"
 #include "preprocess/match/tag_rows.h"
 
 static const size_t max_plant_bytes = (size_t)64 << 20;
@@ -31,8 +32,8 @@ struct run {
     struct tag_rows rows;
     struct tag_source source;
     char *plant_text, *new_text; /* the plant file as it is, and as it will be */
-    struct text tags_text, matches_text;
-    size_t by_hand, left_out, written, assumed, own_nodes;
+    struct text tags_text, matches_text, left_names; /* the first of those that are no longer in the list */
+    size_t left, by_hand, left_out, written, assumed, own_nodes;
 };
 
 static bool fail_at(const char *path, const char *why)
@@ -44,42 +45,6 @@ static bool fail_at(const char *path, const char *why)
 static char *beside(const struct run *run, const char *name)
 {
     return mem_printf("%s/%s", run->plant->folder, name);
-}
-
-/* --- trying what is not written yet ------------------------------------------------------------------------------------------ */
-
-/* Loads a plant from texts: they are put beside the plant file for as long as that takes. tags NULL: the tag list as it is. */
-static struct plant *load_text(const struct plant *plant, const char *text, const char *tags)
-{
-    struct diag diag = { 0 };
-    char *path = mem_printf("%s/.match.%d.yaml", plant->folder, (int)getpid()),
-         *list = mem_printf("%s/.match.%d.csv", plant->folder, (int)getpid());
-    char *changed = NULL;
-    struct plant *loaded = NULL;
-    if (tags) {
-        const char *key = strstr(text, "\ntags:");
-        const char *end = key ? key + 1 + strcspn(key + 1, "\n") : NULL;
-        changed = key ? mem_printf("%.*s\ntags: .match.%d.csv%s", (int)(key - text), text, (int)getpid(), end) : mem_strdup(text);
-    }
-    const char *all = changed ? changed : text;
-    int status = atomic_file_put(path, all, strlen(all));
-    if (status == 0 && tags)
-        status = atomic_file_put(list, tags, strlen(tags));
-    if (status != 0)
-        fail_at(path, strerror(-status));
-    else
-        loaded = plant_load(path, &diag);
-    if (status == 0 && !loaded) {
-        fprintf(stderr, "plantcast match: the plant that this makes is not valid; nothing was written:\n");
-        diag_print(&diag, stderr);
-    }
-    diag_finish(&diag);
-    unlink(path);
-    unlink(list);
-    mem_free(changed);
-    mem_free(path);
-    mem_free(list);
-    return loaded;
 }
 
 /* --- reading ---------------------------------------------------------------------------------------------------------------- */
@@ -122,7 +87,7 @@ static bool choose_equipment(struct run *run)
     char *text = count < 0 ? NULL : plant_edit_replace(run->plant_text, "assets", lines.at);
     if (count >= 0 && !text)
         snprintf(why, sizeof(why), "its list of assets is not one item a line");
-    struct plant *plant = text ? load_text(run->plant, text, NULL) : NULL;
+    struct plant *plant = text ? plant_trial_load(run->plant, text, NULL, "plantcast match") : NULL;
     text_finish(&lines);
     if (!text)
         return fail_at(run->params->plant, why);
@@ -261,6 +226,45 @@ static void put_rows(struct run *run)
     }
 }
 
+/* --- tags that are no longer in the list -------------------------------------------------------------------------------------- */
+
+enum { LEFT_NAMED = 20 };
+
+static int by_folded_name(const void *a, const void *b)
+{
+    return strcasecmp(*(const char *const *)a, *(const char *const *)b);
+}
+
+/* Whether a tag of before may be one of this list's system, as far as the plant says where it is read. */
+static bool is_of_source(const struct run *run, const char *tag)
+{
+    for (size_t i = 0; i < run->plant->tag_count; i++)
+        if (!strcasecmp(run->plant->tags[i].name, tag) && run->plant->tags[i].source >= 0)
+            return !run->source.id || !strcmp(run->plant->sources[run->plant->tags[i].source].id, run->source.id);
+    return run->plant->source_count <= 1;
+}
+
+/* What was decided about them stays: they may be another system's, or come back. */
+static void keep_left(struct run *run)
+{
+    const char **names = mem_array(run->list.count + 1, sizeof(*names));
+    for (size_t i = 0; i < run->list.count; i++)
+        names[i] = run->list.tags[i].fields[EXPORT_NAME];
+    qsort(names, run->list.count, sizeof(*names), by_folded_name);
+    for (size_t i = 0; i < run->before.count; i++) {
+        const char *tag = run->before.at[i].tag;
+        if (bsearch(&tag, names, run->list.count, sizeof(*names), by_folded_name))
+            continue;
+        text_add(&run->matches_text, "%s", run->before.at[i].row);
+        if (!is_of_source(run, tag))
+            continue;
+        if (run->left < LEFT_NAMED)
+            text_add(&run->left_names, "%s%s", run->left > 0 ? ", " : "", tag);
+        run->left++;
+    }
+    mem_free(names);
+}
+
 /* --- the plant file --------------------------------------------------------------------------------------------------------- */
 
 /* A range of a legend: as the scaled limits have it. */
@@ -346,6 +350,9 @@ static void print_result(const struct run *run)
     if (run->left_out > 0)
         printf("%zu tags are not in the tag list: they are texts, or have no address that %s can read\n", run->left_out,
                run->source.id ? run->source.id : "a source");
+    if (run->left > 0)
+        printf("%zu tags of before are no longer in the list; what was decided about them stays: %s%s\n", run->left, run->left_names.at,
+               run->left > LEFT_NAMED ? ", ..." : "");
     if (!run->source.id)
         printf("there is no source yet, so the tag list has no addresses: --modbus HOST makes one\n");
     for (size_t i = 0; i < run->quantities.count; i++)
@@ -356,7 +363,7 @@ static void print_result(const struct run *run)
 static bool write_all(struct run *run)
 {
     char *matches_path = beside(run, "matches.csv");
-    struct plant *loaded = load_text(run->plant, run->new_text, run->tags_text.at);
+    struct plant *loaded = plant_trial_load(run->plant, run->new_text, run->tags_text.at, "plantcast match");
     bool good = loaded != NULL;
     plant_destroy(&loaded);
     if (good)
@@ -381,6 +388,7 @@ static void finish(struct run *run)
     plant_destroy(&run->plant);
     text_finish(&run->tags_text);
     text_finish(&run->matches_text);
+    text_finish(&run->left_names);
     mem_free(run->plant_text);
     mem_free(run->new_text);
 }
@@ -400,6 +408,7 @@ int matching_run(const struct matching_params *params)
         quantities_find(&run.quantities, run.plant, placeholder ? "temperature" : NULL, &run.list, run.matches);
         run.places = places_find(&run.site, &run.list, run.matches, &run.quantities);
         put_rows(&run);
+        keep_left(&run);
         tag_rows_write(&run.rows, &run.tags_text);
         good = compose_plant(&run, placeholder) && write_all(&run);
     }

@@ -272,7 +272,7 @@ static bool may_put(const struct tag_row_input *input, const char *asset)
 {
     const struct decision *before = input->before;
     if (!before)
-        return !*asset;
+        return !*asset && input->match->status == MATCH_SURE;
     if (before->edited)
         return true;
     const char *now = input->match->status == MATCH_SURE ? input->site->plant->assets[input->match->asset].id : "";

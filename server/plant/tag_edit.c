@@ -153,12 +153,14 @@ static bool wanted(const struct list *list, const struct tag_edit *edit, size_t 
 {
     for (int axis = 0; axis < 3; axis++)
         if (list->column[EDIT_X + axis] == (int)column) {
-            print_metres(edit->position_m[axis], number);
+            number[0] = 0;
+            if (!isnan(edit->position_m[axis]))
+                print_metres(edit->position_m[axis], number);
             *out = number;
             return true;
         }
-    *out = list->column[EDIT_NODE] == (int)column    ? ""
-           : list->column[EDIT_PLACE] == (int)column ? ""
+    *out = list->column[EDIT_NODE] == (int)column    ? (edit->node ? edit->node : "")
+           : list->column[EDIT_PLACE] == (int)column ? (edit->place ? edit->place : "")
            : list->column[EDIT_ASSET] == (int)column ? edit->asset
            : list->column[EDIT_GROUP] == (int)column ? edit->group
                                                      : NULL;
@@ -204,11 +206,19 @@ static const struct tag_edit *edit_of(const struct list *list, const struct tag_
 }
 
 /* Columns that the edits need, at the end of the header's line. */
-static void widen(struct list *list, bool asset, bool group, struct text *out)
+static void widen(struct list *list, const struct tag_edit *edits, size_t count, struct text *out)
 {
+    bool needed[EDIT_COLUMNS] = { 0 };
+    for (size_t i = 0; i < count; i++) {
+        needed[EDIT_ASSET] |= edits[i].asset != NULL;
+        needed[EDIT_GROUP] |= edits[i].group != NULL;
+        needed[EDIT_NODE] |= edits[i].node != NULL;
+        needed[EDIT_PLACE] |= edits[i].place != NULL;
+        for (int axis = 0; axis < 3; axis++)
+            needed[EDIT_X + axis] |= !isnan(edits[i].position_m[axis]);
+    }
     for (int i = EDIT_ASSET; i < EDIT_COLUMNS; i++) {
-        bool needed = i >= EDIT_X || (i == EDIT_ASSET && asset) || (i == EDIT_GROUP && group);
-        if (!needed || list->column[i] >= 0)
+        if (!needed[i] || list->column[i] >= 0)
             continue;
         text_add(out, "%c%s", list->separator, names[i]);
         list->column[i] = (int)list->width++;
@@ -218,13 +228,8 @@ static void widen(struct list *list, bool asset, bool group, struct text *out)
 static char *all_rows(struct list *list, const char *text, const struct tag_edit *edits, size_t count, bool *done)
 {
     struct text out = { 0 };
-    bool asset = false, group = false;
-    for (size_t i = 0; i < count; i++) {
-        asset |= edits[i].asset != NULL;
-        group |= edits[i].group != NULL;
-    }
     text_add_bytes(&out, text, (size_t)(list->row.end - text));
-    widen(list, asset, group, &out);
+    widen(list, edits, count, &out);
     for (const char *copied = list->row.end; next_row(list);) {
         const char *begin = list->row.cells[0].begin;
         const struct tag_edit *edit = edit_of(list, edits, count, done);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Edits the text of a tag list to move sensors. Everything else stays the same to the byte: order, unknown columns, blank rows, quotes, the
-   format of numbers, line ends. Pure. Thread: any. */
+/* Edits the text of a tag list to move sensors, or to take them off their equipment. Everything else stays the same to the byte: order,
+   unknown columns, blank rows, quotes, the format of numbers, line ends. Pure. Thread: any. */
 #ifndef PLANT_TAG_EDIT_H
 #define PLANT_TAG_EDIT_H
 #include <stdbool.h>
@@ -9,7 +9,8 @@
 struct tag_edit {
     const char *tag;
     const char *asset, *group; /* ids; NULL: unchanged */
-    double position_m[3];      /* in the frame that the asset states; written to the millimetre. The cells Node and Place are cleared */
+    const char *node, *place;  /* NULL: cleared */
+    double position_m[3];      /* in the frame that the asset states; written to the millimetre. NaN: cleared */
 };
 
 struct tag_line { /* one line that differs */

@@ -1,0 +1,145 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Names as they stand are looked up; other forms are matched with all nodes. */
+#include "preprocess/import/revision/asset_pattern.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/mem.h"
+#include "base/text.h"
+
+static int by_name(const void *a, const void *b, void *header_ptr)
+{
+    const struct model_header *header = header_ptr;
+    uint32_t x = *(const uint32_t *)a, y = *(const uint32_t *)b;
+    int order = strcmp(header->nodes[x].name, header->nodes[y].name);
+    return order ? order : (x > y) - (x < y);
+}
+
+static uint32_t *sorted_names(const struct model_header *header)
+{
+    uint32_t *nodes = mem_array(header->count + 1, sizeof(*nodes));
+    for (size_t i = 0; i < header->count; i++)
+        nodes[i] = (uint32_t)i;
+    qsort_r(nodes, header->count, sizeof(*nodes), by_name, (void *)(uintptr_t)header);
+    return nodes;
+}
+
+void asset_patterns_init(struct asset_patterns *patterns, const struct model_header *before, const struct model_header *after,
+                         const struct node_pairs *pairs)
+{
+    size_t most = before->count > after->count ? before->count : after->count;
+    *patterns = (struct asset_patterns){ .before = before,
+                                         .after = after,
+                                         .pairs = pairs,
+                                         .old_names = sorted_names(before),
+                                         .new_names = sorted_names(after),
+                                         .found = mem_array(most + 1, sizeof(*patterns->found)) };
+}
+
+void asset_patterns_finish(struct asset_patterns *patterns)
+{
+    mem_free(patterns->old_names);
+    mem_free(patterns->new_names);
+    mem_free(patterns->found);
+    *patterns = (struct asset_patterns){ 0 };
+}
+
+/* Returns where in the sorted names the first node of this name stands, and in *count how many there are. */
+static size_t find_name(const struct model_header *header, const uint32_t *names, const char *name, size_t *count)
+{
+    size_t low = 0, high = header->count;
+    while (low < high) {
+        size_t middle = (low + high) / 2;
+        if (strcmp(header->nodes[names[middle]].name, name) < 0)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    *count = 0;
+    while (low + *count < header->count && !strcmp(header->nodes[names[low + *count]].name, name))
+        ++*count;
+    return low;
+}
+
+/* Nodes that the pattern names go to patterns->found. Returns how many. */
+static size_t find(struct asset_patterns *patterns, const struct model_header *header, const uint32_t *names, const char *pattern)
+{
+    size_t count, first = find_name(header, names, pattern, &count);
+    char why[200];
+    if (count == 0 && (pattern[strcspn(pattern, "*?[/")] || pattern[0] == '#' || !strncmp(pattern, "mesh:", 5)))
+        return nodes_find(pattern, header->nodes, header->count, patterns->found, why, sizeof(why));
+    if (count > 0)
+        memcpy(patterns->found, names + first, count * sizeof(*names));
+    return count;
+}
+
+/* A pattern that names this new node and no other. */
+static char *exact_pattern(struct asset_patterns *patterns, uint32_t node)
+{
+    const char *name = patterns->after->nodes[node].name;
+    struct text printable = { 0 };
+    model_outline_add_printable(&printable, name);
+    bool usable = *name && printable.at && !strcmp(printable.at, name) && name[0] != '!' && name[0] != '#' &&
+                  find(patterns, patterns->after, patterns->new_names, name) == 1;
+    text_finish(&printable);
+    return usable ? mem_strdup(name) : mem_printf("#%u", patterns->after->nodes[node].number);
+}
+
+enum asset_pattern_change asset_patterns_follow(struct asset_patterns *patterns, const char *pattern, const bool *before, char **out)
+{
+    size_t old_count = find(patterns, patterns->before, patterns->old_names, pattern);
+    uint32_t node = old_count > 0 ? patterns->found[0] : 0;
+    for (size_t i = 0; before && i < old_count; i++)
+        if (before[patterns->found[i]]) {
+            node = patterns->found[i];
+            break;
+        }
+    int other = old_count > 0 ? patterns->pairs->to_new[node] : -1;
+    size_t new_count = find(patterns, patterns->after, patterns->new_names, pattern);
+    bool numbered = pattern[0] == '#', still = false;
+    for (size_t i = 0; i < new_count; i++)
+        still |= patterns->found[i] == (uint32_t)other;
+    if (other >= 0 && !still && (old_count == 1 || before || new_count == 0)) {
+        *out = numbered ? mem_printf("#%u", patterns->after->nodes[other].number) : exact_pattern(patterns, (uint32_t)other);
+        return ASSET_PATTERN_OTHER;
+    }
+    return new_count > 0 && (still || !numbered) ? ASSET_PATTERN_SAME : ASSET_PATTERN_GONE;
+}
+
+char *asset_patterns_update(struct asset_patterns *patterns, const char *lines, char ***nodes, size_t *node_count)
+{
+    struct text out = { 0 };
+    bool changed = false, taking = false, had_taking = false;
+    char **list = NULL, *copy = mem_strdup(lines), *next = copy;
+    size_t count = 0, room = 0;
+    for (char *text = strsep(&next, "\n"); text; text = strsep(&next, "\n")) {
+        const char *sign = text[0] == '!' ? "!" : "";
+        char *other = NULL, *now = NULL;
+        enum asset_pattern_change change = asset_patterns_follow(patterns, text + strlen(sign), NULL, &other);
+        if (change != ASSET_PATTERN_GONE)
+            now = mem_printf("%s%s", sign, change == ASSET_PATTERN_OTHER ? other : text + strlen(sign));
+        changed |= change != ASSET_PATTERN_SAME;
+        had_taking |= !*sign;
+        taking |= now && !*sign;
+        if (now)
+            text_add(&out, "%s%s", out.length > 0 ? "\n" : "", now);
+        mem_grow(&list, &room, count + 1, sizeof(*list));
+        list[count++] = now;
+        mem_free(other);
+    }
+    mem_free(copy);
+    bool none = out.length == 0 || (had_taking && !taking);
+    if (changed && !none) {
+        *nodes = list;
+        *node_count = count;
+        return out.at;
+    }
+    for (size_t i = 0; i < count; i++)
+        mem_free(list[i]);
+    mem_free(list);
+    if (none)
+        text_finish(&out);
+    return out.at;
+}

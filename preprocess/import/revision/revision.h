@@ -1,0 +1,41 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What a new export of a plant's models changes in its plant file and tag list: assets follow their nodes, sensors their equipment; what is
+ * no longer there is taken out, new equipment is added; and a review of all that for people. Thread: one. */
+#ifndef PREPROCESS_IMPORT_REVISION_H
+#define PREPROCESS_IMPORT_REVISION_H
+#include "plant/plant.h"
+#include "preprocess/import/plant_draft.h"
+#include "preprocess/import/revision/asset_edit.h"
+#include "preprocess/model/refusal.h"
+
+struct revision_model {
+    char *before, *after;                  /* paths; before NULL: the plant has no model of this name yet */
+    const struct plant_draft_model *draft; /* of the new one */
+};
+
+enum revision_kind { REVISION_ASSET, REVISION_NODE, REVISION_TAG };
+struct revision_row {
+    enum revision_kind kind;
+    const char *change; /* static: "added", "removed", "renamed", "moved", "changed", "place lost", "equipment lost" */
+    char *name, *detail;
+};
+
+struct revision {                  /* zero-initialise */
+    char *plant_text, *tags_text;  /* as they will be; NULL: they stay as they are */
+    struct revision_row *rows;     /* in the order in which people should read them */
+    const char **lost;             /* tags whose equipment is gone; the names are the plant's */
+    size_t row_count, row_room, lost_count, lost_room;
+};
+
+struct revision_input {
+    const struct plant *plant;
+    const char *plant_text, *tags_text; /* tags_text NULL: it has no tag list */
+    const struct revision_model *models;
+    size_t model_count;
+};
+
+/* Compares the models and composes the texts and the review. Returns false with the reason in why; finish it in both cases. */
+bool revision_plan(struct revision *revision, const struct revision_input *input, char why[MODEL_WHY_BYTES]);
+void revision_finish(struct revision *revision);
+
+#endif

@@ -1,0 +1,28 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Files of a plant's folder that are replaced together, and can be put back together: FOLDER/.revision keeps those of before. A program
+ * that is killed at any time leaves either the old files or work that the next one finishes. Functions that return int return 0 or -errno.
+ * Thread: one. */
+#ifndef PREPROCESS_IMPORT_REVISION_FILES_H
+#define PREPROCESS_IMPORT_REVISION_FILES_H
+#include <stdbool.h>
+#include <stddef.h>
+
+#include "base/text.h"
+
+struct revision_file {
+    const char *name; /* in the folder */
+    char *made;       /* path of the new one, on the same file system */
+};
+
+/* Takes the folder for this program until the descriptor is closed, removes what killed ones left in it (but for `own`, a path), and
+ * finishes what they had begun. Returns the descriptor; -EWOULDBLOCK: another program has the folder. */
+int revision_files_lock(const char *folder, const char *own);
+/* Replaces the files, in this order, and remembers those of before in place of what was remembered. work is a folder inside `folder`. */
+int revision_files_apply(const char *folder, const char *work, const struct revision_file *files, size_t count);
+
+/* Puts back the files of before the last revision. What has changed since is named in `changed`, separated by ", ", and then nothing is
+ * done, unless forced: then those files stay beside, as NAME.undone. Names of files that were put back are appended to `done`.
+ * -ENOENT: there is no revision; -EBUSY: files have changed since. */
+int revision_files_undo(const char *folder, bool forced, struct text *changed, struct text *done);
+
+#endif

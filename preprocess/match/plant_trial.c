@@ -1,0 +1,41 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Paths in a plant file are relative to its folder: the texts have to be there. */
+#include "preprocess/match/plant_trial.h"
+
+#include <stdio.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "base/atomic_file.h"
+#include "base/mem.h"
+
+/* The plant file with another tag list. */
+static char *with_list(const char *text, const char *list)
+{
+    const char *key = strstr(text, "\ntags:"), *end = key ? key + 1 + strcspn(key + 1, "\n") : NULL;
+    return key ? mem_printf("%.*s\ntags: %s%s", (int)(key - text), text, list, end) : mem_strdup(text);
+}
+
+struct plant *plant_trial_load(const struct plant *plant, const char *text, const char *tags, const char *program)
+{
+    char *name = mem_printf(".trial.%d.csv", (int)getpid()), *list = mem_printf("%s/%s", plant->folder, name),
+         *path = mem_printf("%s/.trial.%d.yaml", plant->folder, (int)getpid()), *changed = tags ? with_list(text, name) : NULL;
+    const char *all = changed ? changed : text;
+    struct plant *loaded = NULL;
+    int status = atomic_file_put(path, all, strlen(all));
+    if (status == 0 && tags)
+        status = atomic_file_put(list, tags, strlen(tags));
+    if (status != 0)
+        fprintf(stderr, "%s: %s: %s\n", program, path, strerror(-status));
+    else
+        loaded = plant_load_without_models(path); /* one may be about to come */
+    if (status == 0 && !loaded)
+        fprintf(stderr, "%s: the plant that this makes is not valid; nothing was written\n", program);
+    unlink(path);
+    unlink(list);
+    mem_free(changed);
+    mem_free(path);
+    mem_free(list);
+    mem_free(name);
+    return loaded;
+}

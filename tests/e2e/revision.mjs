@@ -1,0 +1,272 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A new export of a plant that is there: what was matched stays matched, sensors follow what they are on, a review says the rest; under a
+// daemon that runs; taken back; killed, and out of disk.
+import assert from 'node:assert/strict';
+import { spawn, spawnSync } from 'node:child_process';
+import { copyFileSync, cpSync, existsSync, mkdtempSync, readdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
+import { tmpdir } from 'node:os';
+import { join } from 'node:path';
+import { test } from 'node:test';
+import { copyGroup, findGroup, readRvm, writeRvm } from './support/rvm_file.mjs';
+import { BIN, missing, TinyPlant } from './support/tiny_plant.mjs';
+
+const absent = missing();
+const SAMPLE = join(import.meta.dirname, '../../../shared/data/cad/plm-sample');
+const notBuilt = absent.length > 0 ? `not built: ${absent.join(', ')}` : false;
+const noData = notBuilt || (existsSync(`${SAMPLE}.rvm`) ? false : 'no ../shared/data/cad');
+const run = (program, ...args) => spawnSync(join(BIN, program), args, { encoding: 'utf8', timeout: 120000 });
+const good = (said) => (assert.equal(said.status, 0, said.stderr), said);
+const sleep = (ms) => new Promise((done) => setTimeout(done, ms));
+
+async function inFolder(f) {
+    const folder = mkdtempSync(join(tmpdir(), 'plantcast-revision-'));
+    try {
+        await f(folder);
+    } finally {
+        rmSync(folder, { recursive: true });
+    }
+}
+
+const rowsOf = (path) => readFileSync(path, 'utf8').trim().split('\n').slice(1).map((line) => line.split(','));
+const review = (folder) => rowsOf(join(folder, 'review.csv')).map(([what, change, name]) => `${what} ${change} ${name.replace(/^'/, '')}`).sort();
+// All that people see of a folder, by name.
+const filesOf = (folder) => Object.fromEntries(readdirSync(folder, { withFileTypes: true })
+    .filter((entry) => entry.isFile()).map(({ name }) => [name, readFileSync(join(folder, name)).toString('base64')]));
+
+// One pump moves and a second one comes, another has a new name, a pipe is gone, and a part of a tank.
+function revise(folder) {
+    const rvm = readRvm(readFileSync(`${SAMPLE}.rvm`)), path = join(folder, 'plm-sample.rvm');
+    const replace = (name, by) => {
+        const { group, above } = findGroup(rvm, name);
+        above.items.splice(above.items.indexOf(group), 1, ...by(group));
+    };
+    replace('/-ART1101PO-', (pump) => [copyGroup(pump, [1.5, 0.25, 0]), copyGroup(pump, [4, 0, 0], (name) => name.replace('1101', '1102'))]);
+    replace('/-ART1111PO-', (pump) => [copyGroup(pump, [0, 0, 0], (name) => name.replace('1111', '1113'))]);
+    replace('/-ART1010TY-', () => []);
+    writeFileSync(path, writeRvm(rvm));
+    copyFileSync(`${SAMPLE}.att`, join(folder, 'plm-sample.att'));
+    return path;
+}
+
+const LIST = `Tag Name,Address,Data Type,Scaled Low,Scaled High,Eng Units,Description
+ART1105BA_TT01,400001,Float,0,150,degC,top
+TT-1101,400003,Float,0,120,degC,Pump ART1101PO bearing DE temperature
+art1111po.TE-03,400005,Float,0,120,degC,Bearing temperature
+ART1010TY_TI_01,400007,Float,0,200,degC,Feed line
+`;
+
+function bring(folder, ...more) {
+    good(run('plantcast', 'import', `${SAMPLE}.rvm`, '-o', folder));
+    writeFileSync(join(folder, 'export.csv'), LIST);
+    good(run('plantcast', 'match', folder, join(folder, 'export.csv'), ...more));
+    // Somebody has confirmed the place on the pump that will move.
+    const list = join(folder, 'tags.csv'), text = readFileSync(list, 'utf8');
+    writeFileSync(list, text.replace(/(TT-1101,.*-ART1101PO-,)equipment(,,).*/, '$1$2-4.700,-4.150,3.3'));
+    assert.notEqual(readFileSync(list, 'utf8'), text);
+}
+
+test('a real plant: rename, move, delete, add; and back', { skip: noData }, () => inFolder((folder) => {
+    const plant = join(folder, 'plant'), revised = revise(folder);
+    bring(plant, '--modbus', '127.0.0.1:502', '--byte-order', 'CDAB');
+    const before = filesOf(plant);
+    const dry = good(run('plantcast', 'import', revised, '-o', plant, '--dry-run'));
+    assert.match(dry.stdout, /assets: 1 added, 1 removed, 1 renamed, 1 moved/);
+    assert.deepEqual(filesOf(plant), before);
+    const said = good(run('plantcast', 'import', revised, '-o', plant));
+    assert.match(said.stdout, /tags: 1 moved, 1 equipment lost/);
+    assert.deepEqual(review(plant).filter((row) => !row.includes(' changed ')), ['asset added -ART1102PO-', 'asset moved -ART1101PO-',
+        'asset removed -ART1010TY-', 'asset renamed -ART1111PO-', 'node added plm-sample//-ART//-ART10//-ART1102PO-',
+        'tag equipment lost ART1010TY_TI_01', 'tag moved TT-1101']);
+    const list = readFileSync(join(plant, 'tags.csv'), 'utf8'), file = readFileSync(join(plant, 'plant.yaml'), 'utf8');
+    assert.match(list, /TT-1101,.*,-ART1101PO-,,,-3\.2,-3\.9,3\.3$/m);
+    assert.match(list, /art1111po\.TE-03,.*,temperature,-ART1111PO-,equipment,/);
+    assert.match(list, /ART1010TY_TI_01,.*,plc,temperature,,,,,,$/m);
+    assert.match(file, /- \{ id: "-ART1111PO-", tag: "-ART1113PO-", area: "-ART10", model: "plm-sample.glb", nodes: "\/-ART1113PO-" \}/);
+    assert.match(file, /- \{ id: "-ART1102PO-", /);
+    assert.doesNotMatch(file, /ART1010TY/);
+    good(run('plantcastd', '--check', join(plant, 'plant.yaml')));
+    // Matched again, nothing is undone; a tag that left the list is named.
+    writeFileSync(join(plant, 'export.csv'), LIST.replace(/^art1111po.*\n/m, ''));
+    const again = good(run('plantcast', 'match', plant, join(plant, 'export.csv')));
+    assert.match(again.stdout, /1 tags of before are no longer in the list; what was decided about them stays: art1111po\.TE-03/);
+    assert.equal(readFileSync(join(plant, 'tags.csv'), 'utf8'), list);
+    assert.match(readFileSync(join(plant, 'matches.csv'), 'utf8'), /^art1111po\.TE-03,sure,-ART1111PO-,/m);
+    // matches.csv is another one now, so it is not lost without being asked.
+    const refused = run('plantcast', 'import', '--undo', '-o', plant);
+    assert.equal(refused.status, 1);
+    assert.match(refused.stderr, /changed since the import: matches\.csv; --force undoes/);
+    good(run('plantcast', 'import', '--undo', '--force', '-o', plant));
+    const after = filesOf(plant);
+    assert.match(Buffer.from(after['matches.csv.undone'], 'base64').toString(), /^ART1010TY_TI_01,none,/m);
+    delete after['matches.csv.undone'];
+    assert.deepEqual({ ...after, 'export.csv': before['export.csv'] }, before);
+    const twice = run('plantcast', 'import', '--undo', '-o', plant);
+    assert.equal(twice.status, 1);
+    assert.match(twice.stderr, /there is nothing to undo/);
+    assert.ok(readdirSync(plant).every((name) => !name.startsWith('.')), readdirSync(plant).join(' '));
+}));
+
+// Boxes of a metre at places, as glTF.
+function boxes(path, nodes) {
+    const corners = [0, 1, 2, 3, 4, 5, 6, 7].map((i) => [i & 1, i >> 1 & 1, i >> 2]);
+    const faces = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
+    const indices = faces.flatMap(([a, b, c, d]) => [a, b, c, a, c, d]);
+    const bytes = Buffer.concat([Buffer.from(Float32Array.from(corners.flat()).buffer), Buffer.from(Uint16Array.from(indices).buffer)]);
+    writeFileSync(path, JSON.stringify({ asset: { version: '2.0' }, scene: 0, scenes: [{ nodes: nodes.map((_, i) => i) }],
+        nodes: nodes.map(({ name, at, guid, turned }) => ({ name, mesh: 0, translation: at, ...guid && { extras: { GlobalId: guid } },
+            ...turned && { rotation: [0, Math.SQRT1_2, 0, Math.SQRT1_2] } })),
+        meshes: [{ primitives: [{ attributes: { POSITION: 0 }, indices: 1 }] }],
+        accessors: [{ bufferView: 0, componentType: 5126, count: 8, type: 'VEC3', min: [0, 0, 0], max: [1, 1, 1] },
+            { bufferView: 1, componentType: 5123, count: 36, type: 'SCALAR' }],
+        bufferViews: [{ buffer: 0, byteLength: 96 }, { buffer: 0, byteOffset: 96, byteLength: 72 }],
+        buffers: [{ byteLength: bytes.length, uri: `data:application/octet-stream;base64,${bytes.toString('base64')}` }] }));
+}
+
+test('identities: GUIDs, numbers of nodes, names that are used again', { skip: notBuilt }, () => inFolder((folder) => {
+    const model = join(folder, 'm.gltf'), plant = join(folder, 'plant'), list = join(plant, 'tags.csv');
+    const A = { name: 'A', at: [0, 0, 0], guid: 'gA' }, B = { name: 'B', at: [5, 0, 0], guid: 'gB' }, C = { name: '', at: [9, 0, 0] },
+        D = { name: 'D', at: [20, 0, 0] }, E = { name: 'E', at: [30, 0, 0] }, T = { name: 'TT-9', at: [5, 2, 0], guid: 'gT' };
+    boxes(model, [A, B, C, D, E, T]);
+    good(run('plantcast', 'import', model, '-o', plant));
+    writeFileSync(join(plant, 'plant.yaml'), `plant: { name: identities }
+assets:
+  - { id: first, model: m.glb, nodes: A } # a comment
+  - { id: second, model: m.glb, nodes: [B, TT-9] }
+  - id: third
+    model: m.glb
+    nodes: "#2"
+  - { id: fourth, model: m.glb, nodes: D }
+groups:
+  - { id: temperature, unit: °C, min: 0, max: 100 }
+tags: tags.csv
+`);
+    writeFileSync(list, `Tag Name;Group;Asset;Node;Place;X;Y;Z;Mine
+T1;temperature;first;;;0.5;0;1;a
+T2;temperature;second;TT-9;;;;;b
+T3;temperature;third;"#2";;;;;c
+T4;temperature;fourth;;;20.5;0;1;d
+T5;temperature;second;;equipment;;;;e
+T6;temperature;second;TT-9;;;;;f
+`);
+    const first = filesOf(plant);
+    // A and B change their names with each other; A is turned about the vertical and moved; C has another number; TT-9 has gone; D is
+    // elsewhere; F is new; E, which no asset has, has gone.
+    boxes(model, [{ ...D, at: [20, 0, -3] }, { name: 'F', at: [40, 0, 0] }, C, { ...B, name: 'A' }, { ...A, name: 'B', at: [0, 1, 0], turned: true }]);
+    const said = good(run('plantcast', 'import', model, '-o', plant));
+    const file = readFileSync(join(plant, 'plant.yaml'), 'utf8'), tags = readFileSync(list, 'utf8');
+    assert.match(file, /id: first, model: m\.glb, nodes: "B" \} # a comment/);
+    assert.match(file, /id: second, model: m\.glb, nodes: \["A"\] \}/);
+    assert.match(file, /nodes: "#2"\n/);
+    assert.match(file, /- \{ id: "F", model: "m\.glb", nodes: "F" \}/);
+    assert.doesNotMatch(file, /id: "E"/);
+    // (0.5, 1, 0), Y up, a quarter turn about Y and 1 m up: (0, 2, -0.5).
+    assert.match(tags, /^T1;temperature;first;;;0;0\.5;2;a$/m);
+    assert.match(tags, /^T2;temperature;second;;equipment;;;;b$/m);
+    assert.match(tags, /^T3;temperature;third;"?#2"?;;;;;c$/m);
+    assert.match(tags, /^T4;temperature;fourth;;;20\.5;3;1;d$/m);
+    assert.match(tags, /^T5;temperature;second;;equipment;;;;e$/m);
+    assert.match(said.stdout, /tag +place lost +T2 +on second: its node TT-9 is no longer in the model/);
+    assert.match(said.stdout, /tags: 2 moved, 2 place lost/);
+    assert.ok(review(plant).includes('node removed E'));
+    // The same once more changes nothing, and what can be undone is still the first one.
+    assert.match(good(run('plantcast', 'import', model, '-o', plant)).stdout, /plant\.yaml: stays as it is/);
+    good(run('plantcast', 'import', '--undo', '-o', plant));
+    assert.deepEqual(filesOf(plant), first);
+    // Nothing of the plant is in the new model: it is another plant's.
+    boxes(model, [{ name: 'X', at: [100, 0, 0] }]);
+    const other = run('plantcast', 'import', model, '-o', plant);
+    assert.equal(other.status, 1);
+    assert.match(other.stderr, /nothing of this plant is in it/);
+    // One more model is one more: its assets are added.
+    boxes(join(folder, 'n.gltf'), [{ name: 'G', at: [50, 0, 0] }, { name: 'A', at: [60, 0, 0] }]);
+    good(run('plantcast', 'import', join(folder, 'n.gltf'), '-o', plant));
+    assert.match(readFileSync(join(plant, 'plant.yaml'), 'utf8'), /- \{ id: "G", model: "n\.glb", nodes: "G" \}\n/);
+    good(run('plantcast', 'import', '--undo', '-o', plant));
+    assert.deepEqual(filesOf(plant), first);
+}));
+
+test('under a daemon that runs: readings, history and alarms keep their tags', { skip: noData, timeout: 300000 }, async () => {
+    const tiny = await TinyPlant.create(), plant = tiny.folder;
+    for (const name of readdirSync(plant))
+        rmSync(join(plant, name), { recursive: true });
+    const api = async (path) => (await fetch(`http://127.0.0.1:${tiny.port}${path}`)).json();
+    const until = async (what, f) => {
+        for (const end = Date.now() + 60000; Date.now() < end; await sleep(100))
+            if (await f())
+                return;
+        assert.fail(what);
+    };
+    const value = async (name) => (await api('/api/v1/tags')).tags.find((tag) => tag.name === name);
+    const points = async (name) => JSON.stringify(await api(`/api/v1/history?tags=${name}&from=-10m`));
+    const outside = mkdtempSync(join(tmpdir(), 'plantcast-revised-'));
+    try {
+        bring(plant, '--modbus', `127.0.0.1:${tiny.modbusPort}`, '--byte-order', 'CDAB');
+        assert.equal(tiny.prepare().code, 0);
+        await tiny.startSim();
+        await tiny.startDaemon();
+        await tiny.tell('set TT-1101 77');
+        await tiny.tell('set art1111po.TE-03 44');
+        await until('a reading', async () => (await value('TT-1101')).value === 77);
+        const before = await api('/api/v1/plant');
+        good(run('plantcast', 'import', revise(outside), '-o', plant));
+        assert.equal((await value('TT-1101')).value, 77); // nothing has changed for who looks
+        assert.equal(tiny.prepare().code, 0);
+        const reload = async () => {
+            const answer = await fetch(`http://127.0.0.1:${tiny.port}/api/v1/reload`, { method: 'POST' }), said = await answer.json();
+            assert.equal(answer.status, 200, JSON.stringify(said));
+            return said;
+        };
+        await reload();
+        const after = await api('/api/v1/plant');
+        assert.notEqual(after.plant.configuration, before.plant.configuration);
+        for (const [name, want, asset] of [['TT-1101', 77, '-ART1101PO-'], ['art1111po.TE-03', 44, '-ART1111PO-']]) {
+            await until(name, async () => (await value(name)).value === want);
+            assert.equal((await value(name)).asset, asset);
+        }
+        assert.ok(await value('ART1010TY_TI_01'), 'a tag without equipment is still read');
+        await until('history', async () => (await points('TT-1101')).includes('77'));
+        good(run('plantcast', 'import', '--undo', '-o', plant));
+        assert.equal(tiny.prepare().code, 0);
+        await reload();
+        assert.equal((await api('/api/v1/plant')).plant.configuration, before.plant.configuration);
+        assert.equal((await value('ART1010TY_TI_01')).asset, '-ART1010TY-');
+    } finally {
+        rmSync(outside, { recursive: true });
+        await tiny.destroy();
+    }
+});
+
+test('killed in the middle, or out of disk: the old plant or the new one', { skip: noData, timeout: 300000 }, () => inFolder(async (folder) => {
+    const first = join(folder, 'first'), revised = revise(folder), plant = join(folder, 'plant');
+    bring(first);
+    const old = filesOf(first);
+    cpSync(first, join(folder, 'whole'), { recursive: true });
+    const began = Date.now();
+    good(run('plantcast', 'import', revised, '-o', join(folder, 'whole')));
+    const ms = Date.now() - began, whole = filesOf(join(folder, 'whole'));
+    let kept = 0;
+    for (let i = 1; i <= 12; i++) {
+        cpSync(first, plant, { recursive: true });
+        const child = spawn(join(BIN, 'plantcast-import'), ['import', revised, '-o', plant], { stdio: 'ignore' });
+        const ended = new Promise((done) => child.once('exit', done));
+        await sleep(ms * i / 11);
+        child.kill('SIGKILL');
+        await ended;
+        const now = filesOf(plant);
+        kept += now['plant.yaml'] === old['plant.yaml'];
+        if (now['plant.yaml'] === old['plant.yaml'])
+            good(run('plantcastd', '--check', join(plant, 'plant.yaml')));
+        good(run('plantcast', 'import', revised, '-o', plant));
+        assert.deepEqual(filesOf(plant), whole);
+        assert.deepEqual(readdirSync(plant).filter((name) => name.startsWith('.')), ['.revision']);
+        rmSync(plant, { recursive: true });
+    }
+    console.log(`# killed 12 times within ${ms} ms: ${kept} times before anything was replaced`);
+    cpSync(first, plant, { recursive: true });
+    const full = spawnSync('bash', ['-c', `trap '' XFSZ; ulimit -f 300; exec "$0" import "$1" -o "$2"`, join(BIN, 'plantcast-import'), revised, plant],
+        { encoding: 'utf8', timeout: 60000 });
+    assert.equal(full.status, 1);
+    assert.equal(full.stderr.trim().split('\n').length, 1, full.stderr);
+    assert.deepEqual(filesOf(plant), old);
+    assert.deepEqual(readdirSync(plant).filter((name) => name.startsWith('.')), []);
+}));

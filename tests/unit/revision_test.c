@@ -1,0 +1,269 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Files of a plant that are replaced together: killed, or out of disk, at each step; and the plant file's own text. */
+#include "preprocess/import/revision/revision_files.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <setjmp.h>
+#include <signal.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <sys/syscall.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cmocka.h>
+
+#include "base/mem.h"
+#include "preprocess/import/revision/asset_edit.h"
+#include "tests/support/temp.h"
+
+/* --- a file system that fails ------------------------------------------------------------------------------------------------ */
+
+static int steps_left = -1; /* -1: none fails */
+static bool kills;
+
+/* In place of the C library's. */
+int rename(const char *from, const char *to)
+{
+    if (steps_left == 0 && kills)
+        kill(getpid(), SIGKILL);
+    if (steps_left == 0) {
+        errno = ENOSPC;
+        return -1;
+    }
+    steps_left -= steps_left > 0;
+    return (int)syscall(SYS_renameat2, AT_FDCWD, from, AT_FDCWD, to, 0);
+}
+
+/* --- files ------------------------------------------------------------------------------------------------------------------- */
+
+static const char *const names[] = { "model.glb", "tags.csv", "plant.yaml", "new.glb" };
+enum { FILES = 4, WERE = 3 };
+
+static void begin(const char *folder)
+{
+    for (int i = 0; i < WERE; i++)
+        mem_free(temp_write_text(folder, names[i], "old"));
+}
+
+static int apply(const char *folder)
+{
+    char *own = mem_printf("%s/.import-1", folder);
+    struct revision_file files[FILES];
+    mkdir(own, 0777);
+    int lock = revision_files_lock(folder, own);
+    for (int i = 0; i < FILES; i++)
+        files[i] = (struct revision_file){ names[i], temp_write_text(own, names[i], "new") };
+    int status = lock < 0 ? lock : revision_files_apply(folder, own, files, FILES);
+    for (int i = 0; i < FILES; i++)
+        mem_free(files[i].made);
+    if (lock >= 0)
+        close(lock);
+    mem_free(own);
+    return status;
+}
+
+static int undo(const char *folder, bool forced)
+{
+    struct text changed = { 0 }, done = { 0 };
+    int lock = revision_files_lock(folder, NULL), status = lock < 0 ? lock : revision_files_undo(folder, forced, &changed, &done);
+    if (lock >= 0)
+        close(lock);
+    text_finish(&changed);
+    text_finish(&done);
+    return status;
+}
+
+static bool says(const char *folder, const char *name, const char *text)
+{
+    size_t bytes;
+    char *path = mem_printf("%s/%s", folder, name), *now = text_read_file(path, 100, &bytes);
+    bool same = text ? now && !strcmp(now, text) : !now;
+    mem_free(path);
+    mem_free(now);
+    return same;
+}
+
+static bool all(const char *folder, bool new)
+{
+    bool good = true;
+    for (int i = 0; i < FILES; i++)
+        good &= says(folder, names[i], new ? "new" : i < WERE ? "old" : NULL);
+    return good;
+}
+
+/* --- tests ------------------------------------------------------------------------------------------------------------------- */
+
+static void all_files_come_and_go_together(void **state)
+{
+    char *folder = temp_folder_create();
+    (void)state;
+    begin(folder);
+    assert_int_equal(apply(folder), 0);
+    assert_true(all(folder, true));
+    assert_int_equal(undo(folder, false), 0);
+    assert_true(all(folder, false));
+    assert_int_equal(undo(folder, false), -ENOENT);
+    assert_true(all(folder, false));
+    temp_folder_destroy(&folder);
+}
+
+static void what_people_changed_since_is_not_undone_unless_forced(void **state)
+{
+    char *folder = temp_folder_create();
+    (void)state;
+    begin(folder);
+    assert_int_equal(apply(folder), 0);
+    mem_free(temp_write_text(folder, "tags.csv", "mine"));
+    assert_int_equal(undo(folder, false), -EBUSY);
+    assert_true(says(folder, "tags.csv", "mine") && says(folder, "plant.yaml", "new"));
+    assert_int_equal(undo(folder, true), 0);
+    assert_true(all(folder, false));
+    assert_true(says(folder, "tags.csv.undone", "mine"));
+    temp_folder_destroy(&folder);
+}
+
+static void rights_of_a_file_stay(void **state)
+{
+    char *folder = temp_folder_create(), *path;
+    struct stat st;
+    (void)state;
+    begin(folder);
+    path = mem_printf("%s/plant.yaml", folder);
+    assert_int_equal(chmod(path, 0640), 0);
+    assert_int_equal(apply(folder), 0);
+    assert_int_equal(stat(path, &st), 0);
+    assert_int_equal(st.st_mode & 0777, 0640);
+    mem_free(path);
+    temp_folder_destroy(&folder);
+}
+
+/* Runs one of both in a process of its own, in which the step-th renaming fails or kills it. Returns true if it got to the end. */
+static bool run_until(const char *folder, bool undoing, int step, bool killed)
+{
+    int status;
+    pid_t child = fork();
+    if (child == 0) {
+        steps_left = step;
+        kills = killed;
+        _exit((undoing ? undo(folder, false) : apply(folder)) == 0 ? 0 : 1);
+    }
+    assert_int_equal(waitpid(child, &status, 0), child);
+    return WIFEXITED(status) && WEXITSTATUS(status) == 0;
+}
+
+static void sweep(bool killed)
+{
+    for (int undoing = 0; undoing < 2; undoing++) {
+        bool ended = false;
+        int step = 0;
+        for (; !ended; step++) {
+            char *folder = temp_folder_create();
+            begin(folder);
+            if (undoing)
+                assert_int_equal(apply(folder), 0);
+            ended = run_until(folder, undoing, step, killed);
+            int lock = revision_files_lock(folder, NULL); /* whoever comes next */
+            assert_true(lock >= 0);
+            close(lock);
+            bool new = all(folder, true);
+            assert_true(new || all(folder, false));
+            assert_true(!ended || new == !undoing);
+            if (new) { /* and it can still be undone */
+                assert_int_equal(undo(folder, false), 0);
+                assert_true(all(folder, false));
+            }
+            temp_folder_destroy(&folder);
+        }
+        assert_true(step >= 5);
+    }
+}
+
+static void killed_at_any_step_it_is_all_or_nothing(void **state)
+{
+    (void)state;
+    sweep(true);
+}
+
+static void out_of_disk_at_any_step_it_is_all_or_nothing(void **state)
+{
+    (void)state;
+    sweep(false);
+}
+
+static void one_program_at_a_time(void **state)
+{
+    char *folder = temp_folder_create();
+    (void)state;
+    int lock = revision_files_lock(folder, NULL);
+    assert_true(lock >= 0);
+    assert_int_equal(revision_files_lock(folder, NULL), -EWOULDBLOCK);
+    close(lock);
+    temp_folder_destroy(&folder);
+}
+
+static void the_plant_file_stays_as_people_wrote_it(void **state)
+{
+    static const char text[] = "plant: { name: \"Größe\" }\n"
+                               "assets:\n"
+                               "  # the feed\n"
+                               "  - { id: E-101, model: m.glb, nodes: \"E-101\" } # ours\n"
+                               "  - id: P-1\n"
+                               "    model: m.glb\n"
+                               "    # two of them\n"
+                               "    nodes:\n"
+                               "      - P-1*\n"
+                               "      - '#7'\n"
+                               "  - { id: V-1, model: m.glb, nodes: [A, B] }\n"
+                               "  - { id: gone,\n"
+                               "      model: m.glb }\n"
+                               "\n"
+                               "# end\n"
+                               "tags: tags.csv\n";
+    char *pump[] = { NULL, mem_strdup("#9") }, *vessel[] = { mem_strdup("A \"x\""), mem_strdup("B") }, why[ASSET_EDIT_WHY_BYTES];
+    const struct asset_edit edits[] = {
+        { .tag = mem_strdup("E-102") }, { .nodes = pump, .node_count = 2 }, { .nodes = vessel, .node_count = 2 }, { .removed = true }
+    };
+    (void)state;
+    char *out = asset_edit_apply(text, edits, 4, "  - { id: \"new\" }\n", why);
+    assert_string_equal(out, "plant: { name: \"Größe\" }\n"
+                             "assets:\n"
+                             "  # the feed\n"
+                             "  - { id: E-101, tag: \"E-102\", model: m.glb, nodes: \"E-101\" } # ours\n"
+                             "  - id: P-1\n"
+                             "    model: m.glb\n"
+                             "    # two of them\n"
+                             "    nodes:\n"
+                             "      - \"#9\"\n"
+                             "  - { id: V-1, model: m.glb, nodes: [\"A \\\"x\\\"\", \"B\"] }\n"
+                             "  - { id: \"new\" }\n"
+                             "\n"
+                             "# end\n"
+                             "tags: tags.csv\n");
+    mem_free(out);
+    assert_null(asset_edit_apply("assets: [{ id: a }]\n", &(struct asset_edit){ .removed = true }, 1, NULL, why));
+    assert_string_equal(why, "its lists of assets and nodes have to be one item a line");
+    mem_free(pump[1]);
+    mem_free(vessel[0]);
+    mem_free(vessel[1]);
+    mem_free(edits[0].tag);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(all_files_come_and_go_together),
+        cmocka_unit_test(what_people_changed_since_is_not_undone_unless_forced),
+        cmocka_unit_test(rights_of_a_file_stay),
+        cmocka_unit_test(killed_at_any_step_it_is_all_or_nothing),
+        cmocka_unit_test(out_of_disk_at_any_step_it_is_all_or_nothing),
+        cmocka_unit_test(one_program_at_a_time),
+        cmocka_unit_test(the_plant_file_stays_as_people_wrote_it),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
