@@ -187,6 +187,7 @@ struct job {
     struct source *source;
     float (*out)[4];
     int side_px, layer;
+    const struct lobe *lobe; /* of the layer; the first has none */
 };
 
 /* The base of the pyramid: the mean of 4 x 4 places in each texel. */
@@ -244,18 +245,37 @@ static int level_of(double alpha, double n_h)
     return level < PYRAMID - 1 ? level : PYRAMID - 1;
 }
 
-static void mirror(const struct source *source, const double n[3], double alpha, double out[3])
+struct lobe { /* rays around a normal, the same for each texel of a layer */
+    int count, level[SAMPLES];
+    double n_l[SAMPLES], flat[SAMPLES], cosine[SAMPLES], sine[SAMPLES];
+};
+
+static void make_lobe(double alpha, struct lobe *lobe)
+{
+    lobe->count = 0;
+    for (unsigned i = 0; i < SAMPLES; i++) {
+        double n_h = ggx_cosine(alpha, (i + 0.5) / SAMPLES), angle = 2 * M_PI * ggx_turn(i), n_l = 2 * n_h * n_h - 1;
+        int k = lobe->count;
+        if (n_l <= 0)
+            continue;
+        lobe->n_l[k] = n_l;
+        lobe->flat[k] = 2 * n_h * sqrt(1 - n_h * n_h);
+        lobe->cosine[k] = cos(angle);
+        lobe->sine[k] = sin(angle);
+        lobe->level[k] = level_of(alpha, n_h);
+        lobe->count++;
+    }
+}
+
+static void mirror(const struct source *source, const struct lobe *lobe, const double n[3], double out[3])
 {
     double t[3], b[3], sum[3] = { 0 }, all = 0;
     frame_of(n, t, b);
-    for (unsigned i = 0; i < SAMPLES; i++) {
-        double n_h = ggx_cosine(alpha, (i + 0.5) / SAMPLES), angle = 2 * M_PI * ggx_turn(i);
-        double n_l = 2 * n_h * n_h - 1, flat = 2 * n_h * sqrt(1 - n_h * n_h), towards[3], x, y, color[3];
-        if (n_l <= 0)
-            continue;
+    for (int i = 0; i < lobe->count; i++) {
+        double n_l = lobe->n_l[i], towards[3], x, y, color[3];
         for (int c = 0; c < 3; c++)
-            towards[c] = n_l * n[c] + flat * (cos(angle) * t[c] + sin(angle) * b[c]);
-        int level = level_of(alpha, n_h), side = BASE_PX >> level;
+            towards[c] = n_l * n[c] + lobe->flat[i] * (lobe->cosine[i] * t[c] + lobe->sine[i] * b[c]);
+        int level = lobe->level[i], side = BASE_PX >> level;
         texel_of(towards, side, &x, &y);
         bilinear((const float(*)[4])source->pyramid[level], side, side, x, y, false, color);
         for (int c = 0; c < 3; c++)
@@ -269,7 +289,6 @@ static void mirror(const struct source *source, const double n[3], double alpha,
 static void layer_rows(void *arg, size_t begin, size_t end)
 {
     struct job *job = arg;
-    double roughness = (double)job->layer / (ENVIRONMENT_LAYERS - 1);
     for (size_t i = begin * (size_t)job->side_px; i < end * (size_t)job->side_px; i++) {
         double towards[3], color[3], x, y;
         texel_direction((int)(i % (size_t)job->side_px), (int)(i / (size_t)job->side_px), job->side_px, towards);
@@ -277,7 +296,7 @@ static void layer_rows(void *arg, size_t begin, size_t end)
             texel_of(towards, BASE_PX / 2, &x, &y);
             bilinear((const float(*)[4])job->source->pyramid[1], BASE_PX / 2, BASE_PX / 2, x, y, false, color);
         } else {
-            mirror(job->source, towards, roughness * roughness, color);
+            mirror(job->source, job->lobe, towards, color);
         }
         for (int c = 0; c < 3; c++)
             job->out[i][c] = (float)color[c];
@@ -289,7 +308,10 @@ static void make_layer(struct source *source, struct workers *workers, int layer
 {
     int side = layer_px[layer];
     bool small = side < ENVIRONMENT_PX;
-    struct job job = { .source = source, .side_px = side, .layer = layer };
+    double roughness = (double)layer / (ENVIRONMENT_LAYERS - 1);
+    struct lobe lobe;
+    make_lobe(roughness * roughness, &lobe);
+    struct job job = { .source = source, .side_px = side, .layer = layer, .lobe = &lobe };
     job.out = small ? mem_array((size_t)side * (size_t)side, sizeof(*job.out)) : out;
     workers_for(workers, (size_t)side, 4, layer_rows, &job);
     for (int i = 0; small && i < ENVIRONMENT_PX * ENVIRONMENT_PX; i++) {

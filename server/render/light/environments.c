@@ -112,16 +112,25 @@ static void make_brdf(struct environments *environments)
     mem_free(texels);
 }
 
+/* It is the same for every renderer: computed once, and kept until the process ends. */
+static const struct environment *built_in_sky(bool y_up, struct workers *workers)
+{
+    static pthread_mutex_t lock = PTHREAD_MUTEX_INITIALIZER;
+    static struct environment skies[2]; /* under lock while they are made */
+    pthread_mutex_lock(&lock);
+    if (!skies[y_up].mirrored)
+        environment_init(&skies[y_up], NULL, y_up, workers);
+    pthread_mutex_unlock(&lock);
+    return &skies[y_up];
+}
+
 bool environments_init(struct environments *environments, struct gl *gl, const struct plant *plant, struct workers *workers)
 {
-    struct environment sky;
     bool y_up = plant->up == AXIS_Y;
     *environments = (struct environments){ .gl = gl, .count = 1 + (int)plant->environment_count };
     for (int i = 1; i < environments->count; i++)
         environments->slots[i].task = start_task(gl->log, workers, plant->environments[i - 1].path, y_up);
-    environment_init(&sky, NULL, y_up, workers);
-    bool good = upload(environments, &environments->slots[0], &sky);
-    environment_finish(&sky);
+    bool good = upload(environments, &environments->slots[0], built_in_sky(y_up, workers));
     make_brdf(environments);
     return good;
 }
