@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* `plantcast snapshot` on the demo plant, as a person would call it: exit codes, messages, and what is in the picture. */
+/* `plantcast snapshot` on one asset of the demo plant, as a person would call it: exit codes, messages, and what is in the picture. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -18,8 +18,8 @@
 #include "tests/support/rig.h"
 #include "tests/support/temp.h"
 
-static const char plant[] = "build/demo/plant.yaml";
-static char *folder;
+static const char demo[] = "build/demo";
+static char *folder, *plant;
 
 static const char *from_environment(const char *name, const char *otherwise)
 {
@@ -53,6 +53,45 @@ static int draw(const char *options)
     int code = snapshot(args);
     mem_free(args);
     return code;
+}
+
+static char *read_demo(const char *name)
+{
+    size_t bytes;
+    char *path = mem_printf("%s/%s", demo, name), *all = text_read_file(path, 1 << 20, &bytes);
+    mem_free(path);
+    return all;
+}
+
+static void link_demo(const char *name)
+{
+    char *path = mem_printf("%s/%s", demo, name), *whole = realpath(path, NULL), *link = mem_printf("%s/%s", folder, name);
+    assert_non_null(whole);
+    assert_int_equal(symlink(whole, link), 0);
+    mem_free(path);
+    free(whole);
+    mem_free(link);
+}
+
+/* The first asset alone, with its tags: each picture lights all that there is. */
+static void write_plant(void)
+{
+    char *text = read_demo("plant.yaml"), *list = read_demo("tags.csv"), *rest = NULL;
+    struct text tags = { 0 };
+    assert_true(text && list);
+    char *second = strstr(text, "\n  - { id: E-102,");
+    assert_non_null(second);
+    second[1] = '\0';
+    for (char *line = strtok_r(list, "\n", &rest); line; line = strtok_r(NULL, "\n", &rest))
+        if (tags.length == 0 || strstr(line, ",E-101,"))
+            text_add(&tags, "%s\n", line);
+    plant = temp_write_text(folder, "plant.yaml", text);
+    mem_free(temp_write_text(folder, "tags.csv", tags.at));
+    link_demo("plant.glb");
+    link_demo("plant.prepared");
+    text_finish(&tags);
+    mem_free(text);
+    mem_free(list);
 }
 
 static void write_values(const char *text)
@@ -175,12 +214,14 @@ int main(void)
     if (!rig_init(&rig, "snapshot_test"))
         return 0;
     rig_finish(&rig);
-    if (access(plant, R_OK) != 0) {
+    if (access(demo, R_OK) != 0) {
         printf("1..1\nok 1 - snapshot_test # SKIP no demo plant: make demo\n");
         return 0;
     }
     folder = temp_folder_create();
+    write_plant();
     int failed = cmocka_run_group_tests(tests, NULL, NULL);
+    mem_free(plant);
     temp_folder_destroy(&folder);
     return failed;
 }
