@@ -38,6 +38,8 @@ before(async () => {
     const imported = runProgram('plantcast', ['history', 'import', plant.file, join(plant.folder, 'series.csv')]);
     assert.equal(imported.code, 0, imported.err);
     await plant.startSim();
+    for (const [tag, value] of [['TI-1', 50], ['TI-2', 40], ['PI-1', 5]]) // no other alarm than the one that a test raises
+        await plant.tell(`set ${tag} ${value}`);
     await plant.startDaemon();
     browser = await openPage(`http://127.0.0.1:${plant.port}/`, { viewport: { width: 1440, height: 900 } });
     page = browser.page;
