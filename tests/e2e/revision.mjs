@@ -28,7 +28,8 @@ async function inFolder(f) {
 }
 
 const rowsOf = (path) => readFileSync(path, 'utf8').trim().split('\n').slice(1).map((line) => line.split(','));
-const review = (folder) => rowsOf(join(folder, 'review.csv')).map(([what, change, name]) => `${what} ${change} ${name.replace(/^'/, '')}`).sort();
+const review = (folder) => rowsOf(join(folder, 'review.csv'))
+    .map(([what, change, name]) => `${what} ${change} ${name.replace(/^'/, '')}`).sort();
 // All that people see of a folder, by name.
 const filesOf = (folder) => Object.fromEntries(readdirSync(folder, { withFileTypes: true })
     .filter((entry) => entry.isFile()).map(({ name }) => [name, readFileSync(join(folder, name)).toString('base64')]));
@@ -40,7 +41,8 @@ function revise(folder) {
         const { group, above } = findGroup(rvm, name);
         above.items.splice(above.items.indexOf(group), 1, ...by(group));
     };
-    replace('/-ART1101PO-', (pump) => [copyGroup(pump, [1.5, 0.25, 0]), copyGroup(pump, [4, 0, 0], (name) => name.replace('1101', '1102'))]);
+    replace('/-ART1101PO-', (pump) =>
+        [copyGroup(pump, [1.5, 0.25, 0]), copyGroup(pump, [4, 0, 0], (name) => name.replace('1101', '1102'))]);
     replace('/-ART1111PO-', (pump) => [copyGroup(pump, [0, 0, 0], (name) => name.replace('1111', '1113'))]);
     replace('/-ART1010TY-', () => []);
     writeFileSync(path, writeRvm(rvm));
@@ -151,7 +153,8 @@ T6;temperature;second;TT-9;;;;;f
     const first = filesOf(plant);
     // A and B change their names with each other; A is turned about the vertical and moved; C has another number; TT-9 has gone; D is
     // elsewhere; F is new; E, which no asset has, has gone.
-    boxes(model, [{ ...D, at: [20, 0, -3] }, { name: 'F', at: [40, 0, 0] }, C, { ...B, name: 'A' }, { ...A, name: 'B', at: [0, 1, 0], turned: true }]);
+    boxes(model, [{ ...D, at: [20, 0, -3] }, { name: 'F', at: [40, 0, 0] }, C, { ...B, name: 'A' },
+        { ...A, name: 'B', at: [0, 1, 0], turned: true }]);
     const said = good(run('plantcast', 'import', model, '-o', plant));
     const file = readFileSync(join(plant, 'plant.yaml'), 'utf8'), tags = readFileSync(list, 'utf8');
     assert.match(file, /id: first, model: m\.glb, nodes: "B" \} # a comment/);
@@ -236,7 +239,8 @@ test('under a daemon that runs: readings, history and alarms keep their tags', {
     }
 });
 
-test('killed in the middle, or out of disk: the old plant or the new one', { skip: noData, timeout: 300000 }, () => inFolder(async (folder) => {
+const patient = { skip: noData, timeout: 300000 };
+test('killed in the middle, or out of disk: the old plant or the new one', patient, () => inFolder(async (folder) => {
     const first = join(folder, 'first'), revised = revise(folder), plant = join(folder, 'plant');
     bring(first);
     const old = filesOf(first);
@@ -263,7 +267,8 @@ test('killed in the middle, or out of disk: the old plant or the new one', { ski
     }
     console.log(`# killed 12 times within ${ms} ms: ${kept} times before anything was replaced`);
     cpSync(first, plant, { recursive: true });
-    const full = spawnSync('bash', ['-c', `trap '' XFSZ; ulimit -f 300; exec "$0" import "$1" -o "$2"`, join(BIN, 'plantcast-import'), revised, plant],
+    const script = `trap '' XFSZ; ulimit -f 300; exec "$0" import "$1" -o "$2"`;
+    const full = spawnSync('bash', ['-c', script, join(BIN, 'plantcast-import'), revised, plant],
         { encoding: 'utf8', timeout: 60000 });
     assert.equal(full.status, 1);
     assert.equal(full.stderr.trim().split('\n').length, 1, full.stderr);
