@@ -22,7 +22,7 @@ static void print_usage(FILE *out)
           "                  [--log-level error|warn|info|debug] [--log-format text|json|journal]\n"
           "                  [--threads N] [--memory MB] [--field vertices|per-fragment]\n"
           "                  [--h264 ENCODER|off] [--tls-cert FILE --tls-key FILE] [--tokens FILE] [--open-viewers]\n"
-          "                  [--trust-local] [--behind-proxy] [--host NAME] [--origin URL] [--limit NAME=N]\n"
+          "                  [--trust-local] [--behind-proxy] [--host NAME] [--origin URL] [--limit NAME=N] [--import[=now]]\n"
           "                  [--audit FILE [--audit-size MB] [--audit-syslog HOST[:PORT] [--audit-ca FILE]\n"
           "                  [--audit-cert FILE --audit-key FILE]]]\n"
           "       plantcastd --check PLANT.yaml [--prepared DIR]\n"
@@ -46,6 +46,8 @@ static void print_usage(FILE *out)
           "                   fragment, slow, for comparison\n"
           "  --h264 ENCODER   who makes H.264, by its name in libavcodec (libx264): h264_nvenc, h264_vaapi, libopenh264, ...; off:\n"
           "                   nobody. Where it does not work on this machine, clients get JPEG\n"
+          "  --import         engineers may upload models and tag lists on the page and have them brought in (plantcast import --serve);\n"
+          "                   =now: what lies in the folder exports beside the plant file, at once\n"
           "  --check          read everything, report every error, start nothing\n"
           "  --dump-plan      print what field devices will be asked: requests, addresses on the wire, and the load\n"
           "\n"
@@ -157,6 +159,7 @@ enum {
     OPTION_AUDIT_CERT,
     OPTION_AUDIT_KEY,
     OPTION_AUDIT_SIZE,
+    OPTION_IMPORT,
     OPTION_CHECK,
     OPTION_PLAN,
     OPTION_VERSION,
@@ -193,6 +196,7 @@ static const struct option options[] = {
     { "audit-cert", required_argument, NULL, OPTION_AUDIT_CERT },
     { "audit-key", required_argument, NULL, OPTION_AUDIT_KEY },
     { "audit-size", required_argument, NULL, OPTION_AUDIT_SIZE },
+    { "import", optional_argument, NULL, OPTION_IMPORT },
     { "check", no_argument, NULL, OPTION_CHECK },
     { "dump-plan", no_argument, NULL, OPTION_PLAN },
     { "version", no_argument, NULL, OPTION_VERSION },
@@ -285,6 +289,10 @@ static int take_option(int option, struct server_params *params, int (**task)(co
         return -1;
     case OPTION_THREADS:
         return parse_int(optarg, 0, 1024, &params->threads) ? -1 : usage_error("--threads: not a number of threads", optarg);
+    case OPTION_IMPORT:
+        params->imports = true;
+        params->imports_now = optarg && !strcmp(optarg, "now");
+        return !optarg || params->imports_now ? -1 : usage_error("--import: nothing or now, not", optarg);
     case OPTION_CHECK: *task = server_check; return -1;
     case OPTION_PLAN: *task = server_dump_plan; return -1;
     case OPTION_VERSION: puts("plantcastd " PLANTCAST_VERSION); return GOOD;

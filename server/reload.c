@@ -3,22 +3,18 @@
 #include "reload.h"
 
 #include <jansson.h>
-#include <limits.h>
 #include <malloc.h>
 #include <pthread.h>
-#include <signal.h>
-#include <spawn.h>
 #include <stdio.h>
 #include <string.h>
-#include <sys/resource.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 #include "access/tokens.h"
 #include "base/clock.h"
 #include "base/json_text.h"
 #include "base/mem.h"
+#include "import_job.h"
 #include "plant/plant_diff.h"
+#include "sibling.h"
 
 enum { FIRST = 16 }; /* views that the new plant is drawn from before it takes over */
 
@@ -27,7 +23,8 @@ struct reload {
     struct plant_runtime **runtime;
     struct net *net;
     struct supervision *supervision;
-    int64_t begun_ns; /* of the reload that is under way */
+    struct plant_import *import; /* NULL: plants are not brought in here */
+    int64_t begun_ns;            /* of the reload that is under way */
     pthread_t thread;
     bool started;
     char by[TOKEN_NAME_BYTES];     /* who asked for the one that is under way */
@@ -36,7 +33,7 @@ struct reload {
     pthread_mutex_t lock;
     pthread_cond_t wake;
     /* --- below: under lock */
-    bool asked, stopping;
+    bool asked, imports, stopping;
     char who[TOKEN_NAME_BYTES]; /* asked last */
     struct tag_save *save; /* NULL: none is asked for */
 };
@@ -229,35 +226,27 @@ static bool reload_now(struct reload *reload)
 
 /* --- another tag list ------------------------------------------------------------------------------------------------- */
 
-static bool is_stopping(struct reload *reload)
+static bool is_stopping(void *arg)
 {
+    struct reload *reload = arg;
     pthread_mutex_lock(&reload->lock);
     bool stopping = reload->stopping;
     pthread_mutex_unlock(&reload->lock);
     return stopping;
 }
 
-/* As somebody would by hand, and no more urgent than serving frames is. */
 static bool prepare(struct reload *reload)
 {
     const struct plant_runtime_context *context = reload->context;
-    char program[PATH_MAX], *folder = plant_runtime_prepared_folder(context->params, (*reload->runtime)->plant);
-    ssize_t n = readlink("/proc/self/exe", program, sizeof(program) - 32);
-    program[n > 0 ? n : 0] = 0;
-    char *slash = strrchr(program, '/');
-    strcpy(slash ? slash + 1 : program, "plantcast-prep");
-    char *const arguments[] = { program, "-o", folder, (char *)(uintptr_t)context->params->plant_path, NULL };
-    pid_t child;
-    int status = 0, error = posix_spawn(&child, program, NULL, NULL, arguments, environ);
-    if (error)
-        log_err(context->log, "%s: cannot be run: %s", program, strerror(error));
-    else
-        setpriority(PRIO_PROCESS, (id_t)child, 10);
-    for (bool told = false; !error && waitpid(child, &status, WNOHANG) == 0; usleep(20000))
-        if (!told && (told = is_stopping(reload)))
-            kill(child, SIGTERM);
+    char *folder = plant_runtime_prepared_folder(context->params, (*reload->runtime)->plant);
+    const char *const arguments[] = { "plantcast-prep", "-o", folder, context->params->plant_path, NULL };
+    char *why = sibling_run(&(struct sibling_params){ .arguments = arguments, .stop = is_stopping, .arg = reload });
+    if (why)
+        log_err(context->log, "%s", why);
+    bool good = !why;
+    mem_free(why);
     mem_free(folder);
-    return !error && WIFEXITED(status) && WEXITSTATUS(status) == 0;
+    return good;
 }
 
 static void put_back(struct reload *reload, const struct tag_save *save, const char *kept)
@@ -294,6 +283,41 @@ static void save_now(struct reload *reload, const struct tag_save *save)
     mem_free(why);
 }
 
+/* --- another plant, brought in ---------------------------------------------------------------------------------------- */
+
+static bool is_cancelled(void *arg)
+{
+    struct reload *reload = arg;
+    return plant_import_cancelled(reload->import) || is_stopping(reload);
+}
+
+static void import_now(struct reload *reload, const struct import_order *order)
+{
+    const struct plant_runtime_context *context = reload->context;
+    char *folder = plant_runtime_prepared_folder(context->params, (*reload->runtime)->plant);
+    const struct import_job_params params = { .import = reload->import,
+                                              .plant_path = context->params->plant_path,
+                                              .tags_path = (*reload->runtime)->plant->tags_path,
+                                              .prepared = folder,
+                                              .stop = is_cancelled,
+                                              .arg = reload };
+    struct import_job *job = import_job_begin(&params);
+    char *remark, *why = import_job_run(job, order, &remark);
+    if (!why) {
+        plant_import_set_phase(reload->import, IMPORT_LOADING);
+        why = reload_now(reload) ? NULL : mem_strdup("the plant cannot be put in force; the log says why");
+    }
+    if (why) {
+        log_err(context->log, "import: %s", why);
+        import_job_undo(job);
+    }
+    plant_import_end(reload->import, why ? why : remark);
+    import_job_end(&job);
+    mem_free(remark);
+    mem_free(why);
+    mem_free(folder);
+}
+
 /* --- life ------------------------------------------------------------------------------------------------------------- */
 
 static void *run(void *arg)
@@ -302,11 +326,12 @@ static void *run(void *arg)
     char who[TOKEN_NAME_BYTES];
     for (;;) {
         pthread_mutex_lock(&reload->lock);
-        while (!reload->asked && !reload->save && !reload->stopping)
+        while (!reload->asked && !reload->imports && !reload->save && !reload->stopping)
             pthread_cond_wait(&reload->wake, &reload->lock);
         bool stopping = reload->stopping, asked = reload->asked;
         struct tag_save *save = reload->save;
-        reload->asked = false;
+        struct import_order order;
+        reload->asked = reload->imports = false;
         reload->save = NULL;
         snprintf(who, sizeof(who), "%s", reload->who);
         pthread_mutex_unlock(&reload->lock);
@@ -318,15 +343,18 @@ static void *run(void *arg)
         if (stopping)
             return NULL;
         snprintf(reload->by, sizeof(reload->by), "%s", who);
+        if (reload->import && plant_import_next(reload->import, &order))
+            import_now(reload, &order);
         if (asked)
             reload_now(reload);
     }
 }
 
 struct reload *reload_create(const struct plant_runtime_context *context, struct plant_runtime **runtime, struct net *net,
-                             struct supervision *supervision)
+                             struct supervision *supervision, struct plant_import *import)
 {
     struct reload *reload = mem_new(sizeof(*reload));
+    reload->import = import;
     reload->context = context;
     reload->runtime = runtime;
     reload->net = net;
@@ -374,6 +402,15 @@ void reload_save(struct reload *reload, struct tag_save *save)
     pthread_mutex_lock(&reload->lock);
     tag_save_free(reload->save); /* there is none: the loop lets one through at a time */
     reload->save = save;
+    pthread_cond_signal(&reload->wake);
+    pthread_mutex_unlock(&reload->lock);
+}
+
+void reload_import(struct reload *reload, const char *who)
+{
+    pthread_mutex_lock(&reload->lock);
+    reload->imports = true;
+    snprintf(reload->who, sizeof(reload->who), "%s", who);
     pthread_cond_signal(&reload->wake);
     pthread_mutex_unlock(&reload->lock);
 }

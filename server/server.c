@@ -35,8 +35,9 @@ struct server {
     struct plant_runtime *runtime;
     struct reload *reload;
     struct supervision *supervision;
-    struct audit *audit; /* NULL: nothing is recorded */
-    pthread_mutex_t wake_lock; /* holds net alive while the render thread wakes it */
+    struct audit *audit;         /* NULL: nothing is recorded */
+    struct plant_import *import; /* NULL: plants are not brought in here */
+    pthread_mutex_t wake_lock;   /* holds net alive while the render thread wakes it */
     struct net *net;
     char *web; /* folder; NULL: none */
 };
@@ -135,6 +136,11 @@ static void ask_save(void *arg, struct tag_save *save)
     reload_save(((struct server *)arg)->reload, save);
 }
 
+static void on_import_ordered(void *arg, const char *who)
+{
+    reload_import(((struct server *)arg)->reload, who);
+}
+
 static void on_tick(void *arg, const struct net_status *status)
 {
     supervision_tick(((struct server *)arg)->supervision, status);
@@ -155,6 +161,8 @@ static bool start_net(struct server *server)
         .version = PLANTCAST_VERSION,
         .reload = ask_reload,
         .save = ask_save,
+        .import = server->import,
+        .import_ordered = on_import_ordered,
         .tick = on_tick,
         .reload_arg = server,
     };
@@ -164,7 +172,17 @@ static bool start_net(struct server *server)
     pthread_mutex_lock(&server->wake_lock);
     server->net = net;
     pthread_mutex_unlock(&server->wake_lock);
-    return net && (server->reload = reload_create(&server->context, &server->runtime, net, server->supervision));
+    return net && (server->reload = reload_create(&server->context, &server->runtime, net, server->supervision, server->import));
+}
+
+static bool start_import(struct server *server)
+{
+    if (!server->params.imports)
+        return true;
+    server->import = plant_import_create(server->params.plant_path);
+    if (!server->import)
+        log_err(server->log, "%s: no folder for exports can be made beside it: %s", server->params.plant_path, strerror(errno));
+    return server->import != NULL;
 }
 
 /* Clocks in pictures show the plant's time. The environment may be changed only while there is one thread. */
@@ -247,7 +265,7 @@ static bool server_start(struct server *server)
     reload_count(server->counters, server->runtime->plant->hash, true);
     supervision_starting(server->supervision, "drawing the first picture");
     return plant_runtime_start_recording(server->runtime, NULL) && plant_runtime_start_sources(server->runtime) &&
-           plant_runtime_start_render_service(server->runtime, NULL, 0) && start_net(server);
+           plant_runtime_start_render_service(server->runtime, NULL, 0) && start_import(server) && start_net(server);
 }
 
 /* Against the flow of data: first who takes, last who gives. */
@@ -262,6 +280,7 @@ static void server_finish(struct server *server)
     if (server->audit)
         record(server, "stop");
     audit_stop(&server->audit);
+    plant_import_destroy(&server->import);
     plant_runtime_destroy(&server->runtime);
     workers_destroy(&server->workers);
     supervision_destroy(&server->supervision);
@@ -307,6 +326,8 @@ int server_run(const struct server_params *params)
     if (good) {
         handle_signals(server.net);
         say_ready(&server);
+        if (params->imports_now && plant_import_order(server.import, &(struct import_order){ .models = true }))
+            reload_import(server.reload, "the command line");
         net_run(server.net);
         atomic_store(&to_stop, NULL);
         log_event(server.log, LOG_INFO, EVENT_STOPPING, "stopping");

@@ -27,6 +27,7 @@ struct server_params {
     int threads;         /* workers; 0: one per core */
     struct access_params access;
     struct audit_params audit; /* path NULL: nothing is recorded */
+    bool imports, imports_now; /* engineers may bring plants in; what was exported is brought in at once */
     bool per_fragment; /* the field anew at each fragment; for comparison */
 };
 

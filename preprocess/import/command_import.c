@@ -13,6 +13,7 @@
 #include "preprocess/import/plant_draft.h"
 #include "preprocess/import/revision/revise.h"
 #include "preprocess/import/revision/revision_files.h"
+#include "preprocess/import/serve.h"
 #include "preprocess/child/work_folder.h"
 #include "preprocess/model/gltf_shim.h"
 
@@ -26,13 +27,15 @@ struct import {
     char **paths;
     struct plant_draft_model *models;
     int count;
+    bool anew;
 };
 
 static void print_usage(FILE *out)
 {
     fputs(
-        "usage: plantcast import MODEL... -o FOLDER [--name NAME] [--dry-run]\n"
+        "usage: plantcast import MODEL... -o FOLDER [--name NAME] [--dry-run] [--anew]\n"
         "       plantcast import --undo [--force] -o FOLDER\n"
+        "       plantcast import --serve [--port N] [MODEL... TAGS] -o FOLDER\n"
         "\n"
         "Reads CAD exports and writes into FOLDER a GLB file for each, with names, hierarchy and attributes, and plant.yaml, which names\n"
         "them. Where FOLDER has a plant, these are new exports: assets and sensors follow what they are on, and a review says what was\n"
@@ -42,7 +45,10 @@ static void print_usage(FILE *out)
         "  --name NAME       of the plant; else the first model's file name\n"
         "  --dry-run         of a new export: only says what it would change\n"
         "  --undo            puts models, plant file, tag list and matches back as they were before the last new export\n"
-        "  --force           undoes it although people have changed these since; what they have now stays beside, as NAME.undone\n",
+        "  --force           undoes it although people have changed these since; what they have now stays beside, as NAME.undone\n"
+        "  --anew            plant.yaml and tags.csv are made anew; those that are there are kept as NAME.1, NAME.2, ...\n"
+        "  --serve           opens a page on this machine, where models and tag lists are dropped, tags matched and sensors placed\n"
+        "  --port N          of that page (8080)\n",
         out);
     options_print(out);
     fputs("Exit status: 0 good, 1 a model could not be read (nothing is written for any of them), 2 usage.\n", out);
@@ -123,16 +129,15 @@ static int move_all(const struct import *import)
 static int write_plant(const struct import *import)
 {
     const struct plant_draft draft = {
-        .name = import->name, .folder = import->folder, .models = import->models, .count = (size_t)import->count
+        .name = import->name, .folder = import->folder, .models = import->models, .count = (size_t)import->count, .anew = import->anew
     };
-    int status = plant_draft_write(&draft);
-    return status == 0 ? 0 : fail_at(import->folder, strerror(-status));
+    return plant_draft_write(&draft) == 0 ? 0 : 1;
 }
 
 static int bring_in(struct import *import)
 {
     char *plant = mem_printf("%s/plant.yaml", import->folder);
-    bool there = access(plant, F_OK) == 0;
+    bool there = access(plant, F_OK) == 0 && !import->anew && !plant_draft_is_begun(plant);
     mem_free(plant);
     if (there)
         return revise(&(struct revise_params){ .folder = import->folder,
@@ -190,11 +195,19 @@ static bool two_alike(char **paths, int count)
 
 int command_import(int argc, char **argv)
 {
-    static const struct option options[] = {
-        { "output", required_argument, NULL, 'o' }, { "name", required_argument, NULL, 'n' }, { "dry-run", no_argument, NULL, 'd' },
-        { "undo", no_argument, NULL, 'x' },         { "force", no_argument, NULL, 'f' },      OPTIONS_OF_CONVERSION, { 0 }
-    };
+    static const struct option options[] = { { "output", required_argument, NULL, 'o' },
+                                             { "name", required_argument, NULL, 'n' },
+                                             { "dry-run", no_argument, NULL, 'd' },
+                                             { "undo", no_argument, NULL, 'x' },
+                                             { "force", no_argument, NULL, 'f' },
+                                             { "anew", no_argument, NULL, 'a' },
+                                             { "serve", no_argument, NULL, 's' },
+                                             { "port", required_argument, NULL, 'p' },
+                                             OPTIONS_OF_CONVERSION,
+                                             { 0 } };
     struct import import = { .conversion = options_default };
+    struct serve_params serve = { .port = "8080" };
+    bool serves = false;
     for (int option; (option = getopt_long(argc, argv, "o:", options, NULL)) != -1;)
         switch (option) {
         case 'o': import.folder = optarg; break;
@@ -202,6 +215,9 @@ int command_import(int argc, char **argv)
         case 'd': import.dry_run = true; break;
         case 'x': import.undo = true; break;
         case 'f': import.force = true; break;
+        case 'a': import.anew = true; break;
+        case 's': serves = true; break;
+        case 'p': serve.port = optarg; break;
         case 'F': import_formats_print(stdout); return 0;
         case 'h': print_usage(stdout); return 0;
         default:
@@ -210,6 +226,12 @@ int command_import(int argc, char **argv)
         }
     import.count = argc - optind;
     import.paths = argv + optind;
+    if (serves && import.folder) {
+        serve.folder = import.folder;
+        serve.files = import.paths;
+        serve.count = import.count;
+        return import_serve(&serve);
+    }
     if ((import.count < 1) != import.undo || !import.folder || (import.force && !import.undo) || (import.dry_run && import.undo)) {
         print_usage(stderr);
         return 2;

@@ -11,6 +11,8 @@
 #include "base/atomic_file.h"
 #include "base/mem.h"
 #include "base/text.h"
+#include "placing/tag_file.h"
+#include "preprocess/glb/glb_scene.h"
 
 static const char head[] =
     "# The plant as its models were imported. Lengths are metres, Z is up. PLANT.md tells what else may stand here.\n"
@@ -21,6 +23,12 @@ static const char tail[] = "\n"
                            "  - { id: temperature, quantity: Temperature, unit: °C, min: 0, max: 100 }\n"
                            "\n"
                            "tags: tags.csv\n";
+static const char begun[] = "# Nothing was imported yet: a person stands where the plant will be. `plantcast import` puts it here.\n"
+                            "plant:\n"
+                            "  name: New plant\n"
+                            "\n"
+                            "assets:\n"
+                            "  - { id: person, description: 1.8 m tall, model: person.glb }\n";
 static const char tags_head[] = "Tag Name,Address,Data Type,Eng Units,Description,Source,Group,Asset,Node,X,Y,Z\n";
 
 /* In the quotes of YAML. */
@@ -179,14 +187,54 @@ static void add_asset(struct text *out, const struct plant_draft_model *from, si
     text_add(out, " }\n");
 }
 
+bool plant_draft_is_begun(const char *path)
+{
+    char *why, *text = tag_file_read(path, &why);
+    bool is = text && !strncmp(text, begun, strlen(begun));
+    mem_free(text);
+    mem_free(why);
+    return is;
+}
+
+static int fail_at(const char *path, const char *why)
+{
+    fprintf(stderr, "plantcast import: %s: %s\n", path, why);
+    return -EIO;
+}
+
+/* The version before is kept. */
+static int replace(const char *path, const char *before, const char *text)
+{
+    char *kept = NULL, *why = NULL;
+    const struct tag_save save = { .path = (char *)(uintptr_t)path, .before = (char *)(uintptr_t)before, .after = (char *)(uintptr_t)text };
+    bool good = tag_file_put(&save, &kept, &why);
+    if (good)
+        printf("%s: made anew; as it was: %s\n", path, kept);
+    else
+        fail_at(path, why);
+    mem_free(kept);
+    mem_free(why);
+    return good ? 0 : -EIO;
+}
+
 static int write_new(const struct plant_draft *draft, const char *file, const char *text)
 {
-    char *path = mem_printf("%s/%s", draft->folder, file);
+    char *path = mem_printf("%s/%s", draft->folder, file), *why = NULL;
+    bool there = access(path, F_OK) == 0;
+    char *before = there ? tag_file_read(path, &why) : NULL;
     int status = 0;
-    if (access(path, F_OK) == 0)
+    if (there && !before)
+        status = fail_at(path, why);
+    else if (there && !strcmp(before, text))
+        status = 0;
+    else if (there && !draft->anew && strncmp(before, begun, strlen(begun)) != 0)
         printf("%s: stays as it is\n", path);
-    else
-        status = atomic_file_put(path, text, strlen(text));
+    else if (there && strncmp(before, begun, strlen(begun)) != 0)
+        status = replace(path, before, text);
+    else if ((status = atomic_file_put(path, text, strlen(text))) != 0)
+        fail_at(path, strerror(-status));
+    mem_free(before);
+    mem_free(why);
     mem_free(path);
     return status;
 }
@@ -227,5 +275,57 @@ int plant_draft_write(const struct plant_draft *draft)
     if (status == 0)
         printf("%s/plant.yaml: %zu assets\n", draft->folder, assets);
     text_finish(&out);
+    return status;
+}
+
+/* Feet on the ground at the origin, seen from the front; Y is up. */
+static int write_person(const char *path)
+{
+    static const float parts[][2][3] = { /* middle, size */
+                                         { { -0.1f, 0.42f, 0 }, { 0.14f, 0.84f, 0.16f } }, { { 0.1f, 0.42f, 0 }, { 0.14f, 0.84f, 0.16f } },
+                                         { { 0, 1.14f, 0 }, { 0.4f, 0.6f, 0.22f } },       { { -0.26f, 1.1f, 0 }, { 0.1f, 0.64f, 0.12f } },
+                                         { { 0.26f, 1.1f, 0 }, { 0.1f, 0.64f, 0.12f } },   { { 0, 1.48f, 0 }, { 0.1f, 0.08f, 0.1f } },
+                                         { { 0, 1.66f, 0 }, { 0.18f, 0.28f, 0.2f } }
+    };
+    static const uint32_t corners[36] = { 0, 2, 3, 0, 3, 1, 4, 5, 7, 4, 7, 6, 0, 1, 5, 0, 5, 4,
+                                          2, 6, 7, 2, 7, 3, 0, 4, 6, 0, 6, 2, 1, 3, 7, 1, 7, 5 };
+    struct glb_scene *scene = glb_scene_create("plantcast import");
+    int mesh = glb_scene_add_mesh(scene, "person"), material = glb_scene_material(scene, (double[]){ 0.2, 0.3, 0.4, 1 });
+    for (size_t i = 0; i < sizeof(parts) / sizeof(parts[0]); i++) {
+        float positions[8][3];
+        for (int v = 0; v < 8; v++)
+            for (int axis = 0; axis < 3; axis++)
+                positions[v][axis] = parts[i][0][axis] + ((v >> axis & 1) ? 0.5f : -0.5f) * parts[i][1][axis];
+        glb_scene_add_triangles(scene, mesh,
+                                &(struct glb_scene_triangles){ .positions = (const float(*)[3])positions,
+                                                               .vertex_count = 8,
+                                                               .corners = corners,
+                                                               .corner_count = 36,
+                                                               .material = material });
+    }
+    glb_scene_add_node(scene, -1, "person", mesh, NULL);
+    int status = glb_scene_write(scene, path);
+    glb_scene_destroy(&scene);
+    return status;
+}
+
+int plant_draft_begin(const char *folder)
+{
+    const struct plant_draft draft = { .folder = folder };
+    char *plant = mem_printf("%s/plant.yaml", folder), *person = mem_printf("%s/person.glb", folder);
+    char *text = mem_printf("%s%s", begun, tail);
+    int status = 0;
+    if (access(plant, F_OK) != 0) {
+        status = write_person(person);
+        if (status != 0)
+            fail_at(person, strerror(-status));
+        if (status == 0)
+            status = write_new(&draft, "tags.csv", tags_head);
+        if (status == 0)
+            status = write_new(&draft, "plant.yaml", text);
+    }
+    mem_free(text);
+    mem_free(person);
+    mem_free(plant);
     return status;
 }

@@ -14,8 +14,8 @@
 #include "preprocess/match/charset.h"
 #include "preprocess/match/table.h"
 
-enum { TAG, STATUS, ASSET, PLACE, CONFIDENCE, REASON, CHECK, COLUMNS };
-static const char *const names[COLUMNS] = { "Tag", "Status", "Asset", "Place", "Confidence", "Reason", "Check" };
+enum { TAG, STATUS, ASSET, PLACE, CONFIDENCE, REASON, MAY_BE, CHECK, COLUMNS };
+static const char *const names[COLUMNS] = { "Tag", "Status", "Asset", "Place", "Confidence", "Reason", "Candidates", "Check" };
 static const size_t max_bytes = (size_t)256 << 20;
 static const char special[] = "\",;\t\r\n";
 static const char by_hand_reason[] = "by hand";
@@ -43,19 +43,26 @@ void decisions_add_header(struct text *out)
     text_add(out, "\n");
 }
 
-void decisions_add_row(struct text *out, const char *tag, const struct match *match, const char *asset, const char *place, bool by_hand)
+void decisions_add_row(struct text *out, const struct plant *plant, const char *tag, const struct match *match, const char *asset,
+                       const char *place, bool by_hand)
 {
+    struct text may_be = { 0 };
     char confidence[16] = "", check[16];
     const char *status = match_status_names[match->status];
     if (!by_hand && match->status != MATCH_NONE)
         snprintf(confidence, sizeof(confidence), "%.2f", match->confidence);
     find_check(tag, status, asset, check);
-    const char *const cells[COLUMNS] = { tag, status, asset, place, confidence, by_hand ? by_hand_reason : match->reason, check };
+    for (int i = 0; i < match->candidate_count && !by_hand; i++)
+        text_add(&may_be, "%s%s", i > 0 ? "|" : "", plant->assets[match->candidates[i]].id);
+    const char *const cells[COLUMNS] = {
+        tag, status, asset, place, confidence, by_hand ? by_hand_reason : match->reason, may_be.at ? may_be.at : "", check
+    };
     for (int i = 0; i < COLUMNS; i++) {
         text_add(out, "%s", i > 0 ? "," : "");
         add_cell(out, cells[i]);
     }
     text_add(out, "\n");
+    text_finish(&may_be);
 }
 
 static char *row_text(const struct table_row *row, const int columns[COLUMNS])
@@ -117,6 +124,20 @@ static int by_tag(const void *pa, const void *pb, void *rows_ptr)
     return order ? order : a - b;
 }
 
+static void sort(struct decisions *decisions)
+{
+    int *all = mem_array(decisions->count + 1, sizeof(*all));
+    for (size_t i = 0; i < decisions->count; i++)
+        all[i] = (int)i;
+    qsort_r(all, decisions->count, sizeof(*all), by_tag, decisions->at);
+    decisions->tags = 0;
+    for (size_t i = 0; i < decisions->count; i++)
+        if (i == 0 || strcasecmp(decisions->at[all[i]].tag, decisions->at[all[decisions->tags - 1]].tag) != 0)
+            all[decisions->tags++] = all[i];
+    mem_free(decisions->by_tag);
+    decisions->by_tag = all;
+}
+
 bool decisions_read(struct decisions *decisions, const char *path, char why[MATCH_WHY_BYTES])
 {
     struct charset_text text;
@@ -138,10 +159,7 @@ bool decisions_read(struct decisions *decisions, const char *path, char why[MATC
         good = read_row(&decisions->at[decisions->count], &table.rows[i], columns, why);
         decisions->count += good;
     }
-    decisions->by_tag = mem_array(decisions->count, sizeof(*decisions->by_tag));
-    for (size_t i = 0; i < decisions->count; i++)
-        decisions->by_tag[i] = (int)i;
-    qsort_r(decisions->by_tag, decisions->count, sizeof(*decisions->by_tag), by_tag, decisions->at);
+    sort(decisions);
     table_finish(&table);
     mem_free(text.utf8);
     mem_free(bytes);
@@ -150,7 +168,7 @@ bool decisions_read(struct decisions *decisions, const char *path, char why[MATC
 
 const struct decision *decisions_of(const struct decisions *decisions, const char *tag)
 {
-    size_t low = 0, high = decisions->count;
+    size_t low = 0, high = decisions->tags;
     while (low < high) {
         size_t middle = (low + high) / 2;
         const struct decision *at = &decisions->at[decisions->by_tag[middle]];

@@ -14,11 +14,12 @@ struct decision { /* a row, as it was */
 
 struct decisions {       /* zero-initialise */
     struct decision *at; /* in the order of the file */
-    int *by_tag;         /* sorted; upper and lower case taken as one */
-    size_t count, capacity;
+    int *by_tag;         /* the first of each tag, sorted; upper and lower case taken as one */
+    size_t count, capacity, tags;
 };
 
-/* Reads a file that decisions_add_row() wrote, perhaps changed since. A file that is not there has none. Returns false with the reason. */
+/* Reads a file that decisions_add_row() wrote, perhaps changed since, or one that has Tag, Status and Asset alone. A file that is not there
+ * has none. What was read before goes before what the file has of the same tag. Returns false with the reason. */
 bool decisions_read(struct decisions *decisions, const char *path, char why[MATCH_WHY_BYTES]);
 /* Returns the decision about a tag, or NULL. */
 const struct decision *decisions_of(const struct decisions *decisions, const char *tag);
@@ -27,8 +28,10 @@ void decisions_finish(struct decisions *decisions);
 /* Returns the file's text without the rows of these tags (mem_free), so that they are matched anew; NULL if it cannot be read. */
 char *decisions_without(const char *text, const char *const *tags, size_t count);
 
-/* Appends the header, and a row. A row that people changed is told by its last cell, which depends on what was written. */
+/* Appends the header, and a row, with bars between the assets that a tag may be on. A row that people changed is told by its last cell,
+ * which depends on what was written. */
 void decisions_add_header(struct text *out);
-void decisions_add_row(struct text *out, const char *tag, const struct match *match, const char *asset, const char *place, bool by_hand);
+void decisions_add_row(struct text *out, const struct plant *plant, const char *tag, const struct match *match, const char *asset,
+                       const char *place, bool by_hand);
 
 #endif

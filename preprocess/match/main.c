@@ -21,6 +21,7 @@ static void print_usage(FILE *out)
           "  --equipment CHOICE    what becomes an asset: level=N, a pattern of names, or @FILE of names; may be repeated\n"
           "  --rules FILE          ordered patterns, CSV: Tag,Equipment (match_rules.csv in the folder)\n"
           "  --aliases FILE        what people call equipment, CSV: Alias,Equipment (aliases.csv in the folder)\n"
+          "  --decide FILE         decisions as if they had been written into matches.csv by hand, CSV: Tag,Status,Asset\n"
           "  --source ID           of plant.yaml, where these tags are read\n"
           "  --modbus HOST[:PORT]  makes that source, of type modbus\n"
           "  --byte-order ORDER    of that source: ABCD, CDAB, BADC, DCBA\n"
@@ -34,7 +35,7 @@ enum { EQUIPMENT_MOST = 100 };
 
 int main(int argc, char **argv)
 {
-    enum { RULES = 1, ALIASES, SOURCE, MODBUS, ORDER, BASE, EQUIPMENT, DRY, HELP };
+    enum { RULES = 1, ALIASES, SOURCE, MODBUS, ORDER, BASE, EQUIPMENT, DECIDE, DRY, HELP };
     static const struct option options[] = { { "rules", required_argument, NULL, RULES },
                                              { "aliases", required_argument, NULL, ALIASES },
                                              { "source", required_argument, NULL, SOURCE },
@@ -42,6 +43,7 @@ int main(int argc, char **argv)
                                              { "byte-order", required_argument, NULL, ORDER },
                                              { "address-base", required_argument, NULL, BASE },
                                              { "equipment", required_argument, NULL, EQUIPMENT },
+                                             { "decide", required_argument, NULL, DECIDE },
                                              { "dry-run", no_argument, NULL, DRY },
                                              { "help", no_argument, NULL, HELP },
                                              { 0 } };
@@ -75,6 +77,7 @@ int main(int argc, char **argv)
             }
             equipment[params.equipment_count++] = optarg;
             break;
+        case DECIDE: params.decisions = optarg; break;
         case DRY: params.dry_run = true; break;
         case HELP: print_usage(stdout); return 0;
         default: print_usage(stderr); return 2;

@@ -51,6 +51,17 @@ static bool contradicts(const struct matcher *matcher, const struct proposal *ch
            (other->candidates.count == 1 && are_near(id_of(matcher, asset), id_of(matcher, other->candidates.assets[0])));
 }
 
+static void add_candidates(const struct candidates *list, struct match *out)
+{
+    for (int i = 0; i < list->count; i++) {
+        bool there = false;
+        for (int k = 0; k < out->candidate_count && !there; k++)
+            there = out->candidates[k] == list->assets[i];
+        if (!there && out->candidate_count < MATCH_CANDIDATES)
+            out->candidates[out->candidate_count++] = list->assets[i];
+    }
+}
+
 static void decide(const struct matcher *matcher, const struct proposal proposals[WAYS], struct match *out)
 {
     struct text reason = { 0 };
@@ -95,7 +106,12 @@ static void decide(const struct matcher *matcher, const struct proposal proposal
                 out->confidence = proposals[i].confidence;
             }
         out->status = out->confidence >= sure ? MATCH_SURE : MATCH_LIKELY;
+        add_candidates(&of->candidates, out);
     }
+    for (int i = 0; i < WAYS; i++)
+        add_candidates(&proposals[i].candidates, out);
+    if (out->status == MATCH_SURE)
+        out->candidate_count = 0;
     out->reason = mem_strdup(reason.at);
     text_finish(&reason);
 }

@@ -11,11 +11,14 @@
 enum match_status { MATCH_NONE, MATCH_LIKELY, MATCH_SURE };
 extern const char *const match_status_names[3];
 
+enum { MATCH_CANDIDATES = 8 };
+
 struct match {
     enum match_status status;
-    int asset, node;   /* -1: none. A node below the asset's own: where the tag is by its name */
-    double confidence; /* 0 to 1 */
-    char *reason;      /* one line of English; the caller frees it */
+    int asset, node;                                   /* -1: none. A node below the asset's own: where the tag is by its name */
+    double confidence;                                 /* 0 to 1 */
+    char *reason;                                      /* one line of English; the caller frees it */
+    int candidates[MATCH_CANDIDATES], candidate_count; /* of what is not sure: assets that it may be, the likeliest first */
 };
 
 struct match_rule {  /* of the site: tags of this form are of that equipment */

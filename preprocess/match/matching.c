@@ -132,7 +132,8 @@ static bool read_all(struct run *run)
     print_list(run);
     run->matcher.site = &run->site;
     char *path = beside(run, "matches.csv");
-    bool good = decisions_read(&run->before, path, why) || fail_at(path, why);
+    bool good = !params->decisions || decisions_read(&run->before, params->decisions, why) || fail_at(params->decisions, why);
+    good = good && (decisions_read(&run->before, path, why) || fail_at(path, why));
     mem_free(path);
     return good && read_optional(run, params->rules, "match_rules.csv", matcher_read_rules) &&
            read_optional(run, params->aliases, "aliases.csv", matcher_read_aliases) &&
@@ -217,7 +218,8 @@ static void put_rows(struct run *run)
                                ? run->site.models[run->site.assets[match->asset].model].nodes[place->node].name
                                : "";
         char *where = kept || (before && before->by_hand) ? mem_strdup("") : mem_printf("%s%s", places[place->kind], node);
-        decisions_add_row(&run->matches_text, tag->fields[EXPORT_NAME], &shown, found, where, kept || (before && before->by_hand));
+        decisions_add_row(&run->matches_text, run->plant, tag->fields[EXPORT_NAME], &shown, found, where,
+                          kept || (before && before->by_hand));
         mem_free(where);
         run->left_out += !asset;
         run->written += asset != NULL;

@@ -8,6 +8,7 @@ struct matching_params {
     const char *plant;            /* the plant file */
     const char *tags;             /* the export */
     const char *rules, *aliases;  /* NULL: match_rules.csv, aliases.csv in the plant's folder, if they are there */
+    const char *decisions;        /* what people decided, beside matches.csv, and before it; NULL: nothing */
     const char *const *equipment; /* what becomes an asset (equipment.h); none: the plant file's assets stay */
     int equipment_count;
     const char *source;     /* id; NULL: the only one, or `plc` where --modbus makes it */

@@ -372,6 +372,7 @@ struct net *net_create(const struct net_params *params)
         .tag_texts = &server->tag_texts,
         .lists_said = server->lists_said,
         .codecs = params->codecs,
+        .imports = params->import != NULL,
         .version = params->version,
         .quotas = server->quotas,
         .resumes = resumes_create(),

@@ -9,6 +9,7 @@
 #include "audit/audit.h"
 #include "base/counters.h"
 #include "base/log.h"
+#include "importing/plant_import.h"
 #include "loopcheck/loop_checks.h"
 #include "views/named_views.h"
 #include "placing/tag_file.h"
@@ -47,8 +48,10 @@ struct net_params {
     const char *version;
     void (*reload)(void *arg, const char *who);     /* called in the loop: load the plant anew, as who asks. NULL: it cannot be */
     void (*save)(void *arg, struct tag_save *save); /* called in the loop: put another tag list in force; takes it. NULL: it cannot be */
+    struct plant_import *import;                    /* NULL: plants are not brought in here */
+    void (*import_ordered)(void *arg, const char *who); /* called in the loop: an order was taken. Only with import */
     void (*tick)(void *arg, const struct net_status *status); /* called in the loop, once a second or more often. NULL: nobody asks */
-    void *reload_arg;                                         /* of these three */
+    void *reload_arg;                                         /* of these four */
 };
 
 #endif

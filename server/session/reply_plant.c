@@ -215,6 +215,8 @@ char *reply_welcome_text(const struct session *session, int64_t now_utc_ns)
     json_object_update_new(object, json_pack("{s:s,s:s,s:I,s:b,s:o}", "role", name_of(names_role, (int)session->identity.role), "resume",
                                              session->identity.resume_secret, "resume_s", (json_int_t)(RESUME_KEPT_NS / 1000000000),
                                              "resumed", session->identity.resumed, "limits", quotas_json(session->context->quotas)));
+    if (session->context->imports && session->identity.role == ROLE_ENGINEER)
+        json_object_set_new(object, "imports", json_true());
     set_home(object, session->context, view->width_px, view->height_px);
     reply_set_params(params, session->context, view, session_is_open(session));
     json_object_set_new(object, "view", params);

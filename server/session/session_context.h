@@ -23,6 +23,7 @@ struct session_context {
     struct loop_checks *loop_checks;       /* NULL: loops cannot be checked */
     struct named_views *named_views;       /* changed by save_view and remove_view */
     const bool *links_up;                  /* by source */
+    bool imports;                          /* engineers may bring plants in */
     bool live;                             /* a source is connected */
     bool clock_is_set;                     /* the wall clock is synchronised */
     int64_t moving_until_ns;               /* some camera moves until then; refined frames of others would make it stutter */

@@ -8,7 +8,7 @@ import { renewIfOld } from './install.js';
 const FIRST_WAIT_MS = 1000, LONGEST_WAIT_MS = 8000; // between tries
 
 // Of each module: its file in this folder without the ending, its class, its style sheets, the element that its markup fills, and whether
-// it says only what the page says at once.
+// it says only what the page says at once, or has a file of words of its own.
 const MODULES = {
     about: { file: 'assets/about', type: 'About', styles: ['assets/about'] },
     alarms: { file: 'alarms/alarms', type: 'AlarmList', styles: ['alarms/alarms', 'help/help'], fills: 'alarms' },
@@ -22,6 +22,7 @@ const MODULES = {
     following: { file: 'sharing/following', type: 'Following', styles: ['sharing/following'] },
     clipGizmo: { file: 'views/clip_gizmo', type: 'ClipGizmo', styles: ['measure/measure', 'views/clip_gizmo'] },
     help: { file: 'help/help', type: 'Help', styles: ['help/help'] },
+    import: { file: 'import/import', type: 'Import', styles: ['common/panel', 'import/import'], words: 'import' },
     isolines: { file: 'viewport/isolines', type: 'Isolines', wordless: true },
     measure: { file: 'measure/measure', type: 'Measure', styles: ['measure/measure', 'sharing/following'] },
     cameraController: { file: 'input/camera_controller', type: 'CameraController', wordless: true },
@@ -122,9 +123,9 @@ export class LazyModules {
 
     // A browser may remember for good that it could not fetch a module by its address, so that another one is asked for again.
     async load(name, tries) {
-        const { file, type, styles = [], fills, wordless } = MODULES[name], again = tries > 0 ? `?again=${tries}` : '';
+        const { file, type, styles = [], fills, wordless, words } = MODULES[name], again = tries > 0 ? `?again=${tries}` : '';
         const [module, markup] = await Promise.all([import(`./${file}.js${again}`), fills && markupOf(file), wordless || learnWords(),
-            ...styles.map(styled)]);
+            words && learnWords(words), ...styles.map(styled)]);
         if (await renewIfOld())
             return new Promise(() => {}); // what came may be of another version than what is here, which goes
         if (fills) {

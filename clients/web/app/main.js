@@ -54,7 +54,8 @@ function refresh() {
 
 const BUTTONS = { fit: 'fit', home: 'home', measure: 'measure', snapshot: 'snapshot', theme: 'theme', hold: 'hold', 'share-open': 'share',
     'help-open': 'help', 'time-toggle': 'past', 'alarm-strip': 'alarms', 'views-toggle': 'views', 'picture-toggle': 'picture',
-    'engineer-toggle': 'engineer', 'assets-toggle': 'assets', 'display-toggle': 'display', 'more-toggle': 'more' };
+    'engineer-toggle': 'engineer', 'import-toggle': 'import',
+    'assets-toggle': 'assets', 'display-toggle': 'display', 'more-toggle': 'more' };
 for (const [id, name] of Object.entries(BUTTONS))
     byId(id).addEventListener('click', does(name));
 
@@ -123,6 +124,9 @@ session.on('welcome', () => {
     renewIfOld();
     modules.retryNow();
     byId('engineer-toggle').hidden = session.role !== 'engineer';
+    byId('import-toggle').hidden = !session.imports;
+    if (session.imports && pictures === 0)
+        modules.get('import');
     document.body.classList.toggle('looker', session.role === 'open');
     byId('time-toggle').hidden = true; // until the server says that it records
     status.show();

@@ -396,6 +396,7 @@ const HANDLERS = {
         this.resume = message.resume ?? null;
         this.anew = false;
         this.role = message.role ?? null;
+        this.imports = message.imports === true;
         this.codec = message.codec;
         this.connection.settle();
         this.confirmed = this.params = pick(message.view, SAID);

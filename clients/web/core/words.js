@@ -54,15 +54,17 @@ const rules = new Intl.PluralRules(reader.language);
 export const { language, locale } = reader;
 export const say = (key, values) => phrase(words, rules, key, values);
 
-// The words of parts that are loaded later, there from now on; a promise, which fails where they cannot be fetched.
-let learnt = null, failures = 0;
-export function learnWords() {
-    learnt ??= tableOf(`lazy.${language}`, failures).then((more) => Object.assign(words, more), (error) => {
-        learnt = null;
-        failures++;
-        throw error;
-    });
-    return learnt;
+// The words of parts that are loaded later, there from now on; a promise, which fails where they cannot be fetched. name: of their file.
+const learnt = new Map();
+let failures = 0;
+export function learnWords(name = 'lazy') {
+    if (!learnt.has(name))
+        learnt.set(name, tableOf(`${name}.${language}`, failures).then((more) => Object.assign(words, more), (error) => {
+            learnt.delete(name);
+            failures++;
+            throw error;
+        }));
+    return learnt.get(name);
 }
 
 // Of what has a name of its own that may be known to us: that, else what it is called.

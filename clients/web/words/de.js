@@ -43,6 +43,7 @@ snapshot: Bild speichern
 share: Teilen
 theme: Dunkel oder hell
 engineer: Ingenieur: Messstellen und Feld
+import: Anlage einlesen
 
 [show]
 value: Werte

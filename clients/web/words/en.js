@@ -43,6 +43,7 @@ snapshot: Save a picture
 share: Share
 theme: Dark or light
 engineer: Engineer: sensors and field
+import: Bring a plant in
 
 [show]
 value: Values

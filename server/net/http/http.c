@@ -61,6 +61,8 @@ static const struct {
     { "/api/v1/history/gaps", ask_gaps, ROLE_VIEWER },
     { "/api/v1/alarms", api_alarms, ROLE_VIEWER },
     { "/api/v1/alarms/journal", ask_journal, ROLE_VIEWER },
+    { "/api/v1/import", api_import, ROLE_ENGINEER },
+    { "/api/v1/import/matches", api_import_matches, ROLE_ENGINEER },
 };
 static const char RELOAD_PATH[] = "/api/v1/reload"; /* POST */
 
@@ -91,28 +93,32 @@ static int serve_route(struct server_context *server, struct request *request, s
 {
     enum role role = connection_of(request->wsi)->role;
     if (role < routes[i].least) {
-        connection_record_refusal(server, request->wsi, routes[i].path, "pictures only");
-        return refuse(request, role == ROLE_NOBODY ? &NEED_TOKEN : &NOT_FOR_YOU);
+        bool engineer = routes[i].least == ROLE_ENGINEER;
+        connection_record_refusal(server, request->wsi, routes[i].path, engineer ? "it takes the role engineer" : "pictures only");
+        return refuse(request, role == ROLE_NOBODY ? &NEED_TOKEN : engineer ? &NOT_ENGINEER : &NOT_FOR_YOU);
     }
     if (routes[i].least > ROLE_NOBODY && is_foreign_page(request->wsi))
         return refuse(request, &FOREIGN);
     return routes[i].serve(server, request);
 }
 
-static int serve_reload(struct server_context *server, struct request *request)
+static int serve_post(struct server_context *server, struct request *request, const char *path)
 {
     enum role role = connection_of(request->wsi)->role;
-    request->close = true;
+    request->close = true; /* there may be a body that nobody reads */
     if (role < ROLE_ENGINEER) {
-        connection_record_refusal(server, request->wsi, RELOAD_PATH, "it takes the role engineer");
+        connection_record_refusal(server, request->wsi, path, "it takes the role engineer");
         return refuse(request, role == ROLE_NOBODY ? &NEED_TOKEN : &NOT_ENGINEER);
     }
-    return is_foreign_page(request->wsi) ? refuse(request, &FOREIGN) : ask_reload(server, request);
+    if (is_foreign_page(request->wsi))
+        return refuse(request, &FOREIGN);
+    return strcmp(path, RELOAD_PATH) != 0 ? import_post(server, request, path) : ask_reload(server, request);
 }
 
 static int serve(struct server_context *server, struct request *request, const char *path)
 {
-    bool post = lws_hdr_total_length(request->wsi, WSI_TOKEN_POST_URI) > 0 && !strcmp(path, RELOAD_PATH);
+    bool post =
+        lws_hdr_total_length(request->wsi, WSI_TOKEN_POST_URI) > 0 && (!strcmp(path, RELOAD_PATH) || import_takes_post(server, path));
     bool get = lws_hdr_total_length(request->wsi, WSI_TOKEN_GET_URI) > 0;
     struct refusal refusal;
     request->head = lws_hdr_total_length(request->wsi, WSI_TOKEN_HEAD_URI) > 0;
@@ -127,7 +133,7 @@ static int serve(struct server_context *server, struct request *request, const c
         return refuse(request, &refusal);
     }
     if (post)
-        return serve_reload(server, request);
+        return serve_post(server, request, path);
     for (size_t i = 0; i < sizeof(routes) / sizeof(routes[0]); i++)
         if (!strcmp(routes[i].path, path))
             return serve_route(server, request, i);
@@ -165,6 +171,7 @@ static void request_end(struct server_context *server, struct request **slot)
     if (!slot || !*slot)
         return;
     request_forget(server, *slot);
+    import_abandon_body(*slot);
     request_hold(*slot, NULL, 0);
     mem_free(*slot);
     *slot = NULL;
@@ -189,11 +196,12 @@ int http_callback(struct lws *wsi, enum lws_callback_reasons reason, void *user,
 {
     struct request **slot = user;
     int result;
-    (void)len;
     if (on_connection(wsi, reason, user, in, &result))
         return result;
     switch (reason) {
     case LWS_CALLBACK_HTTP: return serve(server_context_of(wsi), request_of(wsi, slot), in);
+    case LWS_CALLBACK_HTTP_BODY: return *slot ? import_take_body(server_context_of(wsi), *slot, in, len) : 0;
+    case LWS_CALLBACK_HTTP_BODY_COMPLETION: return *slot ? import_end_body(server_context_of(wsi), *slot) : 0;
     case LWS_CALLBACK_HTTP_WRITEABLE: return *slot ? on_writeable(server_context_of(wsi), *slot) : 0;
     case LWS_CALLBACK_HTTP_DROP_PROTOCOL: /* also when the connection is upgraded */
     case LWS_CALLBACK_CLOSED_HTTP: request_end(server_context_of(wsi), slot); return 0;

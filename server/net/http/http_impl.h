@@ -2,6 +2,7 @@
 /* HTTP requests: their state, their answers, and waiting for those. Private to http*.c. Thread: the loop. */
 #ifndef NET_HTTP_IMPL_H
 #define NET_HTTP_IMPL_H
+#include "importing/export_folder.h"
 #include "net/server_context.h"
 
 struct asked { /* a frame, or what is at a pixel of it, that a request waits for */
@@ -28,6 +29,7 @@ struct request {
     bool last_piece;      /* `body` is the last piece */
     uint64_t client;      /* its number while it waits (request_await) */
     bool reloads;         /* it waits for a reload of the plant */
+    struct body *body_in; /* what is being uploaded; NULL: nothing */
     struct asked *asked;  /* what it waits for; NULL: nothing to be drawn */
     struct request *next; /* in server->snapshots */
 };
@@ -88,6 +90,8 @@ int ask_history(struct server_context *server, struct request *request);
 int ask_gaps(struct server_context *server, struct request *request);
 int ask_journal(struct server_context *server, struct request *request);
 int ask_reload(struct server_context *server, struct request *request);
+int api_import(struct server_context *server, struct request *request);
+int api_import_matches(struct server_context *server, struct request *request);
 int api_alarms(struct server_context *server, struct request *request);
 int api_plant(struct server_context *server, struct request *request);
 int api_views(struct server_context *server, struct request *request);
@@ -95,5 +99,20 @@ int api_walls(struct server_context *server, struct request *request);
 int api_loop_checks(struct server_context *server, struct request *request);
 int api_tags(struct server_context *server, struct request *request);
 int metrics(struct server_context *server, struct request *request);
+
+/* Returns whether the page that sent this request may change things here: a page of another site may have its user's browser send it. */
+bool request_may_change(struct server_context *server, struct request *request);
+
+/* --- http_import.c: requests that engineers bring a plant in with; only where server->params.import is set */
+
+/* Returns whether this is a path for POST. */
+bool import_takes_post(const struct server_context *server, const char *path);
+/* Begins a POST, whose body may follow. */
+int import_post(struct server_context *server, struct request *request, const char *path);
+/* Take a piece of the body, and its end. */
+int import_take_body(struct server_context *server, struct request *request, const void *bytes, size_t count);
+int import_end_body(struct server_context *server, struct request *request);
+/* Removes what was uploaded of a body that will not end. */
+void import_abandon_body(struct request *request);
 
 #endif

@@ -6,10 +6,10 @@
 #include "net/http/http_impl.h"
 #include "net/connection.h"
 
-/* A page of another site may have its user's browser send this. */
-static bool may_change(struct server_context *server, struct lws *wsi)
+bool request_may_change(struct server_context *server, struct request *request)
 {
     char origin[256], host[256];
+    struct lws *wsi = request->wsi;
     return connection_header(wsi, WSI_TOKEN_ORIGIN, origin, sizeof(origin)) && connection_header(wsi, WSI_TOKEN_HOST, host, sizeof(host)) &&
            access_origin(&server->params.access, origin, host, server->tls != NULL);
 }
@@ -17,7 +17,7 @@ static bool may_change(struct server_context *server, struct lws *wsi)
 int ask_reload(struct server_context *server, struct request *request)
 {
     request->close = true; /* there may be a body that nobody reads */
-    if (!may_change(server, request->wsi))
+    if (!request_may_change(server, request))
         return request_answer_text(request, HTTP_STATUS_FORBIDDEN, "pages of other sites may not do this\n");
     if (!server->params.reload)
         return request_answer_text(request, HTTP_STATUS_NOT_FOUND, "this plant cannot be loaded anew\n");

@@ -38,14 +38,21 @@ export class Engineer {
     }
 
     toggle() {
-        const alarms = this.page.modules.there('alarms');
+        const [alarms, imports] = ['alarms', 'import'].map((name) => this.page.modules.there(name));
         if (!this.open && alarms?.open)
             alarms.setOpen(false); // they stand in the same place
+        if (!this.open && imports?.open)
+            imports.toggle();
         this.element.hidden = this.open;
         this.button.setAttribute('aria-expanded', this.open);
         (this.open ? this.element.querySelector('input') : this.button).focus();
         this.parts[this.part].show();
         this.page.refresh();
+    }
+
+    // As if its choice had been pressed.
+    take(part) {
+        this.element.querySelector(`input[value="${part}"]`).click();
     }
 
     choose(part) {

@@ -153,6 +153,7 @@ function commandsOf({ session, modules, selection, overlay, saveAddress, refresh
         addTrend: (tag) => modules.use('trends', (trends) => trends.add(tag)),
         showAsset: (how, asset) => modules.use('views', (views) => views.show(how, asset.id)),
         engineer: opens('engineer'),
+        import: opens('import'),
         fit: fitView,
         back: () => modules.there('cameraController')?.goBack(),
         home: () => session.model && modules.use('cameraController', (cameraController) => cameraController.flyHome()),

@@ -130,6 +130,7 @@ export class Overlay {
         this.places = this.place(labels);
         for (const marker of this.markers)
             this.drawMarker(marker);
+        this.drawMore?.();
         this.drawLabels(labels);
         const boxes = labels.filter(({ id }) => this.places.has(id)).map(({ id, width: w, height: h }) => {
             const { left, top, width: wide = w, height: high = h } = this.places.get(id);

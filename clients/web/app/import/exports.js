@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Requests of those who bring a plant in, and how far the server is.
+import { refusalText } from '../../core/refusals.js';
+import { say } from '../../core/words.js';
+
+const LOOK_MS = 700;
+
+export class Exports {
+    // onState(state): what the server says of itself; onEnd(state): an order has ended.
+    constructor({ session, onState, onEnd }) {
+        Object.assign(this, { session, onState, onEnd, state: null });
+    }
+
+    async ask(path, { query = {}, ...options } = {}) {
+        const text = new URLSearchParams(query).toString(), { token } = this.session;
+        const answer = await fetch(`api/v1/import${path}${text && `?${text}`}`, {
+            ...options, headers: token ? { Authorization: `Bearer ${token}` } : {},
+        }).catch(() => {
+            throw new Error(say('reason.unreachable'));
+        });
+        if (!answer.ok)
+            throw new Error(refusalText((await answer.text()).trim() || `HTTP ${answer.status}`));
+        return answer;
+    }
+
+    post(path, query, body) {
+        return this.ask(path, { method: 'POST', query, body });
+    }
+
+    // Looks until nothing is under way.
+    async look() {
+        clearTimeout(this.timer);
+        const before = this.state;
+        try {
+            this.state = await (await this.ask('')).json();
+        } catch (error) {
+            this.state = before && { ...before, failed: error.message };
+        }
+        const { state } = this;
+        if (!state)
+            return;
+        if (state.phase !== 'idle')
+            this.timer = setTimeout(() => this.look(), LOOK_MS);
+        this.onState(state);
+        if (state.phase === 'idle' && before && (before.phase !== 'idle' || before.number !== state.number))
+            this.onEnd(state);
+    }
+
+    async order(path, query, body) {
+        await this.post(path, query, body);
+        await this.look();
+    }
+
+    async matches() {
+        return (await this.ask('/matches')).text();
+    }
+}

@@ -1,0 +1,202 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The panel in which a plant is brought in: its exports, its size beside a person, and what its tags were matched to.
+import { numberText } from '../../core/format.js';
+import { sizeOf, timesOf } from '../../core/matches.js';
+import { say } from '../../core/words.js';
+import { byId, make, setText } from '../common/dom.js';
+import { closeButton, fill } from '../common/widgets.js';
+import { Exports } from './exports.js';
+import { Lit } from './lit.js';
+import { TagTable } from './tag_table.js';
+
+const UNITS = ['', 'm', 'mm', 'cm', 'in', 'ft'], AXES = ['', 'y', 'z'];
+const PLACEHOLDER = 'person'; // the only asset of a plant that nothing was imported into
+
+const choice = (key, values, onchange) => {
+    const select = make('select', { onchange }, ...values.map((value) => make('option', { value }, say(`import.${key}.${value || 'said'}`))));
+    return [make('label', { class: 'choice' }, make('span', {}, say(`import.${key}`)), select), select];
+};
+const button = (key, onclick, attributes = {}) => make('button', { type: 'button', onclick, ...attributes }, say(key));
+const megabytes = (bytes) => say('import.bytes', { mb: numberText(bytes / 1e6, bytes < 1e7 ? 2 : 0) });
+// Of what the programs printed: where files are is known.
+const plain = (text) => text.replace(/\S*\/exports\//g, '');
+
+export class Import {
+    constructor(page) {
+        this.page = page;
+        this.button = byId('import-toggle');
+        this.lit = new Lit(page);
+        this.exports = new Exports({ session: page.session, onState: (state) => this.show(state), onEnd: (state) => this.onEnd(state) });
+        this.table = new TagTable({ page, lit: this.lit, save: (text) => this.try(() => this.exports.order('/decide', {}, text)) });
+        this.build();
+        page.session.greeted(() => this.greet());
+        for (const name of ['dragover', 'drop'])
+            document.addEventListener(name, (event) => this.drag(event));
+    }
+
+    build() {
+        this.pick = make('input', { type: 'file', multiple: true, class: 'unseen', onchange: () => {
+            this.upload([...this.pick.files]);
+            this.pick.value = '';
+        } });
+        this.drop = make('label', { class: 'drop' }, make('b', {}, say('import.drop')), make('i', {}, say('import.more')), make('span', {}, say('import.formats')), this.pick);
+        this.files = make('ul', { class: 'files' });
+        this.filesTitle = make('summary', {});
+        this.phase = make('p', { class: 'phase', role: 'status' });
+        this.wrong = make('p', { class: 'wrong', role: 'alert' });
+        this.cancel = button('import.cancel', () => this.try(() => this.exports.order('/cancel')));
+        this.again = button('import.again', () => this.try(() => this.read()));
+        this.said = make('pre', { tabindex: '0' });
+        this.details = make('details', {}, make('summary', {}, say('import.details')), this.said);
+        this.filesFold = make('details', { open: true }, this.filesTitle, this.files, this.details);
+        this.size = make('b', { class: 'size' });
+        const [units, unitsSelect] = choice('units', UNITS, () => this.showSize());
+        const [up, upSelect] = choice('up', AXES, () => this.showSize());
+        Object.assign(this, { units: unitsSelect, up: upSelect });
+        this.apply = button('import.apply', () => this.try(() => this.read({ what: 'anew' })));
+        this.person = make('input', { type: 'checkbox', checked: true, onchange: () => this.showPerson() });
+        this.measures = make('details', { class: 'measures' }, make('summary', {}, say('import.size'), ' ', this.size),
+            make('div', { class: 'line' }, units, up, this.apply),
+            make('label', { class: 'check' }, this.person, say('import.person')), make('p', { class: 'quiet' }, say('import.units.note')));
+        this.element = make('section', { class: 'import', id: 'import', hidden: true, 'aria-label': say('bar.import') },
+            make('header', {}, make('h2', {}, say('bar.import')), closeButton('import.close', () => this.toggle())),
+            make('div', { class: 'part' },
+                make('section', {}, this.drop, this.filesFold, make('div', { class: 'line' }, this.phase, this.cancel, this.again), this.wrong),
+                this.measures, this.table.element));
+        byId('viewport').parentElement.append(this.element);
+    }
+
+    get open() {
+        return !this.element.hidden;
+    }
+
+    toggle() {
+        for (const name of ['alarms', 'engineer']) { // they stand in the same place
+            const other = this.page.modules.there(name);
+            if (!this.open && other?.open)
+                other.toggle();
+        }
+        this.element.hidden = this.open;
+        this.button.setAttribute('aria-expanded', this.open);
+        this.lit.show({ assets: [] });
+        this.showPerson();
+        if (this.open) {
+            this.exports.look();
+            this.table.refresh();
+        }
+        (this.open ? this.pick : this.button).focus({ preventScroll: true });
+    }
+
+    // A plant is there, another one perhaps.
+    greet() {
+        const { assets } = this.page.session.model;
+        this.isNew = assets.length === 1 && assets[0].id === PLACEHOLDER;
+        this.filesFold.open = this.isNew;
+        this.element.classList.toggle('new', this.isNew);
+        if (this.isNew && !this.open)
+            this.toggle();
+        this.showSize();
+        this.exports.look();
+        this.bringMatches();
+    }
+
+    async bringMatches() {
+        try {
+            this.table.set(this.isNew ? '' : await this.exports.matches());
+        } catch {
+            this.table.set(''); // none were matched yet
+        }
+    }
+
+    // --- files
+
+    drag(event) {
+        if (![...event.dataTransfer?.types ?? []].includes('Files'))
+            return;
+        event.preventDefault();
+        if (event.type !== 'drop')
+            return;
+        if (!this.open)
+            this.toggle();
+        this.upload([...event.dataTransfer.files]);
+    }
+
+    // Runs what a person asked for; what goes wrong is said.
+    async try(f) {
+        setText(this.wrong, '');
+        try {
+            await f();
+        } catch (error) {
+            setText(this.wrong, error.message);
+        }
+    }
+
+    upload(files) {
+        return files.length > 0 && this.try(async () => {
+            for (const file of files) {
+                setText(this.phase, say('import.uploading', { name: file.name }));
+                await this.exports.post('/upload', { name: file.name }, file);
+            }
+            setText(this.phase, '');
+            await this.exports.look();
+            const { files: all } = this.exports.state, names = files.map(({ name }) => name);
+            const onlyTags = all.every(({ name, kind }) => kind === 'tags' || !names.includes(name));
+            if (all.some(({ kind }) => kind === 'model'))
+                await this.read(onlyTags && !this.isNew ? { what: 'tags' } : {});
+        });
+    }
+
+    read(query = {}) {
+        return this.exports.order('/run', { ...query, units: this.units.value, up: this.up.value });
+    }
+
+    show(state) {
+        const busy = state.phase !== 'idle';
+        fill(this.files, ...state.files.map(({ name, kind, bytes }) => make('li', {}, make('b', {}, name),
+            make('span', {}, `${say(`import.kind.${kind}`)} · ${megabytes(bytes)}`),
+            closeButton('import.remove', () => this.try(async () => {
+                await this.exports.post('/remove', { name });
+                await this.exports.look();
+            })))));
+        setText(this.filesTitle, say('import.files', { count: state.files.length }));
+        this.filesFold.hidden = state.files.length === 0;
+        setText(this.phase, busy ? say(`import.phase.${state.phase}`) : state.number > 0 && !state.failed ? say('import.done') : '');
+        this.element.classList.toggle('busy', busy);
+        this.cancel.hidden = !busy;
+        this.again.hidden = busy || !state.files.some(({ kind }) => kind === 'model');
+        this.apply.disabled = this.again.hidden;
+        this.table.setBusy(busy);
+        setText(this.said, plain(state.said));
+        this.details.hidden = state.said === '';
+        if (!busy)
+            setText(this.wrong, plain(state.failed ?? ''));
+    }
+
+    onEnd(state) {
+        this.units.value = state.units;
+        this.up.value = state.up;
+        this.applied = state.units || 'm';
+        this.showSize();
+        if (!state.failed)
+            this.table.forget();
+        this.bringMatches();
+    }
+
+    // --- size
+
+    showSize() {
+        const { model } = this.page.session;
+        this.measures.hidden = !model || this.isNew;
+        if (!model)
+            return;
+        const times = this.units.value ? timesOf(this.applied ?? 'm', this.units.value) : 1;
+        const sides = sizeOf(model.plant.bounds, times).map((m) => numberText(m, m < 10 ? 2 : m < 1000 ? 1 : 0));
+        const [wide, deep, high] = sides;
+        setText(this.size, say('import.metres', { wide, deep, high }));
+        this.showPerson();
+    }
+
+    showPerson() {
+        this.lit.show({ person: this.open && this.person.checked && !this.isNew });
+    }
+}

@@ -1,0 +1,232 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The table of tags: what each was matched to, filtered, gone through by hand or keyboard, decided and saved.
+import { FILTERS, Matches, patternOf, readMatches } from '../../core/matches.js';
+import { rowAt } from '../../core/list_window.js';
+import { scrollTo } from '../../core/scroll.js';
+import { say } from '../../core/words.js';
+import { LongList } from '../assets/list.js';
+import { make, setText } from '../common/dom.js';
+import { fill } from '../common/widgets.js';
+
+const ROW_PX = 44, ROOM = 1.9;
+const union = (boxes) => ({
+    min: [0, 1, 2].map((i) => Math.min(...boxes.map(({ min }) => min[i]))), max: [0, 1, 2].map((i) => Math.max(...boxes.map(({ max }) => max[i]))),
+});
+
+export class TagTable {
+    // save(text): decisions, as they are sent.
+    constructor({ page, lit, save }) {
+        Object.assign(this, { page, lit, save, filter: 'all', chosen: null });
+        this.matches = new Matches((name) => this.isPlaced(name));
+        this.build();
+    }
+
+    build() {
+        const button = (key, onclick) => make('button', { type: 'button', onclick }, say(key));
+        this.counts = Object.fromEntries(FILTERS.map((filter) => [filter, make('b', {})]));
+        const choice = (filter) => make('label', {}, make('input', { type: 'radio', name: 'import-filter', value: filter,
+            checked: filter === 'all', onchange: () => this.setFilter(filter) }),
+        make('span', {}, this.counts[filter], say(`import.filter.${filter}`)));
+        this.find = make('input', { type: 'search', placeholder: say('import.find'), 'aria-label': say('import.find'),
+            oninput: () => this.refresh() });
+        this.root = make('div', { class: 'table', role: 'listbox', 'aria-label': say('import.tags'),
+            onkeydown: (event) => this.press(event) });
+        this.list = new LongList({ root: this.root, make: (row) => this.makeRow(row), fill: (row, element) => this.fillRow(row, element),
+            height: () => ROW_PX, keyOf: ({ tag }) => tag });
+        this.detail = make('div', { class: 'detail' });
+        this.count = make('span', { role: 'status' });
+        this.keep = button('import.save', () => this.save(this.matches.text()));
+        this.back = button('import.undo', () => this.forget());
+        this.element = make('section', { class: 'matching', hidden: true }, make('h3', {}, say('import.tags')),
+            make('fieldset', { class: 'segments' }, make('legend', {}, say('import.filter')), ...FILTERS.map(choice)), this.find, this.root,
+            make('p', { class: 'quiet' }, say('import.keys')), this.detail,
+            make('div', { class: 'line' }, this.count, this.back, this.keep));
+    }
+
+    // null: the tag is no sensor.
+    isPlaced(name) {
+        const tag = this.page.session.model?.tag(name);
+        return tag?.asset ? Boolean(tag.position) && tag.place !== 'equipment' : null;
+    }
+
+    set(text) {
+        this.matches.set(readMatches(text));
+        this.element.hidden = this.matches.all.length === 0;
+        this.chosen = this.matches.all.find(({ tag }) => tag === this.chosen?.tag) ?? null;
+        this.list.renew(() => this.refresh());
+    }
+
+    setBusy(busy) {
+        this.busy = busy;
+        this.showDecisions();
+    }
+
+    forget() {
+        this.matches.decisions.clear();
+        this.refresh();
+    }
+
+    setFilter(filter) {
+        this.filter = filter;
+        this.refresh();
+    }
+
+    refresh() {
+        const counts = this.matches.counts();
+        for (const filter of FILTERS)
+            setText(this.counts[filter], String(counts[filter]));
+        this.list.set(this.matches.rows(this.filter, this.find.value));
+        this.showDetail();
+        this.showDecisions();
+    }
+
+    showDecisions() {
+        const count = this.matches.decisions.size;
+        setText(this.count, count > 0 ? say('import.decided', { count }) : '');
+        this.keep.disabled = this.back.disabled = count === 0 || this.busy;
+    }
+
+    // --- rows
+
+    makeRow(row) {
+        return make('div', { role: 'option', class: 'row', onclick: () => this.choose(row), onfocus: () => { this.list.active = row.tag; } },
+            make('i', {}), make('b', {}, row.tag), make('span', { class: 'on' }), make('span', { class: 'why' }));
+    }
+
+    fillRow(row, element) {
+        const now = this.matches.of(row), [sign, , asset, why] = element.children;
+        const kind = this.matches.fits(row, 'unplaced') ? 'unplaced' : this.matches.kindOf(row);
+        element.dataset.kind = kind;
+        element.classList.toggle('decided', this.matches.decisions.has(row.tag));
+        element.setAttribute('aria-selected', row === this.chosen);
+        setText(sign, say(`import.sign.${kind}`));
+        sign.title = say(`import.filter.${kind}`);
+        setText(asset, now.asset || (kind === 'likely' ? row.candidates.join(', ') : '–'));
+        setText(why, this.matches.decisions.has(row.tag) ? say('import.byhand') : row.reason);
+    }
+
+    // The first of what lights up is where it is, or most likely is.
+    choose(row) {
+        this.chosen = row;
+        this.goTo(this.list.places.get(row.tag));
+        this.light(true);
+        this.refresh();
+    }
+
+    candidatesOf(row) {
+        const { model } = this.page.session, now = this.matches.of(row);
+        return [...new Set([now.asset, ...row.candidates])].map((id) => model.asset(id)).filter(Boolean);
+    }
+
+    light(flies = false) {
+        const assets = this.chosen ? this.candidatesOf(this.chosen) : [];
+        this.lit.show({ assets });
+        if (assets.length > 0 && flies)
+            this.page.modules.use('cameraController', (controller) =>
+                controller.flyToBox(union(assets.map(({ bounds }) => bounds)), ROOM), 'lit');
+    }
+
+    goTo(i) {
+        const { list } = this, row = list.rows[i];
+        if (!row)
+            return;
+        list.active = row.tag;
+        list.root.scrollTop = scrollTo(list.tops, i, list.root.scrollTop, list.root.clientHeight);
+        list.show();
+        list.shown.get(row.tag)?.focus({ preventScroll: true });
+    }
+
+    // Letters, so that they can be pressed without looking; the digits choose a candidate.
+    press(event) {
+        if (event.ctrlKey || event.altKey || event.metaKey)
+            return;
+        const { list, chosen } = this, i = list.places?.get(list.active) ?? 0, page = rowAt(list.tops, list.root.clientHeight);
+        const steps = { ArrowDown: i + 1, ArrowUp: i - 1, Home: 0, End: list.rows.length - 1, PageDown: i + page, PageUp: i - page };
+        const number = /^[1-8]$/.test(event.key) ? Number(event.key) : 0;
+        if (event.key in steps)
+            this.chooseAt(steps[event.key]);
+        else if (event.key === ' ')
+            this.chooseAt(i);
+        else if (chosen && event.key === 'Enter')
+            this.accept(this.matches.of(chosen).asset || chosen.candidates[0]);
+        else if (chosen && number > 0 && this.candidatesOf(chosen)[number - 1])
+            this.accept(this.candidatesOf(chosen)[number - 1].id);
+        else if (chosen && event.key.toLowerCase() === 'a')
+            this.acceptAlike();
+        else if (chosen && event.key.toLowerCase() === 'n')
+            this.accept('');
+        else if (chosen && event.key.toLowerCase() === 'p')
+            this.place();
+        else
+            return;
+        event.preventDefault();
+        event.stopPropagation(); // the plant stands still meanwhile
+    }
+
+    chooseAt(i) {
+        const row = this.list.rows[Math.max(0, Math.min(this.list.rows.length - 1, i))];
+        if (row)
+            this.choose(row);
+    }
+
+    // --- deciding
+
+    // On to the next row: the one that is decided may leave the filter.
+    accept(asset) {
+        if (asset === undefined)
+            return;
+        const i = this.list.places.get(this.chosen.tag), { rows } = this.list, next = rows[i + 1] ?? rows[i - 1] ?? null;
+        this.matches.decide(this.chosen, asset);
+        if (this.matches.fits(this.chosen, this.filter) || !next) {
+            this.light();
+            this.refresh();
+        } else {
+            this.refresh();
+            this.choose(next);
+        }
+    }
+
+    acceptAlike() {
+        for (const [match, asset] of this.matches.alike(this.chosen))
+            this.matches.decide(match, asset);
+        this.light();
+        this.refresh();
+    }
+
+    // Where it is on its equipment is said in the engineer's panel.
+    place() {
+        const tag = this.page.session.model.tag(this.chosen.tag);
+        if (!tag?.group)
+            return;
+        this.lit.show({ assets: [] });
+        this.page.modules.use('engineer', (engineer) => {
+            if (!engineer.open)
+                engineer.toggle();
+            engineer.take('place');
+            if (engineer.parts.place.tag !== tag.name)
+                engineer.parts.place.choose(tag);
+        });
+    }
+
+    showDetail() {
+        const { chosen, page } = this, { session } = page;
+        this.detail.hidden = !chosen;
+        if (!chosen)
+            return;
+        const now = this.matches.of(chosen), alike = this.matches.alike(chosen), selected = session.params.selected;
+        const button = (text, onclick, more = {}) => make('button', { type: 'button', onclick, ...more }, text);
+        const assets = this.candidatesOf(chosen), tag = session.model.tag(chosen.tag);
+        const other = selected && !assets.some(({ id }) => id === selected) ? selected : null;
+        fill(this.detail, make('h4', {}, chosen.tag), tag?.description ? make('p', {}, tag.description) : null,
+            make('p', { class: 'quiet' }, chosen.reason),
+            make('div', { class: 'candidates' }, ...assets.map(({ id, description }, i) => button([`${i + 1}  ${id}`, description]
+                .filter(Boolean).join(' · '), () => this.accept(id), { 'aria-pressed': String(now.status === 'sure' && now.asset === id) })),
+            other ? button(say('import.selected', { asset: other }), () => this.accept(other)) : null),
+            make('div', { class: 'line' },
+                alike.length > 1 ? button(say('import.alike', { pattern: patternOf(chosen.tag), count: alike.length }),
+                    () => this.acceptAlike()) : null,
+                now.status === 'none' ? null : button(say('import.off'), () => this.accept('')),
+                tag?.group ? button(say('import.place'), () => this.place()) : null),
+            other || assets.length > 0 ? null : make('p', { class: 'quiet' }, say('import.choose')));
+    }
+}

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What the panel says in which a plant is brought in, in German.
+export default `
+[import]
+close: Schließen
+drop: Modell und Messstellenliste hierher ziehen oder Dateien wählen
+more: Weitere Dateien hierher ziehen oder wählen
+formats: Modelle: RVM (mit ATT oder TXT), STEP, IGES, IFC, glTF, FBX, COLLADA, OBJ, STL, PLY, 3DS. Messstellen: CSV, XLSX, JSON
+bytes: {mb} MB
+files(one): {count} Datei
+files(other): {count} Dateien
+kind.model: Modell
+kind.beside: Gehört zu einem Modell
+kind.tags: Messstellenliste
+remove: Diese Datei entfernen
+uploading: {name} wird übertragen …
+phase.reading: Modelle werden gelesen …
+phase.matching: Messstellen werden zugeordnet …
+phase.preparing: Die Anlage wird vorbereitet …
+phase.loading: Die Anlage wird gezeichnet …
+done: Die Anlage ist in Kraft
+cancel: Abbrechen
+again: Noch einmal lesen
+details: Was gefunden wurde
+size: Größe
+metres: {wide} × {deep} × {high} m
+units: Einheit des Modells
+units.said: wie es sagt
+units.m: Meter
+units.mm: Millimeter
+units.cm: Zentimeter
+units.in: Zoll
+units.ft: Fuß
+up: Oben im Modell
+up.said: wie es sagt
+up.y: Y
+up.z: Z
+apply: Anwenden
+person: Eine Person von 1,8 m daneben zeigen
+person.label: 1,8 m
+units.note: Anwenden liest die Modelle noch einmal. plant.yaml und tags.csv entstehen neu, die alten bleiben als .1, .2, …; Entscheidungen über Messstellen bleiben.
+tags: Messstellen
+filter: Zeigen
+filter.all: Alle
+filter.sure: Zugeordnet
+filter.likely: Fraglich
+filter.none: Offen
+filter.unplaced: Ohne Ort
+sign.sure: ✓
+sign.likely: ?
+sign.none: –
+sign.unplaced: ◎
+find: Messstellen, Anlagenteile, Gründe suchen
+keys: ↑ ↓ durchgehen · 1–8 Vorschlag wählen · Enter annehmen · A alle solchen · N keiner · P platzieren
+byhand: von Hand
+decided(one): {count} Entscheidung
+decided(other): {count} Entscheidungen
+save: Speichern
+undo: Verwerfen
+selected: Am gewählten Anlagenteil: {asset}
+alike: Alle {count} wie {pattern} annehmen
+off: An keinem
+place: Von Hand platzieren
+choose: Das Anlagenteil im Bild anklicken, dann hier sagen, dass die Messstelle daran ist.
+`;

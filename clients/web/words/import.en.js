@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What the panel says in which a plant is brought in, in English.
+export default `
+[import]
+close: Close
+drop: Drop a model and a tag list here, or choose files
+more: Drop or choose more files
+formats: Models: RVM (with ATT or TXT), STEP, IGES, IFC, glTF, FBX, COLLADA, OBJ, STL, PLY, 3DS. Tags: CSV, XLSX, JSON
+bytes: {mb} MB
+files(one): {count} file
+files(other): {count} files
+kind.model: Model
+kind.beside: Belongs to a model
+kind.tags: Tag list
+remove: Remove this file
+uploading: {name}: uploading …
+phase.reading: Reading models …
+phase.matching: Matching tags …
+phase.preparing: Preparing the plant …
+phase.loading: Drawing the plant …
+done: The plant is in force
+cancel: Cancel
+again: Read again
+details: What was found
+size: Size
+metres: {wide} × {deep} × {high} m
+units: Units of the model
+units.said: as it says
+units.m: metres
+units.mm: millimetres
+units.cm: centimetres
+units.in: inches
+units.ft: feet
+up: Up in the model
+up.said: as it says
+up.y: Y
+up.z: Z
+apply: Apply
+person: Show a person of 1.8 m beside it
+person.label: 1.8 m
+units.note: Applying reads the models again. plant.yaml and tags.csv are made anew, those before are kept as .1, .2, …; decisions on tags stay.
+tags: Tags
+filter: Show
+filter.all: All
+filter.sure: Matched
+filter.likely: Doubtful
+filter.none: Unmatched
+filter.unplaced: Unplaced
+sign.sure: ✓
+sign.likely: ?
+sign.none: –
+sign.unplaced: ◎
+find: Find tags, equipment, reasons
+keys: ↑ ↓ go through · 1–8 choose a candidate · Enter accept · A all like it · N none · P place
+byhand: by hand
+decided(one): {count} decision
+decided(other): {count} decisions
+save: Save
+undo: Discard
+selected: On the selected equipment: {asset}
+alike: Accept all {count} like {pattern}
+off: On none
+place: Place by hand
+choose: Click the equipment in the picture, then say here that the tag is on it.
+`;

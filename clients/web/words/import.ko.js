@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What the panel says in which a plant is brought in, in Korean.
+export default `
+[import]
+close: 닫기
+drop: 모델과 태그 목록을 여기에 끌어다 놓거나 파일을 선택하세요
+more: 파일을 더 끌어다 놓거나 선택하세요
+formats: 모델: RVM(ATT 또는 TXT 포함), STEP, IGES, IFC, glTF, FBX, COLLADA, OBJ, STL, PLY, 3DS. 태그: CSV, XLSX, JSON
+bytes: {mb} MB
+files(other): 파일 {count}개
+kind.model: 모델
+kind.beside: 모델에 딸린 파일
+kind.tags: 태그 목록
+remove: 이 파일 제거
+uploading: {name}: 올리는 중 …
+phase.reading: 모델 읽는 중 …
+phase.matching: 태그 연결 중 …
+phase.preparing: 플랜트 준비 중 …
+phase.loading: 플랜트 그리는 중 …
+done: 플랜트가 적용되었습니다
+cancel: 취소
+again: 다시 읽기
+details: 찾은 내용
+size: 크기
+metres: {wide} × {deep} × {high} m
+units: 모델의 단위
+units.said: 파일대로
+units.m: 미터
+units.mm: 밀리미터
+units.cm: 센티미터
+units.in: 인치
+units.ft: 피트
+up: 모델의 위쪽
+up.said: 파일대로
+up.y: Y
+up.z: Z
+apply: 적용
+person: 옆에 키 1.8 m인 사람 표시
+person.label: 1.8 m
+units.note: 적용하면 모델을 다시 읽습니다. plant.yaml과 tags.csv는 새로 만들어지고 이전 파일은 .1, .2, … 로 남으며, 태그에 대한 결정은 유지됩니다.
+tags: 태그
+filter: 표시
+filter.all: 전체
+filter.sure: 연결됨
+filter.likely: 불확실
+filter.none: 미연결
+filter.unplaced: 위치 없음
+sign.sure: ✓
+sign.likely: ?
+sign.none: –
+sign.unplaced: ◎
+find: 태그, 설비, 이유 검색
+keys: ↑ ↓ 이동 · 1–8 후보 선택 · Enter 수락 · A 같은 형식 모두 · N 없음 · P 배치
+byhand: 수동
+decided(other): 결정 {count}개
+save: 저장
+undo: 버리기
+selected: 선택한 설비에: {asset}
+alike: {pattern} 형식 {count}개 모두 수락
+off: 설비 없음
+place: 직접 배치
+choose: 그림에서 설비를 클릭한 다음 여기에서 태그가 그 설비에 있다고 지정하세요.
+`;

@@ -1,0 +1,108 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Puts links to the files that are given into the plant's folder of exports, prepares the plant as it is, and becomes the daemon. */
+#include "preprocess/import/serve.h"
+
+#include <errno.h>
+#include <limits.h>
+#include <spawn.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "base/mem.h"
+#include "importing/export_folder.h"
+#include "preprocess/import/plant_draft.h"
+
+static int fail_at(const char *path, const char *why)
+{
+    fprintf(stderr, "plantcast import: %s: %s\n", path, why);
+    return 1;
+}
+
+static int make_folder(const char *path)
+{
+    return mkdir(path, 0777) == 0 || errno == EEXIST ? 0 : fail_at(path, strerror(errno));
+}
+
+/* The file itself stays where it is, and what it needs beside it. */
+static int add_link(const char *exports, const char *file)
+{
+    char target[PATH_MAX];
+    const char *slash = strrchr(file, '/'), *name = slash ? slash + 1 : file;
+    if (!realpath(file, target))
+        return fail_at(file, strerror(errno));
+    if (!export_name_good(name))
+        return fail_at(file, "a file of this name cannot be taken");
+    char *link = mem_printf("%s/%s", exports, name);
+    int status = 0;
+    if (export_kind_of(name) == EXPORT_TAGS)
+        export_folder_remove_tag_lists(exports, NULL);
+    if (unlink(link) != 0 && errno != ENOENT)
+        status = fail_at(link, strerror(errno));
+    else if (symlink(target, link) != 0)
+        status = fail_at(link, strerror(errno));
+    mem_free(link);
+    return status;
+}
+
+static int beside(char path[PATH_MAX], const char *name)
+{
+    ssize_t length = readlink("/proc/self/exe", path, PATH_MAX - 32);
+    path[length > 0 ? length : 0] = 0;
+    char *slash = strrchr(path, '/');
+    if (!slash)
+        return fail_at(name, "is not beside this program");
+    strcpy(slash + 1, name);
+    return 0;
+}
+
+static int prepare(const char *plant)
+{
+    char program[PATH_MAX];
+    char *const arguments[] = { program, (char *)(uintptr_t)plant, NULL };
+    pid_t child;
+    int status;
+    if (beside(program, "plantcast-prep") != 0)
+        return 1;
+    int error = posix_spawn(&child, program, NULL, NULL, arguments, environ);
+    if (error)
+        return fail_at(program, strerror(error));
+    while (waitpid(child, &status, 0) < 0 && errno == EINTR)
+        ;
+    return WIFEXITED(status) && WEXITSTATUS(status) == 0 ? 0 : fail_at(plant, "cannot be prepared");
+}
+
+static int run_daemon(const struct serve_params *params, const char *plant)
+{
+    char program[PATH_MAX];
+    char *const arguments[] = {
+        program, params->count > 0 ? "--import=now" : "--import", "--port", (char *)(uintptr_t)params->port, (char *)(uintptr_t)plant, NULL
+    };
+    if (beside(program, "plantcastd") != 0)
+        return 1;
+    fflush(stdout);
+    execv(program, arguments);
+    return fail_at(program, strerror(errno));
+}
+
+int import_serve(const struct serve_params *params)
+{
+    char *plant = mem_printf("%s/plant.yaml", params->folder), *exports = export_folder_of(params->folder);
+    int status = make_folder(params->folder);
+    if (status == 0)
+        status = make_folder(exports);
+    if (status == 0)
+        status = plant_draft_begin(params->folder) == 0 ? 0 : 1;
+    for (int i = 0; i < params->count && status == 0; i++)
+        status = add_link(exports, params->files[i]);
+    if (status == 0)
+        status = prepare(plant);
+    if (status == 0)
+        status = run_daemon(params, plant);
+    mem_free(exports);
+    mem_free(plant);
+    return status;
+}

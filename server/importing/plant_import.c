@@ -1,0 +1,208 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The order under way, and what is said of it. */
+#include "importing/plant_import.h"
+
+#include <errno.h>
+#include <pthread.h>
+#include <string.h>
+#include <sys/stat.h>
+
+#include "base/json_text.h"
+#include "base/mem.h"
+#include "base/text.h"
+#include "base/utf8.h"
+#include "importing/export_folder.h"
+
+enum { MOST_SAID_BYTES = 64 * 1024 };
+
+struct plant_import {
+    char *exports, *matches;
+    pthread_mutex_t lock;
+    /* --- below: under lock */
+    struct import_order order; /* the one under way, else the last */
+    bool ordered, busy, cancelled;
+    enum import_phase phase;
+    unsigned number; /* of orders so far */
+    struct text said;
+    char *why; /* the last one failed; NULL: it did not */
+};
+
+struct plant_import *plant_import_create(const char *plant_path)
+{
+    struct plant_import *import = mem_new(sizeof(*import));
+    const char *slash = strrchr(plant_path, '/');
+    char *folder = slash ? mem_printf("%.*s", (int)(slash - plant_path + (slash == plant_path)), plant_path) : mem_strdup(".");
+    import->exports = export_folder_of(folder);
+    import->matches = mem_printf("%s/matches.csv", folder);
+    mem_free(folder);
+    pthread_mutex_init(&import->lock, NULL);
+    if (mkdir(import->exports, 0777) != 0 && errno != EEXIST) {
+        int cause = errno;
+        plant_import_destroy(&import);
+        errno = cause;
+        return NULL;
+    }
+    export_folder_sweep(import->exports);
+    return import;
+}
+
+void plant_import_destroy(struct plant_import **pointer)
+{
+    struct plant_import *import = *pointer;
+    if (!import)
+        return;
+    pthread_mutex_destroy(&import->lock);
+    text_finish(&import->said);
+    mem_free(import->why);
+    mem_free(import->matches);
+    mem_free(import->exports);
+    mem_free(import);
+    *pointer = NULL;
+}
+
+/* --- for the loop ------------------------------------------------------------------------------------------------------- */
+
+const char *plant_import_exports(const struct plant_import *import)
+{
+    return import->exports;
+}
+
+const char *plant_import_matches(const struct plant_import *import)
+{
+    return import->matches;
+}
+
+const char *plant_import_decisions(void)
+{
+    return ".decisions.csv";
+}
+
+static bool is_one_of(const char *word, const char *const *words)
+{
+    while (*words && strcmp(*words, word) != 0)
+        words++;
+    return *words != NULL;
+}
+
+bool import_order_good(const struct import_order *order)
+{
+    static const char *const units[] = { "", "m", "mm", "cm", "in", "ft", NULL }, *const axes[] = { "", "y", "z", NULL };
+    return is_one_of(order->units, units) && is_one_of(order->up, axes);
+}
+
+bool plant_import_order(struct plant_import *import, const struct import_order *order)
+{
+    pthread_mutex_lock(&import->lock);
+    bool taken = !import->busy;
+    if (taken) {
+        import->order = *order;
+        import->ordered = import->busy = true;
+        import->cancelled = false;
+        import->phase = order->models ? IMPORT_READING : IMPORT_MATCHING;
+        import->number++;
+        text_finish(&import->said);
+        mem_free(import->why);
+        import->why = NULL;
+    }
+    pthread_mutex_unlock(&import->lock);
+    return taken;
+}
+
+void plant_import_cancel(struct plant_import *import)
+{
+    pthread_mutex_lock(&import->lock);
+    import->cancelled = import->busy;
+    pthread_mutex_unlock(&import->lock);
+}
+
+bool plant_import_busy(struct plant_import *import)
+{
+    pthread_mutex_lock(&import->lock);
+    bool busy = import->busy;
+    pthread_mutex_unlock(&import->lock);
+    return busy;
+}
+
+static json_t *files(const char *folder)
+{
+    static const char *const kinds[] = { "model", "beside", "tags" };
+    struct export_list list = { 0 };
+    json_t *array = json_array();
+    export_folder_list(folder, &list);
+    for (size_t i = 0; i < list.count; i++)
+        json_array_append_new(array, json_pack("{s:s,s:s,s:I}", "name", list.at[i].name, "kind", kinds[list.at[i].kind], "bytes",
+                                               (json_int_t)list.at[i].bytes));
+    export_list_finish(&list);
+    return array;
+}
+
+char *plant_import_text(struct plant_import *import)
+{
+    static const char *const phases[] = { "idle", "reading", "matching", "preparing", "loading" };
+    json_t *array = files(import->exports);
+    pthread_mutex_lock(&import->lock);
+    json_t *object = json_pack("{s:s,s:i,s:s,s:s?,s:s,s:s,s:o}", "phase", phases[import->phase], "number", (int)import->number, "said",
+                               import->said.at ? import->said.at : "", "failed", import->why, "units", import->order.units, "up",
+                               import->order.up, "files", array);
+    pthread_mutex_unlock(&import->lock);
+    return json_text(object, 0);
+}
+
+/* --- for the reload thread ---------------------------------------------------------------------------------------------- */
+
+/* What programs print may have names of files and tags in it, which may be any bytes. */
+static void add_printable(struct text *out, const char *text)
+{
+    for (size_t left = strlen(text), bytes; left > 0; text += bytes, left -= bytes) {
+        bytes = utf8_length(text, left);
+        bool shown = bytes > 0 && ((unsigned char)*text >= ' ' || *text == '\n') && *text != 0x7f;
+        bytes = bytes > 0 ? bytes : 1;
+        text_add_bytes(out, shown ? text : "?", shown ? bytes : 1);
+    }
+}
+
+bool plant_import_next(struct plant_import *import, struct import_order *order)
+{
+    pthread_mutex_lock(&import->lock);
+    bool ordered = import->ordered;
+    import->ordered = false;
+    *order = import->order;
+    pthread_mutex_unlock(&import->lock);
+    return ordered;
+}
+
+void plant_import_set_phase(struct plant_import *import, enum import_phase phase)
+{
+    pthread_mutex_lock(&import->lock);
+    import->phase = phase;
+    pthread_mutex_unlock(&import->lock);
+}
+
+void plant_import_say(struct plant_import *import, const char *text)
+{
+    pthread_mutex_lock(&import->lock);
+    if (import->said.length < MOST_SAID_BYTES)
+        add_printable(&import->said, text);
+    pthread_mutex_unlock(&import->lock);
+}
+
+bool plant_import_cancelled(struct plant_import *import)
+{
+    pthread_mutex_lock(&import->lock);
+    bool cancelled = import->cancelled;
+    pthread_mutex_unlock(&import->lock);
+    return cancelled;
+}
+
+void plant_import_end(struct plant_import *import, const char *why)
+{
+    struct text line = { 0 };
+    if (why)
+        add_printable(&line, why);
+    pthread_mutex_lock(&import->lock);
+    import->phase = IMPORT_IDLE;
+    import->busy = false;
+    mem_free(import->why);
+    import->why = line.at;
+    pthread_mutex_unlock(&import->lock);
+}

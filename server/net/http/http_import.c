@@ -1,0 +1,260 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Engineers bring a plant in: exports are uploaded, orders given, and matches read. Bodies go to the disk as they come: this one mode lets
+   the loop write files, piece by piece, and not wait until they are on the disk. */
+#include <errno.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/mem.h"
+#include "base/text.h"
+#include "net/http/http_impl.h"
+#include "net/connection.h"
+
+static const int64_t most_bytes = (int64_t)2 << 30, most_in_all = (int64_t)8 << 30, most_decisions = 16 << 20;
+enum { MOST_FILES = 64, MATCHES_BYTES = 32 << 20 };
+static const char BUSY[] = "another import is under way; wait for its end, or cancel it\n";
+
+struct body {
+    struct export_upload *upload;
+    int64_t left;
+    char name[256];
+    bool decides; /* its end is an order */
+};
+
+static int fail_with(struct request *request, const char *what, int error)
+{
+    char *text = mem_printf("%s: %s\n", what, strerror(-error));
+    request->close = true;
+    int result = request_answer_text(request, error == -ENOSPC ? 507 : HTTP_STATUS_INTERNAL_SERVER_ERROR, text);
+    mem_free(text);
+    return result;
+}
+
+static int refuse_with(struct request *request, int status, const char *text)
+{
+    request->close = true;
+    return request_answer_text(request, status, text);
+}
+
+static int answer_done(struct request *request)
+{
+    return request_answer(request, HTTP_STATUS_OK, "application/json", mem_strdup("{}"), 2, NULL, NULL);
+}
+
+/* --- what is told ----------------------------------------------------------------------------------------------------- */
+
+int api_import(struct server_context *server, struct request *request)
+{
+    if (!server->params.import)
+        return request_answer_text(request, HTTP_STATUS_NOT_FOUND, "plants are not brought in here\n");
+    return request_answer_json(request, plant_import_text(server->params.import));
+}
+
+int api_import_matches(struct server_context *server, struct request *request)
+{
+    size_t bytes;
+    char *text = server->params.import ? text_read_file(plant_import_matches(server->params.import), MATCHES_BYTES, &bytes) : NULL;
+    if (!text)
+        return request_answer_text(request, HTTP_STATUS_NOT_FOUND, "no tags were matched yet\n");
+    return request_answer(request, HTTP_STATUS_OK, "text/csv; charset=utf-8", text, strlen(text), NULL, NULL);
+}
+
+/* --- orders ----------------------------------------------------------------------------------------------------------- */
+
+static int order(struct server_context *server, struct request *request, const struct import_order *order)
+{
+    if (!plant_import_order(server->params.import, order))
+        return refuse_with(request, HTTP_STATUS_CONFLICT, BUSY);
+    server->params.import_ordered(server->params.reload_arg, connection_who(connection_of(request->wsi)));
+    return answer_done(request);
+}
+
+/* Copies NAME=value of the query; "" where it is not there. Returns false when it is too long. */
+static bool take_argument(const struct args *args, const char *name, char *out, size_t size)
+{
+    size_t length = strlen(name);
+    *out = 0;
+    for (size_t i = 0; i < args->count; i++)
+        if (!strncmp(args->list[i], name, length) && args->list[i][length] == '=') {
+            const char *value = args->list[i] + length + 1;
+            if (strlen(value) >= size)
+                return false;
+            strcpy(out, value);
+        }
+    return true;
+}
+
+/* what=tags: the models stay as they are; anew: nothing of the plant before stays. */
+static int order_all(struct server_context *server, struct request *request, const struct args *args)
+{
+    struct import_order wanted = { 0 };
+    char what[8];
+    if (!take_argument(args, "what", what, sizeof(what)) || (*what && strcmp(what, "tags") != 0 && strcmp(what, "anew") != 0))
+        return refuse_with(request, HTTP_STATUS_BAD_REQUEST, "what is tags or anew, or left out\n");
+    wanted.anew = !strcmp(what, "anew");
+    wanted.models = wanted.anew || !*what;
+    if (!take_argument(args, "units", wanted.units, sizeof(wanted.units)) || !take_argument(args, "up", wanted.up, sizeof(wanted.up)) ||
+        !import_order_good(&wanted))
+        return refuse_with(request, HTTP_STATUS_BAD_REQUEST, "units are m, mm, cm, in or ft; up is y or z\n");
+    return order(server, request, &wanted);
+}
+
+static int cancel(struct server_context *server, struct request *request, const struct args *args)
+{
+    (void)args;
+    plant_import_cancel(server->params.import);
+    return answer_done(request);
+}
+
+static int remove_file(struct server_context *server, struct request *request, const struct args *args)
+{
+    char name[256];
+    if (!take_argument(args, "name", name, sizeof(name)) || !export_name_good(name))
+        return refuse_with(request, HTTP_STATUS_BAD_REQUEST, "this is no name of a file here\n");
+    int error = export_folder_remove(plant_import_exports(server->params.import), name);
+    return error == 0 || error == -ENOENT ? answer_done(request) : fail_with(request, name, error);
+}
+
+/* --- uploads ---------------------------------------------------------------------------------------------------------- */
+
+/* Whether as much may be added; *text says why not. */
+static bool has_room(const char *folder, const char *name, int64_t bytes, const char **text)
+{
+    struct export_list list = { 0 };
+    int64_t all = bytes;
+    size_t others = 0;
+    export_folder_list(folder, &list);
+    for (size_t i = 0; i < list.count; i++)
+        if (strcmp(list.at[i].name, name) != 0) {
+            all += list.at[i].bytes;
+            others++;
+        }
+    export_list_finish(&list);
+    *text = others >= MOST_FILES ? "there are 64 files already; remove some\n" : "all files together are larger than 8 GB\n";
+    return others < MOST_FILES && all <= most_in_all;
+}
+
+static int begin_body(struct server_context *server, struct request *request, const char *name, bool decides)
+{
+    char length[32];
+    const char *folder = plant_import_exports(server->params.import), *why;
+    int error;
+    if (!connection_header(request->wsi, WSI_TOKEN_HTTP_CONTENT_LENGTH, length, sizeof(length)) || !*length)
+        return refuse_with(request, 411, "the length is not said\n");
+    int64_t bytes = strtoll(length, NULL, 10);
+    if (bytes <= 0 || bytes > (decides ? most_decisions : most_bytes))
+        return refuse_with(request, 413, bytes <= 0 ? "the file is empty\n" : "the file is larger than 2 GB\n");
+    if (!decides && !has_room(folder, name, bytes, &why))
+        return refuse_with(request, 413, why);
+    struct export_upload *upload = export_upload_begin(folder, name, &error);
+    if (!upload)
+        return fail_with(request, name, error);
+    request->body_in = mem_new(sizeof(*request->body_in));
+    *request->body_in = (struct body){ .upload = upload, .left = bytes, .decides = decides };
+    snprintf(request->body_in->name, sizeof(request->body_in->name), "%s", name);
+    return 0;
+}
+
+static int begin_upload(struct server_context *server, struct request *request, const struct args *args)
+{
+    char name[256];
+    if (!take_argument(args, "name", name, sizeof(name)) || !export_name_good(name))
+        return refuse_with(request, HTTP_STATUS_BAD_REQUEST,
+                           "a file of this name is not taken: at most 200 bytes, no slash, no control character, no dot in front\n");
+    return begin_body(server, request, name, false);
+}
+
+static int begin_decisions(struct server_context *server, struct request *request, const struct args *args)
+{
+    (void)args;
+    return begin_body(server, request, plant_import_decisions(), true);
+}
+
+int import_take_body(struct server_context *server, struct request *request, const void *bytes, size_t count)
+{
+    (void)server;
+    struct body *body = request->body_in;
+    if (!body)
+        return 0; /* it was refused */
+    body->left -= (int64_t)count;
+    int error = body->left < 0 ? -EFBIG : export_upload_write(body->upload, bytes, count);
+    if (!error)
+        return 0;
+    char name[256];
+    strcpy(name, body->name);
+    import_abandon_body(request);
+    return fail_with(request, name, error);
+}
+
+int import_end_body(struct server_context *server, struct request *request)
+{
+    struct body *body = request->body_in;
+    if (!body)
+        return 0;
+    const char *folder = plant_import_exports(server->params.import);
+    bool whole = body->left == 0, decides = body->decides, busy = plant_import_busy(server->params.import);
+    char name[256];
+    strcpy(name, body->name);
+    int error = whole && !busy ? export_upload_end(&body->upload) : 0;
+    import_abandon_body(request);
+    if (busy)
+        return refuse_with(request, HTTP_STATUS_CONFLICT, BUSY);
+    if (!whole)
+        return refuse_with(request, HTTP_STATUS_BAD_REQUEST, "the file did not come to its end\n");
+    if (error)
+        return fail_with(request, name, error);
+    if (decides)
+        return order(server, request, &(struct import_order){ .decides = true });
+    if (export_kind_of(name) == EXPORT_TAGS)
+        export_folder_remove_tag_lists(folder, name);
+    return answer_done(request);
+}
+
+void import_abandon_body(struct request *request)
+{
+    if (request->body_in)
+        export_upload_abandon(&request->body_in->upload);
+    mem_free(request->body_in);
+    request->body_in = NULL;
+}
+
+/* --- which request it is ---------------------------------------------------------------------------------------------- */
+
+static const struct {
+    const char *path;
+    int (*take)(struct server_context *server, struct request *request, const struct args *args);
+    bool always; /* also while an order is carried out */
+} posts[] = {
+    { "/api/v1/import/upload", begin_upload, false }, { "/api/v1/import/remove", remove_file, false },
+    { "/api/v1/import/run", order_all, false },       { "/api/v1/import/decide", begin_decisions, false },
+    { "/api/v1/import/cancel", cancel, true },
+};
+enum { POSTS = sizeof(posts) / sizeof(posts[0]) };
+
+static size_t find_post(const char *path)
+{
+    size_t i = 0;
+    while (i < POSTS && strcmp(posts[i].path, path) != 0)
+        i++;
+    return i;
+}
+
+bool import_takes_post(const struct server_context *server, const char *path)
+{
+    return server->params.import && find_post(path) < POSTS;
+}
+
+int import_post(struct server_context *server, struct request *request, const char *path)
+{
+    struct message_error error = { 0 };
+    struct args args;
+    size_t i = find_post(path);
+    if (!request_may_change(server, request))
+        return refuse_with(request, HTTP_STATUS_FORBIDDEN, "pages of other sites may not do this\n");
+    if (!request_args(request->wsi, &args, &error))
+        return request_answer_error(request, &error);
+    if (!posts[i].always && plant_import_busy(server->params.import))
+        return refuse_with(request, HTTP_STATUS_CONFLICT, BUSY);
+    return posts[i].take(server, request, &args);
+}

@@ -1,0 +1,128 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* A child process, and the two pipes that it prints to. */
+#include "sibling.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <limits.h>
+#include <poll.h>
+#include <signal.h>
+#include <spawn.h>
+#include <stdint.h>
+#include <string.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "base/mem.h"
+#include "base/text.h"
+
+enum { STDOUT, STDERR, PIPES, LOOK_MS = 50, MOST_STDERR_BYTES = 64 * 1024 };
+
+struct sibling {
+    const struct sibling_params *params;
+    pid_t child;
+    int ends[PIPES][2];  /* -1: closed */
+    struct text written; /* to stderr */
+    bool told;           /* it was told to end */
+};
+
+static void close_end(int *fd)
+{
+    if (*fd >= 0)
+        close(*fd);
+    *fd = -1;
+}
+
+static int start(struct sibling *sibling)
+{
+    char program[PATH_MAX];
+    posix_spawn_file_actions_t actions;
+    ssize_t length = readlink("/proc/self/exe", program, sizeof(program) - NAME_MAX - 1);
+    program[length > 0 ? length : 0] = 0;
+    char *slash = strrchr(program, '/');
+    strncpy(slash ? slash + 1 : program, sibling->params->arguments[0], NAME_MAX);
+    posix_spawn_file_actions_init(&actions);
+    int error = 0;
+    for (int i = 0; i < PIPES && sibling->params->say && !error; i++) {
+        error = pipe2(sibling->ends[i], O_CLOEXEC) == 0 ? 0 : errno;
+        if (!error)
+            error = posix_spawn_file_actions_adddup2(&actions, sibling->ends[i][1], i == STDOUT ? STDOUT_FILENO : STDERR_FILENO);
+    }
+    if (!error)
+        error = posix_spawn(&sibling->child, program, &actions, NULL, (char *const *)(uintptr_t)sibling->params->arguments, environ);
+    posix_spawn_file_actions_destroy(&actions);
+    for (int i = 0; i < PIPES; i++)
+        close_end(&sibling->ends[i][1]);
+    if (!error)
+        setpriority(PRIO_PROCESS, (id_t)sibling->child, 10);
+    return error;
+}
+
+static void read_end(struct sibling *sibling, int which)
+{
+    char piece[4096];
+    ssize_t n = read(sibling->ends[which][0], piece, sizeof(piece) - 1);
+    if (n < 0 && errno == EINTR)
+        return;
+    if (n <= 0) {
+        close_end(&sibling->ends[which][0]);
+        return;
+    }
+    piece[n] = 0;
+    sibling->params->say(sibling->params->arg, piece);
+    if (which == STDERR && sibling->written.length < MOST_STDERR_BYTES)
+        text_add(&sibling->written, "%s", piece);
+}
+
+/* Waits for what it prints, and looks up now and then. Returns once it has ended; its pipes may be held open by others. */
+static int attend(struct sibling *sibling)
+{
+    int status = 0;
+    for (bool ended = false; !ended;) {
+        struct pollfd polled[PIPES] = { { sibling->ends[STDOUT][0], POLLIN, 0 }, { sibling->ends[STDERR][0], POLLIN, 0 } };
+        ended = waitpid(sibling->child, &status, WNOHANG) != 0; /* what it wrote before is read below */
+        int ready = poll(polled, PIPES, ended ? 0 : LOOK_MS);
+        for (int i = 0; i < PIPES && ready > 0; i++)
+            if (polled[i].revents)
+                read_end(sibling, i);
+        if (ended && ready > 0)
+            ended = false;
+        if (!sibling->told && !ended && sibling->params->stop(sibling->params->arg)) {
+            sibling->told = true;
+            kill(sibling->child, SIGTERM);
+        }
+    }
+    return status;
+}
+
+static char *last_line(const struct text *text)
+{
+    size_t end = text->length;
+    while (end > 0 && (text->at[end - 1] == '\n' || text->at[end - 1] == '\r'))
+        end--;
+    size_t begin = end;
+    while (begin > 0 && text->at[begin - 1] != '\n')
+        begin--;
+    return end > begin ? mem_printf("%.*s", (int)(end - begin), text->at + begin) : NULL;
+}
+
+char *sibling_run(const struct sibling_params *params)
+{
+    const char *name = params->arguments[0];
+    struct sibling sibling = { .params = params, .ends = { { -1, -1 }, { -1, -1 } } };
+    char *why = NULL;
+    int error = start(&sibling), status = error ? 0 : attend(&sibling);
+    if (error)
+        why = mem_printf("%s cannot be run: %s", name, strerror(error));
+    else if (sibling.told)
+        why = mem_printf("%s was ended before it was done", name);
+    else if (WIFSIGNALED(status))
+        why = mem_printf("%s crashed (%s)", name, strsignal(WTERMSIG(status)));
+    else if (WEXITSTATUS(status) != 0 && !(why = last_line(&sibling.written)))
+        why = mem_printf("%s ended with status %d", name, WEXITSTATUS(status));
+    for (int i = 0; i < PIPES; i++)
+        close_end(&sibling.ends[i][0]);
+    text_finish(&sibling.written);
+    return why;
+}

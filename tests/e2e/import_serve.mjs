@@ -1,0 +1,388 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// `plantcast import --serve`: a plant is brought in on the page. Files are dropped, tags gone through and decided, units corrected.
+import assert from 'node:assert/strict';
+import { spawn } from 'node:child_process';
+import { existsSync, mkdtempSync, readdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
+import { tmpdir } from 'node:os';
+import { join } from 'node:path';
+import { after, before, test } from 'node:test';
+import { arrive, openPage, settle, shoot, TABLET, waitForPicture } from './support/browser.mjs';
+import { BIN, missing } from './support/tiny_plant.mjs';
+
+const absent = missing();
+const notBuilt = absent.length > 0 ? `not built: ${absent.join(', ')}` : !existsSync('/usr/bin/chromium') ? 'no chromium' : false;
+const options = { skip: notBuilt, timeout: 240000 };
+const DATA = join(import.meta.dirname, '../../../shared/data');
+const noData = notBuilt || (existsSync(join(DATA, 'cad')) ? false : 'no ../shared/data/cad');
+const DESK = { viewport: { width: 1280, height: 800 } };
+
+// `plantcast import --serve`, in a folder that is not there yet.
+class Served {
+    static async start(...args) {
+        const served = new Served();
+        served.root = mkdtempSync(join(tmpdir(), 'plantcast-serve-'));
+        served.folder = join(served.root, 'plant');
+        served.began = performance.now();
+        served.child = spawn(join(BIN, 'plantcast'), ['import', '--serve', '--port', '0', ...args, '-o', served.folder]);
+        served.ended = new Promise((done) => served.child.once('exit', done));
+        served.said = '';
+        for (const pipe of [served.child.stdout, served.child.stderr])
+            pipe.on('data', (chunk) => { served.said += chunk; });
+        while (!served.port) {
+            await new Promise((done) => setTimeout(done, 50));
+            served.port = Number(served.said.match(/ready http:\/\/127\.0\.0\.1:(\d+)\//)?.[1]);
+            if (served.child.exitCode !== null)
+                throw new Error(served.said);
+        }
+        served.url = `http://127.0.0.1:${served.port}/`;
+        return served;
+    }
+
+    read(name) {
+        return readFileSync(join(this.folder, name), 'utf8');
+    }
+
+    api(path, more = {}) {
+        return fetch(`${this.url}api/v1/import${path}`, more);
+    }
+
+    post(path, body = undefined, headers = {}) {
+        return this.api(path, { method: 'POST', body, headers });
+    }
+
+    async idle() {
+        for (;;) {
+            const state = await (await this.api('')).json();
+            if (state.phase === 'idle')
+                return state;
+            await new Promise((done) => setTimeout(done, 100));
+        }
+    }
+
+    async destroy() {
+        this.child.kill();
+        await this.ended;
+        rmSync(this.root, { recursive: true, force: true });
+    }
+}
+
+// A model of boxes with these names, side by side, each `size` wide.
+function boxes(names, size = 1) {
+    const corners = [...Array(8).keys()].flatMap((i) => [i & 1, i >> 1 & 1, i >> 2 & 1].map((bit) => bit * size));
+    const faces = [0, 2, 3, 0, 3, 1, 4, 5, 7, 4, 7, 6, 0, 1, 5, 0, 5, 4, 2, 6, 7, 2, 7, 3, 0, 4, 6, 0, 6, 2, 1, 3, 7, 1, 7, 5];
+    const bytes = Buffer.concat([Buffer.from(new Float32Array(corners).buffer), Buffer.from(new Uint16Array(faces).buffer)]);
+    return JSON.stringify({ asset: { version: '2.0' }, scene: 0, scenes: [{ nodes: [0] }],
+        nodes: [{ name: 'plant', children: names.map((_, i) => i + 1) },
+            ...names.map((name, i) => ({ name, mesh: 0, translation: [2 * size * (i % 8), 0, 2 * size * Math.floor(i / 8)] }))],
+        meshes: [{ primitives: [{ attributes: { POSITION: 0 }, indices: 1 }] }],
+        accessors: [{ bufferView: 0, componentType: 5126, count: 8, type: 'VEC3', min: [0, 0, 0], max: [size, size, size] },
+            { bufferView: 1, componentType: 5123, count: 36, type: 'SCALAR' }],
+        bufferViews: [{ buffer: 0, byteLength: 96 }, { buffer: 0, byteOffset: 96, byteLength: 72 }],
+        buffers: [{ byteLength: bytes.length, uri: `data:application/octet-stream;base64,${bytes.toString('base64')}` }] });
+}
+const NAMES = ['E-101', 'P-201A', 'P-201B', '열교환기-301', 'V 401/A'];
+const TAGS = `Tag Name,Scaled Low,Scaled High,Eng Units,Description
+E-101.TT-01,0,150,degC,Shell
+TT-2011,0,120,degC,
+TT-2012,0,120,degC,
+TT-201,0,120,degC,Bearing
+FT-201,0,10,m3/h,Flow
+TT-1013,0,90,degC,Before P-201A
+TT-1014,0,90,degC,Before P-201A
+열교환기-301/TT,0,90,degC,입구 온도
+V 401/A.LT,0,100,%,Level
+TT-9999,0,90,degC,Another unit
+`;
+
+// In the page: files as if they had been chosen; [{ name, text }] or paths.
+const choose = (page, files) => page.locator('#import input[type=file]').setInputFiles(files.map((file) => (typeof file === 'string' ? file
+    : { name: file.name, mimeType: 'application/octet-stream', buffer: Buffer.from(file.text) })));
+const row = (page, tag) => page.locator('#import .row').filter({ has: page.locator('b', { hasText: new RegExp(`^${tag}$`) }) });
+const inForce = (page) => page.waitForFunction(() => {
+    const panel = document.getElementById('import');
+    return !panel.classList.contains('new') && !panel.classList.contains('busy') && panel.querySelectorAll('.row').length > 0;
+}, null, { timeout: 200000 });
+const saved = (page) => page.waitForFunction(() => !document.querySelector('#import .row.decided') &&
+    !document.querySelector('#import.busy'), null, { timeout: 60000 });
+const assetsOf = (page) => page.evaluate(() => globalThis.plantcast.session.model.assets.map(({ id }) => id));
+const wrong = (page, pattern) => page.waitForFunction((what) => new RegExp(what).test(document.querySelector('#import .wrong').textContent),
+    pattern, { timeout: 60000 });
+
+// --- what is asked over HTTP
+
+test('uploads: names, sizes, other sites, one import at a time', options, async () => {
+    const served = await Served.start();
+    try {
+        const put = (name, body = 'x', headers = {}) => served.post(`/upload?name=${encodeURIComponent(name)}`, body, headers);
+        for (const name of ['../x.glb', 'a/b.glb', '.x.glb', '', 'a\\b.glb', `${'a'.repeat(201)}`])
+            assert.equal((await put(name)).status, 400, JSON.stringify(name));
+        assert.equal((await served.post('/upload?name=x.glb')).status, 413, 'empty');
+        assert.equal((await put('x.glb', 'x', { Origin: 'http://elsewhere.example' })).status, 403);
+        assert.equal((await put('x.glb', 'x', { 'Sec-Fetch-Site': 'cross-site' })).status, 403);
+        assert.equal((await served.post('/run', undefined, { Origin: 'http://elsewhere.example' })).status, 403);
+        assert.equal((await served.post('/run?units=km')).status, 400);
+        assert.equal((await served.post('/nothing', 'x')).status, 405);
+        assert.equal((await served.api('/matches')).status, 404, 'none yet');
+        assert.deepEqual(readdirSync(join(served.folder, 'exports')), [], 'nothing of these is there');
+        assert.deepEqual(readdirSync(served.root), ['plant']);
+
+        assert.equal((await put('열교환기 -1.gltf', boxes(['E-1']))).status, 200);
+        assert.equal((await put('tags.csv', TAGS)).status, 200);
+        assert.equal((await put('other.csv', TAGS)).status, 200);
+        assert.deepEqual((await served.idle()).files.map(({ name, kind }) => [name, kind]), [['other.csv', 'tags'],
+            ['열교환기 -1.gltf', 'model']], 'there is one tag list at a time');
+        const both = await Promise.all([served.post('/run'), served.post('/run')]);
+        assert.deepEqual(both.map(({ status }) => status).sort(), [200, 409]);
+        const state = await served.idle();
+        assert.equal(state.failed, null, state.failed);
+        assert.match(served.read('plant.yaml'), /model: "열교환기 -1\.glb"/);
+        assert.equal((await served.post('/remove?name=..%2Fplant.yaml')).status, 400);
+        assert.equal((await served.post('/remove?name=other.csv')).status, 200);
+        assert.equal((await served.idle()).files.length, 1);
+    } finally {
+        await served.destroy();
+    }
+});
+
+test('a daemon that brings no plants in has none of these', options, async () => {
+    const { TinyPlant } = await import('./support/tiny_plant.mjs'), plant = await TinyPlant.running();
+    try {
+        const url = `http://127.0.0.1:${plant.port}/api/v1/import`;
+        assert.equal((await fetch(url)).status, 404);
+        assert.equal((await fetch(`${url}/upload?name=x.glb`, { method: 'POST', body: 'x' })).status, 405);
+        assert.equal(existsSync(join(plant.folder, 'exports')), false);
+    } finally {
+        await plant.destroy();
+    }
+});
+
+test('what goes wrong is one line, and the plant before stays', options, async () => {
+    const served = await Served.start();
+    const put = (name, body) => served.post(`/upload?name=${encodeURIComponent(name)}`, body);
+    const fails = async (pattern) => {
+        await served.post('/run');
+        const { failed } = await served.idle();
+        assert.match(failed, pattern);
+        assert.doesNotMatch(failed, /\n/);
+    };
+    try {
+        const before = served.read('plant.yaml');
+        await put('plant.gltf', boxes(['E-1']));
+        await put('plant.glb', 'glTF cut off');
+        await fails(/plant\.glb and .*plant\.gltf would both be plant\.glb; rename one of them/);
+        await served.post('/remove?name=plant.gltf');
+        await fails(/plant\.glb: /);
+        await served.post('/remove?name=plant.glb');
+        await put('plant.dwg', 'x');
+        await fails(/plant\.dwg: /);
+        assert.equal(served.read('plant.yaml'), before);
+        await served.post('/remove?name=plant.dwg');
+        await fails(/there is no model yet/);
+        await put('plant.gltf', boxes(['E-1', 'P-2']));
+        await put('tags.csv', '\u0000\u0001');
+        await fails(/tags\.csv/);
+        assert.match(served.read('plant.yaml'), /id: "P-2"/, 'the models are good');
+        await put('tags.csv', TAGS);
+        await served.post('/run?what=tags');
+        assert.equal((await served.idle()).failed, null);
+        const kept = ['plant.yaml', 'tags.csv', 'matches.csv'].map((name) => served.read(name));
+        await served.post('/decide', 'Tag,Status,Asset\nTT-9999,sure,nowhere\n');
+        assert.match((await served.idle()).failed, /TT-9999: no asset is called 'nowhere'/);
+        assert.deepEqual(['plant.yaml', 'tags.csv', 'matches.csv'].map((name) => served.read(name)), kept);
+        await served.post('/run');
+        await served.post('/cancel');
+        const { failed } = await served.idle();
+        assert.ok(failed === null || /ended before it was done/.test(failed), failed);
+    } finally {
+        await served.destroy();
+    }
+});
+
+test('40 % of the rows are there twice, and one tag with control characters', options, async () => {
+    const served = await Served.start(), lines = TAGS.trim().split('\n').slice(1);
+    try {
+        await served.post('/upload?name=plant.gltf', boxes(NAMES));
+        await served.post('/upload?name=t.csv', [...TAGS.trim().split('\n'), ...lines.slice(0, 5), '"P-201B\u0007_TT",0,1,degC,x'].join('\n'));
+        await served.post('/run');
+        const state = await served.idle();
+        assert.equal(state.failed, null, state.failed);
+        assert.match(state.said, /5 rows repeat a tag word for word: taken once/);
+        assert.match(state.said, /1 control characters: read as blanks/);
+    } finally {
+        await served.destroy();
+    }
+});
+
+// --- on the page
+
+let served, browser, page;
+before(async () => {
+    if (notBuilt)
+        return;
+    served = await Served.start();
+    browser = await openPage(`${served.url}?lang=en`, DESK);
+    ({ page } = browser);
+});
+after(async () => {
+    await browser?.close();
+    await served?.destroy();
+});
+
+test('an empty plant opens the panel; a model and a tag list make a plant', options, async () => {
+    await waitForPicture(page);
+    await page.locator('#import.new .drop').waitFor();
+    assert.deepEqual(await assetsOf(page), ['person']);
+    await settle(page);
+    await shoot(page, 'import-1-empty');
+    await choose(page, [{ name: 'plant.gltf', text: boxes(NAMES) }, { name: 'tags.csv', text: TAGS }]);
+    await inForce(page);
+    assert.deepEqual(await assetsOf(page), NAMES);
+    assert.equal(existsSync(join(served.folder, 'plant.yaml.1')), false, 'nothing was there that a person wrote');
+    const counts = await page.locator('#import .segments b').allTextContents();
+    assert.deepEqual(counts.map(Number), [10, 3, 6, 1, 3], 'all, matched, doubtful, unmatched, unplaced');
+    await settle(page);
+    await shoot(page, 'import-2-plant');
+});
+
+test('by keyboard: gone through, its candidates light up, one accepted, all of a pattern, none; saved', options, async () => {
+    await page.locator('#import .segments label', { hasText: 'Doubtful' }).click();
+    await row(page, 'TT-201').click();
+    const lit = () => page.evaluate(() => globalThis.plantcast.modules.there('import').lit.assets.map(({ id }) => id));
+    assert.deepEqual(await lit(), ['P-201A', 'P-201B']);
+    await arrive(page);
+    await shoot(page, 'import-3-candidates');
+    await page.keyboard.press('2');
+    assert.match(await page.locator('#import [role=status]').last().textContent(), /^1 decision$/);
+    assert.match(await page.locator('#import .row[aria-selected=true] b').textContent(), /^FT-201$/, 'on to the next');
+    await page.keyboard.press('n');
+    await page.keyboard.press('Home');
+    await page.keyboard.press('ArrowDown');
+    assert.match(await page.locator('#import .row[aria-selected=true] b').textContent(), /^TT-2012$/);
+    await page.keyboard.press('End');
+    assert.match(await page.locator('#import .row[aria-selected=true] b').textContent(), /^TT-1014$/);
+    assert.equal(await page.getByRole('button', { name: 'Accept all 2 like TT-####' }).count(), 1, 'those with a proposal');
+    await page.keyboard.press('a');
+    await page.locator('#import .segments label', { hasText: 'All' }).click();
+    await shoot(page, 'import-4-decided');
+    await page.getByRole('button', { name: 'Save', exact: true }).click();
+    await saved(page);
+    const matches = served.read('matches.csv');
+    assert.match(matches, /^TT-201,sure,P-201B,,,by hand/m);
+    assert.match(matches, /^FT-201,none,,,,by hand/m);
+    assert.match(matches, /^TT-1013,sure,E-101,,,by hand/m);
+    assert.match(matches, /^TT-1014,sure,E-101,,,by hand/m);
+    assert.match(served.read('tags.csv'), /^TT-201,.*,P-201B,/m);
+    await page.waitForFunction(() => globalThis.plantcast.session.model.tag('TT-201')?.asset === 'P-201B');
+});
+
+test('a tag that nothing proposes goes onto the equipment that is selected in the picture', options, async () => {
+    await row(page, 'TT-9999').click();
+    await page.evaluate(() => globalThis.plantcast.session.setParams({ selected: 'E-101' }));
+    await row(page, 'TT-9999').click();
+    await page.getByRole('button', { name: 'On the selected equipment: E-101' }).click();
+    await page.getByRole('button', { name: 'Save', exact: true }).click();
+    await saved(page);
+    assert.match(served.read('matches.csv'), /^TT-9999,sure,E-101,,,by hand/m);
+});
+
+test('what was decided stays when the models are read again in other units', options, async () => {
+    const size = () => page.locator('#import .measures .size').textContent();
+    await page.locator('#import .measures summary').click();
+    assert.match(await size(), /^9\.00 × 1\.00 × 1\.00 m$/);
+    await page.locator('#import .measures select').first().selectOption('ft');
+    assert.match(await size(), /^2\.74 × 0\.30 × 0\.30 m$/, 'what it would be');
+    await page.locator('#import .measures select').last().selectOption('z');
+    await page.getByRole('button', { name: 'Apply' }).click();
+    await page.waitForFunction(() => Math.abs(globalThis.plantcast.session.model.plant.bounds.max[0] - 9 * 0.3048) < 0.01, null,
+        { timeout: 60000 });
+    await page.waitForFunction(() => !document.querySelector('#import.busy'));
+    assert.match(await size(), /^2\.74 × 0\.30 × 0\.30 m$/);
+    assert.match(served.read('plant.yaml'), /units: ft, up: z/);
+    assert.match(served.read('plant.yaml.1'), /id: "E-101"/, 'the plant before is kept');
+    assert.match(served.read('matches.csv'), /^TT-9999,sure,E-101,,,by hand/m);
+    assert.match(served.read('tags.csv'), /^TT-9999,.*,E-101,/m);
+    await settle(page);
+    await shoot(page, 'import-5-units');
+});
+
+test('placed by hand: the engineer\'s panel takes over, and the tag is not unplaced any more', options, async () => {
+    await row(page, 'TT-9999').click();
+    await page.getByRole('button', { name: 'Place by hand' }).click();
+    await page.waitForFunction(() => /TT-9999/.test(document.querySelector('#engineer .hint')?.textContent ?? ''));
+    assert.equal(await page.locator('#import').isVisible(), false);
+    await shoot(page, 'import-6-place');
+    await page.locator('#import-toggle').click();
+    assert.equal(await page.locator('#engineer').isVisible(), false);
+});
+
+test('an import that fails says why in one line', options, async () => {
+    await choose(page, [{ name: 'plant.stl', text: 'no model at all' }]);
+    await wrong(page, 'plant\\.stl');
+    assert.deepEqual(await assetsOf(page), NAMES);
+    await shoot(page, 'import-7-wrong');
+    assert.deepEqual(browser.errors, []);
+});
+
+for (const [name, language, screen, dark] of [['dark, German', 'de', DESK, true], ['Korean on a tablet', 'ko', TABLET, false]])
+    test(`the panel in ${name}`, options, async () => {
+        const other = await openPage(`${served.url}?lang=${language}${dark ? '&theme=dark' : ''}`, screen);
+        try {
+            await waitForPicture(other.page);
+            await other.page.locator('#import-toggle').click();
+            await other.page.locator('#import .row').nth(3).click();
+            await arrive(other.page);
+            await shoot(other.page, `import-${language}`);
+            const wide = await other.page.locator('#import').evaluate((panel) => panel.scrollWidth - panel.clientWidth);
+            assert.ok(wide <= 0, `${wide} pixels too wide`);
+            assert.deepEqual(other.errors, []);
+        } finally {
+            await other.close();
+        }
+    });
+
+// --- a real plant
+
+test('400,000 triangles and 300 tags: the first picture within 5 minutes of the first command', { skip: noData, timeout: 400000 }, async () => {
+    const models = ['models/duplex_mep.glb', 'models/plm_plant_5parts.glb'].map((name) => join(DATA, name));
+    const list = join(mkdtempSync(join(tmpdir(), 'plantcast-list-')), 'tags.csv');
+    const rows = Array.from({ length: 300 }, (_, i) => `TT-${1000 + i},0,100,degC,M_Boiler ${i}`);
+    writeFileSync(list, ['Tag Name,Scaled Low,Scaled High,Eng Units,Description', ...rows, ''].join('\n'));
+    const real = await Served.start(), seen = await openPage(`${real.url}?lang=en`, DESK);
+    try {
+        await waitForPicture(seen.page);
+        await choose(seen.page, [...models, list]);
+        await inForce(seen.page);
+        await seen.page.waitForFunction(() => globalThis.plantcast.session.model.assets.length > 100, null, { timeout: 300000 });
+        await settle(seen.page);
+        const seconds = (performance.now() - real.began) / 1000, triangles = Number((await (await real.api('')).json()).said
+            .match(/[\d,]+(?= triangles)/g).map((text) => Number(text.replaceAll(',', ''))).reduce((a, b) => a + b));
+        console.log(`# ${triangles} triangles, 300 tags: ${seconds.toFixed(1)} s`);
+        assert.ok(triangles > 399000, `${triangles}`);
+        assert.ok(seconds < 300, `${seconds} s`);
+        await shoot(seen.page, 'import-8-large');
+        assert.deepEqual(seen.errors, []);
+    } finally {
+        await seen.close();
+        await real.destroy();
+        rmSync(join(list, '..'), { recursive: true });
+    }
+});
+
+test('models and a tag list are given on the command line', { skip: noData, timeout: 120000 }, async () => {
+    const folder = mkdtempSync(join(tmpdir(), 'plantcast-given-')), list = join(folder, 'kepware.csv');
+    writeFileSync(list, 'Tag Name,Address,Data Type,Eng Units,Description\nART1105BA_TT01,400001,Float,degC,Tank\n');
+    const given = await Served.start(join(DATA, 'cad/plm-sample.rvm'), list);
+    try {
+        const state = await given.idle();
+        assert.equal(state.failed, null, state.failed);
+        assert.match(state.said, /352 elements, 315 of them in the model/, 'attributes beside the model are read');
+        assert.match(given.read('tags.csv'), /ART1105BA_TT01/);
+        const seen = await openPage(given.url, DESK);
+        await waitForPicture(seen.page);
+        assert.equal((await assetsOf(seen.page)).length, 19);
+        await seen.close();
+    } finally {
+        await given.destroy();
+        rmSync(folder, { recursive: true });
+    }
+});

@@ -1,0 +1,185 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Bringing a plant in: which names of files are taken, uploads that end and that do not, and orders one after the other. */
+#include "importing/plant_import.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cmocka.h>
+#include <jansson.h>
+
+#include "base/atomic_file.h"
+#include "base/mem.h"
+#include "importing/export_folder.h"
+
+struct fixture {
+    char root[64], *plant, *exports;
+    struct plant_import *import;
+};
+
+static int set_up(void **state)
+{
+    struct fixture *f = mem_new(sizeof(*f));
+    strcpy(f->root, "/tmp/plantcast-import-XXXXXX");
+    assert_non_null(mkdtemp(f->root));
+    f->plant = mem_printf("%s/plant.yaml", f->root);
+    f->exports = export_folder_of(f->root);
+    assert_int_equal(mkdir(f->exports, 0700), 0);
+    char *left = mem_printf("%s/.upload.abc", f->exports);
+    assert_int_equal(atomic_file_put(left, "x", 1), 0);
+    f->import = plant_import_create(f->plant);
+    assert_non_null(f->import);
+    assert_int_not_equal(access(left, F_OK), 0); /* of an upload that never ended */
+    mem_free(left);
+    *state = f;
+    return 0;
+}
+
+static int tear_down(void **state)
+{
+    struct fixture *f = *state;
+    char *command = mem_printf("rm -rf '%s'", f->root);
+    plant_import_destroy(&f->import);
+    plant_import_destroy(&f->import);
+    assert_int_equal(system(command), 0);
+    mem_free(command);
+    mem_free(f->plant);
+    mem_free(f->exports);
+    mem_free(f);
+    return 0;
+}
+
+static void test_names(void **state)
+{
+    (void)state;
+    static const char *const good[] = { "plant.rvm", "열교환기 도면.ifc", "-x.glb", "a b (1).STEP", "Behälter #3.csv" };
+    static const char *const bad[] = { "",         ".",         "..",       ".hidden.glb", "a/b.glb",    "../x.csv",     "a\\b.glb",
+                                       "a\nb.glb", "a\x7f.glb", "\xff.glb", "/x",          "a\x01.json", "caf\xc3.step", "x\xed\xa0\x80" };
+    char long_name[300];
+    for (size_t i = 0; i < sizeof(good) / sizeof(good[0]); i++)
+        assert_true(export_name_good(good[i]));
+    for (size_t i = 0; i < sizeof(bad) / sizeof(bad[0]); i++)
+        assert_false(export_name_good(bad[i]));
+    memset(long_name, 'a', sizeof(long_name));
+    long_name[200] = 0;
+    assert_true(export_name_good(long_name));
+    long_name[200] = 'a';
+    long_name[201] = 0;
+    assert_false(export_name_good(long_name));
+    assert_int_equal(export_kind_of("x.RVM"), EXPORT_MODEL);
+    assert_int_equal(export_kind_of("x.dwg"), EXPORT_MODEL);
+    assert_int_equal(export_kind_of("no ending"), EXPORT_MODEL);
+    assert_int_equal(export_kind_of("x.att"), EXPORT_BESIDE);
+    assert_int_equal(export_kind_of("tags.XLSX"), EXPORT_TAGS);
+}
+
+static int put(const struct fixture *f, const char *name, const char *text, bool whole)
+{
+    int error;
+    struct export_upload *upload = export_upload_begin(f->exports, name, &error);
+    if (!upload)
+        return error;
+    assert_int_equal(export_upload_write(upload, text, strlen(text)), 0);
+    if (whole)
+        return export_upload_end(&upload);
+    export_upload_abandon(&upload);
+    assert_null(upload);
+    return 0;
+}
+
+static void test_uploads(void **state)
+{
+    const struct fixture *f = *state;
+    struct export_list list = { 0 };
+    assert_int_equal(put(f, "b.csv", "1", true), 0);
+    assert_int_equal(put(f, "a.rvm", "12", true), 0);
+    assert_int_equal(put(f, "a.rvm", "123", true), 0); /* in place of the one before */
+    assert_int_equal(put(f, "gone.glb", "1", false), 0);
+    int error;
+    struct export_upload *upload = export_upload_begin(f->exports, "under way.glb", &error);
+    export_folder_list(f->exports, &list);
+    assert_int_equal(list.count, 2);
+    assert_string_equal(list.at[0].name, "a.rvm");
+    assert_int_equal(list.at[0].bytes, 3);
+    assert_int_equal(list.at[0].kind, EXPORT_MODEL);
+    assert_int_equal(list.at[1].kind, EXPORT_TAGS);
+    export_list_finish(&list);
+    export_upload_abandon(&upload);
+    assert_int_equal(put(f, "c.xlsx", "1", true), 0);
+    export_folder_remove_tag_lists(f->exports, "c.xlsx");
+    export_folder_list(f->exports, &list);
+    assert_int_equal(list.count, 2);
+    assert_string_equal(list.at[1].name, "c.xlsx");
+    export_list_finish(&list);
+    assert_int_equal(export_folder_remove(f->exports, "c.xlsx"), 0);
+    assert_int_not_equal(export_folder_remove(f->exports, "c.xlsx"), 0);
+    assert_null(export_upload_begin("/nowhere at all", "x", &error));
+    assert_true(error < 0);
+}
+
+static json_t *told(const struct fixture *f)
+{
+    char *text = plant_import_text(f->import);
+    json_t *object = json_loads(text, 0, NULL);
+    mem_free(text);
+    assert_non_null(object);
+    return object;
+}
+
+static void check_told(const struct fixture *f, const char *phase, const char *said, const char *failed)
+{
+    json_t *object = told(f);
+    assert_string_equal(json_string_value(json_object_get(object, "phase")), phase);
+    assert_string_equal(json_string_value(json_object_get(object, "said")), said);
+    if (failed)
+        assert_string_equal(json_string_value(json_object_get(object, "failed")), failed);
+    else
+        assert_true(json_is_null(json_object_get(object, "failed")));
+    json_decref(object);
+}
+
+static void test_orders(void **state)
+{
+    struct fixture *f = *state;
+    struct import_order order = { .models = true, .units = "mm", .up = "z" }, taken;
+    assert_true(import_order_good(&order));
+    assert_false(import_order_good(&(struct import_order){ .units = "km" }));
+    assert_false(import_order_good(&(struct import_order){ .up = "x" }));
+    check_told(f, "idle", "", NULL);
+    assert_false(plant_import_next(f->import, &taken));
+    plant_import_cancel(f->import);
+    assert_true(plant_import_order(f->import, &order));
+    assert_false(plant_import_cancelled(f->import)); /* what was cancelled before is over */
+    assert_false(plant_import_order(f->import, &order));
+    assert_true(plant_import_busy(f->import));
+    assert_true(plant_import_next(f->import, &taken));
+    assert_string_equal(taken.units, "mm");
+    assert_false(plant_import_next(f->import, &taken));
+    plant_import_say(f->import, "one\ntwo \x01\xff\n");
+    check_told(f, "reading", "one\ntwo ??\n", NULL);
+    plant_import_set_phase(f->import, IMPORT_MATCHING);
+    plant_import_cancel(f->import);
+    assert_true(plant_import_cancelled(f->import));
+    plant_import_end(f->import, "tag \xff is wrong");
+    check_told(f, "idle", "one\ntwo ??\n", "tag ? is wrong");
+    assert_true(plant_import_order(f->import, &(struct import_order){ .decides = true }));
+    check_told(f, "matching", "", NULL);
+    plant_import_end(f->import, NULL);
+    check_told(f, "idle", "", NULL);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_names),
+        cmocka_unit_test_setup_teardown(test_uploads, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(test_orders, set_up, tear_down),
+    };
+    cmocka_set_message_output(CM_OUTPUT_TAP);
+    return cmocka_run_group_tests_name("plant_import", tests, NULL, NULL);
+}
