@@ -222,14 +222,13 @@ static int write_new(const struct plant_draft *draft, const char *file, const ch
     char *path = mem_printf("%s/%s", draft->folder, file), *why = NULL;
     bool there = access(path, F_OK) == 0;
     char *before = there ? tag_file_read(path, &why) : NULL;
+    bool ours = before && !strncmp(before, begun, strlen(begun)); /* nobody wrote into it */
     int status = 0;
     if (there && !before)
         status = fail_at(path, why);
-    else if (there && !strcmp(before, text))
-        status = 0;
-    else if (there && !draft->anew && strncmp(before, begun, strlen(begun)) != 0)
+    else if (there && !ours && (!draft->anew || !strcmp(before, text)))
         printf("%s: stays as it is\n", path);
-    else if (there && strncmp(before, begun, strlen(begun)) != 0)
+    else if (there && !ours)
         status = replace(path, before, text);
     else if ((status = atomic_file_put(path, text, strlen(text))) != 0)
         fail_at(path, strerror(-status));

@@ -78,7 +78,7 @@ export class Lit {
 
     write(text, x, y) {
         const c = this.overlay.context;
-        if (x < 0 || x > this.overlay.wide || y < 0 || y > this.overlay.high)
+        if (x < 0 || x > this.overlay.wide || y > this.overlay.high)
             return; // what it names is out of the picture
         c.font = `600 13px ${this.overlay.font}`;
         const width = c.measureText(text).width + 10;
@@ -112,6 +112,7 @@ export class Lit {
             Object.assign(c, { strokeStyle: LIT, lineWidth: 2 });
             c.stroke();
         }
-        this.write(say('import.person.label'), top[0], Math.min(top[1], feet[1] - LEAST_PERSON_PX) - 6);
+        if (feet[1] > 0)
+            this.write(say('import.person.label'), top[0], Math.min(top[1], feet[1] - LEAST_PERSON_PX) - 6);
     }
 }

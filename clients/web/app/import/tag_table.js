@@ -53,6 +53,7 @@ export class TagTable {
         this.matches.set(readMatches(text));
         this.element.hidden = this.matches.all.length === 0;
         this.chosen = this.matches.all.find(({ tag }) => tag === this.chosen?.tag) ?? null;
+        this.light(); // where they are now
         this.list.renew(() => this.refresh());
     }
 
@@ -102,7 +103,11 @@ export class TagTable {
         setText(sign, say(`import.sign.${kind}`));
         sign.title = say(`import.filter.${kind}`);
         setText(asset, now.asset || (kind === 'likely' ? row.candidates.join(', ') : '–'));
-        setText(why, this.matches.decisions.has(row.tag) ? say('import.byhand') : row.reason);
+        setText(why, this.reasonOf(row));
+    }
+
+    reasonOf(row) {
+        return this.matches.decisions.has(row.tag) || row.reason === 'by hand' ? say('import.byhand') : row.reason;
     }
 
     // The first of what lights up is where it is, or most likely is.
@@ -111,6 +116,7 @@ export class TagTable {
         this.goTo(this.list.places.get(row.tag));
         this.light(true);
         this.refresh();
+        this.detail.scrollIntoView({ block: 'nearest' });
     }
 
     candidatesOf(row) {
@@ -119,7 +125,7 @@ export class TagTable {
     }
 
     light(flies = false) {
-        const assets = this.chosen ? this.candidatesOf(this.chosen) : [];
+        const assets = this.chosen && this.element.offsetParent !== null ? this.candidatesOf(this.chosen) : [];
         this.lit.show({ assets });
         if (assets.length > 0 && flies)
             this.page.modules.use('cameraController', (controller) =>
@@ -218,7 +224,7 @@ export class TagTable {
         const assets = this.candidatesOf(chosen), tag = session.model.tag(chosen.tag);
         const other = selected && !assets.some(({ id }) => id === selected) ? selected : null;
         fill(this.detail, make('h4', {}, chosen.tag), tag?.description ? make('p', {}, tag.description) : null,
-            make('p', { class: 'quiet' }, chosen.reason),
+            make('p', { class: 'quiet' }, this.reasonOf(chosen)),
             make('div', { class: 'candidates' }, ...assets.map(({ id, description }, i) => button([`${i + 1}  ${id}`, description]
                 .filter(Boolean).join(' · '), () => this.accept(id), { 'aria-pressed': String(now.status === 'sure' && now.asset === id) })),
             other ? button(say('import.selected', { asset: other }), () => this.accept(other)) : null),
