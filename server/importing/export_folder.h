@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The folder of a plant that holds exports of other systems as they came: models, files beside them, and one tag list. Thread: any, one at a
-   time per folder. */
+/* The folder of a plant that holds exports of other systems as they came: models, files beside them, and one tag list. Thread: any, one at
+   a time per folder. */
 #ifndef IMPORTING_EXPORT_FOLDER_H
 #define IMPORTING_EXPORT_FOLDER_H
 #include <stdbool.h>
