@@ -245,6 +245,20 @@ int database_open_to_read(struct database *database)
     return error ? error : is_newer(database, version) ? -EACCES : version ? 0 : -ENOENT;
 }
 
+int database_open_beside(struct database *database)
+{
+    int version = 0;
+    if (access(database->path, F_OK) != 0)
+        return -errno;
+    int code = open_handle(database, database->path, SQLITE_OPEN_READWRITE);
+    if (code == SQLITE_OK)
+        code = sqlite3_exec(database->handle, "PRAGMA synchronous = NORMAL", NULL, NULL, NULL);
+    if (code == SQLITE_OK)
+        code = read_version(database, &version);
+    int error = database_fail(database, code, "cannot be opened");
+    return error ? error : version == database->format->version ? 0 : -ENOENT;
+}
+
 bool database_set_aside(struct database *database)
 {
     static const char *const parts[] = { "", "-wal", "-shm" };

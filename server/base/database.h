@@ -37,6 +37,9 @@ int database_open(struct database *database, bool *renewed);
 /* Opens the file to read, on a disk that cannot be written too. Returns -ENOENT, without a line in the log, where there is no file or
    nothing has been written to it yet. The version is any up to this program's. */
 int database_open_to_read(struct database *database);
+/* Opens a file that another handle writes, to write to it as well: it is not made, converted or set aside, and what is committed may be
+   lost with power, but is never half there. Returns -ENOENT, without a line in the log, where there is none of this version. */
+int database_open_beside(struct database *database);
 /* Closes the file and renames NAME.sqlite, with what SQLite keeps beside it, to NAME.damaged-INSTANT.sqlite: out of the way, for whoever
    wants to look into it. Returns false where it cannot be renamed. Logged either way. */
 bool database_set_aside(struct database *database);

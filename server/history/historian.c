@@ -4,6 +4,7 @@
 
 #include <errno.h>
 #include <pthread.h>
+#include <stdatomic.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -17,6 +18,7 @@
 #include "history/history.h"
 #include "history/retention.h"
 #include "history/month.h"
+#include "history/postgres/postgres.h"
 #include "history/recorder.h"
 #include "history/spool.h"
 #include "value/quality.h"
@@ -48,6 +50,8 @@ struct historian {
     } counters;
     pthread_t thread;
     bool started;
+    struct postgres *postgres; /* NULL: history is sent nowhere */
+    atomic_bool restored;      /* it has put points of the past into the files */
     /* --- below: of the thread */
     struct history_tag *tags;
     struct recorder *recorder;
@@ -159,7 +163,11 @@ static void make_folder(struct historian *historian)
 
 static struct month_file *open_month(struct historian *historian, int month, int *error)
 {
-    return month_file_open(historian->log, historian->folder, month, historian->tags, historian->plant->tag_count, error);
+    struct month_file *file =
+        month_file_open(historian->log, historian->folder, month, historian->tags, historian->plant->tag_count, error);
+    if (file && historian->postgres && (*error = month_file_use_outbox(file)))
+        month_file_close(&file);
+    return file;
 }
 
 static void say_gap(struct historian *historian, struct month_file *file, int64_t ended_us)
@@ -290,6 +298,8 @@ static int apply_retention(struct historian *historian, int64_t mono_ns, int64_t
     int error = 0;
     if (historian->file && (mono_ns - historian->tidied_ns >= TIDY_NS || month_file_waiting(historian->file) >= TIDY_ROWS)) {
         historian->tidied_ns = mono_ns;
+        if (atomic_exchange(&historian->restored, false))
+            month_file_forget_rollups(historian->file);
         error = month_file_tidy(historian->file);
     }
     if (mono_ns - historian->kept_ns >= KEEP_NS || !historian->kept_ns) {
@@ -531,6 +541,21 @@ static void add_counters(struct historian *historian, struct counters *counters)
         counters_add(counters, "plantcast_backup_timestamp_seconds", "gauge", "When the last backup was made; 0: not known.");
 }
 
+static void on_restored(void *arg)
+{
+    struct historian *historian = arg;
+    atomic_store(&historian->restored, true);
+}
+
+static bool start_postgres(struct historian *historian, struct counters *counters)
+{
+    const struct postgres_params params = {
+        .log = historian->log, .counters = counters, .plant = historian->plant, .folder = historian->folder,
+        .restored = on_restored, .arg = historian,
+    };
+    return !historian->plant->history.postgres.url || (historian->postgres = postgres_start(&params));
+}
+
 struct historian *historian_start(const struct historian_params *params)
 {
     struct historian *historian = mem_new(sizeof(*historian));
@@ -546,6 +571,10 @@ struct historian *historian_start(const struct historian_params *params)
     historian->snapshot = snapshot_create(params->plant->tag_count);
     take_spool(historian);
     add_counters(historian, params->counters);
+    if (!start_postgres(historian, params->counters)) {
+        historian_stop(&historian);
+        return NULL;
+    }
     store_listen(params->store, on_sample, historian);
     int error = pthread_create(&historian->thread, NULL, run, historian);
     historian->started = !error;
@@ -568,6 +597,7 @@ void historian_stop(struct historian **pointer)
     pthread_mutex_unlock(&historian->lock);
     if (historian->started)
         pthread_join(historian->thread, NULL);
+    postgres_stop(&historian->postgres);
     month_file_close(&historian->file);
     recorder_destroy(&historian->recorder);
     snapshot_destroy(&historian->snapshot);

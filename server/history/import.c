@@ -252,6 +252,8 @@ static bool fill_month(struct filling *filling, const struct history_row *rows, 
     int error = 0;
     struct month_file *file = month_file_open(filling->params->log, filling->params->folder, month_of(rows->point.t_us), filling->tags,
                                               filling->params->plant->tag_count, &error);
+    if (file && filling->params->plant->history.postgres.url)
+        error = month_file_use_outbox(file);
     for (size_t i = 0; file && i < count && !error;) {
         size_t n = 0;
         int tag = rows[i].tag;

@@ -72,6 +72,7 @@ static const char *const sql[SQL_COUNT] = {
                  " pragma_freelist_count, pragma_auto_vacuum",
     [SQL_SHRINK] = "PRAGMA incremental_vacuum",
     [SQL_WAITING] = "SELECT count(*) FROM recent",
+    [SQL_ADD_OUTBOX] = "INSERT INTO outbox(tag, t, v, q) VALUES(?, ?, ?, ?)",
     [SQL_SPAN] = "SELECT min(a), max(b) FROM (SELECT min(t) AS a, max(t) AS b FROM recent UNION ALL SELECT min(t), max(t) FROM held"
                  " UNION ALL SELECT (SELECT min(t) FROM sample WHERE tag = id), (SELECT max(t) FROM sample WHERE tag = id) FROM tag)",
 };

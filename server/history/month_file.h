@@ -57,6 +57,11 @@ bool month_file_is_there(const struct month_file *file);
    again). */
 int month_file_write(struct month_file *file, const struct history_row *rows, size_t count, const struct history_row *held,
                      size_t held_count);
+/* From now on each point that is recorded or imported goes, in the same transaction, to the table of those that another database has yet to
+   be sent (history/month_outbox.h), too. */
+int month_file_use_outbox(struct month_file *file);
+/* Makes the next month_file_tidy() take rollups from the file: somebody else has imported into it. */
+void month_file_forget_rollups(struct month_file *file);
 /* Sorts the rows that were written by tag and makes rollups of them. month_file_waiting() returns how many rows wait for that. */
 int month_file_tidy(struct month_file *file);
 size_t month_file_waiting(const struct month_file *file);

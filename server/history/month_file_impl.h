@@ -12,7 +12,7 @@ enum month_statement {
     SQL_ADD_ROLLUP,
     SQL_RECENT, SQL_CLEAR_RECENT, SQL_LAST_SAMPLE, SQL_SAMPLES_FROM, SQL_ALL_HELD, SQL_CLEAR_HELD, SQL_CLEAR_ROLLUPS, SQL_NOTE,
     SQL_BEFORE, SQL_AFTER, SQL_RANGE, SQL_RECENT_OF, SQL_HELD_OF, SQL_ROLLUPS, SQL_RECENT_ALL, SQL_WAITING, SQL_SPAN, SQL_EVENTS,
-    SQL_ALL_TAGS, SQL_CUT_SAMPLES, SQL_CUT_ROLLUPS, SQL_CUT_EVENTS, SQL_SIZE, SQL_SHRINK, SQL_COUNT
+    SQL_ALL_TAGS, SQL_CUT_SAMPLES, SQL_CUT_ROLLUPS, SQL_CUT_EVENTS, SQL_SIZE, SQL_SHRINK, SQL_ADD_OUTBOX, SQL_COUNT
 };
 
 struct month_rollups {
@@ -23,6 +23,7 @@ struct month_rollups {
 struct month_file {
     struct database db;
     int month;
+    bool has_outbox; /* points that are recorded are put into the outbox as well */
     ino_t inode;
     const struct plant *shown_by; /* values are converted to its units; NULL: not converted */
     const struct history_tag *tags;

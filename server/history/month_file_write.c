@@ -6,6 +6,7 @@
 #include "base/mem.h"
 #include "history/month.h"
 #include "history/month_file_impl.h"
+#include "history/month_outbox.h"
 
 /* --- transactions ------------------------------------------------------------------------------------------------------------- */
 
@@ -43,9 +44,11 @@ static int convert_unit(struct month_file *file, const struct history_tag *of)
     if (!change.converts)
         return 0;
     static const char *const columns[][2] = { { "sample", "v" },    { "recent", "v" },    { "held", "v" },       { "rollup", "low" },
-                                              { "rollup", "high" }, { "rollup", "mean" }, { "rollup", "first" }, { "rollup", "last" } };
+                                              { "rollup", "high" }, { "rollup", "mean" }, { "rollup", "first" }, { "rollup", "last" },
+                                              { "outbox", "v" } };
+    size_t count = sizeof(columns) / sizeof(columns[0]) - !file->has_outbox;
     int error = 0;
-    for (size_t i = 0; i < sizeof(columns) / sizeof(columns[0]) && !error; i++) {
+    for (size_t i = 0; i < count && !error; i++) {
         char *sql = mem_printf("UPDATE %s SET %s = %s * %.17g + %.17g WHERE tag = %lld", columns[i][0], columns[i][1], columns[i][1],
                                change.factor, change.offset, (long long)id);
         error = database_exec(&file->db, sql, "cannot convert units");
@@ -86,6 +89,13 @@ static int put(struct month_file *file, enum month_statement which, int64_t id, 
     return month_run(file, statement, "cannot write");
 }
 
+/* Of what is new, unlike put(), which moves what was recorded before as well. */
+static int record(struct month_file *file, enum month_statement which, int64_t id, const struct history_point *point)
+{
+    int error = put(file, which, id, point);
+    return error || !file->has_outbox || which == SQL_HOLD ? error : put(file, SQL_ADD_OUTBOX, id, point);
+}
+
 static int put_rows(struct month_file *file, enum month_statement which, const struct history_row *rows, size_t count)
 {
     int error = 0;
@@ -93,7 +103,7 @@ static int put_rows(struct month_file *file, enum month_statement which, const s
         int64_t id;
         error = tag_id(file, rows[i].tag, &id);
         if (!error)
-            error = put(file, which, id, &rows[i].point);
+            error = record(file, which, id, &rows[i].point);
     }
     return error;
 }
@@ -110,6 +120,13 @@ int month_file_write(struct month_file *file, const struct history_row *rows, si
     error = end(file, error);
     if (!error)
         file->waiting += count;
+    return error;
+}
+
+int month_file_use_outbox(struct month_file *file)
+{
+    int error = database_exec(&file->db, MONTH_OUTBOX_SCHEMA, "cannot be given an outbox");
+    file->has_outbox = !error;
     return error;
 }
 
@@ -146,6 +163,11 @@ static void reset_rollups(struct month_rollups *rollups, bool step)
     *rollups = (struct month_rollups){ .loaded = true };
     for (int level = 0; level < LEVEL_COUNT; level++)
         rollups->level[level] = (struct rollup){ .length_us = history_level_us[level], .step = step };
+}
+
+void month_file_forget_rollups(struct month_file *file)
+{
+    memset(file->rollups, 0, file->tag_count * sizeof(*file->rollups));
 }
 
 /* Rolls up what is in the table of samples from the hour of from_us on, and the point before. Buckets go to disk if `store`. */
@@ -289,7 +311,7 @@ int month_file_import(struct month_file *file, int tag, const struct history_poi
         return error;
     error = tag_id(file, tag, &id);
     for (size_t i = 0; i < count && !error; i++)
-        error = put(file, SQL_ADD_SAMPLE, id, &points[i]);
+        error = record(file, SQL_ADD_SAMPLE, id, &points[i]);
     if (!error)
         error = roll_again(file, tag, id, points[0].t_us);
     return end(file, error);
@@ -304,9 +326,9 @@ static int end_lines(struct month_file *file, uint32_t gap_quality, int64_t *end
         int64_t id = sqlite3_column_int64(held, 0);
         struct history_point point = month_point(held, 1);
         struct history_point gap = { .t_us = point.t_us + 1, .value = NAN, .quality = gap_quality };
-        error = put(file, SQL_ADD_RECENT, id, &point);
+        error = record(file, SQL_ADD_RECENT, id, &point);
         if (!error && point.quality != gap_quality) {
-            error = put(file, SQL_ADD_RECENT, id, &gap);
+            error = record(file, SQL_ADD_RECENT, id, &gap);
             file->waiting++;
         }
         file->waiting++;

@@ -187,6 +187,7 @@ void plant_destroy(struct plant **plant_ptr)
     }
     mem_free(plant->conversions);
     mem_free(plant->history.folder);
+    plant_postgres_finish(&plant->history.postgres);
     mem_free(plant->path);
     mem_free(plant->folder);
     mem_free(plant->tags_path);

@@ -157,12 +157,21 @@ struct plant_source {
     int line;
 };
 
+/* Another database that history is sent to as well. */
+struct plant_postgres {
+    char *url;   /* of libpq, without a password; NULL: there is none */
+    char *login; /* a file with the user and the password, a line each; NULL: as libpq finds them */
+    char *schema;
+    double spool_points; /* at most so many wait for it on this machine's disk */
+};
+
 struct plant_history {
     bool off;
     char *folder; /* NULL: plant_history_folder says */
     double keep_days, keep_gb;
     double deadband_percent; /* of a tag's span, where it has no deadband of its own */
     double override_s;       /* a point is kept at least this often */
+    struct plant_postgres postgres;
 };
 
 /* A raw value that says "no sensor": as bits, or as a number. */

@@ -439,12 +439,14 @@ static void read_history(struct yaml_reader *reader, yaml_node_t *node, void *re
         { "keep_gb", KEY_NUMBER, false, offsetof(struct plant_history, keep_gb), 0.01, 1e6, NULL, NULL },
         { "deadband_percent", KEY_NUMBER, false, offsetof(struct plant_history, deadband_percent), 0, 10, NULL, NULL },
         { "override_s", KEY_NUMBER, false, offsetof(struct plant_history, override_s), 1, 86400, NULL, NULL },
+        { "postgres", KEY_CUSTOM, false, 0, 0, 0, NULL, plant_postgres_read },
         { 0 }
     };
     struct plant *plant = ((struct plant_file *)record)->plant;
     struct yaml_map map;
     yaml_map_read(reader, node, "history", keys, &plant->history, &map);
     plant_resolve_path(plant, &plant->history.folder);
+    plant_postgres_check(reader, &map, plant, &plant->history.postgres);
 }
 
 static void read_notify(struct yaml_reader *reader, yaml_node_t *node, void *record)

@@ -31,6 +31,12 @@ void plant_nodes_read(struct yaml_reader *reader, yaml_node_t *node, struct plan
 void plant_properties_read(struct yaml_reader *reader, yaml_node_t *node, struct plant_asset *asset);
 void plant_properties_free(struct plant_asset *asset);
 bool plant_properties_same(const struct plant_asset *a, const struct plant_asset *b); /* compares them, including their order */
+/* Reads the key `postgres` of `history`, into a struct plant_history. */
+void plant_postgres_read(struct yaml_reader *reader, yaml_node_t *node, void *history);
+/* Checks the file that it names; the folder of the plant file is set. */
+void plant_postgres_check(struct yaml_reader *reader, const struct yaml_map *map, const struct plant *plant,
+                          struct plant_postgres *postgres);
+void plant_postgres_finish(struct plant_postgres *postgres);
 /* Reads the list `sources`. */
 void plant_sources_read(struct yaml_reader *reader, yaml_node_t *node, struct plant *plant);
 

@@ -15,14 +15,13 @@
 #include <unistd.h>
 
 #include "base/clock.h"
+#include "base/login_file.h"
 #include "base/mem.h"
-#include "base/text.h"
 #include "value/lookup.h"
 #include "value/mqtt/sparkplug_payload.h"
 
 enum { TOPICS_AT_ONCE = 8 };                      /* of one request; some brokers refuse more */
 enum { SESSION_KEPT_S = 7 * 86400 };              /* of a persistent session, by the broker */
-enum { LOGIN_BYTES = 4096 };
 static const char SYSTEM_CERTIFICATES[] = "/etc/ssl/certs";
 static const int64_t CHORES_NS = 500 * NS_PER_MS; /* how often the library looks at its keep-alive timer */
 
@@ -166,19 +165,15 @@ static bool use_tls(struct mqtt_client *client, char why[200])
 static bool log_in(struct mqtt_client *client, char why[200])
 {
     const char *file = client->source->mqtt.login;
-    size_t bytes;
+    struct login_file login;
     if (!file)
         return true;
-    char *text = text_read_file(file, LOGIN_BYTES, &bytes), *rest = text;
-    const char *user = text ? strsep(&rest, "\r\n") : NULL;
-    rest += rest && *rest == '\n'; /* behind a carriage return */
-    const char *password = rest ? strsep(&rest, "\r\n") : NULL;
-    bool good = user && *user && mosquitto_username_pw_set(client->library, user, password) == MOSQ_ERR_SUCCESS;
+    if (!login_file_read(file, &login, why))
+        return false;
+    bool good = mosquitto_username_pw_set(client->library, login.user, login.password) == MOSQ_ERR_SUCCESS;
     if (!good)
-        snprintf(why, 200, "%.100s: %s", file, text ? "expected a line with the user and one with the password" : strerror(errno));
-    if (text)
-        explicit_bzero(text, bytes);
-    mem_free(text);
+        snprintf(why, 200, "%.100s: cannot be used", file);
+    login_file_forget(&login);
     return good;
 }
 

@@ -1,0 +1,308 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The thread that empties the outboxes. */
+#include "history/postgres/postgres.h"
+
+#include <errno.h>
+#include <limits.h>
+#include <poll.h>
+#include <pthread.h>
+#include <stdio.h>
+#include <string.h>
+#include <sys/eventfd.h>
+#include <unistd.h>
+
+#include "base/clock.h"
+#include "base/mem.h"
+#include "history/history.h"
+#include "history/month.h"
+#include "history/postgres/postgres_restore.h"
+#include "value/backoff.h"
+
+enum { BATCH_ROWS = 20000, ROUND_MS = 1000 };
+static const int64_t LOOK_NS = 30 * NS_PER_S, NEWEST_NS = 5 * NS_PER_S, SAY_LOST_NS = 60 * NS_PER_S;
+
+struct waiting_month {
+    int month;
+    int64_t count;
+};
+
+struct postgres {
+    struct postgres_params params;
+    char *folder;
+    struct history_tag *tags;
+    struct {
+        counter *up, *points, *waiting, *lost, *restored;
+    } counters;
+    pthread_t thread;
+    bool started;
+    int stop_fd; /* readable: end */
+    /* --- below: of the thread */
+    struct postgres_link *link; /* NULL: there is none */
+    struct postgres_tables tables;
+    struct postgres_restore restore;
+    struct backoff backoff;
+    struct waiting_month *months;
+    size_t month_count;
+    int64_t looked_ns, newest_ns, retry_ns, say_lost_ns;
+    int64_t lost; /* and not said yet */
+    char said[POSTGRES_WHY_BYTES]; /* in the log; empty: all is well */
+};
+
+static struct log *log_of(const struct postgres *postgres)
+{
+    return postgres->params.log;
+}
+
+static bool ends(const struct postgres *postgres)
+{
+    struct pollfd fd = { .fd = postgres->stop_fd, .events = POLLIN };
+    return poll(&fd, 1, 0) > 0;
+}
+
+/* --- the server --------------------------------------------------------------------------------------------------------------- */
+
+/* Repeated only when the cause is another one. */
+static void give_up(struct postgres *postgres, const char *why)
+{
+    char cause[POSTGRES_WHY_BYTES];
+    snprintf(cause, sizeof(cause), "%.*s", (int)strcspn(why, "\n"), why);
+    if (strcmp(cause, postgres->said) != 0 && !ends(postgres))
+        log_event(log_of(postgres), LOG_ERROR, EVENT_HISTORY_UNWRITABLE,
+                  "history: PostgreSQL cannot be written (%s); points wait in %s, at most %.0f", cause, postgres->folder,
+                  postgres->params.plant->history.postgres.spool_points);
+    memcpy(postgres->said, cause, sizeof(cause));
+    postgres_tables_finish(&postgres->tables);
+    postgres_link_close(&postgres->link);
+    counter_set(postgres->counters.up, 0);
+    int64_t now_ns = clock_mono_ns();
+    postgres->retry_ns = now_ns + backoff_next_ns(&postgres->backoff, (uint64_t)now_ns);
+}
+
+static void connect_now(struct postgres *postgres)
+{
+    const struct plant *plant = postgres->params.plant;
+    char why[POSTGRES_WHY_BYTES];
+    if (postgres->link || clock_mono_ns() < postgres->retry_ns)
+        return;
+    if (!(postgres->link = postgres_link_open(&plant->history.postgres, postgres->stop_fd, why))) {
+        give_up(postgres, why);
+        return;
+    }
+    if (!postgres_tables_open(&postgres->tables, postgres->link, plant, why)) {
+        give_up(postgres, *why ? why : postgres_link_why(postgres->link));
+        return;
+    }
+    postgres->newest_ns = 0;
+}
+
+/* Once something was written: a server whose disk is full can be connected to. */
+static void is_well(struct postgres *postgres)
+{
+    postgres->backoff = (struct backoff){ 0 };
+    counter_set(postgres->counters.up, 1);
+    if (*postgres->said)
+        log_event(log_of(postgres), LOG_INFO, EVENT_HISTORY_WRITTEN, "history: PostgreSQL is written again");
+    *postgres->said = 0;
+}
+
+static void restore(struct postgres *postgres)
+{
+    char why[POSTGRES_WHY_BYTES] = "";
+    int64_t points;
+    if (!postgres->link || !postgres->restore.wanted)
+        return;
+    if (!postgres_restore_step(&postgres->restore, &postgres->tables, clock_utc_ns() / 1000, &points, why)) {
+        give_up(postgres, *why ? why : postgres_link_why(postgres->link));
+        return;
+    }
+    counter_inc(postgres->counters.restored, points);
+    if (points)
+        postgres->params.restored(postgres->params.arg);
+}
+
+/* --- what waits --------------------------------------------------------------------------------------------------------------- */
+
+static void count_month(struct postgres *postgres, struct waiting_month *month)
+{
+    int error;
+    struct month_outbox *outbox = month_outbox_open(log_of(postgres), postgres->folder, month->month, &error);
+    month->count = 0;
+    if (outbox)
+        month_outbox_count(outbox, &month->count);
+    month_outbox_close(&outbox);
+}
+
+/* The newest month each time, the others seldom: only imports and clocks that are set bring something there. */
+static void look_for_points(struct postgres *postgres)
+{
+    size_t count;
+    int *months = month_list(postgres->folder, &count);
+    bool all = count != postgres->month_count || clock_mono_ns() - postgres->looked_ns >= LOOK_NS;
+    if (all) {
+        mem_free(postgres->months);
+        postgres->months = mem_array(count + 1, sizeof(*postgres->months));
+        postgres->month_count = count;
+        postgres->looked_ns = clock_mono_ns();
+    }
+    for (size_t i = 0; i < count; i++)
+        if (all || i + 1 == count || postgres->months[i].month != months[i]) {
+            postgres->months[i].month = months[i];
+            count_month(postgres, &postgres->months[i]);
+        }
+    mem_free(months);
+}
+
+static int64_t waiting(const struct postgres *postgres)
+{
+    int64_t sum = 0;
+    for (size_t i = 0; i < postgres->month_count; i++)
+        sum += postgres->months[i].count;
+    return sum;
+}
+
+/* The oldest points go, when too many wait; history itself keeps them. */
+static void drop_oldest(struct postgres *postgres)
+{
+    int64_t over = waiting(postgres) - (int64_t)postgres->params.plant->history.postgres.spool_points, lost = 0;
+    for (size_t i = 0; i < postgres->month_count && over > 0; i++) {
+        struct waiting_month *month = &postgres->months[i];
+        int64_t drop = month->count < over ? month->count : over, before = month->count;
+        int error;
+        struct month_outbox *outbox = drop ? month_outbox_open(log_of(postgres), postgres->folder, month->month, &error) : NULL;
+        if (outbox && month_outbox_shorten(outbox, before - drop) == 0)
+            month_outbox_count(outbox, &month->count);
+        lost += before - month->count;
+        over -= before - month->count;
+        month_outbox_close(&outbox);
+        if (month->count == before && drop)
+            break;
+    }
+    counter_inc(postgres->counters.lost, lost);
+    postgres->lost += lost;
+    if (postgres->lost && clock_mono_ns() >= postgres->say_lost_ns) {
+        log_event(log_of(postgres), LOG_ERROR, EVENT_HISTORY_LOST,
+                  "history: %lld points that waited for PostgreSQL were too many; only the files here have them", (long long)postgres->lost);
+        postgres->say_lost_ns = clock_mono_ns() + SAY_LOST_NS;
+        postgres->lost = 0;
+    }
+}
+
+/* --- sending ------------------------------------------------------------------------------------------------------------------ */
+
+/* One batch. *more: there is another. False: no more can be sent now. */
+static bool send_batch(struct postgres *postgres, struct month_outbox *outbox, struct waiting_month *month, bool newest, bool *more)
+{
+    struct month_outbox_batch batch = { 0 };
+    bool good = month_outbox_read(outbox, BATCH_ROWS, &batch) == 0;
+    *more = batch.row_count == BATCH_ROWS;
+    if (good && (batch.row_count || newest)) {
+        good = postgres_tables_write(&postgres->tables, month->month, &batch, newest);
+        if (good)
+            is_well(postgres);
+        else
+            give_up(postgres, postgres_link_why(postgres->link));
+    }
+    if (good && batch.row_count) {
+        counter_inc(postgres->counters.points, (int64_t)batch.row_count);
+        good = month_outbox_delete(outbox, batch.rows[batch.row_count - 1].seq) == 0;
+        month->count -= (int64_t)batch.row_count;
+    }
+    month_outbox_batch_finish(&batch);
+    return good;
+}
+
+static bool send_month(struct postgres *postgres, struct waiting_month *month, bool newest)
+{
+    int error;
+    bool good = true, more = month->count > 0 || newest;
+    struct month_outbox *outbox = more ? month_outbox_open(log_of(postgres), postgres->folder, month->month, &error) : NULL;
+    while (outbox && more && good) {
+        good = send_batch(postgres, outbox, month, newest, &more);
+        newest = false;
+        counter_set(postgres->counters.waiting, waiting(postgres));
+    }
+    month_outbox_close(&outbox);
+    return good;
+}
+
+/* The newest samples go with the newest month, now and then, and when the program ends. */
+static void send_all(struct postgres *postgres)
+{
+    int64_t now_ns = clock_mono_ns();
+    bool newest = !postgres->newest_ns || now_ns - postgres->newest_ns >= NEWEST_NS || ends(postgres), good = true;
+    for (size_t i = 0; i < postgres->month_count && postgres->link && good; i++)
+        good = send_month(postgres, &postgres->months[i], newest && i + 1 == postgres->month_count);
+    if (newest && good && postgres->link)
+        postgres->newest_ns = now_ns;
+}
+
+static void *run(void *arg)
+{
+    struct postgres *postgres = arg;
+    struct pollfd fd = { .fd = postgres->stop_fd, .events = POLLIN };
+    bool last;
+    do {
+        last = poll(&fd, 1, ROUND_MS) > 0; /* what came before the end is sent yet */
+        if (!last || !*postgres->said)
+            connect_now(postgres);
+        if (!last)
+            restore(postgres);
+        look_for_points(postgres);
+        drop_oldest(postgres);
+        counter_set(postgres->counters.waiting, waiting(postgres));
+        if (!postgres->restore.wanted || postgres->restore.next_month != INT_MAX) /* the lines there have ended */
+            send_all(postgres);
+    } while (!last);
+    return NULL;
+}
+
+static void add_counters(struct postgres *postgres, struct counters *counters)
+{
+    postgres->counters.up = counters_add(counters, "plantcast_postgres_up", "gauge", "1 while PostgreSQL takes what is recorded.");
+    postgres->counters.points =
+        counters_add(counters, "plantcast_postgres_points_total", "counter", "Recorded points that PostgreSQL has taken.");
+    postgres->counters.waiting =
+        counters_add(counters, "plantcast_postgres_waiting_points", "gauge", "Recorded points that wait on disk for PostgreSQL.");
+    postgres->counters.lost = counters_add(counters, "plantcast_postgres_lost_total", "counter",
+                                           "Points that PostgreSQL is not sent, since too many waited; the files here have them.");
+    postgres->counters.restored =
+        counters_add(counters, "plantcast_postgres_restored_total", "counter", "Points of the past that were read from PostgreSQL.");
+}
+
+struct postgres *postgres_start(const struct postgres_params *params)
+{
+    struct postgres *postgres = mem_new(sizeof(*postgres));
+    postgres->params = *params;
+    postgres->folder = mem_strdup(params->folder);
+    postgres->tags = history_tags(params->plant);
+    postgres->stop_fd = eventfd(0, EFD_CLOEXEC);
+    postgres_restore_init(&postgres->restore, params->log, params->plant, postgres->tags, postgres->folder);
+    add_counters(postgres, params->counters);
+    int error = postgres->stop_fd < 0 ? errno : pthread_create(&postgres->thread, NULL, run, postgres);
+    postgres->started = !error;
+    if (error) {
+        log_err(params->log, "history: no thread for PostgreSQL: %s", strerror(error));
+        postgres_stop(&postgres);
+    }
+    return postgres;
+}
+
+void postgres_stop(struct postgres **pointer)
+{
+    struct postgres *postgres = *pointer;
+    if (!postgres)
+        return;
+    if (postgres->started) {
+        eventfd_write(postgres->stop_fd, 1);
+        pthread_join(postgres->thread, NULL);
+    }
+    postgres_tables_finish(&postgres->tables);
+    postgres_link_close(&postgres->link);
+    if (postgres->stop_fd >= 0)
+        close(postgres->stop_fd);
+    mem_free(postgres->months);
+    mem_free(postgres->tags);
+    mem_free(postgres->folder);
+    mem_free(postgres);
+    *pointer = NULL;
+}

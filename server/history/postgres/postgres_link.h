@@ -1,0 +1,46 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* A connection to a PostgreSQL server on which nothing waits longer than it says: statements, and COPY of binary rows. After a failure only
+   postgres_link_why() and postgres_link_close() are called. Thread: one. */
+#ifndef HISTORY_POSTGRES_POSTGRES_LINK_H
+#define HISTORY_POSTGRES_POSTGRES_LINK_H
+#include <libpq-fe.h>
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include "plant/plant.h"
+
+enum { POSTGRES_WHY_BYTES = 300 };
+
+struct postgres_link;
+/* Connects. stop_fd gets readable when the program ends: then nothing waits longer than two seconds. Returns NULL on failure, and says in
+   why what it was. */
+struct postgres_link *postgres_link_open(const struct plant_postgres *postgres, int stop_fd, char why[POSTGRES_WHY_BYTES]);
+void postgres_link_close(struct postgres_link **link); /* &NULL is fine; leaves NULL */
+const char *postgres_link_why(const struct postgres_link *link); /* returns what failed last */
+
+/* Runs statements. Returns false on failure. */
+bool postgres_link_run(struct postgres_link *link, const char *sql);
+/* Likewise, of a format. */
+bool postgres_link_runf(struct postgres_link *link, const char *fmt, ...) __attribute__((format(printf, 2, 3)));
+/* Runs one statement with parameters as text. Returns its rows, in the binary format, for PQclear(); NULL on failure. */
+PGresult *postgres_link_ask(struct postgres_link *link, const char *sql, int count, const char *const *parameters);
+
+/* COPY ... FROM STDIN (FORMAT binary): begins, takes rows column by column, and ends. */
+bool postgres_copy_begin(struct postgres_link *link, const char *table);
+void postgres_copy_row(struct postgres_link *link, int columns);
+void postgres_copy_int32(struct postgres_link *link, int32_t value);
+void postgres_copy_int64(struct postgres_link *link, int64_t value);
+void postgres_copy_time(struct postgres_link *link, int64_t t_us); /* of UTC, since 1970 */
+void postgres_copy_double(struct postgres_link *link, double value); /* NaN: NULL */
+void postgres_copy_text(struct postgres_link *link, const char *text);
+void postgres_copy_bool(struct postgres_link *link, bool value);
+bool postgres_copy_end(struct postgres_link *link); /* sends all that was taken */
+
+/* Read columns of binary rows. */
+int32_t postgres_int32(const PGresult *result, int row, int column);
+int64_t postgres_int64(const PGresult *result, int row, int column);
+int64_t postgres_time(const PGresult *result, int row, int column);
+double postgres_double(const PGresult *result, int row, int column); /* NULL: NaN */
+
+#endif

@@ -1,0 +1,319 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// History to Debian's PostgreSQL: every point once, with its quality, whatever happens to the server, the connection and the daemon; a
+// machine that is replaced gets its past back.
+import assert from 'node:assert/strict';
+import { chmodSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
+import { join } from 'node:path';
+import { after, afterEach, before, test } from 'node:test';
+import { CuttableLink, missingPostgres, PostgresServer } from './support/postgres_server.mjs';
+import { missing, runProgram, TinyPlant } from './support/tiny_plant.mjs';
+
+const absent = missing();
+const skip = absent.length > 0 ? `not built: ${absent.join(', ')}` : missingPostgres() ?? false;
+const options = { skip, timeout: 240000 };
+const sleep = (ms) => new Promise((done) => setTimeout(done, ms));
+const TAGS = ['TI-1', 'TI-2', 'PI-1'];
+let server, plant, link, feeding, plain, databases = 0;
+
+before(async () => {
+    if (skip)
+        return;
+    server = await PostgresServer.start();
+    plant = await TinyPlant.create();
+    plain = readFileSync(plant.file, 'utf8');
+    assert.equal(plant.prepare().code, 0);
+    await plant.startSim();
+});
+afterEach(async () => {
+    await stopFeeding();
+    await plant?.daemon?.stop();
+    link?.close();
+    link = null;
+});
+after(async () => {
+    await plant?.destroy();
+    await server?.destroy();
+});
+
+// Readings that move all the time, so that each is recorded.
+function feed() {
+    let going = true;
+    const done = (async () => {
+        for (let i = 0; going; i++) {
+            await plant.tell(`set TI-1 ${50 + 40 * Math.sin(i / 3)}`);
+            await plant.tell(`set TI-2 ${i % 2 ? 20 : 30}`);
+            await plant.tell(`set PI-1 ${(i * 7) % 10}`);
+            await sleep(50);
+        }
+    })();
+    feeding = async () => { going = false; await done; };
+}
+async function stopFeeding() {
+    await feeding?.();
+    feeding = null;
+}
+
+const historyOf = (name) => join(plant.folder, `${name}.history`);
+// A database and a folder of history of their own.
+function configure({ port, more = '', space = '', folder = `h${databases}`, keep = false } = {}) {
+    if (!keep)
+        server.makeDatabase(`d${++databases}`, space);
+    writeFileSync(join(plant.folder, 'login'), server.login);
+    chmodSync(join(plant.folder, 'login'), 0o600);
+    writeFileSync(plant.file, `${plain}history:
+  folder: ${historyOf(folder)}
+  deadband_percent: 0
+  postgres: { url: "${server.url(port)}", login: login${more} }
+`);
+}
+
+async function metric(name) {
+    const text = await (await fetch(`http://127.0.0.1:${plant.port}/metrics`)).text();
+    return Number(text.match(new RegExp(`^plantcast_${name} (\\S+)`, 'm'))?.[1] ?? NaN);
+}
+async function until(what, good, seconds = 60) {
+    for (const end = performance.now() + seconds * 1000; !(await good()); await sleep(100))
+        assert.ok(performance.now() < end, `${what}; the daemon said:\n${plant.daemon.said.slice(-3000)}`);
+}
+const settled = () => until('nothing waits', async () => await metric('postgres_up') === 1 && await metric('postgres_waiting_points') === 0
+    && await metric('history_waiting_points') === 0);
+
+// The database has what the API has, and no point twice.
+async function assertSame(from) {
+    await stopFeeding();
+    await sleep(3000); // all that was read is recorded
+    await settled();
+    const to = Math.floor(Date.now() / 1000 - 3) * 1e6;
+    const api = [];
+    for (const tag of TAGS) {
+        const url = `http://127.0.0.1:${plant.port}/api/v1/history?tags=${tag}&from=${from / 1e6}&to=${to / 1e6}&points=20000`;
+        const { series } = await (await fetch(url)).json();
+        for (const [us, value, quality] of series[0].points)
+            if (us >= from && us <= to)
+                api.push([tag, String(us), value === null ? '' : String(value), String(quality)]);
+    }
+    const sql = server.ask(`SELECT g.name, (extract(epoch FROM s.t) * 1000000)::bigint, s.v, s.q FROM plantcast.sample s`
+        + ` JOIN plantcast.tag g ON g.id = s.tag WHERE s.t BETWEEN to_timestamp(${from / 1e6}) AND to_timestamp(${to / 1e6})`);
+    const keyed = (rows) => new Map(rows.map(([tag, us, value, quality]) => [`${tag} ${us} ${quality}`, value]));
+    const there = keyed(sql), here = keyed(api), lacks = (all, of) => [...all.keys()].filter((key) => !of.has(key));
+    assert.deepEqual([lacks(there, here), lacks(here, there)], [[], []], 'only there; only here');
+    assert.deepEqual([there.size, here.size], [sql.length, api.length], 'no point twice');
+    for (const [key, value] of there) // the API prints ten digits
+        assert.ok(value === here.get(key) || Math.abs(value - here.get(key)) <= 1e-9 * Math.abs(value), `${key}: ${value}`);
+    return sql.length;
+}
+
+const begin = () => Math.floor(Date.now() / 1000) * 1e6;
+
+test('what is recorded is there, each point once and with its quality', options, async () => {
+    configure();
+    const from = begin();
+    await plant.startDaemon();
+    feed();
+    await sleep(3000);
+    await plant.tell('fail PI-1');
+    await sleep(2000);
+    await plant.tell('release PI-1');
+    await sleep(1000);
+    assert.ok(await assertSame(from) > 100);
+    assert.ok(server.ask("SELECT 1 FROM plantcast.history WHERE tag = 'PI-1' AND NOT good AND value IS NULL").length > 0, 'Bad is there');
+    const [[name, unit, value, quality, good]] = server.ask(`SELECT plant, unit, value, quality, good FROM plantcast.history
+        WHERE tag = 'TI-2' AND good ORDER BY time DESC LIMIT 1`);
+    assert.deepEqual([name, unit, quality, good], ['Two boxes', '°C', '0x00000000', 't']);
+    assert.ok([20, 30].includes(Number(value)), value);
+    assert.ok(await metric('postgres_points_total') > 100);
+});
+
+test('nothing is lost while the server is killed, nor while it is frozen; live readings do not wait', options, async () => {
+    configure();
+    const from = begin();
+    await plant.startDaemon();
+    feed();
+    await until('points are sent', async () => await metric('postgres_points_total') > 20);
+    await server.kill();
+    await until('it is said', async () => await metric('postgres_up') === 0);
+    await plant.daemon.line(/PostgreSQL cannot be written \(.*refused.*\); points wait in .*, at most 20000000/);
+    await until('points wait', async () => await metric('postgres_waiting_points') > 50);
+    await server.restart();
+    await plant.daemon.line(/PostgreSQL is written again/, 60000);
+    server.freeze();
+    const age = async () => Math.max(...(await (await fetch(`http://127.0.0.1:${plant.port}/api/v1/tags?count=10`)).json()).tags
+        .map((tag) => tag.age_ms));
+    const ages = [];
+    for (const end = performance.now() + 5000; performance.now() < end; await sleep(100))
+        ages.push(await age());
+    assert.ok(ages.sort((a, b) => a - b)[Math.floor(ages.length / 2)] < 1000, `ages of readings meanwhile: ${ages}`);
+    assert.equal(await metric('history_good'), 1);
+    server.thaw();
+    assert.ok(await assertSame(from) > 200);
+    assert.equal(await metric('postgres_lost_total'), 0);
+});
+
+test('the daemon is killed while the server is away, and started again: nothing is lost, nothing comes twice', options, async () => {
+    configure();
+    const from = begin();
+    await plant.startDaemon();
+    feed();
+    await until('points are sent', async () => await metric('postgres_points_total') > 20);
+    await server.kill();
+    await sleep(3000);
+    await plant.daemon.stop('SIGKILL');
+    await plant.startDaemon();
+    await sleep(3000);
+    await server.restart();
+    assert.ok(await assertSame(from) > 100);
+    assert.deepEqual(server.ask('SELECT kind, count(*) FROM plantcast.event GROUP BY 1'), [['gap', '1']]);
+    const gaps = server.ask('SELECT 1 FROM plantcast.sample WHERE v IS NULL AND q = 2150694912');
+    assert.ok(gaps.length >= TAGS.length, 'and when it did not run');
+});
+
+test('a connection that is cut in the middle of a batch', options, async () => {
+    link = await CuttableLink.open(server.port);
+    configure({ port: link.port });
+    const from = begin();
+    link.cutAfter = 8000;
+    await plant.startDaemon();
+    feed();
+    for (let cut = 1; cut <= 3; cut++) {
+        await until(`cut ${cut} times`, () => link.cuts === cut);
+        await sleep(1500);
+        link.cutAfter = 9000 + 2000 * cut;
+        link.mend();
+    }
+    link.cutAfter = 0;
+    link.mend();
+    assert.ok(await assertSame(from) > 100);
+});
+
+test('a disk of the server that is full', options, async (t) => {
+    const disk = server.smallDisk(24);
+    if (!disk) {
+        t.skip('no disk can be mounted here');
+        return;
+    }
+    configure({ space: 'TABLESPACE small' });
+    const from = begin();
+    await plant.startDaemon();
+    feed();
+    await until('points are sent', async () => await metric('postgres_points_total') > 20);
+    server.ask('CREATE TABLE filler AS SELECT repeat(md5(i::text), 20) FROM generate_series(1, 3000) i');
+    try {
+        for (;;)
+            writeFileSync(join(disk, 'filler'), Buffer.alloc(8192), { flag: 'a' });
+    } catch (error) {
+        assert.equal(error.code, 'ENOSPC');
+    }
+    await plant.daemon.line(/PostgreSQL cannot be written \(.*No space left on device\)/, 90000);
+    await sleep(2000);
+    assert.equal(await metric('postgres_up'), 0);
+    rmSync(join(disk, 'filler'));
+    await plant.daemon.line(/PostgreSQL is written again/, 60000);
+    assert.ok(await assertSame(from) > 100);
+    await plant.daemon.stop();
+    server.database = 'postgres';
+});
+
+test('too many points that wait: the oldest are dropped, and it says so; the files here have them', options, async () => {
+    configure({ more: ', spool_points: 1000' });
+    const from = Math.floor(Date.now() / 1000) - 20000, rows = ['Tag,Time,Value'];
+    for (let i = 0; i < 3000; i++)
+        rows.push(`TI-1,${from + i * 2},${i % 2 ? 10 : 90}`);
+    const csv = join(plant.folder, 'series.csv');
+    writeFileSync(csv, `${rows.join('\n')}\n`);
+    await server.kill();
+    const imported = runProgram('plantcast', ['history', 'import', plant.file, csv]);
+    assert.equal(imported.code, 0, imported.err);
+    await plant.startDaemon();
+    await plant.daemon.line(/\d+ points that waited for PostgreSQL were too many; only the files here have them/);
+    await until('the rest waits', async () => await metric('postgres_lost_total') >= 2000
+        && await metric('postgres_waiting_points') <= 1000);
+    const url = `http://127.0.0.1:${plant.port}/api/v1/history?tags=TI-1&from=${from}&to=${from + 5990}&points=20000`;
+    const kept = await (await fetch(url)).json();
+    assert.equal(kept.series[0].points.length, 2997);
+    await server.restart();
+    await settled();
+    const [[count, last]] = server.ask(`SELECT count(*), max(v) FROM plantcast.sample WHERE t < to_timestamp(${from + 6000})`);
+    assert.ok(Number(count) > 500 && Number(count) <= 1000, count);
+    assert.equal(last, '90');
+});
+
+test('tables of another version are refused by name, and left alone', options, async () => {
+    configure();
+    server.ask(`CREATE SCHEMA plantcast AUTHORIZATION plantcast; SET ROLE plantcast; CREATE TABLE plantcast.version(version int);
+        INSERT INTO plantcast.version VALUES (0)`);
+    await plant.startDaemon();
+    await plant.daemon.line(/the tables in schema plantcast are of version 0, older than version 1 of this program; they are left alone/);
+    assert.equal(await metric('postgres_up'), 0);
+    server.ask('UPDATE plantcast.version SET version = 2');
+    await plant.daemon.line(/the tables in schema plantcast are of version 2, newer than version 1 of this program/, 30000);
+    assert.deepEqual(server.ask("SELECT tablename FROM pg_tables WHERE schemaname = 'plantcast'"), [['version']]);
+    server.ask('DROP SCHEMA plantcast CASCADE');
+    await settled();
+});
+
+test('two that write for one plant: the second is refused; and takes over when the first has gone', options, async () => {
+    configure();
+    const from = begin();
+    await plant.startDaemon();
+    await settled();
+    const first = plant.daemon, port = plant.port;
+    configure({ keep: true, folder: 'other' });
+    await plant.startDaemon();
+    await plant.daemon.line(/another Plantcast writes for plant 'Two boxes' there/);
+    assert.equal(await metric('postgres_up'), 0);
+    assert.ok(port !== plant.port);
+    await first.stop();
+    await settled();
+    assert.ok(from > 0);
+});
+
+test('a machine that is replaced gets the past of its plant, and goes on with it', options, async () => {
+    configure();
+    const from = begin();
+    await plant.startDaemon();
+    feed();
+    await sleep(6000);
+    const to = Date.now() / 1000;
+    await assertSame(from);
+    const url = (to) => `http://127.0.0.1:${plant.port}/api/v1/history?tags=${TAGS}&from=${from / 1e6}&to=${to}&points=20000`;
+    const had = await (await fetch(url(to))).json();
+    await plant.daemon.stop('SIGKILL');
+    configure({ keep: true, folder: 'replaced' });
+    await plant.startDaemon();
+    await plant.daemon.line(/\d+ points of the past are restored from PostgreSQL/, 30000);
+    assert.ok(await metric('postgres_restored_total') > 100);
+    feed();
+    const has = await (await fetch(url(to))).json(), inside = (series) => series.points.filter(([us]) => us >= from && us <= to * 1e6);
+    for (const [i, series] of had.series.entries())
+        assert.deepEqual(inside(has.series[i]), inside(series), series.tag);
+    const gaps = await (await fetch(`http://127.0.0.1:${plant.port}/api/v1/history/gaps?from=-1h`)).json();
+    assert.equal(gaps.gaps.length, 1, JSON.stringify(gaps));
+    assert.ok(Math.abs(gaps.gaps[0][0] / 1e6 - to) < 20, 'and it knows when nobody recorded');
+    await sleep(2000);
+    await assertSame(from);
+});
+
+// The extension is not in Debian: what is shown is that it is asked for, and how.
+test('a database with TimescaleDB: the points are a hypertable of weeks', options, async () => {
+    configure();
+    server.ask(`SET allow_system_table_mods = on; INSERT INTO pg_extension(oid, extname, extowner, extnamespace, extrelocatable, extversion)
+        VALUES (999999, 'timescaledb', 10, 2200, false, '2.0'); CREATE TABLE asked(text text); GRANT ALL ON asked TO plantcast;
+        CREATE FUNCTION create_hypertable(relation regclass, time_column_name name, chunk_time_interval interval) RETURNS void LANGUAGE sql
+        AS $$ INSERT INTO public.asked VALUES (relation || ' ' || time_column_name || ' ' || chunk_time_interval) $$`);
+    await plant.startDaemon();
+    await settled();
+    assert.deepEqual(server.ask('SELECT text FROM asked'), [['sample t 7 days']]);
+});
+
+test('a password in the plant file, and a schema that is no name, are refused', options, () => {
+    configure();
+    const text = readFileSync(plant.file, 'utf8'), check = () => runProgram('plantcastd', ['--check', plant.file]);
+    writeFileSync(plant.file, text.replace('postgresql://', 'postgresql://me:secret@'));
+    assert.match(check().err, /plant\.yaml:\d+:\d+: error: url: a password must not stand here; `login` names a file that has it/);
+    writeFileSync(plant.file, text.replace('login: login', 'schema: "a b"'));
+    assert.match(check().err, /schema: expected lower-case letters, digits and _, found 'a b'/);
+    writeFileSync(plant.file, text.replace(/postgresql:/, 'mysql:'));
+    assert.match(check().err, /url: expected postgresql:\/\/HOST\/DATABASE, found 'mysql:/);
+    writeFileSync(plant.file, text.replace('  deadband', '  record: no\n  deadband'));
+    assert.match(check().err, /postgres needs `record: yes`/);
+});

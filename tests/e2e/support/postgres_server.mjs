@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Debian's PostgreSQL on a free port with a database of its own, and a relay before it that can cut connections.
+import { spawn, spawnSync } from 'node:child_process';
+import { chownSync, existsSync, mkdirSync, mkdtempSync, readdirSync, rmSync } from 'node:fs';
+import { connect, createServer } from 'node:net';
+import { tmpdir } from 'node:os';
+import { join } from 'node:path';
+import { freePort } from './ports.mjs';
+
+const VERSIONS = '/usr/lib/postgresql';
+const FOLDER = existsSync(VERSIONS) && readdirSync(VERSIONS).map((version) => join(VERSIONS, version, 'bin'))
+    .findLast((folder) => existsSync(join(folder, 'initdb')));
+const NOBODY = 65534, sleep = (ms) => new Promise((done) => setTimeout(done, ms));
+const as = process.getuid() === 0 ? { uid: NOBODY, gid: NOBODY } : {}; // root may not run it
+const PASSWORD = 'not secret';
+
+// Why there is no server here, or null.
+export const missingPostgres = () => (FOLDER ? null : 'no PostgreSQL');
+
+export class PostgresServer {
+    static async start() {
+        const server = new PostgresServer();
+        server.folder = mkdtempSync(join(tmpdir(), 'plantcast-postgres-'));
+        server.own(server.folder);
+        server.data = join(server.folder, 'data');
+        server.port = await freePort();
+        const made = spawnSync(join(FOLDER, 'initdb'), ['-D', server.data, '-U', 'owner', '-A', 'trust', '--no-sync', '-E', 'UTF8'],
+            { encoding: 'utf8', cwd: server.folder, ...as });
+        if (made.status !== 0)
+            throw new Error(made.stderr);
+        await server.restart();
+        return server;
+    }
+
+    own(path) {
+        if (as.uid)
+            chownSync(path, as.uid, as.gid);
+    }
+
+    // Ends it as a loss of power would, if it runs, and starts it.
+    async restart() {
+        await this.kill();
+        rmSync(join(this.data, 'postmaster.pid'), { force: true });
+        this.child = spawn(join(FOLDER, 'postgres'), ['-D', this.data, '-p', String(this.port), '-h', '127.0.0.1', '-k', this.folder,
+            '-c', 'shared_buffers=16MB', '-c', 'max_connections=20'], { stdio: ['ignore', 'pipe', 'pipe'], cwd: this.folder, ...as });
+        this.said = '';
+        for (const pipe of [this.child.stdout, this.child.stderr])
+            pipe.on('data', (chunk) => { this.said = (this.said + chunk).slice(-20000); });
+        this.ended = new Promise((done) => this.child.once('exit', done));
+        for (const end = performance.now() + 60000; this.psql('SELECT 1', 'postgres').status !== 0; await sleep(100))
+            if (performance.now() > end || this.child.exitCode !== null)
+                throw new Error(`PostgreSQL does not start:\n${this.said}`);
+    }
+
+    // SIGQUIT: all of its processes end at once, and it recovers from its log.
+    async kill() {
+        if (this.child && this.child.exitCode === null && this.child.signalCode === null) {
+            this.child.kill('SIGQUIT');
+            await this.ended;
+        }
+    }
+
+    // Processes stop answering without closing a connection.
+    freeze(signal = 'SIGSTOP') {
+        const { stdout } = spawnSync('ps', ['-o', 'pid=', '--ppid', String(this.child.pid)], { encoding: 'utf8' });
+        for (const pid of [this.child.pid, ...stdout.trim().split(/\s+/).map(Number)])
+            process.kill(pid, signal);
+    }
+    thaw() { this.freeze('SIGCONT'); }
+
+    psql(sql, database = this.database, user = 'owner') {
+        return spawnSync(join(FOLDER, 'psql'), ['-XAtq', '-F', '\t', '-v', 'ON_ERROR_STOP=1', '-h', this.folder, '-p', String(this.port),
+            '-U', user, '-d', database, '-c', sql], { encoding: 'utf8', env: { ...process.env, TZ: 'UTC', PGTZ: 'UTC' } });
+    }
+
+    // Rows of columns.
+    ask(sql) {
+        const { status, stdout, stderr } = this.psql(sql);
+        if (status !== 0)
+            throw new Error(stderr);
+        return stdout.split('\n').filter(Boolean).map((line) => line.split('\t'));
+    }
+
+    // An empty database that belongs to a user of its own; more: further words of the statement.
+    makeDatabase(name, more = '') {
+        this.database = name;
+        const made = this.psql(`CREATE DATABASE ${name} ${more}`, 'postgres');
+        if (made.status !== 0)
+            throw new Error(made.stderr);
+        this.psql(`CREATE ROLE plantcast LOGIN PASSWORD '${PASSWORD}'`, 'postgres');
+        this.ask(`ALTER DATABASE ${name} OWNER TO plantcast`);
+    }
+
+    url(port = this.port) {
+        return `postgresql://127.0.0.1:${port}/${this.database}`;
+    }
+    get login() { return `plantcast\n${PASSWORD}\n`; }
+
+    // A tablespace on a disk of so many megabytes; null: this user may not mount one.
+    smallDisk(megabytes) {
+        const path = join(this.folder, 'disk');
+        mkdirSync(path);
+        if (spawnSync('mount', ['-t', 'tmpfs', '-o', `size=${megabytes}m`, 'tmpfs', path]).status !== 0)
+            return null;
+        this.disk = path;
+        mkdirSync(join(path, 'space'), { mode: 0o700 });
+        this.own(join(path, 'space'));
+        const made = this.psql(`CREATE TABLESPACE small LOCATION '${path}/space'`, 'postgres');
+        if (made.status !== 0)
+            throw new Error(made.stderr);
+        return path;
+    }
+
+    async destroy() {
+        await this.kill();
+        if (this.disk)
+            spawnSync('umount', [this.disk]);
+        rmSync(this.folder, { recursive: true, force: true });
+    }
+}
+
+// Passes bytes on to a port of this machine until it is cut: then all connections end, and new ones are refused until it is mended.
+export class CuttableLink {
+    static async open(port) {
+        const link = new CuttableLink();
+        link.sockets = new Set();
+        link.server = createServer((near) => {
+            const far = connect(port, '127.0.0.1');
+            let count = 0;
+            for (const socket of [near, far]) {
+                link.sockets.add(socket);
+                socket.on('error', () => {});
+                socket.on('close', () => { link.sockets.delete(socket); near.destroy(); far.destroy(); });
+            }
+            if (link.isCut)
+                near.destroy();
+            far.on('data', (bytes) => near.write(bytes));
+            near.on('data', (bytes) => {
+                count += bytes.length;
+                if (link.cutAfter && count >= link.cutAfter) { // the server has got a part
+                    far.write(bytes.subarray(0, bytes.length / 2), () => link.cut());
+                    link.cutAfter = 0;
+                } else {
+                    far.write(bytes);
+                }
+            });
+        });
+        await new Promise((done) => link.server.listen(0, '127.0.0.1', done));
+        link.port = link.server.address().port;
+        return link;
+    }
+
+    cut() {
+        this.isCut = true;
+        this.cuts = (this.cuts ?? 0) + 1;
+        for (const socket of this.sockets)
+            socket.destroy();
+    }
+    mend() { this.isCut = false; }
+
+    close() {
+        this.cut();
+        this.server.close();
+    }
+}
