@@ -4,7 +4,6 @@
 
 #include <jansson.h>
 #include <malloc.h>
-#include <pthread.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -12,6 +11,7 @@
 #include "base/clock.h"
 #include "base/json_text.h"
 #include "base/mem.h"
+#include "base/thread.h"
 #include "import_job.h"
 #include "plant/plant_diff.h"
 #include "sibling.h"
@@ -25,15 +25,12 @@ struct reload {
     struct supervision *supervision;
     struct plant_import *import; /* NULL: plants are not brought in here */
     int64_t begun_ns;            /* of the reload that is under way */
-    pthread_t thread;
-    bool started;
     char by[TOKEN_NAME_BYTES];     /* who asked for the one that is under way */
     const struct tag_save *saving; /* for whom this is done; NULL: for nobody's list */
     const char *kept;              /* the list before it */
-    pthread_mutex_t lock;
-    pthread_cond_t wake;
-    /* --- below: under lock */
-    bool asked, imports, stopping;
+    struct thread thread;
+    /* --- below: under thread.lock */
+    bool asked, imports;
     char who[TOKEN_NAME_BYTES]; /* asked last */
     struct tag_save *save; /* NULL: none is asked for */
 };
@@ -229,10 +226,7 @@ static bool reload_now(struct reload *reload)
 static bool is_stopping(void *arg)
 {
     struct reload *reload = arg;
-    pthread_mutex_lock(&reload->lock);
-    bool stopping = reload->stopping;
-    pthread_mutex_unlock(&reload->lock);
-    return stopping;
+    return thread_is_stopping(&reload->thread);
 }
 
 static bool prepare(struct reload *reload)
@@ -325,16 +319,16 @@ static void *run(void *arg)
     struct reload *reload = arg;
     char who[TOKEN_NAME_BYTES];
     for (;;) {
-        pthread_mutex_lock(&reload->lock);
-        while (!reload->asked && !reload->imports && !reload->save && !reload->stopping)
-            pthread_cond_wait(&reload->wake, &reload->lock);
-        bool stopping = reload->stopping, asked = reload->asked;
+        pthread_mutex_lock(&reload->thread.lock);
+        while (!reload->asked && !reload->imports && !reload->save && !reload->thread.stopping)
+            pthread_cond_wait(&reload->thread.wake, &reload->thread.lock);
+        bool stopping = reload->thread.stopping, asked = reload->asked;
         struct tag_save *save = reload->save;
         struct import_order order;
         reload->asked = reload->imports = false;
         reload->save = NULL;
         snprintf(who, sizeof(who), "%s", reload->who);
-        pthread_mutex_unlock(&reload->lock);
+        pthread_mutex_unlock(&reload->thread.lock);
         snprintf(reload->by, sizeof(reload->by), "%s", save ? save->who : who);
         reload->begun_ns = clock_mono_ns();
         if (save && !stopping)
@@ -359,14 +353,9 @@ struct reload *reload_create(const struct plant_runtime_context *context, struct
     reload->runtime = runtime;
     reload->net = net;
     reload->supervision = supervision;
-    pthread_mutex_init(&reload->lock, NULL);
-    pthread_cond_init(&reload->wake, NULL);
-    int error = pthread_create(&reload->thread, NULL, run, reload);
-    reload->started = !error;
-    if (error) {
-        log_err(context->log, "reload: no thread: %s", strerror(error));
+    thread_init(&reload->thread);
+    if (!thread_start(&reload->thread, context->log, "reload", run, reload))
         reload_destroy(&reload);
-    }
     return reload;
 }
 
@@ -375,42 +364,36 @@ void reload_destroy(struct reload **pointer)
     struct reload *reload = *pointer;
     if (!reload)
         return;
-    pthread_mutex_lock(&reload->lock);
-    reload->stopping = true;
-    pthread_cond_signal(&reload->wake);
-    pthread_mutex_unlock(&reload->lock);
-    if (reload->started)
-        pthread_join(reload->thread, NULL);
+    thread_stop(&reload->thread);
     tag_save_free(reload->save);
-    pthread_cond_destroy(&reload->wake);
-    pthread_mutex_destroy(&reload->lock);
+    thread_finish(&reload->thread);
     mem_free(reload);
     *pointer = NULL;
 }
 
 void reload_ask(struct reload *reload, const char *who)
 {
-    pthread_mutex_lock(&reload->lock);
+    pthread_mutex_lock(&reload->thread.lock);
     reload->asked = true;
     snprintf(reload->who, sizeof(reload->who), "%s", who);
-    pthread_cond_signal(&reload->wake);
-    pthread_mutex_unlock(&reload->lock);
+    pthread_cond_signal(&reload->thread.wake);
+    pthread_mutex_unlock(&reload->thread.lock);
 }
 
 void reload_save(struct reload *reload, struct tag_save *save)
 {
-    pthread_mutex_lock(&reload->lock);
+    pthread_mutex_lock(&reload->thread.lock);
     tag_save_free(reload->save); /* there is none: the loop lets one through at a time */
     reload->save = save;
-    pthread_cond_signal(&reload->wake);
-    pthread_mutex_unlock(&reload->lock);
+    pthread_cond_signal(&reload->thread.wake);
+    pthread_mutex_unlock(&reload->thread.lock);
 }
 
 void reload_import(struct reload *reload, const char *who)
 {
-    pthread_mutex_lock(&reload->lock);
+    pthread_mutex_lock(&reload->thread.lock);
     reload->imports = true;
     snprintf(reload->who, sizeof(reload->who), "%s", who);
-    pthread_cond_signal(&reload->wake);
-    pthread_mutex_unlock(&reload->lock);
+    pthread_cond_signal(&reload->thread.wake);
+    pthread_mutex_unlock(&reload->thread.lock);
 }

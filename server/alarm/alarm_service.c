@@ -3,7 +3,6 @@
 #include "alarm/alarm_service.h"
 
 #include <errno.h>
-#include <pthread.h>
 #include <stdatomic.h>
 #include <string.h>
 #include <time.h>
@@ -11,6 +10,7 @@
 #include "alarm/journal.h"
 #include "base/clock.h"
 #include "base/mem.h"
+#include "base/thread.h"
 
 enum { QUEUE_MAX = 1000000 /* samples that a tenth of a second may bring */, RATE_SLOTS = 60 };
 static const int64_t TICK_NS = NS_PER_S / 10, RATE_NS = 600 * NS_PER_S;
@@ -26,8 +26,6 @@ struct alarm_service {
     struct {
         counter *statuses[ALARM_STATUSES], *priorities[ALARM_PRIORITIES], *active, *standing, *chattering, *held, *rate, *raised, *lost;
     } counters;
-    pthread_t thread;
-    _Atomic bool started;
     _Atomic uint64_t number;
     /* --- below: of the thread */
     struct event_queue taken;
@@ -38,12 +36,12 @@ struct alarm_service {
     pthread_mutex_t queue_lock; /* taken under the store's */
     /* --- below: under queue_lock */
     struct event_queue queue;
-    pthread_mutex_t lock; /* the store's is taken under it */
-    pthread_cond_t wake;
-    /* --- below: under lock */
+    struct thread thread; /* the store's lock is taken under its lock */
+    /* --- below: under thread.lock */
     struct alarms *alarms;
     int raised_now;
-    bool stopping;
+    void (*changed)(void *arg); /* NULL: nobody listens */
+    void *changed_arg;
 };
 
 /* --- from and to the store -------------------------------------------------------------------------------------------------- */
@@ -127,6 +125,19 @@ static void keep_all(struct alarm_service *service)
     }
 }
 
+/* Tells those who follow the alarms, if any changed. */
+static void tell(struct alarm_service *service, uint64_t number)
+{
+    if (atomic_exchange(&service->number, number) == number)
+        return;
+    if (service->params.notify)
+        service->params.notify(service->params.notify_arg);
+    pthread_mutex_lock(&service->thread.lock);
+    if (service->changed)
+        service->changed(service->changed_arg);
+    pthread_mutex_unlock(&service->thread.lock);
+}
+
 static void tick(struct alarm_service *service)
 {
     struct alarm_counts counts;
@@ -135,7 +146,7 @@ static void tick(struct alarm_service *service)
     take_events(service);
     store_snapshot(service->params.store, now_ns, clock_utc_ns(), service->snapshot);
     bool asks = service->journal && journal_asks(service->journal);
-    pthread_mutex_lock(&service->lock);
+    pthread_mutex_lock(&service->thread.lock);
     alarms_put(service->alarms, service->taken.at, service->taken.count);
     alarms_tick(service->alarms, service->snapshot);
     uint64_t number = alarms_number(service->alarms);
@@ -145,7 +156,7 @@ static void tick(struct alarm_service *service)
         alarms_counts(service->alarms, now_ns, &counts);
     if (asks)
         keep_all(service);
-    pthread_mutex_unlock(&service->lock);
+    pthread_mutex_unlock(&service->thread.lock);
     service->taken.count = service->taken.lost = 0;
     counter_inc(service->counters.raised, raised);
     counter_set(service->counters.rate, rate(service, now_ns, raised));
@@ -153,20 +164,7 @@ static void tick(struct alarm_service *service)
         service->counted_ns = now_ns;
         count(service, &counts);
     }
-    if (atomic_exchange(&service->number, number) != number && service->params.notify)
-        service->params.notify(service->params.notify_arg);
-}
-
-static bool wait_for_tick(struct alarm_service *service, int64_t *next_ns)
-{
-    int64_t now_ns = clock_mono_ns();
-    *next_ns = *next_ns + TICK_NS < now_ns ? now_ns : *next_ns + TICK_NS;
-    pthread_mutex_lock(&service->lock);
-    while (!service->stopping && clock_cond_wait(&service->wake, &service->lock, *next_ns))
-        continue;
-    bool stopping = service->stopping;
-    pthread_mutex_unlock(&service->lock);
-    return !stopping;
+    tell(service, number);
 }
 
 static void *run(void *arg)
@@ -175,7 +173,7 @@ static void *run(void *arg)
     int64_t next_ns = clock_mono_ns();
     do
         tick(service);
-    while (wait_for_tick(service, &next_ns));
+    while (thread_wait_for_tick(&service->thread, TICK_NS, &next_ns));
     tick(service);
     return NULL;
 }
@@ -215,30 +213,20 @@ static bool start_journal(struct alarm_service *service)
     return !params->folder || (service->journal = journal_start(&journal, service->alarms, now));
 }
 
-static bool start_thread(struct alarm_service *service)
-{
-    int error = pthread_create(&service->thread, NULL, run, service);
-    atomic_store(&service->started, !error);
-    if (error)
-        log_err(service->params.log, "alarms: no thread: %s", strerror(error));
-    return !error;
-}
-
 static void adopt(struct alarm_service *service, struct alarm_service *before)
 {
-    pthread_mutex_lock(&before->lock);
+    pthread_mutex_lock(&before->thread.lock);
     alarms_adopt(service->alarms, before->alarms);
     memcpy(service->raised, before->raised, sizeof(service->raised));
     service->slot = before->slot;
-    pthread_mutex_unlock(&before->lock);
+    pthread_mutex_unlock(&before->thread.lock);
 }
 
 struct alarm_service *alarm_service_start(const struct alarm_service_params *params)
 {
     struct alarm_service *service = mem_new(sizeof(*service));
     const struct alarms_listener listener = { on_change, on_tag, service };
-    clock_cond_init(&service->wake);
-    pthread_mutex_init(&service->lock, NULL);
+    thread_init(&service->thread);
     pthread_mutex_init(&service->queue_lock, NULL);
     service->params = *params;
     service->snapshot = snapshot_create(params->plant->tag_count);
@@ -249,7 +237,7 @@ struct alarm_service *alarm_service_start(const struct alarm_service_params *par
     if (params->before)
         adopt(service, params->before);
     service->params.before = NULL;
-    if (!good || !start_thread(service))
+    if (!good || !thread_start(&service->thread, params->log, "alarms", run, service))
         alarm_service_stop(&service);
     return service;
 }
@@ -257,13 +245,7 @@ struct alarm_service *alarm_service_start(const struct alarm_service_params *par
 void alarm_service_halt(struct alarm_service *service)
 {
     store_unlisten(service->params.store, on_sample, service);
-    pthread_mutex_lock(&service->lock);
-    service->stopping = true;
-    pthread_cond_signal(&service->wake);
-    pthread_mutex_unlock(&service->lock);
-    if (service->started)
-        pthread_join(service->thread, NULL);
-    service->started = false;
+    thread_stop(&service->thread);
     journal_stop(&service->journal);
 }
 
@@ -277,11 +259,18 @@ void alarm_service_stop(struct alarm_service **pointer)
     snapshot_destroy(&service->snapshot);
     mem_free(service->queue.at);
     mem_free(service->taken.at);
-    pthread_cond_destroy(&service->wake);
-    pthread_mutex_destroy(&service->lock);
+    thread_finish(&service->thread);
     pthread_mutex_destroy(&service->queue_lock);
     mem_free(service);
     *pointer = NULL;
+}
+
+void alarm_service_listen(struct alarm_service *service, void (*changed)(void *arg), void *arg)
+{
+    pthread_mutex_lock(&service->thread.lock);
+    service->changed = changed;
+    service->changed_arg = arg;
+    pthread_mutex_unlock(&service->thread.lock);
 }
 
 /* --- asking ----------------------------------------------------------------------------------------------------------------- */
@@ -293,7 +282,7 @@ uint64_t alarm_service_number(const struct alarm_service *service)
 
 uint64_t alarm_service_changes(struct alarm_service *service, uint64_t since, void (*each)(void *arg, const struct alarm *alarm), void *arg)
 {
-    pthread_mutex_lock(&service->lock);
+    pthread_mutex_lock(&service->thread.lock);
     const struct alarms *alarms = service->alarms;
     uint64_t number = alarms_number(alarms);
     for (int i = alarms_newest(alarms); i >= 0; i = alarms_at(alarms, i)->older) {
@@ -303,29 +292,28 @@ uint64_t alarm_service_changes(struct alarm_service *service, uint64_t since, vo
         if (since || alarm_status_of(alarm) != ALARM_NORMAL)
             each(arg, alarm);
     }
-    pthread_mutex_unlock(&service->lock);
+    pthread_mutex_unlock(&service->thread.lock);
     return number;
 }
 
 const char *alarm_service_act(struct alarm_service *service, const char *name, enum alarm_kind kind, const struct alarm_act *act)
 {
     const char *why = "there is no such alarm";
-    if (!service->started)
+    if (thread_is_stopping(&service->thread))
         return "the plant is being loaded anew; try again";
-    pthread_mutex_lock(&service->lock);
+    pthread_mutex_lock(&service->thread.lock);
     int index = alarms_find_named(service->alarms, name, kind);
     if (index >= 0)
         why = alarms_act(service->alarms, index, act, (struct instant){ clock_mono_ns(), clock_utc_ns() });
     uint64_t number = alarms_number(service->alarms);
-    pthread_mutex_unlock(&service->lock);
-    if (atomic_exchange(&service->number, number) != number && service->params.notify)
-        service->params.notify(service->params.notify_arg);
+    pthread_mutex_unlock(&service->thread.lock);
+    tell(service, number);
     return why;
 }
 
 void alarm_service_counts(struct alarm_service *service, struct alarm_counts *out)
 {
-    pthread_mutex_lock(&service->lock);
+    pthread_mutex_lock(&service->thread.lock);
     alarms_counts(service->alarms, clock_mono_ns(), out);
-    pthread_mutex_unlock(&service->lock);
+    pthread_mutex_unlock(&service->thread.lock);
 }

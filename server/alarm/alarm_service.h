@@ -28,6 +28,9 @@ void alarm_service_halt(struct alarm_service *service);
 /* Writes what is pending to the journal, ends the thread and frees the service. &NULL is fine; leaves NULL. */
 void alarm_service_stop(struct alarm_service **service);
 
+/* Has changed(arg) called after alarms changed, by the service's thread or within alarm_service_act(), under a lock: it must only wake
+   somebody. One at a time; NULL: nobody. */
+void alarm_service_listen(struct alarm_service *service, void (*changed)(void *arg), void *arg);
 /* Returns the number of the last change of any alarm; it increases with each change. */
 uint64_t alarm_service_number(const struct alarm_service *service);
 /* Calls each, under the lock, for every alarm that changed after the change `since`, newest first; since 0: for every alarm that is not

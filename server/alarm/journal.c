@@ -4,12 +4,12 @@
 
 #include <errno.h>
 #include <math.h>
-#include <pthread.h>
 #include <string.h>
 #include <time.h>
 
 #include "base/clock.h"
 #include "base/mem.h"
+#include "base/thread.h"
 
 enum { WAITING_MAX = 200000, RETRY_MAX_S = 30 };
 static const int64_t GATHER_NS = NS_PER_S / 4, FORGET_NS = 600 * NS_PER_S;
@@ -27,18 +27,15 @@ struct journal {
     struct {
         counter *rows, *lost, *waiting, *good;
     } counters;
-    pthread_t thread;
-    bool started;
     /* --- below: of the thread */
     struct journal_file *file;
     struct entries taken;
     bool failing;
     int64_t retry_ns, retry_after_ns, forgot_ns;
-    pthread_mutex_t lock;
-    pthread_cond_t wake;
-    /* --- below: under lock */
+    struct thread thread;
+    /* --- below: under thread.lock */
     struct entries waiting;
-    bool stopping, asks;
+    bool asks;
 };
 
 /* --- writing ---------------------------------------------------------------------------------------------------------------- */
@@ -50,9 +47,9 @@ static int write_taken(struct journal *journal, int64_t mono_ns)
     if (!journal->file && !(journal->file = journal_file_open(journal->log, journal->folder, &renewed, &error)))
         return error;
     if (renewed) {
-        pthread_mutex_lock(&journal->lock);
+        pthread_mutex_lock(&journal->thread.lock);
         journal->asks = true;
-        pthread_mutex_unlock(&journal->lock);
+        pthread_mutex_unlock(&journal->thread.lock);
     }
     error = journal_file_write(journal->file, journal->taken.at, journal->taken.count);
     if (!error) {
@@ -105,14 +102,14 @@ static void take(struct journal *journal)
 static bool wait_for_work(struct journal *journal)
 {
     int64_t until_ns = clock_mono_ns() + GATHER_NS;
-    pthread_mutex_lock(&journal->lock);
-    while (!journal->stopping && clock_cond_wait(&journal->wake, &journal->lock, until_ns))
+    pthread_mutex_lock(&journal->thread.lock);
+    while (!journal->thread.stopping && clock_cond_wait(&journal->thread.wake, &journal->thread.lock, until_ns))
         continue;
-    while (!journal->stopping && !journal->waiting.count && !journal->taken.count)
-        pthread_cond_wait(&journal->wake, &journal->lock);
+    while (!journal->thread.stopping && !journal->waiting.count && !journal->taken.count)
+        pthread_cond_wait(&journal->thread.wake, &journal->thread.lock);
     take(journal);
-    bool stopping = journal->stopping;
-    pthread_mutex_unlock(&journal->lock);
+    bool stopping = journal->thread.stopping;
+    pthread_mutex_unlock(&journal->thread.lock);
     counter_set(journal->counters.waiting, (int64_t)journal->taken.count);
     return !stopping;
 }
@@ -132,7 +129,7 @@ static void *run(void *arg)
 
 static void put(struct journal *journal, const struct journal_entry *entry)
 {
-    pthread_mutex_lock(&journal->lock);
+    pthread_mutex_lock(&journal->thread.lock);
     struct entries *waiting = &journal->waiting;
     if (waiting->count < WAITING_MAX) {
         mem_grow(&waiting->at, &waiting->capacity, waiting->count + 1, sizeof(*waiting->at));
@@ -141,8 +138,8 @@ static void put(struct journal *journal, const struct journal_entry *entry)
         counter_inc(journal->counters.lost, 1);
     }
     if (waiting->count == 1)
-        pthread_cond_signal(&journal->wake);
-    pthread_mutex_unlock(&journal->lock);
+        pthread_cond_signal(&journal->thread.wake);
+    pthread_mutex_unlock(&journal->thread.lock);
 }
 
 void journal_add(struct journal *journal, const struct alarm_change *change, const char *tag)
@@ -171,10 +168,10 @@ void journal_keep(struct journal *journal, const struct alarm *alarm, const char
 
 bool journal_asks(struct journal *journal)
 {
-    pthread_mutex_lock(&journal->lock);
+    pthread_mutex_lock(&journal->thread.lock);
     bool asks = journal->asks;
     journal->asks = false;
-    pthread_mutex_unlock(&journal->lock);
+    pthread_mutex_unlock(&journal->thread.lock);
     return asks;
 }
 
@@ -216,19 +213,14 @@ static void add_counters(struct journal *journal, struct counters *counters)
 struct journal *journal_start(const struct journal_params *params, struct alarms *alarms, struct instant now)
 {
     struct journal *journal = mem_new(sizeof(*journal));
-    clock_cond_init(&journal->wake);
-    pthread_mutex_init(&journal->lock, NULL);
+    thread_init(&journal->thread);
     journal->log = params->log;
     journal->folder = mem_strdup(params->folder);
     journal->keep_days = params->keep_days;
     add_counters(journal, params->counters);
     restore_all(journal, alarms, now);
-    int error = pthread_create(&journal->thread, NULL, run, journal);
-    journal->started = !error;
-    if (error) {
-        log_err(params->log, "alarms: no thread for the journal: %s", strerror(error));
+    if (!thread_start(&journal->thread, params->log, "alarms: journal", run, journal))
         journal_stop(&journal);
-    }
     return journal;
 }
 
@@ -237,18 +229,12 @@ void journal_stop(struct journal **pointer)
     struct journal *journal = *pointer;
     if (!journal)
         return;
-    pthread_mutex_lock(&journal->lock);
-    journal->stopping = true;
-    pthread_cond_signal(&journal->wake);
-    pthread_mutex_unlock(&journal->lock);
-    if (journal->started)
-        pthread_join(journal->thread, NULL);
+    thread_stop(&journal->thread);
     journal_file_close(&journal->file);
     mem_free(journal->waiting.at);
     mem_free(journal->taken.at);
     mem_free(journal->folder);
-    pthread_cond_destroy(&journal->wake);
-    pthread_mutex_destroy(&journal->lock);
+    thread_finish(&journal->thread);
     mem_free(journal);
     *pointer = NULL;
 }

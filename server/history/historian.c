@@ -3,7 +3,6 @@
 #include "history/historian.h"
 
 #include <errno.h>
-#include <pthread.h>
 #include <stdatomic.h>
 #include <stdlib.h>
 #include <string.h>
@@ -14,6 +13,7 @@
 
 #include "base/clock.h"
 #include "base/mem.h"
+#include "base/thread.h"
 #include "history/copy.h"
 #include "history/history.h"
 #include "history/retention.h"
@@ -48,8 +48,6 @@ struct historian {
     struct {
         counter *samples, *points, *lost, *waiting, *good, *bytes, *free, *backup;
     } counters;
-    pthread_t thread;
-    bool started;
     struct postgres *postgres; /* NULL: history is sent nowhere */
     atomic_bool restored;      /* it has put points of the past into the files */
     /* --- below: of the thread */
@@ -63,11 +61,9 @@ struct historian {
     struct event_queue taken;
     bool recovered, failing;
     int64_t retry_ns, retry_after_ns, tidied_ns, kept_ns, utc_ahead_ns;
-    pthread_mutex_t lock;
-    pthread_cond_t wake;
-    /* --- below: under lock */
+    struct thread thread;
+    /* --- below: under thread.lock */
     struct event_queue queue;
-    bool stopping;
     const struct plant *next; /* whose historian follows; NULL: none */
 };
 
@@ -76,7 +72,7 @@ struct historian {
 static void on_sample(void *arg, const struct sample_event *event)
 {
     struct historian *historian = arg;
-    pthread_mutex_lock(&historian->lock);
+    pthread_mutex_lock(&historian->thread.lock);
     struct event_queue *queue = &historian->queue;
     if (queue->count < QUEUE_MAX) {
         mem_grow(&queue->at, &queue->capacity, queue->count + 1, sizeof(*queue->at));
@@ -84,7 +80,7 @@ static void on_sample(void *arg, const struct sample_event *event)
     } else {
         queue->lost++;
     }
-    pthread_mutex_unlock(&historian->lock);
+    pthread_mutex_unlock(&historian->thread.lock);
 }
 
 static void put(struct historian *historian, int tag, const struct history_point *point)
@@ -129,10 +125,10 @@ static bool is_after_step(const struct sample_event *event, int64_t ahead_ns, in
 /* step_ns: by which the wall clock was set since the last time; 0: it was not. */
 static void take_events(struct historian *historian, const struct now *now, int64_t step_ns)
 {
-    pthread_mutex_lock(&historian->lock);
+    pthread_mutex_lock(&historian->thread.lock);
     struct event_queue taken = historian->queue;
     historian->queue = historian->taken;
-    pthread_mutex_unlock(&historian->lock);
+    pthread_mutex_unlock(&historian->thread.lock);
     int64_t ahead_ns = now->utc_ns - now->mono_ns;
     bool left_out = step_ns <= 0;
     for (size_t i = 0; i < taken.count; i++) {
@@ -440,18 +436,6 @@ static void tick(struct historian *historian, bool last)
     counter_set(historian->counters.waiting, (int64_t)historian->waiting.count);
 }
 
-static bool wait_for_tick(struct historian *historian, int64_t *next_ns)
-{
-    int64_t now_ns = clock_mono_ns();
-    *next_ns = *next_ns + TICK_NS < now_ns ? now_ns : *next_ns + TICK_NS;
-    pthread_mutex_lock(&historian->lock);
-    while (!historian->stopping && clock_cond_wait(&historian->wake, &historian->lock, *next_ns))
-        continue;
-    bool stopping = historian->stopping;
-    pthread_mutex_unlock(&historian->lock);
-    return !stopping;
-}
-
 /* A run between two that could not be written ended there. */
 static void end_spooled_lines(struct spool_rows *rows)
 {
@@ -517,7 +501,7 @@ static void *run(void *arg)
     int64_t next_ns = clock_mono_ns();
     do
         tick(historian, false);
-    while (wait_for_tick(historian, &next_ns));
+    while (thread_wait_for_tick(&historian->thread, TICK_NS, &next_ns));
     tick(historian, true);
     if (historian->file)
         month_file_tidy(historian->file);
@@ -559,8 +543,7 @@ static bool start_postgres(struct historian *historian, struct counters *counter
 struct historian *historian_start(const struct historian_params *params)
 {
     struct historian *historian = mem_new(sizeof(*historian));
-    clock_cond_init(&historian->wake);
-    pthread_mutex_init(&historian->lock, NULL);
+    thread_init(&historian->thread);
     historian->log = params->log;
     historian->plant = params->plant;
     historian->store = params->store;
@@ -576,12 +559,8 @@ struct historian *historian_start(const struct historian_params *params)
         return NULL;
     }
     store_listen(params->store, on_sample, historian);
-    int error = pthread_create(&historian->thread, NULL, run, historian);
-    historian->started = !error;
-    if (error) {
-        log_err(params->log, "history: no thread: %s", strerror(error));
+    if (!thread_start(&historian->thread, params->log, "history", run, historian))
         historian_stop(&historian);
-    }
     return historian;
 }
 
@@ -591,12 +570,7 @@ void historian_stop(struct historian **pointer)
     if (!historian)
         return;
     store_unlisten(historian->store, on_sample, historian);
-    pthread_mutex_lock(&historian->lock);
-    historian->stopping = true;
-    pthread_cond_signal(&historian->wake);
-    pthread_mutex_unlock(&historian->lock);
-    if (historian->started)
-        pthread_join(historian->thread, NULL);
+    thread_stop(&historian->thread);
     postgres_stop(&historian->postgres);
     month_file_close(&historian->file);
     recorder_destroy(&historian->recorder);
@@ -610,8 +584,7 @@ void historian_stop(struct historian **pointer)
     mem_free(historian->queue.at);
     mem_free(historian->taken.at);
     mem_free(historian->folder);
-    pthread_cond_destroy(&historian->wake);
-    pthread_mutex_destroy(&historian->lock);
+    thread_finish(&historian->thread);
     mem_free(historian);
     *pointer = NULL;
 }
@@ -620,8 +593,8 @@ void historian_end(struct historian **historian, const struct plant *next)
 {
     if (!*historian)
         return;
-    pthread_mutex_lock(&(*historian)->lock);
+    pthread_mutex_lock(&(*historian)->thread.lock);
     (*historian)->next = next;
-    pthread_mutex_unlock(&(*historian)->lock);
+    pthread_mutex_unlock(&(*historian)->thread.lock);
     historian_stop(historian);
 }

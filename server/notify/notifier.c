@@ -16,7 +16,7 @@
 #include "notify/notify_text.h"
 #include "notify/outbox.h"
 
-enum { TICK_MS = 1000, FILE_BYTES = 64 << 20 };
+enum { TICK_MS = 1000, REST_MS = 60000, FILE_BYTES = 64 << 20 };
 
 struct recipient_counters {
     counter *sent, *failed, *waiting;
@@ -138,6 +138,12 @@ static void send_due(struct notifier *notifier)
 
 /* --- the thread ------------------------------------------------------------------------------------------------------------- */
 
+static void wake(void *arg)
+{
+    struct notifier *notifier = arg;
+    delivery_wake(notifier->delivery);
+}
+
 static void on_alarm(void *arg, const struct alarm *alarm)
 {
     struct notifier *notifier = arg;
@@ -169,7 +175,7 @@ static void *run(void *arg)
         send_due(notifier);
         save(notifier);
         count(notifier);
-        delivery_wait(notifier->delivery, TICK_MS, on_end, notifier);
+        delivery_wait(notifier->delivery, outbox_rests(notifier->outbox) ? REST_MS : TICK_MS, on_end, notifier);
     }
     save(notifier);
     return NULL;
@@ -211,6 +217,8 @@ struct notifier *notifier_start(const struct notifier_params *params)
     add_counters(notifier);
     restore(notifier);
     notifier->delivery = delivery_create(params->log, params->plant->notify);
+    if (notifier->delivery)
+        alarm_service_listen(params->alarm_service, wake, notifier);
     int error = notifier->delivery ? pthread_create(&notifier->thread, NULL, run, notifier) : 0;
     notifier->started = notifier->delivery && !error;
     if (error)
@@ -226,6 +234,7 @@ void notifier_stop(struct notifier **pointer)
     if (!notifier)
         return;
     atomic_store(&notifier->stopping, true);
+    alarm_service_listen(notifier->params.alarm_service, NULL, NULL);
     if (notifier->started) {
         delivery_wake(notifier->delivery);
         pthread_join(notifier->thread, NULL);

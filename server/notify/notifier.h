@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Tells people and programs outside of alarms, as the plant file's `notify` says. Its thread looks at the alarm service once a second,
-   keeps what is to be sent in notify.json beside the history, and delivers it; nothing else waits for it. Thread: one. */
+/* Tells people and programs outside of alarms, as the plant file's `notify` says. Its thread is woken when an
+   alarm changes, keeps what is to be sent in notify.json beside the history, and delivers it; nothing else waits for it. Thread: one. */
 #ifndef NOTIFY_NOTIFIER_H
 #define NOTIFY_NOTIFIER_H
 #include "alarm/alarm_service.h"

@@ -415,6 +415,16 @@ struct outbox_counts outbox_counts(const struct outbox *outbox, int recipient)
     return (struct outbox_counts){ (int64_t)(box->waiting.count + box->batch_count), outbox->lost };
 }
 
+bool outbox_rests(const struct outbox *outbox)
+{
+    for (size_t i = 0; i < outbox->plant->notify->recipient_count; i++) {
+        bool alerts = outbox->plant->notify->recipients[i].kind == NOTIFY_ALERTMANAGER;
+        if ((alerts && outbox->boxes[i].changed) || outbox->boxes[i].batch_count > 0)
+            return false;
+    }
+    return outbox->count == 0 && outbox->items == 0;
+}
+
 bool outbox_is_changed(struct outbox *outbox)
 {
     bool dirty = outbox->dirty;

@@ -57,6 +57,7 @@ struct outbox_counts {
     int64_t lost;    /* of all recipients together, since the start: no room, or given up */
 };
 struct outbox_counts outbox_counts(const struct outbox *outbox, int recipient);
+bool outbox_rests(const struct outbox *outbox);  /* returns whether nothing happens by itself until an alarm is put */
 bool outbox_is_changed(struct outbox *outbox); /* returns whether there is something to save since the last call */
 
 /* --- outbox_json.c: over a restart --- */

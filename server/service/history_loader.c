@@ -3,12 +3,12 @@
 #include "service/history_loader.h"
 
 #include <errno.h>
-#include <pthread.h>
 #include <string.h>
 
 #include "alarm/alarms_at_instant.h"
 #include "base/clock.h"
 #include "base/mem.h"
+#include "base/thread.h"
 #include "history/history.h"
 
 static const int64_t SPAN_NS = 60 * NS_PER_S; /* months come and go no more often than that */
@@ -24,16 +24,12 @@ struct history_loader {
     struct history_reader *reader; /* of the thread; so below */
     struct history_tag *tags;
     int64_t spanned_ns;
-    pthread_t thread;
-    bool started;
-    pthread_mutex_t lock;
-    pthread_cond_t wake;
-    /* --- below: under lock */
+    struct thread thread;
+    /* --- below: under thread.lock */
     struct wanted *wanted; /* oldest first */
     size_t count, capacity;
     struct history_loader_answer *answers, **last;
     int64_t first_us;
-    bool stopping;
 };
 
 /* --- what is wanted, any thread --------------------------------------------------------------------------------------- */
@@ -56,39 +52,39 @@ static size_t find(const struct history_loader *loader, uint64_t client)
 
 void history_loader_ask(struct history_loader *loader, uint64_t client, int64_t at_us)
 {
-    pthread_mutex_lock(&loader->lock);
+    pthread_mutex_lock(&loader->thread.lock);
     size_t i = find(loader, client);
     if (i == loader->count)
         mem_grow(&loader->wanted, &loader->capacity, ++loader->count, sizeof(*loader->wanted));
     loader->wanted[i] = (struct wanted){ client, at_us };
-    pthread_cond_signal(&loader->wake);
-    pthread_mutex_unlock(&loader->lock);
+    pthread_cond_signal(&loader->thread.wake);
+    pthread_mutex_unlock(&loader->thread.lock);
 }
 
 void history_loader_forget(struct history_loader *loader, uint64_t client)
 {
-    pthread_mutex_lock(&loader->lock);
+    pthread_mutex_lock(&loader->thread.lock);
     size_t i = find(loader, client);
     if (i < loader->count)
         remove_at(loader, i);
-    pthread_mutex_unlock(&loader->lock);
+    pthread_mutex_unlock(&loader->thread.lock);
 }
 
 struct history_loader_answer *history_loader_collect(struct history_loader *loader)
 {
-    pthread_mutex_lock(&loader->lock);
+    pthread_mutex_lock(&loader->thread.lock);
     struct history_loader_answer *answers = loader->answers;
     loader->answers = NULL;
     loader->last = &loader->answers;
-    pthread_mutex_unlock(&loader->lock);
+    pthread_mutex_unlock(&loader->thread.lock);
     return answers;
 }
 
 int64_t history_loader_first_us(struct history_loader *loader)
 {
-    pthread_mutex_lock(&loader->lock);
+    pthread_mutex_lock(&loader->thread.lock);
     int64_t first_us = loader->first_us;
-    pthread_mutex_unlock(&loader->lock);
+    pthread_mutex_unlock(&loader->thread.lock);
     return first_us;
 }
 
@@ -120,26 +116,26 @@ static void look_at_span(struct history_loader *loader)
         first_us = 0;
         loader->spanned_ns = 0; /* nothing is there yet: look again soon, and with the next question */
     }
-    pthread_mutex_lock(&loader->lock);
+    pthread_mutex_lock(&loader->thread.lock);
     loader->first_us = first_us;
-    pthread_mutex_unlock(&loader->lock);
+    pthread_mutex_unlock(&loader->thread.lock);
 }
 
 /* False: nothing is, and it is time to look again for the beginning of what is recorded, or to stop. */
 static bool next_wanted(struct history_loader *loader, struct wanted *out, bool *stopping)
 {
     int64_t until_ns = clock_mono_ns() + LOOK_NS;
-    pthread_mutex_lock(&loader->lock);
-    while (!loader->stopping && loader->count == 0 &&
-           clock_cond_wait(&loader->wake, &loader->lock, loader->first_us ? INT64_MAX : until_ns))
+    pthread_mutex_lock(&loader->thread.lock);
+    while (!loader->thread.stopping && loader->count == 0 &&
+           clock_cond_wait(&loader->thread.wake, &loader->thread.lock, loader->first_us ? INT64_MAX : until_ns))
         continue;
-    *stopping = loader->stopping;
+    *stopping = loader->thread.stopping;
     bool any = !*stopping && loader->count > 0;
     if (any) {
         *out = loader->wanted[0];
         remove_at(loader, 0);
     }
-    pthread_mutex_unlock(&loader->lock);
+    pthread_mutex_unlock(&loader->thread.lock);
     return any;
 }
 
@@ -148,10 +144,10 @@ static void give_answer(struct history_loader *loader, const struct wanted *want
     struct history_loader_answer *answer = mem_new(sizeof(*answer));
     *answer =
         (struct history_loader_answer){ .client = wanted->client, .at_us = wanted->at_us, .good = read_instant(loader, wanted->at_us) };
-    pthread_mutex_lock(&loader->lock);
+    pthread_mutex_lock(&loader->thread.lock);
     *loader->last = answer;
     loader->last = &answer->next;
-    pthread_mutex_unlock(&loader->lock);
+    pthread_mutex_unlock(&loader->thread.lock);
     loader->params.notify(loader->params.notify_arg);
 }
 
@@ -177,14 +173,9 @@ struct history_loader *history_loader_create(const struct history_loader_params 
     loader->reader = history_reader_create(params->log, params->folder);
     loader->tags = history_tags(params->plant);
     loader->last = &loader->answers;
-    pthread_mutex_init(&loader->lock, NULL);
-    clock_cond_init(&loader->wake);
-    int error = pthread_create(&loader->thread, NULL, run, loader);
-    loader->started = !error;
-    if (error) {
-        log_err(params->log, "history: no thread to read instants of it: %s", strerror(error));
+    thread_init(&loader->thread);
+    if (!thread_start(&loader->thread, params->log, "history: instants", run, loader))
         history_loader_destroy(&loader);
-    }
     return loader;
 }
 
@@ -193,12 +184,7 @@ void history_loader_destroy(struct history_loader **pointer)
     struct history_loader *loader = *pointer;
     if (!loader)
         return;
-    pthread_mutex_lock(&loader->lock);
-    loader->stopping = true;
-    pthread_cond_signal(&loader->wake);
-    pthread_mutex_unlock(&loader->lock);
-    if (loader->started)
-        pthread_join(loader->thread, NULL);
+    thread_stop(&loader->thread);
     for (struct history_loader_answer *answer = loader->answers, *next; answer; answer = next) {
         next = answer->next;
         mem_free(answer);
@@ -206,8 +192,7 @@ void history_loader_destroy(struct history_loader **pointer)
     history_reader_destroy(&loader->reader);
     mem_free(loader->tags);
     mem_free(loader->wanted);
-    pthread_cond_destroy(&loader->wake);
-    pthread_mutex_destroy(&loader->lock);
+    thread_finish(&loader->thread);
     mem_free(loader);
     *pointer = NULL;
 }

@@ -2,6 +2,7 @@
 /* Alarms of a running store: journalled, taken up after kill -9, and when the journal was damaged. */
 #include <math.h>
 #include <setjmp.h>
+#include <stdatomic.h>
 #include <signal.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -258,6 +259,33 @@ static void a_lost_device_is_no_flood(void **state)
     assert_string_equal(device.last, "plc LINK raise unacknowledged 3 nan  ");
 }
 
+static void on_change(void *arg)
+{
+    atomic_int *calls = arg;
+    (*calls)++;
+}
+
+static void who_listens_is_told_of_changes(void **state)
+{
+    struct setup *s = *state;
+    atomic_int calls = 0;
+    start(s);
+    alarm_service_listen(s->alarm_service, on_change, &calls);
+    give_all(s, 90);
+    assert_int_equal(wait_for(s, ALARM_UNACKNOWLEDGED, TAGS), TAGS);
+    for (int i = 0; calls == 0 && i < 200; i++)
+        sleep_ns(10000000);
+    assert_in_range(calls, 1, 50); /* not each of a thousand */
+    int before = calls;
+    const struct alarm_act act = { .event = ALARM_ACKNOWLEDGE, .who = "somebody", .reason = "" };
+    assert_null(alarm_service_act(s->alarm_service, "T-0001", ALARM_H, &act));
+    assert_true(calls > before);
+    alarm_service_listen(s->alarm_service, NULL, NULL);
+    before = calls;
+    assert_null(alarm_service_act(s->alarm_service, "T-0002", ALARM_H, &act));
+    assert_int_equal(calls, before);
+}
+
 static void a_damaged_journal_is_set_aside(void **state)
 {
     struct setup *s = *state;
@@ -280,6 +308,7 @@ int main(void)
         cmocka_unit_test_setup_teardown(while_nothing_was_recorded_no_alarm_is_known, set_up, tear_down),
         cmocka_unit_test_setup_teardown(killed_at_any_moment_it_goes_on, set_up, tear_down),
         cmocka_unit_test_setup_teardown(a_lost_device_is_no_flood, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(who_listens_is_told_of_changes, set_up, tear_down),
         cmocka_unit_test_setup_teardown(a_damaged_journal_is_set_aside, set_up, tear_down),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

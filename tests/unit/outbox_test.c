@@ -452,6 +452,24 @@ static void a_damaged_file_is_refused(void **state)
     deliver(f, OPS, T0 + 4 * S);
 }
 
+/* Only then the notifier may sleep until it is told of a change. */
+static void it_rests_when_time_changes_nothing(void **state)
+{
+    struct fixture *f = *state;
+    load(f, "  - { id: all, to: [ops, am] }\n");
+    outbox_tick(f->outbox, T0);
+    assert_true(outbox_rests(f->outbox));
+    put(f, 0, LOCAL, true, true, T0, T0);
+    assert_false(outbox_rests(f->outbox));
+    deliver(f, OPS, T0 + 4 * S);
+    assert_false(outbox_rests(f->outbox)); /* it may escalate */
+    put(f, 0, LOCAL, false, false, T0, T0 + 5 * S);
+    assert_false(outbox_rests(f->outbox)); /* Alertmanager is to hear of it */
+    deliver(f, AM, T0 + 9 * S);
+    outbox_tick(f->outbox, T0 + 24 * 60 * MIN);
+    assert_true(outbox_rests(f->outbox));
+}
+
 int main(void)
 {
     cmocka_set_message_output(CM_OUTPUT_TAP);
@@ -472,6 +490,7 @@ int main(void)
         cmocka_unit_test_setup_teardown(it_escalates_after_the_clock_was_set_back, set_up, tear_down),
         cmocka_unit_test_setup_teardown(a_clock_that_jumps_ahead_loses_nothing_later, set_up, tear_down),
         cmocka_unit_test_setup_teardown(a_mail_says_what_and_since_when, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(it_rests_when_time_changes_nothing, set_up, tear_down),
         cmocka_unit_test_setup_teardown(a_damaged_file_is_refused, set_up, tear_down),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
