@@ -79,7 +79,9 @@ programs := $(if $(wildcard server/main.c),$(bin)/plantcastd) $(if $(wildcard pr
 modules  := $(bin)/plantcast-images.so
 # Readers of other formats, each where its library is (plantcast import --formats).
 occt     := $(dir $(wildcard /usr/include/opencascade/STEPCAFControl_Reader.hxx))
-occt_libs := $(patsubst %,-lTK%,XDESTEP XDEIGES STEP IGES XSBase RWMesh XCAF LCAF CAF CDF Mesh Prim TopAlgo BRep G3d Math ernel)
+# From 7.8 on (Debian 13) its readers have libraries of other names.
+occt_libs := $(if $(wildcard /usr/lib/*/libTKDESTEP.so),DESTEP DEIGES,XDESTEP XDEIGES STEP IGES)
+occt_libs := $(patsubst %,-lTK%,$(occt_libs) XSBase RWMesh XCAF LCAF CAF CDF Mesh Prim TopAlgo BRep G3d Math ernel)
 assimp   := $(wildcard /usr/include/assimp/Importer.hpp)
 readers  := $(if $(occt),$(bin)/plantcast-import-occt) $(if $(assimp),$(bin)/plantcast-import-assimp)
 

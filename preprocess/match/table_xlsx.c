@@ -138,6 +138,15 @@ static void refuse_entity(void *data, const char *name, int parameter, const cha
     XML_StopParser(sheet->parser, XML_FALSE);
 }
 
+static unsigned long current_line(XML_Parser parser)
+{
+#if XML_MAJOR_VERSION > 2 || XML_MINOR_VERSION >= 9 /* deprecates the other */
+    return (unsigned long)XML_GetCurrentLineNumber64(parser);
+#else
+    return (unsigned long)XML_GetCurrentLineNumber(parser);
+#endif
+}
+
 /* Returns 1: read, 0: there is no such part, -1: broken, with the reason. */
 static int read_part(struct sheet *sheet, unzFile zip, const char *part, XML_StartElementHandler begins, XML_EndElementHandler ends,
                      char *why, size_t why_bytes)
@@ -165,7 +174,7 @@ static int read_part(struct sheet *sheet, unzFile zip, const char *part, XML_Sta
     if (good < 0 && (total > max_part_bytes || sheet->too_large))
         snprintf(why, why_bytes, "%s is too large", part);
     else if (good < 0)
-        snprintf(why, why_bytes, "%s, line %lu: %s", part, (unsigned long)XML_GetCurrentLineNumber(parser),
+        snprintf(why, why_bytes, "%s, line %lu: %s", part, current_line(parser),
                  count < 0 ? "cannot be unpacked" : XML_ErrorString(XML_GetErrorCode(parser)));
     XML_ParserFree(parser);
     unzCloseCurrentFile(zip);
