@@ -21,7 +21,7 @@ $(build)/demo/plant.yaml: $(bin)/plantcast-demo
 
 prefix ?= /usr/local
 root   := $(DESTDIR)$(prefix)
-units  := $(wildcard deploy/systemd/*.service deploy/systemd/*.timer)
+units  := $(wildcard deploy/systemd/*.service deploy/systemd/*.socket deploy/systemd/*.timer)
 only_demo := $(bin)/plantcast-sim $(bin)/plantcast-demo
 install: all
 	install -d $(root)/bin $(root)/lib/plantcast $(root)/libexec/plantcast $(root)/share/plantcast $(root)/share/doc/plantcast

@@ -9,6 +9,7 @@
 #include <unistd.h>
 
 #include "base/service_manager.h"
+#include "net/handed_socket.h"
 #include "server.h"
 #include "version.h"
 
@@ -305,6 +306,7 @@ int main(int argc, char **argv)
 {
     struct server_params params = { .address = "127.0.0.1",
                                     .port = 8080,
+                                    .socket_fd = -1,
                                     .log_level = LOG_INFO,
                                     .log_format = service_is_journal(STDERR_FILENO) ? LOG_JOURNAL : LOG_TEXT,
                                     .access.quotas = quotas_default() };
@@ -319,6 +321,14 @@ int main(int argc, char **argv)
     params.plant_path = argv[optind];
     if (task != server_run)
         return task(&params);
+    char handed[HANDED_ADDRESS_BYTES];
+    params.socket_fd = service_take_socket();
+    if (params.socket_fd >= 0 && handed_socket_find(params.socket_fd, handed, &params.port)) {
+        params.address = handed;
+    } else if (params.socket_fd != -1) {
+        fprintf(stderr, "plantcastd: one listening TCP socket is expected from the service manager\n");
+        return FAILED;
+    }
     const char *why;
     if ((params.audit.syslog && !params.audit.path) || !params.audit.syslog_cert != !params.audit.syslog_key) {
         fputs("plantcastd: --audit-syslog needs --audit FILE; --audit-cert and --audit-key belong together.\n", stderr);

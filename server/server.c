@@ -13,6 +13,7 @@
 #include <time.h>
 #include <unistd.h>
 
+#include "base/clock.h"
 #include "base/counters.h"
 #include "base/mem.h"
 #include "encode/encoder.h"
@@ -39,7 +40,8 @@ struct server {
     struct plant_import *import; /* NULL: plants are not brought in here */
     pthread_mutex_t wake_lock;   /* holds net alive while the render thread wakes it */
     struct net *net;
-    char *web; /* folder; NULL: none */
+    char *web;        /* folder; NULL: none */
+    int64_t begun_ns; /* monotonic */
 };
 
 static struct net *_Atomic to_stop;
@@ -155,6 +157,8 @@ static bool start_net(struct server *server)
         .audit = server->audit,
         .address = server->params.address,
         .port = server->params.port,
+        .socket_fd = server->params.socket_fd,
+        .begun_ns = server->begun_ns,
         .access = server->params.access,
         .codecs = find_codecs(server),
         .web_folder = server->web,
@@ -258,7 +262,9 @@ static bool server_start(struct server *server)
         return false;
     set_time_zone(server->runtime->plant);
     colormaps_of_plant(server->runtime->plant);
-    if (!net_port_free(server->log, server->params.address, server->params.port) || !net_access_good(server->log, &server->params.access))
+    if (server->params.socket_fd < 0 && !net_port_free(server->log, server->params.address, server->params.port))
+        return false;
+    if (!net_access_good(server->log, &server->params.access))
         return false;
     server->context.workers = server->workers = workers_create(server->params.threads);
     server->web = find_web(server->params.web);
@@ -317,7 +323,7 @@ static void say_ready(const struct server *server)
 
 int server_run(const struct server_params *params)
 {
-    struct server server = { .params = *params, .log = log_create(params->log_level) };
+    struct server server = { .params = *params, .log = log_create(params->log_level), .begun_ns = clock_mono_ns() };
     log_set_format(server.log, params->log_format, NULL);
     pthread_mutex_init(&server.wake_lock, NULL);
     signal(SIGPIPE, SIG_IGN);

@@ -14,6 +14,7 @@ struct server_params {
     const char *plant_path;
     const char *address; /* to listen on; numeric */
     int port;            /* 0: any that is free */
+    int socket_fd;       /* of the service manager, which listens there already; -1: none */
     enum gl_kind gl;
     struct gl_device gl_device;
     bool has_gl_device;

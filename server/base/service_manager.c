@@ -4,6 +4,7 @@
 
 #include <dirent.h>
 #include <errno.h>
+#include <fcntl.h>
 #include <pthread.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -19,7 +20,7 @@
 #include "base/mem.h"
 #include "base/text.h"
 
-enum { PATIENCE_S = 60, PATIENCE_EVERY_S = 10, PATIENCE_ASKS = 60 /* at least, within the limit */ };
+enum { FIRST_SOCKET = 3 /* sd_listen_fds(3) */, PATIENCE_S = 60, PATIENCE_EVERY_S = 10, PATIENCE_ASKS = 60 /* at least, within the limit */ };
 static const int64_t AT_WORK_NS = 20 * NS_PER_MS; /* of a processor since the last time: less is no work */
 
 /* path: that of a file, or @NAME. */
@@ -67,6 +68,18 @@ int64_t service_watchdog_ns(void)
         return 0;
     long long value = strtoll(us, NULL, 10);
     return value > 0 && value < INT64_MAX / 1000 ? (int64_t)value * 1000 : 0;
+}
+
+int service_take_socket(void)
+{
+    const char *pid = getenv("LISTEN_PID"), *count = getenv("LISTEN_FDS");
+    if (!pid || !count || strtol(pid, NULL, 10) != (long)getpid() || strtol(count, NULL, 10) < 1)
+        return -1;
+    bool one = strtol(count, NULL, 10) == 1;
+    unsetenv("LISTEN_PID"); /* plantcast-prep, which a reload starts, has none */
+    unsetenv("LISTEN_FDS");
+    fcntl(FIRST_SOCKET, F_SETFD, FD_CLOEXEC);
+    return one ? FIRST_SOCKET : -EINVAL;
 }
 
 struct service_patience {

@@ -20,6 +20,10 @@ struct service_patience *service_patience_begin(const char *status, int limit_s)
 void service_patience_status(struct service_patience *patience, const char *status); /* from now on; NULL patience is fine */
 void service_patience_end(struct service_patience **patience);                       /* leaves NULL */
 
+/* Returns the listening socket that the manager has opened and handed over (LISTEN_FDS, if meant for this process), which is the caller's
+   from now on; -1: none; -EINVAL: more than one. */
+int service_take_socket(void);
+
 /* Returns whether that descriptor is the journal's (JOURNAL_STREAM). */
 bool service_is_journal(int fd);
 struct service_field {

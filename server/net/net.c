@@ -17,6 +17,7 @@
 #include "net/http/site.h"
 #include "net/tls.h"
 #include "net/connection.h"
+#include "net/handed_socket.h"
 #include "net/net_impl.h"
 #include "session/resume.h"
 
@@ -29,6 +30,7 @@ enum { SPARE_FILES = 256 };                                         /* beside co
 static const struct lws_protocols protocols[] = {
     { .name = "http", .callback = http_callback, .per_session_data_size = sizeof(void *) },
     { .name = WIRE_SUBPROTOCOL, .callback = stream_callback, .per_session_data_size = sizeof(void *), .rx_buffer_size = 4096 },
+    { .name = HANDED_PROTOCOL, .callback = handed_socket_callback },
     { 0 },
 };
 
@@ -101,8 +103,16 @@ static void say_status(const struct server_context *server)
                                                        });
 }
 
+/* As long as it took to get ready is how long it may take to come back. */
+static void time_start(struct server_context *server, int64_t now_ns)
+{
+    if (!server->start_s && render_service_ready(server->params.plant.render_service))
+        server->start_s = (int)((now_ns - server->params.begun_ns) / NS_PER_S) + 1;
+}
+
 static void tick(struct net *net, int64_t now_ns)
 {
+    time_start(&net->server, now_ns);
     look_at_files(net, now_ns);
     look_at_processors(net, now_ns);
     record_held(&net->server, now_ns);
@@ -323,7 +333,9 @@ static bool open_context(struct net *net)
     }
     lws_set_log_level(LLL_ERR | LLL_WARN, lws_log_line);
     atomic_store(&lws_log_to, server->params.log);
-    if (!net_port_free(server->params.log, server->params.address, server->params.port))
+    if (server->params.socket_fd >= 0)
+        info.port = CONTEXT_PORT_NO_LISTEN_SERVER;
+    else if (!net_port_free(server->params.log, server->params.address, server->params.port))
         return false;
     server->lws = lws_create_context(&info);
     if (!server->lws) {
@@ -331,7 +343,7 @@ static bool open_context(struct net *net)
         return false;
     }
     net->vhost = lws_get_vhost_by_name(server->lws, "plantcast");
-    return true;
+    return server->params.socket_fd < 0 || handed_socket_listen(net);
 }
 
 static bool open_access(struct net *net)
@@ -423,7 +435,7 @@ void net_destroy(struct net **net_ptr)
 
 int net_port(const struct net *net)
 {
-    return lws_get_vhost_listen_port(net->vhost);
+    return net->server.params.socket_fd >= 0 ? net->server.params.port : lws_get_vhost_listen_port(net->vhost);
 }
 
 void net_run(struct net *net)

@@ -7,6 +7,8 @@
 
 #include "net/server_context.h"
 
+#define HANDED_PROTOCOL "plantcast-handed-socket"
+
 struct net {
     struct server_context server;
     struct lws_vhost *vhost;

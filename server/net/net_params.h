@@ -42,6 +42,8 @@ struct net_params {
     struct audit *audit; /* NULL: nothing is recorded */
     const char *address; /* to listen on, numeric */
     int port;            /* 0: any that is free */
+    int socket_fd;       /* which listens there already (net/handed_socket.h); -1: none */
+    int64_t begun_ns;    /* monotonic: when the daemon began to start */
     struct access_params access;
     unsigned codecs;        /* a bit, 1 << enum wire_codec, for each that works here */
     const char *web_folder; /* the page's files; NULL: no page is served */

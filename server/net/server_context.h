@@ -51,6 +51,8 @@ struct server_context {
     int64_t looked_ns; /* when the files of tokens and certificate were last looked at */
     uint64_t next_client;
     bool asked;                         /* requests were made: net_wake_render_service is due */
+    char goodbye[64];                   /* what streams are closed with at the end */
+    int start_s;                        /* that the daemon took to get ready, rounded up; 0: it is not ready */
     bool restless;                      /* a session waits for what time brings: a tick is due soon */
     int64_t still_ns;                   /* what the last refined frame cost that was drawn anew */
     uint8_t out[LWS_PRE + SLICE_BYTES]; /* lws writes its framing in front of what is sent */

@@ -3,6 +3,7 @@
 #include <netinet/in.h>
 #include <netinet/tcp.h>
 #include <openssl/rand.h>
+#include <stdio.h>
 #include <string.h>
 
 #include "base/clock.h"
@@ -11,7 +12,7 @@
 #include "net/stream.h"
 #include "net/connection.h"
 
-enum { STREAM_CLOSE_STALLED = 4000, LAST_WORDS_S = 2 };
+enum { STREAM_CLOSE_STALLED = 4000, LAST_WORDS_S = 2, BACK_MAX_S = 60 };
 static const int64_t MOVING_NS = 200 * NS_PER_MS; /* after an input somebody is taken to be moving */
 
 /* --- coming and going ------------------------------------------------------------------------------------------------- */
@@ -237,8 +238,13 @@ void streams_on_alarms(struct server_context *server)
 
 void streams_close(struct server_context *server)
 {
+    int back_s = server->start_s < BACK_MAX_S ? server->start_s : BACK_MAX_S;
+    if (back_s > 0)
+        snprintf(server->goodbye, sizeof(server->goodbye), "the server goes down; retry after %d s", back_s);
+    else
+        snprintf(server->goodbye, sizeof(server->goodbye), "the server goes down");
     for (struct stream *stream = server->streams; stream; stream = stream->next)
-        close_with(stream, LWS_CLOSE_STATUS_GOINGAWAY, "the server goes down");
+        close_with(stream, LWS_CLOSE_STATUS_GOINGAWAY, server->goodbye);
 }
 
 void stream_on_frame(struct server_context *server, struct encoded_frame *encoded)

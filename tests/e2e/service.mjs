@@ -8,6 +8,7 @@ import { createServer } from 'node:net';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
+import { Client } from './conformance/client.mjs';
 import { get } from './support/plain_client.mjs';
 import { freePort } from './support/ports.mjs';
 import { BIN, missing, runProgram, TinyPlant } from './support/tiny_plant.mjs';
@@ -88,6 +89,27 @@ for (const [thread, what] of [['render', 'the render thread'], ['plantcastd', 't
         assert.ok(took < WITHIN_S, `${took} s`);
         if (thread === 'render')
             assert.match(service.err, /render thread: no sign of life; the service manager will start the daemon again/);
+    });
+
+test('connections wait in the socket of the manager while the daemon is started again; it says when it will be back',
+    { skip, timeout: 120000 }, async () => {
+        const service = serve(['--port', '1'], ['--socket']); // which it does not ask for
+        const port = Number((await service.said(/^port: (\d+)$/m))[1]);
+        assert.equal((await get(port, '/readyz')).status, 200, 'asked before anything ran');
+        const client = await Client.open(port);
+        await client.hello();
+        service.order('again');
+        const closed = await client.wait('a close', (c) => c.closed);
+        assert.equal(closed.code, 1001);
+        assert.match(closed.text, /^the server goes down; retry after \d+ s$/);
+        const answers = [];
+        for (let i = 0; i < 20; i++) {
+            answers.push(get(port, '/healthz'));
+            await new Promise((done) => setTimeout(done, 50));
+        }
+        assert.deepEqual([...new Set((await Promise.all(answers)).map(({ status }) => status))], [200], 'none was refused');
+        assert.equal(service.out.match(/^started: /mg).length, 2);
+        await service.stop();
     });
 
 test('a port that is taken ends it, before it is ready', { skip }, async () => {

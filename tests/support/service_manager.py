@@ -3,8 +3,11 @@
 """Runs a program as a service manager does: with a socket for notifications, whose lines it prints as `notify: LINE`, and a watchdog, which
 kills the program (exit 99) when it has been ready for a while and no sign of life came. Lines on its own standard input are orders.
 
-usage: tests/support/service_manager.py [--watchdog SECONDS] [--journal SOCKET] PROGRAM [ARGUMENT ...]
+usage: tests/support/service_manager.py [--watchdog SECONDS] [--journal] [--socket] PROGRAM [ARGUMENT ...]
 orders: freeze THREAD   stops one thread of the program, by name, and nothing else of it
+        again           ends the program, and starts it once more
+
+--socket: the program is handed a listening socket, whose port is printed, and which outlives it.
 
 --journal: standard error of the program is taken for the journal's, as JOURNAL_STREAM says."""
 
@@ -58,10 +61,27 @@ def hear(notify):
     return "READY=1" in lines
 
 
+def listen():
+    """At descriptor 3, as systemd has it."""
+    listening = socket.create_server(("127.0.0.1", 0), backlog=64)
+    say("port: %d" % listening.getsockname()[1])
+    return listening
+
+
+def start(command, variables, listening):
+    if listening:  # the shell has the number that the program will have
+        command = ["/bin/sh", "-c", 'LISTEN_FDS=1 LISTEN_PID=$$ exec "$@" 3<&%d' % listening.fileno(), "sh"] + command
+    child = subprocess.Popen(command, env=variables, stdin=subprocess.DEVNULL, start_new_session=True,
+                             pass_fds=[listening.fileno()] if listening else [])
+    say("started: %d" % child.pid)
+    return child
+
+
 def main():
     parser = argparse.ArgumentParser()
     parser.add_argument("--watchdog", type=float, default=0)
     parser.add_argument("--journal", action="store_true")
+    parser.add_argument("--socket", action="store_true")
     parser.add_argument("command", nargs=argparse.REMAINDER)
     given = parser.parse_args()
     folder = tempfile.TemporaryDirectory(prefix="plantcast-manager-")
@@ -73,8 +93,8 @@ def main():
     if given.journal:
         stat = os.fstat(2)
         variables["JOURNAL_STREAM"] = "%d:%d" % (stat.st_dev, stat.st_ino)
-    child = subprocess.Popen(given.command, env=variables, stdin=subprocess.DEVNULL)
-    say("started: %d" % child.pid)
+    listening = listen() if given.socket else None
+    child = start(given.command, variables, listening)
     signal.signal(signal.SIGTERM, lambda *_: end(child, frozen) if frozen else child.terminate())
     frozen = None
     ready, fed, orders, killed = False, time.monotonic(), True, False
@@ -88,6 +108,10 @@ def main():
         if sys.stdin in readable:
             order = sys.stdin.readline()
             orders = order != ""
+            if order.strip() == "again":
+                child.terminate()
+                child.wait()
+                child = start(given.command, variables, listening)
             if order.startswith("freeze "):
                 frozen = freeze(child.pid, order.split()[1])
         if given.watchdog and ready and not killed and time.monotonic() - fed > given.watchdog:

@@ -67,6 +67,14 @@ test('an open socket alone does not shorten the waits; a greeting does', () => {
     assert.equal(waitOf(bench), 500);
 });
 
+test('a server that goes down says when to come back', () => {
+    const bench = makeConnection(), { connection, sockets } = bench;
+    connection.start();
+    sockets[0].accept();
+    sockets[0].fail(1001, 'the server goes down; retry after 7 s');
+    assert.equal(waitOf(bench), 7000);
+});
+
 test('retryNow cuts a wait short, and does nothing else', () => {
     const { connection, sockets, clock } = makeConnection();
     connection.start();

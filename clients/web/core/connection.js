@@ -8,7 +8,7 @@ export const PING_MS = 2000;   // a server with nothing to say answers at least 
 export const QUIET_MS = 5000;
 export const DEAD_MS = 12000;
 
-const FULL = 1013, FULL_MS = 10000, OPENING_MS = 10000, ANSWER_MS = 1000;
+const GOING = 1001, FULL = 1013, FULL_MS = 10000, OPENING_MS = 10000, ANSWER_MS = 1000;
 const CLOSE_REASONS = {
     1001: 'reason.down', 1002: 'reason.version', 1008: 'reason.forbidden', 1009: 'reason.long', 1013: 'reason.full', 4000: 'reason.slow',
 };
@@ -96,6 +96,9 @@ export class Connection {
         socket.onclose = (event) => {
             if (event.code === FULL)
                 this.leastWait = this.leastWait || FULL_MS;
+            const back = event.code === GOING && /retry after (\d+) s$/.exec(event.reason ?? '');
+            if (back)
+                this.leastWait = back[1] * 1000;
             const known = CLOSE_REASONS[event.code];
             this.lose(known ? say(known) : event.reason || say('reason.unreachable'));
         };
