@@ -17,6 +17,7 @@
 #include "base/text.h"
 #include "commands.h"
 #include "history/copy.h"
+#include "history/history.h"
 #include "history/month.h"
 #include "base/timestamp.h"
 #include "plant/plant.h"
@@ -36,11 +37,15 @@ struct job {
 static void print_usage(FILE *out)
 {
     fputs("usage: plantcast backup PLANT.yaml -o FOLDER [--history DIR]\n"
+          "       plantcast backup --verify FOLDER\n"
           "       plantcast restore FOLDER PLANT.yaml [--history DIR]\n"
           "\n"
           "backup copies history, the journal of alarms, what was proven, the plant file and its tag list into a new folder, also\n"
           "while the daemon records: each database as it was at one moment. Models are not in it. Nobody but its maker may read it.\n"
           "Links are not followed, and what belongs to somebody else than its folder does is not read: neither for root.\n"
+          "\n"
+          "--verify restores a backup aside, in a folder beside it that is removed again, compares what is there with what was backed\n"
+          "up, and checks each database.\n"
           "\n"
           "restore checks that a backup is whole and puts it in place: the plant file as PLANT.yaml, its tag list and history where the\n"
           "plant file says. By root, each file belongs to whom its folder belongs to. Nothing is overwritten: where a file is in the\n"
@@ -315,18 +320,91 @@ static bool restore(struct job *job, const char *plant_path)
     return good;
 }
 
+/* --- the drill ------------------------------------------------------------------------------------------------------------------ */
+
+static bool is_database(const char *name)
+{
+    size_t length = strlen(name);
+    return length > 7 && !strcmp(name + length - 7, ".sqlite");
+}
+
+/* Copying a database reads all of it, and checks the copy. */
+static bool each_restored(struct job *job, const char *plant_path, const char *history)
+{
+    size_t i;
+    json_t *file;
+    bool good = true;
+    json_array_foreach(job->files, i, file)
+    {
+        const char *name = json_string_value(json_object_get(file, "name")), *expected = json_string_value(json_object_get(file, "xxh128"));
+        char *path = place_of(name, plant_path, history, NULL), *copy = mem_printf("%s.checked", path), hash[COPY_HASH_BYTES];
+        long long bytes;
+        bool same = copy_hash(job->log, path, hash, &bytes) && !strcmp(hash, expected);
+        if (!same)
+            say(path, "is not as it was backed up");
+        good = same && (!is_database(name) || copy_database(job->log, path, copy)) && good;
+        unlink(copy);
+        mem_free(copy);
+        mem_free(path);
+    }
+    return good;
+}
+
+static void say_span(struct job *job, const char *history)
+{
+    struct history_reader *reader = history_reader_create(job->log, history);
+    int64_t first_us, last_us;
+    char first[TIMESTAMP_BYTES], last[TIMESTAMP_BYTES];
+    if (history_span(reader, &first_us, &last_us)) {
+        timestamp_print(first_us, first);
+        timestamp_print(last_us, last);
+        printf("%s: readings from %s to %s\n", job->folder, first, last);
+    }
+    history_reader_destroy(&reader);
+}
+
+static bool verify_in(struct job *job, const char *aside)
+{
+    char *plant_path = mem_printf("%s/" PLANT_FILE, aside), *history = mem_printf("%s/history", aside);
+    bool good = make_folder(history) && each_file(job, plant_path, history, NULL, true) && each_restored(job, plant_path, history);
+    if (good)
+        say_span(job, history);
+    remove_folder(history);
+    remove_folder(aside);
+    mem_free(history);
+    mem_free(plant_path);
+    return good;
+}
+
+static bool verify(struct job *job)
+{
+    json_t *manifest = read_manifest(job->folder);
+    job->files = json_object_get(manifest, "files");
+    char *aside = mem_printf("%s.verify-XXXXXX", job->folder);
+    bool good = manifest && is_whole(job) && (mkdtemp(aside) || say(aside, strerror(errno))) && verify_in(job, aside);
+    if (good)
+        printf("%s: verified: restored aside, %zu files as of %s\n", job->folder, json_array_size(job->files),
+               json_string_value(json_object_get(manifest, "made")));
+    mem_free(aside);
+    json_decref(manifest);
+    return good;
+}
+
 /* --- the command line ------------------------------------------------------------------------------------------------------------ */
 
 /* -1: go on; else the exit code. */
-static int parse(int argc, char **argv, struct job *job, const char **out)
+static int parse(int argc, char **argv, struct job *job, const char **out, bool *drill)
 {
-    static const struct option options[] = {
-        { "history", required_argument, NULL, 'd' }, { "out", required_argument, NULL, 'o' }, { "help", no_argument, NULL, 'h' }, { 0 }
-    };
+    static const struct option options[] = { { "history", required_argument, NULL, 'd' },
+                                             { "out", required_argument, NULL, 'o' },
+                                             { "verify", no_argument, NULL, 'v' },
+                                             { "help", no_argument, NULL, 'h' },
+                                             { 0 } };
     for (int option; (option = getopt_long(argc, argv, "o:h", options, NULL)) != -1;) {
         switch (option) {
         case 'd': job->history = optarg; break;
         case 'o': *out = optarg; break;
+        case 'v': *drill = true; break;
         case 'h': print_usage(stdout); return 0;
         default: print_usage(stderr); return 2;
         }
@@ -338,12 +416,21 @@ int cmd_backup(int argc, char **argv)
 {
     struct job job = { 0 };
     const char *out = NULL;
-    int code = parse(argc, argv, &job, &out);
+    bool drill = false;
+    int code = parse(argc, argv, &job, &out, &drill);
     if (code >= 0)
         return code;
-    if (argc - optind != 1 || !out) {
+    if (argc - optind != 1 || !out == !drill || (drill && job.history)) {
         print_usage(stderr);
         return 2;
+    }
+    if (drill) {
+        umask(0077);
+        job.log = log_create(LOG_WARN);
+        job.folder = argv[optind];
+        code = verify(&job) ? 0 : 1;
+        log_destroy(&job.log);
+        return code;
     }
     struct plant *plant = plant_load_or_print(argv[optind]);
     if (!plant)
@@ -362,10 +449,11 @@ int cmd_restore(int argc, char **argv)
 {
     struct job job = { 0 };
     const char *out = NULL;
-    int code = parse(argc, argv, &job, &out);
+    bool drill = false;
+    int code = parse(argc, argv, &job, &out, &drill);
     if (code >= 0)
         return code;
-    if (argc - optind != 2 || out) {
+    if (argc - optind != 2 || out || drill) {
         print_usage(stderr);
         return 2;
     }

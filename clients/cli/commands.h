@@ -18,6 +18,8 @@ int cmd_tags(int argc, char **argv);
 int tags_probe(const char *device, const char *address, int address_base, bool rtu);
 /* Imports recorded series into a plant's history, or exports them as CSV. */
 int cmd_history(int argc, char **argv);
+/* Says whether a daemon is ready. */
+int cmd_ready(int argc, char **argv);
 /* Has a daemon of this machine load its plant anew and says what came of it. */
 int cmd_reload(int argc, char **argv);
 /* Copies history, journal and configuration of a plant into a folder. */

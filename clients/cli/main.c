@@ -52,6 +52,7 @@ static const struct command {
     { "probe", "put load on a daemon and print a table of latencies", cmd_probe },
     { "tags", "print the tags of a daemon and their values", cmd_tags },
     { "init", "make what the service plantcastd@NAME reads, with a certificate and first tokens", cmd_init },
+    { "ready", "say by the exit status whether a daemon is ready", cmd_ready },
     { "reload", "have a daemon of this machine load its plant anew, and say what came of it", cmd_reload },
     { "history", "take series into a plant's history, or print what was recorded", cmd_history },
     { "backup", "history, journal and configuration of a plant, also while its daemon records", cmd_backup },

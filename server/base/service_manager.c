@@ -20,7 +20,12 @@
 #include "base/mem.h"
 #include "base/text.h"
 
-enum { FIRST_SOCKET = 3 /* sd_listen_fds(3) */, PATIENCE_S = 60, PATIENCE_EVERY_S = 10, PATIENCE_ASKS = 60 /* at least, within the limit */ };
+enum {
+    FIRST_SOCKET = 3 /* sd_listen_fds(3) */,
+    PATIENCE_S = 60,
+    PATIENCE_EVERY_S = 10,
+    PATIENCE_ASKS = 60 /* at least, within the limit */
+};
 static const int64_t AT_WORK_NS = 20 * NS_PER_MS; /* of a processor since the last time: less is no work */
 
 /* path: that of a file, or @NAME. */

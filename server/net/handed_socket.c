@@ -19,7 +19,8 @@ bool handed_socket_find(int fd, char address[HANDED_ADDRESS_BYTES], int *port)
     struct sockaddr_storage at;
     socklen_t length = sizeof(at), size = sizeof(int);
     int listens = 0;
-    if (getsockopt(fd, SOL_SOCKET, SO_ACCEPTCONN, &listens, &size) != 0 || !listens || getsockname(fd, (struct sockaddr *)&at, &length) != 0)
+    if (getsockopt(fd, SOL_SOCKET, SO_ACCEPTCONN, &listens, &size) != 0 || !listens ||
+        getsockname(fd, (struct sockaddr *)&at, &length) != 0)
         return false;
     const struct sockaddr_in *four = (const struct sockaddr_in *)&at;
     const struct sockaddr_in6 *six = (const struct sockaddr_in6 *)&at;

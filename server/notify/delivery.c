@@ -4,6 +4,7 @@
 
 #include <curl/curl.h>
 #include <errno.h>
+#include <stdio.h>
 #include <string.h>
 #include <strings.h>
 
@@ -18,6 +19,9 @@ struct transfer {
     char *body;
     size_t bytes, at;
     char why[CURL_ERROR_SIZE];
+    struct log *log;
+    const char *name;  /* of the recipient */
+    char mailbox[256]; /* that the server was asked for last; "": it was asked for something else */
 };
 
 struct delivery {
@@ -107,6 +111,25 @@ static size_t drop_answer(char *bytes, size_t size, size_t count, void *arg)
     return size * count;
 }
 
+/* What one mailbox of several is refused with is no failure of the whole, so nothing else says it. */
+static int hear_refusals(CURL *handle, curl_infotype type, char *bytes, size_t count, void *arg)
+{
+    static const char ask[] = "RCPT TO:";
+    struct transfer *transfer = arg;
+    size_t skipped = sizeof(ask) - 1;
+    int length = (int)(count < 400 ? count : 400);
+    (void)handle;
+    while (length > 0 && (bytes[length - 1] == '\r' || bytes[length - 1] == '\n'))
+        length--;
+    if (type == CURLINFO_HEADER_OUT && (size_t)length > skipped && !strncmp(bytes, ask, skipped))
+        snprintf(transfer->mailbox, sizeof(transfer->mailbox), "%.*s", length - (int)skipped, bytes + skipped);
+    else if (type == CURLINFO_HEADER_OUT)
+        transfer->mailbox[0] = 0;
+    else if (type == CURLINFO_HEADER_IN && transfer->mailbox[0] && length > 0 && (bytes[0] == '4' || bytes[0] == '5'))
+        log_warn(transfer->log, "notify: %s: the mail server refuses %s: %.*s", transfer->name, transfer->mailbox, length, bytes);
+    return 0;
+}
+
 static void set_common(struct delivery *delivery, struct transfer *transfer, const char *ca_file)
 {
     CURL *handle = transfer->handle;
@@ -154,6 +177,9 @@ static char *set_mail(struct delivery *delivery, struct transfer *transfer, cons
         transfer->list = curl_slist_append(transfer->list, recipient->addresses.at[i]);
     curl_easy_setopt(handle, CURLOPT_MAIL_RCPT, transfer->list);
     curl_easy_setopt(handle, CURLOPT_MAIL_RCPT_ALLLOWFAILS, 1L); /* one mailbox that is gone does not keep it from the others */
+    curl_easy_setopt(handle, CURLOPT_DEBUGFUNCTION, hear_refusals);
+    curl_easy_setopt(handle, CURLOPT_DEBUGDATA, transfer);
+    curl_easy_setopt(handle, CURLOPT_VERBOSE, 1L);
     curl_easy_setopt(handle, CURLOPT_UPLOAD, 1L);
     curl_easy_setopt(handle, CURLOPT_READFUNCTION, give_body);
     curl_easy_setopt(handle, CURLOPT_READDATA, transfer);
@@ -194,8 +220,8 @@ char *delivery_start(struct delivery *delivery, int recipient, char *body, size_
 {
     const struct notify_recipient *to = &delivery->notify->recipients[recipient];
     struct transfer *transfer = &delivery->transfers[recipient];
-    *transfer = (struct transfer){ .handle = curl_easy_init(), .body = body, .bytes = bytes };
-    char *why = !transfer->handle             ? mem_strdup("out of memory")
+    *transfer = (struct transfer){ .handle = curl_easy_init(), .body = body, .bytes = bytes, .log = delivery->log, .name = to->id };
+    char *why = !transfer->handle          ? mem_strdup("out of memory")
                 : to->kind == NOTIFY_EMAIL ? set_mail(delivery, transfer, to)
                                            : set_http(delivery, transfer, to);
     if (!why) {

@@ -54,6 +54,10 @@ test('what was recorded comes back elsewhere, point by point', { skip }, async (
     assert.ok(!names.some((name) => /-wal|-shm|part/.test(name)), names.join(' '));
     const stamp = statSync(join(plant.file.replace(/yaml$/, 'history'), 'last-backup')).mtimeMs; // which the daemon says in its metrics
     assert.ok(Math.abs(Date.now() - stamp) < 60000);
+    const drill = runProgram('plantcast', ['backup', '--verify', folder('one')]);
+    assert.equal(drill.code, 0, drill.err);
+    assert.match(drill.out, /one: readings from \S+Z to \S+Z\n.*one: verified: restored aside, \d+ files as of /);
+    assert.deepEqual(readdirSync(join(folder('one'), '..')).filter((name) => name.includes('verify')), [], 'nothing of it stays');
     mkdirSync(folder('elsewhere'));
     const other = join(folder('elsewhere'), 'other.yaml');
     const restored = runProgram('plantcast', ['restore', folder('three'), other]);
@@ -82,6 +86,8 @@ test('what is damaged, missing or in the way is refused by name', { skip }, () =
     const refused = runProgram('plantcast', ['restore', folder('one'), target]);
     const named = refused.err.includes(`${damaged}: is not as it was`);
     assert.deepEqual([refused.code, named, existsSync(target)], [1, true, false], refused.err);
+    const drill = runProgram('plantcast', ['backup', '--verify', folder('one')]);
+    assert.deepEqual([drill.code, drill.err.includes(`${damaged}: is not as it was`)], [1, true], drill.err);
     const none = runProgram('plantcast', ['restore', folder('nothing'), target]);
     assert.deepEqual([none.code, /backup\.json/.test(none.err)], [1, true]);
     const list = join(folder('two'), 'backup.json');
@@ -89,6 +95,7 @@ test('what is damaged, missing or in the way is refused by name', { skip }, () =
     assert.equal(runProgram('plantcast', ['restore', folder('two'), target]).code, 1);
     const there = runProgram('plantcast', ['backup', plant.file, '-o', folder('three')]);
     assert.deepEqual([there.code, /is there already/.test(there.err)], [1, true]);
-    for (const args of [['backup', plant.file], ['backup'], ['restore', folder('three')], ['restore', 'a', 'b', 'c']])
+    for (const args of [['backup', plant.file], ['backup'], ['backup', '--verify', 'a', '-o', 'b'], ['restore', '--verify', 'a', 'b'],
+        ['restore', folder('three')], ['restore', 'a', 'b', 'c']])
         assert.equal(runProgram('plantcast', args).code, 2, args.join(' '));
 });

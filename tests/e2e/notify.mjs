@@ -63,7 +63,7 @@ notify:
   link: https://p.example/
   mail: { server: "${starttls ? 'smtp' : 'smtps'}://localhost:${port}", from: plant@p.example, user: plant, password_file: password,
           ca_file: mail.pem }
-  recipients: [{ id: ops, email: [ops@p.example, night@p.example] }]
+  recipients: [{ id: ops, email: [ops@p.example, gone@p.example, night@p.example] }]
   rules: [{ id: tanks, areas: "Tank*", to: ops }]
 `), mail = new MailServer(plant.folder, { starttls, user: 'plant', password: 'öpen sesame' });
         try {
@@ -78,6 +78,7 @@ notify:
             assert.equal(first.subject, '[Two boxes] P3 TI-1 high, left');
             assert.match(first.body, /^P3 {2}[\d-]+ [\d:]+ {2}TI-1 high, left: 55 °C \(limit 50 °C\); E-101, Tank farm\r$/m);
             assert.match(first.body, /https:\/\/p\.example\//);
+            assert.match(plant.daemon.said, /warn +notify: ops: the mail server refuses <gone@p\.example>: 550 5\.1\.1 no such mailbox/);
             await until('it is counted', async () => await metric(plant, 'plantcast_notify_sent_total{recipient="ops"}') === 1);
             await plant.daemon.stop('SIGKILL');
             await plant.startDaemon();

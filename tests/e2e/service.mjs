@@ -96,6 +96,8 @@ test('connections wait in the socket of the manager while the daemon is started 
         const service = serve(['--port', '1'], ['--socket']); // which it does not ask for
         const port = Number((await service.said(/^port: (\d+)$/m))[1]);
         assert.equal((await get(port, '/readyz')).status, 200, 'asked before anything ran');
+        assert.equal(runProgram('plantcast', ['ready', `http://127.0.0.1:${port}/`]).code, 0);
+        assert.equal(runProgram('plantcast', ['ready', 'http://127.0.0.1:1/']).code, 1);
         const client = await Client.open(port);
         await client.hello();
         service.order('again');

@@ -92,6 +92,8 @@ export class MailServer {
                 mail.from = line;
             if (verb === 'RCPT' && this.mode !== 'take')
                 return say(this.mode === 'refuse' ? '550 no such mailbox' : '451 later');
+            if (verb === 'RCPT' && line.includes('<gone@'))
+                return say('550 5.1.1 no such mailbox');
             if (verb === 'RCPT')
                 mail.to.push(line.replace(/^RCPT TO:<(.*)>.*$/i, '$1'));
             inData = verb === 'DATA';
