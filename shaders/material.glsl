@@ -4,7 +4,6 @@ struct Material {
     vec4 base_color;
     vec4 factors;  // metallic, roughness, normal scale, occlusion strength
     vec4 emissive; // rgb; alpha cutoff (0: opaque)
-    vec4 mean;     // base colour with its texture's mean, for the moving tier
 };
 layout(std430, binding = 0) readonly buffer Materials {
     Material materials[];

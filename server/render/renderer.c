@@ -27,9 +27,8 @@ struct renderer *renderer_create(struct log *log, struct gl *gl, const struct sc
     fields_init(&renderer->fields, log, field);
     isolines_init(&renderer->isolines, scene->asset_count);
     bool good = environments_init(&renderer->environments, gl, scene->plant, field_workers(field));
-    if (good)
-        environments_bind(&renderer->environments, 0);
-    good = good && gpu_scene_init(&renderer->gpu_scene, gl, scene) &&
+    struct environment_light sky = environments_get(&renderer->environments, 0);
+    good = good && gpu_scene_init(&renderer->gpu_scene, gl, scene, &sky) &&
            light_init(&renderer->light, &renderer->gpu_scene, &renderer->environments) && sky_init(&renderer->sky, log) &&
            render_backend_gl.init(renderer) && (!gl->software || render_backend_soft.init(renderer));
     if (!good)

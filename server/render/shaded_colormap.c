@@ -2,9 +2,6 @@
 /* Colours by place and light. */
 #include "render/shaded_colormap.h"
 
-#include <math.h>
-#include <string.h>
-
 #include "base/mem.h"
 #include "field/lab.h"
 
@@ -54,30 +51,47 @@ static GLuint make_texture(GLenum format, int columns, int rows)
     return texture;
 }
 
-GLuint shaded_colormap_create(const struct scale *scale, const struct colormap_shades *shades)
+static void fill_texels(struct shaded_colormap *colormap, const struct scale *scale, const struct colormap_shades *shades)
 {
-    uint8_t(*texels)[COLORMAP_COLUMNS][3] = mem_array(COLORMAP_ROWS, sizeof(*texels));
     for (int column = 0; column < COLORMAP_COLUMNS; column++) {
         int color = color_of_column(scale, column);
-        for (int row = 0; row < COLORMAP_ROWS; row++)
-            memcpy(texels[row][column], shades->rgb[row][color], 3);
+        for (int row = 0; row < COLORMAP_ROWS; row++) {
+            const uint8_t *rgb = shades->rgb[row][color];
+            colormap->texels[row][column] = rgb[2] | (uint32_t)rgb[1] << 8 | (uint32_t)rgb[0] << 16 | 0xff000000;
+        }
     }
-    GLuint texture = make_texture(GL_RGB8, COLORMAP_COLUMNS, COLORMAP_ROWS);
-    glTextureSubImage2D(texture, 0, 0, 0, COLORMAP_COLUMNS, COLORMAP_ROWS, GL_RGB, GL_UNSIGNED_BYTE, texels);
-    mem_free(texels);
-    return texture;
 }
 
-GLuint shaded_colormap_create_lines(const struct scale *scale, const double *lines, int count)
+static void fill_nearest(float nearest[COLORMAP_PLACES], const struct scale *scale, const double *lines, int count)
 {
-    float places[COLORMAP_PLACES];
-    for (int column = 0, nearest = 0; column < COLORMAP_PLACES; column++) {
+    for (int column = 0, line = 0; column < COLORMAP_PLACES; column++) {
         double place = (column + 0.5) / COLORMAP_PLACES;
-        while (nearest + 1 < count && scale_place(scale, lines[nearest]) + scale_place(scale, lines[nearest + 1]) <= 2 * place)
-            nearest++;
-        places[column] = (float)scale_place(scale, lines[nearest]);
+        while (line + 1 < count && scale_place(scale, lines[line]) + scale_place(scale, lines[line + 1]) <= 2 * place)
+            line++;
+        nearest[column] = (float)scale_place(scale, lines[line]);
     }
-    GLuint texture = make_texture(GL_R32F, COLORMAP_PLACES, 1);
-    glTextureSubImage2D(texture, 0, 0, 0, COLORMAP_PLACES, 1, GL_RED, GL_FLOAT, places);
-    return texture;
+}
+
+void shaded_colormap_init(struct shaded_colormap *colormap, const struct scale *scale, const struct colormap_shades *shades,
+                          const double *lines, int line_count)
+{
+    *colormap = (struct shaded_colormap){ .texels = mem_array(COLORMAP_ROWS, sizeof(*colormap->texels)) };
+    fill_texels(colormap, scale, shades);
+    colormap->colors = make_texture(GL_RGB8, COLORMAP_COLUMNS, COLORMAP_ROWS);
+    glTextureSubImage2D(colormap->colors, 0, 0, 0, COLORMAP_COLUMNS, COLORMAP_ROWS, GL_BGRA, GL_UNSIGNED_BYTE, colormap->texels);
+    if (line_count == 0)
+        return;
+    colormap->nearest = mem_array(COLORMAP_PLACES, sizeof(*colormap->nearest));
+    fill_nearest(colormap->nearest, scale, lines, line_count);
+    colormap->lines = make_texture(GL_R32F, COLORMAP_PLACES, 1);
+    glTextureSubImage2D(colormap->lines, 0, 0, 0, COLORMAP_PLACES, 1, GL_RED, GL_FLOAT, colormap->nearest);
+}
+
+void shaded_colormap_finish(struct shaded_colormap *colormap)
+{
+    glDeleteTextures(1, &colormap->colors);
+    glDeleteTextures(1, &colormap->lines);
+    mem_free(colormap->texels);
+    mem_free(colormap->nearest);
+    *colormap = (struct shaded_colormap){ 0 };
 }

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Scales as textures: what a pixel looks up. In the default look shading adds to CIELAB L* and touches neither hue nor chroma, so that
-   it cannot be read as a value. Thread: the one of the GL context. */
+/* Scales as tables, in memory and as textures: what a pixel looks up. In the default look shading adds to CIELAB L* and touches neither
+   hue nor chroma, so that it cannot be read as a value. Thread: the one of the GL context. */
 #ifndef RENDER_SHADED_COLORMAP_H
 #define RENDER_SHADED_COLORMAP_H
 #include <stdint.h>
@@ -25,9 +25,15 @@ struct colormap_shades {
     uint8_t rgb[COLORMAP_ROWS][SHADES_COLORS][3];
 };
 void colormap_shades_init(const struct colormap *map, struct colormap_shades *out);
-/* Colours by place and light; 0: out of memory. */
-GLuint shaded_colormap_create(const struct scale *scale, const struct colormap_shades *shades);
-/* For each place of the scale the nearest place that has a line (R32F). */
-GLuint shaded_colormap_create_lines(const struct scale *scale, const double *lines, int count);
+struct shaded_colormap {
+    uint32_t (*texels)[COLORMAP_COLUMNS]; /* COLORMAP_ROWS: blue | green << 8 | red << 16 | 0xff000000 */
+    float *nearest;                       /* for each place of the scale the nearest one that has a line; NULL: there are no lines */
+    GLuint colors, lines;                 /* textures of both; lines: 0: none */
+    uint64_t version;                     /* another one for each that was made, from 1 */
+};
+/* Works both out and uploads them. lines: values; line_count may be 0. The caller checks for errors of GL, and finishes it. */
+void shaded_colormap_init(struct shaded_colormap *colormap, const struct scale *scale, const struct colormap_shades *shades,
+                          const double *lines, int line_count);
+void shaded_colormap_finish(struct shaded_colormap *colormap);
 
 #endif

@@ -30,12 +30,6 @@ static const struct colormap_shades *shades_of(struct shaded_colormap_cache *col
     return colormaps->shades[number];
 }
 
-static void entry_finish(struct shaded_colormap_cache_entry *entry)
-{
-    glDeleteTextures(1, &entry->colormap.colors);
-    glDeleteTextures(1, &entry->colormap.lines);
-}
-
 /* A free one, or the one that was used longest ago. */
 static struct shaded_colormap_cache_entry *make_room(struct shaded_colormap_cache *colormaps)
 {
@@ -45,7 +39,7 @@ static struct shaded_colormap_cache_entry *make_room(struct shaded_colormap_cach
     for (int i = 1; i < SHADED_COLORMAPS; i++)
         if (colormaps->at[i].used < oldest->used)
             oldest = &colormaps->at[i];
-    entry_finish(oldest);
+    shaded_colormap_finish(&oldest->colormap);
     return oldest;
 }
 
@@ -62,12 +56,10 @@ struct shaded_colormap shaded_colormap_cache_get(struct shaded_colormap_cache *c
         return entry->colormap;
     }
     gl_clear_errors();
-    wanted.colormap.colors = shaded_colormap_create(&wanted.scale, shades_of(colormaps, view, wanted.scale.map));
+    shaded_colormap_init(&wanted.colormap, &wanted.scale, shades_of(colormaps, view, wanted.scale.map), wanted.lines, wanted.line_count);
     wanted.colormap.version = colormaps->uses;
-    if (wanted.line_count > 0)
-        wanted.colormap.lines = shaded_colormap_create_lines(&wanted.scale, wanted.lines, wanted.line_count);
     if (!gl_no_errors()) {
-        entry_finish(&wanted);
+        shaded_colormap_finish(&wanted.colormap);
         return (struct shaded_colormap){ 0 };
     }
     struct shaded_colormap_cache_entry *entry = make_room(colormaps);
@@ -78,7 +70,7 @@ struct shaded_colormap shaded_colormap_cache_get(struct shaded_colormap_cache *c
 void shaded_colormap_cache_finish(struct shaded_colormap_cache *colormaps)
 {
     for (int i = 0; i < colormaps->count; i++)
-        entry_finish(&colormaps->at[i]);
+        shaded_colormap_finish(&colormaps->at[i].colormap);
     for (size_t i = 0; colormaps->shades && i <= colormap_count(); i++)
         mem_free(colormaps->shades[i]);
     mem_free(colormaps->shades);

@@ -4,12 +4,6 @@
 #define RENDER_SHADED_COLORMAP_CACHE_H
 #include "render/shaded_colormap.h"
 
-struct shaded_colormap {
-    GLuint colors;    /* shaded_colormap_create */
-    GLuint lines;     /* shaded_colormap_create_lines; 0: the picture has no lines */
-    uint64_t version; /* another one for each that was made, from 1 */
-};
-
 struct shaded_colormap_cache_entry {
     struct scale scale;
     double lines[VIEW_ALL_LINES];

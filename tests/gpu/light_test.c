@@ -45,6 +45,12 @@ static void assert_same_light(const struct gpu_scene *gpu_scene, const struct li
     }
 }
 
+static bool init_scene(struct gpu_scene *gpu_scene, const struct toy *toy)
+{
+    struct environment_light sky = environments_get(&environments, 0);
+    return gpu_scene_init(gpu_scene, rig.gl, &toy->scene, &sky);
+}
+
 /* With and without the light of the sky to be worked out. */
 static void test_bits_make_the_same_light(void **state)
 {
@@ -52,7 +58,7 @@ static void test_bits_make_the_same_light(void **state)
     struct light at_once, in_bits;
     const struct light_key suns[2] = { sun(1), sun(2) };
     (void)state;
-    assert_true(gpu_scene_init(&gpu_scene, rig.gl, &stand.toy->scene) && light_init(&at_once, &gpu_scene, &environments) &&
+    assert_true(init_scene(&gpu_scene, stand.toy) && light_init(&at_once, &gpu_scene, &environments) &&
                 light_init(&in_bits, &gpu_scene, &environments));
     for (int i = 0; i < 2; i++) {
         int steps = 1;
@@ -86,7 +92,7 @@ static void test_large_faces_are_lit_within(void **state)
         shape_box(&shape, TOY_STEEL, (double[]){ x - 0.3, -0.3, z - 0.3 }, (double[]){ x + 0.3, 0.3, z + 0.3 });
     }
     toy_add(toy, "CORNERS", &shape, here, NULL, 0);
-    assert_true(gpu_scene_init(&gpu_scene, rig.gl, &toy->scene) && light_init(&light, &gpu_scene, &environments));
+    assert_true(init_scene(&gpu_scene, toy) && light_init(&light, &gpu_scene, &environments));
     const struct light_set *set = light_get(&light, &key);
     assert_non_null(set);
     uint8_t(*baked)[4] = bytes_of(&gpu_scene, set, (size_t)wall, &count);
@@ -107,7 +113,7 @@ static void test_many_lights_fit_in_a_bound(void **state)
     struct light light;
     struct light_key key = sun(0);
     (void)state;
-    assert_true(gpu_scene_init(&gpu_scene, rig.gl, &stand.toy->scene) && light_init(&light, &gpu_scene, &environments));
+    assert_true(init_scene(&gpu_scene, stand.toy) && light_init(&light, &gpu_scene, &environments));
     size_t one = bake_bytes(&gpu_scene);
     light.bound_bytes = 3 * one;
     struct light_set *held = light_get(&light, &key);
@@ -135,7 +141,7 @@ static void test_the_nearest_sun_stands_in(void **state)
     struct gpu_scene gpu_scene;
     struct light light;
     (void)state;
-    assert_true(gpu_scene_init(&gpu_scene, rig.gl, &stand.toy->scene) && light_init(&light, &gpu_scene, &environments));
+    assert_true(init_scene(&gpu_scene, stand.toy) && light_init(&light, &gpu_scene, &environments));
     assert_null(light_near(&light, &(struct light_key){ .towards = { 0, 0, 1 } }));
     light_get(&light, &(struct light_key){ .towards = { 1, 0, 0 } });
     light_get(&light, &(struct light_key){ .towards = { 0, 0, 1 } });
@@ -152,7 +158,7 @@ static void test_one_light_stays(void **state)
     struct light light;
     const struct light_key usual = sun(0), others[2] = { sun(1), sun(4) };
     (void)state;
-    assert_true(gpu_scene_init(&gpu_scene, rig.gl, &stand.toy->scene) && light_init(&light, &gpu_scene, &environments));
+    assert_true(init_scene(&gpu_scene, stand.toy) && light_init(&light, &gpu_scene, &environments));
     light.bound_bytes = 3 * bake_bytes(&gpu_scene);
     for (int cached = 1; cached >= 0; cached--) {
         for (int i = 0; i < 2; i++)

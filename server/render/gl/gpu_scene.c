@@ -44,34 +44,31 @@ static bool make_depth_programs(struct gpu_scene *gpu_scene)
 }
 
 /* False: logged. */
-static bool add_model(struct model *model, struct gl *gl, const struct asset *file, GLuint ramp_program)
+static bool add_model(const struct gpu_scene *gpu_scene, struct model *model, const struct asset *file, const struct environment_light *sky)
 {
-    if (model_init(model, gl, file) && materials_upload(model, gl, ramp_program))
+    struct gl *gl = gpu_scene->gl;
+    if (model_init(model, gl, file) && materials_upload(model, gl, sky, gpu_scene->up))
         return true;
     log_err(gl->log, "%s: not drawn: %u vertices, %u textures do not fit on the GPU", file->path, file->view.header->vertex_count,
             file->view.header->texture_count);
     return false;
 }
 
-bool gpu_scene_init(struct gpu_scene *gpu_scene, struct gl *gl, const struct scene *scene)
+bool gpu_scene_init(struct gpu_scene *gpu_scene, struct gl *gl, const struct scene *scene, const struct environment_light *sky)
 {
     *gpu_scene = (struct gpu_scene){ .gl = gl, .scene = scene, .up = { 0, scene->plant->up == AXIS_Y, scene->plant->up == AXIS_Z } };
     gpu_scene->models = mem_array(scene->asset_count, sizeof(*gpu_scene->models));
     gpu_scene->of_asset = mem_array(scene->asset_count, sizeof(*gpu_scene->of_asset));
-    GLuint ramp_program = program_create(gl->log, program_params(.compute = "ramp.comp"));
-    bool good = make_depth_programs(gpu_scene) && ramp_program;
-    if (good)
-        glProgramUniform3f(ramp_program, 0, (float)gpu_scene->up[0], (float)gpu_scene->up[1], (float)gpu_scene->up[2]);
+    bool good = make_depth_programs(gpu_scene);
     find_ball(gpu_scene);
     for (size_t i = 0; i < scene->asset_count && good; i++) {
         struct model *model = find_model(gpu_scene, scene->assets[i].file);
         if (!model) {
             model = &gpu_scene->models[gpu_scene->model_count++];
-            good = add_model(model, gl, scene->assets[i].file, ramp_program);
+            good = add_model(gpu_scene, model, scene->assets[i].file, sky);
         }
         gpu_scene->of_asset[i] = model;
     }
-    program_destroy(&ramp_program);
     return good;
 }
 

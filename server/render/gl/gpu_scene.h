@@ -4,6 +4,7 @@
 #define RENDER_GL_GPU_SCENE_H
 #include "gpu/gl.h"
 #include "render/gl/model.h"
+#include "render/light/environments.h"
 #include "render/plan/view_constants.h"
 #include "scene/visibility.h"
 
@@ -18,8 +19,8 @@ struct gpu_scene {
     GLuint depth_programs[2][2]; /* [clip planes][alpha-masked textures] */
 };
 
-/* Uploads all models. The environment must be bound (render/light/environments.h). Returns false if that fails; it is logged. */
-bool gpu_scene_init(struct gpu_scene *gpu_scene, struct gl *gl, const struct scene *scene);
+/* Uploads all models. sky: what previews are lit by. Returns false if that fails; it is logged. */
+bool gpu_scene_init(struct gpu_scene *gpu_scene, struct gl *gl, const struct scene *scene, const struct environment_light *sky);
 void gpu_scene_finish(struct gpu_scene *gpu_scene);
 
 /* Returns the asset's coarsest level whose error, projected at its distance from the camera, is at most error_px. */

@@ -7,10 +7,11 @@
 
 #include "base/mem.h"
 #include "base/srgb.h"
+#include "render/soft/ramps.h"
 
 /* As in shaders/material.glsl. */
 struct material_block {
-    float base_color[4], factors[4], emissive[4], mean[4];
+    float base_color[4], factors[4], emissive[4];
 };
 
 static GLuint upload_texture(const struct asset_view *view, const struct asset_texture *texture)
@@ -63,21 +64,24 @@ static void tint_mean(const struct asset_view *view, uint32_t material, float me
         mean[c] = (float)(sum[c] / (double)taken);
 }
 
-static void fill_block(struct material_block *block, const struct asset_view *view, uint32_t index)
+static void material_mean(const struct asset_view *view, uint32_t index, float mean[3])
 {
     const struct asset_material *material = &view->materials[index];
     float texture[3] = { 1, 1, 1 }, tint[3];
+    if (material->base_color_texture != ASSET_NO_TEXTURE)
+        texture_mean(view, &view->textures[material->base_color_texture], texture);
+    tint_mean(view, index, tint);
+    for (int c = 0; c < 3; c++)
+        mean[c] = material->base_color[c] * texture[c] * tint[c];
+}
+
+static void fill_block(struct material_block *block, const struct asset_material *material)
+{
     memcpy(block->base_color, material->base_color, sizeof(block->base_color));
     memcpy(block->factors, (float[4]){ material->metallic, material->roughness, material->normal_scale, material->occlusion_strength },
            sizeof(block->factors));
     memcpy(block->emissive, material->emissive, sizeof(material->emissive));
     block->emissive[3] = material->alpha == ASSET_ALPHA_MASK ? material->alpha_cutoff : 0;
-    if (material->base_color_texture != ASSET_NO_TEXTURE)
-        texture_mean(view, &view->textures[material->base_color_texture], texture);
-    tint_mean(view, index, tint);
-    for (int c = 0; c < 3; c++)
-        block->mean[c] = material->base_color[c] * texture[c] * tint[c];
-    block->mean[3] = 1;
 }
 
 static void find_maps(struct model_material *out, const struct model *model, const struct asset_material *material)
@@ -93,22 +97,28 @@ static void find_maps(struct model_material *out, const struct model *model, con
         }
 }
 
-static GLuint make_ramps(const struct model *model, GLuint ramp_program, bool muted)
+static void make_ramps(struct model *model, const struct environment_light *sky, const double up[3])
 {
-    GLuint ramps = 0;
-    glCreateTextures(GL_TEXTURE_2D, 1, &ramps);
-    glTextureStorage2D(ramps, 1, GL_RGBA8, MODEL_LIGHT_STEPS, (GLsizei)model->material_count);
-    glTextureParameteri(ramps, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
-    glUseProgram(ramp_program);
-    glUniform1i(1, muted);
-    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, model->material_buffer);
-    glBindImageTexture(0, ramps, 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_RGBA8);
-    glDispatchCompute(MODEL_LIGHT_STEPS / 64, (GLuint)model->material_count, 1);
-    glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT);
-    return ramps;
+    const struct asset_view *view = &model->file->view;
+    for (int kind = 0; kind < MODEL_RAMPS; kind++) {
+        uint32_t *texels = mem_array(model->material_count * MODEL_LIGHT_STEPS, sizeof(*texels));
+        for (uint32_t i = 0; i < model->material_count; i++) {
+            const struct asset_material *material = &view->materials[i];
+            struct ramp_material of = { .metallic = material->metallic, .roughness = material->roughness };
+            memcpy(of.emissive, material->emissive, sizeof(of.emissive));
+            material_mean(view, i, of.mean);
+            ramp_fill(sky, up, &of, kind == MODEL_MUTED, MODEL_LIGHT_STEPS, texels + (size_t)i * MODEL_LIGHT_STEPS);
+        }
+        model->ramp_texels[kind] = texels;
+        glCreateTextures(GL_TEXTURE_2D, 1, &model->ramps[kind]);
+        glTextureStorage2D(model->ramps[kind], 1, GL_RGBA8, MODEL_LIGHT_STEPS, (GLsizei)model->material_count);
+        glTextureParameteri(model->ramps[kind], GL_TEXTURE_MIN_FILTER, GL_NEAREST);
+        glTextureSubImage2D(model->ramps[kind], 0, 0, 0, MODEL_LIGHT_STEPS, (GLsizei)model->material_count, GL_BGRA, GL_UNSIGNED_BYTE,
+                            texels);
+    }
 }
 
-bool materials_upload(struct model *model, struct gl *gl, GLuint ramp_program)
+bool materials_upload(struct model *model, struct gl *gl, const struct environment_light *sky, const double up[3])
 {
     const struct asset_view *view = &model->file->view;
     model->texture_count = view->header->texture_count;
@@ -119,7 +129,7 @@ bool materials_upload(struct model *model, struct gl *gl, GLuint ramp_program)
     for (size_t i = 0; i < model->texture_count; i++)
         model->textures[i] = upload_texture(view, &view->textures[i]);
     for (uint32_t i = 0; i < model->material_count; i++) {
-        fill_block(&blocks[i], view, i);
+        fill_block(&blocks[i], &view->materials[i]);
         find_maps(&model->materials[i], model, &view->materials[i]);
     }
     if (gl_no_errors())
@@ -127,8 +137,7 @@ bool materials_upload(struct model *model, struct gl *gl, GLuint ramp_program)
     mem_free(blocks);
     if (!model->material_buffer)
         return false;
-    model->ramps = make_ramps(model, ramp_program, true);
-    model->own_ramps = make_ramps(model, ramp_program, false);
+    make_ramps(model, sky, up);
     return true;
 }
 
@@ -136,8 +145,9 @@ void materials_finish(struct model *model)
 {
     if (model->textures)
         glDeleteTextures((GLsizei)model->texture_count, model->textures);
-    glDeleteTextures(1, &model->ramps);
-    glDeleteTextures(1, &model->own_ramps);
+    glDeleteTextures(MODEL_RAMPS, model->ramps);
+    for (int kind = 0; kind < MODEL_RAMPS; kind++)
+        mem_free(model->ramp_texels[kind]);
     glDeleteBuffers(1, &model->material_buffer);
     mem_free(model->textures);
     mem_free(model->materials);

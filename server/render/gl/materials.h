@@ -4,9 +4,10 @@
 #ifndef RENDER_GL_MATERIALS_H
 #define RENDER_GL_MATERIALS_H
 #include "render/gl/model.h"
+#include "render/light/environments.h"
 
-/* Uploads materials and textures of a model that model_init() made. Returns false if the GPU is out of memory. */
-bool materials_upload(struct model *model, struct gl *gl, GLuint ramp_program);
+/* Uploads materials and textures of a model that model_init() made. up: of the plant. Returns false if the GPU is out of memory. */
+bool materials_upload(struct model *model, struct gl *gl, const struct environment_light *sky, const double up[3]);
 /* Deletes what materials_upload() made; before model_finish(). */
 void materials_finish(struct model *model);
 

@@ -8,6 +8,7 @@
 #include "scene/asset.h"
 
 enum model_map { MODEL_BASE_COLOR, MODEL_METALLIC_ROUGHNESS, MODEL_NORMAL, MODEL_OCCLUSION, MODEL_EMISSIVE, MODEL_MAPS };
+enum { MODEL_MUTED, MODEL_OWN, MODEL_RAMPS }; /* ramps: as context is shown, as the material is */
 enum { MODEL_LIGHT_STEPS = 64 }; /* texels of a material's ramp */
 
 struct model_submesh { /* the triangles of one material in one level */
@@ -42,7 +43,9 @@ struct model {
     struct model_material *materials;
     GLuint *textures;
     size_t level_count, material_count, texture_count;
-    GLuint material_buffer, ramps, own_ramps; /* a row per material, sRGB by brightness; own_ramps: not muted */
+    GLuint material_buffer;
+    uint32_t *ramp_texels[MODEL_RAMPS]; /* MODEL_LIGHT_STEPS per material: ramp_fill() */
+    GLuint ramps[MODEL_RAMPS];          /* textures of these, a row per material */
 };
 
 struct model_draws { /* scratch memory for the draws of one submesh; zero-initialise */

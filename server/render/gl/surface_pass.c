@@ -225,7 +225,7 @@ static void set_state(const struct draw_batches *batches, const struct frame_con
     if (!was || is->model != was->model) {
         mesh_bind_instances(&is->model->mesh, batches->instance_buffer);
         glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, is->model->material_buffer);
-        glBindTextureUnit(UNIT_RAMPS, context->view->look == LOOK_MATERIALS ? is->model->own_ramps : is->model->ramps);
+        glBindTextureUnit(UNIT_RAMPS, is->model->ramps[context->view->look == LOOK_MATERIALS ? MODEL_OWN : MODEL_MUTED]);
     }
     if (!was || is->light != was->light)
         glBindTextureUnit(UNIT_LIGHTS, is->light->texture);

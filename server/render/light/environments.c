@@ -10,9 +10,8 @@
 #include "base/clock.h"
 #include "base/mem.h"
 #include "gpu/mesh.h"
-#include "render/light/environment.h"
 
-enum { BRDF_PX = 48, SOURCE_MAX_PX = 1024, BLOCK_BINDING = 1, UNIT_MIRRORED = 8, UNIT_BRDF = 9 };
+enum { SOURCE_MAX_PX = 1024, BLOCK_BINDING = 1, UNIT_MIRRORED = 8, UNIT_BRDF = 9 };
 
 /* Lives until the worker and the renderer are both done with it. */
 struct environment_task {
@@ -85,8 +84,9 @@ static struct environment_task *start_task(struct log *log, struct workers *work
     return task;
 }
 
-static bool upload(struct environments *environments, struct environment_slot *slot, const struct environment *environment)
+static bool upload(const struct environments *environments, struct environment_slot *slot)
 {
+    const struct environment *environment = &slot->of;
     slot->irradiance = mesh_buffer(environments->gl->log, "environment", sizeof(environment->irradiance), environment->irradiance, 0);
     glCreateTextures(GL_TEXTURE_3D, 1, &slot->mirrored);
     glTextureStorage3D(slot->mirrored, 1, GL_RGBA16F, ENVIRONMENT_PX, ENVIRONMENT_PX, ENVIRONMENT_LAYERS);
@@ -101,15 +101,15 @@ static bool upload(struct environments *environments, struct environment_slot *s
 
 static void make_brdf(struct environments *environments)
 {
-    float(*texels)[2] = mem_array(BRDF_PX * BRDF_PX, sizeof(*texels));
-    environment_brdf(BRDF_PX, texels);
+    float(*texels)[2] = mem_array(ENVIRONMENT_BRDF_PX * ENVIRONMENT_BRDF_PX, sizeof(*texels));
+    environment_brdf(ENVIRONMENT_BRDF_PX, texels);
+    environments->brdf_texels = texels;
     glCreateTextures(GL_TEXTURE_2D, 1, &environments->brdf);
-    glTextureStorage2D(environments->brdf, 1, GL_RG16F, BRDF_PX, BRDF_PX);
-    glTextureSubImage2D(environments->brdf, 0, 0, 0, BRDF_PX, BRDF_PX, GL_RG, GL_FLOAT, texels);
+    glTextureStorage2D(environments->brdf, 1, GL_RG16F, ENVIRONMENT_BRDF_PX, ENVIRONMENT_BRDF_PX);
+    glTextureSubImage2D(environments->brdf, 0, 0, 0, ENVIRONMENT_BRDF_PX, ENVIRONMENT_BRDF_PX, GL_RG, GL_FLOAT, texels);
     glTextureParameteri(environments->brdf, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
     glTextureParameteri(environments->brdf, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
     glTextureParameteri(environments->brdf, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
-    mem_free(texels);
 }
 
 /* It is the same for every renderer: computed once, and kept until the process ends. */
@@ -130,7 +130,8 @@ bool environments_init(struct environments *environments, struct gl *gl, const s
     *environments = (struct environments){ .gl = gl, .count = 1 + (int)plant->environment_count };
     for (int i = 1; i < environments->count; i++)
         environments->slots[i].task = start_task(gl->log, workers, plant->environments[i - 1].path, y_up);
-    bool good = upload(environments, &environments->slots[0], built_in_sky(y_up, workers));
+    environments->slots[0].of = *built_in_sky(y_up, workers);
+    bool good = upload(environments, &environments->slots[0]);
     make_brdf(environments);
     return good;
 }
@@ -141,9 +142,12 @@ void environments_finish(struct environments *environments)
         struct environment_slot *slot = &environments->slots[i];
         glDeleteBuffers(1, &slot->irradiance);
         glDeleteTextures(1, &slot->mirrored);
+        if (i > 0) /* the sky stays */
+            environment_finish(&slot->of);
         task_unref(&slot->task);
     }
     glDeleteTextures(1, &environments->brdf);
+    mem_free(environments->brdf_texels);
     *environments = (struct environments){ 0 };
 }
 
@@ -167,7 +171,11 @@ bool environments_wait(struct environments *environments, int number, int64_t ti
         return true;
     if (!wait_done(slot->task, timeout_ns))
         return false;
-    if (slot->task->good && !upload(environments, slot, &slot->task->environment)) {
+    if (slot->task->good) {
+        slot->of = slot->task->environment; /* the worker is done with it */
+        slot->task->environment = (struct environment){ 0 };
+    }
+    if (slot->of.mirrored && !upload(environments, slot)) {
         glDeleteTextures(1, &slot->mirrored);
         slot->mirrored = 0;
     }
@@ -175,11 +183,19 @@ bool environments_wait(struct environments *environments, int number, int64_t ti
     return true;
 }
 
+static const struct environment_slot *slot_of(const struct environments *environments, int number)
+{
+    return &environments->slots[environments->slots[number].mirrored ? number : 0];
+}
+
+struct environment_light environments_get(const struct environments *environments, int number)
+{
+    return (struct environment_light){ &slot_of(environments, number)->of, (const float(*)[2])environments->brdf_texels };
+}
+
 void environments_bind(const struct environments *environments, int number)
 {
-    const struct environment_slot *slot = &environments->slots[number];
-    if (!slot->mirrored)
-        slot = &environments->slots[0];
+    const struct environment_slot *slot = slot_of(environments, number);
     glBindBufferBase(GL_UNIFORM_BUFFER, BLOCK_BINDING, slot->irradiance);
     glBindTextureUnit(UNIT_MIRRORED, slot->mirrored);
     glBindTextureUnit(UNIT_BRDF, environments->brdf);

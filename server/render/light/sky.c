@@ -2,23 +2,43 @@
 /* One triangle at the far plane, and one square of ground. */
 #include "render/light/sky.h"
 
+#include <math.h>
+
+#include "base/mem.h"
 #include "gpu/program.h"
 #include "render/matrix.h"
 
-static bool make_backdrops(struct sky *sky, struct log *log)
+/* What the frame shows where there is nothing, even and bright: for an operator, not a game. height: over the horizon, -1 to 1. sRGB. */
+static double backdrop(double height, bool dark, int channel)
 {
-    GLuint program = program_create(log, program_params(.compute = "backdrop.comp"));
-    if (!program)
-        return false;
+    static const double zenith[2][3] = { { 0.757, 0.816, 0.870 }, { 0.090, 0.110, 0.135 } };
+    static const double horizon[2][3] = { { 0.957, 0.963, 0.967 }, { 0.235, 0.255, 0.275 } };
+    static const double nadir[2][3] = { { 0.866, 0.874, 0.880 }, { 0.165, 0.178, 0.190 } };
+    double end = height > 0 ? zenith[dark][channel] : nadir[dark][channel], from = horizon[dark][channel];
+    return from + (end - from) * pow(fmin(height > 0 ? height : -1.6 * height, 1), 0.65);
+}
+
+/* A row rounds at another place for each pixel of a 4x4 tile, so that its slow gradients show no steps. */
+static void make_backdrops(struct sky *sky)
+{
+    static const int bayer[SKY_ROUNDINGS] = { 0, 8, 2, 10, 12, 4, 14, 6, 3, 11, 1, 9, 15, 7, 13, 5 };
+    sky->texels = mem_array(SKY_ROWS, sizeof(*sky->texels));
+    for (int i = 0; i < 2 * SKY_BACKDROPS; i++) {
+        int dark = i / SKY_BACKDROPS, column = i % SKY_BACKDROPS;
+        double bgr[3];
+        for (int c = 0; c < 3; c++)
+            bgr[c] = 255 * backdrop((column - 1024) / 1023.5, dark, 2 - c);
+        for (int rounding = 0; rounding < SKY_ROUNDINGS; rounding++) {
+            uint32_t color = 0xff000000;
+            for (int c = 0; c < 3; c++)
+                color |= (uint32_t)(bgr[c] + (bayer[rounding] + 0.5) / SKY_ROUNDINGS) << (8 * c);
+            sky->texels[dark * SKY_ROUNDINGS + rounding][column] = color;
+        }
+    }
     glCreateTextures(GL_TEXTURE_2D, 1, &sky->backdrops);
     glTextureStorage2D(sky->backdrops, 1, GL_RGBA8, SKY_BACKDROPS, SKY_ROWS);
     glTextureParameteri(sky->backdrops, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
-    glUseProgram(program);
-    glBindImageTexture(0, sky->backdrops, 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_RGBA8);
-    glDispatchCompute(SKY_BACKDROPS / 64, SKY_ROWS, 1);
-    glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT);
-    program_destroy(&program);
-    return true;
+    glTextureSubImage2D(sky->backdrops, 0, 0, 0, SKY_BACKDROPS, SKY_ROWS, GL_BGRA, GL_UNSIGNED_BYTE, sky->texels);
 }
 
 bool sky_init(struct sky *sky, struct log *log)
@@ -28,7 +48,8 @@ bool sky_init(struct sky *sky, struct log *log)
     for (int tier = 0; tier < 2; tier++)
         sky->ground_programs[tier] = program_create(log, program_params(.vertex = "ground.vert", .fragment = "ground.frag",
                                                                         .defines = tier == TIER_REFINED ? "#define REFINED\n" : NULL));
-    return sky->sky_program && sky->ground_programs[0] && sky->ground_programs[1] && make_backdrops(sky, log);
+    make_backdrops(sky);
+    return sky->sky_program && sky->ground_programs[0] && sky->ground_programs[1];
 }
 
 void sky_finish(struct sky *sky)
@@ -37,6 +58,7 @@ void sky_finish(struct sky *sky)
     program_destroy(&sky->ground_programs[0]);
     program_destroy(&sky->ground_programs[1]);
     glDeleteTextures(1, &sky->backdrops);
+    mem_free(sky->texels);
     glDeleteVertexArrays(1, &sky->vao);
 }
 

@@ -9,7 +9,8 @@
 enum { SKY_BACKDROPS = 2048, SKY_ROUNDINGS = 16, SKY_ROWS = 2 * SKY_ROUNDINGS };
 struct sky {
     GLuint sky_program, ground_programs[2]; /* [refined] */
-    GLuint backdrops;                       /* texture, as said above */
+    uint32_t (*texels)[SKY_BACKDROPS];      /* SKY_ROWS: blue | green << 8 | red << 16 | 0xff000000 */
+    GLuint backdrops;                       /* texture of these */
     GLuint vao;                             /* without attributes */
 };
 

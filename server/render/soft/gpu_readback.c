@@ -1,91 +1,15 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What the other passes made on the GPU, brought here: light, ramps, backdrops and colormaps. */
+/* What the other passes made on the GPU, brought here: light. */
 #include <math.h>
 #include <string.h>
 
 #include "base/mem.h"
-#include "base/srgb.h"
 #include "render/soft/soft_impl.h"
-#include "render/light/sky.h"
 
 static bool fail(const struct soft *soft, const char *what)
 {
     log_err(soft->gpu_scene->gl->log, "moving pictures: %s cannot be read back: out of memory", what);
     return false;
-}
-
-/* Four bytes a texel: blue, green, red, alpha. */
-static void read_colors(GLuint texture, uint32_t *to, size_t texels)
-{
-    glGetTextureImage(texture, 0, GL_BGRA, GL_UNSIGNED_BYTE, (GLsizei)(texels * 4), to);
-}
-
-bool soft_read_textures(struct soft *soft, const struct sky *sky)
-{
-    const struct gpu_scene *gpu_scene = soft->gpu_scene;
-    size_t rows = 0, backdrops = SKY_BACKDROPS * SKY_ROWS;
-    soft->ramp_of_model = mem_array(gpu_scene->model_count, sizeof(*soft->ramp_of_model));
-    for (size_t m = 0; m < gpu_scene->model_count; m++) {
-        soft->ramp_of_model[m] = (uint32_t)rows;
-        rows += gpu_scene->models[m].material_count;
-    }
-    soft->ramp_count = rows;
-    soft->muted_ramps = mem_array(rows * RAMP_STEPS, sizeof(*soft->muted_ramps));
-    soft->own_ramps = mem_array(rows * RAMP_STEPS, sizeof(*soft->own_ramps));
-    for (size_t m = 0; m < gpu_scene->model_count; m++) {
-        size_t first = (size_t)soft->ramp_of_model[m] * RAMP_STEPS, texels = gpu_scene->models[m].material_count * RAMP_STEPS;
-        read_colors(gpu_scene->models[m].ramps, soft->muted_ramps + first, texels);
-        read_colors(gpu_scene->models[m].own_ramps, soft->own_ramps + first, texels);
-    }
-    soft->colormap = mem_array(COLORMAP_ROWS * COLORMAP_COLUMNS, sizeof(*soft->colormap));
-    soft->lines = mem_array(COLORMAP_PLACES, sizeof(*soft->lines));
-    soft->backdrops = mem_array(backdrops, sizeof(*soft->backdrops));
-    read_colors(sky->backdrops, soft->backdrops, backdrops);
-    return glGetError() == GL_NO_ERROR;
-}
-
-/* As tone_map in shaders/light.glsl. */
-static void tone_map(double c[3])
-{
-    const double start = 0.8 - 0.04, desaturation = 0.15, d = 1 - start;
-    double x = fmin(c[0], fmin(c[1], c[2])), off = x < 0.08 ? x - 6.25 * x * x : 0.04;
-    for (int i = 0; i < 3; i++)
-        c[i] -= off;
-    double peak = fmax(c[0], fmax(c[1], c[2])), rolled = 1 - d * d / (peak + d - start);
-    double part = 1 - 1 / (desaturation * (peak - rolled) + 1);
-    for (int i = 0; i < 3 && peak >= start; i++)
-        c[i] = c[i] * rolled / peak + (rolled - c[i] * rolled / peak) * part;
-}
-
-/* The colours that the middle row has, in each step of light: GLOSSY in shaders/preview.frag. */
-static void make_glossy(uint32_t *colormap)
-{
-    for (int column = 0; column < COLORMAP_COLUMNS; column++) {
-        uint32_t color = colormap[COLORMAP_ROWS / 2 * COLORMAP_COLUMNS + column];
-        for (int row = 0; row < COLORMAP_ROWS; row++) {
-            double c[3];
-            for (int i = 0; i < 3; i++)
-                c[i] = linear_from_srgb((color >> (8 * i) & 0xff) / 255.0) * (0.22 + (double)row / (COLORMAP_ROWS - 1));
-            tone_map(c);
-            uint32_t out = 0xff000000;
-            for (int i = 0; i < 3; i++)
-                out |= (uint32_t)(255 * srgb_from_linear(fmin(fmax(c[i], 0), 1)) + 0.5) << (8 * i);
-            colormap[row * COLORMAP_COLUMNS + column] = out;
-        }
-    }
-}
-
-void soft_read_palette(struct soft *soft, const struct shaded_colormap *colormap, bool glossy)
-{
-    if (soft->palette_version == colormap->version && soft->palette_glossy == glossy)
-        return;
-    read_colors(colormap->colors, soft->colormap, COLORMAP_ROWS * COLORMAP_COLUMNS);
-    if (colormap->lines)
-        glGetTextureImage(colormap->lines, 0, GL_RED, GL_FLOAT, COLORMAP_PLACES * sizeof(*soft->lines), soft->lines);
-    soft->palette_version = colormap->version;
-    soft->palette_glossy = glossy;
-    if (glossy)
-        make_glossy(soft->colormap);
 }
 
 /* --- light ------------------------------------------------------------------------------------------------------------------ */

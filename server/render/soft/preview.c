@@ -7,6 +7,7 @@
 #include "base/mem.h"
 #include "render/soft/kernels.h"
 #include "render/soft/lanes.h"
+#include "render/soft/ramps.h"
 #include "render/gl/ghosts.h"
 #include "render/pick/markers.h"
 
@@ -25,6 +26,25 @@ static const struct soft_kernels *choose_kernels(void)
     return &soft_kernels_plain;
 }
 
+/* Those of all models in one row. */
+static void copy_ramps(struct soft *soft)
+{
+    const struct gpu_scene *gpu_scene = soft->gpu_scene;
+    soft->ramp_of_model = mem_array(gpu_scene->model_count, sizeof(*soft->ramp_of_model));
+    for (size_t m = 0; m < gpu_scene->model_count; m++) {
+        soft->ramp_of_model[m] = (uint32_t)soft->ramp_count;
+        soft->ramp_count += gpu_scene->models[m].material_count;
+    }
+    soft->muted_ramps = mem_array(soft->ramp_count * RAMP_STEPS, sizeof(*soft->muted_ramps));
+    soft->own_ramps = mem_array(soft->ramp_count * RAMP_STEPS, sizeof(*soft->own_ramps));
+    for (size_t m = 0; m < gpu_scene->model_count; m++) {
+        const struct model *model = &gpu_scene->models[m];
+        size_t first = (size_t)soft->ramp_of_model[m] * RAMP_STEPS, bytes = model->material_count * RAMP_STEPS * sizeof(uint32_t);
+        memcpy(soft->muted_ramps + first, model->ramp_texels[MODEL_MUTED], bytes);
+        memcpy(soft->own_ramps + first, model->ramp_texels[MODEL_OWN], bytes);
+    }
+}
+
 struct soft *soft_create(struct workers *workers, const struct gpu_scene *gpu_scene, const struct sky *sky, struct soft *keeper)
 {
     struct soft *soft = mem_new(sizeof(*soft));
@@ -34,8 +54,9 @@ struct soft *soft_create(struct workers *workers, const struct gpu_scene *gpu_sc
     soft->gpu_scene = gpu_scene;
     soft->kept.bound_bytes = KEPT_BYTES;
     soft->parts = mem_array(gpu_scene->model_count, sizeof(*soft->parts));
-    if (!soft_read_textures(soft, sky) ||
-        (!keeper && !soft_materials_init(&soft->own_materials, gpu_scene->models, gpu_scene->model_count, workers))) {
+    soft->backdrops = sky->texels[0];
+    copy_ramps(soft);
+    if (!keeper && !soft_materials_init(&soft->own_materials, gpu_scene->models, gpu_scene->model_count, workers)) {
         soft_destroy(&soft);
         return NULL;
     }
@@ -54,9 +75,7 @@ void soft_destroy(struct soft **soft_ptr)
     mem_free(soft->muted_ramps);
     mem_free(soft->own_ramps);
     mem_free(soft->ramp_of_model);
-    mem_free(soft->backdrops);
-    mem_free(soft->colormap);
-    mem_free(soft->lines);
+    mem_free(soft->glossy);
     mem_free(soft);
     *soft_ptr = NULL;
 }
@@ -157,6 +176,26 @@ static bool draw_all(struct soft *soft, const struct isoline_points *points, str
     return good;
 }
 
+/* Rows: the colours that the middle one has, in each step of light: GLOSSY in shaders/preview.frag. */
+static void make_glossy(struct soft *soft, const struct shaded_colormap *colormap)
+{
+    if (soft->glossy_version == colormap->version)
+        return;
+    if (!soft->glossy)
+        soft->glossy = mem_array(COLORMAP_ROWS * COLORMAP_COLUMNS, sizeof(*soft->glossy));
+    for (int column = 0; column < COLORMAP_COLUMNS; column++)
+        ramp_fill_glossy(colormap->texels[COLORMAP_ROWS / 2][column], COLORMAP_ROWS, soft->glossy + column, COLORMAP_COLUMNS);
+    soft->glossy_version = colormap->version;
+}
+
+void soft_take_colormap(struct soft *soft, const struct shaded_colormap *colormap, bool glossy)
+{
+    if (glossy)
+        make_glossy(soft, colormap);
+    soft->colormap = glossy ? soft->glossy : colormap->texels[0];
+    soft->lines = colormap->nearest;
+}
+
 bool preview_draw(struct soft *soft, const struct frame_context *context, const struct light *light, const struct isoline_points *points,
                   struct frame *frame)
 {
@@ -167,7 +206,7 @@ bool preview_draw(struct soft *soft, const struct frame_context *context, const 
     soft->light = soft_get_light(soft, context->light);
     if (!soft->light)
         return false;
-    soft_read_palette(soft, &context->colormap, context->view->look == LOOK_GLOSSY);
+    soft_take_colormap(soft, &context->colormap, context->view->look == LOOK_GLOSSY);
     if (!soft_make_room(soft, frame))
         return complain(soft);
     frame_uniforms_fill(&soft->block, context);

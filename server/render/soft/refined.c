@@ -76,7 +76,6 @@ void refiner_destroy(struct refiner **refiner_ptr)
     destroy(&refiner->spare);
     visibility_store_finish(&refiner->kept);
     mem_free(refiner->materials);
-    mem_free(refiner->surroundings.texels);
     mem_free(refiner->light.open);
     mem_free(refiner);
     *refiner_ptr = NULL;
@@ -190,10 +189,10 @@ static bool take_up(struct refined *refined, const struct frame_context *context
     struct soft *soft = refined->soft;
     refined->context = soft->context = context;
     soft->light = soft_get_light(refined->refiner->soft, context->light);
-    if (!soft->light || !refined_read_light(refined->refiner, context->light) ||
-        !refined_read_surroundings(refined->refiner, context->lit_by.environment))
+    refined->surroundings = environments_get(refined->refiner->environments, context->lit_by.environment);
+    if (!soft->light || !refined_read_light(refined->refiner, context->light))
         return false;
-    soft_read_palette(soft, &context->colormap, false);
+    soft_take_colormap(soft, &context->colormap, false);
     frame_uniforms_fill(&soft->block, context);
     soft_aim_cuts(soft);
     soft->out = frame->bgrx;
@@ -232,7 +231,7 @@ static bool find(struct refined *refined, const struct frame *frame, const struc
     soft->reach_px = 0;
     if (!good)
         return false;
-    refined->buffer->lined = refined->context->colormap.lines != 0;
+    refined->buffer->lined = refined->context->colormap.nearest != NULL;
     note_meshes(refined);
     aim(refined, light);
     return true;

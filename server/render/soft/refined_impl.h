@@ -4,12 +4,11 @@
 #define RENDER_SOFT_REFINED_IMPL_H
 #include "render/soft/soft_impl.h"
 #include "render/soft/lanes.h"
-#include "render/light/environment.h"
 #include "render/soft/refined.h"
 #include "render/soft/tile.h"
 #include "render/soft/visibility_store.h"
 
-enum { REFINED_ROWS = 16, SAMPLES = VISIBILITY_MOST_PARTS, BRDF_PX = 48, TONES = 4096 };
+enum { REFINED_ROWS = 16, SAMPLES = VISIBILITY_MOST_PARTS, TONES = 4096 };
 /* From a pixel's middle: a square turned so that edges of any slant take all steps. */
 extern const float refined_samples[SAMPLES][2];
 
@@ -26,13 +25,6 @@ struct refined_light { /* what previews do not have of it */
     int open_px;   /* of a side */
 };
 
-struct refined_surroundings {
-    GLuint mirrored; /* of which slot it is */
-    float irradiance[ENVIRONMENT_TERMS][4];
-    float (*texels)[4]; /* by roughness, octahedral */
-    float brdf[BRDF_PX * BRDF_PX][2];
-};
-
 struct refiner {
     struct workers *workers;
     const struct gpu_scene *gpu_scene;
@@ -40,7 +32,6 @@ struct refiner {
     struct soft *soft; /* keeps the light */
     const struct environments *environments;
     lanes *materials;                  /* BASE ...; by soft->ramp_of_model and number in the model */
-    struct refined_surroundings surroundings;
     struct refined_light light;
     float tones[TONES + 1]; /* sRGB of linear light, 0..1 */
     float linear[256];      /* the other way round, of bytes */
@@ -71,6 +62,7 @@ struct refined {
     struct visibility_buffer *buffer;
     /* --- of the picture, worked out anew at each step */
     const struct frame_context *context;
+    struct environment_light surroundings;
     float sun_from_pixel[4][4], sun_from_ground[4][4]; /* columns */
     float sun_from_normal[3][3];                       /* columns; a step off the surface */
     float ground_step[3];                              /* likewise off the ground */
@@ -88,7 +80,6 @@ struct shaded_items { /* per item of the field */
 };
 
 bool refined_read_light(struct refiner *refiner, const struct light_set *set);
-bool refined_read_surroundings(struct refiner *refiner, int number);
 /* Which triangle is nearest at each sample of a band; rows of pitch_px. fragments: of what is blended before it. */
 void refined_raster_band(const struct refined *refined, int band, const struct soft_sample samples[SAMPLES],
                          struct soft_fragments *fragments);

@@ -85,11 +85,11 @@ struct soft {
     uint32_t *muted_ramps, *own_ramps, *ramp_of_model; /* colours, RAMP_STEPS to a row; first row, by number of the model */
     size_t ramp_count;
     const struct soft_material *materials; /* the keeper's; as rows of ramps */
-    uint32_t *backdrops; /* as render/light/sky.c makes them */
-    uint32_t *colormap;
-    float *lines; /* by place of the scale: the nearest place that has a line */
-    uint64_t palette_version;
-    bool palette_glossy; /* rows of it: colours in a light */
+    const uint32_t *backdrops; /* struct sky */
+    const uint32_t *colormap;  /* the picture's, and below: struct shaded_colormap, or glossy */
+    const float *lines;
+    uint32_t *glossy;       /* of that version: rows are colours in a light */
+    uint64_t glossy_version;
     struct soft_light lights[SOFT_LIGHTS];
     uint64_t uses;
     struct visibility_store kept; /* struct visibility_buffer, of cameras that stand still */
@@ -127,11 +127,11 @@ struct soft {
     int stretch_px; /* of the sky: from SOFT_STRETCH_LEAST to SOFT_STRETCH_MOST, a power of two; 1: each pixel by itself */
 };
 
-/* From the GPU: what is the same in all pictures (false: the context is lost); light (NULL: out of memory, logged); a colormap. */
-bool soft_read_textures(struct soft *soft, const struct sky *sky);
+/* From the GPU; NULL: out of memory, logged. */
 const struct soft_light *soft_get_light(struct soft *soft, const struct light_set *set);
 void soft_free_light(const struct soft *soft, struct soft_light *light);
-void soft_read_palette(struct soft *soft, const struct shaded_colormap *colormap, bool glossy);
+/* Looks colours up in that one from now on; it must stay until the picture is drawn. */
+void soft_take_colormap(struct soft *soft, const struct shaded_colormap *colormap, bool glossy);
 /* The steps. */
 void soft_aim(struct soft *soft, const struct light *light);                  /* the matrices from pixels */
 void soft_aim_cuts(struct soft *soft);                                        /* before all that follows */

@@ -7,10 +7,7 @@
 
 #include "render/soft/lookups.h"
 #include "render/soft/refined_impl.h"
-
-typedef struct {
-    lanes x, y, z;
-} vec;
+#include "render/soft/vectors.h"
 
 struct spot {            /* eight of them */
     lanes attributes[8]; /* NORMAL_X ... */
@@ -22,59 +19,6 @@ struct spot {            /* eight of them */
     lanes_int cut;      /* with the material: -1: what looks away shows the inner side of what is cut */
     vec normal;
 };
-
-SOFT_INLINE lanes all(float x)
-{
-    return (lanes){ 0 } + x;
-}
-
-SOFT_INLINE lanes least_of(lanes a, lanes b)
-{
-    return lanes_choose(a < b, a, b);
-}
-
-SOFT_INLINE lanes most_of(lanes a, lanes b)
-{
-    return lanes_choose(a > b, a, b);
-}
-
-SOFT_INLINE lanes root(lanes x)
-{
-    lanes out;
-    for (int i = 0; i < LANES; i++)
-        out[i] = sqrtf(x[i]);
-    return out;
-}
-
-SOFT_INLINE vec times(vec a, lanes by)
-{
-    return (vec){ a.x * by, a.y * by, a.z * by };
-}
-
-SOFT_INLINE vec plus(vec a, vec b)
-{
-    return (vec){ a.x + b.x, a.y + b.y, a.z + b.z };
-}
-
-SOFT_INLINE vec multiplied(vec a, vec b)
-{
-    return (vec){ a.x * b.x, a.y * b.y, a.z * b.z };
-}
-
-SOFT_INLINE vec between(vec a, vec b, lanes part)
-{
-    return (vec){ a.x + (b.x - a.x) * part, a.y + (b.y - a.y) * part, a.z + (b.z - a.z) * part };
-}
-
-SOFT_INLINE lanes dot(vec a, vec b)
-{
-    return a.x * b.x + a.y * b.y + a.z * b.z;
-}
-
-SOFT_INLINE vec unit(vec a)
-{
-    return times(a, 1.0f / root(most_of(dot(a, a), all(1e-30f))));
-}
 
 /* --- where ------------------------------------------------------------------------------------------------------------------- */
 
