@@ -11,6 +11,10 @@ import { chooseTheme } from './common/theme.js';
 import { Viewport } from './viewport/viewport.js';
 
 const query = new URLSearchParams(location.search);
+if (query.has('wall') && !/^[\d.,]*$/.test(query.get('wall'))) { // a name, not inches and metres
+    location.replace(`wall.html${location.search}`);
+    await new Promise(() => {}); // the other page comes
+}
 export const page = { unit: 1, onUnit: () => {} };
 
 // What decides how large the picture is comes before it.

@@ -12,15 +12,16 @@ export const textOf = (session, tag = null) => {
     return addressOf({ camera, params, time: null, ownParams }, tag).slice(1);
 };
 
-// { camera or null, params, tag } that bring a session to that view, whatever it shows.
+// { camera, params, tag } that bring a session to that view, whatever it shows. One without a camera is seen from home.
 export function viewOf(session, text) {
     const { camera, params, tag } = readAddress(text), { model, role } = session;
-    const plain = { range: null, ramp_interval: 0, breaks: null, isolines: null, split: null, selected: null, clip: null, strength: 1, decay: 1,
-        sensors: null, ...model.start };
+    const plain = { range: null, ramp_interval: 0, breaks: null, isolines: null, split: null, selected: null, clip: null,
+        strength: 1, decay: 1, sensors: null, ...model.start };
     const all = { ...plain, ...params };
     if (role !== 'engineer')
         ENGINEERS.forEach((name) => delete all[name]);
-    return { camera, params: all, tag };
+    const { width, height, pixel_ratio: ratio = 1 } = session.size;
+    return { camera: camera ?? session.homeIn(width / ratio, height / ratio), params: all, tag };
 }
 
 // The query for a small picture of it.

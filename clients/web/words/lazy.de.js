@@ -68,6 +68,22 @@ SW: SW
 W: W
 NW: NW
 
+[walls]
+unknown: Eine Wand „{id}“ steht nicht in der Anlagendatei. Es gibt: {known}
+display: Die Wand „{id}“ hat {count} Bildschirme und keinen Bildschirm {n}
+lost: Keine Verbindung zur Anlage seit {time}
+never: Keine Verbindung zur Anlage
+denied: Dieser Bildschirm braucht ein eigenes Token
+token: Token
+enter: Eingeben
+held: angehalten
+since: seit {time}
+many: {count} Alarme, schwerster {worst}
+more(one): und {count} weiterer
+more(other): und {count} weitere
+counts: {active} aktiv, {waiting} zu quittieren
+flood: Alarmschwall: {active} aktiv, {waiting} zu quittieren
+
 [named]
 legend: Benannte Ansichten
 title: Name für das Gezeigte

@@ -68,6 +68,22 @@ SW: SW
 W: W
 NW: NW
 
+[walls]
+unknown: There is no wall '{id}' in the plant file. There are: {known}
+display: Wall '{id}' has {count} displays, and no display {n}
+lost: No connection to the plant since {time}
+never: No connection to the plant
+denied: This display needs a token of its own
+token: Token
+enter: Enter
+held: held
+since: since {time}
+many: {count} alarms, worst {worst}
+more(one): and {count} more
+more(other): and {count} more
+counts: {active} active, {waiting} to be acknowledged
+flood: Flood of alarms: {active} active, {waiting} to be acknowledged
+
 [named]
 legend: Views with names
 title: Name for what is seen

@@ -68,6 +68,21 @@ SW: 남서
 W: 서
 NW: 북서
 
+[walls]
+unknown: 플랜트 파일에 월 '{id}'이(가) 없습니다. 있는 월: {known}
+display: 월 '{id}'에는 디스플레이가 {count}개 있으며 {n}번은 없습니다
+lost: {time}부터 플랜트와 연결이 끊겼습니다
+never: 플랜트와 연결되지 않았습니다
+denied: 이 디스플레이에는 전용 토큰이 필요합니다
+token: 토큰
+enter: 입력
+held: 정지됨
+since: {time}부터
+many: 경보 {count}건, 최고 {worst}
+more(other): 외 {count}건
+counts: 활성 {active}건, 확인 대기 {waiting}건
+flood: 경보 폭주: 활성 {active}건, 확인 대기 {waiting}건
+
 [named]
 legend: 저장된 뷰
 title: 현재 화면의 이름

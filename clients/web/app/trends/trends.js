@@ -13,7 +13,8 @@ const DASHES = [[], [8, 4], [2, 3], [10, 3, 2, 3], [5, 5], [1, 4]];
 const MOST = DASHES.length, FRESH_MS = 5000, AXIS_PX = 58;
 const EXPAND = 2; // uPlot's: nulls
 const LIMIT_PX = 15;
-const highPx = () => Math.round(Math.max(120, Math.min(210, 0.2 * innerHeight))); // as #trend-chart has it
+const LEGEND_PX = 22; // below the chart, in #trend-chart
+const highPx = () => Math.max(80, byId('trend-chart').clientHeight - LEGEND_PX);
 
 // Loaded when the first trend is asked for.
 let library;
@@ -65,6 +66,12 @@ export class Trends {
     // In place of what is there.
     only(tag) {
         this.tags = [tag];
+        this.open();
+    }
+
+    // These, for a span of its own.
+    compare(tags, spanS) {
+        Object.assign(this, { tags: tags.slice(0, MOST), spanS });
         this.open();
     }
 
@@ -178,7 +185,7 @@ export class Trends {
 
     resize() {
         const width = byId('trend-chart').clientWidth;
-        if (this.chart && width > 0 && width !== this.chart.width)
+        if (this.chart && width > 0 && (width !== this.chart.width || highPx() !== this.chart.height))
             this.chart.setSize({ width, height: highPx() });
     }
 

@@ -38,6 +38,7 @@ export class Overlay {
         this.context = canvas.getContext('2d');
         this.font = getComputedStyle(document.body).fontFamily;
         this.unit = 1;     // CSS pixels: larger on a wall
+        this.calm = document.body.classList.contains('pane'); // only what is abnormal has a label
         this.all = [];     // { tag, x, y, depth, occluded, reading }, in units: of the shown group, and with alarms
         this.markers = []; // those of them that are drawn
         this.places = new Map();
@@ -185,7 +186,7 @@ export class Overlay {
             const parts = this.parts(marker, named || onSelected || marker.origin || alarm !== null);
             const width = this.lineWidth(parts);
             const bad = reading.quality === 'bad', unseen = (marker.occluded || marker.distance_m === null) && !alarm;
-            const silent = unseen || this.isChosen(tag) || (bad && tooMany);
+            const silent = unseen || this.isChosen(tag) || (bad && tooMany) || (this.calm && !alarm && !bad);
             const rank = silent ? -1 : alarm ? RANK_RING : bad || marker.origin ? 2 : reading.quality !== 'good' || onSelected ? 1 : 0;
             const { x, y, depth, half } = marker;
             const { slot: held, callout } = this.places.get(id) ?? {}, ring = alarm !== null;

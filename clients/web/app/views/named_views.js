@@ -46,9 +46,9 @@ export class NamedViews {
         const { session, modules } = this, { camera, params, tag } = viewOf(session, text), found = session.model.tag(tag);
         session.setParams(params);
         modules.use('commands', (commands) => commands.selectTag(found));
-        if (camera && fly)
+        if (fly)
             modules.use('cameraController', (cameraController) => cameraController.flyTo(camera));
-        else if (camera)
+        else
             session.setCamera(camera);
     }
 
@@ -121,9 +121,10 @@ export class NamedViews {
         try {
             const answer = await ask('api/v1/views', { id }, this.session.token);
             const { before = [] } = (await answer.json()).list.find((view) => view.id === id) ?? {};
+            const button = (text, onclick) => make('button', { type: 'button', onclick }, text);
             list.replaceChildren(...before.map((old) => make('li', {}, make('span', {}, this.when(old)),
-                make('button', { type: 'button', onclick: () => this.look(old.view) }, say('named.look')),
-                make('button', { type: 'button', onclick: () => this.keep({ id, title: old.title, view: old.view }) }, say('named.back')))));
+                button(say('named.look'), () => this.look(old.view)),
+                button(say('named.back'), () => this.keep({ id, title: old.title, view: old.view })))));
         } catch (error) {
             setText(list, error.message);
         }

@@ -12,7 +12,8 @@ const TIGHT = 620;    // units: narrower, there is no room for the day beside th
 // page.unit from now on: how large a unit of the page is; page.onUnit() where that changes. page.lying: whether legends lie, as a media
 // query says it. Legends have a place of their own, and so has what says that values are simulated: neither lies over a reading.
 export async function hangOnWall(search, page) {
-    const wall = readWall(search), hear = [], legends = make('div', { class: 'legends' }), { classList } = byId('viewport');
+    const pane = new URLSearchParams(search).get('pane'), wall = readWall(search);
+    const hear = [], legends = make('div', { class: 'legends' }), { classList } = byId('viewport');
     page.lying = { matches: false, addEventListener: (_, f) => hear.push(f) };
     const hang = (scale) => {
         const { innerWidth: width, innerHeight: height } = window;
@@ -29,13 +30,15 @@ export async function hangOnWall(search, page) {
     const fit = () => {
         const { innerWidth: width, innerHeight: height } = window, { scale, metres } = wallFit(wall, window.screen, { width, height });
         hang(scale);
-        while (byId('viewport').clientHeight < LEAST_PICTURE * height && page.unit > 0.5)
+        while (pane !== 'trend' && byId('viewport').clientHeight < LEAST_PICTURE * height && page.unit > 0.5)
             hang(page.unit * 0.95);
         page.onUnit();
         return (metres * page.unit) / scale;
     };
     await styled('wall/wall');
     document.body.classList.add('wall');
+    document.body.classList.toggle('pane', pane !== null);
+    document.body.classList.toggle('pane-trend', pane === 'trend');
     legends.append(byId('legend'), byId('legend-right'));
     byId('viewport').after(legends);
     byId('status').before(byId('simulated'));

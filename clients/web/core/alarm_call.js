@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Which alarm a wall's pane shows in place of its view: the gravest that nobody has acknowledged, then the oldest; several in turn, and
+// none in a flood, when jumping from place to place would show nothing.
+import { isGone } from './alarms.js';
+
+export const TURN_MS = 10000;  // at the least between two changes of the picture
+export const FLOOD = 10, FLOOD_US = 600e6; // more alarms than that, in ten minutes
+
+const byGravity = (a, b) => a.priority - b.priority || a.raisedUs - b.raisedUs;
+const keyOf = ({ tag, kind }) => `${tag.index}/${kind}`;
+
+export class AlarmCall {
+    constructor() {
+        this.shown = null;     // key of the alarm that is shown; null: the view
+        this.changedAt = -Infinity;
+    }
+
+    isFlood(alarms, nowUs) {
+        return alarms.filter((alarm) => !isGone(alarm.state) && nowUs - alarm.raisedUs <= FLOOD_US).length > FLOOD;
+    }
+
+    // Returns the alarm to show, or null. alarms: those to be seen, one for each tag; nowMs: of a clock that never goes back.
+    next(alarms, nowMs, nowUs) {
+        const waiting = this.isFlood(alarms, nowUs) ? [] : alarms.filter(({ tag, waiting: calls, state }) =>
+            calls && !isGone(state) && tag.asset && tag.position).sort(byGravity);
+        const at = waiting.findIndex((alarm) => keyOf(alarm) === this.shown);
+        if (nowMs - this.changedAt >= TURN_MS) {
+            const key = waiting.length > 0 ? keyOf(waiting[(at + 1) % waiting.length]) : null;
+            if (key !== null || this.shown !== null)
+                this.changedAt = nowMs;
+            this.shown = key;
+        }
+        return waiting.find((alarm) => keyOf(alarm) === this.shown) ?? null;
+    }
+}
+
+// Of a flood: equipment with its alarms, the gravest first: [{ asset, count, worst }].
+export function byEquipment(alarms) {
+    const all = new Map();
+    for (const alarm of alarms) {
+        const known = all.get(alarm.tag.asset) ?? { asset: alarm.tag.asset, count: 0, worst: alarm };
+        all.set(alarm.tag.asset, { ...known, count: known.count + 1, worst: byGravity(alarm, known.worst) < 0 ? alarm : known.worst });
+    }
+    return [...all.values()].sort((a, b) => byGravity(a.worst, b.worst) || b.count - a.count);
+}

@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// One display of a wall: its panes in their grid, a session of its own for what is said in words, and what it says when it hears nothing.
+import { AlarmCall } from '../core/alarm_call.js';
+import { Connection } from '../core/connection.js';
+import { zoneClock } from '../core/format.js';
+import { health } from '../core/health.js';
+import { ask } from '../core/history.js';
+import { Session } from '../core/session.js';
+import { wallFit } from '../core/wall.js';
+import { language, learnWords, say } from '../core/words.js';
+import { clock, watchSleep } from '../app/common/clock.js';
+import { byId, make, setText, setVariable } from '../app/common/dom.js';
+import { store, stored } from '../app/common/storage.js';
+import { chooseTheme } from '../app/common/theme.js';
+import { paneOf } from './panes.js';
+
+const TICK_MS = 250, LOST_MS = 3000, SHIFT_MS = 180000;
+const SHIFTS = [[0, 0], [2, 1], [3, -1], [1, -3], [-1, -2], [-3, 0], [-2, 2], [0, 3]]; // pixels, in turn: nothing burns in
+const LEAST_UNITS = { width: 560, height: 315 }, LETTERS_MM = 100;
+const query = new URLSearchParams(location.search), number = Math.max(1, Number(query.get('display')) || 1);
+
+document.documentElement.lang = language;
+chooseTheme(query);
+await learnWords();
+
+const token = localStorage.getItem('plantcast.wall') ?? stored('token');
+if (token)
+    store('token', token); // the panes are pages of their own, which look for it there
+const streamUrl = new URL('stream', location.href.replace(/^http/, 'ws').replace(/[?#].*$/, '')).href;
+const connection = new Connection({ url: streamUrl, open: (url, protocol) => new WebSocket(url, protocol), clock });
+const session = new Session({ connection, now: clock.now, codecs: ['jpeg'] });
+session.token = token;
+session.size = { width: 16, height: 16 }; // it is there for the words
+session.on('frame', (frame) => session.drawn(frame, 0));
+
+let wall = null, shape = '', panes = [];
+const call = new AlarmCall();
+
+// --- the grid
+
+function say404(text) {
+    panes = [];
+    byId('grid').replaceChildren(make('p', { class: 'wrong' }, text));
+}
+
+// How large a unit is, which all letters are multiples of.
+function fit() {
+    if (!wall)
+        return;
+    const { innerWidth: width, innerHeight: height } = window, inches = wall.inches, metres = wall.distance_m;
+    const { scale } = wallFit({ inches, metres }, window.screen, { width, height });
+    const most = Math.min(width / LEAST_UNITS.width, height / LEAST_UNITS.height);
+    const pxPerMm = Math.hypot(screen.width, screen.height) / (inches * 25.4);
+    setVariable(document.body, '--unit', `${Math.max(0.5, Math.min(scale, most))}px`);
+    setVariable(document.body, '--letters', `${Math.min(LETTERS_MM * pxPerMm, width / 12)}px`);
+}
+
+function build(walls) {
+    wall = walls.find(({ id }) => id === query.get('wall')) ?? null;
+    const display = wall?.displays[number - 1];
+    if (!wall)
+        return say404(say('walls.unknown', { id: query.get('wall'), known: walls.map(({ id }) => id).join(', ') || say('none') }));
+    if (!display)
+        return say404(say('walls.display', { n: number, id: wall.id, count: wall.displays.length }));
+    const grid = byId('grid'), context = { session, call, wall, theme: query.get('theme') };
+    fit();
+    grid.style.gridTemplateAreas = display.grid.map((row) => `"${row.replace(/\b\d/g, 'a$&')}"`).join(' ');
+    grid.style.gridTemplateRows = display.grid.map(() => 'minmax(0, 1fr)').join(' ');
+    grid.style.gridTemplateColumns = display.grid[0].trim().split(/ +/).map(() => 'minmax(0, 1fr)').join(' ');
+    panes = display.panes.map((pane) => paneOf(pane, context));
+    grid.replaceChildren(...panes.map(({ element }) => element));
+    return undefined;
+}
+
+async function look() {
+    try {
+        const { walls } = await (await ask('api/v1/walls', {}, session.token)).json(), now = JSON.stringify(walls);
+        if (now !== shape)
+            build(walls);
+        shape = now;
+    } catch (error) {
+        if (!shape)
+            say404(error.message);
+    }
+}
+
+// --- as time goes by
+
+let lostAt = null, shift = 0;
+function tick() {
+    const now = clock.now(), { kind } = health(session, now), { model } = session;
+    const gone = kind === 'lost' || kind === 'silent';
+    lostAt = gone ? lostAt ?? now : null;
+    byId('lost').hidden = lostAt === null || now - lostAt < LOST_MS || !byId('denied').hidden;
+    const heard = model && session.freshAt !== null;
+    if (!byId('lost').hidden)
+        setText(byId('lost'), heard ? say('walls.lost', { time: timeOf(session.clockUs(session.freshAt)) }) : say('walls.never'));
+    if (model && !gone)
+        for (const pane of panes)
+            pane.tick(now);
+}
+
+const timeOf = (us) => zoneClock(session.model.plant.time_zone)(us / 1000).time;
+
+setInterval(tick, TICK_MS);
+setInterval(() => {
+    const [x, y] = SHIFTS[++shift % SHIFTS.length];
+    setVariable(document.body, '--x', `${x}px`);
+    setVariable(document.body, '--y', `${y}px`);
+}, SHIFT_MS);
+setInterval(() => session.flush(), TICK_MS);
+window.addEventListener('resize', fit);
+session.on('welcome', () => {
+    byId('denied').hidden = true;
+    look();
+});
+
+// --- who we are
+
+session.on('denied', () => {
+    panes = [];
+    byId('grid').replaceChildren();
+    const field = make('input', { type: 'password', autocomplete: 'off', 'aria-label': say('walls.token') });
+    byId('denied').replaceChildren(make('p', {}, say('walls.denied')), field, make('button', { type: 'submit' }, say('walls.enter')));
+    byId('denied').hidden = false;
+    shape = '';
+});
+byId('denied').addEventListener('submit', (event) => {
+    event.preventDefault();
+    session.token = byId('denied').querySelector('input').value.trim();
+    localStorage.setItem('plantcast.wall', session.token);
+    store('token', session.token);
+    connection.retryNow();
+});
+
+watchSleep(() => {
+    connection.doubt();
+    connection.retryNow();
+});
+window.addEventListener('online', () => connection.retryNow());
+const stayOn = () => !document.hidden && navigator.wakeLock?.request('screen').catch(() => {});
+document.addEventListener('visibilitychange', stayOn);
+stayOn();
+connection.start();
+globalThis.wall = { session, call, get panes() { return panes; } }; // for the console and for tests

@@ -1,0 +1,217 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What a pane of a wall shows, by kind. Each is { element, tick(now) }; views and trends are the page itself, in a frame of their own.
+import { byEquipment } from '../core/alarm_call.js';
+import { isGone } from '../core/alarms.js';
+import { decimalsFor, numberText, qualityText, unitText, zoneClock } from '../core/format.js';
+import { say } from '../core/words.js';
+import { make, setText, setVariable } from '../app/common/dom.js';
+import { badge, limitText } from '../app/alarms/alarm_bar.js';
+
+const LEAST_PART = 0.4;
+const KINDS = { views: ViewsPane, trend: TrendPane, alarms: AlarmsPane, tiles: TilesPane, clock: ClockPane, text: TextPane };
+
+export function paneOf(pane, context) {
+    const title = make('h2', {}, pane.title ?? ''), body = make('div', { class: 'body' });
+    const element = make('section', { class: `pane ${pane.kind}` }, title, body);
+    element.style.gridArea = pane.area.replace(/^\d/, 'a$&');
+    const { tick = () => {} } = KINDS[pane.kind](pane, { ...context, title, body, element });
+    return { element, kind: pane.kind, tick };
+}
+
+const timeOf = (session, us) => zoneClock(session.model.plant.time_zone)(us / 1000).time;
+
+// The page, without what is pressed.
+function pageIn({ wall, theme, body }, kind) {
+    const query = new URLSearchParams({ wall: `${wall.inches},${wall.distance_m}`, pane: kind, ...(theme ? { theme } : {}) });
+    const frame = make('iframe', { src: `./?${query}`, tabindex: -1 });
+    body.append(frame);
+    return { get page() { return frame.contentWindow?.plantcast ?? null; } };
+}
+
+// --- views, and the place of an alarm
+
+function ViewsPane(pane, context) {
+    const { session, call, title, element } = context, inner = pageIn(context, 'view');
+    let at = 0, changedAt = null, shown = null, held = false;
+    title.addEventListener('click', () => {
+        held = !held;
+        element.toggleAttribute('data-held', held);
+    });
+    const titleOf = (id) => pane.title ?? session.views.find((view) => view.id === id)?.title ?? id;
+
+    function showView(page) {
+        const id = pane.items[at];
+        page.modules.use('views', (views) => views.openNamed(id, false));
+        const known = page.session.views.some((view) => view.id === id);
+        title.replaceChildren(known ? titleOf(id) : say('named.unknown', { id }), held ? make('i', {}, say('walls.held')) : '');
+    }
+
+    function showAlarm(page, alarm) {
+        const tag = page.session.model.tag(alarm.tag.name);
+        if (tag.group)
+            page.session.setParams({ group: tag.group });
+        page.flyToTag(tag);
+        title.replaceChildren(badge(alarm.priority), make('b', {}, `${say(`kind.${alarm.kind}`)} ${tag.name}`),
+            make('span', {}, limitText(session.model, alarm)),
+            make('span', {}, say('walls.since', { time: timeOf(session, alarm.raisedUs) })));
+    }
+
+    return { tick(now) {
+        const { page } = inner;
+        if (!page?.session.model || page.session.views.length === 0 && session.views.length > 0)
+            return;
+        const alarm = pane.on_alarm ? call.next(session.model.alarms.list(), now, session.clockUs()) : null;
+        const flood = pane.on_alarm && call.isFlood(session.model.alarms.list(), session.clockUs());
+        const rests = held || flood || alarm !== null || session.model.alarms.counts().waiting > 0;
+        if (!rests && pane.items.length > 1 && changedAt !== null && now - changedAt >= pane.every_s * 1000) {
+            at = (at + 1) % pane.items.length;
+            shown = null;
+        }
+        const wanted = alarm ? `${alarm.tag.name}/${alarm.kind}` : `view ${at} ${held} ${page.session.views.length}`;
+        element.classList.toggle('called', Boolean(alarm));
+        if (wanted === shown)
+            return;
+        shown = wanted;
+        changedAt = now;
+        if (alarm)
+            showAlarm(page, alarm);
+        else
+            showView(page);
+    } };
+}
+
+// --- a trend
+
+function TrendPane(pane, context) {
+    const inner = pageIn(context, 'trend');
+    let begun = false;
+    setText(context.title, pane.title ?? pane.items.join(', '));
+    return { tick() {
+        const { page } = inner;
+        if (begun || !page?.session.model)
+            return;
+        begun = true;
+        const tags = pane.items.map((name) => page.session.model.tag(name)).filter(Boolean);
+        page.modules.use('trends', (trends) => trends.compare(tags, pane.hours * 3600));
+    } };
+}
+
+// --- alarms
+
+function AlarmsPane(pane, { session, call, title, body }) {
+    let said = '';
+    const list = make('ol', {}), more = make('p', { class: 'more' });
+    body.append(list, more);
+
+    const rowOf = (alarm) => make('li', { class: [alarm.waiting ? 'waiting' : '', isGone(alarm.state) ? 'gone' : ''].join(' ') },
+        badge(alarm.priority, isGone(alarm.state)), make('b', {}, `${say(`kind.${alarm.kind}`)} ${alarm.tag.name}`),
+        make('span', { class: 'what' }, [limitText(session.model, alarm), alarm.tag.description].filter(Boolean).join(' · ')),
+        make('time', {}, timeOf(session, alarm.raisedUs)));
+    const rowOfMany = ({ asset, count, worst }) => make('li', { class: 'waiting' }, badge(worst.priority),
+        make('b', {}, asset ?? worst.tag.name), make('span', { class: 'what' },
+            say('walls.many', { count, worst: `${say(`kind.${worst.kind}`)} ${worst.tag.name}` })),
+        make('time', {}, timeOf(session, worst.raisedUs)));
+
+    // As many as there is room for; the rest is counted.
+    function fill(rows) {
+        list.replaceChildren(...rows);
+        let hidden = 0;
+        more.hidden = true;
+        while (list.children.length > 1 && body.scrollHeight > body.clientHeight + 1) {
+            list.lastChild.remove();
+            more.hidden = false;
+            setText(more, say('walls.more', { count: ++hidden }));
+        }
+    }
+
+    return { tick() {
+        const { alarms } = session.model, all = alarms.list(), flood = call.isFlood(all, session.clockUs());
+        const { active, waiting } = alarms.counts(), now = JSON.stringify([flood, body.clientHeight,
+            all.map(({ id, state, priority, value }) => [id, state, priority, value])]);
+        if (now === said)
+            return;
+        said = now;
+        title.replaceChildren(pane.title ?? say('alarms.title'), make('span', {}, flood ? say('walls.flood', { active, waiting })
+            : active === 0 && waiting === 0 ? say('alarms.none') : say('walls.counts', { active, waiting })));
+        if (flood)
+            fill(byEquipment(all.filter(({ state }) => !isGone(state))).map(rowOfMany));
+        else
+            fill(all.map(rowOf));
+    } };
+}
+
+// --- numbers with their limits
+
+function TilesPane(pane, { session, body, title }) {
+    setText(title, pane.title ?? '');
+    const tiles = pane.items.map((name) => {
+        const value = make('b', { class: 'value' }), bar = make('div', { class: 'bar' }, make('i', { class: 'at' }));
+        const element = make('div', { class: 'tile' }, make('span', { class: 'name' }, name), value, bar);
+        body.append(element);
+        return { name, value, bar, element, limits: '' };
+    });
+
+    function mark(tile, tag, group) {
+        const text = JSON.stringify(tag.limits ?? {});
+        if (text === tile.limits)
+            return;
+        tile.limits = text;
+        tile.bar.querySelectorAll('.limit').forEach((one) => one.remove());
+        for (const [name, limit] of Object.entries(tag.limits ?? {}).filter(([, one]) => Number.isFinite(one))) {
+            const line = make('i', { class: `limit${name.length > 1 ? ' outer' : ''}` });
+            setVariable(line, '--at', shareOf(group, limit));
+            tile.bar.append(line);
+        }
+    }
+
+    let fitted = '';
+    return { tick() {
+        const room = `${body.clientWidth} ${body.clientHeight} ${getComputedStyle(body.parentNode).fontSize}`;
+        for (const tile of tiles) {
+            const tag = session.model.tag(tile.name), group = session.model.group(tag?.group);
+            if (!tag || !group)
+                continue;
+            const { value, quality } = session.model.readings[tag.index], alarm = session.model.alarms.gravest(tag.index);
+            const known = quality !== 'bad' && value !== null;
+            const text = known ? numberText(value, decimalsFor(group.max - group.min)) : qualityText('bad');
+            tile.value.replaceChildren(text, make('span', {}, known ? ` ${unitText(tag.unit || group.unit)}` : ''));
+            tile.element.dataset.quality = quality;
+            tile.element.dataset.alarm = alarm && !isGone(alarm.state) ? alarm.priority : '';
+            tile.bar.classList.toggle('unknown', !known);
+            setVariable(tile.bar, '--value', known ? shareOf(group, value) : 0);
+            mark(tile, tag, group);
+        }
+        if (room !== fitted)
+            fitIn(body);
+        fitted = room;
+    } };
+}
+
+// Smaller letters where there is no room for as large ones as there should be.
+function fitIn(body) {
+    for (let part = 1; part > LEAST_PART; part *= 0.94) {
+        setVariable(body, '--part', part);
+        if (body.scrollHeight <= body.clientHeight + 1)
+            break;
+    }
+}
+
+const shareOf = ({ min, max }, value) => Math.max(0, Math.min(1, (value - min) / (max - min)));
+
+// --- the plant's time; a text
+
+function ClockPane(pane, { session, body, title }) {
+    const day = make('span', {}), hour = make('b', {});
+    body.append(hour, day);
+    return { tick() {
+        const { date, time, offset } = zoneClock(session.model.plant.time_zone)(session.clockUs() / 1000);
+        setText(title, pane.title ?? session.model.plant.name);
+        setText(hour, time);
+        setText(day, `${date} ${offset}${session.model.clockSet ? '' : ` · ${say('status.unset', { clock: say('status.clock') })}`}`);
+    } };
+}
+
+function TextPane(pane, { body }) {
+    body.append(...pane.items.map((text) => make('p', {}, text)));
+    return {};
+}

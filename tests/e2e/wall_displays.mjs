@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Displays of a control room, as `walls` of the plant file has them: each pane, an alarm that takes the place of a view, and a lost server.
+import assert from 'node:assert/strict';
+import { after, before, test } from 'node:test';
+import { openPage, shoot } from './support/browser.mjs';
+import { missing, startPlant } from './support/plant.mjs';
+
+const why = missing();
+const options = { skip: why ?? false, timeout: 300000 };
+const WALLS = `
+views:
+- { id: whole, title: Whole unit, view: "group=temperature" }
+- { id: above, title: From above, view: "group=temperature&camera=8,2,30,8,6,0,0,0,1,45" }
+walls:
+- id: room
+  inches: 55
+  distance_m: 3
+  displays:
+  - grid: [main main alarms, main main tiles, main main clock]
+    panes:
+    - { area: main, views: [whole, above], every_s: 5, on_alarm: yes }
+    - { area: alarms, alarms: yes }
+    - { area: tiles, title: Feed, tiles: [TE-171, TE-172, PT-101, PT-102] }
+    - { area: clock, clock: yes }
+  - grid: [top, bottom]
+    panes:
+    - { area: top, trend: [TE-171, TE-172], hours: 1 }
+    - { area: bottom, title: To do, text: [Check P-101A, Clean F-101] }
+`;
+let plant, browser, page;
+
+before(async () => {
+    if (why)
+        return;
+    plant = await startPlant(`alarms: local\n${WALLS}`);
+    browser = await openPage(`${plant.url}?wall=room`, { viewport: { width: 1920, height: 1080 } });
+    page = browser.page;
+});
+after(async () => {
+    await browser?.close();
+    await plant?.stop();
+});
+
+const paneTitle = (area) => page.locator(`.pane.${area} h2`);
+const inner = () => document.querySelector('.pane.views iframe').contentWindow.plantcast?.session.picture;
+test('each pane shows what it is for', options, async () => {
+    await page.waitForURL(/wall\.html\?wall=room/);
+    await page.locator('.tile .value', { hasText: '°C' }).first().waitFor({ timeout: 60000 });
+    await page.waitForFunction(inner, null, { timeout: 90000 });
+    await page.waitForFunction(() => {
+        const { clientWidth, clientHeight } = document.querySelector('.pane.views iframe').contentDocument.getElementById('viewport');
+        return clientWidth > 800 && clientHeight > 600;
+    }, null, { timeout: 30000 });
+    await page.locator('.clock b').filter({ hasText: /^\d\d:\d\d:\d\d$/ }).waitFor();
+    assert.match(await paneTitle('alarms').textContent(), /Alarms/);
+    await shoot(page, 'wall-display');
+});
+
+test('views follow each other without a flight', options, async () => {
+    await page.locator('.pane.views h2', { hasText: 'From above' }).waitFor({ timeout: 60000 });
+    await page.waitForFunction(() => {
+        const { picture } = document.querySelector('.pane.views iframe').contentWindow.plantcast.session;
+        return Math.abs(picture.camera.eye[2] - 30) < 0.01;
+    }, null, { timeout: 60000, polling: 100 });
+    await page.locator('.pane.views h2', { hasText: 'Whole unit' }).waitFor({ timeout: 60000 });
+    await page.waitForFunction(() => {
+        const { picture } = document.querySelector('.pane.views iframe').contentWindow.plantcast.session;
+        return Math.abs(picture.camera.eye[2] - 30) > 1; // home
+    }, null, { timeout: 60000, polling: 100 });
+});
+
+test('an alarm comes to the pane that is for it, and leaves once it is acknowledged', options, async () => {
+    await plant.ask('set TE-171 500');
+    await page.locator('.pane.views.called h2', { hasText: 'TE-171' }).waitFor({ timeout: 60000 });
+    await page.locator('.pane.alarms li.waiting', { hasText: 'TE-171' }).waitFor();
+    assert.ok(await page.locator('.tile[data-alarm]:not([data-alarm=""])').count() > 0);
+    await page.waitForTimeout(4000);
+    await shoot(page, 'wall-display-alarm');
+    await page.evaluate(() => {
+        const { session } = globalThis.wall, all = [...session.model.alarms.rows.values()];
+        const alarms = all.filter(({ state }) => state === 'unacknowledged').map(({ tag, kind }) => [tag.name, kind]);
+        session.post({ type: 'alarm', seq: 1, action: 'acknowledge', alarms, name: 'kim' });
+    });
+    await page.waitForFunction(() => !document.querySelector('.pane.views.called'), null, { timeout: 60000 });
+});
+
+test('another display has its own panes', options, async () => {
+    const other = await openPage(`${plant.url}?wall=room&display=2`, { viewport: { width: 1920, height: 1080 } });
+    await other.page.locator('.pane.text p', { hasText: 'Clean F-101' }).waitFor({ timeout: 60000 });
+    await other.page.waitForFunction(() => {
+        const { contentDocument: inner, contentWindow: { innerHeight } } = document.querySelector('.pane.trend iframe');
+        const chart = inner?.querySelector('#trend-chart canvas')?.getBoundingClientRect();
+        return chart?.height > 0.5 * innerHeight && chart.bottom < innerHeight;
+    }, null, { timeout: 90000 });
+    await other.page.waitForTimeout(1500);
+    await shoot(other.page, 'wall-display-2');
+    await other.close();
+    const gone = await openPage(`${plant.url}wall.html?wall=nowhere`, { viewport: { width: 800, height: 600 } });
+    await gone.page.locator('.wrong', { hasText: "no wall 'nowhere'" }).waitFor();
+    assert.match(await gone.page.locator('.wrong').textContent(), /room/);
+    await gone.close();
+});
+
+test('a lost server is said in large letters, and ends by itself', options, async () => {
+    await plant.stopDaemon('SIGKILL');
+    await page.locator('#lost', { hasText: 'No connection to the plant since' }).waitFor({ timeout: 15000 });
+    const px = await page.evaluate(() => parseFloat(getComputedStyle(document.getElementById('lost')).fontSize));
+    assert.ok(px >= 100, `${px} pixels`);
+    await shoot(page, 'wall-display-lost');
+    await plant.startDaemon();
+    await page.locator('#lost').waitFor({ state: 'hidden', timeout: 60000 });
+    await page.locator('.tile .value', { hasText: '°C' }).first().waitFor({ timeout: 60000 });
+    await page.waitForFunction(inner, null, { timeout: 60000 });
+});
