@@ -173,6 +173,13 @@ static bool on_alarm(struct session *session, const struct message *message, str
     return true;
 }
 
+static void on_view_edit(struct session *session, const struct message *message, int64_t now_utc_ns)
+{
+    char *answer = view_edit_do(session->context->named_views, message, session_who(session), now_utc_ns / 1000);
+    session_record_view(session, message, answer);
+    session_reply(session, answer);
+}
+
 static bool act(struct session *session, const struct message *message, int64_t now_ns, int64_t now_utc_ns, struct message_error *error)
 {
     switch (message->type) {
@@ -198,9 +205,7 @@ static bool act(struct session *session, const struct message *message, int64_t 
     case MESSAGE_SAVE_TAGS: return session_save_tags(session, message, error);
     case MESSAGE_LOOP_CHECK: return session_check_loop(session, message, error);
     case MESSAGE_SAVE_VIEW:
-    case MESSAGE_REMOVE_VIEW:
-        session_reply(session, view_edit_do(session->context->named_views, message, session_who(session), now_utc_ns / 1000));
-        return true;
+    case MESSAGE_REMOVE_VIEW: on_view_edit(session, message, now_utc_ns); return true;
     case MESSAGE_PING: session_reply(session, reply_pong_text(session_snapshot(session), message->t, now_utc_ns)); return true;
     }
     return true;

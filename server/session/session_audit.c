@@ -66,6 +66,16 @@ void session_record_loop_check(const struct session *session, const struct messa
     json_decref(said);
 }
 
+void session_record_view(const struct session *session, const struct message *message, const char *answer)
+{
+    json_t *said = json_loads(answer, 0, NULL);
+    bool kept = json_is_true(json_object_get(said, "kept"));
+    char *what = mem_printf("%s %s", message->type == MESSAGE_SAVE_VIEW ? "save" : "remove", message->view_edit.id);
+    record(session, "view", kept ? "done" : "failed", what, json_string_value(json_object_get(said, "why")));
+    mem_free(what);
+    json_decref(said);
+}
+
 void session_record_leave(const struct session *session, const char *why)
 {
     record(session, "leave", "done", NULL, why);

@@ -112,6 +112,8 @@ test('what is done stands in it: who, from where, what, with what result', { ski
     assert.equal((await found('the baseline', (line) => line.event === 'baseline')).what, 'keep then');
     engineer.say({ type: 'prove', seq: 3, tag: 'TI-1', expected: 5, tolerance: 1 });
     assert.equal((await found('the proof', (line) => line.event === 'proof')).what, 'TI-1: not passed');
+    engineer.say({ type: 'save_view', seq: 4, id: 'boiler', title: 'Boiler', view: 'group=t' });
+    assert.equal((await found('the view', (line) => line.event === 'view')).what, 'save boiler');
     engineer.close();
     await found('the end', (line) => line.event === 'leave' && line.who === 'engineer-1');
     const viewer = await PlainClient.open(plant.port);
