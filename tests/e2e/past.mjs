@@ -132,13 +132,14 @@ test('the same instant is drawn once for all who look at it', { skip }, async ()
         return Number(text.match(new RegExp(`^${name} (\\d+)`, 'm'))[1]);
     };
     const first = await open(), second = await open();
-    await travel(first, at(444));
-    await first.picture('refined', (p) => p.flags & FLAG.still && p.data_time_us === at(444));
-    await second.picture('refined', (p) => p.flags & FLAG.still);
-    const shared = await metric('plantcast_renders_shared_total');
-    await travel(second, at(444));
-    await second.picture('refined', (p) => p.flags & FLAG.still && p.data_time_us === at(444));
-    assert.ok(await metric('plantcast_renders_shared_total') > shared);
+    let isShared = false; // a frame is kept for half a second: on a machine that does other things they may ask too far apart
+    for (let s = 440; s < 450 && !isShared; s++) {
+        const before = await metric('plantcast_renders_shared_total');
+        await Promise.all([first, second].map((client) => travel(client, at(s))));
+        await Promise.all([first, second].map((client) => client.picture('refined', (p) => p.flags & FLAG.still && p.data_time_us === at(s))));
+        isShared = await metric('plantcast_renders_shared_total') > before;
+    }
+    assert.ok(isShared);
     first.close();
     second.close();
 });
