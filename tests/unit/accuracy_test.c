@@ -114,7 +114,7 @@ static void put_point(const struct cad_place *place, const double p[3], double o
     }
 }
 
-/* Clean, and with each fault; by default with every third one, of each shape others. */
+/* Clean, and with each fault; by default with one of them, of each shape another. */
 static void test_faults(const char *name, int row, const struct cad *clean, const struct oracle_mesh *outer)
 {
     struct truth truth = { 0 };
@@ -127,7 +127,7 @@ static void test_faults(const char *name, int row, const struct cad *clean, cons
     for (int s = 0; s < SOURCES; s++)
         put_point(&place, truth.sources[s], sources[s]);
     for (int fault = 0; fault < CAD_FAULTS; fault++) {
-        if (fault != CAD_CLEAN && !sweep_takes(row, fault, 3))
+        if (fault != CAD_CLEAN && !sweep_takes(row, fault, 5))
             continue;
         struct cad broken;
         cad_break(&broken, clean, (enum cad_fault)fault, &chance, vertex_of);

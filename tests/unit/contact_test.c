@@ -146,10 +146,10 @@ static size_t covered_corners(const struct outer *outer, const struct cad *shape
     return count;
 }
 
-/* Clean, and with each fault; by default with every third one, of each pair others. */
+/* Clean, and with each fault; by default with one of them, of each pair another. */
 static bool is_tried(int row, int fault)
 {
-    return fault == CAD_CLEAN || sweep_takes(row, fault, 3);
+    return fault == CAD_CLEAN || sweep_takes(row, fault, 5);
 }
 
 /* Two bodies, with a gap in z between the tested ones: the truth has none. Vertices within are hidden, those outside are not. */
