@@ -38,7 +38,7 @@ pkg_libs   := $(shell pkg-config --libs $(packages) 2>/dev/null) -lflann -lcholm
               $(libyuv) -lm -ldl
 
 # What does not ask for packages needs them: without, say so at once.
-ifneq ($(filter-out deps test-deps run test check test-long clean style layers deb,$(or $(MAKECMDGOALS),all)),)
+ifneq ($(filter-out deps test-deps run test check test-long clean style layers deb bundle image test-deploy,$(or $(MAKECMDGOALS),all)),)
 missing := $(foreach p,$(packages),$(if $(shell pkg-config --exists $(p) 2>/dev/null && echo yes),,$(p))) \
            $(if $(wildcard /usr/bin/glad),,python3-glad)
 ifneq ($(strip $(missing)),)

@@ -46,4 +46,13 @@ install-demo: all
 # Debian packages, of what is committed.
 deb: clients/web/vendor/uPlot.js
 	@deploy/deb $(build)/deb "$(COMMIT)"
-.PHONY: install-demo deb
+# One archive that installs them without a network, and a container image; SIGN=KEY.pem signs the archive. Both need root and Debian's mirror.
+suite := $(shell . /etc/os-release && echo $$VERSION_CODENAME)
+bundle:
+	@deploy/bundle $(build)/deb $(build)/plantcast-bundle-$(suite).tar $(suite) $(SIGN)
+image:
+	@deploy/image $(build)/deb $(build)/plantcast-image-$(suite).tar $(suite)
+# Of what these made, in chroots without a network.
+test-deploy:
+	@deploy/test/run $(build)/deb $(build)/plantcast-bundle-$(suite).tar $(build)/plantcast-image-$(suite).tar $(suite)
+.PHONY: install-demo deb bundle image test-deploy
