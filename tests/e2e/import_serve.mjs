@@ -6,7 +6,7 @@ import { existsSync, mkdtempSync, readdirSync, readFileSync, rmSync, writeFileSy
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
-import { arrive, openPage, settle, shoot, TABLET, waitForPicture } from './support/browser.mjs';
+import { arrive, drawnAt, land, openPage, settle, shoot, TABLET, waitForPicture } from './support/browser.mjs';
 import { formats, makeTagList } from './support/tag_lists.mjs';
 import { BIN, missing } from './support/tiny_plant.mjs';
 
@@ -382,21 +382,98 @@ test('400,000 triangles and 300 tags: a first picture within 5 minutes of the fi
     }
 });
 
-test('models and a tag list are given on the command line', { skip: noData, timeout: 120000 }, async () => {
+const ROOM = `Tag Name,Address,Data Type,Scaled Low,Scaled High,Eng Units,Description
+ART1105BA_TT01,400001,Float,0,150,degC,Tank ART1105BA shell top temperature
+ART1105BA_TT02,400003,Float,0,150,degC,Tank ART1105BA shell bottom temperature
+TT-1101,400005,Float,0,120,degC,Pump ART1101PO bearing DE temperature
+art1111po.TE-03,400007,Float,0,120,degC,Bearing temperature
+TT-1111,400009,Float,0,120,degC,Suction temperature
+ART1010TY_TI_01,400011,Float,0,200,degC,Feed line
+DWX12O1GL-TT-01,400013,Float,0,100,degC,Duct
+ART1101PO_PT01,400015,Float,0,16,bar(g),Discharge pressure
+HZ0501_TT,400017,Float,0,90,degC,Wall
+TT-9011,400019,Float,0,90,degC,"Cooling tower, another unit"
+`;
+// Its pictures, made smaller, are those of preprocess/YOUR_PLANT.md.
+test('a plant room: files given on the command line, and what is seen then', { skip: noData, timeout: 200000 }, async () => {
     const folder = mkdtempSync(join(tmpdir(), 'plantcast-given-')), list = join(folder, 'kepware.csv');
-    writeFileSync(list, 'Tag Name,Address,Data Type,Eng Units,Description\nART1105BA_TT01,400001,Float,degC,Tank\n');
-    const given = await Served.start(join(DATA, 'cad/plm-sample.rvm'), list);
+    writeFileSync(list, ROOM);
+    const given = await Served.start(join(DATA, 'cad/plm-sample.rvm'), list), seen = await openPage(`${given.url}?lang=en`, DESK);
     try {
-        const state = await given.idle();
+        const state = await given.idle(), room = seen.page;
         assert.equal(state.failed, null, state.failed);
         assert.match(state.said, /352 elements, 315 of them in the model/, 'attributes beside the model are read');
-        assert.match(given.read('tags.csv'), /ART1105BA_TT01/);
-        const seen = await openPage(given.url, DESK);
-        await waitForPicture(seen.page);
-        assert.equal((await assetsOf(seen.page)).length, 19);
-        await seen.close();
+        await room.waitForFunction(() => globalThis.plantcast?.session.model?.assets.length === 19, null, { timeout: 60000 });
+        await room.waitForTimeout(500);
+        if (!await room.locator('#import').isVisible())
+            await room.locator('#import-toggle').click();
+        await room.locator('#import .measures summary').click();
+        await inForce(room);
+        await arrive(room);
+        await shoot(room, 'walk-1-plant');
+        await room.locator('#import .measures summary').click();
+        await room.locator('#import .segments label', { hasText: 'Doubtful' }).click();
+        await row(room, 'TT-1111').click();
+        await arrive(room);
+        await shoot(room, 'walk-2-candidates');
+        await room.keyboard.press('2');
+        await room.getByRole('button', { name: 'Save', exact: true }).click();
+        await saved(room);
+        await room.waitForFunction(() => globalThis.plantcast.session.model.tag('TT-1111')?.group === 'temperature');
+        await room.evaluate(() => globalThis.plantcast.session.setParams({ isolate: ['-ART1111PO-'] })); // the wall is in the way
+        await room.locator('#import .segments label', { hasText: 'Unplaced' }).click();
+        const before = Number(await room.locator('#import .segments b').last().textContent());
+        await row(room, 'TT-1111').click();
+        await arrive(room);
+        await room.keyboard.press('p');
+        await room.waitForFunction(() => /TT-1111/.test(document.querySelector('#engineer .hint')?.textContent ?? ''));
+        await land(room);
+        const { x, y } = await drawnAt(room, await room.evaluate(() => globalThis.plantcast.session.model.tag('TT-1111').position));
+        await room.mouse.move(x, y); // on its marker, which is dragged a little
+        await room.mouse.down();
+        for (let i = 1; i <= 6; i++) {
+            await room.mouse.move(x, y - i);
+            await room.waitForTimeout(50);
+        }
+        await room.mouse.up();
+        await room.waitForFunction(() => globalThis.plantcast.session.model.placed.size === 1);
+        await arrive(room);
+        await shoot(room, 'walk-3-placed');
+        await room.locator('#engineer').getByRole('button', { name: 'Save …' }).click();
+        await room.getByRole('button', { name: 'Save and put in force' }).click();
+        await room.waitForFunction(() => globalThis.plantcast.session.model.tag('TT-1111').place === undefined, null, { timeout: 60000 });
+        await room.locator('#import-toggle').click();
+        await room.waitForFunction((count) => Number([...document.querySelectorAll('#import .segments b')].at(-1).textContent) < count,
+            before);
+        assert.deepEqual(seen.errors, []);
     } finally {
+        await seen.close();
         await given.destroy();
         rmSync(folder, { recursive: true });
+    }
+});
+
+test('millimetres taken for metres: seen beside a person, and corrected', options, async () => {
+    const huge = await Served.start(), seen = await openPage(`${huge.url}?lang=en`, DESK);
+    const size = () => seen.page.locator('#import .measures .size').textContent();
+    try {
+        await waitForPicture(seen.page);
+        await choose(seen.page, [{ name: 'plant.gltf', text: boxes(NAMES, 1000) }, { name: 'tags.csv', text: TAGS }]);
+        await inForce(seen.page);
+        await seen.page.locator('#import .measures summary').click();
+        assert.match(await size(), /^9000 × 1000 × 1000 m$/);
+        await arrive(seen.page);
+        await shoot(seen.page, 'import-9-huge');
+        await seen.page.locator('#import .measures select').first().selectOption('mm');
+        assert.match(await size(), /^9\.00 × 1\.00 × 1\.00 m$/);
+        await seen.page.getByRole('button', { name: 'Apply' }).click();
+        await seen.page.waitForFunction(() => globalThis.plantcast.session.model.plant.bounds.max[0] < 10, null, { timeout: 60000 });
+        await seen.page.waitForFunction(() => !document.querySelector('#import.busy'));
+        await arrive(seen.page);
+        await shoot(seen.page, 'import-10-corrected');
+        assert.deepEqual(seen.errors, []);
+    } finally {
+        await seen.close();
+        await huge.destroy();
     }
 });

@@ -38,7 +38,8 @@ up.z: Z
 apply: Anwenden
 person: Eine Person von 1,8 m daneben zeigen
 person.label: 1,8 m
-units.note: Anwenden liest die Modelle noch einmal. plant.yaml und tags.csv entstehen neu, die alten bleiben als .1, .2, …; Entscheidungen über Messstellen bleiben.
+units.note: Anwenden liest die Modelle noch einmal. plant.yaml und tags.csv entstehen neu, die alten
+ bleiben als .1, .2, …; Entscheidungen über Messstellen bleiben.
 tags: Messstellen
 filter: Zeigen
 filter.all: Alle
@@ -51,7 +52,8 @@ sign.likely: ?
 sign.none: –
 sign.unplaced: ◎
 find: Messstellen, Anlagenteile, Gründe suchen
-keys: ↑ ↓ durchgehen · 1–8 Vorschlag wählen · Enter annehmen · A alle solchen · N keiner · P platzieren
+keys: ↑ ↓ durchgehen · 1–8 Vorschlag wählen · Enter annehmen · A alle solchen · N keiner · P
+ platzieren
 byhand: von Hand
 decided(one): {count} Entscheidung
 decided(other): {count} Entscheidungen

@@ -38,7 +38,8 @@ up.z: Z
 apply: Apply
 person: Show a person of 1.8 m beside it
 person.label: 1.8 m
-units.note: Applying reads the models again. plant.yaml and tags.csv are made anew, those before are kept as .1, .2, …; decisions on tags stay.
+units.note: Applying reads the models again. plant.yaml and tags.csv are made anew, those before are
+ kept as .1, .2, …; decisions on tags stay.
 tags: Tags
 filter: Show
 filter.all: All

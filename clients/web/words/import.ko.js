@@ -37,7 +37,8 @@ up.z: Z
 apply: 적용
 person: 옆에 키 1.8 m인 사람 표시
 person.label: 1.8 m
-units.note: 적용하면 모델을 다시 읽습니다. plant.yaml과 tags.csv는 새로 만들어지고 이전 파일은 .1, .2, … 로 남으며, 태그에 대한 결정은 유지됩니다.
+units.note: 적용하면 모델을 다시 읽습니다. plant.yaml과 tags.csv는 새로 만들어지고 이전 파일은 .1,
+ .2, … 로 남으며, 태그에 대한 결정은 유지됩니다.
 tags: 태그
 filter: 표시
 filter.all: 전체

@@ -55,8 +55,8 @@ export class AlarmList {
     }
 
     setOpen(open) {
-        if (open)
-            this.modules.there('engineer')?.close(); // it stands in the same place
+        for (const name of open ? ['engineer', 'import'] : [])
+            this.modules.there(name)?.close(); // it stands in the same place
         byId('alarms').hidden = !open;
         byId('alarm-strip').setAttribute('aria-expanded', open);
         this.show();

@@ -41,8 +41,8 @@ export class Engineer {
         const [alarms, imports] = ['alarms', 'import'].map((name) => this.page.modules.there(name));
         if (!this.open && alarms?.open)
             alarms.setOpen(false); // they stand in the same place
-        if (!this.open && imports?.open)
-            imports.toggle();
+        if (!this.open)
+            imports?.close();
         this.element.hidden = this.open;
         this.button.setAttribute('aria-expanded', this.open);
         (this.open ? this.element.querySelector('input') : this.button).focus();

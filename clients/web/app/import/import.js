@@ -70,6 +70,11 @@ export class Import {
         return !this.element.hidden;
     }
 
+    close() {
+        if (this.open)
+            this.toggle();
+    }
+
     toggle() {
         for (const name of ['alarms', 'engineer']) { // they stand in the same place
             const other = this.page.modules.there(name);
