@@ -97,8 +97,8 @@ export class Matches {
             this.decisions.set(match.tag, { status, asset });
     }
 
-    // Those that are doubtful, of the same pattern, and can be accepted at once, as [match, asset]: on what is proposed for each, or on what
-    // was decided for another of the pattern where it may be that too.
+    // Those that are doubtful, of the same pattern, and can be accepted at once, as [match, asset]: on what is proposed for each, or on
+    // what was decided for another of the pattern where it may be that too.
     alike({ tag }) {
         const pattern = patternOf(tag), decided = [...this.decisions].filter(([name, { asset }]) => asset && patternOf(name) === pattern);
         return this.all.filter((one) => patternOf(one.tag) === pattern && this.kindOf(one) === 'likely').map((one) => [one, one.asset ||
