@@ -13,7 +13,8 @@ const UNITS = ['', 'm', 'mm', 'cm', 'in', 'ft'], AXES = ['', 'y', 'z'];
 const PLACEHOLDER = 'person'; // the only asset of a plant that nothing was imported into
 
 const choice = (key, values, onchange) => {
-    const select = make('select', { onchange }, ...values.map((value) => make('option', { value }, say(`import.${key}.${value || 'said'}`))));
+    const select = make('select', { onchange }, ...values.map((value) =>
+        make('option', { value }, say(`import.${key}.${value || 'said'}`))));
     return [make('label', { class: 'choice' }, make('span', {}, say(`import.${key}`)), select), select];
 };
 const button = (key, onclick, attributes = {}) => make('button', { type: 'button', onclick, ...attributes }, say(key));
@@ -39,7 +40,8 @@ export class Import {
             this.upload([...this.pick.files]);
             this.pick.value = '';
         } });
-        this.drop = make('label', { class: 'drop' }, make('b', {}, say('import.drop')), make('i', {}, say('import.more')), make('span', {}, say('import.formats')), this.pick);
+        this.drop = make('label', { class: 'drop' }, make('b', {}, say('import.drop')), make('i', {}, say('import.more')),
+            make('span', {}, say('import.formats')), this.pick);
         this.files = make('ul', { class: 'files' });
         this.filesTitle = make('summary', {});
         this.phase = make('p', { class: 'phase', role: 'status' });
@@ -61,7 +63,8 @@ export class Import {
         this.element = make('section', { class: 'import', id: 'import', hidden: true, 'aria-label': say('bar.import') },
             make('header', {}, make('h2', {}, say('bar.import')), closeButton('import.close', () => this.toggle())),
             make('div', { class: 'part' },
-                make('section', {}, this.drop, this.filesFold, make('div', { class: 'line' }, this.phase, this.cancel, this.again), this.wrong),
+                make('section', {}, this.drop, this.filesFold,
+                    make('div', { class: 'line' }, this.phase, this.cancel, this.again), this.wrong),
                 this.measures, this.table.element));
         byId('viewport').parentElement.append(this.element);
     }

@@ -10,7 +10,8 @@ import { fill } from '../common/widgets.js';
 
 const ROW_PX = 44, ROOM = 1.9;
 const union = (boxes) => ({
-    min: [0, 1, 2].map((i) => Math.min(...boxes.map(({ min }) => min[i]))), max: [0, 1, 2].map((i) => Math.max(...boxes.map(({ max }) => max[i]))),
+    min: [0, 1, 2].map((i) => Math.min(...boxes.map(({ min }) => min[i]))),
+    max: [0, 1, 2].map((i) => Math.max(...boxes.map(({ max }) => max[i]))),
 });
 
 export class TagTable {
@@ -90,7 +91,8 @@ export class TagTable {
     // --- rows
 
     makeRow(row) {
-        return make('div', { role: 'option', class: 'row', onclick: () => this.choose(row), onfocus: () => { this.list.active = row.tag; } },
+        return make('div', { role: 'option', class: 'row', onclick: () => this.choose(row),
+            onfocus: () => { this.list.active = row.tag; } },
             make('i', {}), make('b', {}, row.tag), make('span', { class: 'on' }), make('span', { class: 'why' }));
     }
 
@@ -226,7 +228,8 @@ export class TagTable {
         fill(this.detail, make('h4', {}, chosen.tag), tag?.description ? make('p', {}, tag.description) : null,
             make('p', { class: 'quiet' }, this.reasonOf(chosen)),
             make('div', { class: 'candidates' }, ...assets.map(({ id, description }, i) => button([`${i + 1}  ${id}`, description]
-                .filter(Boolean).join(' · '), () => this.accept(id), { 'aria-pressed': String(now.status === 'sure' && now.asset === id) })),
+                .filter(Boolean).join(' · '), () => this.accept(id), {
+                'aria-pressed': String(now.status === 'sure' && now.asset === id) })),
             other ? button(say('import.selected', { asset: other }), () => this.accept(other)) : null),
             make('div', { class: 'line' },
                 alike.length > 1 ? button(say('import.alike', { pattern: patternOf(chosen.tag), count: alike.length }),
