@@ -99,6 +99,16 @@ static bool start_notifier(struct plant_runtime *runtime)
     return !runtime->plant->notify || (runtime->notifier = notifier_start(&params));
 }
 
+static bool start_publisher(struct plant_runtime *runtime)
+{
+    const struct publisher_params params = { .log = runtime->context->log,
+                                             .counters = runtime->context->counters,
+                                             .plant = runtime->plant,
+                                             .store = runtime->store,
+                                             .alarm_service = runtime->alarm_service };
+    return !runtime->plant->publish || (runtime->publisher = publisher_start(&params));
+}
+
 /* Made from what is loaded; works only once somebody asks. */
 static void start_placing(struct plant_runtime *runtime)
 {
@@ -127,7 +137,7 @@ bool plant_runtime_start_recording(struct plant_runtime *runtime, struct plant_r
     if (runtime->render_service)
         render_service_set_loop_checks(runtime->render_service, runtime->loop_checks);
     return start_historian(runtime, before != NULL) && start_alarm_service(runtime, before ? before->alarm_service : NULL) &&
-           start_notifier(runtime);
+           start_notifier(runtime) && start_publisher(runtime);
 }
 
 bool plant_runtime_start_sources(struct plant_runtime *runtime)
@@ -191,6 +201,7 @@ void plant_runtime_hand_over(struct plant_runtime *runtime, const struct plant *
     stop_sources(runtime);
     historian_end(&runtime->historian, next);
     notifier_stop(&runtime->notifier);
+    publisher_stop(&runtime->publisher);
     alarm_service_halt(runtime->alarm_service);
 }
 
@@ -223,6 +234,7 @@ void plant_runtime_destroy(struct plant_runtime **pointer)
     mem_free(runtime->tag_list);
     stop_sources(runtime);
     notifier_stop(&runtime->notifier);
+    publisher_stop(&runtime->publisher);
     alarm_service_stop(&runtime->alarm_service);
     historian_stop(&runtime->historian);
     store_destroy(&runtime->store);

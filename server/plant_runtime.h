@@ -7,6 +7,7 @@
 #include "history/historian.h"
 #include "net/net.h"
 #include "notify/notifier.h"
+#include "notify/publisher.h"
 #include "placing/placing.h"
 #include "server_params.h"
 #include "value/derived.h"
@@ -32,6 +33,7 @@ struct plant_runtime {
     struct historian *historian; /* NULL: nothing is recorded */
     struct alarm_service *alarm_service;
     struct notifier *notifier;   /* NULL: nobody is told of alarms */
+    struct publisher *publisher; /* NULL: nothing is published */
     struct source **sources; /* by index in plant->sources */
     struct source *derived;  /* computes derived tags; NULL: there are none */
     struct render_service *render_service;

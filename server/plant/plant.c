@@ -180,6 +180,7 @@ void plant_destroy(struct plant **plant_ptr)
     plant_views_free(plant);
     plant_walls_free(plant);
     plant_notify_free(&plant->notify);
+    plant_publish_free(&plant->publish);
     for (size_t i = 0; i < plant->conversion_count; i++) {
         mem_free(plant->conversions[i].model);
         mem_free(plant->conversions[i].from);

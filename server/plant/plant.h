@@ -129,6 +129,7 @@ struct plant_mqtt { /* how values are published to a broker; texts that are not 
     char *will;                  /* topic where the broker says "offline" for us once we are gone */
     char *topic;                 /* template of the topics of tags whose address has none */
     char *value, *time, *quality; /* paths in JSON payloads */
+    bool will_stays;             /* the broker keeps that for those who come later */
     bool rebirth;                /* a Sparkplug node may be asked for its birth certificate: all that is ever published */
 };
 
@@ -155,6 +156,13 @@ struct plant_source {
     struct plant_mqtt mqtt;
     bool simulated; /* what it brings was not measured now */
     int line;
+};
+
+/* The broker that readings and alarms are published to. */
+struct plant_publish {
+    struct plant_source broker; /* only what says where it is, and who we are */
+    char *prefix;               /* of all topics; begins with plantcast/ */
+    double every_s;
 };
 
 /* Another database that history is sent to as well. */
@@ -272,6 +280,7 @@ struct plant {
     struct named_view *views;    /* plant/wall.h, as the next */
     struct wall *walls;
     size_t view_count, wall_count;
+    struct plant_publish *publish; /* NULL: nothing is published */
     struct plant_notify *notify; /* who is told of alarms (plant/notification.h); NULL: nobody */
     struct plant_asset *assets;
     struct plant_group *groups;

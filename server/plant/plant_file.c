@@ -464,6 +464,11 @@ static void read_walls(struct yaml_reader *reader, yaml_node_t *node, void *reco
     plant_walls_read(reader, node, ((struct plant_file *)record)->plant);
 }
 
+static void read_publish(struct yaml_reader *reader, yaml_node_t *node, void *record)
+{
+    plant_publish_read(reader, node, ((struct plant_file *)record)->plant);
+}
+
 /* --- the whole file --------------------------------------------------------------------------------------------------------- */
 
 void plant_file_read(struct plant *plant, struct diag *diag)
@@ -479,6 +484,7 @@ void plant_file_read(struct plant *plant, struct diag *diag)
                                        { "history", KEY_CUSTOM, false, 0, 0, 0, NULL, read_history },
                                        { "alarms", KEY_CUSTOM, false, 0, 0, 0, NULL, read_alarms },
                                        { "notify", KEY_CUSTOM, false, 0, 0, 0, NULL, read_notify },
+                                       { "publish", KEY_CUSTOM, false, 0, 0, 0, NULL, read_publish },
                                        { "views", KEY_CUSTOM, false, 0, 0, 0, NULL, read_views },
                                        { "walls", KEY_CUSTOM, false, 0, 0, 0, NULL, read_walls },
                                        { "tags", KEY_NAME, true, offsetof(struct plant_file, tags), 0, 0, NULL, NULL },

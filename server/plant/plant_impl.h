@@ -37,6 +37,9 @@ void plant_postgres_read(struct yaml_reader *reader, yaml_node_t *node, void *hi
 void plant_postgres_check(struct yaml_reader *reader, const struct yaml_map *map, const struct plant *plant,
                           struct plant_postgres *postgres);
 void plant_postgres_finish(struct plant_postgres *postgres);
+/* Reads the key `publish`. */
+void plant_publish_read(struct yaml_reader *reader, yaml_node_t *node, struct plant *plant);
+void plant_publish_free(struct plant_publish **publish); /* &NULL is fine; leaves NULL */
 /* Reads the list `sources`. */
 void plant_sources_read(struct yaml_reader *reader, yaml_node_t *node, struct plant *plant);
 

@@ -181,7 +181,7 @@ static bool leave_will(struct mqtt_client *client, char why[200])
 {
     static const char OFFLINE[] = "offline";
     const char *topic = client->source->mqtt.will;
-    int status = topic ? mosquitto_will_set(client->library, topic, (int)strlen(OFFLINE), OFFLINE, 1, false) : MOSQ_ERR_SUCCESS;
+    int status = topic ? mosquitto_will_set(client->library, topic, (int)strlen(OFFLINE), OFFLINE, 1, client->source->mqtt.will_stays) : MOSQ_ERR_SUCCESS;
     if (status != MOSQ_ERR_SUCCESS)
         snprintf(why, 200, "will: %s", mosquitto_strerror(status));
     return status == MOSQ_ERR_SUCCESS;
@@ -320,6 +320,18 @@ bool mqtt_client_subscribe(struct mqtt_client *client, char *const *topics, size
                                               client->source->mqtt.qos, 0, NULL);
     }
     return status == MOSQ_ERR_SUCCESS;
+}
+
+bool mqtt_client_publish(struct mqtt_client *client, const char *topic, const char *text)
+{
+    static const char OURS[] = "plantcast/";
+    return !strncmp(topic, OURS, strlen(OURS)) &&
+           mosquitto_publish(client->library, NULL, topic, (int)strlen(text), text, 0, true) == MOSQ_ERR_SUCCESS;
+}
+
+bool mqtt_client_has_sent(const struct mqtt_client *client)
+{
+    return !mosquitto_want_write(client->library);
 }
 
 void mqtt_client_ask_rebirth(struct mqtt_client *client, const char *group, const char *node)

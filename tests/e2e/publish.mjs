@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Readings and alarms to Debian's mosquitto, and from there into another Plantcast.
+import assert from 'node:assert/strict';
+import { readFileSync, writeFileSync } from 'node:fs';
+import { join } from 'node:path';
+import { after, before, test } from 'node:test';
+import { Broker, missingBroker } from './support/broker.mjs';
+import { PublishedPlant } from './support/published_plant.mjs';
+import { missing, runProgram, TinyPlant } from './support/tiny_plant.mjs';
+
+const absent = missing();
+const options = { skip: absent.length > 0 ? `not built: ${absent.join(', ')}` : missingBroker() ?? false, timeout: 120000 };
+const sleep = (ms) => new Promise((done) => setTimeout(done, ms));
+const PREFIX = 'plantcast/two boxes';
+let broker, plant, other, plain, client, heard, publications;
+
+before(async () => {
+    if (options.skip)
+        return;
+    broker = await Broker.start();
+    plant = await TinyPlant.create();
+    plain = readFileSync(plant.file, 'utf8');
+    writeFileSync(join(plant.folder, 'tags.csv'), `Tag Name,Address,Data Type,Eng Units,Group,Asset,X,Y,Z,Stale s,H
+TI-1,400001,Float,°C,temperature,E-101,0.5,0,0,1,90
+TI/2#a,400003,Float,°C,temperature,E-101,-0.5,0,0,1,
+PI-1,400005,Float,bar,pressure,P-101A,3,0,0.5,1,
+`);
+    writeFileSync(plant.file, `${plain}publish:
+  { host: 127.0.0.1, port: ${broker.port}, prefix: ${PREFIX}, every_s: 0.2, keepalive_s: 5 }
+`);
+    const prepared = plant.prepare();
+    assert.equal(prepared.code, 0, prepared.err);
+    await plant.startSim();
+    await plant.tell('set TI-1 21.5');
+    await plant.startDaemon();
+    await listen();
+});
+after(async () => {
+    client?.end(true);
+    await other?.destroy();
+    await plant?.destroy();
+    await broker?.destroy();
+});
+
+// From now on, what a stranger hears.
+async function listen() {
+    client?.end(true);
+    heard = {};
+    publications = 0;
+    client = await broker.client();
+    client.on('message', (topic, payload) => { heard[topic] = payload.toString(); publications++; });
+    await new Promise((done, fail) => client.subscribe('#', (error) => (error ? fail(error) : done())));
+}
+
+async function until(what, good, seconds = 20) {
+    for (const end = performance.now() + seconds * 1000; !good(); await sleep(50))
+        assert.ok(performance.now() < end, `${what}; heard ${JSON.stringify(heard)}`);
+}
+const tag = (name) => JSON.parse(heard[`${PREFIX}/tags/${name}`] ?? '{}');
+
+test('values with their time, quality and unit; each tag has a topic of one level', options, async () => {
+    await until('a value', () => tag('TI-1').value === 21.5);
+    assert.deepEqual([tag('TI-1').quality, tag('TI-1').unit, heard[`${PREFIX}/state`]], [0, '°C', 'online']);
+    assert.ok(Math.abs(Date.parse(tag('TI-1').time) - Date.now()) < 5000, tag('TI-1').time);
+    const topics = ['alarms', 'state', 'tags/PI-1', 'tags/TI%2F2%23a', 'tags/TI-1'];
+    assert.deepEqual(Object.keys(heard).sort(), topics.map((name) => `${PREFIX}/${name}`));
+    await plant.tell('fail PI-1');
+    await until('Bad', () => tag('PI-1').value === null && tag('PI-1').quality >>> 30 === 2);
+    await plant.tell('release PI-1');
+    await until('Good', () => tag('PI-1').quality === 0);
+});
+
+test('alarms: all that stand, and none once they have ended', options, async () => {
+    const alarms = () => JSON.parse(heard[`${PREFIX}/alarms`] ?? '{}').alarms;
+    await until('no alarm', () => alarms()?.length === 0);
+    await plant.tell('set TI-1 95.5');
+    await until('an alarm', () => alarms()?.length === 1);
+    const { tag: name, kind, limit, value } = alarms()[0];
+    assert.deepEqual([name, kind, limit, value], ['TI-1', 'H', 90, 95.5]);
+    await plant.tell('set TI-1 50');
+    await until('none', () => alarms()?.length === 0);
+});
+
+test('the newest wins: not more than the rate that is asked for', options, async () => {
+    publications = 0;
+    const began = performance.now();
+    for (let i = 0; i < 40; i++) {
+        await plant.tell(`set TI-1 ${i}`);
+        await sleep(50);
+    }
+    assert.ok(publications <= 3 * (performance.now() - began) / 200 + 6, `${publications} messages`);
+    await until('the last', () => tag('TI-1').value === 39);
+});
+
+test('another Plantcast shows it, with the same values, qualities and times', options, async () => {
+    other = await PublishedPlant.create(broker);
+    const rows = ['TI-1,,,°C,temperature,E-101,0.5,0,0,5,,,,,', 'PI-1,,,bar,pressure,P-101A,3,0,0.5,5,,,,,',
+        `TI-2,${PREFIX}/tags/TI%2F2%23a,,°C,temperature,E-101,-0.5,0,0,5,,,,,`];
+    await other.run(`payload: json, topic: "${PREFIX}/tags/{tag}", time: time, quality: quality`, rows);
+    await plant.tell('set TI-1 77.25');
+    await other.until('TI-1', { quality_name: 'Good', value: 77.25 });
+    await other.until('TI-2', { quality_name: 'Good' });
+    await plant.tell('fail TI-1');
+    const url = `http://127.0.0.1:${plant.port}/api/v1/tags?count=9`;
+    const here = async () => (await (await fetch(url)).json()).tags.find(({ name }) => name === 'TI-1');
+    for (const end = performance.now() + 10000; (await here()).quality_name.startsWith('Good'); await sleep(50))
+        assert.ok(performance.now() < end);
+    await sleep(2000);
+    await other.until('TI-1', { quality_name: (await here()).quality_name });
+    await plant.tell('release TI-1');
+    await other.until('TI-1', { quality_name: 'Good' });
+});
+
+test('a broker that is killed and comes back has all anew; who dies is offline', options, async () => {
+    await broker.restart();
+    await plant.daemon.line(/publish: .*: nothing is published: /);
+    await listen();
+    await until('all', () => heard[`${PREFIX}/state`] === 'online' && tag('TI-1').quality === 0 && heard[`${PREFIX}/alarms`]);
+    await plant.daemon.stop('SIGKILL');
+    await until('offline', () => heard[`${PREFIX}/state`] === 'offline');
+    await plant.startDaemon();
+    await until('online', () => heard[`${PREFIX}/state`] === 'online');
+    await plant.daemon.stop();
+    await until('offline at its end', () => heard[`${PREFIX}/state`] === 'offline');
+});
+
+test('a prefix where devices may listen is refused', options, () => {
+    const text = readFileSync(plant.file, 'utf8');
+    for (const prefix of ['plc1/write', 'plantcast/#', 'plantcast/']) {
+        writeFileSync(plant.file, text.replace(`prefix: ${PREFIX}`, `prefix: "${prefix}"`));
+        const { err } = runProgram('plantcastd', ['--check', plant.file]);
+        assert.match(err, /error: prefix: expected a topic such as plantcast\/unit100, found/);
+    }
+});
