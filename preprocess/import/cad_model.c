@@ -78,11 +78,3 @@ void cad_model_add_color(struct cad_model *model, uint32_t material, const uint8
     mem_grow(&model->colors, &model->color_room, model->color_count + 1, sizeof(*model->colors));
     model->colors[model->color_count++] = (struct cad_color){ material, { rgb[0], rgb[1], rgb[2] } };
 }
-
-const char *cad_node_attribute(const struct cad_node *node, const char *name)
-{
-    for (size_t i = 0; i < node->attribute_count; i++)
-        if (!strcmp(node->attributes[i].name, name))
-            return node->attributes[i].value;
-    return NULL;
-}

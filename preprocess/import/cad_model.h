@@ -53,7 +53,4 @@ void cad_node_add_line(struct cad_node *node, const double from_m[3], const doub
 void cad_node_add_attribute(struct cad_node *node, const char *name, const char *value);
 void cad_model_add_color(struct cad_model *model, uint32_t material, const uint8_t rgb[3]);
 
-/* Returns the value of the first attribute of this name, or NULL. */
-const char *cad_node_attribute(const struct cad_node *node, const char *name);
-
 #endif

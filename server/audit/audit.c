@@ -3,7 +3,6 @@
 #include "audit/audit.h"
 
 #include <inttypes.h>
-#include <pthread.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -11,6 +10,7 @@
 #include "audit/audit_syslog.h"
 #include "base/clock.h"
 #include "base/mem.h"
+#include "base/thread.h"
 
 enum { MOST_WAITING = 10000, FILE_BYTES = 64 << 20 };
 static const int64_t RETRY_NS = NS_PER_S;
@@ -27,16 +27,13 @@ struct audit {
     char *path;
     struct audit_file file; /* of the thread */
     struct audit_syslog *syslog;
-    pthread_t thread;
     bool failing; /* of the thread */
     counter *good, *lines, *lost;
-    pthread_mutex_t lock;
-    pthread_cond_t wake;
-    /* --- below: under lock */
+    struct thread thread;
+    /* --- below: under thread.lock */
     struct waiting *first, **last;
     size_t count;
     int64_t lost_count; /* since entries were last written */
-    bool stopping;
 };
 
 /* --- entries that wait ---------------------------------------------------------------------------------------------------- */
@@ -63,7 +60,7 @@ void audit_say(struct audit *audit, const struct audit_entry *entry)
 {
     if (!audit)
         return;
-    pthread_mutex_lock(&audit->lock);
+    pthread_mutex_lock(&audit->thread.lock);
     if (audit->count >= MOST_WAITING) {
         counter_inc(audit->lost, 1);
         audit->lost_count++;
@@ -72,9 +69,9 @@ void audit_say(struct audit *audit, const struct audit_entry *entry)
         *audit->last = waiting;
         audit->last = &waiting->next;
         audit->count++;
-        pthread_cond_signal(&audit->wake);
+        pthread_cond_signal(&audit->thread.wake);
     }
-    pthread_mutex_unlock(&audit->lock);
+    pthread_mutex_unlock(&audit->thread.lock);
 }
 
 /* --- writing -------------------------------------------------------------------------------------------------------------- */
@@ -156,37 +153,37 @@ static void say_lost(struct audit *audit)
     if (!lost)
         return;
     char *what = mem_printf("%" PRId64 " entries were lost while the file could not be written", lost);
-    pthread_mutex_unlock(&audit->lock);
+    pthread_mutex_unlock(&audit->thread.lock);
     audit_say(audit, &(struct audit_entry){ .event = "audit", .result = "failed", .what = what });
-    pthread_mutex_lock(&audit->lock);
+    pthread_mutex_lock(&audit->thread.lock);
     mem_free(what);
 }
 
 static void *run(void *arg)
 {
     struct audit *audit = arg;
-    pthread_mutex_lock(&audit->lock);
+    pthread_mutex_lock(&audit->thread.lock);
     for (;;) {
-        while (!audit->first && !audit->stopping)
-            pthread_cond_wait(&audit->wake, &audit->lock);
+        while (!audit->first && !audit->thread.stopping)
+            pthread_cond_wait(&audit->thread.wake, &audit->thread.lock);
         struct waiting *first = audit->first;
         if (!first)
             break;
-        pthread_mutex_unlock(&audit->lock);
+        pthread_mutex_unlock(&audit->thread.lock);
         bool written = write_entry(audit, &first->entry, first->utc_us);
-        pthread_mutex_lock(&audit->lock);
+        pthread_mutex_lock(&audit->thread.lock);
         if (written) {
             free_first(audit);
             say_lost(audit);
-        } else if (audit->stopping) {
+        } else if (audit->thread.stopping) {
             log_waiting(audit);
             break;
         } else {
             log_waiting(audit);
-            clock_cond_wait(&audit->wake, &audit->lock, clock_mono_ns() + RETRY_NS);
+            clock_cond_wait(&audit->thread.wake, &audit->thread.lock, clock_mono_ns() + RETRY_NS);
         }
     }
-    pthread_mutex_unlock(&audit->lock);
+    pthread_mutex_unlock(&audit->thread.lock);
     return NULL;
 }
 
@@ -198,8 +195,7 @@ static void finish(struct audit *audit)
     while (audit->first)
         free_first(audit);
     audit_file_close(&audit->file);
-    pthread_cond_destroy(&audit->wake);
-    pthread_mutex_destroy(&audit->lock);
+    thread_finish(&audit->thread);
     mem_free(audit->path);
     mem_free(audit);
 }
@@ -218,10 +214,7 @@ static bool start(struct audit *audit)
         log_err(params->log, "audit: %s: %s", params->path, strerror(-error));
     if (error || (params->syslog && !(audit->syslog = audit_syslog_start(params))))
         return false;
-    error = pthread_create(&audit->thread, NULL, run, audit);
-    if (error)
-        log_err(params->log, "audit: no thread: %s", strerror(error));
-    return !error;
+    return thread_start(&audit->thread, params->log, "audit", run, audit);
 }
 
 struct audit *audit_start(const struct audit_params *params)
@@ -232,8 +225,7 @@ struct audit *audit_start(const struct audit_params *params)
     audit->lines = counters_add(params->counters, "plantcast_audit_lines_total", "counter", "Lines of the audit trail written.");
     audit->lost = counters_add(params->counters, "plantcast_audit_lost_total", "counter", "Entries that the audit trail lacks.");
     counter_set(audit->good, 1);
-    pthread_mutex_init(&audit->lock, NULL);
-    clock_cond_init(&audit->wake);
+    thread_init(&audit->thread);
     if (start(audit))
         return audit;
     finish(audit);
@@ -245,11 +237,7 @@ void audit_stop(struct audit **pointer)
     struct audit *audit = *pointer;
     if (!audit)
         return;
-    pthread_mutex_lock(&audit->lock);
-    audit->stopping = true;
-    pthread_cond_signal(&audit->wake);
-    pthread_mutex_unlock(&audit->lock);
-    pthread_join(audit->thread, NULL);
+    thread_stop(&audit->thread);
     finish(audit);
     *pointer = NULL;
 }
