@@ -46,7 +46,7 @@ install-demo: all
 # Debian packages, of what is committed.
 deb: clients/web/vendor/uPlot.js
 	@deploy/deb $(build)/deb "$(COMMIT)"
-# One archive that installs them without a network, and a container image; SIGN=KEY.pem signs the archive. Both need root and Debian's mirror.
+# One archive that installs them without a network (SIGN=KEY.pem signs it), and a container image. Both need root and Debian's mirror.
 suite := $(shell . /etc/os-release && echo $$VERSION_CODENAME)
 bundle:
 	@deploy/bundle $(build)/deb $(build)/plantcast-bundle-$(suite).tar $(suite) $(SIGN)
