@@ -5,6 +5,7 @@ import { http, PlainClient } from './plain_client.mjs';
 
 const SIZES = [[640, 360], [1280, 720], [1366, 768], [1920, 1080], [390, 844], [1024, 1366]];
 const PATIENCE_MS = 120000, QUIET_MS = 10000;
+const REFINED_MS = 30000; // a machine with much else to do may show new readings for longer, and refine none
 const get = (port, path) => http(port, `GET ${path} HTTP/1.1\r\nHost: 127.0.0.1:${port}\r\n\r\n`, { timeoutMs: PATIENCE_MS });
 
 // 0 <= x < 1, the same for the same seed (mulberry32).
@@ -38,9 +39,10 @@ export class Curious {
     // Until a refined picture of what was said last is there; while the past is played, any picture of it.
     async still() {
         const { seq, playing } = this;
-        const is = (f) => (playing || (f.flags & 2) !== 0) && Math.max(f.camera_seq, f.params_seq) >= seq;
+        const said = performance.now(), any = () => playing || performance.now() - said > REFINED_MS;
+        const is = (f) => (any() || (f.flags & 2) !== 0) && Math.max(f.camera_seq, f.params_seq) >= seq;
         const wrong = (t) => t.type === 'error';
-        const said = performance.now(), quiet = (c) => performance.now() - (c.frames.at(-1)?.at ?? said) > QUIET_MS; // nothing to refine
+        const quiet = (c) => performance.now() - (c.frames.at(-1)?.at ?? said) > QUIET_MS; // nothing to refine
         await this.client.until(`a picture of ${seq}`, (c) => c.closed !== null || c.texts.some(wrong) || c.frames.some(is) || quiet(c),
             PATIENCE_MS);
         if (this.client.closed)
