@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The light of the surroundings (render/light/environments.c): 1 is what makes a level white surface under the open sky reflect 1.
 // Directions: axes of the plant.
+#include "constants.glsl"
 layout(std140, binding = 1) uniform Environment {
     vec4 irradiance_terms[9];
 };
 layout(binding = 8) uniform sampler3D mirrored_map; // octahedral; by roughness
 layout(binding = 9) uniform sampler2D brdf_map;     // scale and bias of F0, by cosine to the viewer and roughness
-
-const float SKY_LIGHT = 0.55, SUN_LIGHT = 0.78; // of what makes white white
 
 // Over pi.
 vec3 sky_irradiance(vec3 n)

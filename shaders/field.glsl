@@ -2,12 +2,13 @@
 // The colour of the field at a pixel: one look-up by place on the scale and by light. The colormap (render/shaded_colormap.h)
 // holds sRGB colours
 // by the legend's rule (field/scale.h), with bands, what lies outside MIN and MAX, and the patterns.
+#include "constants.glsl"
 layout(binding = 0) uniform sampler2D colormap;
 #ifdef RICH
 layout(binding = 15) uniform sampler2D lines; // by place: the nearest place that has a line
 #endif
 
-const int PLACES = 1024, HATCH_LIGHT = PLACES + 2, HATCH_DARK = PLACES + 3, STIPPLE = PLACES + 4,
+const int PLACES = COLORMAP_PLACES, HATCH_LIGHT = PLACES + 2, HATCH_DARK = PLACES + 3, STIPPLE = PLACES + 4,
           PLAIN_LIGHT = PLACES + 5, PLAIN_DARK = PLACES + 6;
 
 // Interpolating equal values may round: the ends have some slack. Column 0 is below MIN, PLACES + 1 above MAX.
@@ -100,7 +101,7 @@ vec3 field_color(FIELD_TYPE field, float light)
     vec3 color = colormap_color(part > 0.5 ? second : column, row); // one look-up
 #endif
 #ifdef RICH
-    vec3 ink = dot(color, vec3(0.30, 0.59, 0.11)) > 0.32 ? vec3(0.07, 0.09, 0.12) : vec3(0.93);
+    vec3 ink = dot(color, vec3(GREY_RED, GREY_GREEN, GREY_BLUE)) > 0.32 ? vec3(0.07, 0.09, 0.12) : vec3(0.93);
     color = mix(color, ink, max(field.y, field.w) > 0.5 ? 0.0 : 0.8 * line);
 #endif
     return color;

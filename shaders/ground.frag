@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Shadow on the ground, as a factor on what is there.
+#include "constants.glsl"
 #include "frame.glsl"
 layout(binding = 1) uniform sampler2D ground_light; // sun and openness
 layout(location = 0) in vec2 at;
@@ -16,5 +17,5 @@ void main()
     light.x = sun_visibility(frame.sun_from_eye, place, frame.up.xyz, frame.sun.w);
 #endif
     vec2 margin = smoothstep(vec2(0.5), vec2(0.3), abs(at - 0.5));
-    factor = vec4(vec3(1.0 - margin.x * margin.y * min(0.20 * (1.0 - light.x) + 0.42 * (1.0 - light.y), 0.5)), 1.0);
+    factor = vec4(vec3(1.0 - margin.x * margin.y * min(GROUND_SUN * (1.0 - light.x) + GROUND_SKY * (1.0 - light.y), GROUND_MOST)), 1.0);
 }

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // How much light falls on a point, and what it makes of it. Shared by both tiers and by the ramps, so that they agree.
+#include "constants.glsl"
 
 // Scalar light, 0 (a hidden corner) to 1 (faces the sun under the open sky).
 // ambient: sky and ground seen, 0..1; sun: cosine times visibility.
 float light_scalar(float ambient, float sun)
 {
-    return clamp(0.52 * ambient + 0.48 * sun, 0.0, 1.0);
+    return clamp(LIGHT_AMBIENT * ambient + LIGHT_SUN * sun, 0.0, 1.0);
 }
 
 vec3 linear_from_srgb(vec3 c)
@@ -22,7 +23,7 @@ vec3 srgb_from_linear(vec3 c)
 // Khronos PBR Neutral: keeps base colours, rolls off highlights.
 vec3 tone_map(vec3 c)
 {
-    const float start = 0.8 - 0.04, desaturation = 0.15;
+    const float start = TONE_START, desaturation = TONE_DESATURATION;
     float x = min(c.r, min(c.g, c.b));
     c -= x < 0.08 ? x - 6.25 * x * x : 0.04;
     float peak = max(c.r, max(c.g, c.b));
@@ -36,11 +37,11 @@ vec3 tone_map(vec3 c)
 
 float grey_of(vec3 c)
 {
-    return dot(c, vec3(0.30, 0.59, 0.11));
+    return dot(c, vec3(GREY_RED, GREY_GREEN, GREY_BLUE));
 }
 
 // Assets without a field are context: paler than they are and without hue, so that no material is taken for a value. sRGB in and out.
 vec3 mute(vec3 c)
 {
-    return mix(vec3(grey_of(c)), vec3(0.88), 0.48);
+    return mix(vec3(grey_of(c)), vec3(MUTED_GREY), MUTED_PART);
 }

@@ -30,9 +30,10 @@ vec3 sky_shade(Surface s, vec3 v)
 {
     float n_v = clamp(dot(s.normal, v), 0.0, 1.0);
     vec2 brdf = textureLod(brdf_map, vec2(n_v, s.roughness), 0.0).rg;
-    vec3 f0 = mix(vec3(0.04), s.base, s.metallic), diffuse = s.base * (1.0 - s.metallic);
-    vec3 clear = reflected_more(vec3(0.04), brdf), more = mix(clear, reflected_more(s.base, brdf), s.metallic), once = f0 * brdf.x + brdf.y;
-    vec3 soft = (more + diffuse * (1.0 - 0.04 * brdf.x - brdf.y - clear)) * sky_irradiance(s.normal);
+    vec3 f0 = mix(vec3(CLEAR_F0), s.base, s.metallic), diffuse = s.base * (1.0 - s.metallic);
+    vec3 clear = reflected_more(vec3(CLEAR_F0), brdf), more = mix(clear, reflected_more(s.base, brdf), s.metallic);
+    vec3 once = f0 * brdf.x + brdf.y;
+    vec3 soft = (more + diffuse * (1.0 - CLEAR_F0 * brdf.x - brdf.y - clear)) * sky_irradiance(s.normal);
     return (soft + once * mirrored(mix(reflect(-v, s.normal), s.normal, s.roughness * s.roughness), s.roughness)) * (SKY_LIGHT * s.open);
 }
 
@@ -40,7 +41,7 @@ vec3 sun_shade(Surface s, vec3 v, vec3 l)
 {
     float n_v = max(dot(s.normal, v), 1e-3), n_l = max(dot(s.normal, l), 0.0), roughness = max(s.roughness, 0.1);
     vec3 h = normalize(v + l);
-    vec3 f0 = mix(vec3(0.04), s.base, s.metallic), diffuse = s.base * (1.0 - s.metallic);
+    vec3 f0 = mix(vec3(CLEAR_F0), s.base, s.metallic), diffuse = s.base * (1.0 - s.metallic);
     float x = 1.0 - max(dot(v, h), 0.0), x2 = x * x;
     float grazing = x2 * x2 * x;
     vec3 fresnel = f0 + (1.0 - f0) * grazing; // what is diffuse lies under the clear part's own

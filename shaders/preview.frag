@@ -41,7 +41,7 @@ void main()
 #ifdef FIELD
     color.rgb = field_color(field_here(field), light);
 #ifdef GLOSSY
-    color.rgb = srgb_from_linear(tone_map(linear_from_srgb(color.rgb) * (0.22 + 1.0 * light)));
+    color.rgb = srgb_from_linear(tone_map(linear_from_srgb(color.rgb) * (GLOSSY_DARKEST + light)));
 #endif
 #else
     float sum = light_scalar(light.x, light.y * texture(sun_map, sun_place));

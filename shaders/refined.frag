@@ -47,9 +47,6 @@ vec3 mapped_normal(vec3 n, float scale)
     return normalize(t * m.x - b * m.y + n * m.z);
 }
 
-const float MOST_AWAY = -0.3;   // from the eye, cosine of what is smoothed round a rim
-const float OPEN_BEHIND = 0.7; // at least: what is baked is of the other side
-
 void main()
 {
     vec3 v = frame.back.w > 0.0 ? frame.back.xyz : normalize(-place), n = normalize(surface_normal), l = frame.sun.xyz;
@@ -97,9 +94,9 @@ void main()
     if ((textures & 16) != 0)
         glow *= texture(emissive_map, uv_of(16)).rgb;
 #endif
-#ifdef GLOSSY // softer light: what lies in shadow, or in a black part of an occlusion map, keeps a colour that can be named
-    s.open = mix(0.3, 1.0, s.open);
-    vec3 c = srgb_from_linear(tone_map(1.45 * sky_shade(s, v) + 0.75 * sun_shade(s, v, l) + glow));
+#ifdef GLOSSY // likewise in a black part of an occlusion map
+    s.open = mix(GLOSSY_OPEN, 1.0, s.open);
+    vec3 c = srgb_from_linear(tone_map(GLOSSY_SKY * sky_shade(s, v) + GLOSSY_SUN * sun_shade(s, v, l) + glow));
 #else
     vec3 c = srgb_from_linear(tone_map(sky_shade(s, v) + sun_shade(s, v, l) + glow));
 #endif

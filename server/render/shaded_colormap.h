@@ -8,10 +8,10 @@
 #include <glad/gl.h>
 
 #include "render/view.h"
+#include "shaders/constants.glsl"
 
 enum { COLORMAP_ROWS = 65 }; /* steps of light; odd: the middle one leaves the colour alone */
-/* Columns of the texture, as in shaders/field.glsl: COLORMAP_PLACES along the scale, what is outside at their ends, patterns behind. */
-enum { COLORMAP_PLACES = 1024, COLORMAP_BELOW = 0, COLORMAP_ABOVE = COLORMAP_PLACES + 1, COLORMAP_PATTERNS };
+enum { COLORMAP_BELOW = 0, COLORMAP_ABOVE = COLORMAP_PLACES + 1, COLORMAP_PATTERNS };
 enum colormap_pattern { PATTERN_HATCH_LIGHT, PATTERN_HATCH_DARK, PATTERN_STIPPLE, PATTERN_PLAIN_LIGHT, PATTERN_PLAIN_DARK, PATTERN_COUNT };
 enum { COLORMAP_COLUMNS = COLORMAP_PATTERNS + PATTERN_COUNT };
 

@@ -69,7 +69,7 @@ static double margin(double at)
 /* As shaders/ground.frag. */
 static uint8_t ground_factor(const uint8_t light[2], double u, double v)
 {
-    double dark = fmin(0.20 * (1 - light[0] / 255.0) + 0.42 * (1 - light[1] / 255.0), 0.5);
+    double dark = fmin(GROUND_SUN * (1 - light[0] / 255.0) + GROUND_SKY * (1 - light[1] / 255.0), GROUND_MOST);
     return (uint8_t)lround(255 * (1 - margin(u) * margin(v) * dark));
 }
 

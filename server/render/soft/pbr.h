@@ -4,6 +4,7 @@
 #define RENDER_SOFT_PBR_H
 #include "render/light/environments.h"
 #include "render/soft/vectors.h"
+#include "shaders/constants.glsl"
 
 struct brdf {
     lanes scale, bias;
@@ -106,14 +107,14 @@ SOFT_INLINE vec sky_shade(const struct environment_light *surroundings, const st
 {
     lanes n_v = lanes_clamp(dot(s->normal, v), 0, 1), a2 = s->roughness * s->roughness;
     struct brdf brdf = brdf_at(surroundings, n_v, s->roughness);
-    vec f0 = between(grey(all(0.04f)), s->base, s->metallic), diffuse = times(s->base, 1.0f - s->metallic);
-    vec clear = reflected_more(grey(all(0.04f)), brdf), more = between(clear, reflected_more(s->base, brdf), s->metallic);
+    vec f0 = between(grey(all((float)CLEAR_F0)), s->base, s->metallic), diffuse = times(s->base, 1.0f - s->metallic);
+    vec clear = reflected_more(grey(all((float)CLEAR_F0)), brdf), more = between(clear, reflected_more(s->base, brdf), s->metallic);
     vec once = plus(times(f0, brdf.scale), grey(brdf.bias));
-    vec left = plus(grey(1.0f - 0.04f * brdf.scale - brdf.bias), times(clear, all(-1)));
+    vec left = plus(grey(1.0f - (float)CLEAR_F0 * brdf.scale - brdf.bias), times(clear, all(-1)));
     vec diffused = multiplied(plus(more, multiplied(diffuse, left)), sky_irradiance(surroundings, s->normal));
     vec reflected = plus(times(s->normal, 2.0f * dot(s->normal, v)), times(v, all(-1)));
     vec seen = mirrored(surroundings, between(reflected, s->normal, a2), s->roughness);
-    return times(plus(diffused, multiplied(once, seen)), 0.55f * s->open);
+    return times(plus(diffused, multiplied(once, seen)), (float)SKY_LIGHT * s->open);
 }
 
 SOFT_INLINE lanes ggx_visible(lanes n_l, lanes n_v, lanes n_h, lanes alpha)
@@ -127,18 +128,18 @@ SOFT_INLINE vec sun_shade(const struct surface *s, vec v, vec l)
 {
     lanes n_v = most_of(dot(s->normal, v), all(1e-3f)), n_l = most_of(dot(s->normal, l), all(0));
     lanes roughness = most_of(s->roughness, all(0.1f));
-    vec h = unit(plus(v, l)), f0 = between(grey(all(0.04f)), s->base, s->metallic), diffuse = times(s->base, 1.0f - s->metallic);
+    vec h = unit(plus(v, l)), f0 = between(grey(all((float)CLEAR_F0)), s->base, s->metallic), diffuse = times(s->base, 1.0f - s->metallic);
     lanes x = 1.0f - most_of(dot(v, h), all(0)), x2 = x * x;
     lanes grazing = x2 * x2 * x;
     vec fresnel = between(f0, grey(all(1)), grazing);
     lanes lobe = least_of(ggx_visible(n_l, n_v, most_of(dot(s->normal, h), all(0)), roughness * roughness), all(50));
     vec c = plus(times(diffuse, 0.96f - 0.96f * grazing), times(fresnel, lobe));
-    return times(c, n_l * s->sun_visible * 0.78f);
+    return times(c, n_l * s->sun_visible * (float)SUN_LIGHT);
 }
 
 SOFT_INLINE vec tone_map(vec c)
 {
-    const float start = 0.8f - 0.04f, desaturation = 0.15f, d = 1 - start;
+    const float start = (float)TONE_START, desaturation = (float)TONE_DESATURATION, d = 1 - start;
     lanes x = least_of(c.x, least_of(c.y, c.z)), off = lanes_choose(x < 0.08f, x - 6.25f * x * x, all(0.04f));
     c = plus(c, grey(-off));
     lanes peak = most_of(c.x, most_of(c.y, c.z)), safe = most_of(peak, all(start));
@@ -150,12 +151,12 @@ SOFT_INLINE vec tone_map(vec c)
 
 SOFT_INLINE lanes grey_of(vec c)
 {
-    return 0.30f * c.x + 0.59f * c.y + 0.11f * c.z;
+    return (float)GREY_RED * c.x + (float)GREY_GREEN * c.y + (float)GREY_BLUE * c.z;
 }
 
 SOFT_INLINE vec mute(vec c)
 {
-    return between(grey(grey_of(c)), grey(all(0.88f)), all(0.48f));
+    return between(grey(grey_of(c)), grey(all((float)MUTED_GREY)), all((float)MUTED_PART));
 }
 
 #endif

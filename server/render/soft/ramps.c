@@ -28,8 +28,8 @@ void ramp_fill(const struct environment_light *sky, const double up[3], const st
     for (int first = 0; first < steps; first += LANES) {
         lanes light = (LANES_IOTA + (float)first) * (1 / (float)(steps - 1));
         lanes sun = most_of(light - 0.45f, all(0)) * (1 / 0.55f);
-        surface.open = (light - 0.48f * sun) * (1 / 0.52f); /* the usual mixture at that light */
-        vec c = plus(sky_shade(sky, &surface, v), times(surface.base, sun * ((1 - 0.5f * material->metallic) * 0.78f)));
+        surface.open = (light - (float)LIGHT_SUN * sun) * (1 / (float)LIGHT_AMBIENT); /* the usual mixture at that light */
+        vec c = plus(sky_shade(sky, &surface, v), times(surface.base, sun * ((1 - 0.5f * material->metallic) * (float)SUN_LIGHT)));
         c = tone_map(plus(c, glow));
         for (int i = 0; i < LANES; i++)
             colors[first + i] = color_of(c, i, muted);
@@ -41,7 +41,7 @@ void ramp_fill_glossy(uint32_t color, int steps, uint32_t *colors, int stride)
     vec base = { all(linear_from_srgbf((float)(color >> 16 & 0xff) / 255)), all(linear_from_srgbf((float)(color >> 8 & 0xff) / 255)),
                  all(linear_from_srgbf((float)(color & 0xff) / 255)) };
     for (int first = 0; first < steps; first += LANES) {
-        vec c = tone_map(times(base, (LANES_IOTA + (float)first) * (1 / (float)(steps - 1)) + 0.22f));
+        vec c = tone_map(times(base, (LANES_IOTA + (float)first) * (1 / (float)(steps - 1)) + (float)GLOSSY_DARKEST));
         for (int i = 0; i < LANES && first + i < steps; i++)
             colors[(first + i) * stride] = color_of(c, i, false);
     }

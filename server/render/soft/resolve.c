@@ -76,7 +76,7 @@ static float line_part(const struct coloring *coloring, float column, float slop
 static uint32_t lined(uint32_t color, float part)
 {
     float blue = (float)(color & 0xff), green = (float)(color >> 8 & 0xff), red = (float)(color >> 16 & 0xff);
-    bool bright = 0.30f * red + 0.59f * green + 0.11f * blue > 0.32f * 255;
+    bool bright = (float)GREY_RED * red + (float)GREY_GREEN * green + (float)GREY_BLUE * blue > 0.32f * 255;
     return mix(color, bright ? 0x12171f : 0xededed, MOST_LINE * part);
 }
 

@@ -37,7 +37,7 @@ SOFT_KERNEL void refined_shade_field(const struct refined *refined, struct visib
         lanes sun = most_of(dot(n, towards_sun(refined)), all(0));
         if (lanes_any(sun > 0.0f))
             sun *= sun_at(refined, &spot, n);
-        lanes light = lanes_clamp(0.52f * spot.attributes[AMBIENT] + 0.48f * sun, 0, 1);
+        lanes light = lanes_clamp((float)LIGHT_AMBIENT * spot.attributes[AMBIENT] + (float)LIGHT_SUN * sun, 0, 1);
         lanes_int row = lanes_whole(lanes_clamp(light * shade[0] + shade[1], 0, shade[2]));
         for (size_t i = 0; i < some; i++) {
             out->triangles[first + i] = number_triangle(refined, band, &items[first + i].triangle);
@@ -87,7 +87,7 @@ SOFT_INLINE lanes_int ground_at(const struct refined *refined, lanes x, float y)
     for (int r = 0; r < 3; r++)
         place[r] = u * m[0][r] + v * m[1][r] + (m[3][r] + refined->ground_step[r]);
     lanes sun = sun_visible(refined->soft->light, place[0], place[1], place[2]);
-    lanes dark = least_of(0.20f * (1.0f - sun) + 0.42f * (1.0f - open_at(refined, u, v)), all(0.5f));
+    lanes dark = least_of((float)GROUND_SUN * (1.0f - sun) + (float)GROUND_SKY * (1.0f - open_at(refined, u, v)), all((float)GROUND_MOST));
     return lanes_choose_int(inside, lanes_whole((1.0f - margin(u) * margin(v) * dark) * 256.0f + 0.5f), whole);
 }
 

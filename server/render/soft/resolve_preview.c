@@ -21,7 +21,7 @@ SOFT_INLINE lanes sun_at(const struct soft *soft, lanes x, float y, lanes depth)
 SOFT_INLINE lanes_int context_color(const struct soft *soft, lanes_int marks, lanes x, float y, lanes depth)
 {
     lanes ambient = byte_of(marks, 1) * (1 / 255.0f), facing = byte_of(marks, 0) * (1 / 255.0f);
-    lanes sum = lanes_clamp(0.52f * ambient + 0.48f * facing * sun_at(soft, x, y, depth), 0, 1); /* light_scalar in light.glsl */
+    lanes sum = lanes_clamp((float)LIGHT_AMBIENT * ambient + (float)LIGHT_SUN * facing * sun_at(soft, x, y, depth), 0, 1);
     lanes_int step = lanes_whole(sum * (RAMP_STEPS - 1) + 0.5f);
     lanes_int color = gather(soft->ramps, (marks >> 16 & (MOST_RAMPS - 1)) * RAMP_STEPS + step);
     float bright = soft->block.up[3] > 0 ? soft->block.up[3] : 1;
@@ -30,13 +30,14 @@ SOFT_INLINE lanes_int context_color(const struct soft *soft, lanes_int marks, la
     lanes blue = bright * byte_of(color, 0), green = bright * byte_of(color, 1), red = bright * byte_of(color, 2);
     if (!soft->greys)
         return lanes_whole(blue + 0.5f) | lanes_whole(green + 0.5f) << 8 | lanes_whole(red + 0.5f) << 16 | (int32_t)0xff000000;
-    return lanes_whole(0.11f * blue + 0.59f * green + 0.30f * red + 0.5f) * 0x010101 | (int32_t)0xff000000;
+    return lanes_whole((float)GREY_BLUE * blue + (float)GREY_GREEN * green + (float)GREY_RED * red + 0.5f) * 0x010101 | (int32_t)0xff000000;
 }
 
 /* Where isolines run, as field_color in shaders/field.glsl. */
 static void draw_lines(const uint32_t marks[LANES], uint32_t colors[LANES])
 {
-    static const float grey_parts[3] = { 0.11f, 0.59f, 0.30f }, dark[3] = { 0.12f * 255, 0.09f * 255, 0.07f * 255 };
+    static const float grey_parts[3] = { (float)GREY_BLUE, (float)GREY_GREEN, (float)GREY_RED };
+    static const float dark[3] = { 0.12f * 255, 0.09f * 255, 0.07f * 255 };
     const float bright = 0.93f * 255, most = 0.8f / MARK_LINE_WHOLE;
     for (int i = 0; i < LANES; i++) {
         float part = most * (float)(marks[i] >> MARK_LINE & MARK_LINE_WHOLE), grey = 0;

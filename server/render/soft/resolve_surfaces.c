@@ -4,8 +4,6 @@
 #include "render/soft/section_colors.h"
 #include "render/soft/surface_points.h"
 
-static const float OPEN_BEHIND = 0.7f; /* as in shaders/refined.frag */
-
 SOFT_INLINE lanes srgb_from_linear(const struct refiner *refiner, lanes x)
 {
     lanes at = lanes_clamp(x, 0, 1) * TONES, part = at - whole_part(at), out;
@@ -55,7 +53,7 @@ SOFT_INLINE lanes_int gloss(const struct refined *refined, const struct item *it
         surface->base.z[i] = linear[color & 0xff];
     }
     surface->metallic = lanes_choose(glossy, all(0), surface->metallic);
-    surface->open = lanes_choose(glossy, 0.3f + 0.7f * surface->open, surface->open);
+    surface->open = lanes_choose(glossy, (float)GLOSSY_OPEN + (1 - (float)GLOSSY_OPEN) * surface->open, surface->open);
     return glossy;
 }
 
@@ -183,7 +181,7 @@ SOFT_KERNEL void refined_shade_surfaces(const struct refined *refined, const str
             .normal = n,
             .metallic = m[METALLIC],
             .roughness = m[ROUGHNESS],
-            .open = lanes_choose(is_turned(&spot, v), most_of(spot.attributes[OPEN], all(OPEN_BEHIND)), spot.attributes[OPEN]),
+            .open = lanes_choose(is_turned(&spot, v), most_of(spot.attributes[OPEN], all((float)OPEN_BEHIND)), spot.attributes[OPEN]),
             .sun_visible = all(0),
         };
         vec glow = { m[EMISSIVE], m[EMISSIVE + 1], m[EMISSIVE + 2] };
@@ -191,7 +189,8 @@ SOFT_KERNEL void refined_shade_surfaces(const struct refined *refined, const str
             surface.sun_visible = sun_at(refined, &spot, n);
         wear(refined, items + first, some, &spot, &surface, &glow, alphas ? alphas + first : NULL);
         lanes_int glossy = gloss(refined, items + first, some, &spot, &surface);
-        lanes sky_part = lanes_choose(glossy, all(1.45f), all(1)), sun_part = lanes_choose(glossy, all(0.75f), all(1));
+        lanes sky_part = lanes_choose(glossy, all((float)GLOSSY_SKY), all(1));
+        lanes sun_part = lanes_choose(glossy, all((float)GLOSSY_SUN), all(1));
         vec c = plus(times(sky_shade(&refined->surroundings, &surface, v), sky_part), times(sun_shade(&surface, v, l), sun_part));
         c = tone_map(plus(c, glow));
         c = (vec){ srgb_from_linear(refiner, c.x), srgb_from_linear(refiner, c.y), srgb_from_linear(refiner, c.z) };

@@ -195,9 +195,8 @@ SOFT_INLINE vec view_of(const struct refined *refined, const struct spot *spot)
 /* Two-sided surfaces from behind, and those whose normals are of the other side: -1. */
 SOFT_INLINE lanes_int is_turned(const struct spot *spot, vec view)
 {
-    const float most_away = -0.3f; /* as in shaders/refined.frag */
     lanes towards = dot(spot->normal, view);
-    return (spot->back & (towards < 0.0f)) | (towards < most_away);
+    return (spot->back & (towards < 0.0f)) | (towards < (float)MOST_AWAY);
 }
 
 SOFT_INLINE vec facing(const struct spot *spot, vec view)

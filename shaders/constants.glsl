@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What shaders and render/soft share: it includes this file too. Nothing but numbers, so that it is both GLSL and C.
+#ifndef CONSTANTS_GLSL
+#define CONSTANTS_GLSL
+
+// Scalar light: of the sky and the ground, and of the sun.
+#define LIGHT_AMBIENT 0.52
+#define LIGHT_SUN 0.48
+// Of what makes white white.
+#define SKY_LIGHT 0.55
+#define SUN_LIGHT 0.78
+// What a dielectric mirrors, looked at head on.
+#define CLEAR_F0 0.04
+// Khronos PBR Neutral.
+#define TONE_START 0.76
+#define TONE_DESATURATION 0.15
+// Context: so much of the way to an even grey.
+#define MUTED_GREY 0.88
+#define MUTED_PART 0.48
+// Brightness of sRGB.
+#define GREY_RED 0.30
+#define GREY_GREEN 0.59
+#define GREY_BLUE 0.11
+// From the eye, cosine of what is smoothed round a rim.
+#define MOST_AWAY -0.3
+// Openness of what is seen from behind, at least: what is baked is of the other side.
+#define OPEN_BEHIND 0.7
+// Glossy frames: softer light, so that what lies in shadow keeps a colour that can be named.
+#define GLOSSY_OPEN 0.3
+#define GLOSSY_SKY 1.45
+#define GLOSSY_SUN 0.75
+#define GLOSSY_DARKEST 0.22
+// The shadow on the ground: of the sun, of the sky, both at most.
+#define GROUND_SUN 0.20
+#define GROUND_SKY 0.42
+#define GROUND_MOST 0.5
+// Columns of the colour map: places along the scale from 1 on, what is outside at their ends, then patterns.
+#define COLORMAP_PLACES 1024
+
+#endif
