@@ -18,8 +18,8 @@ void asset_patterns_init(struct asset_patterns *patterns, const struct model_hea
 void asset_patterns_finish(struct asset_patterns *patterns);
 
 enum asset_pattern_change { ASSET_PATTERN_SAME, ASSET_PATTERN_OTHER, ASSET_PATTERN_GONE };
-/* Says what becomes of a pattern, without "!" before it. `before` marks the old nodes that are preferred where it names several; NULL: none.
- * Of ASSET_PATTERN_OTHER *out is the new pattern (mem_free). */
+/* Says what becomes of a pattern, without "!" before it. `before` marks the old nodes that are preferred where it names several; NULL:
+ * none. Of ASSET_PATTERN_OTHER *out is the new pattern (mem_free). */
 enum asset_pattern_change asset_patterns_follow(struct asset_patterns *patterns, const char *pattern, const bool *before, char **out);
 
 /* Brings an asset's patterns, one a line, up to date. Returns them in the same form (mem_free), or NULL if none is left that takes
