@@ -168,20 +168,21 @@ static bool run_distances(const struct options *options, struct log *log, struct
 }
 
 /* What is wrong with models and nodes shows in their heads, long before the rest of them has been read. What is not is prepared all the
-   same; the errors come again at the end, of those assets alone that were tried. */
-static void say_early(const struct plant *plant)
+   same; the errors come again at the end, of those assets alone that were tried. Returns false if the plant is too large. */
+static bool say_early(const struct plant *plant)
 {
     struct diag diag = { 0 }, errors = { 0 };
-    models_check(plant, &diag, NULL);
+    bool fits = models_check(plant, &diag, NULL);
     for (size_t i = 0; i < diag.count; i++)
         if (diag.items[i].severity == DIAG_ERROR)
-            diag_error(&errors, diag.items[i].file, diag.items[i].line, diag.items[i].column, "%s", diag.items[i].text);
+            diag_copy(&errors, &diag.items[i]);
     diag_print(&errors, stderr);
-    if (errors.count)
+    if (errors.count && fits)
         fprintf(stderr, "plantcast-prep: the rest is prepared now\n");
     fflush(stderr);
     diag_finish(&errors);
     diag_finish(&diag);
+    return fits;
 }
 
 static bool run_all(const struct options *options, struct log *log, struct workers *workers, const struct plant *plant, const char *folder,
@@ -195,7 +196,8 @@ static bool run_all(const struct options *options, struct log *log, struct worke
         diag_error(diag, plant->path, 0, 0, "there is no asset %s", options->asset);
         return false;
     }
-    say_early(plant);
+    if (!say_early(plant))
+        return false;
     bool good = prepare_run(&prepare, log, workers, plant, &params, diag);
     if (options->json)
         good = report_json(&prepare, stdout) && good;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Counts from accessors; sums of sub-trees from the last node to the first. */
+/* Sums of sub-trees from the last node to the first. */
 #include "preprocess/import/model_outline.h"
 
 #include <stdio.h>
@@ -10,41 +10,6 @@
 #include "base/vec.h"
 #include "plant/asset_size.h"
 #include "preprocess/report/text_table.h"
-
-static uint64_t count_of(const json_t *accessors, const json_t *number)
-{
-    json_int_t count = json_is_integer(number)
-                           ? json_integer_value(json_object_get(json_array_get(accessors, (size_t)json_integer_value(number)), "count"))
-                           : 0;
-    return count > 0 ? (uint64_t)count : 0;
-}
-
-static uint64_t triangles_of(const json_t *root, const json_t *mesh)
-{
-    const json_t *primitives = json_object_get(mesh, "primitives"), *accessors = json_object_get(root, "accessors");
-    uint64_t sum = 0;
-    for (size_t i = 0; i < json_array_size(primitives); i++) {
-        const json_t *primitive = json_array_get(primitives, i), *mode = json_object_get(primitive, "mode");
-        const json_t *corners = json_object_get(primitive, "indices");
-        uint64_t count = count_of(accessors, corners ? corners : json_object_get(json_object_get(primitive, "attributes"), "POSITION"));
-        json_int_t kind = mode ? json_integer_value(mode) : 4;
-        if (kind == 4)
-            sum += count / 3;
-        else if (kind > 4) /* strips and fans */
-            sum += count > 2 ? count - 2 : 0;
-    }
-    return sum;
-}
-
-/* Each mesh once, however many nodes have it. */
-static uint64_t *count_meshes(const json_t *root)
-{
-    const json_t *meshes = json_object_get(root, "meshes");
-    uint64_t *counts = mem_array(json_array_size(meshes) + 1, sizeof(*counts));
-    for (size_t i = 0; i < json_array_size(meshes); i++)
-        counts[i] = triangles_of(root, json_array_get(meshes, i));
-    return counts;
-}
 
 static void add_up(struct model_outline *outline)
 {
@@ -63,15 +28,12 @@ bool model_outline_read(struct model_outline *outline, const char *path, char *w
     *outline = (struct model_outline){ 0 };
     if (!model_header_read(&outline->header, path, why, why_bytes))
         return false;
-    const json_t *root = outline->header.json, *nodes = json_object_get(root, "nodes");
-    uint64_t *counts = count_meshes(root);
+    const json_t *nodes = json_object_get(outline->header.json, "nodes");
     outline->nodes = mem_array(outline->header.count + 1, sizeof(*outline->nodes));
     for (size_t i = 0; i < outline->header.count; i++) {
         const struct model_node *from = &outline->header.nodes[i];
-        const json_t *node = json_array_get(nodes, from->number), *mesh = json_object_get(node, "mesh");
-        json_int_t number = json_is_integer(mesh) ? json_integer_value(mesh) : -1;
-        bool has_mesh = number >= 0 && (size_t)number < json_array_size(json_object_get(root, "meshes"));
-        uint64_t own = has_mesh ? counts[number] : 0;
+        const json_t *node = json_array_get(nodes, from->number);
+        uint64_t own = model_header_triangles(&outline->header, i);
         outline->nodes[i] = (struct outline_node){ .name = from->name[0] ? from->name : from->mesh,
                                                    .extras = json_object_get(node, "extras"),
                                                    .triangles = own,
@@ -81,7 +43,6 @@ bool model_outline_read(struct model_outline *outline, const char *path, char *w
                                                    .unnamed = !from->name[0] };
         outline->unnamed += outline->nodes[i].unnamed;
     }
-    mem_free(counts);
     add_up(outline);
     return true;
 }

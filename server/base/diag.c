@@ -25,6 +25,12 @@ void diag_add(struct diag *diag, enum diag_severity severity, const char *file, 
         diag->warnings++;
 }
 
+void diag_copy(struct diag *diag, const struct diag_item *item)
+{
+    diag_add(diag, item->severity, item->file, item->line, item->column, "%s", item->text);
+    diag->items[diag->count - 1].form = item->form;
+}
+
 static int by_place(const void *pa, const void *pb)
 {
     const struct diag_item *a = *(const struct diag_item *const *)pa, *b = *(const struct diag_item *const *)pb;
@@ -38,21 +44,23 @@ static int by_place(const void *pa, const void *pb)
     return order;
 }
 
-enum { MOST_ALIKE = 3, PLACES_BYTES = 100 };
+enum { PLACES_BYTES = 100 };
+/* So many that are alike have a line each; of more errors the first as many have, of more warnings the first. */
+static const size_t most_alike[] = { [DIAG_ERROR] = 20, [DIAG_WARNING] = 3 };
 
 static bool is_alike(const struct diag_item *a, const struct diag_item *b)
 {
-    return a->severity == DIAG_WARNING && b->severity == DIAG_WARNING && a->form == b->form && !strcmp(a->file, b->file);
+    return a->severity == b->severity && a->form == b->form && !strcmp(a->file, b->file);
 }
 
-/* Lines of all that are like the first but itself: "4-66, 70". */
-static void print_places(const struct diag_item *const *sorted, size_t first, size_t count, FILE *out)
+/* Lines of all after this one that are like it: "4-66, 70". */
+static void print_places(const struct diag_item *const *sorted, size_t shown, size_t count, FILE *out)
 {
     size_t length = 0;
     int begin = 0, last = 0;
     fputs(" (line", out);
-    for (size_t i = first + 1; i <= count; i++) {
-        bool alike = i < count && is_alike(sorted[first], sorted[i]);
+    for (size_t i = shown + 1; i <= count; i++) {
+        bool alike = i < count && is_alike(sorted[shown], sorted[i]);
         if (alike && last && (sorted[i]->line == last || sorted[i]->line == last + 1)) {
             last = sorted[i]->line;
             continue;
@@ -78,8 +86,8 @@ static void print_item(const struct diag_item *item, FILE *out)
     fprintf(out, ": %s: %s", item->severity == DIAG_ERROR ? "error" : "warning", item->text);
 }
 
-struct group { /* of warnings that are alike */
-    size_t first, count;
+struct group { /* of those that are alike */
+    size_t first, count, shown;
 };
 
 static struct group *find_group(struct group *groups, size_t *group_count, const struct diag_item *const *sorted, size_t item)
@@ -101,16 +109,17 @@ void diag_print(const struct diag *diag, FILE *out)
         sorted[i] = &diag->items[i];
     qsort(sorted, diag->count, sizeof(*sorted), by_place);
     for (size_t i = 0; i < diag->count; i++)
-        if (sorted[i]->severity == DIAG_WARNING)
-            find_group(groups, &group_count, sorted, i)->count++;
+        find_group(groups, &group_count, sorted, i)->count++;
     for (size_t i = 0; i < diag->count; i++) {
-        const struct group *group = sorted[i]->severity == DIAG_WARNING ? find_group(groups, &group_count, sorted, i) : NULL;
-        bool is_many = group && group->count > MOST_ALIKE;
-        if (is_many && group->first != i)
+        struct group *group = find_group(groups, &group_count, sorted, i);
+        bool is_error = sorted[i]->severity == DIAG_ERROR, is_many = group->count > most_alike[sorted[i]->severity];
+        size_t most = is_error ? most_alike[DIAG_ERROR] : 1;
+        if (is_many && group->shown == most)
             continue;
+        group->shown++;
         print_item(sorted[i], out);
-        if (is_many) {
-            fprintf(out, "; %zu more are like this", group->count - 1);
+        if (is_many && group->shown == most) {
+            fprintf(out, "; %zu more are like this", group->count - most);
             print_places(sorted, i, diag->count, out);
         }
         fputc('\n', out);

@@ -11,7 +11,7 @@ struct diag_item {
     char *file;
     int line, column; /* from 1; 0 = not at one place */
     char *text;
-    const char *form; /* the format string, by which warnings of one kind are grouped */
+    const char *form; /* the format string, by which those of one kind are grouped */
 };
 
 struct diag { /* zero-initialise */
@@ -23,10 +23,12 @@ struct diag { /* zero-initialise */
 /* Adds a diagnostic; the text is formatted and copied. */
 void diag_add(struct diag *diag, enum diag_severity severity, const char *file, int line, int column, const char *fmt, ...)
     __attribute__((format(printf, 6, 7)));
+/* Adds a copy of a diagnostic of another list. */
+void diag_copy(struct diag *diag, const struct diag_item *item);
 #define diag_error(diag, file, line, column, ...) diag_add(diag, DIAG_ERROR, file, line, column, __VA_ARGS__)
 #define diag_warning(diag, file, line, column, ...) diag_add(diag, DIAG_WARNING, file, line, column, __VA_ARGS__)
 /* Prints all as `file:line:column: error: text`, ordered by file and place. Many warnings of one kind in one file are one line that lists
-   the places. */
+   the places; of many errors of one kind the first have a line each. */
 void diag_print(const struct diag *diag, FILE *out);
 void diag_finish(struct diag *diag);
 

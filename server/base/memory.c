@@ -38,10 +38,15 @@ static size_t control_group_bytes(void)
     return read_number(path, &limit) ? (size_t)limit : SIZE_MAX;
 }
 
-size_t memory_default_bytes(void)
+size_t memory_machine_bytes(void)
 {
     size_t machine = (size_t)sysconf(_SC_PHYS_PAGES) * (size_t)sysconf(_SC_PAGESIZE), group = control_group_bytes();
-    size_t quarter = (machine < group ? machine : group) / 4;
+    return machine < group ? machine : group;
+}
+
+size_t memory_default_bytes(void)
+{
+    size_t quarter = memory_machine_bytes() / 4;
     return quarter < MOST_BYTES ? quarter : MOST_BYTES;
 }
 

@@ -5,6 +5,8 @@
 #include <stddef.h>
 #include <stdint.h>
 
+/* Returns the machine's memory, or that of the control group if it is less. */
+size_t memory_machine_bytes(void);
 /* Returns the default memory limit: a quarter of the machine's memory, or of that of the control group, at most 2 GiB. */
 size_t memory_default_bytes(void);
 

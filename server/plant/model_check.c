@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "base/mem.h"
+#include "base/memory.h"
 #include "plant/asset_size.h"
 #include "plant/model_header.h"
 #include "plant/sensors.h"
@@ -14,12 +15,16 @@
 #define SLACK_M 0.5       /* so far from its box a sensor may be, and a part of the diagonal */
 #define SLACK 0.05
 enum { WHY_BYTES = 400, SHOWN_NODES = 6 };
+/* What serving takes, as measured with 20 million triangles in 3,040 assets: 3.1 GB. */
+enum { TRIANGLE_BYTES = 150, BASE_BYTES = 200 << 20 };
 
 struct check {
     const struct plant *plant;
     struct diag *diag;
     struct model_header header; /* of the model that is looked at */
     bool *taken;                /* its nodes that the asset has */
+    bool *counted;              /* those that any asset has had */
+    uint64_t triangles;         /* of all models: equal ones of several assets are in memory once */
     uint32_t *found;
 };
 
@@ -168,8 +173,11 @@ static bool check_asset(struct check *check, size_t index, double size_m[3])
         return false;
     }
     for (size_t i = 0; i < check->header.count; i++)
-        if (check->taken[i])
+        if (check->taken[i]) {
             model_box_add(&box, &check->header.boxes[i]);
+            check->triangles += check->counted[i] ? 0 : model_header_triangles(&check->header, i);
+            check->counted[i] = true;
+        }
     for (size_t i = 0; i < plant->tag_count; i++)
         if (plant->tags[i].asset == (int)index && plant->tags[i].group >= 0 && plant->tags[i].node && !plant->tags[i].has_position)
             check_node(check, asset, &plant->tags[i]);
@@ -195,6 +203,7 @@ static void check_model(struct check *check, size_t first, bool *done, double (*
     if (!good)
         diag_error(check->diag, plant->path, plant->assets[first].line, 0, "asset %s: model '%s' %s", plant->assets[first].id, path, why);
     check->taken = mem_array(check->header.count + 1, sizeof(*check->taken));
+    check->counted = mem_array(check->header.count + 1, sizeof(*check->counted));
     check->found = mem_array(check->header.count + 1, sizeof(*check->found));
     for (size_t i = first; i < plant->asset_count; i++) {
         if (done[i] || !plant->assets[i].model || strcmp(plant->assets[i].model, path) != 0)
@@ -204,6 +213,7 @@ static void check_model(struct check *check, size_t first, bool *done, double (*
             sizes_m[i][0] = NAN;
     }
     mem_free(check->taken);
+    mem_free(check->counted);
     mem_free(check->found);
     if (good)
         model_header_finish(&check->header);
@@ -230,7 +240,20 @@ static void check_sizes(const struct check *check, const double (*sizes_m)[3], F
     mem_free(longest_m);
 }
 
-void models_check(const struct plant *plant, struct diag *diag, FILE *out)
+static bool check_memory(const struct check *check)
+{
+    size_t machine = memory_machine_bytes();
+    uint64_t most = machine > BASE_BYTES ? (machine - BASE_BYTES) / TRIANGLE_BYTES : 0;
+    if (check->triangles <= most)
+        return true;
+    diag_error(check->diag, check->plant->path, 0, 0,
+               "%.1f million triangles are too many: the %.1f GB of memory of this machine hold %.1f million. Leave parts of the plant out, or "
+               "import it with a larger --chord",
+               (double)check->triangles / 1e6, (double)machine / 1e9, (double)most / 1e6);
+    return false;
+}
+
+bool models_check(const struct plant *plant, struct diag *diag, FILE *out)
 {
     struct check check = { .plant = plant, .diag = diag };
     bool *done = mem_array(plant->asset_count, sizeof(*done));
@@ -241,4 +264,5 @@ void models_check(const struct plant *plant, struct diag *diag, FILE *out)
     check_sizes(&check, (const double(*)[3])sizes_m, out);
     mem_free(done);
     mem_free(sizes_m);
+    return check_memory(&check);
 }

@@ -7,7 +7,8 @@
 
 #include "plant/plant.h"
 
-/* Adds findings to diag, and prints a line with the size of each asset to out (NULL: none). */
-void models_check(const struct plant *plant, struct diag *diag, FILE *out);
+/* Adds findings to diag, and prints a line with the size of each asset to out (NULL: none). Returns false if the plant has more triangles
+   than this machine's memory holds; that is an error, too. */
+bool models_check(const struct plant *plant, struct diag *diag, FILE *out);
 
 #endif

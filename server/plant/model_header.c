@@ -267,6 +267,34 @@ bool model_header_read(struct model_header *header, const char *path, char *why,
     return good;
 }
 
+static uint64_t count_of(const json_t *accessors, const json_t *number)
+{
+    json_int_t count = json_is_integer(number)
+                           ? json_integer_value(json_object_get(json_array_get(accessors, (size_t)json_integer_value(number)), "count"))
+                           : 0;
+    return count > 0 ? (uint64_t)count : 0;
+}
+
+uint64_t model_header_triangles(const struct model_header *header, size_t node)
+{
+    const json_t *root = header->json, *accessors = json_object_get(root, "accessors");
+    const json_t *number = json_object_get(json_array_get(json_object_get(root, "nodes"), header->nodes[node].number), "mesh");
+    const json_t *mesh = json_is_integer(number) ? json_array_get(json_object_get(root, "meshes"), (size_t)json_integer_value(number)) : NULL;
+    const json_t *primitives = json_object_get(mesh, "primitives");
+    uint64_t sum = 0;
+    for (size_t i = 0; i < json_array_size(primitives); i++) {
+        const json_t *primitive = json_array_get(primitives, i), *mode = json_object_get(primitive, "mode");
+        const json_t *corners = json_object_get(primitive, "indices");
+        uint64_t count = count_of(accessors, corners ? corners : json_object_get(json_object_get(primitive, "attributes"), "POSITION"));
+        json_int_t kind = mode ? json_integer_value(mode) : 4;
+        if (kind == 4)
+            sum += count / 3;
+        else if (kind > 4) /* strips and fans */
+            sum += count > 2 ? count - 2 : 0;
+    }
+    return sum;
+}
+
 void model_header_finish(struct model_header *header)
 {
     json_decref(header->json);

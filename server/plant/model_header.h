@@ -19,6 +19,8 @@ struct model_header {
 
 /* Reads a file. Returns false if it cannot, with the reason in why; then there is nothing to finish. */
 bool model_header_read(struct model_header *header, const char *path, char *why, size_t why_bytes);
+/* Returns how many triangles the node's own mesh has, by its accessors' counts. */
+uint64_t model_header_triangles(const struct model_header *header, size_t node);
 void model_header_finish(struct model_header *header);
 
 extern const struct model_box model_box_empty;

@@ -87,6 +87,14 @@ test('a colour is kept', { skip }, () => inFolder((folder) => {
     assert.deepEqual(materials[0].pbrMetallicRoughness.baseColorFactor, [1, 0, 0, 1]);
 }));
 
+test('textures are left out, and that is said', { skip }, () => inFolder((folder) => {
+    writeFileSync(join(folder, 'wedge.mtl'), `${mtl}map_Kd rust.png\nmap_Bump bump.png\n`);
+    writeFileSync(join(folder, 'a.obj'), obj());
+    const said = plantcast('import', join(folder, 'a.obj'), '-o', join(folder, 'plant'));
+    assert.equal(said.status, 0, said.stderr);
+    assert.match(said.stdout, /a\.obj: left out: 2 textures, such as bump\.png/);
+}));
+
 const countOf = (bytes, count) => {
     bytes.writeUInt32LE(count, 80);
     return bytes;

@@ -167,6 +167,32 @@ static void many_warnings_alike_are_one(void **state)
     diag_finish(&diag);
 }
 
+/* A list in which 2,000 rows are there twice is not 2,000 lines. */
+static void of_many_errors_alike_the_first_are_printed(void **state)
+{
+    (void)state;
+    struct diag diag = { 0 }, copy = { 0 };
+    char *printed = NULL;
+    size_t bytes = 0, lines = 0;
+    FILE *out = open_memstream(&printed, &bytes);
+    for (int i = 0; i < 2000; i++)
+        diag_error(&diag, "a", 10 + i, 1, "'T%d' is there twice", i);
+    diag_error(&diag, "a", 5, 1, "other");
+    for (size_t i = 0; i < diag.count; i++)
+        diag_copy(&copy, &diag.items[i]);
+    diag_print(&copy, out);
+    fclose(out);
+    for (const char *at = printed; *at; at++)
+        lines += *at == '\n';
+    assert_int_equal(lines, 21);
+    assert_non_null(strstr(printed, "a:5:1: error: other\na:10:1: error: 'T0' is there twice\n"));
+    assert_non_null(strstr(printed, "a:29:1: error: 'T19' is there twice; 1980 more are like this (line 30-2009)\n"));
+    assert_int_equal(copy.errors, 2001);
+    free(printed);
+    diag_finish(&diag);
+    diag_finish(&copy);
+}
+
 static void counters_are_printed_by_family(void **state)
 {
     (void)state;
@@ -279,6 +305,7 @@ int main(void)
         cmocka_unit_test(memory_is_zeroed_and_checked),
         cmocka_unit_test(findings_come_in_the_order_of_the_text),
         cmocka_unit_test(many_warnings_alike_are_one),
+        cmocka_unit_test(of_many_errors_alike_the_first_are_printed),
         cmocka_unit_test(counters_are_printed_by_family),
         cmocka_unit_test(numbers_of_microseconds_are_printed_in_seconds),
         cmocka_unit_test(durations_are_counted_by_bucket),

@@ -76,6 +76,20 @@ static void what_is_no_model_is_said_so(void **state)
           { "plant.yaml", 5, 0, "cut.glb' is cut off: its JSON should have 256 bytes" });
 }
 
+static void what_no_memory_holds_is_refused(void **state)
+{
+    struct plant_case *c = *state;
+    char *more = mem_strdup(model), *count = strstr(more, "\"count\":3,");
+    memcpy(count, "\"count\":9", 9);
+    char *huge = mem_printf("%.*s000000000000000%s", (int)(count + 9 - more), more, count + 9);
+    mem_free(temp_write_text(c->folder, "h.gltf", huge));
+    check(c, "  - { id: A, model: h.gltf, nodes: '#1', units: mm }\n  - { id: B, model: h.gltf, nodes: '#1', units: mm }\n", "[]", "Tag Name\n",
+          NULL);
+    FOUND(c, { "plant.yaml", 0, 0, "3000000000.0 million triangles are too many: the " }); /* in memory once */
+    mem_free(more);
+    mem_free(huge);
+}
+
 static void nodes_are_looked_up(void **state)
 {
     struct plant_case *c = *state;
@@ -165,6 +179,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup_teardown(sizes_are_printed_and_doubted, plant_case_set_up, plant_case_tear_down),
         cmocka_unit_test_setup_teardown(what_is_no_model_is_said_so, plant_case_set_up, plant_case_tear_down),
+        cmocka_unit_test_setup_teardown(what_no_memory_holds_is_refused, plant_case_set_up, plant_case_tear_down),
         cmocka_unit_test_setup_teardown(nodes_are_looked_up, plant_case_set_up, plant_case_tear_down),
         cmocka_unit_test_setup_teardown(sensors_tell_units_and_axes, plant_case_set_up, plant_case_tear_down),
         cmocka_unit_test_setup_teardown(series_are_looked_up, plant_case_set_up, plant_case_tear_down),

@@ -13,6 +13,7 @@
 #include <cstdio>
 #include <cstring>
 #include <map>
+#include <set>
 #include <string>
 #include <strings.h>
 #include <vector>
@@ -332,6 +333,21 @@ void check_end_of_stl(const char *path)
         refuse("it is cut off: it does not end with endsolid");
 }
 
+/* Surfaces keep their materials' colours alone. */
+void say_textures(const aiScene *scene)
+{
+    std::set<std::string> names;
+    for (unsigned m = 0; m < scene->mNumMaterials; m++)
+        for (int type = aiTextureType_DIFFUSE; type <= AI_TEXTURE_TYPE_MAX; type++)
+            for (unsigned i = 0; i < scene->mMaterials[m]->GetTextureCount(static_cast<aiTextureType>(type)); i++) {
+                aiString path;
+                if (scene->mMaterials[m]->GetTexture(static_cast<aiTextureType>(type), i, &path) == AI_SUCCESS)
+                    names.insert(path.C_Str());
+            }
+    if (!names.empty())
+        printf("left out: %zu textures, such as %.100s\n", names.size(), names.begin()->c_str());
+}
+
 void convert(const char *input, const char *output, const char *units, const char *up)
 {
     const format &from = format_of(input);
@@ -359,6 +375,7 @@ void convert(const char *input, const char *output, const char *units, const cha
     if (r.triangles == 0)
         refuse("there is no surface in it");
     write_scene(&r.out, output, "");
+    say_textures(scene);
     if (r.lost > 0)
         printf("left out: %zu triangles whose corners are not finite\n", r.lost);
 }
