@@ -83,8 +83,8 @@ static void what_no_memory_holds_is_refused(void **state)
     memcpy(count, "\"count\":9", 9);
     char *huge = mem_printf("%.*s000000000000000%s", (int)(count + 9 - more), more, count + 9);
     mem_free(temp_write_text(c->folder, "h.gltf", huge));
-    check(c, "  - { id: A, model: h.gltf, nodes: '#1', units: mm }\n  - { id: B, model: h.gltf, nodes: '#1', units: mm }\n", "[]", "Tag Name\n",
-          NULL);
+    check(c, "  - { id: A, model: h.gltf, nodes: '#1', units: mm }\n  - { id: B, model: h.gltf, nodes: '#1', units: mm }\n", "[]",
+          "Tag Name\n", NULL);
     FOUND(c, { "plant.yaml", 0, 0, "3000000000.0 million triangles are too many: the " }); /* in memory once */
     mem_free(more);
     mem_free(huge);
