@@ -14,9 +14,10 @@ static void print_usage(FILE *out)
 {
     fputs("usage: plantcast audit verify FILE [--known NUMBER:HASH]\n"
           "\n"
-          "Verifies the trail that plantcastd --audit FILE writes, with the full files beside it: each line has a hash of its own and of the\n"
-          "line before, so a changed, removed or added line is found. FILE.head tells of removed last lines; who can change that, too, is\n"
-          "found by a line's number and hash that were kept elsewhere, in the journal or on a syslog server:\n"
+          "Verifies the trail that plantcastd --audit FILE writes, with the full files beside it: each line has a hash of its own\n"
+          "and of the line before, so a changed, removed or added line is found. FILE.head tells of removed last lines;\n"
+          "who can change that, too, is found by a line's number and hash that were kept elsewhere, in the journal or on a\n"
+          "syslog server:\n"
           "  --known NUMBER:HASH   the trail must have that line\n",
           out);
 }

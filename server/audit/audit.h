@@ -4,18 +4,7 @@
 #ifndef AUDIT_AUDIT_H
 #define AUDIT_AUDIT_H
 #include "audit/audit_chain.h"
-#include "base/counters.h"
-#include "base/log.h"
-
-struct audit_params {
-    struct log *log;
-    struct counters *counters;
-    const char *path;                         /* of the trail's file */
-    size_t most_bytes;                        /* a file that has so many is rotated; 0: 64 MB */
-    const char *syslog;                       /* HOST[:PORT] of a server of syslog over TLS; NULL: none */
-    const char *syslog_ca;                    /* certificates that are trusted with it, PEM; NULL: the machine's own */
-    const char *syslog_cert, *syslog_key;     /* our certificate for it, PEM; NULL: none */
-};
+#include "audit/audit_params.h"
 
 struct audit;
 /* Opens the file and starts the thread. Returns NULL if that fails, already logged. */

@@ -3,7 +3,8 @@
    to a limit; what does not fit is counted and said. */
 #ifndef AUDIT_AUDIT_SYSLOG_H
 #define AUDIT_AUDIT_SYSLOG_H
-#include "audit/audit.h"
+#include "audit/audit_params.h"
+#include "base/text.h"
 
 struct audit_syslog;
 /* Returns NULL if there is no thread, already logged. */

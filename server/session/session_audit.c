@@ -28,8 +28,8 @@ static void add_alarms(struct text *what, const struct plant *plant, const struc
     text_add(what, "%s", alarm_event_name((enum alarm_event)request->action));
     for (int i = 0; i < request->count; i++) {
         enum alarm_kind kind = (enum alarm_kind)request->kinds[i];
-        text_add(what, "%s %s %s", i ? "," : "", kind == ALARM_LINK ? devices->list[request->tags[i]].name : plant->tags[request->tags[i]].name,
-                 alarm_kind_name(kind));
+        const char *name = kind == ALARM_LINK ? devices->list[request->tags[i]].name : plant->tags[request->tags[i]].name;
+        text_add(what, "%s %s %s", i ? "," : "", name, alarm_kind_name(kind));
     }
     if (request->for_s > 0)
         text_add(what, " for %.0f s", request->for_s);

@@ -136,7 +136,8 @@ test('the same instant is drawn once for all who look at it', { skip }, async ()
     for (let s = 440; s < 450 && !isShared; s++) {
         const before = await metric('plantcast_renders_shared_total');
         await Promise.all([first, second].map((client) => travel(client, at(s))));
-        await Promise.all([first, second].map((client) => client.picture('refined', (p) => p.flags & FLAG.still && p.data_time_us === at(s))));
+        const isThere = (p) => p.flags & FLAG.still && p.data_time_us === at(s);
+        await Promise.all([first, second].map((client) => client.picture('refined', isThere)));
         isShared = await metric('plantcast_renders_shared_total') > before;
     }
     assert.ok(isShared);

@@ -181,7 +181,8 @@ static void drop_oldest(struct postgres *postgres)
     postgres->lost += lost;
     if (postgres->lost && clock_mono_ns() >= postgres->say_lost_ns) {
         log_event(log_of(postgres), LOG_ERROR, EVENT_HISTORY_LOST,
-                  "history: %lld points that waited for PostgreSQL were too many; only the files here have them", (long long)postgres->lost);
+                  "history: %lld points that waited for PostgreSQL were too many; only the files here have them",
+                  (long long)postgres->lost);
         postgres->say_lost_ns = clock_mono_ns() + SAY_LOST_NS;
         postgres->lost = 0;
     }

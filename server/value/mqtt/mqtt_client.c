@@ -181,7 +181,8 @@ static bool leave_will(struct mqtt_client *client, char why[200])
 {
     static const char OFFLINE[] = "offline";
     const char *topic = client->source->mqtt.will;
-    int status = topic ? mosquitto_will_set(client->library, topic, (int)strlen(OFFLINE), OFFLINE, 1, client->source->mqtt.will_stays) : MOSQ_ERR_SUCCESS;
+    bool stays = client->source->mqtt.will_stays;
+    int status = topic ? mosquitto_will_set(client->library, topic, (int)strlen(OFFLINE), OFFLINE, 1, stays) : MOSQ_ERR_SUCCESS;
     if (status != MOSQ_ERR_SUCCESS)
         snprintf(why, 200, "will: %s", mosquitto_strerror(status));
     return status == MOSQ_ERR_SUCCESS;
