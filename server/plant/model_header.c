@@ -279,7 +279,8 @@ uint64_t model_header_triangles(const struct model_header *header, size_t node)
 {
     const json_t *root = header->json, *accessors = json_object_get(root, "accessors");
     const json_t *number = json_object_get(json_array_get(json_object_get(root, "nodes"), header->nodes[node].number), "mesh");
-    const json_t *mesh = json_is_integer(number) ? json_array_get(json_object_get(root, "meshes"), (size_t)json_integer_value(number)) : NULL;
+    const json_t *meshes = json_object_get(root, "meshes");
+    const json_t *mesh = json_is_integer(number) ? json_array_get(meshes, (size_t)json_integer_value(number)) : NULL;
     const json_t *primitives = json_object_get(mesh, "primitives");
     uint64_t sum = 0;
     for (size_t i = 0; i < json_array_size(primitives); i++) {
