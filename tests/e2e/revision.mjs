@@ -251,7 +251,7 @@ test('killed in the middle, or out of disk: the old plant or the new one', patie
     let kept = 0;
     for (let i = 1; i <= 12; i++) {
         cpSync(first, plant, { recursive: true });
-        const child = spawn(join(BIN, 'plantcast-import'), ['import', revised, '-o', plant], { stdio: 'ignore' });
+        const child = spawn(join(BIN, 'plantcast-import'), [revised, '-o', plant], { stdio: 'ignore' });
         const ended = new Promise((done) => child.once('exit', done));
         await sleep(ms * i / 11);
         child.kill('SIGKILL');
@@ -267,7 +267,7 @@ test('killed in the middle, or out of disk: the old plant or the new one', patie
     }
     console.log(`# killed 12 times within ${ms} ms: ${kept} times before anything was replaced`);
     cpSync(first, plant, { recursive: true });
-    const script = `trap '' XFSZ; ulimit -f 300; exec "$0" import "$1" -o "$2"`;
+    const script = `trap '' XFSZ; ulimit -f 300; exec "$0" "$1" -o "$2"`;
     const full = spawnSync('bash', ['-c', script, join(BIN, 'plantcast-import'), revised, plant],
         { encoding: 'utf8', timeout: 60000 });
     assert.equal(full.status, 1);
