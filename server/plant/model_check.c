@@ -247,8 +247,8 @@ static bool check_memory(const struct check *check)
     if (check->triangles <= most)
         return true;
     diag_error(check->diag, check->plant->path, 0, 0,
-               "%.1f million triangles are too many: the %.1f GB of memory of this machine hold %.1f million. Leave parts of the plant out, "
-               "or import it with a larger --chord",
+               "%.1f million triangles are too many: the %.1f GB of memory of this machine hold %.1f million. Leave parts of the plant "
+               "out, or import it with a larger --chord",
                (double)check->triangles / 1e6, (double)machine / 1e9, (double)most / 1e6);
     return false;
 }
