@@ -23,7 +23,8 @@ out := $(build)/$(config)
 gen := $(build)/gen
 bin := $(if $(filter release,$(config)),$(build),$(out)/bin)
 
-packages := yaml-0.1 jansson sqlite3 libpq libcurl libmodbus libmosquitto libprotobuf-c libwebsockets libssl libcrypto libturbojpeg \
+packages := yaml-0.1 jansson sqlite3 libpq libcurl libmodbus libmosquitto libprotobuf-c libwebsockets libssl libcrypto cjose \
+            libturbojpeg \
             libjpeg libpng cairo libxxhash OpenImageIO
 ifneq ($(filter-out jpeg h264,$(CODECS))$(if $(filter jpeg,$(CODECS)),,none),)
 $(error CODECS=$(CODECS) is unknown: jpeg, or jpeg h264)

@@ -22,7 +22,7 @@ static void print_usage(FILE *out)
           "                  [--gl-device INDEX|PCI] [--prepared DIR] [--history DIR] [--web DIR]\n"
           "                  [--log-level error|warn|info|debug] [--log-format text|json|journal]\n"
           "                  [--threads N] [--memory MB] [--field vertices|per-fragment]\n"
-          "                  [--h264 ENCODER|off] [--tls-cert FILE --tls-key FILE] [--tokens FILE] [--open-viewers]\n"
+          "                  [--h264 ENCODER|off] [--tls-cert FILE --tls-key FILE] [--tokens FILE [--openid FILE]] [--open-viewers]\n"
           "                  [--trust-local] [--behind-proxy] [--host NAME] [--origin URL] [--limit NAME=N] [--import[=now]]\n"
           "                  [--audit FILE [--audit-size MB] [--audit-syslog HOST[:PORT] [--audit-ca FILE]\n"
           "                  [--audit-cert FILE --audit-key FILE]]]\n"
@@ -56,6 +56,7 @@ static void print_usage(FILE *out)
           "\n"
           "  --tls-cert FILE, --tls-key FILE   certificate (with its chain) and private key, PEM; taken anew when they change\n"
           "  --tokens FILE    who is let in as what, on this machine too: `plantcast token` makes it; taken anew when it changes\n"
+          "  --openid FILE    people sign in at an identity provider (OpenID Connect), as FILE says\n"
           "  --open-viewers   let anyone who reaches ADDR look at the pictures, and at nothing else\n"
           "  --trust-local    with --tokens: who is on this machine needs none, and is an engineer\n"
           "  --behind-proxy   a proxy on this machine speaks for others, and says for whom in X-Forwarded-For; takes --host\n"
@@ -149,6 +150,7 @@ enum {
     OPTION_TLS_CERT,
     OPTION_TLS_KEY,
     OPTION_TOKENS,
+    OPTION_OPENID,
     OPTION_PROXY,
     OPTION_TRUST,
     OPTION_HOST,
@@ -186,6 +188,7 @@ static const struct option options[] = {
     { "tls-cert", required_argument, NULL, OPTION_TLS_CERT },
     { "tls-key", required_argument, NULL, OPTION_TLS_KEY },
     { "tokens", required_argument, NULL, OPTION_TOKENS },
+    { "openid", required_argument, NULL, OPTION_OPENID },
     { "behind-proxy", no_argument, NULL, OPTION_PROXY },
     { "trust-local", no_argument, NULL, OPTION_TRUST },
     { "host", required_argument, NULL, OPTION_HOST },
@@ -232,6 +235,7 @@ static int take_access_option(int option, struct access_params *access)
     case OPTION_TLS_CERT: access->tls_cert_path = optarg; return -1;
     case OPTION_TLS_KEY: access->tls_key_path = optarg; return -1;
     case OPTION_TOKENS: access->tokens_path = optarg; return -1;
+    case OPTION_OPENID: access->openid_path = optarg; return -1;
     case OPTION_PROXY: access->behind_proxy = true; return -1;
     case OPTION_TRUST: access->trust_local = true; return -1;
     case OPTION_HOST: return add_host(access, optarg) ? -1 : usage_error("--host: not a name without port, or one too many:", optarg);

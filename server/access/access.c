@@ -14,6 +14,8 @@ bool access_allowed_at(const struct access_params *params, bool loopback, const 
     bool tls = params->tls_cert_path && params->tls_key_path;
     if (params->behind_proxy && !params->tokens_path && !params->open_viewers)
         *why = "--behind-proxy: who comes through the proxy needs a token (--tokens FILE), or --open-viewers";
+    else if (params->openid_path && !params->tokens_path)
+        *why = "--openid needs --tokens FILE: a token lets you in while the identity provider does not answer";
     else if (params->behind_proxy && params->host_count == 0)
         *why = "--behind-proxy: --host NAME says by which name the proxy is asked for";
     else if (params->behind_proxy && params->trust_local)

@@ -13,6 +13,7 @@ struct access_params {
     bool behind_proxy;                        /* a proxy on this machine forwards the connections of others: being local proves nothing */
     bool trust_local;                         /* clients on this machine need no token, though others do */
     const char *tokens_path;                  /* NULL: no tokens */
+    const char *openid_path;                  /* of the file that says how people sign in; NULL: they do not */
     const char *tls_cert_path, *tls_key_path; /* NULL: no TLS */
     const char *hosts[ACCESS_MAX_NAMES];      /* host names by which clients may ask for the daemon, beside those it knows */
     const char *origins[ACCESS_MAX_NAMES];    /* pages of other hosts that may connect, as SCHEME://HOST[:PORT] */

@@ -14,6 +14,7 @@ struct token_holder {
     char name[TOKEN_NAME_BYTES];
     uint8_t hash[TOKEN_HASH_BYTES]; /* all 0: no holder */
     int64_t until_utc_ns;           /* INT64_MAX: for ever */
+    bool signed_in;                 /* a person, by the identity provider; the hash is that of a cookie */
 };
 
 struct tokens;

@@ -88,11 +88,11 @@ bool audit_chain_check(struct audit_chain *chain, const char *line, size_t count
     json_t *object = memcmp(hash, said, AUDIT_HASH_CHARS) == 0 ? json_loadb(line, count, JSON_REJECT_DUPLICATES, NULL) : NULL;
     const char *prev = json_string_value(json_object_get(object, "prev"));
     json_int_t seq = json_integer_value(json_object_get(object, "seq"));
-    *why = !object                                                  ? "it was changed: its hash is another"
-           : !prev || seq < 1                                       ? "it has no number, or no predecessor"
-           : !first && (uint64_t)seq != chain->seq + 1              ? "lines before it are missing, or were put in"
-           : !first && strcmp(prev, chain->hash) != 0               ? "it does not follow the line before"
-                                                                    : NULL;
+    *why = !object                                     ? "it was changed: its hash is another"
+           : !prev || seq < 1                          ? "it has no number, or no predecessor"
+           : !first && (uint64_t)seq != chain->seq + 1 ? "lines before it are missing, or were put in"
+           : !first && strcmp(prev, chain->hash) != 0  ? "it does not follow the line before"
+                                                       : NULL;
     json_decref(object);
     if (*why)
         return false;

@@ -10,8 +10,8 @@
 
 enum { AUDIT_HASH_CHARS = 64, AUDIT_LINE_BYTES = 32768 };
 
-struct audit_chain { /* where a trail ends */
-    uint64_t seq;    /* of its last line; 0: it has none */
+struct audit_chain {                 /* where a trail ends */
+    uint64_t seq;                    /* of its last line; 0: it has none */
     char hash[AUDIT_HASH_CHARS + 1]; /* of that line; 64 zeros: it has none */
 };
 

@@ -22,6 +22,7 @@ static const struct {
     [EVENT_AUDIT_WRITTEN] = { "audit-written", "c621267e1d782dc40803f391bdf13121" },
     [EVENT_AUDIT_BROKEN] = { "audit-broken", "6d23628aa3f59791d7339053f3d4784e" },
     [EVENT_AUDIT_NOT_SENT] = { "audit-not-sent", "d2b34ca0d711ea0bb2b3f29d9eb80181" },
+    [EVENT_OPENID_FAILS] = { "openid-fails", "6ea31f6a8c4a17474743ed01ec757079" },
 };
 
 const char *log_event_name(enum log_event event)

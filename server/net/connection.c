@@ -252,6 +252,15 @@ static const struct refusal *judge_token(struct server_context *server, struct l
     return login_is_good(login) ? NULL : login == LOGIN_HELD ? &HELD : &BAD_TOKEN;
 }
 
+/* A cookie that is nobody's any more is none: its owner is asked to sign in again. */
+static void find_person(struct server_context *server, struct lws *wsi, struct connection *connection)
+{
+    char cookie[64];
+    size_t size = sizeof(cookie);
+    if (server->openid && lws_http_cookie_get(wsi, openid_config_of(server->openid)->cookie, cookie, &size) == 0)
+        openid_find(server->openid, cookie, &connection->holder);
+}
+
 /* Somebody on this machine, who asks for it by a local name, and whom no token is wanted from. */
 static bool is_trusted(const struct server_context *server, const struct connection *connection, const char *name)
 {
@@ -286,6 +295,8 @@ bool connection_identify(struct server_context *server, struct lws *wsi, struct 
         *refusal = *bad_token;
     if (refusal->status)
         return false;
+    if (!token[0])
+        find_person(server, wsi, connection);
     if (connection->holder.role != ROLE_NOBODY)
         connection->role = connection->holder.role;
     else if (is_trusted(server, connection, name))

@@ -62,7 +62,7 @@ static void look_at_files(struct net *net, int64_t now_ns)
         tls_look(server->tls);
     if (server->tokens) {
         tokens_look(server->tokens);
-        streams_check_tokens(server, clock_utc_ns());
+        streams_check_tokens(server, clock_utc_ns()); /* and people's rights, who sign in only where there are tokens, too */
     }
 }
 
@@ -227,6 +227,7 @@ static void collect(struct net *net)
     collect_history_answers(server);
     collect_historical_snapshots(server);
     collect_coverage(server);
+    http_on_sign_ins(server);
     for (struct encoded_frame *encoded = render_service_collect(server->params.plant.render_service), *next; encoded; encoded = next) {
         next = encoded->next;
         encoded->next = NULL;
@@ -346,6 +347,13 @@ static bool open_context(struct net *net)
     return server->params.socket_fd < 0 || handed_socket_listen(net);
 }
 
+static void wake_loop(void *arg)
+{
+    struct net *net = arg;
+    if (net->server.lws)
+        lws_cancel_service(net->server.lws);
+}
+
 static bool open_access(struct net *net)
 {
     struct server_context *server = &net->server;
@@ -355,6 +363,14 @@ static bool open_access(struct net *net)
     server->local_only = access_name_is_local(server->params.address) && !access->behind_proxy;
     if (access->tokens_path && !(server->session_context.tokens = server->tokens = tokens_create(server->params.log, access->tokens_path)))
         return false;
+    const struct openid_params openid = { .log = server->params.log,
+                                          .counters = server->params.counters,
+                                          .audit = server->params.audit,
+                                          .path = access->openid_path,
+                                          .wake = wake_loop,
+                                          .wake_arg = net };
+    if (access->openid_path && !(server->session_context.openid = server->openid = openid_start(&openid)))
+        return false;
     return !access->tls_cert_path || (server->tls = tls_create(server->params.log, access->tls_cert_path, access->tls_key_path));
 }
 
@@ -362,7 +378,9 @@ bool net_access_good(struct log *log, const struct access_params *access)
 {
     struct tokens *tokens = access->tokens_path ? tokens_create(log, access->tokens_path) : NULL;
     struct tls *tls = access->tls_cert_path ? tls_create(log, access->tls_cert_path, access->tls_key_path) : NULL;
-    bool good = (tokens || !access->tokens_path) && (tls || !access->tls_cert_path);
+    struct openid_config *openid = access->openid_path ? openid_config_read(log, access->openid_path) : NULL;
+    bool good = (tokens || !access->tokens_path) && (tls || !access->tls_cert_path) && (openid || !access->openid_path);
+    openid_config_free(&openid);
     tokens_destroy(&tokens);
     tls_destroy(&tls);
     return good;
@@ -409,6 +427,7 @@ void net_destroy(struct net **net_ptr)
     lws_sul_cancel(&net->timer);
     history_queries_destroy(&net->server.history_queries); /* before what they wake */
     history_loader_destroy(&net->server.history_loader);
+    openid_stop(&net->server.openid);
     if (net->server.lws)
         lws_context_destroy(net->server.lws);
     atomic_store(&lws_log_to, NULL);

@@ -4,6 +4,7 @@
 #define NET_SERVER_CONTEXT_H
 #include <libwebsockets.h>
 
+#include "access/openid/openid.h"
 #include "message/alarm_text.h"
 #include "message/marker_text.h"
 #include "net/address_limits.h"
@@ -40,6 +41,7 @@ struct server_context {
     struct address_limits *limits;
     int connection_count;
     struct tokens *tokens; /* NULL: none are configured */
+    struct openid *openid; /* NULL: nobody signs in */
     struct login_throttle *login_throttle;
     struct site *site;    /* the page's files */
     char *content_policy; /* Content-Security-Policy of every answer */
@@ -121,6 +123,8 @@ void http_on_frame(struct server_context *server, struct encoded_frame *encoded)
 void http_on_pick(struct server_context *server, const struct pick_answer *answer);
 void http_on_historical_snapshot(struct server_context *server, const struct history_loader_answer *answer);
 void http_on_history_answer(struct server_context *server, struct history_answer *piece);
+/* Answers browsers that came back from the identity provider. */
+void http_on_sign_ins(struct server_context *server);
 /* Answers those who asked for a reload. */
 void http_on_reloaded(struct server_context *server, bool good, const char *text);
 /* Answers all requests that wait for the plant that is about to be replaced. */

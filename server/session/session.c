@@ -62,18 +62,29 @@ void session_leave(struct session *session, bool keep, int64_t now_ns)
     resumes_close(session->context->resumes, session, keep, now_ns);
 }
 
+static enum role role_now(const struct session *session, int64_t now_utc_ns)
+{
+    const struct session_context *context = session->context;
+    const struct token_holder *holder = &session->identity.holder;
+    if (holder->signed_in)
+        return context->openid ? openid_role(context->openid, holder) : ROLE_NOBODY;
+    return context->tokens ? tokens_role(context->tokens, holder, now_utc_ns) : ROLE_NOBODY;
+}
+
 void session_check_token(struct session *session, int64_t now_utc_ns)
 {
+    bool person = session->identity.holder.signed_in;
+    const char *why = person ? "you are signed out" : "this token is no longer let in";
     if (session->identity.holder.role == ROLE_NOBODY)
         return;
-    enum role role = session->context->tokens ? tokens_role(session->context->tokens, &session->identity.holder, now_utc_ns) : ROLE_NOBODY;
+    enum role role = role_now(session, now_utc_ns);
     if (role != ROLE_NOBODY) {
         session->identity.role = session->identity.holder.role = role;
     } else if (!session->close.code) {
         struct message_error error = { 0 };
-        message_fail(&error, "bad_token", "this token is no longer let in");
+        message_fail(&error, person ? "token_needed" : "bad_token", "%s", why);
         session_reply_error(session, &error);
-        session_close(session, 1008, "this token is no longer let in");
+        session_close(session, 1008, why);
     }
 }
 
@@ -158,6 +169,13 @@ void session_on_pick(struct session *session, const struct pick_answer *answer)
             cache.pick.state = PICK_BETWEEN;
     }
     session_reply(session, reply_picked_text(session->context->plant, &cache));
+}
+
+/* Whoever signed in is called what the identity provider says; a token may be that of a desk at which many sit. */
+static void clear_claimed_name(const struct session *session, struct message *message)
+{
+    if (message->type == MESSAGE_ALARM && session->identity.holder.signed_in)
+        message->alarm.name[0] = 0;
 }
 
 static bool on_alarm(struct session *session, const struct message *message, struct message_error *error)
@@ -254,8 +272,10 @@ void session_on_message(struct session *session, const char *text, size_t count,
     count_message(session, now_ns);
     if (!login_is_good(session->identity.login)) /* it is being closed */
         return;
-    if (!message_parse(session->context->plant, text, count, &message, &error) || !in_order(session, &message, &error) ||
-        !act(session, &message, now_ns, now_utc_ns, &error)) {
+    bool good = message_parse(session->context->plant, text, count, &message, &error);
+    if (good)
+        clear_claimed_name(session, &message);
+    if (!good || !in_order(session, &message, &error) || !act(session, &message, now_ns, now_utc_ns, &error)) {
         session_record_refusal(session, &error);
         session_reply_error(session, &error);
     }

@@ -2,6 +2,7 @@
 /* What all sessions have in common. Thread: the loop. */
 #ifndef SESSION_SESSION_CONTEXT_H
 #define SESSION_SESSION_CONTEXT_H
+#include "access/openid/openid.h"
 #include "audit/audit.h"
 #include "scene/scene.h"
 #include "session/session_state.h"
@@ -33,6 +34,7 @@ struct session_context {
     const char *version;
     const struct quotas *quotas;
     const struct tokens *tokens;           /* NULL: none are configured */
+    struct openid *openid;                 /* NULL: nobody signs in */
     struct login_throttle *login_throttle; /* changed by hello; NULL: wrong tokens are not counted */
     struct audit *audit;                   /* NULL: nothing is recorded */
     struct resumes *resumes;               /* changed by hello */

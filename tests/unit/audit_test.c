@@ -343,8 +343,9 @@ static void test_daemon(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_any_changed_byte), cmocka_unit_test(test_lines_removed_and_moved), cmocka_unit_test(test_next_start),
-        cmocka_unit_test(test_rotation),         cmocka_unit_test(test_full_disk),               cmocka_unit_test(test_strangers_texts),
+        cmocka_unit_test(test_any_changed_byte), cmocka_unit_test(test_lines_removed_and_moved),
+        cmocka_unit_test(test_next_start),       cmocka_unit_test(test_rotation),
+        cmocka_unit_test(test_full_disk),        cmocka_unit_test(test_strangers_texts),
         cmocka_unit_test(test_syslog_frame),     cmocka_unit_test(test_daemon),
     };
     cmocka_set_message_output(CM_OUTPUT_TAP);

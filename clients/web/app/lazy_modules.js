@@ -11,6 +11,7 @@ const FIRST_WAIT_MS = 1000, LONGEST_WAIT_MS = 8000; // between tries
 // it says only what the page says at once, or has a file of words of its own.
 const MODULES = {
     about: { file: 'assets/about', type: 'About', styles: ['assets/about'] },
+    account: { file: 'sharing/account', type: 'Account', styles: ['help/help', 'sharing/account'] },
     alarms: { file: 'alarms/alarms', type: 'AlarmList', styles: ['alarms/alarms', 'help/help'], fills: 'alarms' },
     arrival: { file: 'sharing/arrival', type: 'Arrival' },
     assets: { file: 'assets/assets', type: 'Assets', wordless: true },
@@ -35,7 +36,7 @@ const MODULES = {
     snapshot: { file: 'picture/snapshot', type: 'Snapshot' },
     timeline: { file: 'timeline/timeline', type: 'Timeline', styles: ['timeline/timeline'], fills: 'timeline' },
     timings: { file: 'help/timings', type: 'TimingsPanel', styles: ['help/timings'] },
-    token: { file: 'sharing/token', type: 'TokenDialog', styles: ['help/help'], fills: 'token' },
+    token: { file: 'sharing/token', type: 'TokenDialog', styles: ['help/help', 'sharing/account'], fills: 'token' },
     trends: { file: 'trends/trends', type: 'Trends', styles: ['trends/trends'], fills: 'trends' },
     views: { file: 'views/views', type: 'Views', styles: ['common/panel'], fills: 'views' },
 };

@@ -53,9 +53,9 @@ function refresh() {
 }
 
 const BUTTONS = { fit: 'fit', home: 'home', measure: 'measure', snapshot: 'snapshot', theme: 'theme', hold: 'hold', 'share-open': 'share',
-    'help-open': 'help', 'time-toggle': 'past', 'alarm-strip': 'alarms', 'views-toggle': 'views', 'picture-toggle': 'picture',
-    'engineer-toggle': 'engineer', 'import-toggle': 'import',
-    'assets-toggle': 'assets', 'display-toggle': 'display', 'more-toggle': 'more' };
+    'help-open': 'help', 'account-open': 'account', 'time-toggle': 'past', 'alarm-strip': 'alarms', 'views-toggle': 'views',
+    'picture-toggle': 'picture', 'engineer-toggle': 'engineer', 'import-toggle': 'import', 'assets-toggle': 'assets',
+    'display-toggle': 'display', 'more-toggle': 'more' };
 for (const [id, name] of Object.entries(BUTTONS))
     byId(id).addEventListener('click', does(name));
 

@@ -44,6 +44,7 @@ share: Teilen
 theme: Dunkel oder hell
 engineer: Ingenieur: Messstellen und Feld
 import: Anlage einlesen
+account: Wer Sie sind
 
 [show]
 value: Werte

@@ -44,6 +44,7 @@ share: Share
 theme: Dark or light
 engineer: Engineer: sensors and field
 import: Bring a plant in
+account: Who you are
 
 [show]
 value: Values

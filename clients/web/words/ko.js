@@ -44,6 +44,7 @@ share: 공유
 theme: 어둡게 또는 밝게
 engineer: 엔지니어: 센서와 필드
 import: 플랜트 가져오기
+account: 내 계정
 
 [show]
 value: 값

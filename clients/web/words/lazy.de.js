@@ -306,6 +306,19 @@ decode: Dekodieren
 rate: {pictures} Bilder/s, {kbit} kbit/s
 follow: Sitzung {session}. Wer {link} öffnet, sieht diese Ansicht.
 
+[account]
+title: Wer Sie sind
+viewer: darf ansehen
+operator: ist Operator
+engineer: ist Engineer
+open: darf das Bild ansehen
+nobody: Hier kennt Sie niemand.
+person: Sie haben sich beim Identitätsanbieter angemeldet.
+token: Sie sind mit einem Token hier.
+here: Sie sind am Server selbst, wo niemand gefragt wird.
+in: Anmelden: {provider}
+out: Abmelden
+
 [token]
 title: Token
 needed: Dieser Server fragt, wer Sie sind.

@@ -306,6 +306,19 @@ decode: decoding
 rate: {pictures} pictures/s, {kbit} kbit/s
 follow: Session {session}. Who opens {link} sees this view.
 
+[account]
+title: Who you are
+viewer: may look
+operator: is an operator
+engineer: is an engineer
+open: may look at the picture
+nobody: Nobody knows you here.
+person: You signed in at the identity provider.
+token: You are here by a token.
+here: You are at the server’s own machine, where nobody is asked.
+in: Sign in: {provider}
+out: Sign out
+
 [token]
 title: Token
 needed: This server asks who you are.

@@ -303,6 +303,19 @@ decode: 복호화
 rate: 화면 {pictures}/s, {kbit} kbit/s
 follow: 세션 {session}. {link} 링크를 열면 이 화면을 함께 봅니다.
 
+[account]
+title: 내 계정
+viewer: 조회 권한
+operator: 운전원
+engineer: 엔지니어
+open: 화면 조회 권한
+nobody: 로그인하지 않았습니다.
+person: ID 공급자를 통해 로그인했습니다.
+token: 토큰으로 접속했습니다.
+here: 서버 본체에서 접속하여 로그인이 필요하지 않습니다.
+in: 로그인: {provider}
+out: 로그아웃
+
 [token]
 title: 토큰
 needed: 이 서버는 사용자 확인이 필요합니다.

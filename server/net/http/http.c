@@ -49,6 +49,9 @@ static const struct {
     { "/healthz", alive, ROLE_NOBODY },
     { "/readyz", ready, ROLE_NOBODY }, /* the loop only runs once model, GL and store are there; GL may go again */
     { "/stream", stream_without_upgrade, ROLE_NOBODY },
+    { "/login", ask_login, ROLE_NOBODY },
+    { "/login/callback", ask_login_callback, ROLE_NOBODY },
+    { "/api/v1/me", api_me, ROLE_NOBODY },
     { "/snapshot.png", ask_snapshot, ROLE_OPEN },
     { "/metrics", metrics, ROLE_VIEWER },
     { "/api/v1/plant", api_plant, ROLE_VIEWER },
@@ -64,7 +67,7 @@ static const struct {
     { "/api/v1/import", api_import, ROLE_ENGINEER },
     { "/api/v1/import/matches", api_import_matches, ROLE_ENGINEER },
 };
-static const char RELOAD_PATH[] = "/api/v1/reload"; /* POST */
+static const char RELOAD_PATH[] = "/api/v1/reload", LOGOUT_PATH[] = "/logout"; /* POST */
 
 static int refuse(struct request *request, const struct refusal *refusal)
 {
@@ -117,20 +120,24 @@ static int serve_post(struct server_context *server, struct request *request, co
 
 static int serve(struct server_context *server, struct request *request, const char *path)
 {
-    bool post =
-        lws_hdr_total_length(request->wsi, WSI_TOKEN_POST_URI) > 0 && (!strcmp(path, RELOAD_PATH) || import_takes_post(server, path));
+    bool post = lws_hdr_total_length(request->wsi, WSI_TOKEN_POST_URI) > 0 &&
+                (!strcmp(path, RELOAD_PATH) || !strcmp(path, LOGOUT_PATH) || import_takes_post(server, path));
     bool get = lws_hdr_total_length(request->wsi, WSI_TOKEN_GET_URI) > 0;
     struct refusal refusal;
     request->head = lws_hdr_total_length(request->wsi, WSI_TOKEN_HEAD_URI) > 0;
     counter_inc(server->counters.requests, 1);
     if (!get && !request->head && !post) {
         request->close = true; /* there may be a body that nobody reads */
-        static const char text[] = "only GET and HEAD (POST: /api/v1/reload)\n";
+        static const char text[] = "only GET and HEAD (POST: /api/v1/reload, /logout)\n";
         return request_answer(request, HTTP_STATUS_METHOD_NOT_ALLOWED, HTTP_TEXT, mem_strdup(text), strlen(text), "allow:", "GET, HEAD");
     }
     if (!connection_identify(server, request->wsi, &refusal)) {
         counter_inc(server->counters.refused, 1);
         return refuse(request, &refusal);
+    }
+    if (post && !strcmp(path, LOGOUT_PATH)) {
+        request->close = true;
+        return ask_logout(server, request);
     }
     if (post)
         return serve_post(server, request, path);
@@ -173,6 +180,7 @@ static void request_end(struct server_context *server, struct request **slot)
     request_forget(server, *slot);
     import_abandon_body(*slot);
     request_hold(*slot, NULL, 0);
+    mem_free((*slot)->set_cookie);
     mem_free(*slot);
     *slot = NULL;
 }

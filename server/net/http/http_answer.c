@@ -48,6 +48,10 @@ bool request_write_head(struct request *request, int status, const char *type, c
         return false;
     if (extra_name && !add_header(wsi, extra_name, extra, &p, end))
         return false;
+    if (request->set_cookie && !add_header(wsi, "set-cookie:", request->set_cookie, &p, end))
+        return false;
+    mem_free(request->set_cookie);
+    request->set_cookie = NULL;
     return lws_finalize_write_http_header(wsi, start, &p, end) == 0;
 }
 

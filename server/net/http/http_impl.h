@@ -17,6 +17,7 @@ struct request {
     struct address_usage *usage; /* of its address, while it waits; the connection holds the reference */
     bool head;                   /* no body is wanted */
     bool close;                  /* after the answer */
+    char *set_cookie;            /* sent with the next head; NULL: none */
     char *body;
     size_t count, sent;
     struct address_usage *holder; /* in whose answer_bytes the body is counted; NULL: in none. The connection holds the reference */
@@ -89,6 +90,10 @@ int ask_pick(struct server_context *server, struct request *request);
 int ask_history(struct server_context *server, struct request *request);
 int ask_gaps(struct server_context *server, struct request *request);
 int ask_journal(struct server_context *server, struct request *request);
+int ask_login(struct server_context *server, struct request *request);
+int ask_login_callback(struct server_context *server, struct request *request);
+int ask_logout(struct server_context *server, struct request *request);
+int api_me(struct server_context *server, struct request *request);
 int ask_reload(struct server_context *server, struct request *request);
 int api_import(struct server_context *server, struct request *request);
 int api_import_matches(struct server_context *server, struct request *request);

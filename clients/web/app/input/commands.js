@@ -157,6 +157,7 @@ function commandsOf({ session, modules, selection, overlay, saveAddress, refresh
         fit: fitView,
         back: () => modules.there('cameraController')?.goBack(),
         home: () => session.model && modules.use('cameraController', (cameraController) => cameraController.flyHome()),
+        account: () => modules.use('account', (account) => account.open()),
         help: () => modules.use('help', (help) => help.open()),
         timings: opens('timings'),
         alarms: opens('alarms'),

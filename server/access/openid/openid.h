@@ -1,0 +1,60 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Signing people in by OpenID Connect: authorization code flow with PKCE. A thread asks the identity provider; the loop begins log-ins,
+   hands in what browsers bring back, and asks who a cookie belongs to. Rights of all who are signed in are asked for again and again;
+   while the provider does not answer they stay as they are. Thread: the loop, unless it says otherwise. */
+#ifndef OPENID_OPENID_H
+#define OPENID_OPENID_H
+#include "access/openid/openid_config.h"
+#include "access/openid/sign_ins.h"
+#include "audit/audit.h"
+#include "base/counters.h"
+
+struct openid_params {
+    struct log *log;
+    struct counters *counters;
+    struct audit *audit;     /* NULL: nothing is recorded */
+    const char *path;        /* of its file */
+    void (*wake)(void *arg); /* called by the thread when openid_collect has an answer, or rights changed */
+    void *wake_arg;
+};
+
+struct openid;
+/* Reads the file and starts the thread. Returns NULL if that fails, already logged; a provider that does not answer is no failure. */
+struct openid *openid_start(const struct openid_params *params);
+/* Ends it, and all sessions of people. &NULL is fine; leaves NULL. */
+void openid_stop(struct openid **openid);
+const struct openid_config *openid_config_of(const struct openid *openid);
+
+/* Begins a log-in. Returns the URL to send the browser to (mem_free), and the cookie that it has to bring back; NULL with *why (static). */
+char *openid_begin(struct openid *openid, const uint8_t address[16], const char *path, int64_t now_ns,
+                   char binding[SIGN_IN_SECRET_CHARS + 1], const char **why);
+
+struct openid_return { /* what a browser brings back from the provider; texts may be NULL */
+    uint64_t request;  /* names the answer */
+    const char *state, *code, *iss, *error, *binding, *from;
+};
+/* Hands it in. Returns whether an answer will come (openid_collect); if not, no log-in waits for this: it is a replay, or a forgery. */
+bool openid_finish(struct openid *openid, const struct openid_return *brought, int64_t now_ns);
+
+struct openid_answer {
+    uint64_t request;
+    bool good;
+    char cookie[SIGN_IN_SECRET_CHARS + 1]; /* of the new session */
+    char path[SIGN_IN_PATH_BYTES];         /* to return to */
+    char *why;                             /* if it is not good */
+    struct openid_answer *next;
+};
+/* Returns all answers that have come, as a list; free each with openid_answer_free. */
+struct openid_answer *openid_collect(struct openid *openid);
+void openid_answer_free(struct openid_answer *answer);
+
+/* Returns whether somebody's rights changed, or ended, since the last call. */
+bool openid_take_changed(struct openid *openid);
+/* Finds whose cookie it is. Returns false if nobody's. */
+bool openid_find(struct openid *openid, const char *cookie, struct token_holder *out);
+/* Returns the role that a holder has now; ROLE_NOBODY: the person is not signed in (any more), or was none. */
+enum role openid_role(struct openid *openid, const struct token_holder *holder);
+/* Signs a person out. Returns the URL at which the provider signs it out as well (mem_free); NULL: there is none. */
+char *openid_end(struct openid *openid, const char *cookie, const char *from);
+
+#endif

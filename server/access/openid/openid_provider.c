@@ -1,0 +1,129 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What is known of the identity provider: its addresses, its keys, what it tells about a person. */
+#include <stdio.h>
+#include <string.h>
+
+#include "access/openid/openid_http.h"
+#include "access/openid/openid_impl.h"
+#include "base/clock.h"
+#include "base/mem.h"
+
+static const int64_t OLD_NS = 3600 * NS_PER_S, RETRY_NS = 5 * NS_PER_S;
+static const int64_t KEYS_NS = 10 * NS_PER_S; /* between two requests for keys, whatever tokens name: strangers choose those */
+
+void openid_say(struct openid *openid, const char *why)
+{
+    if (why && !openid->failing)
+        log_event(openid->params.log, LOG_ERROR, EVENT_OPENID_FAILS, "openid: %s: %s; nobody can sign in, and who is signed in stays so",
+                  openid->config->issuer, why);
+    else if (!why && openid->failing)
+        log_info(openid->params.log, "openid: %s answers again", openid->config->issuer);
+    openid->failing = why != NULL;
+    counter_set(openid->good, !why);
+}
+
+char *openid_endpoint(struct openid *openid, const char *name)
+{
+    pthread_mutex_lock(&openid->lock);
+    const char *url = json_string_value(json_object_get(openid->metadata, name));
+    char *copy = url ? mem_strdup(url) : NULL;
+    pthread_mutex_unlock(&openid->lock);
+    return copy;
+}
+
+static const char *fault_of(const struct openid_config *config, const struct openid_reply *reply)
+{
+    const char *issuer = json_string_value(json_object_get(reply->json, "issuer"));
+    if (reply->status != 200 || !json_is_object(reply->json))
+        return "its configuration (/.well-known/openid-configuration) is not there";
+    if (!issuer || strcmp(issuer, config->issuer) != 0)
+        return "its configuration is another issuer's";
+    for (size_t i = 0; i < 3; i++)
+        if (!json_is_string(json_object_get(reply->json, (const char *[]){ "authorization_endpoint", "token_endpoint", "jwks_uri" }[i])))
+            return "its configuration lacks an address";
+    return NULL;
+}
+
+static bool ask_metadata(struct openid *openid)
+{
+    struct openid_reply reply;
+    size_t length = strlen(openid->config->issuer);
+    bool slash = openid->config->issuer[length - 1] == '/';
+    char *url = mem_printf("%.*s/.well-known/openid-configuration", (int)(length - slash), openid->config->issuer);
+    openid->discovered_ns = clock_mono_ns();
+    bool answered = openid_get(openid->config, url, NULL, &openid->stopping, &reply);
+    const char *why = answered ? fault_of(openid->config, &reply) : reply.why;
+    if (why)
+        openid_say(openid, why);
+    pthread_mutex_lock(&openid->lock);
+    if (!why) {
+        json_decref(openid->metadata);
+        openid->metadata = json_incref(reply.json);
+    }
+    pthread_mutex_unlock(&openid->lock);
+    openid_reply_finish(&reply);
+    mem_free(url);
+    return !why;
+}
+
+static bool ask_keys(struct openid *openid)
+{
+    struct openid_reply reply;
+    char *url = openid_endpoint(openid, "jwks_uri");
+    openid->jwks_ns = clock_mono_ns();
+    bool good = openid_get(openid->config, url, NULL, &openid->stopping, &reply) && reply.status == 200 &&
+                json_is_array(json_object_get(reply.json, "keys"));
+    if (good) {
+        json_decref(openid->jwks);
+        openid->jwks = json_incref(reply.json);
+    }
+    openid_say(openid, good ? NULL : reply.why[0] ? reply.why : "its keys are not there");
+    openid_reply_finish(&reply);
+    mem_free(url);
+    return good;
+}
+
+static bool is_due(int64_t asked_ns, bool known)
+{
+    return asked_ns == 0 || clock_mono_ns() - asked_ns > (known ? OLD_NS : RETRY_NS);
+}
+
+bool openid_discover(struct openid *openid)
+{
+    if (is_due(openid->discovered_ns, openid->metadata != NULL))
+        ask_metadata(openid);
+    if (openid->metadata && is_due(openid->jwks_ns, openid->jwks != NULL))
+        ask_keys(openid);
+    return openid->metadata && openid->jwks;
+}
+
+json_t *openid_verify(struct openid *openid, const char *token, const char *nonce, const char *sub, const char **why)
+{
+    struct id_token_expected expected = {
+        .config = openid->config, .jwks = openid->jwks, .nonce = nonce, .sub = sub, .now_s = clock_utc_ns() / NS_PER_S
+    };
+    json_t *claims;
+    enum id_token_fault fault = id_token_verify(token, &expected, &claims, why);
+    if (fault == ID_TOKEN_NO_KEY && clock_mono_ns() - openid->jwks_ns > KEYS_NS && ask_keys(openid)) {
+        expected.jwks = openid->jwks;
+        id_token_verify(token, &expected, &claims, why);
+    }
+    return claims;
+}
+
+bool openid_complete(struct openid *openid, json_t *claims, const char *access_token)
+{
+    char *url = openid_endpoint(openid, "userinfo_endpoint"), name[TOKEN_NAME_BYTES];
+    struct openid_reply reply = { .status = 200 };
+    bool lacks = !id_token_has_groups(openid->config, claims) || !json_object_get(claims, openid->config->name_claim) ||
+                 !id_token_name(openid->config, claims, name, sizeof(name));
+    if (url && access_token && lacks && openid_get(openid->config, url, access_token, &openid->stopping, &reply) && reply.status == 200) {
+        const char *sub = json_string_value(json_object_get(claims, "sub")), *its = json_string_value(json_object_get(reply.json, "sub"));
+        if (sub && its && !strcmp(sub, its))
+            json_object_update_missing(claims, reply.json);
+    }
+    bool refused = reply.status == 401 || reply.status == 403;
+    openid_reply_finish(&reply);
+    mem_free(url);
+    return !refused;
+}

@@ -1,0 +1,203 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Codes and refresh tokens are exchanged for what a person may do. */
+#include <stdio.h>
+#include <string.h>
+
+#include "access/openid/openid_http.h"
+#include "access/openid/openid_impl.h"
+#include "base/clock.h"
+#include "base/mem.h"
+#include "base/text.h"
+
+static const char *text_of(const json_t *object, const char *key)
+{
+    return json_string_value(json_object_get(object, key));
+}
+
+static void replace(char **text, const char *by)
+{
+    if (!by)
+        return;
+    if (*text)
+        explicit_bzero(*text, strlen(*text));
+    mem_free(*text);
+    *text = mem_strdup(by);
+}
+
+/* Where the provider lists ways to say who we are, and HTTP Basic, which is usual, is not one of them. */
+static bool secret_in_form(struct openid *openid)
+{
+    pthread_mutex_lock(&openid->lock);
+    const json_t *ways = json_object_get(openid->metadata, "token_endpoint_auth_methods_supported");
+    bool basic = !json_is_array(ways);
+    for (size_t i = 0; i < json_array_size(ways); i++) {
+        const char *way = json_string_value(json_array_get(ways, i));
+        basic |= way && !strcmp(way, "client_secret_basic");
+    }
+    pthread_mutex_unlock(&openid->lock);
+    return !basic;
+}
+
+static bool post(struct openid *openid, const char *endpoint, const struct text *form, struct openid_reply *reply)
+{
+    char *url = openid_endpoint(openid, endpoint);
+    *reply = (struct openid_reply){ .why = "it has no such address" };
+    bool answered = url && openid_post(openid->config, url, form->at, secret_in_form(openid), &openid->stopping, reply);
+    mem_free(url);
+    return answered;
+}
+
+static void keep_tokens(struct person *person, const json_t *json)
+{
+    json_int_t seconds = json_integer_value(json_object_get(json, "expires_in"));
+    replace(&person->refresh_token, text_of(json, "refresh_token"));
+    replace(&person->access_token, text_of(json, "access_token"));
+    person->access_until_s = seconds > 0 ? clock_utc_ns() / NS_PER_S + seconds : 0;
+}
+
+/* --- a code --------------------------------------------------------------------------------------------------------------- */
+
+/* Of claims that are good. NULL: *why (mem_free). */
+static struct person *make_person(struct openid *openid, json_t *claims, const json_t *tokens, char **why)
+{
+    struct token_holder holder = { .signed_in = true, .until_utc_ns = clock_utc_ns() + (int64_t)(openid->config->hours * 3600e9) };
+    openid_complete(openid, claims, text_of(tokens, "access_token"));
+    if (!id_token_name(openid->config, claims, holder.name, sizeof(holder.name))) {
+        *why = mem_strdup("it gives no name that can be shown");
+        return NULL;
+    }
+    holder.role = id_token_role(openid->config, claims);
+    if (holder.role == ROLE_NOBODY) {
+        *why = mem_printf("none of the groups of %s has a role here", holder.name);
+        return NULL;
+    }
+    struct person *person = mem_new(sizeof(*person));
+    person->holder = holder;
+    person->sub = mem_strdup(text_of(claims, "sub"));
+    person->began_utc_ns = clock_utc_ns();
+    keep_tokens(person, tokens);
+    return person;
+}
+
+static struct person *take_tokens(struct openid *openid, const struct openid_job *job, const json_t *tokens, char **why)
+{
+    const char *id_token = text_of(tokens, "id_token"), *fault = "there is none";
+    json_t *claims = id_token ? openid_verify(openid, id_token, job->sign_in.nonce, NULL, &fault) : NULL;
+    struct person *person = claims ? make_person(openid, claims, tokens, why) : NULL;
+    if (!claims)
+        *why = mem_printf("its ID token is not accepted: %s", fault);
+    json_decref(claims);
+    return person;
+}
+
+struct person *openid_redeem(struct openid *openid, const struct openid_job *job, char **why)
+{
+    struct text form = { 0 };
+    struct openid_reply reply;
+    struct person *person = NULL;
+    openid_add_argument(&form, "grant_type", "authorization_code");
+    openid_add_argument(&form, "code", job->code);
+    openid_add_argument(&form, "redirect_uri", openid->config->redirect_uri);
+    openid_add_argument(&form, "code_verifier", job->sign_in.verifier);
+    bool answered = post(openid, "token_endpoint", &form, &reply);
+    const char *error = text_of(reply.json, "error");
+    if (!answered)
+        *why = mem_printf("the provider does not answer: %s", reply.why);
+    else if (reply.status != 200)
+        *why = mem_printf("the provider refuses the code: %.80s (status %d)", error ? error : "it does not say why", reply.status);
+    else
+        person = take_tokens(openid, job, reply.json, why);
+    openid_reply_finish(&reply);
+    text_finish(&form);
+    return person;
+}
+
+/* --- again and again ------------------------------------------------------------------------------------------------------ */
+
+static enum openid_rights take_claims(struct openid *openid, struct person *person, json_t *claims, const char **why)
+{
+    if (!openid_complete(openid, claims, person->access_token)) {
+        *why = "the provider does not tell of this person any more";
+        return RIGHTS_GONE;
+    }
+    if (!id_token_has_groups(openid->config, claims)) {
+        *why = "the provider does not tell groups";
+        return RIGHTS_UNKNOWN;
+    }
+    person->holder.role = id_token_role(openid->config, claims);
+    *why = "none of the groups has a role here any more";
+    return person->holder.role == ROLE_NOBODY ? RIGHTS_GONE : RIGHTS_SAME;
+}
+
+static bool is_refusal(int status)
+{
+    return status == 400 || status == 401 || status == 403;
+}
+
+static enum openid_rights refresh(struct openid *openid, struct person *person, const char **why)
+{
+    struct text form = { 0 };
+    struct openid_reply reply;
+    enum openid_rights rights = RIGHTS_UNKNOWN;
+    openid_add_argument(&form, "grant_type", "refresh_token");
+    openid_add_argument(&form, "refresh_token", person->refresh_token);
+    bool answered = post(openid, "token_endpoint", &form, &reply);
+    *why = "the provider does not answer";
+    if (answered && is_refusal(reply.status)) {
+        rights = RIGHTS_GONE;
+        *why = "the provider ended the log-in";
+    } else if (answered && reply.status == 200) {
+        const char *id_token = text_of(reply.json, "id_token");
+        keep_tokens(person, reply.json);
+        json_t *claims = id_token ? openid_verify(openid, id_token, NULL, person->sub, why) : json_pack("{s:s}", "sub", person->sub);
+        rights = claims ? take_claims(openid, person, claims, why) : RIGHTS_GONE;
+        json_decref(claims);
+    }
+    openid_reply_finish(&reply);
+    text_finish(&form);
+    return rights;
+}
+
+/* Without a refresh token, as long as the access token lasts. */
+static enum openid_rights ask_again(struct openid *openid, struct person *person, const char **why)
+{
+    char *url = openid_endpoint(openid, "userinfo_endpoint");
+    struct openid_reply reply = { .status = 0 };
+    bool over = !person->access_token || (person->access_until_s && clock_utc_ns() / NS_PER_S >= person->access_until_s);
+    enum openid_rights rights = RIGHTS_UNKNOWN;
+    *why = "the provider does not answer";
+    if (over || !url) {
+        rights = RIGHTS_GONE;
+        *why = "the provider gave no refresh token, and its access token is over";
+    } else if (openid_get(openid->config, url, person->access_token, &openid->stopping, &reply) && is_refusal(reply.status)) {
+        rights = RIGHTS_GONE;
+        *why = "the provider ended the log-in";
+    } else if (reply.status == 200 && json_is_object(reply.json)) {
+        const char *sub = text_of(reply.json, "sub");
+        rights = sub && !strcmp(sub, person->sub) ? take_claims(openid, person, reply.json, why) : RIGHTS_GONE;
+    }
+    openid_reply_finish(&reply);
+    mem_free(url);
+    return rights;
+}
+
+enum openid_rights openid_check(struct openid *openid, struct person *person, const char **why)
+{
+    if (clock_utc_ns() >= person->holder.until_utc_ns) {
+        *why = "a log-in lasts no longer here";
+        return RIGHTS_GONE;
+    }
+    return person->refresh_token ? refresh(openid, person, why) : ask_again(openid, person, why);
+}
+
+void openid_revoke(struct openid *openid, const char *token)
+{
+    struct text form = { 0 };
+    struct openid_reply reply;
+    openid_add_argument(&form, "token", token);
+    openid_add_argument(&form, "token_type_hint", "refresh_token");
+    post(openid, "revocation_endpoint", &form, &reply);
+    openid_reply_finish(&reply);
+    explicit_bzero(form.at, form.length);
+    text_finish(&form);
+}

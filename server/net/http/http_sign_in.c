@@ -1,0 +1,151 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Signing in and out by OpenID Connect, and who one is. */
+#include <string.h>
+
+#include "base/clock.h"
+#include "base/json_text.h"
+#include "base/mem.h"
+#include "base/timestamp.h"
+#include "message/names.h"
+#include "net/connection.h"
+#include "net/http/http_impl.h"
+
+enum { COOKIE_S = 600 }; /* as long as a log-in waits */
+
+static const char *arg_of(const struct args *args, const char *name)
+{
+    size_t length = strlen(name);
+    for (size_t i = 0; i < args->count; i++)
+        if (!strncmp(args->list[i], name, length) && args->list[i][length] == '=')
+            return args->list[i] + length + 1;
+    return NULL;
+}
+
+static int answer_redirect(struct request *request, const char *to)
+{
+    return request_answer(request, HTTP_STATUS_SEE_OTHER, HTTP_TEXT, NULL, 0, "location:", to);
+}
+
+/* ending: "" for the session, "-b" for the browser that begins a log-in, whose cookie comes back with the provider's redirection and so is
+   not strict. seconds 0: it is removed. */
+static void set_cookie(const struct openid_config *config, struct request *request, const char *ending, const char *value, int seconds)
+{
+    mem_free(request->set_cookie);
+    request->set_cookie = mem_printf("%s%s=%s; Path=/; Max-Age=%d; HttpOnly; SameSite=%s%s", config->cookie, ending, value, seconds,
+                                     *ending ? "Lax" : "Strict", config->secure ? "; Secure" : "");
+}
+
+static const char NOT_HERE[] = "nobody signs in by OpenID Connect here\n";
+
+int ask_login(struct server_context *server, struct request *request)
+{
+    struct message_error error = { 0 };
+    struct args args;
+    char binding[SIGN_IN_SECRET_CHARS + 1];
+    const char *why;
+    if (!server->openid)
+        return request_answer_text(request, HTTP_STATUS_NOT_FOUND, NOT_HERE);
+    if (!request_args(request->wsi, &args, &error))
+        return request_answer_error(request, &error);
+    const struct openid_config *config = openid_config_of(server->openid);
+    const char *to = arg_of(&args, "to"), *home = strchr(strstr(config->url, "://") + 3, '/');
+    char *url = openid_begin(server->openid, connection_of(request->wsi)->client->address, to && sign_in_path_good(to) ? to : home,
+                             clock_mono_ns(), binding, &why);
+    if (!url)
+        return request_answer_later(request, why);
+    set_cookie(config, request, "-b", binding, COOKIE_S);
+    int result = answer_redirect(request, url);
+    mem_free(url);
+    return result;
+}
+
+/* What answers no log-in is a guess, and counts as a wrong token does. */
+static int refuse_guess(struct server_context *server, struct request *request)
+{
+    const struct connection *connection = connection_of(request->wsi);
+    enum login login = login_throttle_judge(server->login_throttle, connection->client->address, NULL, clock_mono_ns());
+    counter_inc(server->counters.logins_wrong, 1);
+    return request_answer_text(request, login == LOGIN_HELD ? 429 : HTTP_STATUS_FORBIDDEN,
+                               "no log-in of this browser waits for this answer; sign in again from the page\n");
+}
+
+int ask_login_callback(struct server_context *server, struct request *request)
+{
+    struct message_error error = { 0 };
+    struct args args;
+    char binding[64] = "", name[64];
+    size_t size = sizeof(binding);
+    if (!server->openid)
+        return request_answer_text(request, HTTP_STATUS_NOT_FOUND, NOT_HERE);
+    if (!request_args(request->wsi, &args, &error))
+        return request_answer_error(request, &error);
+    snprintf(name, sizeof(name), "%s-b", openid_config_of(server->openid)->cookie);
+    if (lws_http_cookie_get(request->wsi, name, binding, &size) != 0)
+        binding[0] = 0;
+    request_await(server, request);
+    const struct openid_return brought = { .request = request->client,
+                                           .state = arg_of(&args, "state"),
+                                           .code = arg_of(&args, "code"),
+                                           .iss = arg_of(&args, "iss"),
+                                           .error = arg_of(&args, "error"),
+                                           .binding = binding,
+                                           .from = connection_of(request->wsi)->address };
+    if (openid_finish(server->openid, &brought, clock_mono_ns()))
+        return 0;
+    request_forget(server, request);
+    return refuse_guess(server, request);
+}
+
+void http_on_sign_ins(struct server_context *server)
+{
+    struct openid_answer *answer = server->openid ? openid_collect(server->openid) : NULL;
+    if (server->openid && openid_take_changed(server->openid))
+        streams_check_tokens(server, clock_utc_ns());
+    for (struct openid_answer *next; answer; answer = next) {
+        struct request *request = request_find(server, answer->request);
+        next = answer->next;
+        if (request) {
+            request_forget(server, request);
+            if (answer->good)
+                set_cookie(openid_config_of(server->openid), request, "", answer->cookie,
+                           (int)(openid_config_of(server->openid)->hours * 3600));
+            char *text = answer->good ? NULL : mem_printf("you are not signed in: %s\n", answer->why);
+            request_answered(request, answer->good ? answer_redirect(request, answer->path)
+                                                   : request_answer_text(request, HTTP_STATUS_FORBIDDEN, text));
+            mem_free(text);
+        }
+        openid_answer_free(answer);
+    }
+}
+
+int ask_logout(struct server_context *server, struct request *request)
+{
+    char cookie[64];
+    size_t size = sizeof(cookie);
+    if (!request_may_change(server, request))
+        return request_answer_text(request, HTTP_STATUS_FORBIDDEN, "pages of other sites may not do this\n");
+    if (!server->openid)
+        return request_answer_text(request, HTTP_STATUS_NOT_FOUND, NOT_HERE);
+    const struct openid_config *config = openid_config_of(server->openid);
+    bool has_cookie = lws_http_cookie_get(request->wsi, config->cookie, cookie, &size) == 0;
+    char *url = has_cookie ? openid_end(server->openid, cookie, connection_of(request->wsi)->address) : NULL;
+    streams_check_tokens(server, clock_utc_ns());
+    set_cookie(config, request, "", "", 0);
+    int result = request_answer_json(request, json_text(json_pack("{s:s?}", "provider", url), 0));
+    mem_free(url);
+    return result;
+}
+
+int api_me(struct server_context *server, struct request *request)
+{
+    const struct connection *connection = connection_of(request->wsi);
+    const struct token_holder *holder = &connection->holder;
+    char until[TIMESTAMP_BYTES] = "";
+    bool has_end = holder->role != ROLE_NOBODY && holder->until_utc_ns < INT64_MAX;
+    if (has_end)
+        timestamp_print(holder->until_utc_ns / 1000, until);
+    json_t *said = json_pack("{s:s?,s:s,s:b,s:s?,s:s?}", "name", holder->name[0] ? holder->name : NULL, "role",
+                             name_of(names_role, (int)connection->role), "signed_in", holder->signed_in, "until", has_end ? until : NULL,
+                             "sign_in", server->openid ? openid_config_of(server->openid)->label : NULL);
+    return request_answer_json(request, json_text(said, 0));
+}

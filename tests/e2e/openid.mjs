@@ -1,0 +1,355 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// People sign in by OpenID Connect: at a provider that a test leads astray, and at oidc-provider, which others wrote.
+import assert from 'node:assert/strict';
+import { appendFileSync, chmodSync, existsSync, readFileSync, writeFileSync } from 'node:fs';
+import { createServer } from 'node:http';
+import { join } from 'node:path';
+import { after, before, test } from 'node:test';
+import { IdentityProvider } from './support/identity_provider.mjs';
+import { PlainClient } from './support/plain_client.mjs';
+import { freePort } from './support/ports.mjs';
+import { missing, runProgram, TinyPlant } from './support/tiny_plant.mjs';
+
+const absent = missing();
+const skip = absent.length > 0 ? `not built: ${absent.join(', ')}` : false;
+const sleep = (ms) => new Promise((done) => setTimeout(done, ms));
+let plant, provider, token, port;
+
+const path = (name) => join(plant.folder, name);
+// The trail is written beside what it tells of.
+async function recorded(what, where) {
+    for (let i = 0; i < 100; i++, await sleep(50)) {
+        const found = trail().find(where);
+        if (found)
+            return found;
+    }
+    throw new Error(`${what} is not in the trail:\n${readFileSync(path('audit.log'), 'utf8')}`);
+}
+const trail = () => readFileSync(path('audit.log'), 'utf8').trim().split('\n').map((line) => JSON.parse(line));
+
+// A browser's cookies, and nothing else of one.
+class Browser {
+    constructor() { this.jar = new Map(); }
+
+    async get(url, options = {}) {
+        const cookie = [...this.jar].map(([name, value]) => `${name}=${value}`).join('; ');
+        const headers = { ...options.headers, ...(cookie ? { cookie } : {}) };
+        const response = await fetch(url, { redirect: 'manual', ...options, headers });
+        for (const line of response.headers.getSetCookie()) {
+            const [, name, value, rest] = /^([^=]+)=([^;]*)(.*)$/.exec(line);
+            this.last = line;
+            if (/Max-Age=0/.test(rest))
+                this.jar.delete(name);
+            else
+                this.jar.set(name, value);
+        }
+        return response;
+    }
+
+    at(where, options) { return this.get(`http://127.0.0.1:${port}${where}`, options); }
+
+    // Up to the provider's redirection back: its URL.
+    async begin(to = '/') {
+        const response = await this.at(`/login?to=${encodeURIComponent(to)}`);
+        assert.equal(response.status, 303);
+        return provider.login(response.headers.get('location'));
+    }
+
+    async signIn(to) { return this.get(await this.begin(to)); }
+
+    async me() { return (await this.at('/api/v1/me')).json(); }
+
+    stream() {
+        return PlainClient.open(port, { headers: [`Cookie: ${[...this.jar].map(([name, value]) => `${name}=${value}`).join('; ')}`] });
+    }
+}
+
+function writeConfig(more = '', issuer = provider.issuer) {
+    writeFileSync(path('openid.yaml'), `issuer: ${issuer}\nclient_id: plant\nclient_secret_file: secret\nurl: http://127.0.0.1:${port}/\n` +
+        'label: Works\nroles:\n  - { group: operators, role: operator }\n  - { group: lookers, role: viewer }\n' + `check_s: 1\n${more}`);
+}
+
+async function start() {
+    await plant.daemon?.stop();
+    await plant.startDaemon('--port', String(port), '--tokens', path('tokens'), '--openid', path('openid.yaml'), '--audit',
+        path('audit.log'));
+    for (let i = 0; i < 100 && (await fetch(`http://127.0.0.1:${port}/login`, { redirect: 'manual' })).status !== 303; i++)
+        await sleep(50);
+}
+
+before(async () => {
+    if (skip)
+        return;
+    plant = await TinyPlant.create();
+    appendFileSync(plant.file, 'alarms: local\n');
+    writeFileSync(path('tags.csv'), readFileSync(path('tags.csv'), 'utf8').replace('Stale s', 'Stale s,H').replace(/,1$/gm, ',1,90'));
+    assert.equal(plant.prepare().code, 0);
+    writeFileSync(path('secret'), 'geheim +\n');
+    chmodSync(path('secret'), 0o600);
+    token = runProgram('plantcast', ['token', 'add', path('tokens'), '--role', 'engineer', '--name', 'break-glass']).out.trim();
+    provider = new IdentityProvider();
+    await provider.listen();
+    port = await freePort();
+    writeConfig();
+    await start();
+});
+after(async () => {
+    await provider?.close();
+    await plant?.destroy();
+});
+
+test('a person signs in, acts under the name, and signs out', { skip }, async () => {
+    const browser = new Browser();
+    assert.deepEqual(await browser.me(), { name: null, role: 'nobody', signed_in: false, until: null, sign_in: 'Works' });
+    const back = await browser.signIn('/?lang=de#tag=TI-1');
+    assert.equal(back.status, 303, await back.text());
+    assert.equal(back.headers.get('location'), '/?lang=de#tag=TI-1');
+    assert.match(browser.last, /^plantcast-[0-9a-f]{8}=[\w-]{43}; Path=\/; Max-Age=43200; HttpOnly; SameSite=Strict$/);
+    const me = await browser.me();
+    assert.deepEqual([me.name, me.role, me.signed_in], ['kim', 'operator', true]);
+    assert.equal((await browser.at('/api/v1/tags')).status, 200);
+    assert.equal((await browser.at('/api/v1/reload', { method: 'POST' })).status, 403);
+    const client = await browser.stream();
+    assert.equal((await client.hello()).role, 'operator');
+    client.say({ type: 'alarm', seq: 1, action: 'shelve', alarms: [['TI-1', 'H']], for_s: 60, reason: 'r', name: 'somebody else' });
+    await client.text('alarmed');
+    assert.equal((await browser.at('/logout', { method: 'POST', headers: { Origin: 'http://evil.example' } })).status, 403);
+    const out = await (await browser.at('/logout', { method: 'POST' })).json();
+    assert.match(out.provider, new RegExp(`^${provider.issuer}/end\\?client_id=plant&post_logout_redirect_uri=`));
+    assert.equal((await client.until('a close', (c) => c.closed)).code, 1008);
+    assert.equal((await client.text('error')).code, 'token_needed');
+    assert.equal((await browser.me()).role, 'nobody');
+    const login = await recorded('the log-in', (line) => line.event === 'login' && line.how === 'OpenID Connect');
+    assert.deepEqual([login.who, login.role, login.result, login.what], ['kim', 'operator', 'done', 'sub s1']);
+    const shelf = await recorded('the shelf', (line) => line.event === 'alarm');
+    assert.deepEqual([shelf.who, /somebody else/.test(JSON.stringify(shelf))], ['kim', false]);
+    await recorded('the end', (line) => line.event === 'leave' && line.who === 'kim' && line.what === 'signed out');
+    for (let i = 0; i < 100 && !provider.asked.includes('/revoke'); i++)
+        await sleep(50);
+    assert.ok(provider.asked.includes('/revoke'));
+});
+
+test('answers that are not to be believed: each is refused by name, and nobody is in', { skip }, async () => {
+    const now = () => Math.floor(Date.now() / 1000);
+    const cases = [
+        ['alg none', /not signed/, (claims, header) => { header.alg = 'none'; }, () => ''],
+        ['alg none, with a signature', /not signed/, (claims, header) => { header.alg = 'none'; }],
+        ['alg HS256', /not signed/, (claims, header) => { header.alg = 'HS256'; }],
+        ['wrong audience', /another audience/, (claims) => { claims.aud = 'other'; }],
+        ['expired', /time is over/, (claims) => { claims.exp = now() - 120; }],
+        ['from the future', /another time/, (claims) => { claims.iat = now() + 300; }],
+        ['wrong issuer', /another issuer/, (claims) => { claims.iss = 'https://evil.example'; }],
+        ['wrong nonce', /nonce/, (claims) => { claims.nonce = 'other'; }],
+        ['no nonce', /nonce/, (claims) => { delete claims.nonce; }],
+        ['an unknown key', /key that the provider does not have/, (claims, header) => { header.kid = 'other'; }],
+        ['a changed signature', /signature is wrong/, () => {}, () => 'AAAA'],
+        ['no role', /none of the groups of kim has a role/, (claims) => { claims.groups = ['cleaners']; }],
+        ['no groups', /none of the groups/, (claims) => { delete claims.groups; }],
+    ];
+    for (const [name, why, change, sign = null] of cases) {
+        const browser = new Browser();
+        Object.assign(provider, { change, sign });
+        const answer = await browser.signIn();
+        assert.equal(answer.status, 403, name);
+        assert.match(await answer.text(), why, name);
+        assert.equal((await browser.me()).role, 'nobody', name);
+    }
+    Object.assign(provider, { change: () => {}, sign: null });
+    await recorded('a refusal', (line) => line.event === 'login' && line.result === 'refused' && /nonce/.test(line.why));
+});
+
+test('a code, a state or a whole answer once more, another browser, another issuer, a foreign return', { skip }, async () => {
+    const browser = new Browser();
+    const back = await browser.begin();
+    const stranger = await new Browser().get(back);
+    assert.equal(stranger.status, 403, 'another browser');
+    assert.match(await stranger.text(), /no log-in of this browser waits/);
+    assert.equal((await browser.get(back)).status, 303);
+    const replayed = await browser.get(back);
+    assert.equal(replayed.status, 403, 'replayed state');
+    const again = await browser.begin();
+    again.searchParams.set('code', back.searchParams.get('code'));
+    const code = await browser.get(again);
+    assert.equal(code.status, 403, 'replayed code');
+    assert.match(await code.text(), /refuses the code: invalid_grant/);
+    const other = await browser.begin();
+    other.searchParams.set('iss', 'https://evil.example');
+    assert.match(await (await browser.get(other)).text(), /another issuer answers/);
+    const denied = await browser.begin();
+    denied.searchParams.delete('code');
+    denied.searchParams.set('error', 'access_denied');
+    assert.match(await (await browser.get(denied)).text(), /refuses it: access_denied/);
+    for (const to of ['//evil.example', 'https://evil.example', '/\\evil.example', '/\r\nSet-Cookie: a=b'])
+        assert.equal((await new Browser().signIn(to)).headers.get('location'), '/', to);
+});
+
+test('keys that are rotated are fetched, not more often than they may be', { skip }, async () => {
+    provider.rotate();
+    await sleep(10500); // since the last request
+    assert.equal((await new Browser().signIn()).status, 303);
+    const asked = () => provider.asked.filter((url) => url === '/jwks').length, before_ = asked();
+    provider.change = (claims, header) => { header.kid = 'made up'; };
+    for (let i = 0; i < 5; i++)
+        assert.equal((await new Browser().signIn()).status, 403);
+    provider.change = () => {};
+    assert.ok(asked() - before_ <= 1);
+});
+
+test('who loses rights loses the session, and a smaller role counts at once', { skip }, async (t) => {
+    t.after(() => { provider.claims.groups = ['operators']; provider.status = 200; });
+    const browser = new Browser();
+    await browser.signIn();
+    const client = await browser.stream();
+    await client.hello();
+    provider.claims.groups = ['lookers'];
+    for (let i = 0; i < 100 && (await browser.me()).role !== 'viewer'; i++)
+        await sleep(50);
+    assert.equal((await browser.me()).role, 'viewer');
+    await sleep(300);
+    client.say({ type: 'alarm', seq: 1, action: 'shelve', alarms: [['TI-1', 'H']], for_s: 60, reason: 'r' });
+    assert.equal((await client.text('error')).code, 'not_allowed');
+    provider.claims.groups = [];
+    assert.equal((await client.until('a close', (c) => c.closed)).code, 1008);
+    assert.equal((await browser.me()).role, 'nobody');
+    provider.claims.groups = ['operators'];
+    await browser.signIn();
+    const second = await browser.stream();
+    await second.hello();
+    provider.status = 400;
+    assert.equal((await second.until('a close', (c) => c.closed)).code, 1008);
+    provider.status = 200;
+    await recorded('the end', (line) => line.event === 'leave' && /ended the log-in/.test(line.why ?? ''));
+});
+
+test('a provider that is away: who is in stays, nobody new comes, and a token opens', { skip }, async () => {
+    const browser = new Browser();
+    await browser.signIn();
+    const client = await browser.stream();
+    await client.hello();
+    const { port: its } = provider;
+    const waiting = await browser.begin();
+    await provider.close();
+    await plant.daemon.line(/openid: http.*nobody can sign in, and who is signed in stays so/);
+    await sleep(2500);
+    assert.equal(client.closed, null);
+    assert.equal((await browser.me()).role, 'operator');
+    const answer = await browser.get(waiting);
+    assert.equal(answer.status, 403);
+    assert.match(await answer.text(), /does not answer/);
+    const glass = await PlainClient.open(port);
+    assert.equal((await glass.hello({ token })).role, 'engineer');
+    await provider.listen(its);
+    await plant.daemon.line(/openid: .* answers again/);
+    assert.equal((await new Browser().signIn()).status, 303);
+    assert.equal(client.closed, null);
+    client.close();
+    glass.close();
+});
+
+test('without refresh tokens a session ends with its access token; nothing secret is in log or trail', { skip }, async () => {
+    provider.refreshes = false;
+    const browser = new Browser();
+    assert.equal((await browser.signIn()).status, 303);
+    for (let i = 0; i < 100 && (await browser.me()).role !== 'nobody'; i++)
+        await sleep(50);
+    assert.equal((await browser.me()).role, 'nobody', 'there is no UserInfo to ask either');
+    provider.refreshes = true;
+    const said = plant.daemon.said + readFileSync(path('audit.log'), 'utf8');
+    for (const secret of ['geheim', token, ...browser.jar.values(), 'eyJ'])
+        assert.ok(!said.includes(secret), secret);
+    assert.equal(runProgram('plantcast', ['audit', 'verify', path('audit.log')]).code, 0);
+});
+
+test('wrong answers by thousands are slowed, and others sign in meanwhile', { skip }, async () => {
+    let slowed = 0;
+    const guess = async () => {
+        for (let i = 0; i < 200; i++)
+            if ((await fetch(`http://127.0.0.1:${port}/login/callback?state=x&code=y`)).status === 429)
+                slowed++;
+    };
+    const [, , person] = await Promise.all([guess(), guess(), sleep(300).then(() => new Browser().signIn())]);
+    assert.equal(person.status, 303);
+    assert.ok(slowed > 350, String(slowed));
+});
+
+test('a person signs in on the page, sees who it is, and signs out', {
+    skip: skip || (existsSync(process.env.CHROMIUM ?? '/usr/bin/chromium') ? false : 'chromium is not installed'), timeout: 120000,
+}, async () => {
+    const { openPage, shoot, waitForPicture } = await import('./support/browser.mjs');
+    for (const [language, theme] of [['en', 'light'], ['de', 'dark'], ['ko', 'light']]) {
+        const { page, close } = await openPage(`http://127.0.0.1:${port}/?lang=${language}&theme=${theme}#tag=TI-1`,
+            { viewport: { width: 1000, height: 700 } });
+        try {
+            const button = page.locator('#token .sign-in');
+            await button.waitFor({ timeout: 30000 });
+            assert.match(await button.textContent(), /Works/);
+            await shoot(page, `sign-in-${language}-${theme}`);
+            await button.click();
+            await waitForPicture(page);
+            assert.match(page.url(), new RegExp(`lang=${language}.*#.*tag=TI-1`));
+            await page.locator('#account-open').evaluate((element) => element.click());
+            await page.locator('#account .who').waitFor();
+            assert.match(await page.locator('#account .who').textContent(), /^kim /);
+            await shoot(page, `account-${language}-${theme}`);
+            await page.locator('#account-out').click();
+            await page.locator('#token .sign-in').waitFor({ timeout: 30000 });
+        } finally {
+            await close();
+        }
+    }
+});
+
+test('oidc-provider, which others wrote: code flow, refreshing, signing out', { skip, timeout: 120000 }, async (t) => {
+    const { default: Provider } = await import('oidc-provider').catch(() => ({ default: null }));
+    if (!Provider)
+        return t.skip('oidc-provider is not installed');
+    const its = await freePort(), issuer = `http://127.0.0.1:${its}`;
+    let groups = ['operators'], gone = false;
+    const oidc = new Provider(issuer, {
+        clients: [{ client_id: 'plant', client_secret: 'geheim +', redirect_uris: [`http://127.0.0.1:${port}/login/callback`],
+            grant_types: ['authorization_code', 'refresh_token'], post_logout_redirect_uris: [`http://127.0.0.1:${port}/`] }],
+        claims: { openid: ['sub'], profile: ['preferred_username', 'groups'] },
+        scopes: ['openid', 'profile', 'offline_access'],
+        pkce: { required: () => true, methods: ['S256'] },
+        issueRefreshToken: async () => true,
+        features: { revocation: { enabled: true }, userinfo: { enabled: true } },
+        findAccount: async (ctx, id) => gone ? undefined :
+            { accountId: id, claims: async () => ({ sub: id, preferred_username: id, groups }) },
+    });
+    const server = createServer(oidc.callback());
+    await new Promise((done) => server.listen(its, '127.0.0.1', done));
+    writeConfig('', issuer);
+    await start();
+    try {
+        const browser = new Browser();
+        let url = new URL((await browser.at('/login')).headers.get('location'));
+        // Its development pages: log-in, then consent.
+        for (let i = 0; i < 12 && url.port !== String(port); i++) {
+            const page = await browser.get(url);
+            const next = page.headers.get('location');
+            if (next) {
+                url = new URL(next, url);
+                continue;
+            }
+            const html = await page.text(), [, action] = /action="([^"]+)"/.exec(html);
+            const form = new URLSearchParams({ prompt: /name="prompt" value="(\w+)"/.exec(html)[1], login: 'lee', password: 'x' });
+            const answer = await browser.get(new URL(action, url), { method: 'POST', body: form });
+            url = new URL(answer.headers.get('location'), url);
+        }
+        const back = await browser.get(url);
+        assert.equal(back.status, 303, await back.text());
+        const me = await browser.me();
+        assert.deepEqual([me.name, me.role], ['lee', 'operator']);
+        groups = ['lookers'];
+        for (let i = 0; i < 100 && (await browser.me()).role !== 'viewer'; i++)
+            await sleep(50);
+        assert.equal((await browser.me()).role, 'viewer');
+        gone = true;
+        for (let i = 0; i < 100 && (await browser.me()).role !== 'nobody'; i++)
+            await sleep(50);
+        assert.equal((await browser.me()).role, 'nobody');
+    } finally {
+        server.closeAllConnections();
+        server.close();
+    }
+});

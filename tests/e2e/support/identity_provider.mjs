@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// An identity provider (OpenID Connect) on this machine that does what a test says, also what none may do.
+import { createHash, createSign, generateKeyPairSync, randomUUID } from 'node:crypto';
+import { createServer } from 'node:http';
+
+const encode = (value) => Buffer.from(typeof value === 'string' ? value : JSON.stringify(value)).toString('base64url');
+
+export class IdentityProvider {
+    constructor() {
+        this.sub = 's1';
+        this.claims = { preferred_username: 'kim', groups: ['operators'] }; // of whoever logs in
+        this.change = () => {}; // (claims, header): of the next ID tokens
+        this.sign = null;       // (text): another signature
+        this.refreshes = true;  // refresh tokens are given, and taken
+        this.status = 200;      // of refreshing
+        this.codes = new Map();
+        this.asked = [];
+        this.rotate();
+    }
+
+    // From now on another key signs; keep: those before stay published.
+    rotate(keep = false) {
+        const { privateKey, publicKey } = generateKeyPairSync('rsa', { modulusLength: 2048 });
+        this.kid = randomUUID();
+        this.key = privateKey;
+        this.keys = [...(keep ? this.keys : []), { ...publicKey.export({ format: 'jwk' }), kid: this.kid, use: 'sig', alg: 'RS256' }];
+    }
+
+    idToken(nonce) {
+        const now = Math.floor(Date.now() / 1000), header = { alg: 'RS256', kid: this.kid, typ: 'JWT' };
+        const times = { iat: now, exp: now + 300, ...(nonce ? { nonce } : {}) };
+        const claims = { iss: this.issuer, aud: 'plant', sub: this.sub, ...times, ...this.claims };
+        this.change(claims, header);
+        const text = `${encode(header)}.${encode(claims)}`;
+        const signature = this.sign ? this.sign(text) : createSign('RSA-SHA256').update(text).sign(this.key).toString('base64url');
+        return `${text}.${signature}`;
+    }
+
+    // What follows a log-in there: where the browser is sent.
+    login(url) {
+        const { searchParams: asked } = new URL(url), code = randomUUID(), back = new URL(asked.get('redirect_uri'));
+        this.codes.set(code, { challenge: asked.get('code_challenge'), nonce: asked.get('nonce'),
+            method: asked.get('code_challenge_method') });
+        back.searchParams.set('code', code);
+        back.searchParams.set('state', asked.get('state'));
+        return back;
+    }
+
+    token(form, authorization) {
+        if (Buffer.from(authorization?.split(' ')[1] ?? '', 'base64').toString() !== 'plant:geheim%20%2B')
+            return [401, { error: 'invalid_client' }];
+        const tokens = (nonce) => ({ access_token: 'at', token_type: 'Bearer', expires_in: 3600, id_token: this.idToken(nonce),
+            ...(this.refreshes ? { refresh_token: randomUUID() } : {}) });
+        if (form.get('grant_type') === 'refresh_token')
+            return this.status === 200 ? [200, tokens(null)] : [this.status, { error: 'invalid_grant' }];
+        const code = this.codes.get(form.get('code'));
+        const challenge = createHash('sha256').update(form.get('code_verifier') ?? '').digest('base64url');
+        this.codes.delete(form.get('code'));
+        if (!code || code.method !== 'S256' || challenge !== code.challenge)
+            return [400, { error: 'invalid_grant' }];
+        return [200, tokens(code.nonce)];
+    }
+
+    answer(path, form, authorization) {
+        const at = (name) => `${this.issuer}/${name}`;
+        if (path === '/.well-known/openid-configuration')
+            return [200, { issuer: this.issuer, authorization_endpoint: at('auth'), token_endpoint: at('token'), jwks_uri: at('jwks'),
+                end_session_endpoint: at('end'), revocation_endpoint: at('revoke'), ...this.metadata }];
+        if (path === '/jwks')
+            return [200, { keys: this.keys }];
+        if (path === '/token')
+            return this.token(form, authorization);
+        return path === '/revoke' ? [200, {}] : [404, {}];
+    }
+
+    listen(port = 0) {
+        this.server = createServer((request, response) => {
+            let body = '';
+            request.on('data', (chunk) => { body += chunk; });
+            request.on('end', () => {
+                this.asked.push(request.url);
+                const { pathname, searchParams } = new URL(request.url, this.issuer);
+                const login = pathname === '/auth' ? this.login(`${this.issuer}${request.url}`).href : null;
+                const to = login ?? searchParams.get('post_logout_redirect_uri');
+                if (to) {
+                    response.writeHead(302, { Location: to }).end();
+                    return;
+                }
+                const [status, json] = this.answer(request.url, new URLSearchParams(body), request.headers.authorization);
+                response.writeHead(status, { 'Content-Type': 'application/json' }).end(JSON.stringify(json));
+            });
+        });
+        return new Promise((done) => this.server.listen(port, '127.0.0.1', () => {
+            this.port = this.server.address().port;
+            this.issuer = `http://127.0.0.1:${this.port}`;
+            done();
+        }));
+    }
+
+    close() {
+        this.server.closeAllConnections();
+        return new Promise((done) => this.server.close(done));
+    }
+}
