@@ -23,7 +23,7 @@ enum { MAX_FILE_BYTES = 1024 * 1024, RANDOM_BYTES = 32 };
 
 struct tokens {
     struct log *log;
-    char *path;
+    char *path, *plant; /* plant: its name; NULL: not known */
     struct token_holder *holders;
     size_t count, capacity;
     struct file_watch watch;
@@ -59,6 +59,12 @@ bool tokens_name_valid(const char *name)
     return n > 0 && n < TOKEN_NAME_BYTES;
 }
 
+bool tokens_plant_valid(const char *plant)
+{
+    size_t n = strlen(plant);
+    return n > 0 && n < TOKEN_PLANT_BYTES && !strpbrk(plant, "\r\n#") && plant[0] != ' ' && plant[n - 1] != ' ';
+}
+
 bool tokens_parse_day(const char *text, int64_t *until_utc_ns)
 {
     struct tm day = { 0 };
@@ -85,6 +91,25 @@ static bool parse_hash(const char *text, uint8_t hash[TOKEN_HASH_BYTES])
     return true;
 }
 
+/* The last part of a line, which may have blanks. Cuts it off. */
+static bool take_plant(char *line, char plant[TOKEN_PLANT_BYTES])
+{
+    static const char key[] = " plant ";
+    char *at = NULL;
+    size_t n = strlen(line);
+    while (n > 0 && strchr(" \t", line[n - 1]))
+        line[--n] = 0;
+    for (char *next = line; (next = strstr(next, key)); next++)
+        at = next > line + 2 * TOKEN_HASH_BYTES && !at ? next : at; /* behind the hash: somebody may be called so */
+    if (!at)
+        return true;
+    *at = 0;
+    at += strlen(key);
+    at += strspn(at, " ");
+    snprintf(plant, TOKEN_PLANT_BYTES, "%s", at);
+    return tokens_plant_valid(at);
+}
+
 int tokens_parse_line(const char *line, struct token_holder *out, const char **why)
 {
     enum { WORDS = 5 };
@@ -96,6 +121,7 @@ int tokens_parse_line(const char *line, struct token_holder *out, const char **w
         return -1;
     }
     snprintf(copy, strcspn(line, "\r\n#") + 1, "%s", line);
+    bool plant_good = take_plant(copy, out->plant);
     for (char *word; count <= WORDS && (word = strsep(&rest, " \t"));)
         if (*word)
             words[count++] = word;
@@ -105,7 +131,9 @@ int tokens_parse_line(const char *line, struct token_holder *out, const char **w
     if (role < ROLE_VIEWER)
         *why = "the role is viewer, operator or engineer";
     else if (count != 3 && count != WORDS)
-        *why = "ROLE NAME SHA-256 [until YYYY-MM-DD] is expected";
+        *why = "ROLE NAME SHA-256 [until YYYY-MM-DD] [plant PLANT] is expected";
+    else if (!plant_good)
+        *why = "the name of a plant is expected after `plant`";
     else if (!tokens_name_valid(words[1]))
         *why = "a name is made of letters, digits and -_.@";
     else if (!parse_hash(words[2], out->hash))
@@ -132,6 +160,8 @@ void tokens_print_line(struct text *out, const struct token_holder *holder)
         strftime(text, sizeof(text), "%Y-%m-%d", gmtime_r(&last_s, &day));
         text_add(out, " until %s", text);
     }
+    if (holder->plant[0])
+        text_add(out, " plant %s", holder->plant);
     text_add(out, "\n");
 }
 
@@ -201,6 +231,12 @@ struct tokens *tokens_create(struct log *log, const char *path)
     return tokens;
 }
 
+void tokens_set_plant(struct tokens *tokens, const char *plant)
+{
+    mem_free(tokens->plant);
+    tokens->plant = mem_strdup(plant);
+}
+
 void tokens_destroy(struct tokens **tokens_ptr)
 {
     struct tokens *tokens = *tokens_ptr;
@@ -208,6 +244,7 @@ void tokens_destroy(struct tokens **tokens_ptr)
         return;
     mem_free(tokens->holders);
     mem_free(tokens->path);
+    mem_free(tokens->plant);
     mem_free(tokens);
     *tokens_ptr = NULL;
 }
@@ -226,12 +263,18 @@ size_t tokens_count(const struct tokens *tokens)
     return tokens->count;
 }
 
+static bool is_for_us(const struct tokens *tokens, const struct token_holder *holder)
+{
+    return !holder->plant[0] || !tokens->plant || !strcmp(holder->plant, tokens->plant);
+}
+
 /* Whose it is, also where its time is over, if nobody else has it. Takes as long for every hash. */
 static const struct token_holder *find(const struct tokens *tokens, const uint8_t hash[TOKEN_HASH_BYTES], int64_t now_utc_ns)
 {
     const struct token_holder *found = NULL;
     for (size_t i = 0; i < tokens->count; i++)
-        if (CRYPTO_memcmp(tokens->holders[i].hash, hash, TOKEN_HASH_BYTES) == 0 && (!found || now_utc_ns < tokens->holders[i].until_utc_ns))
+        if (CRYPTO_memcmp(tokens->holders[i].hash, hash, TOKEN_HASH_BYTES) == 0 && is_for_us(tokens, &tokens->holders[i]) &&
+            (!found || now_utc_ns < tokens->holders[i].until_utc_ns))
             found = &tokens->holders[i];
     return found;
 }

@@ -1,19 +1,20 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The file of tokens: one per line, `ROLE NAME SHA-256 [until YYYY-MM-DD]`. A token that is not in it is not accepted; nor is any, once the
-   file is gone or others may write it. Thread: one. */
+/* The file of tokens: one per line, `ROLE NAME SHA-256 [until YYYY-MM-DD] [plant PLANT]`. A token that is not in it, or is
+   for another plant, is not accepted; nor is any, once the file is gone or others may write it. Thread: one. */
 #ifndef ACCESS_TOKENS_H
 #define ACCESS_TOKENS_H
 #include "base/log.h"
 #include "base/text.h"
 #include "access/access.h"
 
-enum { TOKEN_HASH_BYTES = 32, TOKEN_NAME_BYTES = 64 };
+enum { TOKEN_HASH_BYTES = 32, TOKEN_NAME_BYTES = 64, TOKEN_PLANT_BYTES = 128 };
 
 struct token_holder {
     enum role role;
     char name[TOKEN_NAME_BYTES];
     uint8_t hash[TOKEN_HASH_BYTES]; /* all 0: no holder */
     int64_t until_utc_ns;           /* INT64_MAX: for ever */
+    char plant[TOKEN_PLANT_BYTES];  /* the name of the only plant that it is for; "": any */
     bool signed_in;                 /* a person, by the identity provider; the hash is that of a cookie */
 };
 
@@ -21,6 +22,8 @@ struct tokens;
 /* Reads the file. Returns NULL if it cannot be read, or if others than its owner may write it; the reason is logged. Lines that are wrong
    are logged and skipped. */
 struct tokens *tokens_create(struct log *log, const char *path);
+/* Says which plant this is: tokens for others are not accepted. The name is copied. */
+void tokens_set_plant(struct tokens *tokens, const char *plant);
 void tokens_destroy(struct tokens **tokens); /* &NULL is fine; leaves NULL */
 /* Reads the file again if it changed and has stopped changing. Returns whether it was read. */
 bool tokens_look(struct tokens *tokens);
@@ -44,6 +47,8 @@ bool tokens_make(char token[TOKEN_MAX_CHARS + 1]);
 void tokens_print_line(struct text *out, const struct token_holder *holder);
 /* Returns whether a holder may have that name. */
 bool tokens_name_valid(const char *name);
+/* Returns whether a token may be for a plant of that name: it stands in a line. */
+bool tokens_plant_valid(const char *plant);
 /* Parses YYYY-MM-DD, the last day (UTC) on which a token is valid. Returns false if it is not a date. */
 bool tokens_parse_day(const char *text, int64_t *until_utc_ns);
 

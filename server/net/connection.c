@@ -177,13 +177,14 @@ const char *connection_who(const struct connection *connection)
     return connection->holder.name[0] ? connection->holder.name : "local";
 }
 
-void connection_record_refusal(const struct server_context *server, struct lws *wsi, const char *path, const char *why)
+void connection_record(const struct server_context *server, struct lws *wsi, const char *event, const char *result, const char *path,
+                       const char *why)
 {
     const struct connection *connection = connection_of(wsi);
     if (connection->role == ROLE_NOBODY)
         return;
-    audit_say(server->params.audit, &(struct audit_entry){ .event = "access",
-                                                           .result = "refused",
+    audit_say(server->params.audit, &(struct audit_entry){ .event = event,
+                                                           .result = result,
                                                            .who = connection_who(connection),
                                                            .role = name_of(names_role, (int)connection->role),
                                                            .from = connection->address,

@@ -28,8 +28,9 @@ struct refusal {
 bool connection_identify(struct server_context *server, struct lws *wsi, struct refusal *refusal);
 /* Returns the name of whoever made the last request, for journals and lists; "local" without one. */
 const char *connection_who(const struct connection *connection);
-/* Records that a request was refused to somebody who is known. */
-void connection_record_refusal(const struct server_context *server, struct lws *wsi, const char *path, const char *why);
+/* Records what a request of somebody who is known was about. result: as in struct audit_entry; why: of a refusal, or NULL. */
+void connection_record(const struct server_context *server, struct lws *wsi, const char *event, const char *result, const char *path,
+                       const char *why);
 /* Logs and counts what became of a token, or of a session that needed none. way: static; holder: of the token; role ROLE_NOBODY: it is
    not in the file. */
 void connection_log_login(struct server_context *server, struct lws *wsi, const char *way, const struct token_holder *holder,

@@ -363,6 +363,8 @@ static bool open_access(struct net *net)
     server->local_only = access_name_is_local(server->params.address) && !access->behind_proxy;
     if (access->tokens_path && !(server->session_context.tokens = server->tokens = tokens_create(server->params.log, access->tokens_path)))
         return false;
+    if (server->tokens)
+        tokens_set_plant(server->tokens, server->params.plant.scene->plant->name);
     const struct openid_params openid = { .log = server->params.log,
                                           .counters = server->params.counters,
                                           .audit = server->params.audit,

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What the loop has of one plant: its sessions' context, its history. */
+#include "access/tokens.h"
 #include "base/mem.h"
 #include "net/net.h"
 #include "net/net_impl.h"
@@ -34,6 +35,8 @@ void net_bind_plant(struct net *net)
     server->snapshot = snapshot_create(plant->tag_count);
     server->changes = mem_array(plant->tag_count, sizeof(*server->changes));
     server->links_up = mem_array(plant->source_count, sizeof(*server->links_up));
+    if (server->tokens)
+        tokens_set_plant(server->tokens, plant->name);
     server->session_context.plant = plant;
     server->session_context.scene = server->params.plant.scene;
     server->session_context.snapshot = server->snapshot;

@@ -66,7 +66,8 @@ test('plantcast token: makes, lists and revokes, and keeps only hashes', { skip 
     assert.ok(!readFileSync(file, 'utf8').includes(first.out.trim().slice(3)));
     assert.equal(token('add', file, '--role', 'viewer', '--name', 'wall').code, 1);
     assert.equal(token('add', file, '--role', 'operator', '--name', 'guest', '--until', '2001-01-01').code, 0);
-    assert.match(token('list', file).out, /^viewer +wall\noperator +guest {2}until [\d-]+T[\d:.]+Z {2}\(its time is over\)\n$/);
+    assert.match(token('list', file).out,
+        /^viewer +wall {2}without end\noperator +guest {2}until [\d-]+T[\d:.]+Z {2}\(its time is over\)\n$/);
     assert.equal(token('revoke', file, 'wall').code, 0);
     assert.equal(token('revoke', file, 'wall').code, 1);
     assert.match(token('list', file).out, /^operator +guest/);
@@ -74,6 +75,18 @@ test('plantcast token: makes, lists and revokes, and keeps only hashes', { skip 
         ['add', file, '--role', 'viewer', '--name', 'a b'],
         ['add', file, '--role', 'viewer', '--name', 'x', '--until', '2026-02-30'], ['revoke', file]])
         assert.equal(token(...wrong).code, 2, wrong.join(' '));
+});
+
+test('a token for one plant is none for another', { skip }, async () => {
+    const file = path('scoped');
+    const ours = token('add', file, '--role', 'viewer', '--name', 'ours', '--plant', 'Two boxes', '--until', '2199-12-31').out.trim();
+    const theirs = token('add', file, '--role', 'viewer', '--name', 'plant', '--plant', 'Other plant').out.trim();
+    assert.match(token('list', file).out, /ours {2}until 2200-01-01T[\d:.]+Z {2}plant Two boxes$/m);
+    assert.match(token('list', file).out, /^viewer +plant {2}without end {2}plant Other plant$/m);
+    await behindProxy('--tokens', file);
+    assert.equal((await ask('/api/v1/tags', { bearer: ours })).status, 200);
+    assert.equal((await ask('/api/v1/tags', { bearer: theirs })).status, 401);
+    assert.equal(token('add', file, '--role', 'viewer', '--name', 'x', '--plant', 'a#b').code, 2);
 });
 
 test('a daemon does not start for others without TLS and tokens, nor with what is not safe', { skip }, () => {

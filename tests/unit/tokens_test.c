@@ -66,6 +66,34 @@ static void write_two(struct fixture *f, mode_t mode)
     text_finish(&text);
 }
 
+static void a_token_may_be_for_one_plant(void **state)
+{
+    struct fixture *f = *state;
+    struct token_holder holder = { .role = ROLE_VIEWER, .name = "plant", .until_utc_ns = INT64_MAX, .plant = "Werk Nord 2" }, read;
+    struct text text = { 0 };
+    const char *why;
+    tokens_hash("pc_nord", holder.hash);
+    tokens_print_line(&text, &holder);
+    assert_int_equal(tokens_parse_line(text.at, &read, &why), 1);
+    assert_string_equal(read.plant, "Werk Nord 2");
+    assert_string_equal(read.name, "plant");
+    add_line(&text, ROLE_VIEWER, "any", "pc_any", INT64_MAX);
+    write_file(f, text.at, 0600);
+    struct tokens *tokens = tokens_create(f->log, f->path);
+    tokens_set_plant(tokens, "Werk Nord 2");
+    assert_true(tokens_find(tokens, "pc_nord", NOW_NS, &read));
+    tokens_set_plant(tokens, "Werk Nord");
+    assert_false(tokens_find(tokens, "pc_nord", NOW_NS, &read));
+    assert_int_equal(tokens_role(tokens, &holder, NOW_NS), ROLE_NOBODY);
+    assert_true(tokens_find(tokens, "pc_any", NOW_NS, &read));
+    text.at[text.length - 1] = 0;
+    char *bad = mem_printf("%s plant ", text.at);
+    assert_int_equal(tokens_parse_line(strstr(bad, "viewer any"), &read, &why), -1);
+    mem_free(bad);
+    tokens_destroy(&tokens);
+    text_finish(&text);
+}
+
 static void holders_are_found_by_their_tokens(void **state)
 {
     struct fixture *f = *state;
@@ -199,7 +227,8 @@ int main(void)
     cmocka_set_message_output(CM_OUTPUT_TAP);
 #define TEST(name) cmocka_unit_test_setup_teardown(name, set_up, tear_down)
     const struct CMUnitTest tests[] = {
-        TEST(holders_are_found_by_their_tokens),         TEST(time_runs_out),
+        TEST(a_token_may_be_for_one_plant),              TEST(time_runs_out),
+        TEST(holders_are_found_by_their_tokens),
         TEST(files_that_others_may_touch_let_in_nobody), TEST(wrong_lines_let_in_nobody_and_leave_the_others),
         TEST(a_changed_file_is_read_and_revokes),        TEST(made_tokens_differ_and_hash_as_others_do),
     };

@@ -97,7 +97,8 @@ static int serve_route(struct server_context *server, struct request *request, s
     enum role role = connection_of(request->wsi)->role;
     if (role < routes[i].least) {
         bool engineer = routes[i].least == ROLE_ENGINEER;
-        connection_record_refusal(server, request->wsi, routes[i].path, engineer ? "it takes the role engineer" : "pictures only");
+        connection_record(server, request->wsi, "access", "refused", routes[i].path,
+                          engineer ? "it takes the role engineer" : "pictures only");
         return refuse(request, role == ROLE_NOBODY ? &NEED_TOKEN : engineer ? &NOT_ENGINEER : &NOT_FOR_YOU);
     }
     if (routes[i].least > ROLE_NOBODY && is_foreign_page(request->wsi))
@@ -110,12 +111,15 @@ static int serve_post(struct server_context *server, struct request *request, co
     enum role role = connection_of(request->wsi)->role;
     request->close = true; /* there may be a body that nobody reads */
     if (role < ROLE_ENGINEER) {
-        connection_record_refusal(server, request->wsi, path, "it takes the role engineer");
+        connection_record(server, request->wsi, "access", "refused", path, "it takes the role engineer");
         return refuse(request, role == ROLE_NOBODY ? &NEED_TOKEN : &NOT_ENGINEER);
     }
     if (is_foreign_page(request->wsi))
         return refuse(request, &FOREIGN);
-    return strcmp(path, RELOAD_PATH) != 0 ? import_post(server, request, path) : ask_reload(server, request);
+    if (!strcmp(path, RELOAD_PATH))
+        return ask_reload(server, request);
+    connection_record(server, request->wsi, "import", "done", path, NULL);
+    return import_post(server, request, path);
 }
 
 static int serve(struct server_context *server, struct request *request, const char *path)
