@@ -55,11 +55,14 @@ static void add_level(struct text *text, const char *name)
         text_add(text, strchr("/+#%", *c) ? "%%%02X" : "%c", (unsigned char)*c);
 }
 
+/* What is refused is said, and does not hold up the rest. Returns false if the connection has ended. */
 static bool publish(struct publisher *publisher, const char *topic, const char *text)
 {
-    bool good = mqtt_client_publish(publisher->client, topic, text);
-    counter_inc(publisher->messages, good);
-    return good;
+    int status = mqtt_client_publish(publisher->client, topic, text);
+    counter_inc(publisher->messages, status == 0);
+    if (status < 0 && status != -ENOTCONN)
+        log_warn(publisher->params.log, "publish: %s: a message of %zu bytes cannot be sent", topic, strlen(text));
+    return status != -ENOTCONN;
 }
 
 static bool publish_reading(struct publisher *publisher, struct topic *topic, const struct reading *reading)

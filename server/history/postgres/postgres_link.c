@@ -142,8 +142,8 @@ struct postgres_link *postgres_link_open(const struct plant_postgres *postgres, 
         return NULL;
     struct postgres_link *link = mem_new(sizeof(*link));
     const char *keys[] = { "dbname", "fallback_application_name", "keepalives_idle", "keepalives_interval", "keepalives_count",
-                           "tcp_user_timeout", login.user ? "user" : NULL, "password", NULL };
-    const char *values[] = { postgres->url, "plantcast", "10", "5", "3", "30000", login.user, login.password, NULL };
+                           "tcp_user_timeout", "client_encoding", login.user ? "user" : NULL, "password", NULL };
+    const char *values[] = { postgres->url, "plantcast", "10", "5", "3", "30000", "UTF8", login.user, login.password, NULL };
     link->stop_fd = stop_fd;
     link->library = PQconnectStartParams(keys, values, 1);
     login_file_forget(&login);

@@ -323,11 +323,18 @@ bool mqtt_client_subscribe(struct mqtt_client *client, char *const *topics, size
     return status == MOSQ_ERR_SUCCESS;
 }
 
-bool mqtt_client_publish(struct mqtt_client *client, const char *topic, const char *text)
+int mqtt_client_publish(struct mqtt_client *client, const char *topic, const char *text)
 {
     static const char OURS[] = "plantcast/";
-    return !strncmp(topic, OURS, strlen(OURS)) &&
-           mosquitto_publish(client->library, NULL, topic, (int)strlen(text), text, 0, true) == MOSQ_ERR_SUCCESS;
+    if (strncmp(topic, OURS, strlen(OURS)) != 0)
+        return -EPERM;
+    switch (mosquitto_publish(client->library, NULL, topic, (int)strlen(text), text, 0, true)) {
+    case MOSQ_ERR_SUCCESS: return 0;
+    case MOSQ_ERR_NO_CONN:
+    case MOSQ_ERR_CONN_LOST:
+    case MOSQ_ERR_ERRNO: return -ENOTCONN;
+    default: return -EINVAL;
+    }
 }
 
 bool mqtt_client_has_sent(const struct mqtt_client *client)

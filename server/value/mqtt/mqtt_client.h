@@ -44,8 +44,8 @@ int mqtt_client_serve(struct mqtt_client *client, int stop_fd, int64_t deadline_
 bool mqtt_client_subscribe(struct mqtt_client *client, char *const *topics, size_t count);
 
 /* Publishes a text that the broker keeps for those who subscribe later; only to topics that begin with plantcast/, where no device listens.
-   Returns false if it cannot be sent: serve says why. */
-bool mqtt_client_publish(struct mqtt_client *client, const char *topic, const char *text);
+   Returns 0; -ENOTCONN if the connection has ended: serve says why; else < 0: it is refused, being too long for the broker, say. */
+int mqtt_client_publish(struct mqtt_client *client, const char *topic, const char *text);
 /* Returns whether all that was published has been handed to the system. */
 bool mqtt_client_has_sent(const struct mqtt_client *client);
 /* Asks a Sparkplug node for its birth certificate: nothing else can be published elsewhere. */
