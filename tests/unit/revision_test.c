@@ -265,5 +265,6 @@ int main(void)
         cmocka_unit_test(one_program_at_a_time),
         cmocka_unit_test(the_plant_file_stays_as_people_wrote_it),
     };
+    cmocka_set_message_output(CM_OUTPUT_TAP);
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -38,8 +38,9 @@ export class AlarmCall {
 export function byEquipment(alarms) {
     const all = new Map();
     for (const alarm of alarms) {
-        const known = all.get(alarm.tag.asset) ?? { asset: alarm.tag.asset, count: 0, worst: alarm };
-        all.set(alarm.tag.asset, { ...known, count: known.count + 1, worst: byGravity(alarm, known.worst) < 0 ? alarm : known.worst });
+        const key = alarm.tag.asset ?? alarm.tag.name; // devices, and tags of no equipment, each for itself
+        const known = all.get(key) ?? { asset: alarm.tag.asset, count: 0, worst: alarm };
+        all.set(key, { ...known, count: known.count + 1, worst: byGravity(alarm, known.worst) < 0 ? alarm : known.worst });
     }
     return [...all.values()].sort((a, b) => byGravity(a.worst, b.worst) || b.count - a.count);
 }

@@ -32,7 +32,7 @@ function pageIn({ wall, theme, body }, kind) {
 
 function ViewsPane(pane, context) {
     const { session, call, title, element } = context, inner = pageIn(context, 'view');
-    let at = 0, changedAt = null, shown = null, held = false;
+    let at = 0, changedAt = null, shown = null, shownIn = null, held = false;
     title.addEventListener('click', () => {
         held = !held;
         element.toggleAttribute('data-held', held);
@@ -67,11 +67,12 @@ function ViewsPane(pane, context) {
             at = (at + 1) % pane.items.length;
             shown = null;
         }
-        const wanted = alarm ? `${alarm.tag.name}/${alarm.kind}` : `view ${at} ${held} ${page.session.views.length}`;
+        const text = page.session.views.find((view) => view.id === pane.items[at])?.view; // it may be saved anew
+        const wanted = alarm ? `${alarm.tag.name}/${alarm.kind}` : `view ${at} ${held} ${text}`;
         element.classList.toggle('called', Boolean(alarm));
-        if (wanted === shown)
+        if (wanted === shown && page === shownIn)
             return;
-        shown = wanted;
+        [shown, shownIn] = [wanted, page];
         changedAt = now;
         if (alarm)
             showAlarm(page, alarm);
@@ -84,13 +85,13 @@ function ViewsPane(pane, context) {
 
 function TrendPane(pane, context) {
     const inner = pageIn(context, 'trend');
-    let begun = false;
+    let begun = null; // in which page: a frame may be loaded anew
     setText(context.title, pane.title ?? pane.items.join(', '));
     return { tick() {
         const { page } = inner;
-        if (begun || !page?.session.model)
+        if (begun === page || !page?.session.model)
             return;
-        begun = true;
+        begun = page;
         const tags = pane.items.map((name) => page.session.model.tag(name)).filter(Boolean);
         page.modules.use('trends', (trends) => trends.compare(tags, pane.hours * 3600));
     } };
