@@ -40,18 +40,13 @@ static size_t other_bytes(struct thread_memory *memory, size_t all, size_t count
     struct memory_use use;
     int64_t now_ns = clock_mono_ns();
     memory_measure(&use);
-    bool loose = use.anonymous > use.allocated + FREE_BYTES;
-    if (loose && use.anonymous > all - all / 8 && now_ns - memory->trimmed_ns > TRIM_NS) {
+    if (use.anonymous > all - all / 8 && use.anonymous > use.allocated + FREE_BYTES && now_ns - memory->trimmed_ns > TRIM_NS) {
         memory_trim();
         memory_measure(&use);
         memory->trimmed_ns = now_ns;
-        loose = false;
     }
     size_t other = use.anonymous > counted ? use.anonymous - counted : 0;
-    if (other < memory->other)
-        memory->other -= (memory->other - other) / FADES;
-    else if (!loose) /* else some of it is what was just dropped from a cache */
-        memory->other = other;
+    memory->other = other > memory->other ? other : memory->other - (memory->other - other) / FADES;
     return memory->other > OTHER_BYTES ? memory->other : OTHER_BYTES;
 }
 
