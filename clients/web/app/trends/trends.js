@@ -13,8 +13,9 @@ const DASHES = [[], [8, 4], [2, 3], [10, 3, 2, 3], [5, 5], [1, 4]];
 const MOST = DASHES.length, FRESH_MS = 5000, AXIS_PX = 58;
 const EXPAND = 2; // uPlot's: nulls
 const LIMIT_PX = 15;
-const LEGEND_PX = 22; // below the chart, in #trend-chart
-const highPx = () => Math.max(80, byId('trend-chart').clientHeight - LEGEND_PX);
+const isPane = () => document.body.classList.contains('pane-trend'); // of a wall's display: there all the room is the chart's
+const highPx = () => (isPane() ? Math.max(80, byId('trend-chart').clientHeight)
+    : Math.round(Math.max(120, Math.min(210, 0.2 * innerHeight)))); // as #trend-chart has it
 
 // Loaded when the first trend is asked for.
 let library;
