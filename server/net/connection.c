@@ -181,7 +181,7 @@ void connection_record(const struct server_context *server, struct lws *wsi, con
                        const char *why)
 {
     const struct connection *connection = connection_of(wsi);
-    if (connection->role == ROLE_NOBODY)
+    if (connection->role <= ROLE_OPEN)
         return;
     audit_say(server->params.audit, &(struct audit_entry){ .event = event,
                                                            .result = result,

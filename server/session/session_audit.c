@@ -78,7 +78,8 @@ void session_record_view(const struct session *session, const struct message *me
 
 void session_record_leave(const struct session *session, const char *why)
 {
-    record(session, "leave", "done", NULL, why);
+    if (session->identity.role > ROLE_OPEN) /* who has no name is not told of */
+        record(session, "leave", "done", NULL, why);
 }
 
 void session_record_save(const struct session *session, size_t moved)
@@ -106,6 +107,6 @@ void session_record_params(const struct session *session, const struct message *
 
 void session_record_refusal(const struct session *session, const struct message_error *error)
 {
-    if (!strcmp(error->code, "not_allowed"))
+    if (session->identity.role > ROLE_OPEN && !strcmp(error->code, "not_allowed"))
         record(session, "access", "refused", NULL, error->text);
 }

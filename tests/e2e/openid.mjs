@@ -213,6 +213,12 @@ test('who loses rights loses the session, and a smaller role counts at once', { 
     assert.equal((await browser.me()).role, 'nobody');
     provider.claims.groups = ['operators'];
     await browser.signIn();
+    const none = await browser.stream();
+    await none.hello();
+    delete provider.claims.groups; // as some providers say that there is none
+    assert.equal((await none.until('a close', (c) => c.closed)).code, 1008);
+    provider.claims.groups = ['operators'];
+    await browser.signIn();
     const second = await browser.stream();
     await second.hello();
     provider.status = 400;

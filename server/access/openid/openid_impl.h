@@ -46,8 +46,9 @@ void openid_say(struct openid *openid, const char *why);
 char *openid_endpoint(struct openid *openid, const char *name);
 /* Verifies an ID token, with new keys if need be. Returns its claims (json_decref); NULL with *why (static). */
 json_t *openid_verify(struct openid *openid, const char *token, const char *nonce, const char *sub, const char **why);
-/* Adds what the provider tells about a person (UserInfo) to the claims, where they lack groups or name. Returns false if it refuses. */
-bool openid_complete(struct openid *openid, json_t *claims, const char *access_token);
+/* Adds what the provider tells about a person (UserInfo) to the claims, where they lack groups or name. Returns false if it refuses. *told:
+   whether the claims are all that it tells; else groups may be missing because it was not asked, or did not answer. */
+bool openid_complete(struct openid *openid, json_t *claims, const char *access_token, bool *told);
 
 /* --- openid_tokens.c; thread: its own --- */
 

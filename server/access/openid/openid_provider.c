@@ -111,15 +111,18 @@ json_t *openid_verify(struct openid *openid, const char *token, const char *nonc
     return claims;
 }
 
-bool openid_complete(struct openid *openid, json_t *claims, const char *access_token)
+bool openid_complete(struct openid *openid, json_t *claims, const char *access_token, bool *told)
 {
     char *url = openid_endpoint(openid, "userinfo_endpoint"), name[TOKEN_NAME_BYTES];
     struct openid_reply reply = { .status = 200 };
     bool lacks = !id_token_has_groups(openid->config, claims) || !json_object_get(claims, openid->config->name_claim) ||
                  !id_token_name(openid->config, claims, name, sizeof(name));
-    if (url && access_token && lacks && openid_get(openid->config, url, access_token, &openid->stopping, &reply) && reply.status == 200) {
+    bool asks = url && access_token && lacks;
+    *told = !asks && json_object_get(claims, "iss"); /* by an ID token */
+    if (asks && openid_get(openid->config, url, access_token, &openid->stopping, &reply) && reply.status == 200) {
         const char *sub = json_string_value(json_object_get(claims, "sub")), *its = json_string_value(json_object_get(reply.json, "sub"));
-        if (sub && its && !strcmp(sub, its))
+        *told = sub && its && !strcmp(sub, its);
+        if (*told)
             json_object_update_missing(claims, reply.json);
     }
     bool refused = reply.status == 401 || reply.status == 403;

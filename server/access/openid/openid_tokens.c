@@ -61,7 +61,8 @@ static void keep_tokens(struct person *person, const json_t *json)
 static struct person *make_person(struct openid *openid, json_t *claims, const json_t *tokens, char **why)
 {
     struct token_holder holder = { .signed_in = true, .until_utc_ns = clock_utc_ns() + (int64_t)(openid->config->hours * 3600e9) };
-    openid_complete(openid, claims, text_of(tokens, "access_token"));
+    bool told;
+    openid_complete(openid, claims, text_of(tokens, "access_token"), &told);
     if (!id_token_name(openid->config, claims, holder.name, sizeof(holder.name))) {
         *why = mem_strdup("it gives no name that can be shown");
         return NULL;
@@ -116,11 +117,12 @@ struct person *openid_redeem(struct openid *openid, const struct openid_job *job
 
 static enum openid_rights take_claims(struct openid *openid, struct person *person, json_t *claims, const char **why)
 {
-    if (!openid_complete(openid, claims, person->access_token)) {
+    bool told;
+    if (!openid_complete(openid, claims, person->access_token, &told)) {
         *why = "the provider does not tell of this person any more";
         return RIGHTS_GONE;
     }
-    if (!id_token_has_groups(openid->config, claims)) {
+    if (!told && !id_token_has_groups(openid->config, claims)) {
         *why = "the provider does not tell groups";
         return RIGHTS_UNKNOWN;
     }
@@ -142,8 +144,11 @@ static enum openid_rights refresh(struct openid *openid, struct person *person, 
     openid_add_argument(&form, "grant_type", "refresh_token");
     openid_add_argument(&form, "refresh_token", person->refresh_token);
     bool answered = post(openid, "token_endpoint", &form, &reply);
+    const char *error = text_of(reply.json, "error");
     *why = "the provider does not answer";
-    if (answered && is_refusal(reply.status)) {
+    if (answered && is_refusal(reply.status) && error && strcmp(error, "invalid_grant") != 0) {
+        *why = "the provider refuses to be asked"; /* us, and not this person: a secret may be over */
+    } else if (answered && is_refusal(reply.status)) {
         rights = RIGHTS_GONE;
         *why = "the provider ended the log-in";
     } else if (answered && reply.status == 200) {
