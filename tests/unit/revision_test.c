@@ -254,6 +254,41 @@ static void the_plant_file_stays_as_people_wrote_it(void **state)
     mem_free(edits[0].tag);
 }
 
+static void an_asset_goes_with_all_its_keys(void **state)
+{
+    static const char text[] = "assets:\n"
+                               "  - id: P-1\n"
+                               "    model: m.glb\n"
+                               "\n"
+                               "  - id: gone\n"
+                               "    model: m.glb\n"
+                               "\n"
+                               "# its tag\n"
+                               "    tag: G\n"
+                               "\n"
+                               "  # the vessel\n"
+                               "  - id: V-1\n"
+                               "    model: m.glb\n"
+                               "  - { id: gone too,\n"
+                               "\n"
+                               "      model: m.glb\n"
+                               "    }\n"
+                               "tags: tags.csv\n";
+    const struct asset_edit edits[] = { { 0 }, { .removed = true }, { 0 }, { .removed = true } };
+    char why[ASSET_EDIT_WHY_BYTES], *out = asset_edit_apply(text, edits, 4, NULL, why);
+    (void)state;
+    assert_string_equal(out, "assets:\n"
+                             "  - id: P-1\n"
+                             "    model: m.glb\n"
+                             "\n"
+                             "\n"
+                             "  # the vessel\n"
+                             "  - id: V-1\n"
+                             "    model: m.glb\n"
+                             "tags: tags.csv\n");
+    mem_free(out);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -264,6 +299,7 @@ int main(void)
         cmocka_unit_test(out_of_disk_at_any_step_it_is_all_or_nothing),
         cmocka_unit_test(one_program_at_a_time),
         cmocka_unit_test(the_plant_file_stays_as_people_wrote_it),
+        cmocka_unit_test(an_asset_goes_with_all_its_keys),
     };
     cmocka_set_message_output(CM_OUTPUT_TAP);
     return cmocka_run_group_tests(tests, NULL, NULL);

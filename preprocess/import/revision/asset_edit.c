@@ -77,19 +77,23 @@ static size_t line_end(const char *text, size_t at)
     return at + (text[at] == '\n');
 }
 
-/* The line of an item of a block list, and those below it that are indented deeper. */
+/* The line of an item of a block list, those below it that are indented deeper, and all others until its end: blank lines and comments may
+ * stand between its keys. */
 static bool remove_item(struct editor *editor, const yaml_node_t *item)
 {
     const char *text = editor->text;
     size_t begin = line_begin(text, byte_at(editor, item->start_mark)), indent = strspn(text + begin, " "),
-           end = line_end(text, begin);
+           end = line_end(text, begin), limit = byte_at(editor, item->end_mark);
     if (text[begin + indent] != '-')
         return fail(editor, "its lists of assets and nodes have to be one item a line");
-    for (;;) {
-        size_t spaces = strspn(text + end, " ");
-        if (spaces <= indent || !text[end + spaces] || text[end + spaces] == '\n')
+    for (size_t line = end; text[line]; line = line_end(text, line)) {
+        size_t spaces = strspn(text + line, " ");
+        char first = text[line + spaces];
+        bool inside = line + spaces < limit, blank = !first || first == '\n' || first == '\r';
+        if (!blank && ((inside && first != '#') || (spaces > indent && line == end)))
+            end = line_end(text, line);
+        else if (!inside)
             break;
-        end = line_end(text, end);
     }
     splice(editor, begin, end, mem_strdup(""));
     return true;
