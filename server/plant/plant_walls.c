@@ -62,6 +62,80 @@ static bool grid_has(const struct wall_display *display, const char *area)
     return false;
 }
 
+static int word_count(const char *row)
+{
+    int count = 0;
+    for (const char *at = row + strspn(row, " "); *at; at += strspn(at, " ")) {
+        at += strcspn(at, " ");
+        count++;
+    }
+    return count;
+}
+
+/* The word at a column of a row, which has it. */
+static const char *word_at(const char *row, int column, size_t *length)
+{
+    const char *at = row + strspn(row, " ");
+    for (int i = 0; i < column; i++) {
+        at += strcspn(at, " ");
+        at += strspn(at, " ");
+    }
+    *length = strcspn(at, " ");
+    return at;
+}
+
+static bool same_word(const struct wall_display *display, size_t row, int column, const char *word, size_t length)
+{
+    size_t other_length;
+    const char *other = word_at(display->rows[row], column, &other_length);
+    return other_length == length && !strncmp(other, word, length);
+}
+
+static bool is_rectangle(const struct wall_display *display, int columns, const char *word, size_t length)
+{
+    size_t top = display->row_count, bottom = 0, count = 0;
+    int left = columns, right = 0;
+    for (size_t row = 0; row < display->row_count; row++)
+        for (int column = 0; column < columns; column++) {
+            if (!same_word(display, row, column, word, length))
+                continue;
+            top = row < top ? row : top;
+            bottom = row;
+            left = column < left ? column : left;
+            right = column > right ? column : right;
+            count++;
+        }
+    return count == (bottom - top + 1) * (size_t)(right - left + 1);
+}
+
+static bool is_first(const struct wall_display *display, size_t row, int column, int columns)
+{
+    size_t length;
+    const char *word = word_at(display->rows[row], column, &length);
+    for (size_t place = 0; place < row * (size_t)columns + (size_t)column; place++)
+        if (same_word(display, place / (size_t)columns, (int)(place % (size_t)columns), word, length))
+            return false;
+    return !(length == 1 && *word == '.');
+}
+
+static void check_grid(struct yaml_reader *reader, struct place place, const struct wall_display *display)
+{
+    int columns = display->row_count ? word_count(display->rows[0]) : 0;
+    for (size_t i = 0; i < display->row_count; i++)
+        if (word_count(display->rows[i]) != columns || columns == 0) {
+            yaml_error(reader, place, "grid: expected as many areas in each row, found %d in the first and %d in '%.60s'", columns,
+                       word_count(display->rows[i]), display->rows[i]);
+            return;
+        }
+    for (size_t row = 0; row < display->row_count; row++)
+        for (int column = 0; column < columns; column++) {
+            size_t length;
+            const char *word = word_at(display->rows[row], column, &length);
+            if (is_first(display, row, column, columns) && !is_rectangle(display, columns, word, length))
+                yaml_error(reader, place, "grid: '%.*s' is not one rectangle", (int)length, word);
+        }
+}
+
 static void read_pane(struct yaml_reader *reader, yaml_node_t *node, struct wall_display *display, struct wall_pane *pane)
 {
     static const struct choice yes[] = { { "no", 0 }, { "yes", 1 }, { 0 } };
@@ -116,6 +190,8 @@ static void read_grid(struct yaml_reader *reader, yaml_node_t *node, void *recor
         else
             display->rows[display->row_count++] = mem_strdup(text);
     }
+    if ((int)display->row_count == count)
+        check_grid(reader, yaml_place(node), display);
 }
 
 static void read_panes(struct yaml_reader *reader, yaml_node_t *node, void *record)

@@ -69,6 +69,16 @@ static void what_is_wrong_is_said_at_its_place(void **state)
           { "plant.yaml", 13, 7, "wall 'r' is there twice" });
 }
 
+static void a_grid_is_made_of_rectangles(void **state)
+{
+    struct plant_case *c = *state;
+    load(c, "walls:\n- id: r\n  displays:\n  - { grid: [a a b, a c], panes: [] }\n  - { grid: [a a, a b], panes: [] }\n"
+            "  - { grid: [a b a], panes: [] }\n  - { grid: [\" \"], panes: [] }\n  - { grid: [. a a, b a a, b . .], panes: [] }");
+    FOUND(c, { "plant.yaml", 9, 13, "grid: expected as many areas in each row, found 3 in the first and 2 in 'a c'" },
+          { "plant.yaml", 10, 13, "grid: 'a' is not one rectangle" }, { "plant.yaml", 11, 13, "grid: 'a' is not one rectangle" },
+          { "plant.yaml", 12, 13, "grid: expected as many areas in each row, found 0" });
+}
+
 static void what_panes_name_must_be_there(void **state)
 {
     struct plant_case *c = *state;
@@ -84,6 +94,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup_teardown(all_keys_are_read, plant_case_set_up, plant_case_tear_down),
         cmocka_unit_test_setup_teardown(what_is_wrong_is_said_at_its_place, plant_case_set_up, plant_case_tear_down),
+        cmocka_unit_test_setup_teardown(a_grid_is_made_of_rectangles, plant_case_set_up, plant_case_tear_down),
         cmocka_unit_test_setup_teardown(what_panes_name_must_be_there, plant_case_set_up, plant_case_tear_down),
     };
     cmocka_set_message_output(CM_OUTPUT_TAP);
