@@ -14,11 +14,11 @@ export const textOf = (session, tag = null) => {
 
 // { camera, params, tag } that bring a session to that view, whatever it shows. One without a camera is seen from home.
 export function viewOf(session, text) {
-    const { camera, params, tag } = readAddress(text), { model, role } = session;
-    const plain = { range: null, ramp_interval: 0, breaks: null, isolines: null, split: null, selected: null, clip: null,
-        strength: 1, decay: 1, sensors: null, ...model.start };
+    const { camera, params, tag } = readAddress(text), group = session.model.group(params.group) ?? session.group;
+    const plain = { ...session.ownOf(group), range: null, ramp_interval: 0, breaks: group.breaks?.length ? 'group' : null,
+        split: null, selected: null, clip: null, sensors: null };
     const all = { ...plain, ...params };
-    if (role !== 'engineer')
+    if (session.role !== 'engineer')
         ENGINEERS.forEach((name) => delete all[name]);
     const { width, height, pixel_ratio: ratio = 1 } = session.size;
     return { camera: camera ?? session.homeIn(width / ratio, height / ratio), params: all, tag };

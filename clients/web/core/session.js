@@ -170,8 +170,12 @@ export class Session {
 
     // What need not be said of the parameters: a group has it by itself, or the plant begins with it.
     get ownParams() {
-        const { group, model } = this;
-        return { ...model?.start, ...(group ? { ...pick(group, GROUPS_OWN), range: [group.min, group.max], strength: 1, decay: 1 } : {}) };
+        return this.ownOf(this.group);
+    }
+
+    // Likewise where another group is shown.
+    ownOf(group) {
+        return { ...this.model?.start, ...(group ? { ...pick(group, GROUPS_OWN), range: [group.min, group.max], strength: 1, decay: 1 } : {}) };
     }
 
     // The parameters to ask for again: not those that only are the group's own, which may have been changed there since.
@@ -389,6 +393,7 @@ const HANDLERS = {
         const before = this.model;
         this.model = new Model(message);
         this.markers.clear(); // also where the plant was loaded anew
+        this.views = []; // they are said again, if there are any
         this.welcomed = true;
         this.id = message.session;
         this.following = this.skew = this.lent = null;

@@ -24,6 +24,9 @@ tolerance: der Wert liegt außerhalb der Toleranz
 reading: der Messwert ist nicht gut
 failed: als durchgefallen gemeldet
 disk: es konnte auf dem Server nicht gespeichert werden
+fixed: diese Ansicht steht in der Anlagendatei und wird dort geändert
+viewless: jemand hat diese Ansicht entfernt
+views: mehr Ansichten können es nicht sein; bitte erst eine entfernen
 computed: {tag} wird aus anderen Messstellen berechnet; diese sind zu prüfen
 far: {tag}: diese Stelle liegt zu weit von {asset} weg
 groupless: {tag} gehört zu keiner Gruppe; die Messstellenliste muss eine nennen

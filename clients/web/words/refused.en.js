@@ -24,6 +24,9 @@ tolerance: the value is beyond the tolerance
 reading: the reading is not good
 failed: said to have failed
 disk: it could not be kept on the server’s disk
+fixed: this view is in the plant file, and is changed there
+viewless: somebody has removed this view
+views: there are as many views as there may be: remove one first
 computed: {tag} is computed from other tags: prove those
 far: {tag}: that place is too far from {asset}
 groupless: {tag} belongs to no group: the tag list has to name one

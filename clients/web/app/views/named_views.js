@@ -3,6 +3,7 @@
 import { ask } from '../../core/history.js';
 import { idFor, pictureQuery, textOf, viewOf } from '../../core/named_views.js';
 import { zoneClock } from '../../core/format.js';
+import { refusalText } from '../../core/refusals.js';
 import { say } from '../../core/words.js';
 import { byId, make, setText } from '../common/dom.js';
 
@@ -20,7 +21,7 @@ export class NamedViews {
         byId('views').prepend(this.element);
         session.on('views', () => this.show());
         session.on('welcome', () => this.show());
-        session.on('view_saved', ({ kept, why }) => (kept ? this.onKept() : tell(why)));
+        session.on('view_saved', ({ kept, why }) => (kept ? this.onKept() : tell(refusalText(why))));
         this.show();
     }
 

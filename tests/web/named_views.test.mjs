@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Views with names: what a session is brought to, whatever it shows, and ids for titles.
+import assert from 'node:assert/strict';
+import { test } from 'node:test';
+import { idFor, viewOf } from '../../clients/web/core/named_views.js';
+import { makeSession, vector } from './fixtures.mjs';
+
+const welcome = vector('server/welcome.json');
+function greeted(role) {
+    const { connection, session, sockets } = makeSession();
+    connection.start();
+    sockets[0].accept();
+    sockets[0].say({ ...welcome, role });
+    return { session, say: (message) => sockets[0].say(message) };
+}
+
+test('what is left out is what the group, or the plant, has by itself', () => {
+    const { session: one } = greeted('engineer'), [group, other] = one.model.groups;
+    one.setParams({ clip: { planes: [[0, 0, 1, 0]] }, strength: 2, hidden: ['x'], group: other.id });
+    const { params, camera } = viewOf(one, `group=${group.id}&look=flat`);
+    assert.equal(params.look, 'flat');
+    assert.deepEqual([params.clip, params.split, params.selected, params.range, params.sensors], [null, null, null, null, null]);
+    assert.equal(params.strength, 1);
+    assert.deepEqual(params.hidden, one.model.start.hidden);
+    assert.deepEqual(params.isolines, group.isolines);
+    assert.equal(params.interpolation, group.interpolation);
+    assert.ok(camera.eye.every(Number.isFinite), 'without a camera it is seen from home');
+});
+
+test('who may not change the field is not made to ask for it', () => {
+    const { params } = viewOf(greeted('viewer').session, 'strength=2&power=3');
+    assert.deepEqual([params.strength, params.power, params.sensors], [undefined, undefined, undefined]);
+});
+
+test('a plant that is loaded anew may have none any more', () => {
+    const { session, say } = greeted('viewer');
+    say(vector('server/views.json'));
+    assert.ok(session.views.length > 0);
+    say(welcome);
+    assert.deepEqual(session.views, []);
+});
+
+test('an id is plain, short, and no other view has it', () => {
+    assert.equal(idFor('Kessel 2, Süd', []), 'kessel-2-sud');
+    assert.equal(idFor('보일러', []), 'view');
+    assert.equal(idFor('A', [{ id: 'a' }, { id: 'a-2' }]), 'a-3');
+    assert.ok(idFor('x'.repeat(99), []).length <= 48);
+});
