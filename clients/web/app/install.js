@@ -7,10 +7,10 @@ const fetched = (options) => fetch('made/version.js', options).then((answer) => 
 const ours = fetched({}).then(versionIn); // undefined: built without
 
 // Asked with each greeting, and with each part that is loaded later: the server may be another one meanwhile. True: the page goes, once
-// for each version, whatever comes back.
-export async function renewIfOld() {
+// for each version, whatever comes back. key: under which that is kept, of a page that holds others.
+export async function renewIfOld(key = 'renewed') {
     const mine = await ours, version = versionIn(await fetched({ cache: 'no-store' }));
-    if (!mine || !version || version === mine || stored('renewed') === version || !store('renewed', version))
+    if (!mine || !version || version === mine || stored(key) === version || !store(key, version))
         return false;
     location.reload();
     return true;

@@ -175,7 +175,8 @@ export class Session {
 
     // Likewise where another group is shown.
     ownOf(group) {
-        return { ...this.model?.start, ...(group ? { ...pick(group, GROUPS_OWN), range: [group.min, group.max], strength: 1, decay: 1 } : {}) };
+        const own = group ? { ...pick(group, GROUPS_OWN), range: [group.min, group.max], strength: 1, decay: 1 } : {};
+        return { ...this.model?.start, ...own };
     }
 
     // The parameters to ask for again: not those that only are the group's own, which may have been changed there since.

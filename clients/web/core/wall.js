@@ -19,17 +19,18 @@ export function readWall(search) {
 
 // How much larger than on a desk: screen in CSS pixels, which its diagonal holds.
 export function wallScale({ inches, metres }, screen) {
-    const millimetresPerPx = (inches * 25.4) / Math.hypot(screen.width, screen.height);
     const needed = metres * 1000 * Math.tan((MINUTES / 60) * (Math.PI / 180));
-    return Math.max(1, needed / (CAPITAL * SMALLEST_PX * millimetresPerPx));
+    return Math.max(1, needed / (CAPITAL * SMALLEST_PX * millimetresPerPx(inches, screen)));
 }
+
+export const millimetresPerPx = (inches, { width, height }) => (inches * 25.4) / Math.hypot(width, height);
 
 // The least that everything fits into, in units of a desk's pixels: name, alarms, picture, legend, clock and age.
 export const LEAST = { width: 440, height: 250 };
 
 // { scale, metres }: as large as is needed, or as all of it fits into the window; read from so far.
-export function wallFit(wall, screen, { width, height }) {
-    const needed = wallScale(wall, screen), scale = Math.max(0.5, Math.min(needed, width / LEAST.width, height / LEAST.height));
+export function wallFit(wall, screen, { width, height }, least = LEAST) {
+    const needed = wallScale(wall, screen), scale = Math.max(0.5, Math.min(needed, width / least.width, height / least.height));
     return { scale, metres: scale < needed ? (wall.metres * scale) / needed : wall.metres };
 }
 

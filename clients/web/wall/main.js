@@ -6,17 +6,18 @@ import { zoneClock } from '../core/format.js';
 import { health } from '../core/health.js';
 import { ask } from '../core/history.js';
 import { Session } from '../core/session.js';
-import { wallFit } from '../core/wall.js';
+import { millimetresPerPx, wallFit } from '../core/wall.js';
 import { language, learnWords, say } from '../core/words.js';
-import { clock, watchSleep } from '../app/common/clock.js';
+import { clock, keepScreenOn, watchSleep } from '../app/common/clock.js';
 import { byId, make, setText, setVariable } from '../app/common/dom.js';
 import { store, stored } from '../app/common/storage.js';
 import { chooseTheme } from '../app/common/theme.js';
-import { paneOf } from './panes.js';
+import { renewIfOld } from '../app/install.js';
+import { areaOf, paneOf } from './panes.js';
 
 const TICK_MS = 250, LOST_MS = 3000, SHIFT_MS = 180000;
 const SHIFTS = [[0, 0], [2, 1], [3, -1], [1, -3], [-1, -2], [-3, 0], [-2, 2], [0, 3]]; // pixels, in turn: nothing burns in
-const LEAST_UNITS = { width: 560, height: 315 }, LETTERS_MM = 100;
+const LEAST = { width: 560, height: 315 }, LETTERS_MM = 100; // units that a display has at the least; of what is said of a lost server
 const query = new URLSearchParams(location.search), number = Math.max(1, Number(query.get('display')) || 1);
 
 document.documentElement.lang = language;
@@ -38,7 +39,7 @@ const call = new AlarmCall();
 
 // --- the grid
 
-function say404(text) {
+function sayWrong(text) {
     panes = [];
     byId('grid').replaceChildren(make('p', { class: 'wrong' }, text));
 }
@@ -47,24 +48,22 @@ function say404(text) {
 function fit() {
     if (!wall)
         return;
-    const { innerWidth: width, innerHeight: height } = window, inches = wall.inches, metres = wall.distance_m;
-    const { scale } = wallFit({ inches, metres }, window.screen, { width, height });
-    const most = Math.min(width / LEAST_UNITS.width, height / LEAST_UNITS.height);
-    const pxPerMm = Math.hypot(screen.width, screen.height) / (inches * 25.4);
-    setVariable(document.body, '--unit', `${Math.max(0.5, Math.min(scale, most))}px`);
-    setVariable(document.body, '--letters', `${Math.min(LETTERS_MM * pxPerMm, width / 12)}px`);
+    const { innerWidth: width, innerHeight: height } = window, { inches, distance_m: metres } = wall;
+    const { scale } = wallFit({ inches, metres }, window.screen, { width, height }, LEAST);
+    setVariable(document.body, '--unit', `${scale}px`);
+    setVariable(document.body, '--letters', `${Math.min(LETTERS_MM / millimetresPerPx(inches, window.screen), width / 12)}px`);
 }
 
 function build(walls) {
     wall = walls.find(({ id }) => id === query.get('wall')) ?? null;
     const display = wall?.displays[number - 1];
     if (!wall)
-        return say404(say('walls.unknown', { id: query.get('wall'), known: walls.map(({ id }) => id).join(', ') || say('none') }));
+        return sayWrong(say('walls.unknown', { id: query.get('wall'), known: walls.map(({ id }) => id).join(', ') || say('none') }));
     if (!display)
-        return say404(say('walls.display', { n: number, id: wall.id, count: wall.displays.length }));
+        return sayWrong(say('walls.display', { n: number, id: wall.id, count: wall.displays.length }));
     const grid = byId('grid'), context = { session, call, wall, theme: query.get('theme') };
     fit();
-    grid.style.gridTemplateAreas = display.grid.map((row) => `"${row.replace(/\b\d/g, 'a$&')}"`).join(' ');
+    grid.style.gridTemplateAreas = display.grid.map((row) => `"${row.trim().split(/ +/).map(areaOf).join(' ')}"`).join(' ');
     grid.style.gridTemplateRows = display.grid.map(() => 'minmax(0, 1fr)').join(' ');
     grid.style.gridTemplateColumns = display.grid[0].trim().split(/ +/).map(() => 'minmax(0, 1fr)').join(' ');
     panes = display.panes.map((pane) => paneOf(pane, context));
@@ -80,7 +79,7 @@ async function look() {
         shape = now;
     } catch (error) {
         if (!shape)
-            say404(error.message);
+            sayWrong(error.message);
     }
 }
 
@@ -108,10 +107,10 @@ setInterval(() => {
     setVariable(document.body, '--x', `${x}px`);
     setVariable(document.body, '--y', `${y}px`);
 }, SHIFT_MS);
-setInterval(() => session.flush(), TICK_MS);
 window.addEventListener('resize', fit);
 session.on('welcome', () => {
     byId('denied').hidden = true;
+    renewIfOld('renewedWall');
     look();
 });
 
@@ -138,8 +137,6 @@ watchSleep(() => {
     connection.retryNow();
 });
 window.addEventListener('online', () => connection.retryNow());
-const stayOn = () => !document.hidden && navigator.wakeLock?.request('screen').catch(() => {});
-document.addEventListener('visibilitychange', stayOn);
-stayOn();
+keepScreenOn();
 connection.start();
 globalThis.wall = { session, call, get panes() { return panes; } }; // for the console and for tests

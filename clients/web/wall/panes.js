@@ -10,10 +10,13 @@ import { badge, limitText } from '../app/alarms/alarm_bar.js';
 const LEAST_PART = 0.4;
 const KINDS = { views: ViewsPane, trend: TrendPane, alarms: AlarmsPane, tiles: TilesPane, clock: ClockPane, text: TextPane };
 
+// The name of an area as CSS takes it: a number is none, and some words mean something there.
+export const areaOf = (name) => (name === '.' ? name : `area-${name.replace(/\./g, '_')}`);
+
 export function paneOf(pane, context) {
     const title = make('h2', {}, pane.title ?? ''), body = make('div', { class: 'body' });
     const element = make('section', { class: `pane ${pane.kind}` }, title, body);
-    element.style.gridArea = pane.area.replace(/^\d/, 'a$&');
+    element.style.gridArea = areaOf(pane.area);
     const { tick = () => {} } = KINDS[pane.kind](pane, { ...context, title, body, element });
     return { element, kind: pane.kind, tick };
 }
@@ -35,7 +38,6 @@ function ViewsPane(pane, context) {
     let at = 0, changedAt = null, shown = null, shownIn = null, held = false;
     title.addEventListener('click', () => {
         held = !held;
-        element.toggleAttribute('data-held', held);
     });
     const titleOf = (id) => pane.title ?? session.views.find((view) => view.id === id)?.title ?? id;
 
@@ -60,9 +62,9 @@ function ViewsPane(pane, context) {
         const { page } = inner;
         if (!page?.session.model || page.session.views.length === 0 && session.views.length > 0)
             return;
-        const alarm = pane.on_alarm ? call.next(session.model.alarms.list(), now, session.clockUs()) : null;
-        const flood = pane.on_alarm && call.isFlood(session.model.alarms.list(), session.clockUs());
-        const rests = held || flood || alarm !== null || session.model.alarms.counts().waiting > 0;
+        const alarms = session.model.alarms.list(), nowUs = session.clockUs();
+        const alarm = pane.on_alarm ? call.next(alarms, now, nowUs) : null;
+        const rests = held || alarms.some(({ waiting }) => waiting) || (pane.on_alarm && call.isFlood(alarms, nowUs));
         if (!rests && pane.items.length > 1 && changedAt !== null && now - changedAt >= pane.every_s * 1000) {
             at = (at + 1) % pane.items.length;
             shown = null;

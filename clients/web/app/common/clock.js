@@ -10,6 +10,13 @@ export const clock = {
     clearTimeout: (id) => clearTimeout(id),
 };
 
+// Where the browser lets us.
+export function keepScreenOn() {
+    const ask = () => !document.hidden && navigator.wakeLock?.request('screen').catch(() => {});
+    document.addEventListener('visibilitychange', ask);
+    ask();
+}
+
 // onWake(): what was known before is old.
 export function watchSleep(onWake) {
     const wake = new Wake({

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What is kept in this browser. It may forbid that: nothing is then known the next time.
 
-const KEYS = { theme: 'localStorage', token: 'sessionStorage', renewed: 'sessionStorage' }; // for good, or as long as this tab lives
+const KEYS = { theme: 'localStorage', token: 'sessionStorage', renewed: 'sessionStorage',
+    renewedWall: 'sessionStorage' }; // for good, or as long as this tab lives
 
 export function stored(name) {
     try {

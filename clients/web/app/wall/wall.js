@@ -3,6 +3,7 @@
 import { learnWords, say } from '../../core/words.js';
 import { numberText } from '../../core/format.js';
 import { legendsLie, readWall, wallFit } from '../../core/wall.js';
+import { keepScreenOn } from '../common/clock.js';
 import { byId, make, setVariable, styled } from '../common/dom.js';
 
 const FAR_MS = 60000; // for who hangs it there
@@ -53,7 +54,5 @@ export async function hangOnWall(search, page) {
     for (const element of [byId('simulated'), byId('status'), ...legends.children])
         observer.observe(element);
     fit();
-    const stayOn = () => !document.hidden && navigator.wakeLock?.request('screen').catch(() => {}); // where the browser lets us
-    document.addEventListener('visibilitychange', stayOn);
-    stayOn();
+    keepScreenOn();
 }
