@@ -51,6 +51,11 @@ test('each pane shows what it is for', options, async () => {
         const { clientWidth, clientHeight } = document.querySelector('.pane.views iframe').contentDocument.getElementById('viewport');
         return clientWidth > 800 && clientHeight > 600;
     }, null, { timeout: 30000 });
+    await page.waitForFunction(() => { // from home, of the shape that the pane has in the end
+        const { session } = document.querySelector('.pane.views iframe').contentWindow.plantcast, { width, height } = session.size;
+        const { eye } = session.homeIn(width, height);
+        return session.picture?.camera.eye.every((m, i) => Math.abs(m - eye[i]) < 0.01);
+    }, null, { timeout: 30000 });
     await page.locator('.clock b').filter({ hasText: /^\d\d:\d\d:\d\d$/ }).waitFor();
     assert.match(await paneTitle('alarms').textContent(), /Alarms/);
     await shoot(page, 'wall-display');

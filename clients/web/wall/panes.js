@@ -69,8 +69,8 @@ function ViewsPane(pane, context) {
             at = (at + 1) % pane.items.length;
             shown = null;
         }
-        const text = page.session.views.find((view) => view.id === pane.items[at])?.view; // it may be saved anew
-        const wanted = alarm ? `${alarm.tag.name}/${alarm.kind}` : `view ${at} ${held} ${text}`;
+        const text = page.session.views.find((view) => view.id === pane.items[at])?.view, { width, height } = page.session.size;
+        const wanted = alarm ? `${alarm.tag.name}/${alarm.kind}` : JSON.stringify([at, held, text, width, height]); // home is as wide
         element.classList.toggle('called', Boolean(alarm));
         if (wanted === shown && page === shownIn)
             return;
