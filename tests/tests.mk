@@ -48,7 +48,7 @@ style:
 layers:
 	@tests/layers
 # Every header stands alone; one that has not changed since, nor what it includes, is not looked at again.
-stand_alone := $(patsubst %.h,$(out)/obj/%.h.alone,$(shell git ls-files '*.h'))
+stand_alone := $(patsubst %.h,$(out)/obj/%.h.alone,$(shell git ls-files -co --exclude-standard '*.h'))
 headers: $(stand_alone)
 $(out)/obj/%.h.alone: %.h | $(gen)/glad/include/glad/gl.h
 	@mkdir -p $(@D) && $(CC) $(filter-out -MMD,$(cflags)) -MD -MF $(@:.alone=.d) -MT $@ -fsyntax-only -x c $< && touch $@
