@@ -50,6 +50,8 @@ test('init makes folders, plant file, certificate and tokens, and the daemon ser
         const ask = (token) => spawnSync('curl', ['-s', '-o', '/dev/null', '-w', '%{http_code}', '--cacert', etc('one/tls/fullchain.pem'),
             '-H', `Authorization: Bearer ${token}`, `${said.address}api/v1/tags`], { encoding: 'utf8' }).stdout;
         assert.deepEqual([ask(said.engineer), ask(said.viewer), ask('x'.repeat(43))], ['200', '200', '401']);
+        const { code: whole, err: why } = runProgram('plantcast', ['audit', 'verify', join(root, 'var/lib/plantcast/one/audit.log')]);
+        assert.equal(whole, 0, why);
     } finally {
         daemon.kill();
     }
