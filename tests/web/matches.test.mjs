@@ -69,6 +69,17 @@ test('all of a pattern: as one of it was decided, where the others may be that t
     assert.deepEqual(matches.alike(second).map(([{ tag }, asset]) => [tag, asset]), [['T-2', 'A']]);
 });
 
+test('decisions that were saved go, but not those made since', () => {
+    const matches = read(), [, first, second, third] = matches.all;
+    matches.decide(first, 'P-201');
+    matches.decide(second, 'P-201');
+    const sent = new Map(matches.decisions);
+    matches.decide(second, '');
+    matches.decide(third, 'E-301');
+    matches.settle(sent);
+    assert.deepEqual([...matches.decisions], [['TT-2012', { status: 'none', asset: '' }], ['FT-3011', { status: 'sure', asset: 'E-301' }]]);
+});
+
 test('sizes in other units', () => {
     const box = { min: [1, 2, 3], max: [2001, 4002, 6003] };
     assert.deepEqual(sizeOf(box), [2000, 4000, 6000]);

@@ -105,6 +105,13 @@ export class Matches {
             decided.findLast(([, { asset }]) => one.candidates.includes(asset))?.[1].asset]).filter(([, asset]) => asset);
     }
 
+    // Of the decisions that were saved, those made anew since stay.
+    settle(decided) {
+        for (const [tag, decision] of decided)
+            if (this.decisions.get(tag) === decision)
+                this.decisions.delete(tag);
+    }
+
     // What is sent to be saved.
     text() {
         const cell = (said) => (/[",;\t\r\n]|^ /.test(said) ? `"${said.replaceAll('"', '""')}"` : said);

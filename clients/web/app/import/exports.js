@@ -6,9 +6,10 @@ import { say } from '../../core/words.js';
 const LOOK_MS = 700;
 
 export class Exports {
-    // onState(state): what the server says of itself; onEnd(state): an order has ended.
+    // onState(state): what the server says of itself; onEnd(state, sent): an order has ended;
+    // sent: what was asked, { path, query }, if it is one of this page's, else null.
     constructor({ session, onState, onEnd }) {
-        Object.assign(this, { session, onState, onEnd, state: null });
+        Object.assign(this, { session, onState, onEnd, state: null, sent: null });
     }
 
     async ask(path, { query = {}, ...options } = {}) {
@@ -27,12 +28,14 @@ export class Exports {
         return this.ask(path, { method: 'POST', query, body });
     }
 
-    // Looks until nothing is under way.
-    async look() {
+    // Looks until nothing is under way. sent: the order that was just taken.
+    async look(sent = null) {
         clearTimeout(this.timer);
         const before = this.state;
         try {
             this.state = await (await this.ask('')).json();
+            if (sent)
+                this.sent = { ...sent, number: this.state.number };
         } catch (error) {
             this.state = before && { ...before, failed: error.message };
         }
@@ -43,12 +46,12 @@ export class Exports {
             this.timer = setTimeout(() => this.look(), LOOK_MS);
         this.onState(state);
         if (state.phase === 'idle' && before && (before.phase !== 'idle' || before.number !== state.number))
-            this.onEnd(state);
+            this.onEnd(state, this.sent?.number === state.number ? this.sent : null);
     }
 
-    async order(path, query, body) {
+    async order(path, query = {}, body = undefined) {
         await this.post(path, query, body);
-        await this.look();
+        await this.look({ path, query });
     }
 
     async matches() {

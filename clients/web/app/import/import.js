@@ -27,8 +27,9 @@ export class Import {
         this.page = page;
         this.button = byId('import-toggle');
         this.lit = new Lit(page);
-        this.exports = new Exports({ session: page.session, onState: (state) => this.show(state), onEnd: (state) => this.onEnd(state) });
-        this.table = new TagTable({ page, lit: this.lit, save: (text) => this.try(() => this.exports.order('/decide', {}, text)) });
+        this.exports = new Exports({ session: page.session, onState: (state) => this.show(state),
+            onEnd: (state, sent) => this.onEnd(state, sent) });
+        this.table = new TagTable({ page, lit: this.lit, save: () => this.decide() });
         this.build();
         page.session.greeted(() => this.greet());
         for (const name of ['dragover', 'drop'])
@@ -46,7 +47,10 @@ export class Import {
         this.filesTitle = make('summary', {});
         this.phase = make('p', { class: 'phase', role: 'status' });
         this.wrong = make('p', { class: 'wrong', role: 'alert' });
-        this.cancel = button('import.cancel', () => this.try(() => this.exports.order('/cancel')));
+        this.cancel = button('import.cancel', () => this.try(async () => {
+            await this.exports.post('/cancel');
+            await this.exports.look();
+        }));
         this.again = button('import.again', () => this.try(() => this.read()));
         this.said = make('pre', { tabindex: '0' });
         this.details = make('details', {}, make('summary', {}, say('import.details')), this.said);
@@ -158,6 +162,12 @@ export class Import {
         return this.exports.order('/run', { ...query, units: this.units.value, up: this.up.value });
     }
 
+    decide() {
+        const { matches } = this.table;
+        this.decided = new Map(matches.decisions);
+        return this.try(() => this.exports.order('/decide', {}, matches.text()));
+    }
+
     show(state) {
         const busy = state.phase !== 'idle';
         fill(this.files, ...state.files.map(({ name, kind, bytes }) => make('li', {}, make('b', {}, name),
@@ -180,13 +190,16 @@ export class Import {
             setText(this.wrong, plain(state.failed ?? ''));
     }
 
-    onEnd(state) {
-        this.units.value = state.units;
-        this.up.value = state.up;
-        this.applied = state.units || 'm';
+    // Units and axis are those of the models in force: other orders say none.
+    onEnd(state, sent) {
+        if (!state.failed && sent?.path === '/run' && sent.query.what !== 'tags') {
+            this.units.value = state.units;
+            this.up.value = state.up;
+            this.applied = state.units || 'm';
+        }
         this.showSize();
-        if (!state.failed)
-            this.table.forget();
+        if (!state.failed && sent?.path === '/decide')
+            this.table.settle(this.decided);
         this.bringMatches();
     }
 

@@ -15,7 +15,7 @@ const union = (boxes) => ({
 });
 
 export class TagTable {
-    // save(text): decisions, as they are sent.
+    // save(): sends the decisions.
     constructor({ page, lit, save }) {
         Object.assign(this, { page, lit, save, filter: 'all', chosen: null });
         this.matches = new Matches((name) => this.isPlaced(name));
@@ -36,7 +36,7 @@ export class TagTable {
             height: () => ROW_PX, keyOf: ({ tag }) => tag });
         this.detail = make('div', { class: 'detail' });
         this.count = make('span', { role: 'status' });
-        this.keep = button('import.save', () => this.save(this.matches.text()));
+        this.keep = button('import.save', () => this.save());
         this.back = button('import.undo', () => this.forget());
         this.element = make('section', { class: 'matching', hidden: true }, make('h3', {}, say('import.tags')),
             make('fieldset', { class: 'segments' }, make('legend', {}, say('import.filter')), ...FILTERS.map(choice)), this.find, this.root,
@@ -65,6 +65,12 @@ export class TagTable {
 
     forget() {
         this.matches.decisions.clear();
+        this.refresh();
+    }
+
+    // decided: what was sent, and is saved now.
+    settle(decided) {
+        this.matches.settle(decided);
         this.refresh();
     }
 
