@@ -196,6 +196,21 @@ static void out_of_disk_at_any_step_it_is_all_or_nothing(void **state)
     sweep(false);
 }
 
+static void an_undoing_that_was_killed_while_tidying_up_is_done(void **state)
+{
+    char *folder = temp_folder_create(), *left = mem_printf("%s/.revision.undoing", folder), *old = mem_printf("%s/old", left);
+    (void)state;
+    assert_int_equal(mkdir(left, 0777), 0);
+    assert_int_equal(mkdir(old, 0777), 0);
+    int lock = revision_files_lock(folder, NULL);
+    assert_true(lock >= 0);
+    close(lock);
+    assert_int_not_equal(access(left, F_OK), 0);
+    mem_free(left);
+    mem_free(old);
+    temp_folder_destroy(&folder);
+}
+
 static void one_program_at_a_time(void **state)
 {
     char *folder = temp_folder_create();
@@ -297,6 +312,7 @@ int main(void)
         cmocka_unit_test(rights_of_a_file_stay),
         cmocka_unit_test(killed_at_any_step_it_is_all_or_nothing),
         cmocka_unit_test(out_of_disk_at_any_step_it_is_all_or_nothing),
+        cmocka_unit_test(an_undoing_that_was_killed_while_tidying_up_is_done),
         cmocka_unit_test(one_program_at_a_time),
         cmocka_unit_test(the_plant_file_stays_as_people_wrote_it),
         cmocka_unit_test(an_asset_goes_with_all_its_keys),

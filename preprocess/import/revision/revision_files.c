@@ -32,7 +32,8 @@ struct record {
     size_t count, room;
 };
 
-static const char made[] = ".revision", pending[] = ".revision.pending", undoing[] = ".revision.undoing";
+static const char made[] = ".revision", pending[] = ".revision.pending", undoing[] = ".revision.undoing",
+                  undone[] = ".import-undone"; /* whoever takes the folder next removes what is left of it */
 
 static char *in(const char *folder, const char *name)
 {
@@ -127,7 +128,10 @@ static int go_on_applying(const char *folder)
 static int go_on_undoing(const char *folder)
 {
     struct record record;
+    char *last = in(folder, undone);
     int status = read_record(&record, folder, undoing);
+    if (status == -ENOENT) /* all was put back: its removal had begun */
+        status = 0;
     for (size_t i = record.count; i-- > 0 && status == 0;) {
         char *path = in(folder, record.entries[i].name);
         if (record.entries[i].was)
@@ -137,9 +141,14 @@ static int go_on_undoing(const char *folder)
         mem_free(path);
     }
     status = status == 0 ? sync_folder(folder) : status;
+    if (status == 0) {
+        remove_tree(last);
+        status = move(record.path, last);
+    }
     if (status == 0)
-        remove_tree(record.path);
+        remove_tree(last);
     finish_record(&record);
+    mem_free(last);
     return status;
 }
 
