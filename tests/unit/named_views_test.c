@@ -148,9 +148,10 @@ static void there_is_a_limit(void **state)
 
 static void what_cannot_be_read_is_not_written_over(void **state)
 {
-    static const char *const files[] = { "{", "[]", "{\"views\":[{\"id\":\"a\"}]}",
-                                         "{\"views\":[{\"id\":\"a b\",\"title\":\"\",\"view\":\"\","
-                                         "\"by\":\"\",\"time_us\":1,\"before\":[]}]}" };
+    static const char *const files[] = {
+        "{", "[]", "{\"views\":[{\"id\":\"a\"}]}",
+        "{\"views\":[{\"id\":\"a b\",\"title\":\"\",\"view\":\"\",\"by\":\"\",\"time_us\":1,\"before\":[]}]}",
+    };
     struct fixture *f = *state;
     for (size_t i = 0; i < sizeof(files) / sizeof(*files); i++) {
         char *path = temp_write_text(f->folder, "history/" NAMED_VIEWS_FILE, files[i]), text[200] = "";
