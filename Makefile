@@ -59,7 +59,7 @@ ldflags  = $(flags_$(config)) -pthread -Wl,--as-needed -Wl,-z,relro,-z,now $(LDF
 layers   := base audit plant surface value history alarm notify loopcheck views scene field placing importing gpu render encode \
             message service access session net
 layers   := $(foreach l,$(layers),$(if $(wildcard server/$(l)/*.c),$(l)))
-without  := $(if $(filter h264,$(CODECS)),,$(wildcard server/encode/h264*))
+without  := $(if $(filter h264,$(CODECS)),,$(wildcard server/encode/h264*)) server/base/image_lazy.c
 archives := $(foreach l,$(layers),$(out)/lib/$(l).a) $(out)/lib/protocol.a
 objects   = $(patsubst %,$(out)/obj/%.o,$(basename $(1)))
 link      = @mkdir -p $(@D); echo "  LINK $@"; \
@@ -71,7 +71,7 @@ sim_sources      := $(filter-out $(generate_sources),$(sim_sources))
 sim_archive      := $(if $(sim_sources),$(out)/lib/sim.a)
 import_sources   := $(wildcard preprocess/import/*.c preprocess/import/revision/*.c)
 match_sources    := $(wildcard preprocess/match/*.c)
-prep_sources     := $(filter-out %/main.c %/image_lazy.c $(import_sources) $(match_sources), \
+prep_sources     := $(filter-out %/main.c $(import_sources) $(match_sources), \
                     $(wildcard preprocess/*.c preprocess/*/*.c preprocess/*/*.cc))
 programs := $(if $(wildcard server/main.c),$(bin)/plantcastd) $(if $(wildcard preprocess/main.c),$(bin)/plantcast-prep) \
             $(if $(wildcard clients/cli/main.c),$(bin)/plantcast) $(if $(import_sources),$(bin)/plantcast-import) \
@@ -104,9 +104,12 @@ programs: all
 $(bin)/plantcast-init: deploy/init
 	@mkdir -p $(@D); cp $< $@
 
+# Programs load what reads images when there is one to be read; tests are linked with it.
+lazy := $(filter-out $(bin)/plantcast-demo,$(programs))
+$(lazy): $(call objects,server/base/image_lazy.c) | $(modules)
 $(bin)/plantcastd: $(call objects,$(wildcard server/*.c)) $(archives)
 	$(link)
-$(bin)/plantcast-prep: $(call objects,preprocess/main.c preprocess/image_lazy.c) $(out)/lib/prep.a $(archives) | $(modules)
+$(bin)/plantcast-prep: $(call objects,preprocess/main.c) $(out)/lib/prep.a $(archives)
 	$(link)
 # Reads what strangers' programs wrote: neither the daemon nor plantcast-prep links it.
 $(bin)/plantcast-import: $(call objects,preprocess/import/main.c) $(out)/lib/import.a $(out)/lib/match.a $(out)/lib/prep.a $(archives)

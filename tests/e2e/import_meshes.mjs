@@ -121,7 +121,7 @@ test('broken files are read or refused in one line, and leave nothing behind', {
     for (const [name, bytes] of Object.entries(broken)) {
         writeFileSync(join(folder, name), bytes);
         const before = readdirSync(folder).sort();
-        const { status, stderr, stdout } = plantcast('import', join(folder, name), '-o', join(folder, 'plant'), '--timeout', '6',
+        const { status, stderr, stdout } = plantcast('import', join(folder, name), '-o', join(folder, 'plant'), '--timeout', '3',
             '--memory', '2000');
         const told = status === 0 ? stdout.split('\n')[0].replace(/.*: /, 'read: ') : stderr.trim().replace(/.*?: .*?: /, '');
         console.log(`# ${name}: ${told}`);

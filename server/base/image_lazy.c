@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Reading images, by a module that is loaded when there is one to read: starting with OpenImageIO and the 260 libraries behind it takes a
-   sixth of a second, more than all else where nothing has changed. */
+/* Reads images by a module that is loaded when there is one to read: to start with OpenImageIO and the 260 libraries behind it takes a
+   fifth of a second, more than all else that many a program does. */
 #include "base/image.h"
 
 #include <dlfcn.h>
