@@ -114,16 +114,35 @@ static enum login fail(struct entry *entry, int64_t now_ns)
     return was_slowed ? LOGIN_WRONG : LOGIN_WRONG_SLOWS;
 }
 
+/* Whether this try is one too many. */
+static bool holds(struct entry *entry, int64_t now_ns)
+{
+    bool slowed = now_ns < entry->slowed_until_ns, too_soon = now_ns < entry->next_try_ns;
+    if (slowed && !too_soon)
+        entry->next_try_ns = now_ns + WAIT_NS;
+    return slowed && too_soon;
+}
+
 enum login login_throttle_judge(struct login_throttle *throttle, const uint8_t address[16], const uint8_t *hash, int64_t now_ns)
 {
     struct entry *entry = find_or_make(throttle, address);
     entry->heard_ns = now_ns;
-    if (now_ns < entry->slowed_until_ns && !(hash && find_known(entry, hash))) {
-        if (now_ns < entry->next_try_ns)
-            return LOGIN_HELD;
-        entry->next_try_ns = now_ns + WAIT_NS;
-    }
+    if (!(hash && find_known(entry, hash)) && holds(entry, now_ns))
+        return LOGIN_HELD;
     return hash ? let_in(entry, hash, now_ns) : fail(entry, now_ns);
+}
+
+enum login login_throttle_begin(struct login_throttle *throttle, const uint8_t address[16], int64_t now_ns)
+{
+    struct entry *entry = find(throttle, address);
+    return entry && holds(entry, now_ns) ? LOGIN_HELD : LOGIN_NONE;
+}
+
+enum login login_throttle_fail(struct login_throttle *throttle, const uint8_t address[16], int64_t now_ns)
+{
+    struct entry *entry = find_or_make(throttle, address);
+    entry->heard_ns = now_ns;
+    return fail(entry, now_ns);
 }
 
 int login_throttle_failures(const struct login_throttle *throttle, const uint8_t address[16], int64_t now_ns)

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Login throttle: counts wrong tokens by address. After ten wrong ones within a minute, only one token in five seconds is judged from that
-   address, until a minute has passed without a wrong one; a token that was accepted from there before is not held up. At most 1024
-   addresses are remembered; the one heard of longest ago is forgotten first. Pure: time is handed in. Thread: the loop. */
+/* Login throttle: counts wrong tokens, and refused log-ins of people, by address. After ten wrong ones within a minute, only one token in
+   five seconds is judged from that address, until a minute has passed without a wrong one; a token that was accepted from there before is
+   not held up. At most 1024 addresses are remembered; the one heard of longest ago is forgotten first. Pure: time is handed in. Thread: the
+   loop. */
 #ifndef ACCESS_LOGIN_THROTTLE_H
 #define ACCESS_LOGIN_THROTTLE_H
 #include <stdbool.h>
@@ -26,6 +27,10 @@ void login_throttle_destroy(struct login_throttle **throttle); /* &NULL is fine;
 /* Returns the verdict on a token given from that address (as in struct address_usage) and counts it. hash: of a token that is valid;
    NULL: the token is wrong. */
 enum login login_throttle_judge(struct login_throttle *throttle, const uint8_t address[16], const uint8_t *hash, int64_t now_ns);
+/* Return and count the same for what is judged elsewhere, and later: whether it may not be (LOGIN_HELD, else LOGIN_NONE), and, if it was
+   wrong, LOGIN_WRONG or LOGIN_WRONG_SLOWS. */
+enum login login_throttle_begin(struct login_throttle *throttle, const uint8_t address[16], int64_t now_ns);
+enum login login_throttle_fail(struct login_throttle *throttle, const uint8_t address[16], int64_t now_ns);
 /* Returns how many wrong tokens the address gave within the last minute, 10 at most. */
 int login_throttle_failures(const struct login_throttle *throttle, const uint8_t address[16], int64_t now_ns);
 /* Returns how many addresses are slowed. */

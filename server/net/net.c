@@ -66,15 +66,23 @@ static void look_at_files(struct net *net, int64_t now_ns)
     }
 }
 
+static void record_sum(const struct server_context *server, int64_t *count, const char *what)
+{
+    if (!*count)
+        return;
+    char *text = mem_printf("%lld %s", (long long)*count, what);
+    audit_say(server->params.audit, &(struct audit_entry){ .event = "login", .result = "refused", .what = text });
+    mem_free(text);
+    *count = 0;
+}
+
 /* Once a minute. */
 static void record_held(struct server_context *server, int64_t now_ns)
 {
-    if (!server->logins_held || now_ns - server->held_ns < HELD_NS)
+    if ((!server->logins_held && !server->unasked) || now_ns - server->held_ns < HELD_NS)
         return;
-    char *what = mem_printf("%lld tokens of slowed addresses were not looked at", (long long)server->logins_held);
-    audit_say(server->params.audit, &(struct audit_entry){ .event = "login", .result = "refused", .what = what });
-    mem_free(what);
-    server->logins_held = 0;
+    record_sum(server, &server->logins_held, "tokens of slowed addresses were not looked at");
+    record_sum(server, &server->unasked, "answers of the identity provider belonged to no log-in, or could not be looked at");
     server->held_ns = now_ns;
 }
 

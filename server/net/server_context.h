@@ -50,6 +50,7 @@ struct server_context {
     bool local_only;   /* bound to a loopback address, and no proxy is in front */
     char machine[256]; /* the machine's host name; "": none */
     int64_t logins_held, held_ns; /* tokens that were not judged, and not recorded yet; when such were recorded last */
+    int64_t unasked; /* answers of the identity provider that nobody waits for, or that could not be looked at; likewise */
     int64_t looked_ns; /* when the files of tokens and certificate were last looked at */
     uint64_t next_client;
     bool asked;                         /* requests were made: net_wake_render_service is due */

@@ -2,7 +2,7 @@
 // People sign in by OpenID Connect: at a provider that a test leads astray, and at oidc-provider, which others wrote.
 import assert from 'node:assert/strict';
 import { appendFileSync, chmodSync, existsSync, readFileSync, writeFileSync } from 'node:fs';
-import { createServer } from 'node:http';
+import { createServer, request } from 'node:http';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
 import { IdentityProvider } from './support/identity_provider.mjs';
@@ -266,16 +266,103 @@ test('without refresh tokens a session ends with its access token; nothing secre
     assert.equal(runProgram('plantcast', ['audit', 'verify', path('audit.log')]).code, 0);
 });
 
-test('wrong answers by thousands are slowed, and others sign in meanwhile', { skip }, async () => {
+// A request from another address of this machine; `then` is told what it is answered.
+function askFrom(localAddress, where, headers = {}) {
+    return new Promise((done, fail) => {
+        const asked = request({ host: '127.0.0.1', port, path: where, localAddress, headers }, (response) => {
+            response.resume().on('end', () => done(response));
+        });
+        asked.on('error', fail).end();
+    });
+}
+
+// A log-in that a guesser begins: what brings an answer to it, which has the right state and cookie.
+async function beginFrom(localAddress) {
+    const begun = await askFrom(localAddress, '/login'), cookie = begun.headers['set-cookie'][0].split(';')[0];
+    const state = new URL(begun.headers.location).searchParams.get('state');
+    return (more) => askFrom(localAddress, `/login/callback?state=${state}&${more}`, { cookie });
+}
+
+const refusals = () => trail().filter((line) => line.event === 'login' && line.result === 'refused').length;
+
+test('foreign answers by thousands leave one line, and lock nobody out', { skip, timeout: 120000 }, async () => {
+    const lines = refusals();
+    const guess = async () => {
+        for (let i = 0; i < 500; i++)
+            assert.equal((await askFrom('127.0.0.9', '/login/callback?state=x&code=y')).statusCode, 403);
+    };
+    const [, , , , person] = await Promise.all([guess(), guess(), guess(), guess(), sleep(300).then(() => new Browser().signIn())]);
+    assert.equal(person.status, 303);
+    await recorded('their sum', (line) => /^\d+ answers of the identity provider belonged to no log-in/.test(line.what ?? ''));
+    assert.ok(refusals() - lines <= 2, String(refusals() - lines));
+    const answer = await beginFrom('127.0.0.9');
+    assert.equal((await answer('error=access_denied')).statusCode, 403, 'the address is not held');
+});
+
+test('made-up codes slow their address, and others sign in meanwhile', { skip, timeout: 120000 }, async () => {
+    const lines = refusals();
     let slowed = 0;
     const guess = async () => {
-        for (let i = 0; i < 200; i++)
-            if ((await fetch(`http://127.0.0.1:${port}/login/callback?state=x&code=y`)).status === 429)
+        for (let i = 0; i < 100; i++)
+            if ((await (await beginFrom('127.0.0.8'))(`code=made-up-${i}`)).statusCode === 429)
                 slowed++;
     };
-    const [, , person] = await Promise.all([guess(), guess(), sleep(300).then(() => new Browser().signIn())]);
+    const [, , person] = await Promise.all([guess(), guess(), sleep(200).then(() => new Browser().signIn())]);
     assert.equal(person.status, 303);
-    assert.ok(slowed > 350, String(slowed));
+    assert.ok(slowed > 170, String(slowed));
+    assert.ok(refusals() - lines < 30, String(refusals() - lines));
+});
+
+test('a slow provider: codes wait in bounds, and the rights of 40 people end in time beside them', { skip, timeout: 120000 }, async (t) => {
+    const metrics = () => fetch(`http://127.0.0.1:${port}/metrics`, { headers: { Authorization: `Bearer ${token}` } });
+    const people = async () => Number(/^plantcast_openid_people (\d+)/m.exec(await (await metrics()).text())[1]);
+    t.after(() => { Object.assign(provider, { delay_ms: 0, sub: 's1' }); provider.claims.groups = ['operators']; });
+    for (let i = 0; i < 40; i++) {
+        provider.sub = `s${i % 4}`; // a person has 16 at most
+        assert.equal((await new Browser().signIn()).status, 303);
+    }
+    assert.ok(await people() >= 40);
+    provider.claims.groups = [];
+    provider.delay_ms = 1000;
+    const began = Date.now(), answers = [];
+    for (let i = 0; i < 90; i++)
+        answers.push((await beginFrom(`127.0.0.${20 + i % 9}`))('code=made-up').then((response) => response.statusCode));
+    for (let i = 0; i < 300 && await people() > 0; i++)
+        await sleep(50);
+    assert.equal(await people(), 0);
+    const took_s = (Date.now() - began) / 1000;
+    assert.ok(took_s < 12, `${took_s} s; one after the other they take 40 s`);
+    provider.delay_ms = 0;
+    const codes = await Promise.all(answers), count = (status) => codes.filter((code) => code === status).length;
+    assert.ok(count(503) >= 10, `${count(503)} of ${codes.length} were told to come again`);
+    assert.equal(count(403) + count(503) + count(429), 90);
+    for (let i = 0; i < 100 && provider.live.size > 0; i++)
+        await sleep(50);
+    assert.equal(provider.live.size, 0, 'what ends here is revoked there');
+});
+
+test('keys that cannot be had end nobody; signing out during a check leaves no refresh token', { skip, timeout: 120000 }, async (t) => {
+    t.after(() => { Object.assign(provider, { keysStatus: 200, delay_ms: 0 }); });
+    const browser = new Browser();
+    await browser.signIn();
+    await sleep(10500); // since keys were asked for last: they may be asked for again
+    provider.keysStatus = 503;
+    provider.rotate();
+    await plant.daemon.line(/openid: http.*keys.*stays so/);
+    await sleep(3000);
+    assert.equal((await browser.me()).role, 'operator');
+    provider.keysStatus = 200;
+    await sleep(12000);
+    assert.equal((await browser.me()).role, 'operator');
+    provider.delay_ms = 1500;
+    const asked = provider.asked.length;
+    for (let i = 0; i < 100 && provider.asked.length === asked; i++)
+        await sleep(20);
+    await sleep(300);
+    await browser.at('/logout', { method: 'POST' });
+    for (let i = 0; i < 100 && provider.live.size > 0; i++)
+        await sleep(50);
+    assert.equal(provider.live.size, 0);
 });
 
 test('a person signs in on the page, sees who it is, and signs out', {

@@ -91,6 +91,22 @@ static void as_many_addresses_as_there_is_room_for(void **state)
     assert_int_equal(login_throttle_slowed(throttle, 4 * S), 1);
 }
 
+/* Refused answers of an identity provider. */
+static void what_is_judged_elsewhere_counts_alike(void **state)
+{
+    struct login_throttle *throttle = *state;
+    assert_int_equal(login_throttle_begin(throttle, HERE, 0), LOGIN_NONE);
+    for (int i = 0; i < 9; i++)
+        assert_int_equal(login_throttle_fail(throttle, HERE, i * S), LOGIN_WRONG);
+    assert_int_equal(login_throttle_begin(throttle, HERE, 9 * S), LOGIN_NONE); /* asking alone counts nothing */
+    assert_int_equal(login_throttle_fail(throttle, HERE, 9 * S), LOGIN_WRONG_SLOWS);
+    assert_int_equal(login_throttle_begin(throttle, HERE, 10 * S), LOGIN_HELD);
+    assert_int_equal(login_throttle_judge(throttle, HERE, DESK, 10 * S), LOGIN_HELD); /* tokens and answers share it */
+    assert_int_equal(login_throttle_begin(throttle, THERE, 10 * S), LOGIN_NONE);
+    assert_int_equal(login_throttle_begin(throttle, HERE, 14 * S), LOGIN_NONE);
+    assert_int_equal(login_throttle_begin(throttle, HERE, 15 * S), LOGIN_HELD);
+}
+
 int main(void)
 {
     cmocka_set_message_output(CM_OUTPUT_TAP);
@@ -100,6 +116,7 @@ int main(void)
         TEST(ten_in_more_than_a_minute_do_not),
         TEST(who_was_let_in_before_is_not_held_up),
         TEST(a_login_is_news_every_ten_minutes),
+        TEST(what_is_judged_elsewhere_counts_alike),
         TEST(as_many_addresses_as_there_is_room_for),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

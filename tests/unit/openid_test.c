@@ -285,24 +285,29 @@ static void test_return_paths(void **state)
 
 static struct person person_of(const char *sub)
 {
-    return (struct person){ .holder = { .role = ROLE_VIEWER, .until_utc_ns = INT64_MAX }, .sub = mem_strdup(sub) };
+    return (struct person){
+        .holder = { .role = ROLE_VIEWER, .until_utc_ns = INT64_MAX }, .sub = mem_strdup(sub), .refresh_token = mem_printf("of %s", sub)
+    };
 }
 
 static void test_people(void **state)
 {
     (void)state;
     struct sign_ins *table = sign_ins_create();
-    char first[SIGN_IN_SECRET_CHARS + 1], cookie[SIGN_IN_SECRET_CHARS + 1];
+    char first[SIGN_IN_SECRET_CHARS + 1], cookie[SIGN_IN_SECRET_CHARS + 1], *left;
     struct person kim = person_of("kim");
-    assert_true(sign_ins_add_person(table, &kim, first));
+    assert_true(sign_ins_add_person(table, &kim, first, &left));
     assert_non_null(sign_ins_find(table, first));
     for (int i = 0; i < PEOPLE_SAME; i++) {
         struct person again = person_of("lee");
-        assert_true(sign_ins_add_person(table, &again, cookie));
+        assert_true(sign_ins_add_person(table, &again, cookie, &left));
+        assert_null(left);
     }
     assert_int_equal(sign_ins_count(table), 1 + PEOPLE_SAME);
     struct person more = person_of("lee");
-    assert_true(sign_ins_add_person(table, &more, cookie)); /* the first of Lee's ends, and Kim's stays */
+    assert_true(sign_ins_add_person(table, &more, cookie, &left)); /* the first of Lee's ends, and Kim's stays */
+    assert_string_equal(left, "of lee");
+    mem_free(left);
     assert_int_equal(sign_ins_count(table), 1 + PEOPLE_SAME);
     assert_non_null(sign_ins_find(table, first));
     assert_null(sign_ins_find(table, ""));
@@ -310,6 +315,8 @@ static void test_people(void **state)
     assert_null(sign_ins_find(table, cookie));
     sign_ins_find(table, first)->check_ns = -1;
     assert_string_equal(sign_ins_next_check(table)->sub, "kim");
+    sign_ins_find(table, first)->checking = true;
+    assert_string_equal(sign_ins_next_check(table)->sub, "lee");
     sign_ins_remove(table, sign_ins_find(table, first));
     assert_null(sign_ins_find(table, first));
     sign_ins_destroy(&table);

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Signing people in by OpenID Connect: authorization code flow with PKCE. A thread asks the identity provider; the loop begins log-ins,
-   hands in what browsers bring back, and asks who a cookie belongs to. Rights of all who are signed in are asked for again and again;
-   while the provider does not answer they stay as they are. Thread: the loop, unless it says otherwise. */
+/* Signing people in by OpenID Connect: authorization code flow with PKCE. Threads ask the identity provider; the loop begins log-ins, hands
+   in what browsers bring back, and asks who a cookie belongs to. Rights of all who are signed in are asked for again and again, beside
+   log-ins; while the provider does not answer they stay as they are. Thread: the loop, unless it says otherwise. */
 #ifndef OPENID_OPENID_H
 #define OPENID_OPENID_H
 #include "access/openid/openid_config.h"
@@ -14,12 +14,12 @@ struct openid_params {
     struct counters *counters;
     struct audit *audit;     /* NULL: nothing is recorded */
     const char *path;        /* of its file */
-    void (*wake)(void *arg); /* called by the thread when openid_collect has an answer, or rights changed */
+    void (*wake)(void *arg); /* called by any thread when openid_collect has an answer, or rights changed */
     void *wake_arg;
 };
 
 struct openid;
-/* Reads the file and starts the thread. Returns NULL if that fails, already logged; a provider that does not answer is no failure. */
+/* Reads the file and starts to ask. Returns NULL if that fails, already logged; a provider that does not answer is no failure. */
 struct openid *openid_start(const struct openid_params *params);
 /* Ends it, and all sessions of people. &NULL is fine; leaves NULL. */
 void openid_stop(struct openid **openid);
@@ -33,15 +33,28 @@ struct openid_return { /* what a browser brings back from the provider; texts ma
     uint64_t request;  /* names the answer */
     const char *state, *code, *iss, *error, *binding, *from;
 };
-/* Hands it in. Returns whether an answer will come (openid_collect); if not, no log-in waits for this: it is a replay, or a forgery. */
-bool openid_finish(struct openid *openid, const struct openid_return *brought, int64_t now_ns);
+enum openid_finish {
+    OPENID_WAITS,   /* an answer will come (openid_collect) */
+    OPENID_FOREIGN, /* no log-in of that browser waits for this: a replay, or a forgery; it is counted, and nothing else */
+    OPENID_FULL,    /* too many wait; the log-in has to begin again */
+};
+/* Hands it in. */
+enum openid_finish openid_finish(struct openid *openid, const struct openid_return *brought, int64_t now_ns);
+
+enum openid_result {
+    OPENID_LET_IN,
+    OPENID_REFUSED, /* recorded: somebody logged in there, and may not be let in */
+    OPENID_GUESSED, /* recorded; counts as a wrong token does: nobody logged in there */
+    OPENID_AWAY,    /* the provider does not answer, which is nobody's guess: not recorded */
+};
 
 struct openid_answer {
     uint64_t request;
-    bool good;
+    uint8_t address[16]; /* from which the log-in was begun */
+    enum openid_result result;
     char cookie[SIGN_IN_SECRET_CHARS + 1]; /* of the new session */
     char path[SIGN_IN_PATH_BYTES];         /* to return to */
-    char *why;                             /* if it is not good */
+    char *why;                             /* NULL: let in */
     struct openid_answer *next;
 };
 /* Returns all answers that have come, as a list; free each with openid_answer_free. */

@@ -10,7 +10,7 @@
 #include "base/mem.h"
 #include "base/text.h"
 
-enum { MOST_BYTES = 512 * 1024, SECRET_BYTES = 4096, CONNECT_S = 5, TIMEOUT_S = 10 };
+enum { MOST_BYTES = 512 * 1024, SECRET_BYTES = 4096, CONNECT_S = 4, TIMEOUT_S = 7 };
 
 struct transfer {
     CURL *handle;

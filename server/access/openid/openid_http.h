@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Requests to the identity provider. They block, for some seconds at most. Thread: that of openid.c. */
+/* Requests to the identity provider. They block, for 7 s at most. Any thread. */
 #ifndef OPENID_OPENID_HTTP_H
 #define OPENID_OPENID_HTTP_H
 #include <jansson.h>

@@ -13,12 +13,12 @@ static const int64_t KEYS_NS = 10 * NS_PER_S; /* between two requests for keys, 
 
 void openid_say(struct openid *openid, const char *why)
 {
-    if (why && !openid->failing)
+    bool was_failing = atomic_exchange(&openid->failing, why != NULL);
+    if (why && !was_failing)
         log_event(openid->params.log, LOG_ERROR, EVENT_OPENID_FAILS, "openid: %s: %s; nobody can sign in, and who is signed in stays so",
                   openid->config->issuer, why);
-    else if (!why && openid->failing)
+    else if (!why && was_failing)
         log_info(openid->params.log, "openid: %s answers again", openid->config->issuer);
-    openid->failing = why != NULL;
     counter_set(openid->good, !why);
 }
 
@@ -73,10 +73,12 @@ static bool ask_keys(struct openid *openid)
     openid->jwks_ns = clock_mono_ns();
     bool good = openid_get(openid->config, url, NULL, &openid->stopping, &reply) && reply.status == 200 &&
                 json_is_array(json_object_get(reply.json, "keys"));
+    pthread_mutex_lock(&openid->lock);
     if (good) {
         json_decref(openid->jwks);
         openid->jwks = json_incref(reply.json);
     }
+    pthread_mutex_unlock(&openid->lock);
     openid_say(openid, good ? NULL : reply.why[0] ? reply.why : "its keys are not there");
     openid_reply_finish(&reply);
     mem_free(url);
@@ -88,26 +90,58 @@ static bool is_due(int64_t asked_ns, bool known)
     return asked_ns == 0 || clock_mono_ns() - asked_ns > (known ? OLD_NS : RETRY_NS);
 }
 
+bool openid_knows(struct openid *openid)
+{
+    pthread_mutex_lock(&openid->lock);
+    bool known = openid->metadata && openid->jwks;
+    pthread_mutex_unlock(&openid->lock);
+    return known;
+}
+
 bool openid_discover(struct openid *openid)
 {
+    pthread_mutex_lock(&openid->asking);
     if (is_due(openid->discovered_ns, openid->metadata != NULL))
         ask_metadata(openid);
     if (openid->metadata && is_due(openid->jwks_ns, openid->jwks != NULL))
         ask_keys(openid);
-    return openid->metadata && openid->jwks;
+    pthread_mutex_unlock(&openid->asking);
+    return openid_knows(openid);
 }
 
-json_t *openid_verify(struct openid *openid, const char *token, const char *nonce, const char *sub, const char **why)
+static json_t *take_keys(struct openid *openid)
 {
+    pthread_mutex_lock(&openid->lock);
+    json_t *keys = json_incref(openid->jwks);
+    pthread_mutex_unlock(&openid->lock);
+    return keys;
+}
+
+/* Has others than `keys`, unless they were asked for a moment ago. Returns false if the provider's present ones could not be had. */
+static bool renew_keys(struct openid *openid, const json_t *keys)
+{
+    pthread_mutex_lock(&openid->asking);
+    bool renewed = openid->jwks != keys; /* somebody else did */
+    if (!renewed && clock_mono_ns() - openid->jwks_ns > KEYS_NS)
+        renewed = ask_keys(openid);
+    pthread_mutex_unlock(&openid->asking);
+    return renewed;
+}
+
+json_t *openid_verify(struct openid *openid, const char *token, const char *nonce, const char *sub, bool *unsure, const char **why)
+{
+    json_t *keys = take_keys(openid), *claims;
     struct id_token_expected expected = {
-        .config = openid->config, .jwks = openid->jwks, .nonce = nonce, .sub = sub, .now_s = clock_utc_ns() / NS_PER_S
+        .config = openid->config, .jwks = keys, .nonce = nonce, .sub = sub, .now_s = clock_utc_ns() / NS_PER_S
     };
-    json_t *claims;
     enum id_token_fault fault = id_token_verify(token, &expected, &claims, why);
-    if (fault == ID_TOKEN_NO_KEY && clock_mono_ns() - openid->jwks_ns > KEYS_NS && ask_keys(openid)) {
-        expected.jwks = openid->jwks;
+    *unsure = fault == ID_TOKEN_NO_KEY && !renew_keys(openid, keys);
+    if (fault == ID_TOKEN_NO_KEY && !*unsure) {
+        json_decref(keys);
+        expected.jwks = keys = take_keys(openid);
         id_token_verify(token, &expected, &claims, why);
     }
+    json_decref(keys);
     return claims;
 }
 

@@ -83,7 +83,8 @@ static struct person *make_person(struct openid *openid, json_t *claims, const j
 static struct person *take_tokens(struct openid *openid, const struct openid_job *job, const json_t *tokens, char **why)
 {
     const char *id_token = text_of(tokens, "id_token"), *fault = "there is none";
-    json_t *claims = id_token ? openid_verify(openid, id_token, job->sign_in.nonce, NULL, &fault) : NULL;
+    bool unsure;
+    json_t *claims = id_token ? openid_verify(openid, id_token, job->sign_in.nonce, NULL, &unsure, &fault) : NULL;
     struct person *person = claims ? make_person(openid, claims, tokens, why) : NULL;
     if (!claims)
         *why = mem_printf("its ID token is not accepted: %s", fault);
@@ -91,7 +92,7 @@ static struct person *take_tokens(struct openid *openid, const struct openid_job
     return person;
 }
 
-struct person *openid_redeem(struct openid *openid, const struct openid_job *job, char **why)
+struct person *openid_redeem(struct openid *openid, const struct openid_job *job, enum openid_result *result, char **why)
 {
     struct text form = { 0 };
     struct openid_reply reply;
@@ -102,12 +103,18 @@ struct person *openid_redeem(struct openid *openid, const struct openid_job *job
     openid_add_argument(&form, "code_verifier", job->sign_in.verifier);
     bool answered = post(openid, "token_endpoint", &form, &reply);
     const char *error = text_of(reply.json, "error");
+    *result = !answered || reply.status >= 500 ? OPENID_AWAY : reply.status == 200 ? OPENID_REFUSED : OPENID_GUESSED;
     if (!answered)
         *why = mem_printf("the provider does not answer: %s", reply.why);
     else if (reply.status != 200)
         *why = mem_printf("the provider refuses the code: %.80s (status %d)", error ? error : "it does not say why", reply.status);
     else
         person = take_tokens(openid, job, reply.json, why);
+    if (!person && reply.status == 200) { /* what is of no use here must not stay in force there */
+        pthread_mutex_lock(&openid->lock);
+        openid_revoke_later(openid, text_of(reply.json, "refresh_token"));
+        pthread_mutex_unlock(&openid->lock);
+    }
     openid_reply_finish(&reply);
     text_finish(&form);
     return person;
@@ -153,9 +160,11 @@ static enum openid_rights refresh(struct openid *openid, struct person *person, 
         *why = "the provider ended the log-in";
     } else if (answered && reply.status == 200) {
         const char *id_token = text_of(reply.json, "id_token");
+        bool unsure = false;
         keep_tokens(person, reply.json);
-        json_t *claims = id_token ? openid_verify(openid, id_token, NULL, person->sub, why) : json_pack("{s:s}", "sub", person->sub);
-        rights = claims ? take_claims(openid, person, claims, why) : RIGHTS_GONE;
+        json_t *claims =
+            id_token ? openid_verify(openid, id_token, NULL, person->sub, &unsure, why) : json_pack("{s:s}", "sub", person->sub);
+        rights = claims ? take_claims(openid, person, claims, why) : unsure ? RIGHTS_UNKNOWN : RIGHTS_GONE;
         json_decref(claims);
     }
     openid_reply_finish(&reply);

@@ -154,7 +154,7 @@ void sign_ins_remove(struct sign_ins *table, struct person *person)
 }
 
 /* A person may have few sessions, and all people not more than there is room for: the oldest ends. */
-static void make_room(struct sign_ins *table, const char *sub)
+static void make_room(struct sign_ins *table, const char *sub, char **left)
 {
     struct person *same = NULL;
     int count = 0;
@@ -163,19 +163,24 @@ static void make_room(struct sign_ins *table, const char *sub)
             same = &table->people[i];
             count++;
         }
-    if (count >= PEOPLE_SAME)
-        sign_ins_remove(table, same);
-    else if (table->count >= PEOPLE)
-        sign_ins_remove(table, table->people);
+    struct person *goes = count >= PEOPLE_SAME ? same : table->count >= PEOPLE ? table->people : NULL;
+    if (!goes)
+        return;
+    *left = goes->refresh_token;
+    goes->refresh_token = NULL;
+    sign_ins_remove(table, goes);
 }
 
-bool sign_ins_add_person(struct sign_ins *table, struct person *person, char cookie[SIGN_IN_SECRET_CHARS + 1])
+bool sign_ins_add_person(struct sign_ins *table, struct person *person, char cookie[SIGN_IN_SECRET_CHARS + 1], char **left)
 {
+    *left = NULL;
     if (!sign_in_secret(cookie)) {
+        *left = person->refresh_token;
+        person->refresh_token = NULL;
         free_person(person);
         return false;
     }
-    make_room(table, person->sub);
+    make_room(table, person->sub, left);
     tokens_hash(cookie, person->holder.hash);
     person->number = ++table->next_number;
     mem_grow(&table->people, &table->capacity, table->count + 1, sizeof(*table->people));
@@ -213,7 +218,7 @@ struct person *sign_ins_next_check(struct sign_ins *table)
 {
     struct person *next = NULL;
     for (size_t i = 0; i < table->count; i++)
-        if (!next || table->people[i].check_ns < next->check_ns)
+        if (!table->people[i].checking && (!next || table->people[i].check_ns < next->check_ns))
             next = &table->people[i];
     return next;
 }

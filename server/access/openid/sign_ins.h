@@ -20,6 +20,7 @@ struct person {                 /* who is signed in; members that are texts are 
     int64_t began_utc_ns, access_until_s; /* UTC; 0: not said */
     int64_t check_ns;                     /* monotonic: when rights are to be checked next */
     uint64_t number;
+    bool checking; /* a thread is asking for them */
 };
 
 struct sign_ins;
@@ -33,13 +34,14 @@ const struct sign_in *sign_ins_begin(struct sign_ins *table, const uint8_t addre
    browser began it. */
 bool sign_ins_take(struct sign_ins *table, const char *state, const char *binding, int64_t now_ns, struct sign_in *out);
 
-/* Adds a person; takes its texts. cookie: the session's new secret. Returns false if the system has no randomness. */
-bool sign_ins_add_person(struct sign_ins *table, struct person *person, char cookie[SIGN_IN_SECRET_CHARS + 1]);
+/* Adds a person; takes its texts. cookie: the session's new secret. *left: the refresh token of a session that had to make room (mem_free);
+   NULL: none. Returns false if the system has no randomness. */
+bool sign_ins_add_person(struct sign_ins *table, struct person *person, char cookie[SIGN_IN_SECRET_CHARS + 1], char **left);
 /* Return the person of a cookie, of its hash, or with that number; NULL: none. Valid until the next call that adds or removes. */
 struct person *sign_ins_find(struct sign_ins *table, const char *cookie);
 struct person *sign_ins_find_hash(struct sign_ins *table, const uint8_t hash[TOKEN_HASH_BYTES]);
 struct person *sign_ins_numbered(struct sign_ins *table, uint64_t number);
-/* Returns the person whose rights are to be checked first; NULL: nobody is signed in. */
+/* Returns the person whose rights are to be checked first; NULL: nobody is signed in, or all are being checked. */
 struct person *sign_ins_next_check(struct sign_ins *table);
 /* Removes a person. */
 void sign_ins_remove(struct sign_ins *table, struct person *person);

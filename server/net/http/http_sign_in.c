@@ -59,24 +59,34 @@ int ask_login(struct server_context *server, struct request *request)
     return result;
 }
 
-/* What answers no log-in is a guess, and counts as a wrong token does. */
-static int refuse_guess(struct server_context *server, struct request *request)
+/* An answer that nobody waits for can be no guess at a secret of 256 bits, and another site's page can have a browser send it: it is
+   counted, and neither recorded nor held against the address. */
+static int refuse_unasked(struct server_context *server, struct request *request, enum openid_finish why)
 {
-    const struct connection *connection = connection_of(request->wsi);
-    enum login login = login_throttle_judge(server->login_throttle, connection->client->address, NULL, clock_mono_ns());
-    counter_inc(server->counters.logins_wrong, 1);
-    return request_answer_text(request, login == LOGIN_HELD ? 429 : HTTP_STATUS_FORBIDDEN,
-                               "no log-in of this browser waits for this answer; sign in again from the page\n");
+    server->unasked++;
+    return why == OPENID_FULL ? request_answer_later(request, "too many sign in at this moment; sign in again from the page\n")
+                              : request_answer_text(request, HTTP_STATUS_FORBIDDEN,
+                                                    "no log-in of this browser waits for this answer; sign in again from the page\n");
+}
+
+static int refuse_held(struct server_context *server, struct request *request)
+{
+    server->logins_held++;
+    counter_inc(server->counters.logins_held, 1);
+    return request_answer_text(request, 429, "too many wrong answers came from this address; try again later\n");
 }
 
 int ask_login_callback(struct server_context *server, struct request *request)
 {
     struct message_error error = { 0 };
+    const struct connection *connection = connection_of(request->wsi);
     struct args args;
     char binding[64] = "", name[64];
     size_t size = sizeof(binding);
     if (!server->openid)
         return request_answer_text(request, HTTP_STATUS_NOT_FOUND, NOT_HERE);
+    if (login_throttle_begin(server->login_throttle, connection->client->address, clock_mono_ns()) == LOGIN_HELD)
+        return refuse_held(server, request);
     if (!request_args(request->wsi, &args, &error))
         return request_answer_error(request, &error);
     snprintf(name, sizeof(name), "%s-b", openid_config_of(server->openid)->cookie);
@@ -89,11 +99,39 @@ int ask_login_callback(struct server_context *server, struct request *request)
                                            .iss = arg_of(&args, "iss"),
                                            .error = arg_of(&args, "error"),
                                            .binding = binding,
-                                           .from = connection_of(request->wsi)->address };
-    if (openid_finish(server->openid, &brought, clock_mono_ns()))
+                                           .from = connection->address };
+    enum openid_finish result = openid_finish(server->openid, &brought, clock_mono_ns());
+    if (result == OPENID_WAITS)
         return 0;
     request_forget(server, request);
-    return refuse_guess(server, request);
+    return refuse_unasked(server, request, result);
+}
+
+/* Whether or not somebody still waits for the answer. */
+static void count_refused(struct server_context *server, const struct openid_answer *answer)
+{
+    if (answer->result == OPENID_AWAY)
+        server->unasked++;
+    if (answer->result != OPENID_GUESSED)
+        return;
+    counter_inc(server->counters.logins_wrong, 1);
+    if (login_throttle_fail(server->login_throttle, answer->address, clock_mono_ns()) == LOGIN_WRONG_SLOWS)
+        log_warn(server->params.log, "login by OpenID Connect: that address is slowed, to one answer in %d s, until there was no wrong one "
+                                     "for a minute", LOGIN_WAIT_S);
+}
+
+static void answer_sign_in(struct server_context *server, struct request *request, const struct openid_answer *answer)
+{
+    const struct openid_config *config = openid_config_of(server->openid);
+    request_forget(server, request);
+    if (answer->result == OPENID_LET_IN) {
+        set_cookie(config, request, "", answer->cookie, (int)(config->hours * 3600));
+        request_answered(request, answer_redirect(request, answer->path));
+        return;
+    }
+    char *text = mem_printf("you are not signed in: %s\n", answer->why);
+    request_answered(request, request_answer_text(request, HTTP_STATUS_FORBIDDEN, text));
+    mem_free(text);
 }
 
 void http_on_sign_ins(struct server_context *server)
@@ -104,16 +142,9 @@ void http_on_sign_ins(struct server_context *server)
     for (struct openid_answer *next; answer; answer = next) {
         struct request *request = request_find(server, answer->request);
         next = answer->next;
-        if (request) {
-            request_forget(server, request);
-            if (answer->good)
-                set_cookie(openid_config_of(server->openid), request, "", answer->cookie,
-                           (int)(openid_config_of(server->openid)->hours * 3600));
-            char *text = answer->good ? NULL : mem_printf("you are not signed in: %s\n", answer->why);
-            request_answered(request, answer->good ? answer_redirect(request, answer->path)
-                                                   : request_answer_text(request, HTTP_STATUS_FORBIDDEN, text));
-            mem_free(text);
-        }
+        count_refused(server, answer);
+        if (request)
+            answer_sign_in(server, request, answer);
         openid_answer_free(answer);
     }
 }

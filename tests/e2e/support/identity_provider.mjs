@@ -13,6 +13,9 @@ export class IdentityProvider {
         this.sign = null;       // (text): another signature
         this.refreshes = true;  // refresh tokens are given, and taken
         this.status = 200;      // of refreshing
+        this.delay_ms = 0;      // until the token endpoint answers
+        this.keysStatus = 200;
+        this.live = new Map();  // refresh tokens that could be used, and whose they are
         this.codes = new Map();
         this.asked = [];
         this.rotate();
@@ -26,10 +29,10 @@ export class IdentityProvider {
         this.keys = [...(keep ? this.keys : []), { ...publicKey.export({ format: 'jwk' }), kid: this.kid, use: 'sig', alg: 'RS256' }];
     }
 
-    idToken(nonce) {
+    idToken(nonce, sub) {
         const now = Math.floor(Date.now() / 1000), header = { alg: 'RS256', kid: this.kid, typ: 'JWT' };
         const times = { iat: now, exp: now + 300, ...(nonce ? { nonce } : {}) };
-        const claims = { iss: this.issuer, aud: 'plant', sub: this.sub, ...times, ...this.claims };
+        const claims = { iss: this.issuer, aud: 'plant', sub, ...times, ...this.claims };
         this.change(claims, header);
         const text = `${encode(header)}.${encode(claims)}`;
         const signature = this.sign ? this.sign(text) : createSign('RSA-SHA256').update(text).sign(this.key).toString('base64url');
@@ -49,10 +52,18 @@ export class IdentityProvider {
     token(form, authorization) {
         if (Buffer.from(authorization?.split(' ')[1] ?? '', 'base64').toString() !== 'plant:geheim%20%2B')
             return [401, { error: 'invalid_client' }];
-        const tokens = (nonce) => ({ access_token: 'at', token_type: 'Bearer', expires_in: 3600, id_token: this.idToken(nonce),
-            ...(this.refreshes ? { refresh_token: randomUUID() } : {}) });
-        if (form.get('grant_type') === 'refresh_token')
-            return this.status === 200 ? [200, tokens(null)] : [this.status, { error: 'invalid_grant' }];
+        const given = randomUUID();
+        const tokens = (nonce, sub = this.sub) => {
+            if (this.refreshes)
+                this.live.set(given, sub);
+            return { access_token: 'at', token_type: 'Bearer', expires_in: 3600, id_token: this.idToken(nonce, sub),
+                ...(this.refreshes ? { refresh_token: given } : {}) };
+        };
+        if (form.get('grant_type') === 'refresh_token') {
+            const sub = this.live.get(form.get('refresh_token'));
+            this.live.delete(form.get('refresh_token'));
+            return this.status === 200 ? [200, tokens(null, sub)] : [this.status, { error: 'invalid_grant' }];
+        }
         const code = this.codes.get(form.get('code'));
         const challenge = createHash('sha256').update(form.get('code_verifier') ?? '').digest('base64url');
         this.codes.delete(form.get('code'));
@@ -67,9 +78,11 @@ export class IdentityProvider {
             return [200, { issuer: this.issuer, authorization_endpoint: at('auth'), token_endpoint: at('token'), jwks_uri: at('jwks'),
                 end_session_endpoint: at('end'), revocation_endpoint: at('revoke'), ...this.metadata }];
         if (path === '/jwks')
-            return [200, { keys: this.keys }];
+            return [this.keysStatus, { keys: this.keys }];
         if (path === '/token')
             return this.token(form, authorization);
+        if (path === '/revoke')
+            this.live.delete(form.get('token'));
         return path === '/revoke' ? [200, {}] : [404, {}];
     }
 
@@ -87,7 +100,8 @@ export class IdentityProvider {
                     return;
                 }
                 const [status, json] = this.answer(request.url, new URLSearchParams(body), request.headers.authorization);
-                response.writeHead(status, { 'Content-Type': 'application/json' }).end(JSON.stringify(json));
+                const say = () => response.writeHead(status, { 'Content-Type': 'application/json' }).end(JSON.stringify(json));
+                setTimeout(say, request.url === '/token' ? this.delay_ms : 0);
             });
         });
         return new Promise((done) => this.server.listen(port, '127.0.0.1', () => {
