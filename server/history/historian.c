@@ -299,9 +299,13 @@ static int apply_retention(struct historian *historian, int64_t mono_ns, int64_t
         error = month_file_tidy(historian->file);
     }
     if (mono_ns - historian->kept_ns >= KEEP_NS || !historian->kept_ns) {
-        const struct retention_limits limits = { historian->plant->history.keep_days, historian->plant->history.keep_gb * 1e9 };
+        const struct plant_history *history = &historian->plant->history;
+        const struct retention_limits limits = { history->keep_days, history->keep_gb * 1e9, historian->postgres != NULL };
+        int64_t unsent;
         historian->kept_ns = mono_ns;
-        counter_set(historian->counters.bytes, retention_apply(historian->log, historian->folder, &limits, utc_ns / 1000));
+        counter_set(historian->counters.bytes, retention_apply(historian->log, historian->folder, &limits, utc_ns / 1000, &unsent));
+        if (historian->postgres)
+            postgres_count_lost(historian->postgres, unsent);
         look_around(historian);
     }
     return error;

@@ -73,6 +73,10 @@ static const char *const sql[SQL_COUNT] = {
     [SQL_SHRINK] = "PRAGMA incremental_vacuum",
     [SQL_WAITING] = "SELECT count(*) FROM recent",
     [SQL_ADD_OUTBOX] = "INSERT INTO outbox(tag, t, v, q) VALUES(?, ?, ?, ?)",
+    [SQL_HAS_OUTBOX] = "SELECT 1 FROM sqlite_master WHERE type = 'table' AND name = 'outbox'",
+    /* In the order in which they came, up to the first that is newer: there is no index of their times. */
+    [SQL_CUT_OUTBOX] = "DELETE FROM outbox WHERE seq < coalesce((SELECT seq FROM outbox WHERE t >= ?1 ORDER BY seq LIMIT 1),"
+                       " (SELECT max(seq) + 1 FROM outbox))",
     [SQL_SPAN] = "SELECT min(a), max(b) FROM (SELECT min(t) AS a, max(t) AS b FROM recent UNION ALL SELECT min(t), max(t) FROM held"
                  " UNION ALL SELECT (SELECT min(t) FROM sample WHERE tag = id), (SELECT max(t) FROM sample WHERE tag = id) FROM tag)",
 };
@@ -91,6 +95,15 @@ static const struct database_format format = {
 sqlite3_stmt *month_sql(struct month_file *file, enum month_statement which)
 {
     return database_statement(&file->db, (int)which);
+}
+
+int month_has_outbox(struct month_file *file, bool *has)
+{
+    sqlite3_stmt *find = month_sql(file, SQL_HAS_OUTBOX);
+    int code = database_step(&file->db, find);
+    sqlite3_reset(find);
+    *has = code == SQLITE_ROW;
+    return code == SQLITE_DONE ? 0 : database_fail(&file->db, code, "cannot be read");
 }
 
 int month_run(struct month_file *file, sqlite3_stmt *statement, const char *doing)

@@ -46,15 +46,32 @@ static int cut_tags(struct month_file *file, int64_t until_us)
     return error ? error : month_run(file, events, "cannot delete events");
 }
 
-int month_file_cut(struct month_file *file, int64_t until_us, bool shrink)
+static int cut_outbox(struct month_file *file, int64_t until_us, int64_t *unsent)
 {
+    bool has = false;
+    int error = month_has_outbox(file, &has);
+    if (error || !has)
+        return error;
+    sqlite3_stmt *cut = month_sql(file, SQL_CUT_OUTBOX);
+    sqlite3_bind_int64(cut, 1, until_us);
+    error = month_run(file, cut, "cannot delete what was not sent");
+    *unsent += error ? 0 : sqlite3_changes(file->db.handle);
+    return error;
+}
+
+int month_file_cut(struct month_file *file, int64_t until_us, bool shrink, int64_t *unsent)
+{
+    int64_t cut = 0;
     int error = month_run(file, month_sql(file, SQL_BEGIN), "cannot begin to write");
     if (error)
         return error;
     error = cut_tags(file, until_us);
     if (!error)
+        error = cut_outbox(file, until_us, &cut);
+    if (!error)
         error = month_run(file, month_sql(file, SQL_COMMIT), "cannot commit");
     if (!sqlite3_get_autocommit(file->db.handle))
         database_run(&file->db, month_sql(file, SQL_ROLLBACK));
+    *unsent += error ? 0 : cut;
     return error || !shrink ? error : month_run(file, month_sql(file, SQL_SHRINK), "cannot be made smaller");
 }

@@ -12,7 +12,8 @@ enum month_statement {
     SQL_ADD_ROLLUP,
     SQL_RECENT, SQL_CLEAR_RECENT, SQL_LAST_SAMPLE, SQL_SAMPLES_FROM, SQL_ALL_HELD, SQL_CLEAR_HELD, SQL_CLEAR_ROLLUPS, SQL_NOTE,
     SQL_BEFORE, SQL_AFTER, SQL_RANGE, SQL_RECENT_OF, SQL_HELD_OF, SQL_ROLLUPS, SQL_RECENT_ALL, SQL_WAITING, SQL_SPAN, SQL_EVENTS,
-    SQL_ALL_TAGS, SQL_CUT_SAMPLES, SQL_CUT_ROLLUPS, SQL_CUT_EVENTS, SQL_SIZE, SQL_SHRINK, SQL_ADD_OUTBOX, SQL_COUNT
+    SQL_ALL_TAGS, SQL_CUT_SAMPLES, SQL_CUT_ROLLUPS, SQL_CUT_EVENTS, SQL_SIZE, SQL_SHRINK, SQL_ADD_OUTBOX, SQL_HAS_OUTBOX, SQL_CUT_OUTBOX,
+    SQL_COUNT
 };
 
 struct month_rollups {
@@ -36,6 +37,8 @@ struct month_file {
 sqlite3_stmt *month_sql(struct month_file *file, enum month_statement which);
 /* Steps to the end, and logs what fails. Returns 0 or -errno. */
 int month_run(struct month_file *file, sqlite3_stmt *statement, const char *doing);
+/* Finds whether the file has an outbox, whether or not this handle puts anything there. */
+int month_has_outbox(struct month_file *file, bool *has);
 struct history_point month_point(sqlite3_stmt *statement, int first_column);   /* t, v, q */
 /* The row of SQL_BEFORE or SQL_AFTER; t_us INT64_MIN: there is none. 0 or -errno. */
 int month_one_point(struct month_file *file, enum month_statement which, int64_t id, int64_t t_us, struct history_point *out);

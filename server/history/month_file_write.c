@@ -46,8 +46,9 @@ static int convert_unit(struct month_file *file, const struct history_tag *of)
     static const char *const columns[][2] = { { "sample", "v" },    { "recent", "v" },    { "held", "v" },       { "rollup", "low" },
                                               { "rollup", "high" }, { "rollup", "mean" }, { "rollup", "first" }, { "rollup", "last" },
                                               { "outbox", "v" } };
-    size_t count = sizeof(columns) / sizeof(columns[0]) - !file->has_outbox;
-    int error = 0;
+    bool has_outbox; /* of one who sent what was recorded, before this handle */
+    int error = month_has_outbox(file, &has_outbox);
+    size_t count = sizeof(columns) / sizeof(columns[0]) - !has_outbox;
     for (size_t i = 0; i < count && !error; i++) {
         char *sql = mem_printf("UPDATE %s SET %s = %s * %.17g + %.17g WHERE tag = %lld", columns[i][0], columns[i][1], columns[i][1],
                                change.factor, change.offset, (long long)id);

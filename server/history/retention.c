@@ -11,6 +11,7 @@
 #include "base/mem.h"
 #include "history/month.h"
 #include "history/month_file.h"
+#include "history/month_outbox.h"
 
 static const char *const parts[] = { "", "-wal", "-shm" };
 enum { PARTS = sizeof(parts) / sizeof(parts[0]), CUT_BYTES = 16000000 /* at once: whoever records waits */ };
@@ -62,7 +63,7 @@ static int64_t used_bytes(struct log *log, const char *folder, int month, bool n
 }
 
 /* Deletes the oldest part of a month, some of the bytes that are too many. Returns false if this cannot be done. */
-static bool cut_month(struct log *log, const char *folder, int month, bool newest, int64_t too_many)
+static bool cut_month(struct log *log, const char *folder, int month, bool newest, int64_t too_many, int64_t *unsent)
 {
     struct month_file_size size;
     int64_t first_us = INT64_MAX, last_us = INT64_MIN;
@@ -76,9 +77,20 @@ static bool cut_month(struct log *log, const char *folder, int month, bool newes
         too_many = too_many > size.free_bytes ? too_many - size.free_bytes : 0;
     double share = (double)(too_many < CUT_BYTES ? too_many : CUT_BYTES) / (double)(size.bytes - size.free_bytes);
     int64_t until_us = first_us + (int64_t)((double)(last_us - first_us) * share), latest_us = last_us - NEWEST_US;
-    bool good = month_file_cut(file, until_us < latest_us ? until_us : latest_us, !newest) == 0;
+    bool good = month_file_cut(file, until_us < latest_us ? until_us : latest_us, !newest, unsent) == 0;
     month_file_close(&file);
     return good;
+}
+
+static int64_t waiting_in(struct log *log, const char *folder, int month)
+{
+    int error;
+    int64_t count = 0;
+    struct month_outbox *outbox = month_outbox_open(log, folder, month, &error);
+    if (outbox && month_outbox_count(outbox, &count))
+        count = 0;
+    month_outbox_close(&outbox);
+    return count;
 }
 
 /* The size of all months without what SQLite keeps beside them, which is bounded. */
@@ -90,28 +102,45 @@ static int64_t all_used(struct log *log, const char *folder, const int *months, 
     return bytes;
 }
 
-int64_t retention_apply(struct log *log, const char *folder, const struct retention_limits *limits, int64_t now_us)
+/* Deletes a month as a whole. Returns false if it is still there. */
+static bool drop_month(struct log *log, const char *folder, int month, const char *why, int64_t waiting, int64_t *unsent)
+{
+    bool gone = delete_month(log, folder, month, why);
+    *unsent += gone ? waiting : 0;
+    return gone;
+}
+
+int64_t retention_apply(struct log *log, const char *folder, const struct retention_limits *limits, int64_t now_us, int64_t *unsent)
 {
     size_t count;
     int *months = month_list(folder, &count);
     int64_t left = 0, used = all_used(log, folder, months, count), oldest_us = now_us - (int64_t)(limits->days * 86400 * US_PER_S);
+    *unsent = 0;
     for (size_t i = 0; i < count; i++) {
         bool newest = i + 1 == count, old = limits->days > 0 && month_begin_us(months[i] + 1) <= oldest_us && !newest;
         double too_many = limits->bytes > 0 ? (double)used - limits->bytes : 0;
         int64_t of_month = part_bytes(folder, months[i], 0);
         if (!old && too_many <= 0)
             break;
-        bool whole = old || (!newest && too_many >= (double)of_month);
-        if (!whole && cut_month(log, folder, months[i], newest, (int64_t)(too_many + limits->bytes * CUT_BELOW)))
+        int64_t waiting = limits->sends && !newest ? waiting_in(log, folder, months[i]) : 0;
+        if (waiting > 0 && too_many <= 0)
+            continue;
+        bool whole = !newest && ((old && waiting == 0) || too_many >= (double)of_month);
+        if (!whole && cut_month(log, folder, months[i], newest, (int64_t)(too_many + limits->bytes * CUT_BELOW), unsent))
             break;
         if (newest)
             break;
         char *why = old ? mem_printf("older than %g days", limits->days)
                         : mem_printf("history takes %.1f MB, more than %.1f MB", (double)used / 1e6, limits->bytes / 1e6);
-        if (delete_month(log, folder, months[i], why))
+        if (drop_month(log, folder, months[i], why, waiting, unsent))
             used -= of_month;
         mem_free(why);
     }
+    if (!limits->sends)
+        *unsent = 0; /* nobody waits for what another configuration left there */
+    if (*unsent)
+        log_event(log, LOG_ERROR, EVENT_HISTORY_LOST,
+                  "history: %lld of the oldest points were deleted for keep_gb before PostgreSQL had taken them", (long long)*unsent);
     for (size_t i = 0; i < count; i++)
         for (int part = 0; part < PARTS; part++)
             left += part_bytes(folder, months[i], part);

@@ -20,6 +20,7 @@
 #include "history/history.h"
 #include "history/retention.h"
 #include "history/month.h"
+#include "history/month_outbox.h"
 #include "history/recorder.h"
 #include "tests/support/plant_by_hand.h"
 #include "tests/support/temp.h"
@@ -501,13 +502,14 @@ static void old_and_large_months_go(void **state)
         mem_free(name);
     }
     /* 100 days before November: 24 July */
-    assert_int_equal(retention_apply(s->log, s->folder, &(struct retention_limits){ .days = 100 }, NOVEMBER), 3000);
+    int64_t unsent;
+    assert_int_equal(retention_apply(s->log, s->folder, &(struct retention_limits){ .days = 100 }, NOVEMBER, &unsent), 3000);
     int *months = month_list(s->folder, &count);
     assert_int_equal(count, 3);
     assert_int_equal(months[0], month_of(NOVEMBER) - 4);
     mem_free(months);
-    assert_int_equal(retention_apply(s->log, s->folder, &(struct retention_limits){ .bytes = 2500 }, NOVEMBER), 2000);
-    assert_int_equal(retention_apply(s->log, s->folder, &(struct retention_limits){ .bytes = 1 }, NOVEMBER), 1000); /* the newest stays */
+    assert_int_equal(retention_apply(s->log, s->folder, &(struct retention_limits){ .bytes = 2500 }, NOVEMBER, &unsent), 2000);
+    assert_int_equal(retention_apply(s->log, s->folder, &(struct retention_limits){ .bytes = 1 }, NOVEMBER, &unsent), 1000); /* the newest stays */
     months = month_list(s->folder, &count);
     assert_int_equal(count, 1);
     assert_int_equal(months[0], month_of(NOVEMBER) - 2);
@@ -547,8 +549,9 @@ static int64_t size_of_month(const struct setup *s, int64_t t_us)
 
 static void apply_for_some_minutes(struct setup *s, int64_t limit, int64_t now_us)
 {
+    int64_t unsent;
     for (int minute = 0; minute < 10; minute++)
-        retention_apply(s->log, s->folder, &(struct retention_limits){ .bytes = (double)limit }, now_us);
+        retention_apply(s->log, s->folder, &(struct retention_limits){ .bytes = (double)limit }, now_us, &unsent);
 }
 
 static void check_what_is_left(struct setup *s, int64_t last_us)
@@ -606,6 +609,106 @@ static void a_month_that_is_over_shrinks(void **state)
     }
 }
 
+/* --- what waits for another database -------------------------------------------------------------------------------------------- */
+
+static int64_t waiting_in(const struct setup *s, int month)
+{
+    int error;
+    int64_t count = 0;
+    struct month_outbox *outbox = month_outbox_open(s->log, s->folder, month, &error);
+    if (outbox)
+        assert_int_equal(month_outbox_count(outbox, &count), 0);
+    month_outbox_close(&outbox);
+    return count;
+}
+
+/* Of the month of that time, a point a second, all of which wait. */
+static void record_to_send(struct setup *s, int64_t from_us, size_t count)
+{
+    int error;
+    struct month_file *file = month_file_open(s->log, s->folder, month_of(from_us), s->tags, TAGS, &error);
+    struct history_row *rows = mem_array(count, sizeof(*rows));
+    assert_non_null(file);
+    assert_int_equal(month_file_use_outbox(file), 0);
+    for (size_t i = 0; i < count; i++)
+        rows[i] = (struct history_row){ 0, { from_us + (int64_t)i * US_PER_S, (double)(i * 7919 % 1009), QUALITY_GOOD } };
+    assert_int_equal(month_file_write(file, rows, count, NULL, 0), 0);
+    assert_int_equal(month_file_tidy(file), 0);
+    month_file_close(&file);
+    mem_free(rows);
+}
+
+static void months_wait_for_what_is_to_be_sent(void **state)
+{
+    struct setup *s = *state;
+    int november = month_of(NOVEMBER);
+    int64_t march_us = month_begin_us(november + 4), unsent;
+    size_t count;
+    record_to_send(s, NOVEMBER, 100);
+    record_to_send(s, month_begin_us(november + 1), 20000);
+    record_to_send(s, march_us, 10);
+    struct retention_limits limits = { .days = 30, .bytes = 1e9, .sends = true };
+    retention_apply(s->log, s->folder, &limits, march_us, &unsent);
+    assert_int_equal(unsent, 0);
+    assert_int_equal(waiting_in(s, november), 100); /* too old, and room enough */
+    int error;
+    struct month_outbox *outbox = month_outbox_open(s->log, s->folder, november, &error);
+    assert_int_equal(month_outbox_shorten(outbox, 0), 0);
+    month_outbox_close(&outbox);
+    retention_apply(s->log, s->folder, &limits, march_us, &unsent);
+    assert_int_equal(unsent, 0);
+    mem_free(month_list(s->folder, &count));
+    assert_int_equal(count, 2); /* what was sent is not kept */
+    /* too large: the oldest part goes, of what waits too, and is counted */
+    int64_t waiting = waiting_in(s, november + 1), lost = 0;
+    assert_int_equal(waiting, 20000);
+    limits.bytes = (double)size_of_month(s, month_begin_us(november + 1)) * 0.7;
+    for (int minute = 0; minute < 10; minute++) {
+        retention_apply(s->log, s->folder, &limits, march_us, &unsent);
+        lost += unsent;
+    }
+    printf("# %lld of 20000 points went unsent\n", (long long)lost);
+    assert_in_range(lost, 1000, 19000);
+    assert_int_equal(waiting_in(s, november + 1), 20000 - lost);
+    /* and at last all of it */
+    limits.bytes = 1;
+    retention_apply(s->log, s->folder, &limits, march_us, &unsent);
+    assert_int_equal(unsent, 20000 - lost);
+    mem_free(month_list(s->folder, &count));
+    assert_int_equal(count, 1);
+    /* a plant that sends nothing any more waits for nothing */
+    record_to_send(s, NOVEMBER, 100);
+    retention_apply(s->log, s->folder, &(struct retention_limits){ .days = 30 }, march_us, &unsent);
+    assert_int_equal(unsent, 0);
+    mem_free(month_list(s->folder, &count));
+    assert_int_equal(count, 1);
+}
+
+/* Also through a handle that sends nothing: an import, or a daemon whose plant file names no database any more. */
+static void what_waits_is_converted_with_the_rest(void **state)
+{
+    struct setup *s = *state;
+    int error;
+    struct history_tag kelvin = { "TT-9", "K", false, 0 }, celsius = { "TT-9", "degC", false, 0 };
+    struct month_file *file = month_file_open(s->log, s->folder, month_of(NOVEMBER), &kelvin, 1, &error);
+    struct history_row row = { 0, { NOVEMBER, 373.15, QUALITY_GOOD } };
+    assert_int_equal(month_file_use_outbox(file), 0);
+    assert_int_equal(month_file_write(file, &row, 1, NULL, 0), 0);
+    month_file_close(&file);
+    file = month_file_open(s->log, s->folder, month_of(NOVEMBER), &celsius, 1, &error);
+    row.point = (struct history_point){ NOVEMBER + US_PER_S, 50, QUALITY_GOOD };
+    assert_int_equal(month_file_write(file, &row, 1, NULL, 0), 0);
+    month_file_close(&file);
+    struct month_outbox_batch batch = { 0 };
+    struct month_outbox *outbox = month_outbox_open(s->log, s->folder, month_of(NOVEMBER), &error);
+    assert_int_equal(month_outbox_read(outbox, 10, &batch), 0);
+    assert_int_equal(batch.row_count, 1);
+    assert_string_equal(batch.tags[0].unit, "degC");
+    assert_float_equal(batch.rows[0].point.value, 100, 1e-4);
+    month_outbox_batch_finish(&batch);
+    month_outbox_close(&outbox);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -624,6 +727,8 @@ int main(void)
         cmocka_unit_test_setup_teardown(old_and_large_months_go, set_up, tear_down),
         cmocka_unit_test_setup_teardown(a_month_that_is_too_large_loses_its_beginning, set_up, tear_down),
         cmocka_unit_test_setup_teardown(a_month_that_is_over_shrinks, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(months_wait_for_what_is_to_be_sent, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(what_waits_is_converted_with_the_rest, set_up, tear_down),
     };
     cmocka_set_message_output(CM_OUTPUT_TAP);
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -265,9 +265,14 @@ static void add_counters(struct postgres *postgres, struct counters *counters)
     postgres->counters.waiting =
         counters_add(counters, "plantcast_postgres_waiting_points", "gauge", "Recorded points that wait on disk for PostgreSQL.");
     postgres->counters.lost = counters_add(counters, "plantcast_postgres_lost_total", "counter",
-                                           "Points that PostgreSQL is not sent, since too many waited; the files here have them.");
+                                           "Points that PostgreSQL is not sent: too many waited, or keep_gb was reached.");
     postgres->counters.restored =
         counters_add(counters, "plantcast_postgres_restored_total", "counter", "Points of the past that were read from PostgreSQL.");
+}
+
+void postgres_count_lost(struct postgres *postgres, int64_t points)
+{
+    counter_inc(postgres->counters.lost, points);
 }
 
 struct postgres *postgres_start(const struct postgres_params *params)

@@ -20,6 +20,8 @@ struct postgres_params {
 struct postgres;
 /* Starts before anything is recorded in the folder. Returns NULL if there is no thread (logged). */
 struct postgres *postgres_start(const struct postgres_params *params);
+/* Counts points that were deleted from the files before they were sent. Thread: any. */
+void postgres_count_lost(struct postgres *postgres, int64_t points);
 /* Sends what is pending, for two seconds at most, and ends. &NULL is fine; leaves NULL. */
 void postgres_stop(struct postgres **postgres);
 
