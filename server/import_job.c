@@ -5,6 +5,7 @@
 #include <limits.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include "base/atomic_file.h"
@@ -16,9 +17,17 @@
 enum { FILES = 3, MOST_ARGUMENTS = 300 };
 static const size_t max_bytes = (size_t)256 << 20;
 
+struct texts {
+    char *at[FILES]; /* NULL: there is no file */
+};
+
 struct import_job {
     struct import_job_params params;
-    char *paths[FILES], *texts[FILES]; /* a text is NULL where there was no file */
+    char *folder, *paths[FILES];
+    struct texts first, read, last; /* at the beginning, after models were read, and after tags were matched */
+    ino_t revision;                 /* of the last revision before; 0: there was none */
+    bool prepares;                  /* preparing was begun */
+    bool undoes;                    /* nothing stops the program */
 };
 
 struct arguments {
@@ -27,26 +36,58 @@ struct arguments {
     size_t count, owned;
 };
 
+static void remember(const struct import_job *job, struct texts *texts)
+{
+    for (int i = 0; i < FILES; i++) {
+        size_t bytes;
+        mem_free(texts->at[i]);
+        texts->at[i] = text_read_file(job->paths[i], max_bytes, &bytes);
+    }
+}
+
+static void forget(struct texts *texts)
+{
+    for (int i = 0; i < FILES; i++)
+        mem_free(texts->at[i]);
+}
+
+/* Returns which folder it is that plantcast import keeps the files of before in; 0: there is none. Of two that are there one after the
+   other, the second was made beside the first, and is another one. */
+static ino_t find_revision(const struct import_job *job, const char *name)
+{
+    struct stat st;
+    char *path = mem_printf("%s/%s", job->folder, name);
+    ino_t found = stat(path, &st) == 0 ? st.st_ino : 0;
+    mem_free(path);
+    return found;
+}
+
 struct import_job *import_job_begin(const struct import_job_params *params)
 {
     struct import_job *job = mem_new(sizeof(*job));
+    const char *slash = strrchr(params->plant_path, '/');
     const char *const paths[FILES] = { params->plant_path, params->tags_path, plant_import_matches(params->import) };
     job->params = *params;
-    for (int i = 0; i < FILES; i++) {
-        size_t bytes;
+    job->folder = slash ? mem_printf("%.*s", (int)(slash - params->plant_path), params->plant_path) : mem_strdup(".");
+    for (int i = 0; i < FILES; i++)
         job->paths[i] = mem_strdup(paths[i]);
-        job->texts[i] = text_read_file(paths[i], max_bytes, &bytes);
-    }
+    job->revision = find_revision(job, ".revision");
+    remember(job, &job->first);
+    remember(job, &job->read);
+    remember(job, &job->last);
     return job;
 }
 
 void import_job_end(struct import_job **pointer)
 {
-    for (int i = 0; i < FILES; i++) {
-        mem_free((*pointer)->paths[i]);
-        mem_free((*pointer)->texts[i]);
-    }
-    mem_free(*pointer);
+    struct import_job *job = *pointer;
+    for (int i = 0; i < FILES; i++)
+        mem_free(job->paths[i]);
+    forget(&job->first);
+    forget(&job->read);
+    forget(&job->last);
+    mem_free(job->folder);
+    mem_free(job);
     *pointer = NULL;
 }
 
@@ -75,7 +116,7 @@ static void say(void *arg, const char *text)
 static bool stop(void *arg)
 {
     const struct import_job *job = arg;
-    return job->params.stop(job->params.arg);
+    return !job->undoes && job->params.stop(job->params.arg);
 }
 
 /* The report of preparing is for who adjusts it. */
@@ -96,7 +137,7 @@ static char *run(struct import_job *job, struct arguments *list, enum import_pha
     return why;
 }
 
-static char *read_models(struct import_job *job, const struct import_order *order, const struct export_list *exports, const char *folder)
+static char *read_models(struct import_job *job, const struct import_order *order, const struct export_list *exports)
 {
     struct arguments list = { 0 };
     size_t models = 0;
@@ -104,7 +145,7 @@ static char *read_models(struct import_job *job, const struct import_order *orde
     if (order->anew)
         add(&list, "--anew");
     add(&list, "-o");
-    add(&list, folder);
+    add(&list, job->folder);
     if (*order->units) {
         add(&list, "--units");
         add(&list, order->units);
@@ -149,6 +190,7 @@ static char *match_tags(struct import_job *job, const struct import_order *order
 static char *prepare(struct import_job *job)
 {
     struct arguments list = { 0 };
+    job->prepares = true;
     add(&list, "plantcast-prep");
     add(&list, "-o");
     add(&list, job->params.prepared);
@@ -159,11 +201,12 @@ static char *prepare(struct import_job *job)
 char *import_job_run(struct import_job *job, const struct import_order *order, char **remark)
 {
     struct export_list exports = { 0 };
-    const char *slash = strrchr(job->params.plant_path, '/');
-    char *folder = slash ? mem_printf("%.*s", (int)(slash - job->params.plant_path), job->params.plant_path) : mem_strdup(".");
     export_folder_list(plant_import_exports(job->params.import), &exports);
-    char *why = order->models ? read_models(job, order, &exports, folder) : NULL;
+    char *why = order->models ? read_models(job, order, &exports) : NULL;
+    remember(job, &job->read);
+    remember(job, &job->last);
     *remark = why ? NULL : match_tags(job, order, &exports);
+    remember(job, &job->last);
     if (*remark && (!order->models || stop(job))) {
         why = *remark;
         *remark = NULL;
@@ -171,15 +214,56 @@ char *import_job_run(struct import_job *job, const struct import_order *order, c
     if (!why)
         why = prepare(job);
     export_list_finish(&exports);
-    mem_free(folder);
     return why;
 }
 
-void import_job_undo(struct import_job *job)
+static bool same(const char *a, const char *b)
 {
+    return a && b ? !strcmp(a, b) : a == b;
+}
+
+/* Of files that are as the programs left them. */
+static void put_texts(const struct import_job *job, const struct texts *texts)
+{
+    struct texts now = { 0 };
+    remember(job, &now);
     for (int i = 0; i < FILES; i++)
-        if (job->texts[i])
-            atomic_file_put(job->paths[i], job->texts[i], strlen(job->texts[i]));
-        else
-            unlink(job->paths[i]);
+        if (same(now.at[i], job->last.at[i]) && !same(now.at[i], texts->at[i])) {
+            if (texts->at[i])
+                atomic_file_put(job->paths[i], texts->at[i], strlen(texts->at[i]));
+            else
+                unlink(job->paths[i]);
+        }
+    forget(&now);
+}
+
+/* A program that was killed while it replaced files has begun a revision, which the next one ends. */
+static bool has_revised(const struct import_job *job)
+{
+    ino_t now = find_revision(job, ".revision");
+    return (now != 0 && now != job->revision) || find_revision(job, ".revision.pending") != 0;
+}
+
+char *import_job_undo(struct import_job *job)
+{
+    struct arguments list = { 0 };
+    if (!has_revised(job)) {
+        put_texts(job, &job->first);
+        return NULL;
+    }
+    put_texts(job, &job->read);
+    add(&list, "plantcast-import");
+    add(&list, "--undo");
+    add(&list, "--force");
+    add(&list, "-o");
+    add(&list, job->folder);
+    job->undoes = true;
+    char *why = run(job, &list, IMPORT_READING);
+    job->undoes = false;
+    return why;
+}
+
+bool import_job_prepares(const struct import_job *job)
+{
+    return job->prepares;
 }

@@ -285,6 +285,31 @@ static bool is_cancelled(void *arg)
     return plant_import_cancelled(reload->import) || is_stopping(reload);
 }
 
+/* Takes the reason, and returns it with what goes wrong now. */
+static char *undo_import(struct reload *reload, struct import_job *job, char *why)
+{
+    char *worse = import_job_undo(job), *both = worse ? mem_printf("%s; and it cannot be undone: %s", why, worse) : NULL;
+    if (!worse && import_job_prepares(job))
+        prepare(reload); /* what was prepared before is still there: next to nothing to do */
+    if (both)
+        mem_free(why);
+    mem_free(worse);
+    log_err(reload->context->log, "import: %s", both ? both : why);
+    return both ? both : why;
+}
+
+static void record_import(const struct reload *reload, const struct import_order *order, const char *why)
+{
+    audit_say(reload->context->audit, &(struct audit_entry){ .event = "import",
+                                                             .result = why ? "failed" : "done",
+                                                             .who = reload->by,
+                                                             .what = order->anew     ? "the plant was made anew from its exports"
+                                                                     : order->models ? "models were read, tags matched"
+                                                                     : order->decides ? "decisions about tags were taken"
+                                                                                      : "tags were matched",
+                                                             .why = why });
+}
+
 static void import_now(struct reload *reload, const struct import_order *order)
 {
     const struct plant_runtime_context *context = reload->context;
@@ -301,10 +326,9 @@ static void import_now(struct reload *reload, const struct import_order *order)
         plant_import_set_phase(reload->import, IMPORT_LOADING);
         why = reload_now(reload) ? NULL : mem_strdup("the plant cannot be put in force; the log says why");
     }
-    if (why) {
-        log_err(context->log, "import: %s", why);
-        import_job_undo(job);
-    }
+    if (why)
+        why = undo_import(reload, job, why);
+    record_import(reload, order, why);
     plant_import_end(reload->import, why ? why : remark);
     import_job_end(&job);
     mem_free(remark);

@@ -11,7 +11,7 @@
 #include "preprocess/import/formats.h"
 #include "preprocess/import/options.h"
 #include "preprocess/import/plant_draft.h"
-#include "preprocess/import/revision/revise.h"
+#include "preprocess/import/revision/anew.h"
 #include "preprocess/import/revision/revision_files.h"
 #include "preprocess/import/serve.h"
 #include "preprocess/child/work_folder.h"
@@ -126,29 +126,27 @@ static int move_all(const struct import *import)
     return status;
 }
 
-static int write_plant(const struct import *import)
+static int bring_in(const struct import *import)
 {
     const struct plant_draft draft = {
         .name = import->name, .folder = import->folder, .models = import->models, .count = (size_t)import->count, .anew = import->anew
     };
-    return plant_draft_write(&draft) == 0 ? 0 : 1;
-}
-
-static int bring_in(struct import *import)
-{
+    const struct revise_params params = { .folder = import->folder,
+                                          .work = import->work.path,
+                                          .models = import->models,
+                                          .count = (size_t)import->count,
+                                          .dry_run = import->dry_run };
     char *plant = mem_printf("%s/plant.yaml", import->folder);
-    bool there = access(plant, F_OK) == 0 && !import->anew && !plant_draft_is_begun(plant);
+    bool there = access(plant, F_OK) == 0, anew = import->anew || plant_draft_is_begun(plant);
     mem_free(plant);
-    if (there)
-        return revise(&(struct revise_params){ .folder = import->folder,
-                                               .work = import->work.path,
-                                               .models = import->models,
-                                               .count = (size_t)import->count,
-                                               .dry_run = import->dry_run });
-    int status = import->dry_run ? fail_at(import->folder, "there is no plant yet that this could change") : 0;
-    if (status == 0)
-        status = move_all(import);
-    return status == 0 ? write_plant(import) : status;
+    if (there && !anew)
+        return revise(&params);
+    if (import->dry_run)
+        return fail_at(import->folder, "there is no plant yet that this could change");
+    if (anew)
+        return import_anew(&params, &draft);
+    int status = move_all(import);
+    return status == 0 && plant_draft_write(&draft) == 0 ? 0 : 1;
 }
 
 static int run(struct import *import)

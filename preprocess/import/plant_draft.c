@@ -202,38 +202,15 @@ static int fail_at(const char *path, const char *why)
     return -EIO;
 }
 
-/* The version before is kept. */
-static int replace(const char *path, const char *before, const char *text)
+static int write_new(const char *folder, const char *file, const char *text)
 {
-    char *kept = NULL, *why = NULL;
-    const struct tag_save save = { .path = (char *)(uintptr_t)path, .before = (char *)(uintptr_t)before, .after = (char *)(uintptr_t)text };
-    bool good = tag_file_put(&save, &kept, &why);
-    if (good)
-        printf("%s: made anew; as it was: %s\n", path, kept);
-    else
-        fail_at(path, why);
-    mem_free(kept);
-    mem_free(why);
-    return good ? 0 : -EIO;
-}
-
-static int write_new(const struct plant_draft *draft, const char *file, const char *text)
-{
-    char *path = mem_printf("%s/%s", draft->folder, file), *why = NULL;
+    char *path = mem_printf("%s/%s", folder, file);
     bool there = access(path, F_OK) == 0;
-    char *before = there ? tag_file_read(path, &why) : NULL;
-    bool ours = before && !strncmp(before, begun, strlen(begun)); /* nobody wrote into it */
-    int status = 0;
-    if (there && !before)
-        status = fail_at(path, why);
-    else if (there && !ours && (!draft->anew || !strcmp(before, text)))
+    int status = there ? 0 : atomic_file_put(path, text, strlen(text));
+    if (there)
         printf("%s: stays as it is\n", path);
-    else if (there && !ours)
-        status = replace(path, before, text);
-    else if ((status = atomic_file_put(path, text, strlen(text))) != 0)
+    else if (status != 0)
         fail_at(path, strerror(-status));
-    mem_free(before);
-    mem_free(why);
     mem_free(path);
     return status;
 }
@@ -256,24 +233,36 @@ size_t plant_draft_add_assets(const struct plant_draft_model *model, const bool 
     return added;
 }
 
-int plant_draft_write(const struct plant_draft *draft)
+char *plant_draft_text(const struct plant_draft *draft, size_t *assets)
 {
     struct text out = { 0 };
-    size_t assets = 0;
     json_t *ids = json_object();
+    *assets = 0;
     text_add(&out, "%s  name: ", head);
     add_quoted(&out, draft->name);
     text_add(&out, "\n\nassets:\n");
     for (size_t m = 0; m < draft->count; m++)
-        assets += plant_draft_add_assets(&draft->models[m], NULL, ids, &out);
+        *assets += plant_draft_add_assets(&draft->models[m], NULL, ids, &out);
     json_decref(ids);
     text_add(&out, "%s", tail);
-    int status = write_new(draft, "plant.yaml", out.at);
+    return out.at;
+}
+
+const char *plant_draft_tags(void)
+{
+    return tags_head;
+}
+
+int plant_draft_write(const struct plant_draft *draft)
+{
+    size_t assets;
+    char *text = plant_draft_text(draft, &assets);
+    int status = write_new(draft->folder, "plant.yaml", text);
     if (status == 0)
-        status = write_new(draft, "tags.csv", tags_head);
+        status = write_new(draft->folder, "tags.csv", tags_head);
     if (status == 0)
         printf("%s/plant.yaml: %zu assets\n", draft->folder, assets);
-    text_finish(&out);
+    mem_free(text);
     return status;
 }
 
@@ -310,7 +299,6 @@ static int write_person(const char *path)
 
 int plant_draft_begin(const char *folder)
 {
-    const struct plant_draft draft = { .folder = folder };
     char *plant = mem_printf("%s/plant.yaml", folder), *person = mem_printf("%s/person.glb", folder);
     char *text = mem_printf("%s%s", begun, tail);
     int status = 0;
@@ -319,9 +307,9 @@ int plant_draft_begin(const char *folder)
         if (status != 0)
             fail_at(person, strerror(-status));
         if (status == 0)
-            status = write_new(&draft, "tags.csv", tags_head);
+            status = write_new(folder, "tags.csv", tags_head);
         if (status == 0)
-            status = write_new(&draft, "plant.yaml", text);
+            status = write_new(folder, "plant.yaml", text);
     }
     mem_free(text);
     mem_free(person);

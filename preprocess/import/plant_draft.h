@@ -15,15 +15,19 @@ struct plant_draft {
     const char *name, *folder;
     const struct plant_draft_model *models;
     size_t count;
-    bool anew; /* plant.yaml and tags.csv that are there are kept as NAME.1, NAME.2, ..., and others take their place */
+    bool anew; /* plant file and tag list that are there count for nothing */
 };
 
 /* Appends a line for each asset that the model is to have, of those whose nodes `wanted` marks (NULL: all), to a list of assets. ids are
  * the keys of an object; new ones are added to it. Returns how many there are. */
 size_t plant_draft_add_assets(const struct plant_draft_model *model, const bool *wanted, json_t *ids, struct text *out);
 
-/* Writes FOLDER/plant.yaml and FOLDER/tags.csv. One that is there may have been changed by a person, and stays, unless `anew` is set; what
- * plant_draft_begin() wrote is replaced. Returns 0, or -errno, already printed. */
+/* Returns the text of its plant file, and how many assets that has; mem_free. */
+char *plant_draft_text(const struct plant_draft *draft, size_t *assets);
+/* Returns the text of a tag list without tags; static. */
+const char *plant_draft_tags(void);
+/* Writes FOLDER/plant.yaml and FOLDER/tags.csv. One that is there may have been changed by a person, and stays. Returns 0, or -errno,
+ * already printed. */
 int plant_draft_write(const struct plant_draft *draft);
 /* Returns whether a plant file is as plant_draft_begin() wrote it. */
 bool plant_draft_is_begun(const char *path);

@@ -17,7 +17,7 @@
 #include "preprocess/match/plant_trial.h"
 #include "preprocess/match/tag_rows.h"
 
-static const size_t max_plant_bytes = (size_t)64 << 20;
+static const size_t max_plant_bytes = (size_t)64 << 20, max_list_bytes = (size_t)256 << 20;
 
 struct run {
     const struct matching_params *params;
@@ -32,6 +32,7 @@ struct run {
     struct tag_rows rows;
     struct tag_source source;
     char *plant_text, *new_text; /* the plant file as it is, and as it will be */
+    char *plant_before, *tags_before, *matches_before; /* as they were read; NULL: they were not there */
     struct text tags_text, matches_text, left_names; /* the first of those that are no longer in the list */
     size_t left, by_hand, left_out, written, assumed, own_nodes;
 };
@@ -123,6 +124,11 @@ static bool read_all(struct run *run)
     run->plant_text = text_read_file(params->plant, max_plant_bytes, &bytes);
     if (!run->plant_text)
         return fail_at(params->plant, strerror(errno));
+    char *path = beside(run, "matches.csv");
+    run->plant_before = mem_strdup(run->plant_text);
+    run->tags_before = text_read_file(run->plant->tags_path, max_list_bytes, &bytes);
+    run->matches_before = text_read_file(path, max_list_bytes, &bytes);
+    mem_free(path);
     if (!model_index_read(&run->site, run->plant, why))
         return fail_at(params->plant, why);
     if (params->equipment_count > 0 && !choose_equipment(run))
@@ -131,7 +137,7 @@ static bool read_all(struct run *run)
         return fail_at(params->tags, why);
     print_list(run);
     run->matcher.site = &run->site;
-    char *path = beside(run, "matches.csv");
+    path = beside(run, "matches.csv");
     bool good = !params->decisions || decisions_read(&run->before, params->decisions, why) || fail_at(params->decisions, why);
     good = good && (decisions_read(&run->before, path, why) || fail_at(path, why));
     mem_free(path);
@@ -330,10 +336,20 @@ static bool compose_plant(struct run *run, bool placeholder)
 
 /* --- writing ---------------------------------------------------------------------------------------------------------------- */
 
+/* Looked at last: reading and matching may take minutes, in which others save. */
+static bool is_as_read(const char *path, const char *before)
+{
+    size_t length = 0;
+    char *now = text_read_file(path, max_list_bytes, &length);
+    bool is = before && now ? !strcmp(before, now) : before == now;
+    mem_free(now);
+    return is || fail_at(path, "was changed by somebody else meanwhile; nothing was written: run it again");
+}
+
 static bool write_one(const char *path, const char *text)
 {
     size_t length = 0;
-    char *now = text_read_file(path, max_plant_bytes * 4, &length);
+    char *now = text_read_file(path, max_list_bytes, &length);
     bool same = now && !strcmp(now, text);
     int status = same ? 0 : atomic_file_put(path, text, strlen(text));
     mem_free(now);
@@ -371,8 +387,9 @@ static bool write_all(struct run *run)
     if (good)
         print_result(run);
     if (good && !run->params->dry_run)
-        good = write_one(run->plant->tags_path, run->tags_text.at) && write_one(matches_path, run->matches_text.at) &&
-               write_one(run->params->plant, run->new_text);
+        good = is_as_read(run->params->plant, run->plant_before) && is_as_read(run->plant->tags_path, run->tags_before) &&
+               is_as_read(matches_path, run->matches_before) && write_one(run->plant->tags_path, run->tags_text.at) &&
+               write_one(matches_path, run->matches_text.at) && write_one(run->params->plant, run->new_text);
     mem_free(matches_path);
     return good;
 }
@@ -393,6 +410,9 @@ static void finish(struct run *run)
     text_finish(&run->left_names);
     mem_free(run->plant_text);
     mem_free(run->new_text);
+    mem_free(run->plant_before);
+    mem_free(run->tags_before);
+    mem_free(run->matches_before);
 }
 
 int matching_run(const struct matching_params *params)

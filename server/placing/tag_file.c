@@ -47,8 +47,8 @@ void tag_file_hash(const char *text, char out[17])
     snprintf(out, 17, "%016" PRIx64, (uint64_t)XXH3_64bits(text, strlen(text)));
 }
 
-/* The list as it is, under a name that was free: another link to the same file, so that owner and rights stay with it. */
-static char *keep(const char *path, char **why)
+/* Owner and rights stay with it. */
+char *tag_file_keep(const char *path, char **why)
 {
     for (int n = 1; n < MOST_VERSIONS; n++) {
         char *name = mem_printf("%s.%d", path, n);
@@ -92,7 +92,7 @@ bool tag_file_put(const struct tag_save *save, char **kept, char **why)
     if (now && !same)
         *why = mem_printf("%s was changed by somebody else meanwhile", base_name(save->path));
     mem_free(now);
-    char *name = same ? keep(save->path, why) : NULL;
+    char *name = same ? tag_file_keep(save->path, why) : NULL;
     if (!name)
         return false;
     int error = replace(save);

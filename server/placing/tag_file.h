@@ -21,6 +21,9 @@ void tag_save_free(struct tag_save *save);
 char *tag_file_read(const char *path, char **why);
 /* Writes a hash of the text as 16 hexadecimal digits, by which two versions are told apart. */
 void tag_file_hash(const char *text, char out[17]);
+/* Keeps the file as it is now under a name that was free, NAME.1, NAME.2, ...: a second link to it. Returns that name, or NULL with the
+   reason in *why; mem_free. */
+char *tag_file_keep(const char *path, char **why);
 /* Saves save->after under the list's name. *kept receives the name under which the previous version is kept. Returns false with nothing
    changed on disk and the reason in *why. The caller frees either (mem_free). */
 bool tag_file_put(const struct tag_save *save, char **kept, char **why);

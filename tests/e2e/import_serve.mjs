@@ -2,7 +2,8 @@
 // `plantcast import --serve`: a plant is brought in on the page. Files are dropped, tags gone through and decided, units corrected.
 import assert from 'node:assert/strict';
 import { spawn } from 'node:child_process';
-import { existsSync, mkdtempSync, readdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
+import { createHash } from 'node:crypto';
+import { existsSync, mkdtempSync, readdirSync, readFileSync, renameSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
@@ -194,6 +195,55 @@ test('what goes wrong is one line, and the plant before stays', options, async (
         await served.post('/cancel');
         const { failed } = await served.idle();
         assert.ok(failed === null || /ended before it was done/.test(failed), failed);
+    } finally {
+        await served.destroy();
+    }
+});
+
+test('an import that fails or is cancelled once the new models are in place: the models before come back, too', options, async () => {
+    const served = await Served.start();
+    const files = () => Object.fromEntries(readdirSync(served.folder, { withFileTypes: true }) // but for versions that are kept
+        .filter((entry) => entry.isFile() && !/\.\d+$/.test(entry.name))
+        .map(({ name }) => [name, createHash('md5').update(readFileSync(join(served.folder, name))).digest('hex')]));
+    const bring = async (names, how = '') => {
+        await served.post('/upload?name=plant.gltf', boxes(names));
+        await served.post(`/run${how}`);
+    };
+    try {
+        await served.post('/upload?name=tags.csv', TAGS);
+        const prepared = join(served.folder, readdirSync(served.folder).find((name) => /prepared/.test(name)));
+        const breaks = async (how) => { // nothing can be prepared
+            renameSync(prepared, `${prepared}.away`);
+            writeFileSync(prepared, '');
+            const before = files();
+            await bring([...NAMES, 'K-501'], how);
+            const { failed } = await served.idle();
+            assert.match(failed, /prepared/);
+            assert.doesNotMatch(failed, /undone/);
+            assert.deepEqual(files(), before, `as before: ${how}`);
+            rmSync(prepared);
+            renameSync(`${prepared}.away`, prepared);
+        };
+        await breaks('');
+        assert.match(served.read('plant.yaml'), /person\.glb/);
+        await bring(NAMES);
+        assert.equal((await served.idle()).failed, null);
+        await breaks('');
+        await breaks('?what=anew&units=ft');
+        // What somebody else saves meanwhile is not lost.
+        const before = files(), more = Array.from({ length: 60 }, (_, i) => `X-${i}`);
+        await bring([...NAMES, ...more]);
+        while (['reading', 'matching'].includes((await (await served.api('')).json()).phase))
+            await new Promise((done) => setTimeout(done, 10));
+        writeFileSync(join(served.folder, 'matches.csv'), 'mine\n');
+        await served.post('/cancel');
+        const { failed } = await served.idle(), after = files(), mine = createHash('md5').update('mine\n').digest('hex');
+        if (failed !== null) {
+            assert.deepEqual([after['plant.yaml'], after['plant.glb'], after['tags.csv']],
+                [before['plant.yaml'], before['plant.glb'], before['tags.csv']]);
+            assert.ok([after['matches.csv'], after['matches.csv.undone']].includes(mine));
+        }
+        assert.equal(readdirSync(served.folder).filter((name) => /^\.(import|revision\.)/.test(name)).length, 0);
     } finally {
         await served.destroy();
     }

@@ -2,8 +2,8 @@
 // `plantcast match`: tag lists made from the names of real plants, matched and counted against the truth; lists that are in a bad way; what
 // people change by hand and a second run; and the whole way from an export of a CAD system to a picture.
 import assert from 'node:assert/strict';
-import { spawnSync } from 'node:child_process';
-import { copyFileSync, existsSync, mkdtempSync, readdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
+import { spawn, spawnSync } from 'node:child_process';
+import { copyFileSync, existsSync, mkdtempSync, readdirSync, readFileSync, rmSync, watch, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { test } from 'node:test';
@@ -182,6 +182,41 @@ test('what people change stays; a second run changes nothing', { skip: notBuilt 
     writeFileSync(list, `${readFileSync(list, 'utf8')}XT_7,degC,0,90,Feed tank shell\n`);
     match();
     assert.match(readFileSync(join(folder, 'matches.csv'), 'utf8'), /XT_7,sure,V-201,.*alias 'feed tank'/);
+}));
+
+test('what somebody saves while tags are matched is not replaced', { skip: notBuilt }, () => inFolder(async (folder) => {
+    boxPlant(folder, ['E-101']);
+    const list = join(folder, 'export.csv'), mine = 'Tag,Status,Asset\nE-101.TT-01,none,\n';
+    const rows = ['Tag Name,Eng Units', ...Array.from({ length: 5000 }, (_, i) => `E-101.TT-${i},degC`)].join('\n');
+    writeFileSync(list, rows);
+    good(run('plantcast', 'match', folder, list));
+    const first = readFileSync(join(folder, 'matches.csv'), 'utf8');
+    for (let stopped = false, tries = 0; !stopped; tries++) {
+        assert.ok(tries < 20, 'it was never seen at work');
+        writeFileSync(join(folder, 'matches.csv'), first);
+        writeFileSync(list, `${rows}\nE-101.XT-${tries},degC\n`);
+        const child = spawn(join(BIN, 'plantcast-match'), [folder, list], { timeout: 60000 });
+        const ended = new Promise((done) => child.once('exit', done)), watched = watch(folder);
+        let said = '';
+        child.stderr.on('data', (piece) => { said += piece; });
+        watched.on('change', (_, name) => { // it has read and matched, and looks whether the result is good
+            if (!/^\.trial/.test(name) || stopped || child.exitCode !== null)
+                return;
+            child.kill('SIGSTOP');
+            stopped = existsSync(join(folder, `.trial.${child.pid}.yaml`)); // it has not written yet
+            if (stopped)
+                writeFileSync(join(folder, 'matches.csv'), mine);
+            child.kill('SIGCONT');
+        });
+        const status = await ended;
+        watched.close();
+        if (!stopped)
+            continue;
+        assert.equal(status, 1, said);
+        assert.match(said, /matches\.csv: was changed by somebody else meanwhile; nothing was written/);
+        assert.equal(readFileSync(join(folder, 'matches.csv'), 'utf8'), mine);
+        assert.doesNotMatch(readFileSync(join(folder, 'tags.csv'), 'utf8'), new RegExp(`XT-${tries},`));
+    }
 }));
 
 // Kepware's export of a device, of a plant that PDMS drew: no line of either is changed by hand.

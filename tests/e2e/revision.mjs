@@ -3,7 +3,9 @@
 // daemon that runs; taken back; killed, and out of disk.
 import assert from 'node:assert/strict';
 import { spawn, spawnSync } from 'node:child_process';
-import { copyFileSync, cpSync, existsSync, mkdtempSync, readdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
+import {
+    copyFileSync, cpSync, existsSync, lstatSync, mkdirSync, mkdtempSync, readdirSync, readFileSync, rmSync, symlinkSync, writeFileSync,
+} from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { test } from 'node:test';
@@ -186,6 +188,38 @@ T6;temperature;second;TT-9;;;;;f
     assert.match(readFileSync(join(plant, 'plant.yaml'), 'utf8'), /- \{ id: "G", model: "n\.glb", nodes: "G" \}\n/);
     good(run('plantcast', 'import', '--undo', '-o', plant));
     assert.deepEqual(filesOf(plant), first);
+}));
+
+test('a tag list in a folder of its own, or behind a link', { skip: notBuilt }, () => inFolder((folder) => {
+    const model = join(folder, 'm.gltf'), lists = join(folder, 'lists'), list = join(lists, 'tags.csv');
+    const A = { name: 'A', at: [0, 0, 0] }, B = { name: 'B', at: [5, 0, 0] };
+    for (const linked of [false, true]) {
+        const plant = join(folder, linked ? 'linked' : 'elsewhere');
+        boxes(model, [A, B]);
+        good(run('plantcast', 'import', model, '-o', plant));
+        mkdirSync(lists, { recursive: true });
+        writeFileSync(list, 'Tag Name,Address,Data Type,Eng Units,Description,Source,Group,Asset,Node,X,Y,Z\n' +
+            'TT-1,,,,,,temperature,A,,0.5,1,0.5\nTT-2,,,,,,temperature,B,,5.5,1,0.5\n');
+        rmSync(join(plant, 'tags.csv'));
+        if (linked)
+            symlinkSync(list, join(plant, 'tags.csv'));
+        else
+            writeFileSync(join(plant, 'plant.yaml'), readFileSync(join(plant, 'plant.yaml'), 'utf8')
+                .replace('tags: tags.csv', 'tags: ../lists/tags.csv'));
+        const before = readFileSync(list, 'utf8');
+        boxes(model, [{ ...A, at: [0, 0, 3] }, { name: 'C', at: [40, 0, 0] }]);
+        assert.match(good(run('plantcast', 'import', model, '-o', plant, '--dry-run')).stdout, /tags: 1 moved, 1 equipment lost/);
+        assert.equal(readFileSync(list, 'utf8'), before);
+        good(run('plantcast', 'import', model, '-o', plant));
+        const after = readFileSync(list, 'utf8');
+        assert.match(after, /^TT-1,.*,A,,0\.5,-2,0\.5$/m);
+        assert.match(after, /^TT-2,.*,,,,,$/m);
+        assert.equal(lstatSync(join(plant, 'tags.csv'), { throwIfNoEntry: false })?.isSymbolicLink() ?? false, linked);
+        good(run('plantcastd', '--check', join(plant, 'plant.yaml')));
+        good(run('plantcast', 'import', '--undo', '-o', plant));
+        assert.equal(readFileSync(list, 'utf8'), before);
+        assert.deepEqual(readdirSync(lists), ['tags.csv']);
+    }
 }));
 
 test('under a daemon that runs: readings, history and alarms keep their tags', { skip: noData, timeout: 300000 }, async () => {

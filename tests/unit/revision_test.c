@@ -43,29 +43,46 @@ int rename(const char *from, const char *to)
 /* --- files ------------------------------------------------------------------------------------------------------------------- */
 
 static const char *const names[] = { "model.glb", "tags.csv", "plant.yaml", "new.glb" };
-enum { FILES = 4, WERE = 3 };
+enum { FILES = 4, PLANT = 2, WERE = 3 };
 
 static void begin(const char *folder)
 {
     for (int i = 0; i < WERE; i++)
         mem_free(temp_write_text(folder, names[i], "old"));
+    char *lists = mem_printf("%s/lists", folder);
+    mkdir(lists, 0777);
+    mem_free(temp_write_text(lists, "tags.csv", "old"));
+    mem_free(lists);
+    mem_free(temp_write_text(folder, "matches.csv", "old"));
+}
+
+/* Also replaces a list in a folder of its own, and remembers one that stays as it is. */
+static int apply_to(const char *folder, const char *plant_as_read)
+{
+    char *own = mem_printf("%s/.import-1", folder), *list = mem_printf("%s/lists/tags.csv", folder);
+    struct revision_file files[FILES + 2];
+    const char *changed = NULL;
+    mkdir(own, 0777);
+    int lock = revision_files_lock(folder, own);
+    for (int i = 0; i < FILES; i++)
+        files[i] = (struct revision_file){ names[i], temp_write_text(own, names[i], "new"), i == PLANT ? plant_as_read : NULL };
+    files[FILES] = (struct revision_file){ list, temp_write_text(own, "list", "new"), "old" };
+    files[FILES + 1] = (struct revision_file){ "matches.csv", NULL, "old" };
+    int status = lock < 0 ? lock : revision_files_apply(folder, own, files, FILES + 2, &changed);
+    if (status == -ESTALE)
+        assert_string_equal(changed, "plant.yaml");
+    for (int i = 0; i <= FILES; i++)
+        mem_free(files[i].made);
+    if (lock >= 0)
+        close(lock);
+    mem_free(list);
+    mem_free(own);
+    return status;
 }
 
 static int apply(const char *folder)
 {
-    char *own = mem_printf("%s/.import-1", folder);
-    struct revision_file files[FILES];
-    mkdir(own, 0777);
-    int lock = revision_files_lock(folder, own);
-    for (int i = 0; i < FILES; i++)
-        files[i] = (struct revision_file){ names[i], temp_write_text(own, names[i], "new") };
-    int status = lock < 0 ? lock : revision_files_apply(folder, own, files, FILES);
-    for (int i = 0; i < FILES; i++)
-        mem_free(files[i].made);
-    if (lock >= 0)
-        close(lock);
-    mem_free(own);
-    return status;
+    return apply_to(folder, NULL);
 }
 
 static int undo(const char *folder, bool forced)
@@ -94,7 +111,7 @@ static bool all(const char *folder, bool new)
     bool good = true;
     for (int i = 0; i < FILES; i++)
         good &= says(folder, names[i], new ? "new" : i < WERE ? "old" : NULL);
-    return good;
+    return good && says(folder, "lists/tags.csv", new ? "new" : "old") && says(folder, "matches.csv", "old");
 }
 
 /* --- tests ------------------------------------------------------------------------------------------------------------------- */
@@ -125,6 +142,32 @@ static void what_people_changed_since_is_not_undone_unless_forced(void **state)
     assert_int_equal(undo(folder, true), 0);
     assert_true(all(folder, false));
     assert_true(says(folder, "tags.csv.undone", "mine"));
+    temp_folder_destroy(&folder);
+}
+
+static void what_was_saved_meanwhile_is_not_replaced(void **state)
+{
+    char *folder = temp_folder_create();
+    (void)state;
+    begin(folder);
+    mem_free(temp_write_text(folder, "plant.yaml", "mine"));
+    assert_int_equal(apply_to(folder, "old"), -ESTALE);
+    assert_true(says(folder, "plant.yaml", "mine") && says(folder, "model.glb", "old") && says(folder, "lists/tags.csv", "old"));
+    assert_int_equal(undo(folder, false), -ENOENT);
+    temp_folder_destroy(&folder);
+}
+
+static void what_only_was_remembered_comes_back_too(void **state)
+{
+    char *folder = temp_folder_create();
+    (void)state;
+    begin(folder);
+    assert_int_equal(apply(folder), 0);
+    mem_free(temp_write_text(folder, "matches.csv", "others'"));
+    assert_int_equal(undo(folder, false), -EBUSY);
+    assert_int_equal(undo(folder, true), 0);
+    assert_true(all(folder, false));
+    assert_true(says(folder, "matches.csv.undone", "others'"));
     temp_folder_destroy(&folder);
 }
 
@@ -309,6 +352,8 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(all_files_come_and_go_together),
         cmocka_unit_test(what_people_changed_since_is_not_undone_unless_forced),
+        cmocka_unit_test(what_was_saved_meanwhile_is_not_replaced),
+        cmocka_unit_test(what_only_was_remembered_comes_back_too),
         cmocka_unit_test(rights_of_a_file_stay),
         cmocka_unit_test(killed_at_any_step_it_is_all_or_nothing),
         cmocka_unit_test(out_of_disk_at_any_step_it_is_all_or_nothing),

@@ -3,7 +3,9 @@
 #include "preprocess/import/revision/revise.h"
 
 #include <errno.h>
+#include <limits.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
@@ -26,6 +28,7 @@ struct revising {
     const struct revise_params *params;
     struct plant *plant;
     char *plant_path, *plant_text, *tags_text, *matches_text;
+    char *tags_name; /* in the folder; else its path */
     struct revision_model *models;
     size_t model_count;
     struct revision revision;
@@ -52,6 +55,22 @@ static char *read_text(const char *path, int *status)
     return text;
 }
 
+/* The tag list itself, where there is a link to it; it may have a folder of its own, in which it can be replaced. */
+static int find_tags(struct revising *r)
+{
+    char folder[PATH_MAX], path[PATH_MAX];
+    if (!realpath(r->params->folder, folder) || !realpath(r->plant->tags_path, path))
+        return fail_at(r->plant->tags_path, strerror(errno));
+    char *slash = strrchr(path, '/');
+    *slash = 0;
+    bool beside = !strcmp(folder, path);
+    if (!beside && access(*path ? path : "/", W_OK | X_OK) != 0)
+        return fail_at(r->plant->tags_path, "its folder cannot be written to");
+    *slash = '/';
+    r->tags_name = mem_strdup(beside ? slash + 1 : path);
+    return 0;
+}
+
 static int read_plant(struct revising *r)
 {
     int status = 0;
@@ -61,6 +80,8 @@ static int read_plant(struct revising *r)
     if (r->plant) {
         r->plant_text = read_text(r->plant_path, &status);
         r->tags_text = r->plant->tags_path ? read_text(r->plant->tags_path, &status) : NULL;
+        if (r->tags_text && status == 0)
+            status = find_tags(r);
         r->matches_text = read_text(matches, &status);
     }
     mem_free(matches);
@@ -145,40 +166,44 @@ static void write_review(struct revising *r)
 
 /* --- the files ------------------------------------------------------------------------------------------------------------------ */
 
-static int add_text(struct revising *r, const char *name, const char *text)
+/* text NULL: it stays as it is. before NULL: nobody else writes it. */
+static int add_text(struct revising *r, const char *name, const char *text, const char *before)
 {
     struct revision_file *file = &r->files[r->file_count++];
-    *file = (struct revision_file){ name, mem_printf("%s/%s", r->params->work, name) };
-    int status = atomic_file_put(file->made, text, strlen(text));
+    *file = (struct revision_file){ name, text ? mem_printf("%s/text%zu", r->params->work, r->file_count) : NULL, before };
+    int status = text ? atomic_file_put(file->made, text, strlen(text)) : 0;
     return status == 0 ? 0 : fail_at(name, strerror(-status));
+}
+
+static const char *if_other(const char *text, const char *before)
+{
+    return text && strcmp(text, before) != 0 ? text : NULL;
 }
 
 /* Each that is replaced before the next still makes a valid plant with it: the plant file comes last. */
 static int apply(struct revising *r)
 {
-    const char *tags = r->plant->tags_path ? strrchr(r->plant->tags_path, '/') : NULL;
-    bool beside = tags && (size_t)(tags - r->plant->tags_path) == strlen(r->plant->folder) &&
-                  !strncmp(r->plant->tags_path, r->plant->folder, strlen(r->plant->folder));
-    if (r->revision.tags_text && !beside)
-        return fail_at(r->plant->tags_path, "it has to be in the folder of the plant file, to be changed together with it");
+    const char *changed;
     r->files = mem_array(r->model_count + MOST_OF_OURS, sizeof(*r->files));
     for (; r->file_count < r->model_count; r->file_count++)
         r->files[r->file_count] =
-            (struct revision_file){ r->models[r->file_count].draft->file, mem_strdup(r->models[r->file_count].after) };
-    int status = add_text(r, "review.csv", r->review.at);
-    if (status == 0 && beside && r->tags_text)
-        status = add_text(r, tags + 1, r->revision.tags_text ? r->revision.tags_text : r->tags_text);
+            (struct revision_file){ r->models[r->file_count].draft->file, mem_strdup(r->models[r->file_count].after), NULL };
+    int status = add_text(r, "review.csv", r->review.at, NULL);
+    if (status == 0 && r->tags_text)
+        status = add_text(r, r->tags_name, if_other(r->revision.tags_text, r->tags_text), r->tags_text);
     if (status == 0 && r->matches_text) {
         char *matches = decisions_without(r->matches_text, r->revision.lost, r->revision.lost_count);
-        status = add_text(r, "matches.csv", matches ? matches : r->matches_text);
+        status = add_text(r, "matches.csv", if_other(matches, r->matches_text), r->matches_text);
         mem_free(matches);
     }
     if (status == 0)
-        status = add_text(r, "plant.yaml", r->revision.plant_text);
+        status = add_text(r, "plant.yaml", if_other(r->revision.plant_text, r->plant_text), r->plant_text);
     if (status != 0)
         return status;
-    status = revision_files_apply(r->params->folder, r->params->work, r->files, r->file_count);
-    return status == 0 ? 0 : fail_at(r->params->folder, strerror(-status));
+    status = revision_files_apply(r->params->folder, r->params->work, r->files, r->file_count, &changed);
+    return status == 0         ? 0
+           : status == -ESTALE ? fail_at(changed, "was changed by somebody else meanwhile; nothing was done: run it again")
+                               : fail_at(r->params->folder, strerror(-status));
 }
 
 static int plan(struct revising *r)
@@ -216,6 +241,7 @@ static void finish(struct revising *r)
     mem_free(r->plant_path);
     mem_free(r->plant_text);
     mem_free(r->tags_text);
+    mem_free(r->tags_name);
     mem_free(r->matches_text);
 }
 

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Both ways begin with the renaming of a folder that has all that is needed; whoever finds that folder goes on from there.
- *   .revision          made: nothing of what it lists is under way. files: "HASH WAS NAME" a line; WAS: 1, old/NAME is the one of before
+ *   .revision          made: nothing of what it lists is under way. files: "HASH WAS NAME" a line; WAS: 1, old/NAME is the one of before.
+ *                      A file elsewhere is listed by its path; what is kept of it is elsewhere-NAME
  *   .revision.pending  new/NAME are being put in their places
  *   .revision.undoing  old/NAME are being put back */
 #include "preprocess/import/revision/revision_files.h"
@@ -34,10 +35,19 @@ struct record {
 
 static const char made[] = ".revision", pending[] = ".revision.pending", undoing[] = ".revision.undoing",
                   undone[] = ".import-undone"; /* whoever takes the folder next removes what is left of it */
+static const size_t max_text_bytes = (size_t)64 << 20;
 
+/* name may be an absolute path. */
 static char *in(const char *folder, const char *name)
 {
-    return mem_printf("%s/%s", folder, name);
+    return *name == '/' ? mem_strdup(name) : mem_printf("%s/%s", folder, name);
+}
+
+/* Where a record has one version (old, new) of a file. */
+static char *version_of(const char *record, const char *version, const char *name)
+{
+    return *name == '/' ? mem_printf("%s/%s/elsewhere-%s", record, version, strrchr(name, '/') + 1)
+                        : mem_printf("%s/%s/%s", record, version, name);
 }
 
 static int sync_folder(const char *folder)
@@ -79,7 +89,7 @@ static int read_record(struct record *record, const char *folder, const char *na
     for (char *line = text ? strsep(&next, "\n") : NULL; line; line = strsep(&next, "\n")) {
         unsigned long long hash;
         int was, at = 0;
-        if (sscanf(line, "%llx %d %n", &hash, &was, &at) < 2 || at == 0 || !line[at] || strchr(line + at, '/'))
+        if (sscanf(line, "%llx %d %n", &hash, &was, &at) < 2 || at == 0 || !line[at] || (line[at] != '/' && strchr(line + at, '/')))
             continue;
         mem_grow(&record->entries, &record->room, record->count + 1, sizeof(*record->entries));
         record->entries[record->count++] = (struct entry){ mem_strdup(line + at), hash, was == 1 };
@@ -99,10 +109,37 @@ static void finish_record(struct record *record)
 
 /* --- going on ------------------------------------------------------------------------------------------------------------------- */
 
+/* A file of another folder, perhaps on another file system: a copy with the same owner and rights takes its place. */
+static int put_elsewhere(const char *from, const char *to)
+{
+    struct atomic_file file = { .fd = -1 };
+    struct stat st;
+    size_t count;
+    char *bytes = text_read_file(from, max_text_bytes, &count);
+    int status = bytes && stat(from, &st) == 0 ? atomic_file_begin(&file, to, 0600) : -errno;
+    if (status == 0) {
+        if (fchown(file.fd, st.st_uid, st.st_gid) != 0 && errno != EPERM)
+            status = -errno;
+        else if (fchmod(file.fd, st.st_mode & 07777) != 0)
+            status = -errno;
+        if (status == 0)
+            status = atomic_file_write(&file, bytes, count);
+        if (status == 0)
+            status = atomic_file_commit(&file, true);
+        atomic_file_abandon(&file);
+    }
+    mem_free(bytes);
+    if (status == 0)
+        status = unlink(from) == 0 ? 0 : -errno;
+    return status;
+}
+
 static int move_into_place(const struct record *record, const char *folder, const char *from, const char *name)
 {
-    char *source = mem_printf("%s/%s/%s", record->path, from, name), *target = in(folder, name);
-    int status = access(source, F_OK) == 0 ? move(source, target) : 0; /* not there: it was moved already */
+    char *source = version_of(record->path, from, name), *target = in(folder, name);
+    int status = access(source, F_OK) != 0 ? 0 /* it was moved already, or stays as it is */
+                 : *name == '/'            ? put_elsewhere(source, target)
+                                           : move(source, target);
     mem_free(source);
     mem_free(target);
     return status;
@@ -225,22 +262,38 @@ static void take_rights(const char *from, const char *to)
 static int add_file(const char *folder, const char *next, const struct revision_file *file, struct text *list)
 {
     uint64_t hash = 0;
-    char *now = in(folder, file->name), *old = mem_printf("%s/old/%s", next, file->name),
-         *new = mem_printf("%s/new/%s", next, file->name);
-    int status = plant_model_hash(file->made, &hash) ? sync_file(file->made) : -errno;
-    if (status == 0)
+    char *now = in(folder, file->name), *old = version_of(next, "old", file->name), *new = version_of(next, "new", file->name);
+    int status = strchr(file->name, '\n') ? -EINVAL : 0;
+    if (status == 0 && file->made && (status = sync_file(file->made)) == 0)
         status = move(file->made, new);
     int kept = status == 0 ? keep(now, old) : 0;
-    if (status == 0 && kept == 0)
-        take_rights(now, new);
-    text_add(list, "%016llx %d %s\n", (unsigned long long)hash, kept == 0, file->name);
+    if (status == 0 && kept == 0) {
+        take_rights(now, old);
+        if (file->made)
+            take_rights(now, new);
+    }
+    if (status == 0 && (file->made || kept == 0)) {
+        status = plant_model_hash(file->made ? new : old, &hash) ? 0 : -errno;
+        text_add(list, "%016llx %d %s\n", (unsigned long long)hash, kept == 0, file->name);
+    }
     mem_free(now);
     mem_free(old);
     mem_free(new);
     return status == 0 && kept != -ENOENT ? kept : status;
 }
 
-int revision_files_apply(const char *folder, const char *work, const struct revision_file *files, size_t count)
+/* Looked at last: from here on it takes some renamings. */
+static bool is_as_read(const char *folder, const struct revision_file *file)
+{
+    size_t bytes;
+    char *path = in(folder, file->name), *text = file->before ? text_read_file(path, max_text_bytes, &bytes) : NULL;
+    bool is = !file->before || (text && !strcmp(text, file->before));
+    mem_free(text);
+    mem_free(path);
+    return is;
+}
+
+int revision_files_apply(const char *folder, const char *work, const struct revision_file *files, size_t count, const char **changed)
 {
     char *next = in(work, "revision"), *old = in(next, "old"), *new = in(next, "new"), *path = in(next, "files"),
          *begun = in(folder, pending);
@@ -254,6 +307,11 @@ int revision_files_apply(const char *folder, const char *work, const struct revi
         status = sync_folder(new);
     if (status == 0)
         status = sync_folder(next);
+    for (size_t i = 0; i < count && status == 0; i++)
+        if (!is_as_read(folder, &files[i])) {
+            *changed = files[i].name;
+            status = -ESTALE;
+        }
     if (status == 0)
         status = move(next, begun);
     if (status == 0)

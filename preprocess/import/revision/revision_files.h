@@ -10,15 +10,17 @@
 #include "base/text.h"
 
 struct revision_file {
-    const char *name; /* in the folder */
-    char *made;       /* path of the new one, on the same file system */
+    const char *name;   /* in the folder; or an absolute path: it lies elsewhere */
+    char *made;         /* path of the new one, inside the folder; NULL: it stays as it is, and is remembered, for what others do to it */
+    const char *before; /* its text as it was when it was read, or NULL */
 };
 
 /* Takes the folder for this program until the descriptor is closed, removes what killed ones left in it (but for `own`, a path), and
  * finishes what they had begun. Returns the descriptor; -EWOULDBLOCK: another program has the folder. */
 int revision_files_lock(const char *folder, const char *own);
-/* Replaces the files, in this order, and remembers those of before in place of what was remembered. work is a folder inside `folder`. */
-int revision_files_apply(const char *folder, const char *work, const struct revision_file *files, size_t count);
+/* Replaces the files, in this order, and remembers those of before in place of what was remembered. work is a folder inside `folder`.
+ * -ESTALE: a file is not as it was read (`before`); *changed is its name, and nothing was done. */
+int revision_files_apply(const char *folder, const char *work, const struct revision_file *files, size_t count, const char **changed);
 
 /* Puts back the files of before the last revision. What has changed since is named in `changed`, separated by ", ", and then nothing is
  * done, unless forced: then those files stay beside, as NAME.undone. Names of files that were put back are appended to `done`.

@@ -118,7 +118,6 @@ static int serve_post(struct server_context *server, struct request *request, co
         return refuse(request, &FOREIGN);
     if (!strcmp(path, RELOAD_PATH))
         return ask_reload(server, request);
-    connection_record(server, request->wsi, "import", "done", path, NULL);
     return import_post(server, request, path);
 }
 

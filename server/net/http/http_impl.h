@@ -31,6 +31,7 @@ struct request {
     uint64_t client;      /* its number while it waits (request_await) */
     bool reloads;         /* it waits for a reload of the plant */
     struct body *body_in; /* what is being uploaded; NULL: nothing */
+    const char *step;     /* of an import: its path, static, for the audit trail */
     struct asked *asked;  /* what it waits for; NULL: nothing to be drawn */
     struct request *next; /* in server->snapshots */
 };

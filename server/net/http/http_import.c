@@ -22,24 +22,38 @@ struct body {
     bool decides; /* its end is an order */
 };
 
-static int fail_with(struct request *request, const char *what, int error)
+/* In the audit trail. The order itself is told of by the reload thread, at its end. */
+static void record(struct request *request, const char *result, const char *why)
 {
-    char *text = mem_printf("%s: %s\n", what, strerror(-error));
-    request->close = true;
-    int result = request_answer_text(request, error == -ENOSPC ? 507 : HTTP_STATUS_INTERNAL_SERVER_ERROR, text);
-    mem_free(text);
-    return result;
+    char *line = why ? mem_printf("%.*s", (int)strcspn(why, "\n"), why) : NULL;
+    connection_record(server_context_of(request->wsi), request->wsi, "import", result, request->step, line);
+    mem_free(line);
 }
 
 static int refuse_with(struct request *request, int status, const char *text)
 {
+    record(request, status == HTTP_STATUS_FORBIDDEN ? "refused" : "failed", text);
     request->close = true;
     return request_answer_text(request, status, text);
 }
 
-static int answer_done(struct request *request)
+static int fail_with(struct request *request, const char *what, int error)
+{
+    char *text = mem_printf("%s: %s\n", what, strerror(-error));
+    int result = refuse_with(request, error == -ENOSPC ? 507 : HTTP_STATUS_INTERNAL_SERVER_ERROR, text);
+    mem_free(text);
+    return result;
+}
+
+static int answer_empty(struct request *request)
 {
     return request_answer(request, HTTP_STATUS_OK, "application/json", mem_strdup("{}"), 2, NULL, NULL);
+}
+
+static int answer_done(struct request *request)
+{
+    record(request, "done", NULL);
+    return answer_empty(request);
 }
 
 /* --- what is told ----------------------------------------------------------------------------------------------------- */
@@ -67,7 +81,7 @@ static int order(struct server_context *server, struct request *request, const s
     if (!plant_import_order(server->params.import, order))
         return refuse_with(request, HTTP_STATUS_CONFLICT, BUSY);
     server->params.import_ordered(server->params.reload_arg, connection_who(connection_of(request->wsi)));
-    return answer_done(request);
+    return answer_empty(request);
 }
 
 /* Copies NAME=value of the query; "" where it is not there. Returns false when it is too long. */
@@ -250,10 +264,13 @@ int import_post(struct server_context *server, struct request *request, const ch
     struct message_error error = { 0 };
     struct args args;
     size_t i = find_post(path);
+    request->step = posts[i].path;
     if (!request_may_change(server, request))
         return refuse_with(request, HTTP_STATUS_FORBIDDEN, "pages of other sites may not do this\n");
-    if (!request_args(request->wsi, &args, &error))
+    if (!request_args(request->wsi, &args, &error)) {
+        record(request, "failed", error.text);
         return request_answer_error(request, &error);
+    }
     if (!posts[i].always && plant_import_busy(server->params.import))
         return refuse_with(request, HTTP_STATUS_CONFLICT, BUSY);
     return posts[i].take(server, request, &args);

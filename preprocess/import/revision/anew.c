@@ -1,0 +1,115 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The files, and the versions of before. */
+#include "preprocess/import/revision/anew.h"
+
+#include <errno.h>
+#include <stdio.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "base/atomic_file.h"
+#include "base/mem.h"
+#include "base/text.h"
+#include "placing/tag_file.h"
+#include "preprocess/import/revision/revision_files.h"
+
+enum { TEXTS = 3 };
+
+struct one_text {
+    const char *name;
+    char *before, *after; /* NULL: there is none; it stays */
+    char *kept;           /* the version of before; NULL: none is kept */
+};
+
+struct making {
+    const struct revise_params *params;
+    struct revision_file *files;
+    size_t file_count;
+    struct one_text texts[TEXTS];
+};
+
+static int fail_at(const char *path, const char *why)
+{
+    fprintf(stderr, "plantcast import: %s: %s\n", path, why);
+    return 1;
+}
+
+/* Takes the text. versioned: somebody may have written the one of before. */
+static int add_text(struct making *making, struct one_text *one, const char *name, char *after, bool versioned)
+{
+    char *path = mem_printf("%s/%s", making->params->folder, name), *why = NULL;
+    int status = 0;
+    *one = (struct one_text){ .name = name, .before = access(path, F_OK) == 0 ? tag_file_read(path, &why) : NULL, .after = after };
+    if (one->before && after && !strcmp(one->before, after)) {
+        mem_free(one->after);
+        one->after = NULL;
+        printf("%s: stays as it is\n", path);
+    }
+    if (one->before && one->after && versioned)
+        one->kept = tag_file_keep(path, &why);
+    if (why)
+        status = fail_at(path, why);
+    struct revision_file *file = &making->files[making->file_count];
+    *file = (struct revision_file){ name, NULL, one->before };
+    if (status == 0 && one->after) {
+        file->made = mem_printf("%s/%s", making->params->work, name);
+        int error = atomic_file_put(file->made, one->after, strlen(one->after));
+        status = error == 0 ? 0 : fail_at(path, strerror(-error));
+    }
+    making->file_count += one->before || one->after;
+    mem_free(why);
+    mem_free(path);
+    return status;
+}
+
+static int add_texts(struct making *making, const struct plant_draft *draft, size_t *assets)
+{
+    char *plant = mem_printf("%s/plant.yaml", making->params->folder), *tags = mem_printf("%s/tags.csv", making->params->folder);
+    bool new_list = draft->anew || access(tags, F_OK) != 0;
+    int status = add_text(making, &making->texts[0], "tags.csv", new_list ? mem_strdup(plant_draft_tags()) : NULL, true);
+    if (status == 0)
+        status = add_text(making, &making->texts[1], "matches.csv", NULL, true);
+    if (status == 0)
+        status = add_text(making, &making->texts[2], "plant.yaml", plant_draft_text(draft, assets), !plant_draft_is_begun(plant));
+    mem_free(tags);
+    mem_free(plant);
+    return status;
+}
+
+static int apply(const struct making *making)
+{
+    const char *folder = making->params->folder, *changed;
+    int status = revision_files_apply(folder, making->params->work, making->files, making->file_count, &changed);
+    if (status != 0)
+        return status == -ESTALE ? fail_at(changed, "was changed by somebody else meanwhile; nothing was done: run it again")
+                                 : fail_at(folder, strerror(-status));
+    for (size_t i = 0; i < TEXTS; i++)
+        if (making->texts[i].kept)
+            printf("%s/%s: made anew; as it was: %s\n", folder, making->texts[i].name, making->texts[i].kept);
+    return 0;
+}
+
+int import_anew(const struct revise_params *params, const struct plant_draft *draft)
+{
+    struct making making = { .params = params, .files = mem_array(params->count + TEXTS, sizeof(*making.files)) };
+    size_t assets = 0;
+    for (size_t i = 0; i < params->count; i++)
+        making.files[making.file_count++] =
+            (struct revision_file){ params->models[i].file, mem_printf("%s/%zu.glb", params->work, i), NULL };
+    int status = add_texts(&making, draft, &assets);
+    if (status == 0)
+        status = apply(&making);
+    if (status == 0)
+        printf("%s/plant.yaml: %zu assets\n", params->folder, assets);
+    for (size_t i = 0; i < TEXTS; i++) {
+        if (making.texts[i].kept && status != 0)
+            unlink(making.texts[i].kept);
+        mem_free(making.texts[i].kept);
+        mem_free(making.texts[i].before);
+        mem_free(making.texts[i].after);
+    }
+    for (size_t i = 0; i < making.file_count; i++)
+        mem_free(making.files[i].made);
+    mem_free(making.files);
+    return status;
+}
