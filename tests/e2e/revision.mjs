@@ -10,6 +10,7 @@ import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { test } from 'node:test';
 import { copyGroup, findGroup, readRvm, writeRvm } from './support/rvm_file.mjs';
+import { sweep } from './support/sweep.mjs';
 import { BIN, missing, TinyPlant } from './support/tiny_plant.mjs';
 
 const absent = missing();
@@ -18,6 +19,7 @@ const notBuilt = absent.length > 0 ? `not built: ${absent.join(', ')}` : false;
 const noData = notBuilt || (existsSync(`${SAMPLE}.rvm`) ? false : 'no ../shared/data/cad');
 const run = (program, ...args) => spawnSync(join(BIN, program), args, { encoding: 'utf8', timeout: 120000 });
 const good = (said) => (assert.equal(said.status, 0, said.stderr), said);
+const KILLS = sweep(24, 6);
 const sleep = (ms) => new Promise((done) => setTimeout(done, ms));
 
 async function inFolder(f) {
@@ -283,11 +285,11 @@ test('killed in the middle, or out of disk: the old plant or the new one', patie
     good(run('plantcast', 'import', revised, '-o', join(folder, 'whole')));
     const ms = Date.now() - began, whole = filesOf(join(folder, 'whole'));
     let kept = 0;
-    for (let i = 1; i <= 12; i++) {
+    for (let i = 1; i <= KILLS; i++) {
         cpSync(first, plant, { recursive: true });
         const child = spawn(join(BIN, 'plantcast-import'), [revised, '-o', plant], { stdio: 'ignore' });
         const ended = new Promise((done) => child.once('exit', done));
-        await sleep(ms * i / 11);
+        await sleep(ms * i / (KILLS - 1));
         child.kill('SIGKILL');
         await ended;
         const now = filesOf(plant);
@@ -299,7 +301,7 @@ test('killed in the middle, or out of disk: the old plant or the new one', patie
         assert.deepEqual(readdirSync(plant).filter((name) => name.startsWith('.')), ['.revision']);
         rmSync(plant, { recursive: true });
     }
-    console.log(`# killed 12 times within ${ms} ms: ${kept} times before anything was replaced`);
+    console.log(`# killed ${KILLS} times within ${ms} ms: ${kept} times before anything was replaced`);
     cpSync(first, plant, { recursive: true });
     const script = `trap '' XFSZ; ulimit -f 300; exec "$0" "$1" -o "$2"`;
     const full = spawnSync('bash', ['-c', script, join(BIN, 'plantcast-import'), revised, plant],

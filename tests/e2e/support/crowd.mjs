@@ -21,10 +21,11 @@ export const camera = (seq, angle) => ({
     type: 'camera', seq, eye: [1.5 + 7 * Math.cos(angle), 7 * Math.sin(angle), 4], target: [1.5, 0, 0],
 });
 
-// Moves its camera at that rate until stop(); how long each was waited for is in `waits`, by the time of its showing.
+// Moves its camera at that rate until stop(), from a number of the client's on; how long each was waited for is in `waits`, by the time of
+// its showing.
 export class Mover {
-    constructor(client, hz = 60) {
-        Object.assign(this, { client, seq: 0, shown: 0, frames: 0, sent: new Map(), waits: [] });
+    constructor(client, hz = 60, seq = 0) {
+        Object.assign(this, { client, seq, shown: seq, frames: 0, sent: new Map(), waits: [] });
         this.timer = setInterval(() => this.tick(), 1000 / hz);
     }
 
@@ -48,6 +49,26 @@ export class Mover {
         const before = this.frames, start = performance.now();
         await sleep(ms);
         return ((this.frames - before) * 1000) / (performance.now() - start);
+    }
+
+    stop() {
+        clearInterval(this.timer);
+    }
+}
+
+// What a processor is to be had for, time and again: how long the same piece of work takes, by the time of its end. To judge times of the
+// daemon by, which other programs delay as much.
+export class Pace {
+    constructor() {
+        this.times = [];
+        this.timer = setInterval(() => this.work(), 100);
+    }
+
+    work() {
+        const begin = performance.now();
+        for (let i = 0, x = 1; i < 1e6; i++)
+            x = Math.imul(x, 1664525) + 1013904223;
+        this.times.push({ at: performance.now(), ms: performance.now() - begin });
     }
 
     stop() {
