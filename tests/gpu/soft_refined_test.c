@@ -217,7 +217,6 @@ static struct frame *draw_box_over_floor(uint32_t strips, const double light[3])
     return frame;
 }
 
-/* A pixel's middle may lie beside the sliver that it is told by: it must not slip along it. */
 /* By one that never drew anything: of two that are under way at a time, one is new. */
 static void test_nothing_in_sight(void **state)
 {
@@ -234,6 +233,7 @@ static void test_nothing_in_sight(void **state)
     frame_unref(&frame);
 }
 
+/* A pixel's middle may lie beside the sliver that it is told by: it must not slip along it. */
 static void test_shadows_on_slivers(void **state)
 {
     (void)state;
@@ -360,6 +360,37 @@ static void test_lines_again(void **state)
     toy_fill(stand.snapshot, 0);
 }
 
+/* Colours of the field are mixed with light. */
+static void test_glossy_again(void **state)
+{
+    (void)state;
+    for (int i = 0; i < 4; i++) {
+        struct view view;
+        soft_start_view(&stand, TIER_REFINED, 501, 300, &view);
+        stand_look(&stand, 2 * i, &view);
+        view.look = LOOK_GLOSSY;
+        view.dark = i == 1;
+        view.selected_asset = i == 2 ? 0 : -1;
+        if (i % 2)
+            soft_lines_every(&view, 10);
+        if (i == 3)
+            soft_cut_at(&view, 0, 0, 0, -1, 1.2);
+        struct frame *first = soft_draw_anew(&stand, &view);
+        toy_set(stand.snapshot, 0, 75, QUALITY_GOOD);
+        toy_set(stand.snapshot, 3, 20, QUALITY_UNCERTAIN_LAST_USABLE);
+        toy_set(stand.snapshot, 5, 20, QUALITY_BAD_SENSOR_FAILURE);
+        assert_same_anew(&view);
+        view.range_min = 10;
+        view.color_scale.log = true;
+        assert_same_anew(&view);
+        view.color_scale.log = false;
+        view.range_min = 0;
+        toy_fill(stand.snapshot, 0);
+        assert_same_anew(&view);
+        frame_unref(&first);
+    }
+}
+
 static void test_new_colors_too(void **state)
 {
     struct view view;
@@ -438,6 +469,7 @@ int main(void)
         cmocka_unit_test(test_thin_poles_have_no_beads),
         cmocka_unit_test(test_new_readings_are_a_new_picture),
         cmocka_unit_test(test_lines_again),
+        cmocka_unit_test(test_glossy_again),
         cmocka_unit_test(test_new_colors_too),
         cmocka_unit_test(test_what_else_changes_is_drawn),
         cmocka_unit_test(test_few_large_ones_are_kept),

@@ -3,8 +3,7 @@
 #ifndef RENDER_SOFT_PBR_H
 #define RENDER_SOFT_PBR_H
 #include "render/light/environments.h"
-#include "render/soft/vectors.h"
-#include "shaders/constants.glsl"
+#include "render/soft/tones.h"
 
 struct brdf {
     lanes scale, bias;
@@ -87,11 +86,6 @@ struct surface {
     lanes metallic, roughness, open, sun_visible;
 };
 
-SOFT_INLINE vec grey(lanes x)
-{
-    return (vec){ x, x, x };
-}
-
 SOFT_INLINE vec reflected_more(vec f0, struct brdf brdf)
 {
     lanes lost = 1.0f - brdf.scale - brdf.bias;
@@ -135,18 +129,6 @@ SOFT_INLINE vec sun_shade(const struct surface *s, vec v, vec l)
     lanes lobe = least_of(ggx_visible(n_l, n_v, most_of(dot(s->normal, h), all(0)), roughness * roughness), all(50));
     vec c = plus(times(diffuse, 0.96f - 0.96f * grazing), times(fresnel, lobe));
     return times(c, n_l * s->sun_visible * (float)SUN_LIGHT);
-}
-
-SOFT_INLINE vec tone_map(vec c)
-{
-    const float start = (float)TONE_START, desaturation = (float)TONE_DESATURATION, d = 1 - start;
-    lanes x = least_of(c.x, least_of(c.y, c.z)), off = lanes_choose(x < 0.08f, x - 6.25f * x * x, all(0.04f));
-    c = plus(c, grey(-off));
-    lanes peak = most_of(c.x, most_of(c.y, c.z)), safe = most_of(peak, all(start));
-    lanes new_peak = 1.0f - d * d / (safe + d - start), part = 1.0f - 1.0f / (desaturation * (safe - new_peak) + 1.0f);
-    vec rolled = between(times(c, new_peak / safe), grey(new_peak), part);
-    lanes_int low = peak < start;
-    return (vec){ lanes_choose(low, c.x, rolled.x), lanes_choose(low, c.y, rolled.y), lanes_choose(low, c.z, rolled.z) };
 }
 
 SOFT_INLINE lanes grey_of(vec c)

@@ -151,7 +151,7 @@ bool soft_resolve_again(struct soft *soft, struct visibility_store *store, const
     if (!buffer || (context->colormap.lines && !buffer->lined))
         return false;
     frame_uniforms_fill(&block, context);
-    soft_take_colormap(soft, &context->colormap, context->view->look == LOOK_GLOSSY);
+    soft_take_colormap(soft, &context->colormap, context->view->look == LOOK_GLOSSY && !buffer->gloss);
     resolve_read(buffer, context, soft->workers);
     resolve_colors(buffer, soft->colormap, &(struct resolve_lines){ block.lines[0], soft->lines }, block.scale[3], soft->workers, 0,
                    buffer->band_count, frame);

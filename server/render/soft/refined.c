@@ -6,7 +6,6 @@
 #include <string.h>
 
 #include "base/mem.h"
-#include "base/srgb.h"
 #include "render/pick/markers.h"
 #include "render/matrix.h"
 #include "render/soft/refined_impl.h"
@@ -34,16 +33,6 @@ static void find_materials(struct refiner *refiner)
             refiner->materials[refiner->soft->ramp_of_model[m] + i] = material_of(&gpu_scene->models[m].file->view.materials[i]);
 }
 
-static void find_tones(struct refiner *refiner)
-{
-    for (int i = 0; i <= TONES; i++) {
-        double x = (double)i / TONES;
-        refiner->tones[i] = (float)srgb_from_linear(x);
-    }
-    for (int i = 0; i < 256; i++)
-        refiner->linear[i] = (float)linear_from_srgb(i / 255.0);
-}
-
 struct refiner *refiner_create(struct workers *workers, const struct gpu_scene *gpu_scene, const struct sky *sky, struct soft *soft,
                                const struct environments *environments)
 {
@@ -51,7 +40,7 @@ struct refiner *refiner_create(struct workers *workers, const struct gpu_scene *
     *refiner = (struct refiner){ .workers = workers, .gpu_scene = gpu_scene, .sky = sky, .soft = soft, .environments = environments };
     refiner->kept.bound_bytes = KEPT_BYTES;
     find_materials(refiner);
-    find_tones(refiner);
+    soft_tones_init(&refiner->tones);
     return refiner;
 }
 
@@ -211,7 +200,7 @@ static void note_meshes(struct refined *refined)
     for (size_t m = 0; m < soft->mesh_count; m++) {
         const struct soft_mesh *mesh = &soft->meshes[m];
         matrix_normals(refined->refiner->gpu_scene->scene->assets[mesh->asset].placement, refined->normals[m]);
-        if (mesh->has_field && refined->context->view->look != LOOK_GLOSSY)
+        if (mesh->has_field)
             visibility_buffer_add_mesh(refined->buffer, &(struct visibility_mesh){
                                                             .asset = mesh->asset,
                                                             .first_vertex = mesh->first_vertex,
@@ -223,11 +212,13 @@ static void note_meshes(struct refined *refined)
 static bool find(struct refined *refined, const struct frame *frame, const struct light *light)
 {
     struct soft *soft = refined->soft;
+    bool glossy = refined->context->view->look == LOOK_GLOSSY;
     if (!soft_make_room(soft, frame))
         return false;
     refined->buffer = visibility_buffer_create(frame->width_px, frame->height_px, REFINED_ROWS);
     soft->reach_px = 0.5f;
-    bool good = refined->buffer && soft_find(soft, false);
+    bool good = refined->buffer && (!glossy || visibility_buffer_gloss(refined->buffer, &refined->refiner->tones));
+    good = good && soft_find(soft, false);
     soft->reach_px = 0;
     if (!good)
         return false;
@@ -413,10 +404,7 @@ bool refiner_keep(struct refiner *refiner, struct refined *refined, const struct
     refined->buffer = NULL;
     if (buffer->lined)
         isolines_find(context, points, buffer->depth, (size_t)buffer->width_px, frame);
-    if (context->view->look == LOOK_GLOSSY) /* colours of the field are mixed with light */
-        visibility_buffer_destroy(&buffer);
-    else
-        soft_give(&refiner->kept, context, buffer, frame);
+    soft_give(&refiner->kept, context, buffer, frame);
     return true;
 }
 

@@ -6,9 +6,10 @@
 #include "render/soft/lanes.h"
 #include "render/soft/refined.h"
 #include "render/soft/tile.h"
+#include "render/soft/tones.h"
 #include "render/soft/visibility_store.h"
 
-enum { REFINED_ROWS = 16, SAMPLES = VISIBILITY_MOST_PARTS, TONES = 4096 };
+enum { REFINED_ROWS = 16, SAMPLES = VISIBILITY_MOST_PARTS };
 /* From a pixel's middle: a square turned so that edges of any slant take all steps. */
 extern const float refined_samples[SAMPLES][2];
 
@@ -33,8 +34,7 @@ struct refiner {
     const struct environments *environments;
     lanes *materials;                  /* BASE ...; by soft->ramp_of_model and number in the model */
     struct refined_light light;
-    float tones[TONES + 1]; /* sRGB of linear light, 0..1 */
-    float linear[256];      /* the other way round, of bytes */
+    struct soft_tones tones;
     struct refined *spare;
     struct visibility_store kept; /* struct visibility_buffer */
 };
@@ -77,6 +77,7 @@ struct item { /* a surface in a pixel */
 struct shaded_items { /* per item of the field */
     uint32_t *triangles, *weights;
     uint8_t *rows;
+    struct visibility_gloss *gloss;
 };
 
 bool refined_read_light(struct refiner *refiner, const struct light_set *set);
@@ -85,8 +86,14 @@ void refined_raster_band(const struct refined *refined, int band, const struct s
                          struct soft_fragments *fragments);
 bool refined_shade_band(const struct refined *refined, int band); /* false: out of memory */
 void refined_ink_band(const struct refined *refined, int band);
+/* Keeps the number in the band of the item's triangle, and where on it the item is: at that place of `out`. */
+void refined_keep_place(const struct refined *refined, struct visibility_band *band, const struct item *item, float w1, float w2,
+                        const struct shaded_items *out, size_t at);
 /* Eight items or fewer at a time. */
 void refined_shade_field(const struct refined *refined, struct visibility_band *band, const struct item *items, size_t count,
+                         const struct shaded_items *out);
+/* Likewise in a glossy look: fills out->gloss, too. */
+void refined_shade_gloss(const struct refined *refined, struct visibility_band *band, const struct item *items, size_t count,
                          const struct shaded_items *out);
 /* alphas: NULL: not asked for. */
 void refined_shade_surfaces(const struct refined *refined, const struct item *items, size_t count, uint32_t *colors, float *alphas);

@@ -3,6 +3,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "render/soft/tones.h"
 #include "render/soft/visibility_buffer_impl.h"
 
 struct coloring {
@@ -134,27 +135,6 @@ static uint32_t flagged_color(const struct coloring *coloring, const struct visi
     return color_of_place(coloring, &place);
 }
 
-uint32_t resolve_place(const float scale[4], const uint32_t *colormap, const struct resolve_lines *lines, float pattern_px,
-                       const struct resolve_place *at)
-{
-    bool log = is_log(scale);
-    struct coloring coloring = {
-        .scale = scale,
-        .colormap = colormap,
-        .lines = *lines,
-        .pattern_px = pattern_px,
-        .log = log,
-        .rich = log || lines->line_px > 0,
-    };
-    struct place place = { .slopes = &at->slopes, .row = at->row, .x = at->x, .y = at->y };
-    for (int i = 0; i < 3; i++) {
-        place.carried[i] = log ? at->scalars[i]->value : column_of(at->scalars[i]->value, scale);
-        place.flags[i] = soft_flags(at->scalars[i]);
-        place.weights[i] = at->weights[i];
-    }
-    return color_of_place(&coloring, &place);
-}
-
 /* Four rows of four, the first three columns of them. */
 SOFT_INLINE void turn(const quad rows[4], quad columns[3])
 {
@@ -283,12 +263,28 @@ SOFT_INLINE void color_parts(const struct coloring *coloring, const struct visib
         memcpy(colors, &of[0], sizeof(colors));
         memcpy(ahead->known + p, &known, sizeof(known));
         all_known &= known;
+        if (coloring->buffer->gloss) {
+            struct visibility_gloss gloss[LANES];
+            for (size_t i = 0; i < LANES; i++)
+                gloss[i] = band->gloss[p + i < count ? first + p + i : first];
+            of[0] = glossy_colors(coloring->buffer->tones, of[0], gloss);
+            memcpy(colors, &of[0], sizeof(colors));
+        }
         for (size_t i = 0; i < LANES; i++)
             ahead->colors[p + i] = spread(colors[i]) * shares[i];
     }
     ahead->first = first;
     ahead->end = first + count;
     ahead->all_known = !lanes_any(~all_known) && !(coloring->lines.line_px > 0);
+}
+
+/* gloss: NULL: the colour stays. */
+SOFT_INLINE uint32_t glossed(const struct coloring *coloring, uint32_t color, const struct visibility_gloss *gloss)
+{
+    struct visibility_gloss all_of[LANES];
+    for (int i = 0; i < LANES && gloss; i++)
+        all_of[i] = *gloss;
+    return gloss ? (uint32_t)glossy_colors(coloring->buffer->tones, (lanes_int){ 0 } + (int32_t)color, all_of)[0] : color;
 }
 
 static uint64_t flagged_sum(const struct coloring *coloring, const struct visibility_band *band, const struct visibility_mixed *mixed,
@@ -300,7 +296,9 @@ static uint64_t flagged_sum(const struct coloring *coloring, const struct visibi
         if (ahead->known[i - ahead->first] && !(coloring->lines.line_px > 0))
             sum += ahead->colors[i - ahead->first];
         else
-            sum += spread(flagged_color(coloring, band, part->triangle, part->weights, part->row, x, y)) * part->share;
+            sum += spread(glossed(coloring, flagged_color(coloring, band, part->triangle, part->weights, part->row, x, y),
+                                  band->gloss ? &band->gloss[i] : NULL)) *
+                   part->share;
     }
     return sum;
 }
@@ -355,14 +353,17 @@ SOFT_INLINE lanes_int color_lanes(const struct coloring *coloring, const struct 
     lanes_int colors = field_colors(coloring, band, surfaces & field, *(const lanes_int *)(buffer->weights + at), rows, &known);
     if (coloring->lines.line_px > 0)
         known &= ~may_be_lined(coloring, band, surfaces & field, *(const lanes_int *)(buffer->weights + at), x, y);
-    colors = lanes_choose_int(field, colors, surfaces);
-    for (uint32_t left = lanes_bits(field) & (lanes_bits(~known) | bits_of_bytes(inks)); left; left &= left - 1) {
+    for (uint32_t left = lanes_bits(field & ~known); left; left &= left - 1) {
         size_t i = (size_t)__builtin_ctz(left), pixel = at + i;
-        uint32_t color = (uint32_t)colors[i];
-        if (!known[i])
-            color = flagged_color(coloring, band, buffer->surfaces[pixel], buffer->weights[pixel], buffer->rows[pixel],
-                                  (float)(x + (int)i) + 0.5f, (float)y + 0.5f);
-        colors[i] = (int32_t)(has_ink(buffer, pixel) ? inked(buffer, pixel, color) : color);
+        colors[i] = (int32_t)flagged_color(coloring, band, buffer->surfaces[pixel], buffer->weights[pixel], buffer->rows[pixel],
+                                           (float)(x + (int)i) + 0.5f, (float)y + 0.5f);
+    }
+    if (buffer->gloss)
+        colors = glossy_colors(buffer->tones, colors, buffer->gloss + at);
+    colors = lanes_choose_int(field, colors, surfaces);
+    for (uint32_t left = lanes_bits(field) & bits_of_bytes(inks); left; left &= left - 1) {
+        size_t i = (size_t)__builtin_ctz(left);
+        colors[i] = (int32_t)inked(buffer, at + i, (uint32_t)colors[i]);
     }
     return colors;
 }

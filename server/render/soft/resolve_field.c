@@ -5,24 +5,19 @@
 
 /* --- the field --------------------------------------------------------------------------------------------------------------- */
 
-static uint32_t pack_weights(float w1, float w2)
+void refined_keep_place(const struct refined *refined, struct visibility_band *band, const struct item *item, float w1, float w2,
+                        const struct shaded_items *out, size_t at)
 {
-    return (uint32_t)(w1 * 65535 + 0.5f) | (uint32_t)(w2 * 65535 + 0.5f) << 16;
-}
-
-/* In the band. */
-static uint32_t number_triangle(const struct refined *refined, struct visibility_band *band, const struct soft_triangle *triangle)
-{
-    const struct soft_mesh *mesh = &refined->soft->meshes[triangle->mesh];
-    const uint32_t *v = triangle->vertices, first = mesh->first_vertex;
+    const struct soft_mesh *mesh = &refined->soft->meshes[item->triangle.mesh];
+    const uint32_t *v = item->triangle.vertices, first = mesh->first_vertex;
     size_t before = band->triangle_count;
-    uint32_t number = visibility_add_triangle(band, (uint32_t[3]){ first + v[0], first + v[1], first + v[2] });
+    out->triangles[at] = visibility_add_triangle(band, (uint32_t[3]){ first + v[0], first + v[1], first + v[2] });
+    out->weights[at] = (uint32_t)(w1 * 65535 + 0.5f) | (uint32_t)(w2 * 65535 + 0.5f) << 16;
     if (refined->buffer->lined && band->triangle_count > before) {
         double weights[3][3];
         soft_weights(mesh, v, weights);
         visibility_add_slopes(band, weights);
     }
-    return number;
 }
 
 SOFT_KERNEL void refined_shade_field(const struct refined *refined, struct visibility_band *band, const struct item *items, size_t count,
@@ -40,8 +35,7 @@ SOFT_KERNEL void refined_shade_field(const struct refined *refined, struct visib
         lanes light = lanes_clamp((float)LIGHT_AMBIENT * spot.attributes[AMBIENT] + (float)LIGHT_SUN * sun, 0, 1);
         lanes_int row = lanes_whole(lanes_clamp(light * shade[0] + shade[1], 0, shade[2]));
         for (size_t i = 0; i < some; i++) {
-            out->triangles[first + i] = number_triangle(refined, band, &items[first + i].triangle);
-            out->weights[first + i] = pack_weights(spot.weights[1][i], spot.weights[2][i]);
+            refined_keep_place(refined, band, &items[first + i], spot.weights[1][i], spot.weights[2][i], out, first + i);
             out->rows[first + i] = (uint8_t)row[i];
         }
     }

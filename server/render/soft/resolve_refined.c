@@ -35,13 +35,14 @@ struct row { /* of pixels; all arrays hold SAMPLES for each */
     bool any_sky, any_cap;
     uint32_t *triangles, *weights, *colors, *sky_colors;
     uint8_t *rows;
+    struct visibility_gloss *gloss;
     void *memory;
 };
 
 static bool row_init(struct row *row, int pitch_px)
 {
     size_t pixels = (size_t)pitch_px, most = pixels * SAMPLES;
-    size_t bytes = most * (2 * sizeof(struct item) + 2 * sizeof(int) + 3 * sizeof(uint32_t) + 1) +
+    size_t bytes = most * (2 * sizeof(struct item) + 2 * sizeof(int) + 3 * sizeof(uint32_t) + sizeof(*row->gloss) + 1) +
                    pixels * (sizeof(struct mixed) + 2 + sizeof(uint32_t)) + 64;
     *row = (struct row){ .memory = mem_try_array(bytes, 1) };
     uint8_t *at = row->memory;
@@ -56,6 +57,7 @@ static bool row_init(struct row *row, int pitch_px)
     TAKE(triangles, most);
     TAKE(weights, most);
     TAKE(colors, most);
+    TAKE(gloss, most);
     TAKE(sky_colors, pixels);
     TAKE(rows, most);
     TAKE(sky, pixels);
@@ -202,7 +204,7 @@ static void blend(const struct layers *layers, size_t first, size_t end, uint16_
 static void add_item(const struct refined *refined, struct row *row, const struct item *item, int column)
 {
     const struct soft_mesh *mesh = &refined->soft->meshes[item->triangle.mesh];
-    if (mesh->has_field && !(item->triangle.id & ID_BACK) && refined->context->view->look != LOOK_GLOSSY) {
+    if (mesh->has_field && !(item->triangle.id & ID_BACK)) {
         row->field_columns[row->field_count] = column;
         row->field[row->field_count++] = *item;
     } else {
@@ -307,6 +309,10 @@ static uint32_t keep_mixed(const struct refined *refined, struct visibility_band
         return VISIBILITY_FIXED | ((mixed.blue_red + VISIBILITY_SHARES / 2 * 0x10001u) / VISIBILITY_SHARES & 0xff00ff) |
                (uint32_t)(mixed.green + VISIBILITY_SHARES / 2) / VISIBILITY_SHARES << 8;
     mem_grow(&band->parts, &band->part_capacity, band->part_count + mixed.part_count, sizeof(*band->parts));
+    if (refined->buffer->gloss) {
+        mem_grow(&band->gloss, &band->gloss_capacity, band->part_count + mixed.part_count, sizeof(*band->gloss));
+        memcpy(band->gloss + band->part_count, row->gloss + from->first_field, mixed.part_count * sizeof(*band->gloss));
+    }
     for (uint32_t i = from->first_field; i < from->first_field + from->field_count; i++)
         band->parts[band->part_count++] = (struct visibility_part){ row->triangles[i], row->weights[i], row->rows[i], row->field[i].share };
     mem_grow(&band->mixed, &band->mixed_capacity, band->mixed_count + 1, sizeof(*band->mixed));
@@ -335,6 +341,8 @@ static void keep_row(const struct refined *refined, struct visibility_band *band
         surfaces[column] = row->triangles[i];
         buffer->weights[start + (size_t)column] = row->weights[i];
         buffer->rows[start + (size_t)column] = row->rows[i];
+        if (buffer->gloss)
+            buffer->gloss[start + (size_t)column] = row->gloss[i];
     }
     for (size_t i = 0; i < row->mixed_count; i++)
         surfaces[row->mixed[i].column] = keep_mixed(refined, band, row, &row->mixed[i], y);
@@ -350,9 +358,9 @@ static void shade_rows(struct recent *recent, int number, const struct soft_samp
     int top = number * REFINED_ROWS, end = top + REFINED_ROWS < soft->height_px ? top + REFINED_ROWS : soft->height_px;
     for (int y = top; y < end; y++) {
         size_t start = (size_t)(y - top) * (size_t)soft->pitch_px;
-        struct shaded_items shaded = { row->triangles, row->weights, row->rows };
+        struct shaded_items shaded = { row->triangles, row->weights, row->rows, row->gloss };
         sort_row(recent, row, samples, start, y, layers, &layered);
-        refined_shade_field(refined, band, row->field, row->field_count, &shaded);
+        (refined->buffer->gloss ? refined_shade_gloss : refined_shade_field)(refined, band, row->field, row->field_count, &shaded);
         refined_shade_surfaces(refined, row->surfaces, row->surface_count, row->colors, NULL);
         if (row->any_sky)
             refined_shade_sky(refined, y, row->sky, row->sky_colors);

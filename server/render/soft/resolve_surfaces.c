@@ -1,61 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Light on surfaces without a field, eight at a time: shaders/refined.frag, light.glsl, pbr.glsl and environment.glsl once more. */
+/* Light on surfaces, eight at a time, but for fields whose light is a row of the colour map: shaders/refined.frag, light.glsl, pbr.glsl and
+   environment.glsl once more. */
 #include "render/soft/pbr.h"
 #include "render/soft/section_colors.h"
 #include "render/soft/surface_points.h"
-
-SOFT_INLINE lanes srgb_from_linear(const struct refiner *refiner, lanes x)
-{
-    lanes at = lanes_clamp(x, 0, 1) * TONES, part = at - whole_part(at), out;
-    lanes_int first = lanes_whole(at);
-    for (int i = 0; i < LANES; i++)
-        out[i] = refiner->tones[first[i]];
-    lanes next = out;
-    for (int i = 0; i < LANES; i++)
-        next[i] = refiner->tones[first[i] < TONES ? first[i] + 1 : TONES];
-    return out + (next - out) * part;
-}
-
-/* --- glossy ------------------------------------------------------------------------------------------------------------------- */
-
-static uint32_t color_of_field(const struct refined *refined, const struct item *item, const struct spot *spot, size_t lane)
-{
-    static const struct scalar nothing = { .lacking = 255 };
-    const struct soft *soft = refined->soft;
-    const struct soft_mesh *mesh = &soft->meshes[item->triangle.mesh];
-    struct resolve_lines lines = { soft->block.lines[0], soft->lines };
-    struct resolve_place place = { .row = (uint8_t)soft->block.shade[1], .x = item->x, .y = item->y };
-    for (int k = 0; k < 3; k++) {
-        place.scalars[k] = mesh->scalars ? &mesh->scalars[item->triangle.vertices[k]] : &nothing;
-        place.weights[k] = spot->weights[k][lane];
-    }
-    if (lines.line_px > 0) {
-        double weights[3][3];
-        soft_weights(mesh, item->triangle.vertices, weights);
-        place.slopes = visibility_slopes_of(weights);
-    }
-    return resolve_place(soft->block.scale, soft->colormap, &lines, soft->block.scale[3], &place);
-}
-
-/* Where a glossy frame shows the field, that is the surface's colour: GLOSSY in shaders/refined.frag. Returns where. */
-SOFT_INLINE lanes_int gloss(const struct refined *refined, const struct item *items, size_t count, const struct spot *spot,
-                            struct surface *surface)
-{
-    const float *linear = refined->refiner->linear;
-    lanes_int glossy = { 0 };
-    for (size_t i = 0; i < count && refined->context->view->look == LOOK_GLOSSY; i++) {
-        if (!refined->soft->meshes[items[i].triangle.mesh].has_field)
-            continue;
-        uint32_t color = color_of_field(refined, &items[i], spot, i);
-        glossy[i] = -1;
-        surface->base.x[i] = linear[color >> 16 & 0xff];
-        surface->base.y[i] = linear[color >> 8 & 0xff];
-        surface->base.z[i] = linear[color & 0xff];
-    }
-    surface->metallic = lanes_choose(glossy, all(0), surface->metallic);
-    surface->open = lanes_choose(glossy, (float)GLOSSY_OPEN + (1 - (float)GLOSSY_OPEN) * surface->open, surface->open);
-    return glossy;
-}
 
 /* --- textures ------------------------------------------------------------------------------------------------------------------ */
 
@@ -164,45 +112,93 @@ SOFT_INLINE void wear(const struct refined *refined, const struct item *items, s
     }
 }
 
+/* --- light ---------------------------------------------------------------------------------------------------------------------- */
+
+struct lit { /* eight surfaces */
+    struct spot spot;
+    struct surface surface;
+    vec v, l, glow; /* towards the eye and the sun */
+};
+
+/* alphas: NULL: not asked for. */
+SOFT_INLINE void see(const struct refined *refined, const struct item *items, size_t count, struct lit *lit, float *alphas)
+{
+    struct spot *spot = &lit->spot;
+    look(refined, items, count, true, spot);
+    lit->v = view_of(refined, spot);
+    lit->l = towards_sun(refined);
+    const lanes *m = spot->material;
+    vec n = facing(spot, lit->v);
+    lit->surface = (struct surface){
+        .base = { m[BASE] * spot->attributes[TINT], m[BASE + 1] * spot->attributes[TINT + 1], m[BASE + 2] * spot->attributes[TINT + 2] },
+        .normal = n,
+        .metallic = m[METALLIC],
+        .roughness = m[ROUGHNESS],
+        .open = lanes_choose(is_turned(spot, lit->v), most_of(spot->attributes[OPEN], all((float)OPEN_BEHIND)), spot->attributes[OPEN]),
+        .sun_visible = all(0),
+    };
+    lit->glow = (vec){ m[EMISSIVE], m[EMISSIVE + 1], m[EMISSIVE + 2] };
+    if (lanes_any(dot(n, lit->l) > 0.0f))
+        lit->surface.sun_visible = sun_at(refined, spot, n);
+    wear(refined, items, count, spot, &lit->surface, &lit->glow, alphas);
+}
+
 SOFT_KERNEL void refined_shade_surfaces(const struct refined *refined, const struct item *items, size_t count, uint32_t *colors,
                                         float *alphas)
 {
-    const struct refiner *refiner = refined->refiner;
+    const struct soft_tones *tones = &refined->refiner->tones;
     float bright = refined->soft->block.up[3]; /* of context; 0: as it is */
     bool greys = view_is_operator(refined->context->view);
     for (size_t first = 0; first < count; first += LANES) {
-        struct spot spot;
+        struct lit lit;
         size_t some = count - first < LANES ? count - first : LANES;
-        look(refined, items + first, some, true, &spot);
-        vec v = view_of(refined, &spot), l = towards_sun(refined), n = facing(&spot, v);
-        const lanes *m = spot.material;
-        struct surface surface = {
-            .base = { m[BASE] * spot.attributes[TINT], m[BASE + 1] * spot.attributes[TINT + 1], m[BASE + 2] * spot.attributes[TINT + 2] },
-            .normal = n,
-            .metallic = m[METALLIC],
-            .roughness = m[ROUGHNESS],
-            .open = lanes_choose(is_turned(&spot, v), most_of(spot.attributes[OPEN], all((float)OPEN_BEHIND)), spot.attributes[OPEN]),
-            .sun_visible = all(0),
-        };
-        vec glow = { m[EMISSIVE], m[EMISSIVE + 1], m[EMISSIVE + 2] };
-        if (lanes_any(dot(n, l) > 0.0f))
-            surface.sun_visible = sun_at(refined, &spot, n);
-        wear(refined, items + first, some, &spot, &surface, &glow, alphas ? alphas + first : NULL);
-        lanes_int glossy = gloss(refined, items + first, some, &spot, &surface);
-        lanes sky_part = lanes_choose(glossy, all((float)GLOSSY_SKY), all(1));
-        lanes sun_part = lanes_choose(glossy, all((float)GLOSSY_SUN), all(1));
-        vec c = plus(times(sky_shade(&refined->surroundings, &surface, v), sky_part), times(sun_shade(&surface, v, l), sun_part));
-        c = tone_map(plus(c, glow));
-        c = (vec){ srgb_from_linear(refiner, c.x), srgb_from_linear(refiner, c.y), srgb_from_linear(refiner, c.z) };
-        vec muted = bright > 0 ? times(mute(c), all(bright)) : c;
-        muted = greys ? grey(grey_of(muted)) : muted;
-        lanes_int packed = lanes_choose_int(glossy, pack_color(c.x, c.y, c.z), pack_color(muted.x, muted.y, muted.z));
-        if (lanes_any(spot.back & spot.cut)) {
-            lanes_int inside = inside_color((lanes[3]){ v.x, v.y, v.z }, (lanes[3]){ spot.normal.x, spot.normal.y, spot.normal.z },
+        see(refined, items + first, some, &lit, alphas ? alphas + first : NULL);
+        const struct spot *spot = &lit.spot;
+        vec v = lit.v, c = plus(sky_shade(&refined->surroundings, &lit.surface, v), sun_shade(&lit.surface, v, lit.l));
+        c = tone_map(plus(c, lit.glow));
+        c = (vec){ srgb_of_light(tones, c.x), srgb_of_light(tones, c.y), srgb_of_light(tones, c.z) };
+        c = bright > 0 ? times(mute(c), all(bright)) : c;
+        c = greys ? grey(grey_of(c)) : c;
+        lanes_int packed = pack_color(c.x, c.y, c.z);
+        if (lanes_any(spot->back & spot->cut)) {
+            lanes_int inside = inside_color((lanes[3]){ v.x, v.y, v.z }, (lanes[3]){ spot->normal.x, spot->normal.y, spot->normal.z },
                                             refined->soft->block.up);
-            packed = lanes_choose_int(spot.back & spot.cut, inside, packed);
+            packed = lanes_choose_int(spot->back & spot->cut, inside, packed);
         }
         for (size_t i = 0; i < some; i++)
             colors[first + i] = (uint32_t)packed[i];
+    }
+}
+
+/* --- glossy fields --------------------------------------------------------------------------------------------------------------- */
+
+SOFT_INLINE vec glossy_light(const struct refined *refined, const struct lit *lit, float white)
+{
+    struct surface surface = lit->surface;
+    surface.base = grey(all(white));
+    return plus(times(sky_shade(&refined->surroundings, &surface, lit->v), all((float)GLOSSY_SKY)),
+                times(sun_shade(&surface, lit->v, lit->l), all((float)GLOSSY_SUN)));
+}
+
+/* What comes back of a surface that is no metal is linear in its colour. */
+SOFT_KERNEL void refined_shade_gloss(const struct refined *refined, struct visibility_band *band, const struct item *items, size_t count,
+                                     const struct shaded_items *out)
+{
+    for (size_t first = 0; first < count; first += LANES) {
+        struct lit lit;
+        size_t some = count - first < LANES ? count - first : LANES;
+        see(refined, items + first, some, &lit, NULL);
+        lit.surface.metallic = all(0);
+        lit.surface.open = (float)GLOSSY_OPEN + (1 - (float)GLOSSY_OPEN) * lit.surface.open;
+        vec besides = glossy_light(refined, &lit, 0), of_color = plus(glossy_light(refined, &lit, 1), times(besides, all(-1)));
+        besides = plus(besides, lit.glow);
+        for (size_t i = 0; i < some; i++) {
+            out->gloss[first + i] = (struct visibility_gloss){
+                soft_pack_light((float[3]){ of_color.x[i], of_color.y[i], of_color.z[i] }),
+                soft_pack_light((float[3]){ besides.x[i], besides.y[i], besides.z[i] }),
+            };
+            refined_keep_place(refined, band, &items[first + i], lit.spot.weights[1][i], lit.spot.weights[2][i], out, first + i);
+            out->rows[first + i] = (uint8_t)refined->soft->block.shade[1];
+        }
     }
 }

@@ -5,14 +5,9 @@
 #include <math.h>
 
 #include "render/soft/soft_impl.h"
-#include "render/soft/lanes.h"
+#include "render/soft/vectors.h"
 
 enum { NORMAL_BITS = 14, NORMAL_MOST = (1 << NORMAL_BITS) - 1 };
-
-SOFT_INLINE lanes_int pack_color(lanes red, lanes green, lanes blue)
-{
-    return lanes_whole(blue * 255.0f + 0.5f) | lanes_whole(green * 255.0f + 0.5f) << 8 | lanes_whole(red * 255.0f + 0.5f) << 16;
-}
 
 /* Of a body that is solid as far as the model says. */
 SOFT_INLINE lanes_int cap_color(lanes x, float y, float pattern_px)

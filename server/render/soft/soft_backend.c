@@ -51,7 +51,7 @@ static bool begin(struct renderer *renderer, struct render_job *job, const struc
         job->of.soft->refined = refined_begin(refiner);
         if (!job->of.soft->refined)
             return false;
-        job->keeps = job->view.look != LOOK_GLOSSY;
+        job->keeps = true;
     }
     return true;
 }

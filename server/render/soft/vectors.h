@@ -33,6 +33,11 @@ SOFT_INLINE lanes root(lanes x)
     return out;
 }
 
+SOFT_INLINE vec grey(lanes x)
+{
+    return (vec){ x, x, x };
+}
+
 SOFT_INLINE vec times(vec a, lanes by)
 {
     return (vec){ a.x * by, a.y * by, a.z * by };
@@ -61,6 +66,12 @@ SOFT_INLINE lanes dot(vec a, vec b)
 SOFT_INLINE vec unit(vec a)
 {
     return times(a, 1.0f / root(most_of(dot(a, a), all(1e-30f))));
+}
+
+/* Returns colours, blue lowest, of 0..1. */
+SOFT_INLINE lanes_int pack_color(lanes red, lanes green, lanes blue)
+{
+    return lanes_whole(blue * 255.0f + 0.5f) | lanes_whole(green * 255.0f + 0.5f) << 8 | lanes_whole(red * 255.0f + 0.5f) << 16;
 }
 
 #endif

@@ -36,6 +36,7 @@ void visibility_buffer_destroy(struct visibility_buffer **buffer_ptr)
         mem_free(buffer->bands[i].corners);
         mem_free(buffer->bands[i].slopes);
         mem_free(buffer->bands[i].parts);
+        mem_free(buffer->bands[i].gloss);
         mem_free(buffer->bands[i].mixed);
     }
     mem_free(buffer->bands);
@@ -43,6 +44,7 @@ void visibility_buffer_destroy(struct visibility_buffer **buffer_ptr)
     mem_free(buffer->surfaces);
     mem_free(buffer->weights);
     mem_free(buffer->rows);
+    mem_free(buffer->gloss);
     mem_free(buffer->ink);
     mem_free(buffer->veil);
     mem_free(buffer->depth);
@@ -55,16 +57,23 @@ void visibility_buffer_destroy(struct visibility_buffer **buffer_ptr)
     *buffer_ptr = NULL;
 }
 
+bool visibility_buffer_gloss(struct visibility_buffer *buffer, const struct soft_tones *tones)
+{
+    buffer->tones = tones;
+    buffer->gloss = mem_try_array((size_t)buffer->width_px * (size_t)buffer->height_px, sizeof(*buffer->gloss));
+    return buffer->gloss != NULL;
+}
+
 size_t visibility_buffer_bytes(const struct visibility_buffer *buffer)
 {
     size_t pixels = (size_t)buffer->width_px * (size_t)buffer->height_px;
     size_t bytes = pixels * (sizeof(*buffer->surfaces) + sizeof(*buffer->weights) + 2 + (buffer->veil ? 1 : 0) +
-                             (buffer->depth ? sizeof(*buffer->depth) : 0));
+                             (buffer->gloss ? sizeof(*buffer->gloss) : 0) + (buffer->depth ? sizeof(*buffer->depth) : 0));
     bytes +=
         buffer->vertex_count * (sizeof(*buffer->vertices) + sizeof(*buffer->carried) + sizeof(*buffer->plain) + sizeof(*buffer->flags));
     for (int i = 0; i < buffer->band_count; i++) {
         const struct visibility_band *band = &buffer->bands[i];
-        bytes += band->slope_capacity * sizeof(*band->slopes);
+        bytes += band->slope_capacity * sizeof(*band->slopes) + band->gloss_capacity * sizeof(*band->gloss);
         bytes += band->triangle_capacity * (sizeof(*band->triangles) + sizeof(*band->corners)) +
                  band->part_capacity * sizeof(*band->parts) + band->mixed_capacity * sizeof(*band->mixed);
     }
@@ -80,12 +89,13 @@ uint32_t visibility_add_triangle(struct visibility_band *band, const uint32_t ve
     return (uint32_t)band->triangle_count++;
 }
 
-struct visibility_slopes visibility_slopes_of(const double weights[3][3])
+void visibility_add_slopes(struct visibility_band *band, const double weights[3][3])
 {
     double sum[3];
     for (int c = 0; c < 3; c++)
         sum[c] = weights[0][c] + weights[1][c] + weights[2][c];
-    return (struct visibility_slopes){
+    mem_grow(&band->slopes, &band->slope_capacity, band->triangle_count, sizeof(*band->slopes));
+    band->slopes[band->triangle_count - 1] = (struct visibility_slopes){
         .w1_x = (float)weights[1][0],
         .w1_y = (float)weights[1][1],
         .w2_x = (float)weights[2][0],
@@ -94,12 +104,6 @@ struct visibility_slopes visibility_slopes_of(const double weights[3][3])
         .sum_y = (float)sum[1],
         .sum = (float)sum[2],
     };
-}
-
-void visibility_add_slopes(struct visibility_band *band, const double weights[3][3])
-{
-    mem_grow(&band->slopes, &band->slope_capacity, band->triangle_count, sizeof(*band->slopes));
-    band->slopes[band->triangle_count - 1] = visibility_slopes_of(weights);
 }
 
 void visibility_buffer_add_mesh(struct visibility_buffer *buffer, const struct visibility_mesh *mesh)

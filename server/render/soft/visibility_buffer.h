@@ -16,6 +16,12 @@
 /* What is drawn over the colours. Up to VISIBILITY_INK: so much of a dark line; then the rim of what is selected. */
 enum { VISIBILITY_INK = 253, VISIBILITY_RIM_DARK, VISIBILITY_RIM_LIGHT };
 
+struct soft_tones;
+
+struct visibility_gloss { /* of a glossy look, packed (tones.h): light that comes back of a white surface, and light besides */
+    uint32_t of_color, besides;
+};
+
 struct visibility_part { /* of a pixel that shows several surfaces: one of the field */
     uint32_t triangle, weights;
     uint8_t row;
@@ -40,9 +46,10 @@ struct visibility_band {              /* of rows; written by one worker */
     float (*corners)[4];              /* of what these carry now: the first corner's; by how much the second's is more, and the third's */
     struct visibility_slopes *slopes; /* likewise, where there are isolines */
     struct visibility_part *parts;
+    struct visibility_gloss *gloss; /* by part, of glossy frames */
     struct visibility_mixed *mixed;
     size_t triangle_count, part_count, mixed_count;
-    size_t triangle_capacity, corner_capacity, slope_capacity, part_capacity, mixed_capacity;
+    size_t triangle_capacity, corner_capacity, slope_capacity, part_capacity, gloss_capacity, mixed_capacity;
 };
 
 struct visibility_mesh { /* an asset with a field */
@@ -54,11 +61,13 @@ struct visibility_mesh { /* an asset with a field */
 
 struct visibility_buffer {
     int width_px, height_px, band_rows, band_count;
-    uint32_t *surfaces; /* per pixel, as above */
-    uint32_t *weights;  /* of the triangle's second and third corner, 16 bits each */
-    uint8_t *rows;      /* of the colormap */
-    uint8_t *ink;       /* once it is settled: not of what is fixed, which has it; and below */
-    uint8_t *veil;      /* so much of ghosts' lines, of 255. NULL: there are none */
+    uint32_t *surfaces;             /* per pixel, as above */
+    uint32_t *weights;              /* of the triangle's second and third corner, 16 bits each */
+    uint8_t *rows;                  /* of the colormap */
+    struct visibility_gloss *gloss; /* NULL: rows say how light it is */
+    const struct soft_tones *tones; /* with gloss; not owned */
+    uint8_t *ink;                   /* once it is settled: not of what is fixed, which has it; and below */
+    uint8_t *veil;                  /* so much of ghosts' lines, of 255. NULL: there are none */
     uint8_t veil_bgr[3];
     bool lined;   /* it can be drawn with isolines */
     float *depth; /* for their labels, rows of width_px. NULL: there are none */
@@ -75,7 +84,9 @@ struct visibility_buffer {
 };
 
 struct visibility_buffer *visibility_buffer_create(int width_px, int height_px, int band_rows); /* NULL: out of memory */
-void visibility_buffer_destroy(struct visibility_buffer **buffer);                              /* &NULL is fine; leaves NULL */
+/* Makes it one of a glossy frame. Returns false when out of memory. */
+bool visibility_buffer_gloss(struct visibility_buffer *buffer, const struct soft_tones *tones);
+void visibility_buffer_destroy(struct visibility_buffer **buffer); /* &NULL is fine; leaves NULL */
 size_t visibility_buffer_bytes(const struct visibility_buffer *buffer);
 /* The isolines of a picture. None: line_px is 0. */
 struct resolve_lines {
@@ -97,19 +108,5 @@ void visibility_add_slopes(struct visibility_band *band, const double weights[3]
 /* Colours of those bands. colormap: COLORMAP_ROWS x COLORMAP_COLUMNS, as it comes from the GPU. pattern_px: size of its cells. */
 void resolve_colors(const struct visibility_buffer *buffer, const uint32_t *colormap, const struct resolve_lines *lines, float pattern_px,
                     struct workers *workers, int first, int count, struct frame *frame);
-
-/* Weights of a triangle's corners over the picture, as planes, up to a factor. */
-struct visibility_slopes visibility_slopes_of(const double weights[3][3]);
-
-struct resolve_place {               /* of the field, in a pixel */
-    const struct scalar *scalars[3]; /* of the corners of its triangle */
-    float weights[3];
-    struct visibility_slopes slopes; /* looked at where there are isolines */
-    uint8_t row;                     /* of the colour map */
-    float x, y;                      /* in the picture */
-};
-/* Returns the colour of a place. scale: of struct frame_uniforms; the rest as resolve_colors(). Any thread. */
-uint32_t resolve_place(const float scale[4], const uint32_t *colormap, const struct resolve_lines *lines, float pattern_px,
-                       const struct resolve_place *place);
 
 #endif

@@ -1,0 +1,27 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Tables of tones, and light in 32 bits. */
+#include "render/soft/tones.h"
+
+#include <math.h>
+
+#include "base/srgb.h"
+
+void soft_tones_init(struct soft_tones *tones)
+{
+    for (int i = 0; i <= TONES; i++)
+        tones->srgb[i] = (float)srgb_from_linear((double)i / TONES);
+    for (int i = 0; i < 256; i++)
+        tones->linear[i] = (float)linear_from_srgb(i / 255.0);
+}
+
+uint32_t soft_pack_light(const float light[3])
+{
+    const float least = 0x1p-16f, most_light = 65408; /* of what the exponent reaches */
+    float most = fmaxf(fmaxf(light[0], light[1]), fmaxf(light[2], least));
+    int exponent;
+    frexpf(fminf(most, most_light) * (1 + 0x1p-9f), &exponent); /* what would be rounded up to 512 has the next one */
+    uint32_t packed = (uint32_t)(exponent + 15) << 27;
+    for (int c = 0; c < 3; c++)
+        packed |= (uint32_t)(ldexpf(fminf(fmaxf(light[c], 0), most_light), 9 - exponent) + 0.5f) << (9 * c);
+    return packed;
+}
