@@ -71,8 +71,8 @@ int month_file_import(struct month_file *file, int tag, const struct history_poi
 int month_file_recover(struct month_file *file, uint32_t gap_quality, int64_t *ended_us);
 int month_file_clear_held(struct month_file *file); /* deletes the newest samples: all are recorded, the month is over */
 /* Deletes what is older than a time, as far as it has been tidied. The room that it leaves is for what comes next; with `shrink`, the disk
-   gets it back, if the file was begun with auto_vacuum (struct month_file_size, shrinks). *unsent is increased by how many of the points that
-   waited in its outbox were as old, and are deleted too. */
+   gets it back, if the file was begun with auto_vacuum (struct month_file_size, shrinks). *unsent is increased by how many of the points
+   that waited in its outbox were as old, and are deleted too. */
 int month_file_cut(struct month_file *file, int64_t until_us, bool shrink, int64_t *unsent);
 struct month_file_size {
     int64_t bytes, free_bytes; /* on disk; of these, for what comes next */

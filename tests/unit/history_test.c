@@ -509,7 +509,8 @@ static void old_and_large_months_go(void **state)
     assert_int_equal(months[0], month_of(NOVEMBER) - 4);
     mem_free(months);
     assert_int_equal(retention_apply(s->log, s->folder, &(struct retention_limits){ .bytes = 2500 }, NOVEMBER, &unsent), 2000);
-    assert_int_equal(retention_apply(s->log, s->folder, &(struct retention_limits){ .bytes = 1 }, NOVEMBER, &unsent), 1000); /* the newest stays */
+    /* the newest stays */
+    assert_int_equal(retention_apply(s->log, s->folder, &(struct retention_limits){ .bytes = 1 }, NOVEMBER, &unsent), 1000);
     months = month_list(s->folder, &count);
     assert_int_equal(count, 1);
     assert_int_equal(months[0], month_of(NOVEMBER) - 2);
