@@ -3,7 +3,6 @@
 #include "base/clock.h"
 
 #include <errno.h>
-#include <sys/timex.h>
 #include <time.h>
 
 static int64_t read_ns(clockid_t id)
@@ -21,13 +20,6 @@ int64_t clock_mono_ns(void)
 int64_t clock_utc_ns(void)
 {
     return read_ns(CLOCK_REALTIME);
-}
-
-bool clock_utc_is_set(void)
-{
-    struct timex asked = { .modes = 0 };
-    int state = adjtimex(&asked);
-    return state >= 0 && state != TIME_ERROR && !(asked.status & STA_UNSYNC);
 }
 
 int64_t clock_work_ns(void)

@@ -307,6 +307,10 @@ static void add_counters(struct server_context *server)
     server->counters.errors = counters_add(c, "plantcast_message_errors_total", "counter", "Messages of clients answered with an error.");
     server->counters.clock_set =
         counters_add(c, "plantcast_clock_synchronised", "gauge", "1 while something keeps this machine's clock right.");
+    server->counters.clock_error = counters_add_seconds(c, "plantcast_clock_error_seconds", "gauge",
+                                                        "By so much this machine's clock may be wrong at most; 0: not known.");
+    server->counters.clock_leap =
+        counters_add(c, "plantcast_clock_leap_seconds", "gauge", "Seconds that are added at the end of the month, or taken away.");
     server->counters.logins_wrong = counters_add(c, "plantcast_logins_wrong_total", "counter", "Tokens that were nobody's, or no longer.");
     server->counters.logins_held =
         counters_add(c, "plantcast_logins_held_total", "counter", "Tokens that were not looked at, of addresses that are slowed.");

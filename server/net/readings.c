@@ -48,10 +48,12 @@ bool net_check_links(struct server_context *server)
         any |= up;
     }
     server->session_context.live = any;
-    bool set = clock_utc_is_set();
-    changed |= server->session_context.clock_is_set != set;
-    server->session_context.clock_is_set = set;
-    counter_set(server->counters.clock_set, set);
+    struct clock_state clock = clock_state_read(), *known = &server->session_context.clock;
+    changed |= known->set != clock.set || known->leap_s != clock.leap_s || clock_state_error_ms(known) != clock_state_error_ms(&clock);
+    *known = clock;
+    counter_set(server->counters.clock_set, clock.set);
+    counter_set(server->counters.clock_error, (int64_t)(clock.error_s * 1e6));
+    counter_set(server->counters.clock_leap, clock.leap_s);
     return changed;
 }
 

@@ -67,7 +67,8 @@ struct server_context {
     struct latency_stages latency;
     struct {
         counter *sessions, *sessions_all, *frames, *frame_bytes, *messages, *errors, *dropped, *given_up, *stalled, *requests, *refused,
-            *connections, *busy, *clock_set, *logins_wrong, *logins_held, *logins_slowed;
+            *connections, *busy, *clock_set, *clock_error, *clock_leap,
+            *logins_wrong, *logins_held, *logins_slowed;
     } counters;
 };
 

@@ -70,9 +70,13 @@ char *reply_status_text(const struct session_context *context, int64_t now_utc_n
             json_object_set_new(link, "simulated", json_true());
         json_array_append_new(links, link);
     }
-    return json_text(json_pack("{s:s,s:o,s:I,s:b,s:b}", "type", "status", "links", links, "time_us", us(now_utc_ns), "live", context->live,
-                               "clock_set", context->clock_is_set),
-                     DIGITS);
+    json_t *status = json_pack("{s:s,s:o,s:I,s:b,s:b}", "type", "status", "links", links, "time_us", us(now_utc_ns), "live", context->live,
+                               "clock_set", context->clock.set);
+    if (context->clock.error_s > 0)
+        json_object_set_new(status, "clock_error_ms", json_integer(clock_state_error_ms(&context->clock)));
+    if (context->clock.leap_s)
+        json_object_set_new(status, "leap_s", json_integer(context->clock.leap_s));
+    return json_text(status, DIGITS);
 }
 
 /* Of the readings that are not bad; null: all are. */

@@ -4,6 +4,7 @@
 #define SESSION_SESSION_CONTEXT_H
 #include "access/openid/openid.h"
 #include "audit/audit.h"
+#include "base/clock_state.h"
 #include "scene/scene.h"
 #include "session/session_state.h"
 
@@ -26,7 +27,7 @@ struct session_context {
     const bool *links_up;                  /* by source */
     bool imports;                          /* engineers may bring plants in */
     bool live;                             /* a source is connected */
-    bool clock_is_set;                     /* the wall clock is synchronised */
+    struct clock_state clock;              /* how right the wall clock is */
     int64_t moving_until_ns;               /* some camera moves until then; refined frames of others would make it stutter */
     bool overloaded;                       /* refined frames for all, at each change of readings, are more than can be drawn */
     unsigned codecs;                       /* a bit, 1 << enum wire_codec, for each that works here; 0: JPEG and PNG */

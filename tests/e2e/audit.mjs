@@ -3,7 +3,7 @@
 // a disk that is full is said, and nothing is lost.
 import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
-import { appendFileSync, existsSync, readFileSync, statSync, writeFileSync } from 'node:fs';
+import { appendFileSync, existsSync, mkdirSync, readFileSync, rmSync, statSync, writeFileSync } from 'node:fs';
 import { createServer } from 'node:tls';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
@@ -202,6 +202,41 @@ test('a disk that is full is said, in the log and the metrics, and nothing is lo
     await found('what waited', (line) => line.from === '127.0.0.20');
     assert.match((await ask('/metrics', tokens.viewer)).body.toString(), /^plantcast_audit_good 1$/m);
     assert.equal(verify().code, 0);
+});
+
+test('a small disk that is full is alarmed, no line on it is torn, and a read-only one is refused', { skip, timeout: 60000 }, async (t) => {
+    const small = path('small'), full = join(small, 'full'), usual = trail;
+    mkdirSync(small);
+    if (spawnSync('mount', ['-t', 'tmpfs', '-o', 'size=64k', 'tmpfs', small]).status !== 0)
+        return t.skip('this user may not mount a file system');
+    t.after(async () => {
+        await plant.daemon.stop();
+        trail = usual;
+        spawnSync('umount', [small]);
+    });
+    const good = async () => /^plantcast_audit_good (\d)$/m.exec((await ask('/metrics', tokens.viewer)).body.toString())[1];
+    trail = join(small, 'audit.log');
+    await start();
+    await found('the start', (line) => line.event === 'start');
+    assert.notEqual(spawnSync('dd', ['if=/dev/zero', `of=${full}`]).status, 0);
+    // The last page of the file still takes some lines.
+    for (let i = 0; i < 60 && await good() === '1'; i++, await sleep(20))
+        await ask('/api/v1/tags', 'pc_wrong', { localAddress: `127.0.2.${i + 1}` });
+    await plant.daemon.line(/audit: .*audit\.log cannot be written \(No space left on device/);
+    assert.equal(await good(), '0');
+    await ask('/api/v1/tags', 'pc_wrong', { localAddress: '127.0.3.1' });
+    await plant.daemon.line(/audit, not written: login refused: \(nobody\) from 127\.0\.3\.1/);
+    assert.equal((await ask('/api/v1/tags', tokens.viewer)).status, 200, 'the plant stays in sight');
+    assert.equal(verify().code, 0, verify().err);
+    rmSync(full);
+    await plant.daemon.line(/audit: .*audit\.log is written again/);
+    await found('what waited', (line) => line.from === '127.0.3.1');
+    assert.equal(verify().code, 0, verify().err);
+    await plant.daemon.stop();
+    assert.equal(spawnSync('mount', ['-o', 'remount,ro', small]).status, 0);
+    const refused = runProgram('plantcastd', [plant.file, '--port', '0', '--audit', trail]);
+    assert.equal(refused.code, 1);
+    assert.match(refused.err, /audit: .*audit\.log: Read-only file system/);
 });
 
 test('syslog by TLS: each line as RFC 5424, after an outage too, and only to whom a certificate vouches for', { skip }, async () => {

@@ -10,6 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
+#include <time.h>
 #include <unistd.h>
 #include <cmocka.h>
 #include <sqlite3.h>
@@ -220,6 +221,55 @@ static void lines_cross_the_border_of_a_month(void **state)
     assert_int_equal(series.points.count, 2);
     history_series_finish(&series);
     snapshot_destroy(&snapshot);
+}
+
+static void set_zone(const char *zone)
+{
+    assert_int_equal(zone ? setenv("TZ", zone, 1) : unsetenv("TZ"), 0);
+    tzset();
+}
+
+/* The plant's clock is put into another zone while it records, over the border of a month and the end of summer time. */
+static void time_zones_do_not_touch_what_is_recorded(void **state)
+{
+    struct setup *s = *state;
+    const char *const zones[] = { "Pacific/Kiritimati", "Europe/Berlin", "America/Adak", "UTC" }, *before = getenv("TZ");
+    char *kept = before ? mem_strdup(before) : NULL;
+    const int64_t autumn = NOVEMBER - (6 * 86400 + 82800) * S; /* 2026-10-25T01:00Z: 3:00 in Berlin is 2:00 again */
+    const int64_t begins[] = { autumn - 1800 * S, NOVEMBER - 1800 * S };
+    size_t count;
+    for (size_t b = 0; b < 2; b++)
+        for (int quarter = 0; quarter < 4; quarter++) { /* each in another zone */
+            set_zone(zones[quarter]);
+            int64_t from_us = begins[b] + quarter * 900 * S;
+            int error;
+            struct month_file *file = month_file_open(s->log, s->folder, month_of(from_us), s->tags, TAGS, &error);
+            struct history_row rows[900];
+            for (int i = 0; i < 900; i++)
+                rows[i] = (struct history_row){ 0, { from_us + i * S, quarter * 900 + i, QUALITY_GOOD } };
+            assert_int_equal(month_file_write(file, rows, 900, NULL, 0), 0);
+            assert_int_equal(month_file_tidy(file), 0);
+            month_file_close(&file);
+        }
+    int *months = month_list(s->folder, &count);
+    assert_int_equal(count, 2); /* by UTC, whatever the zone says */
+    assert_int_equal(months[1], month_of(NOVEMBER));
+    mem_free(months);
+    for (size_t zone = 0; zone < 4; zone++)
+        for (size_t b = 0; b < 2; b++) {
+            struct history_series series;
+            set_zone(zones[zone]);
+            assert_int_equal(history_series(s->reader, "TT-1", begins[b], begins[b] + 3599 * S, 1000000, &series), 0);
+            const struct history_point *at = series.points.at + b; /* behind the last one of the days before */
+            assert_int_equal(series.points.count, 3600 + b);
+            for (int i = 0; i < 3600; i++) {
+                assert_int_equal(at[i].t_us, begins[b] + i * S);
+                assert_true(at[i].value == i);
+            }
+            history_series_finish(&series);
+        }
+    set_zone(kept);
+    mem_free(kept);
 }
 
 /* Older points than those that are there: the rollups are what they would have been. */
@@ -717,6 +767,7 @@ int main(void)
         cmocka_unit_test_setup_teardown(one_instant_is_as_it_was, set_up, tear_down),
         cmocka_unit_test_setup_teardown(long_times_keep_spikes_and_gaps, set_up, tear_down),
         cmocka_unit_test_setup_teardown(lines_cross_the_border_of_a_month, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(time_zones_do_not_touch_what_is_recorded, set_up, tear_down),
         cmocka_unit_test_setup_teardown(an_import_is_rolled_up_again, set_up, tear_down),
         cmocka_unit_test_setup_teardown(a_restart_leaves_a_gap, set_up, tear_down),
         cmocka_unit_test_setup_teardown(gaps_are_told_in_order_and_joined, set_up, tear_down),

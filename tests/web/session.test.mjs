@@ -420,7 +420,9 @@ test('health: each state has its own kind and words', () => {
     const said = (links) => sockets[0].say({ type: 'status', time_us: 1, live: true, clock_set: false, links });
     said([{ ...link('plc1', true), simulated: true }, link('plc2', true)]);
     assert.deepEqual([now().kind, now().words, now().detail], ['simulated', 'Live, partly simulated', 'Not measured in the plant: plc1.']);
-    assert.equal(session.model.clockSet, false);
+    assert.deepEqual([session.model.clockSet, session.model.clockErrorMs, session.model.leapS], [false, null, 0]);
+    sockets[0].say({ type: 'status', time_us: 1, live: true, clock_set: true, clock_error_ms: 10, leap_s: 1, links: [] });
+    assert.deepEqual([session.model.clockSet, session.model.clockErrorMs, session.model.leapS], [true, 10, 1]);
     said([{ ...link('plc1', true), simulated: true }]);
     assert.equal(now().words, 'Simulated');
     said([{ ...link('plc1', true), simulated: true }, link('plc2', false)]);

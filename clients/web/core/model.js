@@ -27,6 +27,8 @@ export class Model {
         this.live = null; // nothing was said yet
         this.stopped = false; // see stop
         this.clockSet = true; // the server's clock is kept right
+        this.clockErrorMs = null; // within this; null: not known
+        this.leapS = 0; // a second that is added or taken away at the end of the month
         this.oldest = null; // { ms, at }: no reading that is not bad was older than that
     }
 

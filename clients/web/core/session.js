@@ -506,6 +506,8 @@ const HANDLERS = {
         this.model.links = message.links;
         this.model.live = message.live;
         this.model.clockSet = message.clock_set !== false;
+        this.model.clockErrorMs = message.clock_error_ms ?? null;
+        this.model.leapS = message.leap_s ?? 0;
         this.emit('status');
     },
 

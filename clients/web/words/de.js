@@ -154,6 +154,9 @@ clock: Anlagenzeit
 then: Damals
 unset: {clock}, nicht synchronisiert
 unset.why: Nichts stellt die Uhr des Servers: Zeiten können falsch sein, Altersangaben nicht.
+within: Die Uhr des Servers wird gestellt, auf {n} ms genau.
+leap: Am Ende des Monats (UTC) kommt eine Schaltsekunde hinzu.
+leap.less: Am Ende des Monats (UTC) entfällt eine Sekunde.
 oldest: Ältester Messwert
 frames: Bilder
 rate: {count}/s

@@ -154,6 +154,9 @@ clock: Plant time
 then: Then
 unset: {clock}, unsynchronised
 unset.why: Nothing keeps the server’s clock right: times may be wrong. Ages are not.
+within: The server’s clock is kept right, within {n} ms.
+leap: A leap second is added at the end of the month (UTC).
+leap.less: A second is left out at the end of the month (UTC).
 oldest: Oldest reading
 frames: Frames
 rate: {count}/s

@@ -152,6 +152,9 @@ clock: 플랜트 시각
 then: 당시 시각
 unset: {clock}, 동기화 안 됨
 unset.why: 서버 시계를 맞추는 것이 없습니다. 시각은 틀릴 수 있으나 경과 시간은 맞습니다.
+within: 서버 시계가 동기화되어 있습니다. 오차 {n} ms 이내.
+leap: 이번 달 말(UTC)에 윤초가 추가됩니다.
+leap.less: 이번 달 말(UTC)에 1초가 빠집니다.
 oldest: 가장 오래된 지시값
 frames: 프레임
 rate: {count}/s

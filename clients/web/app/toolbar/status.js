@@ -52,6 +52,19 @@ export class Status {
     }
 
     // The clock is the one of what is shown.
+    // How right the server's clock is.
+    clockState(isSet) {
+        const { model } = this.session;
+        if (!isSet)
+            return say('status.unset.why');
+        const parts = [];
+        if (model?.clockErrorMs)
+            parts.push(say('status.within', { n: model.clockErrorMs }));
+        if (model?.leapS)
+            parts.push(say(model.leapS > 0 ? 'status.leap' : 'status.leap.less'));
+        return parts.join(' ');
+    }
+
     showBar({ kind }, now) {
         const { session } = this;
         const past = kind === 'past' && session.picture?.past;
@@ -67,7 +80,7 @@ export class Status {
         }
         const clockSet = !session.model || session.model.clockSet;
         byId('clock').parentElement.classList.toggle('unset', !clockSet);
-        byId('clock').parentElement.title = clockSet ? '' : say('status.unset.why');
+        byId('clock').parentElement.title = this.clockState(clockSet);
         const named = say(past ? 'status.then' : 'status.clock');
         setText(byId('clock-name'), clockSet ? named : say('status.unset', { clock: named }));
         const age = session.model ? session.model.oldestAgeMs(session.params.group, now) : null;
