@@ -40,13 +40,18 @@ static size_t other_bytes(struct thread_memory *memory, size_t all, size_t count
     struct memory_use use;
     int64_t now_ns = clock_mono_ns();
     memory_measure(&use);
-    if (use.anonymous > all - all / 8 && use.anonymous > use.allocated + FREE_BYTES && now_ns - memory->trimmed_ns > TRIM_NS) {
+    bool loose = use.anonymous > use.allocated + FREE_BYTES;
+    if (loose && use.anonymous > all - all / 8 && now_ns - memory->trimmed_ns > TRIM_NS) {
         memory_trim();
         memory_measure(&use);
         memory->trimmed_ns = now_ns;
+        loose = false;
     }
     size_t other = use.anonymous > counted ? use.anonymous - counted : 0;
-    memory->other = other > memory->other ? other : memory->other - (memory->other - other) / FADES;
+    if (other < memory->other)
+        memory->other -= (memory->other - other) / FADES;
+    else if (!loose) /* else some of it is what a cache has just given back, and the heap not yet */
+        memory->other = other;
     return memory->other > OTHER_BYTES ? memory->other : OTHER_BYTES;
 }
 
