@@ -25,7 +25,7 @@ bin := $(if $(filter release,$(config)),$(build),$(out)/bin)
 
 packages := yaml-0.1 jansson sqlite3 libpq libcurl libmodbus libmosquitto libprotobuf-c libwebsockets libssl libcrypto cjose \
             libturbojpeg \
-            libjpeg libpng cairo libxxhash OpenImageIO
+            libjpeg libpng zlib cairo libxxhash OpenImageIO
 ifneq ($(filter-out jpeg h264,$(CODECS))$(if $(filter jpeg,$(CODECS)),,none),)
 $(error CODECS=$(CODECS) is unknown: jpeg, or jpeg h264)
 endif
@@ -57,7 +57,7 @@ ldflags  = $(flags_$(config)) -pthread -Wl,--as-needed -Wl,-z,relro,-z,now $(LDF
 
 # --- what is built: one archive per layer, left to right ------------------------------------------------------------------
 layers   := base audit plant surface value history alarm notify loopcheck views scene field placing importing gpu render encode \
-            message service access session net
+            provenance message service access session net
 layers   := $(foreach l,$(layers),$(if $(wildcard server/$(l)/*.c),$(l)))
 without  := $(if $(filter h264,$(CODECS)),,$(wildcard server/encode/h264*)) server/base/image_lazy.c
 archives := $(foreach l,$(layers),$(out)/lib/$(l).a) $(out)/lib/protocol.a

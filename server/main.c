@@ -62,6 +62,7 @@ static void print_usage(FILE *out)
           "  --behind-proxy   a proxy on this machine speaks for others, and says for whom in X-Forwarded-For; takes --host\n"
           "  --host NAME      a name by which browsers ask for this server, beside its own; up to 16 times\n"
           "  --origin URL     a page of another host that may connect, and show ours in a frame: https://portal.example; up to 16 times\n"
+          "  --signing-key FILE   sign the pictures of /snapshot.png; Ed25519 in PEM: openssl genpkey -algorithm ed25519 -out FILE\n"
           "  --audit FILE     record who came in, was refused or changed what; `plantcast audit verify FILE` finds what was altered\n"
           "  --audit-size MB  a file of it that is larger is kept beside it, and a new one begun (64)\n"
           "  --audit-syslog HOST[:PORT]   send it to a syslog server, too, by TLS (6514); --audit-ca FILE: certificates trusted with it;\n"
@@ -156,6 +157,7 @@ enum {
     OPTION_HOST,
     OPTION_ORIGIN,
     OPTION_LIMIT,
+    OPTION_SIGNING_KEY,
     OPTION_AUDIT,
     OPTION_AUDIT_SYSLOG,
     OPTION_AUDIT_CA,
@@ -194,6 +196,7 @@ static const struct option options[] = {
     { "host", required_argument, NULL, OPTION_HOST },
     { "origin", required_argument, NULL, OPTION_ORIGIN },
     { "limit", required_argument, NULL, OPTION_LIMIT },
+    { "signing-key", required_argument, NULL, OPTION_SIGNING_KEY },
     { "audit", required_argument, NULL, OPTION_AUDIT },
     { "audit-syslog", required_argument, NULL, OPTION_AUDIT_SYSLOG },
     { "audit-ca", required_argument, NULL, OPTION_AUDIT_CA },
@@ -284,6 +287,7 @@ static int take_option(int option, struct server_params *params, int (**task)(co
     case OPTION_H264: params->h264 = optarg; return -1;
     case OPTION_HISTORY: params->history = optarg; return -1;
     case OPTION_PREPARED: params->prepared = optarg; return -1;
+    case OPTION_SIGNING_KEY: params->signing_key = optarg; return -1;
     case OPTION_WEB: params->web = optarg; return -1;
     case OPTION_LEVEL: return parse_level(optarg, &params->log_level) ? -1 : usage_error("--log-level: unknown", optarg);
     case OPTION_FORMAT: return parse_format(optarg, &params->log_format) ? -1 : usage_error("--log-format: unknown", optarg);

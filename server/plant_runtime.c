@@ -176,6 +176,7 @@ bool plant_runtime_start_render_service(struct plant_runtime *runtime, const str
         .memory_bytes = server->memory_bytes,
         .h264_library = plant_runtime_h264_library(server),
         .counters = context->counters,
+        .keeps_records = server->signing_key != NULL,
         .first = first,
         .first_count = first_count,
         .notify = context->notify,

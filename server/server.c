@@ -20,6 +20,7 @@
 #include "scene/far_sensors.h"
 #include "field/colormap.h"
 #include "plant_runtime.h"
+#include "provenance/signing_key.h"
 #include "reload.h"
 #include "plant/model_check.h"
 #include "scene/scene_create.h"
@@ -36,6 +37,7 @@ struct server {
     struct plant_runtime *runtime;
     struct reload *reload;
     struct supervision *supervision;
+    struct signing_key *signing_key; /* NULL: pictures are not signed */
     struct audit *audit;         /* NULL: nothing is recorded */
     struct plant_import *import; /* NULL: plants are not brought in here */
     pthread_mutex_t wake_lock;   /* holds net alive while the render thread wakes it */
@@ -160,6 +162,7 @@ static bool start_net(struct server *server)
         .socket_fd = server->params.socket_fd,
         .begun_ns = server->begun_ns,
         .access = server->params.access,
+        .signing_key = server->signing_key,
         .codecs = find_codecs(server),
         .web_folder = server->web,
         .version = PLANTCAST_VERSION,
@@ -247,6 +250,21 @@ static bool start_audit(struct server *server)
     return server->audit != NULL;
 }
 
+static bool load_signing_key(struct server *server)
+{
+    char why[SIGNING_KEY_WHY_BYTES], id[SIGNING_KEY_ID_BYTES];
+    const char *path = server->params.signing_key;
+    if (!path)
+        return true;
+    if (!(server->signing_key = signing_key_load(path, why))) {
+        log_err(server->log, "--signing-key: %s", why);
+        return false;
+    }
+    signing_key_id(server->signing_key, id);
+    log_info(server->log, "pictures are signed with key %s", id);
+    return true;
+}
+
 static bool server_start(struct server *server)
 {
     server->counters = counters_create();
@@ -264,7 +282,7 @@ static bool server_start(struct server *server)
     colormaps_of_plant(server->runtime->plant);
     if (server->params.socket_fd < 0 && !net_port_free(server->log, server->params.address, server->params.port))
         return false;
-    if (!net_access_good(server->log, &server->params.access))
+    if (!net_access_good(server->log, &server->params.access) || !load_signing_key(server))
         return false;
     server->context.workers = server->workers = workers_create(server->params.threads);
     server->web = find_web(server->params.web);
@@ -291,6 +309,7 @@ static void server_finish(struct server *server)
     workers_destroy(&server->workers);
     supervision_destroy(&server->supervision);
     counters_destroy(&server->counters);
+    signing_key_destroy(&server->signing_key);
     mem_free(server->web);
     pthread_mutex_destroy(&server->wake_lock);
     log_destroy(&server->log);

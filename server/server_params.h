@@ -27,6 +27,7 @@ struct server_params {
     size_t memory_bytes; /* 0: what suits the machine */
     int threads;         /* workers; 0: one per core */
     struct access_params access;
+    const char *signing_key;   /* PEM file of the key that signs pictures; NULL: none is signed */
     struct audit_params audit; /* path NULL: nothing is recorded */
     bool imports, imports_now; /* engineers may bring plants in; what was exported is brought in at once */
     bool per_fragment; /* the field anew at each fragment; for comparison */

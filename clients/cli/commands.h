@@ -30,6 +30,7 @@ int cmd_restore(int argc, char **argv);
 int cmd_fleet(int argc, char **argv);
 /* Verifies the audit trail of a daemon. */
 int cmd_audit(int argc, char **argv);
+int cmd_verify(int argc, char **argv);
 /* Makes, lists and revokes access tokens of a daemon. */
 int cmd_token(int argc, char **argv);
 

@@ -59,6 +59,7 @@ static const struct command {
     { "restore", "what backup made, put in place", cmd_restore },
     { "fleet", "one page and one /metrics over the servers of many plants", cmd_fleet },
     { "token", "make, list and revoke what lets people and programs in", cmd_token },
+    { "verify", "say whether a signed picture is what the server drew, and draw it again", cmd_verify },
     { "audit", "say whether an audit trail is whole, or where it was changed", cmd_audit },
 };
 enum { COMMANDS = sizeof(commands) / sizeof(commands[0]) };

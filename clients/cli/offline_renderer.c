@@ -112,7 +112,7 @@ static bool add_colormaps(const struct offline_renderer *offline, const struct s
     return true;
 }
 
-static bool take_view(const struct offline_renderer *offline, const struct snapshot_options *options, struct view *view)
+bool offline_renderer_take_view(const struct offline_renderer *offline, const struct snapshot_options *options, struct view *view)
 {
     struct message_error error;
     const struct params_context context = { .scene = offline->scene, .baselines = offline->baselines, .bare = options->no_overlay };
@@ -122,15 +122,20 @@ static bool take_view(const struct offline_renderer *offline, const struct snaps
     return good;
 }
 
-int offline_renderer_open(struct offline_renderer *offline, struct snapshot_options *options, struct view *view)
+bool offline_renderer_open_plant(struct offline_renderer *offline, struct snapshot_options *options)
 {
     *offline = (struct offline_renderer){ .log = log_create(LOG_INFO) };
     if (!load_plant(offline, options) || !load_scene(offline, options))
-        return 1;
-    if (!add_colormaps(offline, options) || !take_view(offline, options, view))
-        return 2;
+        return false;
     set_up_field(offline);
-    return 0;
+    return true;
+}
+
+int offline_renderer_open(struct offline_renderer *offline, struct snapshot_options *options, struct view *view)
+{
+    if (!offline_renderer_open_plant(offline, options))
+        return 1;
+    return add_colormaps(offline, options) && offline_renderer_take_view(offline, options, view) ? 0 : 2;
 }
 
 int offline_renderer_reopen(struct offline_renderer *offline, struct snapshot_options *options, struct view *view)
@@ -139,7 +144,7 @@ int offline_renderer_reopen(struct offline_renderer *offline, struct snapshot_op
     bool good = load_values(offline, options, &diag);
     diag_print(&diag, stderr);
     diag_finish(&diag);
-    return !good ? 1 : take_view(offline, options, view) ? 0 : 2;
+    return !good ? 1 : offline_renderer_take_view(offline, options, view) ? 0 : 2;
 }
 
 bool offline_renderer_open_history(struct offline_renderer *offline, const struct snapshot_options *options)

@@ -27,6 +27,10 @@ struct offline_renderer { /* freed in the opposite order */
 /* Opens the plant, its files, values and baseline, and sets *view from options->args. Returns 0, or the exit code with the reason printed.
    Close in both cases. */
 int offline_renderer_open(struct offline_renderer *offline, struct snapshot_options *options, struct view *view);
+/* As offline_renderer_open(), but without a view. Returns false with the reason printed. */
+bool offline_renderer_open_plant(struct offline_renderer *offline, struct snapshot_options *options);
+/* Sets *view from options->args. Returns false with the reason printed. */
+bool offline_renderer_take_view(const struct offline_renderer *offline, const struct snapshot_options *options, struct view *view);
 /* As offline_renderer_open(), for the same plant and renderer with other values, baseline and view. */
 int offline_renderer_reopen(struct offline_renderer *offline, struct snapshot_options *options, struct view *view);
 /* Creates the GL context and the renderer. Returns false if it cannot, logged. */

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "base/mem.h"
+#include "render/frame_record.h"
 
 static void *copy_of(const void *list, size_t count, size_t bytes_each)
 {
@@ -23,6 +24,7 @@ static struct frame *without_pixels(const struct frame *frame)
     atomic_init(&copy->refs, 1);
     copy->bgrx = NULL;
     copy->markers = copy_of(frame->markers, frame->marker_count, sizeof(*frame->markers));
+    copy->record = frame_record_ref(frame->record);
     copy->labels = copy_of(frame->labels, frame->label_count, sizeof(*frame->labels));
     return copy;
 }

@@ -8,7 +8,7 @@
 #include "protocol/wire.h"
 #include "render/frame.h"
 
-enum { PACKET_PARTS = 8 };
+enum { PACKET_PARTS = 8, PACKET_SHA256_BYTES = 32 };
 struct packet_part { /* a rectangle of the picture, and its bytes */
     int x_px, y_px, width_px, height_px;
     size_t begin, count;
@@ -21,6 +21,7 @@ struct packet {
     bool key; /* does not depend on the packet before */
     uint8_t *bytes;
     size_t count;
+    uint8_t pixels_sha256[PACKET_SHA256_BYTES]; /* of a frame with a record, as PNG: of its pixels, red, green, blue, rows from the top */
     struct packet_part parts[PACKET_PARTS];
     int part_count;
     int64_t encode_ns;

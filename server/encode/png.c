@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Lossless PNG by libpng, for snapshots and for still pictures on request. */
 #include <errno.h>
+#include <openssl/evp.h>
 #include <png.h>
 #include <string.h>
 
@@ -20,7 +21,7 @@ static struct encoder *png_create(struct log *log, const char *library)
     return encoder;
 }
 
-static uint8_t *pack_bgr(const struct frame *frame)
+static uint8_t *pack_rgb(const struct frame *frame)
 {
     uint8_t *packed = mem_try_array((size_t)frame->width_px * (size_t)frame->height_px, 3);
     if (!packed)
@@ -29,9 +30,17 @@ static uint8_t *pack_bgr(const struct frame *frame)
     for (int y = 0; y < frame->height_px; y++) {
         const uint8_t *from = frame->bgrx + (size_t)y * (size_t)frame->stride_bytes;
         for (int x = 0; x < frame->width_px; x++, from += 4, to += 3)
-            memcpy(to, from, 3);
+            to[0] = from[2], to[1] = from[1], to[2] = from[0];
     }
     return packed;
+}
+
+/* Zero, which is the hash of no picture, where the library cannot. */
+static void hash_pixels(const struct frame *frame, const uint8_t *packed, uint8_t out[PACKET_SHA256_BYTES])
+{
+    size_t bytes = 3 * (size_t)frame->width_px * (size_t)frame->height_px;
+    if (EVP_Digest(packed, bytes, out, NULL, EVP_sha256(), NULL) != 1)
+        memset(out, 0, PACKET_SHA256_BYTES);
 }
 
 static int png_send(struct encoder *encoder, struct frame *frame, const struct encoder_params *params, const struct dirty_rect *rects,
@@ -42,18 +51,20 @@ static int png_send(struct encoder *encoder, struct frame *frame, const struct e
     (void)count;
     png_image image = {
         .version = PNG_IMAGE_VERSION,
-        .format = PNG_FORMAT_BGR,
+        .format = PNG_FORMAT_RGB,
         .flags = PNG_IMAGE_FLAG_FAST,
         .width = (png_uint_32)frame->width_px,
         .height = (png_uint_32)frame->height_px,
     };
     png_alloc_size_t bytes = PNG_IMAGE_PNG_SIZE_MAX(image);
-    uint8_t *packed = pack_bgr(frame), *out = mem_try_array(bytes, 1);
+    uint8_t *packed = pack_rgb(frame), *out = mem_try_array(bytes, 1);
     int status = -ENOMEM;
     if (packed && out && png_image_write_to_memory(&image, out, &bytes, 0, packed, 0, NULL)) {
         encoder->ready = packet_create(frame, WIRE_CODEC_PNG, true, out, bytes);
         status = encoder->ready ? 0 : -ENOMEM;
     }
+    if (status == 0 && frame->record)
+        hash_pixels(frame, packed, encoder->ready->pixels_sha256);
     if (status)
         log_err(encoder->log, "png %dx%d: %s", frame->width_px, frame->height_px, image.message[0] ? image.message : "no memory for it");
     mem_free(out);

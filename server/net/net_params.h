@@ -45,6 +45,7 @@ struct net_params {
     int socket_fd;       /* which listens there already (net/handed_socket.h); -1: none */
     int64_t begun_ns;    /* monotonic: when the daemon began to start */
     struct access_params access;
+    const struct signing_key *signing_key; /* NULL: pictures are not signed */
     unsigned codecs;        /* a bit, 1 << enum wire_codec, for each that works here */
     const char *web_folder; /* the page's files; NULL: no page is served */
     const char *version;

@@ -6,6 +6,7 @@
 #include <stdatomic.h>
 
 #include "base/mem.h"
+#include "render/frame_record.h"
 #include "value/quality.h"
 
 /* Pixels of frames that are gone: memory that is new to the process costs more than it takes to fill it. */
@@ -105,6 +106,7 @@ void frame_unref(struct frame **frame_ptr)
         return;
     mem_free(frame->markers);
     mem_free(frame->labels);
+    frame_record_unref(&frame->record);
     give_pixels(frame->bgrx, pixel_bytes(frame));
     mem_free(frame);
 }

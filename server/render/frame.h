@@ -39,6 +39,7 @@ struct frame {
     int64_t field_ns, render_ns, readback_ns; /* stage times */
     int64_t turn_ns;                          /* of the render thread for it, whatever held it up; 0: drawn elsewhere */
     struct baseline baseline;                 /* of a difference; id 0: none */
+    struct frame_record *record;              /* what it was drawn from (render/frame_record.h); NULL: nobody asked for it */
     uint64_t content;                         /* equal for equal pictures: hash of view and field versions, without seq numbers and times */
     int triangles;
 };

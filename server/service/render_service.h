@@ -28,6 +28,7 @@ struct render_service_params {
     size_t memory_bytes;      /* bound on what the daemon takes, models included; 0: chosen for the machine */
     const char *h264_library; /* an encoder of libavcodec; NULL: the default one */
     struct counters *counters;
+    bool keeps_records;       /* frames with overlays come with their readings (render/frame_record.h), for whoever signs them */
     const struct view *first; /* views drawn once in render_service_create, so that they are quick later; copied from for that call only */
     size_t first_count;
     void (*notify)(void *arg); /* called when frames or pick answers can be collected; any thread */

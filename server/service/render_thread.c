@@ -2,6 +2,7 @@
 /* The render thread: takes the most urgent request, draws it and hands the frame to the encode queue. */
 #include "base/clock.h"
 #include "service/render_thread_impl.h"
+#include "render/frame_record.h"
 #include "render/overlay/overlay.h"
 
 static const int64_t STEP_NS = 10 * NS_PER_MS; /* of a long job, before anyone else gets a turn */
@@ -75,6 +76,8 @@ static void deliver(struct render_thread *thread, struct frame *frame, const str
     thread->turn_began_ns = now_ns;
     frame_read_markers(frame, snapshot, service->params.baselines);
     frame->clock_unset = !frame->view.at_us && !clock_utc_is_set();
+    if (group->tickets[0].request.overlay && service->params.keeps_records)
+        frame->record = frame_record_create(&frame->view, snapshot, service->params.baselines, loop_checks_now(service));
     if (group->tickets[0].request.overlay)
         (group->tickets[0].request.overlay == OVERLAY_FULL ? overlay_draw : overlay_draw_bare)(frame, service->params.scene, snapshot,
                                                                                                loop_checks_now(service));

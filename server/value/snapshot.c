@@ -2,6 +2,8 @@
 /* Makes and frees snapshots. */
 #include "value/snapshot.h"
 
+#include <string.h>
+
 #include "base/mem.h"
 #include "value/quality.h"
 
@@ -13,6 +15,16 @@ struct snapshot *snapshot_create(size_t tag_count)
     for (size_t i = 0; i < tag_count; i++)
         snapshot->readings[i] = (struct reading){ .quality = QUALITY_BAD_WAITING, .age_ns = INT64_MAX };
     return snapshot;
+}
+
+struct snapshot *snapshot_copy(const struct snapshot *snapshot)
+{
+    struct snapshot *copy = mem_new(sizeof(*copy));
+    *copy = *snapshot;
+    copy->readings = mem_array(snapshot->count, sizeof(*copy->readings));
+    if (snapshot->count)
+        memcpy(copy->readings, snapshot->readings, snapshot->count * sizeof(*copy->readings));
+    return copy;
 }
 
 void snapshot_destroy(struct snapshot **snapshot)

@@ -21,6 +21,7 @@ struct snapshot {
 };
 
 struct snapshot *snapshot_create(size_t tag_count); /* never NULL; all readings are Bad_WaitingForInitialData */
+struct snapshot *snapshot_copy(const struct snapshot *snapshot); /* never NULL */
 void snapshot_destroy(struct snapshot **snapshot);
 
 #endif

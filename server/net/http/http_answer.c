@@ -187,8 +187,7 @@ void request_forget(struct server_context *server, struct request *request)
         history_loader_forget(server->history_loader, request->client);
     if (request->asked && request->asked->historical)
         snapshot_cache_give(server->params.plant.snapshot_cache, &request->asked->historical);
-    mem_free(request->asked);
-    request->asked = NULL;
+    asked_free(&request->asked);
 }
 
 void request_answered(struct request *request, int result)

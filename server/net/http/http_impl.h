@@ -8,6 +8,8 @@
 struct asked { /* a frame, or what is at a pixel of it, that a request waits for */
     bool picks;
     struct frame_request frame_request;
+    char **args; /* of the query, for the statement of a signed picture (asked_free) */
+    size_t arg_count;
     struct pick_query pick;
     const struct historical_snapshot *historical; /* a reference; NULL: readings of now, or they are still being loaded */
 };
@@ -78,6 +80,8 @@ bool request_args(struct lws *wsi, struct args *args, struct message_error *erro
 
 /* Has the request wait: it gets a number, request->client, and is answered outside of its own callback. */
 void request_await(struct server_context *server, struct request *request);
+/* Frees what the request asked for. &NULL is fine; leaves NULL. */
+void asked_free(struct asked **asked);
 /* Returns the request that waits under that number; NULL: none. */
 struct request *request_find(const struct server_context *server, uint64_t client);
 /* Ends its waiting, if it waits. */

@@ -6,6 +6,7 @@
 #include "base/mem.h"
 #include "net/http/http_impl.h"
 #include "message/view_query.h"
+#include "provenance/signed_picture.h"
 #include "session/reply.h"
 #include "net/connection.h"
 
@@ -14,14 +15,33 @@ enum { LEGEND_LEAST_PX = 256 }; /* a narrower picture has no room for what would
 static const struct encoder_params LOSSLESS = { .quality = 100, .full_chroma = true };
 
 /* place: x and y of a pick; NULL: none is asked. */
-static bool read_query(struct server_context *server, struct lws *wsi, struct view *view, double place[2], struct message_error *error)
+static bool read_query(struct server_context *server, struct lws *wsi, struct args *args, struct view *view, double place[2],
+                       struct message_error *error)
 {
     const struct params_context context = { .scene = server->params.plant.scene,
                                             .baselines = server->params.plant.baselines,
                                             .now_us = clock_utc_ns() / 1000 };
-    struct args args;
-    return request_args(wsi, &args, error) &&
-           view_query_parse(&context, connection_of(wsi)->role, args.list, args.count, view, place, error);
+    return request_args(wsi, args, error) &&
+           view_query_parse(&context, connection_of(wsi)->role, args->list, args->count, view, place, error);
+}
+
+static void keep_args(struct asked *asked, const struct args *args)
+{
+    asked->args = mem_array(args->count, sizeof(*asked->args));
+    asked->arg_count = args->count;
+    for (size_t i = 0; i < args->count; i++)
+        asked->args[i] = mem_strdup(args->list[i]);
+}
+
+void asked_free(struct asked **asked)
+{
+    if (!*asked)
+        return;
+    for (size_t i = 0; i < (*asked)->arg_count; i++)
+        mem_free((*asked)->args[i]);
+    mem_free((*asked)->args);
+    mem_free(*asked);
+    *asked = NULL;
 }
 
 static struct view *asked_view(struct asked *asked)
@@ -72,9 +92,10 @@ int ask_snapshot(struct server_context *server, struct request *request)
 {
     struct frame_request frame_request = { .codec = WIRE_CODEC_PNG, .quality = LOSSLESS, .urgency = URGENCY_SNAPSHOT, .always = true };
     struct message_error error = { 0 };
+    struct args args;
     int result;
     frame_request.overlay = connection_of(request->wsi)->role == ROLE_OPEN ? OVERLAY_BARE : OVERLAY_FULL;
-    if (!read_query(server, request->wsi, &frame_request.view, NULL, &error))
+    if (!read_query(server, request->wsi, &args, &frame_request.view, NULL, &error))
         return request_answer_error(request, &error);
     if (frame_request.view.width_px < LEGEND_LEAST_PX)
         frame_request.overlay = OVERLAY_NONE;
@@ -82,24 +103,38 @@ int ask_snapshot(struct server_context *server, struct request *request)
         return result;
     frame_request.asked_ns = frame_request.view.input_ns = clock_mono_ns();
     frame_request.account = connection_of(request->wsi)->client->share.account;
-    await_picture(server, request)->frame_request = frame_request;
+    struct asked *asked = await_picture(server, request);
+    asked->frame_request = frame_request;
+    if (server->params.signing_key)
+        keep_args(asked, &args);
     begin(server, request);
     return 0;
+}
+
+/* The PNG file, signed where there is a key and the picture has a legend. NULL: it cannot be. */
+static char *picture_of(struct server_context *server, const struct asked *asked, const struct packet *packet, size_t *count)
+{
+    if (packet->frame->record) {
+        const struct picture_origin origin = { .scene = server->params.plant.scene,
+                                               .args = (const char *const *)asked->args,
+                                               .arg_count = asked->arg_count,
+                                               .bare = asked->frame_request.overlay == OVERLAY_BARE,
+                                               .version = server->params.version };
+        return (char *)signed_picture_make(server->params.signing_key, &origin, packet, count);
+    }
+    *count = packet->count;
+    return memcpy(mem_array(packet->count, 1), packet->bytes, packet->count);
 }
 
 void http_on_frame(struct server_context *server, struct encoded_frame *encoded)
 {
     struct request *request = request_find(server, encoded->client);
     if (request) {
-        int status;
+        size_t count = 0;
+        char *body = encoded->packet ? picture_of(server, request->asked, encoded->packet, &count) : NULL;
         request_forget(server, request);
-        if (encoded->packet) {
-            char *body = mem_array(encoded->packet->count, 1);
-            memcpy(body, encoded->packet->bytes, encoded->packet->count);
-            status = request_answer(request, HTTP_STATUS_OK, "image/png", body, encoded->packet->count, NULL, NULL);
-        } else {
-            status = request_answer_text(request, HTTP_STATUS_INTERNAL_SERVER_ERROR, "the picture could not be made\n");
-        }
+        int status = body ? request_answer(request, HTTP_STATUS_OK, "image/png", body, count, NULL, NULL)
+                          : request_answer_text(request, HTTP_STATUS_INTERNAL_SERVER_ERROR, "the picture could not be made\n");
         request_answered(request, status);
     }
     encoded_frame_destroy(&encoded);
@@ -109,9 +144,10 @@ int ask_pick(struct server_context *server, struct request *request)
 {
     struct pick_query query = { 0 };
     struct message_error error = { 0 };
+    struct args args;
     double place[2];
     int result;
-    if (!read_query(server, request->wsi, &query.view, place, &error))
+    if (!read_query(server, request->wsi, &args, &query.view, place, &error))
         return request_answer_error(request, &error);
     if (!may_ask(server, request, &query.view, &result))
         return result;

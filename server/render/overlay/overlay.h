@@ -6,7 +6,8 @@
 #include "render/frame.h"
 
 /* Draws over frame->bgrx. The frame must not be shared yet. The clock is shown in the time zone of the process (TZ), which its main
-   file sets to the plant's. loop_checks: tags that are unproven are marked as such; NULL: none is. */
+   file sets to the plant's. loop_checks: tags that are unproven are marked as such; NULL: none is. Where the
+   frame has a record, that says it. */
 void overlay_draw(struct frame *frame, const struct scene *scene, const struct snapshot *snapshot, const struct loop_checks *loop_checks);
 
 /* Draws as overlay_draw() does, but no markers, sensor labels and alarms: for those who may see the picture and no reading. */

@@ -4,12 +4,15 @@
 #include <stdio.h>
 
 #include "base/mem.h"
+#include "render/frame_record.h"
 #include "render/overlay/crowd.h"
 #include "render/overlay/overlay_pen.h"
 #include "value/quality.h"
 
 bool overlay_unproven(const struct pen *pen, int tag)
 {
+    if (pen->frame->record)
+        return pen->frame->record->unproven[tag];
     return pen->loop_checks && loop_checks_unproven(pen->loop_checks, tag);
 }
 

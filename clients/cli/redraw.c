@@ -1,0 +1,168 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The statement's query and readings through the offline renderer. */
+#include "redraw.h"
+
+#include <inttypes.h>
+#include <math.h>
+#include <png.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/mem.h"
+#include "offline_renderer.h"
+#include "render/overlay/overlay.h"
+#include "value/quality.h"
+
+/* All but the instant, which the statement names by itself: `at=-8h` would be another one today. */
+static bool take_query(const json_t *statement, struct snapshot_options *options)
+{
+    const json_t *args = json_object_get(statement, "query");
+    for (size_t i = 0; i < json_array_size(args); i++) {
+        const char *arg = json_string_value(json_array_get(args, i));
+        char *name = strndup(arg, strcspn(arg, "="));
+        bool good = !strcmp(name, "at") || snapshot_add_arg(options, name, arg + strlen(name) + (arg[strlen(name)] == '='));
+        free(name);
+        if (!good)
+            return false;
+    }
+    return true;
+}
+
+static bool same_configuration(const json_t *statement, const struct plant *plant)
+{
+    const char *then = json_string_value(json_object_get(statement, "configuration"));
+    if (then && !strcmp(then, plant->hash))
+        return true;
+    printf("  DIFFERS: configuration: %s was %s, and is %s\n", plant->path, then ? then : "?", plant->hash);
+    return false;
+}
+
+static bool same_assets(const json_t *statement, const struct scene *scene)
+{
+    const json_t *assets = json_object_get(statement, "assets");
+    size_t others = 0;
+    for (size_t i = 0; i < scene->asset_count; i++) {
+        char checksum[17] = "";
+        const char *then = json_string_value(json_object_get(assets, scene->plant->assets[i].id));
+        if (!scene->assets[i].missing)
+            snprintf(checksum, sizeof(checksum), "%016" PRIx64, scene->assets[i].file->view.header->checksum);
+        if (strcmp(then ? then : "", checksum) != 0 && others++ == 0)
+            printf("  DIFFERS: the prepared file of asset %s was %s, and is %s\n", scene->plant->assets[i].id, then ? then : "not there",
+                   *checksum ? checksum : "not there");
+    }
+    if (others > 1)
+        printf("  DIFFERS: those of %zu more assets\n", others - 1);
+    return others == 0;
+}
+
+/* What cannot be used has no value to compare. */
+static bool same_reading(const struct reading *a, const struct reading *b)
+{
+    bool usable = !quality_is_bad(a->quality);
+    return a->quality == b->quality && (!usable || (float)a->value == (float)b->value);
+}
+
+/* Readings of the past were read from the history; those of then were recorded with the time at which they came. */
+static bool same_as_recorded(struct offline_renderer *offline, const struct redraw_options *options, const struct frame_record *record,
+                             int64_t at_us)
+{
+    struct snapshot_options where = { .history = options->history };
+    int64_t us = at_us ? at_us : record->readings->taken_utc_ns / 1000;
+    size_t same = 0, compared = 0, first = 0;
+    if (!offline_renderer_open_history(offline, &where))
+        return false;
+    if (us < offline->first_us || us > offline->last_us) {
+        printf("  DIFFERS: %s has nothing of that time\n", options->history);
+        return false;
+    }
+    struct snapshot *then = snapshot_create(offline->plant->tag_count);
+    bool good = history_at(offline->reader, offline->tags, us, then) == 0;
+    for (size_t i = 0; i < offline->plant->tag_count && good; i++) {
+        bool equal = same_reading(&record->readings->readings[i], &then->readings[i]);
+        compared++;
+        same += equal;
+        if (!equal && first == 0)
+            first = i + 1;
+    }
+    snapshot_destroy(&then);
+    printf("  %s%zu of %zu readings agree with what was recorded\n", good && same == compared ? "" : "DIFFERS: ", same, compared);
+    if (first)
+        printf("  the first that does not is %s\n", offline->plant->tags[first - 1].name);
+    return good && same == compared;
+}
+
+/* Those that differ by at most one step in each colour. */
+static size_t count_agreeing(const struct frame *frame, const uint8_t *rgb)
+{
+    size_t agreeing = 0;
+    for (int y = 0; y < frame->height_px; y++) {
+        const uint8_t *ours = frame->bgrx + (size_t)y * (size_t)frame->stride_bytes;
+        for (int x = 0; x < frame->width_px; x++, ours += 4, rgb += 3)
+            agreeing += abs(ours[2] - rgb[0]) <= 1 && abs(ours[1] - rgb[1]) <= 1 && abs(ours[0] - rgb[2]) <= 1;
+    }
+    return agreeing;
+}
+
+static bool same_pixels(const struct frame *frame, const uint8_t *png, size_t count)
+{
+    png_image image = { .version = PNG_IMAGE_VERSION };
+    size_t all = (size_t)frame->width_px * (size_t)frame->height_px, agreeing = 0;
+    if (!png_image_begin_read_from_memory(&image, png, count))
+        return false;
+    image.format = PNG_FORMAT_RGB;
+    uint8_t *rgb = mem_array(PNG_IMAGE_SIZE(image), 1);
+    if ((int)image.width == frame->width_px && (int)image.height == frame->height_px && png_image_finish_read(&image, NULL, rgb, 0, NULL))
+        agreeing = count_agreeing(frame, rgb);
+    png_image_free(&image);
+    mem_free(rgb);
+    printf("  %s%zu of %zu pixels agree within 1/255 with the picture drawn again\n", agreeing == all ? "" : "DIFFERS: ", agreeing, all);
+    return agreeing == all;
+}
+
+static struct frame *draw(struct offline_renderer *offline, const json_t *statement, struct frame_record *record, struct view *view)
+{
+    view_set_instant(view, json_integer_value(json_object_get(statement, "at_us")), 0);
+    view->tier = TIER_REFINED;
+    struct frame *frame = split_view_draw_now(offline->renderer, view, record->readings);
+    if (!frame)
+        return NULL;
+    frame_read_markers(frame, record->readings, offline->baselines);
+    frame->clock_unset = json_is_true(json_object_get(statement, "clock_unset"));
+    frame->record = frame_record_ref(record);
+    overlay_draw(frame, offline->scene, record->readings, NULL);
+    return frame;
+}
+
+static int compare(struct offline_renderer *offline, const struct redraw_options *options, const json_t *statement,
+                   struct frame_record *record, const struct frame *frame, const uint8_t *png, size_t count)
+{
+    bool same = same_configuration(statement, offline->plant);
+    same = same_assets(statement, offline->scene) && same;
+    same = same_pixels(frame, png, count) && same;
+    if (options->history)
+        same = same_as_recorded(offline, options, record, json_integer_value(json_object_get(statement, "at_us"))) && same;
+    return same ? 0 : 1;
+}
+
+int redraw_compare(const struct redraw_options *options, const json_t *statement, const uint8_t *png, size_t count)
+{
+    struct snapshot_options snapshot = { .from = options->plant, .prepared = options->prepared, .gl = GL_AUTO };
+    char why[SIGNED_PICTURE_WHY_BYTES];
+    struct offline_renderer offline;
+    struct frame_record *record = NULL;
+    struct frame *frame = NULL;
+    struct view view;
+    bool good = offline_renderer_open_plant(&offline, &snapshot);
+    if (good && !(record = signed_picture_record(statement, offline.plant, offline.baselines, why)))
+        fprintf(stderr, "plantcast: %s\n", why);
+    if (record && take_query(statement, &snapshot) && offline_renderer_take_view(&offline, &snapshot, &view) &&
+        offline_renderer_open_gl(&offline, &snapshot))
+        frame = draw(&offline, statement, record, &view);
+    int code = frame ? compare(&offline, options, statement, record, frame, png, count) : 2;
+    frame_unref(&frame);
+    frame_record_unref(&record);
+    offline_renderer_close(&offline);
+    snapshot_options_finish(&snapshot);
+    return code;
+}

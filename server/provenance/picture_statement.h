@@ -1,0 +1,28 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What the writer and the verifier of signed pictures share. Private to provenance/. */
+#ifndef PROVENANCE_PICTURE_STATEMENT_H
+#define PROVENANCE_PICTURE_STATEMENT_H
+#include "provenance/signed_picture.h"
+#include "scene/scene.h"
+
+#define PICTURE_STATEMENT_KEYWORD "Plantcast statement"
+#define PICTURE_SIGNATURE_KEYWORD "Plantcast signature"
+#define PICTURE_JSON (JSON_COMPACT | JSON_ENSURE_ASCII | JSON_REAL_PRECISION(17))
+enum {
+    PICTURE_STATEMENT_VERSION = 1,
+    PICTURE_STATEMENT_MAX_BYTES = 64 << 20, /* three sets of readings of 100,000 tags */
+    PICTURE_SIGNATURE_BYTES = 128,
+    PICTURE_HASH_BYTES = 65,
+    PICTURE_CHECKSUM_BYTES = 17
+};
+
+/* Writes a SHA-256 as hexadecimal digits. */
+void picture_hex(const uint8_t hash[PACKET_SHA256_BYTES], char out[PICTURE_HASH_BYTES]);
+/* Writes the SHA-256 of the bytes as hexadecimal digits; "" if the library cannot. */
+void picture_hash(const void *bytes, size_t count, char out[PICTURE_HASH_BYTES]);
+/* Writes that of a value as it is printed with PICTURE_JSON. */
+void picture_hash_json(const json_t *value, char out[PICTURE_HASH_BYTES]);
+/* Writes the checksum in the head of the asset's file (protocol/ASSET.md); "": it has none. */
+void picture_asset_checksum(const struct scene_asset *asset, char out[PICTURE_CHECKSUM_BYTES]);
+
+#endif

@@ -1,0 +1,36 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Signed pictures: a PNG file that says what it was drawn from, in a statement that the server's key has signed. SIGNED.md is the format.
+   Pure. */
+#ifndef PROVENANCE_SIGNED_PICTURE_H
+#define PROVENANCE_SIGNED_PICTURE_H
+#include <jansson.h>
+
+#include "encode/packet.h"
+#include "provenance/signing_key.h"
+#include "render/frame_record.h"
+
+struct picture_origin { /* what the server knows of a picture besides the picture */
+    const struct scene *scene;
+    const char *const *args; /* name=value: the query that it answers */
+    size_t arg_count;
+    bool bare; /* it was drawn without sensors and alarms, for somebody who may see no reading: they are not told either */
+    const char *version;
+};
+
+/* Returns the packet's PNG file with statement and signature, and its size in *out_count; the caller frees it (mem_free). The packet's
+   frame has a record. Returns NULL if there is no memory for it or it cannot be signed. */
+uint8_t *signed_picture_make(const struct signing_key *key, const struct picture_origin *origin, const struct packet *packet,
+                             size_t *out_count);
+
+enum { SIGNED_PICTURE_WHY_BYTES = 256 };
+/* Returns the statement of a PNG file if it is whole, of a version that is understood and signed by that key, and the picture's pixels and
+   readings are those that it names; the caller drops it (json_decref). Else returns NULL, with the reason in `why`. */
+json_t *signed_picture_verify(const struct signing_key *key, const uint8_t *png, size_t count, char why[SIGNED_PICTURE_WHY_BYTES]);
+
+/* Returns a record with the readings, baselines and marks that a verified statement tells, for a plant with the same tags. The baselines
+   are put into `baselines` under their names, too. Returns NULL, with the reason in `why`, if the statement tells none or names tags that
+   the plant does not have. */
+struct frame_record *signed_picture_record(const json_t *statement, const struct plant *plant, struct baselines *baselines,
+                                           char why[SIGNED_PICTURE_WHY_BYTES]);
+
+#endif

@@ -1,0 +1,165 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Verifies first what was signed, and only then reads it. */
+#include <openssl/evp.h>
+#include <png.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "base/mem.h"
+#include "provenance/picture_statement.h"
+#include "provenance/png_text.h"
+#include "value/quality.h"
+
+#define FAIL(...) (snprintf(why, SIGNED_PICTURE_WHY_BYTES, __VA_ARGS__), false)
+
+static bool is_signed(const struct signing_key *key, const char *statement, size_t length, const char *signature,
+                      char why[SIGNED_PICTURE_WHY_BYTES])
+{
+    char by[SIGNING_KEY_ID_BYTES], own[SIGNING_KEY_ID_BYTES], base64[96];
+    uint8_t bytes[96];
+    if (sscanf(signature, "ed25519 %16[0-9a-f] %95[A-Za-z0-9+/=]", by, base64) != 2 || strlen(base64) != 88 ||
+        EVP_DecodeBlock(bytes, (const unsigned char *)base64, 88) != 66)
+        return FAIL("the signature cannot be read: 'ed25519 KEY SIGNATURE' was expected");
+    signing_key_id(key, own);
+    if (strcmp(by, own) != 0)
+        return FAIL("it was signed by another key: %s, and the one that is given is %s", by, own);
+    return signing_key_verify(key, statement, length, bytes) ||
+           FAIL("the signature is wrong: the statement was changed after it was signed");
+}
+
+static bool has_pixels(const json_t *statement, const uint8_t *png, size_t count, char why[SIGNED_PICTURE_WHY_BYTES])
+{
+    png_image image = { .version = PNG_IMAGE_VERSION };
+    char hash[PICTURE_HASH_BYTES];
+    const char *expected = json_string_value(json_object_get(statement, "pixels_sha256"));
+    if (!png_image_begin_read_from_memory(&image, png, count))
+        return FAIL("the picture cannot be read: %.100s", image.message);
+    image.format = PNG_FORMAT_RGB;
+    bool size = image.width == (png_uint_32)json_integer_value(json_object_get(statement, "width")) &&
+                image.height == (png_uint_32)json_integer_value(json_object_get(statement, "height"));
+    uint8_t *pixels = size ? mem_try_array(PNG_IMAGE_SIZE(image), 1) : NULL;
+    bool read = pixels && png_image_finish_read(&image, NULL, pixels, 0, NULL);
+    if (read)
+        picture_hash(pixels, PNG_IMAGE_SIZE(image), hash);
+    mem_free(pixels);
+    png_image_free(&image);
+    if (!size)
+        return FAIL("the picture has another size than the statement says");
+    if (!read)
+        return FAIL("the picture cannot be read: %.100s", image.message[0] ? image.message : "there is no memory for it");
+    return (*hash && expected && !strcmp(hash, expected)) || FAIL("the pixels are not those that were signed");
+}
+
+static bool has_readings(const json_t *statement, char why[SIGNED_PICTURE_WHY_BYTES])
+{
+    const json_t *told = json_object_get(statement, "readings");
+    const char *expected = json_string_value(json_object_get(statement, "readings_sha256"));
+    char hash[PICTURE_HASH_BYTES];
+    if (!told)
+        return true;
+    picture_hash_json(told, hash);
+    return (*hash && expected && !strcmp(hash, expected)) || FAIL("the readings are not those that the statement's hash is of");
+}
+
+static bool is_known(const json_t *statement, char why[SIGNED_PICTURE_WHY_BYTES])
+{
+    const json_t *version = json_object_get(statement, "plantcast_statement");
+    if (!json_is_integer(version))
+        return FAIL("the statement is none of Plantcast's");
+    return json_integer_value(version) == PICTURE_STATEMENT_VERSION ||
+           FAIL("the statement is of version %d; this program understands version %d", (int)json_integer_value(version),
+                PICTURE_STATEMENT_VERSION);
+}
+
+json_t *signed_picture_verify(const struct signing_key *key, const uint8_t *png, size_t count, char why[SIGNED_PICTURE_WHY_BYTES])
+{
+    size_t length = 0, signature_length = 0;
+    char *text = png_text_find(png, count, PICTURE_STATEMENT_KEYWORD, PICTURE_STATEMENT_MAX_BYTES, &length);
+    char *signature = png_text_find(png, count, PICTURE_SIGNATURE_KEYWORD, PICTURE_SIGNATURE_BYTES, &signature_length);
+    json_t *statement = NULL;
+    char type[5];
+    if (!png_is_plain(png, count, type))
+        snprintf(why, SIGNED_PICTURE_WHY_BYTES, "%s%.4s",
+                 *type ? "it has a chunk that none of our pictures has: " : "it is no whole PNG file", type);
+    else if (!text || !signature)
+        snprintf(why, SIGNED_PICTURE_WHY_BYTES, "there is no %s in it, or the file is damaged", text ? "signature" : "statement");
+    else if (is_signed(key, text, length, signature, why) && !(statement = json_loadb(text, length, JSON_REJECT_DUPLICATES, NULL)))
+        snprintf(why, SIGNED_PICTURE_WHY_BYTES, "the statement is no JSON");
+    if (statement && !(is_known(statement, why) && has_pixels(statement, png, count, why) && has_readings(statement, why))) {
+        json_decref(statement);
+        statement = NULL;
+    }
+    mem_free(text);
+    mem_free(signature);
+    return statement;
+}
+
+/* --- what it tells ------------------------------------------------------------------------------------------------------------- */
+
+/* Of all tags of the plant, once each. unproven: by tag; NULL: nobody asks. */
+static bool read_readings(const json_t *told, const struct plant *plant, struct snapshot *out, bool *unproven,
+                          char why[SIGNED_PICTURE_WHY_BYTES])
+{
+    if (json_array_size(told) != plant->tag_count)
+        return FAIL("it tells readings of %zu tags; the plant has %zu", json_array_size(told), plant->tag_count);
+    bool *seen = mem_array(plant->tag_count, sizeof(*seen)), good = true;
+    for (size_t i = 0; i < plant->tag_count && good; i++) {
+        const json_t *one = json_array_get(told, i), *age = json_array_get(one, 4);
+        const char *name = json_string_value(json_array_get(one, 0));
+        int tag = name ? plant_find_tag(plant, name) : -1;
+        if (tag < 0 || seen[tag]) {
+            good = FAIL("reading %zu is of '%.60s', which %s", i + 1, name ? name : "", tag < 0 ? "is no tag of the plant" : "came before");
+            break;
+        }
+        seen[tag] = true;
+        out->readings[tag] = (struct reading){ .value = json_number_value(json_array_get(one, 1)),
+                                               .quality = (uint32_t)json_integer_value(json_array_get(one, 2)),
+                                               .changes = 1,
+                                               .received_utc_ns = json_integer_value(json_array_get(one, 3)),
+                                               .age_ns = json_is_null(age) ? INT64_MAX : json_integer_value(age),
+                                               .alarm = (uint8_t)json_integer_value(json_array_get(one, 5)),
+                                               .alarm_status = (uint8_t)json_integer_value(json_array_get(one, 6)) };
+        if (unproven)
+            unproven[tag] = json_is_true(json_array_get(one, 7));
+    }
+    mem_free(seen);
+    return good;
+}
+
+static bool read_baseline(const json_t *told, const struct plant *plant, struct frame_record *record, struct baselines *baselines,
+                          char why[SIGNED_PICTURE_WHY_BYTES])
+{
+    const char *name = json_string_value(json_object_get(told, "name"));
+    int i = record->baseline_count;
+    if (i == FRAME_RECORD_BASELINES || !name)
+        return FAIL("its baselines cannot be read");
+    record->baselines[i].readings = snapshot_create(plant->tag_count);
+    record->baselines[i].readings->taken_utc_ns = json_integer_value(json_object_get(told, "taken_ns"));
+    record->baseline_count++;
+    if (!read_readings(json_object_get(told, "readings"), plant, record->baselines[i].readings, NULL, why))
+        return false;
+    uint32_t id = baselines_set(baselines, name, record->baselines[i].readings);
+    return baselines_describe(baselines, id, &record->baselines[i].what) || FAIL("its baselines cannot be kept");
+}
+
+struct frame_record *signed_picture_record(const json_t *statement, const struct plant *plant, struct baselines *baselines,
+                                           char why[SIGNED_PICTURE_WHY_BYTES])
+{
+    const json_t *told = json_object_get(statement, "readings"), *all = json_object_get(told, "baselines");
+    if (!told) {
+        snprintf(why, SIGNED_PICTURE_WHY_BYTES, "it was made for somebody who may see no readings, and tells none");
+        return NULL;
+    }
+    struct snapshot *snapshot = snapshot_create(plant->tag_count);
+    struct frame_record *record = mem_new(sizeof(*record));
+    atomic_init(&record->refs, 1);
+    record->readings = snapshot;
+    record->unproven = mem_array(plant->tag_count, sizeof(*record->unproven));
+    snapshot->taken_utc_ns = json_integer_value(json_object_get(statement, "taken_ns"));
+    bool good = read_readings(json_object_get(told, "now"), plant, snapshot, record->unproven, why);
+    for (size_t i = 0; i < json_array_size(all) && good; i++)
+        good = read_baseline(json_array_get(all, i), plant, record, baselines, why);
+    if (!good)
+        frame_record_unref(&record);
+    return record;
+}

@@ -1,0 +1,168 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Signed pictures: whole ones are good and are drawn again pixel for pixel, of now and of the past; whatever is changed in one is found.
+import assert from 'node:assert/strict';
+import { spawnSync } from 'node:child_process';
+import { appendFileSync, chmodSync, readFileSync, writeFileSync } from 'node:fs';
+import { join } from 'node:path';
+import { after, before, test } from 'node:test';
+import { chunksOf, pngOf, textOf, withRows, withText } from './support/png_chunks.mjs';
+import { missing, runProgram, TinyPlant } from './support/tiny_plant.mjs';
+
+const absent = missing();
+const skip = absent.length > 0 ? `not built: ${absent.join(', ')}` : false;
+const sleep = (ms) => new Promise((done) => setTimeout(done, ms));
+const STATEMENT = 'Plantcast statement', SIGNATURE = 'Plantcast signature';
+let plant, picture;
+
+const path = (name) => join(plant.folder, name);
+const openssl = (...args) => assert.equal(spawnSync('openssl', args).status, 0, `openssl ${args}`);
+function makeKey(name) {
+    openssl('genpkey', '-algorithm', 'ed25519', '-out', path(`${name}.pem`));
+    chmodSync(path(`${name}.pem`), 0o600);
+    openssl('pkey', '-in', path(`${name}.pem`), '-pubout', '-out', path(`${name}.pub`));
+}
+async function fetchPicture(query, token = null) {
+    const answer = await fetch(`http://127.0.0.1:${plant.port}/snapshot.png?${query}`,
+        token ? { headers: { Authorization: `Bearer ${token}` } } : {});
+    assert.equal(answer.status, 200, query);
+    return Buffer.from(await answer.arrayBuffer());
+}
+function verify(png, ...args) {
+    writeFileSync(path('asked.png'), png);
+    return runProgram('plantcast', ['verify', path('asked.png'), '--key', path('server.pub'), ...args], 60000);
+}
+const redraw = (png, ...args) => verify(png, '--plant', plant.file, ...args);
+function refused(png, why) {
+    const { code, out, err } = verify(png);
+    assert.equal(code, 1, out + err);
+    assert.match(err, why);
+}
+
+before(async () => {
+    if (skip)
+        return;
+    plant = await TinyPlant.create();
+    makeKey('server');
+    makeKey('other');
+    assert.equal(plant.prepare().code, 0);
+    await plant.startSim();
+    await plant.startDaemon('--signing-key', path('server.pem'));
+    for (const [tag, value] of [['TI-1', 80], ['TI-2', 20], ['PI-1', 5]])
+        await plant.tell(`set ${tag} ${value}`);
+    await sleep(500);
+    picture = await fetchPicture('width=640&height=400');
+});
+after(() => plant?.destroy());
+
+test('a picture is good, and every pixel is drawn again', { skip }, async () => {
+    const { code, out, err } = redraw(picture);
+    assert.equal(code, 0, out + err);
+    assert.match(out, /signature is good/);
+    assert.match(out, / {2}256000 of 256000 pixels agree within 1\/255/);
+    const statement = JSON.parse(textOf(picture, STATEMENT));
+    assert.deepEqual(statement.readings.now.map(([tag, value]) => [tag, value]), [['TI-1', 80], ['TI-2', 20], ['PI-1', 5]]);
+    assert.doesNotMatch(JSON.stringify(statement), /127\.0\.0\.1|modbus|plantcast-tiny/, 'no addresses, no paths');
+});
+
+test('so are views of all kinds', { skip }, async () => {
+    for (const query of ['width=512&height=320&look=glossy&isolines=every:10&split=interpolation=paper',
+        'width=512&height=320&group=pressure&fit=P-101A&side=top&clip=1,0,0,-3&backdrop=dark&hidden=E-101']) {
+        const { code, out, err } = redraw(await fetchPicture(query));
+        assert.equal(code, 0, `${query}: ${out}${err}`);
+    }
+});
+
+test('a changed pixel, reading, time or camera is found', { skip }, () => {
+    refused(withRows(picture, (rows) => { rows[2000] ^= 1; }), /the pixels are not those that were signed/);
+    const changes = [['reading', '"TI-1",80.0', '"TI-1",79.0'],
+        ['camera', '"width=640"', '"width=641"'], ['plant', 'Two boxes', 'Six boxes'],
+        ['time', /"taken_ns":\d/, '"taken_ns":9'],
+        ['clock', '"clock_unset":', '"clock_unset" :'], ['quality', /("TI-1",80\.0),0/, '$1,1']];
+    for (const [what, from, to] of changes) {
+        const changed = withText(picture, STATEMENT, (text) => text.replace(from, to));
+        assert.notDeepEqual(changed, withText(picture, STATEMENT, (text) => text), what);
+        refused(changed, /the signature is wrong/);
+    }
+});
+
+test('so is a statement of another picture, and a signature of another key', { skip }, async () => {
+    const other = await fetchPicture('width=640&height=400&group=pressure');
+    const moved = chunksOf(picture).map((chunk) => (chunk.type === 'IDAT' ? null : chunk)).filter(Boolean);
+    moved.splice(-1, 0, ...chunksOf(other).filter(({ type }) => type === 'IDAT'));
+    refused(pngOf(picture, moved), /the pixels are not those that were signed/);
+    const { code, err } = runProgram('plantcast', ['verify', path('asked.png'), '--key', path('other.pub')]);
+    assert.equal(code, 1);
+    assert.match(err, /signed by another key: [0-9a-f]{16}, and the one that is given is [0-9a-f]{16}/);
+    refused(withText(picture, SIGNATURE, (text) => text.replace(/.$/, '')), /the signature cannot be read/);
+    refused(withText(picture, SIGNATURE, (text) => text.replace(/(\w{16} )(.)/, (_, id, first) => id + (first === 'A' ? 'B' : 'A'))),
+        /the signature is wrong/);
+});
+
+test('no file that would show something else is good', { skip }, () => {
+    const chunks = chunksOf(picture), animated = { type: 'acTL', data: Buffer.from([0, 0, 0, 2, 0, 0, 0, 0]) };
+    refused(pngOf(picture, [chunks[0], animated, ...chunks.slice(1)]), /a chunk that none of our pictures has: acTL/);
+    refused(Buffer.concat([picture, Buffer.from('more')]), /no whole PNG file/);
+    refused(picture.subarray(0, picture.length - 20), /no whole PNG file/);
+    refused(Buffer.from('GIF89a'), /no whole PNG file/);
+    refused(pngOf(picture, [...chunks.slice(0, 2), ...chunks.slice(1)]), /no statement in it/);
+    refused(pngOf(picture, chunks.filter(({ type }) => type !== 'zTXt')), /no statement in it/);
+});
+
+test('a plant that was changed since is said to be another', { skip }, () => {
+    const tags = readFileSync(path('tags.csv'), 'utf8');
+    appendFileSync(path('tags.csv'), 'TI-3,400007,Float,°C,new,temperature,E-101,0,0.5,0,1\n');
+    const { code, err } = redraw(picture);
+    writeFileSync(path('tags.csv'), tags);
+    assert.notEqual(code, 0);
+    assert.match(err, /it tells readings of 3 tags; the plant has 4|prepared/);
+    writeFileSync(path('tags.csv'), tags.replace('left', 'LEFT'));
+    const renamed = redraw(picture);
+    writeFileSync(path('tags.csv'), tags);
+    assert.equal(renamed.code, 1, renamed.out + renamed.err);
+    assert.match(renamed.out, /DIFFERS: configuration: .* was [0-9a-f]{16}, and is [0-9a-f]{16}/);
+});
+
+test('the past agrees with what was recorded', { skip }, async () => {
+    await sleep(1000);
+    const then = new Date().toISOString();
+    await plant.tell('set TI-1 30');
+    await sleep(4500);
+    const past = await fetchPicture(`width=640&height=400&at=${then}`);
+    const { code, out, err } = redraw(past, '--history', path('plant.history'));
+    assert.equal(code, 0, out + err);
+    assert.match(out, /\(history\)/);
+    assert.match(out, /3 of 3 readings agree with what was recorded/);
+    const now = redraw(await fetchPicture('width=640&height=400'));
+    assert.equal(now.code, 0, now.out + now.err);
+});
+
+test('who may see no readings is told none', { skip }, async () => {
+    await plant.daemon.stop();
+    writeFileSync(path('tokens'), '');
+    chmodSync(path('tokens'), 0o600);
+    await plant.startDaemon('--signing-key', path('server.pem'), '--tokens', path('tokens'), '--open-viewers');
+    const bare = await fetchPicture('width=640&height=400');
+    const { code, out, err } = verify(bare);
+    assert.equal(code, 0, out + err);
+    const statement = textOf(bare, STATEMENT);
+    assert.doesNotMatch(statement, /TI-1/);
+    assert.match(statement, /"readings_sha256":"[0-9a-f]{64}"/);
+    const again = redraw(bare);
+    assert.equal(again.code, 2);
+    assert.match(again.err, /somebody who may see no readings/);
+});
+
+test('a key that is none, or that everybody may read, is refused', { skip }, () => {
+    const start = (key) => runProgram('plantcastd', [plant.file, '--port', '0', '--signing-key', key]);
+    writeFileSync(path('none.pem'), 'no key\n', { mode: 0o600 });
+    for (const [key, why] of [['none.pem', /none\.pem: no private key of Ed25519/], ['server.pub', /everybody may read it|no private key/],
+        ['away.pem', /away\.pem: No such file/]]) {
+        const { code, err } = start(path(key));
+        assert.notEqual(code, 0);
+        assert.match(err, why);
+    }
+    chmodSync(path('server.pem'), 0o644);
+    const { code, err } = start(path('server.pem'));
+    assert.notEqual(code, 0);
+    assert.match(err, /everybody may read it/);
+});
