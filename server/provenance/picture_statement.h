@@ -2,7 +2,9 @@
 /* What the writer and the verifier of signed pictures share. Private to provenance/. */
 #ifndef PROVENANCE_PICTURE_STATEMENT_H
 #define PROVENANCE_PICTURE_STATEMENT_H
-#include "provenance/signed_picture.h"
+#include <jansson.h>
+
+#include "encode/packet.h"
 #include "scene/scene.h"
 
 #define PICTURE_STATEMENT_KEYWORD "Plantcast statement"

@@ -7,6 +7,7 @@
 
 #include "base/mem.h"
 #include "provenance/picture_statement.h"
+#include "provenance/signed_picture.h"
 #include "provenance/png_text.h"
 #include "value/quality.h"
 
