@@ -114,9 +114,9 @@ test('snapshots: a picture, or what is wrong with the question', { skip }, async
     const good = await get(plant.port, '/snapshot.png?width=320&height=200&group=temperature&camera=4,-4,3,1,0,0,50&look=flat');
     assert.deepEqual([good.status, good.headers['content-type']], [200, 'image/png']);
     assert.deepEqual([good.body.readUInt32BE(16), good.body.readUInt32BE(20)], [320, 200]);
-    const file = join(plant.folder, 'mapped.yaml'), mapped = `${readFileSync(plant.file, 'utf8')}colormaps: [{ name: Mine, image: map.png }]\n`;
+    const file = join(plant.folder, 'mapped.yaml'), mapped = 'colormaps: [{ name: Mine, image: map.png }]\n';
     writeFileSync(join(plant.folder, 'map.png'), good.body);
-    writeFileSync(file, mapped);
+    writeFileSync(file, readFileSync(plant.file, 'utf8') + mapped);
     for (const program of [['plantcastd', '--check'], ['plantcast-prep']]) // reading images is loaded now
         assert.equal(runProgram(program[0], [...program.slice(1), file]).code, 0, program[0]);
     for (const query of ['width=0', 'width=1000000000', 'height=nan', 'group=none', 'camera=1,2', 'colour=red', 'power=1e999', 'look=%01',

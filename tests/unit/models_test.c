@@ -190,10 +190,17 @@ int main(void)
 {
     cmocka_set_message_output(CM_OUTPUT_TAP);
     const struct CMUnitTest tests[] = {
-        WITH_FOLDER(tanker),       WITH_FOLDER(platform),  WITH_FOLDER(plant_in_five_parts),   WITH_FOLDER(plant_with_its_tree),
-        WITH_FOLDER(equipment),    WITH_FOLDER(mixers_and_water_tank),
+        WITH_FOLDER(tanker),
+        WITH_FOLDER(platform),
+        WITH_FOLDER(plant_in_five_parts),
+        WITH_FOLDER(mixers_and_water_tank),
     };
-    const struct CMUnitTest largest[] = { WITH_FOLDER(weather_deck), WITH_FOLDER(building_services) };
+    const struct CMUnitTest dearest[] = {
+        WITH_FOLDER(plant_with_its_tree),
+        WITH_FOLDER(equipment),
+        WITH_FOLDER(weather_deck),
+        WITH_FOLDER(building_services),
+    };
     int failed = cmocka_run_group_tests(tests, NULL, NULL);
-    return failed + (sweep_is_whole() ? cmocka_run_group_tests(largest, NULL, NULL) : 0);
+    return failed + (sweep_is_whole() ? cmocka_run_group_tests(dearest, NULL, NULL) : 0);
 }

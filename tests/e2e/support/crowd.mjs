@@ -74,6 +74,12 @@ export class Pace {
     stop() {
         clearInterval(this.timer);
     }
+
+    // Why times of the daemon mean nothing, or null: others take too much of the machine.
+    get busy() {
+        const times = this.times.map(({ ms }) => ms), typical = median(times), least = Math.min(...times);
+        return typical < 1.5 * least ? null : `the machine is busy: ${least.toFixed(1)} ms of work took ${typical.toFixed(1)} ms`;
+    }
 }
 
 export async function openMany(port, count, options, hello) {

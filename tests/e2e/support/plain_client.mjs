@@ -187,7 +187,7 @@ export class PlainClient {
     }
 
     // Until question(this) is neither null nor false nor undefined; what it was.
-    async until(what, question, timeoutMs = 15000) {
+    async until(what, question, timeoutMs = 60000) {
         const end = performance.now() + timeoutMs;
         for (;;) {
             const answer = question(this);
