@@ -14,7 +14,7 @@
 #include "base/mem.h"
 #include "access/file_watch.h"
 
-enum { DAY_S = 24 * 3600, SOON_S = 14 * DAY_S };
+enum { HOUR_S = 3600, DAY_S = 24 * HOUR_S, SOON_S = 14 * DAY_S };
 
 struct tls {
     struct log *log;
@@ -64,11 +64,19 @@ static void warn_of_end(struct tls *tls, time_t now_s)
 {
     int64_t left_s = tls_ends_s(tls) - (int64_t)now_s;
     tls->warned_s = now_s;
-    if (left_s < 0)
+    if (left_s <= 0)
         log_event(tls->log, LOG_ERROR, EVENT_CERTIFICATE_EXPIRES, "%s: this certificate's time is over", tls->cert_path);
     else if (left_s < SOON_S)
-        log_event(tls->log, LOG_WARN, EVENT_CERTIFICATE_EXPIRES, "%s: this certificate's time is over within 14 days, in %.1f",
-                  tls->cert_path, (double)left_s / DAY_S);
+        log_event(tls->log, LOG_WARN, EVENT_CERTIFICATE_EXPIRES, "%s: this certificate's time is over within 14 days, in %.1f %s",
+                  tls->cert_path, (double)left_s / (left_s < DAY_S ? HOUR_S : DAY_S), left_s < DAY_S ? "hours" : "days");
+}
+
+/* Once a day, once an hour of its last, and when it is over. */
+static bool is_time_to_warn(const struct tls *tls, time_t now_s)
+{
+    int64_t ends_s = tls_ends_s(tls);
+    bool last_day = now_s < ends_s && ends_s - now_s < DAY_S;
+    return (tls->warned_s < ends_s) != (now_s < ends_s) || llabs((long long)(now_s - tls->warned_s)) >= (last_day ? HOUR_S : DAY_S);
 }
 
 static void warn(struct tls *tls)
@@ -131,7 +139,7 @@ void tls_look(struct tls *tls)
     char text[200];
     const char *at;
     time_t now_s = time(NULL);
-    if (llabs((long long)(now_s - tls->warned_s)) >= DAY_S)
+    if (is_time_to_warn(tls, now_s))
         warn_of_end(tls, now_s);
     bool cert = file_watch_changed(&tls->cert_watch, tls->cert_path), key = file_watch_changed(&tls->key_watch, tls->key_path);
     if ((!cert && !key) || !check(tls) || !tls->served)

@@ -198,7 +198,7 @@ test('metrics: build, process and certificate; no old name of one that was renam
     assert.doesNotMatch(text, /_us_total|per_10_minutes/);
     writeFileSync(join(runtime, 'metrics'), text);
     await service.stop();
-    assert.match(service.err, /warn .*cert\.pem: this certificate's time is over within 14 days, in 3\.0/);
+    assert.match(service.err, /warn .*cert\.pem: this certificate's time is over within 14 days, in 3\.0 days/);
 });
 
 test('promtool has nothing to say about them', {

@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What a machine does to a daemon that runs for years: its volume becomes read-only, its certificate ends in the night.
+import assert from 'node:assert/strict';
+import { spawnSync } from 'node:child_process';
+import { copyFileSync, existsSync, mkdirSync, mkdtempSync, rmSync, writeFileSync } from 'node:fs';
+import { tmpdir } from 'node:os';
+import { basename, join } from 'node:path';
+import { after, test } from 'node:test';
+import { get } from './support/plain_client.mjs';
+import { missing, runProgram, TinyPlant } from './support/tiny_plant.mjs';
+
+const absent = missing(), skip = absent.length > 0 ? `not built: ${absent.join(', ')}` : false;
+const scratch = mkdtempSync(join(tmpdir(), 'plantcast-faults-'));
+const at = (name) => join(scratch, name), sleep = (ms) => new Promise((done) => setTimeout(done, ms));
+const sh = (line) => spawnSync('/bin/sh', ['-euc', line], { encoding: 'utf8' });
+after(() => rmSync(scratch, { recursive: true, force: true }));
+
+// A volume that becomes read-only as those of ext4 do when the disk below them fails.
+const volume = at('volume');
+function makeVolume() {
+    mkdirSync(volume);
+    const made = sh(`truncate -s 64M ${volume}.img; mkfs.ext4 -q ${volume}.img; mount -o loop,errors=remount-ro ${volume}.img ${volume}`);
+    const device = made.status === 0 && basename(sh(`findmnt -nro SOURCE ${volume}`).stdout.trim());
+    const trigger = device && `/sys/fs/ext4/${device}/trigger_fs_error`;
+    return trigger && existsSync(trigger) ? trigger : undefined;
+}
+const unmount = () => sh(`umount ${volume} 2>/dev/null || umount -l ${volume}`);
+
+async function gauge(plant, name) {
+    const { body } = await get(plant.port, '/metrics');
+    return Number(String(body).match(new RegExp(`^${name} (.*)$`, 'm'))?.[1]);
+}
+async function until(what, ask, timeoutMs = 60000) {
+    for (const end = Date.now() + timeoutMs; Date.now() < end; await sleep(250))
+        if (await ask())
+            return;
+    assert.fail(`not within ${timeoutMs / 1000} s: ${what}`);
+}
+const ledger = (plant, folder) => runProgram('plantcast',
+    ['history', 'export', plant.file, '--tags', 'TI-1', '--folder', folder, '--from', '-1h']).out.trim().split('\n').slice(1);
+
+test('a volume that becomes read-only: it runs on and says so; what it held comes in when the volume is mended', {
+    skip: skip || (process.getuid() === 0 ? false : 'needs root'), timeout: 180000,
+}, async (t) => {
+    const trigger = makeVolume();
+    if (!trigger) {
+        unmount();
+        t.skip('no volume can be mounted here');
+        return;
+    }
+    const runtime = at('runtime'), history = join(volume, 'history');
+    mkdirSync(runtime);
+    process.env.RUNTIME_DIRECTORY = runtime; // where a service keeps what no disk takes
+    const plant = await TinyPlant.create();
+    try {
+        assert.equal(plant.prepare().code, 0);
+        await plant.startSim();
+        await plant.startDaemon('--history', history);
+        await plant.tell('set TI-1 11');
+        await until('a point on disk', () => ledger(plant, history).some((line) => /,11[.,]/.test(`${line},`)));
+        writeFileSync(trigger, '1');
+        assert.notEqual(sh(`touch ${volume}/x`).status, 0, 'the volume is read-only');
+        await plant.tell('set TI-1 22');
+        await until('plantcast_history_good is 0', async () => await gauge(plant, 'plantcast_history_good') === 0);
+        assert.match(plant.daemon.said, /history-[\d-]+\.sqlite: .*error\n.*history: cannot be written \(/, 'the log names both');
+        assert.equal((await get(plant.port, '/snapshot.png?width=320&height=200')).status, 200, 'pictures go on');
+        assert.equal((await get(plant.port, '/readyz')).status, 200);
+        await plant.tell('set TI-1 33');
+        await sleep(1500);
+        assert.deepEqual(await plant.daemon.stop(), { code: 0, signal: null }, plant.daemon.said);
+        unmount();
+        assert.ok(sh(`fsck.ext4 -fy ${volume}.img >/dev/null || [ $? = 1 ]; mount -o loop ${volume}.img ${volume}`).status === 0);
+        await plant.startDaemon('--history', history);
+        await until('all three values on disk', () => {
+            const lines = ledger(plant, history).join('\n');
+            return ['11', '22', '33'].every((value) => new RegExp(`,${value}(\\.0*)?(,|$)`, 'm').test(lines));
+        });
+        await until('plantcast_history_good is 1', async () => await gauge(plant, 'plantcast_history_good') === 1);
+    } finally {
+        delete process.env.RUNTIME_DIRECTORY;
+        await plant.destroy();
+        unmount();
+    }
+});
+
+// A certificate that ends so many seconds from now.
+function certificate(name, seconds) {
+    const utc = (ms) => new Date(ms).toISOString().replace(/[-:T]/g, '').slice(2, 14) + 'Z';
+    writeFileSync(at('ca.cnf'), `[ca]\ndefault_ca=a\n[a]\ndatabase=${at('index')}\nnew_certs_dir=${scratch}\nrand_serial=yes
+default_md=sha256
+policy=p\nx509_extensions=x\n[p]\ncommonName=supplied\n[x]\nsubjectAltName=DNS:localhost,IP:127.0.0.1\nbasicConstraints=CA:TRUE\n`);
+    writeFileSync(at('index'), '');
+    const made = sh(`cd ${scratch}
+        openssl req -newkey ec -pkeyopt ec_paramgen_curve:prime256v1 -nodes -keyout ${name}.key -out ${name}.csr -subj /CN=localhost
+        openssl ca -batch -notext -config ca.cnf -selfsign -keyfile ${name}.key -in ${name}.csr -out ${name}.pem \
+            -startdate ${utc(Date.now() - 3600e3)} -enddate ${utc(Date.now() + seconds * 1000)}`);
+    assert.equal(made.status, 0, made.stderr);
+}
+
+test('a certificate that ends while it is served: said when it ends; the next one is taken', { skip, timeout: 120000 }, async () => {
+    const plant = await TinyPlant.create(), ENDS_S = 20;
+    try {
+        assert.equal(plant.prepare().code, 0);
+        certificate('old', ENDS_S);
+        const ends = Date.now() + ENDS_S * 1000;
+        certificate('new', 90 * 86400);
+        copyFileSync(at('old.pem'), at('cert.pem'));
+        copyFileSync(at('old.key'), at('key.pem'));
+        await plant.startDaemon('--tls-cert', at('cert.pem'), '--tls-key', at('key.pem'));
+        await plant.daemon.line(/warn .*cert\.pem: this certificate's time is over within 14 days, in 0\.0 hours/);
+        await plant.daemon.line(/error .*cert\.pem: this certificate's time is over$/m, 60000);
+        assert.ok(Date.now() > ends - 2000, 'not before');
+        const curl = (...args) => spawnSync('curl', ['-s', '--max-time', '10', ...args, `https://127.0.0.1:${plant.port}/metrics`],
+            { encoding: 'utf8' });
+        assert.equal(curl('--cacert', at('old.pem')).status, 60, 'who checks is warned');
+        const { stdout } = curl('-k');
+        const left = Number(stdout.match(/^plantcast_certificate_expiry_timestamp_seconds (.*)$/m)[1]) * 1000 - Date.now();
+        assert.ok(left < 0 && left > -100e3, String(left));
+        for (const [from, to] of [['new.pem', 'cert.pem'], ['new.key', 'key.pem']])
+            copyFileSync(at(from), at(to));
+        await plant.daemon.line(/cert\.pem: a new certificate is served/);
+        assert.equal(curl('--cacert', at('new.pem')).status, 0);
+    } finally {
+        await plant.destroy();
+    }
+});
