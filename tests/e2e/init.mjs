@@ -69,6 +69,7 @@ test('init touches nothing that is there, and gives the next plant another port'
     }
     for (const wrong of [['../x'], [], ['a', 'b'], ['four', '--plant', root], ['four', '--host', 'a b', '--plant', plant.folder]])
         assert.notEqual(init(...wrong).code, 0, wrong.join(' '));
+    assert.match(init('four', '--port', '8444', '--plant', plant.folder).err, /another plant has 8444: .*three\/options/);
     assert.ok(!existsSync(etc('four')));
 });
 
@@ -102,4 +103,29 @@ test('without npm or a network no page without charts is built', () => {
     const offline = run(`${bin}:/usr/bin:/bin`);
     assert.notEqual(offline.status, 0);
     assert.match(offline.stderr, /could not fetch uPlot/);
+});
+
+test('a package that this Debian does not have is left out if it is optional, and is an error if it is not', () => {
+    const tree = join(root, 'deps'), bin = join(root, 'deps-bin'), packages = join(tree, 'deploy/packages');
+    mkdirSync(packages, { recursive: true });
+    mkdirSync(bin);
+    cpSync('deploy/deps', join(tree, 'deploy/deps'));
+    const program = (name, script) => writeFileSync(join(bin, name), `#!/bin/sh\n${script}\n`, { mode: 0o755 });
+    program('dpkg-query', 'exit 1'); // nothing is installed
+    program('apt-cache', 'case $2 in known*) echo "  Candidate: 1.0" ;; none*) echo "  Candidate: (none)" ;; esac');
+    program('apt-get', `[ $1 = update ] || echo "$@" >>${root}/installed; case "$*" in *" none"*) exit 100 ;; esac`);
+    program('id', 'echo 0');
+    const deps = (...lines) => {
+        writeFileSync(join(packages, 'build'), lines.join('\n'));
+        rmSync(join(root, 'installed'), { force: true });
+        const { status, stderr } = spawnSync(join(tree, 'deploy/deps'), ['build'],
+            { encoding: 'utf8', env: { PATH: `${bin}:/usr/bin:/bin` } });
+        return { status, stderr, installed: existsSync(join(root, 'installed')) ? readFileSync(join(root, 'installed'), 'utf8') : '' };
+    };
+    const some = deps('known1', 'known2? # a comment', 'none3?', 'unheard4?');
+    assert.equal(some.status, 0, some.stderr);
+    assert.match(some.installed, /known1 known2$/m);
+    assert.deepEqual(deps('none3?', 'unheard4?'), { status: 0, stderr: '', installed: '' });
+    assert.match(deps('known2?').installed, /known2$/m);
+    assert.equal(deps('none3').status, 1);
 });
