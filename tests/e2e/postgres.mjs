@@ -124,6 +124,43 @@ test('what is recorded is there, each point once and with its quality', options,
     assert.ok(await metric('postgres_points_total') > 100);
 });
 
+// As Grafana does, with these plants, tags and units chosen.
+function expanded(sql, from, chosen) {
+    const time = (at) => `${at} BETWEEN to_timestamp(${from / 1e6}) AND now()`;
+    const text = (name) => [chosen[name]].flat().map((one) => `'${one.replaceAll("'", "''")}'`).join(',');
+    return sql.replaceAll(/\$__timeFilter\(([\w.]+)\)/g, (_, at) => time(at)).replaceAll(/\$\{(\w+):sqlstring\}/g, (_, name) => text(name));
+}
+
+test('every panel and variable of the dashboard of trends is answered, and a reading that is not good is not drawn', options, async () => {
+    configure();
+    const from = begin();
+    await plant.startDaemon();
+    feed();
+    await sleep(4000);
+    await stopFeeding();
+    await plant.tell('pause');
+    await until('the last points are not good', async () => server.ask('SELECT count(*) FROM plantcast.history WHERE NOT good')[0][0] > 0);
+    await settled();
+    const { panels, templating } = JSON.parse(readFileSync('deploy/grafana/trends.json', 'utf8')), chosen = {};
+    for (const { name, type, query } of templating.list)
+        if (type === 'query') {
+            const rows = server.ask(expanded(query, from, chosen)).map(([first]) => first);
+            assert.ok(rows.length > 0, name);
+            chosen[name] = name === 'plant' ? rows[0] : rows;
+        }
+    assert.deepEqual(chosen, { plant: 'Two boxes', tag: [...TAGS].sort(), unit: ['bar', '°C'] });
+    for (const { title, targets } of panels)
+        for (const { rawSql } of targets) {
+            const rows = server.ask(expanded(rawSql, from, chosen));
+            assert.ok(rows.length > 0 || title === 'Events', `${title}: nothing for ${rawSql}`);
+            if (title === 'Newest')
+                assert.deepEqual(rows.map(([tag, value]) => [tag, value]), [...TAGS].sort().map((tag) => [tag, '']), 'not good: no value');
+            if (title === '$unit')
+                assert.ok(rows.some(([, , value]) => value !== '') && rows.some(([, , value]) => value === ''), 'a line that is broken');
+        }
+    await plant.tell('resume');
+});
+
 test('nothing is lost while the server is killed, nor while it is frozen; live readings do not wait', options, async () => {
     configure();
     const from = begin();

@@ -15,7 +15,8 @@ const sleep = (ms) => new Promise((done) => setTimeout(done, ms));
 const promtool = (...args) => spawnSync('promtool', args, { cwd: RULES, encoding: 'utf8', timeout: 60000 });
 
 test('every rule is one to promtool, fires when it should, and has its place in the runbook', { skip: noPrometheus }, () => {
-    for (const args of [['check', 'rules', 'rules.yml'], ['test', 'rules', 'rules.test.yml'], ['check', 'config', 'prometheus.yml']]) {
+    for (const args of [['check', 'rules', 'rules.yml'], ['test', 'rules', 'rules.test.yml'], ['check', 'config', 'prometheus.yml'],
+        ['check', 'config', '--syntax-only', 'prometheus-tls.yml']]) {
         const { status, stdout, stderr } = promtool(...args);
         assert.equal(status, 0, `${args.join(' ')}: ${stdout}${stderr}`);
     }
@@ -64,6 +65,31 @@ test('Prometheus reads a daemon, takes the rules, and every panel asks for what 
         }
     });
 
+const DASHBOARDS = ['operations', 'alarms', 'trends'];
+const TYPES = ['row', 'stat', 'timeseries', 'table', 'state-timeline', 'bargauge', 'gauge', 'piechart', 'barchart'];
+test('dashboards are what Grafana reads: panels in their grid, variables that are there', () => {
+    for (const name of DASHBOARDS) {
+        const { panels, templating, uid, schemaVersion } = JSON.parse(readFileSync(resolve(`deploy/grafana/${name}.json`), 'utf8'));
+        assert.deepEqual([uid, schemaVersion], [`plantcast-${name}`, 38]);
+        assert.equal(new Set(panels.map(({ id }) => id)).size, panels.length, `${name}: each panel has an id of its own`);
+        const variables = new Set(templating.list.map((variable) => variable.name)), taken = new Map();
+        for (const { title, type, gridPos: { x, y, w, h }, targets = [], repeat } of panels) {
+            assert.ok(TYPES.includes(type), `${name}, ${title}: ${type}`);
+            assert.ok(x >= 0 && w > 0 && h > 0 && x + w <= 24, `${name}, ${title}: within 24 columns`);
+            assert.ok(repeat === undefined || variables.has(repeat), `${name}, ${title}: repeats ${repeat}`);
+            for (let cell = 0; cell < w * h; cell++) {
+                const place = `${x + cell % w},${y + Math.floor(cell / w)}`;
+                assert.ok(!taken.has(place), `${name}: ${title} lies on ${taken.get(place)}`);
+                taken.set(place, title);
+            }
+            assert.equal(new Set(targets.map(({ refId }) => refId)).size, targets.length);
+        }
+        const text = JSON.stringify([panels, templating]).replaceAll(/\$__\w+/g, '');
+        for (const [, used, plain] of text.matchAll(/\$(?:\{(\w+)(?::\w+)?\}|(\w+))/g))
+            assert.ok(variables.has(used ?? plain), `${name}: $${used ?? plain}`);
+    }
+});
+
 const noGrafana = spawnSync('grafana-server', ['-v']).status !== 0 && 'grafana-server is not installed (Debian has none)';
 test('Grafana takes the dashboards as they are', { skip: noGrafana, timeout: 120000 }, async () => {
     const folder = mkdtempSync(join(tmpdir(), 'plantcast-grafana-')), port = await freePort();
@@ -74,7 +100,7 @@ test('Grafana takes the dashboards as they are', { skip: noGrafana, timeout: 120
     try {
         for (const end = Date.now() + 60000; Date.now() < end && !(await call('health').catch(() => ({}))).ok;)
             await sleep(500);
-        for (const name of ['operations', 'alarms']) {
+        for (const name of DASHBOARDS) {
             const dashboard = JSON.parse(readFileSync(resolve(`deploy/grafana/${name}.json`), 'utf8'));
             const answer = await call('dashboards/db', { method: 'POST', body: JSON.stringify({ dashboard, overwrite: true }) });
             assert.equal(answer.status, 200, await answer.text());
