@@ -22,6 +22,7 @@
 #include "plant_runtime.h"
 #include "provenance/signing_key.h"
 #include "reload.h"
+#include "sibling.h"
 #include "plant/model_check.h"
 #include "scene/scene_create.h"
 #include "value/read_plan_text.h"
@@ -215,11 +216,44 @@ static void log_findings(struct log *log, const struct diag *diag)
     free(lines);
 }
 
+static bool goes_on(void *arg)
+{
+    (void)arg;
+    return false; /* signals end the daemon: none is handled yet */
+}
+
+/* What was prepared is of another plant file or of other models: somebody imported and has not prepared since, or a restart came between. */
+static bool prepare(struct server *server)
+{
+    struct diag diag = { 0 };
+    struct plant *plant = plant_load(server->params.plant_path, &diag);
+    char *folder = plant ? plant_runtime_prepared_folder(&server->params, plant) : NULL, *why = NULL;
+    if (plant) {
+        const char *const arguments[] = { "plantcast-prep", "-o", folder, server->params.plant_path, NULL };
+        log_warn(server->log, "%s: the plant is prepared now, as it is not what was prepared before", server->params.plant_path);
+        supervision_starting(server->supervision, "preparing the plant");
+        why = sibling_run(&(struct sibling_params){ .arguments = arguments, .stop = goes_on });
+        if (why)
+            log_err(server->log, "%s: the plant cannot be prepared: %s", server->params.plant_path, why);
+    }
+    bool good = plant && !why;
+    mem_free(why);
+    mem_free(folder);
+    plant_destroy(&plant);
+    diag_finish(&diag);
+    return good;
+}
+
 /* Findings are printed, errors and warnings. */
 static bool read_plant(struct server *server)
 {
     struct diag diag = { 0 };
     server->runtime = plant_runtime_read(&server->context, &diag);
+    if (!server->runtime && !diag.errors && prepare(server)) {
+        diag_finish(&diag);
+        diag = (struct diag){ 0 };
+        server->runtime = plant_runtime_read(&server->context, &diag);
+    }
     if (log_is_text(server->log))
         diag_print(&diag, stderr);
     else

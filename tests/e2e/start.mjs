@@ -10,6 +10,28 @@ import { missing, runProgram, TinyPlant } from './support/tiny_plant.mjs';
 const options = { skip: missing().length > 0 && `not built: ${missing().join(', ')}`, timeout: 120000 };
 const NONE = { hidden: [], isolate: [], ghost: [] };
 
+test('a plant that was changed and not prepared since is prepared when the daemon starts', options, async () => {
+    const tiny = await TinyPlant.create();
+    try {
+        assert.equal(tiny.prepare().code, 0);
+        const text = readFileSync(tiny.file, 'utf8');
+        writeFileSync(tiny.file, text.replace('groups:', '  - { id: NEW, model: box.gltf, placement: { translate: [9, 0, 0] } }\ngroups:'));
+        await tiny.startSim();
+        await tiny.startDaemon();
+        assert.match(tiny.daemon.said, /the plant is prepared now, as it is not what was prepared before/);
+        const { assets } = await (await fetch(`http://127.0.0.1:${tiny.port}/api/v1/plant`)).json();
+        assert.ok(assets.some(({ id }) => id === 'NEW'));
+        // What cannot be prepared is one line, and no daemon.
+        await tiny.daemon.stop();
+        writeFileSync(join(tiny.folder, 'box.gltf'), '{');
+        const { code, err } = runProgram('plantcastd', [tiny.file, '--port', '0'], 60000);
+        assert.equal(code, 1);
+        assert.match(err, /the plant cannot be prepared: /);
+    } finally {
+        await tiny.destroy();
+    }
+});
+
 test('a plant may begin with less than all of it; whoever asks for the rest keeps it', options, async () => {
     const tiny = await TinyPlant.create(), text = readFileSync(tiny.file, 'utf8');
     const write = (id, how) => writeFileSync(tiny.file, text.replace('{ id: P-101A,', '{ id: P-101A, start: ghost,')
