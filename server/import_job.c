@@ -137,6 +137,14 @@ static char *run(struct import_job *job, struct arguments *list, enum import_pha
     return why;
 }
 
+static void add_option(struct arguments *list, const char *option, const char *value)
+{
+    if (*value) {
+        add(list, option);
+        add(list, value);
+    }
+}
+
 static char *read_models(struct import_job *job, const struct import_order *order, const struct export_list *exports)
 {
     struct arguments list = { 0 };
@@ -146,20 +154,23 @@ static char *read_models(struct import_job *job, const struct import_order *orde
         add(&list, "--anew");
     add(&list, "-o");
     add(&list, job->folder);
-    if (*order->units) {
-        add(&list, "--units");
-        add(&list, order->units);
-    }
-    if (*order->up) {
-        add(&list, "--up");
-        add(&list, order->up);
-    }
+    add_option(&list, "--units", order->units);
+    add_option(&list, "--up", order->up);
     for (size_t i = 0; i < exports->count; i++)
         if (exports->at[i].kind == EXPORT_MODEL) {
             add_export(&list, job, exports->at[i].name);
             models++;
         }
     return models > 0 ? run(job, &list, IMPORT_READING) : mem_strdup("there is no model yet");
+}
+
+static void add_source(struct arguments *list, const struct import_source *source)
+{
+    list->own[list->owned] = mem_printf("%s%s%s", source->host, *source->port ? ":" : "", source->port);
+    add_option(list, "--modbus", list->own[list->owned++]);
+    add_option(list, "--unit", source->unit);
+    add_option(list, "--byte-order", source->order);
+    add_option(list, "--address-base", source->base);
 }
 
 static char *match_tags(struct import_job *job, const struct import_order *order, const struct export_list *exports)
@@ -175,6 +186,8 @@ static char *match_tags(struct import_job *job, const struct import_order *order
         add(&list, "--decide");
         add(&list, decisions);
     }
+    if (*order->source.host)
+        add_source(&list, &order->source);
     add(&list, job->params.plant_path);
     char *why = NULL;
     if (tags) {

@@ -303,14 +303,15 @@ static void record_import(const struct reload *reload, const struct import_order
     audit_say(reload->context->audit, &(struct audit_entry){ .event = "import",
                                                              .result = why ? "failed" : "done",
                                                              .who = reload->by,
-                                                             .what = order->anew     ? "the plant was made anew from its exports"
+                                                             .what = order->anew ? "the plant was made anew from its exports"
                                                                      : order->models ? "models were read, tags matched"
                                                                      : order->decides ? "decisions about tags were taken"
+                                                                     : *order->source.host ? "a source was stated"
                                                                                       : "tags were matched",
                                                              .why = why });
 }
 
-static void import_now(struct reload *reload, const struct import_order *order)
+static void import_now(struct reload *reload, struct import_order *order)
 {
     const struct plant_runtime_context *context = reload->context;
     char *folder = plant_runtime_prepared_folder(context->params, (*reload->runtime)->plant);
@@ -321,6 +322,8 @@ static void import_now(struct reload *reload, const struct import_order *order)
                                               .stop = is_cancelled,
                                               .arg = reload };
     struct import_job *job = import_job_begin(&params);
+    if (order->anew) /* the plant file's source goes on */
+        order->source = import_source_of_plant((*reload->runtime)->plant);
     char *remark, *why = import_job_run(job, order, &remark);
     if (!why) {
         plant_import_set_phase(reload->import, IMPORT_LOADING);
@@ -329,7 +332,7 @@ static void import_now(struct reload *reload, const struct import_order *order)
     if (why)
         why = undo_import(reload, job, why);
     record_import(reload, order, why);
-    plant_import_end(reload->import, why ? why : remark);
+    plant_import_end(reload->import, !why, why ? why : remark);
     import_job_end(&job);
     mem_free(remark);
     mem_free(why);

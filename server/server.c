@@ -222,7 +222,7 @@ static bool goes_on(void *arg)
     return false; /* signals end the daemon: none is handled yet */
 }
 
-/* What was prepared is of another plant file or of other models: somebody imported and has not prepared since, or a restart came between. */
+/* What was prepared is of another plant file or of other models: somebody has imported, and not prepared since. */
 static bool prepare(struct server *server)
 {
     struct diag diag = { 0 };

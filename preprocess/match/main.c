@@ -23,7 +23,8 @@ static void print_usage(FILE *out)
           "  --aliases FILE        what people call equipment, CSV: Alias,Equipment (aliases.csv in the folder)\n"
           "  --decide FILE         decisions as if they had been written into matches.csv by hand, CSV: Tag,Status,Asset\n"
           "  --source ID           of plant.yaml, where these tags are read\n"
-          "  --modbus HOST[:PORT]  makes that source, of type modbus\n"
+          "  --modbus HOST[:PORT]  makes that source, of type modbus, or changes the one that was made so\n"
+          "  --unit N              of that source: unit identifier, 0 to 255\n"
           "  --byte-order ORDER    of that source: ABCD, CDAB, BADC, DCBA\n"
           "  --address-base N      of that source: what the first register is called, 0 or 1 (1)\n"
           "  --dry-run             says what it would do\n"
@@ -35,11 +36,12 @@ enum { EQUIPMENT_MOST = 100 };
 
 int main(int argc, char **argv)
 {
-    enum { RULES = 1, ALIASES, SOURCE, MODBUS, ORDER, BASE, EQUIPMENT, DECIDE, DRY, HELP };
+    enum { RULES = 1, ALIASES, SOURCE, MODBUS, UNIT, ORDER, BASE, EQUIPMENT, DECIDE, DRY, HELP };
     static const struct option options[] = { { "rules", required_argument, NULL, RULES },
                                              { "aliases", required_argument, NULL, ALIASES },
                                              { "source", required_argument, NULL, SOURCE },
                                              { "modbus", required_argument, NULL, MODBUS },
+                                             { "unit", required_argument, NULL, UNIT },
                                              { "byte-order", required_argument, NULL, ORDER },
                                              { "address-base", required_argument, NULL, BASE },
                                              { "equipment", required_argument, NULL, EQUIPMENT },
@@ -48,14 +50,22 @@ int main(int argc, char **argv)
                                              { "help", no_argument, NULL, HELP },
                                              { 0 } };
     const char *equipment[EQUIPMENT_MOST];
-    struct matching_params params = { .address_base = 1, .equipment = equipment };
+    struct matching_params params = { .unit = -1, .address_base = 1, .equipment = equipment };
     enum byte_order order;
+    char *end;
     for (int option; (option = getopt_long(argc, argv, "", options, NULL)) != -1;)
         switch (option) {
         case RULES: params.rules = optarg; break;
         case ALIASES: params.aliases = optarg; break;
         case SOURCE: params.source = optarg; break;
         case MODBUS: params.modbus = optarg; break;
+        case UNIT:
+            params.unit = (int)strtol(optarg, &end, 10);
+            if (end == optarg || *end || params.unit < 0 || params.unit > 255) {
+                fprintf(stderr, "plantcast match: --unit %s: 0 to 255\n", optarg);
+                return 2;
+            }
+            break;
         case ORDER:
             params.byte_order = optarg;
             if (!byte_order_parse(optarg, &order)) {

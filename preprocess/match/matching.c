@@ -4,6 +4,7 @@
 
 #include <errno.h>
 #include <math.h>
+#include <regex.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -182,14 +183,16 @@ static bool find_source(struct run *run)
 {
     const struct matching_params *params = run->params;
     const struct plant_source *found = NULL;
-    const char *id = params->source ? params->source : params->modbus ? "plc" : NULL;
+    const char *id = params->source                                     ? params->source
+                     : params->modbus && run->plant->source_count != 1 ? "plc"
+                                                                        : NULL;
     for (size_t i = 0; i < run->plant->source_count; i++)
         if (id ? !strcmp(run->plant->sources[i].id, id) : run->plant->source_count == 1)
             found = &run->plant->sources[i];
     if (found)
         run->source = (struct tag_source){ found->id, !strcmp(found->kind, "modbus"), found->address_base };
     else if (params->modbus)
-        run->source = (struct tag_source){ id, true, params->address_base };
+        run->source = (struct tag_source){ id ? id : "plc", true, params->address_base };
     else if (params->source || run->plant->source_count > 1)
         return fail_at(params->plant,
                        params->source ? "--source: it has no source of that id" : "it has several sources; say which by --source ID");
@@ -301,18 +304,49 @@ static bool take_text(struct run *run, char *text)
     return true;
 }
 
-static bool add_source(struct run *run)
+static char *source_line(const struct run *run)
 {
     const struct matching_params *params = run->params;
+    const char *colon = strchr(params->modbus, ':');
+    struct text line = { 0 };
+    text_add(&line, "  - { id: %s, type: modbus, host: %.*s", run->source.id,
+             (int)(colon ? colon - params->modbus : (long)strlen(params->modbus)), params->modbus);
+    if (colon)
+        text_add(&line, ", port: %s", colon + 1);
+    if (params->unit >= 0)
+        text_add(&line, ", unit: %d", params->unit);
+    text_add(&line, ", address_base: %d", params->address_base);
+    if (params->byte_order)
+        text_add(&line, ", byte_order: %s", params->byte_order);
+    text_add(&line, " }\n");
+    return line.at;
+}
+
+/* The source has another line, if it still is one that source_line() wrote. */
+static bool change_source(struct run *run)
+{
+    regex_t regex;
+    regmatch_t found;
+    char *line = source_line(run),
+         *pattern = mem_printf("^  - \\{ id: %s, type: modbus, host: [^ ,]+(, port: [0-9]+)?(, unit: [0-9]+)?, address_base: [01]"
+                               "(, byte_order: [A-D]{4})? \\}$",
+                               run->source.id);
+    bool ours = regcomp(&regex, pattern, REG_EXTENDED | REG_NEWLINE) == 0 && regexec(&regex, run->new_text, 1, &found, 0) == 0,
+         same = strstr(run->new_text, line) != NULL, good = same || ours;
+    if (ours && !same)
+        take_text(run, mem_printf("%.*s%.*s%s", (int)found.rm_so, run->new_text, (int)strlen(line) - 1, line, run->new_text + found.rm_eo));
+    regfree(&regex);
+    mem_free(pattern);
+    mem_free(line);
+    return good || fail_at(run->params->plant, "somebody wrote its source otherwise than --modbus does: change it there");
+}
+
+static bool add_source(struct run *run)
+{
     for (size_t i = 0; i < run->plant->source_count; i++)
         if (!strcmp(run->plant->sources[i].id, run->source.id))
-            return true;
-    const char *colon = strchr(params->modbus, ':');
-    char *line = mem_printf("  - { id: %s, type: modbus, host: %.*s%s%s, address_base: %d%s%s }\n", run->source.id,
-                            (int)(colon ? colon - params->modbus : (long)strlen(params->modbus)), params->modbus, colon ? ", port: " : "",
-                            colon ? colon + 1 : "", params->address_base, params->byte_order ? ", byte_order: " : "",
-                            params->byte_order ? params->byte_order : "");
-    char *text = plant_edit_append(run->new_text, "sources", "# Where values come from.\n", line);
+            return change_source(run);
+    char *line = source_line(run), *text = plant_edit_append(run->new_text, "sources", "# Where values come from.\n", line);
     mem_free(line);
     return take_text(run, text);
 }

@@ -12,7 +12,8 @@ struct matching_params {
     const char *const *equipment; /* what becomes an asset (equipment.h); none: the plant file's assets stay */
     int equipment_count;
     const char *source;     /* id; NULL: the only one, or `plc` where --modbus makes it */
-    const char *modbus;     /* HOST or HOST:PORT of a source that is to be made; NULL: none */
+    const char *modbus;     /* HOST or HOST:PORT of a source that is to be made, or that was made so and is elsewhere now; NULL: none */
+    int unit;               /* of that source: unit identifier; -1: none is stated */
     const char *byte_order; /* of that source; NULL: none */
     int address_base;       /* likewise */
     bool dry_run;           /* says what it found, and writes nothing */

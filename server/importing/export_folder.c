@@ -84,11 +84,17 @@ void export_list_finish(struct export_list *list)
     *list = (struct export_list){ 0 };
 }
 
+const char *export_folder_choice(void)
+{
+    return ".choice";
+}
+
 void export_folder_sweep(const char *folder)
 {
     DIR *dir = opendir(folder);
     for (const struct dirent *entry; dir && (entry = readdir(dir));)
-        if (entry->d_name[0] == '.' && strcmp(entry->d_name, ".") != 0 && strcmp(entry->d_name, "..") != 0)
+        if (entry->d_name[0] == '.' && strcmp(entry->d_name, ".") != 0 && strcmp(entry->d_name, "..") != 0 &&
+            strcmp(entry->d_name, export_folder_choice()) != 0)
             unlinkat(dirfd(dir), entry->d_name, 0);
     if (dir)
         closedir(dir);

@@ -7,6 +7,7 @@
 #include <string.h>
 #include <sys/stat.h>
 
+#include "base/atomic_file.h"
 #include "base/json_text.h"
 #include "base/mem.h"
 #include "base/text.h"
@@ -16,16 +17,32 @@
 enum { MOST_SAID_BYTES = 64 * 1024 };
 
 struct plant_import {
-    char *exports, *matches;
+    char *exports, *matches, *choice; /* choice: a file with units and axis, for the next start */
     pthread_mutex_t lock;
     /* --- below: under lock */
     struct import_order order; /* the one under way, else the last */
+    struct import_order read;  /* the last that was put in force with models; of it units and axis */
     bool ordered, busy, cancelled;
     enum import_phase phase;
     unsigned number; /* of orders so far */
     struct text said;
     char *why; /* the last one failed; NULL: it did not */
 };
+
+/* The file is "UNITS/UP". */
+static void read_choice(struct plant_import *import)
+{
+    size_t bytes;
+    struct import_order order = { 0 };
+    char *text = text_read_file(import->choice, 100, &bytes), *up = text ? strchr(text, '/') : NULL;
+    if (up && up - text < IMPORT_CHOICE_BYTES && strlen(up + 1) < IMPORT_CHOICE_BYTES) {
+        memcpy(order.units, text, (size_t)(up - text));
+        strcpy(order.up, up + 1);
+        if (import_order_good(&order))
+            import->read = order;
+    }
+    mem_free(text);
+}
 
 struct plant_import *plant_import_create(const char *plant_path)
 {
@@ -34,6 +51,7 @@ struct plant_import *plant_import_create(const char *plant_path)
     char *folder = slash ? mem_printf("%.*s", (int)(slash - plant_path + (slash == plant_path)), plant_path) : mem_strdup(".");
     import->exports = export_folder_of(folder);
     import->matches = mem_printf("%s/matches.csv", folder);
+    import->choice = mem_printf("%s/%s", import->exports, export_folder_choice());
     mem_free(folder);
     pthread_mutex_init(&import->lock, NULL);
     if (mkdir(import->exports, 0777) != 0 && errno != EEXIST) {
@@ -43,6 +61,7 @@ struct plant_import *plant_import_create(const char *plant_path)
         return NULL;
     }
     export_folder_sweep(import->exports);
+    read_choice(import);
     return import;
 }
 
@@ -55,6 +74,7 @@ void plant_import_destroy(struct plant_import **pointer)
     text_finish(&import->said);
     mem_free(import->why);
     mem_free(import->matches);
+    mem_free(import->choice);
     mem_free(import->exports);
     mem_free(import);
     *pointer = NULL;
@@ -87,7 +107,7 @@ static bool is_one_of(const char *word, const char *const *words)
 bool import_order_good(const struct import_order *order)
 {
     static const char *const units[] = { "", "m", "mm", "cm", "in", "ft", NULL }, *const axes[] = { "", "y", "z", NULL };
-    return is_one_of(order->units, units) && is_one_of(order->up, axes);
+    return is_one_of(order->units, units) && is_one_of(order->up, axes) && (!*order->source.host || import_source_good(&order->source));
 }
 
 bool plant_import_order(struct plant_import *import, const struct import_order *order)
@@ -136,15 +156,16 @@ static json_t *files(const char *folder)
     return array;
 }
 
-char *plant_import_text(struct plant_import *import)
+char *plant_import_text(struct plant_import *import, const struct import_source *source)
 {
     static const char *const phases[] = { "idle", "reading", "matching", "preparing", "loading" };
     json_t *array = files(import->exports);
     pthread_mutex_lock(&import->lock);
     json_t *object = json_pack("{s:s,s:i,s:s,s:s?,s:s,s:s,s:o}", "phase", phases[import->phase], "number", (int)import->number, "said",
-                               import->said.at ? import->said.at : "", "failed", import->why, "units", import->order.units, "up",
-                               import->order.up, "files", array);
+                               import->said.at ? import->said.at : "", "failed", import->why, "units", import->read.units, "up",
+                               import->read.up, "files", array);
     pthread_mutex_unlock(&import->lock);
+    json_object_set_new(object, "source", *source->host ? import_source_json(source) : json_null());
     return json_text(object, 0);
 }
 
@@ -194,15 +215,20 @@ bool plant_import_cancelled(struct plant_import *import)
     return cancelled;
 }
 
-void plant_import_end(struct plant_import *import, const char *why)
+void plant_import_end(struct plant_import *import, bool in_force, const char *why)
 {
     struct text line = { 0 };
     if (why)
         add_printable(&line, why);
     pthread_mutex_lock(&import->lock);
+    if (in_force && import->order.models)
+        import->read = import->order;
+    char *choice = mem_printf("%s/%s", import->read.units, import->read.up);
     import->phase = IMPORT_IDLE;
     import->busy = false;
     mem_free(import->why);
     import->why = line.at;
     pthread_mutex_unlock(&import->lock);
+    atomic_file_put(import->choice, choice, strlen(choice)); /* without it the next start takes what the models say */
+    mem_free(choice);
 }

@@ -5,6 +5,8 @@
 #include <stdbool.h>
 #include <stddef.h>
 
+#include "importing/import_source.h"
+
 enum { IMPORT_CHOICE_BYTES = 4 };
 
 struct import_order {
@@ -13,6 +15,7 @@ struct import_order {
     bool decides;                    /* without models: the decisions that were uploaded are taken */
     char units[IMPORT_CHOICE_BYTES]; /* of models that do not say theirs: m, mm, cm, in, ft; "": what the reader takes them for */
     char up[IMPORT_CHOICE_BYTES];    /* likewise: y or z */
+    struct import_source source;     /* of the tags; without a host: as it is */
 };
 
 enum import_phase {
@@ -41,9 +44,9 @@ bool plant_import_order(struct plant_import *import, const struct import_order *
 /* Has the order under way end; what it changed is undone. */
 void plant_import_cancel(struct plant_import *import);
 bool plant_import_busy(struct plant_import *import);
-/* Returns how far it is, as JSON; mem_free. */
-char *plant_import_text(struct plant_import *import);
-/* Returns whether units and axis of an order are among those that there are. */
+/* Returns how far it is, with units and axis that the models in force were read with, and the plant's source, as JSON; mem_free. */
+char *plant_import_text(struct plant_import *import, const struct import_source *source);
+/* Returns whether units, axis and source of an order are among those that there are. */
 bool import_order_good(const struct import_order *order);
 
 /* --- for the reload thread */
@@ -54,7 +57,7 @@ void plant_import_set_phase(struct plant_import *import, enum import_phase phase
 /* Appends what a program printed, which is told to engineers. */
 void plant_import_say(struct plant_import *import, const char *text);
 bool plant_import_cancelled(struct plant_import *import);
-/* Ends the order. why: one line of what went wrong; NULL: nothing. */
-void plant_import_end(struct plant_import *import, const char *why);
+/* Ends the order. in_force: the plant that it made is. why: one line of what went wrong; NULL: nothing. */
+void plant_import_end(struct plant_import *import, bool in_force, const char *why);
 
 #endif

@@ -16,6 +16,10 @@ static char *carried_of(const struct session_context *context, const struct view
         if (context->plant->assets[i].start != PLANT_START_SHOWN)
             json_object_set_new(start, context->plant->assets[i].id, json_integer(context->plant->assets[i].start));
     json_object_set_new(o, "start", start);
+    double low, high;
+    field_default_range(context->scene, &view->field, &low, &high);
+    if (view->range_min == low && view->range_max == high) /* the group's own, which may be another one from now on */
+        json_object_del(o, "range");
     char *dumped = json_dumps(o, JSON_COMPACT), *carried = mem_strdup(dumped);
     free(dumped);
     json_decref(o);

@@ -10,7 +10,8 @@ import { after, before, test } from 'node:test';
 import { arrive, drawnAt, land, openPage, settle, shoot, TABLET, waitForPicture } from './support/browser.mjs';
 import { sweep } from './support/sweep.mjs';
 import { formats, makeTagList } from './support/tag_lists.mjs';
-import { BIN, missing } from './support/tiny_plant.mjs';
+import { freePort } from './support/ports.mjs';
+import { BIN, missing, Program } from './support/tiny_plant.mjs';
 
 const absent = missing();
 const notBuilt = absent.length > 0 ? `not built: ${absent.join(', ')}` : !existsSync('/usr/bin/chromium') ? 'no chromium' : false;
@@ -503,6 +504,94 @@ test('a plant room: files given on the command line, and what is seen then', { s
         await given.destroy();
         rmSync(folder, { recursive: true });
     }
+});
+
+test('a source: stated, values seen to arrive, corrected, kept when the plant is made anew', options, async () => {
+    const own = await Served.start(), seen = await openPage(`${own.url}?lang=en`, DESK), { page: desk } = seen;
+    const list = ['Tag Name,Address,Data Type,Scaled Low,Scaled High,Eng Units,Description', 'E-101.TT-01,400001,Float,0,150,degC,Shell',
+        'P-201A.TT-01,400003,Float,0,120,degC,Bearing', 'P-201B.PT-01,400005,Float,0,16,bar,Outlet', ''].join('\n');
+    const live = (text) => desk.waitForFunction((what) => document.querySelector('#import .live').textContent === what, text,
+        { timeout: 60000 });
+    const source = async () => (await (await own.api('')).json()).source, fold = desk.locator('#import .source');
+    const connect = async (port) => {
+        await fold.getByLabel('Modbus TCP device').fill('127.0.0.1');
+        await fold.getByLabel('Port').fill(String(port));
+        await fold.getByLabel('Byte order').selectOption('CDAB');
+        await fold.getByRole('button', { name: 'Connect' }).click();
+        await desk.waitForFunction((text) => document.querySelector('#import .source summary b').textContent === text &&
+            !document.querySelector('#import.busy'), `127.0.0.1:${port}`, { timeout: 60000 });
+    };
+    let sim;
+    try {
+        await waitForPicture(desk);
+        await choose(desk, [{ name: 'plant.gltf', text: boxes(NAMES) }, { name: 'tags.csv', text: list }]);
+        await inForce(desk);
+        assert.equal(await source(), null);
+        assert.deepEqual(await desk.evaluate(() => globalThis.plantcast.session.range), [0, 150], 'of the tags, not of the plant before');
+        await fold.locator('summary').click();
+        await settle(desk);
+        await shoot(desk, 'import-11-source');
+        const [wrongPort, port] = [await freePort(), await freePort()];
+        await connect(wrongPort);
+        await live('0 of 3 tags have values');
+        await shoot(desk, 'import-12-no-values');
+        await connect(port);
+        assert.deepEqual(await source(), { host: '127.0.0.1', port: String(port), unit: '1', order: 'CDAB', base: '1' });
+        assert.match(own.read('plant.yaml'), new RegExp(`^# Where values come from\\.\\nsources:\\n  - \\{ id: plc, type: modbus, ` +
+            `host: 127\\.0\\.0\\.1, port: ${port}, unit: 1, address_base: 1, byte_order: CDAB \\}$`, 'm'));
+        assert.equal(own.read('plant.yaml').match(/type: modbus/g).length, 1, 'the first one was changed');
+        assert.match(own.read('tags.csv'), /^E-101\.TT-01,400001,Float,.*,plc,temperature,E-101,/m);
+        sim = new Program('plantcast-sim', [join(own.folder, 'plant.yaml')]);
+        await sim.line(/^plantcast-sim: listening/m);
+        await live('3 of 3 tags have values');
+        await arrive(desk);
+        await shoot(desk, 'import-13-values');
+        // Made anew, in other units: values go on; and what units are in force is known to a page that comes later, too.
+        await desk.locator('#import .measures summary').click();
+        await desk.locator('#import .measures select').first().selectOption('ft');
+        await desk.getByRole('button', { name: 'Apply' }).click();
+        await desk.waitForFunction(() => Math.abs(globalThis.plantcast.session.model.plant.bounds.max[0] - 9 * 0.3048) < 0.01, null,
+            { timeout: 60000 });
+        await desk.waitForFunction(() => !document.querySelector('#import.busy'));
+        assert.equal((await source()).port, String(port));
+        await live('3 of 3 tags have values');
+        await desk.reload();
+        await waitForPicture(desk);
+        await desk.locator('#import-toggle').click();
+        await desk.waitForFunction(() => document.querySelector('#import .measures select')?.value === 'ft', null, { timeout: 30000 });
+        for (const query of ['host=a%20b', 'host=--x', 'port=1', 'host=a&port=70000', 'host=a&order=XYZ', 'host=a&unit=256'])
+            assert.equal((await own.post(`/source?${query}`)).status, 400, query);
+        // A line that somebody wrote is theirs.
+        writeFileSync(join(own.folder, 'plant.yaml'), own.read('plant.yaml').replace('CDAB }', 'CDAB, poll_ms: 2000 }'));
+        await own.post(`/source?host=127.0.0.1&port=${wrongPort}&order=CDAB`);
+        assert.match((await own.idle()).failed, /somebody wrote its source otherwise than --modbus does: change it there/);
+        assert.match(own.read('plant.yaml'), /poll_ms: 2000/);
+        assert.deepEqual(seen.errors, []);
+    } finally {
+        await sim?.stop();
+        await seen.close();
+        await own.destroy();
+    }
+});
+
+test('decisions stay when what tags were matched to cannot be fetched', options, async () => {
+    await page.unrouteAll();
+    const inPanel = (f) => page.evaluate(f), decided = () => inPanel(() =>
+        globalThis.plantcast.modules.there('import').table.matches.decisions.size);
+    const bring = () => inPanel(() => globalThis.plantcast.modules.there('import').bringMatches());
+    await inPanel(() => {
+        const { table } = globalThis.plantcast.modules.there('import');
+        table.matches.decide(table.matches.all.find(({ tag }) => tag === 'TT-2011'), 'P-201A');
+    });
+    const before = await decided();
+    assert.ok(before > 0);
+    await page.route('**/api/v1/import/matches', (route) => route.abort());
+    await bring();
+    assert.equal(await decided(), before);
+    await page.unrouteAll();
+    await bring();
+    assert.equal(await decided(), before);
+    await inPanel(() => globalThis.plantcast.modules.there('import').table.forget());
 });
 
 test('millimetres taken for metres: seen beside a person, and corrected', options, async () => {

@@ -124,7 +124,7 @@ static void test_uploads(void **state)
 
 static json_t *told(const struct fixture *f)
 {
-    char *text = plant_import_text(f->import);
+    char *text = plant_import_text(f->import, &(struct import_source){ .host = "" });
     json_t *object = json_loads(text, 0, NULL);
     mem_free(text);
     assert_non_null(object);
@@ -165,12 +165,65 @@ static void test_orders(void **state)
     plant_import_set_phase(f->import, IMPORT_MATCHING);
     plant_import_cancel(f->import);
     assert_true(plant_import_cancelled(f->import));
-    plant_import_end(f->import, "tag \xff is wrong");
+    plant_import_end(f->import, false, "tag \xff is wrong");
     check_told(f, "idle", "one\ntwo ??\n", "tag ? is wrong");
     assert_true(plant_import_order(f->import, &(struct import_order){ .decides = true }));
     check_told(f, "matching", "", NULL);
-    plant_import_end(f->import, NULL);
+    plant_import_end(f->import, true, NULL);
     check_told(f, "idle", "", NULL);
+}
+
+static const char *units_told(const struct fixture *f, char out[8])
+{
+    json_t *object = told(f);
+    snprintf(out, 8, "%s/%s", json_string_value(json_object_get(object, "units")), json_string_value(json_object_get(object, "up")));
+    json_decref(object);
+    return out;
+}
+
+static void test_units_in_force_are_told_also_after_a_restart(void **state)
+{
+    struct fixture *f = *state;
+    char is[8];
+    assert_string_equal(units_told(f, is), "/");
+    assert_true(plant_import_order(f->import, &(struct import_order){ .models = true, .units = "mm", .up = "z" }));
+    assert_string_equal(units_told(f, is), "/");
+    plant_import_end(f->import, true, NULL);
+    assert_string_equal(units_told(f, is), "mm/z");
+    assert_true(plant_import_order(f->import, &(struct import_order){ .models = true, .units = "ft" }));
+    plant_import_end(f->import, false, "it was cancelled");
+    assert_true(plant_import_order(f->import, &(struct import_order){ .decides = true }));
+    plant_import_end(f->import, true, NULL);
+    assert_string_equal(units_told(f, is), "mm/z");
+    plant_import_destroy(&f->import);
+    f->import = plant_import_create(f->plant);
+    assert_string_equal(units_told(f, is), "mm/z");
+    assert_true(plant_import_order(f->import, &(struct import_order){ .models = true, .up = "y" }));
+    plant_import_end(f->import, true, NULL);
+    plant_import_destroy(&f->import);
+    f->import = plant_import_create(f->plant);
+    assert_string_equal(units_told(f, is), "/y");
+}
+
+static void test_sources(void **state)
+{
+    (void)state;
+    static const struct import_source good[] = { { .host = "plc-1.site.example", .port = "502", .unit = "0", .order = "CDAB", .base = "0" },
+                                                 { .host = "10.0.0.7" } };
+    static const struct import_source bad[] = { { .host = "" },
+                                                { .host = "--x" },
+                                                { .host = "a }, {" },
+                                                { .host = "a\nb" },
+                                                { .host = "a", .port = "0" },
+                                                { .host = "a", .port = "65536" },
+                                                { .host = "a", .unit = "256" },
+                                                { .host = "a", .unit = "+1" },
+                                                { .host = "a", .order = "ABCE" },
+                                                { .host = "a", .base = "2" } };
+    for (size_t i = 0; i < sizeof(good) / sizeof(good[0]); i++)
+        assert_true(import_source_good(&good[i]));
+    for (size_t i = 0; i < sizeof(bad) / sizeof(bad[0]); i++)
+        assert_false(import_source_good(&bad[i]));
 }
 
 int main(void)
@@ -179,6 +232,8 @@ int main(void)
         cmocka_unit_test(test_names),
         cmocka_unit_test_setup_teardown(test_uploads, set_up, tear_down),
         cmocka_unit_test_setup_teardown(test_orders, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(test_units_in_force_are_told_also_after_a_restart, set_up, tear_down),
+        cmocka_unit_test(test_sources),
     };
     cmocka_set_message_output(CM_OUTPUT_TAP);
     return cmocka_run_group_tests_name("plant_import", tests, NULL, NULL);

@@ -40,6 +40,18 @@ person: Eine Person von 1,8 m daneben zeigen
 person.label: 1,8 m
 units.note: Anwenden liest die Modelle noch einmal. plant.yaml und tags.csv entstehen neu, die alten
  bleiben als .1, .2, …; Entscheidungen über Messstellen bleiben.
+source: Messwerte
+source.none: noch keine
+source.host: Modbus-TCP-Gerät
+source.port: Port
+source.unit: Unit
+source.order: Bytefolge
+source.unstated: nicht angegeben
+source.base: Erstes Register
+source.connect: Verbinden
+source.live: {good} von {count} Messstellen haben Werte
+source.bad: {count} × {why}
+source.note: Adressen stehen in der Messstellenliste. Die Quelle wird in plant.yaml geschrieben.
 tags: Messstellen
 filter: Zeigen
 filter.all: Alle

@@ -40,6 +40,18 @@ person: Show a person of 1.8 m beside it
 person.label: 1.8 m
 units.note: Applying reads the models again. plant.yaml and tags.csv are made anew, those before are
  kept as .1, .2, …; decisions on tags stay.
+source: Values
+source.none: none yet
+source.host: Modbus TCP device
+source.port: Port
+source.unit: Unit
+source.order: Byte order
+source.unstated: not stated
+source.base: First register
+source.connect: Connect
+source.live: {good} of {count} tags have values
+source.bad: {count} × {why}
+source.note: Addresses come from the tag list. The source is written into plant.yaml.
 tags: Tags
 filter: Show
 filter.all: All

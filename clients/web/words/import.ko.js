@@ -39,6 +39,18 @@ person: 옆에 키 1.8 m인 사람 표시
 person.label: 1.8 m
 units.note: 적용하면 모델을 다시 읽습니다. plant.yaml과 tags.csv는 새로 만들어지고 이전 파일은 .1,
  .2, … 로 남으며, 태그에 대한 결정은 유지됩니다.
+source: 측정값
+source.none: 아직 없음
+source.host: Modbus TCP 장치
+source.port: 포트
+source.unit: 유닛
+source.order: 바이트 순서
+source.unstated: 지정 안 함
+source.base: 첫 레지스터
+source.connect: 연결
+source.live: 태그 {count}개 중 {good}개에 값이 있음
+source.bad: {count} × {why}
+source.note: 주소는 태그 목록에서 가져옵니다. 소스는 plant.yaml에 기록됩니다.
 tags: 태그
 filter: 표시
 filter.all: 전체

@@ -62,7 +62,8 @@ int api_import(struct server_context *server, struct request *request)
 {
     if (!server->params.import)
         return request_answer_text(request, HTTP_STATUS_NOT_FOUND, "plants are not brought in here\n");
-    return request_answer_json(request, plant_import_text(server->params.import));
+    const struct import_source source = import_source_of_plant(server->params.plant.scene->plant);
+    return request_answer_json(request, plant_import_text(server->params.import, &source));
 }
 
 int api_import_matches(struct server_context *server, struct request *request)
@@ -111,6 +112,22 @@ static int order_all(struct server_context *server, struct request *request, con
     if (!take_argument(args, "units", wanted.units, sizeof(wanted.units)) || !take_argument(args, "up", wanted.up, sizeof(wanted.up)) ||
         !import_order_good(&wanted))
         return refuse_with(request, HTTP_STATUS_BAD_REQUEST, "units are m, mm, cm, in or ft; up is y or z\n");
+    return order(server, request, &wanted);
+}
+
+/* Tags are read from there. */
+static int order_source(struct server_context *server, struct request *request, const struct args *args)
+{
+    struct import_order wanted = { 0 };
+    struct import_source *source = &wanted.source;
+    if (!take_argument(args, "host", source->host, sizeof(source->host)) ||
+        !take_argument(args, "port", source->port, sizeof(source->port)) ||
+        !take_argument(args, "unit", source->unit, sizeof(source->unit)) ||
+        !take_argument(args, "order", source->order, sizeof(source->order)) ||
+        !take_argument(args, "base", source->base, sizeof(source->base)) || !*source->host || !import_order_good(&wanted))
+        return refuse_with(request, HTTP_STATUS_BAD_REQUEST,
+                           "host is a name or an IPv4 address, port 1 to 65535, unit 0 to 255, order ABCD, CDAB, BADC or DCBA, "
+                           "base 0 or 1\n");
     return order(server, request, &wanted);
 }
 
@@ -242,7 +259,7 @@ static const struct {
 } posts[] = {
     { "/api/v1/import/upload", begin_upload, false }, { "/api/v1/import/remove", remove_file, false },
     { "/api/v1/import/run", order_all, false },       { "/api/v1/import/decide", begin_decisions, false },
-    { "/api/v1/import/cancel", cancel, true },
+    { "/api/v1/import/source", order_source, false }, { "/api/v1/import/cancel", cancel, true },
 };
 enum { POSTS = sizeof(posts) / sizeof(posts[0]) };
 

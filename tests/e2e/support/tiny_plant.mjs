@@ -72,7 +72,7 @@ export function runProgram(name, args, timeout = 30000) {
     return { code: status, out: stdout, err: stderr };
 }
 
-class Program {
+export class Program {
     constructor(name, args, as = {}, before = []) {
         const [program, ...all] = [...before, join(BIN, name), ...args];
         this.name = name;

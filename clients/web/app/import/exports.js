@@ -20,7 +20,7 @@ export class Exports {
             throw new Error(say('reason.unreachable'));
         });
         if (!answer.ok)
-            throw new Error(refusalText((await answer.text()).trim() || `HTTP ${answer.status}`));
+            throw Object.assign(new Error(refusalText((await answer.text()).trim() || `HTTP ${answer.status}`)), { status: answer.status });
         return answer;
     }
 

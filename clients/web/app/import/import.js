@@ -7,6 +7,7 @@ import { byId, make, setText } from '../common/dom.js';
 import { closeButton, fill } from '../common/widgets.js';
 import { Exports } from './exports.js';
 import { Lit } from './lit.js';
+import { Source } from './source.js';
 import { TagTable } from './tag_table.js';
 
 const UNITS = ['', 'm', 'mm', 'cm', 'in', 'ft'], AXES = ['', 'y', 'z'];
@@ -30,6 +31,7 @@ export class Import {
         this.exports = new Exports({ session: page.session, onState: (state) => this.show(state),
             onEnd: (state, sent) => this.onEnd(state, sent) });
         this.table = new TagTable({ page, lit: this.lit, save: () => this.decide() });
+        this.source = new Source({ session: page.session, connect: (source) => this.try(() => this.exports.order('/source', source)) });
         this.build();
         page.session.greeted(() => this.greet());
         for (const name of ['dragover', 'drop'])
@@ -69,7 +71,7 @@ export class Import {
             make('div', { class: 'part' },
                 make('section', {}, this.drop, this.filesFold,
                     make('div', { class: 'line' }, this.phase, this.cancel, this.again), this.wrong),
-                this.measures, this.table.element));
+                this.measures, this.source.element, this.table.element));
         byId('viewport').parentElement.append(this.element);
     }
 
@@ -115,8 +117,9 @@ export class Import {
     async bringMatches() {
         try {
             this.table.set(this.isNew ? '' : await this.exports.matches());
-        } catch {
-            this.table.set(''); // none were matched yet
+        } catch (error) {
+            if (error.status === 404) // none were matched yet; else what was decided stays
+                this.table.set('');
         }
     }
 
@@ -183,6 +186,10 @@ export class Import {
         this.cancel.hidden = !busy;
         this.again.hidden = busy || !state.files.some(({ kind }) => kind === 'model');
         this.apply.disabled = this.again.hidden;
+        this.source.element.hidden = this.isNew || !state.files.some(({ kind }) => kind === 'tags');
+        this.source.set(state.source, busy);
+        if (!busy)
+            this.takeUnits(state);
         this.table.setBusy(busy);
         setText(this.said, plain(state.said));
         this.details.hidden = state.said === '';
@@ -190,13 +197,17 @@ export class Import {
             setText(this.wrong, plain(state.failed ?? ''));
     }
 
-    // Units and axis are those of the models in force: other orders say none.
+    // Of the models in force. What was chosen and is not applied stays until those change.
+    takeUnits({ units, up }) {
+        if (this.known?.units === units && this.known?.up === up)
+            return;
+        this.known = { units, up };
+        this.units.value = units;
+        this.up.value = up;
+        this.showSize();
+    }
+
     onEnd(state, sent) {
-        if (!state.failed && sent?.path === '/run' && sent.query.what !== 'tags') {
-            this.units.value = state.units;
-            this.up.value = state.up;
-            this.applied = state.units || 'm';
-        }
         this.showSize();
         if (!state.failed && sent?.path === '/decide')
             this.table.settle(this.decided);
@@ -210,7 +221,7 @@ export class Import {
         this.measures.hidden = !model || this.isNew;
         if (!model)
             return;
-        const times = this.units.value ? timesOf(this.applied ?? 'm', this.units.value) : 1;
+        const times = this.units.value ? timesOf(this.known?.units || 'm', this.units.value) : 1;
         const sides = sizeOf(model.plant.bounds, times).map((m) => numberText(m, m < 10 ? 2 : m < 1000 ? 1 : 0));
         const [wide, deep, high] = sides;
         setText(this.size, say('import.metres', { wide, deep, high }));
