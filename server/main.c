@@ -22,8 +22,9 @@ static void print_usage(FILE *out)
           "                  [--gl-device INDEX|PCI] [--prepared DIR] [--history DIR] [--web DIR]\n"
           "                  [--log-level error|warn|info|debug] [--log-format text|json|journal]\n"
           "                  [--threads N] [--memory MB] [--field vertices|per-fragment]\n"
-          "                  [--h264 ENCODER|off] [--tls-cert FILE --tls-key FILE] [--tokens FILE [--openid FILE]] [--open-viewers]\n"
-          "                  [--trust-local] [--behind-proxy] [--host NAME] [--origin URL] [--limit NAME=N] [--import[=now]]\n"
+          "                  [--h264 ENCODER|off] [--tls-cert FILE --tls-key FILE] [--tokens FILE [--openid FILE] [--lock-after MIN]]\n"
+          "                  [--notice FILE] [--open-viewers] [--trust-local] [--behind-proxy] [--host NAME] [--origin URL]\n"
+          "                  [--limit NAME=N] [--import[=now]]\n"
           "                  [--audit FILE [--audit-size MB] [--audit-syslog HOST[:PORT] [--audit-ca FILE]\n"
           "                  [--audit-cert FILE --audit-key FILE]]]\n"
           "       plantcastd --check PLANT.yaml [--prepared DIR]\n"
@@ -57,6 +58,9 @@ static void print_usage(FILE *out)
           "  --tls-cert FILE, --tls-key FILE   certificate (with its chain) and private key, PEM; taken anew when they change\n"
           "  --tokens FILE    who is let in as what, on this machine too: `plantcast token` makes it; taken anew when it changes\n"
           "  --openid FILE    people sign in at an identity provider (OpenID Connect), as FILE says\n"
+          "  --notice FILE    a text that is shown before somebody signs in, or gives a token (UTF-8, 4 kB at most)\n"
+          "  --lock-after MIN who was not at the page for so long signs in again, or gives the token again; not for tokens that are made\n"
+          "                   with --unattended, as of walls\n"
           "  --open-viewers   let anyone who reaches ADDR look at the pictures, and at nothing else\n"
           "  --trust-local    with --tokens: who is on this machine needs none, and is an engineer\n"
           "  --behind-proxy   a proxy on this machine speaks for others, and says for whom in X-Forwarded-For; takes --host\n"
@@ -70,6 +74,13 @@ static void print_usage(FILE *out)
           "  --limit NAME=N   how much clients may have, again and again:\n",
           out);
     quotas_print(out);
+}
+
+static bool parse_minutes(const char *text, double *out)
+{
+    char *end;
+    *out = strtod(text, &end);
+    return end != text && !*end && *out >= 0.01 && *out <= 1440;
 }
 
 static bool parse_int(const char *text, long low, long high, int *out)
@@ -152,6 +163,8 @@ enum {
     OPTION_TLS_KEY,
     OPTION_TOKENS,
     OPTION_OPENID,
+    OPTION_NOTICE,
+    OPTION_LOCK,
     OPTION_PROXY,
     OPTION_TRUST,
     OPTION_HOST,
@@ -191,6 +204,8 @@ static const struct option options[] = {
     { "tls-key", required_argument, NULL, OPTION_TLS_KEY },
     { "tokens", required_argument, NULL, OPTION_TOKENS },
     { "openid", required_argument, NULL, OPTION_OPENID },
+    { "notice", required_argument, NULL, OPTION_NOTICE },
+    { "lock-after", required_argument, NULL, OPTION_LOCK },
     { "behind-proxy", no_argument, NULL, OPTION_PROXY },
     { "trust-local", no_argument, NULL, OPTION_TRUST },
     { "host", required_argument, NULL, OPTION_HOST },
@@ -239,6 +254,9 @@ static int take_access_option(int option, struct access_params *access)
     case OPTION_TLS_KEY: access->tls_key_path = optarg; return -1;
     case OPTION_TOKENS: access->tokens_path = optarg; return -1;
     case OPTION_OPENID: access->openid_path = optarg; return -1;
+    case OPTION_NOTICE: access->notice_path = optarg; return -1;
+    case OPTION_LOCK:
+        return parse_minutes(optarg, &access->lock_min) ? -1 : usage_error("--lock-after: not a number of minutes, up to 1440:", optarg);
     case OPTION_PROXY: access->behind_proxy = true; return -1;
     case OPTION_TRUST: access->trust_local = true; return -1;
     case OPTION_HOST: return add_host(access, optarg) ? -1 : usage_error("--host: not a name without port, or one too many:", optarg);

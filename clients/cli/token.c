@@ -22,13 +22,15 @@ enum { MAX_FILE_BYTES = 1024 * 1024 };
 
 static void print_usage(FILE *out)
 {
-    fputs("usage: plantcast token add FILE --role viewer|operator|engineer --name NAME [--until YYYY-MM-DD] [--plant PLANT]\n"
+    fputs("usage: plantcast token add FILE --role viewer|operator|engineer --name NAME [--until YYYY-MM-DD]\n"
+          "                           [--plant PLANT] [--unattended]\n"
           "       plantcast token list FILE\n"
           "       plantcast token revoke FILE NAME\n"
           "\n"
           "add makes a token and prints it, once: the file, which it makes if need be, holds only its SHA-256. plantcastd --tokens FILE\n"
           "sees within 3 seconds what was added or revoked, and closes the sessions of what was revoked.\n"
           "--until: the last day on which it is good. --plant: it is good only for the plant of that name, where plants share the file.\n"
+          "--unattended: of a wall or a program: plantcastd --lock-after does not lock it.\n"
           "It lies in a folder of root's, or of yours, and is no link. The daemon has to be able to read it: chown root:plantcast FILE;\n"
           "chmod 640 FILE\n",
           out);
@@ -159,8 +161,9 @@ static void print_holder(const struct token_holder *holder)
     char until[TIMESTAMP_BYTES] = "";
     if (holder->until_utc_ns < INT64_MAX)
         timestamp_print(holder->until_utc_ns / 1000, until);
-    printf("%-10s %s  %s%s%s%s%s\n", name_of(names_role, (int)holder->role), holder->name, *until ? "until " : "without end", until,
-           holder->plant[0] ? "  plant " : "", holder->plant, holder->until_utc_ns <= clock_utc_ns() ? "  (its time is over)" : "");
+    printf("%-10s %s  %s%s%s%s%s%s\n", name_of(names_role, (int)holder->role), holder->name, *until ? "until " : "without end", until,
+           holder->plant[0] ? "  plant " : "", holder->plant, holder->unattended ? "  unattended" : "",
+           holder->until_utc_ns <= clock_utc_ns() ? "  (its time is over)" : "");
 }
 
 static int list(const char *path)
@@ -217,6 +220,7 @@ static bool take_option(int option, struct token_holder *holder)
         holder->role = (enum role)role;
         return role >= ROLE_VIEWER;
     case 'n': snprintf(holder->name, sizeof(holder->name), "%s", optarg); return tokens_name_valid(optarg);
+    case 'w': holder->unattended = true; return true;
     case 'p': snprintf(holder->plant, sizeof(holder->plant), "%s", optarg); return tokens_plant_valid(optarg);
     case 'u': return tokens_parse_day(optarg, &holder->until_utc_ns);
     default: return false;
@@ -229,6 +233,7 @@ int cmd_token(int argc, char **argv)
                                              { "name", required_argument, NULL, 'n' },
                                              { "until", required_argument, NULL, 'u' },
                                              { "plant", required_argument, NULL, 'p' },
+                                             { "unattended", no_argument, NULL, 'w' },
                                              { "help", no_argument, NULL, 'h' },
                                              { NULL, 0, NULL, 0 } };
     struct token_holder holder = { .role = ROLE_NOBODY, .until_utc_ns = INT64_MAX };

@@ -4,10 +4,15 @@
 
 #include <arpa/inet.h>
 #include <ctype.h>
+#include <errno.h>
 #include <string.h>
 #include <strings.h>
 
+#include "base/mem.h"
 #include "base/text.h"
+#include "base/utf8.h"
+
+enum { NOTICE_BYTES = 4096 };
 
 bool access_allowed_at(const struct access_params *params, bool loopback, const char **why)
 {
@@ -16,6 +21,8 @@ bool access_allowed_at(const struct access_params *params, bool loopback, const 
         *why = "--behind-proxy: who comes through the proxy needs a token (--tokens FILE), or --open-viewers";
     else if (params->openid_path && !params->tokens_path)
         *why = "--openid needs --tokens FILE: a token lets you in while the identity provider does not answer";
+    else if (params->lock_min && !params->tokens_path)
+        *why = "--lock-after needs --tokens FILE: whom it locks out has to say who it is";
     else if (params->behind_proxy && params->host_count == 0)
         *why = "--behind-proxy: --host NAME says by which name the proxy is asked for";
     else if (params->behind_proxy && params->trust_local)
@@ -73,6 +80,23 @@ bool access_origin(const struct access_params *params, const char *origin, const
         if (!strcasecmp(params->origins[i], origin))
             return true;
     return name && !strcasecmp(name + 3, host) && (!secure || !strncasecmp(origin, "https://", 8));
+}
+
+char *access_notice_read(struct log *log, const char *path)
+{
+    size_t count;
+    char *text = text_read_file(path, NOTICE_BYTES, &count);
+    bool good = text && count > 0;
+    for (size_t at = 0, n; good && at < count; at += n) {
+        n = utf8_length(text + at, count - at);
+        good = n > 0 && text[at];
+    }
+    if (!good) {
+        log_err(log, "notice %s: %s", path, text ? "a text in UTF-8 is expected" : strerror(errno));
+        mem_free(text);
+        return NULL;
+    }
+    return text;
 }
 
 char *access_content_policy(const struct access_params *params)

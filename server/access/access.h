@@ -4,6 +4,7 @@
 #ifndef ACCESS_ACCESS_H
 #define ACCESS_ACCESS_H
 #include "access/quota.h"
+#include "base/log.h"
 #include "message/role.h"
 
 enum { ACCESS_MAX_NAMES = 16 };
@@ -18,6 +19,8 @@ struct access_params {
     const char *hosts[ACCESS_MAX_NAMES];      /* host names by which clients may ask for the daemon, beside those it knows */
     const char *origins[ACCESS_MAX_NAMES];    /* pages of other hosts that may connect, as SCHEME://HOST[:PORT] */
     int host_count, origin_count;
+    const char *notice_path;                  /* of a text that is shown before somebody signs in; NULL: none */
+    double lock_min;                          /* who was not at the page for so long has to sign in again; 0: nobody has to */
     struct quotas quotas;
 };
 
@@ -35,6 +38,8 @@ bool access_name_is_address(const char *name);
 /* Returns whether a page of that origin may connect to that host: it is the same host with the same scheme, or named in params. An empty
    origin may: no browser sent it. secure: the connection has TLS. */
 bool access_origin(const struct access_params *params, const char *origin, const char *host, bool secure);
+/* Reads the text of --notice: UTF-8, 4 kB at most. Returns it, for mem_free; NULL after an error, already logged. */
+char *access_notice_read(struct log *log, const char *path);
 /* Returns the Content-Security-Policy of our pages: they load from here only, and the origins named may show them in a frame; mem_free. */
 char *access_content_policy(const struct access_params *params);
 /* Returns whether a header's comma-separated list has that word. */

@@ -112,8 +112,8 @@ static bool take_plant(char *line, char plant[TOKEN_PLANT_BYTES])
 
 int tokens_parse_line(const char *line, struct token_holder *out, const char **why)
 {
-    enum { WORDS = 5 };
-    char copy[512], *rest = copy, *words[WORDS + 1] = { NULL };
+    enum { WORDS = 5, MOST = WORDS + 1 };
+    char copy[512], *rest = copy, *words[MOST + 1] = { NULL };
     int count = 0;
     *out = (struct token_holder){ .until_utc_ns = INT64_MAX };
     if (strcspn(line, "\r\n#") >= sizeof(copy)) {
@@ -122,16 +122,20 @@ int tokens_parse_line(const char *line, struct token_holder *out, const char **w
     }
     snprintf(copy, strcspn(line, "\r\n#") + 1, "%s", line);
     bool plant_good = take_plant(copy, out->plant);
-    for (char *word; count <= WORDS && (word = strsep(&rest, " \t"));)
+    for (char *word; count <= MOST && (word = strsep(&rest, " \t"));)
         if (*word)
             words[count++] = word;
+    if (count > 3 && !strcmp(words[count - 1], "unattended")) {
+        out->unattended = true;
+        count--;
+    }
     if (count == 0)
         return 0;
     int role = name_find(names_role, words[0]);
     if (role < ROLE_VIEWER)
         *why = "the role is viewer, operator or engineer";
     else if (count != 3 && count != WORDS)
-        *why = "ROLE NAME SHA-256 [until YYYY-MM-DD] [plant PLANT] is expected";
+        *why = "ROLE NAME SHA-256 [until YYYY-MM-DD] [unattended] [plant PLANT] is expected";
     else if (!plant_good)
         *why = "the name of a plant is expected after `plant`";
     else if (!tokens_name_valid(words[1]))
@@ -160,6 +164,8 @@ void tokens_print_line(struct text *out, const struct token_holder *holder)
         strftime(text, sizeof(text), "%Y-%m-%d", gmtime_r(&last_s, &day));
         text_add(out, " until %s", text);
     }
+    if (holder->unattended)
+        text_add(out, " unattended");
     if (holder->plant[0])
         text_add(out, " plant %s", holder->plant);
     text_add(out, "\n");

@@ -15,6 +15,7 @@ struct token_holder {
     uint8_t hash[TOKEN_HASH_BYTES]; /* all 0: no holder */
     int64_t until_utc_ns;           /* INT64_MAX: for ever */
     char plant[TOKEN_PLANT_BYTES];  /* the name of the only plant that it is for; "": any */
+    bool unattended;                /* of a wall or a program: it is not locked when nobody is at the page */
     bool signed_in;                 /* a person, by the identity provider; the hash is that of a cookie */
 };
 

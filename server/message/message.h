@@ -168,6 +168,7 @@ struct message {
     bool visible;
     double decode_ms; /* ack; negative: not said */
     double t;         /* ping */
+    bool active;      /* ping: somebody was at the page since the last one */
     uint64_t follow;  /* follow, lead: a session; 0: none */
     struct alarm_request alarm;
     struct time_request time; /* time, hello */

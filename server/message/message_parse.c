@@ -147,8 +147,13 @@ static bool parse_visible(const struct plant *plant, const json_t *o, struct mes
 
 static bool parse_ping(const struct plant *plant, const json_t *o, struct message *out, struct message_error *error)
 {
+    const json_t *active = json_object_get(o, "active");
     (void)plant;
-    return need_number(o, "t", -1e300, 1e300, &out->t, error);
+    out->active = json_is_true(active);
+    if (!active || json_is_boolean(active))
+        return need_number(o, "t", -1e300, 1e300, &out->t, error);
+    message_fail(error, "bad_field", "active: true or false expected");
+    return false;
 }
 
 static bool parse_fit(const struct plant *plant, const json_t *o, struct message *out, struct message_error *error)

@@ -375,12 +375,16 @@ static bool open_access(struct net *net)
     server->local_only = access_name_is_local(server->params.address) && !access->behind_proxy;
     if (access->tokens_path && !(server->session_context.tokens = server->tokens = tokens_create(server->params.log, access->tokens_path)))
         return false;
+    if (access->notice_path && !(server->notice = access_notice_read(server->params.log, access->notice_path)))
+        return false;
+    server->session_context.lock_ns = (int64_t)(access->lock_min * 60e9);
     if (server->tokens)
         tokens_set_plant(server->tokens, server->params.plant.scene->plant->name);
     const struct openid_params openid = { .log = server->params.log,
                                           .counters = server->params.counters,
                                           .audit = server->params.audit,
                                           .path = access->openid_path,
+                                          .lock_ns = (int64_t)(access->lock_min * 60e9),
                                           .wake = wake_loop,
                                           .wake_arg = net };
     if (access->openid_path && !(server->session_context.openid = server->openid = openid_start(&openid)))
@@ -393,7 +397,10 @@ bool net_access_good(struct log *log, const struct access_params *access)
     struct tokens *tokens = access->tokens_path ? tokens_create(log, access->tokens_path) : NULL;
     struct tls *tls = access->tls_cert_path ? tls_create(log, access->tls_cert_path, access->tls_key_path) : NULL;
     struct openid_config *openid = access->openid_path ? openid_config_read(log, access->openid_path) : NULL;
-    bool good = (tokens || !access->tokens_path) && (tls || !access->tls_cert_path) && (openid || !access->openid_path);
+    char *notice = access->notice_path ? access_notice_read(log, access->notice_path) : NULL;
+    bool good = (tokens || !access->tokens_path) && (tls || !access->tls_cert_path) && (openid || !access->openid_path) &&
+                (notice || !access->notice_path);
+    mem_free(notice);
     openid_config_free(&openid);
     tokens_destroy(&tokens);
     tls_destroy(&tls);
@@ -449,6 +456,7 @@ void net_destroy(struct net **net_ptr)
     tokens_destroy(&net->server.tokens);
     site_destroy(&net->server.site);
     mem_free(net->server.content_policy);
+    mem_free(net->server.notice);
     address_limits_destroy(&net->server.limits);
     login_throttle_destroy(&net->server.login_throttle);
     mem_free(net->server.by_client);

@@ -44,6 +44,7 @@ struct server_context {
     struct openid *openid; /* NULL: nobody signs in */
     struct login_throttle *login_throttle;
     struct site *site;    /* the page's files */
+    char *notice;         /* that is shown before somebody signs in; NULL: none */
     char *content_policy; /* Content-Security-Policy of every answer */
     struct tls *tls;      /* NULL: no TLS */
     struct admission admission;

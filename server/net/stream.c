@@ -184,7 +184,7 @@ static void count_moving(const struct server_context *server, int64_t now_ns)
 void streams_check_tokens(struct server_context *server, int64_t now_utc_ns)
 {
     for (struct stream *stream = server->streams; stream; stream = stream->next)
-        session_check_token(stream->session, now_utc_ns);
+        session_check_token(stream->session, clock_mono_ns(), now_utc_ns);
 }
 
 /* Who takes nothing gets nothing, and keeps nothing of the server's but its view; then it is closed. */

@@ -71,12 +71,37 @@ static enum role role_now(const struct session *session, int64_t now_utc_ns)
     return context->tokens ? tokens_role(context->tokens, holder, now_utc_ns) : ROLE_NOBODY;
 }
 
-void session_check_token(struct session *session, int64_t now_utc_ns)
+static void on_ping(struct session *session, const struct message *message, int64_t now_ns, int64_t now_utc_ns)
+{
+    session_reply(session, reply_pong_text(session_snapshot(session), message->t, now_utc_ns));
+    if (!message->active)
+        return;
+    session->identity.active_ns = now_ns;
+    if (session->context->openid && session->identity.holder.signed_in)
+        openid_touch(session->context->openid, &session->identity.holder, now_ns);
+}
+
+/* A person may be at another page of theirs, which openid/ knows. */
+static bool is_left_alone(const struct session *session, int64_t now_ns)
+{
+    const struct session_identity *identity = &session->identity;
+    int64_t lock_ns = session->context->lock_ns, since_ns = identity->active_ns ? identity->active_ns : session->opened_ns;
+    return lock_ns && !identity->holder.signed_in && !identity->holder.unattended && now_ns - since_ns > lock_ns;
+}
+
+void session_check_token(struct session *session, int64_t now_ns, int64_t now_utc_ns)
 {
     bool person = session->identity.holder.signed_in;
     const char *why = person ? "you are signed out" : "this token is no longer let in";
     if (session->identity.holder.role == ROLE_NOBODY)
         return;
+    if (is_left_alone(session, now_ns) && !session->close.code) {
+        struct message_error error = { 0 };
+        message_fail(&error, "locked", "nobody was at this page for %.3g min", (double)session->context->lock_ns / 60e9);
+        session_reply_error(session, &error);
+        session_close(session, 1008, "locked: nobody was at this page");
+        return;
+    }
     enum role role = role_now(session, now_utc_ns);
     if (role != ROLE_NOBODY) {
         session->identity.role = session->identity.holder.role = role;
@@ -224,7 +249,7 @@ static bool act(struct session *session, const struct message *message, int64_t 
     case MESSAGE_LOOP_CHECK: return session_check_loop(session, message, error);
     case MESSAGE_SAVE_VIEW:
     case MESSAGE_REMOVE_VIEW: on_view_edit(session, message, now_utc_ns); return true;
-    case MESSAGE_PING: session_reply(session, reply_pong_text(session_snapshot(session), message->t, now_utc_ns)); return true;
+    case MESSAGE_PING: on_ping(session, message, now_ns, now_utc_ns); return true;
     }
     return true;
 }

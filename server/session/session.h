@@ -26,7 +26,7 @@ void session_record_leave(const struct session *session, const char *why);
 /* Has the connection closed once the texts owed are sent. text: static. The first reason stands. */
 void session_close(struct session *session, int code, const char *text);
 /* Closes the session if its token was revoked or has expired; else updates its role. */
-void session_check_token(struct session *session, int64_t now_utc_ns);
+void session_check_token(struct session *session, int64_t now_ns, int64_t now_utc_ns);
 /* Returns the last state of pacing: a client that takes nothing is first sent nothing, then to be disconnected. */
 enum pacer_state session_state(const struct session *session, int64_t now_ns);
 

@@ -36,6 +36,7 @@ struct session_context {
     const struct quotas *quotas;
     const struct tokens *tokens;           /* NULL: none are configured */
     struct openid *openid;                 /* NULL: nobody signs in */
+    int64_t lock_ns;                       /* who was not at the page for so long has to say again who it is; 0: nobody has to */
     struct login_throttle *login_throttle; /* changed by hello; NULL: wrong tokens are not counted */
     struct audit *audit;                   /* NULL: nothing is recorded */
     struct resumes *resumes;               /* changed by hello */

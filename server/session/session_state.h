@@ -24,6 +24,7 @@ struct session_identity {
     enum login login;                     /* the verdict on the token in hello */
     struct token_holder holder;           /* of that token; role ROLE_NOBODY: no token was given, or none was accepted */
     char resume_secret[RESUME_CHARS + 1]; /* lets the client take its view up again over another connection */
+    int64_t active_ns;                    /* monotonic: when somebody was last at the page; 0: not since it came */
     bool resumed;                         /* this session took up another's view, as `welcome` says */
     bool returned;                        /* likewise, and its followers have yet to be moved here */
 };

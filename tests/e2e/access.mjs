@@ -89,6 +89,37 @@ test('a token for one plant is none for another', { skip }, async () => {
     assert.equal(token('add', file, '--role', 'viewer', '--name', 'x', '--plant', 'a#b').code, 2);
 });
 
+test('a session that is left alone is locked, but not that of a wall; and what is said before anybody is in', { skip }, async () => {
+    const file = path('attended'), notice = path('notice');
+    const desk = token('add', file, '--role', 'operator', '--name', 'desk').out.trim();
+    const busy = token('add', file, '--role', 'operator', '--name', 'busy').out.trim();
+    const wall = token('add', file, '--role', 'viewer', '--name', 'wall', '--until', '2199-12-31', '--unattended').out.trim();
+    assert.match(token('list', file).out, /wall {2}until 2200-01-01T[\d:.]+Z {2}unattended$/m);
+    writeFileSync(notice, 'Only for people of the works.\nAlles wird aufgezeichnet.\n');
+    await behindProxy('--tokens', file, '--lock-after', '0.1', '--notice', notice);
+    assert.equal(JSON.parse((await ask('/api/v1/me')).body).notice, 'Only for people of the works.\nAlles wird aufgezeichnet.\n');
+    const clients = [];
+    for (const one of [desk, busy, wall]) {
+        clients.push(await open());
+        await clients.at(-1).hello({ token: one });
+    }
+    const timer = setInterval(() => clients[1].say({ type: 'ping', t: 1, active: true }), 1000);
+    const idle = setInterval(() => clients[0].say({ type: 'ping', t: 1 }), 1000);
+    const closed = await clients[0].until('a close', (c) => c.closed, 20000);
+    clearInterval(idle);
+    assert.deepEqual([closed.code, (await clients[0].text('error')).code], [1008, 'locked']);
+    await new Promise((done) => setTimeout(done, 4000));
+    clearInterval(timer);
+    assert.deepEqual([clients[1].closed, clients[2].closed], [null, null]);
+    clients.forEach((client) => client.close());
+    const start = (...args) => runProgram('plantcastd', [plant.file, '--port', '0', ...args]);
+    assert.match(start('--lock-after', '15').err, /--lock-after needs --tokens/);
+    assert.match(start('--tokens', file, '--lock-after', 'soon').err, /not a number of minutes/);
+    assert.match(start('--notice', path('none')).err, /notice .*none: No such file/);
+    writeFileSync(notice, Buffer.from([0xff, 0xfe]));
+    assert.match(start('--notice', notice).err, /a text in UTF-8 is expected/);
+});
+
 test('a daemon does not start for others without TLS and tokens, nor with what is not safe', { skip }, () => {
     const start = (...args) => runProgram('plantcastd', [plant.file, '--port', '0', ...args]);
     const bad = path('readable');

@@ -69,10 +69,10 @@ function writeConfig(more = '', issuer = provider.issuer) {
         'label: Works\nroles:\n  - { group: operators, role: operator }\n  - { group: lookers, role: viewer }\n' + `check_s: 1\n${more}`);
 }
 
-async function start() {
+async function start(...more) {
     await plant.daemon?.stop();
     await plant.startDaemon('--port', String(port), '--tokens', path('tokens'), '--openid', path('openid.yaml'), '--audit',
-        path('audit.log'));
+        path('audit.log'), ...more);
     for (let i = 0; i < 100 && (await fetch(`http://127.0.0.1:${port}/login`, { redirect: 'manual' })).status !== 303; i++)
         await sleep(50);
 }
@@ -100,7 +100,8 @@ after(async () => {
 
 test('a person signs in, acts under the name, and signs out', { skip }, async () => {
     const browser = new Browser();
-    assert.deepEqual(await browser.me(), { name: null, role: 'nobody', signed_in: false, until: null, sign_in: 'Works' });
+    const nobody = { name: null, role: 'nobody', signed_in: false, until: null, sign_in: 'Works', notice: null };
+    assert.deepEqual(await browser.me(), nobody);
     const back = await browser.signIn('/?lang=de#tag=TI-1');
     assert.equal(back.status, 303, await back.text());
     assert.equal(back.headers.get('location'), '/?lang=de#tag=TI-1');
@@ -363,6 +364,36 @@ test('keys that cannot be had end nobody; signing out during a check leaves no r
     for (let i = 0; i < 100 && provider.live.size > 0; i++)
         await sleep(50);
     assert.equal(provider.live.size, 0);
+});
+
+test('who leaves all pages alone is signed out; a notice is there before', {
+    skip: skip || (existsSync(process.env.CHROMIUM ?? '/usr/bin/chromium') ? false : 'chromium is not installed'), timeout: 120000,
+}, async (t) => {
+    const { openPage, shoot, waitForPicture } = await import('./support/browser.mjs');
+    writeFileSync(path('notice'), 'This system is for authorised people of the works only.\nWhat you do is recorded.\n');
+    await start('--lock-after', '0.15', '--notice', path('notice'));
+    t.after(() => start());
+    const { page, close } = await openPage(`http://127.0.0.1:${port}/?lang=en`, { viewport: { width: 1000, height: 700 } });
+    try {
+        await page.locator('#token .sign-in').waitFor({ timeout: 30000 });
+        assert.match(await page.locator('#token .notice').textContent(), /authorised people/);
+        await shoot(page, 'sign-in-notice');
+        await page.locator('#token .sign-in').click();
+        await waitForPicture(page);
+        for (let i = 0; i < 14; i++, await sleep(1000)) // somebody is there
+            await page.mouse.move(400 + i, 300);
+        assert.equal(await page.locator('#token').evaluate((dialog) => dialog.open), false);
+        await page.locator('#token .sign-in').waitFor({ timeout: 30000 }); // and is not any more
+        assert.equal(await page.locator('.stage').evaluate((stage) => getComputedStyle(stage).visibility), 'hidden');
+        await shoot(page, 'locked');
+        await page.reload();
+        await page.locator('#token .sign-in').waitFor({ timeout: 30000 });
+        await recorded('the lock', (line) => line.event === 'leave' && line.why === 'nobody was at the page');
+        await page.locator('#token .sign-in').click();
+        await waitForPicture(page);
+    } finally {
+        await close();
+    }
 });
 
 test('a person signs in on the page, sees who it is, and signs out', {

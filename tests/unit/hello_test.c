@@ -183,9 +183,9 @@ static void a_revoked_token_ends_its_sessions_and_no_others(void **state)
     write_tokens(f, false);
     tokens_look(f->tokens);
     assert_true(tokens_look(f->tokens));
-    session_check_token(bob, f->now_ns);
-    session_check_token(alice, f->now_ns);
-    session_check_token(local, f->now_ns);
+    session_check_token(bob, f->now_ns, f->now_ns);
+    session_check_token(alice, f->now_ns, f->now_ns);
+    session_check_token(local, f->now_ns, f->now_ns);
     assert_int_equal(bob->close.code, 1008);
     assert_int_equal(alice->close.code | local->close.code, 0);
     leave(f, &bob);

@@ -70,12 +70,14 @@ static void a_token_may_be_for_one_plant(void **state)
 {
     struct fixture *f = *state;
     struct token_holder holder = { .role = ROLE_VIEWER, .name = "plant", .until_utc_ns = INT64_MAX, .plant = "Werk Nord 2" }, read;
+    holder.unattended = true;
     struct text text = { 0 };
     const char *why;
     tokens_hash("pc_nord", holder.hash);
     tokens_print_line(&text, &holder);
     assert_int_equal(tokens_parse_line(text.at, &read, &why), 1);
     assert_string_equal(read.plant, "Werk Nord 2");
+    assert_true(read.unattended);
     assert_string_equal(read.name, "plant");
     add_line(&text, ROLE_VIEWER, "any", "pc_any", INT64_MAX);
     write_file(f, text.at, 0600);

@@ -136,7 +136,14 @@ session.on('welcome', () => {
     viewport.invalidate();
 });
 session.on('status', () => status.show());
-session.on('denied', ({ code }) => modules.use('token', (token) => token.ask(code)));
+// Who may not see it any more, or has left the page alone for too long, leaves nothing on it.
+session.on('denied', ({ code }) => {
+    document.body.classList.add('denied');
+    modules.use('token', (token) => token.ask(code));
+});
+session.on('welcome', () => document.body.classList.remove('denied'));
+for (const event of ['pointerdown', 'pointermove', 'wheel', 'keydown', 'touchstart'])
+    window.addEventListener(event, () => { session.connection.active = true; }, { capture: true, passive: true });
 session.on('followers', () => modules.get('share'));
 session.on('following', () => session.leader !== null && modules.get('following'));
 session.on('ignored', (what) => console.warn(`ignored: ${what}`));

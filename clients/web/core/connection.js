@@ -108,6 +108,7 @@ export class Connection {
 
     opened() {
         this.lastHeard = this.clock.now();
+        this.active = false; // somebody was at the page since the last one, which the page notes
         this.pingAt = null; // of the first one that nothing came after
         this.nextPing = this.lastHeard + PING_MS;
         this.watch();
@@ -148,7 +149,8 @@ export class Connection {
         if (now >= this.nextPing) {
             this.pingAt = this.pingAt ?? now;
             this.nextPing = now + PING_MS;
-            this.send({ type: 'ping', t: now });
+            this.send({ type: 'ping', t: now, ...(this.active ? { active: true } : {}) });
+            this.active = false;
         }
         return this.pingAt !== null && now - this.pingAt >= ANSWER_MS ? now - this.lastHeard : 0;
     }

@@ -512,7 +512,7 @@ const HANDLERS = {
     },
 
     error(message) {
-        if (['token_needed', 'bad_token'].includes(message.code)) {
+        if (['token_needed', 'bad_token', 'locked'].includes(message.code)) {
             this.connection.bar(say(`reason.${message.code}`));
             this.emit('denied', message);
             return;

@@ -204,6 +204,7 @@ unanswered: Der Server antwortet nicht
 silent: Der Server ist verstummt
 token_needed: Ein Token wird verlangt
 bad_token: Dieses Token gilt nicht oder nicht mehr
+locked: Eine Zeit lang war niemand an dieser Seite
 
 [quality]
 good: Gut

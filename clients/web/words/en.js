@@ -204,6 +204,7 @@ unanswered: The server does not answer
 silent: The server fell silent
 token_needed: A token is needed
 bad_token: This token is not valid, or no longer
+locked: Nobody was at this page for some time
 
 [quality]
 good: Good

@@ -202,6 +202,7 @@ unanswered: 서버가 응답하지 않습니다
 silent: 서버의 응답이 끊겼습니다
 token_needed: 토큰이 필요합니다
 bad_token: 토큰이 올바르지 않거나 만료되었습니다
+locked: 한동안 사용이 없어 잠겼습니다
 
 [quality]
 good: 정상

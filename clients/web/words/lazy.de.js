@@ -323,6 +323,7 @@ out: Abmelden
 title: Token
 needed: Dieser Server fragt, wer Sie sind.
 bad: Dieses Token gilt nicht oder nicht mehr.
+locked: Eine Zeit lang war niemand an dieser Seite. Weisen Sie sich erneut aus.
 go: Weiter
 note: Tokens macht, wer diesen Server betreibt: {command}. Es wird behalten, bis dieser Tab geschlossen wird.
 

@@ -323,6 +323,7 @@ out: Sign out
 title: Token
 needed: This server asks who you are.
 bad: This token is not valid, or no longer.
+locked: Nobody was at this page for some time. Say again who you are.
 go: Continue
 note: Whoever runs this server makes tokens: {command}. It is kept until this tab is closed.
 

@@ -143,6 +143,15 @@ enum role openid_role(struct openid *openid, const struct token_holder *holder)
     return role;
 }
 
+void openid_touch(struct openid *openid, const struct token_holder *holder, int64_t now_ns)
+{
+    pthread_mutex_lock(&openid->lock);
+    struct person *person = sign_ins_find_hash(openid->table, holder->hash);
+    if (person)
+        person->active_ns = now_ns;
+    pthread_mutex_unlock(&openid->lock);
+}
+
 char *openid_end(struct openid *openid, const char *cookie, const char *from)
 {
     char *url = NULL;

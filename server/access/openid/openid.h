@@ -14,6 +14,7 @@ struct openid_params {
     struct counters *counters;
     struct audit *audit;     /* NULL: nothing is recorded */
     const char *path;        /* of its file */
+    int64_t lock_ns;         /* who was not at the page for so long is signed out; 0: nobody is */
     void (*wake)(void *arg); /* called by any thread when openid_collect has an answer, or rights changed */
     void *wake_arg;
 };
@@ -67,6 +68,8 @@ bool openid_take_changed(struct openid *openid);
 bool openid_find(struct openid *openid, const char *cookie, struct token_holder *out);
 /* Returns the role that a holder has now; ROLE_NOBODY: the person is not signed in (any more), or was none. */
 enum role openid_role(struct openid *openid, const struct token_holder *holder);
+/* Notes that a person is at the page. */
+void openid_touch(struct openid *openid, const struct token_holder *holder, int64_t now_ns);
 /* Signs a person out. Returns the URL at which the provider signs it out as well (mem_free); NULL: there is none. */
 char *openid_end(struct openid *openid, const char *cookie, const char *from);
 

@@ -122,6 +122,7 @@ static void let_in(struct openid *openid, const struct openid_job *job, struct p
     char cookie[SIGN_IN_SECRET_CHARS + 1] = "", *sub = mem_printf("sub %s", person->sub), *left;
     struct token_holder holder = person->holder;
     person->check_ns = began_ns + (int64_t)(openid->config->check_s * 1e9);
+    person->active_ns = clock_mono_ns();
     pthread_mutex_lock(&openid->lock);
     bool good = sign_ins_add_person(openid->table, person, cookie, &left);
     char *why = good ? NULL : mem_strdup("this machine gives no random numbers");
@@ -223,16 +224,25 @@ static void settle(struct openid *openid, struct task *task, enum openid_rights 
         tell_loop(openid);
 }
 
+static enum openid_rights ask_rights(struct openid *openid, struct person *copy, bool left_alone, const char **why)
+{
+    if (left_alone) {
+        *why = "nobody was at the page";
+        return RIGHTS_GONE;
+    }
+    return openid_knows(openid) || clock_utc_ns() >= copy->holder.until_utc_ns ? openid_check(openid, copy, why) : RIGHTS_UNKNOWN;
+}
+
 static void do_check(struct task *task)
 {
     struct openid *openid = task->openid;
     struct person *copy = &task->person;
     const char *why = NULL;
-    enum openid_rights rights =
-        openid_knows(openid) || clock_utc_ns() >= copy->holder.until_utc_ns ? openid_check(openid, copy, &why) : RIGHTS_UNKNOWN;
-    if (rights != RIGHTS_UNKNOWN)
+    bool left_alone = openid->params.lock_ns && task->began_ns - copy->active_ns > openid->params.lock_ns;
+    enum openid_rights rights = ask_rights(openid, copy, left_alone, &why);
+    if (rights != RIGHTS_UNKNOWN && !left_alone)
         openid_say(openid, NULL);
-    else if (!atomic_load(&openid->stopping) && why)
+    else if (rights == RIGHTS_UNKNOWN && !atomic_load(&openid->stopping) && why)
         openid_say(openid, why);
     pthread_mutex_lock(&openid->lock);
     settle(openid, task, rights, why);

@@ -175,8 +175,9 @@ int api_me(struct server_context *server, struct request *request)
     bool has_end = holder->role != ROLE_NOBODY && holder->until_utc_ns < INT64_MAX;
     if (has_end)
         timestamp_print(holder->until_utc_ns / 1000, until);
-    json_t *said = json_pack("{s:s?,s:s,s:b,s:s?,s:s?}", "name", holder->name[0] ? holder->name : NULL, "role",
+    json_t *said = json_pack("{s:s?,s:s,s:b,s:s?,s:s?,s:s?}", "name", holder->name[0] ? holder->name : NULL, "role",
                              name_of(names_role, (int)connection->role), "signed_in", holder->signed_in, "until", has_end ? until : NULL,
-                             "sign_in", server->openid ? openid_config_of(server->openid)->label : NULL);
+                             "sign_in", server->openid ? openid_config_of(server->openid)->label : NULL,
+                             "notice", server->notice);
     return request_answer_json(request, json_text(said, 0));
 }

@@ -23,19 +23,31 @@ export class TokenDialog {
     }
 
     // code: of what the server refused.
-    ask(code) {
+    async ask(code) {
         const dialog = byId('token'), field = byId('token-text');
-        setText(byId('token-why'), say(code === 'bad_token' ? 'token.bad' : 'token.needed'));
+        if (code === 'locked') {
+            this.session.token = null;
+            store('token', '');
+        }
+        setText(byId('token-why'), say({ bad_token: 'token.bad', locked: 'token.locked' }[code] ?? 'token.needed'));
         field.value = '';
+        const me = await whoAmI({ token: null }).catch(() => ({ sign_in: null, notice: null }));
+        this.showNotice(me.notice);
         if (!dialog.open)
             dialog.showModal();
         field.focus();
-        this.offerSignIn();
+        this.offerSignIn(me.sign_in);
+    }
+
+    // What the site wants everybody to have read.
+    showNotice(text) {
+        byId('token').querySelector('.notice')?.remove();
+        if (text)
+            byId('token-title').after(make('p', { class: 'notice' }, text));
     }
 
     // Where people sign in, a token is the exception. Without a token: a wrong one would not be told.
-    async offerSignIn() {
-        const { sign_in: label } = await whoAmI({ token: null }).catch(() => ({ sign_in: null }));
+    offerSignIn(label) {
         byId('token').querySelector('.sign-in')?.remove();
         if (!label)
             return;
