@@ -5,6 +5,7 @@ import { appendFileSync, chmodSync, existsSync, readFileSync, writeFileSync } fr
 import { createServer, request } from 'node:http';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
+import { openPage, shoot, waitForPicture } from './support/browser.mjs';
 import { IdentityProvider } from './support/identity_provider.mjs';
 import { PlainClient } from './support/plain_client.mjs';
 import { freePort } from './support/ports.mjs';
@@ -369,7 +370,6 @@ test('keys that cannot be had end nobody; signing out during a check leaves no r
 test('who leaves all pages alone is signed out; a notice is there before', {
     skip: skip || (existsSync(process.env.CHROMIUM ?? '/usr/bin/chromium') ? false : 'chromium is not installed'), timeout: 120000,
 }, async (t) => {
-    const { openPage, shoot, waitForPicture } = await import('./support/browser.mjs');
     writeFileSync(path('notice'), 'This system is for authorised people of the works only.\nWhat you do is recorded.\n');
     await start('--lock-after', '0.15', '--notice', path('notice'));
     t.after(() => start());
@@ -399,7 +399,6 @@ test('who leaves all pages alone is signed out; a notice is there before', {
 test('a person signs in on the page, sees who it is, and signs out', {
     skip: skip || (existsSync(process.env.CHROMIUM ?? '/usr/bin/chromium') ? false : 'chromium is not installed'), timeout: 120000,
 }, async () => {
-    const { openPage, shoot, waitForPicture } = await import('./support/browser.mjs');
     for (const [language, theme] of [['en', 'light'], ['de', 'dark'], ['ko', 'light']]) {
         const { page, close } = await openPage(`http://127.0.0.1:${port}/?lang=${language}&theme=${theme}#tag=TI-1`,
             { viewport: { width: 1000, height: 700 } });

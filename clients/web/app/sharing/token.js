@@ -31,7 +31,10 @@ export class TokenDialog {
         }
         setText(byId('token-why'), say({ bad_token: 'token.bad', locked: 'token.locked' }[code] ?? 'token.needed'));
         field.value = '';
-        const me = await whoAmI({ token: null }).catch(() => ({ sign_in: null, notice: null }));
+        const nothing = { sign_in: null, notice: null }, late = new Promise((done) => setTimeout(done, 3000, nothing));
+        const me = await Promise.race([whoAmI({ token: null }).catch(() => nothing), late]);
+        if (!document.body.classList.contains('denied')) // let in meanwhile, from another tab
+            return;
         this.showNotice(me.notice);
         if (!dialog.open)
             dialog.showModal();
