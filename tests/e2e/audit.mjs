@@ -3,7 +3,7 @@
 // a disk that is full is said, and nothing is lost.
 import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
-import { appendFileSync, existsSync, mkdirSync, readFileSync, rmSync, statSync, writeFileSync } from 'node:fs';
+import { existsSync, mkdirSync, readFileSync, rmSync, statSync, writeFileSync } from 'node:fs';
 import { createServer } from 'node:tls';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
@@ -80,8 +80,7 @@ before(async () => {
     if (skip)
         return;
     plant = await TinyPlant.create();
-    appendFileSync(plant.file, 'alarms: local\n');
-    writeFileSync(path('tags.csv'), readFileSync(path('tags.csv'), 'utf8').replace('Stale s', 'Stale s,H').replace(/,1$/gm, ',1,90'));
+    plant.addAlarms();
     assert.equal(plant.prepare().code, 0);
     trail = path('audit.log');
     tokens = {};

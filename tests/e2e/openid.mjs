@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // People sign in by OpenID Connect: at a provider that a test leads astray, and at oidc-provider, which others wrote.
 import assert from 'node:assert/strict';
-import { appendFileSync, chmodSync, existsSync, readFileSync, writeFileSync } from 'node:fs';
+import { chmodSync, existsSync, readFileSync, writeFileSync } from 'node:fs';
 import { createServer, request } from 'node:http';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
@@ -82,8 +82,7 @@ before(async () => {
     if (skip)
         return;
     plant = await TinyPlant.create();
-    appendFileSync(plant.file, 'alarms: local\n');
-    writeFileSync(path('tags.csv'), readFileSync(path('tags.csv'), 'utf8').replace('Stale s', 'Stale s,H').replace(/,1$/gm, ',1,90'));
+    plant.addAlarms();
     assert.equal(plant.prepare().code, 0);
     writeFileSync(path('secret'), 'geheim +\n');
     chmodSync(path('secret'), 0o600);

@@ -104,6 +104,14 @@ async function assertSame(from) {
 }
 
 const begin = () => Math.floor(Date.now() / 1000) * 1e6;
+// A daemon that has sent points already; since when.
+async function startSending() {
+    const from = begin();
+    await plant.startDaemon();
+    feed();
+    await until('points are sent', async () => await metric('postgres_points_total') > 20);
+    return from;
+}
 
 test('what is recorded is there, each point once and with its quality', options, async () => {
     configure();
@@ -163,10 +171,7 @@ test('every panel and variable of the dashboard of trends is answered, and a rea
 
 test('nothing is lost while the server is killed, nor while it is frozen; live readings do not wait', options, async () => {
     configure();
-    const from = begin();
-    await plant.startDaemon();
-    feed();
-    await until('points are sent', async () => await metric('postgres_points_total') > 20);
+    const from = await startSending();
     await server.kill();
     await until('it is said', async () => await metric('postgres_up') === 0);
     await plant.daemon.line(/PostgreSQL cannot be written \(.*refused.*\); points wait in .*, at most 20000000/);
@@ -188,10 +193,7 @@ test('nothing is lost while the server is killed, nor while it is frozen; live r
 
 test('the daemon is killed while the server is away, and started again: nothing is lost, nothing comes twice', options, async () => {
     configure();
-    const from = begin();
-    await plant.startDaemon();
-    feed();
-    await until('points are sent', async () => await metric('postgres_points_total') > 20);
+    const from = await startSending();
     await server.kill();
     await sleep(3000);
     await plant.daemon.stop('SIGKILL');
@@ -229,10 +231,7 @@ test('a disk of the server that is full', options, async (t) => {
         return;
     }
     configure({ space: 'TABLESPACE small' });
-    const from = begin();
-    await plant.startDaemon();
-    feed();
-    await until('points are sent', async () => await metric('postgres_points_total') > 20);
+    const from = await startSending();
     server.ask('CREATE TABLE filler AS SELECT repeat(md5(i::text), 20) FROM generate_series(1, 3000) i');
     try {
         for (;;)

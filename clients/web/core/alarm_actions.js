@@ -20,7 +20,7 @@ export const asideOf = ({ rows }) =>
     [...rows.values()].filter(({ state }) => !calls(state)).sort((a, b) => (a.tag.index ?? -1) - (b.tag.index ?? -1));
 
 // Returns all alarms that a row of the list stands for: the one that is shown for the tag, and its others.
-export const allOf = (row) => [row, ...(row.others ?? [])];
+const allOf = (row) => [row, ...(row.others ?? [])];
 
 // Returns those alarms of a row that an action applies to.
 export const targetsOf = (row, action, mode, role) => allOf(row).filter((alarm) => actionsFor(alarm, mode, role).includes(action));

@@ -4,7 +4,7 @@
 const CALLS = ['unacknowledged', 'active', 'returned', 'latched', 'acknowledged']; // what is to be seen
 
 export const calls = (state) => CALLS.includes(state);
-export const isWaiting = (state) => state === 'unacknowledged' || state === 'returned';
+const isWaiting = (state) => state === 'unacknowledged' || state === 'returned';
 export const isGone = (state) => state === 'returned' || state === 'latched'; // its cause: drawn hollow
 // Where an alarm is not of a tag but of the device that many come from.
 const deviceOf = (name) => ({ name, index: null, group: null, asset: null, description: '' });

@@ -72,7 +72,7 @@ export const besideLegend = (width, height, lies, title = 14) => (lies ? { top: 
 const FIT = 1.08; // leaves a rim
 
 // Returns a perspective camera that looks the same way, just far enough away that all points are within the window.
-export function fitPoints(camera, points, aspect, { left = -1, right = 1, bottom = -1, top = 1 }) {
+function fitPoints(camera, points, aspect, { left = -1, right = 1, bottom = -1, top = 1 }) {
     const axes = basis(camera), tall = Math.tan((camera.fov * RADIANS) / 2);
     const centre = middle(...[Math.min, Math.max].map((f) => [0, 1, 2].map((i) => f(...points.map((p) => p[i])))));
     const all = points.map((p) => subtract(p, centre)).map((p) => [dot(p, axes.right), dot(p, axes.up), dot(p, axes.forward)]);

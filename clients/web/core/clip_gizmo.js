@@ -11,7 +11,7 @@ const STEEP = 0.03;                      // sine squared between sight and way: 
 
 const middleOf = (points) => scale(points.reduce(add), 1 / points.length);
 
-export const cornersOf = ({ min, max }) =>
+const cornersOf = ({ min, max }) =>
     [0, 1, 2, 3, 4, 5, 6, 7].map((n) => [0, 1, 2].map((i) => (n & (1 << i) ? max[i] : min[i])));
 
 // Where a plane p·direction = at meets a box: the corners of that polygon, in order.

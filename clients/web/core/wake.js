@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Notices that the device slept. The monotonic clock of many devices stands still meanwhile: what it says of ages is then too young.
 
-export const SLEPT_MS = 3000;
+const SLEPT_MS = 3000;
 
 export class Wake {
     // now: the monotonic clock; date: the calendar's, which somebody may set: only how far the two went apart counts.

@@ -2,13 +2,13 @@
 // Bytes of plantcast.v1 (protocol/PROTOCOL.md) to objects. The one place that looks at them; what it lets through is sound.
 
 export const SUBPROTOCOL = 'plantcast.v1';
-export const FRAME_HEADER_BYTES = 112;
+const FRAME_HEADER_BYTES = 112;
 export const MAX_SIDE_PX = 8192;
 export const MAX_PIXELS = 16 * 1024 * 1024;
-export const MIN_SIDE_PX = 16;
-export const NO_AGE = 0xffffffff;
+const MIN_SIDE_PX = 16;
+const NO_AGE = 0xffffffff;
 export const CODECS = { 1: 'jpeg', 2: 'png', 3: 'h264' };
-export const FLAG_KEY = 1, FLAG_STILL = 2, FLAG_NO_LIVE_DATA = 4, FLAG_MORE = 8, FLAG_DATA = 16, FLAG_PAST = 32;
+const FLAG_KEY = 1, FLAG_STILL = 2, FLAG_NO_LIVE_DATA = 4, FLAG_MORE = 8, FLAG_DATA = 16, FLAG_PAST = 32;
 const MAX_PAYLOAD_BYTES = 64 * 1024 * 1024;
 
 class WireError extends Error {}

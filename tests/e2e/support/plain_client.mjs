@@ -8,7 +8,7 @@ const OPCODE = { continuation: 0, text: 1, binary: 2, close: 8, ping: 9, pong: 1
 
 // { status, headers (lower case), body } of one HTTP request, written as given.
 // localAddress: whom it comes from, 127.0.0.1 or another of this machine's.
-export function http(port, head, { timeoutMs = 15000, localAddress } = {}) {
+export function http(port, head, { timeoutMs = 60000, localAddress } = {}) {
     return new Promise((done, fail) => {
         const socket = connect({ port, host: '127.0.0.1', localAddress }, () => socket.write(head));
         let bytes = Buffer.alloc(0);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A plant of two boxes and three tags in a folder of its own, prepared and served on free ports.
 import { spawn, spawnSync } from 'node:child_process';
-import { chownSync, existsSync, mkdtempSync, readdirSync, rmSync, writeFileSync } from 'node:fs';
+import { appendFileSync, chownSync, existsSync, mkdtempSync, readdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { connect } from 'node:net';
 import { tmpdir } from 'node:os';
 import { join, resolve } from 'node:path';
@@ -83,7 +83,7 @@ export class Program {
             pipe.on('data', (chunk) => { this.said = (this.said + chunk).slice(-100000); });
     }
 
-    async line(pattern, timeoutMs = 60000) {
+    async line(pattern, timeoutMs = 120000) {
         for (const end = performance.now() + timeoutMs; ;) {
             const found = this.said.match(pattern);
             if (found) {
@@ -133,6 +133,13 @@ export class TinyPlant {
 
     prepare() {
         return runProgram('plantcast-prep', [this.file], 60000);
+    }
+
+    // Every tag has a limit of 90, of this server's own alarms.
+    addAlarms() {
+        const tags = join(this.folder, 'tags.csv');
+        appendFileSync(this.file, 'alarms: local\n');
+        writeFileSync(tags, readFileSync(tags, 'utf8').replace('Stale s', 'Stale s,H').replace(/,1$/gm, ',1,90'));
     }
 
     async startSim(...args) {
