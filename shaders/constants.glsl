@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What shaders and render/soft share: it includes this file too. Nothing but numbers, so that it is both GLSL and C.
+// What shaders, render/soft and the page share: render/soft includes this file too, and a test compares what the page says. Nothing but
+// numbers, so that it is both GLSL and C.
 #ifndef CONSTANTS_GLSL
 #define CONSTANTS_GLSL
 
@@ -36,5 +37,19 @@
 #define GROUND_MOST 0.5
 // Columns of the colour map: places along the scale from 1 on, what is outside at their ends, then patterns.
 #define COLORMAP_PLACES 1024
+// Patterns over the field: leaning stripes where there is no data, dots where it is uncertain, level lines where there are no limits. The
+// picture's height has so many periods of them, of so many pixels at least; below, parts of a period.
+#define PATTERN_PERIODS 90
+#define PATTERN_LEAST_PX 6
+#define HATCH_SLANT 1.4142
+#define HATCH_EDGE 0.25
+#define STIPPLE_RADIUS 0.26
+#define RULE_EDGE 0.36
+// Their greys, of 255.
+#define HATCH_LIGHT_GREY 240
+#define HATCH_DARK_GREY 150
+#define STIPPLE_GREY 64
+#define RULE_LIGHT_GREY 226
+#define RULE_DARK_GREY 196
 
 #endif

@@ -31,22 +31,22 @@ vec3 colormap_color(int column, int row)
 // Diagonal stripes: over 0.5 on the dark ones.
 float hatch(vec2 pixel)
 {
-    float phase = fract((pixel.x + pixel.y) / (frame.scale.w * 1.4142));
-    return (abs(phase - 0.5) - 0.25) * frame.scale.w + 0.5;
+    float phase = fract((pixel.x + pixel.y) / (frame.scale.w * HATCH_SLANT));
+    return (abs(phase - 0.5) - HATCH_EDGE) * frame.scale.w + 0.5;
 }
 
 float stipple(vec2 pixel)
 {
     vec2 cell = pixel / frame.scale.w;
     cell.x += 0.5 * floor(mod(cell.y, 2.0));
-    return (0.26 - length(fract(cell) - 0.5)) * frame.scale.w + 0.5;
+    return (STIPPLE_RADIUS - length(fract(cell) - 0.5)) * frame.scale.w + 0.5;
 }
 
 #ifdef RICH
 // Level lines, wide apart: over 0.5 on them.
 float rule(float y)
 {
-    return (abs(fract(y / frame.scale.w) - 0.5) - 0.36) * frame.scale.w + 0.5;
+    return (abs(fract(y / frame.scale.w) - 0.5) - RULE_EDGE) * frame.scale.w + 0.5;
 }
 
 float place_of(float value)

@@ -5,9 +5,11 @@
 #include "base/mem.h"
 #include "field/lab.h"
 
-const uint8_t colormap_no_data[2][3] = { { 240, 240, 240 }, { 150, 150, 150 } };
-const uint8_t colormap_no_limits[2][3] = { { 226, 226, 226 }, { 196, 196, 196 } };
-const uint8_t colormap_uncertain[3] = { 64, 64, 64 };
+const uint8_t colormap_no_data[2][3] = { { HATCH_LIGHT_GREY, HATCH_LIGHT_GREY, HATCH_LIGHT_GREY },
+                                         { HATCH_DARK_GREY, HATCH_DARK_GREY, HATCH_DARK_GREY } };
+const uint8_t colormap_no_limits[2][3] = { { RULE_LIGHT_GREY, RULE_LIGHT_GREY, RULE_LIGHT_GREY },
+                                           { RULE_DARK_GREY, RULE_DARK_GREY, RULE_DARK_GREY } };
+const uint8_t colormap_uncertain[3] = { STIPPLE_GREY, STIPPLE_GREY, STIPPLE_GREY };
 
 static const uint8_t *shaded_color(const struct colormap *map, int color)
 {

@@ -1,20 +1,28 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The patterns that say "no data" and "uncertain", as the server draws them (shaders/field.glsl, server/render/shaded_colormap.c).
+// The patterns that say "no data" and "uncertain", as the server draws them (shaders/field.glsl).
 
-const HATCH = [[240, 240, 240], [150, 150, 150]], STIPPLE = [64, 64, 64], RULE = [[226, 226, 226], [196, 196, 196]];
+// As in shaders/constants.glsl.
+export const PATTERNS = {
+    PATTERN_PERIODS: 90, PATTERN_LEAST_PX: 6, HATCH_SLANT: 1.4142, HATCH_EDGE: 0.25, STIPPLE_RADIUS: 0.26, RULE_EDGE: 0.36,
+    HATCH_LIGHT_GREY: 240, HATCH_DARK_GREY: 150, STIPPLE_GREY: 64, RULE_LIGHT_GREY: 226, RULE_DARK_GREY: 196,
+};
+const grey = (level) => [level, level, level];
+const HATCH = [grey(PATTERNS.HATCH_LIGHT_GREY), grey(PATTERNS.HATCH_DARK_GREY)], STIPPLE = grey(PATTERNS.STIPPLE_GREY);
+const RULE = [grey(PATTERNS.RULE_LIGHT_GREY), grey(PATTERNS.RULE_DARK_GREY)];
 const fract = (x) => x - Math.floor(x);
 const clamp = (x) => Math.max(0, Math.min(1, x));
 const mix = (a, b, t) => a.map((x, i) => Math.round(x + (b[i] - x) * t));
 
 // Returns the period of the pattern in a picture of that height.
-export const patternPeriodPx = (heightPx) => Math.max(6, heightPx / 90);
+export const patternPeriodPx = (heightPx) => Math.max(PATTERNS.PATTERN_LEAST_PX, heightPx / PATTERNS.PATTERN_PERIODS);
 
 // Coverage of the pattern at the middle of a pixel; y upwards, as GL has it.
-const hatch = (x, y, period) => clamp((Math.abs(fract((x + y) / (period * 1.4142)) - 0.5) - 0.25) * period + 0.5);
+const stripes = (place, edge, period) => clamp((Math.abs(fract(place) - 0.5) - edge) * period + 0.5);
+const hatch = (x, y, period) => stripes((x + y) / (period * PATTERNS.HATCH_SLANT), PATTERNS.HATCH_EDGE, period);
 
 function stipple(x, y, period) {
     const row = y / period, column = x / period + 0.5 * Math.floor(row % 2);
-    return clamp((0.26 - Math.hypot(fract(column) - 0.5, fract(row) - 0.5)) * period + 0.5);
+    return clamp((PATTERNS.STIPPLE_RADIUS - Math.hypot(fract(column) - 0.5, fract(row) - 0.5)) * period + 0.5);
 }
 
 // Returns the colour of a pixel, [r, g, b]; row 0 is at the top.
@@ -24,7 +32,7 @@ export function hatchAt(x, row, heightPx, period) {
 
 // The same for the pattern of tags without limits in the operator's view.
 export function ruleAt(row, heightPx, period) {
-    return mix(RULE[0], RULE[1], clamp((Math.abs(fract((heightPx - row - 0.5) / period) - 0.5) - 0.36) * period + 0.5));
+    return mix(RULE[0], RULE[1], stripes((heightPx - row - 0.5) / period, PATTERNS.RULE_EDGE, period));
 }
 
 export function stippleAt(x, row, heightPx, period, colour) {

@@ -11,7 +11,7 @@
 /* Side of a cell of the hatching and stippling. */
 static double pattern_px(const struct view *view)
 {
-    return fmax(6, view->height_px / 90.0);
+    return fmax(PATTERN_LEAST_PX, view->height_px / (double)PATTERN_PERIODS);
 }
 
 /* Width of an isoline. */

@@ -226,13 +226,16 @@ bool soft_find_ghosts(struct soft *soft)
     return true;
 }
 
-/* The mesh that has this id. */
-static size_t mesh_of(const struct soft *soft, uint32_t id)
+/* The mesh that has this id; likely: looked at first. */
+static size_t mesh_of(const struct soft *soft, uint32_t id, size_t likely)
 {
+    const struct soft_found *found = soft->found;
     size_t low = 0, high = soft->mesh_count;
+    if (found[likely].first_id <= id && (likely + 1 == high || id < found[likely + 1].first_id))
+        return likely;
     while (high - low > 1) {
         size_t middle = (low + high) / 2;
-        if (soft->found[middle].first_id <= id)
+        if (found[middle].first_id <= id)
             low = middle;
         else
             high = middle;
@@ -243,7 +246,7 @@ static size_t mesh_of(const struct soft *soft, uint32_t id)
 void soft_find_triangle(const struct soft *soft, uint32_t id, struct soft_triangle *triangle)
 {
     uint32_t number = id & ~ID_BACK;
-    size_t mesh = mesh_of(soft, number);
+    size_t mesh = mesh_of(soft, number, triangle->mesh);
     const struct soft_found *found = &soft->found[mesh];
     uint32_t local = number - found->first_id;
     const struct soft_part *part = &found->parts->parts[found->items[local / PART_TRIANGLES].part];

@@ -97,18 +97,31 @@ SOFT_INLINE vec reflected_more(vec f0, struct brdf brdf)
     return (vec){ out[0], out[1], out[2] };
 }
 
-SOFT_INLINE vec sky_shade(const struct environment_light *surroundings, const struct surface *s, vec v)
+struct sky_light { /* what a surface gets of it, whatever its colour */
+    struct brdf brdf;
+    vec irradiance, seen;
+};
+
+SOFT_INLINE struct sky_light sky_light_at(const struct environment_light *surroundings, const struct surface *s, vec v)
 {
     lanes n_v = lanes_clamp(dot(s->normal, v), 0, 1), a2 = s->roughness * s->roughness;
-    struct brdf brdf = brdf_at(surroundings, n_v, s->roughness);
+    vec reflected = plus(times(s->normal, 2.0f * dot(s->normal, v)), times(v, all(-1)));
+    return (struct sky_light){
+        .brdf = brdf_at(surroundings, n_v, s->roughness),
+        .irradiance = sky_irradiance(surroundings, s->normal),
+        .seen = mirrored(surroundings, between(reflected, s->normal, a2), s->roughness),
+    };
+}
+
+SOFT_INLINE vec sky_shade(const struct sky_light *sky, const struct surface *s)
+{
+    struct brdf brdf = sky->brdf;
     vec f0 = between(grey(all((float)CLEAR_F0)), s->base, s->metallic), diffuse = times(s->base, 1.0f - s->metallic);
     vec clear = reflected_more(grey(all((float)CLEAR_F0)), brdf), more = between(clear, reflected_more(s->base, brdf), s->metallic);
     vec once = plus(times(f0, brdf.scale), grey(brdf.bias));
     vec left = plus(grey(1.0f - (float)CLEAR_F0 * brdf.scale - brdf.bias), times(clear, all(-1)));
-    vec diffused = multiplied(plus(more, multiplied(diffuse, left)), sky_irradiance(surroundings, s->normal));
-    vec reflected = plus(times(s->normal, 2.0f * dot(s->normal, v)), times(v, all(-1)));
-    vec seen = mirrored(surroundings, between(reflected, s->normal, a2), s->roughness);
-    return times(plus(diffused, multiplied(once, seen)), (float)SKY_LIGHT * s->open);
+    vec diffused = multiplied(plus(more, multiplied(diffuse, left)), sky->irradiance);
+    return times(plus(diffused, multiplied(once, sky->seen)), (float)SKY_LIGHT * s->open);
 }
 
 SOFT_INLINE lanes ggx_visible(lanes n_l, lanes n_v, lanes n_h, lanes alpha)

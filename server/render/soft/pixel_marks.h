@@ -51,9 +51,9 @@ SOFT_INLINE lanes_int context_mark(lanes ambient, lanes sun, uint32_t mark)
 /* Diagonal stripes, as hatch in shaders/field.glsl: -1 on the dark ones. */
 SOFT_INLINE lanes_int hatch(lanes x, float y, float pattern_px)
 {
-    lanes at = (x + y) * (1 / (pattern_px * 1.4142f));
+    lanes at = (x + y) * (1 / (pattern_px * (float)HATCH_SLANT));
     lanes phase = at - __builtin_convertvector(lanes_whole(at), lanes) - 0.5f;
-    return (phase < -0.25f) | (phase > 0.25f);
+    return (phase < (float)-HATCH_EDGE) | (phase > (float)HATCH_EDGE);
 }
 
 /* Dots in rows, every second one moved by half, as stipple there. */
@@ -63,7 +63,7 @@ SOFT_INLINE lanes_int stipple(lanes x, float y, float pattern_px)
     float down = row - (float)(int)row - 0.5f, moved = (int)row % 2 ? 0.5f : 0;
     lanes cell = x * (1 / pattern_px) + moved;
     lanes across = cell - __builtin_convertvector(lanes_whole(cell), lanes) - 0.5f;
-    return across * across + down * down < 0.26f * 0.26f;
+    return across * across + down * down < (float)STIPPLE_RADIUS * (float)STIPPLE_RADIUS;
 }
 
 /* As field_color in shaders/field.glsl, but for patterns. value_x, value_y: by how much the value grows from pixel to pixel. */
@@ -96,7 +96,7 @@ SOFT_INLINE lanes_int rich_mark(lanes value, lanes value_x, lanes value_y, lanes
 SOFT_INLINE bool rule(float y, float pattern_px)
 {
     float at = y * (1 / pattern_px), phase = at - (float)(int)at - 0.5f;
-    return phase < -0.36f || phase > 0.36f;
+    return phase < (float)-RULE_EDGE || phase > (float)RULE_EDGE;
 }
 
 /* Corners differ in their flags, or say that there is no data or that it is uncertain. */

@@ -37,7 +37,7 @@ void soft_weights(const struct soft_mesh *mesh, const uint32_t vertices[3], doub
 static void find_spot(const struct keeping *keeping, struct visibility_band *band, uint32_t id, struct spot *spot)
 {
     const struct soft *soft = keeping->soft;
-    struct soft_triangle triangle;
+    struct soft_triangle triangle = { 0 };
     soft_find_triangle(soft, id, &triangle);
     const struct soft_mesh *mesh = &soft->meshes[triangle.mesh];
     uint32_t of_picture[3];

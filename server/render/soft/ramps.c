@@ -25,11 +25,12 @@ void ramp_fill(const struct environment_light *sky, const double up[3], const st
                                .metallic = all(material->metallic),
                                .roughness = all(fmaxf(material->roughness, 0.6f)) };
     vec glow = { all(material->emissive[0]), all(material->emissive[1]), all(material->emissive[2]) };
+    struct sky_light around = sky_light_at(sky, &surface, v);
     for (int first = 0; first < steps; first += LANES) {
         lanes light = (LANES_IOTA + (float)first) * (1 / (float)(steps - 1));
         lanes sun = most_of(light - 0.45f, all(0)) * (1 / 0.55f);
         surface.open = (light - (float)LIGHT_SUN * sun) * (1 / (float)LIGHT_AMBIENT); /* the usual mixture at that light */
-        vec c = plus(sky_shade(sky, &surface, v), times(surface.base, sun * ((1 - 0.5f * material->metallic) * (float)SUN_LIGHT)));
+        vec c = plus(sky_shade(&around, &surface), times(surface.base, sun * ((1 - 0.5f * material->metallic) * (float)SUN_LIGHT)));
         c = tone_map(plus(c, glow));
         for (int i = 0; i < LANES; i++)
             colors[first + i] = color_of(c, i, muted);

@@ -32,21 +32,21 @@ static uint32_t mix(uint32_t a, uint32_t b, float part)
 /* As hatch and stipple in shaders/field.glsl; over 0.5 on the dark parts. */
 static float hatch(float x, float y, float pattern_px)
 {
-    float phase = (x + y) / (pattern_px * 1.4142f);
-    return (fabsf(phase - floorf(phase) - 0.5f) - 0.25f) * pattern_px + 0.5f;
+    float phase = (x + y) / (pattern_px * (float)HATCH_SLANT);
+    return (fabsf(phase - floorf(phase) - 0.5f) - (float)HATCH_EDGE) * pattern_px + 0.5f;
 }
 
 static float stipple(float x, float y, float pattern_px)
 {
     float row = y / pattern_px, column = x / pattern_px + ((int)row % 2 ? 0.5f : 0);
-    return (0.26f - hypotf(column - floorf(column) - 0.5f, row - floorf(row) - 0.5f)) * pattern_px + 0.5f;
+    return ((float)STIPPLE_RADIUS - hypotf(column - floorf(column) - 0.5f, row - floorf(row) - 0.5f)) * pattern_px + 0.5f;
 }
 
 /* Over 0.5 on the lines. */
 static float rule(float y, float pattern_px)
 {
     float at = y / pattern_px;
-    return (fabsf(at - floorf(at) - 0.5f) - 0.36f) * pattern_px + 0.5f;
+    return (fabsf(at - floorf(at) - 0.5f) - (float)RULE_EDGE) * pattern_px + 0.5f;
 }
 
 /* --- isolines: field_color in shaders/field.glsl once more ----------------------------------------------------------------------- */

@@ -71,14 +71,18 @@ static bool row_init(struct row *row, int pitch_px)
 enum { RECENT = 512 };
 struct recent { /* by id: neighbours in a row, and the rows above, show the same triangles */
     const struct refined *refined;
+    uint32_t mesh; /* of the last one that was looked up */
     struct soft_triangle triangles[RECENT];
 };
 
 static const struct soft_triangle *triangle_of(struct recent *recent, uint32_t id)
 {
     struct soft_triangle *triangle = &recent->triangles[(id ^ id >> 9) % RECENT];
-    if (triangle->id != id)
+    if (triangle->id != id) {
+        triangle->mesh = recent->mesh;
         soft_find_triangle(recent->refined->soft, id, triangle);
+        recent->mesh = triangle->mesh;
+    }
     return triangle;
 }
 

@@ -154,7 +154,8 @@ SOFT_KERNEL void refined_shade_surfaces(const struct refined *refined, const str
         size_t some = count - first < LANES ? count - first : LANES;
         see(refined, items + first, some, &lit, alphas ? alphas + first : NULL);
         const struct spot *spot = &lit.spot;
-        vec v = lit.v, c = plus(sky_shade(&refined->surroundings, &lit.surface, v), sun_shade(&lit.surface, v, lit.l));
+        struct sky_light sky = sky_light_at(&refined->surroundings, &lit.surface, lit.v);
+        vec v = lit.v, c = plus(sky_shade(&sky, &lit.surface), sun_shade(&lit.surface, v, lit.l));
         c = tone_map(plus(c, lit.glow));
         c = (vec){ srgb_of_light(tones, c.x), srgb_of_light(tones, c.y), srgb_of_light(tones, c.z) };
         c = bright > 0 ? times(mute(c), all(bright)) : c;
@@ -172,11 +173,11 @@ SOFT_KERNEL void refined_shade_surfaces(const struct refined *refined, const str
 
 /* --- glossy fields --------------------------------------------------------------------------------------------------------------- */
 
-SOFT_INLINE vec glossy_light(const struct refined *refined, const struct lit *lit, float white)
+SOFT_INLINE vec glossy_light(const struct lit *lit, const struct sky_light *sky, float white)
 {
     struct surface surface = lit->surface;
     surface.base = grey(all(white));
-    return plus(times(sky_shade(&refined->surroundings, &surface, lit->v), all((float)GLOSSY_SKY)),
+    return plus(times(sky_shade(sky, &surface), all((float)GLOSSY_SKY)),
                 times(sun_shade(&surface, lit->v, lit->l), all((float)GLOSSY_SUN)));
 }
 
@@ -190,7 +191,8 @@ SOFT_KERNEL void refined_shade_gloss(const struct refined *refined, struct visib
         see(refined, items + first, some, &lit, NULL);
         lit.surface.metallic = all(0);
         lit.surface.open = (float)GLOSSY_OPEN + (1 - (float)GLOSSY_OPEN) * lit.surface.open;
-        vec besides = glossy_light(refined, &lit, 0), of_color = plus(glossy_light(refined, &lit, 1), times(besides, all(-1)));
+        struct sky_light sky = sky_light_at(&refined->surroundings, &lit.surface, lit.v);
+        vec besides = glossy_light(&lit, &sky, 0), of_color = plus(glossy_light(&lit, &sky, 1), times(besides, all(-1)));
         besides = plus(besides, lit.glow);
         for (size_t i = 0; i < some; i++) {
             out->gloss[first + i] = (struct visibility_gloss){

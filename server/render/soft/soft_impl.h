@@ -166,7 +166,7 @@ struct soft_triangle {
     uint32_t mesh, material;
     uint32_t vertices[3]; /* of the file */
 };
-/* Which triangle of what was found has that id. */
+/* Finds which triangle of what was found has that id. triangle->mesh is looked at first: that of a neighbour, or 0. */
 void soft_find_triangle(const struct soft *soft, uint32_t id, struct soft_triangle *triangle);
 /* Of the corners of a triangle (vertices of the file), planes over the picture: up to a factor, the parts that they have of a place. */
 void soft_weights(const struct soft_mesh *mesh, const uint32_t vertices[3], double weights[3][3]);

@@ -122,9 +122,6 @@ static void draw_part(struct soft_tile *tile, const struct soft_found *found, co
     const struct soft_mesh *mesh = tile->mesh;
     const struct soft_part *part = tile->part;
     const struct soft_kernels *kernels = tile->soft->kernels;
-    struct soft_rect blocks = blocks_of(tile, &item->rect);
-    if (item->beyond || is_hidden(tile, &blocks, item->near))
-        return;
     kernels->place_part(tile, mesh, found->parts, part);
     if (item->cut)
         soft_cut_corners(tile);
@@ -140,8 +137,7 @@ static void draw_part(struct soft_tile *tile, const struct soft_found *found, co
         return;
     tile->first_id = found->first_id + (uint32_t)(item - found->items) * PART_TRIANGLES;
     kernels->raster_faces(tile, mesh->has_field ? MARK_FIELD : MARK_CONTEXT | (found->ramp + part->material) << 16);
-    struct soft_rect rect = faces_rect(tile);
-    blocks = blocks_of(tile, &rect);
+    struct soft_rect rect = faces_rect(tile), blocks = blocks_of(tile, &rect);
     kernels->look_again(tile, &blocks);
 }
 
@@ -158,6 +154,9 @@ static void draw_list(struct soft_tile *tile, const struct list *list)
     for (size_t i = 0; i < list->count; i++) {
         const struct soft_found *found = &soft->found[list->entries[i].mesh];
         const struct soft_item *item = &found->items[list->entries[i].item];
+        struct soft_rect blocks = blocks_of(tile, &item->rect);
+        if (item->beyond || is_hidden(tile, &blocks, item->near))
+            continue;
         begin_part(tile, found, item, soft->cut_count);
         if (is_drawn(tile))
             draw_part(tile, found, item);
