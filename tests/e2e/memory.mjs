@@ -12,7 +12,7 @@ import { sweep } from './support/sweep.mjs';
 const USES = Number(process.env.USES ?? sweep(240, 24)), SEED = Number(process.env.PLANTCAST_SEED ?? 20), LEAVES = 0.02;
 const BOUND_MB = Number(process.env.MEMORY_MB ?? 1280), REST_MS = 60000, GROWN = 1.2;
 const why = missing();
-const options = { skip: why ?? false, timeout: 100000 + 4000 * USES };
+const options = { skip: why ?? false, timeout: 100000 + 10000 * USES };
 let plant, port, start, one;
 
 const status = () => readFileSync(`/proc/${plant.pid}/status`, 'utf8');

@@ -260,7 +260,7 @@ static void compare_group(struct site *site, int group, int parity, int refused,
         const struct way way = {
             .group = group,
             .number = i + i / 4,
-            .each = (i & 12) == 8 ? 7 : 14, /* more where errors have their bound on average: moving, on the levels that are drawn */
+            .each = (i & 12) == 8 ? 4 : 7, /* more where errors have their bound on average: moving, on the levels that are drawn */
             .interpolation = i & 1 ? INTERPOLATION_PAPER : INTERPOLATION_SHEPARD,
             .distance = i & 2 ? DISTANCE_EUCLIDEAN : DISTANCE_GEODESIC,
             .tier = i & 4 ? TIER_REFINED : TIER_PREVIEW,
