@@ -183,14 +183,14 @@ static bool find_source(struct run *run)
 {
     const struct matching_params *params = run->params;
     const struct plant_source *found = NULL;
-    const char *id = params->source                                     ? params->source
-                     : params->modbus && run->plant->source_count != 1 ? "plc"
-                                                                        : NULL;
+    bool only = run->plant->source_count == 1 && (!params->modbus || !strcmp(run->plant->sources[0].kind, "modbus"));
+    const char *id = params->source ? params->source : params->modbus && !only ? "plc" : NULL;
     for (size_t i = 0; i < run->plant->source_count; i++)
-        if (id ? !strcmp(run->plant->sources[i].id, id) : run->plant->source_count == 1)
+        if (id ? !strcmp(run->plant->sources[i].id, id) : only)
             found = &run->plant->sources[i];
     if (found)
-        run->source = (struct tag_source){ found->id, !strcmp(found->kind, "modbus"), found->address_base };
+        run->source = (struct tag_source){ found->id, !strcmp(found->kind, "modbus"),
+                                           params->modbus ? params->address_base : found->address_base };
     else if (params->modbus)
         run->source = (struct tag_source){ id ? id : "plc", true, params->address_base };
     else if (params->source || run->plant->source_count > 1)
