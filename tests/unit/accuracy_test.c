@@ -224,13 +224,10 @@ int main(void)
 {
     cmocka_set_message_output(CM_OUTPUT_TAP);
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(torus),
         cmocka_unit_test(bent_pipe),
         cmocka_unit_test(thin_walled_box),
-    };
-    const struct CMUnitTest dearest[] = {
-        cmocka_unit_test(torus),
         cmocka_unit_test(interpenetrating_pipes),
     };
-    int failed = cmocka_run_group_tests(tests, surface_case_set_up, surface_case_tear_down);
-    return failed + (sweep_is_whole() ? cmocka_run_group_tests(dearest, surface_case_set_up, surface_case_tear_down) : 0);
+    return cmocka_run_group_tests(tests, surface_case_set_up, surface_case_tear_down);
 }
