@@ -132,6 +132,8 @@ bool plant_runtime_start_recording(struct plant_runtime *runtime, struct plant_r
     if (before)
         store_adopt(runtime->store, before->store);
     runtime->named_views = named_views_open(runtime->context->log, runtime->plant, runtime->history);
+    runtime->notes = notes_open(runtime->context->log, runtime->history);
+    runtime->wall_remote = wall_remote_open(runtime->context->log, runtime->plant, runtime->history);
     if (runtime->history)
         runtime->loop_checks = loop_checks_open(runtime->context->log, runtime->plant, runtime->history);
     if (runtime->render_service)
@@ -217,6 +219,8 @@ struct net_plant plant_runtime_net_plant(const struct plant_runtime *runtime)
         .alarm_service = runtime->alarm_service,
         .placing = runtime->placing,
         .named_views = runtime->named_views,
+        .notes = runtime->notes,
+        .wall_remote = runtime->wall_remote,
         .loop_checks = runtime->loop_checks,
         .tag_list = runtime->tag_list,
         .history_folder = runtime->history,
@@ -231,6 +235,8 @@ void plant_runtime_destroy(struct plant_runtime **pointer)
     render_service_destroy(&runtime->render_service);
     placing_destroy(&runtime->placing);
     named_views_close(&runtime->named_views);
+    notes_close(&runtime->notes);
+    wall_remote_close(&runtime->wall_remote);
     loop_checks_close(&runtime->loop_checks);
     mem_free(runtime->tag_list);
     stop_sources(runtime);

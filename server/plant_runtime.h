@@ -40,6 +40,8 @@ struct plant_runtime {
     char *history; /* its folder; NULL: nothing is recorded */
     struct placing *placing;
     struct named_views *named_views;
+    struct notes *notes;
+    struct wall_remote *wall_remote;
     struct loop_checks *loop_checks; /* NULL: nothing is recorded */
     char *tag_list;                  /* its text; NULL: it could not be read */
 };

@@ -12,6 +12,8 @@
 #include "render/view.h"
 #include "scene/framing.h"
 #include "views/named_views.h"
+#include "views/notes.h"
+#include "views/wall_remote.h"
 
 enum message_type {
     MESSAGE_HELLO,
@@ -34,7 +36,12 @@ enum message_type {
     MESSAGE_SAVE_TAGS,
     MESSAGE_LOOP_CHECK,
     MESSAGE_SAVE_VIEW,
-    MESSAGE_REMOVE_VIEW
+    MESSAGE_REMOVE_VIEW,
+    MESSAGE_NOTE,
+    MESSAGE_REMOVE_NOTE,
+    MESSAGE_DISPLAY,
+    MESSAGE_SEND_TO_WALL,
+    MESSAGE_POINT
 };
 
 enum { TOKEN_MAX_CHARS = 128, RESUME_CHARS = 32 };
@@ -151,6 +158,21 @@ struct loop_check_request {
     char remark[LOOP_CHECK_REMARK_BYTES];
 };
 
+struct note_request {
+    char id[NOTE_ID_BYTES], text[NOTE_TEXT_BYTES], name[ALARM_NAME_BYTES - 24];
+    int tag, asset; /* -1: it is not at one */
+    bool has_position;
+    double position_m[3];
+    int64_t until_us; /* 0: until it is removed */
+};
+
+struct wall_request {
+    struct wall_place place;
+    char desk[WALL_DESK_BYTES];
+    bool held, has_position;
+    double position_m[3];
+};
+
 struct message {
     enum message_type type;
     int width_px, height_px;                                   /* hello, resize; 0: as what is resumed */
@@ -176,7 +198,9 @@ struct message {
     struct coverage_request coverage;
     char confirm[17]; /* save_tags: hash of the list that was seen; "": none yet */
     struct loop_check_request loop_check;
-    struct named_view_edit view_edit; /* save_view; remove_view: its id */
+    struct named_view_edit view_edit; /* save_view; remove_view: its id; send_to_wall: view and title */
+    struct note_request note;         /* note, remove_note */
+    struct wall_request wall;         /* display, send_to_wall, point */
 };
 
 /* Reads an instant (base/timestamp.h) of the argument `name` into *out, in microseconds UTC. Returns false, with *error set, for any other

@@ -12,7 +12,9 @@
 #include "message/fit_message.h"
 #include "message/place_message.h"
 #include "message/loop_check_message.h"
+#include "message/note_message.h"
 #include "message/views_message.h"
+#include "message/wall_message.h"
 
 static bool size_parse(const json_t *o, struct message *out, struct message_error *error)
 {
@@ -219,6 +221,11 @@ static const struct {
     { "prove", MESSAGE_LOOP_CHECK, loop_check_parse },
     { "save_view", MESSAGE_SAVE_VIEW, save_view_parse },
     { "remove_view", MESSAGE_REMOVE_VIEW, remove_view_parse },
+    { "note", MESSAGE_NOTE, note_parse },
+    { "remove_note", MESSAGE_REMOVE_NOTE, remove_note_parse },
+    { "display", MESSAGE_DISPLAY, display_parse },
+    { "send_to_wall", MESSAGE_SEND_TO_WALL, send_to_wall_parse },
+    { "point", MESSAGE_POINT, point_parse },
 };
 
 static bool parse_object(const struct plant *plant, const json_t *o, struct message *out, struct message_error *error)

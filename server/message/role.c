@@ -54,8 +54,12 @@ bool role_may_send(enum role role, const struct message *message, struct message
         message_fail(error, "not_allowed", "to place or prove sensors takes the role engineer, not %s", name_of(names_role, role));
         return false;
     }
-    if ((message->type == MESSAGE_SAVE_VIEW || message->type == MESSAGE_REMOVE_VIEW) && role < ROLE_OPERATOR) {
-        message_fail(error, "not_allowed", "to save or remove views takes the role operator, not %s", name_of(names_role, role));
+    const char *operators = message->type == MESSAGE_SAVE_VIEW || message->type == MESSAGE_REMOVE_VIEW ? "to save or remove views"
+                            : message->type == MESSAGE_NOTE || message->type == MESSAGE_REMOVE_NOTE    ? "to note something"
+                            : message->type == MESSAGE_SEND_TO_WALL || message->type == MESSAGE_POINT  ? "to send something to a wall"
+                                                                                                       : NULL;
+    if (operators && role < ROLE_OPERATOR) {
+        message_fail(error, "not_allowed", "%s takes the role operator, not %s", operators, name_of(names_role, role));
         return false;
     }
     if (message->type != MESSAGE_PARAMS && !message->has_params)

@@ -19,6 +19,7 @@
 #include "net/connection.h"
 #include "net/handed_socket.h"
 #include "net/net_impl.h"
+#include "net/wall_displays.h"
 #include "session/resume.h"
 
 static const int64_t TICK_NS = 100 * NS_PER_MS, REST_NS = NS_PER_S; /* between ticks; when no session waits for anything */
@@ -86,8 +87,8 @@ static void record_held(struct server_context *server, int64_t now_ns)
     server->held_ns = now_ns;
 }
 
-/* Once a second: what the machine has left. */
-static void look_at_processors(struct net *net, int64_t now_ns)
+/* Once a second: what the machine has left, and which displays are there. */
+static void look_around(struct net *net, int64_t now_ns)
 {
     char stat[512] = "";
     if (now_ns - net->cpu_ns < NS_PER_S)
@@ -98,6 +99,7 @@ static void look_at_processors(struct net *net, int64_t now_ns)
     if (file)
         fclose(file);
     net->cpu_ns = now_ns;
+    wall_displays_count(&net->server, now_ns);
     net->server.session_context.cpu_used = 1 - cpu_meter_free(&net->cpu, stat);
 }
 
@@ -122,7 +124,7 @@ static void tick(struct net *net, int64_t now_ns)
 {
     time_start(&net->server, now_ns);
     look_at_files(net, now_ns);
-    look_at_processors(net, now_ns);
+    look_around(net, now_ns);
     record_held(&net->server, now_ns);
     admission_on_tick(&net->server.admission, now_ns);
     counter_set(net->server.counters.busy, admission_busy_percent(&net->server.admission));

@@ -12,6 +12,8 @@
 #include "importing/plant_import.h"
 #include "loopcheck/loop_checks.h"
 #include "views/named_views.h"
+#include "views/notes.h"
+#include "views/wall_remote.h"
 #include "placing/tag_file.h"
 #include "service/render_service.h"
 
@@ -23,6 +25,8 @@ struct net_plant { /* what belongs to one loaded plant; a reload brings another 
     struct snapshot_cache *snapshot_cache;
     struct alarm_service *alarm_service;
     struct placing *placing;         /* NULL: sensors cannot be placed */
+    struct notes *notes;
+    struct wall_remote *wall_remote;
     struct named_views *named_views;
     struct loop_checks *loop_checks; /* NULL: loops cannot be checked */
     const char *tag_list;            /* the text in force; NULL: not known */

@@ -45,6 +45,8 @@ void net_bind_plant(struct net *net)
     server->session_context.placing = server->params.save ? server->params.plant.placing : NULL;
     server->session_context.loop_checks = server->params.plant.loop_checks;
     server->session_context.named_views = server->params.plant.named_views;
+    server->session_context.notes = server->params.plant.notes;
+    server->session_context.wall_remote = server->params.plant.wall_remote;
     server->session_context.tag_list = server->params.plant.tag_list;
     server->session_context.links_up = server->links_up;
     net_take_snapshot(server);

@@ -21,6 +21,18 @@ struct stream;  /* stream.h */
 struct request; /* http_impl.h */
 struct site;    /* site.h */
 
+/* Displays of walls that were connected since the start (wall_displays.c). */
+enum { WALL_DISPLAYS_SEEN = 256 };
+struct wall_displays {
+    struct wall_seen {
+        char wall[NAMED_VIEW_ID_BYTES];
+        int display;
+        int64_t connected_ns, fresh_ns; /* how fresh it is, 0: it is not connected; when it was, monotonic */
+        counter *age;
+    } at[WALL_DISPLAYS_SEEN];
+    size_t count;
+};
+
 struct server_context {
     struct net_params params;
     struct session_context session_context; /* what all sessions see */
@@ -66,6 +78,7 @@ struct server_context {
     uint64_t alarms_number;                /* of the last change of alarms that sessions were told of */
     struct marker_text_cache marker_lists; /* of the frame that was sent last */
     struct latency_stages latency;
+    struct wall_displays displays;
     struct {
         counter *sessions, *sessions_all, *frames, *frame_bytes, *messages, *errors, *dropped, *given_up, *stalled, *requests, *refused,
             *connections, *busy, *clock_set, *clock_error, *clock_leap,

@@ -9,7 +9,9 @@
 
 #include "base/clock.h"
 #include "base/mem.h"
+#include "message/note_message.h"
 #include "message/views_message.h"
+#include "message/wall_message.h"
 #include "message/message_parse.h"
 #include "message/alarm_message.h"
 #include "message/fit_message.h"
@@ -199,8 +201,12 @@ void session_on_pick(struct session *session, const struct pick_answer *answer)
 /* Whoever signed in is called what the identity provider says; a token may be that of a desk at which many sit. */
 static void clear_claimed_name(const struct session *session, struct message *message)
 {
-    if (message->type == MESSAGE_ALARM && session->identity.holder.signed_in)
+    if (!session->identity.holder.signed_in)
+        return;
+    if (message->type == MESSAGE_ALARM)
         message->alarm.name[0] = 0;
+    if (message->type == MESSAGE_NOTE || message->type == MESSAGE_REMOVE_NOTE)
+        message->note.name[0] = 0;
 }
 
 static bool on_alarm(struct session *session, const struct message *message, struct message_error *error)
@@ -221,6 +227,34 @@ static void on_view_edit(struct session *session, const struct message *message,
     char *answer = view_edit_do(session->context->named_views, message, session_who(session), now_utc_ns / 1000);
     session_record_view(session, message, answer);
     session_reply(session, answer);
+}
+
+static void on_note(struct session *session, const struct message *message, int64_t now_utc_ns)
+{
+    const struct session_context *context = session->context;
+    char *answer = note_do(context->notes, context->plant, message, session_who(session), now_utc_ns / 1000);
+    session_record_note(session, message, answer);
+    session_reply(session, answer);
+}
+
+static void on_send_to_wall(struct session *session, const struct message *message, int64_t now_utc_ns)
+{
+    char *answer = send_to_wall_do(session->context->wall_remote, message, session_who(session), now_utc_ns / 1000);
+    session_record_wall(session, message, answer);
+    session_reply(session, answer);
+}
+
+/* From now on it is told where desks point. */
+static void on_display(struct session *session, const struct message *message)
+{
+    session->display = message->wall.place;
+    session->owed.pointers_sent = wall_remote_pointer_number(session->context->wall_remote);
+}
+
+static void on_point(const struct session *session, const struct message *message)
+{
+    const struct wall_request *wall = &message->wall;
+    wall_remote_point(session->context->wall_remote, &wall->place, wall->has_position ? wall->position_m : NULL, session_who(session), wall->desk);
 }
 
 static bool act(struct session *session, const struct message *message, int64_t now_ns, int64_t now_utc_ns, struct message_error *error)
@@ -249,6 +283,11 @@ static bool act(struct session *session, const struct message *message, int64_t 
     case MESSAGE_LOOP_CHECK: return session_check_loop(session, message, error);
     case MESSAGE_SAVE_VIEW:
     case MESSAGE_REMOVE_VIEW: on_view_edit(session, message, now_utc_ns); return true;
+    case MESSAGE_NOTE:
+    case MESSAGE_REMOVE_NOTE: on_note(session, message, now_utc_ns); return true;
+    case MESSAGE_DISPLAY: on_display(session, message); return true;
+    case MESSAGE_SEND_TO_WALL: on_send_to_wall(session, message, now_utc_ns); return true;
+    case MESSAGE_POINT: on_point(session, message); return true;
     case MESSAGE_PING: on_ping(session, message, now_ns, now_utc_ns); return true;
     }
     return true;
@@ -282,6 +321,7 @@ static void count_message(struct session *session, int64_t now_ns)
 {
     int64_t most = session->context->quotas->at[QUOTA_MESSAGES];
     session->stats.messages++;
+    session->heard_ns = now_ns;
     if (now_ns - session->rate.begin_ns >= NS_PER_S) {
         session->rate.begin_ns = now_ns;
         session->rate.count = 0;
@@ -337,6 +377,14 @@ bool session_moves(const struct session *session, int64_t now_ns)
 void session_on_links(struct session *session)
 {
     session->owed.status = true;
+}
+
+int64_t session_fresh_ns(const struct session *session)
+{
+    const struct frame_demand *demand = &session->demand;
+    const struct pacer *pacer = &session->delivery.pacer;
+    bool due = demand->input || demand->data || demand->any || pacer->asked > 0 || pacer->flight_count > 0 || session->delivery.ready;
+    return due ? pacer->acked.sent_ns : session->heard_ns;
 }
 
 bool session_rests(const struct session *session, int64_t now_ns)

@@ -66,14 +66,39 @@ void session_record_loop_check(const struct session *session, const struct messa
     json_decref(said);
 }
 
-void session_record_view(const struct session *session, const struct message *message, const char *answer)
+/* Takes what was done. The answer says whether it was kept, and why not. */
+static void record_kept(const struct session *session, const char *event, char *what, const char *answer)
 {
     json_t *said = json_loads(answer, 0, NULL);
     bool kept = json_is_true(json_object_get(said, "kept"));
-    char *what = mem_printf("%s %s", message->type == MESSAGE_SAVE_VIEW ? "save" : "remove", message->view_edit.id);
-    record(session, "view", kept ? "done" : "failed", what, json_string_value(json_object_get(said, "why")));
+    record(session, event, kept ? "done" : "failed", what, json_string_value(json_object_get(said, "why")));
     mem_free(what);
     json_decref(said);
+}
+
+void session_record_view(const struct session *session, const struct message *message, const char *answer)
+{
+    record_kept(session, "view", mem_printf("%s %s", message->type == MESSAGE_SAVE_VIEW ? "save" : "remove", message->view_edit.id), answer);
+}
+
+void session_record_note(const struct session *session, const struct message *message, const char *answer)
+{
+    const struct note_request *note = &message->note;
+    const struct plant *plant = session->context->plant;
+    bool adds = message->type == MESSAGE_NOTE;
+    const char *at = !adds             ? note->id
+                     : note->tag >= 0   ? plant->tags[note->tag].name
+                     : note->asset >= 0 ? plant->assets[note->asset].id
+                                        : "a place";
+    record_kept(session, "note", mem_printf("%s %s%s%s%s%s", adds ? "at" : "remove", at, note->name[0] ? " as " : "", note->name,
+                                            adds ? ": " : "", adds ? note->text : ""), answer);
+}
+
+void session_record_wall(const struct session *session, const struct message *message, const char *answer)
+{
+    const struct wall_place *place = &message->wall.place;
+    const char *did = message->view_edit.address[0] ? "send a view to" : message->wall.held ? "hold" : "give back";
+    record_kept(session, "wall", mem_printf("%s %s, display %d, %s", did, place->wall, place->display, place->area), answer);
 }
 
 void session_record_leave(const struct session *session, const char *why)

@@ -24,6 +24,8 @@ struct session_context {
     bool saving;                           /* a saved list is being put in force */
     struct loop_checks *loop_checks;       /* NULL: loops cannot be checked */
     struct named_views *named_views;       /* changed by save_view and remove_view */
+    struct notes *notes;                   /* changed by note and remove_note */
+    struct wall_remote *wall_remote;       /* changed by send_to_wall and point */
     const bool *links_up;                  /* by source */
     bool imports;                          /* engineers may bring plants in */
     bool live;                             /* a source is connected */

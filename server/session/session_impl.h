@@ -17,10 +17,12 @@ const char *session_who(const struct session *session);
 
 /* --- session_audit.c: the audit trail is told --------------------------------------------------------------------------- */
 
-/* Record what was done to alarms, a loop check, or a view with a name. answer: the message that the client is sent. */
+/* Record what was done to alarms, a loop check, a view with a name, a note, or a wall. answer: the message that the client is sent. */
 void session_record_alarm(const struct session *session, const struct message *message, const char *answer);
 void session_record_loop_check(const struct session *session, const struct message *message, const char *answer);
 void session_record_view(const struct session *session, const struct message *message, const char *answer);
+void session_record_note(const struct session *session, const struct message *message, const char *answer);
+void session_record_wall(const struct session *session, const struct message *message, const char *answer);
 /* Records that a tag list with so many sensors at other places is to be put in force. */
 void session_record_save(const struct session *session, size_t moved);
 /* Records baselines that were kept or forgotten for all, if the message's parameters do that. */

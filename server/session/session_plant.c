@@ -156,7 +156,7 @@ void session_take_plant(struct session *session, const char *carried)
     session->owed.alarms_sent = false;
     session->owed.alarms_number = 0;
     session->owed.loop_checks_sent = 0;
-    session->owed.views_sent = 0;
+    session->owed.views_sent = session->owed.notes_sent = session->owed.walls_sent = session->owed.pointers_sent = 0;
     session->demand.refined = REFINED_NOT;
     while (session->delivery.pacer.asked > 0) /* what was asked for does not come */
         pacer_dropped(&session->delivery.pacer);

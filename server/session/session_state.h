@@ -125,7 +125,7 @@ struct owed_texts {
     uint32_t *tag_changes;                                                      /* reading.changes as last sent, by tag */
     bool alarms_sent;                                                           /* at least once */
     uint64_t alarms_number;                                                     /* of the last change of alarms that was sent */
-    uint64_t views_sent; /* likewise of the views with names */
+    uint64_t views_sent, notes_sent, walls_sent, pointers_sent; /* likewise of views with names, notes, what desks sent to walls, pointers */
     uint64_t loop_checks_sent;                                                  /* number of the newest loop check that was sent */
     int64_t told_at_us;                                                         /* the instant that is shown, as last told; 0: now */
     bool told_beginning;                                                        /* the last `time` said where recorded history begins */
@@ -175,6 +175,8 @@ struct session {
     struct session_pick pick;
     struct message_rate rate;
     struct session_stats stats;
+    struct wall_place display; /* that it is; display 0: none */
+    int64_t heard_ns;          /* when the client last said anything */
 };
 
 /* Returns whether it has no token and is let in to look only: it gets frames, and no readings, tags or names of people. */

@@ -56,6 +56,24 @@ static bool views_due(const struct session *session)
            named_views_number(session->context->named_views) > session->owed.views_sent;
 }
 
+static bool notes_due(const struct session *session)
+{
+    return session->hello && !session_is_open(session) && session->context->notes &&
+           notes_number(session->context->notes) > session->owed.notes_sent;
+}
+
+static bool walls_due(const struct session *session)
+{
+    return session->hello && !session_is_open(session) && session->context->wall_remote &&
+           wall_remote_number(session->context->wall_remote) > session->owed.walls_sent;
+}
+
+static bool pointers_due(const struct session *session)
+{
+    return session->hello && session->display.display > 0 && !session_is_open(session) &&
+           wall_remote_pointer_number(session->context->wall_remote) > session->owed.pointers_sent;
+}
+
 static void add_loop_checks(struct session *session, struct text *out)
 {
     const struct session_context *context = session->context;
@@ -68,7 +86,7 @@ bool session_has_text(const struct session *session, int64_t now_ns)
 {
     return session->owed.welcome || session->owed.reply_count > 0 || session->owed.params || session->owed.following ||
            session->owed.time || session->following.followers_text || loop_checks_due(session) || views_due(session) ||
-           status_due(session) ||
+           notes_due(session) || walls_due(session) || pointers_due(session) || status_due(session) ||
            alarms_due(session) || session_tags_due(session, now_ns);
 }
 
@@ -108,6 +126,15 @@ bool session_next_text(struct session *session, int64_t now_ns, int64_t now_utc_
     } else if (views_due(session)) {
         add_owned(out, named_views_text(context->named_views, NULL));
         session->owed.views_sent = named_views_number(context->named_views);
+    } else if (notes_due(session)) {
+        add_owned(out, notes_text(context->notes, now_utc_ns / 1000));
+        session->owed.notes_sent = notes_number(context->notes);
+    } else if (walls_due(session)) {
+        add_owned(out, wall_remote_text(context->wall_remote));
+        session->owed.walls_sent = wall_remote_number(context->wall_remote);
+    } else if (pointers_due(session)) {
+        add_owned(out, wall_remote_pointers_text(context->wall_remote, session->owed.pointers_sent));
+        session->owed.pointers_sent = wall_remote_pointer_number(context->wall_remote);
     } else if (status_due(session)) {
         add_owned(out, reply_status_text(context, now_utc_ns));
         session->owed.status = false;

@@ -2,24 +2,15 @@
 /* The views are kept as the JSON that their file has. */
 #include "views/named_views.h"
 
-#include <errno.h>
-#include <jansson.h>
 #include <string.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
-#include "base/atomic_file.h"
 #include "base/json_text.h"
 #include "base/mem.h"
+#include "views/kept_list.h"
 
 struct named_views {
-    struct log *log;
     const struct plant *plant;
-    const char *folder;
-    char *path;   /* NULL: none can be saved */
-    json_t *list; /* those that people saved: { id, title, view, by, time_us, before: [{ title, view, by, time_us }, ...] } */
-    uint64_t number;
-    bool unreadable;
+    struct kept_list kept; /* those that people saved: { id, title, view, by, time_us, before: [{ title, view, by, time_us }, ...] } */
 };
 
 static const struct named_view *find_fixed(const struct plant *plant, const char *id)
@@ -28,14 +19,6 @@ static const struct named_view *find_fixed(const struct plant *plant, const char
         if (!strcmp(plant->views[i].id, id))
             return &plant->views[i];
     return NULL;
-}
-
-static size_t find(const json_t *list, const char *id)
-{
-    size_t i = 0;
-    while (i < json_array_size(list) && strcmp(json_string_value(json_object_get(json_array_get(list, i), "id")), id) != 0)
-        i++;
-    return i;
 }
 
 /* --- the file --------------------------------------------------------------------------------------------------------------- */
@@ -54,7 +37,7 @@ static bool good_list(const json_t *list)
     for (size_t i = 0; i < json_array_size(list); i++) {
         const json_t *view = json_array_get(list, i), *before = json_object_get(view, "before");
         const char *id = json_string_value(json_object_get(view, "id"));
-        if (!id || !named_view_id_valid(id) || !good_version(view) || !json_is_array(before) || find(list, id) != i)
+        if (!id || !named_view_id_valid(id) || !good_version(view) || !json_is_array(before) || kept_list_find(list, id) != i)
             return false;
         for (size_t k = 0; k < json_array_size(before); k++)
             if (!good_version(json_array_get(before, k)))
@@ -63,48 +46,14 @@ static bool good_list(const json_t *list)
     return true;
 }
 
-static void read_file(struct named_views *views)
-{
-    json_error_t error = { 0 };
-    json_t *file = json_load_file(views->path, JSON_REJECT_DUPLICATES, &error);
-    json_t *list = json_object_get(file, "views");
-    views->unreadable = !good_list(list);
-    if (views->unreadable)
-        log_err(views->log, "%s:%d: %s; no view is read from it, and it stays as it is", views->path, file ? 1 : error.line,
-                file ? "not a list of views with id, title, view, by, time_us and before" : error.text);
-    else
-        json_array_extend(views->list, list);
-    json_decref(file);
-}
-
-/* A list that was changed goes in force once it is on disk. */
-static const char *put(struct named_views *views, json_t *list)
-{
-    json_t *file = json_pack("{s:i,s:O}", "version", 1, "views", list);
-    char *text = json_dumps(file, JSON_INDENT(1));
-    mkdir(views->folder, 0777); /* where it cannot be made, writing says why */
-    int error = text ? atomic_file_put(views->path, text, strlen(text)) : -ENOMEM;
-    free(text);
-    json_decref(file);
-    if (error) {
-        log_err(views->log, "%s: %s", views->path, strerror(-error));
-        json_decref(list);
-        return "it could not be kept on disk; the log says why";
-    }
-    json_decref(views->list);
-    views->list = list;
-    views->number++;
-    return NULL;
-}
+static const struct kept_list_kind VIEWS = { NAMED_VIEWS_FILE, "views", "id, title, view, by, time_us and before", good_list };
 
 struct named_views *named_views_open(struct log *log, const struct plant *plant, const char *folder)
 {
     struct named_views *views = mem_new(sizeof(*views));
-    *views = (struct named_views){ .log = log, .plant = plant, .folder = folder, .list = json_array() };
-    views->path = folder ? mem_printf("%s/" NAMED_VIEWS_FILE, folder) : NULL;
-    if (views->path && access(views->path, F_OK) == 0)
-        read_file(views);
-    views->number = plant->view_count + json_array_size(views->list) > 0;
+    views->plant = plant;
+    kept_list_open(&views->kept, log, folder, &VIEWS);
+    views->kept.number = plant->view_count + json_array_size(views->kept.list) > 0;
     return views;
 }
 
@@ -113,8 +62,7 @@ void named_views_close(struct named_views **pointer)
     struct named_views *views = *pointer;
     if (!views)
         return;
-    json_decref(views->list);
-    mem_free(views->path);
+    kept_list_close(&views->kept);
     mem_free(views);
     *pointer = NULL;
 }
@@ -123,10 +71,8 @@ void named_views_close(struct named_views **pointer)
 
 static const char *refusal(const struct named_views *views, const char *id)
 {
-    return !views->path                  ? "this daemon records nothing (history: record: no): views are kept beside the history"
-           : views->unreadable           ? "views.json cannot be read; the log says why"
-           : find_fixed(views->plant, id) ? "this view is in the plant file, and is changed there"
-                                         : NULL;
+    const char *why = kept_list_refusal(&views->kept);
+    return why ? why : find_fixed(views->plant, id) ? "this view is in the plant file, and is changed there" : NULL;
 }
 
 /* The versions of a view once it is another: those of before, and itself first. */
@@ -150,8 +96,8 @@ static bool same(const json_t *view, const struct named_view_edit *edit)
 const char *named_views_save(struct named_views *views, const struct named_view_edit *edit, const char *who, int64_t time_us)
 {
     const char *why = refusal(views, edit->id);
-    size_t count = json_array_size(views->list), at = find(views->list, edit->id);
-    json_t *old = json_array_get(views->list, at), *list, *view;
+    size_t count = json_array_size(views->kept.list), at = kept_list_find(views->kept.list, edit->id);
+    json_t *old = json_array_get(views->kept.list, at), *list, *view;
     if (why || (!old && count >= NAMED_VIEWS))
         return why ? why : "there are as many views as there may be; remove one";
     if (old && same(old, edit)) /* only its place */
@@ -161,32 +107,32 @@ const char *named_views_save(struct named_views *views, const struct named_view_
                          (json_int_t)time_us, "before", old ? versions(old) : json_array());
     if (!view)
         return "it is no UTF-8";
-    list = json_copy(views->list);
+    list = json_copy(views->kept.list);
     if (old)
         json_array_remove(list, at);
     count = json_array_size(list);
     if (edit->at >= 0)
         at = (size_t)edit->at;
     json_array_insert_new(list, at < count ? at : count, view);
-    return put(views, list);
+    return kept_list_put(&views->kept, list);
 }
 
 const char *named_views_remove(struct named_views *views, const char *id)
 {
     const char *why = refusal(views, id);
-    size_t at = find(views->list, id);
-    if (why || at == json_array_size(views->list))
+    size_t at = kept_list_find(views->kept.list, id);
+    if (why || at == json_array_size(views->kept.list))
         return why ? why : "there is no such view";
-    json_t *list = json_copy(views->list);
+    json_t *list = json_copy(views->kept.list);
     json_array_remove(list, at);
-    return put(views, list);
+    return kept_list_put(&views->kept, list);
 }
 
 /* --- what there is ---------------------------------------------------------------------------------------------------------- */
 
 uint64_t named_views_number(const struct named_views *views)
 {
-    return views->number;
+    return views->kept.number;
 }
 
 char *named_views_text(const struct named_views *views, const char *id)
@@ -197,8 +143,8 @@ char *named_views_text(const struct named_views *views, const char *id)
         json_array_append_new(list, json_pack("{s:s,s:s,s:s,s:b}", "id", view->id, "title", view->title ? view->title : view->id, "view",
                                               view->address, "fixed", true));
     }
-    for (size_t i = 0; i < json_array_size(views->list); i++) {
-        json_t *view = json_copy(json_array_get(views->list, i));
+    for (size_t i = 0; i < json_array_size(views->kept.list); i++) {
+        json_t *view = json_copy(json_array_get(views->kept.list, i));
         const char *name = json_string_value(json_object_get(view, "id"));
         if (!id || strcmp(name, id) != 0)
             json_object_del(view, "before");

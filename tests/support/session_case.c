@@ -21,6 +21,8 @@ int session_case_set_up(void **state)
     c->context.admission = &c->admission;
     c->context.resumes = resumes_create();
     c->context.named_views = named_views_open(NULL, c->context.plant, NULL);
+    c->context.notes = notes_open(NULL, NULL);
+    c->context.wall_remote = wall_remote_open(NULL, c->context.plant, NULL);
     c->now_ns = 1000 * NS_PER_S;
     c->session = session_create(&c->context, 7, c->now_ns);
     *state = c;
@@ -35,6 +37,8 @@ int session_case_tear_down(void **state)
     baselines_destroy(&c->context.baselines);
     resumes_destroy(&c->context.resumes);
     named_views_close(&c->context.named_views);
+    notes_close(&c->context.notes);
+    wall_remote_close(&c->context.wall_remote);
     mem_free(c);
     return 0;
 }

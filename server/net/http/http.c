@@ -59,6 +59,7 @@ static const struct {
     { "/api/v1/proofs", api_loop_checks, ROLE_VIEWER },
     { "/api/v1/views", api_views, ROLE_VIEWER },
     { "/api/v1/walls", api_walls, ROLE_VIEWER },
+    { "/api/v1/notes", api_notes, ROLE_VIEWER },
     { "/api/v1/pick", ask_pick, ROLE_VIEWER },
     { "/api/v1/history", ask_history, ROLE_VIEWER },
     { "/api/v1/history/gaps", ask_gaps, ROLE_VIEWER },

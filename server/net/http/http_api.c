@@ -182,6 +182,24 @@ int api_views(struct server_context *server, struct request *request)
     return request_answer_json(request, named_views_text(server->params.plant.named_views, args.count ? args.list[0] + 3 : NULL));
 }
 
+/* Those in force between `from` and `to`; by default in the last hour, and now. */
+int api_notes(struct server_context *server, struct request *request)
+{
+    struct message_error error = { 0 };
+    struct args args;
+    int64_t now_us = clock_utc_ns() / 1000, from_us = now_us - INT64_C(3600000000), to_us = now_us;
+    if (!request_args(request->wsi, &args, &error))
+        return request_answer_error(request, &error);
+    for (size_t i = 0; i < args.count; i++) {
+        bool from = !strncmp(args.list[i], "from=", 5);
+        if (!from && strncmp(args.list[i], "to=", 3) != 0)
+            return request_answer_text(request, HTTP_STATUS_BAD_REQUEST, "expected from=TIME and to=TIME\n");
+        if (!message_take_time(from ? "from" : "to", strchr(args.list[i], '=') + 1, now_us, from ? &from_us : &to_us, &error))
+            return request_answer_error(request, &error);
+    }
+    return request_answer_json(request, notes_text_between(server->params.plant.notes, from_us, to_us));
+}
+
 int api_walls(struct server_context *server, struct request *request)
 {
     return request_answer_json(request, walls_text(server->params.plant.scene->plant));

@@ -105,6 +105,7 @@ int api_import_matches(struct server_context *server, struct request *request);
 int api_alarms(struct server_context *server, struct request *request);
 int api_plant(struct server_context *server, struct request *request);
 int api_views(struct server_context *server, struct request *request);
+int api_notes(struct server_context *server, struct request *request);
 int api_walls(struct server_context *server, struct request *request);
 int api_loop_checks(struct server_context *server, struct request *request);
 int api_tags(struct server_context *server, struct request *request);

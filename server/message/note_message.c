@@ -1,0 +1,66 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* A note is at one thing: a tag, an asset, or a position. */
+#include "message/note_message.h"
+
+#include "base/json_text.h"
+#include "base/mem.h"
+#include "message/json_fields.h"
+
+/* Takes the index of what the member names. -1: it is not there. */
+static bool find_named(const json_t *o, const struct plant *plant, const char *member, int (*find)(const struct plant *plant, const char *name),
+                       int *out, struct message_error *error)
+{
+    const json_t *name = json_object_get(o, member);
+    char cut[48];
+    *out = json_is_string(name) ? find(plant, json_string_value(name)) : -1;
+    if (*out >= 0 || !name)
+        return true;
+    message_fail(error, "bad_field", "%s: there is no %s '%s'", member, member, quoted(json_is_string(name) ? json_string_value(name) : "", cut));
+    return false;
+}
+
+bool note_parse(const struct plant *plant, const json_t *o, struct message *out, struct message_error *error)
+{
+    struct note_request *note = &out->note;
+    double until_us = 0;
+    if (!need_seq(o, &out->seq, error) || !need_words(o, "text", true, note->text, sizeof(note->text), error) ||
+        !need_words(o, "name", false, note->name, sizeof(note->name), error) || !find_named(o, plant, "tag", plant_find_tag, &note->tag, error) ||
+        !find_named(o, plant, "asset", plant_find_asset, &note->asset, error) ||
+        !may_vector(o, "position", note->position_m, &note->has_position, error) ||
+        !may_number(o, "until_us", 1, 9e15, &until_us, NULL, error))
+        return false;
+    note->until_us = (int64_t)until_us;
+    if ((note->tag >= 0) + (note->asset >= 0) + note->has_position == 1)
+        return true;
+    message_fail(error, "bad_field", "tag, asset, position: one of them expected");
+    return false;
+}
+
+bool remove_note_parse(const struct plant *plant, const json_t *o, struct message *out, struct message_error *error)
+{
+    bool given;
+    (void)plant;
+    if (!need_seq(o, &out->seq, error) || !may_text(o, "id", out->note.id, sizeof(out->note.id), &given, error) ||
+        !need_words(o, "name", false, out->note.name, sizeof(out->note.name), error))
+        return false;
+    if (!given)
+        message_fail(error, "bad_field", "id: that of a note expected");
+    return given;
+}
+
+char *note_do(struct notes *notes, const struct plant *plant, const struct message *message, const char *who, int64_t now_us)
+{
+    const struct note_request *request = &message->note;
+    char *person = request->name[0] ? mem_printf("%.40s (%s)", request->name, who) : mem_strdup(who), id[NOTE_ID_BYTES] = "";
+    const struct note note = { .text = request->text,
+                               .tag = request->tag >= 0 ? plant->tags[request->tag].name : NULL,
+                               .asset = request->asset >= 0 ? plant->assets[request->asset].id : NULL,
+                               .position_m = request->has_position ? request->position_m : NULL,
+                               .until_us = request->until_us };
+    bool adds = message->type == MESSAGE_NOTE;
+    const char *why = adds ? notes_add(notes, &note, person, now_us, id) : notes_end(notes, request->id, person, now_us);
+    mem_free(person);
+    return json_text(json_pack("{s:s,s:I,s:s,s:b,s:s}", "type", "noted", "seq", (json_int_t)message->seq, "id", adds ? id : request->id, "kept", !why,
+                               "why", why ? why : ""),
+                     0);
+}

@@ -1,0 +1,58 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* A pane is named by wall, display and area, as the plant file has them. */
+#include "message/wall_message.h"
+
+#include "base/json_text.h"
+#include "message/json_fields.h"
+
+static bool place_parse(const struct plant *plant, const json_t *o, bool pane, struct message *out, struct message_error *error)
+{
+    struct wall_place *place = &out->wall.place;
+    double display;
+    if (!need_words(o, "wall", true, place->wall, sizeof(place->wall), error) ||
+        !need_number(o, "display", 1, WALL_DISPLAYS, &display, error) ||
+        (pane && !need_words(o, "area", true, place->area, sizeof(place->area), error)))
+        return false;
+    place->display = (int)display;
+    const char *wrong = wall_place_wrong(plant, place);
+    if (wrong)
+        message_fail(error, "bad_field", "%s", wrong);
+    return !wrong;
+}
+
+bool display_parse(const struct plant *plant, const json_t *o, struct message *out, struct message_error *error)
+{
+    return place_parse(plant, o, false, out, error);
+}
+
+bool send_to_wall_parse(const struct plant *plant, const json_t *o, struct message *out, struct message_error *error)
+{
+    struct named_view_edit *edit = &out->view_edit;
+    if (!need_seq(o, &out->seq, error) || !place_parse(plant, o, true, out, error) ||
+        !need_words(o, "view", false, edit->address, sizeof(edit->address), error) ||
+        !need_words(o, "title", false, edit->title, sizeof(edit->title), error) ||
+        !need_words(o, "desk", false, out->wall.desk, sizeof(out->wall.desk), error))
+        return false;
+    out->wall.held = json_is_true(json_object_get(o, "held"));
+    const char *wrong = edit->address[0] ? named_view_address_wrong(edit->address) : NULL;
+    if (wrong)
+        message_fail(error, "bad_field", "view: %s", wrong);
+    return !wrong;
+}
+
+bool point_parse(const struct plant *plant, const json_t *o, struct message *out, struct message_error *error)
+{
+    return place_parse(plant, o, true, out, error) && need_words(o, "desk", false, out->wall.desk, sizeof(out->wall.desk), error) &&
+           may_vector(o, "position", out->wall.position_m, &out->wall.has_position, error);
+}
+
+char *send_to_wall_do(struct wall_remote *remote, const struct message *message, const char *who, int64_t now_us)
+{
+    const struct wall_order order = { .place = message->wall.place,
+                                      .view = message->view_edit.address,
+                                      .title = message->view_edit.title,
+                                      .held = message->wall.held,
+                                      .desk = message->wall.desk };
+    const char *why = wall_remote_order(remote, &order, who, now_us);
+    return json_text(json_pack("{s:s,s:I,s:b,s:s}", "type", "sent_to_wall", "seq", (json_int_t)message->seq, "kept", !why, "why", why ? why : ""), 0);
+}

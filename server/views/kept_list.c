@@ -1,0 +1,75 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* One file for each list, written anew with each change: they are short. */
+#include "views/kept_list.h"
+
+#include <errno.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "base/atomic_file.h"
+#include "base/mem.h"
+
+size_t kept_list_find(const json_t *list, const char *id)
+{
+    size_t i = 0;
+    while (i < json_array_size(list) && strcmp(json_string_value(json_object_get(json_array_get(list, i), "id")), id) != 0)
+        i++;
+    return i;
+}
+
+static void read_file(struct kept_list *kept)
+{
+    json_error_t error = { 0 };
+    json_t *file = json_load_file(kept->path, JSON_REJECT_DUPLICATES, &error);
+    json_t *list = json_object_get(file, kept->kind->key);
+    kept->unreadable = !kept->kind->good(list);
+    if (kept->unreadable)
+        log_err(kept->log, "%s:%d: %s%s%s%s; nothing is read from it, and it stays as it is", kept->path, file ? 1 : error.line,
+                file ? "not a list of " : error.text, file ? kept->kind->key : "", file ? " with " : "", file ? kept->kind->members : "");
+    else
+        json_array_extend(kept->list, list);
+    json_decref(file);
+}
+
+void kept_list_open(struct kept_list *kept, struct log *log, const char *folder, const struct kept_list_kind *kind)
+{
+    *kept = (struct kept_list){ .log = log, .kind = kind, .folder = folder, .list = json_array() };
+    kept->path = folder ? mem_printf("%s/%s", folder, kind->file) : NULL;
+    if (kept->path && access(kept->path, F_OK) == 0)
+        read_file(kept);
+    kept->number = json_array_size(kept->list) > 0;
+}
+
+void kept_list_close(struct kept_list *kept)
+{
+    json_decref(kept->list);
+    mem_free(kept->path);
+}
+
+const char *kept_list_refusal(const struct kept_list *kept)
+{
+    return !kept->path       ? "this daemon records nothing (history: record: no): such is kept beside the history"
+           : kept->unreadable ? "the file that keeps it cannot be read; the log says why"
+                              : NULL;
+}
+
+const char *kept_list_put(struct kept_list *kept, json_t *list)
+{
+    json_t *file = json_pack("{s:i,s:O}", "version", 1, kept->kind->key, list);
+    char *text = json_dumps(file, JSON_INDENT(1));
+    if (kept->folder)
+        mkdir(kept->folder, 0777); /* where it cannot be made, writing says why */
+    int error = !text ? -ENOMEM : kept->path ? atomic_file_put(kept->path, text, strlen(text)) : 0;
+    free(text);
+    json_decref(file);
+    if (error) {
+        log_err(kept->log, "%s: %s", kept->path, strerror(-error));
+        json_decref(list);
+        return "it could not be kept on disk; the log says why";
+    }
+    json_decref(kept->list);
+    kept->list = list;
+    kept->number++;
+    return NULL;
+}

@@ -1,0 +1,167 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Notes in the order in which they were made. */
+#include "views/notes.h"
+
+#include <stdio.h>
+#include <string.h>
+
+#include "base/json_text.h"
+#include "base/mem.h"
+#include "views/kept_list.h"
+
+struct notes {
+    struct kept_list kept; /* { id, text, tag or asset or position, by, time_us, until_us, ended_us, ended_by }; times that are not: 0 */
+};
+
+static int64_t time_of(const json_t *note, const char *name)
+{
+    return json_integer_value(json_object_get(note, name));
+}
+
+/* 0: it does not end by itself, and nobody has ended it. */
+static int64_t end_of(const json_t *note)
+{
+    int64_t until_us = time_of(note, "until_us"), ended_us = time_of(note, "ended_us");
+    return ended_us && (!until_us || ended_us < until_us) ? ended_us : until_us;
+}
+
+static bool has_ended(const json_t *note, int64_t now_us)
+{
+    int64_t end_us = end_of(note);
+    return end_us && end_us <= now_us;
+}
+
+static bool good_place(const json_t *note)
+{
+    const json_t *position = json_object_get(note, "position");
+    if (json_is_string(json_object_get(note, "tag")) || json_is_string(json_object_get(note, "asset")))
+        return true;
+    return json_array_size(position) == 3 && json_is_number(json_array_get(position, 0)) && json_is_number(json_array_get(position, 1)) &&
+           json_is_number(json_array_get(position, 2));
+}
+
+static bool good_list(const json_t *list)
+{
+    if (!json_is_array(list) || json_array_size(list) > NOTES + NOTES_ENDED)
+        return false;
+    for (size_t i = 0; i < json_array_size(list); i++) {
+        const json_t *note = json_array_get(list, i);
+        const char *id = json_string_value(json_object_get(note, "id")), *text = json_string_value(json_object_get(note, "text"));
+        if (!id || strlen(id) >= NOTE_ID_BYTES || !text || strlen(text) >= NOTE_TEXT_BYTES || !good_place(note) ||
+            !json_is_string(json_object_get(note, "by")) || !json_is_integer(json_object_get(note, "time_us")) ||
+            !json_is_integer(json_object_get(note, "until_us")) || !json_is_integer(json_object_get(note, "ended_us")) ||
+            kept_list_find(list, id) != i)
+            return false;
+    }
+    return true;
+}
+
+static const struct kept_list_kind KIND = { NOTES_FILE, "notes", "id, text, a place, by, time_us, until_us and ended_us", good_list };
+
+struct notes *notes_open(struct log *log, const char *folder)
+{
+    struct notes *notes = mem_new(sizeof(*notes));
+    kept_list_open(&notes->kept, log, folder, &KIND);
+    return notes;
+}
+
+void notes_close(struct notes **pointer)
+{
+    struct notes *notes = *pointer;
+    if (!notes)
+        return;
+    kept_list_close(&notes->kept);
+    mem_free(notes);
+    *pointer = NULL;
+}
+
+static size_t count(const json_t *list, int64_t now_us, bool ended)
+{
+    size_t found = 0;
+    for (size_t i = 0; i < json_array_size(list); i++)
+        found += has_ended(json_array_get(list, i), now_us) == ended;
+    return found;
+}
+
+static void forget_oldest(json_t *list, int64_t now_us)
+{
+    for (size_t ended = count(list, now_us, true), i = 0; ended > NOTES_ENDED && i < json_array_size(list);)
+        if (has_ended(json_array_get(list, i), now_us)) {
+            json_array_remove(list, i);
+            ended--;
+        } else {
+            i++;
+        }
+}
+
+/* By its time; of two at once, and where the clock was set back, the next that is free. */
+static void make_id(const json_t *list, int64_t now_us, char id[NOTE_ID_BYTES])
+{
+    do
+        snprintf(id, NOTE_ID_BYTES, "n%lld", (long long)now_us++);
+    while (kept_list_find(list, id) < json_array_size(list));
+}
+
+const char *notes_add(struct notes *notes, const struct note *note, const char *who, int64_t now_us, char id[NOTE_ID_BYTES])
+{
+    const char *why = kept_list_refusal(&notes->kept);
+    if (why)
+        return why;
+    if (count(notes->kept.list, now_us, false) >= NOTES)
+        return "there are as many notes as there may be; remove one";
+    if (note->until_us && note->until_us <= now_us)
+        return "the note would have ended already";
+    make_id(notes->kept.list, now_us, id);
+    json_t *entry = json_pack("{s:s,s:s,s:s,s:I,s:I,s:I,s:s}", "id", id, "text", note->text, "by", who, "time_us", (json_int_t)now_us, "until_us",
+                              (json_int_t)note->until_us, "ended_us", (json_int_t)0, "ended_by", "");
+    if (!entry)
+        return "it is no UTF-8";
+    if (note->position_m)
+        json_object_set_new(entry, "position", json_pack("[f,f,f]", note->position_m[0], note->position_m[1], note->position_m[2]));
+    else
+        json_object_set_new(entry, note->tag ? "tag" : "asset", json_string(note->tag ? note->tag : note->asset));
+    json_t *list = json_copy(notes->kept.list);
+    json_array_append_new(list, entry);
+    forget_oldest(list, now_us);
+    return kept_list_put(&notes->kept, list);
+}
+
+const char *notes_end(struct notes *notes, const char *id, const char *who, int64_t now_us)
+{
+    const char *why = kept_list_refusal(&notes->kept);
+    size_t at = kept_list_find(notes->kept.list, id);
+    if (why || at == json_array_size(notes->kept.list) || has_ended(json_array_get(notes->kept.list, at), now_us))
+        return why ? why : "there is no such note";
+    json_t *list = json_copy(notes->kept.list), *note = json_copy(json_array_get(list, at)), *by = json_string(who);
+    json_object_set_new(note, "ended_us", json_integer(now_us));
+    json_object_set_new(note, "ended_by", by ? by : json_string(""));
+    json_array_set_new(list, at, note);
+    forget_oldest(list, now_us);
+    return kept_list_put(&notes->kept, list);
+}
+
+uint64_t notes_number(const struct notes *notes)
+{
+    return notes->kept.number;
+}
+
+static char *text_of(const json_t *list, int64_t from_us, int64_t to_us)
+{
+    json_t *found = json_array();
+    for (size_t i = 0; i < json_array_size(list); i++) {
+        json_t *note = json_array_get(list, i);
+        if (time_of(note, "time_us") <= to_us && !has_ended(note, from_us))
+            json_array_append(found, note);
+    }
+    return json_text(json_pack("{s:s,s:o}", "type", "notes", "list", found), 0);
+}
+
+char *notes_text(const struct notes *notes, int64_t now_us)
+{
+    return text_of(notes->kept.list, now_us, INT64_MAX);
+}
+
+char *notes_text_between(const struct notes *notes, int64_t from_us, int64_t to_us)
+{
+    return text_of(notes->kept.list, from_us, to_us);
+}

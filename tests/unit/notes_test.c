@@ -1,0 +1,165 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Notes outlive the daemon, end by their time or by hand, and are bounded; what was in force in a shift is told. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+#include <jansson.h>
+
+#include "base/mem.h"
+#include "tests/support/temp.h"
+#include "views/notes.h"
+
+#define S INT64_C(1000000)
+#define NOON (S * 1767268800)
+
+struct fixture {
+    struct log *log;
+    char *folder, *history, id[NOTE_ID_BYTES];
+    struct notes *notes;
+};
+
+static int set_up(void **state)
+{
+    struct fixture *f = mem_new(sizeof(*f));
+    f->log = log_create(LOG_ERROR);
+    f->folder = temp_folder_create();
+    f->history = mem_printf("%s/history", f->folder);
+    f->notes = notes_open(f->log, f->history);
+    *state = f;
+    return 0;
+}
+
+static int tear_down(void **state)
+{
+    struct fixture *f = *state;
+    notes_close(&f->notes);
+    temp_folder_destroy(&f->folder);
+    mem_free(f->history);
+    log_destroy(&f->log);
+    mem_free(f);
+    return 0;
+}
+
+static void open_again(struct fixture *f)
+{
+    notes_close(&f->notes);
+    f->notes = notes_open(f->log, f->history);
+}
+
+static const char *add(struct fixture *f, const char *text, int64_t at_us, int64_t until_us)
+{
+    return notes_add(f->notes, &(struct note){ .text = text, .tag = "TI-1", .until_us = until_us }, "kim", at_us, f->id);
+}
+
+/* Takes the text; the texts of its notes, with blanks between them, are compared. */
+static void assert_notes(char *text, const char *expected)
+{
+    char found[400] = "";
+    json_t *message = json_loads(text, 0, NULL), *list = json_object_get(message, "list");
+    for (size_t i = 0; i < json_array_size(list); i++)
+        snprintf(found + strlen(found), sizeof(found) - strlen(found), "%s%s", i ? " " : "",
+                 json_string_value(json_object_get(json_array_get(list, i), "text")));
+    json_decref(message);
+    mem_free(text);
+    assert_string_equal(found, expected);
+}
+
+static void they_end_by_their_time_or_by_hand(void **state)
+{
+    struct fixture *f = *state;
+    char first[NOTE_ID_BYTES];
+    assert_int_equal(notes_number(f->notes), 0);
+    assert_null(add(f, "stays", NOON, 0));
+    strcpy(first, f->id);
+    assert_null(add(f, "hour", NOON, NOON + 3600 * S));
+    assert_string_not_equal(first, f->id);
+    assert_non_null(add(f, "over", NOON, NOON - S));
+    assert_notes(notes_text(f->notes, NOON + S), "stays hour");
+    assert_notes(notes_text(f->notes, NOON + 3600 * S), "stays");
+    assert_non_null(notes_end(f->notes, f->id, "lee", NOON + 3601 * S)); /* it has ended */
+    assert_non_null(notes_end(f->notes, "n1", "lee", NOON));
+    open_again(f);
+    assert_null(notes_end(f->notes, first, "lee", NOON + 7200 * S));
+    open_again(f);
+    assert_notes(notes_text(f->notes, NOON + 7200 * S), "");
+    assert_notes(notes_text_between(f->notes, NOON + 1800 * S, NOON + 9000 * S), "stays hour");
+    assert_notes(notes_text_between(f->notes, NOON + 4000 * S, NOON + 9000 * S), "stays");
+    assert_notes(notes_text_between(f->notes, NOON - 4000 * S, NOON - S), "");
+}
+
+static void there_is_a_limit(void **state)
+{
+    struct fixture *f = *state;
+    for (int i = 0; i < NOTES; i++)
+        assert_null(add(f, "n", NOON, NOON + 60 * S));
+    assert_non_null(add(f, "more", NOON, 0));
+    for (int round = 1; round <= 6; round++)
+        for (int i = 0; i < NOTES; i++)
+            assert_null(add(f, "n", NOON + round * 100 * S, NOON + (round * 100 + 60) * S));
+    assert_null(add(f, "last", NOON + 1000 * S, 0));
+    open_again(f); /* a file of no more than there may be */
+    char *text = notes_text_between(f->notes, 0, INT64_MAX);
+    json_t *message = json_loads(text, 0, NULL);
+    assert_int_equal(json_array_size(json_object_get(message, "list")), NOTES_ENDED + 1);
+    json_decref(message);
+    mem_free(text);
+}
+
+static void they_are_at_what_they_say(void **state)
+{
+    struct fixture *f = *state;
+    const double place[3] = { 1, 2.5, -3 };
+    assert_null(notes_add(f->notes, &(struct note){ .text = "p", .position_m = place }, "kim", NOON, f->id));
+    assert_null(notes_add(f->notes, &(struct note){ .text = "a", .asset = "E-1" }, "kim", NOON, f->id));
+    open_again(f);
+    char *text = notes_text(f->notes, NOON);
+    assert_non_null(strstr(text, "\"position\":[1.0,2.5,-3.0]"));
+    assert_non_null(strstr(text, "\"asset\":\"E-1\""));
+    mem_free(text);
+}
+
+static void what_cannot_be_read_is_not_written_over(void **state)
+{
+    static const char *const files[] = { "{", "{\"notes\":[{\"id\":\"a\"}]}", "{\"notes\":[{\"id\":\"a\",\"text\":\"t\",\"by\":\"\",\"time_us\":1}]}" };
+    struct fixture *f = *state;
+    for (size_t i = 0; i < sizeof(files) / sizeof(*files); i++) {
+        char *path = temp_write_text(f->folder, "history/" NOTES_FILE, files[i]), text[200] = "";
+        open_again(f);
+        assert_notes(notes_text(f->notes, NOON), "");
+        assert_non_null(add(f, "a", NOON, 0));
+        FILE *file = fopen(path, "re");
+        assert_non_null(file);
+        text[fread(text, 1, sizeof(text) - 1, file)] = 0;
+        fclose(file);
+        assert_string_equal(text, files[i]);
+        mem_free(path);
+    }
+    assert_non_null(notes_add(f->notes, &(struct note){ .text = "\xff", .tag = "t" }, "kim", NOON, f->id));
+}
+
+static void without_a_folder_none_is_made(void **state)
+{
+    struct fixture *f = *state;
+    struct notes *notes = notes_open(f->log, NULL);
+    assert_non_null(notes_add(notes, &(struct note){ .text = "a", .tag = "t" }, "kim", NOON, f->id));
+    notes_close(&notes);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test_setup_teardown(they_end_by_their_time_or_by_hand, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(there_is_a_limit, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(they_are_at_what_they_say, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(what_cannot_be_read_is_not_written_over, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(without_a_folder_none_is_made, set_up, tear_down),
+    };
+    cmocka_set_message_output(CM_OUTPUT_TAP);
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

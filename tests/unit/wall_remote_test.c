@@ -1,0 +1,151 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What desks send to walls: one order for each pane, kept over a restart; pointers; places that are not in the plant file. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+#include <jansson.h>
+
+#include "base/mem.h"
+#include "tests/support/temp.h"
+#include "views/wall_remote.h"
+
+struct fixture {
+    struct log *log;
+    struct plant plant;
+    struct wall wall;
+    struct wall_display display;
+    char *folder;
+    struct wall_remote *remote;
+};
+
+static int set_up(void **state)
+{
+    struct fixture *f = mem_new(sizeof(*f));
+    f->log = log_create(LOG_ERROR);
+    f->display.panes[0] = (struct wall_pane){ .area = "main", .kind = PANE_VIEWS };
+    f->display.panes[1] = (struct wall_pane){ .area = "side", .kind = PANE_ALARMS };
+    f->display.pane_count = 2;
+    f->wall = (struct wall){ .id = "room", .displays = &f->display, .display_count = 1 };
+    f->plant = (struct plant){ .walls = &f->wall, .wall_count = 1 };
+    f->folder = temp_folder_create();
+    f->remote = wall_remote_open(f->log, &f->plant, f->folder);
+    *state = f;
+    return 0;
+}
+
+static int tear_down(void **state)
+{
+    struct fixture *f = *state;
+    wall_remote_close(&f->remote);
+    temp_folder_destroy(&f->folder);
+    log_destroy(&f->log);
+    mem_free(f);
+    return 0;
+}
+
+static const struct wall_place MAIN = { "room", "main", 1 };
+
+static const char *order(struct fixture *f, const char *view, bool held)
+{
+    return wall_remote_order(f->remote, &(struct wall_order){ MAIN, view, "Title", held, "Desk 2" }, "kim", 7);
+}
+
+/* Takes the text; the list's length and a text that it holds are compared. */
+static void assert_list(char *text, size_t count, const char *part)
+{
+    json_t *message = json_loads(text, 0, NULL);
+    assert_int_equal(json_array_size(json_object_get(message, "list")), count);
+    assert_non_null(strstr(text, part));
+    json_decref(message);
+    mem_free(text);
+}
+
+static void the_newest_order_counts_and_is_kept(void **state)
+{
+    struct fixture *f = *state;
+    assert_null(order(f, "group=t", false));
+    assert_null(order(f, "group=p", false));
+    wall_remote_close(&f->remote);
+    f->remote = wall_remote_open(f->log, &f->plant, f->folder);
+    assert_list(wall_remote_text(f->remote), 1, "group=p");
+    uint64_t number = wall_remote_number(f->remote);
+    assert_null(order(f, "", true));
+    assert_true(wall_remote_number(f->remote) > number);
+    assert_list(wall_remote_text(f->remote), 1, "\"held\":true");
+    assert_null(order(f, "", false));
+    assert_list(wall_remote_text(f->remote), 0, "walls");
+}
+
+static void places_are_those_of_the_plant_file(void **state)
+{
+    struct fixture *f = *state;
+    assert_null(wall_place_wrong(&f->plant, &MAIN));
+    assert_null(wall_place_wrong(&f->plant, &(struct wall_place){ "room", "", 1 }));
+    assert_non_null(wall_place_wrong(&f->plant, &(struct wall_place){ "hall", "main", 1 }));
+    assert_non_null(wall_place_wrong(&f->plant, &(struct wall_place){ "room", "main", 2 }));
+    assert_non_null(wall_place_wrong(&f->plant, &(struct wall_place){ "room", "side", 1 }));
+    assert_non_null(wall_place_wrong(&f->plant, &(struct wall_place){ "room", "none", 1 }));
+    assert_null(order(f, "group=t", false));
+    f->display.pane_count = 0; /* the plant is loaded anew, and has no such pane */
+    assert_list(wall_remote_text(f->remote), 0, "walls");
+    f->display.pane_count = 2;
+    assert_list(wall_remote_text(f->remote), 1, "group=t");
+}
+
+static void pointers_are_told_once(void **state)
+{
+    struct fixture *f = *state;
+    const double at[3] = { 1, 2, 3 };
+    wall_remote_point(f->remote, &MAIN, at, "kim", "Desk 2");
+    assert_list(wall_remote_pointers_text(f->remote, 0), 1, "Desk 2, kim");
+    uint64_t number = wall_remote_pointer_number(f->remote);
+    assert_list(wall_remote_pointers_text(f->remote, number), 0, "pointed");
+    wall_remote_point(f->remote, &MAIN, NULL, "kim", "");
+    assert_list(wall_remote_pointers_text(f->remote, number), 1, "\"position\":null");
+    for (int i = 0; i < 3 * WALL_POINTERS; i++) {
+        struct wall_place place = MAIN;
+        snprintf(place.area, sizeof(place.area), "a%d", i);
+        wall_remote_point(f->remote, &place, at, "kim", "");
+    }
+    assert_list(wall_remote_pointers_text(f->remote, number), WALL_POINTERS, "a23");
+}
+
+static void displays_come_and_go(void **state)
+{
+    struct fixture *f = *state;
+    wall_remote_see(f->remote, "room", 1, true);
+    uint64_t number = wall_remote_number(f->remote);
+    assert_list(wall_remote_text(f->remote), 0, "{\"wall\":\"room\",\"display\":1}");
+    wall_remote_see(f->remote, "room", 1, true);
+    assert_true(wall_remote_number(f->remote) == number);
+    wall_remote_see(f->remote, "room", 1, false);
+    assert_list(wall_remote_text(f->remote), 0, "\"displays\":[]");
+}
+
+static void without_a_folder_it_is_forgotten_with_the_daemon(void **state)
+{
+    struct fixture *f = *state;
+    wall_remote_close(&f->remote);
+    f->remote = wall_remote_open(f->log, &f->plant, NULL);
+    assert_null(order(f, "group=t", false));
+    assert_list(wall_remote_text(f->remote), 1, "group=t");
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test_setup_teardown(the_newest_order_counts_and_is_kept, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(places_are_those_of_the_plant_file, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(pointers_are_told_once, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(displays_come_and_go, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(without_a_folder_it_is_forgotten_with_the_daemon, set_up, tear_down),
+    };
+    cmocka_set_message_output(CM_OUTPUT_TAP);
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
