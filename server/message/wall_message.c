@@ -54,5 +54,7 @@ char *send_to_wall_do(struct wall_remote *remote, const struct message *message,
                                       .held = message->wall.held,
                                       .desk = message->wall.desk };
     const char *why = wall_remote_order(remote, &order, who, now_us);
-    return json_text(json_pack("{s:s,s:I,s:b,s:s}", "type", "sent_to_wall", "seq", (json_int_t)message->seq, "kept", !why, "why", why ? why : ""), 0);
+    return json_text(json_pack("{s:s,s:I,s:b,s:s}", "type", "sent_to_wall", "seq", (json_int_t)message->seq, "kept", !why, "why",
+                               why ? why : ""),
+                     0);
 }

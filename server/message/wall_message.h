@@ -4,7 +4,8 @@
 #define MESSAGE_WALL_MESSAGE_H
 #include "message/message.h"
 
-/* Parse the messages into out->wall (of `send_to_wall` also view and title into out->view_edit). Return false with *error saying what is wrong. */
+/* Parse the messages into out->wall (of `send_to_wall` also view and title into out->view_edit). Return false with *error saying what is
+   wrong. */
 bool display_parse(const struct plant *plant, const json_t *o, struct message *out, struct message_error *error);
 bool send_to_wall_parse(const struct plant *plant, const json_t *o, struct message *out, struct message_error *error);
 bool point_parse(const struct plant *plant, const json_t *o, struct message *out, struct message_error *error);

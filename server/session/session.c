@@ -254,7 +254,8 @@ static void on_display(struct session *session, const struct message *message)
 static void on_point(const struct session *session, const struct message *message)
 {
     const struct wall_request *wall = &message->wall;
-    wall_remote_point(session->context->wall_remote, &wall->place, wall->has_position ? wall->position_m : NULL, session_who(session), wall->desk);
+    const double *position_m = wall->has_position ? wall->position_m : NULL;
+    wall_remote_point(session->context->wall_remote, &wall->place, position_m, session_who(session), wall->desk);
 }
 
 static bool act(struct session *session, const struct message *message, int64_t now_ns, int64_t now_utc_ns, struct message_error *error)

@@ -78,7 +78,8 @@ static void record_kept(const struct session *session, const char *event, char *
 
 void session_record_view(const struct session *session, const struct message *message, const char *answer)
 {
-    record_kept(session, "view", mem_printf("%s %s", message->type == MESSAGE_SAVE_VIEW ? "save" : "remove", message->view_edit.id), answer);
+    const char *did = message->type == MESSAGE_SAVE_VIEW ? "save" : "remove";
+    record_kept(session, "view", mem_printf("%s %s", did, message->view_edit.id), answer);
 }
 
 void session_record_note(const struct session *session, const struct message *message, const char *answer)

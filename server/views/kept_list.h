@@ -25,8 +25,8 @@ struct kept_list {
     bool unreadable;
 };
 
-/* Reads the list. folder: of the history, which need not exist; NULL: there is none. A file that cannot be read counts as empty (logged) and
-   is not written over. folder and kind must outlive it. */
+/* Reads the list. folder: of the history, which need not exist; NULL: there is none. A file that cannot be read counts as empty (logged)
+   and is not written over. folder and kind must outlive it. */
 void kept_list_open(struct kept_list *kept, struct log *log, const char *folder, const struct kept_list_kind *kind);
 void kept_list_close(struct kept_list *kept);
 /* Returns the index of the entry with that id; the length of the list: there is none. */

@@ -112,8 +112,8 @@ const char *notes_add(struct notes *notes, const struct note *note, const char *
     if (note->until_us && note->until_us <= now_us)
         return "the note would have ended already";
     make_id(notes->kept.list, now_us, id);
-    json_t *entry = json_pack("{s:s,s:s,s:s,s:I,s:I,s:I,s:s}", "id", id, "text", note->text, "by", who, "time_us", (json_int_t)now_us, "until_us",
-                              (json_int_t)note->until_us, "ended_us", (json_int_t)0, "ended_by", "");
+    json_t *entry = json_pack("{s:s,s:s,s:s,s:I,s:I,s:I,s:s}", "id", id, "text", note->text, "by", who, "time_us", (json_int_t)now_us,
+                              "until_us", (json_int_t)note->until_us, "ended_us", (json_int_t)0, "ended_by", "");
     if (!entry)
         return "it is no UTF-8";
     if (note->position_m)

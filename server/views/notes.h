@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What people note at a place, an asset or a tag, until when; in notes.json in the folder of the history. Those that have ended, by their time
-   or by hand, are kept for whoever takes over. Thread: the loop. */
+/* What people note at a place, an asset or a tag, until when; in notes.json in the folder of the history. Those that have ended, by their
+   time or by hand, are kept for whoever takes over. Thread: the loop. */
 #ifndef VIEWS_NOTES_H
 #define VIEWS_NOTES_H
 #include <stdbool.h>
@@ -19,8 +19,8 @@ struct note {
 };
 
 struct notes;
-/* Reads the notes. folder: of the history; NULL: none can be made. A file that cannot be read counts as empty (logged) and is not written over.
-   Never returns NULL. folder must outlive them. */
+/* Reads the notes. folder: of the history; NULL: none can be made. A file that cannot be read counts as empty (logged) and is not written
+   over. Never returns NULL. folder must outlive them. */
 struct notes *notes_open(struct log *log, const char *folder);
 void notes_close(struct notes **notes); /* &NULL is fine; leaves NULL */
 /* Adds a note of a person and writes the file. Returns NULL and its id, or why it could not (static). */
@@ -29,7 +29,8 @@ const char *notes_add(struct notes *notes, const struct note *note, const char *
 const char *notes_end(struct notes *notes, const char *id, const char *who, int64_t now_us);
 /* Returns a number that increases with each change; 0: there has been no note. */
 uint64_t notes_number(const struct notes *notes);
-/* Return the message `notes` with those in force, or with all that were in force in a span of time, with how they ended. Free with mem_free. */
+/* Return the message `notes` with those in force, or with all that were in force in a span of time, with how they ended. Free with
+   mem_free. */
 char *notes_text(const struct notes *notes, int64_t now_us);
 char *notes_text_between(const struct notes *notes, int64_t from_us, int64_t to_us);
 

@@ -54,7 +54,8 @@ static bool good_list(const json_t *list)
     return true;
 }
 
-static const struct kept_list_kind KIND = { WALL_REMOTE_FILE, "walls", "id, wall, display, area, view, title, held, desk, by and time_us", good_list };
+static const struct kept_list_kind KIND = { WALL_REMOTE_FILE, "walls", "id, wall, display, area, view, title, held, desk, by and time_us",
+                                            good_list };
 
 struct wall_remote *wall_remote_open(struct log *log, const struct plant *plant, const char *folder)
 {
@@ -127,7 +128,8 @@ static bool same_place(const struct wall_place *a, const struct wall_place *b)
     return a->display == b->display && !strcmp(a->wall, b->wall) && !strcmp(a->area, b->area);
 }
 
-void wall_remote_point(struct wall_remote *remote, const struct wall_place *place, const double *position_m, const char *who, const char *desk)
+void wall_remote_point(struct wall_remote *remote, const struct wall_place *place, const double *position_m, const char *who,
+                       const char *desk)
 {
     struct pointer *pointer = &remote->pointers[0]; /* the pane's own, or the one that was moved longest ago */
     for (int i = 0; i < WALL_POINTERS; i++) {
@@ -206,8 +208,8 @@ char *wall_remote_pointers_text(const struct wall_remote *remote, uint64_t after
         if (pointer->number <= after)
             continue;
         const double *at = pointer->position_m;
-        json_array_append_new(list, json_pack("{s:s,s:i,s:s,s:s?,s:o}", "wall", pointer->place.wall, "display", pointer->place.display, "area",
-                                              pointer->place.area, "by", pointer->by, "position",
+        json_array_append_new(list, json_pack("{s:s,s:i,s:s,s:s?,s:o}", "wall", pointer->place.wall, "display", pointer->place.display,
+                                              "area", pointer->place.area, "by", pointer->by, "position",
                                               pointer->points ? json_pack("[f,f,f]", at[0], at[1], at[2]) : json_null()));
     }
     return json_text(json_pack("{s:s,s:o}", "type", "pointed", "list", list), 0);

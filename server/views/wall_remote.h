@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What desks do to the panes of walls: a view sent there, a pane held, a place pointed at; and which displays are there. What was sent is in
-   walls.json in the folder of the history, where there is one, until the pane is given back. Thread: the loop. */
+/* What desks do to the panes of walls: a view sent there, a pane held, a place pointed at; and which displays are there. What was sent is
+   in walls.json in the folder of the history, where there is one, until the pane is given back. Thread: the loop. */
 #ifndef VIEWS_WALL_REMOTE_H
 #define VIEWS_WALL_REMOTE_H
 #include "base/log.h"
@@ -23,8 +23,8 @@ struct wall_order {
 };
 
 struct wall_remote;
-/* Reads what was sent. folder: of the history; NULL: it is forgotten with the daemon. A file that cannot be read counts as empty (logged) and
-   is not written over. Never returns NULL. plant and folder must outlive it. */
+/* Reads what was sent. folder: of the history; NULL: it is forgotten with the daemon. A file that cannot be read counts as empty (logged)
+   and is not written over. Never returns NULL. plant and folder must outlive it. */
 struct wall_remote *wall_remote_open(struct log *log, const struct plant *plant, const char *folder);
 void wall_remote_close(struct wall_remote **remote); /* &NULL is fine; leaves NULL */
 /* Returns what of a place is not in the plant file (static), or NULL. */
@@ -32,7 +32,8 @@ const char *wall_place_wrong(const struct plant *plant, const struct wall_place 
 /* Does it, and writes the file. The place must be in the plant file. Returns NULL, or why it could not (static). */
 const char *wall_remote_order(struct wall_remote *remote, const struct wall_order *order, const char *who, int64_t now_us);
 /* Has a pane show where somebody points. position_m: NULL: nowhere any more. */
-void wall_remote_point(struct wall_remote *remote, const struct wall_place *place, const double *position_m, const char *who, const char *desk);
+void wall_remote_point(struct wall_remote *remote, const struct wall_place *place, const double *position_m, const char *who,
+                       const char *desk);
 /* Notes whether a display is connected. */
 void wall_remote_see(struct wall_remote *remote, const char *wall, int display, bool there);
 /* Return numbers that increase with each change of what the next two say. */

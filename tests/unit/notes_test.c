@@ -126,7 +126,8 @@ static void they_are_at_what_they_say(void **state)
 
 static void what_cannot_be_read_is_not_written_over(void **state)
 {
-    static const char *const files[] = { "{", "{\"notes\":[{\"id\":\"a\"}]}", "{\"notes\":[{\"id\":\"a\",\"text\":\"t\",\"by\":\"\",\"time_us\":1}]}" };
+    static const char *const files[] = { "{", "{\"notes\":[{\"id\":\"a\"}]}",
+                                         "{\"notes\":[{\"id\":\"a\",\"text\":\"t\",\"by\":\"\",\"time_us\":1}]}" };
     struct fixture *f = *state;
     for (size_t i = 0; i < sizeof(files) / sizeof(*files); i++) {
         char *path = temp_write_text(f->folder, "history/" NOTES_FILE, files[i]), text[200] = "";

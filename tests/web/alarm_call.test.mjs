@@ -31,10 +31,12 @@ test('nothing changes sooner than after a turn', () => {
     assert.ok(changes >= 4 && changes <= 10, `${changes} changes`);
 });
 
-test('one that is acknowledged, has gone or stands nowhere is not shown', () => {
+test('one that is acknowledged or stands nowhere is not shown; one that has gone unacknowledged comes last', () => {
     const call = new AlarmCall();
     assert.equal(shown(call, [alarm(1, 1, 60, { waiting: false })], 0), null);
-    assert.equal(shown(call, [alarm(1, 1, 60, { state: 'returned' })], 0), null);
+    const gone = alarm(2, 1, 60, { state: 'returned' });
+    assert.equal(shown(new AlarmCall(), [gone, alarm(1, 3)], 0), 1);
+    assert.equal(shown(new AlarmCall(), [gone], 0), 2, 'it stays until it is acknowledged');
     assert.equal(shown(call, [{ ...alarm(1, 1), tag: { index: 1, asset: null, position: null } }], 0), null);
     assert.equal(shown(call, [alarm(1, 1)], 0), 1);
     assert.equal(shown(call, [], 1), null, 'an alarm that is there no more is not shown on');

@@ -7,8 +7,9 @@ import { filesIn } from './modules.mjs';
 
 const WEB = new URL('../../clients/web/', import.meta.url);
 const read = (name) => readFileSync(new URL(name, WEB), 'utf8');
-const files = ['app', 'core', 'wall'].flatMap(filesIn);
-const page = read('index.html') + read('wall.html') + files.filter((name) => /\.(js|html)$/.test(name)).map(read).join('\n');
+const files = ['app', 'core', 'wall', 'handover'].flatMap(filesIn);
+const pages = ['index.html', 'wall.html', 'handover.html'].map(read);
+const page = pages.join('\n') + files.filter((name) => /\.(js|html)$/.test(name)).map(read).join('\n');
 const words = new Set(page.match(/[\w-]+/g));
 const isNumbered = (name) => /^[a-z]\d$/.test(name) && page.includes(` ${name[0]}\${`); // p1, p2, ...
 const isTheChartsOwn = (name) => name.startsWith('u-');

@@ -13,7 +13,7 @@ const filesOf = (language) => ['', 'lazy.', 'import.'].map((part) => `words/${pa
 const tableOf = async (file) => readWords((await import(`../../clients/web/${file}`)).default);
 const tables = Object.fromEntries(await Promise.all(LANGUAGES.map(async (language) =>
     [language, Object.assign({}, ...await Promise.all(filesOf(language).map(tableOf)))])));
-const source = read(...['core', 'app', 'wall'].flatMap(filesIn).filter((name) => name.endsWith('.js')));
+const source = read(...['core', 'app', 'wall', 'handover'].flatMap(filesIn).filter((name) => name.endsWith('.js')));
 const html = filesIn('app').filter((name) => name.endsWith('.html'));
 const page = read('index.html', ...html);
 

@@ -29,6 +29,8 @@ const MODULES = {
     cameraController: { file: 'input/camera_controller', type: 'CameraController', wordless: true },
     picture: { file: 'picture/picture', type: 'Picture', styles: ['common/panel'], fills: 'picture-panel' },
     namedViews: { file: 'views/named_views', type: 'NamedViews', styles: ['common/panel', 'views/named_views'] },
+    notes: { file: 'notes/notes', type: 'Notes', styles: ['common/panel', 'notes/notes'] },
+    remote: { file: 'views/remote', type: 'Remote', styles: ['common/panel', 'notes/notes'] },
     place: { file: 'cards/place', type: 'Place', styles: ['cards/card', 'common/panel'] },
     rows: { file: 'assets/rows', type: 'Rows', wordless: true },
     share: { file: 'sharing/share', type: 'Share', styles: ['common/panel', 'help/help', 'sharing/share'] },

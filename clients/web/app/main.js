@@ -85,7 +85,7 @@ viewport.onDrawn = (newPicture) => {
     if (newPicture && (session.picture.past || status.past))
         status.show(); // what it shows and what is said of it change together
     if (newPicture || overlay.dirty) {
-        for (const name of ['card', 'place', 'measure', 'clipGizmo'])
+        for (const name of ['card', 'place', 'measure', 'clipGizmo', 'notes'])
             modules.there(name)?.show();
         overlay.draw();
     }
@@ -144,9 +144,17 @@ session.on('denied', ({ code }) => {
 session.on('welcome', () => document.body.classList.remove('denied'));
 for (const event of ['pointerdown', 'pointermove', 'wheel', 'keydown', 'touchstart'])
     window.addEventListener(event, () => { session.connection.active = true; }, { capture: true, passive: true });
+session.on('notes', () => (session.notes.length > 0 || modules.there('notes')) && bring('notes'));
+session.on('pointed', () => bring('notes'));
 session.on('followers', () => modules.get('share'));
 session.on('following', () => session.leader !== null && modules.get('following'));
 session.on('ignored', (what) => console.warn(`ignored: ${what}`));
+
+// Parts that fill the panel of views come after it.
+async function bring(name) {
+    await modules.get('views');
+    modules.get(name);
+}
 
 // A view that the address names, once the server has said which there are.
 let named = new URLSearchParams(location.hash.slice(1)).get('view');

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Which alarm a wall's pane shows in place of its view: the gravest that nobody has acknowledged, then the oldest; several in turn, and
-// none in a flood, when jumping from place to place would show nothing.
+// Which alarm a wall's pane shows in place of its view: the gravest that nobody has acknowledged, then the oldest, also once its cause has
+// gone, behind all others; several in turn, and none in a flood, when jumping from place to place would show nothing.
 import { isGone } from './alarms.js';
 
 export const TURN_MS = 10000;  // at the least between two changes of the picture
@@ -21,8 +21,8 @@ export class AlarmCall {
 
     // Returns the alarm to show, or null. alarms: those to be seen, one for each tag; nowMs: of a clock that never goes back.
     next(alarms, nowMs, nowUs) {
-        const waiting = this.isFlood(alarms, nowUs) ? [] : alarms.filter(({ tag, waiting: calls, state }) =>
-            calls && !isGone(state) && tag.asset && tag.position).sort(byGravity);
+        const waiting = this.isFlood(alarms, nowUs) ? [] : alarms.filter(({ tag, waiting: calls }) =>
+            calls && tag.asset && tag.position).sort((a, b) => isGone(a.state) - isGone(b.state) || byGravity(a, b));
         const at = waiting.findIndex((alarm) => keyOf(alarm) === this.shown);
         if (nowMs - this.changedAt >= TURN_MS) {
             const key = waiting.length > 0 ? keyOf(waiting[(at + 1) % waiting.length]) : null;

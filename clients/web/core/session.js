@@ -61,7 +61,7 @@ export class Session {
         this.leader = null;      // whom to follow once there is a connection, and that one
         this.lent = null;        // the camera is that of the picture: another's, or what he left us
         this.followers = { count: 0, sessions: [] }; // who follows us
-        this.views = []; // with names: { id, title, view, fixed } or { ..., by, time_us }
+        this.forgetShared();
         this.time = { ...NOW, ...wanted.time }; // what the server shows: atUs null: now; fromUs null: nothing is recorded
         connection.onOpen = () => {
             const compares = this.params.show === 'difference' && this.params.baseline?.name;
@@ -363,6 +363,14 @@ export class Session {
         return home(plant, width, height, lies === null ? {} : besideLegend(width, height, lies, title.length));
     }
 
+    // What people share, which the server says after its greeting, if there is any.
+    forgetShared() {
+        this.views = []; // with names: { id, title, view, fixed } or { ..., by, time_us }
+        this.notes = [];
+        this.walls = { list: [], displays: [] }; // what desks sent to panes, and the displays that are there
+        this.pointed = [];
+    }
+
     get group() {
         return this.model?.group(this.params.group) ?? null;
     }
@@ -394,7 +402,7 @@ const HANDLERS = {
         const before = this.model;
         this.model = new Model(message);
         this.markers.clear(); // also where the plant was loaded anew
-        this.views = []; // they are said again, if there are any
+        this.forgetShared();
         this.welcomed = true;
         this.id = message.session;
         this.following = this.skew = this.lent = null;
@@ -502,6 +510,21 @@ const HANDLERS = {
         this.emit('views');
     },
 
+    notes(message) {
+        this.notes = message.list;
+        this.emit('notes');
+    },
+
+    walls({ list, displays }) {
+        this.walls = { list, displays };
+        this.emit('walls');
+    },
+
+    pointed(message) {
+        this.pointed = message.list;
+        this.emit('pointed');
+    },
+
     status(message) {
         this.model.links = message.links;
         this.model.live = message.live;
@@ -538,6 +561,6 @@ const HANDLERS = {
         this.emit('error', message);
     },
 
-    ...Object.fromEntries(['alarmed', 'gaps', 'tags_diff', 'tags_saved', 'proved', 'view_saved'].map((type) =>
+    ...Object.fromEntries(['alarmed', 'gaps', 'tags_diff', 'tags_saved', 'proved', 'view_saved', 'noted', 'sent_to_wall'].map((type) =>
         [type, function passOn(message) { this.emit(type, message); }])),
 };

@@ -61,7 +61,7 @@ function build(walls) {
         return sayWrong(say('walls.unknown', { id: query.get('wall'), known: walls.map(({ id }) => id).join(', ') || say('none') }));
     if (!display)
         return sayWrong(say('walls.display', { n: number, id: wall.id, count: wall.displays.length }));
-    const grid = byId('grid'), context = { session, call, wall, theme: query.get('theme') };
+    const grid = byId('grid'), context = { session, call, wall, display: number, theme: query.get('theme') };
     fit();
     grid.style.gridTemplateAreas = display.grid.map((row) => `"${row.trim().split(/ +/).map(areaOf).join(' ')}"`).join(' ');
     grid.style.gridTemplateRows = display.grid.map(() => 'minmax(0, 1fr)').join(' ');
@@ -71,12 +71,16 @@ function build(walls) {
     return undefined;
 }
 
+// The server is to know which display this is.
+const sayWho = () => wall?.displays[number - 1] && session.post({ type: 'display', wall: wall.id, display: number });
+
 async function look() {
     try {
         const { walls } = await (await ask('api/v1/walls', {}, session.token)).json(), now = JSON.stringify(walls);
         if (now !== shape)
             build(walls);
         shape = now;
+        sayWho();
     } catch (error) {
         if (!shape)
             sayWrong(error.message);

@@ -2,8 +2,9 @@
 // What a pane of a wall shows, by kind. Each is { element, tick(now) }; views and trends are the page itself, in a frame of their own.
 import { byEquipment } from '../core/alarm_call.js';
 import { isGone } from '../core/alarms.js';
-import { decimalsFor, numberText, qualityText, unitText, zoneClock } from '../core/format.js';
+import { ageText, decimalsFor, numberText, qualityText, quantityText, unitText, zoneClock } from '../core/format.js';
 import { say } from '../core/words.js';
+import { clock } from '../app/common/clock.js';
 import { make, setText, setVariable } from '../app/common/dom.js';
 import { badge, limitText } from '../app/alarms/alarm_bar.js';
 
@@ -21,11 +22,22 @@ export function paneOf(pane, context) {
     return { element, kind: pane.kind, tick };
 }
 
+const ageOf = (ms) => say('walls.age', { age: ms === null ? '–' : ageText(ms) });
+
+// Of tags: which quantities, and how old the oldest reading is that counts.
+function aboutTags({ model }, names) {
+    const tags = names.map((name) => model.tag(name)).filter(Boolean);
+    const groups = [...new Set(tags.map(({ group }) => model.group(group)))].filter(Boolean);
+    const good = tags.filter(({ index }) => model.readings[index].quality !== 'bad');
+    const oldest = good.length > 0 ? Math.max(...good.map(({ index }) => model.ageMs(index, clock.now()) ?? 0)) : null;
+    return [groups.map(quantityText).join(', '), ageOf(oldest)].filter(Boolean).join(' · ');
+}
+
 const timeOf = (session, us) => zoneClock(session.model.plant.time_zone)(us / 1000).time;
 
 // The page, without what is pressed.
-function pageIn({ wall, theme, body }, kind) {
-    const query = new URLSearchParams({ wall: `${wall.inches},${wall.distance_m}`, pane: kind, ...(theme ? { theme } : {}) });
+function pageIn({ wall, theme, body }, kind, place) {
+    const query = new URLSearchParams({ wall: `${wall.inches},${wall.distance_m}`, pane: kind, hangs: place, ...(theme ? { theme } : {}) });
     const frame = make('iframe', { src: `./?${query}`, tabindex: -1 });
     body.append(frame);
     return { get page() { return frame.contentWindow?.plantcast ?? null; } };
@@ -34,18 +46,28 @@ function pageIn({ wall, theme, body }, kind) {
 // --- views, and the place of an alarm
 
 function ViewsPane(pane, context) {
-    const { session, call, title, element } = context, inner = pageIn(context, 'view');
-    let at = 0, changedAt = null, shown = null, shownIn = null, held = false;
-    title.addEventListener('click', () => {
-        held = !held;
-    });
+    const { session, call, title, element, wall, display } = context, place = `${wall.id}/${display}/${pane.area}`;
+    const inner = pageIn(context, 'view', place), remembered = `plantcast.at.${place}`;
+    let at = (Number(sessionStorage.getItem(remembered)) || 0) % pane.items.length, changedAt = null, shown = null, shownIn = null;
     const titleOf = (id) => pane.title ?? session.views.find((view) => view.id === id)?.title ?? id;
+    const words = make('span', { class: 'said' }), about = make('span', { class: 'about' });
+    title.append(words, about);
 
-    function showView(page) {
+    // Who sent or holds it, and since when.
+    function byWhom({ desk, by, held, time_us: us }) {
+        const who = [desk, by].filter(Boolean).join(', '), time = timeOf(session, us);
+        return make('i', {}, say(held ? 'walls.held' : 'walls.sent', { who, time }));
+    }
+
+    function showView(page, order) {
         const id = pane.items[at];
-        page.modules.use('views', (views) => views.openNamed(id, false));
+        if (order?.view)
+            page.modules.use('views', (views) => views.lookAt(order.view));
+        else
+            page.modules.use('views', (views) => views.openNamed(id, false));
         const known = page.session.views.some((view) => view.id === id);
-        title.replaceChildren(known ? titleOf(id) : say('named.unknown', { id }), held ? make('i', {}, say('walls.held')) : '');
+        const own = known ? titleOf(id) : say('named.unknown', { id });
+        words.replaceChildren(order?.view ? order.title : own, ...(order ? [' ', byWhom(order)] : []));
     }
 
     function showAlarm(page, alarm) {
@@ -53,8 +75,8 @@ function ViewsPane(pane, context) {
         if (tag.group)
             page.session.setParams({ group: tag.group });
         page.flyToTag(tag);
-        title.replaceChildren(badge(alarm.priority), make('b', {}, `${say(`kind.${alarm.kind}`)} ${tag.name}`),
-            make('span', {}, limitText(session.model, alarm)),
+        words.replaceChildren(badge(alarm.priority, isGone(alarm.state)), make('b', {}, ` ${say(`kind.${alarm.kind}`)} ${tag.name} `),
+            make('span', {}, `${limitText(session.model, alarm)} `),
             make('span', {}, say('walls.since', { time: timeOf(session, alarm.raisedUs) })));
     }
 
@@ -62,15 +84,19 @@ function ViewsPane(pane, context) {
         const { page } = inner;
         if (!page?.session.model || page.session.views.length === 0 && session.views.length > 0)
             return;
+        const { group, model } = page.session;
+        setText(about, group ? [quantityText(group), ageOf(model.oldestAgeMs(group.id, clock.now()))].join(' · ') : '');
         const alarms = session.model.alarms.list(), nowUs = session.clockUs();
         const alarm = pane.on_alarm ? call.next(alarms, now, nowUs) : null;
-        const rests = held || alarms.some(({ waiting }) => waiting) || (pane.on_alarm && call.isFlood(alarms, nowUs));
+        const order = session.walls.list.find(({ id }) => id === place) ?? null;
+        const rests = order || alarms.some(({ waiting }) => waiting) || (pane.on_alarm && call.isFlood(alarms, nowUs));
         if (!rests && pane.items.length > 1 && changedAt !== null && now - changedAt >= pane.every_s * 1000) {
             at = (at + 1) % pane.items.length;
+            sessionStorage.setItem(remembered, at); // a display that is loaded anew goes on
             shown = null;
         }
         const text = page.session.views.find((view) => view.id === pane.items[at])?.view, { width, height } = page.session.size;
-        const wanted = alarm ? `${alarm.tag.name}/${alarm.kind}` : JSON.stringify([at, held, text, width, height]); // home is as wide
+        const wanted = alarm ? `${alarm.tag.name}/${alarm.kind}/${isGone(alarm.state)}` : JSON.stringify([at, order, text, width, height]);
         element.classList.toggle('called', Boolean(alarm));
         if (wanted === shown && page === shownIn)
             return;
@@ -79,18 +105,20 @@ function ViewsPane(pane, context) {
         if (alarm)
             showAlarm(page, alarm);
         else
-            showView(page);
+            showView(page, order);
     } };
 }
 
 // --- a trend
 
 function TrendPane(pane, context) {
-    const inner = pageIn(context, 'trend');
+    const { session, wall, display, title } = context, inner = pageIn(context, 'trend', `${wall.id}/${display}/${pane.area}`);
+    const about = make('span', { class: 'about' });
     let begun = null; // in which page: a frame may be loaded anew
-    setText(context.title, pane.title ?? pane.items.join(', '));
+    title.replaceChildren(pane.title ?? pane.items.join(', '), about);
     return { tick() {
         const { page } = inner;
+        setText(about, aboutTags(session, pane.items));
         if (begun === page || !page?.session.model)
             return;
         begun = page;
@@ -103,6 +131,7 @@ function TrendPane(pane, context) {
 
 function AlarmsPane(pane, { session, call, title, body }) {
     let said = '';
+    const about = make('span', { class: 'about' });
     const list = make('ol', {}), more = make('p', { class: 'more' });
     body.append(list, more);
 
@@ -129,13 +158,14 @@ function AlarmsPane(pane, { session, call, title, body }) {
 
     return { tick() {
         const { alarms } = session.model, all = alarms.list(), flood = call.isFlood(all, session.clockUs());
+        setText(about, ageOf(clock.now() - session.freshAt));
         const { active, waiting } = alarms.counts(), now = JSON.stringify([flood, body.clientHeight,
             all.map(({ id, state, priority, value }) => [id, state, priority, value])]);
         if (now === said)
             return;
         said = now;
         title.replaceChildren(pane.title ?? say('alarms.title'), make('span', {}, flood ? say('walls.flood', { active, waiting })
-            : active === 0 && waiting === 0 ? say('alarms.none') : say('walls.counts', { active, waiting })));
+            : active === 0 && waiting === 0 ? say('alarms.none') : say('walls.counts', { active, waiting })), about);
         if (flood)
             fill(byEquipment(all.filter(({ state }) => !isGone(state))).map(rowOfMany));
         else
@@ -143,33 +173,51 @@ function AlarmsPane(pane, { session, call, title, body }) {
     } };
 }
 
-// --- numbers with their limits
+// --- numbers with their limits, in the manner of ISA-101: grey, with a band for the usual range, a mark where the value is, and colour for
+// an alarm alone
 
 function TilesPane(pane, { session, body, title }) {
-    setText(title, pane.title ?? '');
+    const about = make('span', { class: 'about' });
+    title.replaceChildren(pane.title ?? '', about);
     const tiles = pane.items.map((name) => {
-        const value = make('b', { class: 'value' }), bar = make('div', { class: 'bar' }, make('i', { class: 'at' }));
-        const element = make('div', { class: 'tile' }, make('span', { class: 'name' }, name), value, bar);
+        const value = make('b', { class: 'value' });
+        const bar = make('div', { class: 'bar' }, make('i', { class: 'usual' }), make('i', { class: 'at' }));
+        const flag = make('span', { class: 'flag' });
+        const element = make('div', { class: 'tile' }, make('span', { class: 'name' }, name), flag, value, bar);
         body.append(element);
-        return { name, value, bar, element, limits: '' };
+        return { name, value, bar, flag, element, limits: '' };
     });
 
     function mark(tile, tag, group) {
-        const text = JSON.stringify(tag.limits ?? {});
+        const text = JSON.stringify([tag.limits ?? {}, group.min, group.max]);
         if (text === tile.limits)
             return;
         tile.limits = text;
         tile.bar.querySelectorAll('.limit').forEach((one) => one.remove());
-        for (const [name, limit] of Object.entries(tag.limits ?? {}).filter(([, one]) => Number.isFinite(one))) {
+        const limits = Object.entries(tag.limits ?? {}).filter(([, one]) => Number.isFinite(one)), { L, H } = Object.fromEntries(limits);
+        const [low, high] = [shareOf(group, L ?? group.min), shareOf(group, H ?? group.max)];
+        setVariable(tile.bar, '--low', low);
+        setVariable(tile.bar, '--high', Math.max(low, high));
+        for (const [name, limit] of limits) {
             const line = make('i', { class: `limit${name.length > 1 ? ' outer' : ''}` });
             setVariable(line, '--at', shareOf(group, limit));
             tile.bar.append(line);
         }
     }
 
+    // Its colour is the priority; returned but not acknowledged is hollow.
+    function flagOf(tile, alarm) {
+        const text = alarm ? `${alarm.priority} ${alarm.state}` : '';
+        if (tile.flag.dataset.shows === text)
+            return;
+        tile.flag.dataset.shows = text;
+        tile.flag.replaceChildren(...(alarm ? [badge(alarm.priority, isGone(alarm.state))] : []));
+    }
+
     let fitted = '';
     return { tick() {
         const room = `${body.clientWidth} ${body.clientHeight} ${getComputedStyle(body.parentNode).fontSize}`;
+        setText(about, aboutTags(session, pane.items));
         for (const tile of tiles) {
             const tag = session.model.tag(tile.name), group = session.model.group(tag?.group);
             if (!tag || !group)
@@ -180,6 +228,7 @@ function TilesPane(pane, { session, body, title }) {
             tile.value.replaceChildren(text, make('span', {}, known ? ` ${unitText(tag.unit || group.unit)}` : ''));
             tile.element.dataset.quality = quality;
             tile.element.dataset.alarm = alarm && !isGone(alarm.state) ? alarm.priority : '';
+            flagOf(tile, alarm);
             tile.bar.classList.toggle('unknown', !known);
             setVariable(tile.bar, '--value', known ? shareOf(group, value) : 0);
             mark(tile, tag, group);

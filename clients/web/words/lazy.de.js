@@ -76,13 +76,73 @@ never: Keine Verbindung zur Anlage
 denied: Dieser Bildschirm braucht ein eigenes Token
 token: Token
 enter: Eingeben
-held: angehalten
+held: festgehalten von {who} seit {time}
+sent: gesendet von {who}, {time}
+age: Daten {age} alt
 since: seit {time}
 many: {count} Alarme, schwerster {worst}
 more(one): und {count} weiterer
 more(other): und {count} weitere
 counts: {active} aktiv, {waiting} zu quittieren
 flood: Alarmschwall: {active} aktiv, {waiting} zu quittieren
+
+[notes]
+legend: Notizen
+text: Notiz für die Schicht
+at: Woran
+until: Bis wann
+save: Notieren
+place: diese Stelle
+choose: Apparat oder Messstelle wählen
+ends: bis {time}
+handover: Schichtübergabe
+
+[until]
+shift: 8 Stunden
+day: ein Tag
+week: eine Woche
+ever: bis zum Entfernen
+
+[remote]
+legend: Großbild
+pane: Feld einer Bildwand
+desk: Name dieses Platzes
+where: {wall} {display}: {area}
+send: Gezeigtes senden
+hold: Festhalten
+back: Zurückgeben
+point: Mit der Maus zeigen
+there: verbunden
+gone: dieser Schirm ist nicht verbunden
+sent: {title}, gesendet von {who}, {time}
+held: festgehalten von {who}, {time}
+
+[handover]
+title: Schichtübergabe, {plant}
+last: Die letzten
+hours: {n} Stunden
+print: Drucken oder als PDF sichern
+notes: Notizen
+standing: Steht jetzt an
+raised: Gekommene Alarme
+acknowledged: Quittiert
+shelved: Zurückgestellt oder außer Betrieb
+time: Zeit
+where: Wo
+what: Notiz
+who: Wer
+until: Bis
+alarm: Alarm
+priority: Priorität
+state: Zustand
+count: Anzahl
+newest: Zuletzt
+reason: Grund
+ended: entfernt von {who}, {time}
+cut: Es gab mehr Alarme, als hier stehen
+gives: Übergeben von
+takes: Übernommen von
+denied: Die Übergabe ist für Operatoren: aus der Seite öffnen, angemeldet oder mit Token
 
 [named]
 legend: Benannte Ansichten

@@ -76,13 +76,73 @@ never: No connection to the plant
 denied: This display needs a token of its own
 token: Token
 enter: Enter
-held: held
+held: held by {who} since {time}
+sent: sent by {who}, {time}
+age: data {age} old
 since: since {time}
 many: {count} alarms, worst {worst}
 more(one): and {count} more
 more(other): and {count} more
 counts: {active} active, {waiting} to be acknowledged
 flood: Flood of alarms: {active} active, {waiting} to be acknowledged
+
+[notes]
+legend: Notes
+text: Note for the crew
+at: At what
+until: Until when
+save: Note
+place: this place
+choose: Choose equipment or a tag
+ends: until {time}
+handover: Handover of the shift
+
+[until]
+shift: 8 hours
+day: a day
+week: a week
+ever: until removed
+
+[remote]
+legend: Wall
+pane: Pane of a wall
+desk: Name of this desk
+where: {wall} {display}: {area}
+send: Send what is seen
+hold: Hold
+back: Give back
+point: Point with the mouse
+there: connected
+gone: this display is not connected
+sent: {title}, sent by {who}, {time}
+held: held by {who}, {time}
+
+[handover]
+title: Handover of the shift, {plant}
+last: The last
+hours: {n} hours
+print: Print, or keep as PDF
+notes: Notes
+standing: Standing now
+raised: Alarms raised
+acknowledged: Acknowledged
+shelved: Shelved, or out of service
+time: Time
+where: Where
+what: Note
+who: Who
+until: Until
+alarm: Alarm
+priority: Priority
+state: State
+count: Times
+newest: Newest
+reason: Reason
+ended: removed by {who}, {time}
+cut: There were more alarms than stand here
+gives: Handed over by
+takes: Taken over by
+denied: The handover is for operators: open it from the page, signed in or with a token
 
 [named]
 legend: Views with names

@@ -76,12 +76,72 @@ never: 플랜트와 연결되지 않았습니다
 denied: 이 디스플레이에는 전용 토큰이 필요합니다
 token: 토큰
 enter: 입력
-held: 정지됨
+held: {who} 고정, {time}부터
+sent: {who} 보냄, {time}
+age: 데이터 {age} 경과
 since: {time}부터
 many: 경보 {count}건, 최고 {worst}
 more(other): 외 {count}건
 counts: 활성 {active}건, 확인 대기 {waiting}건
 flood: 경보 폭주: 활성 {active}건, 확인 대기 {waiting}건
+
+[notes]
+legend: 메모
+text: 근무조에 남길 메모
+at: 대상
+until: 기한
+save: 남기기
+place: 이 위치
+choose: 설비나 태그를 선택하세요
+ends: {time}까지
+handover: 근무 인계
+
+[until]
+shift: 8시간
+day: 하루
+week: 일주일
+ever: 삭제할 때까지
+
+[remote]
+legend: 상황판
+pane: 상황판의 화면
+desk: 이 자리의 이름
+where: {wall} {display}: {area}
+send: 현재 화면 보내기
+hold: 고정
+back: 되돌리기
+point: 마우스로 가리키기
+there: 연결됨
+gone: 이 디스플레이는 연결되어 있지 않습니다
+sent: {title}, {who} 보냄, {time}
+held: {who} 고정, {time}
+
+[handover]
+title: 근무 인계, {plant}
+last: 최근
+hours: {n}시간
+print: 인쇄 또는 PDF 저장
+notes: 메모
+standing: 현재 지속 중
+raised: 발생한 알람
+acknowledged: 확인됨
+shelved: 보류 또는 서비스 제외
+time: 시각
+where: 위치
+what: 메모
+who: 담당자
+until: 기한
+alarm: 알람
+priority: 우선순위
+state: 상태
+count: 횟수
+newest: 마지막
+reason: 사유
+ended: {who} 삭제, {time}
+cut: 여기 표시된 것보다 많은 알람이 있었습니다
+gives: 인계자
+takes: 인수자
+denied: 인계는 운전원용입니다: 로그인하거나 토큰으로 페이지에서 여세요
 
 [named]
 legend: 저장된 뷰

@@ -2,7 +2,7 @@
 // What is kept in this browser. It may forbid that: nothing is then known the next time.
 
 const KEYS = { theme: 'localStorage', token: 'sessionStorage', renewed: 'sessionStorage',
-    renewedWall: 'sessionStorage' }; // for good, or as long as this tab lives
+    renewedWall: 'sessionStorage', desk: 'localStorage', wall: 'localStorage' }; // for good, or as long as this tab lives
 
 export function stored(name) {
     try {

@@ -34,6 +34,7 @@ export class Views {
         Object.assign(this, collapsiblePanel(this.panel, byId('views-toggle'), () => {
             this.update();
             modules.use('namedViews', (named) => named.draw(), 'draw');
+            ['notes', 'remote'].forEach((name) => modules.get(name));
         }));
         session.on('fitted', (camera) => modules.use('cameraController', (cameraController) => cameraController.flyTo(camera)));
         session.on('params', () => this.update());
@@ -44,6 +45,11 @@ export class Views {
     // Goes to a view with a name.
     openNamed(id, fly) {
         this.modules.use('namedViews', (named) => named.open(id, fly), 'open');
+    }
+
+    // Likewise to one by its text.
+    lookAt(text) {
+        this.modules.use('namedViews', (named) => named.look(text, false), 'open');
     }
 
     close() {

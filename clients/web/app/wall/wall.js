@@ -43,7 +43,11 @@ export async function hangOnWall(search, page) {
     legends.append(byId('legend'), byId('legend-right'));
     byId('viewport').after(legends);
     byId('status').before(byId('simulated'));
+    page.hangs = new URLSearchParams(search).get('hangs');
     page.onTell = async (tell) => {
+        const [name, display] = page.hangs?.split('/') ?? [], { session } = page;
+        if (name) // the server is to know which display shows this
+            session.greeted(() => session.post({ type: 'display', wall: name, display: Number(display) }));
         const metres = fit();
         if (metres < wall.metres && await learnWords().then(() => true, () => false))
             tell(say('wall.far', { metres: numberText(metres, 1), wanted: wall.metres }), FAR_MS);

@@ -1,0 +1,190 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Notes of the crew: pins in the picture, which a wall shows too, and their list and form in the panel of views. Also where a desk points.
+import { projector } from '../../core/camera.js';
+import { zoneClock } from '../../core/format.js';
+import { inForce, placeOf, whereOf } from '../../core/notes.js';
+import { refusalText } from '../../core/refusals.js';
+import { halves } from '../../core/split_view.js';
+import { say } from '../../core/words.js';
+import { fillSelect } from '../common/choices.js';
+import { byId, make, setText, setVariable } from '../common/dom.js';
+
+const UNTIL = ['shift', 'day', 'week', 'ever'], HOURS = { shift: 8, day: 24, week: 168 };
+const MAY = ['operator', 'engineer'], POINTS_MS = 4000, TICK_MS = 500, LONGEST = 130;
+
+export class Notes {
+    constructor({ session, selection, viewport, modules, hangs, tell, flyToTag, selectAsset }) {
+        Object.assign(this, { session, selection, viewport, modules, hangs, flyToTag, selectAsset });
+        this.pins = new Map(); // by id: { element, position }
+        this.pointer = null;   // likewise, and until
+        this.list = make('ul', { id: 'notes-list' });
+        this.text = make('input', { maxlength: LONGEST, placeholder: say('notes.text'), 'aria-label': say('notes.text'), id: 'note-text' });
+        this.at = make('select', { id: 'note-at', 'aria-label': say('notes.at') });
+        this.until = make('select', { id: 'note-until', 'aria-label': say('notes.until') });
+        fillSelect(this.until, UNTIL.map((name) => [name, say(`until.${name}`)]), 'shift');
+        this.form = make('form', { id: 'note-form', onsubmit: (event) => this.onSave(event) }, this.text,
+            make('div', { class: 'line' }, this.at, this.until, make('button', { type: 'submit' }, say('notes.save'))));
+        this.element = make('fieldset', { id: 'notes' }, make('legend', {}, say('notes.legend')), this.list, this.form,
+            make('a', { id: 'notes-handover', href: 'handover.html', target: '_blank', rel: 'opener' }, say('notes.handover')));
+        byId('views').append(this.element);
+        session.on('notes', () => this.hear());
+        session.on('welcome', () => this.hear());
+        session.on('pointed', () => this.point());
+        session.on('params', () => this.offer());
+        session.on('noted', ({ kept, why }) => (kept ? this.onKept() : tell(refusalText(why))));
+        setInterval(() => this.tick(), TICK_MS);
+        this.hear();
+        this.point();
+    }
+
+    get may() {
+        return MAY.includes(this.session.role);
+    }
+
+    // --- making one
+
+    // What it can be at: what is chosen.
+    get places() {
+        const { model, params } = this.session, picked = this.modules.there('place')?.picked, out = [];
+        if (model?.tag(this.selection.tag))
+            out.push(['tag', { tag: this.selection.tag }, this.selection.tag]);
+        if (picked)
+            out.push(['place', { position: picked.position }, say('notes.place')]);
+        if (model?.asset(params.selected))
+            out.push(['asset', { asset: params.selected }, whereOf(model, { asset: params.selected })]);
+        return out;
+    }
+
+    offer() {
+        const { places } = this, now = JSON.stringify(places);
+        if (now === this.offered)
+            return;
+        this.offered = now;
+        fillSelect(this.at, places.length > 0 ? places.map(([name, , words]) => [name, words]) : [['', say('notes.choose')]],
+            places[0]?.[0] ?? '');
+        this.form.querySelector('button').disabled = places.length === 0;
+    }
+
+    onSave(event) {
+        event.preventDefault();
+        const { session } = this, text = this.text.value.trim(), [, place] = this.places.find(([name]) => name === this.at.value) ?? [];
+        if (!text || !place)
+            return;
+        const hours = HOURS[this.until.value], until = hours ? { until_us: Math.round(session.clockUs() + hours * 3600e6) } : {};
+        session.post({ type: 'note', seq: ++session.toldSeq, text, ...place, ...until });
+    }
+
+    onKept() {
+        this.text.value = '';
+        this.text.blur();
+    }
+
+    remove(id) {
+        this.session.post({ type: 'remove_note', seq: ++this.session.toldSeq, id });
+    }
+
+    // --- those there are
+
+    get notes() {
+        return inForce(this.session.notes, this.session.clockUs());
+    }
+
+    // Some may end meanwhile, and others be at what is there only now.
+    tick() {
+        this.offer();
+        if (this.notes.length !== this.list.children.length)
+            this.hear();
+        if (this.pointer && performance.now() > this.pointer.until)
+            this.drop();
+    }
+
+    hear() {
+        const { model } = this.session, { notes } = this;
+        this.form.hidden = byId('notes-handover').hidden = !this.may;
+        this.element.hidden = notes.length === 0 && !this.may;
+        this.list.replaceChildren(...notes.map((note) => this.rowOf(note)));
+        this.pins.forEach(({ element }) => element.remove());
+        this.pins.clear();
+        for (const note of model ? notes : []) {
+            const position = placeOf(model, note);
+            if (position)
+                this.pins.set(note.id, { position, element: this.pinOf(note) });
+        }
+        this.show();
+    }
+
+    pinOf(note) {
+        const pin = make('button', { type: 'button', class: 'note-pin', title: this.aboutOf(note), onclick: () => this.lookAt(note) },
+            make('span', {}, note.text));
+        this.viewport.element.append(pin);
+        return pin;
+    }
+
+    timeOf(us) {
+        const { date, time } = zoneClock(this.session.model.plant.time_zone)(us / 1000);
+        return `${date} ${time.slice(0, 5)}`;
+    }
+
+    aboutOf({ by, time_us: us, until_us: until, ...note }) {
+        const made = say('named.by', { who: by, time: this.timeOf(us) }), at = whereOf(this.session.model, note) ?? say('notes.place');
+        return [at, made, until ? say('notes.ends', { time: this.timeOf(until) }) : null].filter(Boolean).join(' · ');
+    }
+
+    rowOf(note) {
+        const remove = () => this.remove(note.id);
+        return make('li', { 'data-id': note.id }, make('b', {}, note.text), make('small', {}, this.aboutOf(note)),
+            this.may ? make('button', { type: 'button', onclick: remove }, say('named.remove')) : null);
+    }
+
+    lookAt({ tag, asset }) {
+        if (tag && this.session.model.tag(tag))
+            this.flyToTag(this.session.model.tag(tag));
+        else if (asset && this.session.model.asset(asset))
+            this.selectAsset(this.session.model.asset(asset));
+    }
+
+    // --- where a desk points
+
+    point() {
+        const { hangs, session } = this;
+        const mine = hangs && session.pointed.filter(({ wall, display, area }) => `${wall}/${display}/${area}` === hangs).at(-1);
+        if (!mine)
+            return;
+        if (!mine.position) {
+            this.drop();
+            return;
+        }
+        if (!this.pointer) {
+            this.pointer = { element: make('p', { class: 'note-pin pointer' }, make('span', {})) };
+            this.viewport.element.append(this.pointer.element);
+        }
+        this.pointer.position = mine.position;
+        this.pointer.until = performance.now() + POINTS_MS;
+        setText(this.pointer.element.firstChild, mine.by);
+        this.show();
+    }
+
+    drop() {
+        this.pointer?.element.remove();
+        this.pointer = null;
+    }
+
+    // --- in step with the picture
+
+    show() {
+        const { picture, shown } = this.session, half = picture && halves(shown, picture.shownWidth)[0];
+        const project = half && projector(picture.camera, half.width, picture.fullHeight), { width, height } = this.viewport;
+        for (const { element, position } of [...this.pins.values(), ...(this.pointer ? [this.pointer] : [])]) {
+            const at = project?.(position), x = at && ((half.left + at[0]) * width) / picture.shownWidth;
+            const y = at && (at[1] * height) / picture.fullHeight, unit = this.scale;
+            element.hidden = !at || x < 0 || y < 0 || x > width || y > height || at[0] > half.width;
+            setVariable(element, '--left', `${(x ?? 0) / unit}px`);
+            setVariable(element, '--top', `${(y ?? 0) / unit}px`);
+        }
+    }
+
+    // A wall enlarges the pins.
+    get scale() {
+        return document.body.classList.contains('wall') ? Number(document.body.style.getPropertyValue('--wall')) || 1 : 1;
+    }
+}

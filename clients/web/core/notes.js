@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What people noted: where it is in the plant, and until when it counts.
+
+// Returns [x, y, z], or null where what it is at is not in this plant (any more).
+export function placeOf(model, { position, tag, asset }) {
+    if (position || tag)
+        return position ?? model.tag(tag)?.position ?? null;
+    const { min, max } = model.asset(asset)?.bounds ?? {};
+    return min ? [(min[0] + max[0]) / 2, (min[1] + max[1]) / 2, max[2]] : null;
+}
+
+// Returns what it is at, in words; null: a place.
+export const whereOf = (model, { tag, asset }) => tag ?? (asset ? model.asset(asset)?.tag || asset : null);
+
+// Returns those whose time is not over.
+export const inForce = (notes, nowUs) => notes.filter(({ until_us: until }) => until === 0 || nowUs === null || until > nowUs);

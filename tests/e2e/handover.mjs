@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The handover of a shift: notes, alarms, who acknowledged and shelved them, as a page and as a PDF.
+import assert from 'node:assert/strict';
+import { after, before, test } from 'node:test';
+import { openPage, shoot, waitForPicture } from './support/browser.mjs';
+import { missing, startPlant } from './support/plant.mjs';
+
+const why = missing();
+const options = { skip: why ?? false, timeout: 200000 };
+let plant, browser, page;
+
+before(async () => {
+    if (why)
+        return;
+    plant = await startPlant('alarms: local\n');
+    browser = await openPage(plant.url, { viewport: { width: 1000, height: 1100 } });
+    page = browser.page;
+    await waitForPicture(page);
+    await plant.ask('set TE-171 500');
+    await page.waitForFunction(() => [...globalThis.plantcast.session.model.alarms.rows.values()]
+        .some(({ state }) => state === 'unacknowledged'), null, { timeout: 60000 });
+    await page.evaluate(() => {
+        const { session } = globalThis.plantcast;
+        const rows = [...session.model.alarms.rows.values()].filter(({ state }) => state === 'unacknowledged');
+        const alarms = rows.map(({ tag, kind }) => [tag.name, kind]);
+        session.post({ type: 'alarm', seq: 1, action: 'acknowledge', alarms, name: 'kim' });
+        session.post({ type: 'alarm', seq: 2, action: 'shelve', alarms: alarms.slice(0, 1), for_s: 3600, reason: 'sensor is checked',
+            name: 'kim' });
+        session.post({ type: 'note', seq: 1, text: 'Pump P-101A: <seal> drips', asset: 'P-101A', name: 'kim' });
+    });
+    await page.waitForFunction(() => globalThis.plantcast.session.notes.length === 1);
+});
+after(async () => {
+    await browser?.close();
+    await plant?.stop();
+});
+
+test('it says what was noted, raised, acknowledged and shelved', options, async () => {
+    for (let tries = 0; tries < 20; tries++) { // the journal is written behind
+        await page.goto(`${plant.url}handover.html`);
+        await page.locator('[data-part=notes]').waitFor({ timeout: 30000 });
+        if (await page.locator('[data-part=shelved] td', { hasText: 'sensor is checked' }).count() > 0)
+            break;
+        await page.waitForTimeout(1000);
+    }
+    const rows = (name) => page.locator(`[data-part=${name}] tbody tr`).allTextContents();
+    assert.match((await rows('notes')).join(), /P-101A.*<seal> drips.*kim \(local\)/);
+    assert.match((await rows('raised')).join(), /TE-171 · High/);
+    assert.match((await rows('acknowledged')).join(), /TE-171.*kim \(local\)/);
+    assert.match((await rows('shelved')).join(), /TE-171.*kim \(local\).*sensor is checked/);
+    await shoot(page, 'handover');
+});
+
+test('it is printed on paper: no controls, as many pages as it takes', options, async () => {
+    const pdf = await page.pdf({ preferCSSPageSize: true });
+    assert.equal(pdf.subarray(0, 5).toString(), '%PDF-');
+    assert.ok(pdf.length > 10000);
+    await page.emulateMedia({ media: 'print' });
+    assert.equal(await page.locator('form').isVisible(), false);
+    await page.emulateMedia({ media: 'screen' });
+});
+
+test('a span is asked for, in other languages too; before it there was nothing', options, async () => {
+    await page.goto(`${plant.url}handover.html?from=-2h&to=-1h&lang=de`);
+    await page.locator('h2', { hasText: 'Quittiert' }).waitFor({ timeout: 30000 });
+    assert.equal(await page.locator('[data-part=acknowledged] tbody tr').count(), 0);
+    await page.goto(`${plant.url}handover.html?from=tomorrow`);
+    await page.locator('.wrong').waitFor();
+});

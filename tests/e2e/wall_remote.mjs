@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A crew's notes, and a wall from a desk: a view sent to a pane, held, pointed at and given back, with who did it; after reloads, too.
+import assert from 'node:assert/strict';
+import { after, before, test } from 'node:test';
+import { openPage, settle, shoot, waitForPicture } from './support/browser.mjs';
+import { missing, startPlant } from './support/plant.mjs';
+
+const why = missing();
+const options = { skip: why ?? false, timeout: 300000 };
+const ABOVE = 'group=temperature&camera=8,2,30,8,6,0,0,0,1,45';
+const WALLS = `
+views:
+- { id: whole, title: Whole unit, view: "group=temperature" }
+- { id: above, title: From above, view: "${ABOVE}" }
+walls:
+- id: room
+  displays:
+  - grid: [main alarms]
+    panes:
+    - { area: main, views: [whole], on_alarm: yes }
+    - { area: alarms, alarms: yes }
+`;
+let plant, wall, desk;
+
+before(async () => {
+    if (why)
+        return;
+    plant = await startPlant(`alarms: local\n${WALLS}`);
+    wall = await openPage(`${plant.url}?wall=room`, { viewport: { width: 1920, height: 1080 } });
+    desk = await openPage(plant.url, { viewport: { width: 1400, height: 900 } });
+    await waitForPicture(desk.page);
+    await desk.page.click('#views-toggle');
+    await desk.page.locator('#remote-pane option').first().waitFor({ state: 'attached', timeout: 60000 });
+});
+after(async () => {
+    await wall?.close();
+    await desk?.close();
+    await plant?.stop();
+});
+
+const title = () => wall.page.locator('.pane.views h2');
+const eyeOfPane = (z) => wall.page.waitForFunction((wanted) => {
+    const { picture } = document.querySelector('.pane.views iframe').contentWindow.plantcast?.session ?? {};
+    return picture && Math.abs(picture.camera.eye[2] - wanted) < 0.01;
+}, z, { timeout: 60000, polling: 100 });
+const inPane = () => wall.page.frameLocator('.pane.views iframe');
+
+test('a note is seen by all, and on the wall, until it is removed', options, async () => {
+    await desk.page.evaluate(() => globalThis.plantcast.session.setParams({ selected: 'TK-101' }));
+    await desk.page.fill('#note-text', 'Manhole open, permit 4711');
+    await desk.page.locator('#note-at option', { hasText: 'TK-101' }).waitFor({ state: 'attached' });
+    await desk.page.selectOption('#note-at', { label: 'TK-101' });
+    await desk.page.keyboard.press('Tab');
+    await desk.page.locator('#note-form button').click();
+    await desk.page.locator('#notes-list li', { hasText: 'Manhole open' }).waitFor();
+    assert.match(await desk.page.locator('#notes-list small').textContent(), /TK-101 · local, .*until/);
+    await desk.page.locator('.note-pin', { hasText: 'Manhole' }).waitFor();
+    await inPane().locator('.note-pin', { hasText: 'Manhole' }).waitFor({ timeout: 90000 });
+    await settle(desk.page);
+    await shoot(desk.page, 'notes');
+    const { list } = await (await fetch(`${plant.url}api/v1/notes`)).json();
+    assert.equal(list.length, 1);
+    assert.ok(list[0].until_us > list[0].time_us);
+});
+
+test('notes outlive the daemon', options, async () => {
+    await plant.stopDaemon('SIGKILL');
+    await plant.startDaemon();
+    await wall.page.locator('#lost').waitFor({ state: 'hidden', timeout: 60000 });
+    await desk.page.waitForFunction(() => globalThis.plantcast.session.welcomed && globalThis.plantcast.session.notes.length === 1, null,
+        { timeout: 60000 });
+    await inPane().locator('.note-pin', { hasText: 'Manhole' }).waitFor({ timeout: 60000 });
+});
+
+test('a view is sent to a pane, and who sent it is said there', options, async () => {
+    await desk.page.fill('#remote-desk', 'Desk 2');
+    await desk.page.locator('#remote-said', { hasText: 'connected' }).waitFor({ timeout: 60000 });
+    await desk.page.locator('.named-open', { hasText: 'From above' }).click();
+    await desk.page.waitForFunction(() => Math.abs(globalThis.plantcast.session.picture.camera.eye[2] - 30) < 0.01, null,
+        { timeout: 60000 });
+    await desk.page.click('#remote-send');
+    await title().filter({ hasText: 'sent by Desk 2, local' }).waitFor({ timeout: 60000 });
+    assert.match(await title().textContent(), /From above/);
+    assert.match(await title().locator('.about').textContent(), /Temperature · data .* old/);
+    await eyeOfPane(30);
+});
+
+test('a place is pointed at in the pane', options, async () => {
+    await desk.page.check('#remote-points');
+    const at = await desk.page.evaluate(() => {
+        const { viewport } = globalThis.plantcast, { left, top } = viewport.element.getBoundingClientRect();
+        return { x: left + viewport.width * 0.45, y: top + viewport.height * 0.55 };
+    });
+    await desk.page.mouse.move(at.x, at.y);
+    for (let i = 0; i < 40 && await inPane().locator('.note-pin.pointer').count() === 0; i++) {
+        await desk.page.mouse.move(at.x + (i % 5) * 12, at.y - (i % 7) * 10);
+        await desk.page.waitForTimeout(400);
+    }
+    await inPane().locator('.note-pin.pointer', { hasText: 'Desk 2, local' }).waitFor();
+    await shoot(wall.page, 'wall-remote');
+    await desk.page.uncheck('#remote-points');
+    await inPane().locator('.note-pin.pointer').waitFor({ state: 'detached', timeout: 15000 });
+});
+
+test('desk and wall find each other again after reloads', options, async () => {
+    await wall.page.reload();
+    await desk.page.reload();
+    await title().filter({ hasText: 'sent by Desk 2' }).waitFor({ timeout: 90000 });
+    await eyeOfPane(30);
+    await waitForPicture(desk.page);
+    await desk.page.click('#views-toggle');
+    await desk.page.locator('#remote-said', { hasText: 'sent by Desk 2, local' }).waitFor({ timeout: 60000 });
+    assert.equal(await desk.page.inputValue('#remote-desk'), 'Desk 2');
+});
+
+test('an alarm comes before what was sent, which then comes back', options, async () => {
+    await plant.ask('set TE-171 500');
+    await wall.page.locator('.pane.views.called h2', { hasText: 'TE-171' }).waitFor({ timeout: 60000 });
+    await plant.ask('set TE-171 180');
+    await wall.page.locator('.pane.views.called h2 .priority.hollow').waitFor({ timeout: 60000 }); // returned, not acknowledged
+    await wall.page.evaluate(() => {
+        const { session } = globalThis.wall, alarms = [...session.model.alarms.rows.values()].filter(({ state }) => ['unacknowledged',
+            'returned'].includes(state))
+            .map(({ tag, kind }) => [tag.name, kind]);
+        session.post({ type: 'alarm', seq: 1, action: 'acknowledge', alarms, name: 'kim' });
+    });
+    await title().filter({ hasText: 'sent by Desk 2' }).waitFor({ timeout: 60000 });
+    await eyeOfPane(30);
+});
+
+test('it is held, and given back', options, async () => {
+    await desk.page.click('#remote-hold');
+    await title().filter({ hasText: 'held by Desk 2' }).waitFor({ timeout: 60000 });
+    await desk.page.click('#remote-back');
+    await title().filter({ hasText: 'Whole unit' }).waitFor({ timeout: 60000 });
+    assert.doesNotMatch(await title().textContent(), /Desk 2/);
+    await desk.page.locator('#notes-list li button').click();
+    await desk.page.locator('.note-pin').waitFor({ state: 'detached' });
+    await inPane().locator('.note-pin').waitFor({ state: 'detached', timeout: 60000 });
+});
+
+test('how old its picture is stands in the metrics, and grows once it has gone', options, async () => {
+    const age = async () => {
+        const text = await (await fetch(`${plant.url}metrics`)).text();
+        return Number(/plantcast_wall_frame_age_seconds\{wall="room",display="1"\} (\S+)/.exec(text)?.[1]);
+    };
+    assert.ok(await age() < 15, `${await age()} s`);
+    await wall.page.goto('about:blank');
+    const gone = Date.now();
+    while (!(await age() > 17) && Date.now() - gone < 60000)
+        await new Promise((done) => setTimeout(done, 1000));
+    assert.ok(await age() > 17);
+    await desk.page.locator('#remote-said', { hasText: 'not connected' }).waitFor();
+});

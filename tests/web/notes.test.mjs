@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Notes: where they are in the plant, and until when they count.
+import assert from 'node:assert/strict';
+import { test } from 'node:test';
+import { inForce, placeOf, whereOf } from '../../clients/web/core/notes.js';
+import { makeSession, vector } from './fixtures.mjs';
+
+const { connection, session, sockets } = makeSession();
+connection.start();
+sockets[0].accept();
+sockets[0].say(vector('server/welcome.json'));
+
+test('a note is at a place, a tag or an asset; or at nothing that is there', () => {
+    const { model } = session, [tag] = model.tags, [asset] = model.assets;
+    assert.deepEqual(placeOf(model, { position: [1, 2, 3] }), [1, 2, 3]);
+    assert.deepEqual(placeOf(model, { tag: tag.name }), tag.position);
+    const [x, , z] = placeOf(model, { asset: asset.id });
+    assert.ok(x >= asset.bounds.min[0] && x <= asset.bounds.max[0] && z === asset.bounds.max[2]);
+    assert.deepEqual([placeOf(model, { tag: 'gone' }), placeOf(model, { asset: 'gone' })], [null, null]);
+    const where = [{ position: [1, 2, 3] }, { tag: 'T' }, { asset: 'gone' }].map((note) => whereOf(model, note));
+    assert.deepEqual(where, [null, 'T', 'gone']);
+});
+
+test('one whose time is over does not count, whatever the server said last', () => {
+    const notes = [{ id: 'a', until_us: 0 }, { id: 'b', until_us: 50 }];
+    assert.deepEqual(inForce(notes, 49).map(({ id }) => id), ['a', 'b']);
+    assert.deepEqual(inForce(notes, 50).map(({ id }) => id), ['a']);
+    assert.equal(inForce(notes, null).length, 2);
+});
+
+test('notes, what was sent to walls and pointers are heard, and go with the plant', () => {
+    for (const name of ['notes', 'walls', 'pointed'])
+        sockets[0].say(vector(`server/${name}.json`));
+    const { notes, walls, pointed } = session;
+    assert.deepEqual([notes, walls.list, walls.displays, pointed].map(({ length }) => length), [1, 1, 1, 1]);
+    sockets[0].say(vector('server/welcome.json'));
+    assert.deepEqual([session.notes, session.walls, session.pointed], [[], { list: [], displays: [] }, []]);
+});
