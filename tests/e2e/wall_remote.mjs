@@ -114,9 +114,10 @@ test('desk and wall find each other again after reloads', options, async () => {
 });
 
 test('an alarm comes before what was sent, which then comes back', options, async () => {
+    const usual = await plant.ask('get TE-171');
     await plant.ask('set TE-171 500');
     await wall.page.locator('.pane.views.called h2', { hasText: 'TE-171' }).waitFor({ timeout: 60000 });
-    await plant.ask('set TE-171 180');
+    await plant.ask(`set TE-171 ${usual}`);
     await wall.page.locator('.pane.views.called h2 .priority.hollow').waitFor({ timeout: 60000 }); // returned, not acknowledged
     await wall.page.evaluate(() => {
         const { session } = globalThis.wall, alarms = [...session.model.alarms.rows.values()].filter(({ state }) => ['unacknowledged',
