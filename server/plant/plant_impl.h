@@ -18,6 +18,8 @@ void plant_links_read(struct yaml_reader *reader, yaml_node_t *node, struct plan
 /* Reads the key `notify`. */
 void plant_notify_read(struct yaml_reader *reader, yaml_node_t *node, struct plant *plant);
 void plant_notify_free(struct plant_notify **notify); /* &NULL is fine; leaves NULL */
+/* Reads a span such as 22:00-06:00. Returns false after an error, which is reported as of the key `name`. */
+bool plant_day_span_read(struct yaml_reader *reader, yaml_node_t *node, const char *name, int *from_min, int *to_min);
 /* Read the lists `views` and `walls`. */
 void plant_views_read(struct yaml_reader *reader, yaml_node_t *node, struct plant *plant);
 void plant_walls_read(struct yaml_reader *reader, yaml_node_t *node, struct plant *plant);

@@ -313,20 +313,26 @@ static bool read_minute(const char *text, int *minute)
     return *minute <= MIN_PER_DAY;
 }
 
-static void read_hours(struct yaml_reader *reader, yaml_node_t *node, void *record)
+bool plant_day_span_read(struct yaml_reader *reader, yaml_node_t *node, const char *name, int *from_min, int *to_min)
 {
-    struct notify_shift *shift = &((struct rule_record *)record)->rule.shift;
     const char *text = yaml_text(node);
     char from[6] = { 0 };
     if (text && strlen(text) == 11 && text[5] == '-') {
         memcpy(from, text, 5);
-        if (read_minute(from, &shift->from_min) && read_minute(text + 6, &shift->to_min)) {
-            shift->from_min %= MIN_PER_DAY;
-            shift->to_min %= MIN_PER_DAY;
-            return;
+        if (read_minute(from, from_min) && read_minute(text + 6, to_min)) {
+            *from_min %= MIN_PER_DAY;
+            *to_min %= MIN_PER_DAY;
+            return true;
         }
     }
-    yaml_expected(reader, node, "hours", "a span such as 06:00-14:00 or 22:00-06:00");
+    yaml_expected(reader, node, name, "a span such as 06:00-14:00 or 22:00-06:00");
+    return false;
+}
+
+static void read_hours(struct yaml_reader *reader, yaml_node_t *node, void *record)
+{
+    struct notify_shift *shift = &((struct rule_record *)record)->rule.shift;
+    plant_day_span_read(reader, node, "hours", &shift->from_min, &shift->to_min);
 }
 
 static void read_rule(struct yaml_reader *reader, yaml_node_t *node, struct plant_notify *notify, struct notify_rule *rule)

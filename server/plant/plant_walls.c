@@ -220,11 +220,19 @@ static void read_displays(struct yaml_reader *reader, yaml_node_t *node, void *r
     }
 }
 
+static void read_dim(struct yaml_reader *reader, yaml_node_t *node, void *record)
+{
+    struct day_span *dim = &((struct wall *)record)->dim;
+    plant_day_span_read(reader, node, "dim_hours", &dim->from_min, &dim->to_min);
+}
+
 void plant_walls_read(struct yaml_reader *reader, yaml_node_t *node, struct plant *plant)
 {
     static const struct key keys[] = { { "id", KEY_NAME, true, offsetof(struct wall, id), 0, 0, NULL, NULL },
                                        { "inches", KEY_NUMBER, false, offsetof(struct wall, inches), 10, 400, NULL, NULL },
                                        { "distance_m", KEY_NUMBER, false, offsetof(struct wall, metres), 0.5, 50, NULL, NULL },
+                                       { "dim_hours", KEY_CUSTOM, false, 0, 0, 0, NULL, read_dim },
+                                       { "dim_percent", KEY_NUMBER, false, offsetof(struct wall, dim_percent), 20, 100, NULL, NULL },
                                        { "displays", KEY_CUSTOM, true, 0, 0, 0, NULL, read_displays },
                                        { 0 } };
     int count;
@@ -234,7 +242,7 @@ void plant_walls_read(struct yaml_reader *reader, yaml_node_t *node, struct plan
     for (int i = 0; i < count && i < WALLS; i++) {
         struct wall *wall = &plant->walls[plant->wall_count++];
         struct yaml_map map;
-        *wall = (struct wall){ .inches = 55, .metres = 3, .line = yaml_place(yaml_list_item(reader, node, i)).line };
+        *wall = (struct wall){ .inches = 55, .metres = 3, .dim_percent = 50, .line = yaml_place(yaml_list_item(reader, node, i)).line };
         if (!yaml_map_read(reader, yaml_list_item(reader, node, i), "a wall", keys, wall, &map))
             continue;
         if (wall->id && !named_view_id_valid(wall->id))

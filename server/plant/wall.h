@@ -37,9 +37,16 @@ struct wall_display {
     size_t pane_count;
 };
 
+/* A part of the day, in minutes of it; one that ends before it begins ends on the next day. */
+struct day_span {
+    int from_min, to_min;
+};
+
 struct wall {
     char *id;
     double inches, metres; /* of each display: its diagonal, and from how far it is read */
+    struct day_span dim;   /* when it is darker; equal ends: never */
+    double dim_percent;    /* of its light, then */
     struct wall_display *displays;
     size_t display_count;
     int line;

@@ -26,7 +26,7 @@ static void all_keys_are_read(void **state)
 {
     struct plant_case *c = *state;
     load(c, "walls:\n"
-            "- id: room\n  inches: 65\n  distance_m: 4.5\n  displays:\n"
+            "- id: room\n  dim_hours: 22:00-06:30\n  dim_percent: 40\n  inches: 65\n  distance_m: 4.5\n  displays:\n"
             "  - grid: [main main side, main main low]\n    panes:\n"
             "    - { area: main, views: [all, near], every_s: 20, on_alarm: yes, title: Plant }\n"
             "    - { area: side, alarms: yes }\n"
@@ -47,7 +47,8 @@ static void all_keys_are_read(void **state)
                         "rid\":[\"a b\",\"c .\"],\"panes\":[{\"area\":\"a\",\"kind\":\"trend\",\"title\":null,\"items\":[\"TI-1\"],\""
                         "every_s\":30.0,\"hours\":2.0,\"on_alarm\":false},{\"area\":\"b\",\"kind\":\"clock\",\"title\":null,\"items\""
                         ":[\"UTC\"],\"every_s\":30.0,\"hours\":8.0,\"on_alarm\":false},{\"area\":\"c\",\"kind\":\"text\",\"title\":nu"
-                        "ll,\"items\":[\"Hello\"],\"every_s\":30.0,\"hours\":8.0,\"on_alarm\":false}]}]}]}");
+                        "ll,\"items\":[\"Hello\"],\"every_s\":30.0,\"hours\":8.0,\"on_alarm\":false}]}],\"dim\":{\"from_min\":1320,"
+                        "\"to_min\":390,\"percent\":40.0}}]}");
     mem_free(text);
 }
 
@@ -55,17 +56,17 @@ static void what_is_wrong_is_said_at_its_place(void **state)
 {
     struct plant_case *c = *state;
     load(c, "views:\n- { id: a b, view: x }\n- { id: v, view: \"a b\" }\n- { id: v, view: \"#x\" }\n- { id: w }\n"
-            "walls:\n- { id: r, displays: [] }\n- id: r\n  inches: 5\n  displays:\n  - grid: [A b]\n    panes: [{ area: b }]\n"
+            "walls:\n- { id: r, displays: [] }\n- id: r\n  inches: 5\n  dim_hours: night\n  displays:\n  - grid: [A b]\n    panes: [{ area: b }]\n"
             "  - grid: [b b]\n    panes: [{ area: b, clock: yes, text: x }, { area: b, views: v }, { area: z, clock: yes, every_s: 9 },"
             " { area: b, tiles: [] }]");
     FOUND(c, { "plant.yaml", 7, 9, "id: expected letters, digits" }, { "plant.yaml", 8, 18, "something in it that does not stand" },
           { "plant.yaml", 9, 18, "it begins after the #" }, { "plant.yaml", 9, 9, "view 'v' is there twice (first at line 8)" },
           { "plant.yaml", 10, 3, "view" }, { "plant.yaml", 12, 22, "displays: expected at least one" },
-          { "plant.yaml", 14, 11, "inches" }, { "plant.yaml", 16, 12, "areas in lower case" },
-          { "plant.yaml", 17, 13, "expected one of views, trend, alarms" }, { "plant.yaml", 17, 21, "the grid has no 'b'" },
-          { "plant.yaml", 19, 13, "expected one of views" }, { "plant.yaml", 19, 55, "'b' has two panes" },
-          { "plant.yaml", 19, 102, "only a pane of views has it" }, { "plant.yaml", 19, 78, "the grid has no 'z'" },
-          { "plant.yaml", 19, 125, "tiles: expected 1 to 16, found 0" }, { "plant.yaml", 19, 115, "'b' has two panes" },
+          { "plant.yaml", 14, 11, "inches" }, { "plant.yaml", 15, 14, "a span such as" }, { "plant.yaml", 17, 12, "areas in lower case" },
+          { "plant.yaml", 18, 13, "expected one of views, trend, alarms" }, { "plant.yaml", 18, 21, "the grid has no 'b'" },
+          { "plant.yaml", 20, 13, "expected one of views" }, { "plant.yaml", 20, 55, "'b' has two panes" },
+          { "plant.yaml", 20, 102, "only a pane of views has it" }, { "plant.yaml", 20, 78, "the grid has no 'z'" },
+          { "plant.yaml", 20, 125, "tiles: expected 1 to 16, found 0" }, { "plant.yaml", 20, 115, "'b' has two panes" },
           { "plant.yaml", 13, 7, "wall 'r' is there twice" });
 }
 

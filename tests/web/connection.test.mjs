@@ -2,7 +2,7 @@
 // The connection's states, with the clock turned by hand.
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
-import { DEAD_MS, JITTER, LONGEST_WAIT_MS, QUIET_MS } from '../../clients/web/core/connection.js';
+import { DEAD_MS, JITTER, LONGEST_WAIT_MS, QUIET_MS, SPREAD_MS } from '../../clients/web/core/connection.js';
 import { makeConnection } from './fixtures.mjs';
 
 const waitOf = ({ connection, clock }) => connection.retryAt - clock.now();
@@ -165,4 +165,37 @@ test('nothing is sent while it is not open, and stop is final', () => {
     assert.equal(connection.state, 'stopped');
     assert.equal(sockets.length, 1);
     assert.equal(clock.timers.size, 0);
+});
+
+test('forty displays that lose the server at one moment come back staggered', () => {
+    for (const close of [[1006], [1001, 'the server goes down; retry after 1 s']]) {
+        const waits = Array.from({ length: 40 }, () => {
+            const bench = makeConnection({ random: Math.random, spreadMs: SPREAD_MS });
+            bench.connection.start();
+            bench.sockets[0].accept();
+            bench.connection.settle();
+            bench.sockets[0].fail(...close);
+            return waitOf(bench);
+        }).sort((a, b) => a - b);
+        const most = Math.max(...waits.map((from) => waits.filter((ms) => ms >= from && ms < from + 100).length));
+        assert.ok(most <= 12, `${most} of 40 within 100 ms`);
+        assert.ok(waits.at(-1) < 4000);
+    }
+});
+
+test('a display comes back after each of 200 losses, the last as soon as the first', () => {
+    const bench = makeConnection({ spreadMs: SPREAD_MS }), { connection, sockets, clock } = bench;
+    connection.start();
+    for (let loss = 0; loss < 200; loss++) {
+        for (let n = 0; n < loss % 5; n++) { // nobody is there yet
+            sockets.at(-1).fail();
+            clock.advance(waitOf(bench));
+        }
+        sockets.at(-1).accept();
+        connection.settle();
+        assert.equal(connection.state, 'open');
+        sockets.at(-1).fail(loss % 2 ? 1006 : 1001);
+        assert.ok(waitOf(bench) <= 500 * (1 + JITTER) + SPREAD_MS, `loss ${loss}: ${waitOf(bench)} ms`);
+        clock.advance(waitOf(bench));
+    }
 });

@@ -66,10 +66,10 @@ export class Socket {
 }
 
 // random: what the jitter gets; 0.5 is none.
-export function makeConnection({ random = () => 0.5 } = {}) {
+export function makeConnection({ random = () => 0.5, spreadMs = 0 } = {}) {
     const clock = new Clock(), sockets = [];
     const connection = new Connection({
-        url: 'ws://plant/stream', clock, random,
+        url: 'ws://plant/stream', clock, random, spreadMs,
         open: (url, protocol) => {
             sockets.push(new Socket(url, protocol));
             return sockets.at(-1);

@@ -4,6 +4,7 @@ import { SUBPROTOCOL } from './wire.js';
 import { say } from './words.js';
 
 export const FIRST_WAIT_MS = 500, LONGEST_WAIT_MS = 8000, JITTER = 0.25;
+export const SPREAD_MS = 2000; // of the displays of walls, which come back all at once
 export const PING_MS = 2000;   // a server with nothing to say answers at least these
 export const QUIET_MS = 5000;
 export const DEAD_MS = 12000;
@@ -15,9 +16,9 @@ const CLOSE_REASONS = {
 
 export class Connection {
     // open(url, protocol): a WebSocket. clock: { now(), setTimeout(f, ms), clearTimeout(id) }. Handlers: onState(connection),
-    // onOpen(), onText(string), onBytes(ArrayBuffer).
-    constructor({ url, open, clock, random = Math.random }) {
-        Object.assign(this, { url, openSocket: open, clock, random });
+    // onOpen(), onText(string), onBytes(ArrayBuffer). spreadMs: up to so much is added to each wait.
+    constructor({ url, open, clock, random = Math.random, spreadMs = 0 }) {
+        Object.assign(this, { url, openSocket: open, clock, random, spreadMs });
         this.state = 'stopped'; // connecting | open | waiting | barred (until retryNow)
         this.quiet = false;     // open, but nothing was heard for QUIET_MS
         this.reason = '';       // why the last connection ended
@@ -183,7 +184,7 @@ export class Connection {
         if (was === 'open')
             this.lostAt = this.lostAt ?? this.clock.now();
         const usual = Math.min(LONGEST_WAIT_MS, FIRST_WAIT_MS * 2 ** this.tries);
-        const wait = Math.max(usual, this.leastWait) * (1 + JITTER * (2 * this.random() - 1));
+        const wait = Math.max(usual, this.leastWait) * (1 + JITTER * (2 * this.random() - 1)) + this.spreadMs * this.random();
         this.leastWait = 0;
         this.tries++;
         this.retryAt = this.clock.now() + wait;

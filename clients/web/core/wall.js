@@ -34,5 +34,12 @@ export function wallFit(wall, screen, { width, height }, least = LEAST) {
     return { scale, metres: scale < needed ? (wall.metres * scale) / needed : wall.metres };
 }
 
+// How bright a display is now: 1, or less within its hours, `minute` of the day. Never less while an alarm calls.
+export function brightness(dim, minute, calls) {
+    const { from_min: from, to_min: to, percent } = dim ?? { from_min: 0, to_min: 0 };
+    const within = from <= to ? minute >= from && minute < to : minute >= from || minute < to;
+    return within && !calls ? percent / 100 : 1;
+}
+
 // Whether legends lie below the picture or stand beside it, on a wall so many units wide and high.
 export const legendsLie = (width, height, split) => width < height || (split && width < 800);

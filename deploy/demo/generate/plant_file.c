@@ -62,6 +62,36 @@ static const char head[] =
     "\n"
     "assets:\n";
 
+/* Behind all else: a copy of the plant may have its own. Display 1: overview and alarms; 2: six panes. */
+static const char walls[] =
+    "\n"
+    "views:\n"
+    "  - { id: unit, title: Whole unit, view: \"group=temperature\" }\n"
+    "  - { id: column, title: Stabiliser column, view: \"group=temperature&camera=-14,-26,15,3,2,9,0,0,1,40\" }\n"
+    "  - { id: unit-pressure, title: Pressures, view: \"group=pressure\" }\n"
+    "  - { id: machines, title: Machines, view: \"group=vibration&camera=-2,-32,14,4,-6,1,0,0,1,40\" }\n"
+    "\n"
+    "walls:\n"
+    "  - id: control-room\n"
+    "    inches: 65\n"
+    "    distance_m: 3\n"
+    "    dim_hours: 22:00-06:00\n"
+    "    dim_percent: 60\n"
+    "    displays:\n"
+    "      - grid: [main main main alarms, main main main alarms, main main main tiles]\n"
+    "        panes:\n"
+    "          - { area: main, views: [unit, column], every_s: 60, on_alarm: yes }\n"
+    "          - { area: alarms, alarms: yes }\n"
+    "          - { area: tiles, title: Column, tiles: [TE-149, TE-141, PT-143, PT-141] }\n"
+    "      - grid: [one two three, four five six]\n"
+    "        panes:\n"
+    "          - { area: one, views: column, on_alarm: yes }\n"
+    "          - { area: two, views: unit-pressure }\n"
+    "          - { area: three, views: machines }\n"
+    "          - { area: four, title: Column temperatures, trend: [TE-149, TE-145, TE-141], hours: 2 }\n"
+    "          - { area: five, title: Compressor K-101, tiles: [PT-161, PT-162, TE-161, TE-168, VT-161, VT-165] }\n"
+    "          - { area: six, alarms: yes }\n";
+
 int plant_file_write(const char *path)
 {
     struct text out = { 0 };
@@ -70,6 +100,7 @@ int plant_file_write(const char *path)
         text_add(&out, "  - { id: %s, model: plant.glb, nodes: %s, up: y, description: \"%s\" }\n", layout_assets[i].name,
                  layout_assets[i].name,
                  layout_assets[i].description);
+    text_add(&out, "%s", walls);
     int status = atomic_file_put(path, out.at, out.length);
     text_finish(&out);
     return status;

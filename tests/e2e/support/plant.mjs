@@ -80,8 +80,9 @@ function copyPlant(folder, modbusPort, more) {
     }
     const text = readFileSync(join(DEMO, 'plant.yaml'), 'utf8');
     // Its values are taken for measured ones: what simulated ones look like is said elsewhere.
-    const moved = text.replace(/^(\s+port:\s*)\d+/m, `$1${modbusPort}`).replace(/^\s+simulated: yes\n/m, '');
-    if (moved === text)
+    const bare = /^(views|walls):/m.test(more) ? text.replace(/\nviews:\n[^]*$/, '\n') : text; // `more` has its own
+    const moved = bare.replace(/^(\s+port:\s*)\d+/m, `$1${modbusPort}`).replace(/^\s+simulated: yes\n/m, '');
+    if (moved === bare)
         throw new Error('the demo plant has no source with a port');
     writeFileSync(join(folder, 'plant.yaml'), moved + more);
     return join(folder, 'plant.yaml');
