@@ -78,10 +78,11 @@ char *walls_text(const struct plant *plant)
         json_t *displays = json_array();
         for (size_t d = 0; d < wall->display_count; d++)
             json_array_append_new(displays, display_of(&wall->displays[d]));
-        json_t *said = json_pack("{s:s,s:f,s:f,s:o}", "id", wall->id, "inches", wall->inches, "distance_m", wall->metres, "displays", displays);
+        json_t *said = json_pack("{s:s,s:f,s:f,s:o}", "id", wall->id, "inches", wall->inches, "distance_m", wall->metres, "displays",
+                                 displays);
         if (wall->dim.from_min != wall->dim.to_min)
-            json_object_set_new(said, "dim", json_pack("{s:i,s:i,s:f}", "from_min", wall->dim.from_min, "to_min", wall->dim.to_min, "percent",
-                                                       wall->dim_percent));
+            json_object_set_new(said, "dim", json_pack("{s:i,s:i,s:f}", "from_min", wall->dim.from_min, "to_min", wall->dim.to_min,
+                                                       "percent", wall->dim_percent));
         json_array_append_new(walls, said);
     }
     return json_text(json_pack("{s:o}", "walls", walls), 9);

@@ -56,7 +56,8 @@ static void what_is_wrong_is_said_at_its_place(void **state)
 {
     struct plant_case *c = *state;
     load(c, "views:\n- { id: a b, view: x }\n- { id: v, view: \"a b\" }\n- { id: v, view: \"#x\" }\n- { id: w }\n"
-            "walls:\n- { id: r, displays: [] }\n- id: r\n  inches: 5\n  dim_hours: night\n  displays:\n  - grid: [A b]\n    panes: [{ area: b }]\n"
+            "walls:\n- { id: r, displays: [] }\n- id: r\n  inches: 5\n  dim_hours: night\n"
+            "  displays:\n  - grid: [A b]\n    panes: [{ area: b }]\n"
             "  - grid: [b b]\n    panes: [{ area: b, clock: yes, text: x }, { area: b, views: v }, { area: z, clock: yes, every_s: 9 },"
             " { area: b, tiles: [] }]");
     FOUND(c, { "plant.yaml", 7, 9, "id: expected letters, digits" }, { "plant.yaml", 8, 18, "something in it that does not stand" },

@@ -505,24 +505,9 @@ const HANDLERS = {
         this.emit('proofs', message);
     },
 
-    views(message) {
-        this.views = message.list;
-        this.emit('views');
-    },
-
-    notes(message) {
-        this.notes = message.list;
-        this.emit('notes');
-    },
-
     walls({ list, displays }) {
         this.walls = { list, displays };
         this.emit('walls');
-    },
-
-    pointed(message) {
-        this.pointed = message.list;
-        this.emit('pointed');
     },
 
     status(message) {
@@ -561,6 +546,8 @@ const HANDLERS = {
         this.emit('error', message);
     },
 
+    ...Object.fromEntries(['views', 'notes', 'pointed'].map((type) =>
+        [type, function keep({ list }) { this[type] = list; this.emit(type); }])),
     ...Object.fromEntries(['alarmed', 'gaps', 'tags_diff', 'tags_saved', 'proved', 'view_saved', 'noted', 'sent_to_wall'].map((type) =>
         [type, function passOn(message) { this.emit(type, message); }])),
 };

@@ -104,7 +104,8 @@ function tick() {
     for (const pane of panes)
         pane.tick(now);
     if (wall) {
-        const [hours, minutes] = timeOf(session.clockUs()).split(':').map(Number), calls = model.alarms.list().some(({ waiting }) => waiting);
+        const [hours, minutes] = timeOf(session.clockUs()).split(':').map(Number);
+        const calls = model.alarms.list().some(({ waiting }) => waiting);
         setVariable(document.body, '--light', brightness(wall.dim, hours * 60 + minutes, calls));
     }
 }
