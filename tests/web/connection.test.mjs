@@ -2,7 +2,8 @@
 // The connection's states, with the clock turned by hand.
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
-import { DEAD_MS, JITTER, LONGEST_WAIT_MS, QUIET_MS, SPREAD_MS } from '../../clients/web/core/connection.js';
+import { DEAD_MS, JITTER, LONGEST_WAIT_MS, QUIET_MS } from '../../clients/web/core/connection.js';
+import { SPREAD_MS } from '../../clients/web/core/wall.js';
 import { makeConnection } from './fixtures.mjs';
 
 const waitOf = ({ connection, clock }) => connection.retryAt - clock.now();
@@ -170,7 +171,8 @@ test('nothing is sent while it is not open, and stop is final', () => {
 test('forty displays that lose the server at one moment come back staggered', () => {
     for (const close of [[1006], [1001, 'the server goes down; retry after 1 s']]) {
         const waits = Array.from({ length: 40 }, () => {
-            const bench = makeConnection({ random: Math.random, spreadMs: SPREAD_MS });
+            const bench = makeConnection({ random: Math.random });
+            bench.connection.spreadMs = SPREAD_MS;
             bench.connection.start();
             bench.sockets[0].accept();
             bench.connection.settle();
@@ -184,7 +186,8 @@ test('forty displays that lose the server at one moment come back staggered', ()
 });
 
 test('a display comes back after each of 200 losses, the last as soon as the first', () => {
-    const bench = makeConnection({ spreadMs: SPREAD_MS }), { connection, sockets, clock } = bench;
+    const bench = makeConnection(), { connection, sockets, clock } = bench;
+    connection.spreadMs = SPREAD_MS;
     connection.start();
     for (let loss = 0; loss < 200; loss++) {
         for (let n = 0; n < loss % 5; n++) { // nobody is there yet

@@ -66,10 +66,10 @@ export class Socket {
 }
 
 // random: what the jitter gets; 0.5 is none.
-export function makeConnection({ random = () => 0.5, spreadMs = 0 } = {}) {
+export function makeConnection({ random = () => 0.5 } = {}) {
     const clock = new Clock(), sockets = [];
     const connection = new Connection({
-        url: 'ws://plant/stream', clock, random, spreadMs,
+        url: 'ws://plant/stream', clock, random,
         open: (url, protocol) => {
             sockets.push(new Socket(url, protocol));
             return sockets.at(-1);

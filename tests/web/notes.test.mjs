@@ -34,5 +34,5 @@ test('notes, what was sent to walls and pointers are heard, and go with the plan
     const { notes, walls, pointed } = session;
     assert.deepEqual([notes, walls.list, walls.displays, pointed].map(({ length }) => length), [1, 1, 1, 1]);
     sockets[0].say(vector('server/welcome.json'));
-    assert.deepEqual([session.notes, session.walls, session.pointed], [[], { list: [], displays: [] }, []]);
+    assert.deepEqual([session.notes, session.walls, session.pointed], [[], null, []]);
 });

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What the first picture takes: connection, session and viewport. What is around them (main.js) comes meanwhile.
-import { Connection, SPREAD_MS } from '../core/connection.js';
+import { Connection } from '../core/connection.js';
 import { browserDecoding } from '../core/decoding.js';
 import { Session } from '../core/session.js';
 import { language } from '../core/words.js';
@@ -50,8 +50,7 @@ export async function probeCodecs() {
 }
 
 const streamUrl = new URL('stream', location.href.replace(/^http/, 'ws').replace(/#.*$/, '')).href;
-export const connection = new Connection({ url: streamUrl, open: (url, protocol) => new WebSocket(url, protocol), clock,
-    spreadMs: query.has('pane') ? SPREAD_MS : 0 });
+export const connection = new Connection({ url: streamUrl, open: (url, protocol) => new WebSocket(url, protocol), clock });
 const wanted = { ...address, params: { ...address.params, backdrop } };
 export const session = new Session({ connection, now: clock.now, wanted, codecs: codecs() });
 session.token = stored('token');

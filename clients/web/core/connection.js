@@ -4,7 +4,6 @@ import { SUBPROTOCOL } from './wire.js';
 import { say } from './words.js';
 
 export const FIRST_WAIT_MS = 500, LONGEST_WAIT_MS = 8000, JITTER = 0.25;
-export const SPREAD_MS = 2000; // of the displays of walls, which come back all at once
 export const PING_MS = 2000;   // a server with nothing to say answers at least these
 export const QUIET_MS = 5000;
 export const DEAD_MS = 12000;
@@ -16,9 +15,10 @@ const CLOSE_REASONS = {
 
 export class Connection {
     // open(url, protocol): a WebSocket. clock: { now(), setTimeout(f, ms), clearTimeout(id) }. Handlers: onState(connection),
-    // onOpen(), onText(string), onBytes(ArrayBuffer). spreadMs: up to so much is added to each wait.
-    constructor({ url, open, clock, random = Math.random, spreadMs = 0 }) {
-        Object.assign(this, { url, openSocket: open, clock, random, spreadMs });
+    // onOpen(), onText(string), onBytes(ArrayBuffer).
+    // spreadMs, to be set: up to so much is added to each wait.
+    constructor({ url, open, clock, random = Math.random }) {
+        Object.assign(this, { url, openSocket: open, clock, random, spreadMs: 0 });
         this.state = 'stopped'; // connecting | open | waiting | barred (until retryNow)
         this.quiet = false;     // open, but nothing was heard for QUIET_MS
         this.reason = '';       // why the last connection ended

@@ -61,7 +61,7 @@ export class Session {
         this.leader = null;      // whom to follow once there is a connection, and that one
         this.lent = null;        // the camera is that of the picture: another's, or what he left us
         this.followers = { count: 0, sessions: [] }; // who follows us
-        this.forgetShared();
+        this.forget();
         this.time = { ...NOW, ...wanted.time }; // what the server shows: atUs null: now; fromUs null: nothing is recorded
         connection.onOpen = () => {
             const compares = this.params.show === 'difference' && this.params.baseline?.name;
@@ -364,11 +364,9 @@ export class Session {
     }
 
     // What people share, which the server says after its greeting, if there is any.
-    forgetShared() {
-        this.views = []; // with names: { id, title, view, fixed } or { ..., by, time_us }
-        this.notes = [];
-        this.walls = { list: [], displays: [] }; // what desks sent to panes, and the displays that are there
-        this.pointed = [];
+    // views with names: { id, title, view, fixed } or { ..., by, time_us }; walls: what desks sent to panes, and the displays that are there.
+    forget() {
+        Object.assign(this, { views: [], notes: [], pointed: [], walls: null });
     }
 
     get group() {
@@ -402,7 +400,7 @@ const HANDLERS = {
         const before = this.model;
         this.model = new Model(message);
         this.markers.clear(); // also where the plant was loaded anew
-        this.forgetShared();
+        this.forget();
         this.welcomed = true;
         this.id = message.session;
         this.following = this.skew = this.lent = null;
@@ -505,11 +503,6 @@ const HANDLERS = {
         this.emit('proofs', message);
     },
 
-    walls({ list, displays }) {
-        this.walls = { list, displays };
-        this.emit('walls');
-    },
-
     status(message) {
         this.model.links = message.links;
         this.model.live = message.live;
@@ -546,8 +539,11 @@ const HANDLERS = {
         this.emit('error', message);
     },
 
-    ...Object.fromEntries(['views', 'notes', 'pointed'].map((type) =>
-        [type, function keep({ list }) { this[type] = list; this.emit(type); }])),
+    ...Object.fromEntries(['views', 'notes', 'pointed', 'walls'].map((type) =>
+        [type, function keep(message) {
+            this[type] = message.displays ? message : message.list;
+            this.emit(type);
+        }])),
     ...Object.fromEntries(['alarmed', 'gaps', 'tags_diff', 'tags_saved', 'proved', 'view_saved', 'noted', 'sent_to_wall'].map((type) =>
         [type, function passOn(message) { this.emit(type, message); }])),
 };

@@ -34,6 +34,9 @@ export function wallFit(wall, screen, { width, height }, least = LEAST) {
     return { scale, metres: scale < needed ? (wall.metres * scale) / needed : wall.metres };
 }
 
+// Displays of walls come back all at once: each waits up to so much longer.
+export const SPREAD_MS = 2000;
+
 // How bright a display is now: 1, or less within its hours, `minute` of the day. Never less while an alarm calls.
 export function brightness(dim, minute, calls) {
     const { from_min: from, to_min: to, percent } = dim ?? { from_min: 0, to_min: 0 };

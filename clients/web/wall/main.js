@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // One display of a wall: its panes in their grid, a session of its own for what is said in words, and what it says when it hears nothing.
 import { AlarmCall } from '../core/alarm_call.js';
-import { Connection, SPREAD_MS } from '../core/connection.js';
+import { Connection } from '../core/connection.js';
 import { zoneClock } from '../core/format.js';
 import { health } from '../core/health.js';
 import { ask } from '../core/history.js';
 import { Session } from '../core/session.js';
-import { brightness, millimetresPerPx, wallFit } from '../core/wall.js';
+import { brightness, millimetresPerPx, SPREAD_MS, wallFit } from '../core/wall.js';
 import { language, learnWords, say } from '../core/words.js';
 import { clock, keepScreenOn, watchSleep } from '../app/common/clock.js';
 import { byId, make, setText, setVariable } from '../app/common/dom.js';
@@ -28,8 +28,8 @@ const token = localStorage.getItem('plantcast.wall') ?? stored('token');
 if (token)
     store('token', token); // the panes are pages of their own, which look for it there
 const streamUrl = new URL('stream', location.href.replace(/^http/, 'ws').replace(/[?#].*$/, '')).href;
-const connection = new Connection({ url: streamUrl, open: (url, protocol) => new WebSocket(url, protocol), clock,
-    spreadMs: SPREAD_MS });
+const connection = new Connection({ url: streamUrl, open: (url, protocol) => new WebSocket(url, protocol), clock });
+connection.spreadMs = SPREAD_MS;
 const session = new Session({ connection, now: clock.now, codecs: ['jpeg'] });
 session.token = token;
 session.size = { width: 16, height: 16 }; // it is there for the words

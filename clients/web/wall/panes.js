@@ -88,7 +88,7 @@ function ViewsPane(pane, context) {
         setText(about, group ? [quantityText(group), ageOf(model.oldestAgeMs(group.id, clock.now()))].join(' · ') : '');
         const alarms = session.model.alarms.list(), nowUs = session.clockUs();
         const alarm = pane.on_alarm ? call.next(alarms, now, nowUs) : null;
-        const order = session.walls.list.find(({ id }) => id === place) ?? null;
+        const order = session.walls?.list.find(({ id }) => id === place) ?? null;
         const rests = order || alarms.some(({ waiting }) => waiting) || (pane.on_alarm && call.isFlood(alarms, nowUs));
         if (!rests && pane.items.length > 1 && changedAt !== null && now - changedAt >= pane.every_s * 1000) {
             at = (at + 1) % pane.items.length;

@@ -54,7 +54,7 @@ export class Remote {
     }
 
     get order() {
-        return this.session.walls.list.find(({ id }) => id === this.pane.value) ?? null;
+        return this.session.walls?.list.find(({ id }) => id === this.pane.value) ?? null;
     }
 
     get sentView() {
@@ -85,7 +85,7 @@ export class Remote {
         this.element.hidden = this.panes.length === 0 || !MAY.includes(session.role);
         if (!chosen || !session.model)
             return;
-        const there = session.walls.displays.some(({ wall, display }) => wall === chosen.wall && display === chosen.display);
+        const there = session.walls?.displays.some(({ wall, display }) => wall === chosen.wall && display === chosen.display);
         const texts = [say(there ? 'remote.there' : 'remote.gone')];
         if (order) {
             const { time } = zoneClock(session.model.plant.time_zone)(order.time_us / 1000);

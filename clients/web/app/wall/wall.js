@@ -2,7 +2,7 @@
 // The page on a control room's wall: larger, with nothing to press, and the screen stays on.
 import { learnWords, say } from '../../core/words.js';
 import { numberText } from '../../core/format.js';
-import { legendsLie, readWall, wallFit } from '../../core/wall.js';
+import { legendsLie, readWall, SPREAD_MS, wallFit } from '../../core/wall.js';
 import { keepScreenOn } from '../common/clock.js';
 import { byId, make, setVariable, styled } from '../common/dom.js';
 
@@ -46,6 +46,8 @@ export async function hangOnWall(search, page) {
     page.hangs = new URLSearchParams(search).get('hangs');
     page.onTell = async (tell) => {
         const [name, display] = page.hangs?.split('/') ?? [], { session } = page;
+        if (name)
+            session.connection.spreadMs = SPREAD_MS;
         if (name) // the server is to know which display shows this
             session.greeted(() => session.post({ type: 'display', wall: name, display: Number(display) }));
         const metres = fit();
