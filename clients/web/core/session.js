@@ -364,7 +364,8 @@ export class Session {
     }
 
     // What people share, which the server says after its greeting, if there is any.
-    // views with names: { id, title, view, fixed } or { ..., by, time_us }; walls: what desks sent to panes, and the displays that are there.
+    // views with names: { id, title, view, fixed } or { ..., by, time_us }; walls: what desks sent to panes, and the displays that are
+    // there.
     forget() {
         Object.assign(this, { views: [], notes: [], pointed: [], walls: null });
     }
