@@ -6,6 +6,7 @@ import { createServer, request } from 'node:http';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
 import { openPage, shoot, waitForPicture } from './support/browser.mjs';
+import { Glewlwyd, glewlwydIsThere } from './support/glewlwyd.mjs';
 import { IdentityProvider } from './support/identity_provider.mjs';
 import { PlainClient } from './support/plain_client.mjs';
 import { freePort } from './support/ports.mjs';
@@ -474,4 +475,36 @@ test('oidc-provider, which others wrote: code flow, refreshing, signing out', { 
         server.closeAllConnections();
         server.close();
     }
+});
+
+test('Glewlwyd, as Debian has it: code flow, groups that change and end', {
+    skip: skip || (glewlwydIsThere ? false : 'glewlwyd is not installed'), timeout: 120000,
+}, async (t) => {
+    const glewlwyd = new Glewlwyd();
+    t.after(() => glewlwyd.stop());
+    writeFileSync(path('secret'), 'geheim\n'); // it takes those of HTTP Basic as they are, and not encoded (RFC 6749, 2.3.1)
+    await glewlwyd.start(`http://127.0.0.1:${port}/login/callback`);
+    writeConfig('scope: openid\n', glewlwyd.issuer);
+    await start();
+    const browser = new Browser(), its = `http://127.0.0.1:${glewlwyd.port}/api`, headers = { 'Content-Type': 'application/json' };
+    const body = JSON.stringify({ username: 'lee', password: 'pass word 1' });
+    assert.equal((await browser.get(`${its}/auth/`, { method: 'POST', headers, body })).status, 200);
+    const granted = JSON.stringify({ scope: 'openid' });
+    assert.equal((await browser.get(`${its}/auth/grant/plant`, { method: 'PUT', headers, body: granted })).status, 200);
+    // As its log-in page does, once somebody is logged in and has agreed.
+    const there = await browser.get(`${(await browser.at('/login')).headers.get('location')}&g_continue`);
+    assert.match(there.headers.get('location'), /\/login\/callback\?/);
+    const back = await browser.get(there.headers.get('location'));
+    assert.equal(back.status, 303, await back.text());
+    const role = async (wanted) => {
+        for (let i = 0; i < 100 && (await browser.me()).role !== wanted; i++)
+            await sleep(50);
+        assert.equal((await browser.me()).role, wanted);
+    };
+    assert.equal((await browser.me()).name, 'lee');
+    await role('operator');
+    await glewlwyd.ask('PUT', 'user/lee', glewlwyd.person({ 'user-code': 'lookers' }));
+    await role('viewer');
+    await glewlwyd.ask('PUT', 'user/lee', glewlwyd.person({ 'user-code': 'cleaners' })); // it renews tokens of who is disabled
+    await role('nobody');
 });
