@@ -222,21 +222,23 @@ static bool goes_on(void *arg)
     return false; /* signals end the daemon: none is handled yet */
 }
 
-/* What was prepared is of another plant file or of other models: somebody has imported, and not prepared since. */
+/* What was prepared is of another plant file or of other models: somebody has imported, and not prepared since. Where nothing was prepared
+   ever, the folder may be another one than was meant. */
 static bool prepare(struct server *server)
 {
     struct diag diag = { 0 };
     struct plant *plant = plant_load(server->params.plant_path, &diag);
     char *folder = plant ? plant_runtime_prepared_folder(&server->params, plant) : NULL, *why = NULL;
-    if (plant) {
+    bool good = folder && access(folder, F_OK) == 0;
+    if (good) {
         const char *const arguments[] = { "plantcast-prep", "-o", folder, server->params.plant_path, NULL };
         log_warn(server->log, "%s: the plant is prepared now, as it is not what was prepared before", server->params.plant_path);
         supervision_starting(server->supervision, "preparing the plant");
         why = sibling_run(&(struct sibling_params){ .arguments = arguments, .stop = goes_on });
         if (why)
             log_err(server->log, "%s: the plant cannot be prepared: %s", server->params.plant_path, why);
+        good = !why;
     }
-    bool good = plant && !why;
     mem_free(why);
     mem_free(folder);
     plant_destroy(&plant);
