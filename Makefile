@@ -23,6 +23,8 @@ out := $(build)/$(config)
 gen := $(build)/gen
 bin := $(if $(filter release,$(config)),$(build),$(out)/bin)
 
+# What asks for no packages, and compiles nothing.
+no_packages := deps test-deps run test check test-long clean style layers deb bundle image test-deploy
 packages := yaml-0.1 jansson sqlite3 libpq libcurl libmodbus libmosquitto libprotobuf-c libwebsockets libssl libcrypto cjose \
             libturbojpeg \
             libjpeg libpng zlib cairo libxxhash OpenImageIO
@@ -34,12 +36,23 @@ packages += libavcodec libavformat libavutil
 defines  := -DPLANTCAST_H264
 libyuv   := -lyuv
 endif
-pkg_cflags := $(shell pkg-config --cflags $(packages) 2>/dev/null)
+# OPC UA: the system's open62541 where it is new enough, else one that is built beside the build (deploy/open62541); or none.
+asked := $(or $(MAKECMDGOALS),all)
+ifeq ($(shell pkg-config --exists 'open62541 >= 1.4' 2>/dev/null && echo yes),yes)
+opcua_cflags := $(shell pkg-config --cflags open62541)
+opcua_libs   := $(shell pkg-config --libs open62541)
+else ifneq ($(filter-out $(no_packages),$(asked)),)
+-include $(build)/open62541/open62541.mk
+$(build)/open62541/open62541.mk: deploy/open62541
+	@deploy/open62541 $(@D) $(CC)
+endif
+defines += $(if $(opcua_libs),-DPLANTCAST_OPCUA)
+pkg_cflags := $(shell pkg-config --cflags $(packages) 2>/dev/null) $(opcua_cflags)
 pkg_libs   := $(shell pkg-config --libs $(packages) 2>/dev/null) -lflann -lcholmod -lopenblas -lmeshoptimizer -ltinygltf -ldraco \
-              $(libyuv) -lm -ldl
+              $(libyuv) $(opcua_libs) -lm -ldl
 
 # What does not ask for packages needs them: without, say so at once.
-ifneq ($(filter-out deps test-deps run test check test-long clean style layers deb bundle image test-deploy,$(or $(MAKECMDGOALS),all)),)
+ifneq ($(filter-out $(no_packages),$(asked)),)
 missing := $(foreach p,$(packages),$(if $(shell pkg-config --exists $(p) 2>/dev/null && echo yes),,$(p))) \
            $(if $(wildcard /usr/bin/glad),,python3-glad)
 ifneq ($(strip $(missing)),)
@@ -59,7 +72,8 @@ ldflags  = $(flags_$(config)) -pthread -Wl,--as-needed -Wl,-z,relro,-z,now $(LDF
 layers   := base audit plant surface value history alarm notify loopcheck views scene field placing importing gpu render encode \
             provenance message service access session net
 layers   := $(foreach l,$(layers),$(if $(wildcard server/$(l)/*.c),$(l)))
-without  := $(if $(filter h264,$(CODECS)),,$(wildcard server/encode/h264*)) server/base/image_lazy.c
+without  := $(if $(filter h264,$(CODECS)),,$(wildcard server/encode/h264*)) server/base/image_lazy.c \
+            $(if $(opcua_libs),,$(wildcard server/value/opcua/*))
 archives := $(foreach l,$(layers),$(out)/lib/$(l).a) $(out)/lib/protocol.a
 objects   = $(patsubst %,$(out)/obj/%.o,$(basename $(1)))
 link      = @mkdir -p $(@D); echo "  LINK $@"; \
@@ -243,7 +257,8 @@ include deploy/deploy.mk
 clean:
 	rm -rf $(build)
 
-# What was built with other codecs is built anew.
-$(shell mkdir -p $(out); echo '$(CODECS)' | cmp -s - $(out)/codecs || echo '$(CODECS)' >$(out)/codecs)
+# What was built with other codecs, or without OPC UA, is built anew.
+parts := $(CODECS) $(if $(opcua_libs),opcua)
+$(shell mkdir -p $(out); echo '$(parts)' | cmp -s - $(out)/codecs || echo '$(parts)' >$(out)/codecs)
 
 -include $(shell find $(out)/obj -name '*.d' 2>/dev/null)

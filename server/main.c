@@ -13,6 +13,12 @@
 #include "server.h"
 #include "version.h"
 
+#ifdef PLANTCAST_OPCUA
+#define LACKS ""
+#else
+#define LACKS "\nbuilt without OPC UA"
+#endif
+
 enum { GOOD = 0, FAILED = 1, USAGE = 2 };
 enum { LEAST_MEMORY_MB = 128, MOST_MEMORY_MB = 1 << 20 };
 
@@ -322,7 +328,7 @@ static int take_option(int option, struct server_params *params, int (**task)(co
         return !optarg || params->imports_now ? -1 : usage_error("--import: nothing or now, not", optarg);
     case OPTION_CHECK: *task = server_check; return -1;
     case OPTION_PLAN: *task = server_dump_plan; return -1;
-    case OPTION_VERSION: puts("plantcastd " PLANTCAST_VERSION); return GOOD;
+    case OPTION_VERSION: puts("plantcastd " PLANTCAST_VERSION LACKS); return GOOD;
     case OPTION_HELP: print_usage(stdout); return GOOD;
     default: return take_audit_option(option, params);
     }

@@ -16,6 +16,8 @@ int cmd_tags(int argc, char **argv);
 /* Reads one address of a field device and prints it in every type and byte order. address_base: 0, 1, or -1 (not given). rtu: RTU frames
    over the connection. Returns the exit code. */
 int tags_probe(const char *device, const char *address, int address_base, bool rtu);
+/* Prints the variables of an OPC UA server as a tag list; argv[0] is --browse. */
+int tags_browse(int argc, char **argv);
 /* Imports recorded series into a plant's history, or exports them as CSV. */
 int cmd_history(int argc, char **argv);
 /* Says whether a daemon is ready. */

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* `plantcast tags URL`: a table of tags with value, quality and age; --probe is in tags_probe.c. */
+/* `plantcast tags URL`: a table of tags with value, quality and age; --probe is in tags_probe.c, --browse in tags_browse.c. */
 #include <getopt.h>
 #include <jansson.h>
 #include <stdio.h>
@@ -11,9 +11,11 @@
 static void print_usage(FILE *out)
 {
     fputs("usage: plantcast tags URL [--json]\n"
+          "       plantcast tags --browse opc.tcp://HOST[:PORT][/PATH] [OPTION ...]\n"
           "       plantcast tags --probe DEVICE [--address-base 0|1] [--rtu] ADDRESS\n"
           "\n"
           "Prints the tags of a daemon (http://HOST:PORT/, or https:// with --token-file FILE) with value, quality and age.\n"
+          "--browse prints the variables of an OPC UA server that hold numbers, as a tag list; --browse --help says its options.\n"
           "--probe reads one address of a field device, HOST, HOST:PORT or /dev/LINE (19200 baud, even parity), such as hr:0 or\n"
           "2!400001, and shows what it is in every type and byte order. --rtu: the device takes RTU frames over TCP. It only reads.\n",
           out);
@@ -125,6 +127,8 @@ int cmd_tags(int argc, char **argv)
     static const struct option options[] = { { "json", no_argument, NULL, 'j' },          { "help", no_argument, NULL, 'h' },
                                              { "probe", required_argument, NULL, 'p' },   { "rtu", no_argument, NULL, 'r' },
                                              { "address-base", required_argument, NULL, 'b' }, { NULL, 0, NULL, 0 } };
+    if (argc > 1 && !strcmp(argv[1], "--browse"))
+        return tags_browse(argc - 1, argv + 1);
     const char *device = NULL;
     int address_base = -1;
     bool rtu = false;

@@ -138,7 +138,9 @@ static void free_sources(struct plant *plant)
         mem_free(source->device);
         mem_free(source->heartbeat);
         mem_free(source->file);
+        mem_free(source->login);
         plant_mqtt_finish(&source->mqtt);
+        plant_opcua_finish(&source->opcua);
     }
     mem_free(plant->sources);
 }

@@ -123,7 +123,6 @@ struct plant_mqtt { /* how values are published to a broker; texts that are not 
     bool persistent;             /* the broker keeps what is published while we are away */
     int qos, keepalive_s;
     char *client_id;
-    char *login;                 /* file: a line with the user, one with the password */
     bool has_tls;
     char *ca, *certificate, *key; /* of TLS, PEM files; ca NULL: those that the system trusts */
     char *will;                  /* topic where the broker says "offline" for us once we are gone */
@@ -133,8 +132,23 @@ struct plant_mqtt { /* how values are published to a broker; texts that are not 
     bool rebirth;                /* a Sparkplug node may be asked for its birth certificate: all that is ever published */
 };
 
+enum opcua_policy { OPCUA_BEST /* of those below that the server has */, OPCUA_AES256, OPCUA_BASIC256, OPCUA_AES128, OPCUA_NONE };
+
+struct plant_opcua { /* how an OPC UA server is reached and asked; texts that are not given are NULL */
+    bool has_security;            /* stated; without, a source is refused */
+    enum opcua_policy policy;     /* SignAndEncrypt, but with OPCUA_NONE */
+    char *certificate, *key;      /* our own, files in PEM or DER */
+    char *trusted;                /* folder: certificates and revocation lists that are believed */
+    char *server_name;            /* that the server's certificate is for, if not the host */
+    char *user_certificate, *user_key; /* who we are, instead of a login */
+    char *path;                   /* of the URL */
+    char *name_space;             /* URI of nodes whose address has none */
+    int queue;                    /* values that the server keeps of each node between two messages */
+    double deadband, deadband_percent; /* of changes that are told; the percentage is of EURange. 0: all */
+};
+
 struct plant_source {
-    char *id, *kind; /* "modbus", "replay", "mqtt" */
+    char *id, *kind; /* "modbus", "replay", "mqtt", "opcua" */
     enum transport transport;
     char *hosts[PLANT_HOSTS]; /* of one device: the next is tried where one does not answer */
     int host_count;
@@ -153,7 +167,9 @@ struct plant_source {
     char *file;         /* of a replay */
     double speed;
     bool loop;
+    char *login; /* file: a line with the user, one with the password */
     struct plant_mqtt mqtt;
+    struct plant_opcua opcua;
     bool simulated; /* what it brings was not measured now */
     int line;
 };
@@ -207,7 +223,8 @@ struct plant_tag {
     bool place_assumed;        /* Place: equipment. It is somewhere on its asset, and stands for all of it (field/field.h) */
     char *address;             /* as written: of a register, the name of a series, a topic, or = and an expression */
     char *topic, *path;        /* of an MQTT source: the topic whole, and where in its payload ("": the source's way); else NULL. Of
-                                  Sparkplug: GROUP/NODE[/DEVICE], and the metric */
+                                  Sparkplug: GROUP/NODE[/DEVICE], and the metric. Of OPC UA: the URI of the namespace, and s=NAME, say */
+    int element;               /* of an array of OPC UA; -1: it is none */
     int modbus_unit;           /* -1: the source's */
     enum register_table table;
     int register_index; /* from 0, as on the wire */

@@ -50,6 +50,13 @@ void plant_mqtt_read_tls(struct yaml_reader *reader, yaml_node_t *node, void *so
 /* Checks what an MQTT source says, and sets what it does not. */
 void plant_mqtt_check(struct yaml_reader *reader, const struct yaml_map *map, const struct plant *plant, struct plant_source *source);
 void plant_mqtt_finish(struct plant_mqtt *mqtt);
+/* The same for OPC UA: its key `security`, what it says altogether, and its end. */
+void plant_opcua_read_security(struct yaml_reader *reader, yaml_node_t *node, void *source);
+void plant_opcua_check(struct yaml_reader *reader, const struct yaml_map *map, const struct plant *plant, struct plant_source *source);
+void plant_opcua_finish(struct plant_opcua *opcua);
+/* Makes the path of a file that holds a secret, or of a folder, relative to the plant file. Warns, naming the key, if it cannot be read:
+   whoever only prepares the plant may have no right to. */
+void plant_secret_check(struct yaml_reader *reader, const struct yaml_map *map, const struct plant *plant, const char *key, char **path);
 
 /* For lists of records that begin with `char *id`. Allocates records for the items of a list and sets *count; returns NULL if it is no
    list, or too long (reported). */

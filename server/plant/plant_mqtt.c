@@ -1,8 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A source of type mqtt: what its keys must say together. PLANT.md describes them. */
-#include <errno.h>
 #include <string.h>
-#include <unistd.h>
 
 #include "base/mem.h"
 #include "plant/json_path.h"
@@ -31,18 +29,13 @@ void plant_mqtt_read_tls(struct yaml_reader *reader, yaml_node_t *node, void *re
     }
 }
 
-/* Whoever only prepares the plant may have no right to read them. */
-static void check_files(struct yaml_reader *reader, const struct yaml_map *map, const struct plant *plant, struct plant_mqtt *mqtt)
+static void check_files(struct yaml_reader *reader, const struct yaml_map *map, const struct plant *plant, struct plant_source *source)
 {
-    char **const files[] = { &mqtt->login, &mqtt->ca, &mqtt->certificate, &mqtt->key };
-    for (size_t i = 0; i < sizeof(files) / sizeof(*files); i++) {
-        plant_resolve_path(plant, files[i]);
-        const char *key = i == 0 ? "login" : "tls";
-        struct place place = yaml_map_place(map, key);
-        if (*files[i] && access(*files[i], R_OK) != 0)
-            diag_warning(reader->diag, reader->path, place.line, place.column, "%s: '%s' cannot be read: %s", key, *files[i],
-                         strerror(errno));
-    }
+    struct plant_mqtt *mqtt = &source->mqtt;
+    char **const files[] = { &mqtt->ca, &mqtt->certificate, &mqtt->key };
+    plant_secret_check(reader, map, plant, "login", &source->login);
+    for (size_t i = 0; i < sizeof(files) / sizeof(*files); i++)
+        plant_secret_check(reader, map, plant, "tls", files[i]);
 }
 
 /* A topic that a device could listen to would be a way to write to it. */
@@ -86,7 +79,7 @@ void plant_mqtt_check(struct yaml_reader *reader, const struct yaml_map *map, co
         yaml_error(reader, yaml_map_place(map, "topic"), "topic: '%.60s': %s", mqtt->topic, why);
     check_paths(reader, map, mqtt);
     check_session(reader, map, mqtt);
-    check_files(reader, map, plant, mqtt);
+    check_files(reader, map, plant, source);
     check_will(reader, map, mqtt);
     if (mqtt->rebirth && mqtt->payload != MQTT_SPARKPLUG)
         yaml_error(reader, yaml_map_place(map, "rebirth"), "rebirth: has no meaning without payload: sparkplug");
@@ -94,7 +87,7 @@ void plant_mqtt_check(struct yaml_reader *reader, const struct yaml_map *map, co
 
 void plant_mqtt_finish(struct plant_mqtt *mqtt)
 {
-    char *const texts[] = { mqtt->client_id, mqtt->login, mqtt->ca, mqtt->certificate, mqtt->key,
+    char *const texts[] = { mqtt->client_id, mqtt->ca, mqtt->certificate, mqtt->key,
                             mqtt->will, mqtt->topic, mqtt->value, mqtt->time, mqtt->quality };
     for (size_t i = 0; i < sizeof(texts) / sizeof(*texts); i++)
         mem_free(texts[i]);

@@ -24,7 +24,7 @@ void plant_publish_read(struct yaml_reader *reader, yaml_node_t *node, struct pl
         { "protocol", KEY_CHOICE, false, offsetof(struct plant_publish, broker.mqtt.protocol), 0, 0, protocol_choices, NULL },
         { "client_id", KEY_NAME, false, offsetof(struct plant_publish, broker.mqtt.client_id), 0, 0, NULL, NULL },
         { "keepalive_s", KEY_INT, false, offsetof(struct plant_publish, broker.mqtt.keepalive_s), 5, 3600, NULL, NULL },
-        { "login", KEY_NAME, false, offsetof(struct plant_publish, broker.mqtt.login), 0, 0, NULL, NULL },
+        { "login", KEY_NAME, false, offsetof(struct plant_publish, broker.login), 0, 0, NULL, NULL },
         { "tls", KEY_CUSTOM, false, 0, 0, 0, NULL, plant_mqtt_read_tls }, /* broker is the first member */
         { "prefix", KEY_NAME, true, offsetof(struct plant_publish, prefix), 0, 0, NULL, NULL },
         { "every_s", KEY_NUMBER, false, offsetof(struct plant_publish, every_s), 0.1, 3600, NULL, NULL },
@@ -49,6 +49,7 @@ void plant_publish_free(struct plant_publish **publish)
     if (!*publish)
         return;
     mem_free((*publish)->broker.hosts[0]);
+    mem_free((*publish)->broker.login);
     plant_mqtt_finish(&(*publish)->broker.mqtt);
     mem_free((*publish)->prefix);
     mem_free(*publish);

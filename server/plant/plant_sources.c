@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The list `sources` of a plant file: field devices, brokers and replays. PLANT.md describes the form. */
+/* The list `sources` of a plant file: field devices, servers, brokers and replays. PLANT.md describes the form. */
 #include <errno.h>
 #include <string.h>
 #include <unistd.h>
@@ -7,7 +7,7 @@
 #include "base/mem.h"
 #include "plant/plant_impl.h"
 
-enum { BY_SOCKET = 1, BY_LINE = 2, MODBUS = BY_SOCKET | BY_LINE, REPLAY = 4, MQTT = 8, BY_HOST = BY_SOCKET | MQTT };
+enum { BY_SOCKET = 1, BY_LINE = 2, MODBUS = BY_SOCKET | BY_LINE, REPLAY = 4, MQTT = 8, OPCUA = 16, BY_HOST = BY_SOCKET | MQTT | OPCUA };
 
 static const struct choice order_choices[] = { { "ABCD", BYTE_ORDER_ABCD }, { "CDAB", BYTE_ORDER_CDAB }, { "BADC", BYTE_ORDER_BADC },
                                                { "DCBA", BYTE_ORDER_DCBA }, { 0 } };
@@ -24,10 +24,10 @@ static void read_kind(struct yaml_reader *reader, yaml_node_t *node, void *recor
 {
     struct plant_source *source = record;
     const char *text = yaml_text(node);
-    if (text && (!strcmp(text, "modbus") || !strcmp(text, "mqtt") || !strcmp(text, "replay")))
+    if (text && (!strcmp(text, "modbus") || !strcmp(text, "mqtt") || !strcmp(text, "opcua") || !strcmp(text, "replay")))
         source->kind = mem_strdup(text);
     else
-        yaml_expected(reader, node, "type", "modbus, mqtt or replay");
+        yaml_expected(reader, node, "type", "modbus, mqtt, opcua or replay");
 }
 
 static void add_host(struct yaml_reader *reader, yaml_node_t *node, struct plant_source *source)
@@ -102,10 +102,16 @@ static const struct key source_keys[] = {
     { "value", KEY_NAME, false, offsetof(struct plant_source, mqtt.value), 0, 0, NULL, NULL },
     { "time", KEY_NAME, false, offsetof(struct plant_source, mqtt.time), 0, 0, NULL, NULL },
     { "quality", KEY_NAME, false, offsetof(struct plant_source, mqtt.quality), 0, 0, NULL, NULL },
-    { "login", KEY_NAME, false, offsetof(struct plant_source, mqtt.login), 0, 0, NULL, NULL },
+    { "login", KEY_NAME, false, offsetof(struct plant_source, login), 0, 0, NULL, NULL },
     { "tls", KEY_CUSTOM, false, 0, 0, 0, NULL, plant_mqtt_read_tls },
     { "will", KEY_NAME, false, offsetof(struct plant_source, mqtt.will), 0, 0, NULL, NULL },
     { "rebirth", KEY_FLAG, false, offsetof(struct plant_source, mqtt.rebirth), 0, 0, yes_choices, NULL },
+    { "path", KEY_NAME, false, offsetof(struct plant_source, opcua.path), 0, 0, NULL, NULL },
+    { "security", KEY_CUSTOM, false, 0, 0, 0, NULL, plant_opcua_read_security },
+    { "namespace", KEY_NAME, false, offsetof(struct plant_source, opcua.name_space), 0, 0, NULL, NULL },
+    { "queue", KEY_INT, false, offsetof(struct plant_source, opcua.queue), 1, 1000, NULL, NULL },
+    { "deadband", KEY_NUMBER, false, offsetof(struct plant_source, opcua.deadband), 0, PLANT_MAX_VALUE, NULL, NULL },
+    { "deadband_percent", KEY_NUMBER, false, offsetof(struct plant_source, opcua.deadband_percent), 0, 100, NULL, NULL },
     { "file", KEY_NAME, false, offsetof(struct plant_source, file), 0, 0, NULL, NULL },
     { "speed", KEY_NUMBER, false, offsetof(struct plant_source, speed), 1e-3, 1e5, NULL, NULL },
     { "loop", KEY_FLAG, false, offsetof(struct plant_source, loop), 0, 0, yes_choices, NULL },
@@ -118,6 +124,8 @@ static int way_of(const struct plant_source *source)
         return REPLAY;
     if (!strcmp(source->kind, "mqtt"))
         return MQTT;
+    if (!strcmp(source->kind, "opcua"))
+        return OPCUA;
     return source->transport == TRANSPORT_RTU ? BY_LINE : BY_SOCKET;
 }
 
@@ -133,10 +141,13 @@ static void check_keys(struct yaml_reader *reader, const struct yaml_map *map, c
         { "pause_ms", MODBUS }, { "max_registers", MODBUS }, { "max_bits", MODBUS }, { "max_gap", MODBUS }, { "byte_order", MODBUS },
         { "address_base", MODBUS }, { "file", REPLAY }, { "speed", REPLAY }, { "loop", REPLAY },
         { "protocol", MQTT }, { "client_id", MQTT }, { "session", MQTT }, { "qos", MQTT }, { "keepalive_s", MQTT }, { "payload", MQTT },
-        { "topic", MQTT }, { "value", MQTT }, { "time", MQTT }, { "quality", MQTT }, { "rebirth", MQTT }, { "login", MQTT },
+        { "topic", MQTT }, { "value", MQTT }, { "time", MQTT }, { "quality", MQTT }, { "rebirth", MQTT }, { "login", MQTT | OPCUA },
         { "tls", MQTT }, { "will", MQTT },
+        { "path", OPCUA }, { "security", OPCUA }, { "namespace", OPCUA }, { "queue", OPCUA }, { "deadband", OPCUA },
+        { "deadband_percent", OPCUA },
     };
-    static const char *const whats[] = { [REPLAY] = "a replay", [MQTT] = "an mqtt source", [BY_LINE] = "transport rtu",
+    static const char *const whats[] = { [REPLAY] = "a replay", [MQTT] = "an mqtt source", [OPCUA] = "an opcua source",
+                                         [BY_LINE] = "transport rtu",
                                          [BY_SOCKET] = "a modbus source over TCP" };
     const char *what = whats[way_of(source)];
     for (size_t i = 0; i < sizeof(belongs) / sizeof(*belongs); i++)
@@ -161,6 +172,14 @@ static void check_way(struct yaml_reader *reader, const struct yaml_map *map, co
         yaml_error(reader, yaml_map_place(map, "hosts"), "hosts: expected host or hosts, not both");
     if (source->file && access(source->file, R_OK) != 0)
         yaml_error(reader, yaml_map_place(map, "file"), "file: '%s' cannot be read: %s", source->file, strerror(errno));
+}
+
+void plant_secret_check(struct yaml_reader *reader, const struct yaml_map *map, const struct plant *plant, const char *key, char **path)
+{
+    struct place place = yaml_map_place(map, key);
+    plant_resolve_path(plant, path);
+    if (*path && access(*path, R_OK) != 0)
+        diag_warning(reader->diag, reader->path, place.line, place.column, "%s: '%s' cannot be read: %s", key, *path, strerror(errno));
 }
 
 static bool same_text(const char *a, const char *b)
@@ -191,7 +210,7 @@ static void read_source(struct yaml_reader *reader, yaml_node_t *node, struct pl
     *source = (struct plant_source){
         .port = 502, .unit = 1, .poll_ms = 1000, .timeout_ms = 1000, .address_base = 1, .baud = 19200, .parity = 'E', .stop_bits = 1,
         .max_registers = 125, .max_bits = 2000, .heartbeat_tag = -1, .speed = 1, .line = yaml_place(node).line,
-        .mqtt = { .protocol = 5, .qos = 1, .keepalive_s = 10 }
+        .mqtt = { .protocol = 5, .qos = 1, .keepalive_s = 10 }, .opcua = { .queue = 10 }
     };
     if (!yaml_map_read(reader, node, "a source", source_keys, source, &map))
         return;
@@ -206,6 +225,8 @@ static void read_source(struct yaml_reader *reader, yaml_node_t *node, struct pl
     check_alone(reader, &map, plant, source);
     if (way_of(source) == MQTT)
         plant_mqtt_check(reader, &map, plant, source);
+    if (way_of(source) == OPCUA)
+        plant_opcua_check(reader, &map, plant, source);
 }
 
 void plant_sources_read(struct yaml_reader *reader, yaml_node_t *node, struct plant *plant)

@@ -160,11 +160,13 @@ static void read_limits(struct tag_list *list)
                    list->tag->change.converts ? list->tag->unit : "");
 }
 
-/* A Sparkplug node says nothing while nothing changes, and its death certificate says when it is gone. */
+/* A Sparkplug node says nothing while nothing changes, and its death certificate says when it is gone; likewise an OPC UA server. */
 static bool is_announced(const struct tag_list *list)
 {
     const struct plant_source *source = list->tag->source >= 0 ? &list->plant->sources[list->tag->source] : NULL;
-    return source && source->kind && !strcmp(source->kind, "mqtt") && source->mqtt.payload == MQTT_SPARKPLUG;
+    if (!source || !source->kind)
+        return false;
+    return !strcmp(source->kind, "opcua") || (!strcmp(source->kind, "mqtt") && source->mqtt.payload == MQTT_SPARKPLUG);
 }
 
 static void read_timing(struct tag_list *list)
@@ -208,6 +210,7 @@ static void read_row(struct tag_list *list)
         .column = csv_cell_column(&list->columns.csv, name),
         .modbus_unit = -1,
         .bit = -1,
+        .element = -1,
     };
     if (name >= 0 && !*list->tag->name)
         cell_error(&list->columns, COL_NAME, "Tag Name: expected a name, found none");

@@ -11,6 +11,7 @@
 #include "plant/address.h"
 #include "plant/mqtt_address.h"
 #include "plant/number.h"
+#include "plant/opcua_address.h"
 #include "plant/plant_impl.h"
 #include "plant/tag_links.h"
 
@@ -103,10 +104,10 @@ static void check_base(struct tag_wire *wire, int registers)
                tag->table == TABLE_INPUT ? "ir" : "hr", tag->register_index + 1);
 }
 
-static bool is_published(const struct tag_wire *wire)
+static bool comes_from(const struct tag_wire *wire, const char *kind)
 {
-    const char *kind = wire->tag->source >= 0 ? wire->plant->sources[wire->tag->source].kind : NULL;
-    return !tag_is_derived(wire->columns) && kind && !strcmp(kind, "mqtt");
+    const char *its_kind = wire->tag->source >= 0 ? wire->plant->sources[wire->tag->source].kind : NULL;
+    return !tag_is_derived(wire->columns) && its_kind && !strcmp(its_kind, kind);
 }
 
 /* A value that is published is a number; whether it is a bit, only the row can say. */
@@ -118,7 +119,8 @@ static void read_published(struct tag_wire *wire)
     tag->type = DATA_FLOAT64;
     if (*text && strcasecmp(text, "Default") != 0 && !data_type_parse(text, &tag->type))
         cell_error(wire->columns, COL_DATA_TYPE, "Data Type: unknown type '%.60s'; expected one of: %s", text, data_type_all);
-    if (!mqtt_address_resolve(wire->plant, tag, why))
+    bool is_opcua = comes_from(wire, "opcua");
+    if (is_opcua ? !opcua_address_resolve(wire->plant, tag, why) : !mqtt_address_resolve(wire->plant, tag, why))
         cell_error(wire->columns, COL_ADDRESS, "Address: '%.60s': %s", tag->address, why);
 }
 
@@ -132,7 +134,7 @@ static void read_address(struct tag_wire *wire)
         tag->type = DATA_FLOAT64;
         return;
     }
-    if (is_published(wire)) {
+    if (comes_from(wire, "mqtt") || comes_from(wire, "opcua")) {
         read_published(wire);
         return;
     }

@@ -45,7 +45,7 @@ struct key { /* one key of a mapping; a table of these ends with { 0 } */
     void (*read)(struct yaml_reader *reader, yaml_node_t *value, void *record);
 };
 
-#define YAML_MAP_MAX_KEYS 48
+#define YAML_MAP_MAX_KEYS 56
 struct yaml_map { /* where things were, and whether they were good */
     const struct key *keys;
     struct place place;

@@ -10,7 +10,12 @@
 #include "base/mem.h"
 #include "value/source_impl.h"
 
-static const struct source_impl *const table[] = { &modbus_impl, &mqtt_impl, &replay_impl };
+static const struct source_impl *const table[] = {
+    &modbus_impl, &mqtt_impl, &replay_impl,
+#ifdef PLANTCAST_OPCUA
+    &opcua_impl,
+#endif
+};
 
 counter *source_counter(const struct source *source, struct counters *counters, const char *name, const char *more, const char *type,
                         const char *help)

@@ -40,6 +40,7 @@ counter *source_counter(const struct source *source, struct counters *counters, 
 
 extern const struct source_impl modbus_impl; /* Modbus TCP and RTU, read only */
 extern const struct source_impl mqtt_impl;   /* what is published to an MQTT broker; subscribes only */
+extern const struct source_impl opcua_impl;  /* OPC UA subscriptions, where the build has its library; subscribes only */
 extern const struct source_impl replay_impl; /* recorded series from a CSV file (series.h), at the speed that the plant file sets */
 
 #endif

@@ -24,7 +24,7 @@ struct follower {
     struct store *store;
     struct snapshot *snapshot;
     struct mqtt_topics topics;
-    struct mqtt_writer writer;
+    struct stamped_writer writer;
     struct sparkplug *sparkplug;
 };
 
@@ -63,7 +63,7 @@ static struct follower *follower(void)
     f->store = store_create(f->plant);
     f->snapshot = snapshot_create(TAGS);
     mqtt_topics_init(&f->topics, f->plant, 0);
-    mqtt_writer_init(&f->writer, f->plant, f->store);
+    stamped_writer_init(&f->writer, f->plant, f->store);
     f->sparkplug = sparkplug_create(&(struct sparkplug_params){ .log = f->log,
                                                                 .source = "s",
                                                                 .plant = f->plant,
@@ -85,10 +85,10 @@ static void follow(const uint8_t *bytes, size_t count)
         size_t length = bytes[1] < count - 2 ? bytes[1] : count - 2;
         char topic[64] = "spBv1.0/g/", why[200] = "";
         strcat(topic, verbs[bytes[0] % 8]);
-        mqtt_writer_begin(&f->writer, now_ns, now_ns + 1700000000000000000);
+        stamped_writer_begin(&f->writer, now_ns, now_ns + 1700000000000000000);
         const struct mqtt_message message = { .topic = topic, .payload = bytes + 2, .count = length, .is_retained = bytes[0] == 255 };
         bool good = sparkplug_take(f->sparkplug, &message, why);
-        mqtt_writer_end(&f->writer);
+        stamped_writer_end(&f->writer);
         require(good || *why, "a refusal says why");
         bytes += 2 + length;
         count -= 2 + length;
@@ -104,7 +104,7 @@ static void read_json(const uint8_t *bytes, size_t count)
     static const struct plant_mqtt plain = { .payload = MQTT_JSON },
                                    all = { .payload = MQTT_JSON, .value = "v", .time = "t", .quality = "q" };
     char why[200] = "";
-    struct mqtt_value value;
+    struct stamped_value value;
     json_t *root = mqtt_json_parse(bytes, count, why);
     require(root || *why, "a refusal says why");
     for (int i = 0; root && i < 3; i++)

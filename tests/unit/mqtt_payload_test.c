@@ -60,7 +60,7 @@ struct expected {
 static void check(const struct plant_mqtt *mqtt, const struct expected *expected)
 {
     char why[200] = "";
-    struct mqtt_value value;
+    struct stamped_value value;
     json_t *root = mqtt_json_parse(expected->json, strlen(expected->json), why);
     assert_non_null(root);
     assert_int_equal(mqtt_json_read(root, mqtt, expected->path, &value, why), expected->found);

@@ -132,7 +132,7 @@ static void mqtt_destroy(struct source *source)
 {
     struct mqtt_source *mqtt = (struct mqtt_source *)source;
     sparkplug_destroy(&mqtt->sparkplug);
-    mqtt_writer_finish(&mqtt->writer);
+    stamped_writer_finish(&mqtt->writer);
     mqtt_topics_finish(&mqtt->topics);
     for (size_t i = 0; i < mqtt->subscription_count; i++)
         mem_free(mqtt->subscriptions[i]);
@@ -147,7 +147,7 @@ static void add_counters(struct mqtt_source *mqtt, struct counters *counters)
     const char *messages = "messages from brokers";
     mqtt->messages_ok = source_counter(base, counters, "messages_total", ",result=\"ok\"", "counter", messages);
     mqtt->messages_refused = source_counter(base, counters, "messages_total", ",result=\"refused\"", "counter", messages);
-    mqtt->samples = source_counter(base, counters, "samples_total", "", "counter", "samples given by replays and brokers");
+    mqtt->samples = source_counter(base, counters, "samples_total", "", "counter", "samples given by replays, brokers and servers");
     mqtt->connects = source_counter(base, counters, "connects_total", "", "counter", "connections made to field devices and brokers");
     if (base->config->mqtt.payload == MQTT_SPARKPLUG) {
         mqtt->gaps = source_counter(base, counters, "gaps_total", "", "counter", "messages of Sparkplug nodes out of their sequence");
@@ -207,7 +207,7 @@ static struct source *mqtt_create(const struct source *base, struct counters *co
     mqtt->base = *base;
     add_counters(mqtt, counters);
     add_topics(mqtt);
-    mqtt_writer_init(&mqtt->writer, base->plant, base->store);
+    stamped_writer_init(&mqtt->writer, base->plant, base->store);
     mqtt->client_id = make_client_id(base->config);
     return &mqtt->base;
 }

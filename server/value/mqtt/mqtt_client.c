@@ -164,7 +164,7 @@ static bool use_tls(struct mqtt_client *client, char why[200])
 /* Read for each connection: a password may have been changed. */
 static bool log_in(struct mqtt_client *client, char why[200])
 {
-    const char *file = client->source->mqtt.login;
+    const char *file = client->source->login;
     struct login_file login;
     if (!file)
         return true;

@@ -4,10 +4,11 @@
 #define VALUE_MQTT_IMPL_H
 #include "value/backoff.h"
 #include "value/mqtt/mqtt_client.h"
+#include "value/mqtt/mqtt_payload.h"
 #include "value/mqtt/mqtt_topics.h"
-#include "value/mqtt/mqtt_writer.h"
 #include "value/mqtt/sparkplug.h"
 #include "value/source_impl.h"
+#include "value/stamped_writer.h"
 
 struct mqtt_source {
     struct source base;
@@ -15,7 +16,7 @@ struct mqtt_source {
     char *client_id;
     /* --- below: used by the source's thread only */
     struct mqtt_topics topics;
-    struct mqtt_writer writer;
+    struct stamped_writer writer;
     struct sparkplug *sparkplug; /* NULL: other payloads */
     char **subscriptions;
     size_t subscription_count;

@@ -58,16 +58,16 @@ static void report_skew(struct mqtt_source *mqtt, const char *topic)
 static void all_bad(struct mqtt_source *mqtt, const struct mqtt_topic *topic)
 {
     for (size_t i = 0; i < topic->tag_count; i++)
-        mqtt_writer_add_bad(&mqtt->writer, topic->tags[i], QUALITY_BAD_CONFIGURATION);
+        stamped_writer_add_bad(&mqtt->writer, topic->tags[i], QUALITY_BAD_CONFIGURATION);
 }
 
 static bool take_number(struct mqtt_source *mqtt, const struct mqtt_topic *topic, const struct mqtt_message *message, bool was_kept)
 {
-    struct mqtt_value value = { .quality = QUALITY_GOOD };
+    struct stamped_value value = { .quality = QUALITY_GOOD };
     if (!mqtt_number_read(message->payload, message->count, &value.value))
         return false;
     for (size_t i = 0; i < topic->tag_count; i++)
-        mqtt_writer_add(&mqtt->writer, topic->tags[i], &value, was_kept, false);
+        stamped_writer_add(&mqtt->writer, topic->tags[i], &value, was_kept, false);
     return true;
 }
 
@@ -77,13 +77,13 @@ static bool take_json(struct mqtt_source *mqtt, const struct mqtt_topic *topic, 
 {
     bool all_good = true;
     for (size_t i = 0; i < topic->tag_count; i++) {
-        struct mqtt_value value;
+        struct stamped_value value;
         int tag = topic->tags[i];
         enum mqtt_found found = mqtt_json_read(root, &mqtt->base.config->mqtt, mqtt->base.plant->tags[tag].path, &value, why);
         if (found == MQTT_FOUND)
-            mqtt_writer_add(&mqtt->writer, tag, &value, message->is_retained || (!mqtt->subscribed && !value.utc_ns), false);
+            stamped_writer_add(&mqtt->writer, tag, &value, message->is_retained || (!mqtt->subscribed && !value.utc_ns), false);
         else if (found == MQTT_WRONG)
-            mqtt_writer_add_bad(&mqtt->writer, tag, QUALITY_BAD_CONFIGURATION);
+            stamped_writer_add_bad(&mqtt->writer, tag, QUALITY_BAD_CONFIGURATION);
         all_good &= found != MQTT_WRONG;
     }
     return all_good;
@@ -120,9 +120,9 @@ void mqtt_take_message(struct mqtt_source *mqtt, const struct mqtt_message *mess
         mqtt_refuse(mqtt, message, "no tag has this topic");
         return;
     }
-    mqtt_writer_begin(&mqtt->writer, clock_mono_ns(), clock_utc_ns());
+    stamped_writer_begin(&mqtt->writer, clock_mono_ns(), clock_utc_ns());
     bool good = mqtt->sparkplug ? sparkplug_take(mqtt->sparkplug, message, why) : take(mqtt, topic, message, why);
-    mqtt_writer_end(&mqtt->writer);
+    stamped_writer_end(&mqtt->writer);
     counter_inc(mqtt->samples, (int64_t)mqtt->writer.written);
     report_skew(mqtt, message->topic);
     if (good)

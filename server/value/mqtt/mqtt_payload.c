@@ -123,11 +123,12 @@ static const json_t *value_of(const json_t *root, const struct plant_mqtt *mqtt,
     return json_is_object(root) ? json_object_get(root, "value") : root;
 }
 
-enum mqtt_found mqtt_json_read(const json_t *root, const struct plant_mqtt *mqtt, const char *path, struct mqtt_value *out, char why[200])
+enum mqtt_found mqtt_json_read(const json_t *root, const struct plant_mqtt *mqtt, const char *path, struct stamped_value *out,
+                               char why[200])
 {
     const json_t *value = value_of(root, mqtt, path), *time = mqtt->time ? find(root, mqtt->time) : NULL;
     const json_t *quality = mqtt->quality ? find(root, mqtt->quality) : NULL;
-    *out = (struct mqtt_value){ .quality = QUALITY_GOOD };
+    *out = (struct stamped_value){ .quality = QUALITY_GOOD };
     if (!value)
         return MQTT_ABSENT;
     if (mqtt->time && (!time || !read_time(time, &out->utc_ns))) {

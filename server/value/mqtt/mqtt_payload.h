@@ -8,12 +8,7 @@
 #include <stdint.h>
 
 #include "plant/plant.h"
-
-struct mqtt_value {
-    double value;
-    uint32_t quality;
-    int64_t utc_ns; /* as the payload states it; 0: it does not */
-};
+#include "value/stamped_writer.h"
 
 enum mqtt_found { MQTT_FOUND, MQTT_ABSENT /* the payload says nothing of it */, MQTT_WRONG };
 
@@ -22,6 +17,7 @@ bool mqtt_number_read(const void *bytes, size_t count, double *out);
 /* Parses a payload. Returns NULL if it is no JSON, and says in why what is wrong; else free with json_decref(). */
 json_t *mqtt_json_parse(const void *bytes, size_t count, char why[200]);
 /* Reads the value at a path ("": as the source says), its quality and its time. Where it returns MQTT_WRONG, why says what is wrong. */
-enum mqtt_found mqtt_json_read(const json_t *root, const struct plant_mqtt *mqtt, const char *path, struct mqtt_value *out, char why[200]);
+enum mqtt_found mqtt_json_read(const json_t *root, const struct plant_mqtt *mqtt, const char *path, struct stamped_value *out,
+                               char why[200]);
 
 #endif

@@ -40,7 +40,7 @@ struct sparkplug {
     size_t *node_of;        /* by topic */
     bool *is_born;          /* by topic: nodes' and devices' */
     uint32_t *types;        /* by tag: of its metric, as it was born; 0: it was not */
-    struct mqtt_value *last; /* by tag */
+    struct stamped_value *last; /* by tag */
     bool *has_last, *in_message; /* by tag */
 };
 
@@ -225,18 +225,18 @@ static size_t tags_of(const struct sparkplug *sparkplug, const struct node *node
     return alias->tags;
 }
 
-static void write_value(struct sparkplug *sparkplug, int tag, const struct mqtt_value *value)
+static void write_value(struct sparkplug *sparkplug, int tag, const struct stamped_value *value)
 {
     sparkplug->last[tag] = *value;
     sparkplug->has_last[tag] = !quality_is_bad(value->quality);
     sparkplug->in_message[tag] = true;
-    mqtt_writer_add(sparkplug->params.writer, tag, value, false, true);
+    stamped_writer_add(sparkplug->params.writer, tag, value, false, true);
 }
 
 /* False: it is not what it was born as, or no number. */
 static bool take_metric(struct sparkplug *sparkplug, const struct sparkplug_metric *metric, int tag, char why[200])
 {
-    struct mqtt_value value = { .quality = metric->quality, .utc_ns = metric->utc_ns };
+    struct stamped_value value = { .quality = metric->quality, .utc_ns = metric->utc_ns };
     uint32_t born = sparkplug->types[tag], type = metric->type ? metric->type : born;
     const char *name = sparkplug->params.plant->tags[tag].path;
     if (metric->is_null && !quality_is_bad(value.quality))
@@ -307,7 +307,7 @@ static bool take_birth(struct sparkplug *sparkplug, struct node *node, size_t to
             continue;
         if (missing++ == 0)
             first = tag;
-        mqtt_writer_add_bad(sparkplug->params.writer, tag, QUALITY_BAD_CONFIGURATION);
+        stamped_writer_add_bad(sparkplug->params.writer, tag, QUALITY_BAD_CONFIGURATION);
     }
     if (missing > 0)
         log_warn(sparkplug->params.log, "source %s: %s: its birth certificate has no metric '%.60s'%s", sparkplug->params.source, of->name,
@@ -326,12 +326,12 @@ static void doubt_all(struct sparkplug *sparkplug, const struct node *node)
             continue;
         for (size_t t = 0; t < topic->tag_count; t++) {
             int tag = topic->tags[t];
-            struct mqtt_value value = sparkplug->last[tag];
+            struct stamped_value value = sparkplug->last[tag];
             if (!sparkplug->has_last[tag])
                 continue;
             value.quality = QUALITY_UNCERTAIN_LAST_USABLE;
             value.utc_ns = sparkplug->params.writer->last[tag].utc_ns;
-            mqtt_writer_add(sparkplug->params.writer, tag, &value, true, true);
+            stamped_writer_add(sparkplug->params.writer, tag, &value, true, true);
         }
     }
 }

@@ -6,7 +6,7 @@
 #include "base/log.h"
 #include "value/mqtt/mqtt_client.h"
 #include "value/mqtt/mqtt_topics.h"
-#include "value/mqtt/mqtt_writer.h"
+#include "value/stamped_writer.h"
 
 struct sparkplug;
 
@@ -16,7 +16,7 @@ struct sparkplug_params {
     const struct plant *plant;
     const struct mqtt_topics *topics; /* GROUP/NODE[/DEVICE] */
     struct store *store;
-    struct mqtt_writer *writer;
+    struct stamped_writer *writer;
     counter *gaps, *historical;       /* NULL: not counted */
     bool rebirth;                     /* nodes may be asked for their birth certificates, by: */
     void (*ask)(void *arg, const char *group, const char *node);

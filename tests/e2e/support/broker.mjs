@@ -53,6 +53,9 @@ export class Broker {
         }
     }
 
+    // The source's line of the plant file; keys: what else it says.
+    source(keys) { return `{ id: broker, type: mqtt, host: 127.0.0.1, port: ${this.port}, ${keys} }`; }
+
     // Stops answering, without closing a connection.
     freeze() { this.child.kill('SIGSTOP'); }
     thaw() { this.child.kill('SIGCONT'); }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A plant of two boxes whose only source is a broker, and how its tags are read.
+// A plant of two boxes whose only source is a broker or a server, and how its tags are read.
 import assert from 'node:assert/strict';
 import { writeFileSync } from 'node:fs';
 import { join } from 'node:path';
@@ -30,19 +30,19 @@ groups:
   - { id: temperature, quantity: Temperature, unit: °C, min: 0, max: 100 }
   - { id: pressure, quantity: Pressure, unit: bar, min: 0, max: 10, distance: euclidean }
 sources:
-  - { id: broker, type: mqtt, host: 127.0.0.1, port: ${this.broker.port}, ${keys} }
+  - ${this.broker.source(keys)}
 tags: tags.csv
 `);
         writeFileSync(join(this.folder, 'tags.csv'), `${[HEAD, ...rows].join('\n')}\n`);
     }
 
     // The same, prepared, with a daemon that has subscribed.
-    async run(keys, rows) {
+    async run(keys, rows, seconds = 15) {
         this.write(keys, rows);
         const prepared = this.plant.prepare();
         assert.equal(prepared.code, 0, prepared.err);
         await this.plant.startDaemon();
-        await this.daemon.line(/source broker: .*: reading/, 15000);
+        await this.daemon.line(/source (broker|plc): .*: reading/, seconds * 1000);
     }
 
     async get(path) {

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Readings of one time are written together. */
-#include "value/mqtt/mqtt_writer.h"
+#include "value/stamped_writer.h"
 
 #include <stdlib.h>
 
@@ -8,21 +8,21 @@
 #include "value/decode.h"
 #include "value/quality.h"
 
-void mqtt_writer_init(struct mqtt_writer *writer, const struct plant *plant, struct store *store)
+void stamped_writer_init(struct stamped_writer *writer, const struct plant *plant, struct store *store)
 {
-    *writer = (struct mqtt_writer){ .store = store, .plant = plant };
+    *writer = (struct stamped_writer){ .store = store, .plant = plant };
     writer->samples = mem_array(plant->tag_count, sizeof(*writer->samples));
     writer->last = mem_array(plant->tag_count, sizeof(*writer->last));
 }
 
-void mqtt_writer_finish(struct mqtt_writer *writer)
+void stamped_writer_finish(struct stamped_writer *writer)
 {
     mem_free(writer->samples);
     mem_free(writer->last);
-    *writer = (struct mqtt_writer){ 0 };
+    *writer = (struct stamped_writer){ 0 };
 }
 
-void mqtt_writer_begin(struct mqtt_writer *writer, int64_t now_mono_ns, int64_t now_utc_ns)
+void stamped_writer_begin(struct stamped_writer *writer, int64_t now_mono_ns, int64_t now_utc_ns)
 {
     writer->mono_ns = now_mono_ns;
     writer->utc_ns = writer->at_utc_ns = now_utc_ns;
@@ -30,7 +30,7 @@ void mqtt_writer_begin(struct mqtt_writer *writer, int64_t now_mono_ns, int64_t 
     writer->written = 0;
 }
 
-void mqtt_writer_end(struct mqtt_writer *writer)
+void stamped_writer_end(struct stamped_writer *writer)
 {
     if (writer->count > 0)
         store_write(writer->store, writer->samples, writer->count, writer->at_mono_ns, writer->at_utc_ns);
@@ -39,18 +39,18 @@ void mqtt_writer_end(struct mqtt_writer *writer)
 }
 
 /* The two clocks are never read at one instant: of equal times, the second must not come before the first. */
-static int64_t mono_of(const struct mqtt_writer *writer, int tag, int64_t utc_ns)
+static int64_t mono_of(const struct stamped_writer *writer, int tag, int64_t utc_ns)
 {
     int64_t mono_ns = writer->mono_ns - (writer->utc_ns - utc_ns);
     return utc_ns >= writer->last[tag].utc_ns && mono_ns < writer->last[tag].mono_ns ? writer->last[tag].mono_ns : mono_ns;
 }
 
 /* One sample of each tag at most fits a batch. */
-static void add(struct mqtt_writer *writer, const struct sample *sample, int64_t utc_ns)
+static void add(struct stamped_writer *writer, const struct sample *sample, int64_t utc_ns)
 {
     int64_t mono_ns = mono_of(writer, sample->tag, utc_ns);
     if (utc_ns != writer->at_utc_ns || mono_ns != writer->at_mono_ns || writer->count == writer->plant->tag_count)
-        mqtt_writer_end(writer);
+        stamped_writer_end(writer);
     writer->at_utc_ns = utc_ns;
     writer->at_mono_ns = mono_ns;
     writer->samples[writer->count++] = *sample;
@@ -60,12 +60,12 @@ static void add(struct mqtt_writer *writer, const struct sample *sample, int64_t
     writer->last[sample->tag].mono_ns = mono_ns;
 }
 
-static int64_t bad_since_ns(const struct mqtt_writer *writer, int tag)
+static int64_t bad_since_ns(const struct stamped_writer *writer, int tag)
 {
     return writer->last[tag].is_stated ? writer->last[tag].utc_ns : writer->utc_ns;
 }
 
-void mqtt_writer_add(struct mqtt_writer *writer, int tag, const struct mqtt_value *value, bool was_kept, bool in_order)
+void stamped_writer_add(struct stamped_writer *writer, int tag, const struct stamped_value *value, bool was_kept, bool in_order)
 {
     struct sample sample = { .tag = tag, .quality = value->quality };
     int64_t utc_ns = value->utc_ns ? value->utc_ns : writer->utc_ns;
@@ -73,7 +73,7 @@ void mqtt_writer_add(struct mqtt_writer *writer, int tag, const struct mqtt_valu
         writer->worst_skew_ns = utc_ns - writer->utc_ns;
     if (!quality_is_bad(value->quality)) {
         decode_number(&writer->plant->tags[tag], value->value, &sample);
-        if (value->quality >> 30 > sample.quality >> 30)
+        if (value->quality >> 30 >= sample.quality >> 30) /* equally good: its sender knows more */
             sample.quality = value->quality;
         if (was_kept && quality_is_good(sample.quality))
             sample.quality = QUALITY_UNCERTAIN_LAST_USABLE;
@@ -84,7 +84,7 @@ void mqtt_writer_add(struct mqtt_writer *writer, int tag, const struct mqtt_valu
     add(writer, &sample, utc_ns < writer->utc_ns ? utc_ns : writer->utc_ns);
 }
 
-void mqtt_writer_add_bad(struct mqtt_writer *writer, int tag, uint32_t quality)
+void stamped_writer_add_bad(struct stamped_writer *writer, int tag, uint32_t quality)
 {
     const struct sample sample = { .tag = tag, .quality = quality };
     add(writer, &sample, bad_since_ns(writer, tag));

@@ -1,11 +1,17 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Brings readings to the store, each at the time that its sender states. Thread: one. */
-#ifndef VALUE_MQTT_WRITER_H
-#define VALUE_MQTT_WRITER_H
-#include "value/mqtt/mqtt_payload.h"
+#ifndef VALUE_STAMPED_WRITER_H
+#define VALUE_STAMPED_WRITER_H
+#include "plant/plant.h"
 #include "value/store.h"
 
-struct mqtt_writer {
+struct stamped_value {
+    double value;
+    uint32_t quality;
+    int64_t utc_ns; /* as its sender states it; 0: it does not */
+};
+
+struct stamped_writer {
     struct store *store;
     const struct plant *plant;
     int64_t mono_ns, utc_ns; /* now: of the message that is being read */
@@ -20,17 +26,17 @@ struct mqtt_writer {
     } *last;
 };
 
-void mqtt_writer_init(struct mqtt_writer *writer, const struct plant *plant, struct store *store);
-void mqtt_writer_finish(struct mqtt_writer *writer);
+void stamped_writer_init(struct stamped_writer *writer, const struct plant *plant, struct store *store);
+void stamped_writer_finish(struct stamped_writer *writer);
 /* Begins a message that has arrived now. */
-void mqtt_writer_begin(struct mqtt_writer *writer, int64_t now_mono_ns, int64_t now_utc_ns);
+void stamped_writer_begin(struct stamped_writer *writer, int64_t now_mono_ns, int64_t now_utc_ns);
 /* Takes the value that the message holds for a tag, before scaling. was_kept: the broker kept it, and it may have changed since: it is
    Uncertain_LastUsableValue at best. A time ahead of ours is taken for now. in_order: a time
    before that of the tag's last sample is taken for that one; else such a sample is passed over. */
-void mqtt_writer_add(struct mqtt_writer *writer, int tag, const struct mqtt_value *value, bool was_kept, bool in_order);
+void stamped_writer_add(struct stamped_writer *writer, int tag, const struct stamped_value *value, bool was_kept, bool in_order);
 /* Takes a quality in place of a value, from now on; where times are stated, from the last one on: by a clock that is behind,
    what comes next would be older than now. */
-void mqtt_writer_add_bad(struct mqtt_writer *writer, int tag, uint32_t quality);
-void mqtt_writer_end(struct mqtt_writer *writer); /* writes what is left */
+void stamped_writer_add_bad(struct stamped_writer *writer, int tag, uint32_t quality);
+void stamped_writer_end(struct stamped_writer *writer); /* writes what is left */
 
 #endif

@@ -1,0 +1,199 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* An OPC UA source: connects, subscribes, and says at once when the server is gone. */
+#include <errno.h>
+#include <stdio.h>
+
+#include "base/clock.h"
+#include "base/mem.h"
+#include "value/backoff.h"
+#include "value/lookup.h"
+#include "value/opcua/opcua_client.h"
+#include "value/quality.h"
+#include "value/source_impl.h"
+
+static const int64_t CONNECT_NS = 15 * NS_PER_S, SUBSCRIBE_NS = 60 * NS_PER_S; /* to a session; to all nodes */
+static const int64_t SERVE_NS = NS_PER_S, RETRY_NS = 30 * NS_PER_S;            /* nodes that were refused are asked for again */
+static const int64_t SKEW_NS = 5 * NS_PER_S, SKEW_SAID_NS = 60 * NS_PER_S;
+enum { REFUSALS_SAID = 8 }; /* of a session */
+
+struct opcua_source {
+    struct source base;
+    counter *samples, *connects, *up, *host, *refused;
+    /* --- below: used by the source's thread only */
+    struct opcua_nodes nodes;
+    struct stamped_writer writer;
+    int host_index;  /* of the host that is being tried */
+    int hosts_tried; /* one after the other, without a session */
+    struct backoff backoff;
+    bool link_up, link_known;
+    int refusals_said;
+    bool *wrong; /* by node: its value was none, which is said */
+    int64_t skew_said_ns;
+};
+
+/* --- values ----------------------------------------------------------------------------------------------------------------- */
+
+/* The server's own time, not its sensor's, shows how its clock stands. */
+static void report_skew(struct opcua_source *opcua, const UA_DataValue *value)
+{
+    int64_t now_ns = opcua->writer.mono_ns;
+    if (!value->hasServerTimestamp)
+        return;
+    int64_t skew_ns = (value->serverTimestamp - UA_DATETIME_UNIX_EPOCH) * 100 - opcua->writer.utc_ns;
+    if ((skew_ns < SKEW_NS && skew_ns > -SKEW_NS) || (opcua->skew_said_ns && now_ns - opcua->skew_said_ns < SKEW_SAID_NS))
+        return;
+    opcua->skew_said_ns = now_ns;
+    log_warn(opcua->base.log, "source %s: its times are %.1f s %s this machine's clock", opcua->base.config->id,
+             (double)(skew_ns > 0 ? skew_ns : -skew_ns) / 1e9, skew_ns > 0 ? "ahead of" : "behind");
+}
+
+static void on_value(void *arg, size_t index, const UA_DataValue *data)
+{
+    struct opcua_source *opcua = arg;
+    const struct opcua_node *node = &opcua->nodes.at[index];
+    bool good = true;
+    char why[200];
+    stamped_writer_begin(&opcua->writer, clock_mono_ns(), clock_utc_ns());
+    for (size_t i = 0; i < node->tag_count; i++) {
+        struct stamped_value value;
+        int tag = node->tags[i];
+        good &= opcua_value_read(data, opcua->base.plant->tags[tag].element, &value, why);
+        stamped_writer_add(&opcua->writer, tag, &value, false, true);
+    }
+    stamped_writer_end(&opcua->writer);
+    counter_inc(opcua->samples, (int64_t)opcua->writer.written);
+    report_skew(opcua, data);
+    if (!good && !opcua->wrong[index])
+        log_warn(opcua->base.log, "source %s: %.100s: %s", opcua->base.config->id, node->id, why);
+    opcua->wrong[index] = !good;
+}
+
+static void on_refused(void *arg, size_t index, uint32_t status, const char *why)
+{
+    struct opcua_source *opcua = arg;
+    const struct opcua_node *node = &opcua->nodes.at[index];
+    stamped_writer_begin(&opcua->writer, clock_mono_ns(), clock_utc_ns());
+    for (size_t i = 0; i < node->tag_count; i++)
+        stamped_writer_add_bad(&opcua->writer, node->tags[i], status);
+    stamped_writer_end(&opcua->writer);
+    if (++opcua->refusals_said <= REFUSALS_SAID)
+        log_warn(opcua->base.log, "source %s: nsu=%.80s;%.80s is refused: %s%s", opcua->base.config->id, node->name_space, node->id, why,
+                 opcua->refusals_said == REFUSALS_SAID ? "; no more of them are named" : "");
+}
+
+/* --- the link --------------------------------------------------------------------------------------------------------------- */
+
+/* What the server does not tell any more may have changed: nothing of it is a reading now. */
+static void link_lost(struct opcua_source *opcua, const char *why)
+{
+    int64_t now_ns = clock_mono_ns();
+    const struct plant_source *config = opcua->base.config;
+    log_at(opcua->base.log, opcua->link_up || !opcua->link_known ? LOG_WARN : LOG_DEBUG, "source %s: %s:%d: no readings (%s)", config->id,
+           config->hosts[opcua->host_index], config->port, why);
+    opcua->link_up = false;
+    opcua->link_known = true;
+    counter_set(opcua->up, 0);
+    counter_set(opcua->host, 0);
+    store_tags_dead(opcua->base.store, opcua->nodes.tags, opcua->nodes.tag_count, now_ns);
+    store_link_lost(opcua->base.store, opcua->base.index, now_ns);
+}
+
+static void link_up(struct opcua_source *opcua, const struct opcua_client *client)
+{
+    const struct plant_source *config = opcua->base.config;
+    opcua->link_up = opcua->link_known = true;
+    opcua->backoff = (struct backoff){ 0 };
+    opcua->hosts_tried = 0;
+    counter_set(opcua->up, 1);
+    counter_set(opcua->host, 1 + opcua->host_index);
+    counter_set(opcua->refused, (int64_t)opcua_client_refused(client));
+    store_link_up(opcua->base.store, opcua->base.index, clock_mono_ns());
+    log_info(opcua->base.log, "source %s: %s:%d: reading %zu nodes, %zu refused", config->id, config->hosts[opcua->host_index],
+             config->port, opcua->nodes.count - opcua_client_refused(client), opcua_client_refused(client));
+}
+
+static int serve(struct opcua_source *opcua, struct opcua_client *client, char why[200])
+{
+    int status = 0;
+    int64_t retry_ns = clock_mono_ns() + RETRY_NS;
+    while (status == 0) {
+        int64_t now_ns = clock_mono_ns();
+        status = opcua_client_serve(client, opcua->base.stop_fd, now_ns + SERVE_NS, why);
+        if (status || now_ns < retry_ns)
+            continue;
+        retry_ns = now_ns + RETRY_NS;
+        status = opcua_client_subscribe(client, opcua->base.stop_fd, now_ns + SUBSCRIBE_NS, why);
+        counter_set(opcua->refused, (int64_t)opcua_client_refused(client));
+    }
+    return status;
+}
+
+/* One session, until it ends. Returns -ECANCELED when the source is to stop, else why says what happened. */
+static int run_session(struct opcua_source *opcua, char why[200])
+{
+    const struct opcua_events events = { .arg = opcua, .value = on_value, .refused = on_refused };
+    struct opcua_client *client = opcua_client_create(opcua->base.config, opcua->host_index, &opcua->nodes, &events, why);
+    opcua->refusals_said = 0;
+    int status = client ? opcua_client_connect(client, opcua->base.stop_fd, clock_mono_ns() + CONNECT_NS, why) : -EINVAL;
+    if (status == 0) {
+        counter_inc(opcua->connects, 1);
+        status = opcua_client_subscribe(client, opcua->base.stop_fd, clock_mono_ns() + SUBSCRIBE_NS, why);
+    }
+    if (status == 0) {
+        link_up(opcua, client);
+        status = serve(opcua, client, why);
+    }
+    if (status != -ECANCELED)
+        link_lost(opcua, why);
+    opcua_client_destroy(&client);
+    return status;
+}
+
+/* The next host at once, if there is one that was not tried since a session; else after a pause. */
+static int64_t next_host(struct opcua_source *opcua)
+{
+    int64_t now_ns = clock_mono_ns();
+    opcua->host_index = (opcua->host_index + 1) % opcua->base.config->host_count;
+    opcua->hosts_tried++;
+    return opcua->hosts_tried % opcua->base.config->host_count ? now_ns : now_ns + backoff_next_ns(&opcua->backoff, (uint64_t)now_ns);
+}
+
+static void opcua_run(struct source *source)
+{
+    struct opcua_source *opcua = (struct opcua_source *)source;
+    int64_t next_ns = 0;
+    while (wait_for(-1, 0, source->stop_fd, next_ns) != -ECANCELED) {
+        char why[200] = "";
+        if (run_session(opcua, why) == -ECANCELED)
+            break;
+        next_ns = next_host(opcua);
+    }
+}
+
+static void opcua_destroy(struct source *source)
+{
+    struct opcua_source *opcua = (struct opcua_source *)source;
+    stamped_writer_finish(&opcua->writer);
+    opcua_nodes_finish(&opcua->nodes);
+    mem_free(opcua->wrong);
+    mem_free(opcua);
+}
+
+static struct source *opcua_create(const struct source *base, struct counters *counters)
+{
+    struct opcua_source *opcua = mem_new(sizeof(*opcua));
+    opcua->base = *base;
+    opcua->samples = source_counter(base, counters, "samples_total", "", "counter", "samples given by replays, brokers and servers");
+    opcua->connects = source_counter(base, counters, "connects_total", "", "counter", "connections made to field devices and brokers");
+    opcua->refused = source_counter(base, counters, "nodes_refused", "", "gauge", "nodes that the OPC UA server does not let us read");
+    opcua->up = source_counter(base, counters, "up", "", "gauge", "1 while readings come in");
+    opcua->host = source_counter(base, counters, "host", "", "gauge", "which of its hosts readings come from, 1: the first; 0: from none");
+    opcua_nodes_init(&opcua->nodes, base->plant, base->index);
+    opcua->wrong = mem_array(opcua->nodes.count, sizeof(*opcua->wrong));
+    stamped_writer_init(&opcua->writer, base->plant, base->store);
+    log_info(base->log, "source %s: %s:%d: %zu tags in %zu nodes", base->config->id, base->config->hosts[0], base->config->port,
+             opcua->nodes.tag_count, opcua->nodes.count);
+    return &opcua->base;
+}
+
+const struct source_impl opcua_impl = { .kind = "opcua", .create = opcua_create, .run = opcua_run, .destroy = opcua_destroy };

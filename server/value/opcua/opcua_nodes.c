@@ -1,0 +1,46 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Tags sorted by node; those of one node stand together. */
+#include "value/opcua/opcua_nodes.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/mem.h"
+
+static int by_node(const void *pa, const void *pb, void *tags_ptr)
+{
+    const struct plant_tag *tags = tags_ptr;
+    int a = *(const int *)pa, b = *(const int *)pb;
+    int order = strcmp(tags[a].topic, tags[b].topic);
+    if (order == 0)
+        order = strcmp(tags[a].path, tags[b].path);
+    return order ? order : (a > b) - (a < b);
+}
+
+void opcua_nodes_init(struct opcua_nodes *nodes, const struct plant *plant, int source)
+{
+    *nodes = (struct opcua_nodes){ .tags = mem_array(plant->tag_count, sizeof(*nodes->tags)) };
+    for (size_t i = 0; i < plant->tag_count; i++)
+        if (plant->tags[i].source == source)
+            nodes->tags[nodes->tag_count++] = (int)i;
+    qsort_r(nodes->tags, nodes->tag_count, sizeof(*nodes->tags), by_node, plant->tags);
+    nodes->at = mem_array(nodes->tag_count, sizeof(*nodes->at));
+    for (size_t i = 0; i < nodes->tag_count; i++) {
+        const struct plant_tag *tag = &plant->tags[nodes->tags[i]];
+        int sampling_ms = tag->scan_ms ? tag->scan_ms : plant->sources[source].poll_ms;
+        struct opcua_node *node = nodes->count > 0 ? &nodes->at[nodes->count - 1] : NULL;
+        if (!node || strcmp(node->name_space, tag->topic) != 0 || strcmp(node->id, tag->path) != 0) {
+            node = &nodes->at[nodes->count++];
+            *node = (struct opcua_node){ .name_space = tag->topic, .id = tag->path, .tags = &nodes->tags[i], .sampling_ms = sampling_ms };
+        }
+        node->tag_count++;
+        node->sampling_ms = sampling_ms < node->sampling_ms ? sampling_ms : node->sampling_ms;
+    }
+}
+
+void opcua_nodes_finish(struct opcua_nodes *nodes)
+{
+    mem_free(nodes->at);
+    mem_free(nodes->tags);
+    *nodes = (struct opcua_nodes){ 0 };
+}

@@ -1,0 +1,241 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The subscription of a session: which number each namespace has now, and one monitored item for each node. */
+#include <errno.h>
+#include <string.h>
+
+#include "base/clock.h"
+#include "base/mem.h"
+#include "plant/opcua_address.h"
+#include "value/opcua/opcua_client.h"
+#include "value/opcua/opcua_impl.h"
+
+enum { NAMESPACE_ARRAY = 2255, MAX_ITEMS_PER_CALL = 11714 }; /* nodes of every server */
+enum { ITEMS_PER_CALL = 500, KEPT_ALIVE_MS = 5000, LIFETIMES = 12 };
+enum { NO_NAMESPACE = 0xffff };
+static const UA_StatusCode NO_SUCH_NODE = 0x80340000; /* Bad_NodeIdUnknown */
+
+/* --- namespaces ------------------------------------------------------------------------------------------------------------- */
+
+static void keep_namespaces(struct opcua_client *client, const UA_Variant *value)
+{
+    const UA_String *uris = value->data;
+    if (!UA_Variant_hasArrayType(value, &UA_TYPES[UA_TYPES_STRING]))
+        return;
+    client->namespaces = mem_array(value->arrayLength, sizeof(*client->namespaces));
+    for (size_t i = 0; i < value->arrayLength && i < NO_NAMESPACE; i++)
+        client->namespaces[client->namespace_count++] = mem_printf("%.*s", (int)uris[i].length, (const char *)uris[i].data);
+}
+
+static UA_UInt16 number_of(const struct opcua_client *client, const char *uri)
+{
+    if (!strcmp(uri, OPCUA_STANDARD_NAMESPACE))
+        return 0;
+    for (size_t i = 0; i < client->namespace_count; i++)
+        if (!strcmp(client->namespaces[i], uri))
+            return (UA_UInt16)i;
+    return NO_NAMESPACE;
+}
+
+int opcua_read_namespaces(struct opcua_client *client, int stop_fd, int64_t deadline_mono_ns, char why[200])
+{
+    UA_ReadValueId values[2] = { { .nodeId = UA_NODEID_NUMERIC(0, NAMESPACE_ARRAY), .attributeId = UA_ATTRIBUTEID_VALUE },
+                                 { .nodeId = UA_NODEID_NUMERIC(0, MAX_ITEMS_PER_CALL), .attributeId = UA_ATTRIBUTEID_VALUE } };
+    UA_ReadRequest request = { .nodesToRead = values, .nodesToReadSize = 2, .timestampsToReturn = UA_TIMESTAMPSTORETURN_NEITHER };
+    UA_ReadResponse response;
+    int status = opcua_call(client, &request, &UA_TYPES[UA_TYPES_READREQUEST], &response, &UA_TYPES[UA_TYPES_READRESPONSE], stop_fd,
+                            deadline_mono_ns, why);
+    if (status == 0 && response.resultsSize == 2) {
+        const UA_Variant *most = &response.results[1].value;
+        keep_namespaces(client, &response.results[0].value);
+        if (UA_Variant_hasScalarType(most, &UA_TYPES[UA_TYPES_UINT32]))
+            client->max_items = *(const UA_UInt32 *)most->data;
+    }
+    if (client->max_items == 0 || client->max_items > ITEMS_PER_CALL)
+        client->max_items = ITEMS_PER_CALL;
+    for (size_t i = 0; i < client->nodes->count; i++) {
+        client->numbers[i] = number_of(client, client->nodes->at[i].name_space);
+        client->refused[i] = true;
+    }
+    client->refused_count = client->nodes->count;
+    UA_ReadResponse_clear(&response);
+    return status;
+}
+
+/* --- items ------------------------------------------------------------------------------------------------------------------ */
+
+static void on_value(UA_Client *library, UA_UInt32 subscription, void *arg, UA_UInt32 item, void *node, UA_DataValue *value)
+{
+    struct opcua_client *client = arg;
+    (void)library, (void)subscription, (void)item;
+    client->events->value(client->events->arg, (size_t)node, value);
+}
+
+static void on_status(UA_Client *library, UA_UInt32 subscription, void *arg, UA_StatusChangeNotification *changed)
+{
+    struct opcua_client *client = arg;
+    (void)library, (void)subscription;
+    client->lost = true;
+    snprintf(client->said, sizeof(client->said), "%s", UA_StatusCode_name(changed->status));
+}
+
+static void on_deleted(UA_Client *library, UA_UInt32 subscription, void *arg)
+{
+    struct opcua_client *client = arg;
+    (void)library, (void)subscription;
+    client->lost = true;
+}
+
+static int begin_subscription(struct opcua_client *client, int stop_fd, int64_t deadline_mono_ns, char why[200])
+{
+    int poll_ms = client->source->poll_ms;
+    UA_CreateSubscriptionRequest request = { .requestedPublishingInterval = poll_ms, .publishingEnabled = true };
+    UA_CreateSubscriptionResponse response;
+    request.requestedMaxKeepAliveCount = (UA_UInt32)(KEPT_ALIVE_MS / poll_ms) + 1;
+    request.requestedLifetimeCount = LIFETIMES * request.requestedMaxKeepAliveCount;
+    request.maxNotificationsPerPublish = 2000; /* more make more than a message may hold */
+    opcua_call_begin(client, &response, &UA_TYPES[UA_TYPES_CREATESUBSCRIPTIONRESPONSE]);
+    UA_StatusCode sent = UA_Client_Subscriptions_create_async(client->library, request, client, on_status, on_deleted, opcua_on_answer,
+                                                              client, NULL);
+    int status = opcua_call_end(client, sent, stop_fd, deadline_mono_ns, why);
+    client->subscription = response.subscriptionId;
+    UA_CreateSubscriptionResponse_clear(&response);
+    return status;
+}
+
+/* NodeId of a node; false: the server has no such namespace, or the identifier is none. Clear it with UA_NodeId_clear(). */
+static bool node_id(const struct opcua_client *client, size_t node, UA_NodeId *out)
+{
+    UA_UInt16 number = client->numbers[node];
+    if (number == NO_NAMESPACE)
+        return false;
+    char *text = mem_printf("ns=%u;%s", number, client->nodes->at[node].id);
+    bool good = UA_NodeId_parse(out, UA_STRING(text)) == UA_STATUSCODE_GOOD;
+    mem_free(text);
+    return good;
+}
+
+static bool has_deadband(const struct opcua_client *client, size_t node)
+{
+    return (client->source->opcua.deadband > 0 || client->source->opcua.deadband_percent > 0) && !client->no_filter[node];
+}
+
+static void fill_item(const struct opcua_client *client, size_t node, UA_DataChangeFilter *filter, UA_MonitoredItemCreateRequest *out)
+{
+    out->itemToMonitor.attributeId = UA_ATTRIBUTEID_VALUE;
+    out->monitoringMode = UA_MONITORINGMODE_REPORTING;
+    out->requestedParameters.samplingInterval = client->nodes->at[node].sampling_ms;
+    out->requestedParameters.queueSize = (UA_UInt32)client->source->opcua.queue;
+    out->requestedParameters.discardOldest = true;
+    if (has_deadband(client, node))
+        UA_ExtensionObject_setValueNoDelete(&out->requestedParameters.filter, filter, &UA_TYPES[UA_TYPES_DATACHANGEFILTER]);
+}
+
+static void refuse(struct opcua_client *client, size_t node, UA_StatusCode status)
+{
+    client->events->refused(client->events->arg, node, status, UA_StatusCode_name(status));
+}
+
+/* Nodes that cannot have a deadband are asked for without: what is told too often is still right. */
+static void take_result(struct opcua_client *client, size_t node, UA_StatusCode status)
+{
+    bool of_filter = status == UA_STATUSCODE_BADFILTERNOTALLOWED || status == UA_STATUSCODE_BADMONITOREDITEMFILTERUNSUPPORTED ||
+                     status == UA_STATUSCODE_BADMONITOREDITEMFILTERINVALID || status == UA_STATUSCODE_BADDEADBANDFILTERINVALID;
+    if (status >> 30 < 2) {
+        client->refused[node] = false;
+        client->refused_count--;
+    } else if (of_filter && has_deadband(client, node)) {
+        client->no_filter[node] = true;
+    } else {
+        refuse(client, node, status);
+    }
+}
+
+/* Asks for the nodes of a batch, which are all known. */
+static int create_items(struct opcua_client *client, const size_t *batch, UA_MonitoredItemCreateRequest *items, size_t count, int stop_fd,
+                        int64_t deadline_mono_ns, char why[200])
+{
+    UA_CreateMonitoredItemsRequest request = { .subscriptionId = client->subscription, .timestampsToReturn = UA_TIMESTAMPSTORETURN_BOTH,
+                                               .itemsToCreate = items, .itemsToCreateSize = count };
+    UA_CreateMonitoredItemsResponse response;
+    void **contexts = mem_array(count, sizeof(*contexts));
+    UA_Client_DataChangeNotificationCallback *on_values = mem_array(count, sizeof(*on_values));
+    UA_Client_DeleteMonitoredItemCallback *on_ends = mem_array(count, sizeof(*on_ends));
+    for (size_t i = 0; i < count; i++) {
+        contexts[i] = (void *)batch[i];
+        on_values[i] = on_value;
+    }
+    opcua_call_begin(client, &response, &UA_TYPES[UA_TYPES_CREATEMONITOREDITEMSRESPONSE]);
+    UA_StatusCode sent = UA_Client_MonitoredItems_createDataChanges_async(client->library, request, contexts, on_values, on_ends,
+                                                                          opcua_on_answer, client, NULL);
+    int status = opcua_call_end(client, sent, stop_fd, deadline_mono_ns, why);
+    if (status == 0 && response.resultsSize != count) {
+        snprintf(why, 200, "the server answers for %zu of %zu nodes", response.resultsSize, count);
+        status = -EPROTO;
+    }
+    for (size_t i = 0; status == 0 && i < count; i++)
+        take_result(client, batch[i], response.results[i].statusCode);
+    UA_CreateMonitoredItemsResponse_clear(&response);
+    mem_free(contexts);
+    mem_free(on_values);
+    mem_free(on_ends);
+    return status;
+}
+
+/* The next nodes that are not subscribed, from *at on; those that cannot even be asked for are refused. Returns how many. */
+static size_t gather(struct opcua_client *client, size_t *at, UA_DataChangeFilter *filter, size_t *batch,
+                     UA_MonitoredItemCreateRequest *items)
+{
+    size_t count = 0;
+    for (; *at < client->nodes->count && count < client->max_items; ++*at) {
+        if (!client->refused[*at])
+            continue;
+        UA_MonitoredItemCreateRequest_init(&items[count]);
+        if (!node_id(client, *at, &items[count].itemToMonitor.nodeId)) {
+            refuse(client, *at, NO_SUCH_NODE);
+            continue;
+        }
+        fill_item(client, *at, filter, &items[count]);
+        batch[count++] = *at;
+    }
+    return count;
+}
+
+static int ask_for_refused(struct opcua_client *client, int stop_fd, int64_t deadline_mono_ns, char why[200])
+{
+    const struct plant_opcua *opcua = &client->source->opcua;
+    UA_DataChangeFilter filter = { .trigger = UA_DATACHANGETRIGGER_STATUSVALUE,
+                                   .deadbandType = opcua->deadband > 0 ? UA_DEADBANDTYPE_ABSOLUTE : UA_DEADBANDTYPE_PERCENT,
+                                   .deadbandValue = opcua->deadband > 0 ? opcua->deadband : opcua->deadband_percent };
+    UA_MonitoredItemCreateRequest *items = mem_array(client->max_items, sizeof(*items));
+    size_t *batch = mem_array(client->max_items, sizeof(*batch)), at = 0, count;
+    int status = 0;
+    while (status == 0 && (count = gather(client, &at, &filter, batch, items)) > 0) {
+        status = create_items(client, batch, items, count, stop_fd, deadline_mono_ns, why);
+        for (size_t i = 0; i < count; i++)
+            UA_NodeId_clear(&items[i].itemToMonitor.nodeId);
+    }
+    mem_free(items);
+    mem_free(batch);
+    return status;
+}
+
+static bool any_without_filter(const struct opcua_client *client)
+{
+    for (size_t i = 0; i < client->nodes->count; i++)
+        if (client->refused[i] && client->no_filter[i])
+            return true;
+    return false;
+}
+
+int opcua_client_subscribe(struct opcua_client *client, int stop_fd, int64_t deadline_mono_ns, char why[200])
+{
+    bool is_new = !client->max_items;
+    int status = is_new ? opcua_read_namespaces(client, stop_fd, deadline_mono_ns, why) : 0;
+    if (status == 0 && is_new)
+        status = begin_subscription(client, stop_fd, deadline_mono_ns, why);
+    if (status == 0)
+        status = ask_for_refused(client, stop_fd, deadline_mono_ns, why);
+    if (status == 0 && is_new && any_without_filter(client))
+        status = ask_for_refused(client, stop_fd, deadline_mono_ns, why);
+    return status;
+}

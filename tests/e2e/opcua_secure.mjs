@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Who an OPC UA server lets in, and which servers are believed: users, and certificates that are wrong, ours and theirs.
+import assert from 'node:assert/strict';
+import { writeFileSync } from 'node:fs';
+import { join } from 'node:path';
+import { after, afterEach, before, test } from 'node:test';
+import { makeCertificate, missingOpcua, OpcuaServer } from './support/opcua.mjs';
+import { PublishedPlant } from './support/published_plant.mjs';
+import { missing } from './support/tiny_plant.mjs';
+
+const absent = missing();
+const options = { skip: absent.length > 0 ? `not built: ${absent.join(', ')}` : missingOpcua() ?? false, timeout: 400000 };
+const ROWS = ['TI-1,nsu=urn:test:plant%3B1;s=TI-1,,°C,temperature,E-101,0.5,0,0,,,,,,'];
+const good = { quality_name: 'Good' };
+let server, plant;
+
+before(async () => {
+    if (options.skip)
+        return;
+    server = await OpcuaServer.create();
+    plant = await PublishedPlant.create(server);
+});
+afterEach(async () => {
+    await plant?.daemon?.stop();
+});
+after(async () => {
+    await plant?.destroy();
+    await server?.destroy();
+});
+const until = (...args) => plant.until(...args);
+const said = (pattern, ms = 20000) => plant.daemon.line(pattern, ms);
+// With a daemon that need not reach its server.
+const start = async (keys, rows = ROWS) => {
+    plant.write(keys, rows);
+    plant.plant.prepare();
+    await plant.plant.startDaemon();
+};
+
+test('users: by password, by certificate, and refused by name', options, async () => {
+    await server.restart({ anonymous: false });
+    const login = join(server.folder, 'login');
+    writeFileSync(login, 'reader\nsaid & done\n');
+    await plant.run(`${server.security(', policy: Basic256Sha256')}, login: ${login}`, ROWS, 30);
+    await until('TI-1', good);
+    writeFileSync(login, 'reader\nwrong\n');
+    await plant.daemon.stop();
+    await start(`${server.security()}, login: ${login}`);
+    await said(/no readings \(Bad(IdentityTokenRejected|UserAccessDenied)/);
+    await plant.daemon.stop();
+    makeCertificate(server.folder, 'user');
+    const at = (file) => join(server.folder, file);
+    await plant.run(server.security(`, user_certificate: ${at('user.crt')}, user_key: ${at('user.key')}`), ROWS, 30);
+    await until('TI-1', good);
+    await plant.daemon.stop();
+    await start(server.security());
+    await said(/no readings \(the server takes no anonymous users/);
+    await plant.daemon.stop();
+    await start('security: none');
+    await said(/no readings \(/);
+});
+
+test('certificates that are wrong are refused by name, ours and theirs', options, async () => {
+    const folder = server.folder;
+    makeCertificate(folder, 'old', { dates: ['20200101000000Z', '20200201000000Z'] });
+    makeCertificate(folder, 'elsewhere', { hosts: 'DNS:other.example' });
+    makeCertificate(folder, 'stranger');
+    const cases = [['server', ['stranger'], /BadCertificateUntrusted: the server's certificate/],
+        ['old', ['old'], /BadCertificateTimeInvalid: the server's certificate: certificate has expired/],
+        ['elsewhere', ['elsewhere'], /BadCertificateHostNameInvalid: the server's certificate is not for 127\.0\.0\.1/]];
+    for (const [certificate, trusted, pattern] of cases) {
+        await server.restart({ certificate });
+        server.trust(...trusted);
+        await start(server.security());
+        await said(pattern);
+        assert.equal((await server.tell({})).sessions, 0);
+        await plant.daemon.stop();
+    }
+    await plant.run(server.security(', server_name: other.example'), ROWS, 30);
+    await plant.daemon.stop();
+    server.trust('server');
+    await server.restart({ trustsAll: false });
+    await start(server.security('', 'stranger'));
+    await said(/no readings \((Bad\w+|the server does not answer)/);
+    await plant.daemon.stop();
+    await start(server.security('', 'nothing'));
+    await said(/no readings \(.*nothing\.crt cannot be read/);
+});

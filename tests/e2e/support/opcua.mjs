@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// An OPC UA server on a free port, and certificates for both sides.
+import { spawn, spawnSync } from 'node:child_process';
+import { existsSync, mkdirSync, mkdtempSync, rmSync, writeFileSync } from 'node:fs';
+import { tmpdir } from 'node:os';
+import { dirname, join } from 'node:path';
+import { createInterface } from 'node:readline';
+import { fileURLToPath } from 'node:url';
+import { freePort } from './ports.mjs';
+import { runProgram } from './tiny_plant.mjs';
+
+const HERE = dirname(fileURLToPath(import.meta.url));
+
+// Why there can be no test of OPC UA here, or null.
+export function missingOpcua() {
+    if (/without OPC UA/.test(runProgram('plantcastd', ['--version']).out))
+        return 'built without OPC UA';
+    return existsSync(join(HERE, '../node_modules/node-opcua-server')) ? null : 'no node-opcua-server';
+}
+
+// NAME.crt and NAME.key in a folder, of its own authority; uri and hosts: among its names; dates: [from, to], as openssl has them.
+export function makeCertificate(folder, name, { uri = `urn:test:${name}`, hosts = 'IP:127.0.0.1,DNS:localhost', dates } = {}) {
+    const run = (...args) => {
+        const { status, stderr } = spawnSync('openssl', args, { cwd: folder, encoding: 'utf8' });
+        if (status !== 0)
+            throw new Error(stderr);
+    };
+    writeFileSync(join(folder, `${name}.cnf`), `[req]\ndistinguished_name = dn\nx509_extensions = v3\nprompt = no\n[dn]\nCN = ${name}
+[v3]\nbasicConstraints = CA:FALSE\nsubjectAltName = URI:${uri},${hosts}
+keyUsage = digitalSignature, nonRepudiation, keyEncipherment, dataEncipherment, keyCertSign\nextendedKeyUsage = serverAuth, clientAuth
+[ca]\ndefault_ca = own\n[own]\ndatabase = ${name}.index\nserial = ${name}.serial\nnew_certs_dir = .\ndefault_md = sha256\npolicy = any
+x509_extensions = v3\n[any]\ncommonName = supplied\n`);
+    if (!dates) {
+        run('req', '-x509', '-newkey', 'rsa:2048', '-nodes', '-days', '2', '-config', `${name}.cnf`, '-keyout', `${name}.key`,
+            '-out', `${name}.crt`);
+        return;
+    }
+    writeFileSync(join(folder, `${name}.index`), '');
+    writeFileSync(join(folder, `${name}.serial`), '01\n');
+    run('req', '-newkey', 'rsa:2048', '-nodes', '-config', `${name}.cnf`, '-keyout', `${name}.key`, '-out', `${name}.csr`);
+    run('ca', '-batch', '-selfsign', '-config', `${name}.cnf`, '-keyfile', `${name}.key`, '-in', `${name}.csr`, '-out', `${name}.crt`,
+        '-notext', '-startdate', dates[0], '-enddate', dates[1]);
+}
+
+export class OpcuaServer {
+    // Makes the certificates `server` (trusted) and `client`; does not start yet.
+    static async create() {
+        const server = new OpcuaServer();
+        server.folder = mkdtempSync(join(tmpdir(), 'plantcast-opcua-'));
+        server.port = await freePort();
+        for (const name of ['server', 'client'])
+            makeCertificate(server.folder, name);
+        server.trust('server');
+        return server;
+    }
+
+    // Has the folder of trusted certificates hold just these.
+    trust(...names) {
+        rmSync(join(this.folder, 'trusted'), { recursive: true, force: true });
+        mkdirSync(join(this.folder, 'trusted'));
+        for (const name of names)
+            spawnSync('openssl', ['x509', '-in', `${name}.crt`, '-out', `trusted/${name}.pem`], { cwd: this.folder });
+    }
+
+    // Ends it if it runs, and starts it with these settings (opcua_server.mjs).
+    async restart(settings = this.settings ?? {}) {
+        await this.kill();
+        this.settings = settings;
+        const told = JSON.stringify({ folder: this.folder, port: this.port, ...settings });
+        this.child = spawn(process.execPath, [join(HERE, 'opcua_server.mjs'), told], { stdio: ['pipe', 'pipe', 'pipe'] });
+        this.said = '';
+        this.answers = [];
+        const child = this.child;
+        child.stderr.on('data', (chunk) => { this.said = (this.said + chunk).slice(-5000); });
+        this.ended = new Promise((done) => child.once('exit', done));
+        const ready = new Promise((done, fail) => {
+            child.once('exit', () => fail(new Error(`the OPC UA server ends:\n${this.said}`)));
+            createInterface({ input: child.stdout }).on('line', (line) => {
+                if (line === 'ready')
+                    done();
+                else if (line.startsWith('{"done"'))
+                    this.answers.shift()?.(JSON.parse(line));
+            });
+        });
+        await ready;
+    }
+
+    tell(order) {
+        return new Promise((done) => { this.answers.push(done); this.child.stdin.write(`${JSON.stringify(order)}\n`); });
+    }
+
+    set(name, value, more = {}) { return this.tell({ set: { name, value, ...more } }); }
+
+    async kill(signal = 'SIGKILL') {
+        if (this.child && this.child.exitCode === null && this.child.signalCode === null) {
+            this.child.kill(signal);
+            await this.ended;
+        }
+    }
+
+    freeze() { this.child.kill('SIGSTOP'); }
+    thaw() { this.child.kill('SIGCONT'); }
+
+    // The source's line of the plant file; keys: what else it says.
+    source(keys) { return `{ id: plc, type: opcua, host: 127.0.0.1, port: ${this.port}, poll_ms: 100, ${keys} }`; }
+
+    // The key `security`, with our certificate.
+    security(more = '', name = 'client') {
+        const at = (file) => join(this.folder, file);
+        return `security: { certificate: ${at(name)}.crt, key: ${at(name)}.key, trusted: ${at('trusted')}${more} }`;
+    }
+
+    async destroy() {
+        await this.kill();
+        rmSync(this.folder, { recursive: true, force: true });
+    }
+}
