@@ -9,6 +9,7 @@
 
 #include "base/mem.h"
 #include "tests/fuzz/promise.h"
+#include "value/mqtt/mqtt_payload.h"
 #include "value/mqtt/sparkplug.h"
 #include "value/mqtt/sparkplug_payload.h"
 #include "value/quality.h"
