@@ -127,13 +127,19 @@ static void start_placing(struct plant_runtime *runtime)
     mem_free(folder);
 }
 
+void plant_runtime_open_lists(struct plant_runtime *runtime)
+{
+    runtime->named_views = named_views_open(runtime->context->log, runtime->plant, runtime->history);
+    runtime->notes = notes_open(runtime->context->log, runtime->history);
+    runtime->wall_remote = wall_remote_open(runtime->context->log, runtime->plant, runtime->history);
+}
+
 bool plant_runtime_start_recording(struct plant_runtime *runtime, struct plant_runtime *before)
 {
     if (before)
         store_adopt(runtime->store, before->store);
-    runtime->named_views = named_views_open(runtime->context->log, runtime->plant, runtime->history);
-    runtime->notes = notes_open(runtime->context->log, runtime->history);
-    runtime->wall_remote = wall_remote_open(runtime->context->log, runtime->plant, runtime->history);
+    if (!before) /* else in the loop, as it is handed over: who is there keeps changing the files until then */
+        plant_runtime_open_lists(runtime);
     if (runtime->history)
         runtime->loop_checks = loop_checks_open(runtime->context->log, runtime->plant, runtime->history);
     if (runtime->render_service)

@@ -130,7 +130,7 @@ static void refuse(struct reload *reload, const struct diag *diag, const char *w
 
 struct swap {
     struct net *net;
-    const struct plant_runtime *after;
+    struct plant_runtime *after;
     struct view first[FIRST];
     size_t first_count;
 };
@@ -155,6 +155,7 @@ static bool start_render_service(struct reload *reload, struct plant_runtime *af
 static void swap(void *arg)
 {
     struct swap *swap = arg;
+    plant_runtime_open_lists(swap->after);
     const struct net_plant plant = plant_runtime_net_plant(swap->after);
     net_release_plant(swap->net);
     net_take_plant(swap->net, &plant);

@@ -22,6 +22,9 @@
 #include "base/timestamp.h"
 #include "plant/plant.h"
 #include "loopcheck/loop_checks.h"
+#include "views/named_views.h"
+#include "views/notes.h"
+#include "views/wall_remote.h"
 
 #define MANIFEST "backup.json"
 #define PLANT_FILE "plant.yaml"
@@ -79,10 +82,22 @@ static const char *base_name(const char *path)
     return slash ? slash + 1 : path;
 }
 
+/* What people make beside the history. */
+static const char *const lists[] = { NAMED_VIEWS_FILE, NOTES_FILE, WALL_REMOTE_FILE };
+enum { LISTS = sizeof(lists) / sizeof(lists[0]) };
+
+static bool is_list(const char *name)
+{
+    for (int i = 0; i < LISTS; i++)
+        if (!strcmp(name, lists[i]))
+            return true;
+    return false;
+}
+
 static bool is_ours(const char *name)
 {
     int month;
-    return month_parse(name, &month) || !strcmp(name, JOURNAL_FILE) || !strcmp(name, LOOP_CHECKS_FILE);
+    return month_parse(name, &month) || !strcmp(name, JOURNAL_FILE) || !strcmp(name, LOOP_CHECKS_FILE) || is_list(name);
 }
 
 /* --- backup --------------------------------------------------------------------------------------------------------------------- */
@@ -119,6 +134,11 @@ static bool add_history(struct job *job, const char *folder)
         good = add(job, copy_database, journal, JOURNAL_FILE);
     if (good && access(loop_checks, F_OK) == 0)
         good = add(job, copy_file, loop_checks, LOOP_CHECKS_FILE);
+    for (int i = 0; i < LISTS && good; i++) {
+        char *from = mem_printf("%s/%s", folder, lists[i]);
+        good = access(from, F_OK) != 0 || add(job, copy_file, from, lists[i]);
+        mem_free(from);
+    }
     mem_free(journal);
     mem_free(loop_checks);
     return good;

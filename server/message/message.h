@@ -179,6 +179,7 @@ struct message {
     struct codec_list codecs;                                  /* hello, codecs; none: as what is resumed */
     double pixel_ratio;                                        /* hello, resize: device pixels to one of the page's; 0: not said */
     char token[TOKEN_MAX_CHARS + 1], resume[RESUME_CHARS + 1]; /* hello; "": none */
+    double idle_ms;                                            /* hello: since somebody was at the page; negative: not said */
     bool anew;                                                 /* hello: of what is resumed only its number, and who follows it */
     bool has_camera, has_params;                               /* hello */
     struct camera camera;                                      /* camera, hello */

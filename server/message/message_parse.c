@@ -113,6 +113,9 @@ static bool parse_hello(const struct plant *plant, const json_t *o, struct messa
         return false;
     if (json_object_get(o, "at_us") && !parse_time(plant, o, out, error))
         return false;
+    out->idle_ms = -1;
+    if (!may_number(o, "idle_ms", 0, 1e12, &out->idle_ms, NULL, error))
+        return false;
     out->anew = json_is_true(json_object_get(o, "anew"));
     out->has_camera = json_is_object(camera);
     out->has_params = json_is_object(params);

@@ -48,6 +48,10 @@ bool role_may_send(enum role role, const struct message *message, struct message
     }
     if (message->type == MESSAGE_ALARM)
         return alarm_allowed(role, message, error);
+    if (message->type == MESSAGE_DISPLAY && role < ROLE_VIEWER) {
+        message_fail(error, "not_allowed", "to be a wall's display takes a token");
+        return false;
+    }
     bool engineers = message->type == MESSAGE_PLACE || message->type == MESSAGE_COVERAGE || message->type == MESSAGE_SAVE_TAGS ||
                      message->type == MESSAGE_LOOP_CHECK;
     if (engineers && role < ROLE_ENGINEER) {

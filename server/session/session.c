@@ -83,12 +83,14 @@ static void on_ping(struct session *session, const struct message *message, int6
         openid_touch(session->context->openid, &session->identity.holder, now_ns);
 }
 
-/* A person may be at another page of theirs, which openid/ knows. */
-static bool is_left_alone(const struct session *session, int64_t now_ns)
+bool session_left_alone(const struct session *session, int64_t now_ns, struct message_error *error)
 {
     const struct session_identity *identity = &session->identity;
     int64_t lock_ns = session->context->lock_ns, since_ns = identity->active_ns ? identity->active_ns : session->opened_ns;
-    return lock_ns && !identity->holder.signed_in && !identity->holder.unattended && now_ns - since_ns > lock_ns;
+    if (!lock_ns || identity->holder.signed_in || identity->holder.unattended || now_ns - since_ns <= lock_ns)
+        return false;
+    message_fail(error, "locked", "nobody was at this page for %.3g min", (double)lock_ns / 60e9);
+    return true;
 }
 
 void session_check_token(struct session *session, int64_t now_ns, int64_t now_utc_ns)
@@ -97,10 +99,9 @@ void session_check_token(struct session *session, int64_t now_ns, int64_t now_ut
     const char *why = person ? "you are signed out" : "this token is no longer let in";
     if (session->identity.holder.role == ROLE_NOBODY)
         return;
-    if (is_left_alone(session, now_ns) && !session->close.code) {
-        struct message_error error = { 0 };
-        message_fail(&error, "locked", "nobody was at this page for %.3g min", (double)session->context->lock_ns / 60e9);
-        session_reply_error(session, &error);
+    struct message_error alone = { 0 };
+    if (!session->close.code && session_left_alone(session, now_ns, &alone)) {
+        session_reply_error(session, &alone);
         session_close(session, 1008, "locked: nobody was at this page");
         return;
     }
@@ -385,7 +386,7 @@ int64_t session_fresh_ns(const struct session *session)
     const struct frame_demand *demand = &session->demand;
     const struct pacer *pacer = &session->delivery.pacer;
     bool due = demand->input || demand->data || demand->any || pacer->asked > 0 || pacer->flight_count > 0 || session->delivery.ready;
-    return due ? pacer->acked.sent_ns : session->heard_ns;
+    return !due ? session->heard_ns : pacer->acked.sent_ns ? pacer->acked.sent_ns : session->opened_ns;
 }
 
 bool session_rests(const struct session *session, int64_t now_ns)

@@ -25,6 +25,9 @@ void session_leave(struct session *session, bool keep, int64_t now_ns);
 void session_record_leave(const struct session *session, const char *why);
 /* Has the connection closed once the texts owed are sent. text: static. The first reason stands. */
 void session_close(struct session *session, int code, const char *text);
+/* Returns whether nobody was at the page for longer than the server waits (--lock-after), with *error saying so. A person may be at another
+   page of theirs, which openid/ knows: no person is locked here. */
+bool session_left_alone(const struct session *session, int64_t now_ns, struct message_error *error);
 /* Closes the session if its token was revoked or has expired; else updates its role. */
 void session_check_token(struct session *session, int64_t now_ns, int64_t now_utc_ns);
 /* Returns the last state of pacing: a client that takes nothing is first sent nothing, then to be disconnected. */

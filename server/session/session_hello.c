@@ -113,6 +113,10 @@ bool session_hello(struct session *session, const struct message *message, int64
     struct view view;
     if (!identify(session, message, now_ns, now_utc_ns, error))
         return false;
+    if (message->idle_ms >= 0) /* a connection that comes back is no sign of a person */
+        session->identity.active_ns = now_ns - (int64_t)(message->idle_ms * 1e6);
+    if (session->identity.holder.role != ROLE_NOBODY && session_left_alone(session, now_ns, error))
+        return false;
     bool back = message->resume[0] && resumes_find(context->resumes, message->resume, session, now_ns, &resumed);
     const struct resumed *before = back && !message->anew ? &resumed : NULL; /* of which the view is taken, too */
     if (!begin_view(session, message, before, &view, error) ||

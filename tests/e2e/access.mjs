@@ -112,6 +112,10 @@ test('a session that is left alone is locked, but not that of a wall; and what i
     clearInterval(timer);
     assert.deepEqual([clients[1].closed, clients[2].closed], [null, null]);
     clients.forEach((client) => client.close());
+    const back = await open(); // a connection that comes back is no sign of a person
+    back.say({ type: 'hello', token: desk, width: 320, height: 180, codecs: ['jpeg'], idle_ms: 60000 });
+    assert.equal((await back.text('error')).code, 'locked');
+    back.close();
     const start = (...args) => runProgram('plantcastd', [plant.file, '--port', '0', ...args]);
     assert.match(start('--lock-after', '15').err, /--lock-after needs --tokens/);
     assert.match(start('--tokens', file, '--lock-after', 'soon').err, /not a number of minutes/);

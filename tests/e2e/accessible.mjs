@@ -100,6 +100,7 @@ async function lookAtTools(look) {
     await page.locator('#token[open]').waitFor();
     await look('token');
     await page.keyboard.press('Escape');
+    await page.evaluate(() => document.body.classList.remove('denied')); // which a welcome does
 }
 
 for (const theme of ['dark', 'light']) {

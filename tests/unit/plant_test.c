@@ -436,8 +436,8 @@ static void bad_choices_list_the_allowed(void **state)
     FOUND(f, { "plant.yaml", 3, 59, "interpolation: expected shepard or paper, found 'idw'" },
           { "plant.yaml", 3, 74, "distance: expected geodesic or euclidean, found a list" },
           { "plant.yaml", 3, 92, "fill: expected none or neighbours, found 'some'" });
-    load_with(f, 4, "sources: [{ id: s, type: opcua, host: h, byte_order: abcd, address_base: 2 }]");
-    FOUND(f, { "plant.yaml", 4, 26, "type: expected modbus, mqtt or replay, found 'opcua'" },
+    load_with(f, 4, "sources: [{ id: s, type: ethip, host: h, byte_order: abcd, address_base: 2 }]");
+    FOUND(f, { "plant.yaml", 4, 26, "type: expected modbus, mqtt, opcua or replay, found 'ethip'" },
           { "plant.yaml", 4, 54, "byte_order: expected ABCD, CDAB, BADC or DCBA, found 'abcd'" },
           { "plant.yaml", 4, 74, "address_base: expected a whole number from 0 to 1, found '2'" });
 }

@@ -143,7 +143,7 @@ session.on('denied', ({ code }) => {
 });
 session.on('welcome', () => document.body.classList.remove('denied'));
 for (const event of ['pointerdown', 'pointermove', 'wheel', 'keydown', 'touchstart'])
-    window.addEventListener(event, () => { session.connection.active = true; }, { capture: true, passive: true });
+    window.addEventListener(event, () => { session.connection.activeAt = Date.now(); }, { capture: true, passive: true });
 session.on('notes', () => (session.notes.length > 0 || modules.there('notes')) && bring('notes'));
 session.on('pointed', () => bring('notes'));
 session.on('followers', () => modules.get('share'));

@@ -26,6 +26,7 @@ export class Connection {
         this.retryAt = null;
         this.leastWait = 0;     // before the next try, as the server asked
         this.lostAt = null;     // when the last good connection ended
+        this.activeAt = Date.now(); // somebody was at the page, which notes it; runs on while a machine sleeps
         this.onState = this.onOpen = this.onText = this.onBytes = () => {};
     }
 
@@ -109,7 +110,6 @@ export class Connection {
 
     opened() {
         this.lastHeard = this.clock.now();
-        this.active = false; // somebody was at the page since the last one, which the page notes
         this.pingAt = null; // of the first one that nothing came after
         this.nextPing = this.lastHeard + PING_MS;
         this.watch();
@@ -150,8 +150,7 @@ export class Connection {
         if (now >= this.nextPing) {
             this.pingAt = this.pingAt ?? now;
             this.nextPing = now + PING_MS;
-            this.send({ type: 'ping', t: now, ...(this.active ? { active: true } : {}) });
-            this.active = false;
+            this.send({ type: 'ping', t: now, ...(Date.now() - this.activeAt < 2 * PING_MS ? { active: true } : {}) });
         }
         return this.pingAt !== null && now - this.pingAt >= ANSWER_MS ? now - this.lastHeard : 0;
     }

@@ -8,12 +8,18 @@ import { ask } from '../core/history.js';
 import { whereOf } from '../core/notes.js';
 import { language, learnWords, say } from '../core/words.js';
 import { byId, make } from '../app/common/dom.js';
-import { stored } from '../app/common/storage.js';
+import { store, stored } from '../app/common/storage.js';
 
 const HOURS = [8, 12, 24], MOST = 200; // rows of a table
 const query = new URLSearchParams(location.search), token = stored('token');
 document.documentElement.lang = language;
 await learnWords();
+new BroadcastChannel('plantcast').onmessage = ({ data }) => { // the page that opened this one was locked
+    if (data === 'locked') {
+        store('token', '');
+        location.reload();
+    }
+};
 
 const get = async (path, args = {}) => (await ask(`api/v1/${path}`, args, token)).json();
 let clock = zoneClock('UTC');

@@ -127,7 +127,12 @@ session.on('welcome', () => {
 
 // --- who we are
 
-session.on('denied', () => {
+session.on('denied', ({ code }) => {
+    if (code === 'locked') {
+        session.token = null;
+        localStorage.removeItem('plantcast.wall');
+        store('token', '');
+    }
     panes = [];
     byId('grid').replaceChildren();
     const field = make('input', { type: 'password', autocomplete: 'off', 'aria-label': say('walls.token') });

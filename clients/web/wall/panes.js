@@ -72,8 +72,8 @@ function ViewsPane(pane, context) {
 
     function showAlarm(page, alarm) {
         const tag = page.session.model.tag(alarm.tag.name);
-        if (tag.group)
-            page.session.setParams({ group: tag.group });
+        // A view that was sent here may hide the place, or colour it in another range.
+        page.session.setParams({ ...(tag.group ? { group: tag.group } : {}), clip: null, split: null, range: null });
         page.flyToTag(tag);
         words.replaceChildren(badge(alarm.priority, isGone(alarm.state)), make('b', {}, ` ${say(`kind.${alarm.kind}`)} ${tag.name} `),
             make('span', {}, `${limitText(session.model, alarm)} `),

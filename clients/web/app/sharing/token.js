@@ -28,6 +28,7 @@ export class TokenDialog {
         if (code === 'locked') {
             this.session.token = null;
             store('token', '');
+            new BroadcastChannel('plantcast').postMessage('locked'); // to the handover
         }
         setText(byId('token-why'), say({ bad_token: 'token.bad', locked: 'token.locked' }[code] ?? 'token.needed'));
         field.value = '';

@@ -49,8 +49,10 @@ export class NamedViews {
         modules.use('commands', (commands) => commands.selectTag(found));
         if (fly)
             modules.use('cameraController', (cameraController) => cameraController.flyTo(camera));
-        else
+        else {
+            modules.there('cameraController')?.land(); // a flight would go on to where it was bound
             session.setCamera(camera);
+        }
     }
 
     // --- saving
