@@ -55,8 +55,9 @@ void plant_runtime_destroy(struct plant_runtime **runtime);
 /* Opens what people make: views, notes, what desks send to walls. In the loop, where another runtime is handed over: it keeps these files
    until then. */
 void plant_runtime_open_lists(struct plant_runtime *runtime);
-/* Starts historian and alarms, and opens the lists where there is no runtime before. before: the runtime whose history, alarms and readings are continued; plant_runtime_hand_over() must have
-   been called on it, and the caller still destroys it. NULL: none. Returns false on failure, already logged. */
+/* Starts historian and alarms, and opens the lists where there is no runtime before. before: the runtime whose history, alarms and readings
+   are continued; plant_runtime_hand_over() must have been called on it, and the caller still destroys it. NULL: none. Returns false on
+   failure, already logged. */
 bool plant_runtime_start_recording(struct plant_runtime *runtime, struct plant_runtime *before);
 /* Starts the field devices' sources and derived tags. Returns false on failure, already logged. */
 bool plant_runtime_start_sources(struct plant_runtime *runtime);

@@ -164,7 +164,8 @@ export class Session {
 
     // Who we are, and whose view was ours: with it comes back what we do not say ourselves.
     proofs() {
-        return { ...(this.token ? { token: this.token } : {}), ...(this.resume ? { resume: this.resume, idle_ms: Date.now() - this.connection.activeAt } : {}),
+        return { ...(this.token ? { token: this.token } : {}),
+            ...(this.resume ? { resume: this.resume, idle_ms: Math.max(0, Date.now() - this.connection.activeAt) } : {}),
             ...(this.anew ? { anew: true } : {}) };
     }
 
