@@ -38,7 +38,7 @@ libyuv   := -lyuv
 endif
 # OPC UA: the system's open62541 where it is new enough, else one that is built beside the build (deploy/open62541); or none.
 asked := $(or $(MAKECMDGOALS),all)
-ifeq ($(shell pkg-config --exists 'open62541 >= 1.4' 2>/dev/null && echo yes),yes)
+ifeq ($(shell pkg-config --exists 'open62541 >= 1.4 open62541 < 1.5' 2>/dev/null && echo yes),yes)
 opcua_cflags := $(shell pkg-config --cflags open62541)
 opcua_libs   := $(shell pkg-config --libs open62541)
 else ifneq ($(filter-out $(no_packages),$(asked)),)
