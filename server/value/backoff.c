@@ -12,3 +12,16 @@ int64_t backoff_next_ns(struct backoff *backoff, uint64_t random)
     pause_ns += pause_ns / 1000 * (int64_t)((random >> 32) % 500); /* up to half as much again */
     return pause_ns < LONGEST_NS ? pause_ns : LONGEST_NS - (int64_t)((random >> 32) % 1000) * 1000000;
 }
+
+int64_t host_turn_next_ns(struct host_turn *turn, int count, int64_t now_ns)
+{
+    turn->index = (turn->index + 1) % count;
+    turn->tried++;
+    return turn->tried % count ? now_ns : now_ns + backoff_next_ns(&turn->backoff, (uint64_t)now_ns);
+}
+
+void host_turn_succeeded(struct host_turn *turn)
+{
+    turn->tried = 0;
+    turn->backoff = (struct backoff){ 0 };
+}

@@ -37,9 +37,7 @@ static struct copy *copy_create(const struct snapshot *from)
 {
     struct copy *copy = mem_new(sizeof(*copy));
     *copy = (struct copy){ .snapshot = *from, .users = 1 };
-    copy->snapshot.readings = mem_array(from->count, sizeof(*from->readings));
-    if (from->count)
-        memcpy(copy->snapshot.readings, from->readings, from->count * sizeof(*from->readings));
+    copy->snapshot.readings = snapshot_copy_readings(from);
     return copy;
 }
 

@@ -17,13 +17,19 @@ struct snapshot *snapshot_create(size_t tag_count)
     return snapshot;
 }
 
+struct reading *snapshot_copy_readings(const struct snapshot *snapshot)
+{
+    struct reading *copy = mem_array(snapshot->count, sizeof(*copy));
+    if (snapshot->count)
+        memcpy(copy, snapshot->readings, snapshot->count * sizeof(*copy));
+    return copy;
+}
+
 struct snapshot *snapshot_copy(const struct snapshot *snapshot)
 {
     struct snapshot *copy = mem_new(sizeof(*copy));
     *copy = *snapshot;
-    copy->readings = mem_array(snapshot->count, sizeof(*copy->readings));
-    if (snapshot->count)
-        memcpy(copy->readings, snapshot->readings, snapshot->count * sizeof(*copy->readings));
+    copy->readings = snapshot_copy_readings(snapshot);
     return copy;
 }
 

@@ -21,7 +21,9 @@ struct snapshot {
 };
 
 struct snapshot *snapshot_create(size_t tag_count); /* never NULL; all readings are Bad_WaitingForInitialData */
-struct snapshot *snapshot_copy(const struct snapshot *snapshot); /* never NULL */
+/* Makes a copy of the readings, or of all; never NULL. */
+struct reading *snapshot_copy_readings(const struct snapshot *snapshot);
+struct snapshot *snapshot_copy(const struct snapshot *snapshot);
 void snapshot_destroy(struct snapshot **snapshot);
 
 #endif

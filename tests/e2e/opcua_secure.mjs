@@ -28,13 +28,8 @@ after(async () => {
     await server?.destroy();
 });
 const until = (...args) => plant.until(...args);
-const said = (pattern, ms = 20000) => plant.daemon.line(pattern, ms);
-// With a daemon that need not reach its server.
-const start = async (keys, rows = ROWS) => {
-    plant.write(keys, rows);
-    plant.plant.prepare();
-    await plant.plant.startDaemon();
-};
+const said = (...args) => plant.said(...args);
+const start = (keys, rows = ROWS) => plant.start(keys, rows);
 
 test('users: by password, by certificate, and refused by name', options, async () => {
     await server.restart({ anonymous: false });

@@ -24,7 +24,7 @@ static void link_lost(struct mqtt_source *mqtt, const char *why)
 {
     int64_t now_ns = clock_mono_ns();
     log_at(mqtt->base.log, mqtt->link_up || !mqtt->link_known ? LOG_WARN : LOG_DEBUG, "source %s: %s:%d: no readings (%s)",
-           mqtt->base.config->id, mqtt->base.config->hosts[mqtt->host_index], mqtt->base.config->port, why);
+           mqtt->base.config->id, mqtt->base.config->hosts[mqtt->turn.index], mqtt->base.config->port, why);
     mqtt->link_up = mqtt->subscribed = false;
     mqtt->link_known = true;
     counter_set(mqtt->up, 0);
@@ -37,14 +37,13 @@ static void on_subscribed(void *arg)
 {
     struct mqtt_source *mqtt = arg;
     mqtt->subscribed = mqtt->link_up = mqtt->link_known = true;
-    mqtt->backoff = (struct backoff){ 0 };
-    mqtt->hosts_tried = 0;
+    host_turn_succeeded(&mqtt->turn);
     counter_set(mqtt->up, 1);
-    counter_set(mqtt->host, 1 + mqtt->host_index);
+    counter_set(mqtt->host, 1 + mqtt->turn.index);
     store_link_up(mqtt->base.store, mqtt->base.index, clock_mono_ns());
     if (mqtt->sparkplug)
         sparkplug_on_subscribed(mqtt->sparkplug, clock_mono_ns());
-    log_info(mqtt->base.log, "source %s: %s:%d: reading", mqtt->base.config->id, mqtt->base.config->hosts[mqtt->host_index],
+    log_info(mqtt->base.log, "source %s: %s:%d: reading", mqtt->base.config->id, mqtt->base.config->hosts[mqtt->turn.index],
              mqtt->base.config->port);
 }
 
@@ -88,7 +87,7 @@ static int run_session(struct mqtt_source *mqtt, char why[200])
                                                .topic_refused = on_topic_refused,
                                                .message = on_message };
     int64_t deadline_ns = clock_mono_ns() + CONNECT_NS, tick_ns = 0;
-    mqtt->client = mqtt_client_start(mqtt->base.config, mqtt->host_index, mqtt->client_id, &events, why);
+    mqtt->client = mqtt_client_start(mqtt->base.config, mqtt->turn.index, mqtt->client_id, &events, why);
     int status = mqtt->client ? mqtt_client_wait(mqtt->client, mqtt->base.stop_fd, deadline_ns, why) : -EINVAL;
     while (status == 0) {
         int64_t now_ns = clock_mono_ns();
@@ -106,15 +105,6 @@ static int run_session(struct mqtt_source *mqtt, char why[200])
     return status;
 }
 
-/* The next host at once, if there is one that was not tried since a session; else after a pause. */
-static int64_t next_host(struct mqtt_source *mqtt)
-{
-    int64_t now_ns = clock_mono_ns();
-    mqtt->host_index = (mqtt->host_index + 1) % mqtt->base.config->host_count;
-    mqtt->hosts_tried++;
-    return mqtt->hosts_tried % mqtt->base.config->host_count ? now_ns : now_ns + backoff_next_ns(&mqtt->backoff, (uint64_t)now_ns);
-}
-
 static void mqtt_run(struct source *source)
 {
     struct mqtt_source *mqtt = (struct mqtt_source *)source;
@@ -124,7 +114,7 @@ static void mqtt_run(struct source *source)
         if (run_session(mqtt, why) == -ECANCELED)
             break;
         link_lost(mqtt, why);
-        next_ns = next_host(mqtt);
+        next_ns = host_turn_next_ns(&mqtt->turn, (int)mqtt->base.config->host_count, clock_mono_ns());
     }
 }
 

@@ -21,9 +21,7 @@ struct mqtt_source {
     char **subscriptions;
     size_t subscription_count;
     struct mqtt_client *client;
-    int host_index;              /* of the host that is being tried */
-    int hosts_tried;             /* one after the other, without a session */
-    struct backoff backoff;
+    struct host_turn turn;
     bool link_up, link_known;
     bool subscribed;             /* what comes now was published now, unless it says otherwise */
     int64_t refusals_ns;         /* since when refusals are counted: a second at most */

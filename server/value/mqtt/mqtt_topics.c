@@ -6,24 +6,12 @@
 #include <string.h>
 
 #include "base/mem.h"
-
-static int by_topic(const void *pa, const void *pb, void *tags_ptr)
-{
-    const struct plant_tag *tags = tags_ptr;
-    int a = *(const int *)pa, b = *(const int *)pb;
-    int order = strcmp(tags[a].topic, tags[b].topic);
-    if (order == 0)
-        order = strcmp(tags[a].path, tags[b].path);
-    return order ? order : (a > b) - (a < b);
-}
+#include "value/source_tags.h"
 
 void mqtt_topics_init(struct mqtt_topics *topics, const struct plant *plant, int source)
 {
-    *topics = (struct mqtt_topics){ .tags = mem_array(plant->tag_count, sizeof(*topics->tags)) };
-    for (size_t i = 0; i < plant->tag_count; i++)
-        if (plant->tags[i].source == source)
-            topics->tags[topics->tag_count++] = (int)i;
-    qsort_r(topics->tags, topics->tag_count, sizeof(*topics->tags), by_topic, plant->tags);
+    *topics = (struct mqtt_topics){ 0 };
+    topics->tags = source_tags_by_topic(plant, source, &topics->tag_count);
     topics->at = mem_array(topics->tag_count, sizeof(*topics->at));
     for (size_t i = 0; i < topics->tag_count; i++) {
         const char *name = plant->tags[topics->tags[i]].topic;

@@ -22,9 +22,7 @@ struct opcua_source {
     /* --- below: used by the source's thread only */
     struct opcua_nodes nodes;
     struct stamped_writer writer;
-    int host_index;  /* of the host that is being tried */
-    int hosts_tried; /* one after the other, without a session */
-    struct backoff backoff;
+    struct host_turn turn;
     bool link_up, link_known;
     int refusals_said;
     bool *wrong; /* by node: its value was none, which is said */
@@ -89,7 +87,7 @@ static void link_lost(struct opcua_source *opcua, const char *why)
     int64_t now_ns = clock_mono_ns();
     const struct plant_source *config = opcua->base.config;
     log_at(opcua->base.log, opcua->link_up || !opcua->link_known ? LOG_WARN : LOG_DEBUG, "source %s: %s:%d: no readings (%s)", config->id,
-           config->hosts[opcua->host_index], config->port, why);
+           config->hosts[opcua->turn.index], config->port, why);
     opcua->link_up = false;
     opcua->link_known = true;
     counter_set(opcua->up, 0);
@@ -102,13 +100,12 @@ static void link_up(struct opcua_source *opcua, const struct opcua_client *clien
 {
     const struct plant_source *config = opcua->base.config;
     opcua->link_up = opcua->link_known = true;
-    opcua->backoff = (struct backoff){ 0 };
-    opcua->hosts_tried = 0;
+    host_turn_succeeded(&opcua->turn);
     counter_set(opcua->up, 1);
-    counter_set(opcua->host, 1 + opcua->host_index);
+    counter_set(opcua->host, 1 + opcua->turn.index);
     counter_set(opcua->refused, (int64_t)opcua_client_refused(client));
     store_link_up(opcua->base.store, opcua->base.index, clock_mono_ns());
-    log_info(opcua->base.log, "source %s: %s:%d: reading %zu nodes, %zu refused", config->id, config->hosts[opcua->host_index],
+    log_info(opcua->base.log, "source %s: %s:%d: reading %zu nodes, %zu refused", config->id, config->hosts[opcua->turn.index],
              config->port, opcua->nodes.count - opcua_client_refused(client), opcua_client_refused(client));
 }
 
@@ -132,7 +129,7 @@ static int serve(struct opcua_source *opcua, struct opcua_client *client, char w
 static int run_session(struct opcua_source *opcua, char why[200])
 {
     const struct opcua_events events = { .arg = opcua, .value = on_value, .refused = on_refused };
-    struct opcua_client *client = opcua_client_create(opcua->base.config, opcua->host_index, &opcua->nodes, &events, why);
+    struct opcua_client *client = opcua_client_create(opcua->base.config, opcua->turn.index, &opcua->nodes, &events, why);
     opcua->refusals_said = 0;
     int status = client ? opcua_client_connect(client, opcua->base.stop_fd, clock_mono_ns() + CONNECT_NS, why) : -EINVAL;
     if (status == 0) {
@@ -149,15 +146,6 @@ static int run_session(struct opcua_source *opcua, char why[200])
     return status;
 }
 
-/* The next host at once, if there is one that was not tried since a session; else after a pause. */
-static int64_t next_host(struct opcua_source *opcua)
-{
-    int64_t now_ns = clock_mono_ns();
-    opcua->host_index = (opcua->host_index + 1) % opcua->base.config->host_count;
-    opcua->hosts_tried++;
-    return opcua->hosts_tried % opcua->base.config->host_count ? now_ns : now_ns + backoff_next_ns(&opcua->backoff, (uint64_t)now_ns);
-}
-
 static void opcua_run(struct source *source)
 {
     struct opcua_source *opcua = (struct opcua_source *)source;
@@ -166,7 +154,7 @@ static void opcua_run(struct source *source)
         char why[200] = "";
         if (run_session(opcua, why) == -ECANCELED)
             break;
-        next_ns = next_host(opcua);
+        next_ns = host_turn_next_ns(&opcua->turn, (int)opcua->base.config->host_count, clock_mono_ns());
     }
 }
 

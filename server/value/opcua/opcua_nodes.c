@@ -2,28 +2,15 @@
 /* Tags sorted by node; those of one node stand together. */
 #include "value/opcua/opcua_nodes.h"
 
-#include <stdlib.h>
 #include <string.h>
 
 #include "base/mem.h"
-
-static int by_node(const void *pa, const void *pb, void *tags_ptr)
-{
-    const struct plant_tag *tags = tags_ptr;
-    int a = *(const int *)pa, b = *(const int *)pb;
-    int order = strcmp(tags[a].topic, tags[b].topic);
-    if (order == 0)
-        order = strcmp(tags[a].path, tags[b].path);
-    return order ? order : (a > b) - (a < b);
-}
+#include "value/source_tags.h"
 
 void opcua_nodes_init(struct opcua_nodes *nodes, const struct plant *plant, int source)
 {
-    *nodes = (struct opcua_nodes){ .tags = mem_array(plant->tag_count, sizeof(*nodes->tags)) };
-    for (size_t i = 0; i < plant->tag_count; i++)
-        if (plant->tags[i].source == source)
-            nodes->tags[nodes->tag_count++] = (int)i;
-    qsort_r(nodes->tags, nodes->tag_count, sizeof(*nodes->tags), by_node, plant->tags);
+    *nodes = (struct opcua_nodes){ 0 };
+    nodes->tags = source_tags_by_topic(plant, source, &nodes->tag_count);
     nodes->at = mem_array(nodes->tag_count, sizeof(*nodes->at));
     for (size_t i = 0; i < nodes->tag_count; i++) {
         const struct plant_tag *tag = &plant->tags[nodes->tags[i]];

@@ -36,7 +36,19 @@ tags: tags.csv
         writeFileSync(join(this.folder, 'tags.csv'), `${[HEAD, ...rows].join('\n')}\n`);
     }
 
-    // The same, prepared, with a daemon that has subscribed.
+    // The same, prepared, with a daemon that need not reach its server.
+    async start(keys, rows) {
+        this.write(keys, rows);
+        this.plant.prepare();
+        await this.plant.startDaemon();
+    }
+
+    // Waits until the daemon says so.
+    said(pattern, ms = 20000) {
+        return this.daemon.line(pattern, ms);
+    }
+
+    // The same as write, prepared, with a daemon that has subscribed.
     async run(keys, rows, seconds = 15) {
         this.write(keys, rows);
         const prepared = this.plant.prepare();
