@@ -2,15 +2,13 @@
 /* The statement's query and readings through the offline renderer. */
 #include "redraw.h"
 
-#include <inttypes.h>
-#include <math.h>
-#include <png.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "base/mem.h"
 #include "offline_renderer.h"
+#include "provenance/png_pixels.h"
 #include "render/overlay/overlay.h"
 #include "value/quality.h"
 
@@ -43,10 +41,9 @@ static bool same_assets(const json_t *statement, const struct scene *scene)
     const json_t *assets = json_object_get(statement, "assets");
     size_t others = 0;
     for (size_t i = 0; i < scene->asset_count; i++) {
-        char checksum[17] = "";
+        char checksum[PICTURE_CHECKSUM_BYTES];
         const char *then = json_string_value(json_object_get(assets, scene->plant->assets[i].id));
-        if (!scene->assets[i].missing)
-            snprintf(checksum, sizeof(checksum), "%016" PRIx64, scene->assets[i].file->view.header->checksum);
+        picture_asset_checksum(&scene->assets[i], checksum);
         if (strcmp(then ? then : "", checksum) != 0 && others++ == 0)
             printf("  DIFFERS: the prepared file of asset %s was %s, and is %s\n", scene->plant->assets[i].id, then ? then : "not there",
                    *checksum ? checksum : "not there");
@@ -69,7 +66,7 @@ static bool same_as_recorded(struct offline_renderer *offline, const struct redr
 {
     struct snapshot_options where = { .history = options->history };
     int64_t us = at_us ? at_us : record->readings->taken_utc_ns / 1000;
-    size_t same = 0, compared = 0, first = 0;
+    size_t same = 0, count = offline->plant->tag_count, first = 0;
     if (!offline_renderer_open_history(offline, &where))
         return false;
     if (us < offline->first_us || us > offline->last_us) {
@@ -78,18 +75,17 @@ static bool same_as_recorded(struct offline_renderer *offline, const struct redr
     }
     struct snapshot *then = snapshot_create(offline->plant->tag_count);
     bool good = history_at(offline->reader, offline->tags, us, then) == 0;
-    for (size_t i = 0; i < offline->plant->tag_count && good; i++) {
+    for (size_t i = 0; i < count && good; i++) {
         bool equal = same_reading(&record->readings->readings[i], &then->readings[i]);
-        compared++;
         same += equal;
         if (!equal && first == 0)
             first = i + 1;
     }
     snapshot_destroy(&then);
-    printf("  %s%zu of %zu readings agree with what was recorded\n", good && same == compared ? "" : "DIFFERS: ", same, compared);
+    printf("  %s%zu of %zu readings agree with what was recorded\n", same == count ? "" : "DIFFERS: ", same, count);
     if (first)
         printf("  the first that does not is %s\n", offline->plant->tags[first - 1].name);
-    return good && same == compared;
+    return same == count;
 }
 
 /* Those that differ by at most one step in each colour. */
@@ -106,15 +102,10 @@ static size_t count_agreeing(const struct frame *frame, const uint8_t *rgb)
 
 static bool same_pixels(const struct frame *frame, const uint8_t *png, size_t count)
 {
-    png_image image = { .version = PNG_IMAGE_VERSION };
-    size_t all = (size_t)frame->width_px * (size_t)frame->height_px, agreeing = 0;
-    if (!png_image_begin_read_from_memory(&image, png, count))
-        return false;
-    image.format = PNG_FORMAT_RGB;
-    uint8_t *rgb = mem_array(PNG_IMAGE_SIZE(image), 1);
-    if ((int)image.width == frame->width_px && (int)image.height == frame->height_px && png_image_finish_read(&image, NULL, rgb, 0, NULL))
-        agreeing = count_agreeing(frame, rgb);
-    png_image_free(&image);
+    char why[PNG_WHY_BYTES];
+    size_t all = (size_t)frame->width_px * (size_t)frame->height_px;
+    uint8_t *rgb = png_pixels(png, count, frame->width_px, frame->height_px, why);
+    size_t agreeing = rgb ? count_agreeing(frame, rgb) : 0;
     mem_free(rgb);
     printf("  %s%zu of %zu pixels agree within 1/255 with the picture drawn again\n", agreeing == all ? "" : "DIFFERS: ", agreeing, all);
     return agreeing == all;

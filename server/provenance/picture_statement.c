@@ -2,7 +2,6 @@
 /* Hashes of what a statement names. */
 #include "provenance/picture_statement.h"
 
-#include <inttypes.h>
 #include <openssl/evp.h>
 #include <stdio.h>
 #include <string.h>
@@ -28,11 +27,4 @@ void picture_hash_json(const json_t *value, char out[PICTURE_HASH_BYTES])
     if (text)
         picture_hash(text, strlen(text), out);
     free(text);
-}
-
-void picture_asset_checksum(const struct scene_asset *asset, char out[PICTURE_CHECKSUM_BYTES])
-{
-    *out = 0;
-    if (!asset->missing)
-        snprintf(out, PICTURE_CHECKSUM_BYTES, "%016" PRIx64, asset->file->view.header->checksum);
 }

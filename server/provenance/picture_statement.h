@@ -5,7 +5,6 @@
 #include <jansson.h>
 
 #include "encode/packet.h"
-#include "scene/scene.h"
 
 #define PICTURE_STATEMENT_KEYWORD "Plantcast statement"
 #define PICTURE_SIGNATURE_KEYWORD "Plantcast signature"
@@ -14,8 +13,7 @@ enum {
     PICTURE_STATEMENT_VERSION = 1,
     PICTURE_STATEMENT_MAX_BYTES = 64 << 20, /* three sets of readings of 100,000 tags */
     PICTURE_SIGNATURE_BYTES = 128,
-    PICTURE_HASH_BYTES = 65,
-    PICTURE_CHECKSUM_BYTES = 17
+    PICTURE_HASH_BYTES = 65
 };
 
 /* Writes a SHA-256 as hexadecimal digits. */
@@ -24,7 +22,5 @@ void picture_hex(const uint8_t hash[PACKET_SHA256_BYTES], char out[PICTURE_HASH_
 void picture_hash(const void *bytes, size_t count, char out[PICTURE_HASH_BYTES]);
 /* Writes that of a value as it is printed with PICTURE_JSON. */
 void picture_hash_json(const json_t *value, char out[PICTURE_HASH_BYTES]);
-/* Writes the checksum in the head of the asset's file (protocol/ASSET.md); "": it has none. */
-void picture_asset_checksum(const struct scene_asset *asset, char out[PICTURE_CHECKSUM_BYTES]);
 
 #endif

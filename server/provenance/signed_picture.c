@@ -2,6 +2,7 @@
 /* Writes the statement, and signs its very bytes: nobody has to print it again the same way. */
 #include "provenance/signed_picture.h"
 
+#include <inttypes.h>
 #include <math.h>
 #include <openssl/evp.h>
 #include <string.h>
@@ -36,6 +37,13 @@ static json_t *baselines_of(const struct plant *plant, const struct frame_record
                                              (json_int_t)record->baselines[i].what.taken_utc_ns, "readings",
                                              readings_of(plant, record->baselines[i].readings, NULL)));
     return all;
+}
+
+void picture_asset_checksum(const struct scene_asset *asset, char out[PICTURE_CHECKSUM_BYTES])
+{
+    *out = 0;
+    if (!asset->missing)
+        snprintf(out, PICTURE_CHECKSUM_BYTES, "%016" PRIx64, asset->file->view.header->checksum);
 }
 
 static json_t *assets_of(const struct scene *scene)

@@ -8,6 +8,7 @@
 #include "encode/packet.h"
 #include "provenance/signing_key.h"
 #include "render/frame_record.h"
+#include "scene/scene.h"
 
 struct picture_origin { /* what the server knows of a picture besides the picture */
     const struct scene *scene;
@@ -21,6 +22,10 @@ struct picture_origin { /* what the server knows of a picture besides the pictur
    frame has a record. Returns NULL if there is no memory for it or it cannot be signed. */
 uint8_t *signed_picture_make(const struct signing_key *key, const struct picture_origin *origin, const struct packet *packet,
                              size_t *out_count);
+
+enum { PICTURE_CHECKSUM_BYTES = 17 };
+/* Writes the checksum in the head of the asset's file (protocol/ASSET.md), as statements have it; "": there is no file. */
+void picture_asset_checksum(const struct scene_asset *asset, char out[PICTURE_CHECKSUM_BYTES]);
 
 enum { SIGNED_PICTURE_WHY_BYTES = 256 };
 /* Returns the statement of a PNG file if it is whole, of a version that is understood and signed by that key, and the picture's pixels and

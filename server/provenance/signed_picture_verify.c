@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Verifies first what was signed, and only then reads it. */
 #include <openssl/evp.h>
-#include <png.h>
 #include <stdio.h>
 #include <string.h>
 
 #include "base/mem.h"
 #include "provenance/picture_statement.h"
 #include "provenance/signed_picture.h"
+#include "provenance/png_pixels.h"
 #include "provenance/png_text.h"
 #include "value/quality.h"
 
@@ -30,24 +30,15 @@ static bool is_signed(const struct signing_key *key, const char *statement, size
 
 static bool has_pixels(const json_t *statement, const uint8_t *png, size_t count, char why[SIGNED_PICTURE_WHY_BYTES])
 {
-    png_image image = { .version = PNG_IMAGE_VERSION };
     char hash[PICTURE_HASH_BYTES];
     const char *expected = json_string_value(json_object_get(statement, "pixels_sha256"));
-    if (!png_image_begin_read_from_memory(&image, png, count))
-        return FAIL("the picture cannot be read: %.100s", image.message);
-    image.format = PNG_FORMAT_RGB;
-    bool size = image.width == (png_uint_32)json_integer_value(json_object_get(statement, "width")) &&
-                image.height == (png_uint_32)json_integer_value(json_object_get(statement, "height"));
-    uint8_t *pixels = size ? mem_try_array(PNG_IMAGE_SIZE(image), 1) : NULL;
-    bool read = pixels && png_image_finish_read(&image, NULL, pixels, 0, NULL);
-    if (read)
-        picture_hash(pixels, PNG_IMAGE_SIZE(image), hash);
+    int64_t width_px = json_integer_value(json_object_get(statement, "width"));
+    int64_t height_px = json_integer_value(json_object_get(statement, "height"));
+    uint8_t *pixels = png_pixels(png, count, width_px, height_px, why);
+    if (!pixels)
+        return false;
+    picture_hash(pixels, 3 * (size_t)width_px * (size_t)height_px, hash);
     mem_free(pixels);
-    png_image_free(&image);
-    if (!size)
-        return FAIL("the picture has another size than the statement says");
-    if (!read)
-        return FAIL("the picture cannot be read: %.100s", image.message[0] ? image.message : "there is no memory for it");
     return (*hash && expected && !strcmp(hash, expected)) || FAIL("the pixels are not those that were signed");
 }
 
@@ -151,13 +142,9 @@ struct frame_record *signed_picture_record(const json_t *statement, const struct
         snprintf(why, SIGNED_PICTURE_WHY_BYTES, "it was made for somebody who may see no readings, and tells none");
         return NULL;
     }
-    struct snapshot *snapshot = snapshot_create(plant->tag_count);
-    struct frame_record *record = mem_new(sizeof(*record));
-    atomic_init(&record->refs, 1);
-    record->readings = snapshot;
-    record->unproven = mem_array(plant->tag_count, sizeof(*record->unproven));
-    snapshot->taken_utc_ns = json_integer_value(json_object_get(statement, "taken_ns"));
-    bool good = read_readings(json_object_get(told, "now"), plant, snapshot, record->unproven, why);
+    struct frame_record *record = frame_record_empty(plant->tag_count);
+    record->readings->taken_utc_ns = json_integer_value(json_object_get(statement, "taken_ns"));
+    bool good = read_readings(json_object_get(told, "now"), plant, record->readings, record->unproven, why);
     for (size_t i = 0; i < json_array_size(all) && good; i++)
         good = read_baseline(json_array_get(all, i), plant, record, baselines, why);
     if (!good)

@@ -19,13 +19,25 @@ static void add_baseline(struct frame_record *record, struct baselines *baseline
         baselines_give(baselines, &snapshot);
 }
 
-struct frame_record *frame_record_create(const struct view *view, const struct snapshot *readings, struct baselines *baselines,
-                                         const struct loop_checks *loop_checks)
+/* Takes the readings. */
+static struct frame_record *make(struct snapshot *readings)
 {
     struct frame_record *record = mem_new(sizeof(*record));
     atomic_init(&record->refs, 1);
-    record->readings = snapshot_copy(readings);
+    record->readings = readings;
     record->unproven = mem_array(readings->count, sizeof(*record->unproven));
+    return record;
+}
+
+struct frame_record *frame_record_empty(size_t tag_count)
+{
+    return make(snapshot_create(tag_count));
+}
+
+struct frame_record *frame_record_create(const struct view *view, const struct snapshot *readings, struct baselines *baselines,
+                                         const struct loop_checks *loop_checks)
+{
+    struct frame_record *record = make(snapshot_copy(readings));
     for (size_t i = 0; i < readings->count; i++)
         record->unproven[i] = loop_checks && loop_checks_unproven(loop_checks, (int)i);
     add_baseline(record, baselines, view->field.baseline);

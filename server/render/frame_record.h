@@ -23,6 +23,8 @@ struct frame_record {
    are none. The caller owns the record (frame_record_unref). */
 struct frame_record *frame_record_create(const struct view *view, const struct snapshot *readings, struct baselines *baselines,
                                          const struct loop_checks *loop_checks);
+/* Makes one in which no tag has a reading, to be filled in before others see it. */
+struct frame_record *frame_record_empty(size_t tag_count);
 struct frame_record *frame_record_ref(struct frame_record *record); /* NULL is fine, and is returned */
 void frame_record_unref(struct frame_record **record);              /* &NULL is fine; leaves NULL */
 
