@@ -259,8 +259,12 @@ static bool hold(struct store *store, const struct sample *sample, int64_t now_m
 {
     struct held *held = &store->tags[sample->tag];
     bool bad = quality_is_bad(sample->quality), finite = isfinite(sample->value), value_changed = false;
-    if (now_mono_ns < held->sampled_mono_ns)
-        return false;
+    if (now_mono_ns < held->sampled_mono_ns) {
+        /* The same sample once more, at the same time as its sender tells it, shows that a source which was lost is back. */
+        if (!held->dead || !held->has_value || now_utc_ns < held->received_utc_ns)
+            return false;
+        now_mono_ns = held->sampled_mono_ns;
+    }
     held->quality = bad || finite ? sample->quality : QUALITY_BAD_SENSOR_FAILURE;
     held->sampled_mono_ns = now_mono_ns;
     held->lost = held->dead = false;

@@ -272,6 +272,22 @@ static void readings_go_on_in_another_plant(void **state)
     plant_by_hand_destroy(&plant);
 }
 
+/* Another source that takes over a tag whose server was lost is told the value of before at its own time, a moment off by our clock. */
+static void a_value_told_again_is_good_again(void **state)
+{
+    struct setup *s = *state;
+    write_one(s, 0, 42, QUALITY_GOOD, 10 * S);
+    store_write(s->store, &(struct sample){ .tag = 0, .value = 7, .quality = QUALITY_GOOD }, 1, 10 * S - 1, 1010 * S);
+    assert_true(look(s, 0, 10 * S)->value == 42); /* while it is alive, what came later stays */
+    store_tags_dead(s->store, &(int){ 0 }, 1, 20 * S);
+    assert_true(quality_is_bad(look(s, 0, 21 * S)->quality));
+    store_write(s->store, &(struct sample){ .tag = 0, .value = 9, .quality = QUALITY_GOOD }, 1, 10 * S - 1, 1009 * S);
+    assert_true(quality_is_bad(look(s, 0, 21 * S)->quality)); /* older than what is known */
+    store_write(s->store, &(struct sample){ .tag = 0, .value = 42, .quality = QUALITY_GOOD }, 1, 10 * S - 1, 1010 * S);
+    assert_true(look(s, 0, 21 * S)->value == 42);
+    assert_false(quality_is_bad(look(s, 0, 11 * S)->quality));
+}
+
 static void all_who_listen_hear_until_they_leave(void **state)
 {
     struct setup *s = *state;
@@ -565,6 +581,7 @@ int main(void)
         store_test(says_when_a_reading_gets_stale),
         store_test(nothing_changes_unannounced),
         store_test(readings_go_on_in_another_plant),
+        store_test(a_value_told_again_is_good_again),
         cmocka_unit_test(qualities_have_names_and_classes),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
