@@ -82,13 +82,14 @@ static bool cut_month(struct log *log, const char *folder, int month, bool newes
     return good;
 }
 
+/* A file that cannot be read now may hold some: only what is known to hold none goes for its age. */
 static int64_t waiting_in(struct log *log, const char *folder, int month)
 {
     int error;
     int64_t count = 0;
     struct month_outbox *outbox = month_outbox_open(log, folder, month, &error);
-    if (outbox && month_outbox_count(outbox, &count))
-        count = 0;
+    if (outbox ? month_outbox_count(outbox, &count) != 0 : error != -ENOENT)
+        count = 1;
     month_outbox_close(&outbox);
     return count;
 }

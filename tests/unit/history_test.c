@@ -736,6 +736,30 @@ static void months_wait_for_what_is_to_be_sent(void **state)
     assert_int_equal(count, 1);
 }
 
+/* What cannot be read may hold something that waits. */
+static void months_that_cannot_be_read_are_not_too_old(void **state)
+{
+    struct setup *s = *state;
+    int64_t march_us = month_begin_us(month_of(NOVEMBER) + 4), unsent;
+    size_t count;
+    char name[MONTH_NAME_BYTES];
+    record_to_send(s, march_us, 10);
+    month_name(month_of(NOVEMBER), name);
+    char *path = temp_path(s->folder, name);
+    FILE *file = fopen(path, "w");
+    assert_non_null(file);
+    fputs("this is no database, but long enough to be taken for one at first sight: its head would have a hundred bytes at least\n", file);
+    fclose(file);
+    retention_apply(s->log, s->folder, &(struct retention_limits){ .days = 30, .bytes = 1e9, .sends = true }, march_us, &unsent);
+    mem_free(month_list(s->folder, &count));
+    assert_int_equal(count, 2);
+    assert_int_equal(unsent, 0);
+    retention_apply(s->log, s->folder, &(struct retention_limits){ .days = 30, .bytes = 1e9 }, march_us, &unsent);
+    mem_free(month_list(s->folder, &count));
+    assert_int_equal(count, 1);
+    mem_free(path);
+}
+
 /* Also through a handle that sends nothing: an import, or a daemon whose plant file names no database any more. */
 static void what_waits_is_converted_with_the_rest(void **state)
 {
@@ -781,6 +805,7 @@ int main(void)
         cmocka_unit_test_setup_teardown(a_month_that_is_too_large_loses_its_beginning, set_up, tear_down),
         cmocka_unit_test_setup_teardown(a_month_that_is_over_shrinks, set_up, tear_down),
         cmocka_unit_test_setup_teardown(months_wait_for_what_is_to_be_sent, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(months_that_cannot_be_read_are_not_too_old, set_up, tear_down),
         cmocka_unit_test_setup_teardown(what_waits_is_converted_with_the_rest, set_up, tear_down),
     };
     cmocka_set_message_output(CM_OUTPUT_TAP);
