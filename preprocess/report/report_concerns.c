@@ -10,6 +10,8 @@
 
 #define METHODS_DIFFER 0.05 /* root mean square, of the largest distance: more than what the heat method smooths */
 #define FIELD_SLACK 1.05    /* float rounding in what splitting reached */
+#define HIGH_POWER 5        /* from there on the error of a distance alone can be worth more than two steps of colour */
+#define DISTANCE_ERROR 0.0031 /* of a distance along the surface: the worst of accuracy_test's whole shapes */
 
 const char *const report_states[] = { "left", "failed", "unchanged", "shared", "built" };
 
@@ -62,6 +64,25 @@ static void add_numbers(struct concerns *concerns, const struct prepare_asset *a
                        (double)left->steps, text_table_number(left->edges).text));
 }
 
+/* A weight is a power p of a distance, so the share of one sensor against another errs by up to p/2 of the error of a distance. */
+static void add_powers(struct concerns *concerns, const struct prepare *prepare, const struct prepare_asset *asset)
+{
+    for (size_t g = 0; g < prepare->plant->group_count; g++) {
+        const struct plant_group *group = &prepare->plant->groups[g];
+        double steps = 255 * DISTANCE_ERROR * group->power / 2;
+        size_t sensors = 0;
+        for (size_t s = 0; s < asset->sensor_count; s++) {
+            const struct plant_tag *tag = &prepare->plant->tags[asset->sensors[s].tag];
+            sensors += tag->group == (int)g && !tag->place_assumed;
+        }
+        if (sensors > 1 && group->interpolation == INTERPOLATION_SHEPARD && group->power >= HIGH_POWER)
+            add(concerns, asset, 1 + steps / 255,
+                mem_printf("along its surface, '%s' may err by up to %.0f steps of colour (1/255 of the range): power %g makes that of "
+                           "distances that are true to %.1f %%",
+                           group->id, steps, group->power, 100 * DISTANCE_ERROR));
+    }
+}
+
 /* Also of those that were not built in this run: wrong units do not become right. */
 static void add_sizes(struct concerns *concerns, const struct prepare *prepare)
 {
@@ -98,6 +119,8 @@ struct report_concern *report_concerns(const struct prepare *prepare, size_t *co
         add_sensors(&concerns, prepare, asset);
         if (asset->reported && asset->state != PREPARE_SHARED)
             add_numbers(&concerns, asset);
+        if (asset->wanted && asset->state != PREPARE_SHARED)
+            add_powers(&concerns, prepare, asset);
     }
     add_sizes(&concerns, prepare);
     if (concerns.count)
