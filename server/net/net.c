@@ -83,7 +83,7 @@ static void record_held(struct server_context *server, int64_t now_ns)
     if ((!server->logins_held && !server->unasked) || now_ns - server->held_ns < HELD_NS)
         return;
     record_sum(server, &server->logins_held, "tokens of slowed addresses were not looked at");
-    record_sum(server, &server->unasked, "answers of the identity provider belonged to no log-in, or could not be looked at");
+    record_sum(server, &server->unasked, "answers of the identity provider belonged to no log-in, could not be looked at, or were errors");
     server->held_ns = now_ns;
 }
 

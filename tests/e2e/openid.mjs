@@ -181,6 +181,7 @@ test('a code, a state or a whole answer once more, another browser, another issu
     denied.searchParams.delete('code');
     denied.searchParams.set('error', 'access_denied');
     assert.match(await (await browser.get(denied)).text(), /refuses it: access_denied/);
+    await recorded('who is refused there', (line) => line.result === 'refused' && /refuses it: access_denied/.test(line.why ?? ''));
     for (const to of ['//evil.example', 'https://evil.example', '/\\evil.example', '/\r\nSet-Cookie: a=b'])
         assert.equal((await new Browser().signIn(to)).headers.get('location'), '/', to);
 });
@@ -299,6 +300,27 @@ test('foreign answers by thousands leave one line, and lock nobody out', { skip,
     assert.ok(refusals() - lines <= 2, String(refusals() - lines));
     const answer = await beginFrom('127.0.0.9');
     assert.equal((await answer('error=access_denied')).statusCode, 403, 'the address is not held');
+});
+
+test("a provider's own faults, and people who change their mind, slow nobody: the token still opens", { skip }, async () => {
+    const lines = refusals(), errors = ['access_denied', 'temporarily_unavailable'];
+    const faults = [[401, { error: 'invalid_client' }], [400, { error: 'unauthorized_client' }], [429, { error: 'slow_down' }],
+        [429, {}], [503, {}]];
+    for (const fault of faults) {
+        provider.fault = fault;
+        for (let i = 0; i < 4; i++)
+            assert.equal((await (await beginFrom('127.0.0.7'))('code=x')).statusCode, 403, JSON.stringify(fault));
+    }
+    provider.fault = null;
+    assert.match(plant.daemon.said, /the provider refuses to be asked/);
+    for (let i = 0; i < 20; i++)
+        assert.equal((await (await beginFrom('127.0.0.7'))(`error=${errors[i % 2]}`)).statusCode, 403);
+    assert.equal((await askFrom('127.0.0.7', '/api/v1/me', { Authorization: `Bearer ${token}` })).statusCode, 200);
+    assert.ok(refusals() - lines <= 2, String(refusals() - lines));
+    for (let i = 0; i < 12; i++)
+        await (await beginFrom('127.0.0.7'))(`code=made-up-${i}`);
+    assert.equal((await (await beginFrom('127.0.0.7'))('code=x')).statusCode, 429, 'what is a guess still counts');
+    assert.equal((await new Browser().signIn()).status, 303);
 });
 
 test('made-up codes slow their address, and others sign in meanwhile', { skip, timeout: 120000 }, async () => {

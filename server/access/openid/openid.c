@@ -11,6 +11,8 @@
 #include "base/mem.h"
 #include "base/text.h"
 
+static const int64_t ERROR_EVERY_NS = 5 * NS_PER_S;
+
 /* --- the loop's side ------------------------------------------------------------------------------------------------------ */
 
 const struct openid_config *openid_config_of(const struct openid *openid)
@@ -71,6 +73,16 @@ static bool has_room(const struct openid *openid, const uint8_t address[16])
     return openid->codes.count < OPENID_CODES && of_address < OPENID_CODES_OF_ADDRESS;
 }
 
+/* Under the lock. Errors that a browser brings, somebody's refusal to sign in or the provider's own, are no guesses at anything. Anybody
+   can bring any number of them, so one is recorded now and then. */
+static enum openid_result judge_error(struct openid *openid, int64_t now_ns)
+{
+    if (openid->error_ns && now_ns - openid->error_ns < ERROR_EVERY_NS)
+        return OPENID_AWAY;
+    openid->error_ns = now_ns;
+    return OPENID_REFUSED;
+}
+
 enum openid_finish openid_finish(struct openid *openid, const struct openid_return *brought, int64_t now_ns)
 {
     struct openid_job job = { .request = brought->request };
@@ -81,14 +93,17 @@ enum openid_finish openid_finish(struct openid *openid, const struct openid_retu
         counter_inc(openid->foreign, 1);
         return OPENID_FOREIGN;
     }
-    const char *why = is_other_issuer(openid, brought->iss) ? "another issuer answers"
-                      : brought->error                      ? "the provider refuses it"
-                      : !brought->code                      ? "the provider gives no code"
-                                                            : NULL;
+    bool other = is_other_issuer(openid, brought->iss);
+    const char *why = other            ? "another issuer answers"
+                      : brought->error ? "the provider refuses it"
+                      : !brought->code ? "the provider gives no code"
+                                       : NULL;
     if (why) {
         char *text = brought->error ? mem_printf("%s: %.80s", why, brought->error) : mem_strdup(why);
-        openid_say_refused(openid, brought->from, text);
-        openid_add_answer(openid, &job, OPENID_GUESSED, "", text);
+        enum openid_result verdict = other || !brought->error ? OPENID_GUESSED : judge_error(openid, now_ns);
+        if (verdict != OPENID_AWAY)
+            openid_say_refused(openid, brought->from, text);
+        openid_add_answer(openid, &job, verdict, "", text);
     } else if (has_room(openid, job.sign_in.address)) {
         job.code = mem_strdup(brought->code);
         job.from = mem_strdup(brought->from);

@@ -46,7 +46,7 @@ enum openid_result {
     OPENID_LET_IN,
     OPENID_REFUSED, /* recorded: somebody logged in there, and may not be let in */
     OPENID_GUESSED, /* recorded; counts as a wrong token does: nobody logged in there */
-    OPENID_AWAY,    /* the provider does not answer, which is nobody's guess: not recorded */
+    OPENID_AWAY,    /* nobody's guess, as when the provider does not answer, or refuses us: not recorded one by one */
 };
 
 struct openid_answer {

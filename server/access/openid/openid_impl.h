@@ -45,6 +45,7 @@ struct openid {
     int running[OPENID_TASKS];
     int64_t discover_ns; /* monotonic: when metadata and keys are to be looked at next */
     struct openid_answer *answers;
+    int64_t error_ns; /* monotonic: when an error of the provider was recorded last; 0: never */
 };
 
 /* --- openid_work.c --- */

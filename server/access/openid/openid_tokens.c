@@ -92,6 +92,15 @@ static struct person *take_tokens(struct openid *openid, const struct openid_job
     return person;
 }
 
+/* Only invalid_grant says that the code is none (RFC 6749, 5.2). All else is between the provider and us: our secret is over, or it is
+   busy. */
+static enum openid_result judge_code(const struct openid_reply *reply, const char *error)
+{
+    if (reply->status == 200)
+        return OPENID_REFUSED;
+    return reply->status < 500 && error && !strcmp(error, "invalid_grant") ? OPENID_GUESSED : OPENID_AWAY;
+}
+
 struct person *openid_redeem(struct openid *openid, const struct openid_job *job, enum openid_result *result, char **why)
 {
     struct text form = { 0 };
@@ -103,11 +112,12 @@ struct person *openid_redeem(struct openid *openid, const struct openid_job *job
     openid_add_argument(&form, "code_verifier", job->sign_in.verifier);
     bool answered = post(openid, "token_endpoint", &form, &reply);
     const char *error = text_of(reply.json, "error");
-    *result = !answered || reply.status >= 500 ? OPENID_AWAY : reply.status == 200 ? OPENID_REFUSED : OPENID_GUESSED;
+    *result = answered ? judge_code(&reply, error) : OPENID_AWAY;
     if (!answered)
         *why = mem_printf("the provider does not answer: %s", reply.why);
     else if (reply.status != 200)
-        *why = mem_printf("the provider refuses the code: %.80s (status %d)", error ? error : "it does not say why", reply.status);
+        *why = mem_printf("the provider refuses %s: %.80s (status %d)", *result == OPENID_GUESSED ? "the code" : "to be asked",
+                          error ? error : "it does not say why", reply.status);
     else
         person = take_tokens(openid, job, reply.json, why);
     if (!person && reply.status == 200) { /* what is of no use here must not stay in force there */

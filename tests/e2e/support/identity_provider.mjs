@@ -15,6 +15,7 @@ export class IdentityProvider {
         this.status = 200;      // of refreshing
         this.delay_ms = 0;      // until the token endpoint answers
         this.keysStatus = 200;
+        this.fault = null;      // [status, JSON] that the token endpoint answers, whatever it is asked
         this.live = new Map();  // refresh tokens that could be used, and whose they are
         this.codes = new Map();
         this.asked = [];
@@ -50,6 +51,8 @@ export class IdentityProvider {
     }
 
     token(form, authorization) {
+        if (this.fault)
+            return this.fault;
         if (Buffer.from(authorization?.split(' ')[1] ?? '', 'base64').toString() !== 'plant:geheim%20%2B')
             return [401, { error: 'invalid_client' }];
         const given = randomUUID();
