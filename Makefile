@@ -69,7 +69,7 @@ cxxflags = -std=c++17 -D_GNU_SOURCE $(warn) $(common) $(CXXFLAGS)
 ldflags  = $(flags_$(config)) -pthread -Wl,--as-needed -Wl,-z,relro,-z,now $(LDFLAGS)
 
 # --- what is built: one archive per layer, left to right ------------------------------------------------------------------
-layers   := base audit plant surface value history alarm notify loopcheck views scene field placing importing gpu render encode \
+layers   := base audit plant surface value history alarm notify loopcheck views corelink scene field placing importing gpu render encode \
             provenance message service access session net
 layers   := $(foreach l,$(layers),$(if $(wildcard server/$(l)/*.c),$(l)))
 without  := $(if $(filter h264,$(CODECS)),,$(wildcard server/encode/h264*)) server/base/image_lazy.c \

@@ -56,6 +56,11 @@ static void print_usage(FILE *out)
           "                   nobody. Where it does not work on this machine, clients get JPEG\n"
           "  --import         engineers may upload models and tag lists on the page and have them brought in (plantcast import --serve);\n"
           "                   =now: what lies in the folder exports beside the plant file, at once\n"
+          "  --role ROLE      all: reads field devices and serves operators; core: likewise, and renderers may connect; render: has no\n"
+          "                   field device, and takes readings and alarms from a core\n"
+          "  --core URL       render: wss://HOST:PORT of the core; again for each that stands by for it\n"
+          "  --core-token-file FILE, --core-ca FILE   render: its token, of the role renderer; certificates trusted for the core\n"
+          "  --node NAME      this daemon's name among others, for the core's log\n"
           "  --check          read everything, report every error, start nothing\n"
           "  --dump-plan      print what field devices will be asked: requests, addresses on the wire, and the load\n"
           "\n"
@@ -184,6 +189,11 @@ enum {
     OPTION_AUDIT_KEY,
     OPTION_AUDIT_SIZE,
     OPTION_IMPORT,
+    OPTION_ROLE,
+    OPTION_CORE,
+    OPTION_CORE_TOKEN,
+    OPTION_CORE_CA,
+    OPTION_NODE,
     OPTION_CHECK,
     OPTION_PLAN,
     OPTION_VERSION,
@@ -225,6 +235,11 @@ static const struct option options[] = {
     { "audit-key", required_argument, NULL, OPTION_AUDIT_KEY },
     { "audit-size", required_argument, NULL, OPTION_AUDIT_SIZE },
     { "import", optional_argument, NULL, OPTION_IMPORT },
+    { "role", required_argument, NULL, OPTION_ROLE },
+    { "core", required_argument, NULL, OPTION_CORE },
+    { "core-token-file", required_argument, NULL, OPTION_CORE_TOKEN },
+    { "core-ca", required_argument, NULL, OPTION_CORE_CA },
+    { "node", required_argument, NULL, OPTION_NODE },
     { "check", no_argument, NULL, OPTION_CHECK },
     { "dump-plan", no_argument, NULL, OPTION_PLAN },
     { "version", no_argument, NULL, OPTION_VERSION },
@@ -292,6 +307,51 @@ static int take_audit_option(int option, struct server_params *params)
     }
 }
 
+static bool parse_role(const char *text, enum server_role *role)
+{
+    static const char *const names[] = { [SERVER_ALL] = "all", [SERVER_CORE] = "core", [SERVER_RENDER] = "render" };
+    for (size_t i = 0; i < sizeof(names) / sizeof(names[0]); i++)
+        if (!strcmp(names[i], text)) {
+            *role = (enum server_role)i;
+            return true;
+        }
+    return false;
+}
+
+static bool add_core(struct server_params *params, const char *url)
+{
+    if (params->core_count == CORE_URLS || !core_link_url_good(url))
+        return false;
+    params->cores[params->core_count++] = url;
+    return true;
+}
+
+/* -1: go on; else the exit code. */
+static int take_role_option(int option, struct server_params *params)
+{
+    switch (option) {
+    case OPTION_ROLE: return parse_role(optarg, &params->role) ? -1 : usage_error("--role: all, core or render, not", optarg);
+    case OPTION_CORE: return add_core(params, optarg) ? -1 : usage_error("--core: not wss://HOST:PORT, or the fifth:", optarg);
+    case OPTION_CORE_TOKEN: params->core_token = optarg; return -1;
+    case OPTION_CORE_CA: params->core_ca = optarg; return -1;
+    case OPTION_NODE: params->node = optarg; return tokens_name_valid(optarg) ? -1 : usage_error("--node: no such name:", optarg);
+    default: return take_audit_option(option, params);
+    }
+}
+
+/* NULL: they go together. */
+static const char *role_wrong(const struct server_params *params)
+{
+    bool render = params->role == SERVER_RENDER;
+    if (render != (params->core_count > 0))
+        return "--role render and --core URL belong together";
+    if (!render && (params->core_token || params->core_ca))
+        return "--core-token-file and --core-ca are for --role render";
+    if (render && params->imports)
+        return "--import is for the core: --role render brings no plant in";
+    return NULL;
+}
+
 /* -1: go on; else the exit code. */
 static int take_option(int option, struct server_params *params, int (**task)(const struct server_params *params))
 {
@@ -330,7 +390,7 @@ static int take_option(int option, struct server_params *params, int (**task)(co
     case OPTION_PLAN: *task = server_dump_plan; return -1;
     case OPTION_VERSION: puts("plantcastd " PLANTCAST_VERSION LACKS); return GOOD;
     case OPTION_HELP: print_usage(stdout); return GOOD;
-    default: return take_audit_option(option, params);
+    default: return take_role_option(option, params);
     }
 }
 
@@ -362,8 +422,15 @@ int main(int argc, char **argv)
         return FAILED;
     }
     const char *why;
+    char machine[256] = "";
+    if (!params.node && gethostname(machine, sizeof(machine) - 1) == 0)
+        params.node = machine;
     if ((params.audit.syslog && !params.audit.path) || !params.audit.syslog_cert != !params.audit.syslog_key) {
         fputs("plantcastd: --audit-syslog needs --audit FILE; --audit-cert and --audit-key belong together.\n", stderr);
+        return FAILED;
+    }
+    if ((why = role_wrong(&params))) {
+        fprintf(stderr, "plantcastd: %s.\n", why);
         return FAILED;
     }
     if (!access_allowed_at(&params.access, is_loopback(params.address), &why)) {

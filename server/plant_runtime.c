@@ -8,6 +8,7 @@
 #include "scene/far_sensors.h"
 #include "field/colormap.h"
 #include "scene/scene_create.h"
+#include "version.h"
 
 /* --- what lies on disk ------------------------------------------------------------------------------------------------ */
 
@@ -53,7 +54,7 @@ struct plant_runtime *plant_runtime_read(const struct plant_runtime_context *con
     runtime->store = store_create(runtime->plant);
     runtime->baselines = baselines_create();
     runtime->snapshot_cache = snapshot_cache_create();
-    if (!runtime->plant->history.off)
+    if (!runtime->plant->history.off && params->role != SERVER_RENDER)
         runtime->history = params->history ? mem_strdup(params->history) : plant_history_folder(runtime->plant);
     return runtime;
 }
@@ -82,6 +83,7 @@ static bool start_alarm_service(struct plant_runtime *runtime, struct alarm_serv
         .store = runtime->store,
         .folder = runtime->history,
         .keep_days = runtime->plant->history.keep_days,
+        .mirrors = context->params->role == SERVER_RENDER,
         .before = before,
         .notify = context->notify,
         .notify_arg = context->notify_arg,
@@ -96,7 +98,7 @@ static bool start_notifier(struct plant_runtime *runtime)
                                             .plant = runtime->plant,
                                             .alarm_service = runtime->alarm_service,
                                             .folder = runtime->history };
-    return !runtime->plant->notify || (runtime->notifier = notifier_start(&params));
+    return !runtime->plant->notify || runtime->context->params->role == SERVER_RENDER || (runtime->notifier = notifier_start(&params));
 }
 
 static bool start_publisher(struct plant_runtime *runtime)
@@ -106,7 +108,7 @@ static bool start_publisher(struct plant_runtime *runtime)
                                              .plant = runtime->plant,
                                              .store = runtime->store,
                                              .alarm_service = runtime->alarm_service };
-    return !runtime->plant->publish || (runtime->publisher = publisher_start(&params));
+    return !runtime->plant->publish || runtime->context->params->role == SERVER_RENDER || (runtime->publisher = publisher_start(&params));
 }
 
 /* Made from what is loaded; works only once somebody asks. */
@@ -148,9 +150,31 @@ bool plant_runtime_start_recording(struct plant_runtime *runtime, struct plant_r
            start_notifier(runtime) && start_publisher(runtime);
 }
 
+static bool start_core_link(struct plant_runtime *runtime)
+{
+    const struct plant_runtime_context *context = runtime->context;
+    const struct server_params *server = context->params;
+    struct core_link_params params = { .log = context->log,
+                                       .counters = context->counters,
+                                       .plant = runtime->plant,
+                                       .store = runtime->store,
+                                       .alarm_service = runtime->alarm_service,
+                                       .url_count = server->core_count,
+                                       .token_path = server->core_token,
+                                       .ca_path = server->core_ca,
+                                       .version = PLANTCAST_VERSION,
+                                       .node = server->node,
+                                       .notify = context->notify,
+                                       .notify_arg = context->notify_arg };
+    memcpy(params.urls, server->cores, sizeof(params.urls));
+    return (runtime->core_link = core_link_start(&params));
+}
+
 bool plant_runtime_start_sources(struct plant_runtime *runtime)
 {
     const struct plant_runtime_context *context = runtime->context;
+    if (context->params->role == SERVER_RENDER)
+        return start_core_link(runtime);
     runtime->sources = mem_array(runtime->plant->source_count, sizeof(*runtime->sources));
     for (size_t i = 0; i < runtime->plant->source_count; i++)
         if (!(runtime->sources[i] = source_start(context->log, runtime->plant, (int)i, runtime->store, context->counters)))
@@ -201,6 +225,8 @@ static void stop_sources(struct plant_runtime *runtime)
     for (size_t i = 0; runtime->sources && i < runtime->plant->source_count; i++)
         source_stop(&runtime->sources[i]);
     source_stop(&runtime->derived);
+    if (runtime->core_link)
+        core_link_halt(runtime->core_link);
     mem_free(runtime->sources);
     runtime->sources = NULL;
 }
@@ -228,6 +254,7 @@ struct net_plant plant_runtime_net_plant(const struct plant_runtime *runtime)
         .notes = runtime->notes,
         .wall_remote = runtime->wall_remote,
         .loop_checks = runtime->loop_checks,
+        .core_link = runtime->core_link,
         .tag_list = runtime->tag_list,
         .history_folder = runtime->history,
     };
@@ -248,6 +275,7 @@ void plant_runtime_destroy(struct plant_runtime **pointer)
     stop_sources(runtime);
     notifier_stop(&runtime->notifier);
     publisher_stop(&runtime->publisher);
+    core_link_stop(&runtime->core_link);
     alarm_service_stop(&runtime->alarm_service);
     historian_stop(&runtime->historian);
     store_destroy(&runtime->store);

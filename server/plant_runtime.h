@@ -35,6 +35,7 @@ struct plant_runtime {
     struct notifier *notifier;   /* NULL: nobody is told of alarms */
     struct publisher *publisher; /* NULL: nothing is published */
     struct source **sources; /* by index in plant->sources */
+    struct core_link *core_link; /* of a renderer, instead of sources; else NULL */
     struct source *derived;  /* computes derived tags; NULL: there are none */
     struct render_service *render_service;
     char *history; /* its folder; NULL: nothing is recorded */

@@ -8,7 +8,11 @@
 #include "access/access.h"
 #include "audit/audit.h"
 #include "base/log.h"
+#include "corelink/core_link.h"
 #include "gpu/gl.h"
+
+/* Who reads field devices, and who draws for operators. */
+enum server_role { SERVER_ALL, SERVER_CORE /* renderers may connect, too */, SERVER_RENDER };
 
 struct server_params {
     const char *plant_path;
@@ -30,6 +34,11 @@ struct server_params {
     const char *signing_key;   /* PEM file of the key that signs pictures; NULL: none is signed */
     struct audit_params audit; /* path NULL: nothing is recorded */
     bool imports, imports_now; /* engineers may bring plants in; what was exported is brought in at once */
+    enum server_role role;
+    const char *cores[CORE_URLS]; /* SERVER_RENDER: URLs of the core and of those that stand by for it */
+    int core_count;
+    const char *core_token, *core_ca; /* file of the token; of certificates that are trusted. NULL: none; the system's */
+    const char *node;                 /* this daemon's name among others; without --node the machine's */
     bool per_fragment; /* the field anew at each fragment; for comparison */
 };
 

@@ -22,7 +22,7 @@ enum { MAX_FILE_BYTES = 1024 * 1024 };
 
 static void print_usage(FILE *out)
 {
-    fputs("usage: plantcast token add FILE --role viewer|operator|engineer --name NAME [--until YYYY-MM-DD]\n"
+    fputs("usage: plantcast token add FILE --role viewer|operator|engineer|renderer --name NAME [--until YYYY-MM-DD]\n"
           "                           [--plant PLANT] [--unattended]\n"
           "       plantcast token list FILE\n"
           "       plantcast token revoke FILE NAME\n"
@@ -218,7 +218,7 @@ static bool take_option(int option, struct token_holder *holder)
     case 'r':
         role = name_find(names_role, optarg);
         holder->role = (enum role)role;
-        return role >= ROLE_VIEWER;
+        return role >= ROLE_VIEWER || role == ROLE_RENDERER;
     case 'n': snprintf(holder->name, sizeof(holder->name), "%s", optarg); return tokens_name_valid(optarg);
     case 'w': holder->unattended = true; return true;
     case 'p': snprintf(holder->plant, sizeof(holder->plant), "%s", optarg); return tokens_plant_valid(optarg);

@@ -132,8 +132,8 @@ int tokens_parse_line(const char *line, struct token_holder *out, const char **w
     if (count == 0)
         return 0;
     int role = name_find(names_role, words[0]);
-    if (role < ROLE_VIEWER)
-        *why = "the role is viewer, operator or engineer";
+    if (role < ROLE_VIEWER && role != ROLE_RENDERER)
+        *why = "the role is viewer, operator, engineer or renderer";
     else if (count != 3 && count != WORDS)
         *why = "ROLE NAME SHA-256 [until YYYY-MM-DD] [unattended] [plant PLANT] is expected";
     else if (!plant_good)

@@ -147,8 +147,10 @@ static void tick(struct alarm_service *service)
     store_snapshot(service->params.store, now_ns, clock_utc_ns(), service->snapshot);
     bool asks = service->journal && journal_asks(service->journal);
     pthread_mutex_lock(&service->thread.lock);
-    alarms_put(service->alarms, service->taken.at, service->taken.count);
-    alarms_tick(service->alarms, service->snapshot);
+    if (!service->params.mirrors) {
+        alarms_put(service->alarms, service->taken.at, service->taken.count);
+        alarms_tick(service->alarms, service->snapshot);
+    }
     uint64_t number = alarms_number(service->alarms);
     int raised = service->raised_now;
     service->raised_now = 0;
@@ -232,8 +234,9 @@ struct alarm_service *alarm_service_start(const struct alarm_service_params *par
     service->snapshot = snapshot_create(params->plant->tag_count);
     service->alarms = alarms_create(params->plant, &listener);
     add_counters(service);
-    store_listen(params->store, on_sample, service);
-    bool good = start_journal(service);
+    if (!params->mirrors)
+        store_listen(params->store, on_sample, service);
+    bool good = params->mirrors || start_journal(service);
     if (params->before)
         adopt(service, params->before);
     service->params.before = NULL;
@@ -305,6 +308,16 @@ const char *alarm_service_act(struct alarm_service *service, const char *name, e
     int index = alarms_find_named(service->alarms, name, kind);
     if (index >= 0)
         why = alarms_act(service->alarms, index, act, (struct instant){ clock_mono_ns(), clock_utc_ns() });
+    uint64_t number = alarms_number(service->alarms);
+    pthread_mutex_unlock(&service->thread.lock);
+    tell(service, number);
+    return why;
+}
+
+const char *alarm_service_mirror(struct alarm_service *service, const struct alarm *list, size_t count, bool whole)
+{
+    pthread_mutex_lock(&service->thread.lock);
+    const char *why = alarms_mirror(service->alarms, list, count, whole) ? NULL : "an alarm that is not there";
     uint64_t number = alarms_number(service->alarms);
     pthread_mutex_unlock(&service->thread.lock);
     tell(service, number);

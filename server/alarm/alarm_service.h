@@ -14,6 +14,7 @@ struct alarm_service_params {
     struct store *store;  /* plant and store must outlive the service */
     const char *folder;   /* of the journal; NULL: no journal, states are lost when the daemon ends */
     double keep_days;
+    bool mirrors;         /* states come from a core (alarm_service_mirror), and not from samples: nothing is evaluated, nothing kept */
     struct alarm_service *before; /* the halted service of the plant before a reload, whose alarm states are taken over; NULL: none */
     void (*notify)(void *arg); /* called when an alarm changed, by the thread or within alarm_service_act(); may be NULL */
     void *notify_arg;
@@ -40,6 +41,9 @@ uint64_t alarm_service_changes(struct alarm_service *service, uint64_t since, vo
 /* Does what an operator asks for: acknowledges, shelves and so on. name: of a tag, or for ALARM_LINK of a device. Returns NULL, or why it
    was refused (static). */
 const char *alarm_service_act(struct alarm_service *service, const char *name, enum alarm_kind kind, const struct alarm_act *act);
+/* Takes the states of alarms as a core has them, by name and kind, in that order; whole: all others are normal. For a service that mirrors.
+   Returns NULL, or why it cannot (static); then nothing changed. */
+const char *alarm_service_mirror(struct alarm_service *service, const struct alarm *list, size_t count, bool whole);
 /* Counts alarms by state. */
 void alarm_service_counts(struct alarm_service *service, struct alarm_counts *out);
 

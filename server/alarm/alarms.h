@@ -105,6 +105,9 @@ void alarms_counts(const struct alarms *alarms, int64_t now_mono_ns, struct alar
 /* Sets an alarm to a state from the journal. The listener only gets the alarm that is shown for the tag. States that do not exist in the
    alarm mode of this plant are dropped. */
 void alarms_restore(struct alarms *alarms, int index, const struct alarm *saved, struct instant now);
+/* Sets alarms, by name and kind, to what another daemon says they are, in that order; whole: all others are normal. Returns false if one is
+   not there; then nothing changed. */
+bool alarms_mirror(struct alarms *alarms, const struct alarm *list, size_t count, bool whole);
 /* Takes over the states of alarms of the same tag and kind from another plant, including running delays. */
 void alarms_adopt(struct alarms *alarms, const struct alarms *before);
 

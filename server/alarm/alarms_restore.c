@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "alarm/alarms_impl.h"
+#include "base/mem.h"
 
 /* In a mode without acknowledgements nobody could end what is set aside by hand. */
 static void fit_to_rule(struct alarm *alarm, bool by_hand)
@@ -84,6 +85,43 @@ void alarms_adopt(struct alarms *alarms, const struct alarms *before)
             alarm->condition = from->condition;
         take(alarms, index, from);
     }
+}
+
+static void set_as_told(struct alarms *alarms, int index, const struct alarm *told)
+{
+    struct alarm *alarm = &alarms->list[index];
+    alarm->state = told->state;
+    alarm->acknowledged_there = told->acknowledged_there;
+    alarm->held = told->held;
+    alarm->value = told->value;
+    alarm->raised_utc_ns = told->raised_utc_ns;
+    alarm->raised_mono_ns = told->raised_mono_ns;
+    alarm->changed_utc_ns = told->changed_utc_ns;
+    alarm->until = told->until;
+    memcpy(alarm->who, told->who, sizeof(alarm->who));
+    memcpy(alarm->reason, told->reason, sizeof(alarm->reason));
+    alarms_touch(alarms, index);
+}
+
+bool alarms_mirror(struct alarms *alarms, const struct alarm *list, size_t count, bool whole)
+{
+    bool *named = mem_array(alarms->count + 1, sizeof(*named)), good = true;
+    for (size_t i = 0; i < count && good; i++) {
+        int index = alarms_find_named(alarms, list[i].name, list[i].kind);
+        good = index >= 0;
+        if (good)
+            named[index] = true;
+    }
+    for (size_t i = 0; good && whole && i < alarms->count; i++)
+        if (!named[i] && alarm_status_of(&alarms->list[i]) != ALARM_NORMAL) {
+            alarms->list[i].state = (struct alarm_state){ 0 };
+            alarms->list[i].held = false;
+            alarms_touch(alarms, (int)i);
+        }
+    for (size_t i = 0; good && i < count; i++)
+        set_as_told(alarms, alarms_find_named(alarms, list[i].name, list[i].kind), &list[i]);
+    mem_free(named);
+    return good;
 }
 
 static bool chatters(const struct alarm *alarm, int64_t now_mono_ns)

@@ -5,7 +5,7 @@
 #include "message/names.h"
 
 const struct name names_role[] = {
-    { "nobody", ROLE_NOBODY },     { "open", ROLE_OPEN },         { "viewer", ROLE_VIEWER },
+    { "nobody", ROLE_NOBODY },     { "renderer", ROLE_RENDERER }, { "open", ROLE_OPEN }, { "viewer", ROLE_VIEWER },
     { "operator", ROLE_OPERATOR }, { "engineer", ROLE_ENGINEER }, { NULL, 0 },
 };
 
@@ -46,6 +46,10 @@ bool role_may_send(enum role role, const struct message *message, struct message
         message_fail(error, "token_needed", "a token is needed: in hello, as `token`");
         return false;
     }
+    if (role == ROLE_RENDERER) {
+        message_fail(error, "not_allowed", "this token is that of a renderer, which opens /core and nothing else");
+        return false;
+    }
     if (message->type == MESSAGE_ALARM)
         return alarm_allowed(role, message, error);
     if (message->type == MESSAGE_DISPLAY && role < ROLE_VIEWER) {
@@ -69,4 +73,18 @@ bool role_may_send(enum role role, const struct message *message, struct message
     if (message->type != MESSAGE_PARAMS && !message->has_params)
         return true;
     return params_allowed(role, &message->params, error) && params_allowed(role, &message->split.right, error);
+}
+
+bool message_is_handed_on(const struct message *message)
+{
+    switch (message->type) {
+    case MESSAGE_ALARM:
+    case MESSAGE_SAVE_VIEW:
+    case MESSAGE_REMOVE_VIEW:
+    case MESSAGE_NOTE:
+    case MESSAGE_REMOVE_NOTE:
+    case MESSAGE_SEND_TO_WALL:
+    case MESSAGE_POINT: return true;
+    default: return false;
+    }
 }

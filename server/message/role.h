@@ -7,6 +7,7 @@
 
 enum role {
     ROLE_NOBODY, /* has yet to say who it is */
+    ROLE_RENDERER, /* no person: another daemon, which may open /core and nothing else */
     ROLE_OPEN,   /* anyone, under --open-viewers */
     ROLE_VIEWER,
     ROLE_OPERATOR,
@@ -17,5 +18,8 @@ extern const struct name names_role[]; /* ends with a NULL text */
 
 /* Returns whether a client of that role may send the message. If not, fills *error with the refusal to answer. */
 bool role_may_send(enum role role, const struct message *message, struct message_error *error);
+
+/* Returns whether a renderer hands on messages of that type to its core: those that change what all share. */
+bool message_is_handed_on(const struct message *message);
 
 #endif

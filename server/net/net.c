@@ -15,6 +15,9 @@
 #include "base/clock.h"
 #include "base/mem.h"
 #include "net/http/site.h"
+#include "corelink/core_identity.h"
+#include "net/core_end.h"
+#include "net/renderers.h"
 #include "net/tls.h"
 #include "net/connection.h"
 #include "net/handed_socket.h"
@@ -31,6 +34,7 @@ enum { SPARE_FILES = 256 };                                         /* beside co
 static const struct lws_protocols protocols[] = {
     { .name = "http", .callback = http_callback, .per_session_data_size = sizeof(void *) },
     { .name = WIRE_SUBPROTOCOL, .callback = stream_callback, .per_session_data_size = sizeof(void *), .rx_buffer_size = 4096 },
+    { .name = CORE_SUBPROTOCOL, .callback = renderer_callback, .per_session_data_size = sizeof(void *), .rx_buffer_size = 4096 },
     { .name = HANDED_PROTOCOL, .callback = handed_socket_callback },
     { 0 },
 };
@@ -197,6 +201,7 @@ static void look_at_alarms(struct server_context *server)
         return;
     server->alarms_number = number;
     streams_on_alarms(server);
+    renderers_on_change(server);
 }
 
 static void collect_historical_snapshots(struct server_context *server)
@@ -232,6 +237,7 @@ static void collect(struct net *net)
     net_calls_run(net);
     if (atomic_load(&net->look))
         look_at_files(net, clock_mono_ns());
+    core_end_collect(server);
     look_at_alarms(server);
     collect_picks(server);
     collect_history_answers(server);
@@ -318,6 +324,7 @@ static void add_counters(struct server_context *server)
         counters_add(c, "plantcast_logins_held_total", "counter", "Tokens that were not looked at, of addresses that are slowed.");
     server->counters.logins_slowed =
         counters_add(c, "plantcast_logins_slowed_addresses", "gauge", "Addresses that are slowed, for ten wrong tokens within a minute.");
+    server->counters.renderers = counters_add(c, "plantcast_renderers", "gauge", "Renderers that this core feeds.");
     server->counters.requests = counters_add(c, "plantcast_http_requests_total", "counter", "HTTP requests.");
 }
 
@@ -491,6 +498,7 @@ void net_run(struct net *net)
     net_calls_close(net);
     net_unwatch_readings(net);
     streams_close(server);
+    renderers_close(server, "the core goes down");
     set_timer(net, clock_mono_ns() + GOODBYE_NS);
     for (int64_t end_ns = clock_mono_ns() + GOODBYE_NS; server->stream_count > 0 && clock_mono_ns() < end_ns;)
         lws_service(server->lws, 0);

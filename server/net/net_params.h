@@ -9,6 +9,7 @@
 #include "audit/audit.h"
 #include "base/counters.h"
 #include "base/log.h"
+#include "corelink/core_link.h"
 #include "importing/plant_import.h"
 #include "loopcheck/loop_checks.h"
 #include "views/named_views.h"
@@ -28,6 +29,7 @@ struct net_plant { /* what belongs to one loaded plant; a reload brings another 
     struct notes *notes;
     struct wall_remote *wall_remote;
     struct named_views *named_views;
+    struct core_link *core_link;     /* of a renderer; NULL: this daemon reads its devices itself */
     struct loop_checks *loop_checks; /* NULL: loops cannot be checked */
     const char *tag_list;            /* the text in force; NULL: not known */
     const char *history_folder;      /* NULL: nothing is recorded */
@@ -53,6 +55,7 @@ struct net_params {
     unsigned codecs;        /* a bit, 1 << enum wire_codec, for each that works here */
     const char *web_folder; /* the page's files; NULL: no page is served */
     const char *version;
+    bool is_core;           /* renderers may connect */
     void (*reload)(void *arg, const char *who);     /* called in the loop: load the plant anew, as who asks. NULL: it cannot be */
     void (*save)(void *arg, struct tag_save *save); /* called in the loop: put another tag list in force; takes it. NULL: it cannot be */
     struct plant_import *import;                    /* NULL: plants are not brought in here */

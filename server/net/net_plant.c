@@ -2,6 +2,7 @@
 /* What the loop has of one plant: its sessions' context, its history. */
 #include "access/tokens.h"
 #include "base/mem.h"
+#include "net/core_end.h"
 #include "net/net.h"
 #include "net/net_impl.h"
 
@@ -49,6 +50,7 @@ void net_bind_plant(struct net *net)
     server->session_context.wall_remote = server->params.plant.wall_remote;
     server->session_context.tag_list = server->params.plant.tag_list;
     server->session_context.links_up = server->links_up;
+    core_end_bind(server);
     net_take_snapshot(server);
     net_check_links(server);
 }

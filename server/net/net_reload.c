@@ -4,8 +4,10 @@
 
 #include "base/clock.h"
 #include "base/mem.h"
+#include "net/core_end.h"
 #include "net/net.h"
 #include "net/net_impl.h"
+#include "net/renderers.h"
 #include "net/stream.h"
 #include "session/resume.h"
 
@@ -46,6 +48,8 @@ void net_release_plant(struct net *net)
     for (struct stream *stream = server->streams; stream; stream = stream->next)
         stream->carried = session_carry(stream->session);
     http_release_plant(server);
+    core_end_collect(server); /* what was not answered any more */
+    renderers_close(server, "the core has another configuration from now on");
     net_unwatch_readings(net);
     history_queries_destroy(&server->history_queries);
     history_loader_destroy(&server->history_loader);

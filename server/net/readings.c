@@ -4,6 +4,7 @@
 #include "base/clock.h"
 #include "net/net.h"
 #include "net/net_impl.h"
+#include "net/renderers.h"
 #include "value/quality.h"
 
 static const int64_t BETWEEN_NS = 100 * NS_PER_MS; /* two snapshots at least, however often readings change */
@@ -47,6 +48,10 @@ bool net_check_links(struct server_context *server)
         server->links_up[i] = up;
         any |= up;
     }
+    struct core_link *core_link = server->params.plant.core_link;
+    bool core_up = core_link && core_link_is_up(core_link);
+    changed |= server->session_context.core_up != core_up;
+    server->session_context.core_up = core_up;
     server->session_context.live = any;
     struct clock_state clock = clock_state_read(), *known = &server->session_context.clock;
     changed |= known->set != clock.set || known->leap_s != clock.leap_s || clock_state_error_ms(known) != clock_state_error_ms(&clock);
@@ -67,6 +72,8 @@ static void take(struct net *net)
     }
     if (data_changed || links_changed)
         streams_on_readings(server, data_changed, links_changed);
+    if (data_changed || links_changed)
+        renderers_on_change(server);
     net_wake_render_service(server);
     int64_t stale_ns = server->next_change_ns < INT64_MAX ? server->next_change_ns + NS_PER_MS : INT64_MAX; /* the loop may be early */
     net->readings_ns = later(stale_ns, server->snapshot->taken_mono_ns + BETWEEN_NS);
@@ -94,7 +101,7 @@ int64_t net_update_readings(struct net *net, int64_t now_ns)
 {
     if (atomic_exchange(&net->readings_changed, false))
         net->readings_ns = later(now_ns + GATHER_NS, net->server.session_context.changed_ns + BETWEEN_NS);
-    if (net->server.stream_count == 0)
+    if (net->server.stream_count == 0 && !net->server.renderers)
         return INT64_MAX;
     if (now_ns >= net->readings_ns)
         take(net);

@@ -46,6 +46,7 @@ struct server_context {
     struct history_loader *history_loader;   /* likewise */
     struct stream *streams, **by_client;     /* all connections to /stream; the same, by session id, ascending */
     size_t by_client_capacity;
+    struct renderer *renderers;                      /* all connections to /core (renderers.c) */
     struct request *snapshots;                       /* HTTP requests that wait for a frame, a pick or a reload */
     int stream_count, picture_count, question_count; /* the latter two: of HTTP, that are being answered */
     int64_t answer_bytes;                            /* of HTTP answers that their clients have not read yet */
@@ -82,7 +83,7 @@ struct server_context {
     struct {
         counter *sessions, *sessions_all, *frames, *frame_bytes, *messages, *errors, *dropped, *given_up, *stalled, *requests, *refused,
             *connections, *busy, *clock_set, *clock_error, *clock_leap,
-            *logins_wrong, *logins_held, *logins_slowed;
+            *renderers, *logins_wrong, *logins_held, *logins_slowed;
     } counters;
 };
 

@@ -3,8 +3,10 @@
 #include <string.h>
 
 #include "base/mem.h"
+#include "corelink/core_identity.h"
 #include "message/json_fields.h"
 #include "net/connection.h"
+#include "net/renderers.h"
 
 static int refuse(struct server_context *server, struct lws *wsi, int status, const char *text)
 {
@@ -20,9 +22,9 @@ static bool origin_allowed(const struct server_context *server, struct lws *wsi)
            access_origin(&server->params.access, origin, host, server->tls != NULL);
 }
 
-static int refuse_protocol(struct server_context *server, struct lws *wsi, const char *list)
+static int refuse_protocol(struct server_context *server, struct lws *wsi, const char *list, const char *spoken)
 {
-    char asked[48], *text = mem_printf("subprotocol %s is unknown; this server speaks " WIRE_SUBPROTOCOL "\n", quoted(list, asked));
+    char asked[48], *text = mem_printf("subprotocol %s is unknown; this server speaks %s\n", quoted(list, asked), spoken);
     int result = refuse(server, wsi, HTTP_STATUS_BAD_REQUEST, text);
     mem_free(text);
     return result;
@@ -32,15 +34,23 @@ int stream_check_upgrade(struct server_context *server, struct lws *wsi)
 {
     char path[16], list[512];
     struct refusal refusal;
-    if (lws_hdr_copy(wsi, path, sizeof(path), WSI_TOKEN_GET_URI) < 0 || strcmp(path, "/stream") != 0)
+    bool there = lws_hdr_copy(wsi, path, sizeof(path), WSI_TOKEN_GET_URI) >= 0, core = there && !strcmp(path, CORE_PATH);
+    const char *spoken = core ? CORE_SUBPROTOCOL : WIRE_SUBPROTOCOL, *why = NULL;
+    if (!core && (!there || strcmp(path, "/stream") != 0))
         return refuse(server, wsi, HTTP_STATUS_NOT_FOUND, "the stream is at /stream\n");
     if (!connection_identify(server, wsi, &refusal))
         return refuse(server, wsi, refusal.status, refusal.text);
     if (!origin_allowed(server, wsi))
         return refuse(server, wsi, HTTP_STATUS_FORBIDDEN, "this origin is not allowed\n");
+    if (core && (why = renderers_refusal(server, wsi)))
+        return refuse(server, wsi, HTTP_STATUS_FORBIDDEN, why);
+    if (!core && connection_of(wsi)->role == ROLE_RENDERER)
+        return refuse(server, wsi, HTTP_STATUS_FORBIDDEN, "a renderer's token opens no stream\n");
     if (!connection_header(wsi, WSI_TOKEN_PROTOCOL, list, sizeof(list)))
         return refuse(server, wsi, 431, "a header is too long\n");
-    if (list[0] && !access_list_has(list, WIRE_SUBPROTOCOL))
-        return refuse_protocol(server, wsi, list);
+    if ((core || list[0]) && !access_list_has(list, spoken))
+        return refuse_protocol(server, wsi, list, spoken);
+    if (!core && access_list_has(list, CORE_SUBPROTOCOL)) /* lws goes by the protocol, and not by the path */
+        return refuse_protocol(server, wsi, CORE_SUBPROTOCOL, spoken);
     return 0;
 }

@@ -70,6 +70,8 @@ char *reply_status_text(const struct session_context *context, int64_t now_utc_n
             json_object_set_new(link, "simulated", json_true());
         json_array_append_new(links, link);
     }
+    if (context->hand_on) /* a renderer: what comes from no device comes from there */
+        json_array_append_new(links, json_pack("{s:s,s:b}", "source", "core", "up", context->core_up));
     json_t *status = json_pack("{s:s,s:o,s:I,s:b,s:b}", "type", "status", "links", links, "time_us", us(now_utc_ns), "live", context->live,
                                "clock_set", context->clock.set);
     if (context->clock.error_s > 0)

@@ -309,6 +309,20 @@ static bool in_order(const struct session *session, const struct message *messag
     return message->type == MESSAGE_HELLO || role_may_send(session->identity.role, message, error);
 }
 
+/* On a renderer. Returns whether it is somebody else's to do. */
+static bool hand_on(struct session *session, const struct message *message, const char *text)
+{
+    const struct session_context *context = session->context;
+    struct message_error error = { 0 };
+    if (!context->hand_on || !message_is_handed_on(message))
+        return false;
+    if (!context->hand_on(context->hand_on_arg, session, text)) {
+        message_fail(&error, "core_lost", "this was not done: the core cannot be reached");
+        session_reply_error(session, &error);
+    }
+    return true;
+}
+
 void session_too_fast(struct session *session, int64_t count, const char *whose)
 {
     struct message_error error = { 0 };
@@ -342,6 +356,8 @@ void session_on_message(struct session *session, const char *text, size_t count,
     bool good = message_parse(session->context->plant, text, count, &message, &error);
     if (good)
         clear_claimed_name(session, &message);
+    if (good && session->context->hand_on && in_order(session, &message, &error) && hand_on(session, &message, text))
+        return;
     if (!good || !in_order(session, &message, &error) || !act(session, &message, now_ns, now_utc_ns, &error)) {
         session_record_refusal(session, &error);
         session_reply_error(session, &error);

@@ -40,6 +40,8 @@ static bool identify(struct session *session, const struct message *message, int
         return true;
     if (session->identity.role == ROLE_NOBODY)
         session_close(session, 1008, "a token is needed");
+    else if (session->identity.role == ROLE_RENDERER)
+        session_close(session, 1008, "a renderer's token opens no stream");
     return false;
 }
 

@@ -306,6 +306,30 @@ void store_write(struct store *store, const struct sample *samples, size_t count
     pthread_mutex_unlock(&store->lock);
 }
 
+static void mirror(struct store *store, const struct mirrored *reading, int64_t now_mono_ns)
+{
+    struct held *held = &store->tags[reading->tag];
+    bool value_changed = reading->has_value && (!held->has_value || held->value != reading->value);
+    held->quality = reading->quality;
+    held->has_value = reading->has_value;
+    held->value = reading->has_value ? reading->value : 0;
+    held->received_mono_ns = reading->received_mono_ns;
+    held->received_utc_ns = reading->received_utc_ns;
+    held->sampled_mono_ns = held->changed_mono_ns = now_mono_ns;
+    held->lost = held->dead = false;
+    held->stale_ns = held->flatline_ns = INT64_MAX; /* judged there */
+    if (count_change(store, (size_t)reading->tag, value_changed, now_mono_ns))
+        tell_watch(store);
+}
+
+void store_mirror(struct store *store, const struct mirrored *readings, size_t count, int64_t now_mono_ns)
+{
+    pthread_mutex_lock(&store->lock);
+    for (size_t i = 0; i < count; i++)
+        mirror(store, &readings[i], now_mono_ns);
+    pthread_mutex_unlock(&store->lock);
+}
+
 static void lose(struct store *store, size_t tag, bool dead, int64_t now_mono_ns)
 {
     struct held *held = &store->tags[tag];
@@ -353,6 +377,13 @@ void store_link_lost(struct store *store, int source, int64_t now_mono_ns)
     for (size_t i = 0; i < store->plant->tag_count; i++)
         if (store->plant->tags[i].source == source)
             lose(store, i, false, now_mono_ns);
+    pthread_mutex_unlock(&store->lock);
+}
+
+void store_link_down(struct store *store, int source, int64_t now_mono_ns)
+{
+    pthread_mutex_lock(&store->lock);
+    set_link(store, source, false, now_mono_ns);
     pthread_mutex_unlock(&store->lock);
 }
 

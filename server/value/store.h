@@ -44,6 +44,17 @@ void store_unlisten(struct store *store, store_listener *listener, void *arg);
 void store_watch(struct store *store, void (*changed)(void *arg), void *arg);
 /* Writes samples that arrived at the given time. A failed read is no sample: see store_link_lost(). */
 void store_write(struct store *store, const struct sample *samples, size_t count, int64_t now_mono_ns, int64_t now_utc_ns);
+/* A reading as another daemon's store shows it: a renderer has it from its core. */
+struct mirrored {
+    int tag;
+    uint32_t quality;          /* as shown there, staleness and all */
+    double value;              /* the last usable one, if there was one */
+    bool has_value;
+    int64_t received_mono_ns, received_utc_ns; /* when that came in; monotonic: on this machine's clock */
+};
+/* Takes readings as they are shown elsewhere, in place of samples: their quality is what it is there, and does not follow from their age.
+   Listeners do not hear of it. store_link_lost and its like hold for them, too. */
+void store_mirror(struct store *store, const struct mirrored *readings, size_t count, int64_t now_mono_ns);
 /* Records that a source cannot be read from now on. Its tags keep their last values: Uncertain_NoCommunicationLastUsableValue until
    stale_s after they arrived, then Bad_CommunicationError. Tags that never had a value are Bad_NoCommunication. */
 void store_link_lost(struct store *store, int source, int64_t now_mono_ns);
@@ -53,6 +64,8 @@ void store_tags_lost(struct store *store, const int *tags, size_t count, int64_t
 void store_tags_dead(struct store *store, const int *tags, size_t count, int64_t now_mono_ns);
 /* Records that a source can be read again. Its tags become usable one by one, each with its next sample. */
 void store_link_up(struct store *store, int source, int64_t now_mono_ns);
+/* Records that a source is not connected, and nothing about its tags: whoever mirrors is told of each of them. */
+void store_link_down(struct store *store, int source, int64_t now_mono_ns);
 /* Sets the alarm that a tag's readings carry from now on (enum alarm_kind) and its state (enum alarm_status). */
 void store_set_alarm(struct store *store, int tag, int alarm, int status);
 bool store_link_is_up(const struct store *store, int source);

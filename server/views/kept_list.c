@@ -73,3 +73,13 @@ const char *kept_list_put(struct kept_list *kept, json_t *list)
     kept->number++;
     return NULL;
 }
+
+bool kept_list_mirror(struct kept_list *kept, json_t *list)
+{
+    if (!kept->kind->good(list))
+        return false;
+    json_decref(kept->list);
+    kept->list = json_incref(list);
+    kept->number++;
+    return true;
+}

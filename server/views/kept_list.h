@@ -36,4 +36,7 @@ const char *kept_list_refusal(const struct kept_list *kept);
 /* Takes a list in place of the one there is, once it is on disk (without a folder, at once). Returns NULL, or why it could not (static). */
 const char *kept_list_put(struct kept_list *kept, json_t *list);
 
+/* Takes a list as another daemon keeps it, and writes nothing. Returns false if it is none of that kind; then nothing changed. */
+bool kept_list_mirror(struct kept_list *kept, json_t *list);
+
 #endif

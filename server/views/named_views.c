@@ -155,3 +155,13 @@ char *named_views_text(const struct named_views *views, const char *id)
     }
     return json_text(json_pack("{s:s,s:o}", "type", "views", "list", list), 0);
 }
+
+json_t *named_views_list(const struct named_views *views)
+{
+    return views->kept.list;
+}
+
+bool named_views_mirror(struct named_views *views, json_t *list)
+{
+    return kept_list_mirror(&views->kept, list);
+}

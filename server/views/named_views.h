@@ -3,6 +3,8 @@
    views.json in the folder of the history, with earlier versions of each. Thread: the loop. */
 #ifndef VIEWS_NAMED_VIEWS_H
 #define VIEWS_NAMED_VIEWS_H
+#include <jansson.h>
+#include <stdbool.h>
 #include <stdint.h>
 
 #include "base/log.h"
@@ -31,5 +33,9 @@ uint64_t named_views_number(const struct named_views *views);
 /* Returns the message `views` with all of them, without earlier versions, or with those of the view `id` as `before` (NULL: of none). Free
    with mem_free. */
 char *named_views_text(const struct named_views *views, const char *id);
+/* For a core and its renderers: return the list of views that people saved, which belongs to them; and take it from the other one (false:
+   it is none, and nothing changed). */
+json_t *named_views_list(const struct named_views *views);
+bool named_views_mirror(struct named_views *views, json_t *list);
 
 #endif

@@ -165,3 +165,13 @@ char *notes_text_between(const struct notes *notes, int64_t from_us, int64_t to_
 {
     return text_of(notes->kept.list, from_us, to_us);
 }
+
+json_t *notes_list(const struct notes *notes)
+{
+    return notes->kept.list;
+}
+
+bool notes_mirror(struct notes *notes, json_t *list)
+{
+    return kept_list_mirror(&notes->kept, list);
+}

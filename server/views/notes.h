@@ -3,6 +3,7 @@
    time or by hand, are kept for whoever takes over. Thread: the loop. */
 #ifndef VIEWS_NOTES_H
 #define VIEWS_NOTES_H
+#include <jansson.h>
 #include <stdbool.h>
 #include <stdint.h>
 
@@ -33,5 +34,9 @@ uint64_t notes_number(const struct notes *notes);
    mem_free. */
 char *notes_text(const struct notes *notes, int64_t now_us);
 char *notes_text_between(const struct notes *notes, int64_t from_us, int64_t to_us);
+/* For a core and its renderers: return the list of notes, which belongs to them; and take it from the other one (false: it
+   is none, and nothing changed). */
+json_t *notes_list(const struct notes *notes);
+bool notes_mirror(struct notes *notes, json_t *list);
 
 #endif

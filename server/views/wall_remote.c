@@ -128,8 +128,7 @@ static bool same_place(const struct wall_place *a, const struct wall_place *b)
     return a->display == b->display && !strcmp(a->wall, b->wall) && !strcmp(a->area, b->area);
 }
 
-void wall_remote_point(struct wall_remote *remote, const struct wall_place *place, const double *position_m, const char *who,
-                       const char *desk)
+static void set_pointer(struct wall_remote *remote, const struct wall_place *place, const double *position_m, const char *by)
 {
     struct pointer *pointer = &remote->pointers[0]; /* the pane's own, or the one that was moved longest ago */
     for (int i = 0; i < WALL_POINTERS; i++) {
@@ -144,8 +143,42 @@ void wall_remote_point(struct wall_remote *remote, const struct wall_place *plac
     pointer->points = position_m != NULL;
     if (position_m)
         memcpy(pointer->position_m, position_m, sizeof(pointer->position_m));
-    snprintf(pointer->by, sizeof(pointer->by), "%.60s%s%.120s", desk, desk[0] ? ", " : "", who);
+    snprintf(pointer->by, sizeof(pointer->by), "%s", by);
     pointer->number = ++remote->pointed;
+}
+
+void wall_remote_point(struct wall_remote *remote, const struct wall_place *place, const double *position_m, const char *who,
+                       const char *desk)
+{
+    char by[sizeof(remote->pointers[0].by)];
+    snprintf(by, sizeof(by), "%.60s%s%.120s", desk, desk[0] ? ", " : "", who);
+    set_pointer(remote, place, position_m, by);
+}
+
+static bool mirror_pointer(struct wall_remote *remote, const json_t *one)
+{
+    const char *wall = json_string_value(json_object_get(one, "wall")), *area = json_string_value(json_object_get(one, "area"));
+    const char *by = json_string_value(json_object_get(one, "by"));
+    const json_t *position = json_object_get(one, "position");
+    struct wall_place place = { .display = (int)json_integer_value(json_object_get(one, "display")) };
+    double position_m[3];
+    if (!wall || strlen(wall) >= sizeof(place.wall) || !area || strlen(area) >= sizeof(place.area) || !by)
+        return false;
+    strcpy(place.wall, wall);
+    strcpy(place.area, area);
+    for (size_t i = 0; i < 3; i++)
+        position_m[i] = json_number_value(json_array_get(position, i));
+    set_pointer(remote, &place, json_array_size(position) == 3 ? position_m : NULL, by);
+    return true;
+}
+
+bool wall_remote_mirror_pointers(struct wall_remote *remote, const json_t *pointed)
+{
+    const json_t *list = json_object_get(pointed, "list");
+    bool good = json_is_array(list);
+    for (size_t i = 0; i < json_array_size(list) && good; i++)
+        good = mirror_pointer(remote, json_array_get(list, i));
+    return good;
 }
 
 /* --- who is there ----------------------------------------------------------------------------------------------------------- */
@@ -213,4 +246,14 @@ char *wall_remote_pointers_text(const struct wall_remote *remote, uint64_t after
                                               pointer->points ? json_pack("[f,f,f]", at[0], at[1], at[2]) : json_null()));
     }
     return json_text(json_pack("{s:s,s:o}", "type", "pointed", "list", list), 0);
+}
+
+json_t *wall_remote_list(const struct wall_remote *remote)
+{
+    return remote->kept.list;
+}
+
+bool wall_remote_mirror(struct wall_remote *remote, json_t *list)
+{
+    return kept_list_mirror(&remote->kept, list);
 }

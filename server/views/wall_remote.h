@@ -3,6 +3,8 @@
    in walls.json in the folder of the history, where there is one, until the pane is given back. Thread: the loop. */
 #ifndef VIEWS_WALL_REMOTE_H
 #define VIEWS_WALL_REMOTE_H
+#include <jansson.h>
+
 #include "base/log.h"
 #include "plant/plant.h"
 #include "plant/wall.h"
@@ -34,6 +36,8 @@ const char *wall_remote_order(struct wall_remote *remote, const struct wall_orde
 /* Has a pane show where somebody points. position_m: NULL: nowhere any more. */
 void wall_remote_point(struct wall_remote *remote, const struct wall_place *place, const double *position_m, const char *who,
                        const char *desk);
+/* Takes `pointed` as wall_remote_pointers_text() of another daemon says it. Returns false if it is none. */
+bool wall_remote_mirror_pointers(struct wall_remote *remote, const json_t *pointed);
 /* Notes whether a display is connected. */
 void wall_remote_see(struct wall_remote *remote, const char *wall, int display, bool there);
 /* Return numbers that increase with each change of what the next two say. */
@@ -42,5 +46,9 @@ uint64_t wall_remote_pointer_number(const struct wall_remote *remote);
 /* Return the message `walls`; and `pointed` with what changed after that number. Free with mem_free. */
 char *wall_remote_text(const struct wall_remote *remote);
 char *wall_remote_pointers_text(const struct wall_remote *remote, uint64_t after);
+/* For a core and its renderers: return the list of what was sent to panes, which belongs to them; and take it from the other one (false: it
+   is none, and nothing changed). */
+json_t *wall_remote_list(const struct wall_remote *remote);
+bool wall_remote_mirror(struct wall_remote *remote, json_t *list);
 
 #endif

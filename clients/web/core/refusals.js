@@ -49,7 +49,7 @@ const KNOWN = [
     [/^history cannot be read|^this daemon records nothing/, 'history'],
 ];
 // What has no words of ours, by its code.
-const CODES = ['too_fast', 'limit', 'not_allowed'];
+const CODES = ['too_fast', 'limit', 'not_allowed', 'core_lost'];
 const FIELDS = ['baseline', 'breaks', 'colormap', 'decay', 'environment', 'ghost', 'group', 'hidden', 'interpolation', 'isolate',
     'isolines', 'moves', 'power', 'radius_m', 'range', 'reach_m', 'save_tags', 'scale', 'selected', 'sensor', 'sensors', 'session', 'split',
     'strength', 'tag'];

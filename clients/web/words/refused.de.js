@@ -6,6 +6,7 @@ other: auf Englisch: „{text}“
 too_fast: es wurde zu viel auf einmal verlangt; es geschieht etwas später
 limit: das Bild ist größer, als dieser Server zeichnet
 not_allowed: das ist hier nicht erlaubt
+core_lost: der Kern ist nicht erreichbar: nichts geschah, oder es ist ungewiss; sehen Sie nach, sobald er zurück ist
 role: das darf nur die Rolle {role}
 no: in dieser Anlage gibt es „{name}“ nicht ({kind})
 link: Dieser Link passt nicht: {why}. Er kann zu einer anderen Anlage gehören oder älter sein als eine Änderung der Anlage.

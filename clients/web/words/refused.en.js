@@ -6,6 +6,7 @@ other: {text}
 too_fast: too much was asked for at once: it is done a little later
 limit: the picture is larger than this server draws
 not_allowed: that is not allowed here
+core_lost: the core cannot be reached: what was asked for was not done, or nobody knows; look again once it is back
 role: that takes the role {role}
 no: this plant has no {kind} “{name}”
 link: This link does not fit: {why}. It may be of another plant, or from before the plant was changed.

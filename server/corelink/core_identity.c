@@ -1,0 +1,27 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* A core and its renderers are of one version, one plant and one configuration: indices of tags mean the same to all of them. */
+#include "corelink/core_identity.h"
+
+#include <string.h>
+
+#include "base/mem.h"
+
+json_t *core_identity_message(const char *type, const struct core_identity *own)
+{
+    return json_pack("{s:s,s:s,s:s,s:s}", "type", type, "version", own->version, "plant", own->plant, "configuration", own->configuration);
+}
+
+char *core_identity_difference(const json_t *told, const char *peer, const struct core_identity *own)
+{
+    const struct {
+        const char *member, *own;
+    } members[] = { { "version", own->version }, { "plant", own->plant }, { "configuration", own->configuration } };
+    for (size_t i = 0; i < sizeof(members) / sizeof(members[0]); i++) {
+        const char *other = json_string_value(json_object_get(told, members[i].member));
+        if (!other)
+            return mem_printf("the %s does not tell its %s", peer, members[i].member);
+        if (strcmp(other, members[i].own) != 0)
+            return mem_printf("%s: the %s has %.100s, this node %s", members[i].member, peer, other, members[i].own);
+    }
+    return NULL;
+}

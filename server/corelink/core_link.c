@@ -1,0 +1,612 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The renderer's thread: connects, takes what comes, sends what waits. */
+#include "corelink/core_link.h"
+
+#include <arpa/inet.h>
+#include <errno.h>
+#include <libwebsockets.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/eventfd.h>
+#include <sys/random.h>
+#include <unistd.h>
+
+#include "base/clock.h"
+#include "base/json_text.h"
+#include "base/mem.h"
+#include "base/text.h"
+#include "base/thread.h"
+#include "corelink/core_alarms.h"
+#include "corelink/core_identity.h"
+#include "corelink/core_readings.h"
+#include "value/backoff.h"
+#include "value/lookup.h"
+
+enum { MOST_BYTES = 64 << 20 /* of one message */, TOKEN_BYTES = 256, WHY_BYTES = 300, LOOK_US = 200000 };
+static const int64_t CONNECT_NS = 4 * NS_PER_S, CLOCKS_NS = 2 * NS_PER_S /* that clocks may differ before it is said */;
+
+struct waiting {
+    uint64_t id, client; /* id 0: free */
+};
+
+struct core_link {
+    struct core_link_params params;
+    char authorization[TOKEN_BYTES + 16]; /* "": none */
+    int stop_fd;
+    counter *up, *connects, *refused, *behind;
+    /* --- below: of the thread */
+    struct mirrored *readings; /* room for all tags */
+    struct text in;
+    struct lws *wsi;
+    struct host_turn turn;
+    int64_t heard_ns, begun_ns;
+    bool ended, taken, introduced, clock_said;
+    bool at_fault;          /* what it said last is a fault of ours or the core's, and no lost link */
+    char why[WHY_BYTES], said[WHY_BYTES]; /* why this connection ended; as logged last */
+    struct thread thread;
+    /* --- below: under thread.lock */
+    struct lws_context *context; /* NULL: not connected */
+    bool is_up;
+    struct text *out;       /* messages that wait to be sent */
+    size_t out_count, out_capacity;
+    struct waiting waiting[CORE_ACTS];
+    uint64_t last_id;
+    struct core_arrival *arrivals, **last_arrival;
+};
+
+/* --- for the loop ----------------------------------------------------------------------------------------------------------- */
+
+static void arrive(struct core_link *link, uint64_t client, char *text)
+{
+    struct core_arrival *arrival = mem_new(sizeof(*arrival));
+    *arrival = (struct core_arrival){ .client = client, .text = text };
+    pthread_mutex_lock(&link->thread.lock);
+    *link->last_arrival = arrival;
+    link->last_arrival = &arrival->next;
+    pthread_mutex_unlock(&link->thread.lock);
+    link->params.notify(link->params.notify_arg);
+}
+
+struct core_arrival *core_link_collect(struct core_link *link)
+{
+    pthread_mutex_lock(&link->thread.lock);
+    struct core_arrival *arrivals = link->arrivals;
+    link->arrivals = NULL;
+    link->last_arrival = &link->arrivals;
+    pthread_mutex_unlock(&link->thread.lock);
+    return arrivals;
+}
+
+void core_arrival_free(struct core_arrival *arrival)
+{
+    mem_free(arrival->text);
+    mem_free(arrival);
+}
+
+bool core_link_is_up(struct core_link *link)
+{
+    pthread_mutex_lock(&link->thread.lock);
+    bool up = link->is_up;
+    pthread_mutex_unlock(&link->thread.lock);
+    return up;
+}
+
+/* Under the lock. Takes the text. */
+static void queue(struct core_link *link, char *text)
+{
+    mem_grow(&link->out, &link->out_capacity, link->out_count + 1, sizeof(*link->out));
+    struct text *out = &link->out[link->out_count++];
+    const char room[LWS_PRE] = { 0 };
+    *out = (struct text){ 0 };
+    text_add_bytes(out, room, sizeof(room)); /* lws writes its framing there */
+    text_add_bytes(out, text, strlen(text));
+    mem_free(text);
+}
+
+bool core_link_act(struct core_link *link, const struct core_act *act)
+{
+    json_t *message = json_loads(act->text, 0, NULL);
+    size_t free_at = 0;
+    pthread_mutex_lock(&link->thread.lock);
+    while (free_at < CORE_ACTS && link->waiting[free_at].id)
+        free_at++;
+    bool good = link->is_up && message && free_at < CORE_ACTS;
+    if (good) {
+        link->waiting[free_at] = (struct waiting){ ++link->last_id, act->client };
+        queue(link, json_text(json_pack("{s:s,s:I,s:s,s:s,s:s,s:b,s:O}", "type", "act", "id", (json_int_t)link->last_id, "who", act->who,
+                                        "from", act->from, "role", act->role, "signed_in", act->signed_in, "message", message),
+                              0));
+        lws_cancel_service(link->context);
+    }
+    pthread_mutex_unlock(&link->thread.lock);
+    json_decref(message);
+    return good;
+}
+
+/* --- what comes --------------------------------------------------------------------------------------------------------------- */
+
+static void end(struct core_link *link, const char *why)
+{
+    if (!link->why[0])
+        snprintf(link->why, sizeof(link->why), "%s", why);
+    link->ended = true;
+}
+
+/* It says what is wrong, or what is wrong here. */
+static void refuse(struct core_link *link, const char *why)
+{
+    counter_inc(link->refused, 1);
+    link->at_fault = true;
+    end(link, why);
+}
+
+static struct core_identity own_identity(const struct core_link *link)
+{
+    return (struct core_identity){ link->params.version, link->params.plant->name, link->params.plant->hash };
+}
+
+static void on_core(struct core_link *link, const json_t *message)
+{
+    const struct core_identity own = own_identity(link);
+    char *why = core_identity_difference(message, "core", &own);
+    if (why)
+        refuse(link, why);
+    else
+        link->taken = true;
+    mem_free(why);
+}
+
+static void on_links(struct core_link *link, const json_t *message)
+{
+    const json_t *up = json_object_get(message, "up");
+    int64_t now_ns = clock_mono_ns();
+    if (json_array_size(up) != link->params.plant->source_count) {
+        refuse(link, "links: not one for each source");
+        return;
+    }
+    for (size_t i = 0; i < json_array_size(up); i++)
+        if (json_is_true(json_array_get(up, i)))
+            store_link_up(link->params.store, (int)i, now_ns);
+        else
+            store_link_down(link->params.store, (int)i, now_ns);
+}
+
+/* Returns whose act it is, 0: nobody's any more. */
+static uint64_t take_waiting(struct core_link *link, uint64_t id)
+{
+    uint64_t client = 0;
+    pthread_mutex_lock(&link->thread.lock);
+    for (size_t i = 0; i < CORE_ACTS && id; i++)
+        if (link->waiting[i].id == id) {
+            client = link->waiting[i].client;
+            link->waiting[i].id = 0;
+        }
+    pthread_mutex_unlock(&link->thread.lock);
+    return client;
+}
+
+static void on_answer(struct core_link *link, const json_t *message)
+{
+    uint64_t client = take_waiting(link, (uint64_t)json_integer_value(json_object_get(message, "id")));
+    const json_t *text;
+    size_t i;
+    json_array_foreach(json_object_get(message, "texts"), i, text)
+    {
+        if (client && json_is_string(text))
+            arrive(link, client, mem_strdup(json_string_value(text)));
+    }
+}
+
+static void on_text(struct core_link *link)
+{
+    json_t *message = json_loadb(link->in.at, link->in.length, JSON_REJECT_DUPLICATES, NULL);
+    const char *type = json_string_value(json_object_get(message, "type")), *why = NULL;
+    if (!type)
+        refuse(link, "what it says is no JSON");
+    else if (!strcmp(type, "refused"))
+        refuse(link, json_string_value(json_object_get(message, "why")) ?: "it refuses us");
+    else if (!strcmp(type, "core"))
+        on_core(link, message);
+    else if (!link->taken)
+        refuse(link, "it does not say who it is");
+    else if (!strcmp(type, "links"))
+        on_links(link, message);
+    else if (!strcmp(type, "alarms"))
+        why = core_alarms_take(link->params.alarm_service, message);
+    else if (!strcmp(type, "answer"))
+        on_answer(link, message);
+    else if (!strcmp(type, "lists"))
+        arrive(link, 0, mem_strdup(link->in.at));
+    if (why)
+        refuse(link, why);
+    json_decref(message);
+}
+
+/* Readings carry ages; only what is shown as a time is the core's. */
+static void compare_clocks(struct core_link *link, int64_t core_utc_ns)
+{
+    int64_t ahead_ns = core_utc_ns - clock_utc_ns();
+    bool differ = llabs(ahead_ns) > CLOCKS_NS;
+    counter_set(link->behind, ahead_ns / 1000);
+    if (differ && !link->clock_said)
+        log_warn(link->params.log, "core: its clock is %.1f s %s this machine's: times of readings and alarms are the core's",
+                 (double)llabs(ahead_ns) / 1e9, ahead_ns > 0 ? "ahead of" : "behind");
+    link->clock_said = differ;
+}
+
+static void set_up(struct core_link *link)
+{
+    pthread_mutex_lock(&link->thread.lock);
+    link->is_up = true;
+    pthread_mutex_unlock(&link->thread.lock);
+    counter_set(link->up, 1 + link->turn.index);
+    counter_inc(link->connects, 1);
+    host_turn_succeeded(&link->turn);
+    log_info(link->params.log, "core: %s: readings come", link->params.urls[link->turn.index]);
+    link->said[0] = 0;
+}
+
+static void on_bytes(struct core_link *link)
+{
+    struct core_readings readings = { .at = link->readings };
+    int64_t now_ns = clock_mono_ns();
+    const char *why = !link->taken ? "it does not say who it is"
+                                   : core_readings_read(&readings, link->params.plant->tag_count, link->in.at, link->in.length, now_ns);
+    if (why) {
+        refuse(link, why);
+        return;
+    }
+    store_mirror(link->params.store, readings.at, readings.count, now_ns);
+    compare_clocks(link, readings.utc_ns);
+    if (!link->is_up)
+        set_up(link);
+}
+
+static void on_receive(struct core_link *link, const void *bytes, size_t count)
+{
+    link->heard_ns = clock_mono_ns();
+    if (link->in.length + count > MOST_BYTES) {
+        refuse(link, "a message of more than 64 MiB");
+        return;
+    }
+    text_add_bytes(&link->in, bytes, count);
+    if (lws_remaining_packet_payload(link->wsi) != 0 || !lws_is_final_fragment(link->wsi))
+        return;
+    if (lws_frame_is_binary(link->wsi))
+        on_bytes(link);
+    else
+        on_text(link);
+    link->in.length = 0;
+}
+
+/* --- lws ---------------------------------------------------------------------------------------------------------------------- */
+
+static int send_next(struct core_link *link)
+{
+    struct text out = { 0 };
+    pthread_mutex_lock(&link->thread.lock);
+    if (link->out_count > 0) {
+        out = link->out[0];
+        memmove(link->out, link->out + 1, --link->out_count * sizeof(*link->out));
+    }
+    bool more = link->out_count > 0;
+    pthread_mutex_unlock(&link->thread.lock);
+    int count = (int)(out.length - LWS_PRE), written = count;
+    if (out.at)
+        written = lws_write(link->wsi, (unsigned char *)out.at + LWS_PRE, (size_t)count, LWS_WRITE_TEXT);
+    text_finish(&out);
+    if (more)
+        lws_callback_on_writable(link->wsi);
+    return written < count ? -1 : 0;
+}
+
+static void introduce(struct core_link *link, struct lws *wsi)
+{
+    const struct core_identity own = own_identity(link);
+    json_t *message = core_identity_message("renderer", &own);
+    json_object_set_new(message, "node", json_string(link->params.node));
+    pthread_mutex_lock(&link->thread.lock);
+    queue(link, json_text(message, 0));
+    pthread_mutex_unlock(&link->thread.lock);
+    link->wsi = wsi;
+    link->heard_ns = clock_mono_ns();
+    link->introduced = true;
+    lws_callback_on_writable(wsi);
+}
+
+static int add_token(const struct core_link *link, struct lws *wsi, void *in, size_t len)
+{
+    unsigned char **at = in;
+    const char *value = link->authorization;
+    return *value && lws_add_http_header_by_token(wsi, WSI_TOKEN_HTTP_AUTHORIZATION, (const unsigned char *)value, (int)strlen(value), at,
+                                                  *at + len)
+               ? -1
+               : 0;
+}
+
+static void on_failure(struct core_link *link, const char *why)
+{
+    char text[WHY_BYTES];
+    bool answered = why && strstr(why, "HS:");
+    snprintf(text, sizeof(text), "%s%s", why ? why : "no connection",
+             answered ? ": it does not take us; has it --role core, and is our token that of a renderer?" : "");
+    if (answered)
+        refuse(link, text);
+    else
+        end(link, text);
+}
+
+static int on_event(struct lws *wsi, enum lws_callback_reasons reason, void *user, void *in, size_t len)
+{
+    struct core_link *link = lws_context_user(lws_get_context(wsi));
+    (void)user;
+    switch (reason) {
+    case LWS_CALLBACK_CLIENT_APPEND_HANDSHAKE_HEADER: return add_token(link, wsi, in, len);
+    case LWS_CALLBACK_CLIENT_ESTABLISHED: introduce(link, wsi); break;
+    case LWS_CALLBACK_CLIENT_CONNECTION_ERROR: on_failure(link, in); break;
+    case LWS_CALLBACK_CLIENT_RECEIVE: on_receive(link, in, len); return link->ended ? -1 : 0;
+    case LWS_CALLBACK_CLIENT_WRITEABLE: return send_next(link);
+    case LWS_CALLBACK_EVENT_WAIT_CANCELLED: /* something is to be sent, or the thread to end */
+        if (link->wsi)
+            lws_callback_on_writable(link->wsi);
+        break;
+    case LWS_CALLBACK_WS_PEER_INITIATED_CLOSE:
+        if (len > 2)
+            snprintf(link->why, sizeof(link->why), "%.*s", (int)(len - 2), (const char *)in + 2);
+        break;
+    case LWS_CALLBACK_CLIENT_CLOSED: end(link, "the connection was lost"); break;
+    default: break;
+    }
+    return 0;
+}
+
+static const struct lws_protocols protocols[] = { { .name = CORE_SUBPROTOCOL, .callback = on_event, .rx_buffer_size = 65536 }, { 0 } };
+
+struct look {
+    lws_sorted_usec_list_t sul;
+    struct core_link *link;
+};
+
+/* So that lws_service() returns now and then. */
+static void on_look(lws_sorted_usec_list_t *sul)
+{
+    struct look *look = lws_container_of(sul, struct look, sul);
+    lws_sul_schedule(look->link->context, 0, sul, on_look, LOOK_US);
+}
+
+/* --- one connection ----------------------------------------------------------------------------------------------------------- */
+
+struct core_url {
+    bool tls;
+    char host[256];
+    int port;
+};
+
+static bool parse_url(const char *text, struct core_url *url)
+{
+    const char *scheme, *host, *path;
+    char *copy = mem_strdup(text);
+    bool good = lws_parse_uri(copy, &scheme, &host, &url->port, &path) == 0 && host[0] && strlen(host) < sizeof(url->host) &&
+                (!path[0] || !strcmp(path, "/")) && url->port > 0 && url->port < 65536;
+    url->tls = good && (!strcmp(scheme, "wss") || !strcmp(scheme, "https"));
+    good = good && (url->tls || !strcmp(scheme, "ws") || !strcmp(scheme, "http"));
+    if (good)
+        strcpy(url->host, host);
+    mem_free(copy);
+    return good;
+}
+
+bool core_link_url_good(const char *url)
+{
+    struct core_url parsed;
+    return parse_url(url, &parsed);
+}
+
+/* The system's resolver has no timeout, and lws would wait for it. False: why. */
+static bool resolve(struct core_link *link, const struct core_url *url, char address[INET6_ADDRSTRLEN])
+{
+    struct lookup *lookup = lookup_start(url->host, url->port);
+    const struct addrinfo *found = NULL;
+    int status = lookup_wait(lookup, link->stop_fd, clock_mono_ns() + CONNECT_NS, &found);
+    bool good = status == 0 && getnameinfo(found->ai_addr, found->ai_addrlen, address, INET6_ADDRSTRLEN, NULL, 0, NI_NUMERICHOST) == 0;
+    if (!good)
+        end(link, status == -ETIMEDOUT ? "its name is not resolved" : "there is no such host");
+    lookup_destroy(&lookup);
+    return good;
+}
+
+static bool connect_to(struct core_link *link, const struct core_url *url)
+{
+    char address[INET6_ADDRSTRLEN];
+    if (!resolve(link, url, address))
+        return false;
+    struct lws_context_creation_info info = { .port = CONTEXT_PORT_NO_LISTEN,
+                                              .protocols = protocols,
+                                              .user = link,
+                                              .gid = -1,
+                                              .uid = -1,
+                                              .timeout_secs = 4,
+                                              .vhost_name = "plantcast-core" };
+    if (url->tls) {
+        info.options |= LWS_SERVER_OPTION_DO_SSL_GLOBAL_INIT;
+        info.client_ssl_ca_filepath = link->params.ca_path;
+    }
+    struct lws_context *context = lws_create_context(&info);
+    pthread_mutex_lock(&link->thread.lock);
+    link->context = context;
+    pthread_mutex_unlock(&link->thread.lock);
+    struct lws_client_connect_info connect = { .context = context,
+                                               .address = address,
+                                               .host = url->host,
+                                               .port = url->port,
+                                               .path = CORE_PATH,
+                                               .protocol = CORE_SUBPROTOCOL,
+                                               .ssl_connection = url->tls ? LCCSCF_USE_SSL : 0,
+                                               .alpn = "http/1.1" };
+    return context && lws_client_connect_via_info(&connect);
+}
+
+static void disconnect(struct core_link *link)
+{
+    pthread_mutex_lock(&link->thread.lock);
+    struct lws_context *context = link->context;
+    link->context = NULL;
+    link->is_up = false;
+    for (size_t i = 0; i < link->out_count; i++)
+        text_finish(&link->out[i]);
+    link->out_count = 0;
+    pthread_mutex_unlock(&link->thread.lock);
+    if (context)
+        lws_context_destroy(context);
+    link->wsi = NULL;
+    text_finish(&link->in);
+}
+
+static void watch_silence(struct core_link *link)
+{
+    int64_t now_ns = clock_mono_ns();
+    if (!link->introduced && now_ns - link->begun_ns > CONNECT_NS)
+        end(link, "it does not answer");
+    if (link->introduced && now_ns - link->heard_ns > CORE_SILENT_NS)
+        end(link, "it was silent for 2 s");
+}
+
+/* Until it ends; link->why says why. */
+static void run_connection(struct core_link *link)
+{
+    struct core_url url;
+    struct look look = { .link = link };
+    link->ended = link->taken = link->introduced = link->at_fault = false;
+    link->why[0] = 0;
+    link->begun_ns = clock_mono_ns();
+    if (!parse_url(link->params.urls[link->turn.index], &url) || !connect_to(link, &url)) {
+        end(link, "no connection");
+    } else {
+        lws_sul_schedule(link->context, 0, &look.sul, on_look, LOOK_US);
+        while (!link->ended && !thread_is_stopping(&link->thread) && lws_service(link->context, 0) >= 0)
+            watch_silence(link);
+        lws_sul_cancel(&look.sul);
+    }
+    disconnect(link);
+}
+
+/* --- the thread --------------------------------------------------------------------------------------------------------------- */
+
+/* Whether it was done nobody here can know. */
+static void answer_waiting(struct core_link *link)
+{
+    for (size_t i = 0; i < CORE_ACTS; i++) {
+        uint64_t client = take_waiting(link, link->waiting[i].id);
+        if (client)
+            arrive(link, client, json_text(json_pack("{s:s,s:s,s:s}", "type", "error", "code", "core_lost", "text",
+                                                     "the core was lost meanwhile: whether it was done is shown once it is back"),
+                                           0));
+    }
+}
+
+/* Nothing of it is a reading now. */
+static void lost(struct core_link *link)
+{
+    const struct plant *plant = link->params.plant;
+    int64_t now_ns = clock_mono_ns();
+    int *all = mem_array(plant->tag_count + 1, sizeof(*all));
+    for (size_t i = 0; i < plant->tag_count; i++)
+        all[i] = (int)i;
+    store_tags_dead(link->params.store, all, plant->tag_count, now_ns);
+    for (size_t i = 0; i < plant->source_count; i++)
+        store_link_lost(link->params.store, (int)i, now_ns);
+    mem_free(all);
+    counter_set(link->up, 0);
+    answer_waiting(link);
+    if (strcmp(link->why, link->said) != 0)
+        log_at(link->params.log, link->at_fault ? LOG_ERROR : LOG_WARN, "core: %s: no readings: %s", link->params.urls[link->turn.index],
+               link->why);
+    memcpy(link->said, link->why, sizeof(link->said));
+}
+
+static void *run(void *arg)
+{
+    struct core_link *link = arg;
+    while (!thread_is_stopping(&link->thread)) {
+        run_connection(link);
+        if (thread_is_stopping(&link->thread))
+            break;
+        lost(link);
+        if (link->turn.backoff.failures > 1) /* operators wait: a second at most, give or take */
+            link->turn.backoff.failures = 1;
+        int64_t next_ns = host_turn_next_ns(&link->turn, link->params.url_count, clock_mono_ns());
+        if (wait_for(-1, 0, link->stop_fd, next_ns) == -ECANCELED)
+            break;
+    }
+    lost(link);
+    return NULL;
+}
+
+static bool read_token(struct core_link *link)
+{
+    const char *path = link->params.token_path;
+    size_t count;
+    if (!path)
+        return true;
+    char *text = text_read_file(path, 4096, &count);
+    size_t n = text ? strcspn(text, " \t\r\n") : 0;
+    bool good = n > 0 && n < TOKEN_BYTES;
+    if (good)
+        snprintf(link->authorization, sizeof(link->authorization), "Bearer %.*s", (int)n, text);
+    else
+        log_err(link->params.log, "core: %s: %s", path, text ? "its first line is no token" : strerror(errno));
+    mem_free(text);
+    return good;
+}
+
+struct core_link *core_link_start(const struct core_link_params *params)
+{
+    struct core_link *link = mem_new(sizeof(*link));
+    struct counters *c = params->counters;
+    link->params = *params;
+    link->last_arrival = &link->arrivals;
+    link->readings = mem_array(params->plant->tag_count + 1, sizeof(*link->readings));
+    link->up = counters_add(c, "plantcast_core_up", "gauge", "Which of its cores readings come from, 1: the first; 0: from none.");
+    link->connects = counters_add(c, "plantcast_core_connects_total", "counter", "Connections to cores that brought readings.");
+    link->refused = counters_add(c, "plantcast_core_refused_total", "counter", "Connections to cores that do not belong to this renderer.");
+    link->behind = counters_add_seconds(c, "plantcast_core_clock_ahead_seconds", "gauge", "By so much the core's clock is ahead of ours.");
+    thread_init(&link->thread);
+    link->stop_fd = eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
+    if (link->stop_fd < 0)
+        log_err(params->log, "core: eventfd: %s", strerror(errno));
+    if (link->stop_fd < 0 || !read_token(link) || !thread_start(&link->thread, params->log, "core", run, link))
+        core_link_stop(&link);
+    return link;
+}
+
+void core_link_halt(struct core_link *link)
+{
+    if (link->stop_fd >= 0)
+        eventfd_write(link->stop_fd, 1);
+    pthread_mutex_lock(&link->thread.lock);
+    link->thread.stopping = true;
+    if (link->context)
+        lws_cancel_service(link->context);
+    pthread_mutex_unlock(&link->thread.lock);
+    thread_stop(&link->thread);
+}
+
+void core_link_stop(struct core_link **pointer)
+{
+    struct core_link *link = *pointer;
+    if (!link)
+        return;
+    core_link_halt(link);
+    for (struct core_arrival *arrival = core_link_collect(link), *next; arrival; arrival = next) {
+        next = arrival->next;
+        core_arrival_free(arrival);
+    }
+    if (link->stop_fd >= 0)
+        close(link->stop_fd);
+    thread_finish(&link->thread);
+    mem_free(link->readings);
+    mem_free(link->out);
+    mem_free(link);
+    *pointer = NULL;
+}

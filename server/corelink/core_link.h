@@ -1,0 +1,58 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* A renderer's link to its core, on a thread of its own: brings readings, links and alarms to the store and the alarm service, and sends
+   what operators do. When the core is lost, or was silent for CORE_SILENT_NS, all readings are Bad at once. It is tried again for ever. */
+#ifndef CORELINK_CORE_LINK_H
+#define CORELINK_CORE_LINK_H
+#include "alarm/alarm_service.h"
+#include "base/counters.h"
+#include "base/log.h"
+#include "value/store.h"
+
+#define CORE_SILENT_NS (2 * INT64_C(1000000000))
+enum { CORE_URLS = 4, CORE_ACTS = 256 /* that wait for their answers */ };
+
+struct core_link_params {
+    struct log *log;
+    struct counters *counters;
+    const struct plant *plant;
+    struct store *store;
+    struct alarm_service *alarm_service; /* which mirrors; all three outlive the link */
+    const char *urls[CORE_URLS];         /* ws://HOST:PORT or wss://; tried in turn: one core is active, the others stand by */
+    int url_count;
+    const char *token_path, *ca_path;    /* file of the token; certificates that are trusted. NULL: none; the system's */
+    const char *version, *node;          /* of this program; this renderer's name, for the core's log */
+    void (*notify)(void *arg);           /* called by the thread when there is something to collect */
+    void *notify_arg;
+};
+
+struct core_link;
+/* Returns whether that is the URL of a core: scheme, host, port, and no path. */
+bool core_link_url_good(const char *url);
+/* Returns NULL if the token cannot be read or there is no thread (logged). Strings of params are used while the link lives. */
+struct core_link *core_link_start(const struct core_link_params *params);
+/* Ends the thread. What waits for an answer gets one that nothing is known of it: core_link_collect still has it. */
+void core_link_halt(struct core_link *link);
+void core_link_stop(struct core_link **link); /* likewise, and frees; &NULL is fine; leaves NULL */
+bool core_link_is_up(struct core_link *link); /* returns whether readings come. Any thread */
+
+struct core_act {
+    uint64_t client;          /* whose answer it will be */
+    const char *who, *from;   /* the person, and the address */
+    const char *role;         /* by name */
+    bool signed_in;           /* a person, by an identity provider */
+    const char *text;         /* the client's message, JSON */
+};
+/* Sends what somebody does to the core. Returns false if there is no core now, or too much waits: nothing was sent. Any thread. */
+bool core_link_act(struct core_link *link, const struct core_act *act);
+
+/* What came for the loop. */
+struct core_arrival {
+    struct core_arrival *next;
+    uint64_t client; /* whose answer it is; 0: it is `lists` of the core */
+    char *text;
+};
+/* Returns what came since the last call, in order; each for core_arrival_free. */
+struct core_arrival *core_link_collect(struct core_link *link);
+void core_arrival_free(struct core_arrival *arrival);
+
+#endif

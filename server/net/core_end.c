@@ -1,0 +1,50 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* A renderer's sessions and its core. */
+#include "net/core_end.h"
+
+#include "base/mem.h"
+#include "message/names.h"
+
+static bool hand_on(void *arg, const struct session *session, const char *text)
+{
+    const struct server_context *server = arg;
+    const struct session_identity *identity = &session->identity;
+    return core_link_act(server->params.plant.core_link, &(struct core_act){ .client = session->id,
+                                                                             .who = identity->holder.name,
+                                                                             .from = identity->from,
+                                                                             .role = name_of(names_role, (int)identity->role),
+                                                                             .signed_in = identity->holder.signed_in,
+                                                                             .text = text });
+}
+
+void core_end_bind(struct server_context *server)
+{
+    server->session_context.hand_on = server->params.plant.core_link ? hand_on : NULL;
+    server->session_context.hand_on_arg = server;
+}
+
+static void take_lists(struct server_context *server, const char *text)
+{
+    const struct net_plant *plant = &server->params.plant;
+    json_t *lists = json_loads(text, 0, NULL);
+    if (!named_views_mirror(plant->named_views, json_object_get(lists, "views")) ||
+        !notes_mirror(plant->notes, json_object_get(lists, "notes")) ||
+        !wall_remote_mirror(plant->wall_remote, json_object_get(lists, "walls")) ||
+        !wall_remote_mirror_pointers(plant->wall_remote, json_object_get(lists, "pointed")))
+        log_err(server->params.log, "core: lists that cannot be such");
+    json_decref(lists);
+    streams_on_alarms(server);
+}
+
+void core_end_collect(struct server_context *server)
+{
+    struct core_link *link = server->params.plant.core_link;
+    for (struct core_arrival *arrival = link ? core_link_collect(link) : NULL, *next; arrival; arrival = next) {
+        next = arrival->next;
+        if (arrival->client)
+            stream_say(server, arrival->client, arrival->text);
+        else
+            take_lists(server, arrival->text);
+        core_arrival_free(arrival);
+    }
+}

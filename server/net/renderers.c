@@ -1,0 +1,336 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* One connection of a renderer: an introduction, then whatever is newer than what it was sent last. */
+#include "net/renderers.h"
+
+#include <string.h>
+
+#include "base/clock.h"
+#include "base/json_text.h"
+#include "base/mem.h"
+#include "corelink/core_alarms.h"
+#include "corelink/core_identity.h"
+#include "corelink/core_readings.h"
+#include "message/names.h"
+#include "net/connection.h"
+#include "session/session_proxy.h"
+
+enum { BEAT_US = 200000, MOST_BYTES = 256 * 1024 /* of one message */, MOST_ANSWERS = 1024, PATIENCE_S = 5 };
+
+struct lists_seen {
+    uint64_t views, notes, walls, pointed;
+};
+
+struct renderer {
+    struct lws *wsi;
+    struct renderer *next;
+    char name[64];           /* of its node, as it says */
+    struct text in, out;     /* out: what is being made, behind LWS_PRE bytes */
+    enum { RENDERER_NEW, RENDERER_TAKEN, RENDERER_REFUSED } state;
+    char *refusal;           /* why; NULL: it is not refused */
+    struct core_sent sent;
+    bool alarms_sent, lists_sent, links_sent;
+    uint64_t alarms;         /* the number of the last change that was sent */
+    struct lists_seen lists;
+    bool *links;             /* by source, as sent */
+    json_t *answers;         /* that wait to be sent */
+    int64_t since_ns;        /* monotonic: since when something waits to be sent; 0: nothing */
+    const char *close_text;  /* NULL: it stays */
+};
+
+const char *renderers_refusal(const struct server_context *server, struct lws *wsi)
+{
+    const struct connection *connection = connection_of(wsi);
+    bool local = connection->role == ROLE_ENGINEER && !connection->holder.name[0];
+    if (!server->params.is_core)
+        return "this daemon is no core: it has no --role core\n";
+    return connection->role == ROLE_RENDERER || local ? NULL : "this takes a token of the role renderer\n";
+}
+
+/* --- coming and going --------------------------------------------------------------------------------------------------------- */
+
+static struct core_identity own_identity(const struct server_context *server)
+{
+    const struct plant *plant = server->session_context.plant;
+    return (struct core_identity){ server->params.version, plant->name, plant->hash };
+}
+
+static void count(struct server_context *server)
+{
+    int taken = 0;
+    for (const struct renderer *renderer = server->renderers; renderer; renderer = renderer->next)
+        taken += renderer->state == RENDERER_TAKEN;
+    counter_set(server->counters.renderers, taken);
+}
+
+static void on_open(struct server_context *server, struct lws *wsi, struct renderer **slot)
+{
+    struct renderer *renderer = mem_new(sizeof(*renderer));
+    *renderer = (struct renderer){ .wsi = wsi, .next = server->renderers, .answers = json_array() };
+    server->renderers = *slot = renderer;
+    lws_set_timer_usecs(wsi, BEAT_US);
+}
+
+static void on_close(struct server_context *server, struct renderer **slot)
+{
+    struct renderer *renderer = *slot, **at = &server->renderers;
+    if (!renderer)
+        return;
+    while (*at != renderer)
+        at = &(*at)->next;
+    *at = renderer->next;
+    if (renderer->state == RENDERER_TAKEN)
+        log_warn(server->params.log, "renderer %s: gone", renderer->name);
+    core_sent_finish(&renderer->sent);
+    text_finish(&renderer->in);
+    text_finish(&renderer->out);
+    json_decref(renderer->answers);
+    mem_free(renderer->links);
+    mem_free(renderer->refusal);
+    mem_free(renderer);
+    *slot = NULL;
+    count(server);
+}
+
+void renderers_on_change(struct server_context *server)
+{
+    for (struct renderer *renderer = server->renderers; renderer; renderer = renderer->next)
+        lws_callback_on_writable(renderer->wsi);
+}
+
+void renderers_close(struct server_context *server, const char *why)
+{
+    for (struct renderer *renderer = server->renderers; renderer; renderer = renderer->next) {
+        renderer->close_text = why;
+        lws_callback_on_writable(renderer->wsi);
+    }
+}
+
+/* --- what goes ---------------------------------------------------------------------------------------------------------------- */
+
+static void begin(struct renderer *renderer)
+{
+    const char room[LWS_PRE] = { 0 };
+    renderer->out.length = 0;
+    text_add_bytes(&renderer->out, room, sizeof(room));
+}
+
+/* lws keeps what the socket does not take, and asks for nothing more until that is gone. */
+static bool send_out(struct renderer *renderer, enum lws_write_protocol how)
+{
+    size_t count = renderer->out.length - LWS_PRE;
+    bool good = lws_write(renderer->wsi, (unsigned char *)renderer->out.at + LWS_PRE, count, how) >= (int)count;
+    if (renderer->out.capacity > MOST_BYTES)
+        text_finish(&renderer->out);
+    return good;
+}
+
+/* Takes the message. */
+static bool send_message(struct renderer *renderer, json_t *message)
+{
+    char *text = json_text(message, 0);
+    begin(renderer);
+    text_add_bytes(&renderer->out, text, strlen(text));
+    mem_free(text);
+    return send_out(renderer, LWS_WRITE_TEXT);
+}
+
+static bool send_refusal(struct renderer *renderer)
+{
+    renderer->close_text = "it is refused";
+    return send_message(renderer, json_pack("{s:s,s:s}", "type", "refused", "why", renderer->refusal));
+}
+
+static bool links_differ(const struct server_context *server, const struct renderer *renderer)
+{
+    size_t count = server->session_context.plant->source_count;
+    return !renderer->links_sent || memcmp(renderer->links, server->links_up, count * sizeof(*renderer->links)) != 0;
+}
+
+static bool send_links(const struct server_context *server, struct renderer *renderer)
+{
+    json_t *up = json_array();
+    for (size_t i = 0; i < server->session_context.plant->source_count; i++) {
+        renderer->links[i] = server->links_up[i];
+        json_array_append_new(up, json_boolean(renderer->links[i]));
+    }
+    renderer->links_sent = true;
+    return send_message(renderer, json_pack("{s:s,s:o}", "type", "links", "up", up));
+}
+
+static struct lists_seen lists_now(const struct server_context *server)
+{
+    const struct net_plant *plant = &server->params.plant;
+    return (struct lists_seen){ named_views_number(plant->named_views), notes_number(plant->notes), wall_remote_number(plant->wall_remote),
+                                wall_remote_pointer_number(plant->wall_remote) };
+}
+
+static bool send_lists(const struct server_context *server, struct renderer *renderer)
+{
+    const struct net_plant *plant = &server->params.plant;
+    char *pointed = wall_remote_pointers_text(plant->wall_remote, renderer->lists.pointed);
+    json_t *message = json_pack("{s:s,s:O,s:O,s:O,s:o}", "type", "lists", "views", named_views_list(plant->named_views), "notes",
+                                notes_list(plant->notes), "walls", wall_remote_list(plant->wall_remote), "pointed",
+                                json_loads(pointed, 0, NULL));
+    renderer->lists = lists_now(server);
+    renderer->lists_sent = true;
+    mem_free(pointed);
+    return send_message(renderer, message);
+}
+
+static bool send_alarms(const struct server_context *server, struct renderer *renderer)
+{
+    uint64_t since = renderer->alarms_sent ? renderer->alarms : 0;
+    renderer->alarms_sent = true;
+    return send_message(renderer, core_alarms_message(server->params.plant.alarm_service, since, clock_utc_ns(), &renderer->alarms));
+}
+
+static bool send_answer(struct renderer *renderer)
+{
+    json_t *answer = json_incref(json_array_get(renderer->answers, 0));
+    json_array_remove(renderer->answers, 0);
+    return send_message(renderer, answer);
+}
+
+static bool send_readings(struct server_context *server, struct renderer *renderer)
+{
+    begin(renderer);
+    core_readings_write(&renderer->out, server->snapshot, &renderer->sent);
+    return send_out(renderer, LWS_WRITE_BINARY);
+}
+
+/* One message at a time: what changed most rarely first, readings last, which so are never newer than the alarms beside them. */
+static bool send_next(struct server_context *server, struct renderer *renderer)
+{
+    struct lists_seen lists = lists_now(server);
+    renderer->since_ns = 0;
+    if (renderer->state == RENDERER_NEW)
+        return true;
+    if (renderer->state == RENDERER_REFUSED)
+        return send_refusal(renderer);
+    bool good, more = true;
+    if (json_array_size(renderer->answers) > 0)
+        good = send_answer(renderer);
+    else if (links_differ(server, renderer))
+        good = send_links(server, renderer);
+    else if (!renderer->lists_sent || memcmp(&lists, &renderer->lists, sizeof(lists)) != 0)
+        good = send_lists(server, renderer);
+    else if (!renderer->alarms_sent || renderer->alarms != alarm_service_number(server->params.plant.alarm_service))
+        good = send_alarms(server, renderer);
+    else
+        more = false, good = send_readings(server, renderer);
+    if (good && more)
+        lws_callback_on_writable(renderer->wsi);
+    return good;
+}
+
+/* --- what comes --------------------------------------------------------------------------------------------------------------- */
+
+static void introduce(struct server_context *server, struct renderer *renderer, const json_t *message)
+{
+    const struct core_identity own = own_identity(server);
+    const struct plant *plant = server->session_context.plant;
+    const char *node = json_string_value(json_object_get(message, "node"));
+    snprintf(renderer->name, sizeof(renderer->name), "%s", node ? node : "");
+    renderer->refusal = core_identity_difference(message, "renderer", &own);
+    renderer->state = renderer->refusal ? RENDERER_REFUSED : RENDERER_TAKEN;
+    if (renderer->refusal) {
+        log_err(server->params.log, "renderer %s: refused: %s", renderer->name, renderer->refusal);
+        return;
+    }
+    core_sent_init(&renderer->sent, plant->tag_count);
+    renderer->links = mem_array(plant->source_count + 1, sizeof(*renderer->links));
+    json_array_append_new(renderer->answers, core_identity_message("core", &own));
+    log_info(server->params.log, "renderer %s: connected", renderer->name);
+    net_refresh_readings(server);
+    count(server);
+}
+
+static void act(struct server_context *server, struct renderer *renderer, const json_t *message)
+{
+    const char *who = json_string_value(json_object_get(message, "who")), *from = json_string_value(json_object_get(message, "from"));
+    const char *role = json_string_value(json_object_get(message, "role"));
+    const struct session_person person = { .name = who ? who : "",
+                                           .from = from ? from : "",
+                                           .role = role ? (enum role)name_find(names_role, role) : ROLE_NOBODY,
+                                           .signed_in = json_is_true(json_object_get(message, "signed_in")) };
+    char *text = json_dumps(json_object_get(message, "message"), JSON_COMPACT);
+    json_t *texts = text && (int)person.role >= 0
+                        ? session_do_for(&server->session_context, &person, text, clock_mono_ns(), clock_utc_ns())
+                        : json_array();
+    json_array_append_new(renderer->answers,
+                          json_pack("{s:s,s:O,s:o}", "type", "answer", "id", json_object_get(message, "id"), "texts", texts));
+    free(text);
+    streams_on_alarms(server);
+}
+
+static const char *on_message(struct server_context *server, struct renderer *renderer)
+{
+    json_t *message = json_loadb(renderer->in.at, renderer->in.length, JSON_REJECT_DUPLICATES, NULL);
+    const char *type = json_string_value(json_object_get(message, "type")), *why = NULL;
+    if (!type)
+        why = "what it says is no JSON";
+    else if (!strcmp(type, "renderer") && renderer->state == RENDERER_NEW)
+        introduce(server, renderer, message);
+    else if (renderer->state != RENDERER_TAKEN)
+        why = "it did not say who it is";
+    else if (!strcmp(type, "act") && json_is_integer(json_object_get(message, "id")))
+        act(server, renderer, message);
+    json_decref(message);
+    return json_array_size(renderer->answers) > MOST_ANSWERS ? "it reads no answers" : why;
+}
+
+/* Returns -1 if the connection is to end. */
+static int on_receive(struct server_context *server, struct renderer *renderer, const void *bytes, size_t count_bytes)
+{
+    const char *why = NULL;
+    if (renderer->in.length + count_bytes > MOST_BYTES)
+        why = "a message of more than 256 kB";
+    else
+        text_add_bytes(&renderer->in, bytes, count_bytes);
+    if (!why && lws_remaining_packet_payload(renderer->wsi) == 0 && lws_is_final_fragment(renderer->wsi)) {
+        why = on_message(server, renderer);
+        renderer->in.length = 0;
+        lws_callback_on_writable(renderer->wsi);
+    }
+    if (why)
+        log_err(server->params.log, "renderer %s: ended: %s", renderer->name, why);
+    return why ? -1 : 0;
+}
+
+/* --- lws ---------------------------------------------------------------------------------------------------------------------- */
+
+/* Steady readings get older, too; and silence would mean that the core is lost. */
+static int on_beat(struct server_context *server, struct renderer *renderer)
+{
+    int64_t now_ns = clock_mono_ns();
+    net_refresh_readings(server);
+    renderer->since_ns = renderer->since_ns ? renderer->since_ns : now_ns;
+    lws_callback_on_writable(renderer->wsi);
+    lws_set_timer_usecs(renderer->wsi, BEAT_US);
+    if (now_ns - renderer->since_ns < PATIENCE_S * NS_PER_S)
+        return 0;
+    log_warn(server->params.log, "renderer %s: ended: it took nothing for %d s", renderer->name, PATIENCE_S);
+    return -1;
+}
+
+static int on_writeable(struct server_context *server, struct renderer *renderer)
+{
+    if (!renderer->close_text)
+        return send_next(server, renderer) ? 0 : -1;
+    lws_close_reason(renderer->wsi, LWS_CLOSE_STATUS_GOINGAWAY, (unsigned char *)renderer->close_text, strlen(renderer->close_text));
+    return -1;
+}
+
+int renderer_callback(struct lws *wsi, enum lws_callback_reasons reason, void *user, void *in, size_t len)
+{
+    struct renderer **slot = user;
+    switch (reason) {
+    case LWS_CALLBACK_ESTABLISHED: on_open(server_context_of(wsi), wsi, slot); break;
+    case LWS_CALLBACK_CLOSED: on_close(server_context_of(wsi), slot); break;
+    case LWS_CALLBACK_RECEIVE: return on_receive(server_context_of(wsi), *slot, in, len);
+    case LWS_CALLBACK_TIMER: return on_beat(server_context_of(wsi), *slot);
+    case LWS_CALLBACK_SERVER_WRITEABLE: return on_writeable(server_context_of(wsi), *slot);
+    default: break;
+    }
+    return 0;
+}

@@ -1,0 +1,42 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* A session that lives for one message. */
+#include "session/session_proxy.h"
+
+#include <stdio.h>
+#include <string.h>
+
+#include "message/message_parse.h"
+#include "message/role.h"
+#include "session/session_impl.h"
+
+static void act_as(struct session *session, const struct session_person *person, const char *text, int64_t now_ns, int64_t now_utc_ns)
+{
+    struct message message;
+    struct message_error error;
+    session->hello = true;
+    session->identity.role = session->identity.holder.role = person->role;
+    session->identity.login = LOGIN_GOOD;
+    session->identity.holder.signed_in = person->signed_in;
+    snprintf(session->identity.holder.name, sizeof(session->identity.holder.name), "%s", person->name);
+    snprintf(session->identity.from, sizeof(session->identity.from), "%s", person->from);
+    if (!message_parse(session->context->plant, text, strlen(text), &message, &error)) {
+        session_reply_error(session, &error);
+    } else if (!message_is_handed_on(&message)) {
+        message_fail(&error, "not_allowed", "this is not done for a renderer");
+        session_reply_error(session, &error);
+    } else {
+        session_on_message(session, text, strlen(text), now_ns, now_utc_ns);
+    }
+}
+
+json_t *session_do_for(const struct session_context *context, const struct session_person *person, const char *text, int64_t now_ns,
+                       int64_t now_utc_ns)
+{
+    struct session *session = session_create(context, 0, now_ns);
+    json_t *texts = json_array();
+    act_as(session, person, text, now_ns, now_utc_ns);
+    for (int i = 0; i < session->owed.reply_count; i++)
+        json_array_append_new(texts, json_string(session->owed.replies[i]));
+    session_destroy(&session);
+    return texts;
+}

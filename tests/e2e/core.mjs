@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// One daemon reads the devices, two others draw: readings, alarms and what operators do travel between them; a lost core is said.
+import assert from 'node:assert/strict';
+import { readFileSync, writeFileSync } from 'node:fs';
+import { join } from 'node:path';
+import { after, before, test } from 'node:test';
+import { Nodes, sleep, until } from './support/nodes.mjs';
+import { PlainClient } from './support/plain_client.mjs';
+import { missing, Program, runProgram } from './support/tiny_plant.mjs';
+
+const absent = missing();
+const options = { skip: absent.length > 0 ? `not built: ${absent.join(', ')}` : false, timeout: 120000 };
+let nodes, core, a, b;
+
+before(async () => {
+    if (options.skip)
+        return;
+    nodes = await Nodes.create();
+    core = await nodes.core();
+    [a, b] = await Promise.all([nodes.renderer('a', core), nodes.renderer('b', core)]);
+    for (const [tag, value] of [['TI-1', 80.25], ['TI-2', 20], ['PI-1', 5]])
+        await nodes.plant.tell(`set ${tag} ${value}`);
+});
+after(() => nodes?.destroy());
+
+const alarm = async (node, state, name = 'TI-1') => {
+    const { alarms } = await (await node.fetch('/api/v1/alarms')).json();
+    return alarms.find((one) => one.tag === name && one.state === state);
+};
+const all = (question) => until('all nodes', async () => (await Promise.all([core, a, b].map(question))).every(Boolean));
+const ack = (seq, tag = 'TI-1') => ({ type: 'alarm', seq, action: 'acknowledge', alarms: [[tag, 'H']] });
+
+test('values, qualities and source times are the core\'s; the device sees one poller', options, async () => {
+    await all(async (node) => (await node.tags())['TI-1'].value === 80.25);
+    await nodes.plant.tell('fail PI-1');
+    const bad = await until('Bad', async () => {
+        const { quality_name } = (await core.tags())['PI-1'];
+        return !quality_name.startsWith('Good') && quality_name.startsWith('Bad') && quality_name;
+    });
+    await all(async (node) => (await node.tags())['PI-1'].quality_name === bad);
+    await nodes.plant.tell('release PI-1');
+    await all(async (node) => (await node.tags())['PI-1'].quality_name === 'Good');
+    await sleep(2000); // longer than a reading may be old
+    assert.equal((await a.tags())['TI-2'].quality_name, 'Good', 'a steady value does not get stale');
+    assert.equal(nodes.pollers(), 1);
+    assert.equal(await core.metric('plantcast_renderers'), 2);
+});
+
+test('pictures of one view are equal to the byte', options, async () => {
+    const picture = async (node) => Buffer.from(await (await node.fetch('/snapshot.png?width=240&height=160&fit=E-101')).arrayBuffer());
+    const [one, two, three] = await Promise.all([core, a, b].map(picture));
+    assert.equal(one.subarray(1, 4).toString(), 'PNG');
+    assert.ok(one.equals(two) && two.equals(three), `${one.length}, ${two.length}, ${three.length} bytes`);
+});
+
+test('an acknowledgement at one renderer is done by the core, with the name, and comes back to all', options, async () => {
+    await nodes.plant.tell('set TI-1 95.5');
+    await all((node) => alarm(node, 'unacknowledged'));
+    const viewer = await a.client({}, { token: nodes.tokens.viewer });
+    viewer.say(ack(1));
+    assert.equal((await viewer.text('error')).code, 'not_allowed');
+    viewer.close();
+    const anna = await a.client({}, { token: nodes.tokens.operator });
+    anna.say(ack(2));
+    const { seq, done } = await anna.text('alarmed');
+    assert.deepEqual([seq, done], [2, 1]);
+    await all(async (node) => (await alarm(node, 'acknowledged'))?.who === 'anna');
+    anna.say({ type: 'alarm', seq: 3, action: 'shelve', alarms: [['TI-1', 'H']], for_s: 3, reason: 'is looked at' });
+    await anna.text('alarmed');
+    await all(async (node) => (await alarm(node, 'shelved'))?.reason === 'is looked at');
+    await all(async (node) => !await alarm(node, 'shelved')); // its time is over: the core says so
+    const { rows } = await (await core.fetch('/api/v1/alarms/journal')).json();
+    assert.deepEqual(rows.filter(({ who }) => who === 'anna').map(({ event }) => event).sort(), ['acknowledge', 'shelve']);
+    anna.close();
+});
+
+test('notes and views of one node are there at the others', options, async () => {
+    const anna = await a.client({}, { token: nodes.tokens.operator });
+    anna.say({ type: 'note', seq: 1, text: 'leaks a little', asset: 'E-101' });
+    await anna.text('noted');
+    anna.say({ type: 'save_view', seq: 2, id: 'pump', title: 'The pump', view: 'asset=P-101A' });
+    await anna.text('view_saved');
+    await all(async (node) => (await (await node.fetch('/api/v1/notes')).text()).includes('leaks a little'));
+    await all(async (node) => (await (await node.fetch('/api/v1/views')).text()).includes('The pump'));
+    anna.close();
+});
+
+test('a core that is killed: within 3 s everything is Bad, and said; acts are refused; it comes back whole', options, async () => {
+    const client = await a.client({}, { token: nodes.tokens.operator });
+    const { port } = core;
+    await core.stop('SIGKILL');
+    const began = performance.now();
+    await until('Bad', async () => Object.values(await a.tags()).every(({ quality_name }) => quality_name.startsWith('Bad')), 3);
+    await client.until('it being said', ({ texts }) => texts.some(({ type, links, live }) => type === 'status' && !live &&
+        links.some(({ source, up }) => source === 'core' && !up)), 3000 - (performance.now() - began));
+    client.say(ack(7));
+    assert.equal((await client.text('error')).code, 'core_lost');
+    core = await nodes.core(port);
+    await all(async (node) => (await node.tags())['TI-1'].quality_name === 'Good');
+    const standing = async (node) => (await (await node.fetch('/api/v1/alarms')).json()).alarms
+        .map(({ tag, kind, state, who }) => `${tag} ${kind} ${state} ${who}`).sort().join('; ');
+    await until('alarms that are the core\'s', async () => {
+        const [own, ...others] = await Promise.all([core, a, b].map(standing));
+        return own.includes('TI-1 H') && others.every((other) => other === own);
+    });
+    await all(async (node) => (await (await node.fetch('/api/v1/notes')).text()).includes('leaks a little'));
+    assert.equal(nodes.pollers(), 1);
+    client.close();
+});
+
+test('a core that hangs is lost, too, after 2 s; and a renderer that takes nothing holds up nobody', options, async () => {
+    core.program.child.kill('SIGSTOP');
+    await until('Bad', async () => (await a.tags())['TI-1'].quality_name.startsWith('Bad'), 3);
+    core.program.child.kill('SIGCONT');
+    await all(async (node) => (await node.tags())['TI-1'].quality_name === 'Good');
+    b.program.child.kill('SIGSTOP');
+    await nodes.plant.tell('set TI-2 33');
+    await until('the other one', async () => (await a.tags())['TI-2'].value === 33, 3);
+    b.program.child.kill('SIGCONT');
+    await all(async (node) => (await node.tags())['TI-2'].value === 33);
+});
+
+test('another plant, another configuration, a wrong token and a daemon that is no core are named', options, async () => {
+    const other = join(nodes.plant.folder, 'other.yaml');
+    writeFileSync(other, readFileSync(nodes.plant.file, 'utf8').replace('max: 10', 'max: 11'));
+    const prepared = join(nodes.plant.folder, 'plant.prepared');
+    assert.equal(runProgram('plantcast-prep', [other], 60000).code, 0, prepared);
+    const args = ['--role', 'render', '--port', '0', '--core', core.url];
+    const start = (file, ...more) => {
+        const program = new Program('plantcastd', [file, ...args, ...more]);
+        nodes.all.push({ program });
+        return program;
+    };
+    const wrong = [
+        [start(other, '--core-token-file', nodes.rendererFile), /no readings: configuration: the renderer has \w{16}, this node \w{16}/],
+        [start(nodes.plant.file, '--core-token-file', nodes.viewerFile), /no readings: .*is our token that of a renderer/],
+    ];
+    const alone = await nodes.start(['--port', '0', '--role', 'all', '--history', join(nodes.plant.folder, 'h2')]);
+    wrong.push([new Program('plantcastd', [nodes.plant.file, '--role', 'render', '--port', '0', '--core', alone.url]),
+        /no readings: .*has it --role core/]);
+    nodes.all.push({ program: wrong[2][0] });
+    for (const [program, said] of wrong) {
+        await program.line(said, 30000);
+        await program.stop();
+    }
+    await alone.stop();
+    assert.match(core.program.said, /renderer .*: refused: configuration: the renderer has/);
+    for (const [bad, said] of [[['--role', 'renderer'], /--role: all, core or render/], [['--role', 'render'], /belong together/],
+        [['--core', 'ws://x:1'], /belong together/], [['--role', 'render', '--core', 'ftp://x'], /--core: not wss/]])
+        assert.match(runProgram('plantcastd', [nodes.plant.file, ...bad]).err, said);
+});
+
+test('a renderer\'s token opens no stream; strangers at /core are ended', options, async () => {
+    const core_ = { path: '/core', protocol: 'plantcast.core.v1', headers: [`Authorization: Bearer ${nodes.tokens.renderer}`] };
+    await assert.rejects(PlainClient.open(core.port, { headers: core_.headers }), /403/);
+    await assert.rejects(PlainClient.open(core.port, { ...core_, headers: [`Authorization: Bearer ${nodes.tokens.operator}`] }), /403/);
+    await assert.rejects(PlainClient.open(core.port, { path: '/stream', protocol: 'plantcast.core.v1' }), /400/);
+    const client = await PlainClient.open(core.port);
+    client.say({ type: 'hello', width: 320, height: 180, codecs: ['jpeg'], token: nodes.tokens.renderer });
+    assert.equal((await client.text('error')).code, 'not_allowed');
+    for (const words of ['no JSON', '{"type":"act","id":1}', `{"type":"renderer","x":"${'y'.repeat(300000)}"}`, '[]']) {
+        const stranger = await PlainClient.open(core.port, core_);
+        stranger.say(words);
+        await stranger.until('the end', ({ closed }) => closed, 10000);
+    }
+    assert.equal((await core.tags())['TI-1'].quality_name, 'Good');
+});

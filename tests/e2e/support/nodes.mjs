@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Several daemons of one plant on this machine: a core, and renderers that take readings from it.
+import { chmodSync, existsSync, readFileSync, writeFileSync } from 'node:fs';
+import { join } from 'node:path';
+import { PlainClient } from './plain_client.mjs';
+import { Program, runProgram, TinyPlant } from './tiny_plant.mjs';
+
+export const sleep = (ms) => new Promise((done) => setTimeout(done, ms));
+
+export async function until(what, good, seconds = 20) {
+    for (const end = performance.now() + seconds * 1000; ; await sleep(50)) {
+        const found = await good();
+        if (found)
+            return found;
+        if (performance.now() > end)
+            throw new Error(`waited ${seconds} s for ${what}`);
+    }
+}
+
+export class Node {
+    constructor(plant, args, file = plant.file) {
+        this.program = new Program('plantcastd', [file, ...args]);
+    }
+
+    async ready() {
+        const [, port] = await this.program.line(/ready https?:\/\/[\d.]+:(\d+)\/$/m);
+        this.port = Number(port);
+        return this;
+    }
+
+    get url() { return `ws://127.0.0.1:${this.port}`; }
+
+    async fetch(path, token) {
+        const headers = token ? { authorization: `Bearer ${token}` } : {};
+        return fetch(`http://127.0.0.1:${this.port}${path}`, { headers, signal: AbortSignal.timeout(10000) });
+    }
+
+    async tags(token) {
+        const answer = await this.fetch('/api/v1/tags?count=9', token);
+        return Object.fromEntries((await answer.json()).tags.map((tag) => [tag.name, tag]));
+    }
+
+    async metric(name, token) {
+        const text = await (await this.fetch('/metrics', token)).text();
+        return Number(text.split('\n').find((line) => line.startsWith(`${name} `))?.split(' ')[1]);
+    }
+
+    async client(options = {}, hello = {}) {
+        const client = await PlainClient.open(this.port, options);
+        client.welcome = await client.hello(hello);
+        return client;
+    }
+
+    stop(signal) { return this.program.stop(signal); }
+}
+
+export class Nodes {
+    // With alarms at 90, and a token for each of a viewer, an operator and a renderer.
+    static async create() {
+        const nodes = new Nodes();
+        nodes.plant = await TinyPlant.create();
+        nodes.plant.addAlarms();
+        const prepared = nodes.plant.prepare();
+        if (prepared.code !== 0)
+            throw new Error(prepared.err);
+        nodes.tokenFile = join(nodes.plant.folder, 'tokens');
+        nodes.tokens = {};
+        for (const [role, name] of [['viewer', 'wall'], ['operator', 'anna'], ['renderer', 'r']]) {
+            const made = runProgram('plantcast', ['token', 'add', nodes.tokenFile, '--role', role, '--name', name]);
+            nodes.tokens[role] = made.out.trim();
+            nodes[`${role}File`] = join(nodes.plant.folder, `${role}.token`);
+            writeFileSync(nodes[`${role}File`], nodes.tokens[role]);
+        }
+        chmodSync(nodes.tokenFile, 0o600);
+        await nodes.plant.startSim();
+        nodes.all = [];
+        return nodes;
+    }
+
+    async start(args, file) {
+        const node = new Node(this.plant, ['--trust-local', '--tokens', this.tokenFile, ...args], file);
+        this.all.push(node);
+        return node.ready();
+    }
+
+    core(port = 0, ...more) {
+        return this.start(['--role', 'core', '--port', String(port), ...more]);
+    }
+
+    renderer(name, cores, ...more) {
+        const urls = [cores].flat().flatMap((core) => ['--core', core.url]);
+        return this.start(['--role', 'render', ...urls, '--core-token-file', this.rendererFile, '--node', name, '--port', '0', ...more]);
+    }
+
+    // How many connections there are to the device, by whom ever.
+    pollers() {
+        const port = this.plant.modbusPort.toString(16).toUpperCase().padStart(4, '0'), established = '01';
+        const lines = ['/proc/net/tcp', '/proc/net/tcp6'].filter(existsSync).flatMap((path) => readFileSync(path, 'utf8').split('\n'));
+        return lines.map((line) => line.trim().split(/\s+/))
+            .filter(([, , remote, state]) => remote?.endsWith(`:${port}`) && state === established).length;
+    }
+
+    async destroy() {
+        const fault = this.all.map(({ program }) => program.fault).find(Boolean);
+        for (const { program } of this.all)
+            if (program.child.exitCode === null) {
+                program.child.kill('SIGCONT');
+                await program.stop('SIGKILL');
+            }
+        await this.plant.destroy();
+        if (fault)
+            throw new Error(fault);
+    }
+}
