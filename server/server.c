@@ -48,6 +48,19 @@ struct server {
 };
 
 static struct net *_Atomic to_stop;
+static _Atomic bool preparing, told_to_end;
+
+/* Until the loop runs. As the first process of a container it would not be ended by a signal that it does not handle. */
+static void on_early_signal(int number)
+{
+    atomic_store(&told_to_end, true);
+    if (atomic_load(&preparing))
+        return;
+    if (getpid() == 1)
+        _exit(0);
+    signal(number, SIG_DFL);
+    raise(number);
+}
 
 static void on_signal(int number)
 {
@@ -217,10 +230,10 @@ static void log_findings(struct log *log, const struct diag *diag)
     free(lines);
 }
 
-static bool goes_on(void *arg)
+static bool is_told_to_end(void *arg)
 {
     (void)arg;
-    return false; /* signals end the daemon: none is handled yet */
+    return atomic_load(&told_to_end);
 }
 
 /* What was prepared is of another plant file or of other models: somebody has imported, and not prepared since. Where nothing was prepared
@@ -235,10 +248,14 @@ static bool prepare(struct server *server)
         const char *const arguments[] = { "plantcast-prep", "-o", folder, server->params.plant_path, NULL };
         log_warn(server->log, "%s: the plant is prepared now, as it is not what was prepared before", server->params.plant_path);
         supervision_starting(server->supervision, "preparing the plant");
-        why = sibling_run(&(struct sibling_params){ .arguments = arguments, .stop = goes_on });
-        if (why)
+        atomic_store(&preparing, true);
+        why = sibling_run(&(struct sibling_params){ .arguments = arguments, .stop = is_told_to_end }); /* tells the service manager itself */
+        atomic_store(&preparing, false);
+        good = !why && !atomic_load(&told_to_end);
+        if (atomic_load(&told_to_end))
+            log_event(server->log, LOG_INFO, EVENT_STOPPING, "stopping; the next start goes on with preparing");
+        else if (why)
             log_err(server->log, "%s: the plant cannot be prepared: %s", server->params.plant_path, why);
-        good = !why;
     }
     mem_free(why);
     mem_free(folder);
@@ -352,6 +369,14 @@ static void server_finish(struct server *server)
     log_destroy(&server->log);
 }
 
+static void handle_early_signals(void)
+{
+    struct sigaction action = { .sa_handler = on_early_signal };
+    sigemptyset(&action.sa_mask);
+    sigaction(SIGINT, &action, NULL);
+    sigaction(SIGTERM, &action, NULL);
+}
+
 static void handle_signals(struct net *net)
 {
     struct sigaction action = { .sa_handler = on_signal };
@@ -384,6 +409,7 @@ int server_run(const struct server_params *params)
     pthread_mutex_init(&server.wake_lock, NULL);
     signal(SIGPIPE, SIG_IGN);
     signal(SIGXFSZ, SIG_IGN); /* a file that may not grow is an error of writing, as a full disk is */
+    handle_early_signals();
     bool good = server_start(&server);
     if (good) {
         handle_signals(server.net);
@@ -396,7 +422,7 @@ int server_run(const struct server_params *params)
         supervision_stopping(server.supervision);
     }
     server_finish(&server);
-    return good ? 0 : 1;
+    return good || atomic_load(&told_to_end) ? 0 : 1;
 }
 
 static int check_prepared(const struct server_params *params, const struct plant *plant)

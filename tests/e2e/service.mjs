@@ -75,6 +75,52 @@ test('plantcast-prep asks for time while it works', { skip }, () => {
     assert.match(stdout, /^notify: EXTEND_TIMEOUT_USEC=60000000\nnotify: STATUS=preparing/m);
 });
 
+// A plant whose preparing lasts, since one of its models is made by a program that does not end.
+async function unprepared() {
+    const tiny = await TinyPlant.create();
+    assert.equal(tiny.prepare().code, 0);
+    const text = readFileSync(tiny.file, 'utf8');
+    writeFileSync(join(tiny.folder, 'more.cad'), '');
+    writeFileSync(tiny.file, text.replace('groups:', '  - { id: MORE, model: more.glb }\nconvert:\n' +
+        '  - { model: more.glb, from: more.cad, command: exec sleep 300 }\ngroups:'));
+    return tiny;
+}
+
+test('a start that prepares the plant asks for time as long as it does, and ends when it is told to', { skip }, async () => {
+    const tiny = await unprepared(), was = plant;
+    try {
+        plant = tiny;
+        const service = serve(['--port', '0']);
+        await service.said(/(notify: EXTEND_TIMEOUT_USEC=60000000\nnotify: STATUS=preparing the plant\n[^]*){2}/); // plantcast-prep too
+        assert.equal(await service.stop(), 0, service.err);
+        assert.match(service.err, /stopping; the next start goes on with preparing/);
+    } finally {
+        plant = was;
+        await tiny.destroy();
+    }
+});
+
+const alone = spawnSync('unshare', ['--pid', '--fork', 'true']).status === 0 ? skip : 'this machine lets nobody have processes of their own';
+
+test('as the first process of a container, it ends when it is told to while it prepares the plant', { skip: alone }, async () => {
+    const tiny = await unprepared();
+    try {
+        const child = spawn('unshare', ['--pid', '--fork', '--kill-child', join(BIN, 'plantcastd'), tiny.file, '--port', '0'],
+            { stdio: 'pipe' });
+        let said = '';
+        child.stderr.on('data', (chunk) => { said += chunk; });
+        const ended = new Promise((done) => child.once('exit', (code) => done(code)));
+        for (let i = 0; i < 600 && !/making .*more\.glb/.test(said); i++)
+            await new Promise((done) => setTimeout(done, 50));
+        const [first] = readFileSync(`/proc/${child.pid}/task/${child.pid}/children`, 'utf8').split(' ');
+        process.kill(Number(first), 'SIGTERM');
+        assert.equal(await ended, 0, said);
+        assert.match(said, /stopping; the next start goes on with preparing/);
+    } finally {
+        await tiny.destroy();
+    }
+});
+
 for (const [thread, what] of [['render', 'the render thread'], ['plantcastd', 'the loop']])
     test(`if ${what} hangs, the watchdog ends the daemon within ${WITHIN_S} s; before, it lives`, { skip, timeout: 120000 }, async () => {
         const service = serve(['--port', '0'], ['--watchdog', String(WATCHDOG_S)]);
