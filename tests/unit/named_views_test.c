@@ -137,7 +137,7 @@ static void the_plant_file_has_its_own(void **state)
 static void there_is_a_limit(void **state)
 {
     struct fixture *f = *state;
-    char id[8];
+    char id[16];
     for (int i = 0; i < NAMED_VIEWS; i++) {
         snprintf(id, sizeof(id), "v%d", i);
         assert_null(save(f, id, "V", -1));
