@@ -249,7 +249,7 @@ static bool prepare(struct server *server)
         log_warn(server->log, "%s: the plant is prepared now, as it is not what was prepared before", server->params.plant_path);
         supervision_starting(server->supervision, "preparing the plant");
         atomic_store(&preparing, true);
-        why = sibling_run(&(struct sibling_params){ .arguments = arguments, .stop = is_told_to_end }); /* tells the service manager itself */
+        why = sibling_run(&(struct sibling_params){ .arguments = arguments, .stop = is_told_to_end }); /* it asks for time itself */
         atomic_store(&preparing, false);
         good = !why && !atomic_load(&told_to_end);
         if (atomic_load(&told_to_end))

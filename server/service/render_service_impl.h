@@ -13,6 +13,7 @@ struct render_client {
     bool pending;        /* `request` has yet to be begun */
     bool has_content;
     bool left; /* it wants another frame than the long job that is drawn for it */
+    int64_t patience_ns; /* so long changed readings wait for a long job of it; 0: as at first */
     struct frame_request request;
     uint64_t content;                   /* content hash of the last frame drawn for it */
     int64_t spent_ns[SCHEDULER_SHARES]; /* drawing time that it was charged, by scheduler_share */

@@ -9,6 +9,7 @@ static const int64_t STEP_NS = 10 * NS_PER_MS; /* of a long job, before anyone e
 static const int64_t LIGHT_NS = 4 * NS_PER_MS; /* of each frame of a moving session, for a light that it chose */
 static const int64_t FIELD_NS = 6 * NS_PER_MS; /* of a field that takes long, likewise */
 static const int64_t REBUILD_NS = 100 * NS_PER_MS, REBUILD_MAX_NS = 5 * NS_PER_S; /* between attempts at a new context */
+static const int64_t PATIENCE_NS = 4 * NS_PER_S; /* that readings have at most with a view whose refined frame came */
 static const int64_t SAME_NS = 60 * NS_PER_S; /* a driver that restarts is waited for so long, before anything else will do */
 
 /* Under lock. It is wanted as before; true: a newer request of its client is there already, and stands for it. */
@@ -238,6 +239,18 @@ static const struct snapshot *long_job_readings(const struct render_thread *thre
     return thread->long_job.historical ? &thread->long_job.historical->snapshot : thread->long_job.snapshot;
 }
 
+/* Whoever has a refined frame gets readings sooner again. */
+static void calm(struct render_service *service, const struct request_group *group)
+{
+    pthread_mutex_lock(&service->lock);
+    for (size_t i = 0; i < group->count; i++) {
+        struct render_client *client = render_service_find(service, group->tickets[i].client);
+        if (client && client->patience_ns > PATIENCE_NS)
+            client->patience_ns = PATIENCE_NS;
+    }
+    pthread_mutex_unlock(&service->lock);
+}
+
 static void long_job_forget_instant(struct render_thread *thread)
 {
     if (thread->long_job.historical)
@@ -263,6 +276,7 @@ static bool long_job_step(struct render_thread *thread)
             newer->render_ns += frame->render_ns;
             frame_unref(&frame);
         }
+        calm(thread->service, &thread->long_job.group);
         deliver(thread, newer ? newer : frame, newer ? thread->snapshot : long_job_readings(thread), &thread->long_job.group);
     } else {
         fail(thread, &thread->long_job.group);

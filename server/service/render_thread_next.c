@@ -3,7 +3,8 @@
 #include "base/clock.h"
 #include "service/render_thread_impl.h"
 
-static const int64_t OWN_DATA_NS = 1 * NS_PER_S; /* changed readings wait so long for a refinement of the same client */
+/* Changed readings wait so long for a refinement of the same client; longer after each that they had given up, so that one comes. */
+static const int64_t OWN_DATA_NS = 1 * NS_PER_S, OWN_DATA_MAX_NS = 16 * NS_PER_S;
 enum { OVERTAKE_SMALLER = 4 }; /* times, in pixels, than what it overtakes: one more of that size may be in memory, not two */
 static const int64_t SNAPSHOT_MAX_AGE_NS = 100 * NS_PER_MS; /* the clock in the frame, and ages, are no older than this */
 
@@ -19,7 +20,8 @@ static bool long_job_is_for(const struct long_job *long_job, const struct render
 static bool waits_for_long_job(const struct render_thread *thread, const struct render_client *client, int64_t now_ns)
 {
     bool moving = client->request.view.tier == TIER_PREVIEW || client->request.or_moving;
-    bool soon = client->request.urgency == URGENCY_DATA && moving && now_ns - client->request.asked_ns >= OWN_DATA_NS;
+    int64_t patience_ns = client->patience_ns ? client->patience_ns : OWN_DATA_NS;
+    bool soon = client->request.urgency == URGENCY_DATA && moving && now_ns - client->request.asked_ns >= patience_ns;
     if (client->left || client->request.urgency == URGENCY_INPUT || soon)
         return false;
     return long_job_is_for(&thread->long_job, client) || long_job_is_for(&thread->parked, client);
@@ -87,12 +89,23 @@ static struct turn next_turn(const struct render_thread *thread, const struct sc
     return turn;
 }
 
+/* Under lock. Whoever moves begins anew; what is given up for readings is waited for twice as long the next time. */
+static void change_patience(const struct render_thread *thread, struct render_client *client)
+{
+    int64_t twice_ns = 2 * (client->patience_ns ? client->patience_ns : OWN_DATA_NS);
+    if (client->request.urgency == URGENCY_INPUT)
+        client->patience_ns = 0;
+    else if (client->left && (long_job_is_for(&thread->long_job, client) || long_job_is_for(&thread->parked, client)))
+        client->patience_ns = twice_ns < OWN_DATA_MAX_NS ? twice_ns : OWN_DATA_MAX_NS;
+}
+
 /* Under lock. What it had under way is not wanted any more, unless it will show new readings too. */
 static void begin(const struct render_thread *thread, struct render_client *client, struct request_group *group, int64_t now_ns)
 {
     enum urgency urgency = client->request.urgency;
     client->pending = false;
     client->left = urgency == URGENCY_INPUT || (urgency == URGENCY_DATA && !thread->long_job.keeps);
+    change_patience(thread, client);
     request_group_add(group, &(struct request_ticket){ .client = client->id,
                                                        .number = ++client->number,
                                                        .request = client->request,

@@ -91,7 +91,7 @@ test('a start that prepares the plant asks for time as long as it does, and ends
     try {
         plant = tiny;
         const service = serve(['--port', '0']);
-        await service.said(/(notify: EXTEND_TIMEOUT_USEC=60000000\nnotify: STATUS=preparing the plant\n[^]*){2}/); // plantcast-prep too
+        await service.said(/(notify: EXTEND_TIMEOUT_USEC=60000000\nnotify: STATUS=preparing the plant\n[^]*){2}/); // plantcast-prep
         assert.equal(await service.stop(), 0, service.err);
         assert.match(service.err, /stopping; the next start goes on with preparing/);
     } finally {
@@ -100,7 +100,7 @@ test('a start that prepares the plant asks for time as long as it does, and ends
     }
 });
 
-const alone = spawnSync('unshare', ['--pid', '--fork', 'true']).status === 0 ? skip : 'this machine lets nobody have processes of their own';
+const alone = spawnSync('unshare', ['--pid', '--fork', 'true']).status === 0 ? skip : 'there are no process namespaces';
 
 test('as the first process of a container, it ends when it is told to while it prepares the plant', { skip: alone }, async () => {
     const tiny = await unprepared();

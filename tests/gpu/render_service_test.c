@@ -501,6 +501,36 @@ static void test_newest_pick_wins(void **state)
     print_message("# %d of 500 answered\n", answers);
 }
 
+static bool make_service(bool by_gl, size_t memory_bytes)
+{
+    const char *name = getenv("PLANTCAST_GL");
+    enum gl_kind kind = GL_EGL_SURFACELESS;
+    if (name && !gl_kind_parse(name, &kind))
+        abort();
+    struct gl *gl = gl_create(logger, kind, NULL);
+    hardware = gl && !gl->software;
+    gl_destroy(&gl);
+    service = render_service_create(&(struct render_service_params){ .log = logger,
+                                                                     .gl = kind,
+                                                                     .scene = &toy->scene,
+                                                                     .store = store,
+                                                                     .workers = workers,
+                                                                     .counters = counters,
+                                                                     .notify = on_pictures,
+                                                                     .h264_library = "none",
+                                                                     .by_gl = by_gl,
+                                                                     .memory_bytes = memory_bytes });
+    if (!service)
+        printf("TAP version 13\n1..1\nok 1 - render_service_test # SKIP no %s context on this machine\n", gl_kind_name(kind));
+    return service != NULL;
+}
+
+static void remake(bool by_gl, size_t memory_bytes)
+{
+    render_service_destroy(&service);
+    assert_true(make_service(by_gl, memory_bytes));
+}
+
 static void change_readings(double value)
 {
     for (int tag = 0; tag < (int)toy->plant.tag_count; tag++) {
@@ -546,11 +576,12 @@ static int ask_for_data(uint64_t client, enum look look, int64_t waited_ns)
 }
 
 /* Readings change all the time, and those who wait for them wait no longer than a second: the refined picture comes all the same, with the
-   newest of them, and stays. */
-static void assert_refined_comes(enum look look, int64_t waited_ns)
+   newest of them: none shows older ones than the picture before it. Returns whether none was given up meanwhile. */
+static bool refined_comes(enum look look, int64_t waited_ns)
 {
     int64_t steps = count_of("plantcast_render_steps_total"), abandoned = count_of("plantcast_renders_abandoned_total");
     bool refined = false;
+    int64_t shown_ns = 0;
     int owed = 1;
     change_readings(20);
     ask_for_refined(REFINER, look);
@@ -562,15 +593,25 @@ static void assert_refined_comes(enum look look, int64_t waited_ns)
         owed += ask_for_data(REFINER, look, waited_ns);
         struct encoded_frame *encoded = next();
         assert_true(encoded->client == REFINER && !encoded->failed);
-        refined |= encoded->packet && encoded->packet->frame->view.tier == TIER_REFINED;
+        if (encoded->packet) {
+            refined |= encoded->packet->frame->view.tier == TIER_REFINED;
+            assert_true(encoded->packet->frame->data_utc_ns >= shown_ns);
+            shown_ns = encoded->packet->frame->data_utc_ns;
+        }
         encoded_frame_destroy(&encoded);
     }
     for (; owed > 0; owed--) {
         struct encoded_frame *last = next();
         encoded_frame_destroy(&last);
     }
-    assert_int_equal(count_of("plantcast_renders_abandoned_total"), abandoned);
-    steps = count_of("plantcast_render_steps_total");
+    return count_of("plantcast_renders_abandoned_total") == abandoned;
+}
+
+/* And it stays. */
+static void assert_refined_comes(enum look look, int64_t waited_ns)
+{
+    assert_true(refined_comes(look, waited_ns));
+    int64_t steps = count_of("plantcast_render_steps_total");
     for (int i = 0; i < 8; i++) {
         change_readings(80 - 5 * i);
         assert_int_equal(ask_for_data(REFINER, look, 0), 1);
@@ -596,6 +637,40 @@ static void test_changing_readings_leave_slow_pictures(void **state)
         skip();
     assert_refined_comes(LOOK_FLAT, 2 * NS_PER_S);
     assert_refined_comes(LOOK_GLOSSY, 2 * NS_PER_S);
+}
+
+/* What a refined picture is coloured from is more than may be kept. */
+static void test_changing_readings_leave_pictures_without_room(void **state)
+{
+    (void)state;
+    if (hardware)
+        skip();
+    remake(false, (size_t)64 << 20);
+    assert_true(refined_comes(LOOK_GLOSSY, 2 * NS_PER_S));
+    remake(false, 0);
+}
+
+/* By GL nothing is kept: a picture is given up for readings a few times, each time later, and comes in the end. */
+static void test_what_takes_long_by_gl_comes_in_the_end(void **state)
+{
+    (void)state;
+    if (hardware)
+        skip();
+    remake(true, 0);
+    bool refined = false;
+    for (int i = 0; i < 12 && !refined; i++) {
+        int64_t steps = count_of("plantcast_render_steps_total");
+        ask_for_refined(REFINER, LOOK_DEFAULT);
+        await_step(steps + 1);
+        change_readings(30 + i);
+        for (int owed = 1 + ask_for_data(REFINER, LOOK_DEFAULT, (int64_t)1100 * NS_PER_MS); owed > 0; owed--) {
+            struct encoded_frame *encoded = next();
+            refined |= encoded->packet && encoded->packet->frame->view.tier == TIER_REFINED;
+            encoded_frame_destroy(&encoded);
+        }
+    }
+    assert_true(refined);
+    remake(false, 0);
 }
 
 /* Bands, which are not quick to colour again: the refined picture is drawn anew, and comes. */
@@ -635,29 +710,6 @@ static void test_stop_waits_for_no_refinement(void **state)
     assert_true(count_of("plantcast_renders_total") == renders);
 }
 
-static bool make_service(bool by_gl)
-{
-    const char *name = getenv("PLANTCAST_GL");
-    enum gl_kind kind = GL_EGL_SURFACELESS;
-    if (name && !gl_kind_parse(name, &kind))
-        abort();
-    struct gl *gl = gl_create(logger, kind, NULL);
-    hardware = gl && !gl->software;
-    gl_destroy(&gl);
-    service = render_service_create(&(struct render_service_params){ .log = logger,
-                                                                     .gl = kind,
-                                                                     .scene = &toy->scene,
-                                                                     .store = store,
-                                                                     .workers = workers,
-                                                                     .counters = counters,
-                                                                     .notify = on_pictures,
-                                                                     .h264_library = "none",
-                                                                     .by_gl = by_gl });
-    if (!service)
-        printf("TAP version 13\n1..1\nok 1 - render_service_test # SKIP no %s context on this machine\n", gl_kind_name(kind));
-    return service != NULL;
-}
-
 /* With a GPU, or as if there were one: pictures are given to it before others have come. Every one comes, to whom it is for, and shows
    what was asked for; who asks for the same meanwhile shares it; and a context that is lost meanwhile costs none. */
 static void test_pictures_fly(void **state)
@@ -665,9 +717,7 @@ static void test_pictures_fly(void **state)
     (void)state;
     enum { CLIENTS = 8, ROUNDS = 6, FIRST = 100 };
     int64_t renders = count_of("plantcast_renders_total"), losses = count_of("plantcast_gl_losses_total");
-    render_service_destroy(&service);
-    make_service(true);
-    assert_non_null(service);
+    remake(true, 0);
     int most = ROUNDS * CLIENTS * 3 / 4;
     for (int round = 0; round < ROUNDS; round++) {
         bool came_for[CLIENTS] = { false };
@@ -692,9 +742,7 @@ static void test_pictures_fly(void **state)
     struct encoded_frame *by_gl = picture_of(MOVER, URGENCY_INPUT, 7);
     assert_true(by_gl->packet->frame->marker_count > 0);
     encoded_frame_destroy(&by_gl);
-    render_service_destroy(&service);
-    make_service(false);
-    assert_non_null(service);
+    remake(false, 0);
 }
 
 /* Another painter, while the first is at work, in one process and on one driver. */
@@ -766,7 +814,7 @@ static bool start(void)
     for (size_t i = 0; i < toy->plant.tag_count; i++)
         toy->plant.tags[i].stale_s = 3600;
     store = store_create(&toy->plant);
-    return make_service(false);
+    return make_service(false, 0);
 }
 
 static void stop(void)
@@ -796,6 +844,8 @@ int main(void)
         cmocka_unit_test(test_newest_pick_wins),
         cmocka_unit_test(test_changing_readings_leave_refined_pictures),
         cmocka_unit_test(test_changing_readings_leave_slow_pictures),
+        cmocka_unit_test(test_changing_readings_leave_pictures_without_room),
+        cmocka_unit_test(test_what_takes_long_by_gl_comes_in_the_end),
         cmocka_unit_test(test_readings_change_pictures_that_are_not_quick),
         cmocka_unit_test(test_pictures_fly),
         cmocka_unit_test(test_another_is_made_and_the_first_destroyed_beside_it),

@@ -52,6 +52,21 @@ static void test_bound(void **state)
     assert_int_equal(store.bytes, 0);
 }
 
+static void test_the_newest_is_kept_alone(void **state)
+{
+    struct visibility_store store = { .bound_bytes = 1000, .keeps_newest = true };
+    (void)state;
+    assert_non_null(make(&store, 1, 400));
+    assert_non_null(make(&store, 2, 5000));
+    assert_null(visibility_store_find(&store, 1));
+    assert_non_null(make(&store, 3, 6000));
+    assert_int_equal(store.bytes, 6000);
+    visibility_store_bound(&store, 1000);
+    assert_null(visibility_store_find(&store, 3));
+    assert_int_equal(store.bytes, 0);
+    visibility_store_finish(&store);
+}
+
 static void test_many_small(void **state)
 {
     struct visibility_store store = { .bound_bytes = 1000 };
@@ -69,6 +84,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_found_again),
         cmocka_unit_test(test_bound),
+        cmocka_unit_test(test_the_newest_is_kept_alone),
         cmocka_unit_test(test_many_small),
     };
     cmocka_set_message_output(CM_OUTPUT_TAP);

@@ -39,6 +39,7 @@ struct refiner *refiner_create(struct workers *workers, const struct gpu_scene *
     struct refiner *refiner = mem_new(sizeof(*refiner));
     *refiner = (struct refiner){ .workers = workers, .gpu_scene = gpu_scene, .sky = sky, .soft = soft, .environments = environments };
     refiner->kept.bound_bytes = KEPT_BYTES;
+    refiner->kept.keeps_newest = true; /* readings that changed while it was made are shown by it, however large it is */
     find_materials(refiner);
     soft_tones_init(&refiner->tones);
     return refiner;

@@ -2,8 +2,6 @@
 /* A short list with a bound on its bytes. */
 #include "render/soft/visibility_store.h"
 
-#include <stdbool.h>
-
 static void empty(struct visibility_store *store, struct visibility_slot *buffer)
 {
     if (buffer->at)
@@ -44,11 +42,11 @@ void *visibility_store_find(struct visibility_store *store, uint64_t shape)
 void visibility_store_give(struct visibility_store *store, uint64_t shape, void *at, size_t bytes, void (*destroy)(void *at))
 {
     visibility_store_drop(store, shape);
-    if (bytes > store->bound_bytes) {
+    if (bytes > store->bound_bytes && !store->keeps_newest) {
         destroy(at);
         return;
     }
-    while (store->bytes + bytes > store->bound_bytes)
+    while (store->bytes > 0 && store->bytes + bytes > store->bound_bytes)
         empty(store, oldest(store, false));
     struct visibility_slot *buffer = oldest(store, true);
     empty(store, buffer);

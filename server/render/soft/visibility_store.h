@@ -4,6 +4,7 @@
    used go first. Thread: the one of the GL context. */
 #ifndef RENDER_SOFT_VISIBILITY_STORE_H
 #define RENDER_SOFT_VISIBILITY_STORE_H
+#include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 
@@ -17,13 +18,15 @@ struct visibility_slot {
 };
 struct visibility_store { /* zero-initialise, but for the bound */
     size_t bound_bytes, bytes;
+    bool keeps_newest; /* even if it is more than the bound, alone, until that is set the next time */
     struct visibility_slot buffers[VISIBILITY_SLOTS];
     uint64_t uses;
 };
 
 /* What was given for that shape. NULL: there is nothing. Valid until the next give or drop. */
 void *visibility_store_find(struct visibility_store *store, uint64_t shape);
-/* Takes over what was made for that shape, in place of what was there before; destroys it at once if it is more than the bound. */
+/* Takes over what was made for that shape, in place of what was there before; destroys it at once if it is more than the bound, and the
+   newest is not kept in any case. */
 void visibility_store_give(struct visibility_store *store, uint64_t shape, void *at, size_t bytes, void (*destroy)(void *at));
 void visibility_store_bound(struct visibility_store *store, size_t bytes); /* from now on */
 void visibility_store_drop(struct visibility_store *store, uint64_t shape);
