@@ -134,6 +134,7 @@ void plant_runtime_open_lists(struct plant_runtime *runtime)
     runtime->named_views = named_views_open(runtime->context->log, runtime->plant, runtime->history);
     runtime->notes = notes_open(runtime->context->log, runtime->history);
     runtime->wall_remote = wall_remote_open(runtime->context->log, runtime->plant, runtime->history);
+    runtime->pairings = pairings_open(runtime->context->log, runtime->history);
 }
 
 bool plant_runtime_start_recording(struct plant_runtime *runtime, struct plant_runtime *before)
@@ -253,6 +254,7 @@ struct net_plant plant_runtime_net_plant(const struct plant_runtime *runtime)
         .named_views = runtime->named_views,
         .notes = runtime->notes,
         .wall_remote = runtime->wall_remote,
+        .pairings = runtime->pairings,
         .loop_checks = runtime->loop_checks,
         .core_link = runtime->core_link,
         .tag_list = runtime->tag_list,
@@ -270,6 +272,7 @@ void plant_runtime_destroy(struct plant_runtime **pointer)
     named_views_close(&runtime->named_views);
     notes_close(&runtime->notes);
     wall_remote_close(&runtime->wall_remote);
+    pairings_close(&runtime->pairings);
     loop_checks_close(&runtime->loop_checks);
     mem_free(runtime->tag_list);
     stop_sources(runtime);

@@ -43,6 +43,7 @@ struct plant_runtime {
     struct named_views *named_views;
     struct notes *notes;
     struct wall_remote *wall_remote;
+    struct pairings *pairings;
     struct loop_checks *loop_checks; /* NULL: nothing is recorded */
     char *tag_list;                  /* its text; NULL: it could not be read */
 };

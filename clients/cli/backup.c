@@ -22,6 +22,7 @@
 #include "base/timestamp.h"
 #include "plant/plant.h"
 #include "loopcheck/loop_checks.h"
+#include "access/pairings.h"
 #include "views/named_views.h"
 #include "views/notes.h"
 #include "views/wall_remote.h"
@@ -83,7 +84,7 @@ static const char *base_name(const char *path)
 }
 
 /* What people make beside the history. */
-static const char *const lists[] = { NAMED_VIEWS_FILE, NOTES_FILE, WALL_REMOTE_FILE };
+static const char *const lists[] = { NAMED_VIEWS_FILE, NOTES_FILE, WALL_REMOTE_FILE, PAIRINGS_FILE };
 enum { LISTS = sizeof(lists) / sizeof(lists[0]) };
 
 static bool is_list(const char *name)

@@ -27,6 +27,8 @@ struct tokens {
     struct token_holder *holders;
     size_t count, capacity;
     struct file_watch watch;
+    tokens_find_device *find_device; /* NULL: there are none */
+    const void *pairings;
 };
 
 /* --- single tokens ------------------------------------------------------------------------------------------------------------- */
@@ -243,6 +245,12 @@ void tokens_set_plant(struct tokens *tokens, const char *plant)
     tokens->plant = mem_strdup(plant);
 }
 
+void tokens_set_pairings(struct tokens *tokens, tokens_find_device *find_device, const void *pairings)
+{
+    tokens->find_device = find_device;
+    tokens->pairings = pairings;
+}
+
 void tokens_destroy(struct tokens **tokens_ptr)
 {
     struct tokens *tokens = *tokens_ptr;
@@ -290,12 +298,17 @@ bool tokens_find(const struct tokens *tokens, const char *token, int64_t now_utc
     uint8_t hash[TOKEN_HASH_BYTES];
     tokens_hash(token, hash);
     const struct token_holder *found = find(tokens, hash, now_utc_ns);
+    if (!found && tokens->find_device)
+        return tokens->find_device(tokens->pairings, hash, out);
     *out = found ? *found : (struct token_holder){ .role = ROLE_NOBODY };
     return found && now_utc_ns < found->until_utc_ns;
 }
 
 enum role tokens_role(const struct tokens *tokens, const struct token_holder *holder, int64_t now_utc_ns)
 {
+    struct token_holder device = { .role = ROLE_NOBODY };
     const struct token_holder *found = find(tokens, holder->hash, now_utc_ns);
-    return found && now_utc_ns < found->until_utc_ns ? found->role : ROLE_NOBODY;
+    if (!found && tokens->find_device)
+        tokens->find_device(tokens->pairings, holder->hash, &device);
+    return !found ? device.role : now_utc_ns < found->until_utc_ns ? found->role : ROLE_NOBODY;
 }

@@ -6,6 +6,7 @@
 #include "base/log.h"
 #include "base/text.h"
 #include "access/access.h"
+#include "plant/wall.h"
 
 enum { TOKEN_HASH_BYTES = 32, TOKEN_NAME_BYTES = 64, TOKEN_PLANT_BYTES = 128 };
 
@@ -17,6 +18,8 @@ struct token_holder {
     char plant[TOKEN_PLANT_BYTES];  /* the name of the only plant that it is for; "": any */
     bool unattended;                /* of a wall or a program: it is not locked when nobody is at the page */
     bool signed_in;                 /* a person, by the identity provider; the hash is that of a cookie */
+    char wall[NAMED_VIEW_ID_BYTES]; /* of a paired device: the only display that it may be */
+    int display;                    /* likewise; 0: it is none */
 };
 
 struct tokens;
@@ -25,14 +28,17 @@ struct tokens;
 struct tokens *tokens_create(struct log *log, const char *path);
 /* Says which plant this is: tokens for others are not accepted. The name is copied. */
 void tokens_set_plant(struct tokens *tokens, const char *plant);
+/* Has it accept paired devices, too: find(pairings, ...) is pairings_find. pairings must outlive it, or the next call. */
+typedef bool tokens_find_device(const void *pairings, const uint8_t hash[TOKEN_HASH_BYTES], struct token_holder *out);
+void tokens_set_pairings(struct tokens *tokens, tokens_find_device *find, const void *pairings);
 void tokens_destroy(struct tokens **tokens); /* &NULL is fine; leaves NULL */
 /* Reads the file again if it changed and has stopped changing. Returns whether it was read. */
 bool tokens_look(struct tokens *tokens);
 /* Returns how many tokens are in force. */
 size_t tokens_count(const struct tokens *tokens);
 
-/* Looks a token up and writes its holder into *out. Returns false if it is not in the file (then out->role is ROLE_NOBODY), or has
-   expired. */
+/* Looks a token up, in the file and among paired devices, and writes its holder into *out. Returns false if it is in neither (then
+   out->role is ROLE_NOBODY), or has expired. */
 bool tokens_find(const struct tokens *tokens, const char *token, int64_t now_utc_ns, struct token_holder *out);
 /* Returns the role that the holder of a token has now; ROLE_NOBODY: the token was revoked or has expired. */
 enum role tokens_role(const struct tokens *tokens, const struct token_holder *holder, int64_t now_utc_ns);

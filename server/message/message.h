@@ -41,7 +41,9 @@ enum message_type {
     MESSAGE_REMOVE_NOTE,
     MESSAGE_DISPLAY,
     MESSAGE_SEND_TO_WALL,
-    MESSAGE_POINT
+    MESSAGE_POINT,
+    MESSAGE_PAIR,
+    MESSAGE_UNPAIR
 };
 
 enum { TOKEN_MAX_CHARS = 128, RESUME_CHARS = 32 };
@@ -173,6 +175,10 @@ struct wall_request {
     double position_m[3];
 };
 
+struct pair_request {
+    char digits[7], device[64]; /* pair: that a display shows; unpair: which one */
+};
+
 struct message {
     enum message_type type;
     int width_px, height_px;                                   /* hello, resize; 0: as what is resumed */
@@ -202,6 +208,7 @@ struct message {
     struct named_view_edit view_edit; /* save_view; remove_view: its id; send_to_wall: view and title */
     struct note_request note;         /* note, remove_note */
     struct wall_request wall;         /* display, send_to_wall, point */
+    struct pair_request pair;         /* pair, unpair */
 };
 
 /* Reads an instant (base/timestamp.h) of the argument `name` into *out, in microseconds UTC. Returns false, with *error set, for any other

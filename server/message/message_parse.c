@@ -229,6 +229,8 @@ static const struct {
     { "display", MESSAGE_DISPLAY, display_parse },
     { "send_to_wall", MESSAGE_SEND_TO_WALL, send_to_wall_parse },
     { "point", MESSAGE_POINT, point_parse },
+    { "pair", MESSAGE_PAIR, pair_parse },
+    { "unpair", MESSAGE_UNPAIR, unpair_parse },
 };
 
 static bool parse_object(const struct plant *plant, const json_t *o, struct message *out, struct message_error *error)

@@ -62,6 +62,10 @@ bool role_may_send(enum role role, const struct message *message, struct message
         message_fail(error, "not_allowed", "to place or prove sensors takes the role engineer, not %s", name_of(names_role, role));
         return false;
     }
+    if ((message->type == MESSAGE_PAIR || message->type == MESSAGE_UNPAIR) && role < ROLE_ENGINEER) {
+        message_fail(error, "not_allowed", "to let a display in takes the role engineer, not %s", name_of(names_role, role));
+        return false;
+    }
     const char *operators = message->type == MESSAGE_SAVE_VIEW || message->type == MESSAGE_REMOVE_VIEW ? "to save or remove views"
                             : message->type == MESSAGE_NOTE || message->type == MESSAGE_REMOVE_NOTE    ? "to note something"
                             : message->type == MESSAGE_SEND_TO_WALL || message->type == MESSAGE_POINT  ? "to send something to a wall"

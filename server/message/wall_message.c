@@ -2,6 +2,8 @@
 /* A pane is named by wall, display and area, as the plant file has them. */
 #include "message/wall_message.h"
 
+#include <string.h>
+
 #include "base/json_text.h"
 #include "message/json_fields.h"
 
@@ -44,6 +46,24 @@ bool point_parse(const struct plant *plant, const json_t *o, struct message *out
 {
     return place_parse(plant, o, true, out, error) && need_words(o, "desk", false, out->wall.desk, sizeof(out->wall.desk), error) &&
            may_vector(o, "position", out->wall.position_m, &out->wall.has_position, error);
+}
+
+bool pair_parse(const struct plant *plant, const json_t *o, struct message *out, struct message_error *error)
+{
+    char *digits = out->pair.digits;
+    (void)plant;
+    if (!need_seq(o, &out->seq, error) || !need_words(o, "digits", true, digits, sizeof(out->pair.digits), error))
+        return false;
+    if (strspn(digits, "0123456789") == sizeof(out->pair.digits) - 1)
+        return true;
+    message_fail(error, "bad_field", "digits: the six that a display shows expected");
+    return false;
+}
+
+bool unpair_parse(const struct plant *plant, const json_t *o, struct message *out, struct message_error *error)
+{
+    (void)plant;
+    return need_seq(o, &out->seq, error) && need_words(o, "id", true, out->pair.device, sizeof(out->pair.device), error);
 }
 
 char *send_to_wall_do(struct wall_remote *remote, const struct message *message, const char *who, int64_t now_us)

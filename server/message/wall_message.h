@@ -1,14 +1,16 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The messages `display`, `send_to_wall` and `point`: displays of a control room, and desks that send views to them. Thread: the loop. */
+/* The messages of displays of a control room, of desks that send views to them, and of engineers who let them in. Thread: the loop. */
 #ifndef MESSAGE_WALL_MESSAGE_H
 #define MESSAGE_WALL_MESSAGE_H
 #include "message/message.h"
 
-/* Parse the messages into out->wall (of `send_to_wall` also view and title into out->view_edit). Return false with *error saying what is
-   wrong. */
+/* Parse the messages into out->wall (of `send_to_wall` also view and title into out->view_edit) or out->pair. Return
+   false with *error saying what is wrong. */
 bool display_parse(const struct plant *plant, const json_t *o, struct message *out, struct message_error *error);
 bool send_to_wall_parse(const struct plant *plant, const json_t *o, struct message *out, struct message_error *error);
 bool point_parse(const struct plant *plant, const json_t *o, struct message *out, struct message_error *error);
+bool pair_parse(const struct plant *plant, const json_t *o, struct message *out, struct message_error *error);
+bool unpair_parse(const struct plant *plant, const json_t *o, struct message *out, struct message_error *error);
 /* Does what `send_to_wall` says. who: the user's name; now_us: UTC. Returns the answer; mem_free. */
 char *send_to_wall_do(struct wall_remote *remote, const struct message *message, const char *who, int64_t now_us);
 

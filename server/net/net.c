@@ -387,8 +387,10 @@ static bool open_access(struct net *net)
     if (access->notice_path && !(server->notice = access_notice_read(server->params.log, access->notice_path)))
         return false;
     server->session_context.lock_ns = (int64_t)(access->lock_min * 60e9);
-    if (server->tokens)
+    if (server->tokens) {
         tokens_set_plant(server->tokens, server->params.plant.scene->plant->name);
+        tokens_set_pairings(server->tokens, pairings_find, server->params.plant.pairings);
+    }
     const struct openid_params openid = { .log = server->params.log,
                                           .counters = server->params.counters,
                                           .audit = server->params.audit,

@@ -4,7 +4,7 @@
 #define NET_NET_PARAMS_H
 #include <stdbool.h>
 
-#include "access/access.h"
+#include "access/pairings.h"
 #include "alarm/alarm_service.h"
 #include "audit/audit.h"
 #include "base/counters.h"
@@ -28,6 +28,7 @@ struct net_plant { /* what belongs to one loaded plant; a reload brings another 
     struct placing *placing;         /* NULL: sensors cannot be placed */
     struct notes *notes;
     struct wall_remote *wall_remote;
+    struct pairings *pairings;
     struct named_views *named_views;
     struct core_link *core_link;     /* of a renderer; NULL: this daemon reads its devices itself */
     struct loop_checks *loop_checks; /* NULL: loops cannot be checked */

@@ -36,8 +36,10 @@ void net_bind_plant(struct net *net)
     server->snapshot = snapshot_create(plant->tag_count);
     server->changes = mem_array(plant->tag_count, sizeof(*server->changes));
     server->links_up = mem_array(plant->source_count, sizeof(*server->links_up));
-    if (server->tokens)
+    if (server->tokens) {
         tokens_set_plant(server->tokens, plant->name);
+        tokens_set_pairings(server->tokens, pairings_find, server->params.plant.pairings);
+    }
     server->session_context.plant = plant;
     server->session_context.scene = server->params.plant.scene;
     server->session_context.snapshot = server->snapshot;
@@ -48,6 +50,7 @@ void net_bind_plant(struct net *net)
     server->session_context.named_views = server->params.plant.named_views;
     server->session_context.notes = server->params.plant.notes;
     server->session_context.wall_remote = server->params.plant.wall_remote;
+    server->session_context.pairings = server->params.plant.pairings;
     server->session_context.tag_list = server->params.plant.tag_list;
     server->session_context.links_up = server->links_up;
     core_end_bind(server);

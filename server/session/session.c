@@ -7,7 +7,9 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "access/pairings.h"
 #include "base/clock.h"
+#include "base/json_text.h"
 #include "base/mem.h"
 #include "message/note_message.h"
 #include "message/views_message.h"
@@ -245,11 +247,41 @@ static void on_send_to_wall(struct session *session, const struct message *messa
     session_reply(session, answer);
 }
 
-/* From now on it is told where desks point. */
-static void on_display(struct session *session, const struct message *message)
+/* From now on it is told where desks point. A device that was paired is the display that it was paired as. */
+static bool on_display(struct session *session, const struct message *message, struct message_error *error)
 {
+    const struct token_holder *holder = &session->identity.holder;
+    if (holder->display && (holder->display != message->wall.place.display || strcmp(holder->wall, message->wall.place.wall) != 0)) {
+        message_fail(error, "not_allowed", "this device was paired as display %d of wall %s", holder->display, holder->wall);
+        session_close(session, 1008, "this device was paired as another display");
+        return false;
+    }
     session->display = message->wall.place;
     session->owed.pointers_sent = wall_remote_pointer_number(session->context->wall_remote);
+    return true;
+}
+
+static bool on_pair(struct session *session, const struct message *message, int64_t now_ns, int64_t now_utc_ns,
+                    struct message_error *error)
+{
+    const struct session_context *context = session->context;
+    bool pairs = message->type == MESSAGE_PAIR;
+    char id[TOKEN_NAME_BYTES] = "";
+    if (!context->tokens || context->hand_on) {
+        message_fail(error, "not_allowed", "%s",
+                     context->tokens ? "a renderer keeps no displays; its core lets them in" : "displays need no token here");
+        return false;
+    }
+    if (!pairs)
+        snprintf(id, sizeof(id), "%s", message->pair.device);
+    const char *why = pairs ? pairings_approve(context->pairings, message->pair.digits, session_who(session), now_ns, now_utc_ns / 1000, id)
+                            : pairings_revoke(context->pairings, id);
+    char *answer = json_text(json_pack("{s:s,s:I,s:s,s:b,s:s}", "type", "paired", "seq", (json_int_t)message->seq,
+                                       "id", id, "kept", !why, "why", why ? why : ""),
+                             0);
+    session_record_pair(session, message, id, answer);
+    session_reply(session, answer);
+    return true;
 }
 
 static void on_point(const struct session *session, const struct message *message)
@@ -287,9 +319,11 @@ static bool act(struct session *session, const struct message *message, int64_t 
     case MESSAGE_REMOVE_VIEW: on_view_edit(session, message, now_utc_ns); return true;
     case MESSAGE_NOTE:
     case MESSAGE_REMOVE_NOTE: on_note(session, message, now_utc_ns); return true;
-    case MESSAGE_DISPLAY: on_display(session, message); return true;
+    case MESSAGE_DISPLAY: return on_display(session, message, error);
     case MESSAGE_SEND_TO_WALL: on_send_to_wall(session, message, now_utc_ns); return true;
     case MESSAGE_POINT: on_point(session, message); return true;
+    case MESSAGE_PAIR:
+    case MESSAGE_UNPAIR: return on_pair(session, message, now_ns, now_utc_ns, error);
     case MESSAGE_PING: on_ping(session, message, now_ns, now_utc_ns); return true;
     }
     return true;

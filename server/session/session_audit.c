@@ -102,6 +102,11 @@ void session_record_wall(const struct session *session, const struct message *me
     record_kept(session, "wall", mem_printf("%s %s, display %d, %s", did, place->wall, place->display, place->area), answer);
 }
 
+void session_record_pair(const struct session *session, const struct message *message, const char *id, const char *answer)
+{
+    record_kept(session, "device", mem_printf("%s %s", message->type == MESSAGE_PAIR ? "pair" : "unpair", id), answer);
+}
+
 void session_record_leave(const struct session *session, const char *why)
 {
     if (session->identity.role > ROLE_OPEN) /* who has no name is not told of */

@@ -26,6 +26,7 @@ struct session_context {
     struct named_views *named_views;       /* changed by save_view and remove_view */
     struct notes *notes;                   /* changed by note and remove_note */
     struct wall_remote *wall_remote;       /* changed by send_to_wall and point */
+    struct pairings *pairings;             /* changed by pair and unpair */
     /* On a renderer: hands a message of a session on to the core, which answers later. Returns false if there is no core now. NULL: this
        daemon does it itself. */
     bool (*hand_on)(void *arg, const struct session *session, const char *text);

@@ -22,6 +22,7 @@ void session_record_alarm(const struct session *session, const struct message *m
 void session_record_loop_check(const struct session *session, const struct message *message, const char *answer);
 void session_record_view(const struct session *session, const struct message *message, const char *answer);
 void session_record_note(const struct session *session, const struct message *message, const char *answer);
+void session_record_pair(const struct session *session, const struct message *message, const char *id, const char *answer);
 void session_record_wall(const struct session *session, const struct message *message, const char *answer);
 /* Records that a tag list with so many sensors at other places is to be put in force. */
 void session_record_save(const struct session *session, size_t moved);

@@ -151,7 +151,7 @@ void wall_remote_point(struct wall_remote *remote, const struct wall_place *plac
                        const char *desk)
 {
     char by[sizeof(remote->pointers[0].by)];
-    snprintf(by, sizeof(by), "%.60s%s%.120s", desk, desk[0] ? ", " : "", who);
+    snprintf(by, sizeof(by), "%.120s%s%.120s", desk, desk[0] ? ", " : "", who);
     set_pointer(remote, place, position_m, by);
 }
 

@@ -9,7 +9,7 @@
 #include "plant/plant.h"
 #include "plant/wall.h"
 
-enum { WALL_DESK_BYTES = 61, WALL_AREA_BYTES = 61, WALL_POINTERS = 8 };
+enum { WALL_DESK_BYTES = 121, WALL_AREA_BYTES = 61, WALL_POINTERS = 8 };
 #define WALL_REMOTE_FILE "walls.json"
 
 struct wall_place {

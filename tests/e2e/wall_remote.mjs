@@ -104,6 +104,23 @@ test('a place is pointed at in the pane', options, async () => {
     await inPane().locator('.note-pin.pointer').waitFor({ state: 'detached', timeout: 15000 });
 });
 
+test('a click while pointing is answered', options, async () => {
+    await desk.page.check('#remote-points');
+    const shown = await desk.page.evaluate(async () => {
+        const { session, modules, viewport, pointed } = globalThis.plantcast, remote = await modules.get('remote'), heard = [];
+        session.on('picked', ({ purpose }) => heard.push(purpose));
+        const { askPick } = await import('./core/requests.js');
+        askPick(session, viewport.pixelOf(viewport.width * 0.45, viewport.height * 0.55), 'place');
+        remote.askedAt = -1e6;
+        remote.ask(); // the pointer is due at once
+        for (let i = 0; i < 100 && heard.length === 0; i++)
+            await new Promise((done) => setTimeout(done, 50));
+        return [Boolean(pointed), heard[0]];
+    });
+    assert.deepEqual(shown, [true, 'place']);
+    await desk.page.uncheck('#remote-points');
+});
+
 test('desk and wall find each other again after reloads', options, async () => {
     await wall.page.reload();
     await desk.page.reload();

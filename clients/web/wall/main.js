@@ -14,6 +14,7 @@ import { store, stored } from '../app/common/storage.js';
 import { chooseTheme } from '../app/common/theme.js';
 import { renewIfOld } from '../app/install.js';
 import { areaOf, paneOf } from './panes.js';
+import { Pairing } from './pairing.js';
 
 const TICK_MS = 250, LOST_MS = 3000, SHIFT_MS = 180000;
 const SHIFTS = [[0, 0], [2, 1], [3, -1], [1, -3], [-1, -2], [-3, 0], [-2, 2], [0, 3]]; // pixels, in turn: nothing burns in
@@ -24,7 +25,12 @@ document.documentElement.lang = language;
 chooseTheme(query);
 await learnWords();
 
-const token = localStorage.getItem('plantcast.wall') ?? stored('token');
+const pairing = new Pairing({ element: byId('denied'), place: { wall: query.get('wall') ?? '', display: number }, enter(secret) {
+    session.token = secret;
+    store('token', secret);
+    connection.retryNow();
+} });
+const token = pairing.kept ?? stored('token');
 if (token)
     store('token', token); // the panes are pages of their own, which look for it there
 const streamUrl = new URL('stream', location.href.replace(/^http/, 'ws').replace(/[?#].*$/, '')).href;
@@ -120,32 +126,20 @@ setInterval(() => {
 }, SHIFT_MS);
 window.addEventListener('resize', fit);
 session.on('welcome', () => {
-    byId('denied').hidden = true;
+    pairing.hide();
     renewIfOld('renewedWall');
     look();
 });
 
 // --- who we are
 
-session.on('denied', ({ code }) => {
-    if (code === 'locked') {
-        session.token = null;
-        localStorage.removeItem('plantcast.wall');
-        store('token', '');
-    }
+session.on('denied', () => {
+    session.token = null;
+    store('token', '');
     panes = [];
     byId('grid').replaceChildren();
-    const field = make('input', { type: 'password', autocomplete: 'off', 'aria-label': say('walls.token') });
-    byId('denied').replaceChildren(make('p', {}, say('walls.denied')), field, make('button', { type: 'submit' }, say('walls.enter')));
-    byId('denied').hidden = false;
+    pairing.show();
     shape = '';
-});
-byId('denied').addEventListener('submit', (event) => {
-    event.preventDefault();
-    session.token = byId('denied').querySelector('input').value.trim();
-    localStorage.setItem('plantcast.wall', session.token);
-    store('token', session.token);
-    connection.retryNow();
 });
 
 watchSleep(() => {

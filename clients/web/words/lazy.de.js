@@ -74,6 +74,7 @@ display: Die Wand „{id}“ hat {count} Bildschirme und keinen Bildschirm {n}
 lost: Keine Verbindung zur Anlage seit {time}
 never: Keine Verbindung zur Anlage
 denied: Dieser Bildschirm braucht ein eigenes Token
+digits: Wer die Rolle engineer hat, gibt diese Ziffern auf der Seite unter „Ansichten“ ein
 token: Token
 enter: Eingeben
 held: festgehalten von {who} seit {time}
@@ -116,6 +117,13 @@ there: verbunden
 gone: dieser Schirm ist nicht verbunden
 sent: {title}, gesendet von {who}, {time}
 held: festgehalten von {who}, {time}
+
+[devices]
+legend: Bildschirme
+digits: Sechs Ziffern eines Bildschirms
+pair: Einlassen
+revoke: Widerrufen
+is: Bildschirm {display} von {wall}, von {from}, eingelassen von {who}, {time}
 
 [handover]
 title: Schichtübergabe, {plant}

@@ -74,6 +74,7 @@ display: Wall '{id}' has {count} displays, and no display {n}
 lost: No connection to the plant since {time}
 never: No connection to the plant
 denied: This display needs a token of its own
+digits: To let this display in, an engineer enters these digits on the page, in Views
 token: Token
 enter: Enter
 held: held by {who} since {time}
@@ -116,6 +117,13 @@ there: connected
 gone: this display is not connected
 sent: {title}, sent by {who}, {time}
 held: held by {who}, {time}
+
+[devices]
+legend: Displays
+digits: Six digits of a display
+pair: Let in
+revoke: Revoke
+is: Display {display} of {wall}, from {from}, let in by {who}, {time}
 
 [handover]
 title: Handover of the shift, {plant}

@@ -74,6 +74,7 @@ display: 월 '{id}'에는 디스플레이가 {count}개 있으며 {n}번은 없�
 lost: {time}부터 플랜트와 연결이 끊겼습니다
 never: 플랜트와 연결되지 않았습니다
 denied: 이 디스플레이에는 전용 토큰이 필요합니다
+digits: 이 디스플레이를 허용하려면 엔지니어가 페이지의 '뷰'에서 이 숫자를 입력합니다
 token: 토큰
 enter: 입력
 held: {who} 고정, {time}부터
@@ -115,6 +116,13 @@ there: 연결됨
 gone: 이 디스플레이는 연결되어 있지 않습니다
 sent: {title}, {who} 보냄, {time}
 held: {who} 고정, {time}
+
+[devices]
+legend: 디스플레이
+digits: 디스플레이에 보이는 여섯 자리 숫자
+pair: 허용
+revoke: 취소
+is: {wall} 디스플레이 {display}, {from}, {who} 허용, {time}
 
 [handover]
 title: 근무 인계, {plant}

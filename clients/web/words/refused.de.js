@@ -27,6 +27,10 @@ failed: als durchgefallen gemeldet
 disk: es konnte auf dem Server nicht gespeichert werden
 fixed: diese Ansicht steht in der Anlagendatei und wird dort geändert
 viewless: jemand hat diese Ansicht entfernt
+digits: kein Bildschirm zeigt diese Ziffern
+guesses: zu viele falsche Ziffern; in einer Minute wieder versuchen
+deviceless: jemand hat diesen Bildschirm schon entfernt
+devices: es gibt so viele Bildschirme, wie es geben darf
 views: mehr Ansichten können es nicht sein; bitte erst eine entfernen
 computed: {tag} wird aus anderen Messstellen berechnet; diese sind zu prüfen
 far: {tag}: diese Stelle liegt zu weit von {asset} weg

@@ -27,6 +27,10 @@ failed: said to have failed
 disk: it could not be kept on the server’s disk
 fixed: this view is in the plant file, and is changed there
 viewless: somebody has removed this view
+digits: no display shows these digits
+guesses: too many wrong digits; try again in a minute
+deviceless: somebody has revoked this display
+devices: there are as many displays as there may be
 views: there are as many views as there may be: remove one first
 computed: {tag} is computed from other tags: prove those
 far: {tag}: that place is too far from {asset}

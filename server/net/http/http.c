@@ -52,6 +52,7 @@ static const struct {
     { "/login", ask_login, ROLE_NOBODY },
     { "/login/callback", ask_login_callback, ROLE_NOBODY },
     { "/api/v1/me", api_me, ROLE_NOBODY },
+    { "/api/v1/pair", api_pair, ROLE_NOBODY },
     { "/snapshot.png", ask_snapshot, ROLE_OPEN },
     { "/metrics", metrics, ROLE_VIEWER },
     { "/api/v1/plant", api_plant, ROLE_VIEWER },
@@ -65,6 +66,7 @@ static const struct {
     { "/api/v1/history/gaps", ask_gaps, ROLE_VIEWER },
     { "/api/v1/alarms", api_alarms, ROLE_VIEWER },
     { "/api/v1/alarms/journal", ask_journal, ROLE_VIEWER },
+    { "/api/v1/devices", api_devices, ROLE_ENGINEER },
     { "/api/v1/import", api_import, ROLE_ENGINEER },
     { "/api/v1/import/matches", api_import_matches, ROLE_ENGINEER },
 };

@@ -2,7 +2,9 @@
 /* What /api/v1 and /metrics tell: plant, tags, alarms and what was recorded. */
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 
+#include "access/pairings.h"
 #include "base/clock.h"
 #include "base/mem.h"
 #include "base/memory.h"
@@ -203,6 +205,56 @@ int api_notes(struct server_context *server, struct request *request)
 int api_walls(struct server_context *server, struct request *request)
 {
     return request_answer_json(request, walls_text(server->params.plant.scene->plant));
+}
+
+/* A display that has a secret of its own asks whether it was let in; it shows the digits meanwhile. */
+static int pair(struct server_context *server, struct request *request, const struct pairing_request *asked)
+{
+    char digits[PAIRING_DIGITS + 1];
+    int left_s;
+    enum pairing now = pairings_ask(server->params.plant.pairings, asked, clock_mono_ns(), digits, &left_s);
+    if (now == PAIRING_FULL)
+        return request_answer_later(request, "too many displays wait to be let in; try again\n");
+    if (now == PAIRING_DONE)
+        return request_answer_json(request, mem_strdup("{\"paired\":true}"));
+    return request_answer_json(request, mem_printf("{\"paired\":false,\"digits\":\"%s\",\"left_s\":%d}", digits, left_s));
+}
+
+int api_pair(struct server_context *server, struct request *request)
+{
+    const struct connection *connection = connection_of(request->wsi);
+    struct message_error error = { 0 };
+    struct wall_place place = { .display = 1 };
+    struct args args;
+    char secret[256];
+    if (!server->tokens || server->params.plant.core_link)
+        return request_answer_text(request, HTTP_STATUS_NOT_FOUND, "displays are not let in by digits here\n");
+    const char *why = pairings_refusal(server->params.plant.pairings);
+    if (why)
+        return request_answer_text(request, HTTP_STATUS_NOT_FOUND, why);
+    if (!request_args(request->wsi, &args, &error))
+        return request_answer_error(request, &error);
+    for (size_t i = 0; i < args.count; i++)
+        if (!strncmp(args.list[i], "wall=", 5))
+            snprintf(place.wall, sizeof(place.wall), "%s", args.list[i] + 5);
+        else if (!strncmp(args.list[i], "display=", 8))
+            place.display = atoi(args.list[i] + 8);
+    if (wall_place_wrong(server->params.plant.scene->plant, &place))
+        return request_answer_text(request, HTTP_STATUS_BAD_REQUEST, "expected wall=WALL and display=N, of the plant file\n");
+    if (!connection_header(request->wsi, WSI_TOKEN_HTTP_AUTHORIZATION, secret, sizeof(secret)) ||
+        strncasecmp(secret, "Pairing ", 8) != 0 || !pairings_secret_valid(secret + 8))
+        return request_answer_text(request, HTTP_STATUS_BAD_REQUEST, "expected Authorization: Pairing SECRET\n");
+    return pair(server, request, &(struct pairing_request){ .secret = secret + 8,
+                                                            .place = place,
+                                                            .address = connection->client->address,
+                                                            .from = connection->address });
+}
+
+int api_devices(struct server_context *server, struct request *request)
+{
+    if (!server->tokens || server->params.plant.core_link)
+        return request_answer_text(request, HTTP_STATUS_NOT_FOUND, "displays are not let in by digits here\n");
+    return request_answer_json(request, pairings_text(server->params.plant.pairings));
 }
 
 int api_loop_checks(struct server_context *server, struct request *request)

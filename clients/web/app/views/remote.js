@@ -6,6 +6,7 @@ import { textOf, viewOf } from '../../core/named_views.js';
 import { refusalText } from '../../core/refusals.js';
 import { askPick } from '../../core/requests.js';
 import { say } from '../../core/words.js';
+import { Devices } from './devices.js';
 import { fillSelect } from '../common/choices.js';
 import { byId, make, setText } from '../common/dom.js';
 import { store, stored } from '../common/storage.js';
@@ -30,10 +31,11 @@ export class Remote {
                 button('hold', () => this.send({ ...this.sentView, held: true })), button('back', () => this.send({}))),
             make('label', { class: 'line' }, make('span', {}, say('remote.point')), this.points));
         byId('views').append(this.element);
+        this.devices = new Devices(page);
         session.on('walls', () => this.show());
         session.on('welcome', () => this.learn());
         session.on('sent_to_wall', ({ kept, why }) => kept || tell(refusalText(why)));
-        session.on('picked', (picked) => this.onPicked(picked));
+        session.on('picked', (picked) => { this.heardSeq = picked.seq; this.onPicked(picked); });
         setInterval(() => this.pointing && this.ask(), POINT_MS);
         this.learn();
     }
@@ -108,11 +110,19 @@ export class Remote {
 
     ask() {
         const { pointed } = this.page, now = performance.now(), place = pointed && `${pointed.x} ${pointed.y}`;
-        if (!place || !this.chosen || (place === this.place && now - this.askedAt < AGAIN_MS))
+        if (!place || !this.chosen || this.waitsFor(now) || (place === this.place && now - this.askedAt < AGAIN_MS))
             return;
         this.place = place;
         this.askedAt = now;
         askPick(this.session, this.viewport.pixelOf(pointed.x, pointed.y), 'point');
+    }
+
+    // Of several questions the server answers the newest: somebody's click goes first.
+    waitsFor(now) {
+        const { pickSeq } = this.session;
+        if (pickSeq !== this.seenSeq)
+            [this.seenSeq, this.seenAt] = [pickSeq, now];
+        return pickSeq !== this.heardSeq && now - this.seenAt < AGAIN_MS;
     }
 
     onPicked({ purpose, asset, position }) {

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Displays that were let in by their six digits, for engineers: one more is let in, or one is revoked.
+import { zoneClock } from '../../core/format.js';
+import { ask } from '../../core/history.js';
+import { refusalText } from '../../core/refusals.js';
+import { say } from '../../core/words.js';
+import { byId, make } from '../common/dom.js';
+
+export class Devices {
+    constructor({ session, tell }) {
+        Object.assign(this, { session, tell });
+        this.list = make('ul', { id: 'devices-list' });
+        this.digits = make('input', { id: 'devices-digits', inputmode: 'numeric', maxlength: 7, autocomplete: 'off',
+            placeholder: '123 456', 'aria-label': say('devices.digits') });
+        const form = make('form', { class: 'line', onsubmit: (event) => this.pair(event) },
+            make('span', {}, say('devices.digits')), this.digits, make('button', { type: 'submit' }, say('devices.pair')));
+        this.element = make('fieldset', { id: 'devices', hidden: true }, make('legend', {}, say('devices.legend')), this.list, form);
+        byId('views').append(this.element);
+        session.on('welcome', () => this.learn());
+        session.on('paired', ({ kept, why }) => (kept ? this.learn() : tell(refusalText(why))));
+        this.learn();
+    }
+
+    // Nothing is said where displays need no token, or to whom it is not told.
+    async learn() {
+        const { session } = this, turn = this.turn = (this.turn ?? 0) + 1;
+        const { list } = session.role === 'engineer' ? await ask('api/v1/devices', {}, session.token).then((answer) => answer.json(),
+            () => ({})) : {};
+        if (turn !== this.turn)
+            return;
+        this.element.hidden = !list;
+        this.list.replaceChildren(...(list ?? []).map((device) => this.rowOf(device)));
+    }
+
+    rowOf({ id, by: who, time_us: us, ...place }) {
+        const { date, time } = zoneClock(this.session.model.plant.time_zone)(us / 1000);
+        return make('li', { 'data-id': id }, make('span', {}, say('devices.is', { ...place, who, time: `${date} ${time.slice(0, 5)}` })),
+            make('button', { type: 'button', onclick: () => this.post({ type: 'unpair', id }) }, say('devices.revoke')));
+    }
+
+    pair(event) {
+        event.preventDefault();
+        const digits = this.digits.value.replace(/\s/g, '');
+        if (/^\d{6}$/.test(digits)) {
+            this.post({ type: 'pair', digits });
+            this.digits.value = '';
+        }
+    }
+
+    post(message) {
+        if (!this.session.welcomed)
+            this.tell(say('reason.unreachable'));
+        this.session.post({ seq: ++this.session.toldSeq, ...message });
+    }
+}

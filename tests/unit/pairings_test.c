@@ -1,0 +1,188 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Displays that are let in by six digits: kept over a restart, revoked, and how many may wait and be guessed at. */
+#include "access/pairings.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+
+#include <cmocka.h>
+
+#include "base/atomic_file.h"
+#include "base/clock.h"
+#include "base/mem.h"
+#include "tests/support/temp.h"
+
+static const struct wall_place ROOM = { "room", "", 2 };
+
+struct fixture {
+    struct log *log;
+    char *folder;
+    struct pairings *pairings;
+};
+
+static int set_up(void **state)
+{
+    struct fixture *f = mem_new(sizeof(*f));
+    f->log = log_create(LOG_ERROR);
+    f->folder = temp_folder_create();
+    f->pairings = pairings_open(f->log, f->folder);
+    *state = f;
+    return 0;
+}
+
+static int tear_down(void **state)
+{
+    struct fixture *f = *state;
+    pairings_close(&f->pairings);
+    temp_folder_destroy(&f->folder);
+    log_destroy(&f->log);
+    mem_free(f);
+    return 0;
+}
+
+static void print_secret(int i, char secret[TOKEN_MAX_CHARS + 1])
+{
+    snprintf(secret, TOKEN_MAX_CHARS + 1, "pc_%064x", (unsigned)i);
+    assert_true(pairings_secret_valid(secret));
+}
+
+/* By the i-th device, at an address that has eight. */
+static enum pairing ask(struct fixture *f, int i, int64_t now_ns, char digits[PAIRING_DIGITS + 1])
+{
+    char secret[TOKEN_MAX_CHARS + 1];
+    uint8_t address[16] = { (uint8_t)(i / PAIRINGS_FROM) };
+    int left_s;
+    print_secret(i, secret);
+    return pairings_ask(f->pairings, &(struct pairing_request){ secret, ROOM, address, "10.0.0.5" }, now_ns, digits, &left_s);
+}
+
+static bool is_found(const struct fixture *f, int i)
+{
+    char secret[TOKEN_MAX_CHARS + 1];
+    uint8_t hash[TOKEN_HASH_BYTES];
+    struct token_holder holder;
+    print_secret(i, secret);
+    tokens_hash(secret, hash);
+    return pairings_find(f->pairings, hash, &holder);
+}
+
+static const char *approve(struct fixture *f, const char *digits, int64_t now_ns)
+{
+    char id[TOKEN_NAME_BYTES];
+    return pairings_approve(f->pairings, digits, "eve", now_ns, 7, id);
+}
+
+static void a_device_is_bound_kept_and_revoked(void **state)
+{
+    struct fixture *f = *state;
+    char digits[PAIRING_DIGITS + 1], again[PAIRING_DIGITS + 1], secret[TOKEN_MAX_CHARS + 1], path[512];
+    struct token_holder holder;
+    assert_int_equal(ask(f, 1, NS_PER_S, digits), PAIRING_WAITS);
+    assert_int_equal(strspn(digits, "0123456789"), PAIRING_DIGITS);
+    assert_int_equal(ask(f, 1, 3 * NS_PER_S, again), PAIRING_WAITS);
+    assert_string_equal(digits, again);
+    assert_false(is_found(f, 1));
+    assert_null(approve(f, digits, 3 * NS_PER_S));
+    assert_int_equal(ask(f, 1, 4 * NS_PER_S, again), PAIRING_DONE);
+    assert_non_null(approve(f, digits, 4 * NS_PER_S)); /* once only */
+    pairings_close(&f->pairings);
+    f->pairings = pairings_open(f->log, f->folder);
+    snprintf(path, sizeof(path), "%s/tokens", f->folder);
+    assert_int_equal(atomic_file_put(path, "", 0), 0);
+    assert_int_equal(chmod(path, 0600), 0);
+    struct tokens *tokens = tokens_create(f->log, path);
+    print_secret(1, secret);
+    assert_false(tokens_find(tokens, secret, 0, &holder));
+    tokens_set_pairings(tokens, pairings_find, f->pairings);
+    assert_true(tokens_find(tokens, secret, 0, &holder));
+    assert_int_equal(holder.role, ROLE_VIEWER);
+    assert_string_equal(holder.wall, "room");
+    assert_int_equal(holder.display, 2);
+    assert_true(holder.unattended);
+    assert_int_equal(tokens_role(tokens, &holder, 0), ROLE_VIEWER);
+    char *text = pairings_text(f->pairings);
+    assert_non_null(strstr(text, "\"from\":\"10.0.0.5\""));
+    assert_null(strstr(text, "hash"));
+    mem_free(text);
+    assert_non_null(pairings_revoke(f->pairings, "nobody"));
+    assert_null(pairings_revoke(f->pairings, holder.name));
+    assert_int_equal(tokens_role(tokens, &holder, 0), ROLE_NOBODY);
+    tokens_destroy(&tokens);
+}
+
+static void digits_expire(void **state)
+{
+    struct fixture *f = *state;
+    char digits[PAIRING_DIGITS + 1], others[PAIRING_DIGITS + 1];
+    ask(f, 1, 0, digits);
+    assert_non_null(approve(f, digits, PAIRING_QUIET_S * NS_PER_S)); /* it has not asked since */
+    int64_t now_ns = 1000 * NS_PER_S, begun_ns = now_ns;
+    ask(f, 1, now_ns, digits);
+    for (; now_ns < begun_ns + PAIRING_S * NS_PER_S; now_ns += 2 * NS_PER_S)
+        assert_int_equal(ask(f, 1, now_ns, others), PAIRING_WAITS);
+    assert_string_equal(digits, others);
+    ask(f, 1, now_ns, others);
+    assert_string_not_equal(digits, others); /* but once in a million */
+    assert_non_null(approve(f, digits, now_ns));
+    assert_null(approve(f, others, now_ns));
+}
+
+static void few_wait_and_few_guesses_are_judged(void **state)
+{
+    struct fixture *f = *state;
+    char digits[PAIRING_DIGITS + 1], more[PAIRING_DIGITS + 1];
+    for (int i = 0; i < PAIRINGS; i++)
+        assert_int_equal(ask(f, i, 0, digits), PAIRING_WAITS);
+    assert_int_equal(ask(f, PAIRINGS, 0, more), PAIRING_FULL);
+    assert_int_equal(ask(f, PAIRINGS, PAIRING_QUIET_S * NS_PER_S, more), PAIRING_WAITS); /* the others have gone */
+    for (int i = 0; i < PAIRINGS_FROM - 1; i++)
+        assert_int_equal(ask(f, PAIRINGS + 1 + i, PAIRING_QUIET_S * NS_PER_S, digits), PAIRING_WAITS);
+    assert_string_not_equal(digits, more);
+    char secret[TOKEN_MAX_CHARS + 1];
+    int left_s;
+    print_secret(999, secret);
+    const uint8_t address[16] = { PAIRINGS / PAIRINGS_FROM };
+    assert_int_equal(pairings_ask(f->pairings, &(struct pairing_request){ secret, ROOM, address, "" }, PAIRING_QUIET_S * NS_PER_S, digits,
+                                  &left_s),
+                     PAIRING_FULL); /* eight from that address */
+    for (int i = 0, now_s = PAIRING_QUIET_S; i < PAIRING_WRONG; i++)
+        if (approve(f, "abcdef", now_s * NS_PER_S) == NULL)
+            fail();
+    assert_non_null(approve(f, more, (PAIRING_QUIET_S + 1) * NS_PER_S)); /* right, and not judged */
+    assert_int_equal(ask(f, PAIRINGS, (PAIRING_QUIET_S + 30) * NS_PER_S, more), PAIRING_WAITS);
+    assert_null(approve(f, more, (PAIRING_QUIET_S + 61) * NS_PER_S));
+}
+
+static void what_is_not_kept_lets_nobody_in(void **state)
+{
+    struct fixture *f = *state;
+    char path[512];
+    pairings_close(&f->pairings);
+    f->pairings = pairings_open(f->log, NULL);
+    assert_non_null(pairings_refusal(f->pairings));
+    pairings_close(&f->pairings);
+    snprintf(path, sizeof(path), "%s/%s", f->folder, PAIRINGS_FILE);
+    const char *bad = "{\"devices\":[{\"id\":\"a b\","
+                      "\"hash\":\"00\",\"wall\":\"w\",\"display\":1,\"from\":\"\",\"by\":\"\",\"time_us\":1}]}";
+    assert_int_equal(atomic_file_put(path, bad, strlen(bad)), 0);
+    f->pairings = pairings_open(f->log, f->folder);
+    assert_non_null(pairings_refusal(f->pairings));
+    assert_false(pairings_secret_valid("pc_1234"));
+    assert_false(pairings_secret_valid(""));
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test_setup_teardown(a_device_is_bound_kept_and_revoked, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(digits_expire, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(few_wait_and_few_guesses_are_judged, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(what_is_not_kept_lets_nobody_in, set_up, tear_down),
+    };
+    cmocka_set_message_output(CM_OUTPUT_TAP);
+    return cmocka_run_group_tests_name("pairings", tests, NULL, NULL);
+}
