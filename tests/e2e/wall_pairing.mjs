@@ -115,7 +115,10 @@ test('it is that display only, as a viewer, also after a restart of the daemon',
 });
 
 test('it is dark within 3 s of being revoked', options, async () => {
-    await desk.page.waitForFunction(() => globalThis.plantcast.session.welcomed, null, { timeout: 60000 });
+    await desk.page.waitForFunction(() => {
+        const { welcomed, connection } = globalThis.plantcast.session;
+        return welcomed && connection.state === 'open';
+    }, null, { timeout: 60000 });
     await desk.page.locator(`#devices-list li[data-id="${id}"] button`).click({ timeout: 60000 });
     const clicked = Date.now();
     await wall.page.locator('#denied').waitFor({ timeout: 20000 });

@@ -107,7 +107,7 @@ test('a place is pointed at in the pane', options, async () => {
 test('a click while pointing is answered', options, async () => {
     await desk.page.check('#remote-points');
     const shown = await desk.page.evaluate(async () => {
-        const { session, modules, viewport, pointed } = globalThis.plantcast, remote = await modules.get('remote'), heard = [];
+        const { session, modules, viewport } = globalThis.plantcast, remote = await modules.get('remote'), heard = [];
         session.on('picked', ({ purpose }) => heard.push(purpose));
         const { askPick } = await import('./core/requests.js');
         askPick(session, viewport.pixelOf(viewport.width * 0.45, viewport.height * 0.55), 'place');
@@ -115,7 +115,7 @@ test('a click while pointing is answered', options, async () => {
         remote.ask(); // the pointer is due at once
         for (let i = 0; i < 100 && heard.length === 0; i++)
             await new Promise((done) => setTimeout(done, 50));
-        return [Boolean(pointed), heard[0]];
+        return [Boolean(remote.page.pointed), heard[0]];
     });
     assert.deepEqual(shown, [true, 'place']);
     await desk.page.uncheck('#remote-points');

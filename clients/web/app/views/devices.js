@@ -48,8 +48,8 @@ export class Devices {
     }
 
     post(message) {
-        if (!this.session.welcomed)
-            this.tell(say('reason.unreachable'));
-        this.session.post({ seq: ++this.session.toldSeq, ...message });
+        const { session } = this;
+        if (!session.welcomed || !session.connection.send({ seq: ++session.toldSeq, ...message }))
+            this.tell(say('reason.unreachable')); // nobody is to think that it was revoked
     }
 }
