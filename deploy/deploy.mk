@@ -49,11 +49,12 @@ deb: clients/web/vendor/uPlot.js
 	@deploy/deb $(build)/deb "$(COMMIT)"
 # One archive that installs them without a network (SIGN=KEY.pem signs it), and a container image. Both need root and Debian's mirror.
 suite := $(shell . /etc/os-release && echo $$VERSION_CODENAME)
+debs  := $(build)/deb
 bundle:
-	@deploy/bundle $(build)/deb $(build)/plantcast-bundle-$(suite).tar $(suite) $(SIGN)
+	@deploy/bundle $(debs) $(build)/plantcast-bundle-$(suite).tar $(suite) $(SIGN)
 image:
-	@deploy/image $(build)/deb $(build)/plantcast-image-$(suite).tar $(suite)
+	@deploy/image $(debs) $(build)/plantcast-image-$(suite).tar $(suite)
 # Of what these made, in chroots without a network.
 test-deploy:
-	@deploy/test/run $(build)/deb $(build)/plantcast-bundle-$(suite).tar $(build)/plantcast-image-$(suite).tar $(suite)
+	@deploy/test/run $(debs) $(build)/plantcast-bundle-$(suite).tar $(build)/plantcast-image-$(suite).tar $(suite)
 .PHONY: install-demo deb bundle image test-deploy
