@@ -99,10 +99,14 @@ occt_libs := $(if $(wildcard /usr/lib/*/libTKDESTEP.so),DESTEP DEIGES,XDESTEP XD
 occt_libs := $(patsubst %,-lTK%,$(occt_libs) XSBase RWMesh XCAF LCAF CAF CDF Mesh Prim TopAlgo BRep G3d Math ernel)
 assimp   := $(wildcard /usr/include/assimp/Importer.hpp)
 readers  := $(if $(occt),$(bin)/plantcast-import-occt) $(if $(assimp),$(bin)/plantcast-import-assimp)
+# The player of a wall's displays, likewise.
+no_player := $(if $(filter h264,$(CODECS)),,H.264) \
+             $(foreach p,sdl2 pangocairo,$(if $(shell pkg-config --exists $(p) 2>/dev/null && echo yes),,$(p)))
+player    := $(if $(strip $(no_player)),,$(bin)/plantcast-wall)
 
 .PHONY: all programs run demo test check test-long bench gpu-bench style layers headers deps test-deps golden-update install clean help
-all: $(programs) $(bin)/plantcast-init $(modules) $(readers) $(if $(PACKED),,$(bin)/plantcast-import-ifc/ifc.mjs) \
-    clients/web/vendor/uPlot.js clients/web/made/version.js
+all: $(programs) $(or $(player),no-player) $(bin)/plantcast-init $(modules) $(readers) \
+    $(if $(PACKED),,$(bin)/plantcast-import-ifc/ifc.mjs) clients/web/vendor/uPlot.js clients/web/made/version.js
 # The page's charts. Without them nothing is built.
 clients/web/vendor/uPlot.js: clients/web/package-lock.json
 	@echo "  NPM  $(@D)"; deploy/vendor $(build)/npm && touch $@
@@ -115,6 +119,9 @@ page := $(filter-out clients/web/made/%,$(wildcard clients/web/*.* clients/web/*
 clients/web/made/version.js: deploy/stamp $(page) clients/web/vendor/uPlot.js
 	@echo "  WEB  $(@D)"; deploy/stamp clients/web
 programs: all
+no-player:
+	@echo "  without plantcast-wall, the player of a wall's displays: no $(strip $(no_player))"
+.PHONY: no-player
 $(bin)/plantcast-init: deploy/init
 	@mkdir -p $(@D); cp $< $@
 
@@ -142,8 +149,14 @@ $(bin)/plantcast-images.so: $(patsubst %,$(out)/obj/server/base/%.pic.o,image_sh
 	@mkdir -p $(@D); echo "  LINK $@"; $(CXX) $(ldflags) -shared -o $@ $^ $(pkg_libs)
 cli_sources := $(if $(filter h264,$(CODECS)),,clients/cli/video.c)
 cli_sources := $(filter-out $(cli_sources),$(wildcard clients/cli/*.c))
-$(bin)/plantcast: $(call objects,$(cli_sources)) $(archives)
+$(out)/lib/link.a: $(call objects,$(wildcard clients/link/*.c))
+$(bin)/plantcast: $(call objects,$(cli_sources)) $(out)/lib/link.a $(archives)
 	$(link)
+player_sources := $(wildcard clients/wall/*.c)
+$(call objects,$(player_sources)): CFLAGS += $(shell pkg-config --cflags sdl2 pangocairo 2>/dev/null)
+$(out)/lib/player.a: $(call objects,$(filter-out %/main.c,$(player_sources)))
+$(bin)/plantcast-wall: $(call objects,clients/wall/main.c server/base/image_lazy.c) $(out)/lib/player.a $(out)/lib/link.a $(archives)
+	$(link) $(shell pkg-config --libs sdl2 pangocairo 2>/dev/null)
 $(bin)/plantcast-sim: $(call objects,$(sim_sources)) $(archives)
 	$(link)
 $(bin)/plantcast-demo: $(call objects,$(generate_sources)) $(archives)
@@ -214,7 +227,8 @@ $(shell mkdir -p $(gen); echo '#define PLANTCAST_COMMIT "$(COMMIT)"' | cmp -s - 
         echo '#define PLANTCAST_COMMIT "$(COMMIT)"' >$(gen)/commit.h)
 
 # Shaders and colour maps, as C strings found by name (server/base/embedded.h).
-embedded_files := $(wildcard shaders/*.vert shaders/*.frag shaders/*.comp shaders/*.glsl shaders/maps/*.csv clients/fleet/*)
+embedded_files := $(wildcard shaders/*.vert shaders/*.frag shaders/*.comp shaders/*.glsl shaders/maps/*.csv clients/fleet/*) \
+                  $(foreach l,en ko de,clients/web/words/$(l).js clients/web/words/lazy.$(l).js)
 $(gen)/embedded.c: deploy/embed $(embedded_files)
 	@mkdir -p $(@D); deploy/embed $(embedded_files) >$@.new && mv $@.new $@
 
@@ -229,6 +243,7 @@ $(out)/tests/unit/rvm_test: $(out)/lib/import.a
 $(out)/tests/unit/revision_test: $(out)/lib/import.a $(out)/lib/match.a
 $(out)/tests/unit/rvm_test $(out)/tests/unit/revision_test: pkg_libs += -lGLU
 $(out)/tests/unit/revision_test: pkg_libs += -lminizip -lexpat
+$(out)/tests/unit/wall_rules_test: $(call objects,clients/wall/rules.c clients/wall/view_address.c)
 match_tests := $(foreach t,match tag_export,$(out)/tests/unit/$(t)_test)
 $(match_tests): $(out)/lib/match.a
 $(match_tests): pkg_libs += -lminizip -lexpat
@@ -240,7 +255,7 @@ $(out)/tests/bench/field_degree: $(call objects,tests/bench/cut_mesh)
 $(out)/tests/%: $(out)/obj/tests/%.o $(support) $(archives) $(out)/lib/prep.a $(sim_archive)
 	$(link) -lcmocka
 # Draws as the command line does.
-$(out)/tests/gallery/album: $(filter-out %/main.o,$(call objects,$(cli_sources)))
+$(out)/tests/gallery/album: $(filter-out %/main.o,$(call objects,$(cli_sources))) $(out)/lib/link.a
 # What stands before the real one, where a GPU is to fail.
 $(out)/tests/faults/libEGL.so.1: $(out)/obj/tests/faults/gl_faults.pic.o
 	@mkdir -p $(@D); echo "  LINK $@"; $(CC) $(ldflags) -shared -o $@ $<

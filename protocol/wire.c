@@ -136,3 +136,11 @@ bool wire_get_frame(const uint8_t *bytes, size_t count, struct wire_frame *frame
            rectangle_valid(frame) && in_range(frame->payload_bytes, 1, WIRE_MAX_PAYLOAD_BYTES) &&
            count - WIRE_FRAME_HEADER_BYTES == frame->payload_bytes;
 }
+
+bool wire_is_given_up(const uint8_t bytes[WIRE_FRAME_HEADER_BYTES], size_t count)
+{
+    uint32_t payload = 0;
+    for (int i = 3; count >= WIRE_FRAME_HEADER_BYTES && i >= 0; i--)
+        payload = payload << 8 | bytes[4 + i];
+    return payload > count - WIRE_FRAME_HEADER_BYTES && payload <= WIRE_MAX_PAYLOAD_BYTES;
+}

@@ -45,5 +45,8 @@ void wire_put_frame(const struct wire_frame *frame, uint8_t out[WIRE_FRAME_HEADE
 /* Reads the header of a message; bytes: the whole message, header and payload. Checks length, ranges and finiteness; accepts unknown flags.
    Returns false if it is no frame of this protocol; *frame is then undefined. */
 bool wire_get_frame(const uint8_t *bytes, size_t count, struct wire_frame *frame);
+/* Returns whether the message that begins so, and has `count` bytes in all, is a frame that the server gave up: shorter than its header
+   says. */
+bool wire_is_given_up(const uint8_t bytes[WIRE_FRAME_HEADER_BYTES], size_t count);
 
 #endif

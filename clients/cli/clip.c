@@ -17,7 +17,7 @@ int cmd_clip(int argc, char **argv)
     return 1;
 }
 #else
-#include "daemon.h"
+#include "clients/link/daemon.h"
 #include "offline_renderer.h"
 #include "video.h"
 

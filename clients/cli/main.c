@@ -7,7 +7,7 @@
 #include <unistd.h>
 
 #include "commands.h"
-#include "daemon.h"
+#include "clients/link/daemon.h"
 
 /* Another program beside this one reads what strangers' programs wrote, so that this one does not. `ending`: of its name. */
 static int run_beside(const char *ending, char **argv)

@@ -10,7 +10,7 @@
 #include "base/mem.h"
 #include "commands.h"
 #include "viewer_threads.h"
-#include "decoder.h"
+#include "clients/link/decoder.h"
 #include "load_generator.h"
 
 enum { MAX_SESSIONS = 1000 };

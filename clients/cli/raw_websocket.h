@@ -5,7 +5,7 @@
 #ifndef CLI_RAW_WEBSOCKET_H
 #define CLI_RAW_WEBSOCKET_H
 #include "base/text.h"
-#include "daemon.h"
+#include "clients/link/daemon.h"
 
 struct raw_websocket_message {
     bool binary;

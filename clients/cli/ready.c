@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "commands.h"
-#include "daemon.h"
+#include "clients/link/daemon.h"
 
 static const char usage[] = "usage: plantcast ready URL\n"
                             "\n"

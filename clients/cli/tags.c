@@ -6,7 +6,7 @@
 #include <string.h>
 
 #include "commands.h"
-#include "daemon.h"
+#include "clients/link/daemon.h"
 
 static void print_usage(FILE *out)
 {

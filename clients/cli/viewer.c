@@ -150,21 +150,12 @@ static void record(struct viewer *viewer, const struct wire_frame *frame, int64_
     record_behind(viewer, frame, now_ns);
 }
 
-/* Shorter than its header says. */
-static bool is_given_up(const uint8_t *bytes, size_t count)
-{
-    uint32_t payload = 0;
-    for (int i = 3; count >= WIRE_FRAME_HEADER_BYTES && i >= 0; i--)
-        payload = payload << 8 | bytes[4 + i];
-    return payload > count - WIRE_FRAME_HEADER_BYTES && payload <= WIRE_MAX_PAYLOAD_BYTES;
-}
-
 static void on_frame(struct viewer *viewer)
 {
     struct wire_frame frame;
     const uint8_t *bytes = (const uint8_t *)viewer->in.at;
     int64_t begin_ns = clock_mono_ns();
-    if (viewer->in.length >= WIRE_FRAME_HEADER_BYTES && is_given_up(bytes, viewer->in_count)) {
+    if (viewer->in.length >= WIRE_FRAME_HEADER_BYTES && wire_is_given_up(bytes, viewer->in_count)) {
         viewer->result.given_up++;
         viewer->decode_ns = 0;
         return;

@@ -8,7 +8,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#include "daemon.h"
+#include "clients/link/daemon.h"
 
 enum motion { MOTION_STILL, MOTION_ORBIT, MOTION_RANDOM, MOTION_COUNT };
 

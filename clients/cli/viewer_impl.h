@@ -4,7 +4,7 @@
 #define CLI_VIEWER_IMPL_H
 #include "raw_websocket.h"
 #include "base/text.h"
-#include "decoder.h"
+#include "clients/link/decoder.h"
 #include "viewer.h"
 
 enum { SENT_RING = 4096, MAX_ACKS = 16 };

@@ -233,12 +233,37 @@ void pen_choose_half(struct pen *pen, int half)
     pen->area = (struct box){ left_px, 0, pen->view.width_px, pen->view.height_px };
 }
 
+static void pen_scale(struct pen *pen, double unit)
+{
+    pen->unit = fmin(fmax(unit, 0.5), 8);
+    pen->text_px = fmax(13 * pen->unit, 9.5);
+}
+
 static void pen_init(struct pen *pen, cairo_surface_t *surface, const struct frame *frame, const struct scene *scene,
                      const struct snapshot *snapshot, const struct loop_checks *loop_checks)
 {
     *pen = (struct pen){ .cairo = cairo_create(surface), .frame = frame, .scene = scene, .snapshot = snapshot, .loop_checks = loop_checks };
-    pen->unit = fmin(fmax(fmin(frame->width_px / 1280.0, frame->height_px / 720.0), 0.5), 8);
-    pen->text_px = fmax(13 * pen->unit, 9.5);
+    pen_scale(pen, fmin(frame->width_px / 1280.0, frame->height_px / 720.0));
+}
+
+/* What is over a picture besides its header and banners. */
+static void draw_rest(struct pen *pen)
+{
+    int halves = pen->frame->view.split ? 2 : 1;
+    if (pen->frame->view.split)
+        overlay_halves(pen);
+    bool shared = pen->frame->view.split && overlay_legend_is_shared(pen);
+    for (int half = shared ? 1 : 0; half < halves; half++) {
+        pen_choose_half(pen, half);
+        if (pen->view.look != LOOK_MATERIALS) /* no field, nothing to explain */
+            overlay_legend(pen);
+    }
+    if (!pen->bare && !pen->calm)
+        overlay_alarms(pen);
+    for (int half = 0; half < halves; half++) {
+        pen_choose_half(pen, half);
+        overlay_markers(pen);
+    }
 }
 
 static void draw(struct frame *frame, const struct scene *scene, const struct snapshot *snapshot, const struct loop_checks *loop_checks,
@@ -254,23 +279,22 @@ static void draw(struct frame *frame, const struct scene *scene, const struct sn
         draw_past(pen);
     else if (!is_live(pen))
         draw_banner(pen, "NO LIVE DATA", NO_DATA_RGB);
-    if (frame->view.split)
-        overlay_halves(pen);
-    bool shared = frame->view.split && overlay_legend_is_shared(pen);
-    for (int half = shared ? 1 : 0; half < (frame->view.split ? 2 : 1); half++) {
-        pen_choose_half(pen, half);
-        if (pen->view.look != LOOK_MATERIALS) /* no field, nothing to explain */
-            overlay_legend(pen);
-    }
-    if (!bare)
-        overlay_alarms(pen);
-    for (int half = 0; half < (frame->view.split ? 2 : 1); half++) {
-        pen_choose_half(pen, half);
-        overlay_markers(pen);
-    }
+    draw_rest(pen);
     cairo_destroy(pen->cairo);
     cairo_surface_finish(surface);
     cairo_surface_destroy(surface);
+    mem_free(pen);
+}
+
+void overlay_draw_pane(cairo_surface_t *surface, const struct frame *frame, const struct scene *scene, const struct snapshot *snapshot,
+                       double unit)
+{
+    struct pen *pen = mem_new(sizeof(*pen));
+    pen_init(pen, surface, frame, scene, snapshot, NULL);
+    pen_scale(pen, unit);
+    pen->calm = true;
+    draw_rest(pen);
+    cairo_destroy(pen->cairo);
     mem_free(pen);
 }
 
@@ -285,24 +309,42 @@ void overlay_draw_bare(struct frame *frame, const struct scene *scene, const str
     draw(frame, scene, snapshot, loop_checks, true);
 }
 
-void overlay_window(const struct scene *scene, const struct view *view, struct camera_window *out)
+static double legend_share(struct pen *pen, const struct view *view)
 {
-    cairo_surface_t *surface = cairo_image_surface_create(CAIRO_FORMAT_A8, 1, 1);
-    struct frame *frame = mem_new(sizeof(*frame));
-    struct pen *pen = mem_new(sizeof(*pen));
     double legend_px = 0, width_px = view->width_px;
-    *frame = (struct frame){ .width_px = view->width_px, .height_px = view->height_px, .view = *view };
-    pen_init(pen, surface, frame, scene, NULL, NULL);
     for (int half = 0; half < (view->split ? 2 : 1); half++) {
         pen_choose_half(pen, half);
         width_px = fmin(width_px, pen->area.width);
         if (pen->view.look != LOOK_MATERIALS)
             legend_px = fmax(legend_px, overlay_legend_width(pen));
     }
-    double header_px = header_height(pen, 2) + 8 * pen->unit;
-    *out = (struct camera_window){ -1, 1 - 2 * legend_px / width_px, -1, 1 - 2 * header_px / view->height_px };
+    return legend_px / width_px;
+}
+
+/* unit 0: as large as of a snapshot, which has a header. */
+static void find_window(const struct scene *scene, const struct view *view, double unit, struct camera_window *out)
+{
+    cairo_surface_t *surface = cairo_image_surface_create(CAIRO_FORMAT_A8, 1, 1);
+    struct frame *frame = mem_new(sizeof(*frame));
+    struct pen *pen = mem_new(sizeof(*pen));
+    *frame = (struct frame){ .width_px = view->width_px, .height_px = view->height_px, .view = *view };
+    pen_init(pen, surface, frame, scene, NULL, NULL);
+    if (unit > 0)
+        pen_scale(pen, unit);
+    double header_px = unit > 0 ? 0 : header_height(pen, 2) + 8 * pen->unit;
+    *out = (struct camera_window){ -1, 1 - 2 * legend_share(pen, view), -1, 1 - 2 * header_px / view->height_px };
     cairo_destroy(pen->cairo);
     cairo_surface_destroy(surface);
     mem_free(pen);
     mem_free(frame);
+}
+
+void overlay_window(const struct scene *scene, const struct view *view, struct camera_window *out)
+{
+    find_window(scene, view, 0, out);
+}
+
+void overlay_pane_window(const struct scene *scene, const struct view *view, double unit, struct camera_window *out)
+{
+    find_window(scene, view, unit, out);
 }

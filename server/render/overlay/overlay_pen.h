@@ -25,6 +25,7 @@ struct pen {
     const struct snapshot *snapshot;
     const struct loop_checks *loop_checks; /* NULL: none */
     bool bare;                             /* draws nothing about sensors and alarms */
+    bool calm;                             /* only what is abnormal has a label */
     double unit, text_px;
     struct box taken[PEN_MAX_TAKEN]; /* occupied areas */
     int taken_count;

@@ -14,7 +14,7 @@ export function chunksOf(png) {
     return chunks;
 }
 
-const crc = crc32 ?? ((bytes) => { // node before 22 has none
+export const crc = crc32 ?? ((bytes) => { // node before 22 has none
     let sum = ~0;
     for (const byte of bytes) {
         sum ^= byte;

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Connects to a daemon: its URL, TLS and token, and HTTP requests to it. */
-#ifndef CLI_DAEMON_H
-#define CLI_DAEMON_H
+#ifndef LINK_DAEMON_H
+#define LINK_DAEMON_H
 #include <libwebsockets.h>
 #include <stdbool.h>
 
@@ -17,6 +17,9 @@ struct daemon_url {
 /* Removes --token-file and --ca, which all commands share, from the command line and remembers them. Returns false with the reason printed.
    Before any thread starts. */
 bool daemon_take_options(int *argc, char **argv);
+/* Reads the file of --token-file anew, if there was one. Returns false with the reason printed; the token then stays what it was. No
+   request may be under way. */
+bool daemon_read_token(void);
 
 /* Parses http://HOST[:PORT][/BASE][/] or https:// (also ws://, wss://). Returns false with the reason printed. */
 bool daemon_url_parse(const char *text, struct daemon_url *url);

@@ -6,26 +6,26 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "base/atomic_file.h"
 #include "base/mem.h"
-#include "commands.h"
 #include "message/message.h"
 
 enum { MAX_BODY_BYTES = 256 * 1024 * 1024, RECEIVE_BYTES = 16 * 1024 };
 
 static char authorization[TOKEN_MAX_CHARS + 16]; /* "": none */
-static const char *ca_path;
+static const char *ca_path, *token_path;
 
-static bool read_token(const char *path)
+bool daemon_read_token(void)
 {
     size_t count;
-    char *text = text_read_file(path, 4096, &count);
+    if (!token_path)
+        return true;
+    char *text = text_read_file(token_path, 4096, &count);
     size_t n = text ? strcspn(text, " \t\r\n") : 0;
     bool good = n > 0 && n <= TOKEN_MAX_CHARS;
     if (good)
         snprintf(authorization, sizeof(authorization), "Bearer %.*s", (int)n, text);
     else
-        fprintf(stderr, "plantcast: %s: %s\n", path, text ? "its first line is no token" : strerror(errno));
+        fprintf(stderr, "plantcast: %s: %s\n", token_path, text ? "its first line is no token" : strerror(errno));
     mem_free(text);
     return good;
 }
@@ -45,13 +45,15 @@ bool daemon_take_options(int *argc, char **argv)
 {
     int kept = 0;
     for (int i = 0; i < *argc; i++) {
-        const char *token_path = value_of("--token-file", *argc, argv, &i);
-        const char *ca = token_path ? NULL : value_of("--ca", *argc, argv, &i);
-        if (token_path && !read_token(token_path))
+        const char *token = value_of("--token-file", *argc, argv, &i);
+        const char *ca = token ? NULL : value_of("--ca", *argc, argv, &i);
+        if (token)
+            token_path = token;
+        if (token && !daemon_read_token())
             return false;
         if (ca)
             ca_path = ca;
-        if (!token_path && !ca)
+        if (!token && !ca)
             argv[kept++] = argv[i];
     }
     argv[kept] = NULL;
@@ -188,25 +190,4 @@ int daemon_get(const struct daemon_url *url, const char *path, struct text *body
         lws_context_destroy(context);
     mem_free(whole);
     return exchange.status;
-}
-
-int daemon_download(const char *url_text, const char *path, const char *out)
-{
-    struct daemon_url url;
-    struct text body = { 0 };
-    if (!daemon_url_parse(url_text, &url))
-        return 1;
-    int status = daemon_get(&url, path, &body), result = 1;
-    if (status == 200) {
-        if (!out)
-            printf("%s\n", body.at ? body.at : "");
-        int error = !out ? 0 : atomic_file_put(out, body.at ? body.at : "", body.length);
-        if (error)
-            fprintf(stderr, "plantcast: %s: %s\n", out, strerror(-error));
-        result = error ? 1 : 0;
-    } else if (status) {
-        fprintf(stderr, "plantcast: %s: the daemon answers %d: %s\n", url_text, status, body.at ? body.at : "");
-    }
-    text_finish(&body);
-    return result;
 }

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Decodes the frames that a session sends. Thread: one at a time. */
-#ifndef CLI_DECODER_H
-#define CLI_DECODER_H
+#ifndef LINK_DECODER_H
+#define LINK_DECODER_H
 #include <stdbool.h>
 
 #include "protocol/wire.h"
@@ -11,8 +11,13 @@ struct decoder;
 struct decoder *decoder_create(void);
 /* Frees the decoder. &NULL is fine; leaves NULL. */
 void decoder_destroy(struct decoder **decoder);
+/* Has pictures decoded by VA-API from the next key frame on, where this machine has it. Returns whether it has. */
+bool decoder_use_hardware(struct decoder *decoder);
 /* Decodes one frame. Returns false if its bytes are not valid or its codec is not in this build. */
 bool decoder_decode(struct decoder *decoder, const struct wire_frame *frame, const uint8_t *payload);
+/* Returns the pixels of the frame that was decoded last, BGRX, its rows one after another: they belong to the decoder, until the next
+   one. */
+const uint8_t *decoder_pixels(const struct decoder *decoder);
 /* Returns whether this build decodes the codec. */
 bool decoder_has(enum wire_codec codec);
 

@@ -7,6 +7,7 @@
 #include <unistd.h>
 #ifdef PLANTCAST_H264
 #include <libavcodec/avcodec.h>
+#include <libavutil/hwcontext.h>
 #include <libyuv.h>
 #endif
 
@@ -22,7 +23,8 @@ struct decoder {
 #ifdef PLANTCAST_H264
     AVCodecContext *context;
     AVPacket *packet;
-    AVFrame *picture;
+    AVFrame *picture, *copy; /* copy: of a picture that lies in a GPU */
+    AVBufferRef *hardware;   /* NULL: decoded by the processor */
 #endif
 };
 
@@ -55,6 +57,14 @@ static bool decode_jpeg(struct decoder *decoder, const struct wire_frame *frame,
 }
 
 #ifdef PLANTCAST_H264
+static enum AVPixelFormat choose_format(AVCodecContext *context, const enum AVPixelFormat *offered)
+{
+    for (const enum AVPixelFormat *format = offered; *format != AV_PIX_FMT_NONE; format++)
+        if (*format == AV_PIX_FMT_VAAPI && context->hw_device_ctx)
+            return *format;
+    return avcodec_default_get_format(context, offered);
+}
+
 static bool open_h264(struct decoder *decoder)
 {
     if (decoder->context)
@@ -65,6 +75,11 @@ static bool open_h264(struct decoder *decoder)
     decoder->context = avcodec_alloc_context3(avcodec_find_decoder(AV_CODEC_ID_H264));
     if (!decoder->packet || !decoder->picture || !decoder->context)
         return false;
+    decoder->copy = av_frame_alloc();
+    if (decoder->hardware && decoder->copy) {
+        decoder->context->hw_device_ctx = av_buffer_ref(decoder->hardware);
+        decoder->context->get_format = choose_format;
+    }
     decoder->context->flags |= AV_CODEC_FLAG_LOW_DELAY;
     decoder->context->thread_type = FF_THREAD_SLICE;
     decoder->context->thread_count = cores >= MANY_CORES ? SLICE_THREADS : 1;
@@ -75,8 +90,17 @@ static bool open_h264(struct decoder *decoder)
 static bool show_h264(struct decoder *decoder, const struct wire_frame *frame)
 {
     const AVFrame *p = decoder->picture;
+    if (p->format == AV_PIX_FMT_VAAPI) {
+        av_frame_unref(decoder->copy);
+        if (av_hwframe_transfer_data(decoder->copy, p, 0) != 0)
+            return false;
+        p = decoder->copy;
+    }
     if (p->width < frame->width_px || p->height < frame->height_px || !reserve(decoder, frame->width_px, frame->height_px))
         return false;
+    if (p->format == AV_PIX_FMT_NV12)
+        return NV12ToARGBMatrix(p->data[0], p->linesize[0], p->data[1], p->linesize[1], decoder->pixels, frame->width_px * 4,
+                                &kYuvJPEGConstants, frame->width_px, frame->height_px) == 0;
     return J420ToARGB(p->data[0], p->linesize[0], p->data[1], p->linesize[1], p->data[2], p->linesize[2], decoder->pixels,
                       frame->width_px * 4, frame->width_px, frame->height_px) == 0;
 }
@@ -91,6 +115,21 @@ static bool decode_h264(struct decoder *decoder, const struct wire_frame *frame,
     return status == 0 && avcodec_receive_frame(decoder->context, decoder->picture) == 0 && show_h264(decoder, frame);
 }
 #endif
+
+bool decoder_use_hardware(struct decoder *decoder)
+{
+#ifdef PLANTCAST_H264
+    return decoder->hardware || av_hwdevice_ctx_create(&decoder->hardware, AV_HWDEVICE_TYPE_VAAPI, NULL, NULL, 0) == 0;
+#else
+    (void)decoder;
+    return false;
+#endif
+}
+
+const uint8_t *decoder_pixels(const struct decoder *decoder)
+{
+    return decoder->pixels;
+}
 
 bool decoder_decode(struct decoder *decoder, const struct wire_frame *frame, const uint8_t *payload)
 {
@@ -121,6 +160,8 @@ void decoder_destroy(struct decoder **decoder_ptr)
     avcodec_free_context(&decoder->context);
     av_packet_free(&decoder->packet);
     av_frame_free(&decoder->picture);
+    av_frame_free(&decoder->copy);
+    av_buffer_unref(&decoder->hardware);
 #endif
     mem_free(decoder->pixels);
     mem_free(decoder);

@@ -1,0 +1,78 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Connections to a server's /stream, each kept up for ever, and one request for its walls. One thread of their own services all of them and
+   calls back under the player's lock, but for `frame`. */
+#ifndef WALL_LINK_H
+#define WALL_LINK_H
+#include <jansson.h>
+#include <libwebsockets.h>
+#include <pthread.h>
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "base/text.h"
+#include "clients/link/daemon.h"
+#include "protocol/wire.h"
+
+enum { LINKS_MOST = 26, LINK_MOST_QUEUED = 64 };
+enum link_state { LINK_IDLE, LINK_WAITING, LINK_CONNECTING, LINK_OPEN, LINK_WELCOMED };
+
+struct link;
+struct link_events {
+    json_t *(*hello)(struct link *link);                    /* the first message; the link frees it */
+    void (*text)(struct link *link, const json_t *message); /* all but pong */
+    void (*pong)(struct link *link, const json_t *message, int64_t sent_ns);
+    /* A frame, without the lock. Returns whether it could be decoded. */
+    bool (*frame)(struct link *link, const struct wire_frame *frame, const uint8_t *payload);
+    void (*refused)(struct link *link); /* a token is needed, or another one */
+};
+
+struct links;
+struct link {
+    struct links *links;
+    const struct link_events *events;
+    void *arg;
+    int index;
+    bool wanted; /* it is to be connected */
+    bool denied; /* it was not let in the last time */
+    enum link_state state;
+    int64_t heard_ns; /* monotonic: when the server last spoke; 0: never */
+    /* --- below: of link.c */
+    struct lws *wsi;
+    bool closing;
+    int tries;
+    int64_t retry_ns, ping_ns, begun_ns;
+    double retry_after_s;
+    struct text in;
+    char *queue[LINK_MOST_QUEUED];
+    int queued;
+};
+
+struct links {
+    pthread_mutex_t *lock;
+    const struct daemon_url *url;
+    struct link at[LINKS_MOST];
+    void (*walls)(void *arg, const json_t *walls); /* what /api/v1/walls says; under the lock */
+    void *arg;
+    /* --- below: of link.c */
+    struct lws_context *context;
+    pthread_t thread;
+    bool ends, started, wants_walls, asks_walls;
+    struct text body;
+    int64_t alive_ns;
+    lws_sorted_usec_list_t timer;
+};
+
+/* Starts the thread. Returns false if it cannot, with the reason printed. at[], lock and url are set by then. */
+bool links_start(struct links *links);
+/* Closes all, ends the thread. */
+void links_stop(struct links *links);
+/* Asks for the walls, as soon as may be; by a call of walls(). Under the lock. */
+void links_ask_walls(struct links *links);
+/* Returns when the thread was last seen at work, monotonic. Any thread. */
+int64_t links_alive_ns(struct links *links);
+/* Sends a message, which it frees, once the server has greeted; else it is dropped. Under the lock. */
+void link_post(struct link *link, json_t *message);
+/* Ends the connection; while it is wanted another one follows at once. Under the lock. */
+void link_restart(struct link *link);
+
+#endif

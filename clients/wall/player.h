@@ -1,0 +1,89 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* One display of a wall: its panes, what they show and when, and what it says when it hears nothing. */
+#ifndef WALL_PLAYER_H
+#define WALL_PLAYER_H
+#include <cairo.h>
+#include <pthread.h>
+
+#include "base/text.h"
+#include "link.h"
+#include "model.h"
+#include "plant/wall.h"
+#include "render/overlay/labels.h"
+#include "rules.h"
+#include "view_pane.h"
+
+#define PLAYER_LOST_NS 3000000000LL /* so long nothing is heard before it is said */
+
+struct pane {
+    enum pane_kind kind;
+    bool known;                           /* false: of a kind that this player does not know */
+    const char *kind_name, *area, *title; /* title NULL: none. All three belong to the player's `wall`, as the next does */
+    const json_t *items;
+    struct box box;   /* all of it, in pixels */
+    struct text said; /* what was drawn last: when it differs, the pane is drawn anew */
+    double title_px;  /* height of its title */
+    struct view_pane view;
+    size_t at;          /* of views: which of the items */
+    int64_t changed_ns; /* 0: never */
+    double every_s;
+    bool on_alarm, called;
+    struct text wanted; /* what was asked for */
+    struct text words;  /* its title now */
+    struct text state;  /* of views, likewise: what is seen below the title */
+};
+
+struct player {
+    struct daemon_url url;
+    const char *wall_id;
+    int display;
+    bool by_gpu, dark;
+    int width_px, height_px, display_width_px, display_height_px; /* of the window, and of all of the display */
+    pthread_mutex_t lock;
+    struct links links;
+    /* --- below: under lock */
+    struct model model;
+    json_t *wall, *walls; /* that which is shown, NULL: none; and all */
+    struct pane panes[WALL_PANES];
+    int pane_count;
+    double unit;
+    char wrong[600]; /* what is wrong, instead of panes */
+    struct rules_call call;
+    int64_t begun_ns, said_ns; /* said: when the server of the words last spoke */
+    bool denied;
+    bool all_due;     /* everything is to be drawn anew */
+    struct text card; /* what lies over everything; "": nothing */
+    cairo_surface_t *surface;
+    struct pane *pointed; /* at which a desk points; NULL: none */
+    double pointed_m[3];
+    int64_t pointed_ns;
+};
+
+/* Sets up a player for a window of that size, and begins to connect. url, wall_id, display, by_gpu and the sizes are set. Returns false
+   with
+   the reason printed. */
+bool player_start(struct player *player);
+void player_finish(struct player *player);
+/* Draws what has changed into player->surface. Returns whether anything has, with the part of it in *dirty. */
+bool player_draw(struct player *player, int64_t now_ns, struct box *dirty);
+/* Returns how bright the display is to be now, up to 1. */
+double player_brightness(struct player *player);
+/* Has it fit another size. */
+void player_resize(struct player *player, int width_px, int height_px);
+
+/* Parts of player_draw(), under the lock (panes.c): sets what a pane says, and draws it in its box. */
+void pane_say(struct player *player, struct pane *pane, int64_t now_ns, struct text *said);
+void pane_draw(struct player *player, struct pane *pane, cairo_t *cairo, int64_t now_ns);
+/* Draws the title of a pane, with the age of its data at its end. */
+void pane_draw_title(struct player *player, const struct pane *pane, cairo_t *cairo, const char *text, const char *about, int priority,
+                     bool hollow);
+/* Returns the plant's time of an instant, "10:05:00", in a buffer that is used again after 8 others. */
+const char *player_time(const struct player *player, int64_t us);
+/* Chooses what a pane of views shows, and asks for it (view_choice.c). */
+void pane_choose(struct player *player, struct pane *pane, int64_t now_ns);
+/* Makes the panes of the display anew, out of player->walls, or says what is wrong (layout.c). */
+void layout_build(struct player *player);
+/* Returns the list of alarms as the rules have it, which the caller frees with mem_free(). */
+struct rules_alarm *player_rules_alarms(const struct player *player);
+
+#endif

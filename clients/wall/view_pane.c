@@ -1,0 +1,477 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Pictures of the plant, as a session of the server sends them. */
+#include "view_pane.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "base/clock.h"
+#include "base/mem.h"
+#include "message/message.h"
+#include "render/overlay/overlay.h"
+#include "scene/framing.h"
+#include "value/quality.h"
+#include "view_address.h"
+
+void view_pane_init(struct view_pane *pane, struct link *link, int width_px, int height_px, double unit, bool by_gpu)
+{
+    view_pane_clear(pane);
+    pane->link = link;
+    pane->width_px = width_px;
+    pane->height_px = height_px;
+    pane->unit = unit;
+    pane->by_gpu = by_gpu;
+}
+
+static void forget_markers(struct view_pane *pane)
+{
+    mem_free(pane->frame.markers);
+    mem_free(pane->frame.labels);
+    pane->frame = (struct frame){ .oldest_age_ns = INT64_MAX };
+}
+
+void view_pane_clear(struct view_pane *pane)
+{
+    if (pane->picture)
+        cairo_surface_destroy(pane->picture);
+    if (pane->overlay)
+        cairo_surface_destroy(pane->overlay);
+    pane->picture = pane->overlay = NULL;
+    pane->is_current = pane->greeted = false;
+    forget_markers(pane);
+}
+
+void view_pane_finish(struct view_pane *pane)
+{
+    view_pane_clear(pane);
+    json_decref(pane->start);
+    decoder_destroy(&pane->decoder);
+    mem_free(pane->canvas);
+    *pane = (struct view_pane){ 0 };
+}
+
+/* --- what is asked for ------------------------------------------------------------------------------------------------------------ */
+
+json_t *view_pane_hello(const struct view_pane *pane)
+{
+    json_t *codecs = decoder_has(WIRE_CODEC_H264) ? json_pack("[s,s,s]", "h264", "jpeg", "auto") : json_pack("[s]", "jpeg");
+    return json_pack("{s:s,s:i,s:i,s:f,s:o}", "type", "hello", "width", pane->width_px, "height", pane->height_px, "pixel_ratio",
+                     fmin(fmax(pane->unit, 0.25), 8), "codecs", codecs);
+}
+
+/* The server's own reader does it; what is of one server alone, or needs the geometry, is set apart. */
+static bool read_view(const struct model *model, const json_t *params, int width_px, int height_px, struct view *view)
+{
+    static const char *const others[] = { "sensors", "sensor", "baseline", "baselines", "unit", "split" };
+    const struct params_context context = { .scene = &model->scene };
+    const char *show = json_string_value(json_object_get(params, "show")), *sensor = json_string_value(json_object_get(params, "sensor"));
+    const json_t *split = json_object_get(params, "split");
+    struct params_change change;
+    struct message_error error;
+    json_t *plain = json_copy((json_t *)params);
+    bool is_distance = show && !strcmp(show, "distance"), is_difference = show && !strcmp(show, "difference");
+    for (size_t i = 0; i < sizeof(others) / sizeof(others[0]); i++)
+        json_object_del(plain, others[i]);
+    if (is_distance || is_difference)
+        json_object_del(plain, "show");
+    view_default(&model->scene, width_px, height_px, view);
+    bool good = params_parse(&model->plant, plain, &change, &error) && params_apply(&context, &change, view, &error);
+    json_decref(plain);
+    int tag = good && is_distance && sensor ? plant_find_tag(&model->plant, sensor) : -1;
+    if (good && (is_difference || tag >= 0))
+        view->field.show = is_difference ? SHOW_DIFFERENCE : SHOW_DISTANCE;
+    view->field.sensor = tag;
+    struct view right;
+    if (good && json_is_object(split) && read_view(model, split, width_px, height_px, &right))
+        view_split(view, &right);
+    if (!good)
+        fprintf(stderr, "plantcast-wall: parameters that this player does not know: %s\n", error.text);
+    return good;
+}
+
+static void copy_names(json_t *to, const json_t *from, const char *const *names)
+{
+    for (; *names; names++)
+        if (json_object_get(from, *names))
+            json_object_set(to, *names, json_object_get(from, *names));
+}
+
+/* What a view has where its address says nothing. */
+static json_t *plain_params(const struct view_pane *pane, const struct model *model, const char *group)
+{
+    static const char *const started[] = { "group",    "show",   "colormap", "look",  "light", "environment",
+                                           "backdrop", "hidden", "isolate",  "ghost", NULL };
+    static const char *const owned[] = { "interpolation", "distance", "scale", "isolines", NULL };
+    static const char *const engineers[] = { "fill", "power", "radius_m", "reach_m", NULL };
+    const json_t *groups = json_object_get(model->welcome, "groups");
+    json_t *params = json_object();
+    copy_names(params, pane->start, started);
+    json_object_update_new(params,
+                           json_pack("{s:n,s:i,s:n,s:n,s:n,s:n}", "range", "ramp_interval", 0, "breaks", "split", "selected", "clip"));
+    int index = group ? plant_find_group(&model->plant, group) : -1;
+    if (index < 0)
+        index = plant_find_group(&model->plant, json_string_value(json_object_get(params, "group")));
+    const json_t *own = json_array_get(groups, index < 0 ? 0 : (size_t)index);
+    json_object_set(params, "group", json_object_get(own, "id"));
+    copy_names(params, own, owned);
+    if (json_array_size(json_object_get(own, "breaks")) > 0)
+        json_object_set_new(params, "breaks", json_string("group"));
+    if (pane->engineer) {
+        copy_names(params, own, engineers);
+        json_object_update_new(params, json_pack("{s:i,s:i,s:n}", "strength", 1, "decay", 1, "sensors"));
+    }
+    return params;
+}
+
+static json_t *vector_of(const double v[3])
+{
+    return json_pack("[f,f,f]", v[0], v[1], v[2]);
+}
+
+static json_t *message_of(const struct camera *camera)
+{
+    json_t *o =
+        json_pack("{s:o,s:o,s:o}", "eye", vector_of(camera->eye_m), "target", vector_of(camera->target_m), "up", vector_of(camera->up));
+    json_object_set_new(o, "fov", json_real(camera->fov_deg));
+    return o;
+}
+
+/* From home, or of a tag: -1. The legend hides nothing of it. */
+static json_t *find_camera(const struct view_pane *pane, const struct model *model, const json_t *params, int tag)
+{
+    const struct plant_view *home = &model->plant.view;
+    struct camera camera = { .up = { 0, model->plant.up == AXIS_Y, model->plant.up == AXIS_Z }, .fov_deg = home->fov_deg };
+    struct framing framing = { .asset = -1, .tag = tag, .side = SIDE_NOW };
+    double aspect = (double)pane->width_px / pane->height_px;
+    struct view view;
+    memcpy(camera.eye_m, home->eye_m, sizeof(camera.eye_m));
+    memcpy(camera.target_m, home->target_m, sizeof(camera.target_m));
+    if (read_view(model, params, pane->width_px, pane->height_px, &view))
+        overlay_pane_window(&model->scene, &view, pane->unit, &framing.window);
+    if (framing.window.right < 0) /* a pane that is hardly wider than its legend */
+        framing.window = (struct camera_window){ 0 };
+    if (tag < 0 && home->set)
+        framing_keep(&model->scene, aspect, &framing.window, &camera);
+    else
+        framing_look(&model->scene, &framing, aspect, &camera);
+    return message_of(&camera);
+}
+
+static void ask(struct view_pane *pane, json_t *params, json_t *camera)
+{
+    json_object_update_new(params, json_pack("{s:s,s:I}", "type", "params", "seq", (json_int_t)++pane->params_seq));
+    json_object_update_new(camera, json_pack("{s:s,s:I}", "type", "camera", "seq", (json_int_t)++pane->camera_seq));
+    pane->is_current = false;
+    pane->refused[0] = 0;
+    link_post(pane->link, params);
+    link_post(pane->link, camera);
+}
+
+void view_pane_show(struct view_pane *pane, const struct model *model, const char *address)
+{
+    static const char *const engineers[] = { "fill", "strength", "decay", "power", "radius_m", "reach_m" };
+    json_t *given = view_address_params(address), *camera = view_address_camera(address);
+    json_t *params = plain_params(pane, model, json_string_value(json_object_get(given, "group")));
+    json_object_update(params, given);
+    json_decref(given);
+    for (size_t i = 0; i < sizeof(engineers) / sizeof(engineers[0]) && !pane->engineer; i++)
+        json_object_del(params, engineers[i]);
+    ask(pane, params, camera ? camera : find_camera(pane, model, params, -1));
+}
+
+void view_pane_show_tag(struct view_pane *pane, const struct model *model, int tag)
+{
+    const struct plant_tag *of = &model->plant.tags[tag];
+    json_t *params = plain_params(pane, model, of->group >= 0 ? model->plant.groups[of->group].id : NULL);
+    ask(pane, params, find_camera(pane, model, params, tag));
+}
+
+/* --- what comes --------------------------------------------------------------------------------------------------------------------- */
+
+static void on_welcome(struct view_pane *pane, const json_t *message)
+{
+    const char *role = json_string_value(json_object_get(message, "role"));
+    const char *configuration = json_string_value(json_object_get(json_object_get(message, "plant"), "configuration"));
+    view_pane_clear(pane);
+    json_decref(pane->start);
+    pane->start = json_deep_copy(json_object_get(message, "view"));
+    pane->engineer = role && !strcmp(role, "engineer");
+    snprintf(pane->configuration, sizeof(pane->configuration), "%s", configuration ? configuration : "");
+    pane->camera_seq = pane->params_seq = pane->told_seq = 0;
+    pane->greeted = true;
+}
+
+static uint32_t quality_at(const json_t *row, size_t index)
+{
+    static const uint32_t qualities[] = { QUALITY_GOOD, QUALITY_UNCERTAIN, QUALITY_BAD };
+    json_int_t value = json_integer_value(json_array_get(row, index));
+    return qualities[value >= 0 && value <= 2 ? value : 2];
+}
+
+static void take_value(struct frame_marker *marker, const json_t *row, size_t at)
+{
+    const json_t *value = json_array_get(row, at);
+    marker->value = json_is_number(value) ? json_number_value(value) : NAN;
+    marker->quality = quality_at(row, at + 1);
+}
+
+static void take_markers(struct view_pane *pane, const struct model *model, const json_t *rows)
+{
+    mem_free(pane->frame.markers);
+    pane->frame.markers = mem_array(json_array_size(rows) + 1, sizeof(*pane->frame.markers));
+    pane->frame.marker_count = 0;
+    for (size_t i = 0; i < json_array_size(rows); i++) {
+        const json_t *row = json_array_get(rows, i);
+        json_int_t tag = json_integer_value(json_array_get(row, 0));
+        if (tag < 0 || (size_t)tag >= model->plant.tag_count || model->plant.tags[tag].asset < 0)
+            continue;
+        struct frame_marker *marker = &pane->frame.markers[pane->frame.marker_count++];
+        *marker = (struct frame_marker){ .tag = (int)tag, .x_px = (float)json_number_value(json_array_get(row, 1)) };
+        marker->y_px = (float)json_number_value(json_array_get(row, 2));
+        marker->occluded = json_integer_value(json_array_get(row, 3)) != 0;
+        marker->half = json_integer_value(json_array_get(row, 4)) != 0;
+        take_value(marker, row, 5);
+    }
+}
+
+static void take_values(struct view_pane *pane, const json_t *rows)
+{
+    for (size_t i = 0; i < json_array_size(rows); i++) {
+        const json_t *row = json_array_get(rows, i);
+        for (size_t k = 0; k < pane->frame.marker_count; k++) {
+            struct frame_marker *marker = &pane->frame.markers[k];
+            if (marker->tag == json_integer_value(json_array_get(row, 0)) && marker->half == json_integer_value(json_array_get(row, 1)))
+                take_value(marker, row, 2);
+        }
+    }
+}
+
+static void take_isolines(struct view_pane *pane, const json_t *rows)
+{
+    mem_free(pane->frame.labels);
+    pane->frame.labels = mem_array(json_array_size(rows) + 1, sizeof(*pane->frame.labels));
+    pane->frame.label_count = json_array_size(rows);
+    for (size_t i = 0; i < json_array_size(rows); i++) {
+        const json_t *row = json_array_get(rows, i);
+        pane->frame.labels[i].value = json_number_value(json_array_get(row, 0));
+        pane->frame.labels[i].x_px = (float)json_number_value(json_array_get(row, 1));
+        pane->frame.labels[i].y_px = (float)json_number_value(json_array_get(row, 2));
+        pane->frame.labels[i].half = json_integer_value(json_array_get(row, 3)) != 0;
+    }
+}
+
+static bool fits(const struct view_pane *pane, const struct model *model)
+{
+    const char *now = json_string_value(json_object_get(json_object_get(model->welcome, "plant"), "configuration"));
+    return model->welcome && now && !strncmp(now, pane->configuration, sizeof(pane->configuration) - 1);
+}
+
+void view_pane_hear(struct view_pane *pane, const struct model *model, const json_t *message)
+{
+    const char *type = json_string_value(json_object_get(message, "type"));
+    if (!strcmp(type, "welcome")) {
+        on_welcome(pane, message);
+    } else if (!strcmp(type, "error")) {
+        const char *text = json_string_value(json_object_get(message, "text"));
+        snprintf(pane->refused, sizeof(pane->refused), "%s", text ? text : "?");
+    } else if (!fits(pane, model)) { /* the one of two sessions was told of a new plant, the other will be */
+        return;
+    } else if (!strcmp(type, "params")) {
+        if (read_view(model, message, pane->width_px, pane->height_px, &pane->told))
+            pane->told_seq = (uint32_t)json_integer_value(json_object_get(message, "seq"));
+    } else if (!strcmp(type, "markers")) {
+        if (json_object_get(message, "markers"))
+            take_markers(pane, model, json_object_get(message, "markers"));
+        take_values(pane, json_object_get(message, "values"));
+        if (json_object_get(message, "isolines"))
+            take_isolines(pane, json_object_get(message, "isolines"));
+        pane->overlay_due = true;
+    }
+}
+
+/* --- pictures ----------------------------------------------------------------------------------------------------------------------- */
+
+static bool reserve_canvas(struct view_pane *pane, int width_px, int height_px)
+{
+    if (pane->canvas && pane->canvas_width_px == width_px && pane->canvas_height_px == height_px)
+        return true;
+    mem_free(pane->canvas);
+    pane->canvas = mem_try_array((size_t)width_px * (size_t)height_px, 4);
+    pane->canvas_width_px = width_px;
+    pane->canvas_height_px = height_px;
+    return pane->canvas != NULL;
+}
+
+static void put_part(struct view_pane *pane, const struct wire_frame *frame)
+{
+    const uint8_t *from = decoder_pixels(pane->decoder);
+    size_t row_bytes = (size_t)frame->width_px * 4, stride = (size_t)pane->canvas_width_px * 4;
+    for (size_t y = 0; y < frame->height_px; y++)
+        memcpy(pane->canvas + (frame->y_px + y) * stride + (size_t)frame->x_px * 4, from + y * row_bytes, row_bytes);
+}
+
+static void show_canvas(struct view_pane *pane, const struct wire_frame *frame)
+{
+    int width_px = pane->canvas_width_px, height_px = pane->canvas_height_px;
+    if (pane->picture &&
+        (cairo_image_surface_get_width(pane->picture) != width_px || cairo_image_surface_get_height(pane->picture) != height_px)) {
+        cairo_surface_destroy(pane->picture);
+        pane->picture = NULL;
+    }
+    if (!pane->picture)
+        pane->picture = cairo_image_surface_create(CAIRO_FORMAT_RGB24, width_px, height_px);
+    if (cairo_surface_status(pane->picture) != CAIRO_STATUS_SUCCESS)
+        return;
+    cairo_surface_flush(pane->picture);
+    uint8_t *to = cairo_image_surface_get_data(pane->picture);
+    size_t stride = (size_t)cairo_image_surface_get_stride(pane->picture);
+    for (int y = 0; y < height_px; y++)
+        memcpy(to + (size_t)y * stride, pane->canvas + (size_t)y * (size_t)width_px * 4, (size_t)width_px * 4);
+    cairo_surface_mark_dirty(pane->picture);
+    struct camera *camera = &pane->frame.view.camera;
+    for (int i = 0; i < 3; i++) {
+        camera->eye_m[i] = (double)frame->eye_m[i];
+        camera->target_m[i] = (double)frame->target_m[i];
+        camera->up[i] = (double)frame->up[i];
+    }
+    camera->fov_deg = (double)frame->fov_deg;
+    camera->height_m = (double)frame->height_m;
+    pane->is_current = pane->params_seq > 0 && frame->camera_seq >= pane->camera_seq && frame->params_seq >= pane->params_seq &&
+                       pane->told_seq >= pane->params_seq;
+    pane->frame.data_utc_ns = (int64_t)frame->data_time_us * 1000;
+    pane->shown_ns = clock_mono_ns();
+    pane->frames++;
+    pane->overlay_due = true;
+}
+
+bool view_pane_decode(struct view_pane *pane, pthread_mutex_t *lock, const struct wire_frame *frame, const uint8_t *payload)
+{
+    if (!pane->decoder && !(pane->decoder = decoder_create()))
+        return false;
+    if (pane->by_gpu && !decoder_use_hardware(pane->decoder))
+        pane->by_gpu = false;
+    if (!decoder_decode(pane->decoder, frame, payload) || !reserve_canvas(pane, frame->full_width_px, frame->full_height_px))
+        return false;
+    bool last = !(frame->flags & WIRE_FLAG_MORE);
+    if (frame->codec != WIRE_CODEC_H264 || last)
+        put_part(pane, frame);
+    if (!last)
+        return true;
+    pthread_mutex_lock(lock);
+    if (pane->greeted)
+        show_canvas(pane, frame);
+    pthread_mutex_unlock(lock);
+    return true;
+}
+
+/* --- drawing ------------------------------------------------------------------------------------------------------------------------ */
+
+/* Of its camera; behind the eye: false. */
+static bool project(const struct camera *camera, double width_px, double height_px, const double point_m[3], double *x, double *y)
+{
+    double right[3], up[3], forward[3], at[3] = { 0, 0, 0 };
+    camera_basis(camera, right, up, forward);
+    for (int i = 0; i < 3; i++) {
+        double from_m = point_m[i] - camera->eye_m[i];
+        at[0] += from_m * right[i];
+        at[1] += from_m * up[i];
+        at[2] += from_m * forward[i];
+    }
+    double high_m = camera->height_m > 0 ? camera->height_m : 2 * at[2] * tan(camera->fov_deg * M_PI / 360);
+    if (!(high_m > 0))
+        return false;
+    *x = 0.5 * width_px + at[0] / high_m * height_px;
+    *y = 0.5 * height_px - at[1] / high_m * height_px;
+    return true;
+}
+
+/* Markers of the picture, in pixels of the pane; and of alarms that it does not show, as of another group, or behind something. */
+static void collect_markers(const struct view_pane *pane, const struct model *model, struct frame *frame)
+{
+    double x, y, across = (double)pane->width_px / pane->canvas_width_px, down = (double)pane->height_px / pane->canvas_height_px;
+    frame->markers = mem_array(pane->frame.marker_count + model->list_count + 1, sizeof(*frame->markers));
+    frame->labels = mem_array(pane->frame.label_count + 1, sizeof(*frame->labels));
+    for (size_t i = 0; i < pane->frame.marker_count; i++) {
+        frame->markers[i] = pane->frame.markers[i];
+        frame->markers[i].x_px *= (float)across;
+        frame->markers[i].y_px *= (float)down;
+    }
+    frame->marker_count = pane->frame.marker_count;
+    for (size_t i = 0; i < pane->frame.label_count; i++) {
+        frame->labels[i] = pane->frame.labels[i];
+        frame->labels[i].x_px *= (float)across;
+        frame->labels[i].y_px *= (float)down;
+    }
+    frame->label_count = pane->frame.label_count;
+    for (size_t i = 0; i < model->list_count && !frame->view.split; i++) {
+        int tag = model->list[i].tag;
+        bool known = tag < 0 || model->plant.tags[tag].asset < 0 || !model->plant.tags[tag].has_position;
+        for (size_t k = 0; k < frame->marker_count && !known; k++)
+            known = frame->markers[k].tag == tag;
+        if (known || !project(&frame->view.camera, pane->width_px, pane->height_px, model->plant.tags[tag].position_m, &x, &y))
+            continue;
+        const struct reading *reading = &model->snapshot->readings[tag];
+        frame->markers[frame->marker_count++] = (struct frame_marker){
+            .tag = tag, .x_px = (float)x, .y_px = (float)y, .occluded = 1, .quality = reading->quality, .value = reading->value
+        };
+    }
+}
+
+static void draw_overlay(struct view_pane *pane, const struct model *model)
+{
+    struct frame frame = { .width_px = pane->width_px, .height_px = pane->height_px, .view = pane->told, .oldest_age_ns = INT64_MAX };
+    if (!pane->overlay)
+        pane->overlay = cairo_image_surface_create(CAIRO_FORMAT_ARGB32, pane->width_px, pane->height_px);
+    cairo_t *cairo = cairo_create(pane->overlay);
+    cairo_set_operator(cairo, CAIRO_OPERATOR_CLEAR);
+    cairo_paint(cairo);
+    cairo_destroy(cairo);
+    frame.view.camera = pane->frame.view.camera;
+    frame.view.width_px = pane->width_px;
+    frame.view.height_px = pane->height_px;
+    collect_markers(pane, model, &frame);
+    overlay_draw_pane(pane->overlay, &frame, &model->scene, model->snapshot, pane->unit);
+    mem_free(frame.markers);
+    mem_free(frame.labels);
+    pane->overlay_due = false;
+}
+
+bool view_pane_draw(struct view_pane *pane, const struct model *model, cairo_t *cairo, double x, double y)
+{
+    if (!pane->picture || !pane->is_current || !fits(pane, model))
+        return false;
+    if (pane->overlay_due || !pane->overlay)
+        draw_overlay(pane, model);
+    cairo_save(cairo);
+    cairo_translate(cairo, x, y);
+    cairo_save(cairo);
+    cairo_scale(cairo, (double)pane->width_px / cairo_image_surface_get_width(pane->picture),
+                (double)pane->height_px / cairo_image_surface_get_height(pane->picture));
+    cairo_set_source_surface(cairo, pane->picture, 0, 0);
+    cairo_pattern_set_extend(cairo_get_source(cairo), CAIRO_EXTEND_PAD);
+    cairo_rectangle(cairo, 0, 0, cairo_image_surface_get_width(pane->picture), cairo_image_surface_get_height(pane->picture));
+    cairo_fill(cairo);
+    cairo_restore(cairo);
+    cairo_set_source_surface(cairo, pane->overlay, 0, 0);
+    cairo_paint(cairo);
+    cairo_restore(cairo);
+    return true;
+}
+
+void view_pane_point(const struct view_pane *pane, cairo_t *cairo, double x, double y, const double place_m[3])
+{
+    double at_x, at_y, radius = 22 * pane->unit;
+    if (!project(&pane->frame.view.camera, pane->width_px, pane->height_px, place_m, &at_x, &at_y))
+        return;
+    for (int pass = 0; pass < 2; pass++) {
+        cairo_new_path(cairo);
+        cairo_arc(cairo, x + at_x, y + at_y, radius, 0, 2 * M_PI);
+        cairo_set_line_width(cairo, (pass ? 3 : 7) * pane->unit);
+        if (pass)
+            cairo_set_source_rgb(cairo, 0.78, 0.05, 0.6);
+        else
+            cairo_set_source_rgb(cairo, 1, 1, 1);
+        cairo_stroke(cairo);
+    }
+}

@@ -1,0 +1,59 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* A pane that shows the plant: a session of its own, the picture that came last, and what is drawn over it. Under the player's lock, but
+   for
+   view_pane_decode(). */
+#ifndef WALL_VIEW_PANE_H
+#define WALL_VIEW_PANE_H
+#include <cairo.h>
+
+#include "clients/link/decoder.h"
+#include "link.h"
+#include "model.h"
+#include "render/frame.h"
+
+struct view_pane {
+    struct link *link;
+    int width_px, height_px; /* of its picture */
+    double unit;
+    bool greeted; /* by this connection's server */
+    bool engineer;
+    char configuration[40];          /* of the plant that its markers are of */
+    json_t *start;                   /* the parameters that a view begins with */
+    uint32_t camera_seq, params_seq; /* the newest that were asked for */
+    struct view told;                /* what the server says is in force, by its answer number told_seq */
+    uint32_t told_seq;
+    char refused[200];                  /* why the server does not show what was asked for; "": it does */
+    cairo_surface_t *picture, *overlay; /* NULL: none came yet. The overlay is as large as the pane */
+    bool is_current;                    /* the picture is of what was asked for */
+    bool overlay_due;
+    int64_t shown_ns; /* when the last picture came */
+    uint32_t frames;
+    struct frame frame; /* what the picture shows; its pixels are not used */
+    bool by_gpu;
+    /* --- below: of the network's thread */
+    struct decoder *decoder;
+    uint8_t *canvas; /* what parts of pictures are put together in */
+    int canvas_width_px, canvas_height_px;
+};
+
+/* Sets up a pane of that size. Its decoder and buffers stay for the next one of the same place. */
+void view_pane_init(struct view_pane *pane, struct link *link, int width_px, int height_px, double unit, bool by_gpu);
+/* Forgets what it shows. */
+void view_pane_clear(struct view_pane *pane);
+void view_pane_finish(struct view_pane *pane);
+/* Returns its first message. */
+json_t *view_pane_hello(const struct view_pane *pane);
+/* Takes in a message of its session. */
+void view_pane_hear(struct view_pane *pane, const struct model *model, const json_t *message);
+/* Decodes a frame and keeps the picture, under that lock. Returns false if it cannot. The network's thread. */
+bool view_pane_decode(struct view_pane *pane, pthread_mutex_t *lock, const struct wire_frame *frame, const uint8_t *payload);
+/* Asks for a view: what a page's address has after `#`. One without a camera shows the whole plant. */
+void view_pane_show(struct view_pane *pane, const struct model *model, const char *address);
+/* Asks for the place of a tag. */
+void view_pane_show_tag(struct view_pane *pane, const struct model *model, int tag);
+/* Draws picture and overlay with the upper left corner there. Returns false if there is no picture of what was asked for. */
+bool view_pane_draw(struct view_pane *pane, const struct model *model, cairo_t *cairo, double x, double y);
+/* Draws a cross-hair at a place of the plant, likewise. */
+void view_pane_point(const struct view_pane *pane, cairo_t *cairo, double x, double y, const double place_m[3]);
+
+#endif

@@ -1,0 +1,186 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// plantcast-wall, the player of a wall's displays, on an X display: what it shows, what it says when its server or its token is gone,
+// and that it comes back.
+import assert from 'node:assert/strict';
+import { spawn, spawnSync } from 'node:child_process';
+import { chmodSync, existsSync, mkdtempSync, rmSync, writeFileSync } from 'node:fs';
+import { tmpdir } from 'node:os';
+import { join } from 'node:path';
+import { after, before, test } from 'node:test';
+import { SCREENSHOTS } from './support/browser.mjs';
+import { residentKb, sanitized } from './support/crowd.mjs';
+import { BIN, missing, startPlant } from './support/plant.mjs';
+import { missingDisplay, savePng, startDisplay } from './support/x_display.mjs';
+
+const PROGRAM = join(BIN, 'plantcast-wall');
+const why = (existsSync(PROGRAM) ? null : 'not built: plantcast-wall') ?? missing() ?? missingDisplay();
+const options = { skip: why ?? false, timeout: 240000 };
+const WALLS = `
+views:
+- { id: whole, title: Whole unit, view: "group=temperature" }
+walls:
+- id: room
+  displays:
+  - grid: [main main alarms, main main tiles, main main clock]
+    panes:
+    - { area: main, views: [whole], on_alarm: yes }
+    - { area: alarms, alarms: yes }
+    - { area: tiles, title: Feed, tiles: [TE-171, TE-172, PT-101, PT-102] }
+    - { area: clock, clock: yes }
+  - grid: [top, bottom]
+    panes:
+    - { area: top, trend: [TE-171, TE-172], hours: 1 }
+    - { area: bottom, title: To do, text: [Check P-101A, Clean F-101] }
+`;
+const WIDTH = 1280, HEIGHT = 720, MAIN = [10, 40, 840, 700], ALARMS = [860, 30, 1270, 230];
+const folder = mkdtempSync(join(tmpdir(), 'plantcast-wall-')), tokens = join(folder, 'tokens'), tokenFile = join(folder, 'token');
+const sleep = (ms) => new Promise((done) => setTimeout(done, ms));
+const players = [];
+let plant, display, main;
+
+const token = (...args) => spawnSync(join(BIN, 'plantcast'), ['token', ...args], { encoding: 'utf8' }).stdout.trim();
+
+function startPlayer(args, env = {}) {
+    const child = spawn(PROGRAM, [plant.url, '--token-file', tokenFile, ...args],
+        { env: { ...process.env, DISPLAY: display.name, SDL_VIDEODRIVER: 'x11', LIBGL_ALWAYS_SOFTWARE: '1', ...env } });
+    const player = { child, said: '', pid: child.pid };
+    player.exit = new Promise((done) => child.once('exit', (code, signal) => done(code ?? signal)));
+    for (const pipe of [child.stdout, child.stderr])
+        pipe.on('data', (text) => { player.said = (player.said + text).slice(-4000); });
+    player.stop = async () => { child.kill(); return player.exit; };
+    players.push(player);
+    return player;
+}
+
+// Of a part of what is seen: the shares of black, of white, of the ground, of saturated colours, and of the red of an alarm's frame.
+function shares([left, top, right, bottom], step = 3) {
+    const { at } = display.grab(), count = { black: 0, white: 0, plain: 0, coloured: 0, red: 0, orange: 0 };
+    let all = 0;
+    for (let y = top; y < bottom; y += step) {
+        for (let x = left; x < right; x += step, all++) {
+            const [r, g, b] = at(x, y), spread = Math.max(r, g, b) - Math.min(r, g, b);
+            count.black += Math.max(r, g, b) < 8;
+            count.white += Math.min(r, g, b) > 247;
+            count.plain += r === 0xf4 && g === 0xf5 && b === 0xf6;
+            count.coloured += spread > 60;
+            count.red += Math.abs(r - 0xc4) + Math.abs(g - 0x0d) + Math.abs(b - 0x20) < 20;
+            count.orange += Math.abs(r - 0xe0) + Math.abs(g - 0x6a) + Math.abs(b - 0x0a) < 20;
+        }
+    }
+    return Object.fromEntries(Object.entries(count).map(([name, n]) => [name, n / all]));
+}
+
+// Waits until a part of what is seen has what is expected. Returns how long that took.
+async function until(box, expected, ms, what) {
+    const begin = performance.now();
+    for (let last; !expected(last = shares(box)); await sleep(50)) {
+        if (performance.now() - begin > ms) {
+            savePng(display.grab(), join(SCREENSHOTS, 'wall-player-failed.png'));
+            assert.fail(`${what}: ${JSON.stringify(last)}\n${players.map(({ said }) => said).join('\n')}`);
+        }
+    }
+    return performance.now() - begin;
+}
+
+const WHOLE = [0, 0, WIDTH, HEIGHT];
+const isDark = ({ black }) => black > 0.5, showsPlant = ({ coloured, plain, black }) => coloured > 0.01 && plain < 0.1 && black < 0.1;
+const isCard = ({ black, white }) => black > 0.5 && white > 0.05; // with large letters
+const shoot = (name) => process.env.PLANTCAST_SHOTS === '1' && savePng(display.grab(), join(SCREENSHOTS, `${name}.png`));
+
+before(async () => {
+    if (why)
+        return;
+    writeFileSync(tokenFile, token('add', tokens, '--role', 'viewer', '--name', 'wall-1'));
+    chmodSync(tokens, 0o600);
+    plant = await startPlant(`alarms: local\n${WALLS}`, () => {}, ['--tokens', tokens]);
+    display = await startDisplay(WIDTH, HEIGHT);
+});
+after(async () => {
+    for (const player of players)
+        await player.stop();
+    await display?.stop();
+    await plant?.stop();
+    rmSync(folder, { recursive: true, force: true });
+});
+
+test('it shows a wall', options, async () => {
+    main = startPlayer(['--wall', 'room']);
+    await until([900, 560, 1200, 700], ({ plain, black }) => plain > 0.5 && black < 0.2, 20000, 'the clock is there');
+    await until(MAIN, showsPlant, 60000, 'the plant is there');
+    assert.match(main.said, /plantcast-wall: x11, \w+, 1280x720/);
+    await until(ALARMS, ({ plain }) => plain > 0.7, 10000, 'no alarm');
+    shoot('wall-player');
+});
+
+test('an alarm takes the place of a view, and stands in the list', options, async () => {
+    const frame = [0, 100, 8, 600];
+    assert.equal(shares(frame, 1).red, 0);
+    await plant.ask('set TE-171 500');
+    await until(frame, ({ red }) => red > 0.2, 30000, 'the frame of a pane that was called');
+    await until(ALARMS, ({ orange, white }) => orange > 0.002 && white > 0.1, 10000, 'the alarm in the list');
+    await until(MAIN, showsPlant, 60000, 'its place');
+    shoot('wall-player-alarm');
+});
+
+test('a server that is gone is said in large letters within 3 s, and it comes back by itself', options, async () => {
+    const resident = [];
+    for (let round = 0; round < 2; round++) {
+        await plant.stopDaemon('SIGKILL');
+        const ms = await until(WHOLE, isCard, 8000, 'the card');
+        assert.ok(ms < 4200, `${ms} ms`); // 3 s after it was last heard, which was within the last second; it is drawn and grabbed
+        if (round === 0)
+            shoot('wall-player-lost');
+        await plant.startDaemon();
+        await until(WHOLE, ({ black }) => black < 0.1, 30000, 'the card goes');
+        await until(MAIN, showsPlant, 60000, 'the plant comes back');
+        resident.push(residentKb(main.pid));
+    }
+    assert.ok(sanitized || resident[1] < 1.1 * resident[0] + 4096, `${resident} kB`);
+});
+
+test('a frozen server is no frozen picture', options, async () => {
+    process.kill(plant.pid, 'SIGSTOP');
+    try {
+        await until(WHOLE, isCard, 8000, 'the card');
+    } finally {
+        process.kill(plant.pid, 'SIGCONT');
+    }
+    await until(MAIN, showsPlant, 60000, 'the plant comes back');
+});
+
+test('without its token it is dark within 3 s, and another one brings it back', options, async () => {
+    token('revoke', tokens, 'wall-1');
+    const ms = await until(WHOLE, isDark, 8000, 'dark');
+    assert.ok(ms < 4000, `${ms} ms`); // the server looks at its file every second
+    assert.ok(shares(WHOLE).coloured < 0.001, 'nothing of the plant is left');
+    shoot('wall-player-denied');
+    writeFileSync(tokenFile, token('add', tokens, '--role', 'viewer', '--name', 'wall-2'));
+    await until(MAIN, showsPlant, 90000, 'the plant comes back');
+});
+
+test('another display, without OpenGL; what it cannot show is said by name', options, async () => {
+    await main.stop();
+    const other = startPlayer(['--wall', 'room', '--display', '2', '--language', 'ko'], { SDL_RENDER_DRIVER: 'software' });
+    await until([10, 400, 1270, 700], ({ plain }) => plain > 0.8, 20000, 'a text');
+    await sleep(1000);
+    assert.match(other.said, /software/);
+    shoot('wall-player-2');
+    assert.equal(await other.stop(), 0);
+});
+
+test('what is not there is refused by name', options, async () => {
+    const nowhere = startPlayer(['--wall', 'nowhere']);
+    for (const end = performance.now() + 20000; !/no wall 'nowhere'.*room/.test(nowhere.said); await sleep(50))
+        assert.ok(performance.now() < end, nowhere.said);
+    await until(WHOLE, ({ black, white }) => black > 0.9 && white > 0.0005, 5000, 'it says so');
+    shoot('wall-player-wrong');
+    await nowhere.stop();
+    const env = { ...process.env, DISPLAY: ':4095', SDL_VIDEODRIVER: 'x11' };
+    const run = (...args) => spawnSync(PROGRAM, args, { encoding: 'utf8', env });
+    assert.match(run(plant.url).stderr, /--wall NAME is missing/);
+    assert.match(run(plant.url, '--wall', 'room', '--display', '99').stderr, /--display: a number from 1 to 16/);
+    assert.match(run('ftp://x', '--wall', 'room').stderr, /is not http/);
+    const { status, stderr } = run(plant.url, '--wall', 'room');
+    assert.equal(status, 1);
+    assert.match(stderr, /no display/);
+});
