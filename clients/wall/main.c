@@ -150,7 +150,7 @@ static bool show(struct player *player, struct screen *screen, int64_t now_ns, b
     if (!*changed && !exposed && now.x == shown->x && now.y == shown->y && now.light == shown->light)
         return true;
     *shown = now;
-    return screen_present(screen, now.x, now.y, now.light);
+    return screen_present(screen, now.x, now.y, now.light, player->ground);
 }
 
 static bool take_events(struct player *player, struct screen *screen, bool *exposed)

@@ -410,6 +410,7 @@ bool player_draw(struct player *player, int64_t now_ns, struct box *dirty)
     say_card(player, now_ns, &card);
     bool all = differs(&player->card, &card) || player->all_due;
     player->all_due = false;
+    player->ground = player->card.length > 0 ? 0 : GROUND;
     cairo_t *cairo = cairo_create(player->surface);
     struct box whole = { 0, 0, player->width_px, player->height_px };
     if (all)

@@ -152,12 +152,13 @@ void screen_update(struct screen *screen, cairo_surface_t *picture, const struct
                           stride);
 }
 
-bool screen_present(struct screen *screen, int shift_x, int shift_y, double brightness)
+bool screen_present(struct screen *screen, int shift_x, int shift_y, double brightness, uint32_t ground)
 {
     SDL_Rect to = { shift_x, shift_y, screen->width_px, screen->height_px };
-    Uint8 light = (Uint8)lround(255 * brightness);
-    SDL_SetRenderDrawColor(screen->renderer, (Uint8)lround(0xd3 * brightness), (Uint8)lround(0xd7 * brightness),
-                           (Uint8)lround(0xdb * brightness), 255);
+    Uint8 light = (Uint8)lround(255 * brightness), rgb[3];
+    for (int i = 0; i < 3; i++)
+        rgb[i] = (Uint8)lround((ground >> (16 - 8 * i) & 255) * brightness);
+    SDL_SetRenderDrawColor(screen->renderer, rgb[0], rgb[1], rgb[2], 255);
     SDL_RenderClear(screen->renderer);
     SDL_SetTextureColorMod(screen->texture, light, light, light);
     if (SDL_RenderCopy(screen->renderer, screen->texture, NULL, &to) != 0)
