@@ -36,7 +36,7 @@ static const char view_usage[] =
     "  --fit NAME              look at this asset or tag, --side top, bottom, front, back, left, right, iso or now; of the whole plant\n"
     "  --group ID              sensor group to show; the first one\n"
     "  --distance MODE         geodesic or euclidean; the group's own, and so below\n"
-    "  --interpolation NAME    shepard or paper\n"
+    "  --interpolation NAME    shepard, paper; harmonic, fin where prepared\n"
     "  --fill MODE             none or neighbours\n"
     "  --strength F, --decay F factors; --power P of shepard\n"
     "  --sensors TAG=STRENGTH[:DECAY],...   of single sensors, in place of the tag list's\n"

@@ -26,6 +26,7 @@
 #define AGAIN_US 50000
 #define ASSET ".asset"
 #define REPORT ".report.json"
+#define INFLUENCE ".influence"
 #define REPORT_MAX_BYTES ((size_t)1 << 20)
 #define MANIFEST_MAX_BYTES ((size_t)64 << 20)
 
@@ -37,6 +38,11 @@ char *folder_file_name(uint64_t key)
 static char *path_of(const char *folder, uint64_t key, const char *ending)
 {
     return mem_printf("%s/%016" PRIx64 "%s", folder, key, ending);
+}
+
+char *folder_influence_path(const char *folder, uint64_t key)
+{
+    return path_of(folder, key, INFLUENCE);
 }
 
 /* Of the file with the lock, if it says. */
@@ -220,7 +226,7 @@ static bool is_left_over(const char *name, const struct folder_entry *entries, s
     uint64_t key = strtoull(name, NULL, 16);
     bool whole, is_named = false;
     *is_asset = is_name(name, ASSET, &whole);
-    if (*is_asset || is_name(name, REPORT, &whole)) {
+    if (*is_asset || is_name(name, REPORT, &whole) || is_name(name, INFLUENCE, &whole)) {
         for (size_t i = 0; i < count; i++)
             is_named |= entries[i].key == key;
         return !whole || !is_named;

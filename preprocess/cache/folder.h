@@ -22,6 +22,9 @@ struct folder_file {
 /* Returns the file name KEY.asset. The caller frees it (mem_free). */
 char *folder_file_name(uint64_t key);
 
+/* Returns the path FOLDER/KEY.influence. The caller frees it (mem_free). */
+char *folder_influence_path(const char *folder, uint64_t key);
+
 /* Takes the folder's lock file, so that one process at a time prepares into it. Returns the file descriptor, which holds the lock until it
    is closed. While another process has the lock, logs its number and waits until *stop is true (NULL: for ever). Returns -1 if it was
    stopped or the lock file cannot be made. */

@@ -13,6 +13,8 @@
 #include "base/clock.h"
 #include "base/mem.h"
 #include "preprocess/cache/build_cache.h"
+#include "plant/influence.h"
+#include "preprocess/influence/influence_file.h"
 #include "preprocess/levels/clusters.h"
 #include "preprocess/pipeline/sensor_distances.h"
 #include "preprocess/levels/vertex_order.h"
@@ -54,6 +56,10 @@ static void hash_field(XXH3_state_t *state, const struct plant *plant, const str
     XXH3_64bits_update(state, numbers, sizeof(numbers));
     if (group->reach_m < INFINITY)
         XXH3_64bits_update(state, &group->reach_m, sizeof(group->reach_m));
+    const struct plant_asset *asset = &plant->assets[tag->asset];
+    const double prepared[3] = { group->prepared, group->disc_m, plant_prepares(group, INTERPOLATION_FIN) ? plant_decay_m(asset) : 0 };
+    if (plant_prepares_any(group))
+        XXH3_64bits_update(state, prepared, sizeof(prepared));
     if (is_alone(plant, sensors, count, sensor) && !straight_looks_at_paper(group, 1))
         XXH3_64bits_update(state, "s", 1);
     if (tag->place_assumed)
@@ -312,6 +318,34 @@ static bool put_in_order(struct build *build, uint32_t own)
     return good || wrong(build->why, "out of memory for the levels of %u vertices", g->vertex_count);
 }
 
+/* Needs the surface still, and the vertices as they are in the end. */
+static bool make_influence(struct build *build)
+{
+    const struct build_input *input = build->input;
+    const struct geometry *g = &build->geometry;
+    int64_t since_ns = clock_mono_ns();
+    char why[200];
+    if (!influence_is_wanted(input->plant, input->sensors, input->sensor_count))
+        return true;
+    const struct influence_input wanted = { .plant = input->plant,
+                                            .sensors = input->sensors,
+                                            .places_m = (const double(*)[3])build->measured.places_m,
+                                            .sensor_count = input->sensor_count,
+                                            .surface = build->measured.surface,
+                                            .positions_m = (const float(*)[3])g->positions_m,
+                                            .normals = (const float(*)[3])g->normals,
+                                            .triangles = g->indices,
+                                            .vertex_count = g->vertex_count,
+                                            .triangle_count = build->levels.at[0].index_count / 3,
+                                            .folder = input->folder,
+                                            .key = input->key };
+    if (!influence_file_make(build->log, build->workers, &wanted, why))
+        return wrong(build->why, "%s", why);
+    double seconds = seconds_since(&since_ns);
+    log_info(build->log, "influence of %zu sensors at %u vertices in %.1f s", input->sensor_count, g->vertex_count, seconds);
+    return true;
+}
+
 static void send_file(void *arg)
 {
     folder_draft_send(arg);
@@ -404,7 +438,7 @@ static bool build_file(struct build *build)
     for (size_t l = 0; l < build->levels.count && !any; l++)
         begin_clusters(build, &build->levels.at[l]);
     end_clusters(build, &clusters);
-    bool good = put_in_order(build, own) && lay_out(build, &clusters);
+    bool good = put_in_order(build, own) && make_influence(build) && lay_out(build, &clusters);
     clusters_finish(&clusters);
     return good;
 }

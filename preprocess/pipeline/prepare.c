@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* All assets of a plant: keys, what is there already, and building the rest, a batch of models at a time. */
+#include "preprocess/influence/influence_file.h"
 #include "preprocess/pipeline/prepare.h"
 
 #include <errno.h>
@@ -256,6 +257,12 @@ static void look_at_some(void *arg, size_t begin, size_t end)
         if (!is_possible(run, asset) || asset->same_as != i)
             continue;
         int found = folder_open(&file, run->params->folder, asset->key, why);
+        if (found == 1 && influence_is_wanted(run->prepare->plant, asset->sensors, asset->sensor_count) &&
+            !influence_file_good(run->params->folder, asset->key)) {
+            folder_close(&file);
+            snprintf(why, sizeof(why), "the influence of its sensors is missing or damaged");
+            found = -1;
+        }
         if (found < 0)
             asset->rebuilt_because = mem_strdup(why);
         if (found != 1)

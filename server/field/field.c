@@ -7,6 +7,7 @@
 #include "base/mem.h"
 #include "field/field_impl.h"
 #include "field/update.h"
+#include "plant/influence.h"
 
 struct field *field_create(struct workers *workers, const struct scene *scene)
 {
@@ -64,6 +65,8 @@ size_t field_bytes(const struct field *field)
 struct layout *field_layout(struct field *field, int asset, const struct field_params *params)
 {
     struct layout **at = &field->layouts[(size_t)asset * field->scene->plant->group_count + (size_t)params->group];
+    if (params->trial && interpolation_is_prepared(params->interpolation) && params->show != SHOW_DISTANCE)
+        return NULL; /* nothing is prepared for places that are tried out: nothing is shown, rather than what was */
     if (params->trial)
         return field_trial_layout(field, asset, params);
     if (!*at)
@@ -202,6 +205,7 @@ bool field_begin_update(struct field *field, struct state *state, const struct s
         forget_state(field, state);
         return false;
     }
+    state_fill(state);
     struct weights *weights = state->weights;
     uint64_t previous = weights->used;
     weights->used = field->tick;

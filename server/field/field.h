@@ -17,6 +17,10 @@
    There is no data where nobody takes part, and where a configured sensor that does not is nearer than all that do (`fill` may ask to
    have such places filled; they are flagged uncertain). The value there is carried on from the nearest that takes part; else MIN.
 
+   harmonic, fin: sum_i H_i v_i with H from the asset's influence file (protocol/ASSET.md), fin above what is around. Lost sensors have the
+   values that follow from the others (field/influence_fill.h), so that H is that of all sensors, whichever are lost. Not where places are
+   tried out. Where fin's H add up to less than a tenth there is no data.
+
    What is shown may also be the distance from one sensor, in metres, or the difference from a baseline: the field of now less the
    field of then, both over the sensors that may be used in both (Algorithm 1 clamps readings, so there clamped ones are subtracted).
 

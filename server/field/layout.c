@@ -79,6 +79,7 @@ struct layout *layout_create(const struct scene *scene, int asset, int group, co
     struct layout *layout = mem_new(sizeof(*layout));
     layout->file = from->file;
     layout->group = &scene->plant->groups[group];
+    layout->number = (uint32_t)group;
     layout->tags = scene->plant->tags;
     layout->vertex_count = from->file->view.header->vertex_count;
     layout->trial = trial ? trial->id : 0;

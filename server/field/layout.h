@@ -19,6 +19,7 @@ struct layout_sensor {
 struct layout {
     const struct asset *file;
     const struct plant_group *group;
+    uint32_t number;              /* of the group in the plant */
     const struct plant_tag *tags; /* of the plant */
     struct layout_sensor *sensors;
     size_t sensor_count, vertex_count;

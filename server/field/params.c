@@ -9,6 +9,7 @@
 
 #include "field/kernels.h"
 #include "field/limits.h"
+#include "plant/influence.h"
 
 static const double DIFFERENCE_PART = 0.25; /* of the group's range, to either side of 0 */
 
@@ -167,8 +168,10 @@ const char *field_params_wrong(const struct plant *plant, const struct field_par
 {
     if (params->group < 0 || (size_t)params->group >= plant->group_count)
         return "group: unknown";
-    if (params->interpolation != INTERPOLATION_SHEPARD && params->interpolation != INTERPOLATION_PAPER)
-        return "interpolation: expected shepard or paper";
+    if ((unsigned)params->interpolation >= INTERPOLATIONS)
+        return "interpolation: expected shepard, paper, harmonic or fin";
+    if (interpolation_is_prepared(params->interpolation) && !plant_prepares(&plant->groups[params->group], params->interpolation))
+        return "interpolation: not prepared for the shown group; name it in the group's 'prepare' in the plant file";
     if (params->distance != DISTANCE_GEODESIC && params->distance != DISTANCE_EUCLIDEAN)
         return "distance: expected geodesic or euclidean";
     if (params->fill != FILL_NONE && params->fill != FILL_NEIGHBOURS)

@@ -114,6 +114,8 @@ static double value_of(const struct state *state, const struct plant_tag *tag, d
     const struct plant_group *group = state->layout->group;
     if (state->params.show == SHOW_OPERATOR)
         return (float)limit_place(group, tag, reading);
+    if (state->params.interpolation == INTERPOLATION_FIN)
+        reading -= state->params.show == SHOW_DIFFERENCE ? 0 : group->ambient;
     if (state->params.interpolation == INTERPOLATION_PAPER)
         return (float)limited((reading - group->min) / (group->max - group->min), 0, 1);
     return (float)limited(reading, -READING_LIMIT, READING_LIMIT);
@@ -191,6 +193,21 @@ void state_read(struct state *state, const struct snapshot *snapshot, const stru
             oldest_ns = reading->age_ns;
     }
     state->scalars.oldest_age_ns = oldest_ns >= 0 ? oldest_ns : INT64_MAX;
+}
+
+void state_fill(struct state *state)
+{
+    const struct weights *weights = state->weights;
+    if (!weights->fill)
+        return;
+    double *values = mem_array(state->layout->sensor_count, sizeof(*values));
+    for (size_t i = 0; i < state->layout->sensor_count; i++)
+        values[i] = state->now[i].value;
+    influence_fill_values(weights->fill, values);
+    for (size_t i = 0; i < state->layout->sensor_count; i++)
+        if (!weights->takes_part[i])
+            state->now[i].value = limited(values[i], -READING_LIMIT, READING_LIMIT);
+    mem_free(values);
 }
 
 bool state_needs_weights(const struct state *state)

@@ -50,6 +50,8 @@ bool state_grow(struct state *state, size_t count);
 
 /* Reads the snapshot into state->now, state->usable and the ages. baseline: what a difference is from; NULL: not known. */
 void state_read(struct state *state, const struct snapshot *snapshot, const struct snapshot *baseline);
+/* By a prepared interpolation: gives lost sensors of state->now the values that follow from the others. The weights must be of now. */
+void state_fill(struct state *state);
 /* Returns whether the state's weights were made for other usable sensors than those of now. */
 bool state_needs_weights(const struct state *state);
 /* Returns whether the scalars show something else than state->now. */

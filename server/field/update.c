@@ -83,11 +83,14 @@ static void choose_rule(struct update *update)
             .scale = scale, .offset = offset, .low = difference ? -scale : offset, .high = difference ? scale : (float)group->max
         };
     } else {
-        update->rule = (struct kernel_value){ .scale = 1, .low = FLT_MAX, .high = -FLT_MAX };
+        bool around = state->params.interpolation == INTERPOLATION_FIN; /* values are above what is around; 0 is one of them */
+        float offset = around && !difference && !places ? (float)group->ambient : 0;
+        update->rule =
+            (struct kernel_value){ .scale = 1, .offset = offset, .low = around ? offset : FLT_MAX, .high = around ? offset : -FLT_MAX };
         for (size_t m = 0; m < state->weights->member_count; m++) {
             float value = (float)state->now[state->weights->members[m]].value;
-            update->rule.low = fminf(update->rule.low, value);
-            update->rule.high = fmaxf(update->rule.high, value);
+            update->rule.low = fminf(update->rule.low, value + offset);
+            update->rule.high = fmaxf(update->rule.high, value + offset);
         }
     }
     update->rule.empty = difference || places ? 0 : (float)group->min;
@@ -134,6 +137,8 @@ static uint8_t lacking_of(const struct weights *weights, size_t vertex, bool fil
     if (near_m == INFINITY)
         return FLAG;
     uint8_t reach = weights->reach_m < INFINITY ? weights_lacking(weights, near_m - weights->reach_m) : 0;
+    uint8_t share = weights->beyond_m ? weights_lacking(weights, weights->beyond_m[vertex]) : 0;
+    reach = share > reach ? share : reach;
     return filled || weights->lost[vertex] < reach ? reach : weights->lost[vertex];
 }
 

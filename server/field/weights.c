@@ -9,6 +9,9 @@
 
 #include "base/mem.h"
 #include "base/huge_pages.h"
+#include "plant/influence.h"
+
+#define LEAST_SHARE 0.1 /* fin: of a value, so much comes from sensors; else nothing is known there but what is around */
 
 struct key_head { /* without holes: compared as bytes */
     const struct asset *file;
@@ -74,6 +77,15 @@ bool weights_key_equal(const struct weights_key *a, const struct weights_key *b)
     return a->hash == b->hash && a->count == b->count && memcmp(a->bytes, b->bytes, a->count) == 0;
 }
 
+/* NULL: the interpolation is made from distances, or not prepared. Only sensors that stand where they were prepared for. */
+static const struct influence_entry *influence_of(const struct layout *layout, enum interpolation interpolation)
+{
+    const struct influence_entry *entry = interpolation_is_prepared(interpolation) && !layout->trial && !layout->assumed
+                                              ? influence_find(&layout->file->influence, layout->number, interpolation)
+                                              : NULL;
+    return entry && entry->sensor_count == layout->sensor_count ? entry : NULL;
+}
+
 static size_t block_count(size_t vertex_count)
 {
     return (vertex_count + KERNEL_BLOCK - 1) / KERNEL_BLOCK;
@@ -85,10 +97,11 @@ static void choose_members(struct weights *weights, const struct field_params *p
     for (size_t i = 0; i < layout->sensor_count; i++) {
         weights->strength[i] = strength_of(&layout->sensors[i], params);
         weights->decay[i] = decay_of(&layout->sensors[i], params);
-        weights->configured[i] = (weights->interpolation == INTERPOLATION_PAPER || weights->strength[i] > 0) && usable[i] != SENSOR_ASIDE;
+        weights->configured[i] = (weights->interpolation != INTERPOLATION_SHEPARD || weights->strength[i] > 0) && usable[i] != SENSOR_ASIDE;
         if (usable[i] == SENSOR_NO_LIMITS && weights->configured[i])
             weights->configured[i] = SENSOR_NO_LIMITS;
-        if (usable[i] == SENSOR_USED && weights->configured[i])
+        weights->takes_part[i] = usable[i] == SENSOR_USED && weights->configured[i];
+        if (weights->takes_part[i] || weights->prepared)
             weights->members[weights->member_count++] = (uint32_t)i;
     }
     weights->alike = true;
@@ -106,19 +119,41 @@ static float steps_per_m(const struct layout *layout)
     return square > 0 ? 127 / (0.2f * sqrtf(square)) : 127;
 }
 
+/* Columns come from the file, and what they are divided by is 1: where they add up to less, the rest is what is around. */
+static bool take_prepared(struct weights *weights, const struct influence_entry *entry)
+{
+    const struct layout *layout = weights->layout;
+    const struct influence_view *influence = &layout->file->influence;
+    for (size_t v = 0; v < layout->vertex_count; v++)
+        weights->total[v] = 1;
+    memset(weights->known, KNOWN_TOP | KNOWN_TOTAL, block_count(layout->vertex_count));
+    weights->decay_m = (float)entry->decay_m;
+    if (weights->interpolation == INTERPOLATION_FIN)
+        weights->beyond_m = mem_try_array(layout->vertex_count, sizeof(float));
+    if (memchr(weights->takes_part, 0, layout->sensor_count))
+        weights->fill = influence_fill_create(influence_array(influence, entry->precision), layout->sensor_count, weights->takes_part);
+    weights->ones = mem_array(layout->sensor_count, sizeof(*weights->ones));
+    for (size_t i = 0; i < layout->sensor_count; i++)
+        weights->ones[i] = 1;
+    if (weights->fill)
+        influence_fill_values(weights->fill, weights->ones);
+    return weights->beyond_m || weights->interpolation != INTERPOLATION_FIN;
+}
+
 struct weights *weights_create(const struct layout *layout, const struct field_params *params, float radius_m, const uint8_t *usable,
                                struct weights_key *key)
 {
     struct weights *weights = mem_new(sizeof(*weights));
     weights->layout = layout;
     weights->interpolation = params->interpolation;
-    weights->distance = params->distance;
+    weights->distance = interpolation_is_prepared(params->interpolation) ? DISTANCE_GEODESIC : params->distance; /* of its own surface */
     weights->power = (float)params->power;
     weights->reach_m = (float)params->reach_m;
     weights->radius_m = radius_m;
     weights->strength = mem_array(layout->sensor_count, sizeof(float));
     weights->decay = mem_array(layout->sensor_count, sizeof(float));
     weights->configured = mem_array(layout->sensor_count, 1);
+    weights->takes_part = mem_array(layout->sensor_count, 1);
     weights->members = mem_array(layout->sensor_count, sizeof(*weights->members));
     weights->near_m = mem_try_array(layout->vertex_count, sizeof(float));
     weights->top = mem_try_array(layout->vertex_count, sizeof(float));
@@ -129,7 +164,14 @@ struct weights *weights_create(const struct layout *layout, const struct field_p
     weights->known = mem_try_array(block_count(layout->vertex_count), 1);
     if (!weights->near_m || !weights->top || !weights->total || !weights->place || !weights->lost || !weights->known)
         goto error;
+    const struct influence_view *influence = &layout->file->influence;
+    const struct influence_entry *entry = influence_of(layout, params->interpolation);
+    if (interpolation_is_prepared(params->interpolation) && !entry)
+        goto error;
+    weights->prepared = entry ? influence_array(influence, entry->shares) : NULL;
     choose_members(weights, params, usable);
+    if (entry && !take_prepared(weights, entry))
+        goto error;
     weights->key = *key;
     *key = (struct weights_key){ 0 };
     return weights;
@@ -142,7 +184,8 @@ static bool same_sensors(const struct weights *a, const struct weights *b)
 {
     return a->layout == b->layout && a->distance == b->distance && a->reach_m == b->reach_m && a->member_count == b->member_count &&
            memcmp(a->members, b->members, a->member_count * sizeof(*a->members)) == 0 &&
-           memcmp(a->configured, b->configured, a->layout->sensor_count) == 0;
+           memcmp(a->takes_part, b->takes_part, a->layout->sensor_count) == 0 &&
+           memcmp(a->configured, b->configured, a->layout->sensor_count) == 0 && !a->beyond_m && !b->beyond_m;
 }
 
 static bool same_strengths(const struct weights *a, const struct weights *b)
@@ -192,6 +235,10 @@ void weights_destroy(struct weights **weights_ptr)
     mem_free(weights->known);
     mem_free(weights->columns);
     mem_free(weights->kept);
+    mem_free(weights->takes_part);
+    mem_free(weights->ones);
+    mem_free(weights->beyond_m);
+    influence_fill_destroy(&weights->fill);
     mem_free(weights);
     *weights_ptr = NULL;
 }
@@ -222,6 +269,8 @@ size_t weights_kept_bytes(const struct weights *weights)
 
 size_t weights_keep(struct weights *weights, size_t bytes)
 {
+    if (weights->prepared)
+        return 0;
     size_t blocks = block_count(weights->layout->vertex_count), fit = weights->member_count ? bytes / block_bytes(weights) : 0;
     weights->kept_blocks = fit < blocks ? fit : blocks;
     if (weights->kept_blocks == 0)
@@ -246,11 +295,15 @@ void weights_drop_columns(struct weights *weights)
 bool weights_has_columns(const struct weights *weights, size_t begin)
 {
     size_t block = begin / KERNEL_BLOCK;
+    if (weights->prepared)
+        return true;
     return block < weights->kept_blocks && !memchr(weights->kept + block * weights->member_count, 0, weights->member_count);
 }
 
 const float *weights_column(const struct weights *weights, size_t begin, uint32_t member)
 {
+    if (weights->prepared)
+        return weights->prepared + member * weights->layout->vertex_count + begin;
     return weights->columns + (begin / KERNEL_BLOCK * weights->member_count + member) * KERNEL_BLOCK;
 }
 
@@ -283,22 +336,37 @@ static enum place place_of(float near_m, float lost_m, float no_limits_m, float 
     return lost_m < near_m ? PLACE_LOST : PLACE_GOOD;
 }
 
+/* By how many metres the wall would have to be shorter for sensors to say a tenth of what is there: their share falls by e in each decay
+   length. */
+static void find_beyond(struct weights *weights, size_t begin, size_t count)
+{
+    double share[KERNEL_BLOCK] = { 0 };
+    for (uint32_t m = 0; m < weights->member_count; m++) {
+        const float *column = weights_column(weights, begin, m);
+        kernel_add(share, &column, &weights->ones[m], 1, count, NULL);
+    }
+    for (size_t j = 0; j < count; j++)
+        weights->beyond_m[begin + j] = share[j] > 1e-30 ? weights->decay_m * (float)log(LEAST_SHARE / share[j]) : INFINITY;
+}
+
 static void nearest(struct weights *weights, size_t begin, size_t count)
 {
     float scratch[KERNEL_BLOCK], lost_m[KERNEL_BLOCK], no_limits_m[KERNEL_BLOCK], *near_m = weights->near_m + begin;
     for (size_t j = 0; j < count; j++)
         lost_m[j] = no_limits_m[j] = near_m[j] = INFINITY;
-    for (size_t m = 0; m < weights->member_count; m++)
-        kernel_nearest(distances(weights, weights->members[m], begin, count, scratch), count, near_m);
-    for (size_t i = 0, m = 0; i < weights->layout->sensor_count; i++) {
-        if (m < weights->member_count && weights->members[m] == i)
-            m++;
-        else if (weights->configured[i])
+    for (size_t i = 0; i < weights->layout->sensor_count; i++)
+        if (weights->configured[i])
             kernel_nearest(distances(weights, i, begin, count, scratch), count,
-                           weights->configured[i] == SENSOR_NO_LIMITS ? no_limits_m : lost_m);
-    }
+                           weights->takes_part[i]                       ? near_m
+                           : weights->configured[i] == SENSOR_NO_LIMITS ? no_limits_m
+                                                                        : lost_m);
+    if (weights->beyond_m)
+        find_beyond(weights, begin, count);
     for (size_t j = 0; j < count; j++)
         weights->place[begin + j] = (uint8_t)place_of(near_m[j], lost_m[j], no_limits_m[j], weights->reach_m);
+    for (size_t j = 0; weights->beyond_m && j < count; j++)
+        if (weights->beyond_m[begin + j] > 0)
+            weights->place[begin + j] = PLACE_NOBODY;
     for (size_t j = 0; j < count; j++)
         weights->lost[begin + j] = lost_m[j] < INFINITY ? weights_lacking(weights, near_m[j] - lost_m[j]) : 0;
 }
@@ -388,15 +456,19 @@ void weights_add(struct weights *weights, size_t begin, size_t count, const stru
     bool paper = weights->interpolation == INTERPOLATION_PAPER, keeps = begin / KERNEL_BLOCK < weights->kept_blocks;
     size_t before = begin / KERNEL_BLOCK * weights->member_count; /* columns of the blocks before */
     struct workroom room;
-    if (!paper && weights->power != 2.0f)
+    if (!paper && !weights->prepared && weights->power != 2.0f)
         kernel_log2(weights->near_m + begin, count, room.near_log2);
     for (size_t first = 0; first < terms->count; first += KERNEL_COLUMNS) {
         size_t left = terms->count - first, number = left < KERNEL_COLUMNS ? left : KERNEL_COLUMNS;
         const float *columns[KERNEL_COLUMNS], *heavy[KERNEL_COLUMNS], *after[KERNEL_COLUMNS];
-        if (!keeps)
+        if (!keeps && !weights->prepared)
             ask_for_distances(weights, begin, count, terms, first + number);
         for (size_t k = 0; k < number; k++) {
             uint32_t member = terms->members[first + k];
+            if (weights->prepared) {
+                heavy[k] = columns[k] = weights_column(weights, begin, member);
+                continue;
+            }
             float *column = keeps ? weights->columns + (before + member) * KERNEL_BLOCK : room.terms[k];
             if (!keeps || !weights->kept[before + member] || (paper && sums->total))
                 make_column(weights, member, begin, count, &room, sums->total ? room.weights[k] : NULL, column);

@@ -6,6 +6,7 @@
 #ifndef FIELD_WEIGHTS_H
 #define FIELD_WEIGHTS_H
 #include "field/params.h"
+#include "field/influence_fill.h"
 #include "field/kernels.h"
 #include "field/layout.h"
 
@@ -41,13 +42,19 @@ struct weights {
     bool alike;                                  /* all members have one strength */
     float *strength, *decay;                     /* by sensor of the layout */
     uint8_t *configured;                         /* by sensor of the layout: may take part, were it good; more than 1: SENSOR_NO_LIMITS */
-    uint32_t *members;                           /* usable sensors of the layout; a column's number is its place here */
+    uint8_t *takes_part;                         /* by sensor of the layout: it is used */
+    uint32_t *members;                           /* used sensors of the layout; a column's number is its place here. Prepared: all */
     size_t member_count;
     float *near_m, *top; /* by vertex: distance of the nearest usable sensor; scale (kernels.h) */
     float *total;        /* by vertex: the weights' sum */
     uint8_t *place;      /* by vertex: enum place */
     uint8_t *lost;       /* by vertex: how far nearer the nearest lost sensor is than near_m, as weights_lacking */
     uint8_t *known;      /* by block: bits of enum weights_known, what is filled of the four above */
+    const float *prepared;       /* [member][vertex]: columns from the asset's influence file; NULL: made from distances */
+    struct influence_fill *fill; /* prepared, and some sensor is lost; else NULL */
+    double *ones;                /* prepared, by sensor: what 1 of all used ones makes of each; else NULL */
+    float decay_m;               /* fin */
+    float *beyond_m;             /* fin, by vertex: how far beyond the place where sensors say more than a tenth of the value; else NULL */
     float *columns;      /* [block][member][KERNEL_BLOCK] of the first kept_blocks, or NULL; of others they are made anew each time */
     uint8_t *kept;       /* [block][member]: its column is filled; beside columns */
     size_t kept_blocks;

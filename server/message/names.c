@@ -10,7 +10,11 @@
 #include "render/view.h"
 #include "scene/framing.h"
 
-const struct name names_interpolation[] = { { "shepard", INTERPOLATION_SHEPARD }, { "paper", INTERPOLATION_PAPER }, { NULL, 0 } };
+const struct name names_interpolation[] = { { "shepard", INTERPOLATION_SHEPARD },
+                                            { "paper", INTERPOLATION_PAPER },
+                                            { "harmonic", INTERPOLATION_HARMONIC },
+                                            { "fin", INTERPOLATION_FIN },
+                                            { NULL, 0 } };
 const struct name names_distance[] = { { "geodesic", DISTANCE_GEODESIC }, { "euclidean", DISTANCE_EUCLIDEAN }, { NULL, 0 } };
 const struct name names_fill[] = { { "none", FILL_NONE }, { "neighbours", FILL_NEIGHBOURS }, { NULL, 0 } };
 const struct name names_show[] = {

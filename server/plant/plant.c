@@ -66,6 +66,8 @@ static struct plant *load(const char *path, bool keeps_orphans, bool without_mod
         tag_list_read(plant, diag);
     if (plant->tags_path && diag->errors == errors)
         plant_walls_check(plant, diag);
+    if (plant->tags_path && diag->errors == errors)
+        plant_influence_check(plant, diag);
     hash_files(plant);
     if (diag->errors != errors)
         plant_destroy(&plant);

@@ -12,7 +12,7 @@
 
 #define PLANT_MAX_M 1e7 /* nothing is farther from the origin: plants may lie where their survey has them, 5,500 km north (UTM) */
 
-enum interpolation { INTERPOLATION_SHEPARD, INTERPOLATION_PAPER };
+enum interpolation { INTERPOLATION_SHEPARD, INTERPOLATION_PAPER, INTERPOLATION_HARMONIC, INTERPOLATION_FIN, INTERPOLATIONS };
 enum distance_mode { DISTANCE_GEODESIC, DISTANCE_EUCLIDEAN };
 enum fill_mode { FILL_NONE, FILL_NEIGHBOURS };             /* may neighbours paint the place of a lost sensor? */
 enum plant_show { PLANT_SHOW_VALUE, PLANT_SHOW_OPERATOR }; /* what a client begins with: readings, or their places between limits */
@@ -66,6 +66,9 @@ struct plant_asset {
     double tolerance_m;           /* gaps up to this are closed when distances are found; 0: chosen from the model */
     double placement[16];         /* plant from asset frame (Z up), column-major; turns and moves only: both are in the same metres */
     enum plant_start start;
+    double thickness_m;                /* of its wall; 0: not stated */
+    double conductivity;               /* W/(m K) */
+    double heat_transfer;              /* W/(m2 K), to what is around it */
     bool sensors_in_asset_frame;       /* X, Y, Z of its tags; else plant frame */
     struct plant_property *properties; /* of its people's own, in their order */
     size_t property_count;
@@ -97,6 +100,9 @@ struct plant_group {
     double strength, decay, power;
     double radius_m;   /* R of Algorithm 1; 0 = the largest distance on the asset */
     double reach_m;    /* INFINITY: no limit */
+    unsigned prepared; /* bit of each interpolation that plantcast-prep computes (plant/influence.h), its own too */
+    double disc_m;     /* harmonic, fin: radius of the disc that each sensor is */
+    double ambient;    /* fin: what is around, in its unit; NaN: not stated */
     bool cuts_singles; /* singles: cut; see plant_cuts_singles */
     enum fill_mode fill;
     bool log;                    /* scale: log; min > 0 */

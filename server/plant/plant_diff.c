@@ -128,6 +128,7 @@ static void diff_assets(struct plant_diff *diff, const struct plant *before, con
         else if (!same_text(a->model, b->model) || !same_text(a->nodes, b->nodes) || a->unit_m != b->unit_m || a->up != b->up ||
                  memcmp(a->placement, b->placement, sizeof(a->placement)) != 0 || !same_text(a->tag, b->tag) ||
                  !same_text(a->description, b->description) || !same_text(a->area, b->area) || a->start != b->start ||
+                 a->thickness_m != b->thickness_m || a->conductivity != b->conductivity || a->heat_transfer != b->heat_transfer ||
                  !plant_properties_same(a, b))
             say(diff, "asset %s changed", b->id);
     }
@@ -141,6 +142,7 @@ static bool same_group(const struct plant_group *a, const struct plant_group *b)
         same = same && same_number(a->limits[i], b->limits[i]);
     return same && a->interpolation == b->interpolation && a->distance == b->distance && a->strength == b->strength &&
            a->decay == b->decay && a->power == b->power && a->radius_m == b->radius_m && a->reach_m == b->reach_m &&
+           a->prepared == b->prepared && a->disc_m == b->disc_m && same_number(a->ambient, b->ambient) &&
            a->cuts_singles == b->cuts_singles && a->fill == b->fill && a->log == b->log && a->break_count == b->break_count &&
            a->isoline_count == b->isoline_count && !memcmp(a->breaks, b->breaks, sizeof(a->breaks)) &&
            !memcmp(a->isolines, b->isolines, sizeof(a->isolines)) && a->alarm_settings.deadband == b->alarm_settings.deadband &&

@@ -9,6 +9,7 @@
 #include <unistd.h>
 
 #include "base/mem.h"
+#include "plant/influence.h"
 #include "plant/plant_alarms.h"
 #include "plant/plant_impl.h"
 #include "plant/transform.h"
@@ -29,7 +30,11 @@ static const struct choice start_choices[] = {
 };
 static const struct choice unit_choices[] = { { "m", 1 }, { "mm", 1e-3 }, { "cm", 1e-2 }, { "in", 0.0254 }, { "ft", 0.3048 }, { 0 } };
 static const struct choice frame_choices[] = { { "plant", 0 }, { "asset", 1 }, { 0 } };
-static const struct choice interpolation_choices[] = { { "shepard", INTERPOLATION_SHEPARD }, { "paper", INTERPOLATION_PAPER }, { 0 } };
+static const struct choice interpolation_choices[] = { { "shepard", INTERPOLATION_SHEPARD },
+                                                       { "paper", INTERPOLATION_PAPER },
+                                                       { "harmonic", INTERPOLATION_HARMONIC },
+                                                       { "fin", INTERPOLATION_FIN },
+                                                       { 0 } };
 static const struct choice distance_choices[] = { { "geodesic", DISTANCE_GEODESIC }, { "euclidean", DISTANCE_EUCLIDEAN }, { 0 } };
 static const struct choice fill_choices[] = { { "none", FILL_NONE }, { "neighbours", FILL_NEIGHBOURS }, { 0 } };
 static const struct choice units_choices[] = { { "convert", 0 }, { "as-written", 1 }, { 0 } };
@@ -202,11 +207,19 @@ static void read_asset(struct yaml_reader *reader, yaml_node_t *node, struct pla
         { "up", KEY_CHOICE, false, offsetof(struct asset_record, asset.up), 0, 0, up_choices, NULL },
         { "placement", KEY_CUSTOM, false, 0, 0, 0, NULL, read_placement },
         { "tolerance_m", KEY_NUMBER, false, offsetof(struct asset_record, asset.tolerance_m), 1e-6, 1000, NULL, NULL },
+        { "thickness_m", KEY_NUMBER, false, offsetof(struct asset_record, asset.thickness_m), 1e-5, 10, NULL, NULL },
+        { "conductivity", KEY_NUMBER, false, offsetof(struct asset_record, asset.conductivity), 1e-3, 1e4, NULL, NULL },
+        { "heat_transfer", KEY_NUMBER, false, offsetof(struct asset_record, asset.heat_transfer), 1e-3, 1e6, NULL, NULL },
         { "start", KEY_CHOICE, false, offsetof(struct asset_record, asset.start), 0, 0, start_choices, NULL },
         { "sensor_frame", KEY_FLAG, false, offsetof(struct asset_record, asset.sensors_in_asset_frame), 0, 0, frame_choices, NULL },
         { 0 }
     };
-    struct asset_record record = { .asset = { .unit_m = 1, .up = AXIS_Y, .line = yaml_place(node).line }, .scale = 1 };
+    struct asset_record record = { .asset = { .unit_m = 1,
+                                              .up = AXIS_Y,
+                                              .conductivity = PLANT_CONDUCTIVITY,
+                                              .heat_transfer = PLANT_HEAT_TRANSFER,
+                                              .line = yaml_place(node).line },
+                                   .scale = 1 };
     struct yaml_map map;
     int errors = reader->diag->errors;
     bool is_map = yaml_map_read(reader, node, "an asset", keys, &record, &map);
@@ -346,6 +359,9 @@ static void read_group(struct yaml_reader *reader, yaml_node_t *node, struct pla
         { "power", KEY_NUMBER, false, offsetof(struct plant_group, power), 0.5, 16, NULL, NULL },
         { "radius_m", KEY_CUSTOM, false, 0, 0, 0, NULL, read_radius },
         { "reach_m", KEY_NUMBER, false, offsetof(struct plant_group, reach_m), 1e-3, 1e6, NULL, NULL },
+        { "prepare", KEY_CUSTOM, false, 0, 0, 0, NULL, plant_influence_read },
+        { "disc_m", KEY_NUMBER, false, offsetof(struct plant_group, disc_m), 1e-4, 100, NULL, NULL },
+        { "ambient", KEY_NUMBER, false, offsetof(struct plant_group, ambient), -PLANT_MAX_VALUE, PLANT_MAX_VALUE, NULL, NULL },
         { "singles", KEY_FLAG, false, offsetof(struct plant_group, cuts_singles), 0, 0, singles_choices, NULL },
         { "fill", KEY_CHOICE, false, offsetof(struct plant_group, fill), 0, 0, fill_choices, NULL },
         { "scale", KEY_FLAG, false, offsetof(struct plant_group, log), 0, 0, scale_choices, NULL },
@@ -359,10 +375,13 @@ static void read_group(struct yaml_reader *reader, yaml_node_t *node, struct pla
                                    .decay = 1,
                                    .power = 2,
                                    .reach_m = INFINITY,
+                                   .disc_m = PLANT_DISC_M,
+                                   .ambient = NAN,
                                    .alarm_settings.priority = ALARM_PRIORITY_DEFAULT,
                                    .line = yaml_place(node).line };
     if (!yaml_map_read(reader, node, "a group", keys, group, &map))
         return;
+    group->prepared |= 1u << group->interpolation;
     if (!group->quantity && group->id)
         group->quantity = mem_strdup(group->id);
     if (yaml_map_good(&map, "min") && yaml_map_good(&map, "max") && group->min >= group->max)

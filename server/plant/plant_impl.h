@@ -24,6 +24,10 @@ bool plant_day_span_read(struct yaml_reader *reader, yaml_node_t *node, const ch
 void plant_views_read(struct yaml_reader *reader, yaml_node_t *node, struct plant *plant);
 void plant_walls_read(struct yaml_reader *reader, yaml_node_t *node, struct plant *plant);
 /* Reports tags and views that panes name and that are not there; the tag list has been read. */
+/* Reads a group's list `prepare` (plant/influence.h). */
+void plant_influence_read(struct yaml_reader *reader, yaml_node_t *node, void *record);
+/* Reports what is missing for fin: the group's ambient, and the thickness of assets with sensors of the group. */
+void plant_influence_check(const struct plant *plant, struct diag *diag);
 void plant_walls_check(const struct plant *plant, struct diag *diag);
 void plant_views_free(struct plant *plant);
 void plant_walls_free(struct plant *plant);

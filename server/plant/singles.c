@@ -3,10 +3,11 @@
 #include "plant/singles.h"
 
 #include "base/mem.h"
+#include "plant/influence.h"
 
 bool plant_cuts_singles(const struct plant_group *group)
 {
-    return group->interpolation == INTERPOLATION_PAPER || group->cuts_singles;
+    return group->interpolation == INTERPOLATION_PAPER || plant_prepares(group, INTERPOLATION_FIN) || group->cuts_singles;
 }
 
 size_t plant_singles(const struct plant *plant, int group, int *first)

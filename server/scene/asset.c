@@ -54,6 +54,26 @@ struct asset *asset_open(struct log *log, const char *path)
     return asset;
 }
 
+bool asset_open_influence(struct log *log, struct asset *asset)
+{
+    static const char ending[] = ".asset";
+    if (asset->influence.header)
+        return true;
+    const size_t length = strlen(asset->path), stem = length > sizeof(ending) - 1 ? length - (sizeof(ending) - 1) : length;
+    const struct asset_header *header = asset->view.header;
+    char why[200] = "missing, damaged or of another version";
+    char *path = mem_printf("%.*s.influence", (int)stem, asset->path);
+    bool good = cache_file_open(&asset->influence_file, path, INFLUENCE_MAGIC, header->key) &&
+                influence_view_init(&asset->influence, asset->influence_file.bytes, asset->influence_file.count, header->vertex_count, why);
+    if (!good) {
+        log_err(log, "influence file %s: %s", path, why);
+        asset->influence = (struct influence_view){ 0 };
+        cache_file_close(&asset->influence_file);
+    }
+    mem_free(path);
+    return good;
+}
+
 struct asset *asset_stand_in(void)
 {
     static const float positions_m[3][3] = { { 0, 0, 0 }, { 1e-6f, 0, 0 }, { 0, 1e-6f, 0 } };
@@ -103,6 +123,7 @@ void asset_unref(struct asset **asset_ptr)
     if (asset->map)
         munmap(asset->map, asset->bytes);
     free(asset->made); /* as asset_build says */
+    cache_file_close(&asset->influence_file);
     mem_free(asset->path);
     mem_free(asset);
 }

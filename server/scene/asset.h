@@ -4,6 +4,8 @@
 #define SCENE_ASSET_H
 #include "base/log.h"
 #include "protocol/asset_format.h"
+#include "base/cache_file.h"
+#include "protocol/influence_format.h"
 #include "scene/closed_bodies.h"
 
 struct asset {
@@ -12,12 +14,17 @@ struct asset {
     void *map; /* NULL: it was made here */
     void *made;
     size_t bytes;
+    struct cache_file influence_file; /* beside it; zero: none was asked for */
+    struct influence_view influence;
     _Atomic int refs;
     struct closed_bodies *_Atomic *closed; /* by level; NULL: nobody asked yet */
 };
 
 /* NULL on failure, logged with path and reason. */
 struct asset *asset_open(struct log *log, const char *path);
+/* Maps and checks the file KEY.influence beside the asset's, unless it is there already. Returns false if there is none that is good,
+   logged. Thread: one, before others use the asset. */
+bool asset_open_influence(struct log *log, struct asset *asset);
 /* What stands in for one that could not be prepared: a triangle that is too small to be seen, and no sensor. */
 struct asset *asset_stand_in(void);
 struct asset *asset_ref(struct asset *asset);

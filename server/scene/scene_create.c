@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "base/mem.h"
+#include "plant/influence.h"
 #include "plant/recipe.h"
 #include "plant/sensors.h"
 #include "plant/transform.h"
@@ -46,6 +47,40 @@ static bool sensors_fit(struct log *log, const struct plant *plant, const struct
         log_err(log, "asset %s: sensor %s stands elsewhere in %s than in the tag list; run plantcast-prep %s", asset->plant->id,
                 plant->tags[sensors[i].tag].name, asset->file->path, plant->path);
         return false;
+    }
+    return true;
+}
+
+static size_t count_placed(const struct plant *plant, const struct plant_sensor *sensors, size_t count, int group)
+{
+    size_t placed = 0;
+    for (size_t i = 0; i < count; i++)
+        placed += plant->tags[sensors[i].tag].group == group && !plant->tags[sensors[i].tag].place_assumed;
+    return placed;
+}
+
+/* What was prepared for a group is what the plant file says now. */
+static bool influence_fits(struct log *log, const struct plant *plant, const struct scene_asset *asset, const struct plant_sensor *sensors,
+                           size_t count)
+{
+    for (size_t g = 0; g < plant->group_count; g++) {
+        const struct plant_group *group = &plant->groups[g];
+        size_t placed = plant_prepares_any(group) ? count_placed(plant, sensors, count, (int)g) : 0;
+        for (int i = INTERPOLATION_HARMONIC; placed > 0 && i < INTERPOLATIONS; i++) {
+            if (!plant_prepares(group, (enum interpolation)i))
+                continue;
+            if (!asset_open_influence(log, asset->file)) {
+                log_err(log, "asset %s: has no usable influence of its sensors; run plantcast-prep %s", asset->plant->id, plant->path);
+                return false;
+            }
+            const struct influence_entry *entry = influence_find(&asset->file->influence, (uint32_t)g, (uint32_t)i);
+            double decay_m = i == INTERPOLATION_FIN ? plant_decay_m(asset->plant) : 0;
+            if (entry && entry->sensor_count == placed && entry->disc_m == group->disc_m && entry->decay_m == decay_m)
+                continue;
+            log_err(log, "asset %s: the influence of group %s was prepared for another list, disc_m or wall; run plantcast-prep %s",
+                    asset->plant->id, group->id, plant->path);
+            return false;
+        }
     }
     return true;
 }
@@ -167,6 +202,8 @@ static bool create_asset(struct log *log, struct scene *scene, int index, const 
     }
     size_t count = plant_sensors(scene->plant, index, &sensors);
     if (!sensors_fit(log, scene->plant, asset, sensors, count))
+        goto done;
+    if (!influence_fits(log, scene->plant, asset, sensors, count))
         goto done;
     place(asset);
     asset->sensors = mem_array(count, sizeof(*asset->sensors));

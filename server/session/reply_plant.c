@@ -10,6 +10,7 @@
 #include "field/colormap.h"
 #include "message/json_values.h"
 #include "message/names.h"
+#include "plant/influence.h"
 #include "plant/singles.h"
 #include "session/resume.h"
 
@@ -37,6 +38,15 @@ static json_t *limits(const double values[LIMIT_COUNT])
                      number(values[LIMIT_HH]));
 }
 
+static json_t *prepared(const struct plant_group *group)
+{
+    json_t *list = json_array();
+    for (int i = INTERPOLATION_HARMONIC; i < INTERPOLATIONS; i++)
+        if (plant_prepares(group, (enum interpolation)i))
+            json_array_append_new(list, string(name_of(names_interpolation, i)));
+    return list;
+}
+
 static json_t *groups(const struct plant *plant)
 {
     json_t *list = json_array();
@@ -50,6 +60,7 @@ static json_t *groups(const struct plant *plant)
                                               "power", number(g->power), "radius_m", number(g->radius_m), "reach_m", number(g->reach_m)));
         json_t *group = json_array_get(list, i);
         json_object_set_new(group, "singles", string(plant_cuts_singles(g) ? "cut" : "whole"));
+        json_object_set_new(group, "prepared", prepared(g));
         json_object_set_new(group, "scale", string(name_of(names_scale, g->log)));
         json_object_set_new(group, "breaks", number_list(g->breaks, g->break_count));
         json_object_set_new(group, "isolines", number_list(g->isolines, g->isoline_count));

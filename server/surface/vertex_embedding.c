@@ -168,3 +168,15 @@ bool vertex_embedding_distances(const struct vertex_embedding *embedding, const 
     surface_field_finish(&field);
     return true;
 }
+
+uint32_t vertex_embedding_place(const struct vertex_embedding *embedding, size_t vertex, struct surface_point *hit)
+{
+    const struct surface *surface = embedding->surface;
+    const struct anchor *anchor = &embedding->at[vertex];
+    if (anchor->point != TRIMESH_NONE && !surface->propagation.hidden[anchor->point])
+        return anchor->point;
+    *hit = anchor->hit;
+    if (anchor->point != TRIMESH_NONE)
+        surface_find_point(surface, surface->mesh.points[anchor->point], NULL, hit);
+    return TRIMESH_NONE;
+}

@@ -21,4 +21,8 @@ void vertex_embedding_destroy(struct vertex_embedding **embedding);
    memory, logged. */
 bool vertex_embedding_distances(const struct vertex_embedding *embedding, const double point_m[3], float *out);
 
+/* Returns the point of the surface that a vertex is attached to, or TRIMESH_NONE, and then *hit says where it is. A point without a visible
+   triangle counts as none: then *hit is the nearest visible place. */
+uint32_t vertex_embedding_place(const struct vertex_embedding *embedding, size_t vertex, struct surface_point *hit);
+
 #endif

@@ -3,10 +3,18 @@
 import { valid } from './camera.js';
 import { clipText, numbersText, readNumbers, readSensors, sensorsText } from './query.js';
 
-const CHOICES = { // null: any name; the server knows which there are
-    group: null, interpolation: ['shepard', 'paper'], distance: ['geodesic', 'euclidean'], colormap: null,
-    look: ['default', 'glossy', 'flat', 'materials'], fill: ['none', 'neighbours'], scale: ['linear', 'log'],
-    show: ['value', 'operator', 'distance'], sensor: null, environment: null,
+const CHOICES = {
+    // null: any name; the server knows which there are
+    group : null,
+    interpolation : null,
+    distance : [ 'geodesic', 'euclidean' ],
+    colormap : null,
+    look : [ 'default', 'glossy', 'flat', 'materials' ],
+    fill : [ 'none', 'neighbours' ],
+    scale : [ 'linear', 'log' ],
+    show : [ 'value', 'operator', 'distance' ],
+    sensor : null,
+    environment : null,
 };
 const SETS = { hide: 'hidden', only: 'isolate', ghost: 'ghost' }; // lists of assets
 const LISTS = { range: 2, light: 3, breaks: null, isolines: null }; // of so many numbers

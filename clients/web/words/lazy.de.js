@@ -16,6 +16,12 @@ shepard: Shepard
 shepard.why: Inverser Abstand: an jedem Messpunkt genau der Messwert
 paper: Paper
 paper.why: Algorithmus 1 von Kim & Suh 2025: glatter, erreicht die Messwerte nicht
+harmonic: Wärmeleitung
+harmonic.why: Stationäre Wärmeleitung in der Wand zwischen Messpunkten.
+  Nicht, wo Medium oder Luft die Wärme abführt, nicht für Druck oder Durchfluss
+fin: Leitung und Verlust
+fin.why: Wie Wärmeleitung, aber die Wand verliert Wärme an die Luft; unbekannt, wo Messpunkte unter ein Zehntel sagen.
+  Nicht für gedämmte oder beheizte Wände
 
 [bar]
 distance: Abstand

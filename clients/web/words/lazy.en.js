@@ -16,6 +16,10 @@ shepard: Shepard
 shepard.why: Inverse distance: exactly the reading at each sensor
 paper: Paper
 paper.why: Algorithm 1 of Kim & Suh 2025: smoother, does not reach the readings
+harmonic: Conduction
+harmonic.why: Steady heat conduction along the wall between sensors. Not where fluid or air takes the heat away, nor for pressure or flow
+fin: Conduction and loss
+fin.why: As conduction, but the wall loses heat to the air; unknown where sensors say under a tenth. Not for insulated or heated walls
 
 [bar]
 distance: Distance

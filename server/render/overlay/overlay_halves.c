@@ -45,6 +45,8 @@ static void add_metres(struct caption *caption, const char *what, bool given, do
 static void write_caption(struct caption *caption, const struct view *own, const struct view *other)
 {
     static const char *const looks[] = { "Default look", "Glossy look", "Flat look", "Materials" }; /* by enum look */
+    static const char *const interpolations[INTERPOLATIONS] = { "Shepard", "Algorithm 1 of the paper", "Conduction along the wall",
+                                                                "Conduction and loss to the air" };
     const struct field_params *a = &own->field, *b = &other->field;
     caption->count = 0;
     if (own->look != other->look)
@@ -56,7 +58,7 @@ static void write_caption(struct caption *caption, const struct view *own, const
     if (a->show == SHOW_DISTANCE || a->show != b->show)
         return;
     if (a->interpolation != b->interpolation)
-        add_line(caption, "%s", a->interpolation == INTERPOLATION_PAPER ? "Algorithm 1 of the paper" : "Shepard");
+        add_line(caption, "%s", interpolations[a->interpolation]);
     if (a->power != b->power && a->interpolation == INTERPOLATION_SHEPARD)
         add_number(caption, "Power %s", a->power);
     if (a->strength != b->strength)

@@ -164,7 +164,7 @@ static void read_sensors(const struct spot *spot, struct field *field, const str
 
 static bool is_measured(const struct spot *spot, const struct field_params *params, const struct pick *pick)
 {
-    return pick->state == PICK_BETWEEN && params->interpolation == INTERPOLATION_SHEPARD && params->show != SHOW_DISTANCE &&
+    return pick->state == PICK_BETWEEN && params->interpolation != INTERPOLATION_PAPER && params->show != SHOW_DISTANCE &&
            pick->nearest_count > 0 && !pick->assumed &&
            pick->nearest[0].distance_m <= fmax(MEASURED_M, MEASURED_PX * spot->meter_per_pixel);
 }

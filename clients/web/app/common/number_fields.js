@@ -6,7 +6,9 @@ import { byId, make, setText } from './dom.js';
 
 const explained = (kind, ...values) => values.map((value) => [value, say(`${kind}.${value}`), say(`${kind}.${value}.why`)]);
 export const distances = () => explained('distance', 'geodesic', 'euclidean');
-export const interpolations = () => explained('interpolation', 'shepard', 'paper');
+// The first two can be chosen everywhere, the others where they were prepared for the group.
+export const interpolations = (group) => explained('interpolation', 'shepard', 'paper', 'harmonic', 'fin')
+    .filter(([value], i) => i < 2 || group?.prepared?.includes(value));
 export const fills = () => explained('fill', 'none', 'neighbours');
 
 // onNumber(number, or null where nothing is written).

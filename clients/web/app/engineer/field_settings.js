@@ -36,6 +36,16 @@ export class Method {
         return { name, fieldset, all, why: make('p', { class: 'quiet' }) };
     }
 
+    // The interpolations that were prepared for the group.
+    offer(group)
+    {
+        const choice = this.choices.find(({ name }) => name === 'interpolation'), all = interpolations(group);
+        if (all.length === choice.all.length && all.every(([ value ], i) => value === choice.all[i][0]))
+            return;
+        choice.all = all;
+        fillSegments(choice.fieldset, choice.name, all, (value) => this.session.setParams({ interpolation : value }));
+    }
+
     setFactor(name, value) {
         if (value !== null || name === 'reach_m')
             this.session.setParams({ [name]: value });
@@ -56,6 +66,7 @@ export class Method {
         const { session, tag } = this, { params } = session;
         if (!session.model || this.element.offsetParent === null)
             return;
+        this.offer(session.model.group(params.group));
         for (const { name, fieldset, all, why } of this.choices) {
             markSegment(fieldset, params[name]);
             setText(why, all.find(([value]) => value === params[name])?.[2] ?? '');

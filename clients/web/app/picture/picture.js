@@ -101,8 +101,12 @@ export class Picture {
         const needs = SHOWS.filter(([value]) => ['value', 'operator', right.show].includes(value) ||
             (value === 'distance' && params.sensor) || (value === 'difference' && params.baseline));
         const choices = {
-            group: model.groups.map((group) => [group.id, quantityText(group)]), show: plain(needs), distance: plain(distances()),
-            interpolation: plain(interpolations()), colormap: model.colormaps.map(({ name }) => [name, title(name)]), look: plain(LOOKS),
+            group : model.groups.map((group) => [group.id, quantityText(group)]),
+            show : plain(needs),
+            distance : plain(distances()),
+            interpolation : plain(interpolations(model.group(right.group))),
+            colormap : model.colormaps.map(({ name }) => [name, title(name)]),
+            look : plain(LOOKS),
         };
         for (const name of Object.keys(HALF))
             fillSelect(this.half[name], choices[name], right[name]);

@@ -1,0 +1,157 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Conduction between discs: one sparse Cholesky factor, solved for blocks of sensors. */
+#include "preprocess/influence/influence.h"
+
+#include <math.h>
+#include <stdatomic.h>
+#include <string.h>
+
+#include "base/mem.h"
+#include "base/vec.h"
+#include "surface/geodesic/laplacian.h"
+
+#define CONTACT 1e5          /* readings are met within about a hundred-thousandth of what neighbours differ by */
+#define REGULARISATION 1e-9  /* in shares of a body's area: rounding leaves no body quite singular */
+#define BLOCK 8              /* right-hand sides solved together */
+
+struct conduct {
+    struct influence *influence;
+    const struct influence_mesh *mesh;
+    const struct influence_anchor *anchors;
+    struct laplacian laplacian;
+    cholmod_factor *factor;
+    atomic_bool failed;
+};
+
+/* On the diagonal: what leaves the wall, and the contacts. */
+static double *diagonal_of(const struct conduct *conduct, double decay_m)
+{
+    const struct laplacian *laplacian = &conduct->laplacian;
+    const size_t points = conduct->mesh->mesh.point_count;
+    double *diagonal = mem_array(laplacian->row_count, sizeof(*diagonal)), *area_m2 = mem_array(points, sizeof(*area_m2));
+    uint32_t *component = mem_array(points, sizeof(*component));
+    char *touched = mem_array(points, 1);
+    double loss = isfinite(decay_m) ? 1 / (decay_m * decay_m) : 0;
+    trimesh_components(&conduct->mesh->mesh, component);
+    for (size_t p = 0; p < points; p++)
+        if (laplacian->row_of[p] != TRIMESH_NONE)
+            area_m2[component[p]] += laplacian->mass_m2[laplacian->row_of[p]];
+    for (size_t s = 0; s < conduct->mesh->source_count; s++) {
+        const struct influence_disc *disc = &conduct->mesh->discs[s];
+        for (size_t i = 0; i < disc->count; i++)
+            diagonal[laplacian->row_of[disc->points[i]]] += CONTACT * disc->shares[i];
+        touched[component[disc->points[0]]] = 1;
+    }
+    for (size_t p = 0; p < points; p++) /* a body without a sensor has no temperature of its own: any will do, and it is not shown */
+        if (laplacian->row_of[p] != TRIMESH_NONE)
+            diagonal[laplacian->row_of[p]] +=
+                laplacian->mass_m2[laplacian->row_of[p]] * (loss + (touched[component[p]] ? REGULARISATION : 1) / area_m2[component[p]]);
+    mem_free(touched);
+    mem_free(component);
+    mem_free(area_m2);
+    return diagonal;
+}
+
+static bool factor(struct conduct *conduct, double decay_m, cholmod_common *common)
+{
+    double *diagonal = diagonal_of(conduct, decay_m);
+    cholmod_sparse *matrix = laplacian_assemble(&conduct->laplacian, diagonal, 1, common);
+    mem_free(diagonal);
+    conduct->factor = matrix ? cholmod_analyze(matrix, common) : NULL;
+    bool good = conduct->factor && cholmod_factorize(matrix, conduct->factor, common) && common->status == CHOLMOD_OK;
+    cholmod_free_sparse(&matrix, common);
+    return good;
+}
+
+/* One column of H, and one row of the precision. */
+static void take(const struct conduct *conduct, size_t sensor, const double *u)
+{
+    struct influence *influence = conduct->influence;
+    const uint32_t *row_of = conduct->laplacian.row_of;
+    float *share = influence->shares + sensor * influence->vertex_count;
+    for (size_t v = 0; v < influence->vertex_count; v++) {
+        const struct influence_anchor *at = &conduct->anchors[v];
+        double sum = 0;
+        for (int i = 0; i < 3; i++)
+            sum += (double)at->weights[i] * u[row_of[at->points[i]]];
+        share[v] = (float)max_of(sum, 0); /* rounding apart, none is below 0 */
+    }
+    for (size_t other = 0; other < influence->count; other++) {
+        const struct influence_disc *disc = &conduct->mesh->discs[other];
+        double flux = 0;
+        for (size_t i = 0; i < disc->count; i++)
+            flux += disc->shares[i] * ((other == sensor) - u[row_of[disc->points[i]]]);
+        influence->precision[sensor * influence->count + other] = CONTACT * flux;
+    }
+}
+
+static void solve_some(void *arg, size_t begin, size_t end)
+{
+    struct conduct *conduct = arg;
+    const size_t rows = conduct->laplacian.row_count;
+    cholmod_common common;
+    cholmod_dense *u = NULL, *y = NULL, *e = NULL;
+    laplacian_start(&common);
+    for (size_t first = begin; first < end && !conduct->failed; first += BLOCK) {
+        size_t count = end - first < BLOCK ? end - first : BLOCK;
+        cholmod_dense *b = cholmod_zeros(rows, count, CHOLMOD_REAL, &common);
+        for (size_t k = 0; b && k < count; k++) {
+            const struct influence_disc *disc = &conduct->mesh->discs[first + k];
+            for (size_t i = 0; i < disc->count; i++)
+                ((double *)b->x)[k * rows + conduct->laplacian.row_of[disc->points[i]]] += CONTACT * disc->shares[i];
+        }
+        if (b && cholmod_solve2(CHOLMOD_A, conduct->factor, b, NULL, &u, NULL, &y, &e, &common))
+            for (size_t k = 0; k < count; k++)
+                take(conduct, first + k, (const double *)u->x + k * rows);
+        else
+            conduct->failed = true;
+        cholmod_free_dense(&b, &common);
+        cholmod_free_dense(&u, &common);
+        cholmod_free_dense(&y, &common);
+        cholmod_free_dense(&e, &common);
+    }
+    cholmod_finish(&common);
+}
+
+static void make_symmetric(struct influence *influence)
+{
+    for (size_t i = 0; i < influence->count; i++)
+        for (size_t j = 0; j < i; j++) {
+            double *a = &influence->precision[i * influence->count + j], *b = &influence->precision[j * influence->count + i];
+            *a = *b = (*a + *b) / 2;
+        }
+}
+
+bool influence_conduct(struct influence *influence, struct log *log, struct workers *workers, const struct influence_mesh *mesh,
+                       double decay_m, const struct influence_anchor *anchors, size_t vertex_count)
+{
+    struct conduct conduct = { .influence = influence, .mesh = mesh, .anchors = anchors };
+    cholmod_common common;
+    laplacian_start(&common);
+    *influence = (struct influence){ .count = mesh->source_count, .vertex_count = vertex_count };
+    influence->shares = mem_try_array(influence->count * vertex_count, sizeof(*influence->shares));
+    influence->precision = mem_try_array(influence->count * influence->count, sizeof(*influence->precision));
+    bool good = influence->shares && influence->precision && laplacian_init(&conduct.laplacian, &mesh->intrinsic) &&
+                factor(&conduct, decay_m, &common);
+    if (good && workers)
+        workers_for(workers, influence->count, BLOCK, solve_some, &conduct);
+    else if (good)
+        solve_some(&conduct, 0, influence->count);
+    good = good && !conduct.failed;
+    if (good)
+        make_symmetric(influence);
+    else
+        log_err(log, "conduction between %zu sensors on %zu points: %s", influence->count, mesh->mesh.point_count,
+                common.status == CHOLMOD_NOT_POSDEF ? "system is not positive definite" : "out of memory");
+    cholmod_free_factor(&conduct.factor, &common);
+    cholmod_finish(&common);
+    laplacian_finish(&conduct.laplacian);
+    return good;
+}
+
+void influence_finish(struct influence *influence)
+{
+    mem_free(influence->shares);
+    mem_free(influence->precision);
+    *influence = (struct influence){ 0 };
+}

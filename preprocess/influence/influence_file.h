@@ -1,0 +1,31 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* From an asset's surface to its file KEY.influence (protocol/ASSET.md). Thread: one; it spreads its work over the workers. */
+#ifndef PREPROCESS_INFLUENCE_INFLUENCE_FILE_H
+#define PREPROCESS_INFLUENCE_INFLUENCE_FILE_H
+#include "base/log.h"
+#include "base/workers.h"
+#include "plant/sensors.h"
+#include "surface/surface.h"
+
+struct influence_input {
+    const struct plant *plant;
+    const struct plant_sensor *sensors;
+    const double (*places_m)[3]; /* of the sensors, in the surface's frame */
+    size_t sensor_count;
+    const struct surface *surface;
+    const float (*positions_m)[3]; /* vertices, as the asset file has them */
+    const float (*normals)[3];
+    const uint32_t *triangles; /* of the finest level */
+    size_t vertex_count, triangle_count;
+    const char *folder;
+    uint64_t key; /* of the asset file */
+};
+
+/* Returns whether some group of these sensors has an interpolation prepared. */
+bool influence_is_wanted(const struct plant *plant, const struct plant_sensor *sensors, size_t sensor_count);
+/* Computes what the groups ask for, and writes the file. Returns false with the reason in why. */
+bool influence_file_make(struct log *log, struct workers *workers, const struct influence_input *input, char why[200]);
+/* Returns whether the file is there and whole. */
+bool influence_file_good(const char *folder, uint64_t key);
+
+#endif

@@ -1,0 +1,295 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Edges near sensors halved until they are short enough, and which points a sensor's disc covers. */
+#include "preprocess/influence/influence_mesh.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "base/mem.h"
+#include "base/vec.h"
+
+#define GRADING 0.7     /* an edge at distance D from the nearest sensor is at most this times D, or half the disc's radius */
+#define MOST_ADDED 1000 /* points for each sensor: a radius that is far smaller than the triangles is not resolved */
+
+/* --- smaller triangles near sensors ------------------------------------------------------------------------------------------ */
+
+static double nearest_m(const struct influence_mesh *mesh, const double point[3])
+{
+    double best_m = INFINITY;
+    for (size_t s = 0; s < mesh->source_count; s++)
+        best_m = min_of(best_m, vec_distance(mesh->sources_m[s], point));
+    return best_m;
+}
+
+struct halving {
+    struct influence_mesh *of;
+    double radius_m, *near_m; /* by point: distance of the nearest sensor */
+    size_t near_capacity, limit;
+    struct edge_table edges; /* to be halved */
+    uint32_t *middle;        /* of each: a point */
+    size_t middle_capacity;
+};
+
+static uint32_t add_middle(struct halving *halving, uint32_t a, uint32_t b)
+{
+    struct trimesh *mesh = &halving->of->mesh;
+    double point[3];
+    for (int axis = 0; axis < 3; axis++)
+        point[axis] = (mesh->points[a][axis] + mesh->points[b][axis]) / 2;
+    uint32_t added = trimesh_add_point(mesh, point);
+    mem_grow(&halving->near_m, &halving->near_capacity, mesh->point_count, sizeof(*halving->near_m));
+    halving->near_m[added] = nearest_m(halving->of, point);
+    return added;
+}
+
+static void mark_edges(struct halving *halving)
+{
+    const struct trimesh *mesh = &halving->of->mesh;
+    for (size_t t = 0; t < mesh->tri_count; t++)
+        for (int i = 0; i < 3; i++) {
+            uint32_t a = mesh->tris[t][i], b = mesh->tris[t][(i + 1) % 3];
+            double near_m = min_of(halving->near_m[a], halving->near_m[b]);
+            if (vec_distance(mesh->points[a], mesh->points[b]) <= max_of(halving->radius_m / 2, GRADING * near_m) ||
+                mesh->point_count >= halving->limit)
+                continue;
+            size_t before = halving->edges.count;
+            uint32_t edge = edge_table_add(&halving->edges, a, b);
+            if (edge < before)
+                continue;
+            mem_grow(&halving->middle, &halving->middle_capacity, edge + 1, sizeof(*halving->middle));
+            halving->middle[edge] = add_middle(halving, a, b);
+        }
+}
+
+/* Into two, three or four, by how many of its edges are halved. */
+static void cut_triangle(struct halving *halving, size_t t)
+{
+    struct trimesh *mesh = &halving->of->mesh;
+    uint32_t p[3], m[3], source = mesh->tri_source[t];
+    int cut = 0, at = 0;
+    memcpy(p, mesh->tris[t], sizeof(p));
+    for (int i = 0; i < 3; i++) {
+        uint32_t edge = edge_table_find(&halving->edges, p[i], p[(i + 1) % 3]);
+        m[i] = edge == TRIMESH_NONE ? TRIMESH_NONE : halving->middle[edge];
+        cut += m[i] != TRIMESH_NONE;
+    }
+    if (cut == 0)
+        return;
+    for (int i = 0; i < 3; i++) /* turned so that what differs from the others is first */
+        if ((m[i] != TRIMESH_NONE) == (cut == 1))
+            at = i;
+    const uint32_t a = p[at], b = p[(at + 1) % 3], c = p[(at + 2) % 3];
+    const uint32_t ab = m[at], bc = m[(at + 1) % 3], ca = m[(at + 2) % 3];
+    uint32_t *first = mesh->tris[t];
+    if (cut == 1) {
+        memcpy(first, (const uint32_t[3]){ a, ab, c }, sizeof(p));
+        trimesh_add_tri(mesh, ab, b, c, source);
+    } else if (cut == 2) {
+        memcpy(first, (const uint32_t[3]){ bc, c, ca }, sizeof(p));
+        trimesh_add_tri(mesh, a, b, bc, source);
+        trimesh_add_tri(mesh, a, bc, ca, source);
+    } else {
+        memcpy(first, (const uint32_t[3]){ ab, bc, ca }, sizeof(p));
+        trimesh_add_tri(mesh, a, ab, ca, source);
+        trimesh_add_tri(mesh, ab, b, bc, source);
+        trimesh_add_tri(mesh, bc, c, ca, source);
+    }
+}
+
+static void refine(struct influence_mesh *mesh, double radius_m)
+{
+    struct halving halving = { .of = mesh, .radius_m = radius_m };
+    size_t before;
+    halving.limit = mesh->mesh.point_count + MOST_ADDED * mesh->source_count;
+    mem_grow(&halving.near_m, &halving.near_capacity, mesh->mesh.point_count, sizeof(*halving.near_m));
+    for (size_t p = 0; p < mesh->mesh.point_count; p++)
+        halving.near_m[p] = nearest_m(mesh, mesh->mesh.points[p]);
+    do {
+        before = mesh->mesh.point_count;
+        edge_table_init(&halving.edges, 1024);
+        mark_edges(&halving);
+        for (size_t t = 0, count = mesh->mesh.tri_count; halving.edges.count && t < count; t++)
+            cut_triangle(&halving, t);
+        edge_table_finish(&halving.edges);
+    } while (mesh->mesh.point_count > before);
+    mem_free(halving.near_m);
+    mem_free(halving.middle);
+}
+
+/* --- lists of triangles ------------------------------------------------------------------------------------------------------ */
+
+static void list_triangles(struct influence_mesh *mesh, size_t visible_count)
+{
+    const struct trimesh *from = &mesh->mesh;
+    mesh->piece_first = mem_array(visible_count + 2, sizeof(*mesh->piece_first));
+    mesh->pieces = mem_array(from->tri_count, sizeof(*mesh->pieces));
+    mesh->fan_first = mem_array(from->point_count + 2, sizeof(*mesh->fan_first));
+    mesh->fans = mem_array(3 * from->tri_count, sizeof(*mesh->fans));
+    for (size_t t = 0; t < from->tri_count; t++) {
+        mesh->piece_first[from->tri_source[t] + 2]++;
+        for (int i = 0; i < 3; i++)
+            mesh->fan_first[from->tris[t][i] + 2]++;
+    }
+    for (size_t i = 2; i < visible_count + 2; i++)
+        mesh->piece_first[i] += mesh->piece_first[i - 1];
+    for (size_t i = 2; i < from->point_count + 2; i++)
+        mesh->fan_first[i] += mesh->fan_first[i - 1];
+    for (uint32_t t = 0; t < from->tri_count; t++) {
+        mesh->pieces[mesh->piece_first[from->tri_source[t] + 1]++] = t;
+        for (int i = 0; i < 3; i++)
+            mesh->fans[mesh->fan_first[from->tris[t][i] + 1]++] = t;
+    }
+}
+
+/* Of a point in the plane of the triangle with these corners. */
+static void barycentric(const struct trimesh *mesh, const uint32_t corners[3], const double point[3], double weights[3])
+{
+    const double *a = mesh->points[corners[0]];
+    double u[3], v[3], w[3];
+    for (int axis = 0; axis < 3; axis++) {
+        u[axis] = mesh->points[corners[1]][axis] - a[axis];
+        v[axis] = mesh->points[corners[2]][axis] - a[axis];
+        w[axis] = point[axis] - a[axis];
+    }
+    double uu = vec_dot(u, u), uv = vec_dot(u, v), vv = vec_dot(v, v), uw = vec_dot(u, w), vw = vec_dot(v, w);
+    double area = uu * vv - uv * uv;
+    weights[1] = area > 0 ? (vv * uw - uv * vw) / area : 0;
+    weights[2] = area > 0 ? (uu * vw - uv * uw) / area : 0;
+    weights[0] = 1 - weights[1] - weights[2];
+}
+
+/* The piece of a visible triangle that holds the point, or comes nearest to it; weights: of its corners, none negative. */
+static uint32_t piece_of(const struct influence_mesh *mesh, uint32_t tri, const double point[3], double weights[3])
+{
+    double best = -INFINITY, sum = 0;
+    uint32_t found = mesh->pieces[mesh->piece_first[tri]];
+    for (uint32_t i = mesh->piece_first[tri]; i < mesh->piece_first[tri + 1]; i++) {
+        double w[3];
+        barycentric(&mesh->mesh, mesh->mesh.tris[mesh->pieces[i]], point, w);
+        double least = min_of(w[0], min_of(w[1], w[2]));
+        if (least <= best)
+            continue;
+        best = least;
+        found = mesh->pieces[i];
+        memcpy(weights, w, sizeof(w));
+    }
+    for (int i = 0; i < 3; i++)
+        sum += weights[i] = max_of(weights[i], 0);
+    for (int i = 0; i < 3; i++)
+        weights[i] /= sum;
+    return found;
+}
+
+/* --- discs ------------------------------------------------------------------------------------------------------------------- */
+
+/* From the nearest corner outwards along the surface, so that the other side of a thin wall is not touched. */
+static void spread_disc(struct influence_mesh *mesh, size_t sensor, double radius_m, char *seen)
+{
+    const struct trimesh *from = &mesh->mesh;
+    const double *place_m = mesh->sources_m[sensor];
+    struct influence_disc *disc = &mesh->discs[sensor];
+    double weights[3] = { 1, 0, 0 }, whole = 0;
+    size_t capacity = 0;
+    const uint32_t *corners = from->tris[piece_of(mesh, mesh->source_tris[sensor], place_m, weights)];
+    int heaviest = weights[1] > weights[0] ? 1 : 0;
+    heaviest = weights[2] > weights[heaviest] ? 2 : heaviest;
+    mem_grow(&disc->points, &capacity, 1, sizeof(*disc->points));
+    disc->points[disc->count++] = corners[heaviest];
+    seen[corners[heaviest]] = 1;
+    for (size_t next = 0; next < disc->count; next++)
+        for (uint32_t f = mesh->fan_first[disc->points[next]], p = disc->points[next]; f < mesh->fan_first[p + 1]; f++)
+            for (int i = 0; i < 3; i++) {
+                uint32_t to = from->tris[mesh->fans[f]][i];
+                if (seen[to] || vec_distance(from->points[to], place_m) > radius_m)
+                    continue;
+                seen[to] = 1;
+                mem_grow(&disc->points, &capacity, disc->count + 1, sizeof(*disc->points));
+                disc->points[disc->count++] = to;
+            }
+    disc->shares = mem_array(disc->count, sizeof(*disc->shares));
+    for (size_t i = 0; i < disc->count; i++) {
+        for (uint32_t f = mesh->fan_first[disc->points[i]]; f < mesh->fan_first[disc->points[i] + 1]; f++)
+            disc->shares[i] += trimesh_tri_area(from, mesh->fans[f]);
+        whole += disc->shares[i];
+        seen[disc->points[i]] = 0;
+    }
+    for (size_t i = 0; i < disc->count; i++)
+        disc->shares[i] /= whole;
+}
+
+/* --- the whole --------------------------------------------------------------------------------------------------------------- */
+
+static bool copy_visible(struct influence_mesh *mesh, const struct surface_debug_mesh *look)
+{
+    struct trimesh *to = &mesh->mesh;
+    *to = (struct trimesh){ .point_count = look->point_count, .point_capacity = look->point_count };
+    to->points = mem_try_array(look->point_count, sizeof(*to->points));
+    if (!to->points)
+        return false;
+    memcpy(to->points, look->points_m, look->point_count * sizeof(*to->points));
+    for (uint32_t t = 0; t < look->visible_count; t++)
+        trimesh_add_tri(to, look->tris[t][0], look->tris[t][1], look->tris[t][2], t);
+    return true;
+}
+
+bool influence_mesh_init(struct influence_mesh *mesh, const struct surface *surface, const double (*places_m)[3], size_t count,
+                         double radius_m)
+{
+    struct surface_debug_mesh look;
+    surface_debug_mesh(surface, &look);
+    *mesh = (struct influence_mesh){ .source_count = count };
+    if (!copy_visible(mesh, &look))
+        return false;
+    mesh->sources_m = mem_array(count, sizeof(*mesh->sources_m));
+    mesh->source_tris = mem_array(count, sizeof(*mesh->source_tris));
+    mesh->discs = mem_array(count, sizeof(*mesh->discs));
+    for (size_t s = 0; s < count; s++) {
+        struct surface_point at;
+        surface_find_point(surface, places_m[s], NULL, &at);
+        memcpy(mesh->sources_m[s], at.point_m, sizeof(at.point_m));
+        mesh->source_tris[s] = at.tri;
+    }
+    refine(mesh, radius_m);
+    list_triangles(mesh, look.visible_count);
+    intrinsic_init(&mesh->intrinsic, &mesh->mesh);
+    char *seen = mem_array(mesh->mesh.point_count, 1);
+    for (size_t s = 0; s < count; s++)
+        spread_disc(mesh, s, radius_m, seen);
+    mem_free(seen);
+    return true;
+}
+
+void influence_mesh_finish(struct influence_mesh *mesh)
+{
+    for (size_t s = 0; mesh->discs && s < mesh->source_count; s++) {
+        mem_free(mesh->discs[s].points);
+        mem_free(mesh->discs[s].shares);
+    }
+    mem_free(mesh->discs);
+    mem_free(mesh->sources_m);
+    mem_free(mesh->source_tris);
+    mem_free(mesh->piece_first);
+    mem_free(mesh->pieces);
+    mem_free(mesh->fan_first);
+    mem_free(mesh->fans);
+    intrinsic_finish(&mesh->intrinsic);
+    trimesh_finish(&mesh->mesh);
+    *mesh = (struct influence_mesh){ 0 };
+}
+
+void influence_mesh_anchors(const struct influence_mesh *mesh, const struct vertex_embedding *embedding, size_t count,
+                            struct influence_anchor *out)
+{
+    for (size_t v = 0; v < count; v++) {
+        struct surface_point hit;
+        uint32_t point = vertex_embedding_place(embedding, v, &hit);
+        out[v] = (struct influence_anchor){ { point, point, point }, { 1, 0, 0 } };
+        if (point != TRIMESH_NONE && mesh->fan_first[point] < mesh->fan_first[point + 1])
+            continue;
+        double weights[3] = { 1, 0, 0 };
+        const uint32_t *corners = mesh->mesh.tris[piece_of(mesh, hit.tri, hit.point_m, weights)];
+        memcpy(out[v].points, corners, sizeof(out[v].points));
+        for (int i = 0; i < 3; i++)
+            out[v].weights[i] = (float)weights[i];
+    }
+}

@@ -1,0 +1,255 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Influence by conduction against closed forms: a rod, a fin, a sphere; lost sensors; places that are awkward. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <cmocka.h>
+
+#include "base/mem.h"
+#include "field/influence_fill.h"
+#include "preprocess/influence/influence.h"
+#include "tests/support/surface_case.h"
+
+struct solved {
+    struct cad shape;
+    struct surface *surface;
+    struct influence influence;
+};
+
+static void solve(struct solved *s, const double (*places_m)[3], size_t count, double disc_m, double decay_m)
+{
+    struct influence_mesh mesh;
+    const size_t vertices = s->shape.vertex_count;
+    if (!s->surface)
+        s->surface = surface_create(the_log, workers, (const float(*)[3])s->shape.positions, vertices, s->shape.triangles,
+                                    s->shape.triangle_count, &(struct surface_params){ 0 });
+    assert_non_null(s->surface);
+    struct vertex_embedding *embedding = vertex_embedding_create(s->surface, (const float(*)[3])s->shape.positions, NULL, vertices,
+                                                                 s->shape.triangles, s->shape.triangle_count);
+    struct influence_anchor *anchors = mem_array(vertices, sizeof(*anchors));
+    assert_true(influence_mesh_init(&mesh, s->surface, places_m, count, disc_m));
+    influence_mesh_anchors(&mesh, embedding, vertices, anchors);
+    influence_finish(&s->influence);
+    assert_true(influence_conduct(&s->influence, the_log, workers, &mesh, decay_m, anchors, vertices));
+    influence_mesh_finish(&mesh);
+    mem_free(anchors);
+    vertex_embedding_destroy(&embedding);
+}
+
+static void finish(struct solved *s)
+{
+    influence_finish(&s->influence);
+    surface_destroy(&s->surface);
+    cad_finish(&s->shape);
+}
+
+static double value_at(const struct solved *s, const double *readings, size_t vertex)
+{
+    double sum = 0;
+    for (size_t i = 0; i < s->influence.count; i++)
+        sum += readings[i] * (double)s->influence.shares[i * s->influence.vertex_count + vertex];
+    return sum;
+}
+
+/* A strip 10 m long and 0.1 m wide, whose sensors touch its whole width: a rod. */
+#define STRIP_M 10.0
+#define WIDTH_M 0.1
+#define DISC_M 0.1
+static const double rod_places[3][3] = { { 1, 0.05, 0 }, { 5, 0.05, 0 }, { 9, 0.05, 0 } };
+
+static void make_strip(struct solved *s)
+{
+    cad_plate(&s->shape, &chance, 200, 3, STRIP_M, WIDTH_M, 0);
+}
+
+/* Half of what a disc covers along the strip, on average over its width. */
+static const double covered_m = 0.0957;
+
+static void test_rod_is_straight_between_sensors(void **state)
+{
+    (void)state;
+    struct solved s = { 0 };
+    const double readings[3] = { 20, 100, 60 };
+    make_strip(&s);
+    solve(&s, rod_places, 3, DISC_M, (double)INFINITY);
+    for (size_t v = 0; v < s.shape.vertex_count; v++) {
+        double x = (double)s.shape.positions[v][0], expected = readings[2], from = x < 5 ? 1 : 5;
+        double t = (x - from - covered_m) / (4 - 2 * covered_m);
+        if (x < 1)
+            expected = readings[0];
+        else if (x < 9)
+            expected = readings[x >= 5] + fmin(fmax(t, 0), 1) * (readings[1 + (x >= 5)] - readings[x >= 5]);
+        if (fabs(value_at(&s, readings, v) - expected) > 0.6)
+            fail_msg("at %g m: %g, expected %g", x, value_at(&s, readings, v), expected);
+    }
+    finish(&s);
+}
+
+/* Between two sensors as sinh, beyond the last one as exp: Incropera, Fundamentals of Heat and Mass Transfer, 3.6. */
+static void test_fin_falls_by_its_decay_length(void **state)
+{
+    (void)state;
+    struct solved s = { 0 };
+    const double decay_m = 0.8, readings[3] = { 80, 80, 80 };
+    make_strip(&s);
+    solve(&s, rod_places, 3, DISC_M, decay_m);
+    for (size_t v = 0; v < s.shape.vertex_count; v++) {
+        double x = (double)s.shape.positions[v][0], gap = 4 - 2 * covered_m, expected = 80;
+        double from = fmod(x - 1, 4) - covered_m;
+        if (x < 1 - covered_m) /* an end that loses nothing */
+            expected = 80 * cosh(x / decay_m) / cosh((1 - covered_m) / decay_m);
+        else if (x > 9 + covered_m)
+            expected = 80 * cosh((STRIP_M - x) / decay_m) / cosh((1 - covered_m) / decay_m);
+        else if (x > 1 && from > 0 && from < gap)
+            expected = 80 * (sinh(from / decay_m) + sinh((gap - from) / decay_m)) / sinh(gap / decay_m);
+        if (fabs(value_at(&s, readings, v) - expected) > 0.8)
+            fail_msg("at %g m: %g, expected %g", x, value_at(&s, readings, v), expected);
+    }
+    finish(&s);
+}
+
+/* On a sphere the temperature between two caps is linear in ln tan(theta / 2). */
+static void test_sphere_between_caps(void **state)
+{
+    (void)state;
+    struct solved s = { 0 };
+    const double disc_m = 0.1, cap = 2 * asin(disc_m / 2), places[2][3] = { { 0, 0, 1 }, { 0, 0, -1 } }, readings[2] = { 1, 0 };
+    double worst = 0;
+    cad_sphere(&s.shape, &chance, 20);
+    solve(&s, places, 2, disc_m, (double)INFINITY);
+    for (size_t v = 0; v < s.shape.vertex_count; v++) {
+        double theta = acos(fmin(fmax((double)s.shape.positions[v][2], -1), 1));
+        if (theta < 2 * cap || theta > M_PI - 2 * cap)
+            continue;
+        double expected = 0.5 + log(tan(theta / 2)) / (2 * log(tan(cap / 2)));
+        worst = fmax(worst, fabs(value_at(&s, readings, v) - expected));
+    }
+    print_message("sphere: worst difference %.4f of what the caps differ by\n", worst);
+    assert_true(worst < 0.03); /* a disc of some points is a little smaller than it should be */
+    finish(&s);
+}
+
+static void test_shares_are_those_of_an_average(void **state)
+{
+    (void)state;
+    struct solved s = { 0 };
+    const double places[4][3] = { { 1, 0, 0 }, { 0, 1, 0 }, { 0, 0, 1 }, { -0.577, -0.577, 0.577 } };
+    cad_sphere(&s.shape, &chance, 16);
+    solve(&s, places, 4, 0.05, (double)INFINITY);
+    for (size_t v = 0; v < s.shape.vertex_count; v++) {
+        const double ones[4] = { 1, 1, 1, 1 };
+        for (size_t i = 0; i < 4; i++)
+            assert_in_range((int)(1e4f * s.influence.shares[i * s.shape.vertex_count + v]), 0, 10001);
+        assert_true(fabs(value_at(&s, ones, v) - 1) < 1e-4);
+    }
+    finish(&s);
+}
+
+static void test_readings_are_met(void **state)
+{
+    (void)state;
+    struct solved s = { 0 };
+    const double places[2][3] = { { 1, 0, 0 }, { -1, 0, 0 } }, readings[2] = { 100, 0 };
+    double best = 1;
+    cad_sphere(&s.shape, &chance, 16);
+    solve(&s, places, 2, 0.1, (double)INFINITY);
+    for (size_t v = 0; v < s.shape.vertex_count; v++)
+        if ((double)s.shape.positions[v][0] > 0.9999)
+            best = fmin(best, fabs(value_at(&s, readings, v) - 100));
+    assert_true(best < 0.01);
+    finish(&s);
+}
+
+/* What is left without a sensor is what there would be had it never been there; of its disc of metal, a little is left. */
+static void test_lost_sensor_leaves_the_field_of_the_others(void **state)
+{
+    (void)state;
+    struct solved all = { 0 }, others = { 0 };
+    double readings[3] = { 20, 0, 60 };
+    const double two[2][3] = { { 1, 0.05, 0 }, { 9, 0.05, 0 } };
+    const uint8_t used[3] = { 1, 0, 1 };
+    make_strip(&all);
+    make_strip(&others);
+    solve(&all, rod_places, 3, DISC_M, (double)INFINITY);
+    solve(&others, two, 2, DISC_M, (double)INFINITY);
+    struct influence_fill *fill = influence_fill_create(all.influence.precision, 3, used);
+    influence_fill_values(fill, readings);
+    assert_true(fabs(readings[1] - 40) < 0.1);
+    for (size_t v = 0; v < all.shape.vertex_count; v++)
+        assert_true(fabs(value_at(&all, readings, v) - value_at(&others, (const double[2]){ 20, 60 }, v)) < 1.1);
+    influence_fill_destroy(&fill);
+    finish(&all);
+    finish(&others);
+}
+
+static void test_two_sensors_at_one_place_share_it(void **state)
+{
+    (void)state;
+    struct solved s = { 0 };
+    const double places[3][3] = { { 1, 0.05, 0 }, { 1, 0.05, 0 }, { 9, 0.05, 0 } };
+    double readings[3] = { 20, 40, 60 };
+    const uint8_t one_left[3] = { 1, 0, 1 };
+    make_strip(&s);
+    solve(&s, places, 3, DISC_M, (double)INFINITY);
+    assert_true(fabs(value_at(&s, readings, 0) - 30) < 0.01); /* a corner beyond both */
+    struct influence_fill *fill = influence_fill_create(s.influence.precision, 3, one_left);
+    influence_fill_values(fill, readings);
+    assert_true(fabs(readings[1] - 20) < 0.01 && fabs(value_at(&s, readings, 0) - 20) < 0.01);
+    influence_fill_destroy(&fill);
+    finish(&s);
+}
+
+static void test_one_sensor_and_bodies_apart(void **state)
+{
+    (void)state;
+    struct solved s = { 0 };
+    const double places[1][3] = { { 0, 0, 1 } }, reading[1] = { 50 };
+    cad_sphere(&s.shape, &chance, 10);
+    const size_t own = s.shape.vertex_count, triangles = s.shape.triangle_count;
+    mem_grow(&s.shape.positions, &s.shape.position_capacity, own + 3, sizeof(*s.shape.positions));
+    mem_grow(&s.shape.triangles, &s.shape.index_capacity, 3 * triangles + 3, sizeof(*s.shape.triangles));
+    for (uint32_t i = 0; i < 3; i++) { /* another body, without a sensor */
+        s.shape.positions[own + i][0] = 5 + (float)(i == 1);
+        s.shape.positions[own + i][1] = (float)(i == 2);
+        s.shape.positions[own + i][2] = 0;
+        s.shape.triangles[3 * triangles + i] = (uint32_t)own + i;
+    }
+    s.shape.vertex_count += 3;
+    s.shape.triangle_count++;
+    solve(&s, places, 1, 0.05, (double)INFINITY);
+    for (size_t v = 0; v < s.shape.vertex_count; v++)
+        assert_true(fabs(value_at(&s, reading, v) - (v < own ? 50 : 0)) < 0.01);
+    finish(&s);
+}
+
+/* Nothing follows for those that are lost together with all others of their body. */
+static void test_all_lost(void **state)
+{
+    (void)state;
+    const double precision[4] = { 1, -1, -1, 1 };
+    double values[2] = { 7, 7 };
+    struct influence_fill *fill = influence_fill_create(precision, 2, (const uint8_t[2]){ 0, 0 });
+    influence_fill_values(fill, values);
+    assert_true(values[0] == 0 && values[1] == 0);
+    influence_fill_destroy(&fill);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_rod_is_straight_between_sensors),
+        cmocka_unit_test(test_fin_falls_by_its_decay_length),
+        cmocka_unit_test(test_sphere_between_caps),
+        cmocka_unit_test(test_shares_are_those_of_an_average),
+        cmocka_unit_test(test_readings_are_met),
+        cmocka_unit_test(test_lost_sensor_leaves_the_field_of_the_others),
+        cmocka_unit_test(test_two_sensors_at_one_place_share_it),
+        cmocka_unit_test(test_one_sensor_and_bodies_apart),
+        cmocka_unit_test(test_all_lost),
+    };
+    cmocka_set_message_output(CM_OUTPUT_TAP);
+    return cmocka_run_group_tests(tests, surface_case_set_up, surface_case_tear_down);
+}
