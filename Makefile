@@ -104,8 +104,14 @@ no_player := $(if $(filter h264,$(CODECS)),,H.264) \
              $(foreach p,sdl2 pangocairo,$(if $(shell pkg-config --exists $(p) 2>/dev/null && echo yes),,$(p)))
 player    := $(if $(strip $(no_player)),,$(bin)/plantcast-wall)
 
+# Video for who has no browser (clients/video), where its libraries are; else the build says what it lacks.
+video_packages := gstreamer-app-1.0 gstreamer-rtsp-server-1.0 libsoup-3.0 cairo jansson
+video_missing := $(foreach p,$(video_packages),$(if $(shell pkg-config --exists $(p) 2>/dev/null && echo yes),,$(p)))
+video := $(if $(strip $(video_missing)),,$(bin)/plantcast-video)
+video_cflags := $(if $(video),$(patsubst -I%,-isystem %,$(shell pkg-config --cflags $(video_packages))))
+
 .PHONY: all programs run demo test check test-long bench gpu-bench style layers headers deps test-deps golden-update install clean help
-all: $(programs) $(or $(player),no-player) $(bin)/plantcast-init $(modules) $(readers) \
+all: $(programs) $(or $(player),no-player) $(or $(video),no-video) $(bin)/plantcast-init $(modules) $(readers) \
     $(if $(PACKED),,$(bin)/plantcast-import-ifc/ifc.mjs) clients/web/vendor/uPlot.js clients/web/made/version.js
 # The page's charts. Without them nothing is built.
 clients/web/vendor/uPlot.js: clients/web/package-lock.json
@@ -122,6 +128,9 @@ programs: all
 no-player:
 	@echo "  without plantcast-wall, the player of a wall's displays: no $(strip $(no_player))"
 .PHONY: no-player
+no-video:
+	@echo "  without plantcast-video, a view as video: no $(strip $(video_missing))"
+.PHONY: no-video
 $(bin)/plantcast-init: deploy/init
 	@mkdir -p $(@D); cp $< $@
 
@@ -157,6 +166,13 @@ $(call objects,$(player_sources)): CFLAGS += $(shell pkg-config --cflags sdl2 pa
 $(out)/lib/player.a: $(call objects,$(filter-out %/main.c,$(player_sources)))
 $(bin)/plantcast-wall: $(call objects,clients/wall/main.c server/base/image_lazy.c) $(out)/lib/player.a $(out)/lib/link.a $(archives)
 	$(link) $(shell pkg-config --libs sdl2 pangocairo 2>/dev/null)
+# Neither the daemon nor another program links its libraries.
+video_objects := $(call objects,$(if $(video),$(wildcard clients/video/*.c)))
+$(video_objects) $(patsubst %,$(out)/obj/%.alone,$(wildcard clients/video/*.h)): CFLAGS += $(video_cflags)
+$(bin)/plantcast-video: $(video_objects) $(out)/lib/base.a
+	@mkdir -p $(@D); echo "  LINK $@"
+	@$(CC) $(ldflags) -pie -o $@ $(filter %.o,$^) -Wl,--start-group $(filter %.a,$^) -Wl,--end-group \
+	    $(shell pkg-config --libs $(video_packages)) -lm
 $(bin)/plantcast-sim: $(call objects,$(sim_sources)) $(archives)
 	$(link)
 $(bin)/plantcast-demo: $(call objects,$(generate_sources)) $(archives)

@@ -22,10 +22,12 @@ $(build)/demo/plant.yaml: $(bin)/plantcast-demo
 prefix ?= /usr/local
 root   := $(DESTDIR)$(prefix)
 units  := $(wildcard deploy/systemd/*.service deploy/systemd/*.socket deploy/systemd/*.timer)
+units  := $(if $(video),$(units),$(filter-out %/plantcast-video@.service,$(units)))
 only_demo := $(bin)/plantcast-sim $(bin)/plantcast-demo
 install: all
 	install -d $(root)/bin $(root)/lib/plantcast $(root)/libexec/plantcast $(root)/share/plantcast $(root)/share/doc/plantcast
 	install -m 755 $(filter-out $(only_demo),$(programs)) $(root)/bin
+	$(if $(video),install -m 755 $(video) $(root)/bin)
 	install -m 755 deploy/init $(root)/bin/plantcast-init
 	install -m 755 $(modules) deploy/systemd/certbot-hook $(root)/lib/plantcast
 	$(if $(readers),install -m 755 $(readers) $(root)/libexec/plantcast)

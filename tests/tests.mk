@@ -24,6 +24,7 @@ test-long: test-deps
 	@PLANTCAST_BIN=$(bin) USE_S=1800 node --test --test-name-pattern='memory' tests/e2e/assets.mjs
 	@PLANTCAST_BIN=$(bin) USES=1440 MEMORY_MB=2048 node --test tests/e2e/memory.mjs
 	@PLANTCAST_BIN=$(bin) PLANTCAST_OUT=$(out) LOSSES=20 node --test tests/e2e/gpu.mjs
+	@PLANTCAST_BIN=$(bin) VIDEO_S=600 node --test --test-name-pattern='every second' tests/e2e/video.mjs
 	@$(MAKE) --no-print-directory scale soak
 # 10 million triangles in 2,000 assets, prepared, killed and continued, within 8 GB: some minutes.
 scale: all $(out)/tests/scale/facility
@@ -48,7 +49,8 @@ style:
 layers:
 	@tests/layers
 # Every header stands alone; one that has not changed since, nor what it includes, is not looked at again.
-stand_alone := $(patsubst %.h,$(out)/obj/%.h.alone,$(shell git ls-files -co --exclude-standard '*.h'))
+stand_alone := $(filter-out $(if $(video),,clients/video/%),$(shell git ls-files -co --exclude-standard '*.h'))
+stand_alone := $(patsubst %.h,$(out)/obj/%.h.alone,$(stand_alone))
 headers: $(stand_alone)
 $(out)/obj/%.h.alone: %.h | $(gen)/glad/include/glad/gl.h
 	@mkdir -p $(@D) && $(CC) $(filter-out -MMD,$(cflags)) -MD -MF $(@:.alone=.d) -MT $@ -fsyntax-only -x c $< && touch $@

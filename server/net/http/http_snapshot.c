@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Frames and picks over HTTP, of now or of an instant. */
+#include <stdio.h>
 #include <string.h>
 
 #include "base/clock.h"
@@ -111,6 +112,16 @@ int ask_snapshot(struct server_context *server, struct request *request)
     return 0;
 }
 
+/* What the header says of the values that take part, for programs that show the picture on. */
+static void say_values(const struct frame *frame, char out[96])
+{
+    int count = snprintf(out, 96, "data_time_us=%lld, oldest_age_ms=", (long long)(frame->data_utc_ns / 1000));
+    if (frame->oldest_age_ns == INT64_MAX)
+        strcpy(out + count, "none");
+    else
+        snprintf(out + count, 96 - (size_t)count, "%lld", (long long)(frame->oldest_age_ns / 1000000));
+}
+
 /* The PNG file, signed where there is a key and the picture has a legend. NULL: it cannot be. */
 static char *picture_of(struct server_context *server, const struct asked *asked, const struct packet *packet, size_t *count)
 {
@@ -131,9 +142,12 @@ void http_on_frame(struct server_context *server, struct encoded_frame *encoded)
     struct request *request = request_find(server, encoded->client);
     if (request) {
         size_t count = 0;
+        char values[96] = "";
+        if (encoded->packet)
+            say_values(encoded->packet->frame, values);
         char *body = encoded->packet ? picture_of(server, request->asked, encoded->packet, &count) : NULL;
         request_forget(server, request);
-        int status = body ? request_answer(request, HTTP_STATUS_OK, "image/png", body, count, NULL, NULL)
+        int status = body ? request_answer(request, HTTP_STATUS_OK, "image/png", body, count, "plantcast-frame:", values)
                           : request_answer_text(request, HTTP_STATUS_INTERNAL_SERVER_ERROR, "the picture could not be made\n");
         request_answered(request, status);
     }

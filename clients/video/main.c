@@ -1,0 +1,197 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* `plantcast-video`: a view of a daemon as video. Draws a frame at each tick, whatever there is to be seen, and has it encoded once. */
+#include <glib-unix.h>
+#include <locale.h>
+#include <signal.h>
+#include <stdio.h>
+
+#include "base/service_manager.h"
+#include "branch.h"
+#include "encoder.h"
+#include "http.h"
+#include "rtsp.h"
+#include "source.h"
+
+struct program {
+    struct options options;
+    GMainLoop *loop;
+    struct canvas canvas;
+    struct source *source;
+    struct outputs *outputs;
+    struct encoder *encoder;
+    struct rtsp *rtsp;
+    struct branch srt, hls;
+    struct http *http;
+    bool card; /* in the newest frame */
+    GSource *ticks;
+    gint64 begin_us, alive_us;
+    guint64 next; /* number of the next frame */
+    guint64 late; /* that were left out */
+    int code;
+};
+
+/* --- frames ------------------------------------------------------------------------------------------------------------------------ */
+
+static void draw(struct program *program, guint64 index)
+{
+    int stride_bytes = program->options.width_px * 4;
+    struct look look;
+    GstMapInfo map;
+    source_look(program->source, &look);
+    program->card = !look.picture;
+    if (!encoder_is_ready(program->encoder)) {
+        program->late++;
+        return;
+    }
+    GstBuffer *pixels = gst_buffer_new_allocate(NULL, (gsize)stride_bytes * (gsize)program->options.height_px, NULL);
+    if (!pixels || !gst_buffer_map(pixels, &map, GST_MAP_WRITE)) {
+        gst_clear_buffer(&pixels);
+        program->late++;
+        return;
+    }
+    canvas_draw(&program->canvas, map.data, stride_bytes, &look, g_get_real_time());
+    gst_buffer_unmap(pixels, &map);
+    encoder_add(program->encoder, pixels, index);
+}
+
+static gint64 time_of(const struct program *program, guint64 index)
+{
+    return program->begin_us + (gint64)(index * G_USEC_PER_SEC / (guint64)program->options.fps);
+}
+
+/* Frames go by the clock: where one comes too late, those it missed are left out. */
+static gboolean on_tick(gpointer data)
+{
+    struct program *program = data;
+    gint64 now_us = g_get_monotonic_time();
+    guint64 index = (guint64)(now_us - program->begin_us) * (guint64)program->options.fps / G_USEC_PER_SEC;
+    if (index < program->next) /* woken a little early */
+        index = program->next;
+    program->late += index - program->next;
+    draw(program, index);
+    program->next = index + 1;
+    g_source_set_ready_time(program->ticks, time_of(program, program->next));
+    if (now_us - program->alive_us > G_USEC_PER_SEC) {
+        program->alive_us = now_us;
+        service_notify("WATCHDOG=1");
+        branch_look(&program->srt);
+        branch_look(&program->hls);
+        if (!encoder_is_good(program->encoder)) {
+            program->code = 1;
+            g_main_loop_quit(program->loop);
+        }
+    }
+    return G_SOURCE_CONTINUE;
+}
+
+static gboolean dispatch(GSource *source, GSourceFunc callback, gpointer data)
+{
+    (void)source;
+    return callback(data);
+}
+
+static void begin_ticks(struct program *program)
+{
+    static GSourceFuncs funcs = { .dispatch = dispatch };
+    program->begin_us = g_get_monotonic_time();
+    program->ticks = g_source_new(&funcs, sizeof(GSource));
+    g_source_set_callback(program->ticks, on_tick, program, NULL);
+    g_source_set_ready_time(program->ticks, program->begin_us);
+    g_source_attach(program->ticks, NULL);
+}
+
+/* --- counters ------------------------------------------------------------------------------------------------------------------------ */
+
+static void add_metric(GString *out, const char *name, const char *type, const char *help, guint64 value)
+{
+    g_string_append_printf(out, "# HELP %s %s\n# TYPE %s %s\n%s %" G_GUINT64_FORMAT "\n", name, help, name, type, name, value);
+}
+
+static void write_metrics(GString *out, void *data)
+{
+    struct program *program = data;
+    struct outputs_counts counts;
+    outputs_count(program->outputs, &counts);
+    add_metric(out, "plantcast_video_frames_total", "counter", "Frames that were encoded, once for all who watch.", counts.units);
+    add_metric(out, "plantcast_video_key_frames_total", "counter", "Key frames among them.", counts.key_units);
+    add_metric(out, "plantcast_video_bytes_total", "counter", "Bytes of them.", counts.bytes);
+    add_metric(out, "plantcast_video_late_frames_total", "counter", "Frames left out since drawing or encoding was behind.", program->late);
+    add_metric(out, "plantcast_video_dropped_frames_total", "counter", "Frames that an output did not take, or not yet.", counts.dropped);
+    add_metric(out, "plantcast_video_pictures_total", "counter", "Pictures from the server.", source_pictures(program->source));
+    add_metric(out, "plantcast_video_card", "gauge", "1: a card is shown in place of a picture.", program->card);
+    g_string_append_printf(out,
+                           "# HELP plantcast_video_readers Who watches.\n# TYPE plantcast_video_readers gauge\n"
+                           "plantcast_video_readers{output=\"rtsp\"} %u\nplantcast_video_readers{output=\"srt\"} %d\n",
+                           rtsp_readers(program->rtsp), g_atomic_int_get(&program->srt.readers));
+}
+
+/* --- life ---------------------------------------------------------------------------------------------------------------------------- */
+
+static gboolean on_signal(gpointer data)
+{
+    g_main_loop_quit(((struct program *)data)->loop);
+    return G_SOURCE_CONTINUE;
+}
+
+static bool begin(struct program *program)
+{
+    const struct options *options = &program->options;
+    program->canvas = (struct canvas){ .width_px = options->width_px, .height_px = options->height_px, .time_code = options->time_code };
+    program->outputs = outputs_create();
+    if (options->srt_port)
+        srt_init(&program->srt, options, program->outputs);
+    if (options->hls_path)
+        hls_init(&program->hls, options, program->outputs);
+    return (program->source = source_create(options)) && (program->encoder = encoder_create(options, program->outputs)) &&
+           (!options->rtsp_port || (program->rtsp = rtsp_create(options, program->outputs))) &&
+           (!options->srt_port || branch_begin(&program->srt)) && (!options->hls_path || branch_begin(&program->hls)) &&
+           (!options->http_port || (program->http = http_create(options, write_metrics, program)));
+}
+
+static void end(struct program *program)
+{
+    if (program->ticks) {
+        g_source_destroy(program->ticks);
+        g_source_unref(program->ticks);
+    }
+    http_destroy(&program->http);
+    rtsp_destroy(&program->rtsp);
+    branch_end(&program->srt);
+    branch_end(&program->hls);
+    encoder_destroy(&program->encoder);
+    source_destroy(&program->source);
+    outputs_destroy(&program->outputs);
+    g_main_loop_unref(program->loop);
+}
+
+static int run(struct program *program)
+{
+    program->loop = g_main_loop_new(NULL, FALSE);
+    program->code = begin(program) ? 0 : 1;
+    if (program->code == 0) {
+        g_unix_signal_add(SIGTERM, on_signal, program);
+        g_unix_signal_add(SIGINT, on_signal, program);
+        begin_ticks(program);
+        printf("plantcast-video: ready\n");
+        fflush(stdout);
+        service_notify("READY=1");
+        g_main_loop_run(program->loop);
+        service_notify("STOPPING=1");
+    }
+    end(program);
+    return program->code;
+}
+
+int main(int argc, char **argv)
+{
+    struct program program = { 0 };
+    setlocale(LC_CTYPE, "");
+    signal(SIGPIPE, SIG_IGN);
+    int code = options_read(&program.options, &argc, &argv);
+    if (code < 0) {
+        gst_init(NULL, NULL);
+        code = run(&program);
+    }
+    options_finish(&program.options);
+    return code;
+}

@@ -1,0 +1,214 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The command line: what may be asked, and what goes with what. */
+#include "options.h"
+
+#include <arpa/inet.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "version.h"
+
+enum { LEAST_PX = 320, MOST_PX = 4096, LEAST_HEIGHT_PX = 180, LEAST_FPS = 5, MOST_FPS = 30, SRT_LEAST_CHARS = 10, SRT_MOST_CHARS = 79 };
+
+static const char SUMMARY[] =
+    "Shows a view of a Plantcast daemon as video: RTSP, HLS and SRT, of one H.264 encoder. Markers, legend, clock and\n"
+    "the age of the values are in the picture. If the server is gone, or tells no value, a card says so within 3 s.";
+static const char DETAIL[] = "Outputs are off unless asked for. They listen on 127.0.0.1 unless --listen says otherwise, which takes "
+                             "--readers-file or --open-readers:\n"
+                             "  RTSP  rtsp://HOST:PORT/plantcast (user and password)\n"
+                             "  HLS   http://HOST:PORT/hls/index.m3u8 with --http (likewise), or the files of --hls by another web server\n"
+                             "  SRT   srt://HOST:PORT, as caller (passphrase: the password)\n"
+                             "http://HOST:PORT/metrics has counters in Prometheus' text form. Nothing but SRT is encrypted.\n"
+                             "Exit status: 2 wrong usage, 1 anything else.";
+
+static int wrong(const char *fmt, ...) G_GNUC_PRINTF(1, 2);
+static int wrong(const char *fmt, ...)
+{
+    va_list ap;
+    va_start(ap, fmt);
+    fputs("plantcast-video: ", stderr);
+    vfprintf(stderr, fmt, ap);
+    fputs("\n", stderr);
+    va_end(ap);
+    return 2;
+}
+
+/* The first line of a file, without blanks at its ends; NULL: said why. */
+static char *first_line(const char *path)
+{
+    char *text = NULL;
+    GError *error = NULL;
+    if (!g_file_get_contents(path, &text, NULL, &error)) {
+        wrong("%s", error->message);
+        g_error_free(error);
+        return NULL;
+    }
+    text[strcspn(text, "\r\n")] = 0;
+    g_strstrip(text);
+    if (!text[0] || strlen(text) > 256) {
+        wrong("%s: its first line should have 1 to 256 characters", path);
+        g_clear_pointer(&text, g_free);
+    }
+    return text;
+}
+
+static int read_readers(struct options *options, const char *path)
+{
+    char *line = first_line(path), *colon = line ? strchr(line, ':') : NULL;
+    int code = -1;
+    if (line && (!colon || colon == line || !colon[1]))
+        code = wrong("%s: its first line should be USER:PASSWORD", path);
+    else if (!line)
+        code = 2;
+    else {
+        options->user = g_strndup(line, (gsize)(colon - line));
+        options->password = g_strdup(colon + 1);
+        size_t n = strlen(options->password);
+        if (options->srt_port && (n < SRT_LEAST_CHARS || n > SRT_MOST_CHARS))
+            code = wrong("%s: the password is SRT's passphrase, too, and has %d to %d characters there, not %zu", path, SRT_LEAST_CHARS,
+                         SRT_MOST_CHARS, n);
+    }
+    g_free(line);
+    return code;
+}
+
+static int read_url(struct options *options, int argc, char **argv)
+{
+    if (argc != 2)
+        return wrong("the URL of one daemon is expected, as http://HOST:PORT/ (--help tells more)");
+    GUri *uri = g_uri_parse(argv[1], G_URI_FLAGS_NONE, NULL);
+    const char *scheme = uri ? g_uri_get_scheme(uri) : "";
+    bool good = uri && (!strcmp(scheme, "http") || !strcmp(scheme, "https")) && g_uri_get_host(uri) && *g_uri_get_host(uri) &&
+                !g_uri_get_query(uri) && !g_uri_get_fragment(uri) && !g_uri_get_userinfo(uri);
+    if (good)
+        options->url = g_strconcat(argv[1], g_str_has_suffix(argv[1], "/") ? "" : "/", NULL);
+    if (uri)
+        g_uri_unref(uri);
+    return good ? -1 : wrong("'%s' is not http://HOST:PORT/ or https://HOST:PORT/, with a path where a proxy serves it below one", argv[1]);
+}
+
+static int read_size(struct options *options, const char *text)
+{
+    int n = 0;
+    if (text && (sscanf(text, "%dx%d%n", &options->width_px, &options->height_px, &n) != 2 || text[n]))
+        return wrong("--size %s: expected WIDTHxHEIGHT, as 1920x1080", text);
+    if (options->width_px < LEAST_PX || options->width_px > MOST_PX || options->height_px < LEAST_HEIGHT_PX ||
+        options->height_px > MOST_PX || options->width_px % 2 || options->height_px % 2)
+        return wrong("--size %dx%d: even numbers from %dx%d to %dx%d are expected", options->width_px, options->height_px, LEAST_PX,
+                     LEAST_HEIGHT_PX, MOST_PX, MOST_PX);
+    return -1;
+}
+
+static int check_number(const char *name, int value, int least, int most)
+{
+    return value >= least && value <= most ? -1 : wrong("%s %d: expected %d to %d", name, value, least, most);
+}
+
+static int check_numbers(const struct options *options)
+{
+    const struct {
+        const char *name;
+        int value, least, most;
+    } numbers[] = { { "--fps", options->fps, LEAST_FPS, MOST_FPS }, { "--kbps", options->kbps, 100, 100000 },
+                    { "--every", options->every_ms, 200, 1000 },    { "--most-readers", options->most_readers, 1, OPTIONS_MOST_READERS },
+                    { "--rtsp", options->rtsp_port, 0, 65535 },     { "--http", options->http_port, 0, 65535 },
+                    { "--srt", options->srt_port, 0, 65535 } };
+    int code = -1;
+    for (size_t i = 0; i < G_N_ELEMENTS(numbers) && code < 0; i++)
+        code = check_number(numbers[i].name, numbers[i].value, numbers[i].least, numbers[i].most);
+    return code;
+}
+
+static bool is_loopback(const char *address)
+{
+    struct in_addr four;
+    return !strcmp(address, "::1") || (inet_pton(AF_INET, address, &four) == 1 && ntohl(four.s_addr) >> 24 == 127);
+}
+
+static int check_together(const struct options *options, bool open_readers)
+{
+    unsigned char address[16];
+    if (options->view && options->query)
+        return wrong("--view and --query do not go together");
+    if (!options->rtsp_port && !options->srt_port && !options->hls_path)
+        return wrong("no output was asked for: --rtsp, --srt or --hls");
+    if (inet_pton(AF_INET, options->listen, address) != 1 && inet_pton(AF_INET6, options->listen, address) != 1)
+        return wrong("--listen %s: expected an address, as 0.0.0.0 or ::", options->listen);
+    if (!is_loopback(options->listen) && !options->user && !open_readers)
+        return wrong("--listen %s: whoever gets there would see the plant; --readers-file names who may, --open-readers lets anyone",
+                     options->listen);
+    if (options->hls_path && !g_file_test(options->hls_path, G_FILE_TEST_IS_DIR))
+        return wrong("--hls %s: there is no such folder", options->hls_path);
+    if (options->user && open_readers)
+        return wrong("--readers-file and --open-readers do not go together");
+    return -1;
+}
+
+int options_read(struct options *options, int *argc, char ***argv)
+{
+    char *size = NULL, *token_path = NULL, *readers_path = NULL;
+    gboolean open_readers = FALSE, time_code = FALSE, version = FALSE;
+    *options = (struct options){ .width_px = 1280, .height_px = 720, .fps = 10, .kbps = 4000, .every_ms = 1000, .most_readers = 64 };
+    const GOptionEntry entries[] = {
+        { "view", 0, 0, G_OPTION_ARG_STRING, &options->view, "a view with a name, of the plant file or saved in the page", "ID" },
+        { "query", 0, 0, G_OPTION_ARG_STRING, &options->query, "a view as /snapshot.png takes it: group=temperature&camera=...", "TEXT" },
+        { "title", 0, 0, G_OPTION_ARG_STRING, &options->title, "what the picture is called (the view's title)", "TEXT" },
+        { "token-file", 0, 0, G_OPTION_ARG_FILENAME, &token_path, "its first line is a viewer's token (plantcast token)", "FILE" },
+        { "ca", 0, 0, G_OPTION_ARG_FILENAME, &options->ca_path, "certificates (PEM) that are trusted, in place of this machine's", "FILE" },
+        { "size", 0, 0, G_OPTION_ARG_STRING, &size, "of the video (1280x720)", "WxH" },
+        { "fps", 0, 0, G_OPTION_ARG_INT, &options->fps, "frames a second, also while nothing changes: 5 to 30 (10)", "N" },
+        { "kbps", 0, 0, G_OPTION_ARG_INT, &options->kbps, "kbit/s at most (4000)", "N" },
+        { "every", 0, 0, G_OPTION_ARG_INT, &options->every_ms, "ms between new pictures: 200 to 1000 (1000)", "MS" },
+        { "listen", 0, 0, G_OPTION_ARG_STRING, &options->listen, "address of all outputs (127.0.0.1)", "ADDRESS" },
+        { "rtsp", 0, 0, G_OPTION_ARG_INT, &options->rtsp_port, "serve RTSP", "PORT" },
+        { "srt", 0, 0, G_OPTION_ARG_INT, &options->srt_port, "listen for callers by SRT", "PORT" },
+        { "hls", 0, 0, G_OPTION_ARG_FILENAME, &options->hls_path, "write HLS into this folder, which is for nothing else", "FOLDER" },
+        { "http", 0, 0, G_OPTION_ARG_INT, &options->http_port, "serve that folder, and /metrics", "PORT" },
+        { "readers-file", 0, 0, G_OPTION_ARG_FILENAME, &readers_path, "its first line, USER:PASSWORD, lets in those who watch", "FILE" },
+        { "open-readers", 0, 0, G_OPTION_ARG_NONE, &open_readers, "whoever reaches the address may watch", NULL },
+        { "most-readers", 0, 0, G_OPTION_ARG_INT, &options->most_readers, "of each output at once (64)", "N" },
+        { "time-code", 0, 0, G_OPTION_ARG_NONE, &time_code, "a row of blocks below the picture tells its time to programs", NULL },
+        { "version", 0, 0, G_OPTION_ARG_NONE, &version, "print the version", NULL },
+        { NULL, 0, 0, G_OPTION_ARG_NONE, NULL, NULL, NULL }
+    };
+    GOptionContext *context = g_option_context_new("URL");
+    GError *error = NULL;
+    g_option_context_set_summary(context, SUMMARY);
+    g_option_context_set_description(context, DETAIL);
+    g_option_context_add_main_entries(context, entries, NULL);
+    int code = g_option_context_parse(context, argc, argv, &error) ? -1 : wrong("%s", error->message);
+    g_clear_error(&error);
+    g_option_context_free(context);
+    if (code < 0 && version) {
+        puts("plantcast-video " PLANTCAST_VERSION);
+        code = 0;
+    }
+    options->time_code = time_code;
+    if (!options->listen)
+        options->listen = g_strdup("127.0.0.1");
+    if (code < 0)
+        code = read_url(options, *argc, *argv);
+    if (code < 0)
+        code = read_size(options, size);
+    if (code < 0)
+        code = check_numbers(options);
+    if (code < 0 && token_path && !(options->token = first_line(token_path)))
+        code = 2;
+    if (code < 0 && readers_path)
+        code = read_readers(options, readers_path);
+    if (code < 0)
+        code = check_together(options, open_readers);
+    g_free(size);
+    g_free(token_path);
+    g_free(readers_path);
+    return code;
+}
+
+void options_finish(struct options *options)
+{
+    char *const texts[] = { options->url,     options->view,   options->query,    options->title, options->token,
+                            options->ca_path, options->listen, options->hls_path, options->user,  options->password };
+    for (size_t i = 0; i < G_N_ELEMENTS(texts); i++)
+        g_free(texts[i]);
+    *options = (struct options){ 0 };
+}

@@ -1,0 +1,118 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* One encoded stream for any number of outputs. */
+#include "outputs.h"
+
+enum { MOST_BYTES = 4 << 20 }; /* that wait in one output */
+static const GstClockTimeDiff SLACK = 500 * GST_MSECOND;
+
+struct output {
+    GstAppSrc *src;
+    bool begun, timed;
+    GstClockTimeDiff offset; /* from the encoder's time to its own */
+};
+
+struct outputs {
+    GMutex lock;
+    /* --- below: under lock */
+    GPtrArray *all;
+    struct outputs_counts counts;
+};
+
+static void output_free(gpointer data)
+{
+    struct output *output = data;
+    gst_object_unref(output->src);
+    g_free(output);
+}
+
+struct outputs *outputs_create(void)
+{
+    struct outputs *outputs = g_new0(struct outputs, 1);
+    g_mutex_init(&outputs->lock);
+    outputs->all = g_ptr_array_new_with_free_func(output_free);
+    return outputs;
+}
+
+void outputs_destroy(struct outputs **pointer)
+{
+    struct outputs *outputs = *pointer;
+    if (!outputs)
+        return;
+    g_ptr_array_free(outputs->all, TRUE);
+    g_mutex_clear(&outputs->lock);
+    g_free(outputs);
+    *pointer = NULL;
+}
+
+void outputs_add(struct outputs *outputs, GstAppSrc *src)
+{
+    struct output *output = g_new0(struct output, 1);
+    output->src = gst_object_ref(src);
+    g_mutex_lock(&outputs->lock);
+    g_ptr_array_add(outputs->all, output);
+    g_mutex_unlock(&outputs->lock);
+}
+
+void outputs_remove(struct outputs *outputs, GstAppSrc *src)
+{
+    g_mutex_lock(&outputs->lock);
+    for (guint i = 0; i < outputs->all->len; i++) {
+        const struct output *output = g_ptr_array_index(outputs->all, i);
+        if (output->src == src)
+            g_ptr_array_remove_index_fast(outputs->all, i--);
+    }
+    g_mutex_unlock(&outputs->lock);
+}
+
+/* The time of its pipeline; false: it does not run. */
+static bool running_time(GstAppSrc *src, GstClockTime *out)
+{
+    GstClock *clock = gst_element_get_clock(GST_ELEMENT(src));
+    if (!clock)
+        return false;
+    GstClockTime now = gst_clock_get_time(clock), base = gst_element_get_base_time(GST_ELEMENT(src));
+    gst_object_unref(clock);
+    *out = now - base;
+    return GST_CLOCK_TIME_IS_VALID(base) && now >= base;
+}
+
+static bool push(struct output *output, GstBuffer *unit)
+{
+    GstClockTime now;
+    bool key = !GST_BUFFER_FLAG_IS_SET(unit, GST_BUFFER_FLAG_DELTA_UNIT);
+    if (!running_time(output->src, &now))
+        return true;
+    if (gst_app_src_get_current_level_bytes(output->src) > MOST_BYTES)
+        output->begun = false;
+    else
+        output->begun = output->begun || key;
+    if (!output->begun)
+        return false;
+    GstClockTimeDiff pts = (GstClockTimeDiff)GST_BUFFER_PTS(unit), off = pts + output->offset - (GstClockTimeDiff)now;
+    if (!output->timed || off > SLACK || off < -SLACK)
+        output->offset = (GstClockTimeDiff)now - pts;
+    output->timed = true;
+    GstBuffer *copy = gst_buffer_copy(unit); /* shares its memory */
+    GST_BUFFER_PTS(copy) = GST_BUFFER_DTS(copy) = (GstClockTime)MAX(pts + output->offset, 0);
+    gst_app_src_push_buffer(output->src, copy);
+    return true;
+}
+
+void outputs_push(struct outputs *outputs, GstBuffer *unit)
+{
+    g_mutex_lock(&outputs->lock);
+    outputs->counts.units++;
+    outputs->counts.key_units += !GST_BUFFER_FLAG_IS_SET(unit, GST_BUFFER_FLAG_DELTA_UNIT);
+    outputs->counts.bytes += gst_buffer_get_size(unit);
+    for (guint i = 0; i < outputs->all->len; i++)
+        outputs->counts.dropped += !push(g_ptr_array_index(outputs->all, i), unit);
+    g_mutex_unlock(&outputs->lock);
+}
+
+void outputs_count(struct outputs *outputs, struct outputs_counts *out)
+{
+    g_mutex_lock(&outputs->lock);
+    *out = outputs->counts;
+    out->outputs = outputs->all->len;
+    g_mutex_unlock(&outputs->lock);
+}

@@ -1,0 +1,376 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* One request at a time to the daemon: its time zone, the views with names, and pictures. */
+#include "source.h"
+
+#include <jansson.h>
+#include <libsoup/soup.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "view_query.h"
+
+/* A picture is of the instant at which it was asked for. The one that is shown stays until the next is there: asked for EVERY after it, and
+   received within SLOWEST; so it is never older than OLDEST. */
+static const gint64 OLDEST_US = 2700000, SLOWEST_US = 1300000, OTHERS_US = 1200000, VIEWS_US = 5000000, DENIED_US = 8000000;
+
+enum ask { ASK_PLANT, ASK_VIEWS, ASK_PICTURE, ASK_COUNT };
+
+struct source {
+    const struct options *options;
+    SoupSession *session;
+    GCancellable *cancel; /* of the request under way; NULL: none */
+    SoupMessage *message;
+    enum ask asked;
+    gint64 asked_us, asked_utc_us, due_us[ASK_COUNT], wait_until_us; /* monotonic, but for utc */
+    bool overdue;
+
+    GTimeZone *zone;
+    char *view, *view_title; /* of the view with a name; NULL: not known yet, or there is none */
+    cairo_surface_t *picture;
+    gint64 picture_us, age_ms;
+    bool valued; /* some value should take part: else there is none to be old */
+    char headline[80], detail[240], said[240];
+    gint64 since_us;    /* UTC: that there is a card; 0: there is a picture */
+    gint64 seen_utc_us; /* of the newest picture */
+    bool barred;        /* its right is gone, or the view: dark at once */
+    guint64 pictures;
+    bool ended;
+};
+
+/* --- what is wrong ------------------------------------------------------------------------------------------ */
+
+static void fail(struct source *source, const char *headline, const char *fmt, ...) G_GNUC_PRINTF(3, 4);
+static void fail(struct source *source, const char *headline, const char *fmt, ...)
+{
+    va_list ap;
+    va_start(ap, fmt);
+    vsnprintf(source->detail, sizeof(source->detail), fmt, ap);
+    va_end(ap);
+    source->detail[strcspn(source->detail, "\n")] = 0;
+    char *valid = g_utf8_make_valid(source->detail, -1);
+    g_strlcpy(source->detail, valid, sizeof(source->detail));
+    g_free(valid);
+    g_strlcpy(source->headline, headline, sizeof(source->headline));
+    if (strcmp(source->said, source->detail) != 0)
+        fprintf(stderr, "plantcast-video: %s: %s\n", source->options->url, source->detail);
+    g_strlcpy(source->said, source->detail, sizeof(source->said));
+}
+
+/* Nothing of it may be seen any more. */
+static void bar(struct source *source)
+{
+    source->barred = true;
+    g_clear_pointer(&source->picture, cairo_surface_destroy);
+}
+
+static void refuse(struct source *source, guint status, GBytes *body)
+{
+    gsize count = 0;
+    const char *text = body ? g_bytes_get_data(body, &count) : NULL;
+    char *words = g_strndup(text ? text : "", MIN(count, 160));
+    if (status == 401 || status == 403) {
+        fail(source, "NOT LET IN", "the server does not take this token: %s", words);
+        bar(source);
+        source->wait_until_us = source->asked_us + DENIED_US; /* tokens that are wrong too often are not looked at for a while */
+    } else if (status == 429) {
+        fail(source, "NOT LET IN", "the server looks at no more tokens of this address for a while");
+        source->wait_until_us = source->asked_us + DENIED_US;
+    } else if (status == 400 || status == 404) {
+        fail(source, "NO SUCH VIEW", "%s", words);
+        bar(source);
+    } else {
+        fail(source, "NO PICTURE", "the server answers %u: %s", status, words);
+    }
+    g_free(words);
+}
+
+/* --- what comes ------------------------------------------------------------------------------------------ */
+
+static void take_plant(struct source *source, const json_t *o)
+{
+    const char *zone = json_string_value(json_object_get(json_object_get(o, "plant"), "time_zone"));
+    GTimeZone *found = zone ? g_time_zone_new_identifier(zone) : NULL;
+    if (found) {
+        g_time_zone_unref(source->zone);
+        source->zone = found;
+    }
+    const char *name = json_string_value(json_object_get(json_object_get(o, "plant"), "name"));
+    if (!source->options->view && name) {
+        g_free(source->view_title);
+        source->view_title = g_strdup(name);
+    }
+}
+
+static void take_views(struct source *source, const json_t *o)
+{
+    const json_t *one;
+    size_t i;
+    GString *names = g_string_new("");
+    bool found = false;
+    json_array_foreach(json_object_get(o, "list"), i, one)
+    {
+        const char *id = json_string_value(json_object_get(one, "id")), *view = json_string_value(json_object_get(one, "view")),
+                   *title = json_string_value(json_object_get(one, "title"));
+        if (id && view && !strcmp(id, source->options->view)) {
+            if (g_strcmp0(source->view, view) != 0)
+                source->due_us[ASK_PICTURE] = 0;
+            g_free(source->view);
+            g_free(source->view_title);
+            source->view = g_strdup(view);
+            source->view_title = g_strdup(title && *title ? title : id);
+            found = true;
+        }
+        g_string_append_printf(names, "%s%s", i ? ", " : "", id ? id : "");
+    }
+    if (!found) {
+        g_clear_pointer(&source->view, g_free);
+        fail(source, "NO SUCH VIEW", "there is no view '%s'; there are: %s", source->options->view, names->len ? names->str : "none");
+        bar(source);
+    }
+    g_string_free(names, TRUE);
+}
+
+struct bytes {
+    const guint8 *at;
+    gsize left;
+};
+
+static cairo_status_t read_bytes(void *closure, unsigned char *data, unsigned int length)
+{
+    struct bytes *bytes = closure;
+    if (bytes->left < length)
+        return CAIRO_STATUS_READ_ERROR;
+    memcpy(data, bytes->at, length);
+    bytes->at += length;
+    bytes->left -= length;
+    return CAIRO_STATUS_SUCCESS;
+}
+
+static guint32 big_endian(const guint8 *at)
+{
+    return (guint32)at[0] << 24 | (guint32)at[1] << 16 | (guint32)at[2] << 8 | at[3];
+}
+
+/* Of the size that was asked for, and none else. */
+static cairo_surface_t *decode(const struct options *options, GBytes *body)
+{
+    gsize count;
+    const guint8 *at = g_bytes_get_data(body, &count);
+    struct bytes bytes = { at, count };
+    if (count < 24 || big_endian(at + 16) != (guint32)options->width_px ||
+        big_endian(at + 20) != (guint32)canvas_picture_px(options->height_px))
+        return NULL;
+    cairo_surface_t *surface = cairo_image_surface_create_from_png_stream(read_bytes, &bytes);
+    if (cairo_surface_status(surface) == CAIRO_STATUS_SUCCESS)
+        return surface;
+    cairo_surface_destroy(surface);
+    return NULL;
+}
+
+static void take_picture(struct source *source, SoupMessage *message, GBytes *body)
+{
+    const char *header = soup_message_headers_get_one(soup_message_get_response_headers(message), "Plantcast-Frame");
+    const char *age = header ? strstr(header, "oldest_age_ms=") : NULL;
+    gint64 took_us = g_get_monotonic_time() - source->asked_us;
+    cairo_surface_t *picture = NULL;
+    if (took_us > SLOWEST_US)
+        fail(source, "THE SERVER IS TOO SLOW", "a picture took it %.1f s, and may take %.1f; a smaller --size helps", (double)took_us / 1e6,
+             (double)SLOWEST_US / 1e6);
+    else if (!age)
+        fail(source, "NO PICTURE", "the server does not say how old its values are: it is of an earlier version");
+    else if (!(picture = decode(source->options, body)))
+        fail(source, "NO PICTURE", "what the server sent is no PNG of %dx%d", source->options->width_px,
+             canvas_picture_px(source->options->height_px));
+    if (!picture)
+        return;
+    g_clear_pointer(&source->picture, cairo_surface_destroy);
+    source->picture = picture;
+    source->picture_us = source->asked_us;
+    source->seen_utc_us = source->asked_utc_us;
+    source->age_ms = strncmp(age + 14, "none", 4) ? g_ascii_strtoll(age + 14, NULL, 10) : -1;
+    source->barred = false;
+    source->pictures++;
+}
+
+static void on_body(struct source *source, GBytes *body, const GError *error)
+{
+    gsize count = 0;
+    const char *at = body ? g_bytes_get_data(body, &count) : NULL;
+    guint status = soup_message_get_status(source->message);
+    if (error) {
+        if (source->overdue)
+            fail(source, "THE SERVER IS SILENT", "it does not answer");
+        else
+            fail(source, "NO CONNECTION TO THE SERVER", "%s", error->message);
+        return;
+    }
+    if (status != 200) {
+        if (source->asked == ASK_PLANT && status != 401 && status != 403) /* tokens are the business of pictures */
+            return;
+        refuse(source, status, body);
+        return;
+    }
+    json_t *o = source->asked == ASK_PICTURE ? NULL : json_loadb(at, count, 0, NULL);
+    if (source->asked == ASK_PLANT)
+        take_plant(source, o);
+    else if (source->asked == ASK_VIEWS)
+        take_views(source, o);
+    else
+        take_picture(source, source->message, body);
+    json_decref(o);
+}
+
+/* --- asking ------------------------------------------------------------------------------------------ */
+
+static void on_answer(GObject *session, GAsyncResult *result, gpointer data)
+{
+    struct source *source = data;
+    GError *error = NULL;
+    GBytes *body = soup_session_send_and_read_finish(SOUP_SESSION(session), result, &error);
+    if (!source->ended)
+        on_body(source, body, error);
+    g_clear_error(&error);
+    g_clear_pointer(&body, g_bytes_unref);
+    g_clear_object(&source->message);
+    g_clear_object(&source->cancel);
+}
+
+static char *url_of(const struct source *source, enum ask ask)
+{
+    const struct options *options = source->options;
+    if (ask != ASK_PICTURE)
+        return g_strconcat(options->url, ask == ASK_PLANT ? "api/v1/plant" : "api/v1/views", NULL);
+    GString *url = g_string_new(options->url);
+    g_string_append_printf(url, "snapshot.png?width=%d&height=%d", options->width_px, canvas_picture_px(options->height_px));
+    if (options->query)
+        g_string_append_printf(url, "&%s", options->query);
+    if (source->view)
+        view_query_add(url, source->view);
+    return g_string_free(url, FALSE);
+}
+
+static void ask(struct source *source, enum ask what, gint64 now_us)
+{
+    static const gint64 again_us[ASK_COUNT] = { [ASK_PLANT] = 600 * G_USEC_PER_SEC, [ASK_VIEWS] = VIEWS_US };
+    char *url = url_of(source, what);
+    source->asked = what;
+    source->asked_us = now_us;
+    source->asked_utc_us = g_get_real_time();
+    source->overdue = false;
+    source->due_us[what] = now_us + (what == ASK_PICTURE ? source->options->every_ms * 1000 : again_us[what]);
+    if (what == ASK_PICTURE)
+        source->valued = !strstr(url, "look=materials") && !strstr(url, "show=distance");
+    source->message = soup_message_new("GET", url);
+    g_free(url);
+    if (!source->message) {
+        fail(source, "NO SUCH VIEW", "its parameters make no URL");
+        return;
+    }
+    soup_message_add_flags(source->message, SOUP_MESSAGE_NO_REDIRECT); /* the token is for this server */
+    if (source->options->token) {
+        char *bearer = g_strconcat("Bearer ", source->options->token, NULL);
+        soup_message_headers_replace(soup_message_get_request_headers(source->message), "Authorization", bearer);
+        g_free(bearer);
+    }
+    source->cancel = g_cancellable_new();
+    soup_session_send_and_read_async(source->session, source->message, G_PRIORITY_DEFAULT, source->cancel, on_answer, source);
+}
+
+/* Pictures go before all but the view that they are of. */
+static void go_on(struct source *source, gint64 now_us)
+{
+    if (source->cancel) {
+        gint64 most_us = source->asked == ASK_PICTURE ? OLDEST_US : OTHERS_US;
+        source->overdue = source->overdue || now_us - source->asked_us > most_us;
+        if (source->overdue)
+            g_cancellable_cancel(source->cancel);
+        return;
+    }
+    if (now_us < source->wait_until_us)
+        return;
+    bool nameless = source->options->view && !source->view;
+    if (nameless && now_us >= MIN(source->due_us[ASK_VIEWS], source->asked_us + G_USEC_PER_SEC))
+        ask(source, ASK_VIEWS, now_us);
+    else if (!nameless && now_us >= source->due_us[ASK_PICTURE])
+        ask(source, ASK_PICTURE, now_us);
+    else if (!nameless && source->options->view && now_us >= source->due_us[ASK_VIEWS])
+        ask(source, ASK_VIEWS, now_us);
+    else if (source->pictures > 0 && now_us >= source->due_us[ASK_PLANT])
+        ask(source, ASK_PLANT, now_us);
+}
+
+/* --- what may be shown ------------------------------------------------------------------------------------------ */
+
+void source_look(struct source *source, struct look *out)
+{
+    gint64 now_us = g_get_monotonic_time();
+    go_on(source, now_us);
+    bool young = source->picture && !source->barred && now_us - source->picture_us < OLDEST_US;
+    bool frozen = young && source->age_ms < 0 && source->valued;
+    const char *title = source->options->title ? source->options->title : source->view_title ? source->view_title : "";
+    *out = (struct look){ .title = title, .zone = source->zone, .headline = source->headline, .detail = source->detail, .age_ms = -1 };
+    if (young && !frozen) {
+        if (source->since_us)
+            fprintf(stderr, "plantcast-video: %s: pictures again\n", source->options->url);
+        source->since_us = 0;
+        source->said[0] = 0;
+        out->picture = source->picture;
+        out->age_ms = source->age_ms < 0 ? -1 : source->age_ms + (now_us - source->picture_us) / 1000;
+        return;
+    }
+    if (frozen)
+        fail(source, "NO LIVE VALUES", "the server is there, and no sensor that is shown tells a value");
+    else if (source->picture && !source->barred && !source->said[0])
+        fail(source, "THE SERVER IS SILENT", "it does not answer");
+    if (!source->since_us)
+        source->since_us = source->seen_utc_us && !frozen ? source->seen_utc_us : g_get_real_time();
+    out->since_us = source->since_us;
+}
+
+guint64 source_pictures(const struct source *source)
+{
+    return source->pictures;
+}
+
+/* --- life ------------------------------------------------------------------------------------------ */
+
+struct source *source_create(const struct options *options)
+{
+    GError *error = NULL;
+    GTlsDatabase *database = options->ca_path ? g_tls_file_database_new(options->ca_path, &error) : NULL;
+    if (error) {
+        fprintf(stderr, "plantcast-video: %s: %s\n", options->ca_path, error->message);
+        g_error_free(error);
+        return NULL;
+    }
+    struct source *source = g_new0(struct source, 1);
+    source->options = options;
+    source->zone = g_time_zone_new_local();
+    source->session = soup_session_new_with_options("max-conns", 1, "timeout", 0, "idle-timeout", 30, NULL);
+    if (database) {
+        soup_session_set_tls_database(source->session, database);
+        g_object_unref(database);
+    }
+    g_strlcpy(source->headline, "STARTING", sizeof(source->headline));
+    g_strlcpy(source->detail, "no picture has come yet", sizeof(source->detail));
+    return source;
+}
+
+void source_destroy(struct source **pointer)
+{
+    struct source *source = *pointer;
+    if (!source)
+        return;
+    *pointer = NULL;
+    source->ended = true;
+    if (source->cancel)
+        g_cancellable_cancel(source->cancel);
+    while (source->cancel)
+        g_main_context_iteration(NULL, TRUE);
+    g_clear_pointer(&source->picture, cairo_surface_destroy);
+    g_object_unref(source->session);
+    g_time_zone_unref(source->zone);
+    g_free(source->view);
+    g_free(source->view_title);
+    g_free(source);
+}

@@ -1,0 +1,251 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A view as video, read by programs that others wrote: constant rate, the clock in its pixels, and a card in place of an old picture.
+import assert from 'node:assert/strict';
+import { spawn, spawnSync } from 'node:child_process';
+import { existsSync, mkdirSync, mkdtempSync, readdirSync, rmSync, writeFileSync } from 'node:fs';
+import { createServer } from 'node:net';
+import { tmpdir } from 'node:os';
+import { join } from 'node:path';
+import { after, before, test } from 'node:test';
+import { freePort } from './support/ports.mjs';
+import { BIN, missing, Program, runProgram, TinyPlant } from './support/tiny_plant.mjs';
+
+const lacks = [...missing(), ...(existsSync(join(BIN, 'plantcast-video')) ? [] : ['plantcast-video']),
+    ...(spawnSync('ffmpeg', ['-version']).error ? ['ffmpeg'] : [])];
+const options = { skip: lacks.length > 0 ? `not here: ${lacks.join(', ')}` : false, timeout: 120000 };
+const WIDTH = 640, HEIGHT = 360, FPS = 10, RECORDED_S = Number(process.env.VIDEO_S ?? 20);
+const canMount = process.getuid() === 0 && spawnSync('unshare', ['--mount', 'mount', '-t', 'tmpfs', 'none', '/mnt']).status === 0;
+const READER = 'wall:long-password';
+let plant, folder, video, ports;
+
+async function startVideo(...args) {
+    const program = new Program('plantcast-video', [`http://127.0.0.1:${plant.port}/`, '--size', `${WIDTH}x${HEIGHT}`, '--fps', String(FPS),
+        '--time-code', ...args]);
+    await program.line(/^plantcast-video: ready$/m);
+    return program;
+}
+
+// What ffmpeg reads of a stream, frame by frame: the row of blocks at the bottom, as [{ tenths, card, sound }].
+const BITS = 36, BLOCKS = BITS + 4;
+function codeOf(row) {
+    const bits = [...Array(BLOCKS).keys()].map((i) => (row[Math.floor((i + 0.5) * WIDTH / BLOCKS)] > 127 ? 1 : 0));
+    const sound = bits[0] === 1 && bits[1] === 0 && bits.slice(0, -1).reduce((a, b) => a ^ b) === bits.at(-1);
+    return { sound, tenths: bits.slice(2, 2 + BITS).reduce((n, bit) => n * 2 + bit, 0), card: bits[2 + BITS] === 1 };
+}
+
+class Reader {
+    constructor(url, ...args) {
+        this.frames = [];
+        this.said = '';
+        let rest = Buffer.alloc(0);
+        const row = `format=gray,crop=${WIDTH}:1:0:${HEIGHT - 3}`;
+        this.child = spawn('ffmpeg', ['-v', 'error', '-fflags', 'nobuffer', ...args, '-i', url, '-vf', row, '-fps_mode', 'passthrough',
+            '-f', 'rawvideo', 'pipe:1'], { stdio: ['ignore', 'pipe', 'pipe'] });
+        this.ended = new Promise((done) => this.child.once('exit', done));
+        this.child.stderr.on('data', (chunk) => { this.said += chunk; });
+        this.child.stdout.on('data', (chunk) => {
+            for (rest = Buffer.concat([rest, chunk]); rest.length >= WIDTH; rest = rest.subarray(WIDTH))
+                this.frames.push({ ...codeOf(rest), at: Date.now() });
+        });
+    }
+
+    async until(what, timeoutMs = 30000) {
+        for (const end = Date.now() + timeoutMs; ;) {
+            const last = this.frames.at(-1);
+            if (last && what(last))
+                return last;
+            if (Date.now() > end || this.child.exitCode !== null)
+                throw new Error(`it never came, after ${this.frames.length} frames; ${this.said}`);
+            await new Promise((done) => setTimeout(done, 20));
+        }
+    }
+
+    async stop() {
+        this.child.kill('SIGKILL');
+        await this.ended;
+    }
+}
+
+const rtsp = (port = ports.rtsp, user = `${encodeURI(READER)}@`) => `rtsp://${user}127.0.0.1:${port}/plantcast`;
+const readRtsp = () => new Reader(rtsp(), '-rtsp_transport', 'tcp');
+
+const http = (path) => fetch(`http://127.0.0.1:${ports.http}${path}`, { headers: { Authorization: `Basic ${btoa(READER)}` } });
+async function metric(name) {
+    const text = await (await http('/metrics')).text();
+    return Number(text.match(new RegExp(`^${name.replace(/[{}]/g, '\\$&')} (\\S+)$`, 'm'))[1]);
+}
+
+before(async () => {
+    if (options.skip)
+        return;
+    plant = await TinyPlant.running();
+    folder = mkdtempSync(join(tmpdir(), 'plantcast-video-'));
+    writeFileSync(join(folder, 'readers'), `${READER}\n`);
+    ports = { rtsp: await freePort(), srt: await freePort(), http: await freePort() };
+    mkdirSync(join(folder, 'hls'));
+    video = await startVideo('--readers-file', join(folder, 'readers'), '--rtsp', String(ports.rtsp), '--srt', String(ports.srt),
+        '--http', String(ports.http), '--hls', join(folder, 'hls'));
+});
+after(async () => {
+    await video?.stop();
+    await plant?.destroy();
+    rmSync(folder ?? '', { recursive: true, force: true });
+    assert.equal(video?.fault ?? null, null);
+});
+
+test('RTSP: H.264 of the size and rate asked for, by TCP and UDP, to who has the password', options, () => {
+    const probe = (url, transport) => spawnSync('ffprobe', ['-v', 'error', '-rtsp_transport', transport, '-show_entries',
+        'stream=codec_name,profile,width,height,r_frame_rate', '-of', 'csv=p=0', url], { encoding: 'utf8', timeout: 30000 });
+    for (const transport of ['tcp', 'udp'])
+        assert.equal(probe(rtsp(), transport).stdout.trim(), `h264,Constrained Baseline,${WIDTH},${HEIGHT},${FPS}/1`, transport);
+    for (const user of ['', 'wall:wrong@'])
+        assert.match(probe(rtsp(ports.rtsp, user), 'tcp').stderr, /401 Unauthorized/, user);
+});
+
+test('SRT and HLS carry the same pictures, encrypted and by password', options, async () => {
+    const srt = (more) => `srt://127.0.0.1:${ports.srt}?mode=caller&connect_timeout=3000${more}`;
+    const readers = [new Reader(srt(`&passphrase=${encodeURIComponent(READER.split(':')[1])}&pbkeylen=16`)),
+        new Reader(`http://${encodeURI(READER)}@127.0.0.1:${ports.http}/hls/index.m3u8`)];
+    for (const reader of readers) {
+        const { sound, tenths, at } = await reader.until(({ card }) => !card);
+        assert.ok(sound && at - tenths * 100 < 20000);
+        await reader.stop();
+    }
+    const stranger = new Reader(srt('&passphrase=not-that-password&pbkeylen=16'));
+    assert.notEqual(await stranger.ended, 0);
+    assert.equal(stranger.frames.length, 0);
+    assert.equal((await fetch(`http://127.0.0.1:${ports.http}/hls/index.m3u8`)).status, 401);
+    for (const path of ['/hls/', '/hls/none.ts', '/hls/..%2Freaders', '/hls/%2e%2e/readers'])
+        assert.ok([400, 404].includes((await http(path)).status), path);
+    const list = await (await http('/hls/index.m3u8')).text();
+    assert.ok([...list.matchAll(/#EXTINF:([\d.]+)/g)].every(([, s]) => Math.abs(s - 2) < 1), list);
+});
+
+test('ten readers of a stream cost one encoder, and one that reads nothing holds up no other', options, async () => {
+    const readers = Array.from({ length: 10 }, readRtsp);
+    for (const reader of readers)
+        await reader.until(() => true, 60000);
+    readers[0].child.kill('SIGSTOP');
+    const before = await metric('plantcast_video_frames_total'), counts = readers.map(({ frames }) => frames.length), begun = Date.now();
+    await new Promise((done) => setTimeout(done, 5000));
+    const passed = (Date.now() - begun) / 1000, made = await metric('plantcast_video_frames_total') - before;
+    assert.equal(await metric('plantcast_video_readers{output="rtsp"}'), 10);
+    assert.ok(made > 0.7 * FPS * passed && made < 1.2 * FPS * passed, `${made} frames in ${passed} s`);
+    for (const [i, { frames }] of readers.entries())
+        assert.ok(i === 0 || frames.length - counts[i] > 0.6 * FPS * passed, `reader ${i}: ${frames.length - counts[i]} in ${passed} s`);
+    for (const reader of readers)
+        await reader.stop();
+});
+
+test('every second is there, on time, whatever happens', { ...options, timeout: (RECORDED_S + 60) * 1000 }, async () => {
+    const reader = readRtsp();
+    await reader.until(() => true);
+    await new Promise((done) => setTimeout(done, RECORDED_S * 1000));
+    await reader.stop();
+    const { frames } = reader, seconds = new Set(frames.map(({ tenths }) => Math.floor(tenths / 10)));
+    assert.ok(frames.every(({ sound }) => sound));
+    const steps = frames.slice(1).map(({ tenths }, i) => tenths - frames[i].tenths);
+    assert.ok(steps.every((step) => step >= 0 && step <= 10), `${steps}`);
+    assert.ok(seconds.size >= RECORDED_S, `${seconds.size} of ${RECORDED_S} s`);
+    assert.ok(frames.length >= RECORDED_S * FPS * 0.8, `${frames.length} frames in ${RECORDED_S} s`);
+    const lag = frames.map(({ at, tenths }) => at - tenths * 100).sort((a, b) => a - b);
+    assert.ok(lag[Math.floor(lag.length / 2)] < 2000, `${lag[Math.floor(lag.length / 2)]} ms from clock to reader`);
+});
+
+test('a server that dies or hangs: a card within 3 s, and pictures again by themselves', options, async () => {
+    const reader = readRtsp();
+    await reader.until(({ card }) => !card);
+    for (const signal of ['SIGSTOP', 'SIGKILL']) {
+        const port = plant.port, begun = Date.now();
+        plant.daemon.child.kill(signal);
+        const { at } = await reader.until(({ card }) => card);
+        // 3 s, and the reader's own buffers on a loaded machine
+        assert.ok(at - begun < 3400, `${signal}: ${at - begun} ms to the card on the reader's screen`);
+        if (signal === 'SIGSTOP') {
+            plant.daemon.child.kill('SIGCONT');
+        } else {
+            plant.daemon.stopped = true;
+            await plant.daemon.ended;
+            await plant.startDaemon('--port', String(port));
+        }
+        await reader.until(({ card }) => !card);
+    }
+});
+
+test('a token that is none, or is revoked, and a view that is not there: a card that says so', options, async () => {
+    const tokens = join(plant.folder, 'tokens'), token = join(folder, 'token');
+    const made = runProgram('plantcast', ['token', 'add', tokens, '--role', 'viewer', '--name', 'video']);
+    assert.equal(made.code, 0, made.err);
+    writeFileSync(token, `${made.out.trim()}\n`);
+    await plant.daemon.stop();
+    await plant.startDaemon('--tokens', tokens);
+    const port = await freePort(), start = (...args) => startVideo('--token-file', token, '--rtsp', String(port), ...args);
+    const see = () => new Reader(rtsp(port, ''), '-rtsp_transport', 'tcp');
+    let program = await start(), reader = see();
+    await reader.until(({ card }) => !card);
+    const begun = Date.now();
+    assert.equal(runProgram('plantcast', ['token', 'revoke', tokens, 'video']).code, 0);
+    const { at } = await reader.until(({ card }) => card);
+    assert.ok(at - begun < 5400, `${at - begun} ms`); // 3 s to the server's, 1 s to the next picture, and the reader's buffers
+    assert.match(program.said, /does not take this token/);
+    await reader.stop();
+    await program.stop();
+    await plant.daemon.stop();
+    await plant.startDaemon();
+    program = await start('--view', 'none');
+    await program.line(/there is no view 'none'; there are: none/);
+    reader = see();
+    assert.ok((await reader.until(() => true)).card);
+    await reader.stop();
+    await program.stop();
+});
+
+const mounting = { ...options, skip: options.skip || (canMount ? false : 'may not mount') };
+test('a full disk ends HLS alone: no old playlist is left, and it comes back', mounting, async () => {
+    const small = join(folder, 'small'), full = join(small, 'full'), port = await freePort();
+    mkdirSync(small);
+    spawnSync('mount', ['-t', 'tmpfs', '-o', 'size=1M', 'none', small]);
+    try {
+        const program = await startVideo('--rtsp', String(port), '--hls', small);
+        for (const end = Date.now() + 20000; !existsSync(join(small, 'index.m3u8')) && Date.now() < end;)
+            await new Promise((done) => setTimeout(done, 100));
+        spawnSync('dd', ['if=/dev/zero', `of=${full}`, 'bs=4k']);
+        await program.line(/HLS: .*/);
+        const reader = new Reader(rtsp(port, ''), '-rtsp_transport', 'tcp');
+        await reader.until(({ card }) => !card);
+        await reader.stop();
+        rmSync(full, { force: true });
+        await program.line(/HLS: begun anew/);
+        await program.stop();
+        assert.deepEqual(readdirSync(small), []);
+    } finally {
+        spawnSync('umount', ['-l', small]);
+    }
+});
+
+test('bad input: what is wrong is said', options, async () => {
+    const url = `http://127.0.0.1:${plant.port}/`, taken = createServer();
+    await new Promise((done) => taken.listen(0, '127.0.0.1', done));
+    const port = taken.address().port;
+    writeFileSync(join(folder, 'empty'), '');
+    writeFileSync(join(folder, 'nameless'), 'password\n');
+    for (const [args, code, said] of [
+        [[], 2, /URL of one daemon/],
+        [[url], 2, /no output was asked for/],
+        [['ftp://127.0.0.1/', '--rtsp', '1'], 2, /is not http:/],
+        [[url, '--rtsp', '99999'], 2, /--rtsp 99999: expected 0 to 65535/],
+        [[url, '--rtsp', '8554', '--fps', '4'], 2, /--fps 4: expected 5 to 30/],
+        [[url, '--rtsp', '8554', '--size', '641x360'], 2, /even numbers/],
+        [[url, '--rtsp', '8554', '--listen', '0.0.0.0'], 2, /whoever gets there would see the plant/],
+        [[url, '--rtsp', '8554', '--view', 'a', '--query', 'b'], 2, /do not go together/],
+        [[url, '--rtsp', '8554', '--token-file', join(folder, 'empty')], 2, /its first line/],
+        [[url, '--rtsp', '8554', '--token-file', join(folder, 'none')], 2, /No such file/],
+        [[url, '--rtsp', '8554', '--readers-file', join(folder, 'nameless')], 2, /USER:PASSWORD/],
+        [[url, '--rtsp', String(port)], 1, /--rtsp \d+: .*in use/],
+    ]) {
+        const result = runProgram('plantcast-video', args, 10000);
+        assert.equal(result.code, code, `${args}: ${result.err}`);
+        assert.match(result.err, said);
+    }
+    taken.close();
+});
