@@ -61,6 +61,7 @@ static void print_usage(FILE *out)
           "  --core URL       render: wss://HOST:PORT of the core; again for each that stands by for it\n"
           "  --core-token-file FILE, --core-ca FILE   render: its token, of the role renderer; certificates trusted for the core\n"
           "  --node NAME      this daemon's name among others, for the core's log\n"
+          "  --agent-port PORT   where HAProxy's agent check asks how much this node can still draw; SIGUSR1 sends its sessions elsewhere\n"
           "  --check          read everything, report every error, start nothing\n"
           "  --dump-plan      print what field devices will be asked: requests, addresses on the wire, and the load\n"
           "\n"
@@ -194,6 +195,7 @@ enum {
     OPTION_CORE_TOKEN,
     OPTION_CORE_CA,
     OPTION_NODE,
+    OPTION_AGENT,
     OPTION_CHECK,
     OPTION_PLAN,
     OPTION_VERSION,
@@ -239,6 +241,7 @@ static const struct option options[] = {
     { "core", required_argument, NULL, OPTION_CORE },
     { "core-token-file", required_argument, NULL, OPTION_CORE_TOKEN },
     { "core-ca", required_argument, NULL, OPTION_CORE_CA },
+    { "agent-port", required_argument, NULL, OPTION_AGENT },
     { "node", required_argument, NULL, OPTION_NODE },
     { "check", no_argument, NULL, OPTION_CHECK },
     { "dump-plan", no_argument, NULL, OPTION_PLAN },
@@ -332,6 +335,8 @@ static int take_role_option(int option, struct server_params *params)
     switch (option) {
     case OPTION_ROLE: return parse_role(optarg, &params->role) ? -1 : usage_error("--role: all, core or render, not", optarg);
     case OPTION_CORE: return add_core(params, optarg) ? -1 : usage_error("--core: not wss://HOST:PORT, or the fifth:", optarg);
+    case OPTION_AGENT:
+        return parse_int(optarg, 1, 65535, &params->agent_port) ? -1 : usage_error("--agent-port: not a port", optarg);
     case OPTION_CORE_TOKEN: params->core_token = optarg; return -1;
     case OPTION_CORE_CA: params->core_ca = optarg; return -1;
     case OPTION_NODE: params->node = optarg; return tokens_name_valid(optarg) ? -1 : usage_error("--node: no such name:", optarg);

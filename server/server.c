@@ -13,6 +13,7 @@
 #include <time.h>
 #include <unistd.h>
 
+#include "agent.h"
 #include "base/clock.h"
 #include "base/counters.h"
 #include "base/mem.h"
@@ -38,6 +39,7 @@ struct server {
     struct plant_runtime *runtime;
     struct reload *reload;
     struct supervision *supervision;
+    struct agent *agent;         /* NULL: no load balancer asks */
     struct signing_key *signing_key; /* NULL: pictures are not signed */
     struct audit *audit;         /* NULL: nothing is recorded */
     struct plant_import *import; /* NULL: plants are not brought in here */
@@ -69,6 +71,16 @@ static void on_signal(int number)
     struct net *net = atomic_load(&to_stop);
     if (net)
         net_stop(net);
+    errno = cause;
+}
+
+static void on_drain(int number)
+{
+    (void)number;
+    int cause = errno;
+    struct net *net = atomic_load(&to_stop);
+    if (net)
+        net_drain(net);
     errno = cause;
 }
 
@@ -161,7 +173,10 @@ static void on_import_ordered(void *arg, const char *who)
 
 static void on_tick(void *arg, const struct net_status *status)
 {
-    supervision_tick(((struct server *)arg)->supervision, status);
+    struct server *server = arg;
+    supervision_tick(server->supervision, status);
+    if (server->agent)
+        agent_tell(server->agent, &(struct agent_state){ status->busy_percent, status->has_core, status->drains });
 }
 
 static bool start_net(struct server *server)
@@ -180,6 +195,7 @@ static bool start_net(struct server *server)
         .codecs = find_codecs(server),
         .web_folder = server->web,
         .version = PLANTCAST_VERSION,
+        .node = server->params.role == SERVER_RENDER ? server->params.node : NULL,
         .is_core = server->params.role == SERVER_CORE,
         .reload = ask_reload,
         .save = server->params.role == SERVER_RENDER ? NULL : ask_save,
@@ -319,6 +335,12 @@ static bool load_signing_key(struct server *server)
     return true;
 }
 
+static bool start_agent(struct server *server)
+{
+    const struct server_params *params = &server->params;
+    return !params->agent_port || (server->agent = agent_start(server->log, params->address, params->agent_port));
+}
+
 static bool server_start(struct server *server)
 {
     server->counters = counters_create();
@@ -343,7 +365,7 @@ static bool server_start(struct server *server)
     reload_count(server->counters, server->runtime->plant->hash, true);
     supervision_starting(server->supervision, "drawing the first picture");
     return plant_runtime_start_recording(server->runtime, NULL) && plant_runtime_start_sources(server->runtime) &&
-           plant_runtime_start_render_service(server->runtime, NULL, 0) && start_import(server) && start_net(server);
+           plant_runtime_start_render_service(server->runtime, NULL, 0) && start_import(server) && start_agent(server) && start_net(server);
 }
 
 /* Against the flow of data: first who takes, last who gives. */
@@ -355,6 +377,7 @@ static void server_finish(struct server *server)
     pthread_mutex_unlock(&server->wake_lock);
     reload_destroy(&server->reload);
     net_destroy(&net);
+    agent_stop(&server->agent);
     if (server->audit)
         record(server, "stop");
     audit_stop(&server->audit);
@@ -386,6 +409,8 @@ static void handle_signals(struct net *net)
     sigaction(SIGTERM, &action, NULL);
     action.sa_handler = on_hangup;
     sigaction(SIGHUP, &action, NULL);
+    action.sa_handler = on_drain;
+    sigaction(SIGUSR1, &action, NULL);
 }
 
 static void say_ready(const struct server *server)

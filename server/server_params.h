@@ -38,6 +38,7 @@ struct server_params {
     const char *cores[CORE_URLS]; /* SERVER_RENDER: URLs of the core and of those that stand by for it */
     int core_count;
     const char *core_token, *core_ca; /* file of the token; of certificates that are trusted. NULL: none; the system's */
+    int agent_port;                   /* where load balancers ask; 0: nowhere */
     const char *node;                 /* this daemon's name among others; without --node the machine's */
     bool per_fragment; /* the field anew at each fragment; for comparison */
 };

@@ -150,10 +150,12 @@ static void on_core(struct core_link *link, const json_t *message)
 {
     const struct core_identity own = own_identity(link);
     char *why = core_identity_difference(message, "core", &own);
-    if (why)
+    if (why) {
         refuse(link, why);
-    else
+    } else {
         link->taken = true;
+        arrive(link, 0, mem_strdup(link->in.at));
+    }
     mem_free(why);
 }
 
@@ -571,6 +573,7 @@ struct core_link *core_link_start(const struct core_link_params *params)
     link->connects = counters_add(c, "plantcast_core_connects_total", "counter", "Connections to cores that brought readings.");
     link->refused = counters_add(c, "plantcast_core_refused_total", "counter", "Connections to cores that do not belong to this renderer.");
     link->behind = counters_add_seconds(c, "plantcast_core_clock_ahead_seconds", "gauge", "By so much the core's clock is ahead of ours.");
+    lws_set_log_level(LLL_ERR | LLL_WARN, NULL); /* where to is the loop's to say */
     thread_init(&link->thread);
     link->stop_fd = eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
     if (link->stop_fd < 0)

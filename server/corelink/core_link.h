@@ -48,7 +48,7 @@ bool core_link_act(struct core_link *link, const struct core_act *act);
 /* What came for the loop. */
 struct core_arrival {
     struct core_arrival *next;
-    uint64_t client; /* whose answer it is; 0: it is `lists` of the core */
+    uint64_t client; /* whose answer it is; 0: it is `core` or `lists`, of the core itself */
     char *text;
 };
 /* Returns what came since the last call, in order; each for core_arrival_free. */

@@ -46,7 +46,7 @@ enum message_type {
     MESSAGE_UNPAIR
 };
 
-enum { TOKEN_MAX_CHARS = 128, RESUME_CHARS = 32 };
+enum { TOKEN_MAX_CHARS = 128, RESUME_CHARS = 32, RESUME_MOST_CHARS = 8191 /* with a view in it */ };
 
 enum params_given { /* which members a params message had */
                     GIVEN_GROUP = 1 << 0,
@@ -184,8 +184,9 @@ struct message {
     int width_px, height_px;                                   /* hello, resize; 0: as what is resumed */
     struct codec_list codecs;                                  /* hello, codecs; none: as what is resumed */
     double pixel_ratio;                                        /* hello, resize: device pixels to one of the page's; 0: not said */
-    char token[TOKEN_MAX_CHARS + 1], resume[RESUME_CHARS + 1]; /* hello; "": none */
+    char token[TOKEN_MAX_CHARS + 1], resume[RESUME_MOST_CHARS + 1]; /* hello; "": none */
     double idle_ms;                                            /* hello: since somebody was at the page; negative: not said */
+    bool tokens;                                               /* hello: the view is to be told as a token whenever it changed */
     bool anew;                                                 /* hello: of what is resumed only its number, and who follows it */
     bool has_camera, has_params;                               /* hello */
     struct camera camera;                                      /* camera, hello */

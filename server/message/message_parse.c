@@ -116,6 +116,7 @@ static bool parse_hello(const struct plant *plant, const json_t *o, struct messa
     out->idle_ms = -1;
     if (!may_number(o, "idle_ms", 0, 1e12, &out->idle_ms, NULL, error))
         return false;
+    out->tokens = json_is_true(json_object_get(o, "tokens"));
     out->anew = json_is_true(json_object_get(o, "anew"));
     out->has_camera = json_is_object(camera);
     out->has_params = json_is_object(params);

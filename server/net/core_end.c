@@ -2,6 +2,9 @@
 /* A renderer's sessions and its core. */
 #include "net/core_end.h"
 
+#include <stdio.h>
+#include <string.h>
+
 #include "base/mem.h"
 #include "message/names.h"
 
@@ -21,19 +24,43 @@ void core_end_bind(struct server_context *server)
 {
     server->session_context.hand_on = server->params.plant.core_link ? hand_on : NULL;
     server->session_context.hand_on_arg = server;
+    server->session_context.token_keys = server->params.plant.core_link ? &server->token_keys : NULL;
 }
 
-static void take_lists(struct server_context *server, const char *text)
+static void take_key(struct server_context *server, const json_t *core)
+{
+    const char *text = json_string_value(json_object_get(core, "key"));
+    uint8_t key[VIEW_TOKEN_KEY_BYTES];
+    unsigned byte;
+    if (!text || strlen(text) != 2 * sizeof(key))
+        return;
+    for (size_t i = 0; i < sizeof(key); i++) {
+        if (sscanf(text + 2 * i, "%2x", &byte) != 1)
+            return;
+        key[i] = (uint8_t)byte;
+    }
+    view_token_add_key(&server->token_keys, key);
+}
+
+static void take_lists(struct server_context *server, const json_t *lists)
 {
     const struct net_plant *plant = &server->params.plant;
-    json_t *lists = json_loads(text, 0, NULL);
     if (!named_views_mirror(plant->named_views, json_object_get(lists, "views")) ||
         !notes_mirror(plant->notes, json_object_get(lists, "notes")) ||
         !wall_remote_mirror(plant->wall_remote, json_object_get(lists, "walls")) ||
         !wall_remote_mirror_pointers(plant->wall_remote, json_object_get(lists, "pointed")))
         log_err(server->params.log, "core: lists that cannot be such");
-    json_decref(lists);
     streams_on_alarms(server);
+}
+
+static void take(struct server_context *server, const char *text)
+{
+    json_t *message = json_loads(text, 0, NULL);
+    if (!strcmp(json_string_value(json_object_get(message, "type")), "core"))
+        take_key(server, message);
+    else
+        take_lists(server, message);
+    json_decref(message);
 }
 
 void core_end_collect(struct server_context *server)
@@ -44,7 +71,7 @@ void core_end_collect(struct server_context *server)
         if (arrival->client)
             stream_say(server, arrival->client, arrival->text);
         else
-            take_lists(server, arrival->text);
+            take(server, arrival->text);
         core_arrival_free(arrival);
     }
 }

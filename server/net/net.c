@@ -113,6 +113,9 @@ static void say_status(const struct server_context *server)
         server->params.tick(server->params.reload_arg, &(struct net_status){
                                                            .render_service = server->params.plant.render_service,
                                                            .sessions = (size_t)server->stream_count,
+                                                           .busy_percent = admission_busy_percent(&server->admission),
+                                                           .has_core = !server->params.plant.core_link || server->session_context.core_up,
+                                                           .drains = server->drain_ns != 0,
                                                            .certificate_ends_s = server->tls ? tls_ends_s(server->tls) : 0,
                                                        });
 }
@@ -127,6 +130,10 @@ static void time_start(struct server_context *server, int64_t now_ns)
 static void tick(struct net *net, int64_t now_ns)
 {
     time_start(&net->server, now_ns);
+    if (atomic_load(&net->drain) && !net->server.drain_ns) {
+        net->server.drain_ns = now_ns;
+        log_info(net->server.params.log, "drained: %d sessions are sent elsewhere within 12 s", net->server.stream_count);
+    }
     look_at_files(net, now_ns);
     look_around(net, now_ns);
     record_held(&net->server, now_ns);
@@ -436,12 +443,15 @@ struct net *net_create(const struct net_params *params)
         .codecs = params->codecs,
         .imports = params->import != NULL,
         .version = params->version,
+        .node = params->node,
         .quotas = server->quotas,
         .resumes = resumes_create(),
         .admission = &server->admission,
         .login_throttle = server->login_throttle,
         .audit = params->audit,
     };
+    if (params->is_core)
+        renderers_make_key(server);
     add_counters(server);
     net_bind_plant(net);
     raise_file_limit(params->log, server->quotas);
@@ -509,6 +519,12 @@ void net_run(struct net *net)
 void net_stop(struct net *net)
 {
     atomic_store(&net->stopping, true);
+    lws_cancel_service(net->server.lws);
+}
+
+void net_drain(struct net *net)
+{
+    atomic_store(&net->drain, true);
     lws_cancel_service(net->server.lws);
 }
 

@@ -22,6 +22,9 @@ void net_run(struct net *net);
 void net_wake(struct net *net);
 /* Ends net_run. Any thread; safe in a signal handler. */
 void net_stop(struct net *net);
+/* Sends all sessions elsewhere from now on, one after the other: each is closed at some instant of 10 s, after a load balancer had 2 s
+   to hear of it (net_status.drains). Any thread; safe in a signal handler. */
+void net_drain(struct net *net);
 /* Has the loop call what(arg), and returns once that is done. Any thread but the loop. Returns false if the loop has ended. */
 bool net_call(struct net *net, void (*what)(void *arg), void *arg);
 /* Has the files of tokens and certificate read again soon, and the plant reloaded. Any thread; safe in a signal handler. */

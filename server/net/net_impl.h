@@ -18,7 +18,7 @@ struct net {
     int64_t readings_ns; /* when the next snapshot is due (readings.c) */
     struct cpu_meter cpu;
     int64_t cpu_ns; /* when it was last read */
-    _Atomic bool stopping, look, readings_changed;
+    _Atomic bool stopping, look, drain, readings_changed;
     struct {
         pthread_mutex_t lock;
         pthread_cond_t done;

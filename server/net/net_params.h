@@ -39,6 +39,9 @@ struct net_plant { /* what belongs to one loaded plant; a reload brings another 
 struct net_status { /* what the loop says of itself with each tick */
     struct render_service *render_service;
     size_t sessions;
+    int busy_percent;            /* of the render thread's time, for moving pictures */
+    bool has_core;               /* readings come; true without --role render */
+    bool drains;                 /* sessions are being sent elsewhere */
     int64_t certificate_ends_s; /* seconds of UTC since 1970; 0: there is none */
 };
 
@@ -56,6 +59,7 @@ struct net_params {
     unsigned codecs;        /* a bit, 1 << enum wire_codec, for each that works here */
     const char *web_folder; /* the page's files; NULL: no page is served */
     const char *version;
+    const char *node;       /* as in struct session_context */
     bool is_core;           /* renderers may connect */
     void (*reload)(void *arg, const char *who);     /* called in the loop: load the plant anew, as who asks. NULL: it cannot be */
     void (*save)(void *arg, struct tag_save *save); /* called in the loop: put another tag list in force; takes it. NULL: it cannot be */

@@ -2,6 +2,9 @@
 /* One connection of a renderer: an introduction, then whatever is newer than what it was sent last. */
 #include "net/renderers.h"
 
+#include <openssl/rand.h>
+#include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "base/clock.h"
@@ -44,6 +47,15 @@ const char *renderers_refusal(const struct server_context *server, struct lws *w
     if (!server->params.is_core)
         return "this daemon is no core: it has no --role core\n";
     return connection->role == ROLE_RENDERER || local ? NULL : "this takes a token of the role renderer\n";
+}
+
+void renderers_make_key(struct server_context *server)
+{
+    uint8_t key[VIEW_TOKEN_KEY_BYTES];
+    if (RAND_bytes(key, sizeof(key)) != 1)
+        return;
+    for (size_t i = 0; i < sizeof(key); i++)
+        snprintf(server->core_key + 2 * i, 3, "%02x", key[i]);
 }
 
 /* --- coming and going --------------------------------------------------------------------------------------------------------- */
@@ -239,7 +251,9 @@ static void introduce(struct server_context *server, struct renderer *renderer, 
     }
     core_sent_init(&renderer->sent, plant->tag_count);
     renderer->links = mem_array(plant->source_count + 1, sizeof(*renderer->links));
-    json_array_append_new(renderer->answers, core_identity_message("core", &own));
+    json_t *hello = core_identity_message("core", &own);
+    json_object_set_new(hello, "key", json_string(server->core_key));
+    json_array_append_new(renderer->answers, hello);
     log_info(server->params.log, "renderer %s: connected", renderer->name);
     net_refresh_readings(server);
     count(server);

@@ -14,6 +14,7 @@
 #include "service/history_queries.h"
 #include "session/session.h"
 #include "session/tag_text_cache.h"
+#include "session/view_token.h"
 
 enum { SLICE_BYTES = 32 * 1024 };
 
@@ -46,6 +47,8 @@ struct server_context {
     struct history_loader *history_loader;   /* likewise */
     struct stream *streams, **by_client;     /* all connections to /stream; the same, by session id, ascending */
     size_t by_client_capacity;
+    struct view_token_keys token_keys;               /* of a renderer: by which views are signed */
+    char core_key[2 * VIEW_TOKEN_KEY_BYTES + 1];     /* of a core: the key that it gives its renderers, hexadecimal; "": none */
     struct renderer *renderers;                      /* all connections to /core (renderers.c) */
     struct request *snapshots;                       /* HTTP requests that wait for a frame, a pick or a reload */
     int stream_count, picture_count, question_count; /* the latter two: of HTTP, that are being answered */
@@ -65,6 +68,7 @@ struct server_context {
     char machine[256]; /* the machine's host name; "": none */
     int64_t logins_held, held_ns; /* tokens that were not judged, and not recorded yet; when such were recorded last */
     int64_t unasked; /* answers of the identity provider that nobody waits for, or that could not be looked at; likewise */
+    int64_t drain_ns;  /* monotonic: since when sessions are sent elsewhere; 0: they are not */
     int64_t looked_ns; /* when the files of tokens and certificate were last looked at */
     uint64_t next_client;
     bool asked;                         /* requests were made: net_wake_render_service is due */

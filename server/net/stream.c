@@ -13,6 +13,8 @@
 #include "net/connection.h"
 
 enum { STREAM_CLOSE_STALLED = 4000, LAST_WORDS_S = 2, BACK_MAX_S = 60 };
+static const int64_t HEARD_OF_NS = 2 * NS_PER_S; /* so long load balancers take to hear that sessions are sent elsewhere */
+static const int64_t DRAIN_NS = 10 * NS_PER_S;
 static const int64_t MOVING_NS = 200 * NS_PER_MS; /* after an input somebody is taken to be moving */
 
 /* --- coming and going ------------------------------------------------------------------------------------------------- */
@@ -212,6 +214,13 @@ void streams_on_readings(struct server_context *server, bool data_changed, bool 
     }
 }
 
+/* Each at another instant: their pages come back at once, to another node. */
+static bool is_drained(const struct server_context *server, const struct stream *stream, int64_t now_ns)
+{
+    uint64_t spread = (stream->session->id + 1) * 0x9E3779B97F4A7C15u >> 32; /* golden ratio: spreads neighbours apart */
+    return server->drain_ns && now_ns - server->drain_ns > HEARD_OF_NS + (int64_t)(spread % 1000) * (DRAIN_NS / 1000);
+}
+
 void streams_on_tick(struct server_context *server)
 {
     int64_t now_ns = clock_mono_ns(), patience_ns = server->quotas->at[QUOTA_PATIENCE_S] * NS_PER_S;
@@ -222,6 +231,8 @@ void streams_on_tick(struct server_context *server)
     follow_tell(server, now_ns);
     for (struct stream *stream = server->streams; stream; stream = stream->next) {
         session_on_tick(stream->session, now_ns);
+        if (is_drained(server, stream, now_ns))
+            session_close(stream->session, LWS_CLOSE_STATUS_GOINGAWAY, "this node is drained; retry after 0 s");
         if (stream->in_count > 0 && now_ns - stream->in_begin_ns > patience_ns)
             session_close(stream->session, 1008, "half a message, and for too long no more of it");
         count(server, stream);

@@ -13,6 +13,7 @@
 #include "plant/influence.h"
 #include "plant/singles.h"
 #include "session/resume.h"
+#include "session/view_token.h"
 
 static json_t *colour(const uint8_t rgb[3])
 {
@@ -153,6 +154,8 @@ static json_t *plant_object(const struct session_context *context, const struct 
     json_t *object = json_pack("{s:o,s:o,s:o}", "name", string(context->plant->name), "time_zone", string(context->plant->time_zone),
                                "bounds", box(context->scene->bounds_min_m, context->scene->bounds_max_m));
     json_object_set_new(object, "configuration", string(context->plant->hash));
+    if (context->node)
+        json_object_set_new(object, "node", string(context->node));
     json_object_set_new(object, "home",
                         json_pack("{s:o,s:o,s:o,s:o}", "eye", vector(home->eye_m), "target", vector(home->target_m), "up", vector(home->up),
                                   "fov", number(home->fov_deg)));
@@ -223,9 +226,12 @@ char *reply_welcome_text(const struct session *session, int64_t now_utc_ns)
         json_pack("{s:s,s:s,s:I,s:o,s:I}", "type", "welcome", "protocol", WIRE_SUBPROTOCOL, "session", (json_int_t)session->identity.number,
                   "codec", string(name_of(names_codec, (int)session->codec.current)), "time_us", us(now_utc_ns));
     json_t *params = json_object();
+    char *token = view_token_make(session->context->token_keys, session, now_utc_ns);
+    const char *resume = token ? token : session->identity.resume_secret;
     json_object_update_new(object, json_pack("{s:s,s:s,s:I,s:b,s:o}", "role", name_of(names_role, (int)session->identity.role), "resume",
-                                             session->identity.resume_secret, "resume_s", (json_int_t)(RESUME_KEPT_NS / 1000000000),
-                                             "resumed", session->identity.resumed, "limits", quotas_json(session->context->quotas)));
+                                             resume, "resume_s", (json_int_t)(RESUME_KEPT_NS / 1000000000), "resumed",
+                                             session->identity.resumed, "limits", quotas_json(session->context->quotas)));
+    mem_free(token);
     if (session->context->imports && session->identity.role == ROLE_ENGINEER)
         json_object_set_new(object, "imports", json_true());
     set_home(object, session->context, view->width_px, view->height_px);

@@ -115,6 +115,14 @@ bool resumes_find(const struct resumes *resumes, const char *secret, const struc
     return true;
 }
 
+bool resumes_has_live(const struct resumes *resumes, uint64_t number)
+{
+    for (size_t i = 0; i < resumes->count; i++)
+        if (resumes->kept[i].what.live && resumes->kept[i].what.live->identity.number == number)
+            return true;
+    return false;
+}
+
 void resumes_forget_gone(struct resumes *resumes)
 {
     for (size_t i = resumes->count; i-- > 0;)

@@ -28,6 +28,8 @@ struct resumed {
 };
 /* Finds what a secret resumes. Returns false if there is nothing, it has expired, or it belongs to another token than the session's. */
 bool resumes_find(const struct resumes *resumes, const char *secret, const struct session *session, int64_t now_ns, struct resumed *out);
+/* Returns whether a session that is connected has that number. */
+bool resumes_has_live(const struct resumes *resumes, uint64_t number);
 /* Drops the views of all lost connections, expired or not: none of them can be resumed. Secrets of living connections stay good. */
 void resumes_forget_gone(struct resumes *resumes);
 /* Drops what the secret resumes. */

@@ -2,6 +2,7 @@
 /* One client: its view, what it is owed, what it may have. */
 #include "session/session_impl.h"
 #include "session/resume.h"
+#include "session/view_token.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -407,8 +408,24 @@ void session_on_oversize(struct session *session, size_t count, int64_t now_ns)
     session_reply_error(session, &error);
 }
 
+/* So that another daemon can go on where this one was killed. */
+static void tell_token(struct session *session, int64_t now_ns)
+{
+    struct session_identity *identity = &session->identity;
+    if (!session->hello || !identity->tokens || now_ns - identity->token_ns < NS_PER_S || view_equal(&identity->token_view, &session->view))
+        return;
+    const struct snapshot *snapshot = session->context->snapshot;
+    char *token = view_token_make(session->context->token_keys, session, snapshot->taken_utc_ns + (now_ns - snapshot->taken_mono_ns));
+    identity->token_view = session->view;
+    identity->token_ns = now_ns;
+    if (token)
+        session_reply(session, json_text(json_pack("{s:s,s:s}", "type", "resume", "resume", token), 0));
+    mem_free(token);
+}
+
 void session_on_tick(struct session *session, int64_t now_ns)
 {
+    tell_token(session, now_ns);
     if (!session->hello && now_ns - session->opened_ns >= session->context->quotas->at[QUOTA_PATIENCE_S] * NS_PER_S)
         session_close(session, 1008, "no hello for too long");
     if (session->rate.exceeded && now_ns - session->rate.begin_ns >= NS_PER_S)

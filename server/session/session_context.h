@@ -9,6 +9,8 @@
 #include "session/session_state.h"
 
 /* Set by the loop; sessions change only the members that say so. */
+struct view_token_keys;
+
 struct session_context {
     const struct plant *plant;
     const struct scene *scene;
@@ -32,6 +34,7 @@ struct session_context {
     bool (*hand_on)(void *arg, const struct session *session, const char *text);
     void *hand_on_arg;
     bool core_up;                          /* likewise: readings come from the core */
+    const struct view_token_keys *token_keys; /* NULL: views are not told as tokens */
     const bool *links_up;                  /* by source */
     bool imports;                          /* engineers may bring plants in */
     bool live;                             /* a source is connected */
@@ -40,6 +43,7 @@ struct session_context {
     bool overloaded;                       /* refined frames for all, at each change of readings, are more than can be drawn */
     unsigned codecs;                       /* a bit, 1 << enum wire_codec, for each that works here; 0: JPEG and PNG */
     double cpu_used;                       /* share of all processors of the machine, 0..1 */
+    const char *node; /* this daemon's name among those that a load balancer stands before; NULL: it is alone */
     const char *version;
     const struct quotas *quotas;
     const struct tokens *tokens;           /* NULL: none are configured */

@@ -4,6 +4,7 @@
 
 #include "session/session_impl.h"
 #include "session/resume.h"
+#include "session/view_token.h"
 
 static bool judge_token(struct session *session, const char *token, int64_t now_ns, int64_t now_utc_ns, struct message_error *error)
 {
@@ -108,6 +109,19 @@ static void take_over(struct session *session, const struct resumed *resumed, co
         session_close(resumed->live, 1000, "a new connection has taken this view over");
 }
 
+/* By the secret alone, where the view was left here; else by the view in the token, wherever it was signed. */
+static bool find_resumed(const struct session *session, const char *token, int64_t now_ns, int64_t now_utc_ns,
+                         char secret[RESUME_CHARS + 1], struct resumed *out)
+{
+    const struct session_context *context = session->context;
+    snprintf(secret, RESUME_CHARS + 1, "%.*s", (int)strcspn(token, "."), token);
+    if (!token[0])
+        return false;
+    if (resumes_find(context->resumes, secret, session, now_ns, out))
+        return true;
+    return view_token_read(context->token_keys, token, session, now_utc_ns, out) && !resumes_has_live(context->resumes, out->called);
+}
+
 bool session_hello(struct session *session, const struct message *message, int64_t now_ns, int64_t now_utc_ns, struct message_error *error)
 {
     const struct session_context *context = session->context;
@@ -119,13 +133,14 @@ bool session_hello(struct session *session, const struct message *message, int64
         session->identity.active_ns = now_ns - (int64_t)(message->idle_ms * 1e6);
     if (session->identity.holder.role != ROLE_NOBODY && session_left_alone(session, now_ns, error))
         return false;
-    bool back = message->resume[0] && resumes_find(context->resumes, message->resume, session, now_ns, &resumed);
+    char secret[RESUME_CHARS + 1];
+    bool back = find_resumed(session, message->resume, now_ns, now_utc_ns, secret, &resumed);
     const struct resumed *before = back && !message->anew ? &resumed : NULL; /* of which the view is taken, too */
     if (!begin_view(session, message, before, &view, error) ||
         !session_choose_codec(session, message->codecs.count ? &message->codecs : &resumed.codecs, error) || !admit(session, &view, error))
         return false;
     if (back)
-        take_over(session, &resumed, message->resume);
+        take_over(session, &resumed, secret);
     session->view = view;
     if (message->has_params)
         session_record_params(session, message);
@@ -133,6 +148,7 @@ bool session_hello(struct session *session, const struct message *message, int64
         session_time_begin(session, message->time.at_us, message->time.speed);
     else if (before)
         session_time_begin(session, resumed.view.at_us, resumed.speed);
+    session->identity.tokens = message->tokens;
     session->identity.resumed = session->identity.returned = back;
     if (back)
         session->identity.number = resumed.called;

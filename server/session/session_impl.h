@@ -87,6 +87,13 @@ void session_tell_time(struct session *session);
 void session_ask_follow(struct session *session, const struct message *message);
 void session_ask_lead(struct session *session, const struct message *message);
 
+/* --- session_plant.c -------------------------------------------------------------------------------------------------- */
+
+/* Returns what is seen, by names, for session_look_again(); mem_free. */
+char *session_carried_text(const struct session_context *context, const struct view *view);
+/* Gives a session the size and camera of `before` and what was carried, as far as its plant has that. */
+void session_look_again(struct session *session, const struct view *before, const char *carried);
+
 /* --- session_place.c -------------------------------------------------------------------------------------------------- */
 
 /* Act on `place`, `gaps`, `save_tags` and `prove`. Return false with *error if they are refused. */

@@ -8,7 +8,7 @@
 #include "session/session_impl.h"
 
 /* What is seen, by names, as `params` of the server says it; `start`: of assets that start otherwise than shown, how. */
-static char *carried_of(const struct session_context *context, const struct view *view)
+char *session_carried_text(const struct session_context *context, const struct view *view)
 {
     char *said = reply_params_text(context, view, 0, false);
     json_t *o = json_loads(said, 0, NULL), *start = json_object();
@@ -32,7 +32,7 @@ char *session_carry(struct session *session)
     session_time_leave(session);
     session_place_leave(session);
     session_drop_ready(session);
-    return session->hello ? carried_of(session->context, &session->view) : NULL;
+    return session->hello ? session_carried_text(session->context, &session->view) : NULL;
 }
 
 /* The same as a client would ask for it. */
@@ -126,7 +126,7 @@ static void apply_carried(struct session *session, const char *carried)
     json_decref(o);
 }
 
-static void look_again(struct session *session, const struct view *before, const char *carried)
+void session_look_again(struct session *session, const struct view *before, const char *carried)
 {
     view_default(session->context->scene, before->width_px, before->height_px, &session->view);
     session->view.camera = before->camera;
@@ -139,8 +139,8 @@ void session_view_in(const struct session *session, const struct session_context
 {
     const struct view *view = session_view(session);
     struct session *other = session_create(context, session->id, 0);
-    char *carried = carried_of(session->context, view);
-    look_again(other, view, carried);
+    char *carried = session_carried_text(session->context, view);
+    session_look_again(other, view, carried);
     *out = other->view;
     mem_free(carried);
     session_destroy(&other);
@@ -164,7 +164,7 @@ void session_take_plant(struct session *session, const char *carried)
         return;
     session->owed.following |= session->following.left != 0;
     session->following.left = 0; /* what is beneath is of the plant before */
-    look_again(session, &before, carried);
+    session_look_again(session, &before, carried);
     session->owed.welcome = session->owed.tags_all = session->owed.status = session->demand.any = true;
     session->owed.params = false;
     session->owed.loop_checks = true;

@@ -25,6 +25,9 @@ struct session_identity {
     struct token_holder holder;           /* of that token; role ROLE_NOBODY: no token was given, or none was accepted */
     char resume_secret[RESUME_CHARS + 1]; /* lets the client take its view up again over another connection */
     int64_t active_ns;                    /* monotonic: when somebody was last at the page; 0: not since it came */
+    bool tokens;                          /* the client takes its view as a token whenever it changed */
+    struct view token_view;               /* as last told in one */
+    int64_t token_ns;                     /* monotonic: when that was */
     bool resumed;                         /* this session took up another's view, as `welcome` says */
     bool returned;                        /* likewise, and its followers have yet to be moved here */
 };

@@ -93,6 +93,8 @@ test('links: what is chosen, and no more', () => {
     const location = { origin: 'https://plant.example', pathname: '/' };
     assert.deepEqual(shareLinks({ location, session, tag: null }),
         { view: 'https://plant.example/#group=g', follow: 'https://plant.example/#follow=7' });
+    assert.equal(shareLinks({ location, session: { ...session, model: { plant: { node: 'r1' } } }, tag: null }).follow,
+        'https://plant.example/?node=r1#follow=7');
     const links = shareLinks({ location, session: { ...session, params: { selected: 'E 1' }, following: { session: 3 } }, tag: 'T&1' });
     assert.deepEqual([links.tag, links.asset, links.follow].map((link) => link.slice(link.indexOf('#'))),
         ['#tag=T%261', '#asset=E%201', '#follow=3']);

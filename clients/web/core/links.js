@@ -12,6 +12,7 @@ export function shareLinks({ location, session, tag }) {
         links.tag = page + writeAddress({ tag });
     if (asset)
         links.asset = page + writeAddress({ params: { selected: asset } });
-    links.follow = `${page}#follow=${session.following?.session ?? session.id}`;
+    const { node } = session.model?.plant ?? {}; // one of several behind a balancer, which goes by the name
+    links.follow = `${page}${node ? `?node=${node}` : ''}#follow=${session.following?.session ?? session.id}`;
     return links;
 }

@@ -78,7 +78,8 @@ export class Nodes {
     }
 
     async start(args, file) {
-        const node = new Node(this.plant, ['--trust-local', '--tokens', this.tokenFile, ...args], file);
+        const local = args.includes('--behind-proxy') ? [] : ['--trust-local'];
+        const node = new Node(this.plant, [...local, '--tokens', this.tokenFile, ...args], file);
         this.all.push(node);
         return node.ready();
     }

@@ -1,0 +1,115 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* A line for each who asks. Nothing is read: there is nothing to attack. */
+#include "agent.h"
+
+#include <errno.h>
+#include <netdb.h>
+#include <poll.h>
+#include <stdio.h>
+#include <string.h>
+#include <sys/eventfd.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include "base/mem.h"
+#include "base/thread.h"
+
+struct agent {
+    struct log *log;
+    int fd, stop_fd;
+    struct thread thread;
+    /* --- below: under thread.lock */
+    struct agent_state state;
+};
+
+/* Weight 1 of 100 where readings are missing: another node is better, but if all have lost the core, people still see that. */
+static int print_line(const struct agent_state *state, char *line, size_t size)
+{
+    int free_percent = state->busy_percent < 99 ? 100 - state->busy_percent : 1;
+    if (state->drains)
+        return snprintf(line, size, "down #it is drained\n");
+    return snprintf(line, size, "up %d%%\n", state->has_core ? free_percent : 1);
+}
+
+static void answer(struct agent *agent)
+{
+    char line[64];
+    int fd = accept4(agent->fd, NULL, NULL, SOCK_CLOEXEC | SOCK_NONBLOCK);
+    if (fd < 0)
+        return;
+    pthread_mutex_lock(&agent->thread.lock);
+    const struct agent_state state = agent->state;
+    pthread_mutex_unlock(&agent->thread.lock);
+    int count = print_line(&state, line, sizeof(line));
+    (void)!send(fd, line, (size_t)count, MSG_NOSIGNAL); /* it fits a new socket's buffer */
+    close(fd);
+}
+
+static void *run(void *arg)
+{
+    struct agent *agent = arg;
+    while (!thread_is_stopping(&agent->thread)) {
+        struct pollfd fds[2] = { { .fd = agent->fd, .events = POLLIN }, { .fd = agent->stop_fd, .events = POLLIN } };
+        if (poll(fds, 2, -1) > 0 && fds[0].revents)
+            answer(agent);
+    }
+    return NULL;
+}
+
+static int open_port(const char *address, int port)
+{
+    struct addrinfo hints = { .ai_socktype = SOCK_STREAM, .ai_flags = AI_NUMERICHOST | AI_NUMERICSERV | AI_PASSIVE }, *at;
+    char service[12];
+    snprintf(service, sizeof(service), "%d", port);
+    if (getaddrinfo(address, service, &hints, &at) != 0)
+        return -EINVAL;
+    int fd = socket(at->ai_family, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0), on = 1;
+    bool good = fd >= 0 && setsockopt(fd, SOL_SOCKET, SO_REUSEADDR, &on, sizeof(on)) == 0 && bind(fd, at->ai_addr, at->ai_addrlen) == 0 &&
+                listen(fd, 16) == 0;
+    int error = good ? 0 : errno;
+    freeaddrinfo(at);
+    if (!good && fd >= 0)
+        close(fd);
+    return good ? fd : -error;
+}
+
+struct agent *agent_start(struct log *log, const char *address, int port)
+{
+    struct agent *agent = mem_new(sizeof(*agent));
+    agent->log = log;
+    thread_init(&agent->thread);
+    agent->stop_fd = eventfd(0, EFD_CLOEXEC);
+    agent->fd = open_port(address, port);
+    if (agent->fd < 0)
+        log_err(log, "agent port %d: %s", port, strerror(-agent->fd));
+    if (agent->fd < 0 || agent->stop_fd < 0 || !thread_start(&agent->thread, log, "agent", run, agent))
+        agent_stop(&agent);
+    return agent;
+}
+
+void agent_stop(struct agent **pointer)
+{
+    struct agent *agent = *pointer;
+    if (!agent)
+        return;
+    pthread_mutex_lock(&agent->thread.lock);
+    agent->thread.stopping = true;
+    pthread_mutex_unlock(&agent->thread.lock);
+    if (agent->stop_fd >= 0)
+        eventfd_write(agent->stop_fd, 1);
+    thread_stop(&agent->thread);
+    thread_finish(&agent->thread);
+    if (agent->fd >= 0)
+        close(agent->fd);
+    if (agent->stop_fd >= 0)
+        close(agent->stop_fd);
+    mem_free(agent);
+    *pointer = NULL;
+}
+
+void agent_tell(struct agent *agent, const struct agent_state *state)
+{
+    pthread_mutex_lock(&agent->thread.lock);
+    agent->state = *state;
+    pthread_mutex_unlock(&agent->thread.lock);
+}

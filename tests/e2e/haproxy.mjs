@@ -1,0 +1,192 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// HAProxy in front of two renderers: a node that is killed, or drained, loses nobody's view and no acknowledgement.
+import assert from 'node:assert/strict';
+import { connect } from 'node:net';
+import { after, before, test } from 'node:test';
+import { Haproxy, missingHaproxy } from './support/haproxy.mjs';
+import { Nodes, sleep, until } from './support/nodes.mjs';
+import { get, PlainClient } from './support/plain_client.mjs';
+import { freePort } from './support/ports.mjs';
+import { missing } from './support/tiny_plant.mjs';
+
+const absent = missing();
+const options = { skip: absent.length > 0 ? `not built: ${absent.join(', ')}` : missingHaproxy() ?? false, timeout: 200000 };
+const VIEWERS = 40, BACK_S = 10;
+let nodes, core, renderers, proxy, viewers;
+
+before(async () => {
+    if (options.skip)
+        return;
+    nodes = await Nodes.create();
+    core = await nodes.core(0, '--behind-proxy', '--host', 'plant.example');
+    renderers = await Promise.all(['r1', 'r2'].map(start));
+    proxy = await Haproxy.start(renderers, core);
+    await nodes.plant.tell('set TI-1 20');
+    await until('both nodes up', async () => Object.values(await proxy.servers().catch(() => ({ none: {} })))
+        .every(({ status }) => /^UP/.test(status)));
+});
+after(async () => {
+    for (const viewer of viewers ?? [])
+        viewer.leave();
+    await proxy?.destroy();
+    await nodes?.destroy();
+});
+
+async function start(name, i) {
+    const agentPort = renderers?.[i].agentPort ?? await freePort();
+    const node = await nodes.renderer(name, core, '--agent-port', String(agentPort), '--behind-proxy', '--host', 'plant.example',
+        '--limit', 'address-sessions=100', '--limit', 'address-connections=200',
+        ...(renderers ? ['--port', String(renderers[i].port)] : []));
+    return Object.assign(node, { agentPort, name });
+}
+
+// A page without a screen: it comes back as pages do, and says nothing of its view but the token.
+class Viewer {
+    constructor(number) {
+        Object.assign(this, { number, eye: [3 + number / 10, -5, 2], returns: 0, moved: null, resume: null, lostAt: null });
+    }
+
+    async come() {
+        const { headers } = await get(proxy.port, '/healthz', 'GET', this.cookie ? `Cookie: ${this.cookie}\r\n` : '');
+        this.cookie = headers['set-cookie']?.split(';')[0] ?? this.cookie;
+        this.node = this.cookie.split('=')[1];
+        this.client = await PlainClient.open(proxy.port, { headers: [`Cookie: ${this.cookie}`] });
+        const token = nodes.tokens.operator;
+        this.client.say(this.resume ? { type: 'hello', tokens: true, token, resume: this.resume }
+            : { type: 'hello', tokens: true, token, width: 160, height: 90, codecs: ['jpeg'] });
+        this.welcome = await this.client.text('welcome', 10000);
+        this.watch(this.client);
+    }
+
+    async watch(client) {
+        await client.until('the end', ({ closed }) => closed, 1e9).catch(() => {});
+        if (this.left)
+            return;
+        this.lostAt = performance.now();
+        this.reason = client.closed.text;
+        for (let wait = 500; !this.left; wait = Math.min(8000, wait * 2)) {
+            await sleep(wait * (0.75 + Math.random() / 2));
+            try {
+                await this.come();
+                this.returns++;
+                return;
+            } catch { /* tries again */ }
+        }
+    }
+
+    async look() {
+        this.client.say({ type: 'camera', seq: 1, eye: this.eye, target: [0, 0, 0] });
+        await this.shows();
+        await this.client.until('a token', ({ texts }) => texts.some(({ type }) => type === 'resume'), 20000);
+        await sleep(1200); // the newest one
+        this.resume = this.client.texts.findLast(({ type }) => type === 'resume').resume;
+    }
+
+    shows() {
+        const same = ({ eye }) => this.eye.every((v, i) => Math.abs(v - eye[i]) < 1e-5);
+        return this.client.until('the view', ({ frames }) => frames.some(same), 30000);
+    }
+
+    leave() {
+        this.left = true;
+        this.client?.close();
+    }
+}
+
+const line = (port) => new Promise((done, fail) => {
+    let text = '';
+    const socket = connect(port, '127.0.0.1').on('data', (chunk) => { text += chunk; }).on('end', () => done(text)).on('error', fail);
+});
+const standing = async (node) => (await (await node.fetch('/api/v1/alarms', nodes.tokens.viewer)).json()).alarms;
+
+test('each node says how much it can still draw; a cookie keeps to one node', options, async () => {
+    assert.match(await line(renderers[0].agentPort), /^up \d{1,3}%\n$/);
+    viewers = Array.from({ length: VIEWERS }, (_, i) => new Viewer(i));
+    for (const viewer of viewers)
+        await viewer.come();
+    await Promise.all(viewers.map((viewer) => viewer.look()));
+    const counts = ['r1', 'r2'].map((name) => viewers.filter(({ node }) => node === name).length);
+    assert.ok(counts.every((count) => count >= 10), `${counts} of ${VIEWERS}`);
+    assert.equal(nodes.pollers(), 1);
+    const { status } = await get(proxy.port, '/api/v1/history?tags=TI-1', 'GET', `Authorization: Bearer ${nodes.tokens.viewer}\r\n`);
+    assert.equal(status, 200, 'history is the core\'s');
+});
+
+test('who follows goes to the node of the leader, whatever node he was at', options, async () => {
+    const leader = viewers.find(({ node }) => node === 'r1');
+    assert.equal(leader.welcome.plant.node, 'r1');
+    const { headers } = await get(proxy.port, `/healthz?node=${leader.welcome.plant.node}`, 'GET', 'Cookie: PLANTCAST=r2\r\n');
+    const cookie = headers['set-cookie'].split(';')[0];
+    assert.equal(cookie, 'PLANTCAST=r1');
+    const follower = await PlainClient.open(proxy.port, { headers: [`Cookie: ${cookie}`] });
+    follower.say({ type: 'hello', token: nodes.tokens.viewer, width: 160, height: 90, codecs: ['jpeg'] });
+    await follower.text('welcome');
+    follower.say({ type: 'follow', session: leader.welcome.session });
+    assert.equal((await follower.text('following')).session, leader.welcome.session);
+    await follower.frameWhere('the leader\'s view', ({ eye }) => Math.abs(eye[0] - leader.eye[0]) < 1e-5);
+    follower.close();
+});
+
+test('kill -9 of one of two: all are back within 10 s, with their views; no acknowledgement is lost', options, async (t) => {
+    for (const tag of ['TI-1', 'TI-2', 'PI-1'])
+        await nodes.plant.tell(`set ${tag} 95`);
+    await until('three alarms', async () => (await standing(core)).filter(({ state }) => state === 'unacknowledged').length === 3);
+    const hit = viewers.filter(({ node }) => node === 'r1'), done = [];
+    const acknowledge = async (viewer, tag, seq) => {
+        for (;;) { // a person does it again where nothing was confirmed
+            const { client } = viewer, from = client.texts.length;
+            client.say({ type: 'alarm', seq, action: 'acknowledge', alarms: [[tag, 'H']] });
+            const answer = await client.until('an answer', ({ texts, closed }) => closed ?? texts.slice(from)
+                .find((text) => text.type === 'alarmed' && text.seq === seq), 20000);
+            if (answer.type === 'alarmed')
+                return done.push([tag, answer.done]);
+            await until('its return', () => viewer.client !== client, 20);
+        }
+    };
+    const acks = [acknowledge(hit[0], 'TI-1', 1)];
+    await until('the first', () => done.length > 0);
+    const killed = performance.now();
+    acks.push(acknowledge(hit[1], 'TI-2', 2));
+    await renderers[0].stop('SIGKILL');
+    acks.push(acknowledge(hit[2], 'PI-1', 3));
+    await until('all back', () => hit.every(({ returns }) => returns > 0), 30);
+    await Promise.all(hit.map((viewer) => viewer.shows()));
+    const took = (performance.now() - killed) / 1000;
+    t.diagnostic(`${hit.length} of ${VIEWERS} sessions back on the other node, each with its view, after ${took.toFixed(1)} s`);
+    assert.ok(took < BACK_S, `${took} s`);
+    assert.ok(hit.every(({ welcome, node }) => welcome.resumed && node === 'r2'));
+    assert.equal(new Set(viewers.map(({ welcome }) => welcome.session)).size, VIEWERS, 'each has its number');
+    await Promise.all(acks);
+    const anna = ({ state, who }) => state === 'acknowledged' && who === 'anna';
+    await until('all acknowledged', async () => (await standing(core)).filter(anna).length === 3);
+    const kept = async () => (await (await core.fetch('/api/v1/alarms/journal', nodes.tokens.viewer)).json()).rows
+        .filter(({ event }) => event === 'acknowledge').map(({ tag }) => tag).sort().join();
+    await until('each in the journal, once', async () => await kept() === 'PI-1,TI-1,TI-2');
+    assert.equal(nodes.pollers(), 1);
+});
+
+test('a drained node sends its sessions elsewhere, one after the other, and is asked for nothing new', options, async (t) => {
+    renderers[0] = await start('r1', 0);
+    await until('the node being back', async () => /^UP/.test((await proxy.servers()).r1.status));
+    const before_ = viewers.map(({ returns }) => returns), began = performance.now();
+    renderers[1].program.child.kill('SIGUSR1');
+    await until('its word', async () => /^down/.test(await line(renderers[1].agentPort)), 5);
+    await until('all elsewhere', () => viewers.every(({ returns, node }, i) => returns > before_[i] && node === 'r1'), 40);
+    await Promise.all(viewers.map((viewer) => viewer.shows()));
+    const lost = viewers.map(({ lostAt }) => (lostAt - began) / 1000);
+    t.diagnostic(`${VIEWERS} sessions left from ${Math.min(...lost).toFixed(1)} to ${Math.max(...lost).toFixed(1)} s after it was said`);
+    assert.ok(Math.max(...lost) - Math.min(...lost) > 4, `${lost}`);
+    assert.ok(viewers.every(({ reason }) => reason === 'this node is drained; retry after 0 s'));
+    assert.match((await proxy.servers()).r2.status, /^DOWN/);
+});
+
+test('a token that was changed, or is another person\'s, restores nothing', options, async () => {
+    const { resume } = viewers[0], [secret, body, mac] = resume.split('.');
+    for (const [token, person] of [[`${secret}.${body}.${mac.replace(/.$/, (c) => (c === '0' ? '1' : '0'))}`, 'operator'],
+        [`${secret}.${body.replace(/^..../, 'eyJ9')}.${mac}`, 'operator'], [resume, 'viewer'], [`${'0'.repeat(32)}..`, 'operator']]) {
+        const client = await PlainClient.open(renderers[0].port);
+        client.say({ type: 'hello', token: nodes.tokens[person], resume: token, width: 160, height: 90, codecs: ['jpeg'] });
+        assert.equal((await client.text('welcome')).resumed, false);
+        client.close();
+    }
+});

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Debian's HAProxy with the configuration that is shipped, but for addresses, TLS and paths.
+import { spawn, spawnSync } from 'node:child_process';
+import { existsSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
+import { tmpdir } from 'node:os';
+import { join } from 'node:path';
+import { connect } from 'node:net';
+import { freePort } from './ports.mjs';
+
+const PROGRAM = '/usr/sbin/haproxy', SHIPPED = new URL('../../../deploy/proxy/haproxy.cfg', import.meta.url);
+export const missingHaproxy = () => (existsSync(PROGRAM) ? null : 'haproxy is not installed');
+
+export class Haproxy {
+    // renderers: [{ port, agentPort }], core: { port }
+    static async start(renderers, core) {
+        const proxy = new Haproxy();
+        proxy.folder = mkdtempSync(join(tmpdir(), 'plantcast-haproxy-'));
+        proxy.port = await freePort();
+        let text = readFileSync(SHIPPED, 'utf8').replaceAll(/ ssl verify required ca-file \S+/g, '')
+            .replace(/bind :443 .*/, `bind 127.0.0.1:${proxy.port}`).replace('/run/haproxy', proxy.folder)
+            .replace('server core 10.0.0.10:8443', `server core 127.0.0.1:${core.port}`);
+        renderers.forEach(({ port, agentPort }, i) => {
+            text = text.replace(`10.0.0.1${i + 1}:8443`, `127.0.0.1:${port}`)
+                .replace(`cookie r${i + 1} agent-port 8404`, `cookie r${i + 1} agent-port ${agentPort}`);
+        });
+        const file = join(proxy.folder, 'haproxy.cfg');
+        writeFileSync(file, text);
+        const checked = spawnSync(PROGRAM, ['-c', '-f', file], { encoding: 'utf8' });
+        if (checked.status !== 0)
+            throw new Error(checked.stderr);
+        proxy.child = spawn(PROGRAM, ['-db', '-f', file], { stdio: ['ignore', 'ignore', 'pipe'] });
+        proxy.said = checked.stderr;
+        proxy.child.stderr.on('data', (chunk) => { proxy.said += chunk; });
+        return proxy;
+    }
+
+    // What `show stat` says of each server: { r1: { status, weight, sessions } }
+    async servers() {
+        const text = await new Promise((done, fail) => {
+            const socket = connect(join(this.folder, 'admin.sock'), () => socket.end('show stat\n'));
+            let said = '';
+            socket.on('data', (chunk) => { said += chunk; });
+            socket.on('end', () => done(said));
+            socket.on('error', fail);
+        });
+        const [head, ...lines] = text.trim().split('\n').map((line) => line.replace(/^# /, '').split(','));
+        const column = (line, name) => line[head.indexOf(name)];
+        return Object.fromEntries(lines.filter((line) => column(line, 'pxname') === 'renderers' && /^r\d$/.test(column(line, 'svname')))
+            .map((line) => [column(line, 'svname'), { status: column(line, 'status'), weight: Number(column(line, 'weight')),
+                sessions: Number(column(line, 'scur')) }]));
+    }
+
+    async destroy() {
+        if (this.child?.exitCode === null) {
+            const ended = new Promise((done) => this.child.once('exit', done));
+            this.child.kill('SIGKILL');
+            await ended;
+        }
+        rmSync(this.folder, { recursive: true, force: true });
+    }
+}
