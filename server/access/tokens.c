@@ -18,6 +18,7 @@
 #include "base/mem.h"
 #include "access/file_watch.h"
 #include "message/names.h"
+#include "plant/wall.h"
 
 enum { MAX_FILE_BYTES = 1024 * 1024, RANDOM_BYTES = 32 };
 
@@ -67,6 +68,25 @@ bool tokens_plant_valid(const char *plant)
     return n > 0 && n < TOKEN_PLANT_BYTES && !strpbrk(plant, "\r\n#") && plant[0] != ' ' && plant[n - 1] != ' ';
 }
 
+bool tokens_views_valid(const char *views)
+{
+    char copy[TOKEN_VIEWS_BYTES], *rest = copy;
+    bool good = strlen(views) < sizeof(copy);
+    snprintf(copy, sizeof(copy), "%s", views);
+    for (char *id; good && (id = strsep(&rest, ","));)
+        good = named_view_id_valid(id);
+    return good;
+}
+
+bool tokens_may_see(const struct token_holder *holder, const char *view)
+{
+    size_t length = strlen(view);
+    for (const char *at = holder->views; *at; at += at[strcspn(at, ",")] ? strcspn(at, ",") + 1 : strlen(at))
+        if (!strncmp(at, view, length) && (at[length] == ',' || !at[length]))
+            return named_view_id_valid(view); /* and not two of them */
+    return !holder->views[0];
+}
+
 bool tokens_parse_day(const char *text, int64_t *until_utc_ns)
 {
     struct tm day = { 0 };
@@ -114,8 +134,8 @@ static bool take_plant(char *line, char plant[TOKEN_PLANT_BYTES])
 
 int tokens_parse_line(const char *line, struct token_holder *out, const char **why)
 {
-    enum { WORDS = 5, MOST = WORDS + 1 };
-    char copy[512], *rest = copy, *words[MOST + 1] = { NULL };
+    enum { WORDS = 5, MOST = WORDS + 3 };
+    char copy[1024], *rest = copy, *words[MOST + 1] = { NULL };
     int count = 0;
     *out = (struct token_holder){ .until_utc_ns = INT64_MAX };
     if (strcspn(line, "\r\n#") >= sizeof(copy)) {
@@ -127,6 +147,11 @@ int tokens_parse_line(const char *line, struct token_holder *out, const char **w
     for (char *word; count <= MOST && (word = strsep(&rest, " \t"));)
         if (*word)
             words[count++] = word;
+    bool limited = count > 4 && !strcmp(words[count - 2], "views"), views_good = !limited || tokens_views_valid(words[count - 1]);
+    if (limited) {
+        snprintf(out->views, sizeof(out->views), "%s", words[count - 1]);
+        count -= 2;
+    }
     if (count > 3 && !strcmp(words[count - 1], "unattended")) {
         out->unattended = true;
         count--;
@@ -137,7 +162,11 @@ int tokens_parse_line(const char *line, struct token_holder *out, const char **w
     if (role < ROLE_VIEWER && role != ROLE_RENDERER)
         *why = "the role is viewer, operator, engineer or renderer";
     else if (count != 3 && count != WORDS)
-        *why = "ROLE NAME SHA-256 [until YYYY-MM-DD] [unattended] [plant PLANT] is expected";
+        *why = "ROLE NAME SHA-256 [until YYYY-MM-DD] [unattended] [views ID,...] [plant PLANT] is expected";
+    else if (!views_good)
+        *why = "ids of views, with commas between them, are expected after `views`";
+    else if (limited && role != ROLE_VIEWER)
+        *why = "`views` limits viewers only";
     else if (!plant_good)
         *why = "the name of a plant is expected after `plant`";
     else if (!tokens_name_valid(words[1]))
@@ -168,6 +197,8 @@ void tokens_print_line(struct text *out, const struct token_holder *holder)
     }
     if (holder->unattended)
         text_add(out, " unattended");
+    if (holder->views[0])
+        text_add(out, " views %s", holder->views);
     if (holder->plant[0])
         text_add(out, " plant %s", holder->plant);
     text_add(out, "\n");

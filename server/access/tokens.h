@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The file of tokens: one per line, `ROLE NAME SHA-256 [until YYYY-MM-DD] [plant PLANT]`. A token that is not in it, or is
-   for another plant, is not accepted; nor is any, once the file is gone or others may write it. Thread: one. */
+/* The file of tokens: one per line, `ROLE NAME SHA-256 [until YYYY-MM-DD] [unattended] [views ID,...] [plant PLANT]`. A
+   token that is not in it, or is for another plant, is not accepted; nor is any, once the file is gone or others may write it.
+   Thread: one. */
 #ifndef ACCESS_TOKENS_H
 #define ACCESS_TOKENS_H
 #include "base/log.h"
@@ -8,7 +9,7 @@
 #include "access/access.h"
 #include "plant/wall.h"
 
-enum { TOKEN_HASH_BYTES = 32, TOKEN_NAME_BYTES = 64, TOKEN_PLANT_BYTES = 128 };
+enum { TOKEN_HASH_BYTES = 32, TOKEN_NAME_BYTES = 64, TOKEN_PLANT_BYTES = 128, TOKEN_VIEWS_BYTES = 256 };
 
 struct token_holder {
     enum role role;
@@ -16,6 +17,7 @@ struct token_holder {
     uint8_t hash[TOKEN_HASH_BYTES]; /* all 0: no holder */
     int64_t until_utc_ns;           /* INT64_MAX: for ever */
     char plant[TOKEN_PLANT_BYTES];  /* the name of the only plant that it is for; "": any */
+    char views[TOKEN_VIEWS_BYTES];  /* ids, with commas: it is good for pictures of these views of the plant file only; "": for all */
     bool unattended;                /* of a wall or a program: it is not locked when nobody is at the page */
     bool signed_in;                 /* a person, by the identity provider; the hash is that of a cookie */
     char wall[NAMED_VIEW_ID_BYTES]; /* of a paired device: the only display that it may be */
@@ -56,6 +58,10 @@ void tokens_print_line(struct text *out, const struct token_holder *holder);
 bool tokens_name_valid(const char *name);
 /* Returns whether a token may be for a plant of that name: it stands in a line. */
 bool tokens_plant_valid(const char *plant);
+/* Returns whether a token may be for these views: ids with commas. */
+bool tokens_views_valid(const char *views);
+/* Returns whether the holder may see that view. */
+bool tokens_may_see(const struct token_holder *holder, const char *view);
 /* Parses YYYY-MM-DD, the last day (UTC) on which a token is valid. Returns false if it is not a date. */
 bool tokens_parse_day(const char *text, int64_t *until_utc_ns);
 

@@ -181,7 +181,7 @@ void connection_record(const struct server_context *server, struct lws *wsi, con
                        const char *why)
 {
     const struct connection *connection = connection_of(wsi);
-    if (connection->role <= ROLE_OPEN)
+    if (connection->role <= ROLE_OPEN && !connection->holder.name[0])
         return;
     audit_say(server->params.audit, &(struct audit_entry){ .event = event,
                                                            .result = result,
@@ -299,7 +299,7 @@ bool connection_identify(struct server_context *server, struct lws *wsi, struct 
     if (!token[0])
         find_person(server, wsi, connection);
     if (connection->holder.role != ROLE_NOBODY)
-        connection->role = connection->holder.role;
+        connection->role = connection->holder.views[0] ? ROLE_OPEN : connection->holder.role; /* pictures, and no more */
     else if (is_trusted(server, connection, name))
         connection->role = ROLE_ENGINEER;
     else if (params->open_viewers)

@@ -21,6 +21,11 @@ static bool judge_token(struct session *session, const char *token, int64_t now_
         session_close(session, 1013, "full: too many wrong tokens came from this address; try again later");
         return false;
     }
+    if (good && holder.views[0]) {
+        message_fail(error, "not_allowed", "this token is for pictures of the views %.100s, and opens no stream", holder.views);
+        session_close(session, 1008, "this token is for pictures of some views, and opens no stream");
+        return false;
+    }
     session->identity.holder = holder;
     if (!good) {
         message_fail(error, "bad_token", "this token is not, or no longer, let in");

@@ -89,6 +89,59 @@ test('a token for one plant is none for another', { skip }, async () => {
     assert.equal(token('add', file, '--role', 'viewer', '--name', 'x', '--plant', 'a#b').code, 2);
 });
 
+test('a token for some views gets pictures of these, at any size, and nothing else', { skip }, async () => {
+    const file = path('limited'), before_ = readFileSync(plant.file, 'utf8');
+    const views = {
+        left: 'group=temperature&hide=P-101A&camera=0,-4,2,0,0,0,0,0,1,40', flat: 'group=pressure&camera=0,-9,2,0,0,0,0,0,1,40,4',
+        rest: 'group=pressure', page: 'group=temperature&tag=TI-1&unknown=1',
+    };
+    const list = Object.entries(views).map(([id, view]) => `- { id: ${id}, view: "${view}" }\n`);
+    writeFileSync(plant.file, `${before_}views:\n${list.join('')}`);
+    const lobby = token('add', file, '--role', 'viewer', '--name', 'lobby', '--views', 'left,flat,page,gone').out.trim();
+    const whole = token('add', file, '--role', 'viewer', '--name', 'whole').out.trim();
+    assert.match(token('list', file).out, /^viewer +lobby {2}without end {2}views left,flat,page,gone$/m);
+    for (const wrong of [['--views', ''], ['--views', 'a,,b'], ['--views', 'a b'], ['--views', 'left', '--role', 'operator']])
+        assert.equal(token('add', file, '--role', 'viewer', '--name', 'x', ...wrong).code, 2, wrong.join(' '));
+    try {
+        await behindProxy('--tokens', file, '--audit', path('views.log'));
+        const picture = (query, bearer) => ask(`/snapshot.png?${query}`, { bearer });
+        const said = async (query, bearer, status, text) => {
+            const answer = await picture(query, bearer);
+            assert.equal(answer.status, status, `${query}: ${answer.body}`);
+            assert.match(String(answer.body), text, query);
+        };
+        for (const query of ['view=left&width=320&height=200', 'height=200&view=flat&width=320'])
+            await said(query, lobby, 200, /PNG/);
+        await said('view=rest', lobby, 403, /view=rest: this token is for the views left,flat,page,gone/);
+        for (const query of ['', 'group=pressure', 'width=320&height=200', 'view=', 'view=lef', 'view=left,flat', 'VIEW=left'])
+            await said(query, lobby, 403, /this token is for the views/);
+        for (const query of ['view=left&group=pressure', 'view=left&hidden=', 'view=left&view=rest&camera=1,1,1,0,0,0', 'view=left&at=-1h'])
+            await said(query, lobby, 400, /beside view, a query has width and height only/);
+        await said('view=gone', lobby, 400, /the plant file has no such view/);
+        await said('view=page', lobby, 400, /unknown: a picture cannot show that/);
+        await said('view=left&view=rest&width=320&height=200', lobby, 200, /PNG/); // the first is meant
+        for (const url of ['/api/v1/plant', '/api/v1/tags', '/api/v1/views', '/api/v1/alarms', '/metrics', '/api/v1/pick?x=1&y=1&view=left',
+            '/api/v1/history?tags=TI-1&from=-1h', '/api/v1/notes', '/api/v1/walls'])
+            assert.equal((await ask(url, { bearer: lobby })).status, 403, url);
+        await assert.rejects(open({ protocol: `plantcast.v1, Authorization-Bearer.${lobby}` }), /403/);
+        await assert.rejects(open({ headers: [`Authorization: Bearer ${lobby}`] }), /403/);
+        const client = await open();
+        client.say({ type: 'hello', width: 320, height: 180, codecs: ['jpeg'], token: lobby });
+        assert.match((await client.text('error')).text, /pictures of the views left,flat,page,gone, and opens no stream/);
+        assert.equal((await client.until('a close', (c) => c.closed)).code, 1008);
+        assert.equal(client.frames.length, 0);
+        assert.match(readFileSync(path('views.log'), 'utf8'), /"who":"lobby"[^\n]*view=rest: this token is for the views/);
+        // It shows what the same query does, without readings, whoever asks for it.
+        const query = 'group=temperature&hidden=P-101A&camera=0,-4,2,0,0,0,40&width=320&height=200';
+        const [named, asked] = [await picture('view=left&width=320&height=200', whole), await picture(query, whole)];
+        assert.equal(named.status, 200);
+        assert.equal(Math.abs(named.body.length - asked.body.length) < 0.05 * asked.body.length, true);
+        assert.equal((await ask('/api/v1/tags', { bearer: whole })).status, 200);
+    } finally {
+        writeFileSync(plant.file, before_);
+    }
+});
+
 test('a session that is left alone is locked, but not that of a wall; and what is said before anybody is in', { skip }, async () => {
     const file = path('attended'), notice = path('notice');
     const desk = token('add', file, '--role', 'operator', '--name', 'desk').out.trim();

@@ -211,6 +211,41 @@ static void a_changed_file_is_read_and_revokes(void **state)
     tokens_destroy(&tokens);
 }
 
+static void a_token_may_be_for_some_views(void **state)
+{
+    (void)state;
+    struct token_holder holder = { .role = ROLE_VIEWER, .name = "lobby" }, read;
+    struct text text = { 0 };
+    const char *why;
+    strcpy(holder.views, "unit,col.1");
+    strcpy(holder.plant, "Werk Nord 2");
+    holder.unattended = true;
+    tokens_hash("pc_lobby", holder.hash);
+    assert_true(tokens_parse_day("2199-12-31", &holder.until_utc_ns));
+    tokens_print_line(&text, &holder);
+    assert_int_equal(tokens_parse_line(text.at, &read, &why), 1);
+    assert_string_equal(read.views, "unit,col.1");
+    assert_string_equal(read.plant, "Werk Nord 2");
+    assert_true(read.unattended && read.until_utc_ns == holder.until_utc_ns);
+    assert_true(tokens_may_see(&read, "unit") && tokens_may_see(&read, "col.1"));
+    static const char *const others[] = { "", "uni", "unit,", "unit,col.1", "col", "col.1 ", "Unit", "machines" };
+    for (size_t i = 0; i < sizeof(others) / sizeof(others[0]); i++)
+        assert_false(tokens_may_see(&read, others[i]));
+    assert_true(tokens_may_see(&(struct token_holder){ .role = ROLE_VIEWER }, "machines"));
+    text_finish(&text);
+    strcpy(holder.views, "a/b");
+    tokens_print_line(&text, &holder);
+    assert_int_equal(tokens_parse_line(text.at, &read, &why), -1);
+    text_finish(&text);
+    strcpy(holder.views, "unit");
+    holder.role = ROLE_OPERATOR;
+    tokens_print_line(&text, &holder);
+    assert_int_equal(tokens_parse_line(text.at, &read, &why), -1);
+    assert_string_equal(why, "`views` limits viewers only");
+    text_finish(&text);
+    assert_false(tokens_views_valid("") || tokens_views_valid("a,,b") || tokens_views_valid("a b") || tokens_views_valid("a,"));
+}
+
 static void made_tokens_differ_and_hash_as_others_do(void **state)
 {
     (void)state;
@@ -229,7 +264,8 @@ int main(void)
     cmocka_set_message_output(CM_OUTPUT_TAP);
 #define TEST(name) cmocka_unit_test_setup_teardown(name, set_up, tear_down)
     const struct CMUnitTest tests[] = {
-        TEST(a_token_may_be_for_one_plant),              TEST(time_runs_out),
+        TEST(a_token_may_be_for_one_plant),              TEST(a_token_may_be_for_some_views),
+        TEST(time_runs_out),
         TEST(holders_are_found_by_their_tokens),
         TEST(files_that_others_may_touch_let_in_nobody), TEST(wrong_lines_let_in_nobody_and_leave_the_others),
         TEST(a_changed_file_is_read_and_revokes),        TEST(made_tokens_differ_and_hash_as_others_do),

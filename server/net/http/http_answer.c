@@ -150,6 +150,15 @@ bool request_args(struct lws *wsi, struct args *args, struct message_error *erro
     return true;
 }
 
+const char *arg_of(const struct args *args, const char *name)
+{
+    size_t length = strlen(name);
+    for (size_t i = 0; i < args->count; i++)
+        if (!strncmp(args->list[i], name, length) && args->list[i][length] == '=')
+            return args->list[i] + length + 1;
+    return NULL;
+}
+
 void request_await(struct server_context *server, struct request *request)
 {
     request->client = server->next_client++;

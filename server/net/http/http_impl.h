@@ -77,6 +77,8 @@ bool request_write_head(struct request *request, int status, const char *type, c
 int request_done(struct request *request);
 /* Decodes the arguments of the query. Returns false with *error saying what is wrong. */
 bool request_args(struct lws *wsi, struct args *args, struct message_error *error);
+/* Returns the value of the first argument of that name; NULL: there is none. */
+const char *arg_of(const struct args *args, const char *name);
 
 /* Has the request wait: it gets a number, request->client, and is answered outside of its own callback. */
 void request_await(struct server_context *server, struct request *request);

@@ -12,15 +12,6 @@
 
 enum { COOKIE_S = 600 }; /* as long as a log-in waits */
 
-static const char *arg_of(const struct args *args, const char *name)
-{
-    size_t length = strlen(name);
-    for (size_t i = 0; i < args->count; i++)
-        if (!strncmp(args->list[i], name, length) && args->list[i][length] == '=')
-            return args->list[i] + length + 1;
-    return NULL;
-}
-
 static int answer_redirect(struct request *request, const char *to)
 {
     return request_answer(request, HTTP_STATUS_SEE_OTHER, HTTP_TEXT, NULL, 0, "location:", to);

@@ -6,7 +6,10 @@
 #include "base/clock.h"
 #include "base/mem.h"
 #include "net/http/http_impl.h"
+#include "message/json_fields.h"
+#include "message/view_address.h"
 #include "message/view_query.h"
+#include "plant/wall.h"
 #include "provenance/signed_picture.h"
 #include "session/reply.h"
 #include "net/connection.h"
@@ -15,23 +18,66 @@ enum { LEGEND_LEAST_PX = 256 }; /* a narrower picture has no room for what would
 
 static const struct encoder_params LOSSLESS = { .quality = 100, .full_chroma = true };
 
-/* place: x and y of a pick; NULL: none is asked. */
-static bool read_query(struct server_context *server, struct lws *wsi, struct args *args, struct view *view, double place[2],
-                       struct message_error *error)
+static struct params_context context_of(const struct server_context *server)
 {
-    const struct params_context context = { .scene = server->params.plant.scene,
-                                            .baselines = server->params.plant.baselines,
-                                            .now_us = clock_utc_ns() / 1000 };
-    return request_args(wsi, args, error) &&
-           view_query_parse(&context, connection_of(wsi)->role, args->list, args->count, view, place, error);
+    return (struct params_context){ .scene = server->params.plant.scene,
+                                    .baselines = server->params.plant.baselines,
+                                    .now_us = clock_utc_ns() / 1000 };
 }
 
-static void keep_args(struct asked *asked, const struct args *args)
+/* Whether that view of the plant file may be seen by whoever asks. */
+static const struct named_view *find_view(const struct server_context *server, const struct token_holder *holder, const char *id,
+                                          struct message_error *error)
 {
-    asked->args = mem_array(args->count, sizeof(*asked->args));
-    asked->arg_count = args->count;
-    for (size_t i = 0; i < args->count; i++)
-        asked->args[i] = mem_strdup(args->list[i]);
+    const struct plant *plant = server->params.plant.scene->plant;
+    if (!tokens_may_see(holder, id)) {
+        message_fail(error, "not_allowed", "view=%.48s: this token is for the views %.150s", id, holder->views);
+        return NULL;
+    }
+    for (size_t i = 0; i < plant->view_count; i++)
+        if (!strcmp(plant->views[i].id, id))
+            return &plant->views[i];
+    message_fail(error, "bad_field", "view=%.48s: the plant file has no such view", id);
+    return NULL;
+}
+
+/* A view of the plant file, whose author may say all that there is to say, at a size. */
+static bool expand(const struct named_view *named, const struct args *args, struct view_address *out, struct message_error *error)
+{
+    bool good = view_address_read(out, named->address, error);
+    for (size_t i = 0; i < args->count && good; i++) {
+        char name[48];
+        good = !strncmp(args->list[i], "width=", 6) || !strncmp(args->list[i], "height=", 7) || !strncmp(args->list[i], "view=", 5);
+        if (!good)
+            message_fail(error, "bad_field", "'%s': beside view, a query has width and height only", quoted(args->list[i], name));
+    }
+    const char *width = arg_of(args, "width"), *height = arg_of(args, "height");
+    return good && (!width || view_address_add(out, "width", width)) && (!height || view_address_add(out, "height", height));
+}
+
+/* What the picture is drawn from goes to `address`, for view_address_finish, where a view is named; else it is args. */
+static bool read_picture(struct server_context *server, struct lws *wsi, struct args *args, struct view_address *address, struct view *view,
+                         struct message_error *error)
+{
+    const struct params_context context = context_of(server);
+    const struct connection *connection = connection_of(wsi);
+    const struct token_holder *holder = &connection->holder;
+    if (!request_args(wsi, args, error))
+        return false;
+    const char *id = arg_of(args, "view");
+    if (!id && !holder->views[0])
+        return view_query_parse(&context, connection->role, args->list, args->count, view, NULL, error);
+    const struct named_view *named = find_view(server, holder, id ? id : "", error);
+    return named && expand(named, args, address, error) &&
+           view_query_parse(&context, ROLE_ENGINEER, (const char *const *)address->args, address->count, view, NULL, error);
+}
+
+static void keep_args(struct asked *asked, const char *const *list, size_t count)
+{
+    asked->args = mem_array(count, sizeof(*asked->args));
+    asked->arg_count = count;
+    for (size_t i = 0; i < count; i++)
+        asked->args[i] = mem_strdup(list[i]);
 }
 
 void asked_free(struct asked **asked)
@@ -89,27 +135,43 @@ static struct asked *await_picture(struct server_context *server, struct request
     return request->asked;
 }
 
+static int draw_picture(struct server_context *server, struct request *request, struct frame_request *frame_request,
+                        const char *const *args, size_t arg_count)
+{
+    int result;
+    if (frame_request->view.width_px < LEGEND_LEAST_PX)
+        frame_request->overlay = OVERLAY_NONE;
+    if (!may_ask(server, request, &frame_request->view, &result))
+        return result;
+    frame_request->asked_ns = frame_request->view.input_ns = clock_mono_ns();
+    frame_request->account = connection_of(request->wsi)->client->share.account;
+    struct asked *asked = await_picture(server, request);
+    asked->frame_request = *frame_request;
+    if (server->params.signing_key)
+        keep_args(asked, args, arg_count);
+    begin(server, request);
+    return 0;
+}
+
 int ask_snapshot(struct server_context *server, struct request *request)
 {
     struct frame_request frame_request = { .codec = WIRE_CODEC_PNG, .quality = LOSSLESS, .urgency = URGENCY_SNAPSHOT, .always = true };
     struct message_error error = { 0 };
+    struct view_address address = { .count = 0 };
     struct args args;
     int result;
     frame_request.overlay = connection_of(request->wsi)->role == ROLE_OPEN ? OVERLAY_BARE : OVERLAY_FULL;
-    if (!read_query(server, request->wsi, &args, &frame_request.view, NULL, &error))
-        return request_answer_error(request, &error);
-    if (frame_request.view.width_px < LEGEND_LEAST_PX)
-        frame_request.overlay = OVERLAY_NONE;
-    if (!may_ask(server, request, &frame_request.view, &result))
-        return result;
-    frame_request.asked_ns = frame_request.view.input_ns = clock_mono_ns();
-    frame_request.account = connection_of(request->wsi)->client->share.account;
-    struct asked *asked = await_picture(server, request);
-    asked->frame_request = frame_request;
-    if (server->params.signing_key)
-        keep_args(asked, &args);
-    begin(server, request);
-    return 0;
+    if (read_picture(server, request->wsi, &args, &address, &frame_request.view, &error)) {
+        bool named = address.count > 0;
+        result = draw_picture(server, request, &frame_request, named ? (const char *const *)address.args : args.list,
+                              named ? address.count : args.count);
+    } else {
+        if (!strcmp(error.code, "not_allowed"))
+            connection_record(server, request->wsi, "access", "refused", "/snapshot.png", error.text);
+        result = request_answer_error(request, &error);
+    }
+    view_address_finish(&address);
+    return result;
 }
 
 /* What the header says of the values that take part, for programs that show the picture on. */
@@ -161,7 +223,9 @@ int ask_pick(struct server_context *server, struct request *request)
     struct args args;
     double place[2];
     int result;
-    if (!read_query(server, request->wsi, &args, &query.view, place, &error))
+    const struct params_context context = context_of(server);
+    if (!request_args(request->wsi, &args, &error) ||
+        !view_query_parse(&context, connection_of(request->wsi)->role, args.list, args.count, &query.view, place, &error))
         return request_answer_error(request, &error);
     if (!may_ask(server, request, &query.view, &result))
         return result;

@@ -1,0 +1,168 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The page's names and forms (clients/web/core/address.js) are turned into those of a query. */
+#include "message/view_address.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/mem.h"
+
+enum { CAMERA_NUMBERS = 11 }; /* eye, target, up, angle, and the height of a parallel projection */
+
+static const struct {
+    const char *name, *of_query; /* NULL: it is left out */
+} names[] = {
+    { "group", "group" },
+    { "interpolation", "interpolation" },
+    { "distance", "distance" },
+    { "colormap", "colormap" },
+    { "look", "look" },
+    { "fill", "fill" },
+    { "scale", "scale" },
+    { "show", "show" },
+    { "sensor", "sensor" },
+    { "environment", "environment" },
+    { "baseline", "baseline" },
+    { "range", "range" },
+    { "light", "light" },
+    { "breaks", "breaks" },
+    { "isolines", "isolines" },
+    { "strength", "strength" },
+    { "decay", "decay" },
+    { "power", "power" },
+    { "sensors", "sensors" },
+    { "ghost", "ghost" },
+    { "at", "at" },
+    { "ramp", "ramp_interval" },
+    { "radius", "radius_m" },
+    { "reach", "reach_m" },
+    { "hide", "hidden" },
+    { "only", "isolate" },
+    { "asset", "selected" },
+    { "tag", NULL },
+};
+
+bool view_address_add(struct view_address *address, const char *name, const char *value)
+{
+    if (address->count == VIEW_ADDRESS_ARGS)
+        return false;
+    address->args[address->count++] = mem_printf("%s=%s", name, value);
+    return true;
+}
+
+static int hex_of(char c)
+{
+    static const char digits[] = "0123456789abcdefABCDEF";
+    const char *at = c ? strchr(digits, c) : NULL;
+    return !at ? -1 : at - digits < 16 ? (int)(at - digits) : (int)(at - digits) - 6;
+}
+
+/* In place. */
+static void decode(char *text)
+{
+    char *to = text;
+    for (const char *from = text; *from; from++) {
+        int high = *from == '%' ? hex_of(from[1]) : -1, low = high >= 0 ? hex_of(from[2]) : -1, byte = 16 * high + low;
+        *to++ = low >= 0 && byte > 0 ? (char)byte : *from == '+' ? ' ' : *from;
+        from += low >= 0 && byte > 0 ? 2 : 0;
+    }
+    *to = 0;
+}
+
+/* Returns how many numbers there are, with commas between them; 0: none, or more than `most`, or something else. */
+static int read_numbers(const char *text, double *out, int most)
+{
+    for (int count = 0; count < most;) {
+        char *end;
+        out[count++] = strtod(text, &end);
+        if (end == text)
+            return 0;
+        if (!*end)
+            return count;
+        if (*end != ',')
+            return 0;
+        text = end + 1;
+    }
+    return 0;
+}
+
+static bool add_camera(struct view_address *out, const char *value)
+{
+    double n[CAMERA_NUMBERS];
+    int count = read_numbers(value, n, CAMERA_NUMBERS);
+    bool parallel = count == CAMERA_NUMBERS;
+    if (count < CAMERA_NUMBERS - 1)
+        return false;
+    char text[8 * 32], height[32];
+    int length = snprintf(text, sizeof(text), "%.9g,%.9g,%.9g,%.9g,%.9g,%.9g", n[0], n[1], n[2], n[3], n[4], n[5]);
+    if (!parallel)
+        snprintf(text + length, sizeof(text) - (size_t)length, ",%.9g", n[9]);
+    snprintf(height, sizeof(height), "%.9g", parallel ? n[10] : 0);
+    return view_address_add(out, "camera", text) &&
+           (!parallel || (view_address_add(out, "projection", "orthographic") && view_address_add(out, "height_m", height)));
+}
+
+static bool add_clip(struct view_address *out, const char *value)
+{
+    int commas = 0;
+    for (const char *at = value; *at; at++)
+        commas += *at == ',';
+    return view_address_add(out, !strchr(value, ';') && commas == 5 ? "clip_box" : "clip", value);
+}
+
+/* `same`: both halves show the same; in a query that is a half for which nothing is said. */
+static bool add_split(struct view_address *out, char *value)
+{
+    for (char *at = value, *colon; (colon = strchr(at, ':')); at = colon + strcspn(colon, ";"))
+        *colon = '=';
+    return view_address_add(out, "split", strcmp(value, "same") != 0 ? value : "");
+}
+
+static bool add(struct view_address *out, const char *name, char *value, struct message_error *error)
+{
+    bool good = true, known = true;
+    size_t i = 0, count = sizeof(names) / sizeof(names[0]);
+    while (i < count && strcmp(names[i].name, name) != 0)
+        i++;
+    if (!strcmp(name, "camera"))
+        good = add_camera(out, value);
+    else if (!strcmp(name, "clip"))
+        good = add_clip(out, value);
+    else if (!strcmp(name, "split"))
+        good = add_split(out, value);
+    else if (i < count)
+        good = !names[i].of_query || view_address_add(out, names[i].of_query, value);
+    else
+        known = false;
+    if (!good || !known)
+        message_fail(error, "bad_field", "the address of the view: %.40s: %s", name, known ? "it is wrong" : "a picture cannot show that");
+    return good && known;
+}
+
+bool view_address_read(struct view_address *out, const char *address, struct message_error *error)
+{
+    char *copy = mem_strdup(address), *rest = copy;
+    bool good = true;
+    *out = (struct view_address){ .count = 0 };
+    for (char *part; good && (part = strsep(&rest, "&"));) {
+        char *value = strchr(part, '=');
+        if (!*part)
+            continue;
+        if (value)
+            *value++ = 0;
+        decode(part);
+        if (value)
+            decode(value);
+        good = add(out, part, value ? value : part + strlen(part), error);
+    }
+    mem_free(copy);
+    return good;
+}
+
+void view_address_finish(struct view_address *address)
+{
+    for (size_t i = 0; i < address->count; i++)
+        mem_free(address->args[i]);
+    address->count = 0;
+}

@@ -1,0 +1,83 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Addresses of the page as arguments of a query: each form, and what is no form. */
+#include "message/view_address.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+#include "base/text.h"
+
+static void assert_read(const char *address, const char *expected)
+{
+    struct view_address read;
+    struct message_error error = { 0 };
+    struct text text = { 0 };
+    assert_true(view_address_read(&read, address, &error));
+    for (size_t i = 0; i < read.count; i++)
+        text_add(&text, "%s%s", i ? " | " : "", read.args[i]);
+    assert_string_equal(text.at ? text.at : "", expected);
+    text_finish(&text);
+    view_address_finish(&read);
+}
+
+static void names_and_forms_are_those_of_queries(void **state)
+{
+    (void)state;
+    assert_read("", "");
+    assert_read("&&group=t&&", "group=t");
+    assert_read("group=vib%20ration&tag=TI-1&hide=A,%ED%95%9C&only=B&asset=E-101", "group=vib ration | hidden=A,\xed\x95\x9c | isolate=B | "
+                                                                                   "selected=E-101");
+    assert_read("hide=", "hidden=");
+    assert_read("camera=1,2,3,4,5,6,0,0,1,45", "camera=1,2,3,4,5,6,45");
+    assert_read("camera=1,2,3,4,5,6,0,0,1,45,2.5", "camera=1,2,3,4,5,6 | projection=orthographic | height_m=2.5");
+    assert_read("clip=0,0,1,2;1,0,0,3", "clip=0,0,1,2;1,0,0,3");
+    assert_read("clip=0,0,0,1,1,1", "clip_box=0,0,0,1,1,1");
+    assert_read("split=group:pressure;look:flat", "split=group=pressure;look=flat");
+    assert_read("split=same", "split=");
+    assert_read("ramp=5&radius=2&reach=1", "ramp_interval=5 | radius_m=2 | reach_m=1");
+    assert_read("group=a%zzb%4", "group=a%zzb%4");
+    assert_read("group=a%00b", "group=a%00b"); /* no text ends there */
+}
+
+static void what_a_picture_cannot_show_is_said(void **state)
+{
+    (void)state;
+    static const char *const wrong[] = { "unknown=1",  "camera=", "camera=1,2,3", "camera=1,2,3,4,5,6,0,0,1,45,2,7", "camera=1,2,x",
+                                         "view=other", "width=5", "follow=7",     "=" };
+    for (size_t i = 0; i < sizeof(wrong) / sizeof(wrong[0]); i++) {
+        struct view_address read;
+        struct message_error error = { 0 };
+        assert_false(view_address_read(&read, wrong[i], &error));
+        assert_string_equal(error.code, "bad_field");
+        view_address_finish(&read);
+    }
+}
+
+static void more_than_there_is_room_for(void **state)
+{
+    (void)state;
+    struct text text = { 0 };
+    struct view_address read;
+    struct message_error error = { 0 };
+    for (int i = 0; i <= VIEW_ADDRESS_ARGS; i++)
+        text_add(&text, "group=t%d&", i);
+    assert_false(view_address_read(&read, text.at, &error));
+    assert_int_equal(read.count, VIEW_ADDRESS_ARGS);
+    view_address_finish(&read);
+    text_finish(&text);
+}
+
+int main(void)
+{
+    cmocka_set_message_output(CM_OUTPUT_TAP);
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(names_and_forms_are_those_of_queries),
+        cmocka_unit_test(what_a_picture_cannot_show_is_said),
+        cmocka_unit_test(more_than_there_is_room_for),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
