@@ -9,6 +9,7 @@
 #include <xxhash.h>
 
 #include "base/mem.h"
+#include "plant/influence.h"
 #include "render/reference/reference.h"
 
 static const uint64_t LOST = 0x6c6f7374;             /* content that no other has */
@@ -209,7 +210,7 @@ static void show_some(void *arg, size_t begin, size_t end)
 /* For fragments that work the field out themselves. */
 static void take_sensors(const struct fields *fields, struct fields_entry *entry)
 {
-    if (fields->reference && !entry->sensors)
+    if (fields->reference && !entry->sensors && !interpolation_is_prepared(entry->params.interpolation)) /* no shader has their weights */
         entry->sensors = reference_sensors(fields->reference, entry->asset, &entry->params);
 }
 
