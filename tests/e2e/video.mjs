@@ -2,7 +2,7 @@
 // A view as video, read by programs that others wrote: constant rate, the clock in its pixels, and a card in place of an old picture.
 import assert from 'node:assert/strict';
 import { spawn, spawnSync } from 'node:child_process';
-import { existsSync, mkdirSync, mkdtempSync, readdirSync, rmSync, writeFileSync } from 'node:fs';
+import { appendFileSync, existsSync, mkdirSync, mkdtempSync, readdirSync, rmSync, writeFileSync } from 'node:fs';
 import { createServer } from 'node:net';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
@@ -15,6 +15,7 @@ const lacks = [...missing(), ...(existsSync(join(BIN, 'plantcast-video')) ? [] :
 const options = { skip: lacks.length > 0 ? `not here: ${lacks.join(', ')}` : false, timeout: 120000 };
 const WIDTH = 640, HEIGHT = 360, FPS = 10, RECORDED_S = Number(process.env.VIDEO_S ?? 20);
 const canMount = process.getuid() === 0 && spawnSync('unshare', ['--mount', 'mount', '-t', 'tmpfs', 'none', '/mnt']).status === 0;
+const mounting = { ...options, skip: options.skip || (canMount ? false : 'may not mount') };
 const READER = 'wall:long-password';
 let plant, folder, video, ports;
 
@@ -170,6 +171,13 @@ test('a server that dies or hangs: a card within 3 s, and pictures again by them
         }
         await reader.until(({ card }) => !card);
     }
+    plant.sim.child.kill('SIGSTOP'); // values are stale after 1 s
+    const begun = Date.now(), { at } = await reader.until(({ card }) => card);
+    assert.ok(at - begun < 5000, `${at - begun} ms from the last value to the card`);
+    assert.match(video.said, /no sensor that is shown tells a value/);
+    plant.sim.child.kill('SIGCONT');
+    await reader.until(({ card }) => !card);
+    await reader.stop();
 });
 
 test('a token that is none, or is revoked, and a view that is not there: a card that says so', options, async () => {
@@ -200,7 +208,25 @@ test('a token that is none, or is revoked, and a view that is not there: a card 
     await program.stop();
 });
 
-const mounting = { ...options, skip: options.skip || (canMount ? false : 'may not mount') };
+test('a view with a name: all that it says is understood by the server, in perspective or not', options, async () => {
+    const port = await freePort(), camera = 'camera=4,-4,3,0,0,0,0,0,1,45';
+    const text = `group=temperature&show=operator&look=flat&colormap=viridis&ramp=10&range=0,50&isolines=20,40&light=1,1,2&ghost=P-101A&` +
+        `split=group:pressure;look:glossy&clip=1,0,0,0.2&asset=E-101&tag=TI-1&strength=2&${camera}`;
+    const whole = `group=pressure&hide=&clip=-1,-1,-1,5,5,5&split=same&${camera},6`;
+    const views = [['first', text], ['second', whole]].map(([id, view]) => `  - { id: ${id}, title: View ${id}, view: "${view}" }\n`);
+    await plant.daemon.stop();
+    appendFileSync(plant.file, `views:\n${views.join('')}`);
+    await plant.startDaemon();
+    for (const id of ['first', 'second']) {
+        const program = await startVideo('--view', id, '--rtsp', String(port));
+        const reader = new Reader(rtsp(port, ''), '-rtsp_transport', 'tcp');
+        await reader.until(({ card }) => !card);
+        assert.doesNotMatch(program.said, /no view|expected|unknown/);
+        await reader.stop();
+        await program.stop();
+    }
+});
+
 test('a full disk ends HLS alone: no old playlist is left, and it comes back', mounting, async () => {
     const small = join(folder, 'small'), full = join(small, 'full'), port = await freePort();
     mkdirSync(small);
