@@ -40,7 +40,7 @@ struct core_link {
     struct text in;
     struct lws *wsi;
     struct host_turn turn;
-    int64_t heard_ns, begun_ns;
+    int64_t heard_ns, begun_ns, least_ns; /* least_ns: as in struct core_readings */
     bool ended, taken, introduced, clock_said;
     bool at_fault;          /* what it said last is a fault of ours or the core's, and no lost link */
     char why[WHY_BYTES], said[WHY_BYTES]; /* why this connection ended; as logged last */
@@ -251,12 +251,17 @@ static void set_up(struct core_link *link)
 
 static void on_bytes(struct core_link *link)
 {
-    struct core_readings readings = { .at = link->readings };
+    struct core_readings readings = { .at = link->readings, .least_ns = link->least_ns };
     int64_t now_ns = clock_mono_ns();
     const char *why = !link->taken ? "it does not say who it is"
                                    : core_readings_read(&readings, link->params.plant->tag_count, link->in.at, link->in.length, now_ns);
     if (why) {
         refuse(link, why);
+        return;
+    }
+    link->least_ns = readings.least_ns;
+    if (readings.late_ns > CORE_SILENT_NS) { /* what waits in a slow network, or did while we slept, is no reading of now */
+        end(link, "its readings come more than 2 s late");
         return;
     }
     store_mirror(link->params.store, readings.at, readings.count, now_ns);
@@ -482,6 +487,7 @@ static void run_connection(struct core_link *link)
     link->ended = link->taken = link->introduced = link->at_fault = false;
     link->why[0] = 0;
     link->begun_ns = clock_mono_ns();
+    link->least_ns = INT64_MAX;
     if (!parse_url(link->params.urls[link->turn.index], &url) || !connect_to(link, &url)) {
         end(link, "no connection");
     } else {

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* "PCR1", count, the core's clock; then for each reading: tag, quality, value, age, source time. Little-endian. */
+/* "PCR1", count, the core's clock and its monotonic one; then for each reading: tag, quality, value, age, source time. Little-endian. */
 #include "corelink/core_readings.h"
 
 #include <endian.h>
@@ -69,6 +69,7 @@ void core_readings_write(struct text *out, const struct snapshot *snapshot, stru
     memcpy(head, MAGIC, sizeof(MAGIC));
     put32(head + 4, 0);
     put64(head + 8, (uint64_t)snapshot->taken_utc_ns);
+    put64(head + 16, (uint64_t)snapshot->taken_mono_ns);
     text_add_bytes(out, head, sizeof(head));
     for (size_t i = 0; i < sent->count; i++) {
         const struct reading *reading = &snapshot->readings[i];
@@ -108,8 +109,15 @@ const char *core_readings_read(struct core_readings *out, size_t tag_count, cons
     out->utc_ns = (int64_t)get64(at + 8);
     if (out->count > tag_count || count != CORE_READINGS_HEAD_BYTES + out->count * CORE_READING_BYTES)
         return "its length is not that of its readings";
+    int64_t core_mono_ns = (int64_t)get64(at + 16);
+    if (core_mono_ns < 0)
+        return "a clock that cannot be one";
+    int64_t ahead_ns = now_mono_ns - core_mono_ns;
+    out->least_ns = ahead_ns < out->least_ns ? ahead_ns : out->least_ns;
+    out->late_ns = ahead_ns - out->least_ns;
     for (size_t i = 0; i < out->count; i++) {
-        const char *why = read_one(&out->at[i], tag_count, at + CORE_READINGS_HEAD_BYTES + i * CORE_READING_BYTES, now_mono_ns);
+        const char *why =
+            read_one(&out->at[i], tag_count, at + CORE_READINGS_HEAD_BYTES + i * CORE_READING_BYTES, now_mono_ns - out->late_ns);
         if (why)
             return why;
     }

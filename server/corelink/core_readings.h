@@ -7,7 +7,7 @@
 #include "value/snapshot.h"
 #include "value/store.h"
 
-enum { CORE_READINGS_HEAD_BYTES = 16, CORE_READING_BYTES = 32 };
+enum { CORE_READINGS_HEAD_BYTES = 24, CORE_READING_BYTES = 32 };
 
 /* What one renderer was sent last of each tag. */
 struct core_sent {
@@ -26,9 +26,12 @@ void core_sent_finish(struct core_sent *sent);
 void core_readings_write(struct text *out, const struct snapshot *snapshot, struct core_sent *sent);
 
 struct core_readings {
-    int64_t utc_ns; /* the core's clock, when it sent them */
+    int64_t utc_ns;   /* the core's clock, when it took them */
+    int64_t least_ns; /* kept from message to message: by how much our monotonic clock was ahead of the core's, at least. Begins with
+                         INT64_MAX for each connection */
+    int64_t late_ns;  /* by so much longer than the quickest message of the connection this one took; ages have it in them */
     size_t count;
-    struct mirrored *at; /* room for all tags; ages count from when it came */
+    struct mirrored *at; /* room for all tags; */
 };
 
 /* Reads a message that came at now_mono_ns into out->at, which has room for tag_count. Returns NULL, or what is wrong with it (static). */

@@ -21,6 +21,7 @@ static struct snapshot *make_snapshot(void)
 {
     struct snapshot *snapshot = snapshot_create(TAGS);
     snapshot->taken_utc_ns = 5000 * S;
+    snapshot->taken_mono_ns = 50 * S;
     snapshot->readings[0] = (struct reading){ .value = 0.1 + 0.2, .changes = 1, .received_utc_ns = 4999 * S, .age_ns = S };
     snapshot->readings[1] =
         (struct reading){ .value = -7, .quality = QUALITY_BAD_SENSOR_FAILURE, .changes = 2, .received_utc_ns = 10, .age_ns = 4 * S };
@@ -35,7 +36,7 @@ static void only_changes_are_sent(void **state)
     struct core_sent sent;
     struct text text = { 0 };
     struct mirrored got[TAGS];
-    struct core_readings readings = { .at = got };
+    struct core_readings readings = { .at = got, .least_ns = INT64_MAX };
     core_sent_init(&sent, TAGS);
     core_readings_write(&text, snapshot, &sent);
     assert_null(core_readings_read(&readings, TAGS, text.at, text.length, 100 * S));
@@ -64,7 +65,7 @@ static void nonsense_is_refused(void **state)
     struct core_sent sent;
     struct text text = { 0 };
     struct mirrored got[TAGS];
-    struct core_readings readings = { .at = got };
+    struct core_readings readings = { .at = got, .least_ns = INT64_MAX };
     core_sent_init(&sent, TAGS);
     core_readings_write(&text, snapshot, &sent);
     for (size_t n = 0; n < text.length; n++)
@@ -73,7 +74,8 @@ static void nonsense_is_refused(void **state)
     const struct {
         size_t at, count;
         uint8_t byte;
-    } wrong[] = { { 0, 1, 'X' }, { 4, 4, 0xff }, { 16, 1, TAGS }, { 16 + 8, 8, 0xff }, { 16 + 16, 8, 0xff }, { 80 + 4, 4, 0 } };
+    } wrong[] = { { 0, 1, 'X' }, { 4, 4, 0xff }, { 16, 8, 0xff }, { 24, 1, TAGS },
+                { 24 + 8, 8, 0xff }, { 24 + 16, 8, 0xff }, { 88 + 4, 4, 0 } };
     for (size_t i = 0; i < sizeof(wrong) / sizeof(wrong[0]); i++) {
         char kept[256];
         memcpy(kept, text.at, text.length);
@@ -82,6 +84,29 @@ static void nonsense_is_refused(void **state)
         memcpy(text.at, kept, text.length);
     }
     core_sent_finish(&sent);
+    text_finish(&text);
+    snapshot_destroy(&snapshot);
+}
+
+/* What waited on its way is older by that. */
+static void late_readings_are_older(void **state)
+{
+    (void)state;
+    struct snapshot *snapshot = make_snapshot();
+    struct core_sent sent;
+    struct text text = { 0 };
+    struct mirrored got[TAGS];
+    struct core_readings readings = { .at = got, .least_ns = INT64_MAX };
+    for (int i = 0; i < 3; i++) { /* each a second after the one before; the second takes 5 s longer */
+        core_sent_init(&sent, TAGS);
+        snapshot->taken_mono_ns = (50 + i) * S;
+        text.length = 0;
+        core_readings_write(&text, snapshot, &sent);
+        int64_t now_ns = (1000 + i + (i == 1 ? 5 : 0)) * S;
+        assert_null(core_readings_read(&readings, TAGS, text.at, text.length, now_ns));
+        assert_true(readings.late_ns == (i == 1 ? 5 * S : 0) && got[0].received_mono_ns == (999 + i) * S);
+        core_sent_finish(&sent);
+    }
     text_finish(&text);
     snapshot_destroy(&snapshot);
 }
@@ -138,6 +163,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(only_changes_are_sent),
         cmocka_unit_test(nonsense_is_refused),
+        cmocka_unit_test(late_readings_are_older),
         cmocka_unit_test(a_store_shows_what_the_other_shows),
         cmocka_unit_test(differences_have_names),
     };
