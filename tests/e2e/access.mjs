@@ -430,6 +430,9 @@ test('a person is asked for a token, and sees the plant', {
     const { page, errors, close } = await openPage(`http://localhost:${plant.port}/`, { viewport: { width: 1000, height: 700 } });
     try {
         await page.waitForSelector('#token[open]');
+        for (let i = 0; i < 3; i++)
+            await page.keyboard.press('Escape'); // there is nothing to see without one
+        await page.waitForSelector('#token[open]');
         await page.fill('#token-text', 'pc_wrong');
         await page.click('#token-form button');
         await page.waitForFunction(() => /not valid/.test(document.getElementById('token-why').textContent));

@@ -114,6 +114,27 @@ test('it is that display only, as a viewer, also after a restart of the daemon',
     await wall.page.locator('.pane.alarms').waitFor({ timeout: 60000 });
 });
 
+test('a viewer notes, sends and points at nothing; who may stands in the audit trail', options, async () => {
+    const pane = { wall: 'room', display: 1, area: 'main' };
+    const asked = [{ type: 'note', seq: 1, text: 'Manhole open', asset: 'TK-101' }, { type: 'send_to_wall', seq: 2, ...pane, held: true },
+        { type: 'point', ...pane, position: [1, 2, 3] }];
+    const post = (page, globals) => page.evaluate(([messages, name]) => new Promise((done) => {
+        const session = name === 'wall' ? globalThis.wall.session : globalThis.plantcast.session, heard = [];
+        for (const type of ['refused', 'noted', 'sent_to_wall'])
+            session.on(type, (message) => heard.push(message) >= messages.length && done(heard));
+        messages.forEach((message) => session.post(message));
+        setTimeout(done, 4000, heard);
+    }), [asked, globals]);
+    await post(wall.page, 'wall');
+    for (const what of ['to note something', 'to send something to a wall'])
+        assert.match(audit(), new RegExp(`refused.*room\\.1\\.1.*${what} takes the role operator`));
+    assert.equal(audit().split('to send something to a wall takes').length - 1, 2); // sending, and pointing
+    await desk.page.waitForFunction(() => globalThis.plantcast.session.connection.state === 'open', null, { timeout: 60000 });
+    await post(desk.page, 'page');
+    assert.match(audit(), /engineer-1.*at TK-101: Manhole open/);
+    assert.match(audit(), /engineer-1.*hold room, display 1, main/);
+});
+
 test('it is dark within 3 s of being revoked', options, async () => {
     await desk.page.waitForFunction(() => {
         const { welcomed, connection } = globalThis.plantcast.session;

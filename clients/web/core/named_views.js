@@ -4,7 +4,7 @@ import { addressOf, readAddress } from './address.js';
 import { snapshotQuery } from './query.js';
 import { ENGINEERS } from './session.js';
 
-const ID_CHARS = 48;
+const ID_CHARS = 48, NOWHERE = { eye: [], target: [], fov: 0 };
 
 // The text that keeps what a session shows now: without the instant, which has gone by when it is looked at again.
 export const textOf = (session, tag = null) => {
@@ -24,11 +24,14 @@ export function viewOf(session, text) {
     return { camera: camera ?? session.homeIn(width / ratio, height / ratio), params: all, tag };
 }
 
-// The query for a small picture of it.
+// The query for a small picture of it: from where the server looks, if it has no camera of its own.
 export function pictureQuery(text, size) {
     const { camera, params } = readAddress(text);
     ENGINEERS.forEach((name) => delete params[name]);
-    return camera && snapshotQuery({ carried: { ...params, selected: null }, camera, size, time: { atUs: null } });
+    const query = snapshotQuery({ carried: { ...params, selected: null }, camera: camera ?? NOWHERE, size, time: { atUs: null } });
+    if (!camera)
+        delete query.camera;
+    return query;
 }
 
 // An id for a title, which no other view has.

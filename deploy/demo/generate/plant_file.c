@@ -69,7 +69,7 @@ static const char walls[] =
     "  - { id: unit, title: Whole unit, view: \"group=temperature\" }\n"
     "  - { id: column, title: Stabiliser column, view: \"group=temperature&camera=-30,-24,16,-7.7,2.9,9,0,0,1,45\" }\n"
     "  - { id: unit-pressure, title: Pressures, view: \"group=pressure\" }\n"
-    "  - { id: machines, title: Machines, view: \"group=vibration&camera=-2,-32,14,4,-6,1,0,0,1,40\" }\n"
+    "  - { id: machines, title: Machines, view: \"group=vibration&camera=9,-26,32,8,-1,1,0,0,1,40\" }\n"
     "\n"
     "walls:\n"
     "  - id: control-room\n"

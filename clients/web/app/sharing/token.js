@@ -13,6 +13,10 @@ export class TokenDialog {
         const command = make('code', {}, 'plantcast token add');
         byId('token-note').replaceChildren(...around(say('token.note', { command: '\u0000' }), command));
         session.on('welcome', () => dialog.close());
+        dialog.addEventListener('close', () => { // by Escape: there is nothing to see without it
+            if (session.connection.state === 'barred')
+                dialog.showModal();
+        });
         byId('token-form').addEventListener('submit', (event) => {
             event.preventDefault();
             session.token = field.value.trim();

@@ -146,7 +146,7 @@ export class NamedViews {
         this.drawing = true;
         for (const { view: text, id } of this.session.views.slice(0, MOST_PICTURES)) {
             const query = pictureQuery(text, PICTURE), known = this.pictures.get(text);
-            if (!query || (known && performance.now() - known.at < PICTURES_MS))
+            if (known && performance.now() - known.at < PICTURES_MS)
                 continue;
             try {
                 const url = URL.createObjectURL(await (await ask('snapshot.png', query, this.session.token)).blob());

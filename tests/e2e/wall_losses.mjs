@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A display of a wall whose server is killed again and again: it says so, shows no old picture as new, and comes back each time.
+import assert from 'node:assert/strict';
+import { after, before, test } from 'node:test';
+import { openPage, shoot } from './support/browser.mjs';
+import { missing, startPlant } from './support/plant.mjs';
+
+const why = missing(), LOSSES = Number(process.env.LOSSES) || 10;
+const options = { skip: why ?? false, timeout: 120000 + LOSSES * 60000 };
+const WALLS = `
+views:
+- { id: whole, title: Whole unit, view: "group=temperature" }
+walls:
+- id: room
+  displays:
+  - grid: [main tiles]
+    panes:
+    - { area: main, views: [whole] }
+    - { area: tiles, tiles: [TE-171, PT-101] }
+`;
+let plant, wall;
+
+before(async () => {
+    if (why)
+        return;
+    plant = await startPlant(WALLS);
+    wall = await openPage(`${plant.url}?wall=room`, { viewport: { width: 1280, height: 720 } });
+});
+after(async () => {
+    await wall?.close();
+    await plant?.stop();
+});
+
+// Of when the pane's picture and the words beside it are, by this connection.
+const shown = () => wall.page.evaluate(() => {
+    const inner = document.querySelector('.pane.views iframe')?.contentWindow.plantcast?.session, { session } = globalThis.wall;
+    return { picture: inner?.isCurrent ? inner.picture?.dataTimeUs ?? 0 : 0, words: session.isCurrent ? session.freshAt : 0 };
+});
+const live = (since) => wall.page.waitForFunction(([picture, words]) => {
+    const inner = document.querySelector('.pane.views iframe')?.contentWindow.plantcast?.session, { session } = globalThis.wall;
+    return document.getElementById('lost').hidden && inner?.isCurrent && inner.picture?.dataTimeUs > picture && session.isCurrent &&
+        session.freshAt > words;
+}, [since.picture, since.words], { timeout: 60000, polling: 200 });
+
+test(`${LOSSES} losses: each is said, and ends by itself`, options, async () => {
+    await live({ picture: 0, words: 0 });
+    let slowest = 0;
+    for (let i = 0; i < LOSSES; i++) {
+        const before = await shown();
+        await plant.stopDaemon('SIGKILL');
+        const lost = Date.now();
+        await wall.page.locator('#lost').waitFor({ state: 'visible', timeout: 20000 });
+        slowest = Math.max(slowest, Date.now() - lost);
+        if (i === 0)
+            await shoot(wall.page, 'wall-lost');
+        await plant.startDaemon();
+        await live(before);
+    }
+    console.log(`# said after ${slowest} ms at most`);
+    assert.ok(slowest < 10000, `${slowest} ms`);
+    assert.deepEqual(wall.errors, []);
+});
