@@ -58,7 +58,7 @@ static void print_usage(FILE *out)
           "                   =now: what lies in the folder exports beside the plant file, at once\n"
           "  --role ROLE      all: reads field devices and serves operators; core: likewise, and renderers may connect; render: has no\n"
           "                   field device, and takes readings and alarms from a core\n"
-          "  --core URL       render: wss://HOST:PORT of the core; again for each that stands by for it\n"
+          "  --core URL       render: wss://HOST:PORT of the core; again for another place where it may run (one core at a time)\n"
           "  --core-token-file FILE, --core-ca FILE   render: its token, of the role renderer; certificates trusted for the core\n"
           "  --node NAME      this daemon's name among others, for the core's log\n"
           "  --agent-port PORT   where HAProxy's agent check asks how much this node can still draw; SIGUSR1 sends its sessions elsewhere\n"

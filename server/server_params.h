@@ -35,7 +35,7 @@ struct server_params {
     struct audit_params audit; /* path NULL: nothing is recorded */
     bool imports, imports_now; /* engineers may bring plants in; what was exported is brought in at once */
     enum server_role role;
-    const char *cores[CORE_URLS]; /* SERVER_RENDER: URLs of the core and of those that stand by for it */
+    const char *cores[CORE_URLS]; /* SERVER_RENDER: URLs where the core may be; one at a time is */
     int core_count;
     const char *core_token, *core_ca; /* file of the token; of certificates that are trusted. NULL: none; the system's */
     int agent_port;                   /* where load balancers ask; 0: nowhere */

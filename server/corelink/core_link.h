@@ -17,7 +17,7 @@ struct core_link_params {
     const struct plant *plant;
     struct store *store;
     struct alarm_service *alarm_service; /* which mirrors; all three outlive the link */
-    const char *urls[CORE_URLS];         /* ws://HOST:PORT or wss://; tried in turn: one core is active, the others stand by */
+    const char *urls[CORE_URLS];         /* ws://HOST:PORT or wss://; tried in turn: one of them is the core */
     int url_count;
     const char *token_path, *ca_path;    /* file of the token; certificates that are trusted. NULL: none; the system's */
     const char *version, *node;          /* of this program; this renderer's name, for the core's log */
