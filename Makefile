@@ -36,14 +36,15 @@ packages += libavcodec libavformat libavutil
 defines  := -DPLANTCAST_H264
 libyuv   := -lyuv
 endif
-# OPC UA: the system's open62541 where it is new enough, else one that is built beside the build (deploy/open62541); or none.
+# OPC UA: by open62541, built beside the build with faults mended that a server could use (deploy/open62541), or none. OPEN62541=system:
+# the system's, for whoever knows that it has them mended.
 asked := $(or $(MAKECMDGOALS),all)
-ifeq ($(shell pkg-config --exists 'open62541 >= 1.4 open62541 < 1.5' 2>/dev/null && echo yes),yes)
+ifeq ($(OPEN62541)$(shell pkg-config --exists 'open62541 >= 1.4 open62541 < 1.5' 2>/dev/null && echo yes),systemyes)
 opcua_cflags := $(shell pkg-config --cflags open62541)
 opcua_libs   := $(shell pkg-config --libs open62541)
 else ifneq ($(filter-out $(no_packages),$(asked)),)
 -include $(build)/open62541/open62541.mk
-$(build)/open62541/open62541.mk: deploy/open62541
+$(build)/open62541/open62541.mk: deploy/open62541 deploy/open62541.patch
 	@deploy/open62541 $(@D) $(CC)
 endif
 defines += $(if $(opcua_libs),-DPLANTCAST_OPCUA)

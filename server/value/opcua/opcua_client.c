@@ -28,12 +28,17 @@ static void on_log(void *arg, UA_LogLevel level, UA_LogCategory category, const 
         vsnprintf(client->said, sizeof(client->said), format, args);
 }
 
-static void on_silence(UA_Client *library, UA_UInt32 subscription, void *context)
+static void on_silence(UA_Client *library)
 {
     struct opcua_client *client = UA_Client_getContext(library);
-    (void)subscription, (void)context;
     client->lost = true;
     snprintf(client->said, sizeof(client->said), "the server is silent");
+}
+
+static void on_subscription_silence(UA_Client *library, UA_UInt32 subscription, void *context)
+{
+    (void)subscription, (void)context;
+    on_silence(library);
 }
 
 /* A library's client for one channel. NULL: why says what is wrong. */
@@ -42,7 +47,8 @@ static UA_Client *make_library(struct opcua_client *client, const UA_EndpointDes
     UA_ClientConfig config = { .clientContext = client, .logging = &client->logger, .timeout = TIMEOUT_MS,
                                .secureChannelLifeTime = CHANNEL_MS, .requestedSessionTimeout = SESSION_MS,
                                .outStandingPublishRequests = 4, .noSession = !with_session, .noNewSession = true,
-                               .subscriptionInactivityCallback = on_silence, .securityMode = endpoint->securityMode };
+                               .subscriptionInactivityCallback = on_subscription_silence,
+                               .inactivityCallback = on_silence, .securityMode = endpoint->securityMode };
     config.localConnectionConfig = (UA_ConnectionConfig){ .recvBufferSize = BUFFER_BYTES, .sendBufferSize = BUFFER_BYTES,
                                                           .localMaxMessageSize = MESSAGE_BYTES, .localMaxChunkCount = CHUNKS };
     config.eventLoop = UA_EventLoop_new_POSIX(&client->logger);
@@ -198,23 +204,39 @@ static int discover(struct opcua_client *client, int stop_fd, int64_t deadline_m
 
 /* --- connecting ------------------------------------------------------------------------------------------------------------- */
 
-/* The address comes by a resolver that can be left; the library's own could not. */
-static int find_address(struct opcua_client *client, int stop_fd, int64_t deadline_mono_ns, char why[200])
+/* Asks for the endpoints at one address of the host. */
+static int discover_at(struct opcua_client *client, const struct addrinfo *at, int stop_fd, int64_t deadline_mono_ns, char why[200])
+{
+    char address[INET6_ADDRSTRLEN + 20];
+    bool is_6 = at->ai_family == AF_INET6;
+    const char *path = client->source->opcua.path ? client->source->opcua.path : "";
+    if (getnameinfo(at->ai_addr, at->ai_addrlen, address, sizeof(address), NULL, 0, NI_NUMERICHOST) != 0) {
+        snprintf(why, 200, "no address of %.100s can be used", client->host);
+        return -EHOSTUNREACH;
+    }
+    mem_free(client->numeric_url);
+    client->numeric_url = mem_printf("opc.tcp://%s%s%s:%d%s%s", is_6 ? "[" : "", address, is_6 ? "]" : "", client->source->port,
+                                     *path && *path != '/' ? "/" : "", path);
+    return discover(client, stop_fd, deadline_mono_ns, why);
+}
+
+/* At each address of the host in turn, each with its share of the time. Addresses come by a resolver that can be left; the library's own
+   could not. */
+static int discover_somewhere(struct opcua_client *client, int stop_fd, int64_t deadline_mono_ns, char why[200])
 {
     const struct addrinfo *found;
-    char address[INET6_ADDRSTRLEN + 20];
+    int left = 0;
     struct lookup *lookup = lookup_start(client->host, client->source->port);
     int status = lookup_wait(lookup, stop_fd, deadline_mono_ns, &found);
-    if (status == 0 && getnameinfo(found->ai_addr, found->ai_addrlen, address, sizeof(address), NULL, 0, NI_NUMERICHOST) != 0)
-        status = -EHOSTUNREACH;
-    if (status == 0) {
-        bool is_6 = found->ai_family == AF_INET6;
-        const char *path = client->source->opcua.path ? client->source->opcua.path : "";
-        mem_free(client->numeric_url);
-        client->numeric_url = mem_printf("opc.tcp://%s%s%s:%d%s%s", is_6 ? "[" : "", address, is_6 ? "]" : "", client->source->port,
-                                         *path && *path != '/' ? "/" : "", path);
-    } else if (status != -ECANCELED) {
+    if (status < 0 && status != -ECANCELED)
         snprintf(why, 200, "no address of %.100s is known", client->host);
+    for (const struct addrinfo *at = found; status == 0 && at; at = at->ai_next)
+        left++;
+    for (const struct addrinfo *at = found; left > 0; at = at->ai_next, left--) {
+        int64_t now_ns = clock_mono_ns();
+        status = discover_at(client, at, stop_fd, now_ns + (deadline_mono_ns - now_ns) / left, why);
+        if (status == 0 || status == -ECANCELED || status == -EACCES)
+            break;
     }
     lookup_destroy(&lookup);
     return status;
@@ -222,13 +244,13 @@ static int find_address(struct opcua_client *client, int stop_fd, int64_t deadli
 
 int opcua_client_connect(struct opcua_client *client, int stop_fd, int64_t deadline_mono_ns, char why[200])
 {
-    int status = find_address(client, stop_fd, deadline_mono_ns, why);
-    if (status == 0)
-        status = discover(client, stop_fd, deadline_mono_ns, why);
+    int status = discover_somewhere(client, stop_fd, deadline_mono_ns, why);
     if (status == 0)
         status = open_library(client, &client->endpoint, true, stop_fd, deadline_mono_ns, why);
     if (status == 0) {
-        UA_Client_getConfig(client->library)->noReconnect = true; /* with a session that ends, all is made anew */
+        UA_ClientConfig *config = UA_Client_getConfig(client->library);
+        config->noReconnect = true; /* with a session that ends, all is made anew */
+        config->connectivityCheckInterval = TIMEOUT_MS; /* values may be due much more rarely than a silence is to be noticed */
         *client->said = 0;
     }
     return status;
@@ -287,6 +309,11 @@ void opcua_client_destroy(struct opcua_client **client_ptr)
     mem_free(client->url);
     mem_free(client->numeric_url);
     mem_free(client);
+}
+
+double opcua_client_publishing_ms(const struct opcua_client *client)
+{
+    return client->publishing_ms;
 }
 
 size_t opcua_client_refused(const struct opcua_client *client)

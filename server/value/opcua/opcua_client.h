@@ -29,6 +29,8 @@ int opcua_client_connect(struct opcua_client *client, int stop_fd, int64_t deadl
 int opcua_client_subscribe(struct opcua_client *client, int stop_fd, int64_t deadline_mono_ns, char why[200]);
 /* Receives until the deadline. Returns 0; -ECANCELED likewise; other < 0: the session or the subscription has ended, and why. */
 int opcua_client_serve(struct opcua_client *client, int stop_fd, int64_t deadline_mono_ns, char why[200]);
+/* Returns how often the server tells what has changed, in milliseconds, where that is more rarely than it was asked to; else 0. */
+double opcua_client_publishing_ms(const struct opcua_client *client);
 /* Returns how many nodes the server has refused. */
 size_t opcua_client_refused(const struct opcua_client *client);
 

@@ -24,6 +24,7 @@ struct opcua_client {
     bool lost;                   /* the subscription */
     uint32_t max_items;          /* of one request */
     UA_UInt32 subscription;
+    double publishing_ms;        /* how often the server tells what has changed; 0: as it was asked to */
     char **namespaces;           /* the server's, by number */
     size_t namespace_count;
     UA_UInt16 *numbers;          /* of each node's namespace; NO_NAMESPACE: the server has none of that URI */

@@ -99,6 +99,7 @@ static int begin_subscription(struct opcua_client *client, int stop_fd, int64_t 
                                                               client, NULL);
     int status = opcua_call_end(client, sent, stop_fd, deadline_mono_ns, why);
     client->subscription = response.subscriptionId;
+    client->publishing_ms = response.revisedPublishingInterval > client->source->poll_ms ? response.revisedPublishingInterval : 0;
     UA_CreateSubscriptionResponse_clear(&response);
     return status;
 }

@@ -102,7 +102,7 @@ export class OpcuaServer {
     thaw() { this.child.kill('SIGCONT'); }
 
     // The source's line of the plant file; keys: what else it says.
-    source(keys) { return `{ id: plc, type: opcua, host: 127.0.0.1, port: ${this.port}, poll_ms: 100, ${keys} }`; }
+    source(keys) { return `{ id: plc, type: opcua, host: ${this.host ?? '127.0.0.1'}, port: ${this.port}, poll_ms: 100, ${keys} }`; }
 
     // The key `security`, with our certificate.
     security(more = '', name = 'client') {

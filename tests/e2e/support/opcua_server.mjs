@@ -10,6 +10,8 @@ import { createInterface } from 'node:readline';
 const { StatusCodes, coerceStatusCode } = statusCode;
 const { DataType, Variant, VariantArrayType } = variant;
 const told = JSON.parse(process.argv[2]);
+if (told.publishing_ms)
+    opcua.Subscription.minimumPublishingInterval = told.publishing_ms;
 const manager = (name) => new certificateManager.OPCUACertificateManager({
     rootFolder: `${told.folder}/${name}`, automaticallyAcceptUnknownCertificate: told.trustsAll !== false });
 const managers = [manager('pki'), manager('users')];
