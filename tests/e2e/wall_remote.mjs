@@ -106,6 +106,8 @@ test('a place is pointed at in the pane', options, async () => {
 
 test('a click while pointing is answered', options, async () => {
     await desk.page.check('#remote-points');
+    await desk.page.mouse.move(500, 500);
+    await desk.page.mouse.move(520, 480);
     const shown = await desk.page.evaluate(async () => {
         const { session, modules, viewport } = globalThis.plantcast, remote = await modules.get('remote'), heard = [];
         session.on('picked', ({ purpose }) => heard.push(purpose));
