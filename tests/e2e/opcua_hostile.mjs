@@ -94,7 +94,8 @@ test('a reading whose source is an hour ahead is shown, and not as if it came fr
 });
 
 // The first of its two addresses takes no connection.
-test('of a name with several addresses, each is tried', { ...options, skip: options.skip || !canMount && 'no right to mount' }, async () => {
+const named = { ...options, skip: options.skip || !canMount && 'no right to mount' };
+test('of a name with several addresses, each is tried', named, async () => {
     const hosts = join(server.folder, 'hosts');
     writeFileSync(hosts, '127.0.0.1 localhost\n127.0.0.9 plc.test\n127.0.0.1 plc.test\n');
     plant.plant.before = ['unshare', '--mount', 'sh', '-c', `mount --bind ${hosts} /etc/hosts && exec "$@"`, 'sh'];
