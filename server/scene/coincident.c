@@ -151,6 +151,8 @@ static bool meet(const struct scene_asset *a, const struct scene_asset *b, struc
     if (faces[0].count == 0)
         return false;
     collect(b, &region, &faces[1]);
+    if (faces[1].count == 0)
+        return false;
     for (int i = 0; i < 2; i++)
         qsort(faces[i].at, faces[i].count, sizeof(*faces[i].at), by_offset);
     return coincide(&faces[0], &faces[1], &region);

@@ -5,7 +5,7 @@ import { after, before, test } from 'node:test';
 import { openPage, shoot } from './support/browser.mjs';
 import { missing, startPlant } from './support/plant.mjs';
 
-const why = missing(), LOSSES = Number(process.env.LOSSES) || 10;
+const why = missing(), LOSSES = Number(process.env.LOSSES) || 3;
 const options = { skip: why ?? false, timeout: 120000 + LOSSES * 60000 };
 const WALLS = `
 views:
