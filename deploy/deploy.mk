@@ -23,10 +23,11 @@ prefix ?= /usr/local
 root   := $(DESTDIR)$(prefix)
 units  := $(wildcard deploy/systemd/*.service deploy/systemd/*.socket deploy/systemd/*.timer)
 units  := $(if $(video),$(units),$(filter-out %/plantcast-video@.service,$(units)))
+units  := $(if $(player),$(units),$(filter-out %/plantcast-wall@.service,$(units)))
 only_demo := $(bin)/plantcast-sim $(bin)/plantcast-demo
 install: all
 	install -d $(root)/bin $(root)/lib/plantcast $(root)/libexec/plantcast $(root)/share/plantcast $(root)/share/doc/plantcast
-	install -m 755 $(filter-out $(only_demo),$(programs)) $(root)/bin
+	install -m 755 $(filter-out $(only_demo),$(programs)) $(player) $(root)/bin
 	$(if $(video),install -m 755 $(video) $(root)/bin)
 	install -m 755 deploy/init $(root)/bin/plantcast-init
 	install -m 755 $(modules) deploy/systemd/certbot-hook $(root)/lib/plantcast
@@ -42,6 +43,7 @@ install: all
 	install -m 644 deploy/systemd/sysusers.conf $(root)/lib/sysusers.d/plantcast.conf
 	install -m 644 deploy/systemd/tmpfiles.conf $(root)/lib/tmpfiles.d/plantcast.conf
 	install -m 644 deploy/completion $(root)/share/bash-completion/completions/plantcast
+	$(if $(player),install -m 644 deploy/completion $(root)/share/bash-completion/completions/plantcast-wall)
 # The simulator and the demo plant, for who wants to try it.
 install-demo: all
 	install -d $(root)/bin

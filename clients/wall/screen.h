@@ -23,7 +23,8 @@ enum screen_event { SCREEN_NOTHING, SCREEN_QUIT, SCREEN_RESIZED, SCREEN_EXPOSED 
 enum screen_event screen_poll(struct screen *screen);
 /* Takes over a part of the picture. */
 void screen_update(struct screen *screen, cairo_surface_t *picture, const struct box *dirty);
-/* Shows it: shifted by so many pixels, on that ground, and as bright, up to 1. Returns false if the window can no longer be drawn, with the reason
+/* Shows it: shifted by so many pixels, on that ground, and as bright, up to 1. Returns false if the window can no longer be drawn, with
+   the reason
    printed. */
 bool screen_present(struct screen *screen, int shift_x, int shift_y, double brightness, uint32_t ground);
 
