@@ -9,9 +9,9 @@
 #include "base/clock.h"
 #include "base/mem.h"
 
-enum { TICK_US = 100000, MOST_TEXT_BYTES = 64 * 1024 * 1024, MOST_TRIES = 4 };
+enum { TICK_US = 100000, MOST_TEXT_BYTES = 64 * 1024 * 1024, MOST_TRIES = 4, MOST_FAILURES = 5 };
 static const int64_t PING_NS = NS_PER_S, SILENT_NS = 5 * NS_PER_S, CONNECT_NS = 10 * NS_PER_S;
-static const double FIRST_S = 0.5, DENIED_S = 10; /* wrong tokens are looked at ten times a minute */
+static const double FIRST_S = 0.5, SPREAD_S = 2, DENIED_S = 10; /* wrong tokens are looked at ten times a minute */
 
 /* --- what goes -------------------------------------------------------------------------------------------------------------------- */
 
@@ -44,7 +44,7 @@ void link_post(struct link *link, json_t *message)
 
 void link_restart(struct link *link)
 {
-    link->closing = link->wsi != NULL;
+    link->closing = link->asked = link->wsi != NULL;
     link->tries = 0;
     link->retry_ns = 0;
     if (link->links->context)
@@ -126,7 +126,10 @@ static void on_bytes(struct link *link)
     pthread_mutex_unlock(link->links->lock);
     bool good = link->events->frame(link, &frame, bytes + WIRE_FRAME_HEADER_BYTES);
     pthread_mutex_lock(link->links->lock);
-    if (!good)
+    link->failures = good ? 0 : link->failures + 1;
+    if (link->failures == MOST_FAILURES) /* what is sent is not what this machine decodes */
+        link_post(link, json_pack("{s:s,s:[s]}", "type", "codecs", "codecs", "jpeg"));
+    else if (!good && link->failures < MOST_FAILURES)
         link_post(link, json_pack("{s:s}", "type", "key_frame"));
     if (!(frame.flags & WIRE_FLAG_MORE))
         link_post(link, json_pack("{s:s,s:I,s:f}", "type", "ack", "seq", (json_int_t)frame.seq, "decode_ms",
@@ -155,11 +158,12 @@ static void on_gone(struct link *link)
 {
     double usual_s = FIRST_S * (1 << (link->tries < MOST_TRIES ? link->tries : MOST_TRIES));
     double wait_s = (link->retry_after_s > 0 ? link->retry_after_s : usual_s) * (0.75 + 0.5 * rand() / RAND_MAX);
-    bool asked = link->closing && !link->denied && link->tries == 0; /* by us */
+    double spread_s = link->tries == 0 ? SPREAD_S * rand() / RAND_MAX : 0; /* displays come back all at once */
+    bool asked = link->asked;
     link->wsi = NULL;
-    link->closing = false;
+    link->closing = link->asked = false;
     link->state = link->wanted ? LINK_WAITING : LINK_IDLE;
-    link->retry_ns = clock_mono_ns() + (asked ? 0 : (int64_t)(wait_s * 1e9));
+    link->retry_ns = clock_mono_ns() + (asked ? 0 : (int64_t)((wait_s + spread_s) * 1e9));
     link->retry_after_s = 0;
     link->tries++;
     drop_queue(link);

@@ -38,8 +38,8 @@ struct link {
     int64_t heard_ns; /* monotonic: when the server last spoke; 0: never */
     /* --- below: of link.c */
     struct lws *wsi;
-    bool closing;
-    int tries;
+    bool closing, asked; /* asked: it is to end because we want another one */
+    int tries, failures; /* failures: frames that could not be decoded, one after another */
     int64_t retry_ns, ping_ns, begun_ns;
     double retry_after_s;
     struct text in;

@@ -216,6 +216,7 @@ int main(int argc, char **argv)
     sigaction(SIGTERM, &action, NULL);
     sigaction(SIGINT, &action, NULL);
     signal(SIGPIPE, SIG_IGN);
+    srand((unsigned)(clock_utc_ns() ^ getpid()));
     struct screen *screen = screen_open(options.width_px, options.height_px, options.monitor);
     if (!screen)
         return 1;

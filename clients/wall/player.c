@@ -60,6 +60,9 @@ static void words_text(struct link *link, const json_t *message)
         want_views(player);
         link_post(link, json_pack("{s:s,s:s,s:i}", "type", "display", "wall", player->wall_id, "display", player->display));
         links_ask_walls(&player->links);
+        for (int i = 0; i < player->pane_count; i++)
+            if (player->panes[i].view.greeted && (player->panes[i].view.missed || !view_pane_fits(&player->panes[i].view, &player->model)))
+                link_restart(&player->links.at[1 + i]);
     } else if (!strcmp(type, "pointed")) {
         on_pointed(player, message);
     } else if (!strcmp(type, "error")) {
@@ -89,6 +92,8 @@ static void refused(struct link *link)
 {
     struct player *player = link->arg;
     player->denied = true;
+    if (link->index > 0)
+        link_restart(&player->links.at[0]); /* it is for that one to say whether we are let in again */
     want_views(player);
     for (int i = 0; i < player->pane_count; i++)
         view_pane_clear(&player->panes[i].view);

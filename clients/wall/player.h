@@ -51,7 +51,7 @@ struct player {
     struct rules_call call;
     int64_t begun_ns, said_ns; /* said: when the server of the words last spoke */
     bool denied;
-    uint32_t ground; /* what is around the picture: the drawing thread alone */
+    uint32_t ground;  /* what is around the picture: the drawing thread alone */
     bool all_due;     /* everything is to be drawn anew */
     struct text card; /* what lies over everything; "": nothing */
     cairo_surface_t *surface;

@@ -111,7 +111,7 @@ void pane_choose(struct player *player, struct pane *pane, int64_t now_ns)
     if (order && !alarm)
         say_order(player, order, &pane->words);
     want(player, pane, order, alarm, address, &wanted);
-    if (pane->view.greeted && (!pane->wanted.at || strcmp(wanted.at, pane->wanted.at) != 0)) {
+    if (pane->view.greeted && view_pane_fits(&pane->view, model) && (!pane->wanted.at || strcmp(wanted.at, pane->wanted.at) != 0)) {
         pane->wanted.length = 0;
         text_add(&pane->wanted, "%s", wanted.at);
         pane->changed_ns = now_ns;

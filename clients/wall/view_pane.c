@@ -200,6 +200,7 @@ static void on_welcome(struct view_pane *pane, const json_t *message)
     snprintf(pane->configuration, sizeof(pane->configuration), "%s", configuration ? configuration : "");
     pane->camera_seq = pane->params_seq = pane->told_seq = 0;
     pane->greeted = true;
+    pane->missed = false;
 }
 
 static uint32_t quality_at(const json_t *row, size_t index)
@@ -261,7 +262,7 @@ static void take_isolines(struct view_pane *pane, const json_t *rows)
     }
 }
 
-static bool fits(const struct view_pane *pane, const struct model *model)
+bool view_pane_fits(const struct view_pane *pane, const struct model *model)
 {
     const char *now = json_string_value(json_object_get(json_object_get(model->welcome, "plant"), "configuration"));
     return model->welcome && now && !strncmp(now, pane->configuration, sizeof(pane->configuration) - 1);
@@ -275,8 +276,8 @@ void view_pane_hear(struct view_pane *pane, const struct model *model, const jso
     } else if (!strcmp(type, "error")) {
         const char *text = json_string_value(json_object_get(message, "text"));
         snprintf(pane->refused, sizeof(pane->refused), "%s", text ? text : "?");
-    } else if (!fits(pane, model)) { /* the one of two sessions was told of a new plant, the other will be */
-        return;
+    } else if (!view_pane_fits(pane, model)) { /* the one of two sessions was told of a new plant, the other will be */
+        pane->missed = true;
     } else if (!strcmp(type, "params")) {
         if (read_view(model, message, pane->width_px, pane->height_px, &pane->told))
             pane->told_seq = (uint32_t)json_integer_value(json_object_get(message, "seq"));
@@ -439,7 +440,7 @@ static void draw_overlay(struct view_pane *pane, const struct model *model)
 
 bool view_pane_draw(struct view_pane *pane, const struct model *model, cairo_t *cairo, double x, double y)
 {
-    if (!pane->picture || !pane->is_current || !fits(pane, model))
+    if (!pane->picture || !pane->is_current || !view_pane_fits(pane, model))
         return false;
     if (pane->overlay_due || !pane->overlay)
         draw_overlay(pane, model);

@@ -15,6 +15,7 @@ struct view_pane {
     struct link *link;
     int width_px, height_px; /* of its picture */
     double unit;
+    bool missed;  /* something was said while the plant was another one: it is to be said again */
     bool greeted; /* by this connection's server */
     bool engineer;
     char configuration[40];          /* of the plant that its markers are of */
@@ -51,6 +52,8 @@ bool view_pane_decode(struct view_pane *pane, pthread_mutex_t *lock, const struc
 void view_pane_show(struct view_pane *pane, const struct model *model, const char *address);
 /* Asks for the place of a tag. */
 void view_pane_show_tag(struct view_pane *pane, const struct model *model, int tag);
+/* Returns whether it speaks of the same plant as the model. */
+bool view_pane_fits(const struct view_pane *pane, const struct model *model);
 /* Draws picture and overlay with the upper left corner there. Returns false if there is no picture of what was asked for. */
 bool view_pane_draw(struct view_pane *pane, const struct model *model, cairo_t *cairo, double x, double y);
 /* Draws a cross-hair at a place of the plant, likewise. */
