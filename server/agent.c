@@ -11,6 +11,7 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include "base/clock.h"
 #include "base/mem.h"
 #include "base/thread.h"
 
@@ -20,7 +21,11 @@ struct agent {
     struct thread thread;
     /* --- below: under thread.lock */
     struct agent_state state;
+    int64_t told_ns; /* monotonic */
 };
+
+enum { PAUSE_MS = 100 };
+static const int64_t TOLD_NS = 5 * NS_PER_S;
 
 /* Weight 1 of 100 where readings are missing: another node is better, but if all have lost the core, people still see that. */
 static int print_line(const struct agent_state *state, char *line, size_t size)
@@ -35,10 +40,14 @@ static void answer(struct agent *agent)
 {
     char line[64];
     int fd = accept4(agent->fd, NULL, NULL, SOCK_CLOEXEC | SOCK_NONBLOCK);
-    if (fd < 0)
+    if (fd < 0) { /* out of descriptors, say: whoever asks waits, and so do we */
+        poll(&(struct pollfd){ .fd = agent->stop_fd, .events = POLLIN }, 1, PAUSE_MS);
         return;
+    }
     pthread_mutex_lock(&agent->thread.lock);
-    const struct agent_state state = agent->state;
+    struct agent_state state = agent->state;
+    if (clock_mono_ns() - agent->told_ns > TOLD_NS) /* the loop hangs */
+        state.has_core = false;
     pthread_mutex_unlock(&agent->thread.lock);
     int count = print_line(&state, line, sizeof(line));
     (void)!send(fd, line, (size_t)count, MSG_NOSIGNAL); /* it fits a new socket's buffer */
@@ -111,5 +120,6 @@ void agent_tell(struct agent *agent, const struct agent_state *state)
 {
     pthread_mutex_lock(&agent->thread.lock);
     agent->state = *state;
+    agent->told_ns = clock_mono_ns();
     pthread_mutex_unlock(&agent->thread.lock);
 }

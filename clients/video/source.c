@@ -50,6 +50,9 @@ static void fail(struct source *source, const char *headline, const char *fmt, .
     char *valid = g_utf8_make_valid(source->detail, -1);
     g_strlcpy(source->detail, valid, sizeof(source->detail));
     g_free(valid);
+    const char *whole; /* cut within a letter, it could not be drawn */
+    g_utf8_validate(source->detail, -1, &whole);
+    source->detail[whole - source->detail] = 0;
     g_strlcpy(source->headline, headline, sizeof(source->headline));
     if (strcmp(source->said, source->detail) != 0)
         fprintf(stderr, "plantcast-video: %s: %s\n", source->options->url, source->detail);
@@ -259,7 +262,7 @@ static void ask(struct source *source, enum ask what, gint64 now_us)
     source->overdue = false;
     source->due_us[what] = now_us + (what == ASK_PICTURE ? source->options->every_ms * 1000 : again_us[what]);
     if (what == ASK_PICTURE)
-        source->valued = !strstr(url, "look=materials") && !strstr(url, "show=distance");
+        source->valued = strstr(url, "&split=") || (!strstr(url, "&look=materials") && !strstr(url, "&show=distance"));
     source->message = soup_message_new("GET", url);
     g_free(url);
     if (!source->message) {

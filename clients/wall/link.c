@@ -10,7 +10,7 @@
 #include "base/mem.h"
 
 enum { TICK_US = 100000, MOST_TEXT_BYTES = 64 * 1024 * 1024, MOST_TRIES = 4, MOST_FAILURES = 5 };
-static const int64_t PING_NS = NS_PER_S, SILENT_NS = 5 * NS_PER_S, CONNECT_NS = 10 * NS_PER_S;
+static const int64_t PING_NS = NS_PER_S, SILENT_NS = 5 * NS_PER_S, CONNECT_NS = 10 * NS_PER_S, WALLS_NS = 2 * NS_PER_S;
 static const double FIRST_S = 0.5, SPREAD_S = 2, DENIED_S = 10; /* wrong tokens are looked at ten times a minute */
 
 /* --- what goes -------------------------------------------------------------------------------------------------------------------- */
@@ -102,6 +102,7 @@ static void on_text(struct link *link)
     } else if (type) {
         if (!strcmp(type, "welcome")) {
             link->state = LINK_WELCOMED;
+            link->heard_ns = link->alive_ns;
             link->tries = 0;
             link->denied = false;
             link->retry_after_s = 0;
@@ -141,7 +142,9 @@ static int on_receive(struct link *link, struct lws *wsi, const void *bytes, siz
     if (link->in.length + count > MOST_TEXT_BYTES + WIRE_FRAME_HEADER_BYTES)
         return -1;
     text_add_bytes(&link->in, bytes, count);
-    link->heard_ns = clock_mono_ns();
+    link->alive_ns = clock_mono_ns();
+    if (link->state == LINK_WELCOMED) /* a server that is full speaks, but shows nothing */
+        link->heard_ns = link->alive_ns;
     if (lws_remaining_packet_payload(wsi) > 0 || !lws_is_final_fragment(wsi))
         return 0;
     if (lws_frame_is_binary(wsi))
@@ -188,6 +191,19 @@ static void connect_link(struct link *link)
         on_gone(link);
 }
 
+static void end_walls(struct links *links)
+{
+    json_t *answer = links->asks_walls && links->body.at ? json_loadb(links->body.at, links->body.length, 0, NULL) : NULL;
+    const json_t *walls = json_object_get(answer, "walls");
+    links->asks_walls = false;
+    if (json_is_array(walls))
+        links->walls(links->arg, walls);
+    else
+        links->wants_walls = true;
+    json_decref(answer);
+    text_finish(&links->body);
+}
+
 static void begin_walls(struct links *links)
 {
     char path[sizeof(links->url->base) + 24];
@@ -198,17 +214,18 @@ static void begin_walls(struct links *links)
     daemon_prepare_connection(links->url, &info);
     links->wants_walls = false;
     links->asks_walls = true;
+    links->walls_ns = clock_mono_ns();
     links->body.length = 0;
     pthread_mutex_unlock(links->lock);
     bool begun = lws_client_connect_via_info(&info) != NULL;
     pthread_mutex_lock(links->lock);
     if (!begun)
-        links->asks_walls = false;
+        end_walls(links);
 }
 
 static void tick_link(struct link *link, int64_t now_ns)
 {
-    bool silent = link->state >= LINK_OPEN && now_ns - link->heard_ns > SILENT_NS;
+    bool silent = link->state >= LINK_OPEN && now_ns - link->alive_ns > SILENT_NS;
     bool stuck = link->state == LINK_CONNECTING && now_ns - link->begun_ns > CONNECT_NS;
     if (link->wsi && (silent || stuck || !link->wanted))
         link->closing = true;
@@ -232,7 +249,7 @@ static void tick(struct links *links)
     for (int i = 0; i < LINKS_MOST && !links->ends; i++)
         if (links->at[i].events)
             tick_link(&links->at[i], now_ns);
-    if (links->wants_walls && !links->asks_walls && !links->ends)
+    if (links->wants_walls && !links->asks_walls && !links->ends && now_ns - links->walls_ns >= WALLS_NS)
         begin_walls(links);
 }
 
@@ -268,7 +285,7 @@ static int on_link(struct link *link, struct lws *wsi, enum lws_callback_reasons
     case LWS_CALLBACK_CLIENT_ESTABLISHED:
         link->wsi = wsi;
         link->state = LINK_OPEN;
-        link->heard_ns = clock_mono_ns();
+        link->alive_ns = clock_mono_ns();
         enqueue(link, link->events->hello(link));
         lws_callback_on_writable(wsi);
         break;
@@ -298,17 +315,6 @@ static int on_stream(struct lws *wsi, enum lws_callback_reasons reason, void *us
         status = on_link(link, wsi, reason, in, len);
     pthread_mutex_unlock(links->lock);
     return status;
-}
-
-static void end_walls(struct links *links)
-{
-    json_t *answer = links->asks_walls && links->body.at ? json_loadb(links->body.at, links->body.length, 0, NULL) : NULL;
-    const json_t *walls = json_object_get(answer, "walls");
-    links->asks_walls = false;
-    if (json_is_array(walls))
-        links->walls(links->arg, walls);
-    json_decref(answer);
-    text_finish(&links->body);
 }
 
 static int on_http(struct lws *wsi, enum lws_callback_reasons reason, void *user, void *in, size_t len)

@@ -35,7 +35,8 @@ struct link {
     bool wanted; /* it is to be connected */
     bool denied; /* it was not let in the last time */
     enum link_state state;
-    int64_t heard_ns; /* monotonic: when the server last spoke; 0: never */
+    int64_t heard_ns; /* monotonic: when the server last spoke in a session; 0: never */
+    int64_t alive_ns; /* the same, also before it lets us in, or refuses to */
     /* --- below: of link.c */
     struct lws *wsi;
     bool closing, asked; /* asked: it is to end because we want another one */
@@ -57,6 +58,7 @@ struct links {
     struct lws_context *context;
     pthread_t thread;
     bool ends, started, wants_walls, asks_walls;
+    int64_t walls_ns; /* monotonic: when they were asked for last */
     struct text body;
     int64_t alive_ns;
     lws_sorted_usec_list_t timer;

@@ -8,6 +8,7 @@
 
 #include "base/mem.h"
 #include "field/colormap.h"
+#include "message/names.h"
 
 static char *text_of(const json_t *o, const char *name)
 {
@@ -52,12 +53,15 @@ static int read_numbers(const json_t *list, double *out, int most)
 
 static void read_group(const json_t *o, struct plant_group *group)
 {
-    const char *interpolation = text_of(o, "interpolation"), *distance = text_of(o, "distance");
+    const char *distance = text_of(o, "distance");
     *group = (struct plant_group){ .id = text_of(o, "id"), .quantity = text_of(o, "quantity"), .unit = text_of(o, "unit") };
     group->min = number_or(o, "min", 0);
     group->max = number_or(o, "max", 1);
     read_limits(o, group->limits);
-    group->interpolation = !strcmp(interpolation, "paper") ? INTERPOLATION_PAPER : INTERPOLATION_SHEPARD;
+    for (const struct name *name = names_interpolation; name->text; name++)
+        if (!strcmp(name->text, text_of(o, "interpolation")))
+            group->interpolation = (enum interpolation)name->value;
+    group->prepared = ~0u; /* the server knows, and has judged */
     group->distance = !strcmp(distance, "euclidean") ? DISTANCE_EUCLIDEAN : DISTANCE_GEODESIC;
     group->fill = !strcmp(text_of(o, "fill"), "neighbours") ? FILL_NEIGHBOURS : FILL_NONE;
     group->strength = group->decay = 1;

@@ -88,7 +88,7 @@ static void take_names(const char *text, json_t *params)
 {
     static const char *const choices[][2] = {
         { "group", "" },
-        { "interpolation", " shepard paper " },
+        { "interpolation", "" },
         { "distance", " geodesic euclidean " },
         { "colormap", "" },
         { "look", " default glossy flat materials " },

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Devices that show a wall's display without anybody typing a token there. A device makes its own secret and shows six digits; an engineer
    who reads them approves it, and the hash of the secret is kept in devices.json in the folder of the history until it is revoked. The
-   secret stands for the role viewer, for that display alone. Thread: the loop. */
+   secret stands for the role viewer, of no other display. Thread: the loop. */
 #ifndef ACCESS_PAIRINGS_H
 #define ACCESS_PAIRINGS_H
 #include "access/tokens.h"

@@ -341,5 +341,7 @@ enum role tokens_role(const struct tokens *tokens, const struct token_holder *ho
     const struct token_holder *found = find(tokens, holder->hash, now_utc_ns);
     if (!found && tokens->find_device)
         tokens->find_device(tokens->pairings, holder->hash, &device);
-    return !found ? device.role : now_utc_ns < found->until_utc_ns ? found->role : ROLE_NOBODY;
+    if (!found)
+        return device.role;
+    return now_utc_ns < found->until_utc_ns && !found->views[0] ? found->role : ROLE_NOBODY;
 }

@@ -23,6 +23,7 @@
 #include "value/backoff.h"
 #include "value/lookup.h"
 
+enum { CORE_ACT_BYTES = 200 * 1024 /* less than a core takes */ };
 enum { MOST_BYTES = 64 << 20 /* of one message */, TOKEN_BYTES = 256, WHY_BYTES = 300, LOOK_US = 200000 };
 static const int64_t CONNECT_NS = 4 * NS_PER_S, CLOCKS_NS = 2 * NS_PER_S /* that clocks may differ before it is said */;
 
@@ -40,7 +41,7 @@ struct core_link {
     struct text in;
     struct lws *wsi;
     struct host_turn turn;
-    int64_t heard_ns, begun_ns, least_ns; /* least_ns: as in struct core_readings */
+    int64_t heard_ns, begun_ns, least_ns, readings_ns; /* the last two: least_ns and at_ns of struct core_readings */
     bool ended, taken, introduced, clock_said;
     bool at_fault;          /* what it said last is a fault of ours or the core's, and no lost link */
     char why[WHY_BYTES], said[WHY_BYTES]; /* why this connection ended; as logged last */
@@ -104,24 +105,37 @@ static void queue(struct core_link *link, char *text)
     mem_free(text);
 }
 
-bool core_link_act(struct core_link *link, const struct core_act *act)
+/* What the core could not take would end the link. NULL: it cannot. */
+static char *pack_act(const struct core_act *act, uint64_t id)
 {
     json_t *message = json_loads(act->text, 0, NULL);
+    if (!message)
+        return NULL;
+    json_t *all = json_pack("{s:s,s:I,s:s,s:s,s:s,s:b,s:o}", "type", "act", "id", (json_int_t)id, "who", act->who, "from", act->from,
+                            "role", act->role, "signed_in", act->signed_in, "message", message);
+    char *text = json_text(all, 0);
+    json_t *again = text && strlen(text) <= CORE_ACT_BYTES ? json_loads(text, 0, NULL) : NULL;
+    if (!again)
+        mem_free(text);
+    bool good = again;
+    json_decref(again);
+    return good ? text : NULL;
+}
+
+bool core_link_act(struct core_link *link, const struct core_act *act)
+{
     size_t free_at = 0;
     pthread_mutex_lock(&link->thread.lock);
     while (free_at < CORE_ACTS && link->waiting[free_at].id)
         free_at++;
-    bool good = link->is_up && message && free_at < CORE_ACTS;
-    if (good) {
+    char *text = link->is_up && free_at < CORE_ACTS ? pack_act(act, link->last_id + 1) : NULL;
+    if (text) {
         link->waiting[free_at] = (struct waiting){ ++link->last_id, act->client };
-        queue(link, json_text(json_pack("{s:s,s:I,s:s,s:s,s:s,s:b,s:O}", "type", "act", "id", (json_int_t)link->last_id, "who", act->who,
-                                        "from", act->from, "role", act->role, "signed_in", act->signed_in, "message", message),
-                              0));
+        queue(link, text);
         lws_cancel_service(link->context);
     }
     pthread_mutex_unlock(&link->thread.lock);
-    json_decref(message);
-    return good;
+    return text;
 }
 
 /* --- what comes --------------------------------------------------------------------------------------------------------------- */
@@ -251,7 +265,7 @@ static void set_up(struct core_link *link)
 
 static void on_bytes(struct core_link *link)
 {
-    struct core_readings readings = { .at = link->readings, .least_ns = link->least_ns };
+    struct core_readings readings = { .at = link->readings, .least_ns = link->least_ns, .at_ns = link->readings_ns };
     int64_t now_ns = clock_mono_ns();
     const char *why = !link->taken ? "it does not say who it is"
                                    : core_readings_read(&readings, link->params.plant->tag_count, link->in.at, link->in.length, now_ns);
@@ -260,6 +274,7 @@ static void on_bytes(struct core_link *link)
         return;
     }
     link->least_ns = readings.least_ns;
+    link->readings_ns = readings.at_ns;
     if (readings.late_ns > CORE_SILENT_NS) { /* what waits in a slow network, or did while we slept, is no reading of now */
         end(link, "its readings come more than 2 s late");
         return;
@@ -477,6 +492,8 @@ static void watch_silence(struct core_link *link)
         end(link, "it does not answer");
     if (link->introduced && now_ns - link->heard_ns > CORE_SILENT_NS)
         end(link, "it was silent for 2 s");
+    if (link->is_up && now_ns - link->readings_ns > CORE_SILENT_NS)
+        end(link, "no readings came for 2 s");
 }
 
 /* Until it ends; link->why says why. */
@@ -488,6 +505,7 @@ static void run_connection(struct core_link *link)
     link->why[0] = 0;
     link->begun_ns = clock_mono_ns();
     link->least_ns = INT64_MAX;
+    link->readings_ns = 0;
     if (!parse_url(link->params.urls[link->turn.index], &url) || !connect_to(link, &url)) {
         end(link, "no connection");
     } else {

@@ -29,6 +29,7 @@ struct core_readings {
     int64_t utc_ns;   /* the core's clock, when it took them */
     int64_t least_ns; /* kept from message to message: by how much our monotonic clock was ahead of the core's, at least. Begins with
                          INT64_MAX for each connection */
+    int64_t at_ns;    /* kept likewise: when the last one came. Begins with 0 */
     int64_t late_ns;  /* by so much longer than the quickest message of the connection this one took; ages have it in them */
     size_t count;
     struct mirrored *at; /* room for all tags; */

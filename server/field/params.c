@@ -28,6 +28,14 @@ void field_params_default(const struct plant *plant, int group, struct field_par
     params->reach_m = from->reach_m;
 }
 
+void field_params_set_show(const struct plant *plant, struct field_params *params, enum field_show show)
+{
+    bool has_harmonic = plant_prepares(&plant->groups[params->group], INTERPOLATION_HARMONIC);
+    params->show = show;
+    if (show == SHOW_OPERATOR && params->interpolation == INTERPOLATION_FIN)
+        params->interpolation = has_harmonic ? INTERPOLATION_HARMONIC : INTERPOLATION_SHEPARD;
+}
+
 bool field_params_equal(const struct field_params *a, const struct field_params *b)
 {
     return memcmp(a, b, offsetof(struct field_params, overrides)) == 0 &&
@@ -178,6 +186,8 @@ const char *field_params_wrong(const struct plant *plant, const struct field_par
         return "fill: expected none or neighbours";
     if (params->show != SHOW_VALUE && params->show != SHOW_DISTANCE && params->show != SHOW_DIFFERENCE && params->show != SHOW_OPERATOR)
         return "show: expected value, distance, difference or operator";
+    if (params->show == SHOW_OPERATOR && params->interpolation == INTERPOLATION_FIN)
+        return "interpolation: fin cannot show places between limits (show: operator)";
     const char *wrong = numbers_wrong(params);
     return wrong ? wrong : sensors_wrong(plant, params);
 }

@@ -39,6 +39,9 @@ struct field_params {
 };
 /* Fills in the group's defaults from the plant file. */
 void field_params_default(const struct plant *plant, int group, struct field_params *params);
+/* Sets what is shown. Places between limits cannot be interpolated by `fin`, whose values fall towards what is around: `harmonic`, or
+   where it is not prepared `shepard`, then takes its place. */
+void field_params_set_show(const struct plant *plant, struct field_params *params, enum field_show show);
 /* Returns whether two sets of parameters are equal. */
 bool field_params_equal(const struct field_params *a, const struct field_params *b);
 /* Checks the parameters: 0 <= strength, decay <= 100; 0.5 <= power <= 16; radius 0 or 1e-3..1e6 m; reach > 0. Returns NULL if they are

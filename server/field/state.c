@@ -11,6 +11,7 @@
 #include "value/quality.h"
 
 #define FLAG 255
+#define FILLED_DOUBT 0.1 /* such a share of a lost sensor's value may rest on uncertain ones */
 #define READING_LIMIT 1e30 /* beyond it sums of floats would overflow */
 
 struct state *state_create(int asset, struct layout *layout, const struct field_params *params)
@@ -201,13 +202,20 @@ void state_fill(struct state *state)
     if (!weights->fill)
         return;
     double *values = mem_array(state->layout->sensor_count, sizeof(*values));
-    for (size_t i = 0; i < state->layout->sensor_count; i++)
+    double *doubts = mem_array(state->layout->sensor_count, sizeof(*doubts));
+    for (size_t i = 0; i < state->layout->sensor_count; i++) {
         values[i] = state->now[i].value;
+        doubts[i] = state->now[i].uncertain;
+    }
     influence_fill_values(weights->fill, values);
+    influence_fill_values(weights->fill, doubts); /* what a lost sensor's value rests on may be uncertain */
     for (size_t i = 0; i < state->layout->sensor_count; i++)
-        if (!weights->takes_part[i])
+        if (!weights->takes_part[i]) {
             state->now[i].value = limited(values[i], -READING_LIMIT, READING_LIMIT);
+            state->now[i].uncertain = doubts[i] > FILLED_DOUBT;
+        }
     mem_free(values);
+    mem_free(doubts);
 }
 
 bool state_needs_weights(const struct state *state)

@@ -190,7 +190,7 @@ bool params_parse(const struct plant *plant, const json_t *o, struct params_chan
 static void take_group(const struct scene *scene, int group, bool is_operator, struct view *view)
 {
     field_params_default(scene->plant, group, &view->field);
-    view->field.show = is_operator ? SHOW_OPERATOR : SHOW_VALUE;
+    field_params_set_show(scene->plant, &view->field, is_operator ? SHOW_OPERATOR : SHOW_VALUE);
     view_default_scale(scene, view);
 }
 

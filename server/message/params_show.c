@@ -218,8 +218,10 @@ bool params_apply_show(const struct params_context *context, const struct params
                        struct view *view, struct message_error *error)
 {
     struct field_params *field = &view->field;
-    if (change->given & GIVEN_SHOW)
+    if ((change->given & GIVEN_SHOW) && (change->given & GIVEN_INTERPOLATION))
         field->show = change->field.show;
+    else if (change->given & GIVEN_SHOW)
+        field_params_set_show(context->scene->plant, field, change->field.show);
     if (change->given & GIVEN_SENSOR)
         field->sensor = change->field.sensor;
     if (!apply_sensors(change, field, error) || !find_baseline(context, change, field, error))

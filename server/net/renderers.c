@@ -18,6 +18,7 @@
 #include "session/session_proxy.h"
 
 enum { BEAT_US = 200000, MOST_BYTES = 256 * 1024 /* of one message */, MOST_ANSWERS = 1024, PATIENCE_S = 5 };
+static const int64_t READINGS_NS = 500 * NS_PER_MS;
 
 struct lists_seen {
     uint64_t views, notes, walls, pointed;
@@ -36,6 +37,7 @@ struct renderer {
     struct lists_seen lists;
     bool *links;             /* by source, as sent */
     json_t *answers;         /* that wait to be sent */
+    int64_t told_ns;         /* monotonic: when readings were sent last */
     int64_t since_ns;        /* monotonic: since when something waits to be sent; 0: nothing */
     const char *close_text;  /* NULL: it stays */
 };
@@ -206,11 +208,13 @@ static bool send_answer(struct renderer *renderer)
 static bool send_readings(struct server_context *server, struct renderer *renderer)
 {
     begin(renderer);
+    renderer->told_ns = clock_mono_ns();
     core_readings_write(&renderer->out, server->snapshot, &renderer->sent);
     return send_out(renderer, LWS_WRITE_BINARY);
 }
 
-/* One message at a time: what changed most rarely first, readings last, which so are never newer than the alarms beside them. */
+/* One message at a time: what changed most rarely first, readings last, which so are never newer than the alarms beside them; but readings
+   that the others kept waiting come first, for without them the core counts as lost. */
 static bool send_next(struct server_context *server, struct renderer *renderer)
 {
     struct lists_seen lists = lists_now(server);
@@ -219,8 +223,10 @@ static bool send_next(struct server_context *server, struct renderer *renderer)
         return true;
     if (renderer->state == RENDERER_REFUSED)
         return send_refusal(renderer);
-    bool good, more = true;
-    if (json_array_size(renderer->answers) > 0)
+    bool good, more = true, waits = renderer->told_ns && clock_mono_ns() - renderer->told_ns > READINGS_NS;
+    if (waits)
+        good = send_readings(server, renderer);
+    else if (json_array_size(renderer->answers) > 0)
         good = send_answer(renderer);
     else if (links_differ(server, renderer))
         good = send_links(server, renderer);
@@ -246,7 +252,11 @@ static void introduce(struct server_context *server, struct renderer *renderer, 
     renderer->refusal = core_identity_difference(message, "renderer", &own);
     renderer->state = renderer->refusal ? RENDERER_REFUSED : RENDERER_TAKEN;
     if (renderer->refusal) {
-        log_err(server->params.log, "renderer %s: refused: %s", renderer->name, renderer->refusal);
+        char said[sizeof(server->renderer_refused)];
+        snprintf(said, sizeof(said), "renderer %s: refused: %s", renderer->name, renderer->refusal);
+        if (strcmp(said, server->renderer_refused) != 0) /* it comes again every second */
+            log_err(server->params.log, "%s", said);
+        memcpy(server->renderer_refused, said, sizeof(said));
         return;
     }
     core_sent_init(&renderer->sent, plant->tag_count);
@@ -317,6 +327,11 @@ static int on_receive(struct server_context *server, struct renderer *renderer, 
 static int on_beat(struct server_context *server, struct renderer *renderer)
 {
     int64_t now_ns = clock_mono_ns();
+    const struct token_holder *holder = &connection_of(renderer->wsi)->holder;
+    if (server->tokens && holder->name[0] && tokens_role(server->tokens, holder, clock_utc_ns()) != ROLE_RENDERER) {
+        log_warn(server->params.log, "renderer %s: ended: its token is no longer one of a renderer", renderer->name);
+        return -1;
+    }
     net_refresh_readings(server);
     renderer->since_ns = renderer->since_ns ? renderer->since_ns : now_ns;
     lws_callback_on_writable(renderer->wsi);

@@ -49,6 +49,7 @@ struct server_context {
     size_t by_client_capacity;
     struct view_token_keys token_keys;               /* of a renderer: by which views are signed */
     char core_key[2 * VIEW_TOKEN_KEY_BYTES + 1];     /* of a core: the key that it gives its renderers, hexadecimal; "": none */
+    char renderer_refused[300]; /* which was refused last, and why, as logged */
     struct renderer *renderers;                      /* all connections to /core (renderers.c) */
     struct request *snapshots;                       /* HTTP requests that wait for a frame, a pick or a reload */
     int stream_count, picture_count, question_count; /* the latter two: of HTTP, that are being answered */

@@ -73,7 +73,8 @@ static enum role role_now(const struct session *session, int64_t now_utc_ns)
     const struct token_holder *holder = &session->identity.holder;
     if (holder->signed_in)
         return context->openid ? openid_role(context->openid, holder) : ROLE_NOBODY;
-    return context->tokens ? tokens_role(context->tokens, holder, now_utc_ns) : ROLE_NOBODY;
+    enum role role = context->tokens ? tokens_role(context->tokens, holder, now_utc_ns) : ROLE_NOBODY;
+    return role == ROLE_RENDERER ? ROLE_NOBODY : role; /* nobody looks by such a token */
 }
 
 static void on_ping(struct session *session, const struct message *message, int64_t now_ns, int64_t now_utc_ns)
@@ -408,16 +409,21 @@ void session_on_oversize(struct session *session, size_t count, int64_t now_ns)
     session_reply_error(session, &error);
 }
 
-/* So that another daemon can go on where this one was killed. */
+static const int64_t TOKEN_NS = 3600 * NS_PER_S; /* told anew, however long the view stands still */
+
+/* So that another daemon can go on where this one was killed; it believes a day's tokens, and the keys of two starts of the core. */
 static void tell_token(struct session *session, int64_t now_ns)
 {
     struct session_identity *identity = &session->identity;
-    if (!session->hello || !identity->tokens || now_ns - identity->token_ns < NS_PER_S || view_equal(&identity->token_view, &session->view))
+    int64_t age_ns = now_ns - identity->token_ns;
+    bool same = view_equal(&identity->token_view, &session->view) && age_ns < TOKEN_NS;
+    if (!session->hello || !identity->tokens || age_ns < NS_PER_S || same)
         return;
     const struct snapshot *snapshot = session->context->snapshot;
     char *token = view_token_make(session->context->token_keys, session, snapshot->taken_utc_ns + (now_ns - snapshot->taken_mono_ns));
-    identity->token_view = session->view;
     identity->token_ns = now_ns;
+    if (token)
+        identity->token_view = session->view;
     if (token)
         session_reply(session, json_text(json_pack("{s:s,s:s}", "type", "resume", "resume", token), 0));
     mem_free(token);

@@ -78,6 +78,8 @@ bool kept_list_mirror(struct kept_list *kept, json_t *list)
 {
     if (!kept->kind->good(list))
         return false;
+    if (json_equal(kept->list, list))
+        return true;
     json_decref(kept->list);
     kept->list = json_incref(list);
     kept->number++;

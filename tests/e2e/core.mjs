@@ -165,3 +165,20 @@ test('a renderer\'s token opens no stream; strangers at /core are ended', option
     }
     assert.equal((await core.tags())['TI-1'].quality_name, 'Good');
 });
+
+test('an act that the core could not read ends no link; nor does a revoked token keep one', options, async () => {
+    const connects = await a.metric('plantcast_core_connects_total');
+    const client = await a.client({}, { token: nodes.tokens.operator });
+    const point = (more) => `{"type":"point","wall":"w","display":1,"x":${more}}`;
+    client.say(point('['.repeat(2040) + ']'.repeat(2040)));
+    client.say(point(`[${Array(14000).fill('1.1').join()}]`));
+    await sleep(1500);
+    assert.equal(await a.metric('plantcast_core_connects_total'), connects);
+    assert.equal((await a.tags())['TI-1'].quality_name, 'Good');
+    client.close();
+    const lines = readFileSync(nodes.tokenFile, 'utf8');
+    writeFileSync(nodes.tokenFile, lines.split('\n').filter((line) => !line.startsWith('renderer')).join('\n'));
+    await until('Bad', async () => (await a.tags())['TI-1'].quality_name.startsWith('Bad'), 10);
+    writeFileSync(nodes.tokenFile, lines);
+    await all(async (node) => (await node.tags())['TI-1'].quality_name === 'Good');
+});

@@ -197,6 +197,10 @@ static void test_lost_sensor_is_bridged_and_its_place_unknown(void **state)
     u.snapshot->readings[4] = (struct reading){ .value = 5000, .quality = QUALITY_BAD };
     assert_int_equal(look(&u, place_of(4))->no_data, 255);
     assert_true(fabs((double)look(&u, place_of(3) + 0.2)->value - 31.7) < 0.4); /* straight from 3 to 5, discs apart */
+    assert_true(look(&u, place_of(3) + 0.3)->uncertain < 128);
+    u.snapshot->readings[5].quality = QUALITY_UNCERTAIN; /* half of what stands in for the lost one */
+    assert_true(look(&u, place_of(4) - 0.3)->uncertain > 127);
+    u.snapshot->readings[5].quality = QUALITY_GOOD;
     u.params.fill = FILL_NEIGHBOURS;
     assert_true(fabs((double)look(&u, place_of(4))->value - 40) < 0.5);
     for (size_t i = 0; i < SENSORS; i++)
@@ -223,6 +227,12 @@ static void test_fin_knows_how_far_it_sees(void **state)
         if (fabs(x - 0.0957 - decay_m * log(10)) > 0.1)
             assert_int_equal(at->no_data, x - 0.0957 < decay_m * log(10) ? 0 : 255);
     }
+    u.params.show = SHOW_OPERATOR;
+    assert_non_null(field_params_wrong(u.plant, &u.params));
+    field_params_set_show(u.plant, &u.params, SHOW_OPERATOR);
+    assert_int_equal(u.params.interpolation, INTERPOLATION_SHEPARD); /* harmonic is not prepared */
+    assert_null(field_params_wrong(u.plant, &u.params));
+    u.params.interpolation = INTERPOLATION_FIN;
     u.params.show = SHOW_DIFFERENCE; /* without a baseline there is nothing; the rule must not add what is around */
     u.params.baseline = 1;
     assert_true(look(&u, place_of(1))->no_data == 255);
