@@ -101,6 +101,9 @@ static int tear_down(void **state)
     plant_by_hand_destroy(&s->plant);
     counters_destroy(&s->counters);
     log_destroy(&s->log);
+    char *disk = temp_path(s->folder, "history"); /* still mounted where a test has failed */
+    (void)umount2(disk, MNT_DETACH);
+    mem_free(disk);
     temp_folder_destroy(&s->folder);
     return 0;
 }
