@@ -46,23 +46,31 @@ static char *reserve_of(const char *folder, int length)
     return mem_printf("%.*s/spool.reserve", length, folder);
 }
 
+/* It gets its name once it has all its blocks: what a kill leaves behind is none. */
+static int make_reserve(const char *path)
+{
+    char *made = mem_printf("%s.new", path);
+    unlink(made);
+    int fd = open(made, O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0600);
+    int error = fd < 0 ? -errno : -posix_fallocate(fd, 0, RESERVE_BYTES);
+    if (!error && rename(made, path) != 0)
+        error = -errno;
+    if (fd >= 0)
+        close(fd);
+    if (error && fd >= 0)
+        unlink(made);
+    mem_free(made);
+    return error;
+}
+
 int spool_reserve(const char *folder)
 {
     struct statvfs disk;
+    struct stat st;
     char *path = reserve_of(folder, (int)strlen(folder));
-    int error = statvfs(folder, &disk) ? -errno : 0, fd = -1;
-    if (!error && access(path, F_OK) != 0) {
-        if (disk.f_bavail * disk.f_frsize < (unsigned long)RESERVE_BYTES * PLENTY)
-            error = -ENOSPC;
-        else if ((fd = open(path, O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0600)) < 0)
-            error = -errno;
-        else
-            error = -posix_fallocate(fd, 0, RESERVE_BYTES);
-        if (fd >= 0)
-            close(fd);
-        if (error && fd >= 0)
-            unlink(path);
-    }
+    int error = statvfs(folder, &disk) ? -errno : 0;
+    if (!error && (lstat(path, &st) != 0 || st.st_size < RESERVE_BYTES))
+        error = disk.f_bavail * disk.f_frsize < (unsigned long)RESERVE_BYTES * PLENTY ? -ENOSPC : make_reserve(path);
     mem_free(path);
     return error;
 }
