@@ -170,7 +170,7 @@ $(bin)/plantcast-wall: $(call objects,clients/wall/main.c server/base/image_lazy
 # Neither the daemon nor another program links its libraries.
 video_objects := $(call objects,$(if $(video),$(wildcard clients/video/*.c)))
 $(video_objects) $(patsubst %,$(out)/obj/%.alone,$(wildcard clients/video/*.h)): CFLAGS += $(video_cflags)
-$(bin)/plantcast-video: $(video_objects) $(out)/lib/base.a
+$(bin)/plantcast-video: $(video_objects) $(call objects,$(addprefix server/message/,view_address.c message_error.c)) $(out)/lib/base.a
 	@mkdir -p $(@D); echo "  LINK $@"
 	@$(CC) $(ldflags) -pie -o $@ $(filter %.o,$^) -Wl,--start-group $(filter %.a,$^) -Wl,--end-group \
 	    $(shell pkg-config --libs $(video_packages)) -lm

@@ -7,7 +7,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "view_query.h"
+#include "message/view_address.h"
 
 /* A picture is of the instant at which it was asked for. The one that is shown stays until the next is there: asked for EVERY after it, and
    received within SLOWEST; so it is never older than OLDEST. */
@@ -25,7 +25,7 @@ struct source {
     bool overdue;
 
     GTimeZone *zone;
-    char *view, *view_title; /* of the view with a name; NULL: not known yet, or there is none */
+    char *view, *view_query, *view_title; /* of the view with a name, as it is kept and as a query; NULL: not known yet, or there is none */
     cairo_surface_t *picture;
     gint64 picture_us, age_ms;
     bool valued; /* some value should take part: else there is none to be old */
@@ -104,6 +104,44 @@ static void take_plant(struct source *source, const json_t *o)
     }
 }
 
+/* A view as /snapshot.png takes it: without its instant, what is selected, and how the field is computed, which is an engineer's. NULL: a
+   picture cannot show it, and *error says why. */
+static char *query_of(const char *view, struct message_error *error)
+{
+    static const char *const left_out[] = { "at", "selected", "fill", "strength", "decay", "power", "radius_m", "reach_m", "sensors", NULL };
+    struct view_address address;
+    GString *query = g_string_new("");
+    bool good = view_address_read(&address, *view == '#' ? view + 1 : view, error);
+    for (size_t i = 0; i < address.count; i++) {
+        char **pair = g_strsplit(address.args[i], "=", 2);
+        char *value = g_uri_escape_string(pair[1], ",:;=", TRUE);
+        if (!g_strv_contains(left_out, pair[0]))
+            g_string_append_printf(query, "&%s=%s", pair[0], value);
+        g_free(value);
+        g_strfreev(pair);
+    }
+    view_address_finish(&address);
+    return g_string_free(query, !good);
+}
+
+static void take_view(struct source *source, const char *view, const char *title)
+{
+    struct message_error error = { 0 };
+    g_free(source->view_title);
+    source->view_title = g_strdup(title);
+    if (g_strcmp0(source->view, view) == 0)
+        return;
+    source->due_us[ASK_PICTURE] = 0;
+    g_free(source->view);
+    g_free(source->view_query);
+    source->view_query = query_of(view, &error);
+    source->view = source->view_query ? g_strdup(view) : NULL;
+    if (!source->view) {
+        fail(source, "NO SUCH VIEW", "%s", error.text);
+        bar(source);
+    }
+}
+
 static void take_views(struct source *source, const json_t *o)
 {
     const json_t *one;
@@ -115,12 +153,7 @@ static void take_views(struct source *source, const json_t *o)
         const char *id = json_string_value(json_object_get(one, "id")), *view = json_string_value(json_object_get(one, "view")),
                    *title = json_string_value(json_object_get(one, "title"));
         if (id && view && !strcmp(id, source->options->view)) {
-            if (g_strcmp0(source->view, view) != 0)
-                source->due_us[ASK_PICTURE] = 0;
-            g_free(source->view);
-            g_free(source->view_title);
-            source->view = g_strdup(view);
-            source->view_title = g_strdup(title && *title ? title : id);
+            take_view(source, view, title && *title ? title : id);
             found = true;
         }
         g_string_append_printf(names, "%s%s", i ? ", " : "", id ? id : "");
@@ -248,7 +281,7 @@ static char *url_of(const struct source *source, enum ask ask)
     if (options->query)
         g_string_append_printf(url, "&%s", options->query);
     if (source->view)
-        view_query_add(url, source->view);
+        g_string_append(url, source->view_query);
     return g_string_free(url, FALSE);
 }
 
@@ -374,6 +407,7 @@ void source_destroy(struct source **pointer)
     g_object_unref(source->session);
     g_time_zone_unref(source->zone);
     g_free(source->view);
+    g_free(source->view_query);
     g_free(source->view_title);
     g_free(source);
 }
