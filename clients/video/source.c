@@ -108,7 +108,8 @@ static void take_plant(struct source *source, const json_t *o)
    picture cannot show it, and *error says why. */
 static char *query_of(const char *view, struct message_error *error)
 {
-    static const char *const left_out[] = { "at", "selected", "fill", "strength", "decay", "power", "radius_m", "reach_m", "sensors", NULL };
+    static const char *const left_out[] = { "at",    "selected", "fill",    "strength", "decay",
+                                            "power", "radius_m", "reach_m", "sensors",  NULL };
     struct view_address address;
     GString *query = g_string_new("");
     bool good = view_address_read(&address, *view == '#' ? view + 1 : view, error);

@@ -422,10 +422,10 @@ static void tell_token(struct session *session, int64_t now_ns)
     const struct snapshot *snapshot = session->context->snapshot;
     char *token = view_token_make(session->context->token_keys, session, snapshot->taken_utc_ns + (now_ns - snapshot->taken_mono_ns));
     identity->token_ns = now_ns;
-    if (token)
+    if (token) {
         identity->token_view = session->view;
-    if (token)
         session_reply(session, json_text(json_pack("{s:s,s:s}", "type", "resume", "resume", token), 0));
+    }
     mem_free(token);
 }
 

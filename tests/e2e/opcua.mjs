@@ -5,13 +5,12 @@ import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
 import { readdirSync, readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
-import { after, afterEach, before, test } from 'node:test';
-import { missingOpcua, OpcuaServer } from './support/opcua.mjs';
+import { test } from 'node:test';
+import { opcuaOptions, shareOpcua } from './support/opcua.mjs';
 import { PublishedPlant } from './support/published_plant.mjs';
-import { BIN, missing, runProgram } from './support/tiny_plant.mjs';
+import { BIN, runProgram } from './support/tiny_plant.mjs';
 
-const absent = missing();
-const options = { skip: absent.length > 0 ? `not built: ${absent.join(', ')}` : missingOpcua() ?? false, timeout: 180000 };
+const options = opcuaOptions(180000);
 const NODE = 'nsu=urn:test:plant%3B1;s=';
 const ROWS = [`TI-1,${NODE}TI-1,,°C,temperature,E-101,0.5,0,0,,,,,,`, `TI-2,${NODE}TI-2,,°C,temperature,E-101,-0.5,0,0,,,,,,`,
     `PI-1,${NODE}PI-1,,bar,pressure,P-101A,3,0,0.5,,Linear,0,27648,0,10`, `XS-1,${NODE}XS-1,bool,,,,,,,,,,,,`];
@@ -21,19 +20,7 @@ const sleep = (ms) => new Promise((done) => setTimeout(done, ms));
 const good = { quality_name: 'Good' };
 let server, plant;
 
-before(async () => {
-    if (options.skip)
-        return;
-    server = await OpcuaServer.create();
-    plant = await PublishedPlant.create(server);
-});
-afterEach(async () => {
-    await plant?.daemon?.stop();
-});
-after(async () => {
-    await plant?.destroy();
-    await server?.destroy();
-});
+shareOpcua(options, (...made) => { [server, plant] = made; });
 const until = (...args) => plant.until(...args);
 const said = (...args) => plant.said(...args);
 const start = (keys, rows = ROWS) => plant.start(keys, rows);

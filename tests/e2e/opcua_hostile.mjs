@@ -5,15 +5,12 @@ import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
 import { readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
-import { after, afterEach, before, test } from 'node:test';
+import { test } from 'node:test';
 import { distort, LIES, tellLies } from './support/lying_server.mjs';
-import { missingOpcua, OpcuaServer } from './support/opcua.mjs';
+import { opcuaOptions, shareOpcua } from './support/opcua.mjs';
 import { freePort } from './support/ports.mjs';
-import { PublishedPlant } from './support/published_plant.mjs';
-import { missing } from './support/tiny_plant.mjs';
 
-const absent = missing();
-const options = { skip: absent.length > 0 ? `not built: ${absent.join(', ')}` : missingOpcua() ?? false, timeout: 180000 };
+const options = opcuaOptions(180000);
 const ROWS = ['TI-1,nsu=urn:test:plant%3B1;s=TI-1,,°C,temperature,E-101,0.5,0,0,,,,,,'];
 const canMount = process.getuid() === 0 && spawnSync('unshare', ['--mount', 'true']).status === 0;
 const MOST_MB = 48; // that a liar may cost
@@ -21,27 +18,15 @@ const good = { quality_name: 'Good' };
 const sleep = (ms) => new Promise((done) => setTimeout(done, ms));
 let server, plant;
 
-before(async () => {
-    if (options.skip)
-        return;
-    server = await OpcuaServer.create();
-    plant = await PublishedPlant.create(server);
-});
-afterEach(async () => {
-    await plant?.daemon?.stop();
-});
-after(async () => {
-    await plant?.destroy();
-    await server?.destroy();
-});
-const peak_mb = () => Number(/VmHWM:\s+(\d+)/.exec(readFileSync(`/proc/${plant.daemon.child.pid}/status`, 'utf8'))[1]) / 1024;
+shareOpcua(options, (...made) => { [server, plant] = made; });
+const peakMb = () => Number(/VmHWM:\s+(\d+)/.exec(readFileSync(`/proc/${plant.daemon.child.pid}/status`, 'utf8'))[1]) / 1024;
 
 // Has the daemon meet something at the server's port; returns what that costs it, in MB, beyond `before`.
 async function meet(before = 0) {
     await plant.start('security: none', ROWS);
     await plant.said(/no readings \(/, 25000);
     await sleep(500);
-    return peak_mb() - before;
+    return peakMb() - before;
 }
 
 test('what lies about sizes is left, named, and costs nothing', options, async () => {
@@ -49,8 +34,8 @@ test('what lies about sizes is left, named, and costs nothing', options, async (
     await plant.daemon.stop();
     for (const [name, lies] of Object.entries(LIES)) {
         const liar = await tellLies(server.port, lies);
-        const more_mb = await meet(before);
-        assert.ok(liar.seen() > 0 && more_mb < MOST_MB, `${name}: ${more_mb} MB`);
+        const moreMb = await meet(before);
+        assert.ok(liar.seen() > 0 && moreMb < MOST_MB, `${name}: ${moreMb} MB`);
         await plant.daemon.stop();
         await liar.stop();
     }
@@ -67,7 +52,7 @@ test('a real server\'s messages with sizes in them that are none cost no more', 
             assert.ok(performance.now() < end, `${spared}: ${liar.seen()} lies`);
         await sleep(500);
         assert.equal(plant.daemon.child.exitCode, null, plant.daemon.said);
-        assert.ok(peak_mb() < 400, `${peak_mb()} MB`);
+        assert.ok(peakMb() < 400, `${peakMb()} MB`);
         await plant.daemon.stop();
         await liar.stop();
         server.port = real;

@@ -3,30 +3,15 @@
 import assert from 'node:assert/strict';
 import { writeFileSync } from 'node:fs';
 import { join } from 'node:path';
-import { after, afterEach, before, test } from 'node:test';
-import { makeCertificate, missingOpcua, OpcuaServer } from './support/opcua.mjs';
-import { PublishedPlant } from './support/published_plant.mjs';
-import { missing } from './support/tiny_plant.mjs';
+import { test } from 'node:test';
+import { makeCertificate, opcuaOptions, shareOpcua } from './support/opcua.mjs';
 
-const absent = missing();
-const options = { skip: absent.length > 0 ? `not built: ${absent.join(', ')}` : missingOpcua() ?? false, timeout: 400000 };
+const options = opcuaOptions(400000);
 const ROWS = ['TI-1,nsu=urn:test:plant%3B1;s=TI-1,,°C,temperature,E-101,0.5,0,0,,,,,,'];
 const good = { quality_name: 'Good' };
 let server, plant;
 
-before(async () => {
-    if (options.skip)
-        return;
-    server = await OpcuaServer.create();
-    plant = await PublishedPlant.create(server);
-});
-afterEach(async () => {
-    await plant?.daemon?.stop();
-});
-after(async () => {
-    await plant?.destroy();
-    await server?.destroy();
-});
+shareOpcua(options, (...made) => { [server, plant] = made; });
 const until = (...args) => plant.until(...args);
 const said = (...args) => plant.said(...args);
 const start = (keys, rows = ROWS) => plant.start(keys, rows);

@@ -29,48 +29,71 @@ static struct snapshot *make_snapshot(void)
     return snapshot;
 }
 
+/* From a core's snapshot to what a renderer has read. */
+struct way {
+    struct snapshot *snapshot;
+    struct core_sent sent;
+    struct text text; /* the message that was written last */
+    struct mirrored got[TAGS];
+    struct core_readings readings;
+};
+
+static void way_init(struct way *way)
+{
+    *way = (struct way){ .snapshot = make_snapshot(), .readings = { .at = way->got, .least_ns = INT64_MAX } };
+    core_sent_init(&way->sent, TAGS);
+}
+
+static void way_finish(struct way *way)
+{
+    core_sent_finish(&way->sent);
+    text_finish(&way->text);
+    snapshot_destroy(&way->snapshot);
+}
+
+static void write_message(struct way *way)
+{
+    way->text.length = 0;
+    core_readings_write(&way->text, way->snapshot, &way->sent);
+}
+
+static const char *read_message(struct way *way, int64_t now_mono_ns)
+{
+    return core_readings_read(&way->readings, TAGS, way->text.at, way->text.length, now_mono_ns);
+}
+
 static void only_changes_are_sent(void **state)
 {
+    struct way way;
+    const struct mirrored *got = way.got;
     (void)state;
-    struct snapshot *snapshot = make_snapshot();
-    struct core_sent sent;
-    struct text text = { 0 };
-    struct mirrored got[TAGS];
-    struct core_readings readings = { .at = got, .least_ns = INT64_MAX };
-    core_sent_init(&sent, TAGS);
-    core_readings_write(&text, snapshot, &sent);
-    assert_null(core_readings_read(&readings, TAGS, text.at, text.length, 100 * S));
-    assert_int_equal(readings.count, TAGS);
-    assert_true(readings.utc_ns == 5000 * S && got[0].value == 0.1 + 0.2 && got[0].received_mono_ns == 99 * S);
+    way_init(&way);
+    write_message(&way);
+    assert_null(read_message(&way, 100 * S));
+    assert_int_equal(way.readings.count, TAGS);
+    assert_true(way.readings.utc_ns == 5000 * S && got[0].value == 0.1 + 0.2 && got[0].received_mono_ns == 99 * S);
     assert_true(got[0].received_utc_ns == 4999 * S && got[1].quality == QUALITY_BAD_SENSOR_FAILURE && got[1].value == -7);
     assert_true(got[0].has_value && got[1].has_value && !got[2].has_value && got[2].quality == QUALITY_BAD_WAITING);
-    text.length = 0;
-    snapshot->readings[0].received_utc_ns += S; /* read again, the same value */
-    snapshot->readings[2].changes++;
-    core_readings_write(&text, snapshot, &sent);
-    assert_null(core_readings_read(&readings, TAGS, text.at, text.length, 101 * S));
-    assert_true(readings.count == 2 && got[0].tag == 0 && got[1].tag == 2);
-    text.length = 0;
-    core_readings_write(&text, snapshot, &sent);
-    assert_int_equal(text.length, CORE_READINGS_HEAD_BYTES);
-    core_sent_finish(&sent);
-    text_finish(&text);
-    snapshot_destroy(&snapshot);
+    way.snapshot->readings[0].received_utc_ns += S; /* read again, the same value */
+    way.snapshot->readings[2].changes++;
+    write_message(&way);
+    assert_null(read_message(&way, 101 * S));
+    assert_true(way.readings.count == 2 && got[0].tag == 0 && got[1].tag == 2);
+    write_message(&way);
+    assert_int_equal(way.text.length, CORE_READINGS_HEAD_BYTES);
+    way_finish(&way);
 }
 
 static void nonsense_is_refused(void **state)
 {
+    struct way way;
     (void)state;
-    struct snapshot *snapshot = make_snapshot();
-    struct core_sent sent;
-    struct text text = { 0 };
-    struct mirrored got[TAGS];
-    struct core_readings readings = { .at = got, .least_ns = INT64_MAX };
-    core_sent_init(&sent, TAGS);
-    core_readings_write(&text, snapshot, &sent);
-    for (size_t n = 0; n < text.length; n++)
-        assert_non_null(core_readings_read(&readings, TAGS, text.at, n, S));
-    assert_non_null(core_readings_read(&readings, TAGS - 1, text.at, text.length, S)); /* more than there are */
+    way_init(&way);
+    write_message(&way);
+    const size_t whole = way.text.length;
+    for (way.text.length = 0; way.text.length < whole; way.text.length++)
+        assert_non_null(read_message(&way, S));
+    assert_non_null(core_readings_read(&way.readings, TAGS - 1, way.text.at, whole, S)); /* more than there are */
     const struct {
         size_t at, count;
         uint8_t byte;
@@ -78,50 +101,42 @@ static void nonsense_is_refused(void **state)
                 { 24 + 8, 8, 0xff }, { 24 + 16, 8, 0xff }, { 88 + 4, 4, 0 } };
     for (size_t i = 0; i < sizeof(wrong) / sizeof(wrong[0]); i++) {
         char kept[256];
-        memcpy(kept, text.at, text.length);
-        memset(text.at + wrong[i].at, wrong[i].byte, wrong[i].count);
-        assert_non_null(core_readings_read(&readings, TAGS, text.at, text.length, S));
-        memcpy(text.at, kept, text.length);
+        memcpy(kept, way.text.at, whole);
+        memset(way.text.at + wrong[i].at, wrong[i].byte, wrong[i].count);
+        assert_non_null(read_message(&way, S));
+        memcpy(way.text.at, kept, whole);
     }
-    core_sent_finish(&sent);
-    text_finish(&text);
-    snapshot_destroy(&snapshot);
+    way_finish(&way);
 }
 
 /* What waited on its way is older by that. */
 #define DRIFT_NS (S / 500) /* that clocks may have drifted apart between two messages */
 
+static void assert_late(struct way *way, int64_t core_ns, int64_t now_ns, int64_t late_ns)
+{
+    way->snapshot->taken_mono_ns = core_ns;
+    core_sent_finish(&way->sent); /* all of them again */
+    core_sent_init(&way->sent, TAGS);
+    write_message(way);
+    assert_null(read_message(way, now_ns));
+    assert_true(llabs(way->readings.late_ns - late_ns) < DRIFT_NS);
+    assert_true(llabs(way->got[0].received_mono_ns - (now_ns - late_ns - S)) < DRIFT_NS);
+}
+
 static void late_readings_are_older(void **state)
 {
+    struct way way;
     (void)state;
-    struct snapshot *snapshot = make_snapshot();
-    struct core_sent sent;
-    struct text text = { 0 };
-    struct mirrored got[TAGS];
-    struct core_readings readings = { .at = got, .least_ns = INT64_MAX };
+    way_init(&way);
     for (int i = 0; i < 3; i++) { /* each a second after the one before; the second takes 5 s longer */
-        core_sent_init(&sent, TAGS);
-        snapshot->taken_mono_ns = (50 + i) * S;
-        text.length = 0;
-        core_readings_write(&text, snapshot, &sent);
-        int64_t now_ns = (1000 + i + (i == 1 ? 5 : 0)) * S;
-        assert_null(core_readings_read(&readings, TAGS, text.at, text.length, now_ns));
         int64_t late_ns = i == 1 ? 5 * S : 0;
-        assert_true(llabs(readings.late_ns - late_ns) < DRIFT_NS && llabs(got[0].received_mono_ns - (999 + i) * S) < DRIFT_NS);
-        core_sent_finish(&sent);
+        assert_late(&way, (50 + i) * S, (1000 + i) * S + late_ns, late_ns);
     }
     for (int i = 0; i < 100; i++) { /* 40 hours, while our clock is faster by 50 of a million */
         int64_t passed_ns = (3 + 1440 * (int64_t)i) * S;
-        core_sent_init(&sent, TAGS);
-        snapshot->taken_mono_ns = 50 * S + passed_ns;
-        text.length = 0;
-        core_readings_write(&text, snapshot, &sent);
-        assert_null(core_readings_read(&readings, TAGS, text.at, text.length, 1000 * S + passed_ns + passed_ns / 20000));
-        assert_true(readings.late_ns < DRIFT_NS);
-        core_sent_finish(&sent);
+        assert_late(&way, 50 * S + passed_ns, 1000 * S + passed_ns + passed_ns / 20000, 0);
     }
-    text_finish(&text);
-    snapshot_destroy(&snapshot);
+    way_finish(&way);
 }
 
 /* What is shown there is shown here, whatever its age; a lost link makes all Bad, also what is told again unchanged afterwards. */

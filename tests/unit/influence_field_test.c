@@ -116,6 +116,15 @@ static bool use(struct plant_in_use *u, const struct prep_case *c)
     return true;
 }
 
+/* A plant with these keys of the asset and of the group, prepared and in use. */
+static void begin(struct plant_in_use *u, struct prep_case *c, const char *wall, const char *group, size_t sensors)
+{
+    write_model(c);
+    write_plant(c, wall, group, sensors);
+    prep_case_expect(c, "$PLANT", 0);
+    assert_true(use(u, c));
+}
+
 static void finish(struct plant_in_use *u)
 {
     field_destroy(&u->field);
@@ -144,10 +153,7 @@ static void test_harmonic_is_straight_and_follows_readings(void **state)
 {
     struct prep_case *c = *state;
     struct plant_in_use u;
-    write_model(c);
-    write_plant(c, "", ", interpolation: harmonic, disc_m: 0.1", SENSORS);
-    prep_case_expect(c, "$PLANT", 0);
-    assert_true(use(&u, c));
+    begin(&u, c, "", ", interpolation: harmonic, disc_m: 0.1", SENSORS);
     for (size_t i = 0; i < SENSORS; i++)
         assert_true(fabs((double)look(&u, place_of(i))->value - 10.0 * (double)i) < 0.05);
     assert_true(fabs((double)look(&u, place_of(3) + 0.4)->value - 35) < 0.5);
@@ -162,10 +168,8 @@ static void test_steps_and_lost_sensors_agree_with_all_anew(void **state)
 {
     struct prep_case *c = *state;
     struct plant_in_use u, fresh;
-    write_model(c);
-    write_plant(c, ", thickness_m: 0.01", ", interpolation: fin, ambient: 20, disc_m: 0.1, prepare: [harmonic], fill: neighbours", SENSORS);
-    prep_case_expect(c, "$PLANT", 0);
-    assert_true(use(&u, c) && use(&fresh, c));
+    begin(&u, c, ", thickness_m: 0.01", ", interpolation: fin, ambient: 20, disc_m: 0.1, prepare: [harmonic], fill: neighbours", SENSORS);
+    assert_true(use(&fresh, c));
     for (int pass = 0; pass < 2; pass++) {
         u.params.interpolation = fresh.params.interpolation = pass ? INTERPOLATION_HARMONIC : INTERPOLATION_FIN;
         for (int step = 0; step < 40; step++) {
@@ -190,10 +194,7 @@ static void test_lost_sensor_is_bridged_and_its_place_unknown(void **state)
 {
     struct prep_case *c = *state;
     struct plant_in_use u;
-    write_model(c);
-    write_plant(c, "", ", interpolation: harmonic, disc_m: 0.1", SENSORS);
-    prep_case_expect(c, "$PLANT", 0);
-    assert_true(use(&u, c));
+    begin(&u, c, "", ", interpolation: harmonic, disc_m: 0.1", SENSORS);
     u.snapshot->readings[4] = (struct reading){ .value = 5000, .quality = QUALITY_BAD };
     assert_int_equal(look(&u, place_of(4))->no_data, 255);
     assert_true(fabs((double)look(&u, place_of(3) + 0.2)->value - 31.7) < 0.4); /* straight from 3 to 5, discs apart */
@@ -214,10 +215,7 @@ static void test_fin_knows_how_far_it_sees(void **state)
 {
     struct prep_case *c = *state;
     struct plant_in_use u;
-    write_model(c);
-    write_plant(c, ", thickness_m: 0.01", ", interpolation: fin, ambient: 20, disc_m: 0.1", 2);
-    prep_case_expect(c, "$PLANT", 0);
-    assert_true(use(&u, c));
+    begin(&u, c, ", thickness_m: 0.01", ", interpolation: fin, ambient: 20, disc_m: 0.1", 2);
     u.snapshot->readings[1].value = 100;
     const double decay_m = sqrt(50 * 0.01 / 9);
     for (double x = 0.1; x < 3 * decay_m; x += 0.1) {
@@ -259,10 +257,7 @@ static void test_not_prepared_is_refused(void **state)
 {
     struct prep_case *c = *state;
     struct plant_in_use u;
-    write_model(c);
-    write_plant(c, "", "", 2);
-    prep_case_expect(c, "$PLANT", 0);
-    assert_true(use(&u, c));
+    begin(&u, c, "", "", 2);
     u.params.interpolation = INTERPOLATION_HARMONIC;
     assert_non_null(strstr(field_params_wrong(u.plant, &u.params), "not prepared"));
     finish(&u);

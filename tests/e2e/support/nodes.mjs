@@ -101,6 +101,16 @@ export class Nodes {
             .filter(([, , remote, state]) => remote?.endsWith(`:${port}`) && state === established).length;
     }
 
+    // Waits until there is one; never two, and none only while it connects anew.
+    onePoller() {
+        return until('one poller', () => {
+            const count = this.pollers();
+            if (count > 1)
+                throw new Error(`${count} pollers`);
+            return count === 1;
+        });
+    }
+
     async destroy() {
         const fault = this.all.map(({ program }) => program.fault).find(Boolean);
         for (const { program } of this.all)
