@@ -18,7 +18,9 @@ int cmd_clip(int argc, char **argv)
 }
 #else
 #include "clients/link/daemon.h"
+#include "message/views_message.h"
 #include "offline_renderer.h"
+#include "tour.h"
 #include "video.h"
 
 enum { MOST_PICTURES = 1000000, SAY_EACH = 250 };
@@ -30,13 +32,17 @@ struct film {
     struct view view;
     struct daemon_url url;
     struct text query;
+    const char *said; /* written into the pictures; "": nothing */
+    long count;       /* of pictures that were made */
 };
 
 /* The file is made with the first picture, whose size tells its own. */
-static bool add(struct film *film, const uint8_t *bgrx, int width_px, int height_px, int stride_bytes)
+static bool add(struct film *film, uint8_t *bgrx, int width_px, int height_px, int stride_bytes)
 {
     if (!film->video)
         film->video = video_create(film->options->out, width_px, height_px, film->options->fps);
+    if (*film->said)
+        tour_draw_text(film->said, bgrx, width_px, height_px, stride_bytes);
     return film->video && video_add(film->video, bgrx, stride_bytes);
 }
 
@@ -83,22 +89,75 @@ static bool download(struct film *film, int64_t at_us)
 
 /* --- the film ------------------------------------------------------------------------------------------------------------------ */
 
-static bool make(struct film *film, bool (*picture)(struct film *film, int64_t at_us))
+typedef bool picture_fn(struct film *film, int64_t at_us);
+
+/* Makes the next pictures, as many as there are to be. all: how many the film will have. */
+static bool shoot(struct film *film, picture_fn *picture, long count, double all)
 {
     const struct snapshot_options *options = film->options;
-    double step_us = options->speed / options->fps * 1e6, count = floor((double)(options->to_us - options->from_us) / step_us) + 1;
+    double step_us = options->speed / options->fps * 1e6;
+    bool good = true;
+    for (long i = 0; i < count && good; i++) {
+        good = picture(film, options->from_us + (int64_t)((double)film->count * step_us));
+        if (good && ++film->count % SAY_EACH == 0)
+            fprintf(stderr, "plantcast: %ld of %.0f pictures\n", film->count, all);
+    }
+    return good;
+}
+
+/* Looks at a stop. */
+static bool turn(struct film *film, const json_t *stop)
+{
+    struct snapshot_options *options = film->options;
+    size_t own = options->arg_count;
+    bool good = tour_add_view(stop, options);
+    film->query.length = 0;
+    good = good && (film->offline.plant ? offline_renderer_take_view(&film->offline, options, &film->view)
+                                        : snapshot_query(options, &film->query));
+    while (options->arg_count > own)
+        mem_free(options->args[--options->arg_count]);
+    film->said = tour_text(stop);
+    return good;
+}
+
+static long pictures_of(const struct film *film, const json_t *stop)
+{
+    return lround(fmax(1, tour_dwell_s(stop) * film->options->fps));
+}
+
+/* stops: of a tour; NULL: from one instant to another. */
+static bool make(struct film *film, picture_fn *picture, const json_t *stops)
+{
+    const struct snapshot_options *options = film->options;
+    double count = stops ? 0 : floor((double)(options->to_us - options->from_us) / (options->speed / options->fps * 1e6)) + 1;
+    json_t *stop;
+    size_t i;
+    json_array_foreach(stops, i, stop)
+        count += (double)pictures_of(film, stop);
     bool good = count <= MOST_PICTURES;
     if (!good)
         fprintf(stderr, "plantcast: %.0f pictures would be made, and at most %d are; a greater --speed, or less time\n", count,
                 MOST_PICTURES);
-    for (long i = 0; i < (long)count && good; i++) {
-        good = picture(film, options->from_us + (int64_t)((double)i * step_us));
-        if (good && (i + 1) % SAY_EACH == 0)
-            fprintf(stderr, "plantcast: %ld of %.0f pictures\n", i + 1, count);
+    if (good && !stops)
+        good = shoot(film, picture, (long)count, count);
+    for (i = 0; i < json_array_size(stops) && good; i++) {
+        stop = json_array_get(stops, i);
+        good = turn(film, stop) && shoot(film, picture, pictures_of(film, stop), count);
     }
     good = video_finish(&film->video, good);
     if (good)
         printf("%s: %.0f pictures, %.1f s\n", options->out, count, count / options->fps);
+    return good;
+}
+
+/* Takes the answer about tours. */
+static bool make_of(struct film *film, picture_fn *picture, char *answer)
+{
+    const struct snapshot_options *options = film->options;
+    json_t *stops = options->tour ? tour_stops(answer ? answer : "", options->from, options->tour) : NULL;
+    bool good = (stops || !options->tour) && make(film, picture, stops);
+    json_decref(stops);
+    mem_free(answer);
     return good;
 }
 
@@ -109,16 +168,30 @@ static int from_plant(struct film *film)
         !(offline_renderer_open_history(&film->offline, film->options) && offline_renderer_open_gl(&film->offline, film->options)))
         code = 1;
     if (code == 0)
-        code = make(film, draw) ? 0 : 1;
+        code = make_of(film, draw, film->options->tour ? walls_text(film->offline.plant) : NULL) ? 0 : 1;
     offline_renderer_close(&film->offline);
     return code;
+}
+
+/* Returns what the daemon says of walls and tours; NULL with the reason printed. */
+static char *ask_tours(struct film *film)
+{
+    struct text body = { 0 };
+    int status = daemon_get(&film->url, "/api/v1/walls", &body);
+    if (status && status != 200)
+        fprintf(stderr, "plantcast: %s: the daemon answers %d: %s\n", film->options->from, status, body.at ? body.at : "");
+    char *answer = status == 200 && body.at ? mem_strdup(body.at) : NULL;
+    text_finish(&body);
+    return answer;
 }
 
 static int from_daemon(struct film *film)
 {
     int code = 2;
-    if (daemon_url_parse(film->options->from, &film->url) && snapshot_query(film->options, &film->query))
-        code = make(film, download) ? 0 : 1;
+    if (daemon_url_parse(film->options->from, &film->url) && snapshot_query(film->options, &film->query)) {
+        char *answer = film->options->tour ? ask_tours(film) : NULL;
+        code = (answer || !film->options->tour) && make_of(film, download, answer) ? 0 : 1;
+    }
     text_finish(&film->query);
     return code;
 }
@@ -127,7 +200,7 @@ int cmd_clip(int argc, char **argv)
 {
     struct snapshot_options options;
     int code = snapshot_parse(argc, argv, true, &options);
-    struct film film = { .options = &options };
+    struct film film = { .options = &options, .said = "" };
     if (code < 0)
         code = strstr(options.from, "://") ? from_daemon(&film) : from_plant(&film);
     snapshot_options_finish(&options);

@@ -28,6 +28,7 @@ struct snapshot_options {
     const char *history; /* folder; NULL: as the plant file says */
     const char *from_text, *to_text; /* of a clip; and below */
     int64_t from_us, to_us;
+    const char *tour; /* of a clip; NULL: one view */
     double speed, fps;
     bool per_fragment, moving, no_overlay, offline_only; /* offline_only: something was asked for that a daemon does not offer */
 };

@@ -25,7 +25,9 @@ static const char clip_usage[] = "usage: plantcast clip (PLANT.yaml | http://HOS
                                  "\n"
                                  "  -o, --out FILE          film to write: .mp4, .mkv or .mov, H.264\n"
                                  "  --from, --to INSTANT    what it shows\n"
-                                 "  --speed F               seconds of the plant's in one of the film's; 60\n"
+                                 "  --tour ID               the views of this tour of the plant file, each for its time, with its text:\n"
+                                 "                          in place of --to, and of all that is said below but --size\n"
+                                 "  --speed F               seconds of the plant's in one of the film's; 60, of a tour 1\n"
                                  "  --fps F                 pictures in one second of the film; 25\n";
 static const char instant_usage[] =
     "  INSTANT                 2026-11-20T10:00:00Z, with an offset (+01:00), seconds since 1970, or back from now: -8h\n"
@@ -116,6 +118,7 @@ enum own_option {
     OPTION_AT,
     OPTION_FROM,
     OPTION_TO,
+    OPTION_TOUR,
     OPTION_SPEED,
     OPTION_FPS,
     OPTION_VALUES,
@@ -138,6 +141,7 @@ static const struct option own[] = {
     { "at", required_argument, NULL, OPTION_AT },
     { "from", required_argument, NULL, OPTION_FROM },
     { "to", required_argument, NULL, OPTION_TO },
+    { "tour", required_argument, NULL, OPTION_TOUR },
     { "speed", required_argument, NULL, OPTION_SPEED },
     { "fps", required_argument, NULL, OPTION_FPS },
     { "values", required_argument, NULL, OPTION_VALUES },
@@ -224,6 +228,7 @@ static bool take_own(struct snapshot_options *options, int option, const char *t
     case OPTION_AT: return parse_instant(text, &options->at, &options->at_us);
     case OPTION_FROM: return parse_instant(text, &options->from_text, &options->from_us);
     case OPTION_TO: return parse_instant(text, &options->to_text, &options->to_us);
+    case OPTION_TOUR: options->tour = text; return true;
     case OPTION_SPEED: return parse_factor(text, 0.001, 1e6, &options->speed);
     case OPTION_FPS: return parse_factor(text, 1, 120, &options->fps);
     case OPTION_HISTORY: options->history = text; return true;
@@ -254,6 +259,14 @@ static int wrong(bool clip, const char *text)
     return 2;
 }
 
+static bool only_size(const struct snapshot_options *options)
+{
+    bool only = !options->baseline;
+    for (size_t i = 0; i < options->arg_count; i++)
+        only = only && (!strncmp(options->args[i], "width=", 6) || !strncmp(options->args[i], "height=", 7));
+    return only;
+}
+
 /* -1: go on. */
 static int judge(const struct snapshot_options *options, bool clip, int left)
 {
@@ -261,9 +274,11 @@ static int judge(const struct snapshot_options *options, bool clip, int left)
         return wrong(clip, "one plant file or URL expected");
     if (!options->out && !options->pick)
         return wrong(clip, clip ? "-o FILE.mp4 is missing" : "-o FILE.png is missing");
-    if (clip && (!options->from_text || !options->to_text))
+    if (clip && (!options->from_text || (!options->to_text && !options->tour)))
         return wrong(clip, "--from and --to are missing");
-    if (clip && options->from_us >= options->to_us)
+    if (options->tour && (options->to_text || !only_size(options)))
+        return wrong(clip, "a tour says itself what is seen and for how long: only --size and --from have a place beside it");
+    if (clip && !options->tour && options->from_us >= options->to_us)
         return wrong(clip, "--from is to be earlier than --to");
     return -1;
 }
@@ -271,7 +286,7 @@ static int judge(const struct snapshot_options *options, bool clip, int left)
 int snapshot_parse(int argc, char **argv, bool clip, struct snapshot_options *options)
 {
     struct option list[OPTIONS + 1] = { 0 };
-    *options = (struct snapshot_options){ .speed = 60, .fps = 25 };
+    *options = (struct snapshot_options){ .fps = 25 };
     for (int i = 0; i < SHARED; i++)
         list[i] = (struct option){ shared[i].option, required_argument, NULL, i };
     memcpy(list + SHARED, own, sizeof(own));
@@ -292,6 +307,8 @@ int snapshot_parse(int argc, char **argv, bool clip, struct snapshot_options *op
     }
     int code = judge(options, clip, argc - optind);
     options->from = argv[optind];
+    if (options->speed <= 0)
+        options->speed = options->tour ? 1 : 60;
     return code;
 }
 

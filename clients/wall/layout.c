@@ -95,6 +95,7 @@ static void add_pane(struct player *player, const json_t *o, const json_t *grid)
     pane->title = string_or(o, "title", NULL);
     pane->kind_name = string_or(o, "kind", "?");
     pane->items = json_object_get(o, "items");
+    pane->stops = json_object_get(o, "stops");
     pane->every_s = fmax(1, json_number_value(json_object_get(o, "every_s")));
     pane->on_alarm = json_is_true(json_object_get(o, "on_alarm"));
     pane->at = 0;

@@ -18,8 +18,8 @@
 struct pane {
     enum pane_kind kind;
     bool known;                           /* false: of a kind that this player does not know */
-    const char *kind_name, *area, *title; /* title NULL: none. All three belong to the player's `wall`, as the next does */
-    const json_t *items;
+    const char *kind_name, *area, *title; /* title NULL: none. All three belong to the player's `wall`, as the next two do */
+    const json_t *items, *stops;          /* stops: of a tour, how long each item is shown and what is said about it; else NULL */
     struct box box;   /* all of it, in pixels */
     struct text said; /* what was drawn last: when it differs, the pane is drawn anew */
     double title_px;  /* height of its title */

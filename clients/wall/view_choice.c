@@ -78,9 +78,15 @@ static void want(struct player *player, struct pane *pane, const json_t *order, 
     if (alarm)
         text_add(wanted, "alarm %d %d %d", alarm->tag, (int)alarm->kind, (int)alarm_status_is_cleared(alarm->status));
     else
-        text_add(wanted, "view %s %s %lld", string_of(json_array_get(pane->items, pane->at), ""), address,
-                 (long long)json_integer_value(json_object_get(order, "time_us")));
+        text_add(wanted, "view %zu %s %lld", pane->at, address, (long long)json_integer_value(json_object_get(order, "time_us")));
     text_add(wanted, " %dx%d %s", player->width_px, player->height_px, pane->view.configuration);
+}
+
+/* How long a view is shown. */
+static int64_t dwell_ns(const struct pane *pane)
+{
+    double own_s = json_number_value(json_object_get(json_array_get(pane->stops, pane->at), "dwell_s"));
+    return (int64_t)((own_s > 0 ? own_s : pane->every_s) * 1e9);
 }
 
 void pane_choose(struct player *player, struct pane *pane, int64_t now_ns)
@@ -91,7 +97,7 @@ void pane_choose(struct player *player, struct pane *pane, int64_t now_ns)
     int called = pane->on_alarm ? rules_next(&player->call, alarms, model->list_count, now_ns, model_now_us(model)) : -1;
     const struct model_alarm *alarm = called >= 0 ? &model->list[called] : NULL;
     size_t count = json_array_size(pane->items);
-    if (!rests(player, pane, order, alarms) && count > 1 && pane->changed_ns && now_ns - pane->changed_ns >= (int64_t)(pane->every_s * 1e9))
+    if (!rests(player, pane, order, alarms) && count > 1 && pane->changed_ns && now_ns - pane->changed_ns >= dwell_ns(pane))
         pane->at = (pane->at + 1) % count;
     const char *id = json_string_value(json_array_get(pane->items, pane->at));
     const json_t *view = model_view(model, id ? id : "");
@@ -108,6 +114,9 @@ void pane_choose(struct player *player, struct pane *pane, int64_t now_ns)
         text_add(&pane->words, "%s", say("named.unknown", "id", id, NULL));
     else
         text_add(&pane->words, "%s", pane->title ? pane->title : *string_of(view, "title") ? string_of(view, "title") : id);
+    const char *said = string_of(json_array_get(pane->stops, pane->at), "text");
+    if (!order && !alarm && *said)
+        text_add(&pane->words, " \u00b7 %s", said);
     if (order && !alarm)
         say_order(player, order, &pane->words);
     want(player, pane, order, alarm, address, &wanted);

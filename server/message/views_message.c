@@ -51,22 +51,50 @@ char *view_edit_do(struct named_views *views, const struct message *message, con
                      0);
 }
 
-static json_t *pane_of(const struct wall_pane *pane)
+/* A tour is told as views that are shown in turn, each for a while of its own. */
+static json_t *pane_of(const struct plant *plant, const struct wall_pane *pane)
 {
-    json_t *items = json_array();
-    for (size_t i = 0; i < pane->item_count; i++)
+    const struct tour *tour = pane->kind == PANE_TOUR ? tour_find(plant, pane->items[0]) : NULL;
+    json_t *items = json_array(), *stops = json_array();
+    for (size_t i = 0; i < pane->item_count && !tour; i++)
         json_array_append_new(items, json_string(pane->items[i]));
-    return json_pack("{s:s,s:s,s:o,s:o,s:f,s:f,s:b}", "area", pane->area, "kind", pane_kind_names[pane->kind], "title", string(pane->title),
-                     "items", items, "every_s", pane->every_s, "hours", pane->hours, "on_alarm", pane->on_alarm);
+    for (size_t i = 0; tour && i < tour->stop_count; i++) {
+        json_array_append_new(items, json_string(tour->stops[i].view));
+        json_array_append_new(stops, json_pack("{s:f,s:o}", "dwell_s", tour->stops[i].dwell_s, "text", string(tour->stops[i].text)));
+    }
+    json_t *said = json_pack("{s:s,s:s,s:o,s:o,s:f,s:f,s:b}", "area", pane->area, "kind", tour ? "views" : pane_kind_names[pane->kind],
+                             "title", string(pane->title), "items", items, "every_s", pane->every_s, "hours", pane->hours, "on_alarm",
+                             pane->on_alarm);
+    if (tour)
+        json_object_set(said, "stops", stops);
+    json_decref(stops);
+    return said;
 }
 
-static json_t *display_of(const struct wall_display *display)
+static json_t *tours_of(const struct plant *plant)
+{
+    json_t *tours = json_array();
+    for (size_t t = 0; t < plant->tour_count; t++) {
+        const struct tour *tour = &plant->tours[t];
+        json_t *stops = json_array();
+        for (size_t s = 0; s < tour->stop_count; s++) {
+            const struct tour_stop *stop = &tour->stops[s];
+            const char *address = named_view_find(plant, stop->view)->address;
+            json_array_append_new(stops, json_pack("{s:s,s:s,s:f,s:o}", "id", stop->view, "view", address, "dwell_s", stop->dwell_s, "text",
+                                                   string(stop->text)));
+        }
+        json_array_append_new(tours, json_pack("{s:s,s:o}", "id", tour->id, "stops", stops));
+    }
+    return tours;
+}
+
+static json_t *display_of(const struct plant *plant, const struct wall_display *display)
 {
     json_t *rows = json_array(), *panes = json_array();
     for (size_t i = 0; i < display->row_count; i++)
         json_array_append_new(rows, json_string(display->rows[i]));
     for (size_t i = 0; i < display->pane_count; i++)
-        json_array_append_new(panes, pane_of(&display->panes[i]));
+        json_array_append_new(panes, pane_of(plant, &display->panes[i]));
     return json_pack("{s:o,s:o}", "grid", rows, "panes", panes);
 }
 
@@ -77,7 +105,7 @@ char *walls_text(const struct plant *plant)
         const struct wall *wall = &plant->walls[i];
         json_t *displays = json_array();
         for (size_t d = 0; d < wall->display_count; d++)
-            json_array_append_new(displays, display_of(&wall->displays[d]));
+            json_array_append_new(displays, display_of(plant, &wall->displays[d]));
         json_t *said = json_pack("{s:s,s:f,s:f,s:o}", "id", wall->id, "inches", wall->inches, "distance_m", wall->metres, "displays",
                                  displays);
         if (wall->dim.from_min != wall->dim.to_min)
@@ -85,5 +113,5 @@ char *walls_text(const struct plant *plant)
                                                        "percent", wall->dim_percent));
         json_array_append_new(walls, said);
     }
-    return json_text(json_pack("{s:o}", "walls", walls), 9);
+    return json_text(json_pack("{s:o,s:o}", "walls", walls, "tours", tours_of(plant)), 9);
 }

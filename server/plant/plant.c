@@ -64,8 +64,10 @@ static struct plant *load(const char *path, bool keeps_orphans, bool without_mod
     plant_file_read(plant, diag);
     if (plant->tags_path)
         tag_list_read(plant, diag);
-    if (plant->tags_path && diag->errors == errors)
+    if (plant->tags_path && diag->errors == errors) {
+        plant_tours_check(plant, diag);
         plant_walls_check(plant, diag);
+    }
     if (plant->tags_path && diag->errors == errors)
         plant_influence_check(plant, diag);
     hash_files(plant);
@@ -182,6 +184,7 @@ void plant_destroy(struct plant **plant_ptr)
         mem_free(plant->links[i].url);
     }
     plant_views_free(plant);
+    plant_tours_free(plant);
     plant_walls_free(plant);
     plant_notify_free(&plant->notify);
     plant_publish_free(&plant->publish);

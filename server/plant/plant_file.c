@@ -478,6 +478,11 @@ static void read_views(struct yaml_reader *reader, yaml_node_t *node, void *reco
     plant_views_read(reader, node, ((struct plant_file *)record)->plant);
 }
 
+static void read_tours(struct yaml_reader *reader, yaml_node_t *node, void *record)
+{
+    plant_tours_read(reader, node, ((struct plant_file *)record)->plant);
+}
+
 static void read_walls(struct yaml_reader *reader, yaml_node_t *node, void *record)
 {
     plant_walls_read(reader, node, ((struct plant_file *)record)->plant);
@@ -505,6 +510,7 @@ void plant_file_read(struct plant *plant, struct diag *diag)
                                        { "notify", KEY_CUSTOM, false, 0, 0, 0, NULL, read_notify },
                                        { "publish", KEY_CUSTOM, false, 0, 0, 0, NULL, read_publish },
                                        { "views", KEY_CUSTOM, false, 0, 0, 0, NULL, read_views },
+                                       { "tours", KEY_CUSTOM, false, 0, 0, 0, NULL, read_tours },
                                        { "walls", KEY_CUSTOM, false, 0, 0, 0, NULL, read_walls },
                                        { "tags", KEY_NAME, true, offsetof(struct plant_file, tags), 0, 0, NULL, NULL },
                                        { 0 } };

@@ -63,6 +63,14 @@ void plant_views_read(struct yaml_reader *reader, yaml_node_t *node, struct plan
         read_view(reader, yaml_list_item(reader, node, i), plant, &plant->views[plant->view_count++]);
 }
 
+const struct named_view *named_view_find(const struct plant *plant, const char *id)
+{
+    size_t i = 0;
+    while (i < plant->view_count && (!plant->views[i].id || strcmp(plant->views[i].id, id) != 0))
+        i++;
+    return i < plant->view_count ? &plant->views[i] : NULL;
+}
+
 void plant_views_free(struct plant *plant)
 {
     for (size_t i = 0; i < plant->view_count; i++) {

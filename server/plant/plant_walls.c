@@ -9,7 +9,8 @@
 #include "plant/wall.h"
 
 const char *const pane_kind_names[] = { [PANE_VIEWS] = "views",   [PANE_TREND] = "trend", [PANE_ALARMS] = "alarms",
-                                        [PANE_TILES] = "tiles", [PANE_CLOCK] = "clock", [PANE_TEXT] = "text" };
+                                        [PANE_TILES] = "tiles", [PANE_CLOCK] = "clock", [PANE_TEXT] = "text",
+                                        [PANE_TOUR] = "tour" };
 
 static void add_item(struct wall_pane *pane, const yaml_node_t *node)
 {
@@ -48,6 +49,7 @@ READ_AS(read_tiles, PANE_TILES)
 READ_AS(read_text, PANE_TEXT)
 READ_AS(read_alarms, PANE_ALARMS)
 READ_AS(read_clock, PANE_CLOCK)
+READ_AS(read_tour, PANE_TOUR)
 
 static bool grid_has(const struct wall_display *display, const char *area)
 {
@@ -151,6 +153,7 @@ static void read_pane(struct yaml_reader *reader, yaml_node_t *node, struct wall
         { "tiles", KEY_CUSTOM, false, 0, 0, 0, NULL, read_tiles },
         { "clock", KEY_CUSTOM, false, 0, 0, 0, NULL, read_clock },
         { "text", KEY_CUSTOM, false, 0, 0, 0, NULL, read_text },
+        { "tour", KEY_CUSTOM, false, 0, 0, 0, NULL, read_tour },
         { 0 }
     };
     struct yaml_map map;
@@ -161,10 +164,13 @@ static void read_pane(struct yaml_reader *reader, yaml_node_t *node, struct wall
     for (size_t i = 0; i < sizeof(pane_kind_names) / sizeof(*pane_kind_names); i++)
         kinds += yaml_map_has(&map, pane_kind_names[i]);
     if (kinds != 1)
-        yaml_error(reader, map.place, "a pane: expected one of views, trend, alarms, tiles, clock and text, found %d", kinds);
-    else if (pane->kind != PANE_VIEWS && (yaml_map_has(&map, "every_s") || pane->on_alarm))
-        yaml_error(reader, yaml_map_place(&map, pane->on_alarm ? "on_alarm" : "every_s"), "%s: only a pane of views has it",
-                   pane->on_alarm ? "on_alarm" : "every_s");
+        yaml_error(reader, map.place, "a pane: expected one of views, trend, alarms, tiles, clock, text and tour, found %d", kinds);
+    else if (pane->kind == PANE_TOUR && pane->item_count > 1)
+        yaml_error(reader, yaml_map_place(&map, "tour"), "tour: expected one, found %zu", pane->item_count);
+    else if (pane->on_alarm && pane->kind != PANE_VIEWS && pane->kind != PANE_TOUR)
+        yaml_error(reader, yaml_map_place(&map, "on_alarm"), "on_alarm: only a pane of views has it");
+    else if (pane->kind != PANE_VIEWS && yaml_map_has(&map, "every_s"))
+        yaml_error(reader, yaml_map_place(&map, "every_s"), "every_s: only a pane of views has it");
     if (!pane->area)
         return;
     if (!grid_has(display, pane->area))
@@ -264,15 +270,16 @@ static void check_items(const struct plant *plant, const struct wall_pane *pane,
             diag_error(diag, plant->path, pane->item_lines[i], pane->item_columns[i], "%s: there is no tag '%.60s'%s%s%s",
                        pane_kind_names[pane->kind], name, near ? "; did you mean '" : "", near ? near : "", near ? "'?" : "");
         } else if (pane->kind == PANE_VIEWS) {
-            size_t k = 0;
-            while (k < plant->view_count && (!plant->views[k].id || strcmp(plant->views[k].id, name) != 0))
-                k++;
-            if (k < plant->view_count)
+            if (named_view_find(plant, name))
                 continue;
             near = suggest_nearest(name, plant->views, plant->view_count, sizeof(*plant->views));
             diag_warning(diag, plant->path, pane->item_lines[i], pane->item_columns[i],
                          "views: `views` has no '%.60s', unless it is saved in the page%s%s%s", name, near ? "; did you mean '" : "",
                          near ? near : "", near ? "'?" : "");
+        } else if (pane->kind == PANE_TOUR && !tour_find(plant, name)) {
+            near = suggest_nearest(name, plant->tours, plant->tour_count, sizeof(*plant->tours));
+            diag_error(diag, plant->path, pane->item_lines[i], pane->item_columns[i], "tour: `tours` has no '%.60s'%s%s%s", name,
+                       near ? "; did you mean '" : "", near ? near : "", near ? "'?" : "");
         }
     }
 }

@@ -1,13 +1,17 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What the plant file's `views` and `walls` say: views with names, and displays of a control room. Immutable once loaded. Thread: any. */
+/* What the plant file's `views`, `tours` and `walls` say: views with names, in turn, and on displays of a control room. Immutable once
+   loaded. Thread: any. */
 #ifndef PLANT_WALL_H
 #define PLANT_WALL_H
 #include <stdbool.h>
 #include <stddef.h>
 
+#include "plant/yaml_reader.h"
+
 enum {
     NAMED_VIEW_ID_BYTES = 49, NAMED_VIEW_TITLE_BYTES = 121, NAMED_VIEW_ADDRESS_BYTES = 2049, /* with their 0 */
-    NAMED_VIEWS = 256, WALLS = 16, WALL_DISPLAYS = 16, WALL_PANES = 24, WALL_ROWS = 12, PANE_ITEMS = 16
+    NAMED_VIEWS = 256, WALLS = 16, WALL_DISPLAYS = 16, WALL_PANES = 24, WALL_ROWS = 12, PANE_ITEMS = 16,
+    TOURS = 32, TOUR_STOPS = 64, TOUR_TEXT_BYTES = 241
 };
 
 struct named_view {
@@ -16,18 +20,31 @@ struct named_view {
     int line;
 };
 
-enum pane_kind { PANE_VIEWS, PANE_TREND, PANE_ALARMS, PANE_TILES, PANE_CLOCK, PANE_TEXT };
+struct tour_stop {
+    char *view, *text; /* id of a view; what is said about it, or NULL */
+    double dwell_s;
+    struct place place; /* of the view's id */
+};
+
+struct tour {
+    char *id;
+    struct tour_stop *stops;
+    size_t stop_count;
+    int line;
+};
+
+enum pane_kind { PANE_VIEWS, PANE_TREND, PANE_ALARMS, PANE_TILES, PANE_CLOCK, PANE_TEXT, PANE_TOUR };
 extern const char *const pane_kind_names[]; /* by pane_kind: keys of a pane */
 
 struct wall_pane {
     char *area, *title; /* letters of the grid; title NULL: none */
     enum pane_kind kind;
-    char *items[PANE_ITEMS]; /* names of views, in turn; tags of a trend or of tiles; the text */
+    char *items[PANE_ITEMS]; /* names of views, in turn; tags of a trend or of tiles; the text; a tour */
     size_t item_count;
     int item_lines[PANE_ITEMS], item_columns[PANE_ITEMS];
     double every_s; /* of views: how long each is shown */
     double hours;   /* of a trend */
-    bool on_alarm;  /* of views: the view of an alarm comes here */
+    bool on_alarm;  /* of views and tours: the view of an alarm comes here */
 };
 
 struct wall_display {
@@ -54,6 +71,10 @@ struct wall {
 
 /* Returns whether an id may stand in an address: letters, digits, `_`, `-` and `.`, at most NAMED_VIEW_ID_BYTES - 1. */
 bool named_view_id_valid(const char *id);
+struct plant;
+/* Return what the plant file has by that id, or NULL. */
+const struct named_view *named_view_find(const struct plant *plant, const char *id);
+const struct tour *tour_find(const struct plant *plant, const char *id);
 /* Returns what is wrong with a title or with an address (static), or NULL. */
 const char *named_view_title_wrong(const char *title);
 const char *named_view_address_wrong(const char *address);

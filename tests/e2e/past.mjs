@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Travel in time against a real daemon, by the client that was written from PROTOCOL.md alone: what was, as it was; nobody else notices.
 import assert from 'node:assert/strict';
-import { existsSync, statSync, writeFileSync } from 'node:fs';
+import { appendFileSync, existsSync, statSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
 import { Client, FLAG } from './conformance/client.mjs';
@@ -29,6 +29,8 @@ before(async () => {
     if (skip)
         return;
     plant = await TinyPlant.create();
+    appendFileSync(plant.file, 'views:\n- { id: near, view: "camera=3,-2,3,0,0,0,0,0,1,45&at=1" }\n- { id: all, view: "look=default" }\n'
+        + 'tours:\n- id: round\n  stops: [{ view: near, dwell_s: 2, text: The first of two }, { view: all, dwell_s: 3 }]\n');
     assert.equal(plant.prepare().code, 0);
     writeFileSync(join(plant.folder, 'series.csv'), series());
     const imported = runProgram('plantcast', ['history', 'import', plant.file, join(plant.folder, 'series.csv')]);
@@ -186,7 +188,16 @@ test('single pictures, pixels and films of the past', { skip, timeout: 280000 },
         assert.match(made.out, /11 pictures, 2\.2 s/);
         assert.ok(statSync(film).size > 2000);
     }
+    const tour = ['--from', String(BEGIN_S), '--fps', '4', '--size', '320x180', '--tour'];
+    for (const from of [url, plant.file]) {
+        const made = runProgram('plantcast', ['clip', from, '-o', film, ...tour, 'round'], 120000);
+        assert.equal(made.code, 0, made.err);
+        assert.match(made.out, /20 pictures, 5\.0 s/);
+        const none = runProgram('plantcast', ['clip', from, '-o', join(plant.folder, 'none.mp4'), ...tour, 'rund']);
+        assert.deepEqual([none.code, /no tour 'rund' \(there is: round\)/.test(none.err)], [1, true], none.err);
+    }
     const wrong = [
+        [...tour, 'round', '--to', '-1h'], [...tour, 'round', '--group', 'x'],
         ['--from', '-1h'], ['--from', '-1h', '--to', '-2h'], ['--from', '-1h', '--to', 'x'],
         [...args, '--fps', '0'], [...args, '--pick', '1,1'],
     ];

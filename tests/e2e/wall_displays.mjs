@@ -11,6 +11,11 @@ const WALLS = `
 views:
 - { id: whole, title: Whole unit, view: "group=temperature" }
 - { id: above, title: From above, view: "group=temperature&camera=8,2,30,8,6,0,0,0,1,45" }
+tours:
+- id: round
+  stops:
+  - { view: above, dwell_s: 4, text: Seen from the stack }
+  - { view: whole, dwell_s: 6 }
 walls:
 - id: room
   inches: 55
@@ -26,6 +31,8 @@ walls:
     panes:
     - { area: top, trend: [TE-171, TE-172], hours: 1 }
     - { area: bottom, title: To do, text: [Check P-101A, Clean F-101] }
+  - grid: [tour]
+    panes: [{ area: tour, tour: round }]
 `;
 let plant, browser, page;
 
@@ -104,6 +111,22 @@ test('another display has its own panes', options, async () => {
     await gone.page.locator('.wrong', { hasText: "no wall 'nowhere'" }).waitFor();
     assert.match(await gone.page.locator('.wrong').textContent(), /room/);
     await gone.close();
+});
+
+test('a tour shows each view for its time, with its text', options, async () => {
+    const other = await openPage(`${plant.url}?wall=room&display=3`, { viewport: { width: 1280, height: 720 } });
+    const title = other.page.locator('.pane.tour h2, .pane.views h2').first(), begun = [];
+    for (const text of ['From above · Seen from the stack', 'Whole unit', 'From above · Seen from the stack']) {
+        await title.filter({ hasText: new RegExp(`^${text}(?! ·)`) }).waitFor({ timeout: 60000 });
+        begun.push(performance.now());
+        if (begun.length === 1) {
+            await other.page.waitForTimeout(2500);
+            await shoot(other.page, 'wall-tour');
+        }
+    }
+    const [first, second] = [begun[1] - begun[0], begun[2] - begun[1]];
+    assert.ok(first > 2500 && first < 9000 && second > 4500 && second < 11000, `${first} and ${second} ms`);
+    await other.close();
 });
 
 test('a lost server is said in large letters, and ends by itself', options, async () => {

@@ -43,6 +43,8 @@ const live = (since) => wall.page.waitForFunction(([picture, words]) => {
 }, [since.picture, since.words], { timeout: 60000, polling: 200 });
 
 test(`${LOSSES} losses: each is said, and ends by itself`, options, async () => {
+    await wall.page.waitForURL(/wall\.html/); // until then the page is another one
+    await wall.page.waitForFunction(() => globalThis.wall);
     await live({ picture: 0, words: 0 });
     let slowest = 0;
     for (let i = 0; i < LOSSES; i++) {

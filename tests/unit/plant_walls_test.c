@@ -31,8 +31,10 @@ static void all_keys_are_read(void **state)
             "    - { area: main, views: [all, near], every_s: 20, on_alarm: yes, title: Plant }\n"
             "    - { area: side, alarms: yes }\n"
             "    - { area: low, tiles: [TI-1, TI-2] }\n"
+            "  - grid: [d]\n    panes: [{ area: d, tour: round, on_alarm: yes }]\n"
             "  - grid: [a b, c .]\n    panes: [{ area: a, trend: TI-1, hours: 2 }, { area: b, clock: UTC }, { area: c, text: Hello }]\n"
-            "views: [{ id: all, view: group=t }, { id: near, title: \"Near by\", view: \"group=t&camera=1,2,3\" }]");
+            "views: [{ id: all, view: group=t }, { id: near, title: \"Near by\", view: \"group=t&camera=1,2,3\" }]\n"
+            "tours: [{ id: round, stops: [{ view: near, dwell_s: 8, text: Look here }, { view: all }] }]");
     plant_case_assert_loaded(c, 0);
     assert_int_equal(c->plant->view_count, 2);
     assert_string_equal(c->plant->views[1].title, "Near by");
@@ -43,12 +45,18 @@ static void all_keys_are_read(void **state)
                         "\"main main low\"],\"panes\":[{\"area\":\"main\",\"kind\":\"views\",\"title\":\"Plant\",\"items\":[\"all\","
                         "\"near\"],\"every_s\":20.0,\"hours\":8.0,\"on_alarm\":true},{\"area\":\"side\",\"kind\":\"alarms\",\"title\""
                         ":null,\"items\":[\"yes\"],\"every_s\":30.0,\"hours\":8.0,\"on_alarm\":false},{\"area\":\"low\",\"kind\":\"ti"
-                        "les\",\"title\":null,\"items\":[\"TI-1\",\"TI-2\"],\"every_s\":30.0,\"hours\":8.0,\"on_alarm\":false}]},{\"g"
+                        "les\",\"title\":null,\"items\":[\"TI-1\",\"TI-2\"],\"every_s\":30.0,\"hours\":8.0,\"on_alarm\":false}]},{\"gri"
+                        "d\":[\"d\"],\"panes\":[{\"area\":\"d\",\"kind\":"
+                        "\"views\",\"title\":null,\"items\":[\"near\",\"all\"],\"every_s\":30.0,\"hours\":8.0,\"on_alarm\":true,"
+                        "\"stops\":[{"
+                        "\"dwell_s\":8.0,\"text\":\"Look here\"},{\"dwell_s\":15.0,\"text\":null}]}]},{\"g"
                         "rid\":[\"a b\",\"c .\"],\"panes\":[{\"area\":\"a\",\"kind\":\"trend\",\"title\":null,\"items\":[\"TI-1\"],\""
                         "every_s\":30.0,\"hours\":2.0,\"on_alarm\":false},{\"area\":\"b\",\"kind\":\"clock\",\"title\":null,\"items\""
                         ":[\"UTC\"],\"every_s\":30.0,\"hours\":8.0,\"on_alarm\":false},{\"area\":\"c\",\"kind\":\"text\",\"title\":nu"
                         "ll,\"items\":[\"Hello\"],\"every_s\":30.0,\"hours\":8.0,\"on_alarm\":false}]}],\"dim\":{\"from_min\":1320,"
-                        "\"to_min\":390,\"percent\":40.0}}]}");
+                        "\"to_min\":390,\"percent\":40.0}}],\"tours\":[{\"id\":\"round\",\"stops\":[{\"id\":\"near\",\"view\":"
+                        "\"group=t&camera=1,2,3\",\"dwell_s\":8.0,\"text\":\"Look here\"},{\"id\":\"all\",\"view\":\"group=t\",\"dwel"
+                        "l_s\":15.0,\"text\":null}]}]}");
     mem_free(text);
 }
 
@@ -91,12 +99,30 @@ static void what_panes_name_must_be_there(void **state)
     plant_case_assert_loaded(c, 1); /* it may be saved in the page */
 }
 
+static void what_tours_name_must_be_there(void **state)
+{
+    struct plant_case *c = *state;
+    load(c, "views: [{ id: all, view: x }]\ntours:\n- id: a b\n  stops: [{ view: al, dwell_s: 0 }]\n- id: t\n  stops: []\n"
+            "- id: u\n  stops: [{ text: x }, { view: all, dwell_s: 5 }, { view: none }]\n- id: u\n  stops: [{ view: all }]\n"
+            "walls:\n- id: r\n  displays:\n  - grid: [a b c]\n    panes: [{ area: a, tour: round }, { area: b, tour: u, every_s: 9 },"
+            " { area: c, tour: [t, u] }]");
+    FOUND(c, { "plant.yaml", 8, 7, "id: expected letters" }, { "plant.yaml", 9, 32, "dwell_s" },
+          { "plant.yaml", 11, 10, "stops: expected at least one" }, { "plant.yaml", 13, 11, "view" },
+          { "plant.yaml", 14, 7, "tour 'u' is there twice (first at line 12)" },
+          { "plant.yaml", 20, 68, "every_s: only a pane of views has it" }, { "plant.yaml", 20, 90, "tour: expected one, found 2" });
+    load(c, "views: [{ id: all, view: x }]\ntours: [{ id: round, stops: [{ view: al }, { view: none }] }]\n"
+            "walls:\n- id: r\n  displays:\n  - grid: [a]\n    panes: [{ area: a, tour: raund }]");
+    FOUND(c, { "plant.yaml", 7, 38, "view: `views` has no 'al'; did you mean 'all'?" }, { "plant.yaml", 7, 52, "`views` has no 'none'" },
+          { "plant.yaml", 12, 30, "tour: `tours` has no 'raund'; did you mean 'round'?" });
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup_teardown(all_keys_are_read, plant_case_set_up, plant_case_tear_down),
         cmocka_unit_test_setup_teardown(what_is_wrong_is_said_at_its_place, plant_case_set_up, plant_case_tear_down),
         cmocka_unit_test_setup_teardown(a_grid_is_made_of_rectangles, plant_case_set_up, plant_case_tear_down),
+        cmocka_unit_test_setup_teardown(what_tours_name_must_be_there, plant_case_set_up, plant_case_tear_down),
         cmocka_unit_test_setup_teardown(what_panes_name_must_be_there, plant_case_set_up, plant_case_tear_down),
     };
     cmocka_set_message_output(CM_OUTPUT_TAP);

@@ -67,7 +67,9 @@ function ViewsPane(pane, context) {
             page.modules.use('views', (views) => views.openNamed(id, false));
         const known = page.session.views.some((view) => view.id === id);
         const own = known ? titleOf(id) : say('named.unknown', { id });
-        words.replaceChildren(order?.view ? order.title : own, ...(order ? [' ', byWhom(order)] : []));
+        const said = !order && pane.stops?.[at].text;
+        words.replaceChildren(order?.view ? order.title : own, ...(said ? [make('span', {}, ` · ${said}`)] : []),
+            ...(order ? [' ', byWhom(order)] : []));
     }
 
     function showAlarm(page, alarm) {
@@ -90,7 +92,7 @@ function ViewsPane(pane, context) {
         const alarm = pane.on_alarm ? call.next(alarms, now, nowUs) : null;
         const order = session.walls?.list.find(({ id }) => id === place) ?? null;
         const rests = order || alarms.some(({ waiting }) => waiting) || (pane.on_alarm && call.isFlood(alarms, nowUs));
-        if (!rests && pane.items.length > 1 && changedAt !== null && now - changedAt >= pane.every_s * 1000) {
+        if (!rests && pane.items.length > 1 && changedAt !== null && now - changedAt >= (pane.stops?.[at].dwell_s ?? pane.every_s) * 1000) {
             at = (at + 1) % pane.items.length;
             sessionStorage.setItem(remembered, at); // a display that is loaded anew goes on
             shown = null;

@@ -29,16 +29,14 @@ static struct params_context context_of(const struct server_context *server)
 static const struct named_view *find_view(const struct server_context *server, const struct token_holder *holder, const char *id,
                                           struct message_error *error)
 {
-    const struct plant *plant = server->params.plant.scene->plant;
     if (!tokens_may_see(holder, id)) {
         message_fail(error, "not_allowed", "view=%.48s: this token is for the views %.150s", id, holder->views);
         return NULL;
     }
-    for (size_t i = 0; i < plant->view_count; i++)
-        if (!strcmp(plant->views[i].id, id))
-            return &plant->views[i];
-    message_fail(error, "bad_field", "view=%.48s: the plant file has no such view", id);
-    return NULL;
+    const struct named_view *named = named_view_find(server->params.plant.scene->plant, id);
+    if (!named)
+        message_fail(error, "bad_field", "view=%.48s: the plant file has no such view", id);
+    return named;
 }
 
 /* A view of the plant file, whose author may say all that there is to say, at a size. */
