@@ -24,7 +24,7 @@
 #include "value/lookup.h"
 
 enum { CORE_ACT_BYTES = 200 * 1024 /* less than a core takes */ };
-enum { MOST_BYTES = 64 << 20 /* of one message */, TOKEN_BYTES = 256, WHY_BYTES = 300, LOOK_US = 200000 };
+enum { MOST_BYTES = 64 << 20 /* of one message */, TOKEN_BYTES = 256, WHY_BYTES = 300, LOOK_US = 200000, ADDRESSES = 8 };
 static const int64_t CONNECT_NS = 4 * NS_PER_S, CLOCKS_NS = 2 * NS_PER_S /* that clocks may differ before it is said */;
 
 struct waiting {
@@ -41,10 +41,15 @@ struct core_link {
     struct text in;
     struct lws *wsi;
     struct host_turn turn;
+    struct {
+        int count, index;   /* addresses of its name, ADDRESSES at most; the one that is tried next */
+        char said[ADDRESSES][WHY_BYTES]; /* of each, why there was no connection, as logged last */
+    } hosts[CORE_URLS];
+    int address;            /* that is tried now */
     int64_t heard_ns, begun_ns, least_ns, readings_ns; /* the last two: least_ns and at_ns of struct core_readings */
     bool ended, taken, introduced, clock_said;
     bool at_fault;          /* what it said last is a fault of ours or the core's, and no lost link */
-    char why[WHY_BYTES], said[WHY_BYTES]; /* why this connection ended; as logged last */
+    char why[WHY_BYTES];    /* this connection ended */
     struct thread thread;
     /* --- below: under thread.lock */
     struct lws_context *context; /* NULL: not connected */
@@ -260,7 +265,9 @@ static void set_up(struct core_link *link)
     counter_inc(link->connects, 1);
     host_turn_succeeded(&link->turn);
     log_info(link->params.log, "core: %s: readings come", link->params.urls[link->turn.index]);
-    link->said[0] = 0;
+    for (int i = 0; i < CORE_URLS; i++)
+        for (int k = 0; k < ADDRESSES; k++)
+            link->hosts[i].said[k][0] = 0;
 }
 
 static void on_bytes(struct core_link *link)
@@ -350,10 +357,12 @@ static int add_token(const struct core_link *link, struct lws *wsi, void *in, si
 static void on_failure(struct core_link *link, const char *why)
 {
     char text[WHY_BYTES];
-    bool answered = why && strstr(why, "HS:");
+    bool answered = why && strstr(why, "HS:"), untrusted = why && (strstr(why, "SSL") || strstr(why, "cert") || strstr(why, "tls="));
     snprintf(text, sizeof(text), "%s%s", why ? why : "no connection",
-             answered ? ": it does not take us; has it --role core, and is our token that of a renderer?" : "");
-    if (answered)
+             untrusted  ? ": is its certificate trusted (--core-ca), and of this name?"
+             : answered ? ": it does not take us; has it --role core, and is our token that of a renderer?"
+                        : "");
+    if (answered || untrusted)
         refuse(link, text);
     else
         end(link, text);
@@ -425,12 +434,18 @@ bool core_link_url_good(const char *url)
     return parse_url(url, &parsed);
 }
 
-/* The system's resolver has no timeout, and lws would wait for it. False: why. */
+/* The system's resolver has no timeout, and lws would wait for it. Each try takes the next address of the name. False: why. */
 static bool resolve(struct core_link *link, const struct core_url *url, char address[INET6_ADDRSTRLEN])
 {
     struct lookup *lookup = lookup_start(url->host, url->port);
     const struct addrinfo *found = NULL;
-    int status = lookup_wait(lookup, link->stop_fd, clock_mono_ns() + CONNECT_NS, &found);
+    int status = lookup_wait(lookup, link->stop_fd, clock_mono_ns() + CONNECT_NS, &found), count = 0;
+    for (const struct addrinfo *at = found; at && count < ADDRESSES; at = at->ai_next)
+        count++;
+    link->hosts[link->turn.index].count = count;
+    link->address = count ? link->hosts[link->turn.index].index % count : 0;
+    for (int i = 0; i < link->address; i++)
+        found = found->ai_next;
     bool good = status == 0 && getnameinfo(found->ai_addr, found->ai_addrlen, address, INET6_ADDRSTRLEN, NULL, 0, NI_NUMERICHOST) == 0;
     if (!good)
         end(link, status == -ETIMEDOUT ? "its name is not resolved" : "there is no such host");
@@ -545,10 +560,23 @@ static void lost(struct core_link *link)
     mem_free(all);
     counter_set(link->up, 0);
     answer_waiting(link);
-    if (strcmp(link->why, link->said) != 0)
+    char *said = link->hosts[link->turn.index].said[link->address];
+    if (strcmp(link->why, said) != 0)
         log_at(link->params.log, link->at_fault ? LOG_ERROR : LOG_WARN, "core: %s: no readings: %s", link->params.urls[link->turn.index],
                link->why);
-    memcpy(link->said, link->why, sizeof(link->said));
+    memcpy(said, link->why, WHY_BYTES);
+}
+
+/* The next address of this core's name, or the next core. Returns when. */
+static int64_t take_turn(struct core_link *link)
+{
+    int *index = &link->hosts[link->turn.index].index, count = link->hosts[link->turn.index].count;
+    *index = count ? (link->address + 1) % count : 0;
+    if (*index)
+        return clock_mono_ns();
+    if (link->turn.backoff.failures > 1) /* operators wait: a second at most, give or take */
+        link->turn.backoff.failures = 1;
+    return host_turn_next_ns(&link->turn, link->params.url_count, clock_mono_ns());
 }
 
 static void *run(void *arg)
@@ -559,10 +587,7 @@ static void *run(void *arg)
         if (thread_is_stopping(&link->thread))
             break;
         lost(link);
-        if (link->turn.backoff.failures > 1) /* operators wait: a second at most, give or take */
-            link->turn.backoff.failures = 1;
-        int64_t next_ns = host_turn_next_ns(&link->turn, link->params.url_count, clock_mono_ns());
-        if (wait_for(-1, 0, link->stop_fd, next_ns) == -ECANCELED)
+        if (wait_for(-1, 0, link->stop_fd, take_turn(link)) == -ECANCELED)
             break;
     }
     lost(link);

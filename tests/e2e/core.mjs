@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // One daemon reads the devices, two others draw: readings, alarms and what operators do travel between them; a lost core is said.
 import assert from 'node:assert/strict';
+import { spawnSync } from 'node:child_process';
 import { readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
@@ -181,4 +182,56 @@ test('an act that the core could not read ends no link; nor does a revoked token
     await until('Bad', async () => (await a.tags())['TI-1'].quality_name.startsWith('Bad'), 10);
     writeFileSync(nodes.tokenFile, lines);
     await all(async (node) => (await node.tags())['TI-1'].quality_name === 'Good');
+});
+
+const canMount = process.getuid() === 0 && spawnSync('unshare', ['--mount', 'true']).status === 0;
+const alone = { ...options, skip: options.skip || (canMount ? false : 'nothing can be mounted here') };
+
+test('each address of a core\'s name is tried, and each that fails is named once', alone, async () => {
+    const hosts = join(nodes.plant.folder, 'hosts'), said = /no readings/g;
+    writeFileSync(hosts, '127.0.0.9 core.test\n127.0.0.1 core.test\n');
+    const dead = 'ws://127.0.0.1:9', start = (...urls) => {
+        const program = new Program('plantcastd', [nodes.plant.file, '--role', 'render', '--port', '0', '--core-token-file',
+            nodes.rendererFile, ...urls.flatMap((url) => ['--core', url])], {},
+        ['unshare', '--mount', 'sh', '-c', `mount --bind ${hosts} /etc/hosts && exec "$@"`, 'sh']);
+        nodes.all.push({ program });
+        return program;
+    };
+    const host = await nodes.core(0, '--history', join(nodes.plant.folder, 'h4'), '--host', 'core.test');
+    const good = start(`ws://core.test:${host.port}`);
+    await good.line(/readings come/, 10000);
+    await good.stop();
+    await host.stop();
+    const bad = start('ws://core.test:9', dead, `ws://core.test:${nodes.plant.modbusPort}`);
+    await bad.line(/ready http/);
+    await sleep(8000);
+    const count = bad.said.match(said).length;
+    assert.ok(count >= 3 && count <= 5, bad.said);
+    await bad.stop();
+});
+
+test('over TLS: a core whose certificate is not trusted is refused by name; one that is trusted brings readings', options, async () => {
+    const path = (name) => join(nodes.plant.folder, name);
+    for (const name of ['core', 'stranger'])
+        assert.equal(spawnSync('openssl', ['req', '-x509', '-newkey', 'ec', '-pkeyopt', 'ec_paramgen_curve:prime256v1', '-nodes', '-keyout',
+            path(`${name}.key`), '-out', path(`${name}.pem`), '-days', '30', '-subj', '/CN=localhost', '-addext',
+            'subjectAltName=DNS:localhost']).status, 0);
+    const secure = await nodes.core(0, '--history', path('h3'), '--tls-cert', path('core.pem'), '--tls-key', path('core.key'));
+    const renderer = (ca, host) => {
+        const program = new Program('plantcastd', [nodes.plant.file, '--role', 'render', '--port', '0', '--core-token-file',
+            nodes.rendererFile, '--core', `wss://${host}:${secure.port}`, '--core-ca', path(ca)]);
+        nodes.all.push({ program });
+        return program;
+    };
+    const wrong = [[renderer('stranger.pem', 'localhost'), /error core: .*no readings: .*is its certificate trusted/],
+        [renderer('core.pem', '127.0.0.1'), /error core: .*no readings: .*is its certificate trusted/]];
+    for (const [program, said] of wrong) {
+        await program.line(said, 20000);
+        assert.doesNotMatch(program.said, /readings come/);
+        await program.stop();
+    }
+    const trusted = renderer('core.pem', 'localhost');
+    await trusted.line(/readings come/, 20000);
+    await trusted.stop();
+    await secure.stop();
 });
