@@ -43,8 +43,7 @@ const live = (since) => wall.page.waitForFunction(([picture, words]) => {
 }, [since.picture, since.words], { timeout: 60000, polling: 200 });
 
 test(`${LOSSES} losses: each is said, and ends by itself`, options, async () => {
-    await wall.page.waitForURL(/wall\.html/); // until then the page is another one
-    await wall.page.waitForFunction(() => globalThis.wall);
+    await wall.page.waitForFunction(() => globalThis.wall?.panes.length > 0, null, { timeout: 60000 }); // until then it is another page
     await live({ picture: 0, words: 0 });
     let slowest = 0;
     for (let i = 0; i < LOSSES; i++) {
