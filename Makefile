@@ -256,9 +256,9 @@ support    := $(call objects,$(wildcard tests/support/*.c tests/support/*.cc))
 # The exact solver that distances are held against, by CGAL.
 $(out)/tests/unit/accuracy_test $(out)/tests/unit/contact_test: $(call objects,$(wildcard tests/oracle/*.cc))
 $(out)/tests/unit/accuracy_test $(out)/tests/unit/contact_test: pkg_libs += -lgmp -lmpfr
-$(out)/tests/unit/rvm_test: $(out)/lib/import.a
+$(out)/tests/unit/rvm_test $(out)/tests/unit/rvm_fuzz_test: $(out)/lib/import.a
 $(out)/tests/unit/revision_test: $(out)/lib/import.a $(out)/lib/match.a
-$(out)/tests/unit/rvm_test $(out)/tests/unit/revision_test: pkg_libs += -lGLU
+$(out)/tests/unit/rvm_test $(out)/tests/unit/rvm_fuzz_test $(out)/tests/unit/revision_test: pkg_libs += -lGLU
 $(out)/tests/unit/revision_test: pkg_libs += -lminizip -lexpat
 $(out)/tests/unit/wall_rules_test: $(call objects,clients/wall/rules.c clients/wall/view_address.c)
 match_tests := $(foreach t,match tag_export,$(out)/tests/unit/$(t)_test)

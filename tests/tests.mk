@@ -19,6 +19,7 @@ test-long: test-deps
 	    tests/run $(build)/$$c $(build)/$$c/bin gpu && tests/run $(build)/$$c $(build)/$$c/bin daemon || exit 1; \
 	done
 	@KILLS=100 $(out)/tests/unit/historian_test
+	@PLANTCAST_FUZZ_ROUNDS=200000 $(out)/tests/unit/rvm_fuzz_test
 	@REPLAY_S=3600 $(out)/tests/unit/modbus_history_test
 	@PLANTCAST_BIN=$(bin) node --test tests/long/replay.mjs
 	@PLANTCAST_BIN=$(bin) USE_S=1800 node --test --test-name-pattern='memory' tests/e2e/assets.mjs

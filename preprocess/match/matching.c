@@ -11,9 +11,9 @@
 #include <strings.h>
 #include <unistd.h>
 
-#include "base/atomic_file.h"
 #include "base/mem.h"
 #include "preprocess/match/equipment.h"
+#include "preprocess/match/file_set.h"
 #include "preprocess/match/plant_edit.h"
 #include "preprocess/match/plant_trial.h"
 #include "preprocess/match/tag_rows.h"
@@ -380,15 +380,37 @@ static bool is_as_read(const char *path, const char *before)
     return is || fail_at(path, "was changed by somebody else meanwhile; nothing was written: run it again");
 }
 
-static bool write_one(const char *path, const char *text)
+static bool add_one(struct file_set *set, const char *path, const char *before, const char *text)
 {
-    size_t length = 0;
-    char *now = text_read_file(path, max_list_bytes, &length);
-    bool same = now && !strcmp(now, text);
-    int status = same ? 0 : atomic_file_put(path, text, strlen(text));
-    mem_free(now);
-    printf("%s: %s\n", path, same ? "stays as it is" : "written");
+    int status = before && !strcmp(before, text) ? 0 : file_set_add(set, path, text);
     return status == 0 || fail_at(path, strerror(-status));
+}
+
+static void say_written(const char *path, const char *before, const char *text)
+{
+    printf("%s: %s\n", path, before && !strcmp(before, text) ? "stays as it is" : "written");
+}
+
+/* The plant file first: with the old tag list it is a plant, too, since it only gains groups and a source. matches.csv last: what the tag
+ * list has and it has not is not taken for a person's change. A run that was killed in between is finished by the next one. */
+static bool write_files(struct run *run, const char *matches_path)
+{
+    const char *plant = run->params->plant, *tags = run->plant->tags_path;
+    struct file_set set = { 0 };
+    bool good = add_one(&set, plant, run->plant_before, run->new_text) && add_one(&set, tags, run->tags_before, run->tags_text.at) &&
+                add_one(&set, matches_path, run->matches_before, run->matches_text.at) && is_as_read(plant, run->plant_before) &&
+                is_as_read(tags, run->tags_before) && is_as_read(matches_path, run->matches_before);
+    if (good) {
+        int status = file_set_commit(&set);
+        good = status == 0 || fail_at(run->plant->folder, strerror(-status));
+    }
+    file_set_abandon(&set);
+    if (good) {
+        say_written(tags, run->tags_before, run->tags_text.at);
+        say_written(matches_path, run->matches_before, run->matches_text.at);
+        say_written(plant, run->plant_before, run->new_text);
+    }
+    return good;
 }
 
 static void print_result(const struct run *run)
@@ -421,9 +443,7 @@ static bool write_all(struct run *run)
     if (good)
         print_result(run);
     if (good && !run->params->dry_run)
-        good = is_as_read(run->params->plant, run->plant_before) && is_as_read(run->plant->tags_path, run->tags_before) &&
-               is_as_read(matches_path, run->matches_before) && write_one(run->plant->tags_path, run->tags_text.at) &&
-               write_one(matches_path, run->matches_text.at) && write_one(run->params->plant, run->new_text);
+        good = write_files(run, matches_path);
     mem_free(matches_path);
     return good;
 }
@@ -449,10 +469,24 @@ static void finish(struct run *run)
     mem_free(run->matches_before);
 }
 
+/* Returns a descriptor, or a negative number, already told. */
+static int lock_folder(const char *plant)
+{
+    const char *slash = strrchr(plant, '/');
+    char *folder = slash ? mem_printf("%.*s", slash > plant ? (int)(slash - plant) : 1, plant) : mem_strdup(".");
+    int lock = file_set_lock(folder);
+    if (lock < 0)
+        fail_at(lock == -EWOULDBLOCK ? folder : plant,
+                lock == -EWOULDBLOCK ? "another import or match is at work in it" : strerror(-lock));
+    mem_free(folder);
+    return lock;
+}
+
 int matching_run(const struct matching_params *params)
 {
     struct run run = { .params = params };
-    bool good = read_all(&run) && find_source(&run);
+    int lock = lock_folder(params->plant);
+    bool good = lock >= 0 && read_all(&run) && find_source(&run);
     if (good) {
         run.matches = matcher_run(&run.matcher, &run.list);
         good = obey(&run);
@@ -469,5 +503,7 @@ int matching_run(const struct matching_params *params)
         good = compose_plant(&run, placeholder) && write_all(&run);
     }
     finish(&run);
+    if (lock >= 0)
+        close(lock);
     return good ? 0 : 1;
 }

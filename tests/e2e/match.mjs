@@ -3,7 +3,8 @@
 // people change by hand and a second run; and the whole way from an export of a CAD system to a picture.
 import assert from 'node:assert/strict';
 import { spawn, spawnSync } from 'node:child_process';
-import { copyFileSync, existsSync, mkdtempSync, readdirSync, readFileSync, rmSync, watch, writeFileSync } from 'node:fs';
+import { chmodSync, copyFileSync, cpSync, existsSync, lstatSync, mkdirSync, mkdtempSync, readdirSync, readFileSync, renameSync, rmSync,
+    statSync, symlinkSync, utimesSync, watch, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { test } from 'node:test';
@@ -218,6 +219,70 @@ test('what somebody saves while tags are matched is not replaced', { skip: notBu
         assert.doesNotMatch(readFileSync(join(folder, 'tags.csv'), 'utf8'), new RegExp(`XT-${tries},`));
     }
 }));
+
+test('killed between two files, left over, at once, out of disk: a valid plant, and the next run finishes it', { skip: notBuilt },
+    () => inFolder(async (folder) => {
+        const list = join(folder, 'export.csv'), first = join(folder, 'first'), whole = join(folder, 'whole');
+        const plant = join(folder, 'plant');
+        const names = ['plant.yaml', 'tags.csv', 'matches.csv'], rights = 0o640;
+        const filesOf = (from) => Object.fromEntries(names.map((name) => [name, existsSync(join(from, name)) &&
+            readFileSync(join(from, name), 'utf8')]));
+        const rows = (count, unit) => ['Tag Name,Address,Eng Units,Scaled Low,Scaled High', ...Array.from({ length: count },
+            (_, i) => `E-10${i % 3}.TT-${i},${400001 + 2 * i},${unit},0,90`)].join('\n');
+        mkdirSync(first);
+        boxPlant(first, ['E-100', 'E-101', 'E-102']);
+        for (const [count, unit] of [[6, 'degC'], [600, 'bar']]) { // a plant without tags; one that has some, and gains a group
+            writeFileSync(list, rows(count, unit));
+            cpSync(first, whole, { recursive: true });
+            const args = [list, '--modbus', '127.0.0.1:502'];
+            good(run('plantcast', 'match', whole, ...args));
+            const replacedAt = names.map((name) => statSync(join(whole, name), { bigint: true }).ctimeNs);
+            assert.deepEqual(replacedAt, replacedAt.toSorted((a, b) => Number(a - b)), 'the order of names');
+            for (let replaced = 0; replaced <= names.length; replaced++) { // renamed in this order
+                rmSync(plant, { recursive: true, force: true });
+                cpSync(first, plant, { recursive: true });
+                for (const name of names.slice(0, replaced))
+                    copyFileSync(join(whole, name), join(plant, name));
+                for (const left of ['tags.csv.4194304.new', 'matches.csv.4194304.3.new', '.trial.4194304.yaml'])
+                    writeFileSync(join(plant, left), 'half of a li'); // no process has this number
+                const others = [`tags.csv.${process.pid}.new`, 'tags.csv.4194304.7.new'], hourAgo = Date.now() / 1000 - 3600;
+                for (const name of others) // somebody is writing it here, or in another container
+                    writeFileSync(join(plant, name), 'half of a li');
+                for (const name of readdirSync(plant).filter((each) => /4194304/.test(each) && each !== others[1]))
+                    utimesSync(join(plant, name), hourAgo, hourAgo);
+                chmodSync(join(plant, 'tags.csv'), rights);
+                good(run('plantcastd', '--check', join(plant, 'plant.yaml')));
+                good(run('plantcast', 'match', plant, ...args));
+                assert.deepEqual(filesOf(plant), filesOf(whole), `${replaced} replaced`);
+                assert.equal(statSync(join(plant, 'tags.csv')).mode & 0o777, rights);
+                assert.deepEqual(readdirSync(plant).sort(), [...names, 'model.gltf', ...others].sort());
+            }
+            rmSync(first, { recursive: true });
+            cpSync(whole, first, { recursive: true });
+            rmSync(whole, { recursive: true });
+        }
+        writeFileSync(list, rows(3000, 'degC'));
+        const before = filesOf(first), script = `trap '' XFSZ; ulimit -f 200; exec "$0" "$1" "$2"`;
+        const full = spawnSync('bash', ['-c', script, join(BIN, 'plantcast-match'), first, list], { encoding: 'utf8', timeout: 60000 });
+        assert.equal(full.status, 1);
+        assert.equal(full.stderr.trim().split('\n').length, 1, full.stderr);
+        assert.deepEqual(filesOf(first), before);
+        assert.deepEqual(readdirSync(first).sort(), [...names, 'model.gltf'].sort());
+        const held = spawn('flock', [first, 'sh', '-c', 'echo held; read line'], { stdio: ['pipe', 'pipe', 'ignore'] });
+        await new Promise((done) => held.stdout.once('data', done));
+        const refused = run('plantcast', 'match', first, list), ended = new Promise((done) => held.once('exit', done));
+        held.stdin.end();
+        await ended;
+        assert.equal(refused.status, 1);
+        assert.match(refused.stderr, /^plantcast match: [^\n]*first: another import or match is at work in it\n$/);
+        assert.deepEqual(filesOf(first), before);
+        const elsewhere = join(folder, 'tags.csv');
+        renameSync(join(first, 'tags.csv'), elsewhere);
+        symlinkSync(elsewhere, join(first, 'tags.csv'));
+        good(run('plantcast', 'match', first, list));
+        assert.ok(lstatSync(join(first, 'tags.csv')).isSymbolicLink());
+        assert.notEqual(readFileSync(elsewhere, 'utf8'), before['tags.csv']);
+    }));
 
 // Kepware's export of a device, of a plant that PDMS drew: no line of either is changed by hand.
 const ROOM = `Tag Name,Address,Data Type,Respect Data Type,Client Access,Scan Rate,Scaling,Raw Low,Raw High,Scaled Low,Scaled High,\

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* RVM files and their attributes. The first byte says which. */
+#include <math.h>
 #include <stddef.h>
 #include <stdint.h>
 #include <stdio.h>
@@ -16,6 +17,9 @@ static void check_model(const struct cad_model *model)
     for (size_t n = 0; n < model->node_count; n++) {
         const struct cad_node *node = &model->nodes[n];
         require(node->parent < (int)n, "parents come before children");
+        for (size_t v = 0; v < node->vertex_count; v++)
+            for (int k = 0; k < 3; k++)
+                require(isfinite(node->vertices[v].position_m[k]) && isfinite(node->vertices[v].normal[k]), "corners are finite");
         for (size_t t = 0; t < node->triangle_count; t++)
             for (int k = 0; k < 3; k++)
                 require(node->triangles[t][k] < node->vertex_count, "triangles have corners that are there");

@@ -1,0 +1,104 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Temporary files of all of them first, then the renamings. */
+#include "preprocess/match/file_set.h"
+
+#include <dirent.h>
+#include <errno.h>
+#include <fcntl.h>
+#include <signal.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <time.h>
+#include <unistd.h>
+
+#include "base/mem.h"
+
+enum { LEFT_S = 60 }; /* a program of another container or machine has no number here, and is done sooner */
+
+static bool is_old(int folder, const char *name)
+{
+    struct stat st;
+    return fstatat(folder, name, &st, AT_SYMLINK_NOFOLLOW) == 0 && S_ISREG(st.st_mode) && st.st_mtime + LEFT_S < time(NULL);
+}
+
+/* NAME.PID.new of a list or the plant file, or .trial.PID.yaml, of a program that is not there any more. */
+static bool is_left(int folder, const char *name)
+{
+    static const char *const begins[] = { "plant.yaml.", "tags.csv.", "matches.csv.", ".trial." };
+    int pid, end = 0;
+    for (size_t i = 0; i < sizeof(begins) / sizeof(begins[0]); i++) {
+        size_t length = strlen(begins[i]);
+        if (strncmp(name, begins[i], length) != 0 || sscanf(name + length, "%d.%n", &pid, &end) != 1 || end == 0 || pid <= 0)
+            continue;
+        const char *ending = strrchr(name + length, '.');
+        bool ours = !strcmp(ending, ".new") || (*name == '.' && (!strcmp(ending, ".yaml") || !strcmp(ending, ".csv")));
+        return ours && kill(pid, 0) != 0 && errno == ESRCH && is_old(folder, name);
+    }
+    return false;
+}
+
+int file_set_lock(const char *folder)
+{
+    int fd = open(folder, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    if (fd < 0)
+        return -errno;
+    if (flock(fd, LOCK_EX | LOCK_NB) != 0) {
+        int status = -errno;
+        close(fd);
+        return status;
+    }
+    DIR *dir = opendir(folder);
+    for (struct dirent *entry; dir && (entry = readdir(dir)) != NULL;)
+        if (is_left(fd, entry->d_name))
+            unlinkat(fd, entry->d_name, 0);
+    if (dir)
+        closedir(dir);
+    return fd;
+}
+
+/* Whoever may read and write the file that is there may do so with the new one. */
+static int take_rights(int fd, const char *path)
+{
+    struct stat st;
+    if (stat(path, &st) != 0)
+        return errno == ENOENT ? 0 : -errno;
+    if (fchown(fd, st.st_uid, st.st_gid) != 0 && errno != EPERM)
+        return -errno;
+    return fchmod(fd, st.st_mode & 07777) == 0 ? 0 : -errno;
+}
+
+int file_set_add(struct file_set *set, const char *path, const char *text)
+{
+    char *target = realpath(path, NULL);
+    struct atomic_file *file = &set->files[set->count];
+    int status = set->count < FILE_SET_ROOM ? atomic_file_begin(file, target ? target : path, 0666) : -ENOSPC;
+    if (status == 0) {
+        set->count++;
+        status = take_rights(file->fd, path);
+    }
+    if (status == 0)
+        status = atomic_file_write(file, text, strlen(text));
+    if (status == 0 && fsync(file->fd) != 0)
+        status = -errno;
+    free(target);
+    return status;
+}
+
+int file_set_commit(struct file_set *set)
+{
+    int status = 0;
+    for (int i = 0; i < set->count && status == 0; i++)
+        status = atomic_file_commit(&set->files[i], true);
+    file_set_abandon(set);
+    return status;
+}
+
+void file_set_abandon(struct file_set *set)
+{
+    for (int i = 0; i < set->count; i++)
+        atomic_file_abandon(&set->files[i]);
+    set->count = 0;
+}
