@@ -2,6 +2,8 @@
 // Sources of type mqtt, against Debian's mosquitto: numbers and JSON, times and qualities that are stated, retained values, a broker that
 // is killed, frozen and started again, and payloads that are none.
 import assert from 'node:assert/strict';
+import { createServer } from 'node:net';
+import packets from 'mqtt-packet';
 import { after, afterEach, before, test } from 'node:test';
 import { Broker, missingBroker } from './support/broker.mjs';
 import { PublishedPlant } from './support/published_plant.mjs';
@@ -131,6 +133,41 @@ test('a persistent session brings what was published meanwhile, as old as it is'
     await sleep(1500);
     await run(keys, TAGS.json);
     assert.ok((await until('PI-1', { ...good, value: 2 })).age_ms >= 1500);
+});
+
+// A broker that sends what nobody asked for: the longest topics that there are, each before a reading.
+test('topics of 64 kB, at a broker that lies: nothing else suffers', options, async () => {
+    await broker.kill();
+    let sent = 0;
+    const liar = createServer((socket) => {
+        const parser = packets.parser(), say = (packet) => socket.write(packets.generate(packet));
+        socket.on('error', () => {});
+        socket.on('data', (bytes) => parser.parse(bytes));
+        parser.on('packet', ({ cmd, messageId, subscriptions }) => {
+            if (cmd === 'connect')
+                say({ cmd: 'connack', returnCode: 0, sessionPresent: false });
+            if (cmd === 'pingreq')
+                say({ cmd: 'pingresp' });
+            if (cmd !== 'subscribe')
+                return;
+            say({ cmd: 'suback', messageId, granted: subscriptions.map(() => 0) });
+            for (const topic of ['x'.repeat(65535), 'plant/'.repeat(10922), `plant/ti1${'/'.repeat(65000)}`]) {
+                say({ cmd: 'publish', topic, payload: '99', qos: 0 });
+                say({ cmd: 'publish', topic: 'plant/ti1', payload: `${20 + ++sent}`, qos: 0 });
+            }
+        });
+    });
+    await new Promise((done) => liar.listen(broker.port, '127.0.0.1', done));
+    try {
+        await run('topic: "plant/{asset}/{tag}", protocol: 3.1.1', TAGS.number);
+        await until('TI-1', { ...good, value: 23 });
+        assert.equal(await metric('connects_total{source="broker"}'), 1);
+        assert.equal(await metric('samples_total{source="broker"}'), 3);
+        assert.ok(plant.daemon.said.length < 20000, 'no topic of 64 kB in the log');
+    } finally {
+        await plant.daemon?.stop();
+        liar.close();
+    }
 });
 
 test('payloads that are none are refused by name, and nothing else suffers', options, async () => {
