@@ -58,6 +58,8 @@ static bool add_attributes(struct cad_model *model, const char *path, struct tex
     mem_free(text);
     if (!good)
         return fail(why, "%s: %s", path, reason);
+    if (counts.elements == 0)
+        return fail(why, "%s: no elements (NEW ... END): this is no attribute file; give one of the two another name", path);
     text_add(said, "attributes of %s: %zu elements, %zu of them in the model; %zu values%s\n", path, counts.elements, counts.matched,
              counts.attributes, counts.not_utf8 > 0 ? "; read as Latin-1 where it is not UTF-8" : "");
     return true;
@@ -68,7 +70,7 @@ static void say_counts(struct text *said, const struct rvm_counts *counts)
     const struct {
         size_t count;
         const char *what;
-    } left_out[] = { { counts->empty, "primitives without extent" },
+    } left_out[] = { { counts->empty, "primitives without extent, or with numbers that are not finite" },
                      { counts->obstructions, "obstruction volumes" },
                      { counts->insulations, "insulation volumes" },
                      { counts->unknown_kinds, "primitives of an unknown kind" },
@@ -95,6 +97,8 @@ static bool convert_rvm(const char *path, const char *glb, const struct conversi
     char *attributes = attributes_beside(path), *stem = file_name_stem(path);
     bool good = rvm_read(model, bytes, length, &how, &counts, why, CONVERSION_WHY_BYTES);
     mem_free(bytes);
+    if (good && counts.primitives > 0 && counts.empty == counts.primitives)
+        good = fail(why, "none of its %zu primitives can be shown: they have no extent, or numbers that are not finite", counts.primitives);
     if (good)
         say_counts(said, &counts);
     if (good && attributes)

@@ -127,10 +127,50 @@ for (const { file, as, chordMm, nodes, counted, assets } of [
         assert.match(again.stdout, /plant\.yaml: stays as it is/);
     }));
 
+test('a real export with broken attributes or numbers is one line, and leaves nothing behind', { skip }, () => inFolder((folder) => {
+    const good = readFileSync(join(DATA, 'cad/plm-sample.rvm')), text = readFileSync(join(DATA, 'cad/plm-sample.att'));
+    const head = text.subarray(0, text.indexOf('NEW')).toString('latin1'), id = Buffer.from('\0\0\0P\0\0\0R\0\0\0I\0\0\0M', 'latin1');
+    const notFinite = Buffer.from(good), model = join(folder, 'a.rvm');
+    for (let at = good.indexOf(id); at >= 0; at = good.indexOf(id, at + 4))
+        notFinite.writeFloatBE(NaN, at + 32); // the first number of a primitive's place
+    for (const [bytes, attributes, why] of [
+        [good, text.subarray(0, text.length >> 1), /a\.att: line \d+: the file ends within \d+ elements/],
+        [good, `${head}${'NEW A\r\n'.repeat(100000)}`, /a\.att: line \d+: elements are nested more than \d+ deep/],
+        [good, `${head}${'END\r\n'.repeat(1000)}`, /a\.att: line \d+: END without NEW/],
+        [good, Buffer.from(text.map((byte, i) => (i % 53 === 17 ? 255 - byte : byte))), /a\.att: line \d+: /],
+        [good, '', /a\.att: no elements/], [good, 'hello', /a\.att: no elements/], [good, Buffer.alloc(5000), /a\.att: no elements/],
+        [good.subarray(0, good.length >> 1), text, /byte \d+: the file ends within chunk/],
+        [notFinite, text, /none of its \d+ primitives can be shown: .*not finite/],
+    ]) {
+        writeFileSync(model, bytes);
+        writeFileSync(join(folder, 'a.att'), attributes);
+        const said = run('plantcast', 'import', model, '-o', join(folder, 'plant'));
+        assert.equal(said.status, 1, String(why));
+        assert.match(said.stderr, why);
+        assert.equal(said.stderr.trim().split('\n').length, 1);
+        assert.deepEqual(readdirSync(folder).sort(), ['a.att', 'a.rvm']);
+    }
+}));
+
 test('what cannot be read is one line, and leaves nothing behind', { skip: notBuilt }, () => inFolder((folder) => {
     const out = join(folder, 'plant');
     const cases = [['empty.rvm', '', 'byte 0: not an RVM file'], ['text.rvm', 'ISO-10303-21;', 'byte 0: not an RVM file'],
         ['short.rvm', Buffer.from('\0\0\0H\0\0\0E\0\0\0A\0\0\0D\0\0\x01\0\0\0\0\x01', 'latin1'), 'the file ends within chunk HEAD']];
+    const gltf = (rest) => JSON.stringify({ asset: { version: '2.0' }, scene: 0, scenes: [{ nodes: [0] }], ...rest });
+    const corner = (bytes, count) => gltf({ nodes: [{ mesh: 0 }], meshes: [{ primitives: [{ attributes: { POSITION: 0 } }] }],
+        accessors: [{ componentType: 5126, count, type: 'VEC3', bufferView: 0, min: [0, 0, 0], max: [1, 1, 1] }],
+        bufferViews: [{ buffer: 0, byteLength: bytes.length }],
+        buffers: [{ byteLength: bytes.length, uri: `data:application/octet-stream;base64,${bytes.toString('base64')}` }] });
+    const notFinite = Buffer.from(new Float32Array([0, 0, 0, NaN, 0, 0, 0, Infinity, 0]).buffer);
+    cases.push(['empty.gltf', '', 'line 1'], ['text.glb', 'hello', 'line 1'],
+        ['half.glb', Buffer.from('glTF\x02\0\0\0\0\x01\0\0', 'latin1'), 'GLB'],
+        ['cycle.gltf', gltf({ nodes: [{ children: [1] }, { children: [0] }] }), 'node 0 is reached twice'],
+        ['deep.gltf', gltf({ nodes: Array.from({ length: 100000 }, (_, i) => (i < 99999 ? { children: [i + 1] } : {})) }), 'nested deeper'],
+        ['nested.gltf', `{"asset":${'['.repeat(200000)}${']'.repeat(200000)}}`, 'nested deeper'],
+        ['huge.gltf', corner(Buffer.alloc(36), 4000000000), '4000000000 elements are more'],
+        ['nan.gltf', corner(notFinite, 3), 'element 1 is not finite'],
+        ['out.gltf', gltf({ scenes: [{ nodes: [] }], buffers: [{ byteLength: 4, uri: '../../../etc/passwd' }] }),
+            'leads out of the folder']);
     for (const [name, bytes, why] of cases) {
         writeFileSync(join(folder, name), bytes);
         const said = run('plantcast', 'import', join(folder, name), '-o', out);
