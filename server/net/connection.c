@@ -52,6 +52,7 @@ void connection_open(struct server_context *server, struct lws *wsi)
     connection->usage = address_limits_ref(server->limits, address);
     connection->usage->connections++;
     server->connection_count++;
+    server->unanswered_count++;
     lws_set_opaque_user_data(wsi, connection);
 }
 
@@ -69,10 +70,18 @@ void connection_close(struct server_context *server, struct lws *wsi)
         return;
     connection->usage->connections--;
     server->connection_count--;
+    server->unanswered_count -= !connection->answered;
     leave_client(server, connection);
     address_limits_unref(server->limits, &connection->usage);
     mem_free(connection);
     lws_set_opaque_user_data(wsi, NULL);
+}
+
+void connection_set_answered(struct server_context *server, struct lws *wsi, bool answered)
+{
+    struct connection *connection = connection_of(wsi);
+    server->unanswered_count += connection->answered - answered;
+    connection->answered = answered;
 }
 
 struct connection *connection_of(struct lws *wsi)

@@ -10,6 +10,7 @@ struct connection {               /* lives as long as the connection */
     char address[64];             /* the client's, for the log */
     enum role role;               /* by the last request's headers */
     struct token_holder holder;
+    bool answered; /* nothing that it asked waits for an answer */
 };
 
 /* Decides about a socket before a connection is made of it. Returns false if it is to be closed. */
@@ -17,6 +18,8 @@ bool connection_may_open(struct server_context *server, int fd);
 /* Adds and removes the identity of a connection. */
 void connection_open(struct server_context *server, struct lws *wsi);
 void connection_close(struct server_context *server, struct lws *wsi);
+/* Notes whether all that it asked was answered, so that a server that goes down waits for those where it was not. */
+void connection_set_answered(struct server_context *server, struct lws *wsi, bool answered);
 /* Returns the identity of an open connection. */
 struct connection *connection_of(struct lws *wsi);
 

@@ -47,6 +47,10 @@ int handed_socket_callback(struct lws *wsi, enum lws_callback_reasons reason, vo
     if (reason != LWS_CALLBACK_RAW_RX_FILE)
         return 0;
     struct server_context *server = server_context_of(wsi);
+    if (atomic_load(&lws_container_of(server, struct net, server)->stopping)) {
+        lws_rx_flow_control(wsi, 0); /* who comes now waits for the next start; accepted here, it would be cut off */
+        return 0;
+    }
     for (int i = 0; i < ACCEPTED_AT_ONCE; i++) {
         int fd = accept4(server->params.socket_fd, NULL, NULL, SOCK_CLOEXEC | SOCK_NONBLOCK);
         if (fd < 0)

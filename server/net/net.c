@@ -26,7 +26,7 @@
 #include "session/resume.h"
 
 static const int64_t TICK_NS = 100 * NS_PER_MS, REST_NS = NS_PER_S; /* between ticks; when no session waits for anything */
-static const int64_t GOODBYE_NS = 500 * NS_PER_MS;                  /* for the close frames to leave */
+static const int64_t GOODBYE_NS = 500 * NS_PER_MS;                  /* for close frames and answers to leave */
 static const int64_t HELD_NS = 60 * NS_PER_S;                       /* between two lines on tokens that were held */
 static const int64_t LOOK_NS = NS_PER_S;                            /* at the files of tokens and certificate, so often */
 enum { SPARE_FILES = 256 };                                         /* beside connections: models, sources, the database */
@@ -511,8 +511,10 @@ void net_run(struct net *net)
     net_unwatch_readings(net);
     streams_close(server);
     renderers_close(server, "the core goes down");
+    server->goes_down = true;
     set_timer(net, clock_mono_ns() + GOODBYE_NS);
-    for (int64_t end_ns = clock_mono_ns() + GOODBYE_NS; server->stream_count > 0 && clock_mono_ns() < end_ns;)
+    for (int64_t end_ns = clock_mono_ns() + GOODBYE_NS;
+         (server->stream_count > 0 || server->unanswered_count > 0) && clock_mono_ns() < end_ns;)
         lws_service(server->lws, 0);
 }
 

@@ -56,7 +56,8 @@ struct server_context {
     int64_t answer_bytes;                            /* of HTTP answers that their clients have not read yet */
     const struct quotas *quotas;
     struct address_limits *limits;
-    int connection_count;
+    int connection_count, unanswered_count; /* the latter: of those, connections that wait for an answer, or have not asked yet */
+    bool goes_down;                         /* no connection is kept for another request */
     struct tokens *tokens; /* NULL: none are configured */
     struct openid *openid; /* NULL: nobody signs in */
     struct login_throttle *login_throttle;

@@ -160,6 +160,19 @@ test('connections wait in the socket of the manager while the daemon is started 
         await service.stop();
     });
 
+test('whoever asks while the daemon stops is answered, by it or by the next one', { skip, timeout: 120000 }, async () => {
+    const service = serve(['--port', '1'], ['--socket']), port = Number((await service.said(/^port: (\d+)$/m))[1]);
+    for (let round = 1; round <= 4; round++) {
+        await service.said(new RegExp(`(^notify: READY=1$[^]*){${round}}`, 'm'));
+        const answers = [];
+        service.order('again');
+        for (const began = performance.now(); performance.now() - began < 300; await new Promise((done) => setTimeout(done, 1)))
+            answers.push(get(port, '/healthz').then(({ status }) => status, ({ code }) => code));
+        assert.deepEqual([...new Set(await Promise.all(answers))], [200], `restart ${round}, ${answers.length} requests`);
+    }
+    await service.stop();
+});
+
 test('a port that is taken ends it, before it is ready', { skip }, async () => {
     const other = createServer().listen(0, '127.0.0.1');
     await new Promise((done) => other.once('listening', done));

@@ -132,6 +132,7 @@ static int serve(struct server_context *server, struct request *request, const c
     struct refusal refusal;
     request->head = lws_hdr_total_length(request->wsi, WSI_TOKEN_HEAD_URI) > 0;
     counter_inc(server->counters.requests, 1);
+    connection_set_answered(server, request->wsi, false);
     if (!get && !request->head && !post) {
         request->close = true; /* there may be a body that nobody reads */
         static const char text[] = "only GET and HEAD (POST: /api/v1/reload, /logout)\n";
@@ -220,6 +221,7 @@ int http_callback(struct lws *wsi, enum lws_callback_reasons reason, void *user,
     case LWS_CALLBACK_HTTP_DROP_PROTOCOL: /* also when the connection is upgraded */
     case LWS_CALLBACK_CLOSED_HTTP: request_end(server_context_of(wsi), slot); return 0;
     case LWS_CALLBACK_HTTP_CONFIRM_UPGRADE:
+        connection_set_answered(server_context_of(wsi), wsi, true); /* streams are closed with a word of their own */
         return strcasecmp(in, "websocket") == 0 ? stream_check_upgrade(server_context_of(wsi), wsi) : -1;
     case LWS_CALLBACK_ESTABLISHED: { /* a WebSocket without a subprotocol lands here */
         static unsigned char text[] = "the subprotocol is " WIRE_SUBPROTOCOL;

@@ -86,7 +86,8 @@ int request_done(struct request *request)
 {
     request_hold(request, NULL, 0);
     request->pieces = PIECES_NONE;
-    return request->close || lws_http_transaction_completed(request->wsi) ? -1 : 0;
+    connection_set_answered(server_context_of(request->wsi), request->wsi, true);
+    return request->close || server_context_of(request->wsi)->goes_down || lws_http_transaction_completed(request->wsi) ? -1 : 0;
 }
 
 /* Takes body. The rest happens as the socket takes it. */
