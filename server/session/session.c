@@ -429,8 +429,18 @@ static void tell_token(struct session *session, int64_t now_ns)
     mem_free(token);
 }
 
+/* Returns whether a picture is due, asked for, under way or waiting. */
+static bool is_owed(const struct session *session)
+{
+    const struct frame_demand *demand = &session->demand;
+    const struct pacer *pacer = &session->delivery.pacer;
+    return demand->input || demand->data || demand->any || pacer->asked > 0 || pacer->flight_count > 0 || session->delivery.ready;
+}
+
 void session_on_tick(struct session *session, int64_t now_ns)
 {
+    if (!is_owed(session))
+        session->settled_ns = session->heard_ns;
     tell_token(session, now_ns);
     if (!session->hello && now_ns - session->opened_ns >= session->context->quotas->at[QUOTA_PATIENCE_S] * NS_PER_S)
         session_close(session, 1008, "no hello for too long");
@@ -456,10 +466,8 @@ void session_on_links(struct session *session)
 
 int64_t session_fresh_ns(const struct session *session)
 {
-    const struct frame_demand *demand = &session->demand;
-    const struct pacer *pacer = &session->delivery.pacer;
-    bool due = demand->input || demand->data || demand->any || pacer->asked > 0 || pacer->flight_count > 0 || session->delivery.ready;
-    return !due ? session->heard_ns : pacer->acked.sent_ns ? pacer->acked.sent_ns : session->opened_ns;
+    int64_t sent_ns = session->delivery.pacer.acked.sent_ns ? session->delivery.pacer.acked.sent_ns : session->opened_ns;
+    return !is_owed(session) ? session->heard_ns : sent_ns > session->settled_ns ? sent_ns : session->settled_ns;
 }
 
 bool session_rests(const struct session *session, int64_t now_ns)

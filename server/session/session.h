@@ -55,7 +55,7 @@ void session_too_fast(struct session *session, int64_t count, const char *whose)
 /* Does what time alone brings. To be called every 100 ms or so, or once a second while all sessions rest. */
 void session_on_tick(struct session *session, int64_t now_ns);
 /* Returns since when, on the monotonic clock, the client may not show what is newest: now or a moment ago where it answers and nothing is
-   owed to it, else when the last picture was sent that it acknowledged. */
+   owed to it, else when that was last so, or when the last picture was sent that it acknowledged, whichever is later. */
 int64_t session_fresh_ns(const struct session *session);
 /* Returns whether session_on_tick() has nothing to do within the next second: no frame is wanted or under way, and no text is due. */
 bool session_rests(const struct session *session, int64_t now_ns);

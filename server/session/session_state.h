@@ -180,6 +180,7 @@ struct session {
     struct session_stats stats;
     struct wall_place display; /* that it is; display 0: none */
     int64_t heard_ns;          /* when the client last said anything */
+    int64_t settled_ns;        /* the last time at which nothing was owed to it */
 };
 
 /* Returns whether it has no token and is let in to look only: it gets frames, and no readings, tags or names of people. */

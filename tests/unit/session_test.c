@@ -252,6 +252,32 @@ static void rests_once_nothing_waits_for_time(void **state)
     assert_false(session_rests(f->session, f->now_ns));
 }
 
+static void readings_that_are_rare_do_not_make_what_is_shown_old(void **state)
+{
+    struct session_case *f = *state;
+    greet(f);
+    show(f);
+    f->now_ns += 250 * MS;
+    show(f);
+    for (int s = 0; s < 60; s++) { /* nothing changes for a minute; the client pings */
+        f->now_ns += NS_PER_S;
+        say(f, "{\"type\":\"ping\",\"t\":1}");
+        expect(f, "pong ");
+        session_on_tick(f->session, f->now_ns);
+    }
+    assert_int_equal(session_fresh_ns(f->session), f->now_ns);
+    int64_t then_ns = f->now_ns;
+    f->now_ns += 100 * MS;
+    session_on_data(f->session, f->now_ns); /* what is shown has been old since then, not for a minute */
+    session_on_tick(f->session, f->now_ns);
+    assert_int_equal(session_fresh_ns(f->session), then_ns);
+    f->now_ns += NS_PER_S;
+    session_on_tick(f->session, f->now_ns);
+    assert_int_equal(session_fresh_ns(f->session), then_ns);
+    show(f);
+    assert_true(session_fresh_ns(f->session) > then_ns);
+}
+
 static void newest_camera_wins_and_the_last_state_arrives(void **state)
 {
     struct session_case *f = *state;
@@ -894,6 +920,7 @@ int main(void)
         TEST(welcome_tells_the_plant_and_no_addresses),
         TEST(first_picture_comes_at_once_then_refined_then_nothing),
         TEST(rests_once_nothing_waits_for_time),
+        TEST(readings_that_are_rare_do_not_make_what_is_shown_old),
         TEST(newest_camera_wins_and_the_last_state_arrives),
         TEST(a_full_window_only_replaces),
         TEST(equal_pictures_free_their_place),
