@@ -173,14 +173,21 @@ static void add_source(struct arguments *list, const struct import_source *sourc
     add_option(list, "--address-base", source->base);
 }
 
-static char *match_tags(struct import_job *job, const struct import_order *order, const struct export_list *exports)
+/* NULL: there is none. */
+static const char *find_tags(const struct export_list *exports)
 {
-    struct arguments list = { 0 };
     const char *tags = NULL;
-    char *decisions = mem_printf("%s/%s", plant_import_exports(job->params.import), plant_import_decisions());
     for (size_t i = 0; i < exports->count; i++)
         if (exports->at[i].kind == EXPORT_TAGS)
             tags = exports->at[i].name;
+    return tags;
+}
+
+static char *match_tags(struct import_job *job, const struct import_order *order, const struct export_list *exports)
+{
+    struct arguments list = { 0 };
+    const char *tags = find_tags(exports);
+    char *decisions = mem_printf("%s/%s", plant_import_exports(job->params.import), plant_import_decisions());
     add(&list, "plantcast-match");
     if (order->decides) {
         add(&list, "--decide");
@@ -215,7 +222,11 @@ char *import_job_run(struct import_job *job, const struct import_order *order, c
 {
     struct export_list exports = { 0 };
     export_folder_list(plant_import_exports(job->params.import), &exports);
-    char *why = order->models ? read_models(job, order, &exports) : NULL;
+    char *why = NULL;
+    if (order->anew && *order->source.host && !find_tags(&exports)) /* only matching writes a source into a new plant file */
+        why = mem_printf("the plant's source %s would be lost: there is no tag list among the exports; add it first", order->source.host);
+    else if (order->models)
+        why = read_models(job, order, &exports);
     remember(job, &job->read);
     remember(job, &job->last);
     *remark = why ? NULL : match_tags(job, order, &exports);

@@ -561,6 +561,13 @@ test('a source: stated, values seen to arrive, corrected, kept when the plant is
         await desk.waitForFunction(() => document.querySelector('#import .measures select')?.value === 'ft', null, { timeout: 30000 });
         for (const query of ['host=a%20b', 'host=--x', 'port=1', 'host=a&port=70000', 'host=a&order=XYZ', 'host=a&unit=256'])
             assert.equal((await own.post(`/source?${query}`)).status, 400, query);
+        // Without a tag list the source would be lost.
+        assert.equal((await own.post('/remove?name=tags.csv')).status, 200);
+        const sources = /^sources:\n(  .*\n)+/m.exec(own.read('plant.yaml'))[0];
+        await own.post('/run?what=anew');
+        assert.match((await own.idle()).failed, /source 127\.0\.0\.1 would be lost: there is no tag list among the exports; add it first/);
+        assert.ok(own.read('plant.yaml').includes(sources));
+        assert.equal((await own.post('/upload?name=tags.csv', list)).status, 200);
         // A line that somebody wrote is theirs.
         writeFileSync(join(own.folder, 'plant.yaml'), own.read('plant.yaml').replace('CDAB }', 'CDAB, poll_ms: 2000 }'));
         await own.post(`/source?host=127.0.0.1&port=${wrongPort}&order=CDAB`);
