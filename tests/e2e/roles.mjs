@@ -30,9 +30,9 @@ before(async () => {
         runProgram('plantcast', ['token', 'add', file, '--role', role, '--name', `${role}-1`]).out.trim();
     const tokens = Object.fromEntries(Object.keys(SCREENS).map((role) => [role, make(role)]));
     chmodSync(file, 0o600);
-    await plant.startDaemon('--behind-proxy', '--host', 'plant.example', '--tokens', file);
-    for (const [tag, value] of [['TI-1', 80], ['TI-2', 20], ['PI-1', 5]])
+    for (const [tag, value] of [['TI-1', 80], ['TI-2', 20], ['PI-1', 5]]) // before anybody reads: there is one alarm
         await plant.tell(`set ${tag} ${value}`);
+    await plant.startDaemon('--behind-proxy', '--host', 'plant.example', '--tokens', file);
     browsers = await Promise.all(Object.entries(SCREENS).map(async ([role, screen]) => {
         const args = ['--host-resolver-rules=MAP plant.example 127.0.0.1'];
         const browser = await openPage(`http://plant.example:${plant.port}/`, { ...screen, args });
