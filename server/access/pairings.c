@@ -210,7 +210,7 @@ enum pairing pairings_ask(struct pairings *pairings, const struct pairing_reques
     struct token_holder paired;
     tokens_hash(request->secret, hash);
     if (pairings_find(pairings, hash, &paired))
-        return PAIRING_DONE;
+        return paired.display == request->place.display && !strcmp(paired.wall, request->place.wall) ? PAIRING_DONE : PAIRING_OTHER;
     forget_old(pairings, now_ns);
     struct waiting *waiting = find_waiting(pairings, hash, &request->place);
     if (!waiting && !(waiting = begin(pairings, hash, request, now_ns)))

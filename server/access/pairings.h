@@ -18,7 +18,7 @@ enum {
 };
 #define PAIRINGS_FILE "devices.json"
 
-enum pairing { PAIRING_WAITS, PAIRING_DONE, PAIRING_FULL };
+enum pairing { PAIRING_WAITS, PAIRING_DONE, PAIRING_FULL, PAIRING_OTHER };
 
 struct pairing_request {
     const char *secret;     /* of the device; pairings_secret_valid() */
@@ -36,8 +36,8 @@ void pairings_close(struct pairings **pairings); /* &NULL is fine; leaves NULL *
 bool pairings_secret_valid(const char *secret);
 /* Returns why no device can be paired (static), or NULL. */
 const char *pairings_refusal(const struct pairings *pairings);
-/* Returns whether the device is paired; if it waits, its digits and for how long they are good. PAIRING_FULL: too many wait. now_ns:
-   monotonic. */
+/* Returns whether the device is paired; if it waits, its digits and for how long they are good. PAIRING_FULL: too many wait.
+   PAIRING_OTHER: the device is paired as another display, and that secret is for no second one. now_ns: monotonic. */
 enum pairing pairings_ask(struct pairings *pairings, const struct pairing_request *request, int64_t now_ns, char digits[PAIRING_DIGITS + 1],
                           int *left_s);
 /* Pairs the device that shows those digits. who: approves it; now_us: UTC. Returns NULL with the id of the device, or why it could not

@@ -105,6 +105,8 @@ test('it is that display only, as a viewer, also after a restart of the daemon',
     const secret = await wall.page.evaluate(() => localStorage.getItem('plantcast.wall.room.1'));
     assert.equal((await get('api/v1/tags', `Bearer ${secret}`)).status, 200);
     assert.equal((await get('api/v1/devices', `Bearer ${secret}`)).status, 403);
+    assert.deepEqual(await (await get('api/v1/pair?wall=room&display=1', `Pairing ${secret}`)).json(), { paired: true });
+    assert.equal((await get('api/v1/pair?wall=room&display=2', `Pairing ${secret}`)).status, 409);
     await wall.page.evaluate(() => globalThis.wall.session.post({ type: 'display', wall: 'room', display: 2 }));
     const end = Date.now() + 20000;
     while (!/was paired as display 1/.test(audit()) && Date.now() < end)

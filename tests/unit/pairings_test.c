@@ -88,6 +88,14 @@ static void a_device_is_bound_kept_and_revoked(void **state)
     assert_false(is_found(f, 1));
     assert_null(approve(f, digits, 3 * NS_PER_S));
     assert_int_equal(ask(f, 1, 4 * NS_PER_S, again), PAIRING_DONE);
+    print_secret(1, secret);
+    struct pairing_request other = { secret, ROOM, (const uint8_t[16]){ 0 }, "10.0.0.5" };
+    int left_s;
+    other.place.display++;
+    assert_int_equal(pairings_ask(f->pairings, &other, 4 * NS_PER_S, again, &left_s), PAIRING_OTHER);
+    other.place = ROOM;
+    strcpy(other.place.wall, "hall");
+    assert_int_equal(pairings_ask(f->pairings, &other, 4 * NS_PER_S, again, &left_s), PAIRING_OTHER);
     assert_non_null(approve(f, digits, 4 * NS_PER_S)); /* once only */
     pairings_close(&f->pairings);
     f->pairings = pairings_open(f->log, f->folder);

@@ -215,6 +215,8 @@ static int pair(struct server_context *server, struct request *request, const st
     enum pairing now = pairings_ask(server->params.plant.pairings, asked, clock_mono_ns(), digits, &left_s);
     if (now == PAIRING_FULL)
         return request_answer_later(request, "too many displays wait to be let in; try again\n");
+    if (now == PAIRING_OTHER)
+        return request_answer_text(request, HTTP_STATUS_CONFLICT, "this secret is that of another display; make one for this display\n");
     if (now == PAIRING_DONE)
         return request_answer_json(request, mem_strdup("{\"paired\":true}"));
     return request_answer_json(request, mem_printf("{\"paired\":false,\"digits\":\"%s\",\"left_s\":%d}", digits, left_s));
