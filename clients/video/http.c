@@ -6,8 +6,15 @@
 #include <stdio.h>
 #include <string.h>
 
+enum {
+    IDLE_S = 10,         /* a connection on which nothing moves for so long is closed */
+    MORE_CONNECTIONS = 32, /* than there may be readers: one that is kept open waits for its next request */
+};
+
 struct http {
     SoupServer *server;
+    GSocketService *service;
+    int *connections; /* that are open; shared with them, by g_rc_box */
     const struct options *options;
     void (*metrics)(GString *out, void *data);
     void *data;
@@ -97,11 +104,41 @@ static gboolean may_read(SoupAuthDomain *domain, SoupServerMessage *message, con
     return !strcmp(user, http->options->user) && !strcmp(password, http->options->password);
 }
 
+static void on_closed(gpointer data, GObject *connection)
+{
+    int *connections = data;
+    (void)connection;
+    --*connections;
+    g_rc_box_release(connections);
+}
+
+/* libsoup itself would keep one that says nothing for ever, and any number of them. */
+static gboolean on_connection(GSocketService *service, GSocketConnection *connection, GObject *from, gpointer data)
+{
+    struct http *http = data;
+    (void)service;
+    (void)from;
+    if (*http->connections >= http->options->most_readers + MORE_CONNECTIONS)
+        return TRUE;
+    GSocketAddress *here = g_socket_connection_get_local_address(connection, NULL);
+    GSocketAddress *there = g_socket_connection_get_remote_address(connection, NULL);
+    if (here && there) {
+        g_socket_set_timeout(g_socket_connection_get_socket(connection), IDLE_S);
+        ++*http->connections;
+        g_object_weak_ref(G_OBJECT(connection), on_closed, g_rc_box_acquire(http->connections));
+        soup_server_accept_iostream(http->server, G_IO_STREAM(connection), here, there, NULL);
+    }
+    g_clear_object(&here);
+    g_clear_object(&there);
+    return TRUE;
+}
+
 static bool listen_at(struct http *http)
 {
     GError *error = NULL;
     GSocketAddress *address = g_inet_socket_address_new_from_string(http->options->listen, (guint)http->options->http_port);
-    bool good = soup_server_listen(http->server, address, 0, &error);
+    bool good = g_socket_listener_add_address(G_SOCKET_LISTENER(http->service), address, G_SOCKET_TYPE_STREAM, G_SOCKET_PROTOCOL_TCP, NULL,
+                                              NULL, &error);
     if (!good)
         fprintf(stderr, "plantcast-video: --http %d: %s\n", http->options->http_port, error->message);
     g_clear_error(&error);
@@ -113,8 +150,15 @@ struct http *http_create(const struct options *options, void (*metrics)(GString 
 {
     struct http *http = g_new0(struct http, 1);
     *http = (struct http){
-        .server = soup_server_new("server-header", "plantcast-video", NULL), .options = options, .metrics = metrics, .data = data
+        .server = soup_server_new("server-header", "plantcast-video", NULL),
+        .service = g_socket_service_new(),
+        .connections = g_rc_box_new0(int),
+        .options = options,
+        .metrics = metrics,
+        .data = data,
     };
+    g_socket_listener_set_backlog(G_SOCKET_LISTENER(http->service), 128);
+    g_signal_connect(http->service, "incoming", G_CALLBACK(on_connection), http);
     g_signal_connect(http->server, "request-started", G_CALLBACK(on_begun), http);
     g_signal_connect(http->server, "request-finished", G_CALLBACK(on_done), http);
     g_signal_connect(http->server, "request-aborted", G_CALLBACK(on_done), http);
@@ -137,8 +181,14 @@ void http_destroy(struct http **pointer)
     struct http *http = *pointer;
     if (!http)
         return;
+    g_socket_service_stop(http->service);
+    g_socket_listener_close(G_SOCKET_LISTENER(http->service));
+    g_signal_handlers_disconnect_by_data(http->service, http);
+    g_object_unref(http->service);
     soup_server_disconnect(http->server);
+    g_signal_handlers_disconnect_by_data(http->server, http);
     g_object_unref(http->server);
+    g_rc_box_release(http->connections);
     g_free(http);
     *pointer = NULL;
 }

@@ -11,7 +11,8 @@
 
 /* A picture is of the instant at which it was asked for. The one that is shown stays until the next is there: asked for EVERY after it, and
    received within SLOWEST; so it is never older than OLDEST. */
-static const gint64 OLDEST_US = 2700000, SLOWEST_US = 1300000, OTHERS_US = 1200000, VIEWS_US = 5000000, DENIED_US = 8000000;
+static const gint64 OLDEST_US = 2700000, SLOWEST_US = 1300000, OTHERS_US = 1200000, VIEWS_US = 5000000,
+                    LIMITED_US = 600000000, DENIED_US = 8000000;
 
 enum ask { ASK_PLANT, ASK_VIEWS, ASK_PICTURE, ASK_COUNT };
 
@@ -33,6 +34,7 @@ struct source {
     gint64 since_us;    /* UTC: that there is a card; 0: there is a picture */
     gint64 seen_utc_us; /* of the newest picture */
     bool barred;        /* its right is gone, or the view: dark at once */
+    bool limited;       /* the token may not read views, and may be for pictures of this one: it is asked for by its id */
     guint64 pictures;
     bool ended;
 };
@@ -241,6 +243,12 @@ static void on_body(struct source *source, GBytes *body, const GError *error)
             fail(source, "NO CONNECTION TO THE SERVER", "%s", error->message);
         return;
     }
+    if (source->asked == ASK_VIEWS && (status == 403 || status == 200))
+        source->limited = status == 403;
+    if (source->asked == ASK_VIEWS && status == 403) { /* the picture says whether it is let in; the audit trail has each refusal */
+        source->due_us[ASK_VIEWS] = source->asked_us + LIMITED_US;
+        return;
+    }
     if (status != 200) {
         if (source->asked == ASK_PLANT && status != 401 && status != 403) /* tokens are the business of pictures */
             return;
@@ -281,8 +289,12 @@ static char *url_of(const struct source *source, enum ask ask)
     g_string_append_printf(url, "snapshot.png?width=%d&height=%d", options->width_px, canvas_picture_px(options->height_px));
     if (options->query)
         g_string_append_printf(url, "&%s", options->query);
-    if (source->view)
+    char *id = source->limited ? g_uri_escape_string(source->options->view, NULL, FALSE) : NULL;
+    if (id)
+        g_string_append_printf(url, "&view=%s", id);
+    else if (source->view)
         g_string_append(url, source->view_query);
+    g_free(id);
     return g_string_free(url, FALSE);
 }
 
@@ -325,7 +337,7 @@ static void go_on(struct source *source, gint64 now_us)
     }
     if (now_us < source->wait_until_us)
         return;
-    bool nameless = source->options->view && !source->view;
+    bool nameless = source->options->view && !source->view && !source->limited;
     if (nameless && now_us >= MIN(source->due_us[ASK_VIEWS], source->asked_us + G_USEC_PER_SEC))
         ask(source, ASK_VIEWS, now_us);
     else if (!nameless && now_us >= source->due_us[ASK_PICTURE])
@@ -344,7 +356,10 @@ void source_look(struct source *source, struct look *out)
     go_on(source, now_us);
     bool young = source->picture && !source->barred && now_us - source->picture_us < OLDEST_US;
     bool frozen = young && source->age_ms < 0 && source->valued;
-    const char *title = source->options->title ? source->options->title : source->view_title ? source->view_title : "";
+    const char *title = source->options->title ? source->options->title
+                        : source->view_title   ? source->view_title
+                        : source->limited      ? source->options->view
+                                               : "";
     *out = (struct look){ .title = title, .zone = source->zone, .headline = source->headline, .detail = source->detail, .age_ms = -1 };
     if (young && !frozen) {
         if (source->since_us)

@@ -2,8 +2,8 @@
 // A view as video, read by programs that others wrote: constant rate, the clock in its pixels, and a card in place of an old picture.
 import assert from 'node:assert/strict';
 import { spawn, spawnSync } from 'node:child_process';
-import { appendFileSync, existsSync, mkdirSync, mkdtempSync, readdirSync, rmSync, writeFileSync } from 'node:fs';
-import { createServer } from 'node:net';
+import { appendFileSync, existsSync, mkdirSync, mkdtempSync, readdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
+import { connect, createServer } from 'node:net';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
@@ -225,6 +225,56 @@ test('a view with a name: all that it says is understood by the server, in persp
         await reader.stop();
         await program.stop();
     }
+});
+
+test('a token for one view shows that view, and no other; losing it ends the picture', options, async () => {
+    const tokens = join(plant.folder, 'tokens'), token = join(folder, 'token'), port = await freePort();
+    const made = runProgram('plantcast', ['token', 'add', tokens, '--role', 'viewer', '--name', 'lobby', '--views', 'first']);
+    assert.equal(made.code, 0, made.err);
+    writeFileSync(token, `${made.out.trim()}\n`);
+    await plant.daemon.stop();
+    await plant.startDaemon('--tokens', tokens, '--audit', join(folder, 'audit'));
+    const start = (view) => startVideo('--view', view, '--token-file', token, '--rtsp', String(port));
+    for (const [view, shown] of [['second', false], ['first', true]]) {
+        const program = await start(view), reader = new Reader(rtsp(port, ''), '-rtsp_transport', 'tcp');
+        if (shown)
+            await reader.until(({ card }) => !card);
+        else
+            await program.line(/does not take this token: .*view=second: this token is for the views first/);
+        assert.equal(reader.frames.some(({ card }) => !card), shown);
+        if (shown) {
+            const refused = readFileSync(join(folder, 'audit'), 'utf8').split('/api/v1/views').length - 1;
+            await new Promise((done) => setTimeout(done, 6000)); // views are asked for every 5 s by who may
+            assert.equal(readFileSync(join(folder, 'audit'), 'utf8').split('/api/v1/views').length - 1, refused);
+            assert.equal(runProgram('plantcast', ['token', 'revoke', tokens, 'lobby']).code, 0);
+            await reader.until(({ card }) => card);
+        }
+        await reader.stop();
+        await program.stop();
+    }
+    await plant.daemon.stop();
+    await plant.startDaemon();
+});
+
+test('connections that say nothing are closed, and hold up nobody', options, async () => {
+    const idle = await Promise.all(Array.from({ length: 40 }, () => new Promise((done, fail) => {
+        const socket = connect(ports.http, '127.0.0.1', () => done(socket));
+        socket.on('error', fail);
+    })));
+    idle.forEach((socket) => socket.resume());
+    const begun = Date.now(), ends = idle.map((socket) => new Promise((done) => socket.once('close', () => done(Date.now() - begun))));
+    idle[0].write('GET /metrics HT');
+    assert.equal((await http('/metrics')).status, 200);
+    const many = Array.from({ length: 200 }, () => connect(ports.http, '127.0.0.1').on('error', () => {}).resume());
+    const ended = (socket) => new Promise((done) => socket.once('close', done));
+    const early = await Promise.race([Promise.all(many.slice(100).map(ended)).then(() => true),
+        new Promise((done) => setTimeout(done, 5000, false))]);
+    assert.ok(early); // more than there may be are closed at once
+    const timer = setTimeout(() => idle.forEach((socket) => socket.destroy()), 30000);
+    const took = await Promise.all(ends);
+    clearTimeout(timer);
+    assert.ok(Math.max(...took) < 20000, `${Math.max(...took)} ms`);
+    assert.equal((await http('/metrics')).status, 200); // there is room again
 });
 
 test('a full disk ends HLS alone: no old playlist is left, and it comes back', mounting, async () => {
