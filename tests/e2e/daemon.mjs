@@ -431,7 +431,8 @@ test('plantcast tags and plantcast probe', { skip }, () => {
     const report = JSON.parse(probe.out);
     assert.ok(report.frames > 4 && report.fps > 1 && report.input_to_frame_ms.p50 > 0 && report.failures.length === 0);
     // Each camera that was sent has waited, not only those that a frame happened to show.
-    assert.ok(report.input_to_frame_ms.count >= Math.min(60, 3 * report.frames), `${report.input_to_frame_ms.count} inputs, ${report.frames} frames`);
+    assert.ok(report.input_to_frame_ms.count >= Math.min(60, 3 * report.frames),
+        `${report.input_to_frame_ms.count} inputs, ${report.frames} frames`);
     const crowd = ['--sessions', '40', '--follow', '--blind', '--hz', '10', '--seconds', '6', '--size', '640x360', '--json'];
     const blind = runProgram('plantcast', ['probe', url, ...crowd]);
     assert.equal(blind.code, 0, blind.err);
