@@ -12,7 +12,9 @@
 
 #define CONTACT 1e5          /* readings are met within about a hundred-thousandth of what neighbours differ by */
 #define REGULARISATION 1e-9  /* in shares of a body's area: rounding leaves no body quite singular */
-#define BLOCK 8              /* right-hand sides solved together */
+#define BLOCK_LEAST 8        /* right-hand sides solved together; with more of them the factor is read less often */
+#define BLOCK_MOST 32
+#define BLOCK_BYTES (64 << 20) /* of a block above the least; a thread has three */
 
 struct conduct {
     struct influence *influence;
@@ -20,6 +22,7 @@ struct conduct {
     const struct influence_anchor *anchors;
     struct laplacian laplacian;
     cholmod_factor *factor;
+    size_t block; /* right-hand sides solved together */
     atomic_bool failed;
 };
 
@@ -85,6 +88,16 @@ static void take(const struct conduct *conduct, size_t sensor, const double *u)
     }
 }
 
+/* As many as fit, but no more than keep all threads busy. */
+static size_t block_of(const struct conduct *conduct, const struct workers *workers)
+{
+    const size_t threads = workers ? (size_t)workers_count(workers) : 1, each = (conduct->influence->count + threads - 1) / threads;
+    size_t block = BLOCK_BYTES / (sizeof(double) * (conduct->laplacian.row_count + 1));
+    block = block < BLOCK_MOST ? block : BLOCK_MOST;
+    block = block < each ? block : each;
+    return block > BLOCK_LEAST ? block : BLOCK_LEAST;
+}
+
 static void solve_some(void *arg, size_t begin, size_t end)
 {
     struct conduct *conduct = arg;
@@ -92,8 +105,8 @@ static void solve_some(void *arg, size_t begin, size_t end)
     cholmod_common common;
     cholmod_dense *u = NULL, *y = NULL, *e = NULL;
     laplacian_start(&common);
-    for (size_t first = begin; first < end && !conduct->failed; first += BLOCK) {
-        size_t count = end - first < BLOCK ? end - first : BLOCK;
+    for (size_t first = begin; first < end && !conduct->failed; first += conduct->block) {
+        size_t count = end - first < conduct->block ? end - first : conduct->block;
         cholmod_dense *b = cholmod_zeros(rows, count, CHOLMOD_REAL, &common);
         for (size_t k = 0; b && k < count; k++) {
             const struct influence_disc *disc = &conduct->mesh->discs[first + k];
@@ -106,10 +119,10 @@ static void solve_some(void *arg, size_t begin, size_t end)
         else
             conduct->failed = true;
         cholmod_free_dense(&b, &common);
-        cholmod_free_dense(&u, &common);
-        cholmod_free_dense(&y, &common);
-        cholmod_free_dense(&e, &common);
     }
+    cholmod_free_dense(&u, &common);
+    cholmod_free_dense(&y, &common);
+    cholmod_free_dense(&e, &common);
     cholmod_finish(&common);
 }
 
@@ -133,8 +146,9 @@ bool influence_conduct(struct influence *influence, struct log *log, struct work
     influence->precision = mem_try_array(influence->count * influence->count, sizeof(*influence->precision));
     bool good = influence->shares && influence->precision && laplacian_init(&conduct.laplacian, &mesh->intrinsic) &&
                 factor(&conduct, decay_m, &common);
+    conduct.block = block_of(&conduct, workers);
     if (good && workers)
-        workers_for(workers, influence->count, BLOCK, solve_some, &conduct);
+        workers_for(workers, influence->count, conduct.block, solve_some, &conduct);
     else if (good)
         solve_some(&conduct, 0, influence->count);
     good = good && !conduct.failed;

@@ -6,6 +6,7 @@
 #include <stddef.h>
 #include <stdint.h>
 #include <stdlib.h>
+#include <string.h>
 #include <cmocka.h>
 
 #include "base/mem.h"
@@ -225,6 +226,36 @@ static void test_one_sensor_and_bodies_apart(void **state)
     finish(&s);
 }
 
+/* More than one block of right-hand sides, the last one smaller, and other blocks on one thread than on several. */
+static void test_many_sensors_are_solved_in_blocks(void **state)
+{
+    (void)state;
+    enum { MANY = 75 };
+    struct solved s = { 0 };
+    double places[MANY][3], ones[MANY];
+    for (size_t i = 0; i < MANY; i++) { /* a spiral from pole to pole */
+        double z = 1 - (2 * (double)i + 1) / MANY, turn = 2.4 * (double)i, across = sqrt(1 - z * z);
+        memcpy(places[i], (const double[3]){ across * cos(turn), across * sin(turn), z }, sizeof(places[i]));
+        ones[i] = 1;
+    }
+    cad_sphere(&s.shape, &chance, 16);
+    solve(&s, (const double(*)[3])places, MANY, 0.05, 0.5);
+    const size_t shares = MANY * s.shape.vertex_count;
+    float *threads = mem_array(shares, sizeof(*threads));
+    memcpy(threads, s.influence.shares, shares * sizeof(*threads));
+    struct workers *own = workers;
+    workers = NULL;
+    solve(&s, (const double(*)[3])places, MANY, 0.05, 0.5);
+    workers = own;
+    for (size_t i = 0; i < shares; i++)
+        assert_true(fabs((double)(s.influence.shares[i] - threads[i])) < 1e-6);
+    mem_free(threads);
+    solve(&s, (const double(*)[3])places, MANY, 0.05, (double)INFINITY);
+    for (size_t v = 0; v < s.shape.vertex_count; v++)
+        assert_true(fabs(value_at(&s, ones, v) - 1) < 1e-4);
+    finish(&s);
+}
+
 /* Nothing follows for those that are lost together with all others of their body. */
 static void test_all_lost(void **state)
 {
@@ -248,6 +279,7 @@ int main(void)
         cmocka_unit_test(test_lost_sensor_leaves_the_field_of_the_others),
         cmocka_unit_test(test_two_sensors_at_one_place_share_it),
         cmocka_unit_test(test_one_sensor_and_bodies_apart),
+        cmocka_unit_test(test_many_sensors_are_solved_in_blocks),
         cmocka_unit_test(test_all_lost),
     };
     cmocka_set_message_output(CM_OUTPUT_TAP);
