@@ -6,6 +6,7 @@
 #define XXH_STATIC_LINKING_ONLY /* the hash state on the stack */
 #include <xxhash.h>
 
+#include "protocol/asset_distance.h"
 #include "protocol/asset_format_impl.h"
 
 static uint64_t align_up(uint64_t n)
@@ -42,7 +43,7 @@ uint64_t asset_section_bytes(const struct asset_header *h, int section, bool *op
     case ASSET_MATERIALS: return (uint64_t)sizeof(struct asset_material) * h->material_count;
     case ASSET_TEXTURES: return (uint64_t)sizeof(struct asset_texture) * h->texture_count;
     case ASSET_SENSORS: return (uint64_t)sizeof(struct asset_sensor) * h->sensor_count;
-    case ASSET_GEODESIC: return 4ull * h->sensor_count * h->vertex_count;
+    case ASSET_GEODESIC: return 2ull * asset_distance_count(h->sensor_count, h->vertex_count);
     default: return UINT64_MAX;
     }
 }
@@ -74,6 +75,15 @@ static struct asset_cluster *plain_clusters(const struct asset_parts *parts, uin
         asset_cluster_measure(&clusters[(*count)++], parts->positions_m, parts->indices);
     }
     return clusters;
+}
+
+static void write_codes(const struct asset_parts *parts, uint16_t *to)
+{
+    const size_t vertices = parts->vertex_count;
+    for (size_t block = 0; block < vertices; block += ASSET_DISTANCE_BLOCK)
+        for (size_t s = 0; s < parts->sensor_count; s++, to += ASSET_DISTANCE_BLOCK)
+            for (size_t j = 0; j < ASSET_DISTANCE_BLOCK; j++)
+                to[j] = block + j < vertices ? asset_distance_code(parts->geodesic_m[s * vertices + block + j]) : ASSET_DISTANCE_NONE;
 }
 
 static void *lay_out(const struct asset_parts *parts, size_t *out_bytes)
@@ -133,7 +143,9 @@ static void *lay_out(const struct asset_parts *parts, size_t *out_bytes)
         char *to = bytes + h.sections[i].offset;
         memset(bytes + end, 0, h.sections[i].offset - end);
         if (i == ASSET_GEODESIC && parts->write_geodesic && h.sections[i].bytes)
-            parts->write_geodesic(parts->write_arg, (float *)(void *)to);
+            parts->write_geodesic(parts->write_arg, (uint16_t *)(void *)to);
+        else if (i == ASSET_GEODESIC && h.sections[i].bytes)
+            write_codes(parts, (uint16_t *)(void *)to);
         else if (h.sections[i].bytes)
             memcpy(to, from[i], h.sections[i].bytes);
         end = h.sections[i].offset + h.sections[i].bytes;

@@ -8,27 +8,27 @@
 #include <stdint.h>
 
 #define ASSET_MAGIC "PLCASSET"
-#define ASSET_VERSION 4u
+#define ASSET_VERSION 5u
 #define ASSET_ALIGN 64u
 #define ASSET_NO_TEXTURE UINT32_MAX
 #define ASSET_SECOND_MASK 0x1eu /* of asset_material.second */
 
 enum asset_section {
-    ASSET_POSITIONS,  /* float[3] per vertex: asset frame (metres, Z up) minus header.origin_m */
-    ASSET_NORMALS,    /* float[3] per vertex, unit length */
-    ASSET_TEXCOORDS,  /* float[2] per vertex; 0 bytes: no texture anywhere in the asset */
+    ASSET_POSITIONS,        /* float[3] per vertex: asset frame (metres, Z up) minus header.origin_m */
+    ASSET_NORMALS,          /* float[3] per vertex, unit length */
+    ASSET_TEXCOORDS,        /* float[2] per vertex; 0 bytes: no texture anywhere in the asset */
     ASSET_SECOND_TEXCOORDS, /* likewise; 0 bytes: no material has textures there */
-    ASSET_COLORS,     /* uint8[4] per vertex, linear RGBA; 0 bytes: none */
-    ASSET_INDICES,    /* uint32 per corner */
-    ASSET_PRIMITIVES, /* struct asset_primitive */
-    ASSET_LEVELS,     /* struct asset_level, finest first */
-    ASSET_CLUSTERS,   /* struct asset_cluster, primitive by primitive */
-    ASSET_MATERIALS,  /* struct asset_material */
-    ASSET_TEXTURES,   /* struct asset_texture */
-    ASSET_TEXELS,     /* bytes: RGBA8, rows from the top, as asset_texture says */
-    ASSET_SENSORS,    /* struct asset_sensor, in the order of the tag list's rows for this asset */
-    ASSET_GEODESIC,   /* float[sensor][vertex]: metres along the surface; INFINITY where it cannot be reached */
-    ASSET_NAMES,      /* bytes: strings, each ended by 0 */
+    ASSET_COLORS,           /* uint8[4] per vertex, linear RGBA; 0 bytes: none */
+    ASSET_INDICES,          /* uint32 per corner */
+    ASSET_PRIMITIVES,       /* struct asset_primitive */
+    ASSET_LEVELS,           /* struct asset_level, finest first */
+    ASSET_CLUSTERS,         /* struct asset_cluster, primitive by primitive */
+    ASSET_MATERIALS,        /* struct asset_material */
+    ASSET_TEXTURES,         /* struct asset_texture */
+    ASSET_TEXELS,           /* bytes: RGBA8, rows from the top, as asset_texture says */
+    ASSET_SENSORS,          /* struct asset_sensor, in the order of the tag list's rows for this asset */
+    ASSET_GEODESIC,         /* uint16[block][sensor][vertex of the block]: distances along the surface, see asset_distance.h */
+    ASSET_NAMES,            /* bytes: strings, each ended by 0 */
     ASSET_SECTION_COUNT
 };
 
@@ -99,7 +99,7 @@ struct asset_view {
     const float (*normals)[3];
     const float (*texcoords)[2];        /* NULL: none */
     const float (*second_texcoords)[2]; /* NULL: none */
-    const uint8_t (*colors)[4];  /* NULL: none */
+    const uint8_t (*colors)[4];         /* NULL: none */
     const uint32_t *indices;
     const struct asset_primitive *primitives;
     const struct asset_level *levels;
@@ -108,7 +108,7 @@ struct asset_view {
     const struct asset_texture *textures;
     const uint8_t *texels;
     const struct asset_sensor *sensors;
-    const float *geodesic_m; /* [sensor * vertex_count + vertex] */
+    const uint16_t *geodesic; /* codes: see asset_distance.h */
     const char *names;
 };
 
@@ -140,8 +140,8 @@ struct asset_parts {
     const struct asset_texture *textures;
     const uint8_t *texels;
     const struct asset_sensor *sensors;
-    const float *geodesic_m;
-    void (*write_geodesic)(void *arg, float *geodesic_m); /* writes the distances in place, instead of geodesic_m */
+    const float *geodesic_m;                            /* [sensor * vertex_count + vertex] */
+    void (*write_geodesic)(void *arg, uint16_t *codes); /* writes the distances in place, instead of geodesic_m */
     void *write_arg;
     void *(*make_room)(void *arg, size_t bytes); /* allocates the bytes, aligned to ASSET_ALIGN. NULL: aligned_alloc() */
     void *room_arg;

@@ -14,15 +14,20 @@ static bool entry_good(const struct influence_view *view, const struct influence
 {
     const uint64_t sensors = entry->sensor_count, vertices = view->header->vertex_count;
     if (sensors == 0 || sensors > UINT16_MAX || !fits(entry->precision, 8 * sensors * sensors, size) ||
-        !fits(entry->shares, 4 * sensors * vertices, size) || !isfinite(entry->disc_m) || !isfinite(entry->decay_m))
+        !fits(entry->shares, 4 * sensors * vertices, size) || !isfinite(entry->disc_m) || !isfinite(entry->decay_m) ||
+        !isfinite(entry->range_m) || !isfinite(entry->noise) || !isfinite(entry->deviation) ||
+        (entry->deviations && !fits(entry->deviations, 8 * vertices, size)))
         return false;
     const double *precision = influence_array(view, entry->precision);
     const float *shares = influence_array(view, entry->shares);
-    bool good = true;
+    bool good = true, open = entry->interpolation >= INFLUENCE_HEAT; /* some places may be out of reach */
     for (uint64_t i = 0; i < sensors * sensors; i++)
         good &= isfinite(precision[i]);
     for (uint64_t i = 0; i < sensors * vertices; i++)
-        good &= isfinite(shares[i]);
+        good &= isfinite(shares[i]) || (open && shares[i] > 0);
+    const float *deviations = influence_array(view, entry->deviations);
+    for (uint64_t i = 0; entry->deviations && i < 2 * vertices; i++)
+        good &= isfinite(deviations[i]) && deviations[i] >= 0;
     return good;
 }
 

@@ -6,18 +6,25 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#define INFLUENCE_MAGIC "PLCINFL1" /* with the format's version */
+#define INFLUENCE_MAGIC "PLCINFL2" /* with the format's version */
 
 struct influence_header {
     uint32_t entry_count, vertex_count;
 };
+/* In place of an interpolation: distances by the heat method on a point cloud, metres, INFINITY where no way leads; precision is 0. */
+#define INFLUENCE_HEAT 1000
+/* Likewise: angles of a tangent vector carried from the sensor to each vertex, radians, from the first to the second of vec_frame() of its
+   normal; INFINITY where no way leads; precision is 0. Only differences between two vertices have a meaning. */
+#define INFLUENCE_TRANSPORT 1001
 /* One group's sensors by one interpolation. Arrays begin at these offsets from the header; multiples of 8. */
 struct influence_entry {
     uint32_t group, interpolation; /* numbers in the plant file; enum interpolation */
     uint32_t sensor_count;         /* of the group whose place is known, in the order of the asset file's */
     uint32_t zero;
-    uint64_t precision, shares; /* double[sensor][sensor]; float[sensor][vertex] */
-    double disc_m, decay_m;     /* what it was computed for: radius of a sensor's disc; fin: decay length, else 0 */
+    uint64_t precision, shares;       /* double[sensor][sensor]; float[sensor][vertex] */
+    uint64_t deviations;              /* gp: float[2][vertex], with sensors and without; else 0 */
+    double disc_m, decay_m;           /* what it was computed for: radius of a sensor's disc; fin: decay length, else 0 */
+    double range_m, noise, deviation; /* gp: stated or fitted; else 0 */
 };
 
 /* A checked file in memory, whose bytes must outlive it. */

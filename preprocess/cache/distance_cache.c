@@ -11,6 +11,7 @@
 #include "base/mem.h"
 #include "preprocess/cache/build_cache.h"
 #include "preprocess/cache/file_io.h"
+#include "protocol/asset_distance.h"
 
 struct slot { /* the column follows */
     double place_m[3];
@@ -19,7 +20,7 @@ struct slot { /* the column follows */
 
 static size_t slot_bytes(const struct distance_cache *cache)
 {
-    return sizeof(struct slot) + cache->length * sizeof(float);
+    return sizeof(struct slot) + cache->length * sizeof(uint16_t);
 }
 
 static off_t slot_at(const struct distance_cache *cache, size_t slot)
@@ -27,10 +28,10 @@ static off_t slot_at(const struct distance_cache *cache, size_t slot)
     return (off_t)(slot * slot_bytes(cache));
 }
 
-static uint64_t checksum_of(const struct distance_cache *cache, size_t place, const float *distances_m)
+static uint64_t checksum_of(const struct distance_cache *cache, size_t place, const uint16_t *codes)
 {
     uint64_t seed = XXH3_64bits_withSeed(cache->places_m[place], sizeof(cache->places_m[place]), cache->key);
-    return XXH3_64bits_withSeed(distances_m, cache->length * sizeof(*distances_m), seed);
+    return XXH3_64bits_withSeed(codes, cache->length * sizeof(*codes), seed);
 }
 
 /* Which place each slot belongs to; the others get the free slots, and then new ones. */
@@ -88,22 +89,37 @@ static bool fetch(void *arg, size_t source, float *distances_m)
     struct distance_cache *cache = arg;
     struct slot slot;
     off_t at = slot_at(cache, cache->slots[source]);
-    bool good = file_read(cache->fd, &slot, sizeof(slot), at) && memcmp(slot.place_m, cache->places_m[source], sizeof(slot.place_m)) == 0 &&
-                file_read(cache->fd, distances_m, cache->length * sizeof(*distances_m), at + (off_t)sizeof(slot)) &&
-                slot.checksum == checksum_of(cache, source, distances_m);
+    uint16_t *codes = mem_try_array(cache->length, sizeof(*codes));
+    bool good = codes && file_read(cache->fd, &slot, sizeof(slot), at) &&
+                memcmp(slot.place_m, cache->places_m[source], sizeof(slot.place_m)) == 0 &&
+                file_read(cache->fd, codes, cache->length * sizeof(*codes), at + (off_t)sizeof(slot)) &&
+                slot.checksum == checksum_of(cache, source, codes);
+    for (size_t i = 0; i < cache->length && good; i++)
+        distances_m[i] = asset_distance_of(codes[i]);
+    mem_free(codes);
     cache->kept += good;
     return good;
 }
 
-static void keep(void *arg, size_t source, const float *distances_m)
+static void keep(void *arg, size_t source, float *distances_m)
 {
     struct distance_cache *cache = arg;
-    struct slot slot = { .checksum = checksum_of(cache, source, distances_m) };
+    uint16_t *codes = mem_try_array(cache->length, sizeof(*codes));
+    for (size_t i = 0; i < cache->length; i++) {
+        uint16_t code = asset_distance_code(distances_m[i]);
+        distances_m[i] = asset_distance_of(code);
+        if (codes)
+            codes[i] = code;
+    }
+    if (!codes)
+        return;
+    struct slot slot = { .checksum = checksum_of(cache, source, codes) };
     off_t at = slot_at(cache, cache->slots[source]);
     memcpy(slot.place_m, cache->places_m[source], sizeof(slot.place_m));
     if (!cache->may_write || !file_write(cache->fd, &slot, sizeof(slot), at) ||
-        !file_write(cache->fd, distances_m, cache->length * sizeof(*distances_m), at + (off_t)sizeof(slot)))
+        !file_write(cache->fd, codes, cache->length * sizeof(*codes), at + (off_t)sizeof(slot)))
         cache->may_write = false; /* what is there of it has another checksum */
+    mem_free(codes);
 }
 
 struct surface_columns distance_cache_for_surface(struct distance_cache *cache)

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Cache of geodesic distances, by the position of the sensor that they start from: the file KEY.columns in the folder of prepared files.
-   One entry is a column: the distances of all surface points from one sensor. Safe to delete; a damaged entry counts as absent. The file
-   grows to the largest number of sensors that the asset ever had at once. */
+   One entry is a column: the distances of all surface points from one sensor, in 16 bits each (protocol/asset_distance.h). Those that are
+   computed are rounded likewise, so that what follows is the same whether a column was there or not. Safe to delete; a damaged entry
+   counts as absent. The file grows to the largest number of sensors that the asset ever had at once. */
 #ifndef PREPROCESS_CACHE_DISTANCE_CACHE_H
 #define PREPROCESS_CACHE_DISTANCE_CACHE_H
 #include <stdatomic.h>

@@ -10,9 +10,9 @@
 #include "base/vec.h"
 #include "surface/geodesic/laplacian.h"
 
-#define CONTACT 1e5          /* readings are met within about a hundred-thousandth of what neighbours differ by */
-#define REGULARISATION 1e-9  /* in shares of a body's area: rounding leaves no body quite singular */
-#define BLOCK_LEAST 8        /* right-hand sides solved together; with more of them the factor is read less often */
+#define CONTACT 1e5         /* readings are met within about a hundred-thousandth of what neighbours differ by */
+#define REGULARISATION 1e-9 /* in shares of a body's area: rounding leaves no body quite singular */
+#define BLOCK_LEAST 8       /* right-hand sides solved together; with more of them the factor is read less often */
 #define BLOCK_MOST 32
 #define BLOCK_BYTES (64 << 20) /* of a block above the least; a thread has three */
 
@@ -167,5 +167,6 @@ void influence_finish(struct influence *influence)
 {
     mem_free(influence->shares);
     mem_free(influence->precision);
+    mem_free(influence->deviations);
     *influence = (struct influence){ 0 };
 }

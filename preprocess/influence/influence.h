@@ -18,6 +18,8 @@ struct influence {
     size_t count, vertex_count;
     float *shares;     /* [sensor][vertex]: H */
     double *precision; /* [sensor][sensor] */
+    float *deviations; /* by vertex: how far it may err while all sensors are good (gaussian.h), then by vertex what it would be without
+                          sensors; NULL: not known. Room for one more, 0 */
 };
 
 /* Computes the influence by conduction; decay_m: INFINITY for harmonic. anchors: of vertex_count vertices on the mesh. workers may be NULL.

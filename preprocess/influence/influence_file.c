@@ -3,21 +3,33 @@
 #include "preprocess/influence/influence_file.h"
 
 #include <math.h>
+#include <stdatomic.h>
 #include <stdio.h>
 #include <string.h>
 
 #include "base/cache_file.h"
 #include "base/mem.h"
+#include "base/vec.h"
 #include "plant/influence.h"
 #include "preprocess/cache/folder.h"
+#include "preprocess/influence/cloud_heat.h"
+#include "preprocess/influence/gaussian_fit.h"
 #include "preprocess/influence/influence.h"
+#include "preprocess/influence/transport.h"
 #include "protocol/influence_format.h"
+
+#define EDGES 5.0       /* of a triangle, at least as many to a range: more change nothing that can be seen */
+#define EDGES_LEAST 2.0 /* fewer would let the field seem better known than it is */
+#define LONGEST 10.0    /* ranges in sizes of the surface; longer ones look the same */
+#define FIT_LEAST 0.05  /* ranges that are tried, in the same */
+#define FIT_MOST 3.0
 
 struct making {
     struct log *log;
     struct workers *workers;
     const struct influence_input *input;
     struct vertex_embedding *embedding;
+    struct cloud_heat *cloud; /* NULL until a group asks for it */
     struct influence_header header;
     struct influence_entry *entries;
     struct influence *found; /* of each entry */
@@ -45,12 +57,90 @@ bool influence_is_wanted(const struct plant *plant, const struct plant_sensor *s
     return false;
 }
 
-static bool add_entry(struct making *making, int group, enum interpolation interpolation, const struct influence_mesh *mesh,
-                      const struct influence_anchor *anchors)
+/* The diagonal of its box. */
+static double size_m(const struct influence_input *input)
+{
+    double low[3] = { INFINITY, INFINITY, INFINITY }, high[3] = { -INFINITY, -INFINITY, -INFINITY };
+    for (size_t v = 0; v < input->vertex_count; v++)
+        for (int axis = 0; axis < 3; axis++) {
+            low[axis] = min_of(low[axis], (double)input->positions_m[v][axis]);
+            high[axis] = max_of(high[axis], (double)input->positions_m[v][axis]);
+        }
+    return vec_distance(low, high);
+}
+
+static const struct plant_asset *asset_of(const struct influence_input *input)
+{
+    return &input->plant->assets[input->plant->tags[input->sensors[0].tag].asset];
+}
+
+/* Names of the group's sensors whose place is known, as places_of. The caller frees the list (mem_free). */
+static const char **names_of(const struct influence_input *input, int group)
+{
+    const char **names = mem_array(input->sensor_count, sizeof(*names));
+    for (size_t i = 0, count = 0; i < input->sensor_count; i++) {
+        const struct plant_tag *tag = &input->plant->tags[input->sensors[i].tag];
+        if (tag->group == group && !tag->place_assumed)
+            names[count++] = tag->name;
+    }
+    return names;
+}
+
+/* Takes what the plant file states, and fits the rest to the readings that it names. */
+static bool find_params(struct making *making, int group, const double (*places_m)[3], size_t count, struct gaussian_params *gp)
 {
     const struct influence_input *input = making->input;
-    const struct plant_asset *asset = &input->plant->assets[input->plant->tags[input->sensors[0].tag].asset];
-    double decay_m = interpolation == INTERPOLATION_FIN ? plant_decay_m(asset) : (double)INFINITY;
+    const struct plant_group *of = &input->plant->groups[group];
+    const char *asset = asset_of(input)->id;
+    const double size = size_m(input);
+    struct readings_table table;
+    struct influence_mesh mesh = { 0 };
+    char why[300];
+    *gp = (struct gaussian_params){ of->gp.range_m, of->gp.noise, of->gp.deviation };
+    if (gp->range_m > LONGEST * size)
+        log_warn(making->log,
+                 "asset %s, group %s: gp's range_m %g is far longer than the asset (%.3g m): %.3g m is taken, which looks the same", asset,
+                 of->id, gp->range_m, size, LONGEST * size);
+    if (!isnan(gp->range_m) && !isnan(gp->noise) && !isnan(gp->deviation))
+        return true;
+    const char **names = names_of(input, group);
+    double least_m = FIT_LEAST * size, edge_m = (isnan(gp->range_m) ? least_m : min_of(gp->range_m, LONGEST * size)) / EDGES_LEAST;
+    bool good = readings_table_read(&table, of->gp.fit, names, count, why);
+    if (good && !influence_mesh_init(&mesh, input->surface, places_m, count, of->disc_m, edge_m)) {
+        snprintf(why, sizeof(why), "out of memory");
+        good = false;
+    }
+    good = good && gaussian_fit(gp, making->log, making->workers, &mesh, &table, least_m, FIT_MOST * size, why);
+    if (good)
+        log_info(making->log,
+                 "asset %s, group %s: gp fitted to %zu readings of each of %zu sensors: range %.3g m, noise %.3g, deviation %.3g %s", asset,
+                 of->id, table.instants, count, gp->range_m, gp->noise, gp->deviation, of->unit);
+    else
+        log_err(making->log, "asset %s, group %s: gp: %s", asset, of->id, why);
+    influence_mesh_finish(&mesh);
+    readings_table_finish(&table);
+    mem_free(names);
+    return good;
+}
+
+/* A range that the triangles cannot show is refused. */
+static bool range_good(const struct making *making, int group, const struct influence_mesh *mesh, const struct gaussian_params *gp)
+{
+    if (mesh->longest_m * EDGES_LEAST <= gp->range_m)
+        return true;
+    log_err(making->log,
+            "asset %s, group %s: gp's range_m %.3g is too short for its surface: with %zu points its triangles are %.3g m long; "
+            "at least %.3g is possible",
+            asset_of(making->input)->id, making->input->plant->groups[group].id, gp->range_m, mesh->mesh.point_count, mesh->longest_m,
+            mesh->longest_m * EDGES_LEAST);
+    return false;
+}
+
+static bool add_entry(struct making *making, int group, enum interpolation interpolation, const struct influence_mesh *mesh,
+                      const struct gaussian_params *gp, const struct influence_anchor *anchors)
+{
+    const struct influence_input *input = making->input;
+    double decay_m = interpolation == INTERPOLATION_FIN ? plant_decay_m(asset_of(input)) : (double)INFINITY;
     uint32_t at = making->header.entry_count;
     mem_grow(&making->entries, &making->capacity, at + 1, sizeof(*making->entries));
     mem_grow(&making->found, &making->found_capacity, at + 1, sizeof(*making->found));
@@ -60,8 +150,110 @@ static bool add_entry(struct making *making, int group, enum interpolation inter
                                                     .disc_m = input->plant->groups[group].disc_m,
                                                     .decay_m = isfinite(decay_m) ? decay_m : 0 };
     making->header.entry_count++;
+    if (interpolation == INTERPOLATION_GP) {
+        struct gaussian_params taken = *gp;
+        taken.range_m = min_of(gp->range_m, LONGEST * size_m(input));
+        making->entries[at].range_m = gp->range_m;
+        making->entries[at].noise = gp->noise;
+        making->entries[at].deviation = gp->deviation;
+        return gaussian_solve(&making->found[at], making->log, making->workers, mesh, &taken, anchors, input->vertex_count);
+    }
     return influence_conduct(&making->found[at], making->log, making->workers, mesh, decay_m, anchors, input->vertex_count);
 }
+
+static bool add_transport(struct making *making, int group, const struct influence_mesh *mesh, const struct influence_anchor *anchors)
+{
+    uint32_t at = making->header.entry_count++;
+    mem_grow(&making->entries, &making->capacity, at + 1, sizeof(*making->entries));
+    mem_grow(&making->found, &making->found_capacity, at + 1, sizeof(*making->found));
+    making->entries[at] = (struct influence_entry){
+        .group = (uint32_t)group, .interpolation = INFLUENCE_TRANSPORT, .sensor_count = (uint32_t)mesh->source_count
+    };
+    return transport_angles(&making->found[at], making->log, making->workers, mesh, anchors, making->input->normals,
+                            making->input->vertex_count);
+}
+
+/* --- distances by heat ------------------------------------------------------------------------------------------------------ */
+
+struct cloud_sum {
+    double error_m, worst_m, largest_m;
+    size_t vertices;
+};
+
+static bool compare(struct making *making, const double place_m[3], const float *by_heat_m, float *ours_m, struct cloud_sum *sum)
+{
+    struct cloud_report *report = making->input->cloud;
+    if (!vertex_embedding_distances(making->embedding, place_m, ours_m))
+        return false;
+    for (size_t v = 0; v < making->input->vertex_count; v++) {
+        bool both = isfinite(by_heat_m[v]) && isfinite(ours_m[v]);
+        report->reached += isfinite(by_heat_m[v]) && !both;
+        report->unreached += isfinite(ours_m[v]) && !both;
+        double error_m = both ? fabs((double)by_heat_m[v] - (double)ours_m[v]) : 0;
+        sum->error_m += error_m;
+        sum->worst_m = fmax(sum->worst_m, error_m);
+        sum->largest_m = both ? fmax(sum->largest_m, (double)ours_m[v]) : sum->largest_m;
+        sum->vertices += both;
+    }
+    return true;
+}
+
+struct heat_work {
+    struct making *making;
+    const double (*places_m)[3];
+    float *out;
+    atomic_bool failed;
+};
+
+static void find_by_heat(void *arg, size_t begin, size_t end)
+{
+    struct heat_work *work = arg;
+    const struct influence_input *input = work->making->input;
+    for (size_t i = begin; i < end; i++)
+        if (!cloud_heat_distances(work->making->cloud, work->places_m[i], input->positions_m, input->vertex_count,
+                                  work->out + i * input->vertex_count))
+            work->failed = true;
+}
+
+/* What the first sensors' distances differ by is for the report. */
+static bool add_heat(struct making *making, int group, const double (*places_m)[3], size_t count)
+{
+    const struct influence_input *input = making->input;
+    struct cloud_sum sum = { 0 };
+    uint32_t at = making->header.entry_count;
+    if (!making->cloud && !(making->cloud = cloud_heat_create(making->log, input->surface)))
+        return false;
+    mem_grow(&making->entries, &making->capacity, at + 1, sizeof(*making->entries));
+    mem_grow(&making->found, &making->found_capacity, at + 1, sizeof(*making->found));
+    making->entries[at] =
+        (struct influence_entry){ .group = (uint32_t)group, .interpolation = INFLUENCE_HEAT, .sensor_count = (uint32_t)count };
+    struct influence *found = &making->found[at];
+    *found = (struct influence){ .count = count,
+                                 .vertex_count = input->vertex_count,
+                                 .shares = mem_try_array(count * input->vertex_count, sizeof(float)),
+                                 .precision = mem_try_array(count * count, sizeof(double)) };
+    making->header.entry_count++;
+    float *ours_m = mem_try_array(input->vertex_count, sizeof(*ours_m));
+    struct heat_work work = { making, places_m, found->shares, false };
+    bool good = found->shares && found->precision && ours_m;
+    if (good)
+        workers_for(making->workers, count, 1, find_by_heat, &work);
+    good = good && !work.failed;
+    for (size_t i = 0; good && i < count && i < CLOUD_CHECKED; i++)
+        good = compare(making, places_m[i], found->shares + i * input->vertex_count, ours_m, &sum);
+    if (good && sum.vertices > 0 && sum.largest_m > 0) {
+        struct cloud_report *report = input->cloud;
+        report->points = cloud_heat_count(making->cloud);
+        report->k = cloud_heat_k(making->cloud);
+        report->spacing_m = cloud_heat_spacing_m(making->cloud);
+        report->mean = fmax(report->mean, sum.error_m / (double)sum.vertices / sum.largest_m);
+        report->worst = fmax(report->worst, sum.worst_m / sum.largest_m);
+    }
+    mem_free(ours_m);
+    return good;
+}
+
+/* --- groups and the file ---------------------------------------------------------------------------------------------------- */
 
 static bool add_group(struct making *making, int group)
 {
@@ -71,14 +263,22 @@ static bool add_group(struct making *making, int group)
     double(*places_m)[3];
     size_t count = places_of(input, group, &places_m);
     bool good = true;
-    if (count > 0 && plant_prepares_any(of)) {
+    if (count > 0 && of->heat)
+        good = add_heat(making, group, (const double(*)[3])places_m, count);
+    if (good && count > 0 && (of->prepared >> INTERPOLATION_HARMONIC || of->directed)) {
         struct influence_anchor *anchors = mem_try_array(input->vertex_count, sizeof(*anchors));
-        good = anchors && influence_mesh_init(&mesh, input->surface, (const double(*)[3])places_m, count, of->disc_m);
+        struct gaussian_params gp = { .range_m = INFINITY };
+        bool has_gp = plant_prepares(of, INTERPOLATION_GP);
+        good = anchors && (!has_gp || find_params(making, group, (const double(*)[3])places_m, count, &gp)) &&
+               influence_mesh_init(&mesh, input->surface, (const double(*)[3])places_m, count, of->disc_m, gp.range_m / EDGES) &&
+               range_good(making, group, &mesh, &gp);
         if (good)
             influence_mesh_anchors(&mesh, making->embedding, input->vertex_count, anchors);
         for (int i = INTERPOLATION_HARMONIC; good && i < INTERPOLATIONS; i++)
             if (plant_prepares(of, (enum interpolation)i))
-                good = add_entry(making, group, (enum interpolation)i, &mesh, anchors);
+                good = add_entry(making, group, (enum interpolation)i, &mesh, &gp, anchors);
+        if (good && of->directed)
+            good = add_transport(making, group, &mesh, anchors);
         mem_free(anchors);
         influence_mesh_finish(&mesh);
     }
@@ -96,7 +296,7 @@ static int write_file(struct making *making)
 {
     static const char zeros[8];
     const struct influence_input *input = making->input;
-    struct atomic_file_part *parts = mem_array(2 + 3 * making->header.entry_count, sizeof(*parts));
+    struct atomic_file_part *parts = mem_array(2 + 4 * making->header.entry_count, sizeof(*parts));
     size_t count = 0;
     uint64_t at = sizeof(making->header) + making->header.entry_count * sizeof(*making->entries);
     parts[count++] = (struct atomic_file_part){ &making->header, sizeof(making->header) };
@@ -107,9 +307,14 @@ static int write_file(struct making *making)
         entry->precision = at;
         entry->shares = at + squares;
         at += squares + padded(shares);
+        const uint64_t deviations = making->found[i].deviations ? padded(8 * input->vertex_count) : 0;
+        entry->deviations = deviations ? at : 0;
+        at += deviations;
         parts[count++] = (struct atomic_file_part){ making->found[i].precision, squares };
         parts[count++] = (struct atomic_file_part){ making->found[i].shares, shares };
         parts[count++] = (struct atomic_file_part){ zeros, padded(shares) - shares };
+        if (deviations)
+            parts[count++] = (struct atomic_file_part){ making->found[i].deviations, deviations };
     }
     char *path = folder_influence_path(input->folder, input->key);
     int status = cache_file_write_parts(path, INFLUENCE_MAGIC, input->key, parts, count);
@@ -136,6 +341,7 @@ bool influence_file_make(struct log *log, struct workers *workers, const struct 
     for (uint32_t i = 0; i < making.header.entry_count; i++)
         influence_finish(&making.found[i]);
     vertex_embedding_destroy(&making.embedding);
+    cloud_heat_destroy(&making.cloud);
     mem_free(making.entries);
     mem_free(making.found);
     return good && status == 0;

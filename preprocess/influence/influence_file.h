@@ -7,6 +7,15 @@
 #include "plant/sensors.h"
 #include "surface/surface.h"
 
+/* How distances by the heat method on a point cloud differ from ours, as shares of the largest: of CLOUD_CHECKED sensors at each vertex. */
+struct cloud_report {
+    size_t points;
+    int k;
+    double spacing_m, mean, worst;
+    size_t reached, unreached; /* vertices: by it alone (through what is thin); by ours alone */
+};
+enum { CLOUD_CHECKED = 4 };
+
 struct influence_input {
     const struct plant *plant;
     const struct plant_sensor *sensors;
@@ -19,9 +28,10 @@ struct influence_input {
     size_t vertex_count, triangle_count;
     const char *folder;
     uint64_t key; /* of the asset file */
+    struct cloud_report *cloud; /* filled in where a group asks for distances by heat */
 };
 
-/* Returns whether some group of these sensors has an interpolation prepared. */
+/* Returns whether some group of these sensors has anything prepared but distances. */
 bool influence_is_wanted(const struct plant *plant, const struct plant_sensor *sensors, size_t sensor_count);
 /* Computes what the groups ask for, and writes the file. Returns false with the reason in why. */
 bool influence_file_make(struct log *log, struct workers *workers, const struct influence_input *input, char why[200]);

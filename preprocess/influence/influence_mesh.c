@@ -8,8 +8,9 @@
 #include "base/mem.h"
 #include "base/vec.h"
 
-#define GRADING 0.7     /* an edge at distance D from the nearest sensor is at most this times D, or half the disc's radius */
-#define MOST_ADDED 1000 /* points for each sensor: a radius that is far smaller than the triangles is not resolved */
+#define GRADING 0.7      /* an edge at distance D from the nearest sensor is at most this times D, or half the disc's radius */
+#define MOST_ADDED 1000  /* points for each sensor: a radius that is far smaller than the triangles is not resolved */
+#define MOST_EVEN 400000 /* points more, where edges are to be short everywhere */
 
 /* --- smaller triangles near sensors ------------------------------------------------------------------------------------------ */
 
@@ -23,7 +24,7 @@ static double nearest_m(const struct influence_mesh *mesh, const double point[3]
 
 struct halving {
     struct influence_mesh *of;
-    double radius_m, *near_m; /* by point: distance of the nearest sensor */
+    double radius_m, edge_m, *near_m; /* by point: distance of the nearest sensor */
     size_t near_capacity, limit;
     struct edge_table edges; /* to be halved */
     uint32_t *middle;        /* of each: a point */
@@ -49,7 +50,8 @@ static void mark_edges(struct halving *halving)
         for (int i = 0; i < 3; i++) {
             uint32_t a = mesh->tris[t][i], b = mesh->tris[t][(i + 1) % 3];
             double near_m = min_of(halving->near_m[a], halving->near_m[b]);
-            if (vec_distance(mesh->points[a], mesh->points[b]) <= max_of(halving->radius_m / 2, GRADING * near_m) ||
+            if (vec_distance(mesh->points[a], mesh->points[b]) <=
+                    max_of(halving->radius_m / 2, min_of(GRADING * near_m, halving->edge_m)) ||
                 mesh->point_count >= halving->limit)
                 continue;
             size_t before = halving->edges.count;
@@ -96,11 +98,11 @@ static void cut_triangle(struct halving *halving, size_t t)
     }
 }
 
-static void refine(struct influence_mesh *mesh, double radius_m)
+static void refine(struct influence_mesh *mesh, double radius_m, double edge_m)
 {
-    struct halving halving = { .of = mesh, .radius_m = radius_m };
+    struct halving halving = { .of = mesh, .radius_m = radius_m, .edge_m = edge_m };
     size_t before;
-    halving.limit = mesh->mesh.point_count + MOST_ADDED * mesh->source_count;
+    halving.limit = mesh->mesh.point_count + MOST_ADDED * mesh->source_count + (isfinite(edge_m) ? MOST_EVEN : 0);
     mem_grow(&halving.near_m, &halving.near_capacity, mesh->mesh.point_count, sizeof(*halving.near_m));
     for (size_t p = 0; p < mesh->mesh.point_count; p++)
         halving.near_m[p] = nearest_m(mesh, mesh->mesh.points[p]);
@@ -114,6 +116,10 @@ static void refine(struct influence_mesh *mesh, double radius_m)
     } while (mesh->mesh.point_count > before);
     mem_free(halving.near_m);
     mem_free(halving.middle);
+    for (size_t t = 0; t < mesh->mesh.tri_count; t++)
+        for (int i = 0; i < 3; i++)
+            mesh->longest_m = max_of(mesh->longest_m, vec_distance(mesh->mesh.points[mesh->mesh.tris[t][i]],
+                                                                   mesh->mesh.points[mesh->mesh.tris[t][(i + 1) % 3]]));
 }
 
 /* --- lists of triangles ------------------------------------------------------------------------------------------------------ */
@@ -233,7 +239,7 @@ static bool copy_visible(struct influence_mesh *mesh, const struct surface_debug
 }
 
 bool influence_mesh_init(struct influence_mesh *mesh, const struct surface *surface, const double (*places_m)[3], size_t count,
-                         double radius_m)
+                         double radius_m, double edge_m)
 {
     struct surface_debug_mesh look;
     surface_debug_mesh(surface, &look);
@@ -249,7 +255,7 @@ bool influence_mesh_init(struct influence_mesh *mesh, const struct surface *surf
         memcpy(mesh->sources_m[s], at.point_m, sizeof(at.point_m));
         mesh->source_tris[s] = at.tri;
     }
-    refine(mesh, radius_m);
+    refine(mesh, radius_m, edge_m);
     list_triangles(mesh, look.visible_count);
     intrinsic_init(&mesh->intrinsic, &mesh->mesh);
     char *seen = mem_array(mesh->mesh.point_count, 1);

@@ -19,15 +19,17 @@ struct influence_mesh {
     double (*sources_m)[3]; /* of the sensors, on the surface */
     uint32_t *source_tris;
     size_t source_count;
+    double longest_m;               /* of the edges */
     uint32_t *piece_first, *pieces; /* triangles by tri_source */
     uint32_t *fan_first, *fans;     /* triangles by point */
     struct influence_disc *discs;   /* by sensor */
 };
 
-/* Builds the mesh for sensors that stand nearest to places_m, each a disc of radius_m. Returns false if out of memory; call
-   influence_mesh_finish() in both cases. */
+/* Builds the mesh for sensors that stand nearest to places_m, each a disc of radius_m. Edges are halved until none is longer than edge_m
+   (INFINITY: away from sensors they are left as they are), or there are too many; then mesh->longest_m says how long. Returns false if out
+   of memory; call influence_mesh_finish() in both cases. */
 bool influence_mesh_init(struct influence_mesh *mesh, const struct surface *surface, const double (*places_m)[3], size_t count,
-                         double radius_m);
+                         double radius_m, double edge_m);
 /* Frees the mesh. */
 void influence_mesh_finish(struct influence_mesh *mesh);
 

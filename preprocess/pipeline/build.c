@@ -14,6 +14,7 @@
 #include "base/mem.h"
 #include "preprocess/cache/build_cache.h"
 #include "plant/influence.h"
+#include "plant/recipe.h"
 #include "preprocess/influence/influence_file.h"
 #include "preprocess/levels/clusters.h"
 #include "preprocess/pipeline/sensor_distances.h"
@@ -47,6 +48,25 @@ static bool is_constant(const struct plant *plant, const struct plant_sensor *se
     return true;
 }
 
+/* What `gp` takes from the plant file, and the readings that it is fitted to. */
+static void hash_gp(XXH3_state_t *state, const struct plant *plant, const struct plant_sensor *sensors, size_t count)
+{
+    for (size_t g = 0; g < plant->group_count; g++) {
+        const struct plant_gp *gp = &plant->groups[g].gp;
+        const double numbers[3] = { gp->range_m, gp->noise, gp->deviation };
+        bool has_sensor = false;
+        uint64_t readings = 0;
+        for (size_t i = 0; i < count; i++)
+            has_sensor |= plant->tags[sensors[i].tag].group == (int)g;
+        if (!has_sensor || !plant_prepares(&plant->groups[g], INTERPOLATION_GP))
+            continue;
+        if (gp->fit)
+            plant_model_hash(gp->fit, &readings); /* a file that cannot be read is reported where it is needed */
+        XXH3_64bits_update(state, numbers, sizeof(numbers));
+        XXH3_64bits_update(state, &readings, sizeof(readings));
+    }
+}
+
 /* What the splitting takes from the plant file. */
 static void hash_field(XXH3_state_t *state, const struct plant *plant, const struct plant_sensor *sensors, size_t count, size_t sensor)
 {
@@ -60,6 +80,10 @@ static void hash_field(XXH3_state_t *state, const struct plant *plant, const str
     const double prepared[3] = { group->prepared, group->disc_m, plant_prepares(group, INTERPOLATION_FIN) ? plant_decay_m(asset) : 0 };
     if (plant_prepares_any(group))
         XXH3_64bits_update(state, prepared, sizeof(prepared));
+    if (group->heat)
+        XXH3_64bits_update(state, "h", 1);
+    if (group->directed)
+        XXH3_64bits_update(state, "d", 1);
     if (is_alone(plant, sensors, count, sensor) && !straight_looks_at_paper(group, 1))
         XXH3_64bits_update(state, "s", 1);
     if (tag->place_assumed)
@@ -102,6 +126,7 @@ uint64_t build_key(uint64_t geometry_key, const struct plant *plant, const struc
         XXH3_64bits_update(&state, sensors[i].position_m, sizeof(sensors[i].position_m));
         hash_field(&state, plant, sensors, sensor_count, i);
     }
+    hash_gp(&state, plant, sensors, sensor_count);
     return XXH3_64bits_digest(&state);
 }
 
@@ -338,7 +363,8 @@ static bool make_influence(struct build *build)
                                             .vertex_count = g->vertex_count,
                                             .triangle_count = build->levels.at[0].index_count / 3,
                                             .folder = input->folder,
-                                            .key = input->key };
+                                            .key = input->key,
+                                            .cloud = &build->output->report.cloud };
     if (!influence_file_make(build->log, build->workers, &wanted, why))
         return wrong(build->why, "%s", why);
     double seconds = seconds_since(&since_ns);
@@ -352,11 +378,11 @@ static void send_file(void *arg)
 }
 
 /* They are most of the file: while it is summed up and checked, it goes to the disk. */
-static void write_distances(void *arg, float *geodesic_m)
+static void write_distances(void *arg, uint16_t *codes)
 {
     struct build *build = arg;
     struct folder_draft *file = &build->output->file;
-    off_t at = (char *)geodesic_m - (char *)file->bytes;
+    off_t at = (char *)codes - (char *)file->bytes;
     build->write_error = distance_rows_write(&build->distances, build->workers, file->file.fd, at);
     build->sending = workers_begin(build->workers, send_file, &build->output->file);
 }

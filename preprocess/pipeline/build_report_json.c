@@ -70,6 +70,16 @@ static const struct number second_numbers[] = {
     OF_BUILD("split", split_s, METRES),
     { 0 },
 };
+static const struct number cloud_numbers[] = {
+    OF_BUILD("points", cloud.points, COUNT),
+    OF_BUILD("k", cloud.k, WHOLE),
+    OF_BUILD("spacing_m", cloud.spacing_m, METRES),
+    OF_BUILD("mean_difference", cloud.mean, METRES),
+    OF_BUILD("worst_difference", cloud.worst, METRES),
+    OF_BUILD("reached_alone", cloud.reached, COUNT),
+    OF_BUILD("not_reached", cloud.unreached, COUNT),
+    { 0 },
+};
 #define OF_LEVEL(name, field, kind)                                                                                                        \
     {                                                                                                                                      \
         name, offsetof(struct build_level, field), kind                                                                                    \
@@ -133,6 +143,8 @@ json_t *build_report_to_json(const struct build_report *report)
     for (size_t i = 0; i < report->level_count; i++)
         json_array_append_new(levels, all_to_json(level_numbers, &report->levels[i]));
     json_object_set_new(out, "levels", levels);
+    if (report->cloud.points > 0)
+        json_object_set_new(out, "cloud", all_to_json(cloud_numbers, report));
     json_object_set_new(out, "surface", report->surface.triangles ? all_to_json(surface_numbers, report) : json_null());
     json_object_set_new(out, "stage_seconds", all_to_json(second_numbers, report));
     return out;
@@ -148,5 +160,8 @@ bool build_report_from_json(const json_t *numbers, struct build_report *report)
     for (size_t i = 0; i < report->level_count; i++)
         if (!all_from_json(level_numbers, json_array_get(levels, i), &report->levels[i]))
             return false;
+    const json_t *cloud = json_object_get(numbers, "cloud"); /* where no group asks for it there is none */
+    if (cloud && !all_from_json(cloud_numbers, cloud, report))
+        return false;
     return json_is_null(surface) || all_from_json(surface_numbers, surface, report);
 }

@@ -6,6 +6,7 @@
 
 #include "plant/transform.h"
 #include "preprocess/cache/folder.h"
+#include "protocol/asset_distance.h"
 
 static int column_of(const struct prepare_asset *asset, int tag)
 {
@@ -58,7 +59,7 @@ bool distances_print(const struct prepare *prepare, const char *folder, int asse
             continue;
         to_plant(view, asset->plant->placement, view->positions_m[v], p);
         double euclidean_m = sqrt(pow(p[0] - source[0], 2) + pow(p[1] - source[1], 2) + pow(p[2] - source[2], 2));
-        fprintf(out, "%.9g,%.9g,%.9g,%.7g,%.7g\n", p[0], p[1], p[2], (double)view->geodesic_m[(size_t)column * vertices + v], euclidean_m);
+        fprintf(out, "%.9g,%.9g,%.9g,%.7g,%.7g\n", p[0], p[1], p[2], (double)asset_distance_m(view, (size_t)column, v), euclidean_m);
     }
     folder_close(&file);
     return true;

@@ -112,6 +112,41 @@ static void print_surfaces(const struct text_report *report)
           &table);
 }
 
+static void print_clouds(const struct text_report *report)
+{
+    static const struct text_table_column columns[] = {
+        { "", false }, { "asset", false }, { "points", true }, { "k", true }, { "every mm", true }, { "differ %", true },
+        { "at most %", true }, { "reached alone", true }, { "not reached", true }, { "ours differ %", true },
+    };
+    struct text_table table = { .columns = columns, .column_count = sizeof(columns) / sizeof(columns[0]) };
+    bool any = false;
+    for (size_t i = 0; i < report->count; i++) {
+        const struct prepare_asset *asset = report->order[i].asset;
+        const struct cloud_report *cloud = &asset->report.cloud;
+        if (!asset->reported || cloud->points == 0)
+            continue;
+        any = true;
+        text_table_add(&table, "%s", mark(&report->order[i]));
+        text_table_add(&table, "%s", asset->plant->id);
+        text_table_add(&table, "%s", NUMBER(cloud->points));
+        text_table_add(&table, "%d", cloud->k);
+        text_table_add(&table, "%.1f", 1e3 * cloud->spacing_m);
+        text_table_add(&table, "%.2f", 100 * cloud->mean);
+        text_table_add(&table, "%.2f", 100 * cloud->worst);
+        text_table_add(&table, "%s", NUMBER(cloud->reached));
+        text_table_add(&table, "%s", NUMBER(cloud->unreached));
+        double ours = asset->report.surface.heat_disagreement;
+        text_table_add(&table, isnan(ours) ? "-" : "%.2f", 100 * ours);
+    }
+    if (any)
+        print(report,
+              "Distances by the heat method on a point cloud (differ: from ours, of the largest; reached alone: through what is thin; ours "
+              "differ: from the heat method on the mesh)",
+              &table);
+    else
+        text_table_finish(&table);
+}
+
 static void print_levels(const struct text_report *report)
 {
     static const struct text_table_column columns[] = {
@@ -291,7 +326,8 @@ void report_text(const struct prepare *prepare, bool all, FILE *out)
     if (report.count) {
         print_assets(&report);
         print_surfaces(&report);
-        print_levels(&report);
+        print_clouds(&report);
+    print_levels(&report);
         print_times(&report);
         print_sensors(&report);
         fprintf(out, "\n");

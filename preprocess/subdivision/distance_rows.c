@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Rows into columns, a tile at a time that fits into a core's own memory. */
+/* Rows into blocks of columns, as they are written. */
 #include "preprocess/subdivision/distance_rows.h"
 
 #include <errno.h>
@@ -7,11 +7,11 @@
 
 #include "base/mem.h"
 #include "preprocess/cache/file_io.h"
+#include "protocol/asset_distance.h"
 #include "surface/mesh/trimesh.h"
 
-#define LINE 16u            /* floats: sensors of a tile */
-#define TILE 16384u         /* its vertices: 64 kB of a column are written at once */
-#define APART (TILE + LINE) /* of a tile's columns, in floats, so that they do not meet in the cache */
+#define APART (ASSET_DISTANCE_BLOCK + 32) /* of columns while rows are dealt to them: so that they do not meet in the cache */
+#define LINE 32u                          /* sensors at a time: a line of codes each, in the nearest cache */
 
 void distance_rows_finish(struct distance_rows *rows)
 {
@@ -35,44 +35,54 @@ struct turn {
     const struct distance_rows *rows;
     int fd;
     off_t at;
-    size_t lines;     /* tiles beside each other */
     atomic_int error; /* errno */
 };
 
-static void turn_tile(const struct distance_rows *rows, size_t first, size_t last, size_t line, size_t width, float *tile)
+/* The codes of one block of vertices. */
+static void turn_block(const struct distance_rows *rows, size_t first, size_t count, uint16_t *codes)
 {
-    for (size_t v = first; v < last; v++) {
-        const float *row = rows->distances_m + rows->place_of[v] * rows->sensor_count + line;
-        for (size_t s = 0; s < width; s++)
-            tile[s * APART + v - first] = row[s];
+    uint16_t line[LINE * APART];
+    for (size_t begin = 0; begin < rows->sensor_count; begin += LINE) {
+        size_t width = begin + LINE < rows->sensor_count ? LINE : rows->sensor_count - begin;
+        for (size_t v = 0; v < count; v++) {
+            const float *row = rows->distances_m + rows->place_of[first + v] * rows->sensor_count + begin;
+            uint16_t code[LINE];
+            for (size_t s = 0; s < width; s++)
+                code[s] = asset_distance_code(row[s]);
+            for (size_t s = 0; s < width; s++)
+                line[s * APART + v] = code[s];
+        }
+        for (size_t s = 0; s < width; s++) {
+            uint16_t *to = codes + (begin + s) * ASSET_DISTANCE_BLOCK;
+            memcpy(to, line + s * APART, count * sizeof(*to));
+            for (size_t v = count; v < ASSET_DISTANCE_BLOCK; v++)
+                to[v] = ASSET_DISTANCE_NONE;
+        }
     }
 }
 
-static void turn_tiles(void *arg, size_t begin, size_t end)
+static void turn_blocks(void *arg, size_t begin, size_t end)
 {
     struct turn *turn = arg;
     const struct distance_rows *rows = turn->rows;
-    const size_t count = rows->vertex_count, sensors = rows->sensor_count;
-    float *tile = mem_array(LINE * APART, sizeof(*tile));
-    for (size_t i = begin; i < end && !turn->error; i++) {
-        size_t first = i / turn->lines * TILE, line = i % turn->lines * LINE;
-        size_t last = first + TILE < count ? first + TILE : count, width = line + LINE < sensors ? LINE : sensors - line;
-        turn_tile(rows, first, last, line, width, tile);
-        for (size_t s = 0; s < width; s++)
-            if (!file_write(turn->fd, tile + s * APART, (last - first) * sizeof(*tile),
-                            turn->at + (off_t)(((line + s) * count + first) * sizeof(*tile))))
-                turn->error = errno;
+    const size_t bytes = rows->sensor_count * ASSET_DISTANCE_BLOCK * sizeof(uint16_t);
+    uint16_t *codes = mem_array(rows->sensor_count, ASSET_DISTANCE_BLOCK * sizeof(*codes));
+    for (size_t block = begin; block < end && !turn->error; block++) {
+        size_t first = block * ASSET_DISTANCE_BLOCK, left = rows->vertex_count - first;
+        turn_block(rows, first, left < ASSET_DISTANCE_BLOCK ? left : ASSET_DISTANCE_BLOCK, codes);
+        if (!file_write(turn->fd, codes, bytes, turn->at + (off_t)(block * bytes)))
+            turn->error = errno;
     }
-    mem_free(tile);
+    mem_free(codes);
 }
 
 int distance_rows_write(const struct distance_rows *rows, struct workers *workers, int fd, off_t at)
 {
-    struct turn turn = { .rows = rows, .fd = fd, .at = at, .lines = (rows->sensor_count + LINE - 1) / LINE };
-    size_t tiles = (rows->vertex_count + TILE - 1) / TILE * turn.lines;
+    struct turn turn = { .rows = rows, .fd = fd, .at = at };
+    size_t blocks = (rows->vertex_count + ASSET_DISTANCE_BLOCK - 1) / ASSET_DISTANCE_BLOCK;
     if (workers)
-        workers_for(workers, tiles, 4, turn_tiles, &turn);
+        workers_for(workers, blocks, 16, turn_blocks, &turn);
     else
-        turn_tiles(&turn, 0, tiles);
+        turn_blocks(&turn, 0, blocks);
     return turn.error;
 }

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Distances computed during subdivision, stored as one row of sensors per position; written to the asset file transposed, as one column of
-   vertices per sensor. */
+/* Distances computed during subdivision, stored as one row of sensors per position; written to the asset file as it has them, in blocks of
+   vertices, sensor by sensor. */
 #ifndef PREPROCESS_SUBDIVISION_DISTANCE_ROWS_H
 #define PREPROCESS_SUBDIVISION_DISTANCE_ROWS_H
 #include <stddef.h>
@@ -20,8 +20,8 @@ struct distance_rows {
 void distance_rows_finish(struct distance_rows *rows);
 /* Renumbers the vertices by new_of (TRIMESH_NONE: dropped), after which there are `kept` of them. */
 void distance_rows_renumber(struct distance_rows *rows, const uint32_t *new_of, uint32_t kept);
-/* Writes the transposed matrix, [sensor][vertex], to fd from offset `at` on. It writes rather than storing through a mapping, which would
-   cost as much again for each page. workers may be NULL. Returns 0 or an errno. */
+/* Writes the codes of an asset file (protocol/asset_distance.h) to fd from offset `at` on. It writes rather than storing through a mapping,
+   which would cost as much again for each page. workers may be NULL. Returns 0 or an errno. */
 int distance_rows_write(const struct distance_rows *rows, struct workers *workers, int fd, off_t at);
 
 #endif

@@ -564,7 +564,8 @@ void subdiv_parallel(const struct subdiv *subdiv, size_t count, size_t grain, vo
         body(arg, 0, count);
 }
 
-void subdiv_measure_edges(struct subdiv *subdiv, struct subdiv_finding *findings, size_t count, double enough)
+/* Measures the interpolation error along `count` edges. Errors below `enough` need not be exact, and then no cut position is found. */
+static void measure_edges(struct subdiv *subdiv, struct subdiv_finding *findings, size_t count, double enough)
 {
     subdiv_parallel(subdiv, count, GRAIN, try_edges, &(struct job){ .subdiv = subdiv, .findings = findings, .enough = enough });
     for (size_t i = 0; i < count; i++) {
@@ -575,7 +576,7 @@ void subdiv_measure_edges(struct subdiv *subdiv, struct subdiv_finding *findings
 
 void subdiv_measure_new_edges(struct subdiv *subdiv, struct subdiv_finding *findings, size_t count)
 {
-    subdiv_measure_edges(subdiv, findings, count, SUBDIV_AIM);
+    measure_edges(subdiv, findings, count, SUBDIV_AIM);
     for (size_t i = 0; i < count; i++) {
         struct subdiv_edge *edge = &subdiv->mesh.cuts[findings[i].number];
         edge->error = findings[i].error;

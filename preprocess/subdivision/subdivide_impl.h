@@ -80,8 +80,6 @@ bool subdiv_find_parts(struct subdiv *subdiv);
 void subdiv_add_place(struct subdiv *subdiv, uint32_t place, uint32_t part);
 /* Computes the weights at positions from `first` on; with `edges` (the edge that each lies on), first their distances too. */
 void subdiv_measure_places(struct subdiv *subdiv, uint32_t first, const uint32_t *edges, size_t count);
-/* Measures the interpolation error along `count` edges. Errors below `enough` need not be exact, and then no cut position is found. */
-void subdiv_measure_edges(struct subdiv *subdiv, struct subdiv_finding *findings, size_t count, double enough);
 /* Measures edges and stores the findings at the edges themselves. */
 void subdiv_measure_new_edges(struct subdiv *subdiv, struct subdiv_finding *findings, size_t count);
 /* Measures the interpolation error of triangles at their centres. */

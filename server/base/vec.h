@@ -57,6 +57,28 @@ static inline double vec_normalize(double v[3])
     return length;
 }
 
+/* Two directions that are orthonormal to each other and to `normal`, a unit vector: right-handed, the same for the same normal (Duff et
+   al., Building an orthonormal basis, revisited, JCGT 2017). */
+static inline void vec_frame(const double normal[3], double x[3], double y[3])
+{
+    double sign = copysign(1, normal[2]), a = -1 / (sign + normal[2]), b = normal[0] * normal[1] * a;
+    x[0] = 1 + sign * normal[0] * normal[0] * a;
+    x[1] = sign * b;
+    x[2] = -sign * normal[0];
+    y[0] = b;
+    y[1] = sign + normal[1] * normal[1] * a;
+    y[2] = -normal[1];
+}
+
+/* Turns v, tangent to a plane with the unit normal `from`, into the plane with the normal `to` by the smallest rotation; whether the
+   normals point to the same side of them makes no difference. */
+static inline void vec_turn(double v[3], const double from[3], const double to[3])
+{
+    double sign = copysign(1, vec_dot(from, to)), part = sign * vec_dot(to, v) / (1 + sign * vec_dot(from, to));
+    for (int i = 0; i < 3; i++)
+        v[i] -= part * (from[i] + sign * to[i]);
+}
+
 static inline double vec_distance2(const double a[3], const double b[3])
 {
     double d[3];

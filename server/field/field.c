@@ -20,6 +20,11 @@ struct field *field_create(struct workers *workers, const struct scene *scene)
     return field;
 }
 
+const struct scene *field_scene(const struct field *field)
+{
+    return field->scene;
+}
+
 struct workers *field_workers(const struct field *field)
 {
     return field->workers;
@@ -179,6 +184,8 @@ static const struct scalars *distance_scalars(struct field *field, int asset, co
 bool field_covers(struct field *field, int asset, const struct field_params *params)
 {
     const struct layout *layout = field_layout(field, asset, params);
+    if (field_params_cover(params) && layout && layout->assumed) /* nobody knows where its sensors are */
+        return false;
     return params->show == SHOW_DISTANCE ? find_sensor(layout, params->sensor) >= 0 : layout != NULL;
 }
 
@@ -229,6 +236,8 @@ static const struct scalars *advance(struct field *field, int asset, const struc
     *done = true;
     if (params->show == SHOW_DISTANCE)
         return distance_scalars(field, asset, params, snapshot);
+    if (!field_covers(field, asset, params))
+        return NULL;
     struct state *state = field_state(field, asset, params);
     if (!state)
         return NULL;

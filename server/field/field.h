@@ -21,6 +21,10 @@
    values that follow from the others (field/influence_fill.h), so that H is that of all sensors, whichever are lost. Not where places are
    tried out. Where fin's H add up to less than a tenth there is no data.
 
+   gp: the same with weights that add up to 1 on each body and may be negative (preprocess/influence/gaussian.h). There is no data where
+   sensors take away less than a tenth of the prior's variance. Its standard deviation (uncertainty), and the smallest hot spot that the
+   nearest good sensor would show (blind), depend on which sensors are good alone.
+
    What is shown may also be the distance from one sensor, in metres, or the difference from a baseline: the field of now less the
    field of then, both over the sensors that may be used in both (Algorithm 1 clamps readings, so there clamped ones are subtracted).
 
@@ -48,6 +52,8 @@ struct field;
 struct field *field_create(struct workers *workers, const struct scene *scene);
 /* Frees the field and its cache. &NULL is fine; leaves NULL. */
 void field_destroy(struct field **field);
+/* Returns the scene it was created with. */
+const struct scene *field_scene(const struct field *field);
 /* Returns the workers it was created with. */
 struct workers *field_workers(const struct field *field);
 /* Sets where differences look up their baselines; they must outlive the field. Without it, or for a forgotten baseline, a difference has no
@@ -104,7 +110,8 @@ struct field_sensor {
     int tag;
     float surface_m[3];   /* as the asset file's positions */
     uint32_t column;      /* in the asset file's sensors; beyond them: it is tried out */
-    const float *along_m; /* distances along the surface, of each vertex; NULL: not known yet */
+    bool in_file;         /* its distances along the surface are those of its column in the file; else */
+    const float *along_m; /* these, of each vertex; NULL: not known yet, or straight ones are shown */
     float strength, decay;
     float value;                        /* as it is summed: for `paper` 0..1, for a difference that of two */
     bool configured, usable, uncertain; /* configured: would take part, were it good */

@@ -20,7 +20,7 @@ static void update_some(void *arg, size_t begin, size_t end)
 void field_update_all(struct field *field, const int *assets, const size_t *counts, size_t asset_count, const struct field_params *params,
                       const struct snapshot *snapshot)
 {
-    if (asset_count < 2 || params->show == SHOW_DISTANCE || params->trial)
+    if (asset_count < 2 || params->show == SHOW_DISTANCE || field_params_cover(params) || params->trial)
         return;
     struct together together = { mem_array(asset_count, sizeof(*together.states)), 0 };
     size_t begun = 0;

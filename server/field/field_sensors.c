@@ -22,7 +22,8 @@ size_t field_sensors(struct field *field, int asset, const struct field_params *
         *to = (struct field_sensor){
             .tag = from->tag,
             .column = from->column,
-            .along_m = from->along_m,
+            .in_file = layout_is_in_file(from, params->distance),
+            .along_m = layout_along(from, params->distance),
             .strength = sum ? weights->strength[i] : 1,
             .decay = sum ? weights->decay[i] : 1,
             .value = (float)state->shown[i].value,

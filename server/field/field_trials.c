@@ -4,6 +4,7 @@
 
 #include "base/mem.h"
 #include "field/field_impl.h"
+#include "plant/influence.h"
 
 void field_set_trials(struct field *field, struct trials *trials)
 {
@@ -60,7 +61,7 @@ static struct trial_layout *find(const struct field *field, int asset, const str
 static const struct field_params *even_params(struct field *field, int asset, const struct field_params *params, struct field_params *room)
 {
     const struct layout *layout = field_layout(field, asset, params);
-    if (!layout || !layout->assumed || params->show == SHOW_DISTANCE)
+    if (!layout || !layout->assumed || params->show == SHOW_DISTANCE || field_params_cover(params))
         return params;
     if (room != params)
         *room = *params;
@@ -94,9 +95,22 @@ static const struct field_params *trial_params(struct field *field, int asset, c
     return room;
 }
 
+/* What nobody would see follows from distances alone, also where what is shown otherwise is prepared and knows less. */
+static const struct field_params *blind_params(const struct field_params *params, struct field_params *room)
+{
+    if (params->show != SHOW_BLIND)
+        return params;
+    if (room != params)
+        *room = *params;
+    if (interpolation_is_prepared(room->interpolation))
+        room->interpolation = INTERPOLATION_SHEPARD;
+    room->reach_m = INFINITY;
+    return room;
+}
+
 const struct field_params *field_params_of(struct field *field, int asset, const struct field_params *params, struct field_params *room)
 {
-    return even_params(field, asset, trial_params(field, asset, params, room), room);
+    return blind_params(even_params(field, asset, trial_params(field, asset, params, room), room), room);
 }
 
 struct layout *field_trial_layout(struct field *field, int asset, const struct field_params *params)

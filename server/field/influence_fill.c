@@ -59,6 +59,17 @@ void influence_fill_destroy(struct influence_fill **fill_ptr)
     *fill_ptr = NULL;
 }
 
+/* x = L^-1 x, where x is 0 before `first`. */
+static void solve_lower(const struct influence_fill *fill, size_t first, double *x)
+{
+    const size_t n = fill->lost_count;
+    for (size_t i = first; i < n; i++) {
+        for (size_t k = first; k < i; k++)
+            x[i] -= fill->factor[i * n + k] * x[k];
+        x[i] /= fill->factor[i * n + i];
+    }
+}
+
 void influence_fill_values(const struct influence_fill *fill, double *values)
 {
     const size_t n = fill->lost_count;
@@ -67,15 +78,70 @@ void influence_fill_values(const struct influence_fill *fill, double *values)
         const double *row = fill->precision + fill->lost[i] * fill->count;
         for (size_t j = 0; j < fill->count; j++)
             x[i] -= fill->used[j] ? row[j] * values[j] : 0;
-        for (size_t k = 0; k < i; k++)
-            x[i] -= fill->factor[i * n + k] * x[k];
-        x[i] /= fill->factor[i * n + i];
     }
+    solve_lower(fill, 0, x);
     for (size_t i = n; i-- > 0;) {
         for (size_t k = i + 1; k < n; k++)
             x[i] -= fill->factor[k * n + i] * x[k];
         x[i] /= fill->factor[i * n + i];
         values[fill->lost[i]] = x[i];
+    }
+    mem_free(x);
+}
+
+static double own_of_used(const struct influence_fill *fill, size_t sensor, double *x)
+{
+    const size_t n = fill->lost_count;
+    double own = fill->precision[sensor * fill->count + sensor];
+    for (size_t i = 0; i < n; i++)
+        x[i] = fill->precision[fill->lost[i] * fill->count + sensor];
+    solve_lower(fill, 0, x);
+    for (size_t i = 0; i < n; i++)
+        own -= x[i] * x[i];
+    return own;
+}
+
+/* 1 / ((P_LL)^-1)_ll: by a column of the factor's inverse. */
+static double own_of_lost(const struct influence_fill *fill, size_t lost, double *x)
+{
+    const size_t n = fill->lost_count;
+    double inverse = 0;
+    for (size_t i = lost; i < n; i++)
+        x[i] = i == lost;
+    solve_lower(fill, lost, x);
+    for (size_t i = lost; i < n; i++)
+        inverse += x[i] * x[i];
+    return 1 / inverse;
+}
+
+void influence_fill_own(const struct influence_fill *fill, double *own)
+{
+    double *x = mem_array(fill->lost_count + 1, sizeof(*x));
+    for (size_t i = 0; i < fill->count; i++)
+        own[i] = fill->used[i] ? own_of_used(fill, i, x) : 0;
+    for (size_t i = 0; i < fill->lost_count; i++)
+        own[fill->lost[i]] = own_of_lost(fill, i, x);
+    mem_free(x);
+}
+
+void influence_fill_variances(const struct influence_fill *fill, const float *shares, size_t stride, size_t count, double *out)
+{
+    const size_t n = fill->lost_count;
+    double *x = mem_array(n * count, sizeof(*x)); /* L^-1 H_L, row by row */
+    for (size_t i = 0; i < n; i++) {
+        const float *share = shares + fill->lost[i] * stride;
+        double *row = x + i * count;
+        for (size_t v = 0; v < count; v++)
+            row[v] = (double)share[v];
+        for (size_t k = 0; k < i; k++) {
+            const double times = fill->factor[i * n + k], *other = x + k * count;
+            for (size_t v = 0; v < count; v++)
+                row[v] -= times * other[v];
+        }
+        for (size_t v = 0; v < count; v++) {
+            row[v] /= fill->factor[i * n + i];
+            out[v] += row[v] * row[v];
+        }
     }
     mem_free(x);
 }

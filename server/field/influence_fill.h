@@ -16,4 +16,12 @@ void influence_fill_destroy(struct influence_fill **fill);
 /* Replaces the values of lost sensors. Takes (lost * sensors) steps. */
 void influence_fill_values(const struct influence_fill *fill, double *values);
 
+/* Writes each sensor's own precision among those that are used: P_ii - P_iL (P_LL)^-1 P_Li; of a lost one, as if it alone were used again.
+   Takes (lost * lost * sensors) steps. */
+void influence_fill_own(const struct influence_fill *fill, double *own);
+
+/* Adds to out[v], for `count` vertices, by how much lost sensors let the variance grow: H_L (P_LL)^-1 H_L'. shares: H from the first of
+   these vertices on, of a sensor each `stride`. For interpolations whose precision is in 1/unit^2. */
+void influence_fill_variances(const struct influence_fill *fill, const float *shares, size_t stride, size_t count, double *out);
+
 #endif

@@ -9,6 +9,7 @@
 
 #include "base/simd.h"
 #include "field/scalars.h"
+#include "protocol/asset_distance.h"
 
 #define KERNEL SIMD_CLONES("avx512f", "avx2")
 
@@ -85,6 +86,12 @@ KERNEL void kernel_euclidean(const float (*positions_m)[3], size_t count, const 
         float x = positions_m[j][0] - px, y = positions_m[j][1] - py, z = positions_m[j][2] - pz;
         out_m[j] = sqrtf(x * x + y * y + z * z);
     }
+}
+
+KERNEL void kernel_distances(const uint16_t *restrict codes, size_t count, float *restrict out_m)
+{
+    for (size_t j = 0; j < count; j++)
+        out_m[j] = asset_distance_of(codes[j]);
 }
 
 KERNEL void kernel_nearest(const float *restrict distance_m, size_t count, float *restrict near_m)

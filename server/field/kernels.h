@@ -14,6 +14,8 @@
 
 struct scalar;
 
+/* Writes the distances that codes of an asset file stand for (protocol/asset_distance.h). */
+void kernel_distances(const uint16_t *restrict codes, size_t count, float *restrict out_m);
 /* Writes the straight-line distance of each position from the point. */
 void kernel_euclidean(const float (*positions_m)[3], size_t count, const float point_m[3], float *restrict out_m);
 /* Lowers near_m[i] to distance_m[i] where that is smaller. */

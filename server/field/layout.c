@@ -8,6 +8,9 @@
 
 #include "base/mem.h"
 #include "field/kernels.h"
+#include "protocol/asset_distance.h"
+
+_Static_assert(KERNEL_BLOCK == ASSET_DISTANCE_BLOCK, "a block of the file is done at a time");
 
 static bool of_group(const struct scene *scene, const struct scene_sensor *sensor, int group)
 {
@@ -51,14 +54,15 @@ static void add(struct layout *layout, struct layout_sensor sensor)
     layout->sensors[layout->sensor_count++] = sensor;
 }
 
-static void add_prepared(struct layout *layout, const struct scene_sensor *sensor)
+/* number: among those of the group whose place is known. */
+static void add_prepared(struct layout *layout, const struct scene_sensor *sensor, size_t number)
 {
     const struct asset_view *view = &layout->file->view;
     const struct asset_sensor *in_file = &view->sensors[sensor->column];
-    struct layout_sensor made = { .tag = sensor->tag,
-                                  .column = (uint32_t)sensor->column,
-                                  .vertex = in_file->nearest_vertex,
-                                  .along_m = view->geodesic_m + (size_t)sensor->column * layout->vertex_count };
+    struct layout_sensor made = { .tag = sensor->tag, .column = (uint32_t)sensor->column, .vertex = in_file->nearest_vertex };
+    const struct influence_entry *heat = influence_find(&layout->file->influence, layout->number, INFLUENCE_HEAT);
+    if (heat && !layout->assumed && number < heat->sensor_count)
+        made.heat_m = (const float *)influence_array(&layout->file->influence, heat->shares) + number * layout->vertex_count;
     memcpy(made.surface_m, in_file->surface_m, sizeof(made.surface_m));
     add(layout, made);
 }
@@ -68,7 +72,8 @@ static void add_trial(struct layout *layout, const struct trial_sensor *sensor)
     struct layout_sensor made = { .tag = sensor->tag,
                                   .column = layout->file->view.header->sensor_count + sensor->number,
                                   .vertex = sensor->vertex,
-                                  .along_m = trial_distances(sensor) };
+                                  .tried = true,
+                                  .tried_m = trial_distances(sensor) };
     memcpy(made.surface_m, sensor->surface_m, sizeof(made.surface_m));
     add(layout, made);
 }
@@ -85,10 +90,14 @@ struct layout *layout_create(const struct scene *scene, int asset, int group, co
     layout->trial = trial ? trial->id : 0;
     layout->assumed = !has_known(scene, asset, group, trial);
     layout->sensors = mem_array(from->sensor_count + (trial ? trial->count : 0), sizeof(*layout->sensors));
-    for (size_t i = 0; i < from->sensor_count; i++)
-        if (of_group(scene, &from->sensors[i], group) && !trial_find(trial, from->sensors[i].tag) &&
-            (layout->assumed || !scene->plant->tags[from->sensors[i].tag].place_assumed))
-            add_prepared(layout, &from->sensors[i]);
+    for (size_t i = 0, number = 0; i < from->sensor_count; i++) {
+        bool known = !scene->plant->tags[from->sensors[i].tag].place_assumed;
+        if (!of_group(scene, &from->sensors[i], group))
+            continue;
+        if (!trial_find(trial, from->sensors[i].tag) && (layout->assumed || known))
+            add_prepared(layout, &from->sensors[i], number);
+        number += known;
+    }
     for (size_t i = 0; trial && i < trial->count; i++)
         if (trial->sensors[i].asset == asset && scene->plant->tags[trial->sensors[i].tag].group == group)
             add_trial(layout, &trial->sensors[i]);
@@ -107,12 +116,27 @@ void layout_destroy(struct layout **layout_ptr)
     *layout_ptr = NULL;
 }
 
+const float *layout_along(const struct layout_sensor *sensor, enum distance_mode mode)
+{
+    return mode == DISTANCE_EUCLIDEAN ? NULL : mode == DISTANCE_HEAT && sensor->heat_m ? sensor->heat_m : sensor->tried_m;
+}
+
+bool layout_is_in_file(const struct layout_sensor *sensor, enum distance_mode mode)
+{
+    return mode != DISTANCE_EUCLIDEAN && !sensor->tried && !layout_along(sensor, mode);
+}
+
 const float *layout_distances(const struct layout *layout, enum distance_mode mode, size_t sensor, size_t begin, size_t count,
                               float *scratch)
 {
     const struct layout_sensor *from = &layout->sensors[sensor];
-    if (mode == DISTANCE_GEODESIC && from->along_m)
-        return from->along_m + begin;
+    const float *along_m = layout_along(from, mode);
+    if (along_m)
+        return along_m + begin;
+    if (layout_is_in_file(from, mode)) {
+        kernel_distances(asset_distance_codes(&layout->file->view, from->column, begin) + begin % KERNEL_BLOCK, count, scratch);
+        return scratch;
+    }
     kernel_euclidean(layout->file->view.positions_m + begin, count, from->surface_m, scratch);
     return scratch;
 }

@@ -12,7 +12,9 @@ struct layout_sensor {
     uint32_t column;       /* in the asset file's sensors; of one that is tried out: its own number, beyond them */
     float surface_m[3];    /* as the file's positions */
     uint32_t vertex;       /* the nearest one */
-    const float *along_m;  /* of each vertex; NULL: not known yet */
+    bool tried;            /* its distances along the surface are not in the file, but */
+    const float *tried_m;  /* these, of each vertex; NULL: not known yet */
+    const float *heat_m;   /* of each vertex by the heat method; NULL: not prepared */
     float strength, decay; /* as configured, >= 0 */
 };
 
@@ -24,7 +26,7 @@ struct layout {
     struct layout_sensor *sensors;
     size_t sensor_count, vertex_count;
     bool assumed;       /* the places of all of them are: one of them stands for the whole asset, evenly (field.h) */
-    float largest_m[2]; /* by distance_mode; 0: not looked for yet */
+    float largest_m[DISTANCES]; /* by distance_mode; 0: not looked for yet */
     uint32_t trial;     /* of which some of the places are; 0: none */
 };
 
@@ -35,7 +37,13 @@ struct layout *layout_create(const struct scene *scene, int asset, int group, co
 bool layout_is_touched(const struct scene *scene, int asset, int group, const struct trial *trial);
 /* Frees the layout. &NULL is fine; leaves NULL. */
 void layout_destroy(struct layout **layout);
-/* Returns the distances of `count` vertices from `begin` on from one sensor: a pointer into the asset file, or computed into scratch.
+/* Returns a sensor's distances along the surface by this way of finding them, of each vertex, those of the asset file where they were not
+   prepared (sensors that are tried out). NULL: straight ones, or not known yet, or in the asset file. */
+const float *layout_along(const struct layout_sensor *sensor, enum distance_mode mode);
+/* Returns whether its distances by this way are those of its column in the asset file. */
+bool layout_is_in_file(const struct layout_sensor *sensor, enum distance_mode mode);
+/* Returns the distances of `count` vertices from `begin` on from one sensor: a pointer to them, or to scratch, which receives them. They
+   must be of one block of KERNEL_BLOCK vertices.
    Straight-line ones start at the sensor's point on the surface, so that both kinds are 0 there; they stand in for geodesic ones that are
    not known yet. */
 const float *layout_distances(const struct layout *layout, enum distance_mode mode, size_t sensor, size_t begin, size_t count,

@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "field/kernels.h"
+#include "protocol/asset_distance.h"
 #include "field/limits.h"
 #include "plant/influence.h"
 
@@ -34,6 +35,13 @@ void field_params_set_show(const struct plant *plant, struct field_params *param
     params->show = show;
     if (show == SHOW_OPERATOR && params->interpolation == INTERPOLATION_FIN)
         params->interpolation = has_harmonic ? INTERPOLATION_HARMONIC : INTERPOLATION_SHEPARD;
+    if (show == SHOW_UNCERTAINTY && plant_prepares(&plant->groups[params->group], INTERPOLATION_GP))
+        params->interpolation = INTERPOLATION_GP;
+}
+
+bool field_params_cover(const struct field_params *params)
+{
+    return params->show == SHOW_UNCERTAINTY || params->show == SHOW_BLIND;
 }
 
 bool field_params_equal(const struct field_params *a, const struct field_params *b)
@@ -85,12 +93,13 @@ bool field_params_override(struct field_params *params, struct field_override ov
 static float largest_distance(const struct asset_view *view, size_t column, enum distance_mode mode)
 {
     size_t count = view->header->vertex_count;
-    if (mode == DISTANCE_GEODESIC)
-        return kernel_largest(view->geodesic_m + column * count, count, 0);
     float most_m = 0, scratch[KERNEL_BLOCK];
     for (size_t at = 0; at < count; at += KERNEL_BLOCK) {
         size_t number = count - at < KERNEL_BLOCK ? count - at : KERNEL_BLOCK;
-        kernel_euclidean(view->positions_m + at, number, view->sensors[column].surface_m, scratch);
+        if (mode != DISTANCE_EUCLIDEAN) /* the range of both ways along the surface is one, so that colours can be compared */
+            kernel_distances(asset_distance_codes(view, column, at), number, scratch);
+        else
+            kernel_euclidean(view->positions_m + at, number, view->sensors[column].surface_m, scratch);
         most_m = kernel_largest(scratch, number, most_m);
     }
     return most_m;
@@ -116,6 +125,19 @@ static double distance_range(const struct scene *scene, const struct field_param
     return 1;
 }
 
+/* The largest of all assets: where it was fitted, each has its own. */
+static double deviation_range(const struct scene *scene, int group)
+{
+    const double stated = scene->plant->groups[group].gp.deviation;
+    double most = isnan(stated) ? 0 : stated;
+    for (size_t a = 0; a < scene->asset_count; a++) {
+        const struct influence_entry *entry =
+            scene->assets[a].file ? influence_find(&scene->assets[a].file->influence, (uint32_t)group, INTERPOLATION_GP) : NULL;
+        most = entry ? fmax(most, entry->deviation) : most;
+    }
+    return most > 0 ? rounded_up(most) : 1;
+}
+
 void field_default_range(const struct scene *scene, const struct field_params *params, double *min, double *max)
 {
     const struct plant_group *group = &scene->plant->groups[params->group];
@@ -124,6 +146,8 @@ void field_default_range(const struct scene *scene, const struct field_params *p
     case SHOW_VALUE: *min = group->min, *max = group->max; break;
     case SHOW_DISTANCE: *min = 0, *max = distance_range(scene, params); break;
     case SHOW_DIFFERENCE: *min = -part, *max = part; break;
+    case SHOW_UNCERTAINTY: *min = 0, *max = deviation_range(scene, params->group); break;
+    case SHOW_BLIND: *min = PLANT_SEEN_PART * (group->max - group->min), *max = group->max - group->min; break;
     case SHOW_OPERATOR: *min = -LIMIT_PLACE_MOST, *max = LIMIT_PLACE_MOST; break;
     }
 }
@@ -177,15 +201,20 @@ const char *field_params_wrong(const struct plant *plant, const struct field_par
     if (params->group < 0 || (size_t)params->group >= plant->group_count)
         return "group: unknown";
     if ((unsigned)params->interpolation >= INTERPOLATIONS)
-        return "interpolation: expected shepard, paper, harmonic or fin";
+        return "interpolation: expected shepard, paper, harmonic, fin or gp";
     if (interpolation_is_prepared(params->interpolation) && !plant_prepares(&plant->groups[params->group], params->interpolation))
         return "interpolation: not prepared for the shown group; name it in the group's 'prepare' in the plant file";
-    if (params->distance != DISTANCE_GEODESIC && params->distance != DISTANCE_EUCLIDEAN)
-        return "distance: expected geodesic or euclidean";
+    if ((unsigned)params->distance >= DISTANCES)
+        return "distance: expected geodesic, euclidean or heat";
+    if (params->distance == DISTANCE_HEAT && !plant->groups[params->group].heat)
+        return "distance: not prepared for the shown group; say 'geodesic: heat' of it in the plant file";
     if (params->fill != FILL_NONE && params->fill != FILL_NEIGHBOURS)
         return "fill: expected none or neighbours";
-    if (params->show != SHOW_VALUE && params->show != SHOW_DISTANCE && params->show != SHOW_DIFFERENCE && params->show != SHOW_OPERATOR)
-        return "show: expected value, distance, difference or operator";
+    if ((unsigned)params->show > SHOW_BLIND)
+        return "show: expected value, distance, difference, operator, uncertainty or blind";
+    if (params->show == SHOW_UNCERTAINTY && params->interpolation != INTERPOLATION_GP)
+        return "show: uncertainty is that of 'gp', which is not prepared for the shown group or not chosen; name it in the group's "
+               "'prepare'";
     if (params->show == SHOW_OPERATOR && params->interpolation == INTERPOLATION_FIN)
         return "interpolation: fin cannot show places between limits (show: operator)";
     const char *wrong = numbers_wrong(params);

@@ -9,7 +9,7 @@
 #include "plant/plant.h"
 #include "scene/scene.h"
 
-enum field_show { SHOW_VALUE, SHOW_DISTANCE, SHOW_DIFFERENCE, SHOW_OPERATOR };
+enum field_show { SHOW_VALUE, SHOW_DISTANCE, SHOW_DIFFERENCE, SHOW_OPERATOR, SHOW_UNCERTAINTY, SHOW_BLIND };
 
 /* One sensor's strength and decay, in place of the tag list's. */
 struct field_override {
@@ -40,7 +40,7 @@ struct field_params {
 /* Fills in the group's defaults from the plant file. */
 void field_params_default(const struct plant *plant, int group, struct field_params *params);
 /* Sets what is shown. Places between limits cannot be interpolated by `fin`, whose values fall towards what is around: `harmonic`, or
-   where it is not prepared `shepard`, then takes its place. */
+   where it is not prepared `shepard`, then takes its place. Uncertainty is that of `gp`, wherever it is prepared. */
 void field_params_set_show(const struct plant *plant, struct field_params *params, enum field_show show);
 /* Returns whether two sets of parameters are equal. */
 bool field_params_equal(const struct field_params *a, const struct field_params *b);
@@ -51,8 +51,11 @@ const char *field_params_wrong(const struct plant *plant, const struct field_par
 bool field_params_override(struct field_params *params, struct field_override override);
 /* Returns the tag's override, or NULL. Belongs to params. */
 const struct field_override *field_params_override_of(const struct field_params *params, int tag);
+/* Returns whether what is shown depends on which sensors are good, and not on what they say. */
+bool field_params_cover(const struct field_params *params);
 /* Writes the default range of the colour map: the group's MIN and MAX; for distances 0 to the largest, rounded up; for differences a
-   quarter of the range below and above 0; for the operator's view all positions between limits. */
+   quarter of the range below and above 0; for the operator's view all positions between limits; for uncertainty 0 to
+   the deviation of the prior; for hot spots a twentieth of the group's range to all of it. */
 void field_default_range(const struct scene *scene, const struct field_params *params, double *min, double *max);
 
 #endif

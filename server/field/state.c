@@ -11,7 +11,7 @@
 #include "value/quality.h"
 
 #define FLAG 255
-#define FILLED_DOUBT 0.1 /* such a share of a lost sensor's value may rest on uncertain ones */
+#define FILLED_DOUBT 0.1   /* such a share of a lost sensor's value may rest on uncertain ones */
 #define READING_LIMIT 1e30 /* beyond it sums of floats would overflow */
 
 struct state *state_create(int asset, struct layout *layout, const struct field_params *params)
@@ -125,6 +125,8 @@ static double value_of(const struct state *state, const struct plant_tag *tag, d
 static struct state_input input_of(const struct state *state, const struct plant_tag *tag, const struct reading *reading)
 {
     bool good = !quality_is_bad(reading->quality) && isfinite(reading->value);
+    if (field_params_cover(&state->params)) /* nothing depends on what it says */
+        return (struct state_input){ .usable = good ? SENSOR_USED : SENSOR_LOST };
     double value = good ? value_of(state, tag, reading->value) : 0;
     return (struct state_input){
         .value = isfinite(value) ? value : 0,
@@ -199,7 +201,7 @@ void state_read(struct state *state, const struct snapshot *snapshot, const stru
 void state_fill(struct state *state)
 {
     const struct weights *weights = state->weights;
-    if (!weights->fill)
+    if (!weights->fill || field_params_cover(&state->params))
         return;
     double *values = mem_array(state->layout->sensor_count, sizeof(*values));
     double *doubts = mem_array(state->layout->sensor_count, sizeof(*doubts));
@@ -212,7 +214,7 @@ void state_fill(struct state *state)
     for (size_t i = 0; i < state->layout->sensor_count; i++)
         if (!weights->takes_part[i]) {
             state->now[i].value = limited(values[i], -READING_LIMIT, READING_LIMIT);
-            state->now[i].uncertain = doubts[i] > FILLED_DOUBT;
+            state->now[i].uncertain = fabs(doubts[i]) > FILLED_DOUBT;
         }
     mem_free(values);
     mem_free(doubts);

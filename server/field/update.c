@@ -10,14 +10,16 @@
 #include "base/mem.h"
 #include "field/limits.h"
 #include "field/scalars.h"
+#include "plant/influence.h"
 
 #define FLAG 255
-#define STEP_LIMIT 1e6   /* times the range: a larger step would leave its rounding in the sum for good */
-#define ADDED_MOST 4096  /* updates before all is summed anew: what rounding leaves behind stays below 1e-9 of the range */
-#define JOB_WORK 30000.0 /* worth waking another thread for */
-#define SMALL_WORK 1e6   /* less is not cut in two where there are many */
-#define MAKE_WORK 1.0    /* of one column at one vertex: made and added */
-#define ADD_WORK 0.15    /* only added */
+#define BLIND_MOST 1000.0 /* times the group's range: a hot spot that nobody would see */
+#define STEP_LIMIT 1e6    /* times the range: a larger step would leave its rounding in the sum for good */
+#define ADDED_MOST 4096   /* updates before all is summed anew: what rounding leaves behind stays below 1e-9 of the range */
+#define JOB_WORK 30000.0  /* worth waking another thread for */
+#define SMALL_WORK 1e6    /* less is not cut in two where there are many */
+#define MAKE_WORK 1.0     /* of one column at one vertex: made and added */
+#define ADD_WORK 0.15     /* only added */
 
 struct update {
     struct state *state;
@@ -87,6 +89,8 @@ static void choose_rule(struct update *update)
         float offset = around && !difference && !places ? (float)group->ambient : 0;
         update->rule =
             (struct kernel_value){ .scale = 1, .offset = offset, .low = around ? offset : FLT_MAX, .high = around ? offset : -FLT_MAX };
+        if (state->params.interpolation == INTERPOLATION_GP) /* may pass the readings between them */
+            update->rule.low = -FLT_MAX, update->rule.high = FLT_MAX;
         for (size_t m = 0; m < state->weights->member_count; m++) {
             float value = (float)state->now[state->weights->members[m]].value;
             update->rule.low = fminf(update->rule.low, value + offset);
@@ -145,7 +149,7 @@ static uint8_t lacking_of(const struct weights *weights, size_t vertex, bool fil
 /* By how much of the weight is on Uncertain sensors; filled: by how far a lost sensor is the nearest. */
 static uint8_t uncertain_of(double marked, double total, uint8_t filled)
 {
-    double part = total > 0 ? 2 * marked / total : 0;
+    double part = total > 0 && marked > 0 ? 2 * marked / total : 0; /* some of gp's weights are below 0 */
     uint8_t leans = (uint8_t)(part >= 1 ? 128 + (int)(127 * (fmin(part, 2) - 1)) : (int)(127 * part));
     return leans > filled ? leans : filled;
 }
@@ -154,12 +158,13 @@ static bool set_flags(const struct update *update, size_t begin, size_t count, c
 {
     const uint8_t *place = update->state->weights->place + begin;
     struct scalar *at = update->state->at + begin;
-    bool fill = update->state->params.fill == FILL_NEIGHBOURS, changed = false;
+    bool blind = update->state->params.show == SHOW_BLIND; /* around a lost sensor it is told, too */
+    bool fill = blind || update->state->params.fill == FILL_NEIGHBOURS, changed = false;
     for (size_t j = 0; j < count; j++) {
         bool filled = fill && place[j] == PLACE_LOST;
         uint8_t no_limits = place[j] == PLACE_NO_LIMITS ? FLAG : 0;
         uint8_t no_data = place[j] == PLACE_GOOD || filled || no_limits ? 0 : FLAG;
-        uint8_t spread = fill && no_data == 0 && !no_limits ? update->state->weights->lost[begin + j] : 0;
+        uint8_t spread = fill && !blind && no_data == 0 && !no_limits ? update->state->weights->lost[begin + j] : 0;
         uint8_t uncertain = uncertain_of(update->marks ? marked[j] : 0, update->marks ? total[j] : 0, spread);
         uint8_t lacking = lacking_of(update->state->weights, begin + j, filled, no_limits);
         changed |= at[j].lacking != lacking || at[j].no_data != no_data || at[j].uncertain != uncertain || at[j].no_limits != no_limits;
@@ -196,11 +201,29 @@ static bool sum_block(const struct update *update, size_t block, size_t begin, s
     return flags && set_flags(update, begin, count, total, marked);
 }
 
+/* What depends on the sensors that are good, and not on what they say. A hot spot of size s, exp(-D^2 / 2 s^2), is shown in a picture by
+   the nearest sensor, which reads so much of it. */
+static bool map_block(const struct update *update, size_t begin, size_t count, float *values)
+{
+    const struct state *state = update->state;
+    struct weights *weights = state->weights;
+    const struct plant_group *group = state->layout->group;
+    const double nothing[KERNEL_BLOCK] = { 0 };
+    weights_prepare(weights, begin, count);
+    if (state->params.show == SHOW_UNCERTAINTY)
+        weights_deviations(weights, begin, count, values);
+    for (size_t j = 0; state->params.show == SHOW_BLIND && j < count; j++) {
+        double far = (double)weights->near_m[begin + j] / group->hot_spot_m, most = BLIND_MOST * (group->max - group->min);
+        values[j] = (float)fmin(PLANT_SEEN_PART * (group->max - group->min) * exp(far * far / 2), most);
+    }
+    return set_flags(update, begin, count, nothing, nothing);
+}
+
 /* Few columns, all kept, and no flag to set: all in one go. */
 static bool is_simple(const struct update *update, size_t block, size_t begin)
 {
-    return !update->state->sums && !update->flags && block < update->old && update->all.count > 0 && update->all.count < KERNEL_COLUMNS &&
-           weights_is_complete(update->state->weights, begin);
+    return !field_params_cover(&update->state->params) && !update->state->sums && !update->flags && block < update->old &&
+           update->all.count > 0 && update->all.count < KERNEL_COLUMNS && weights_is_complete(update->state->weights, begin);
 }
 
 static float sum_few(const struct update *update, size_t begin, size_t count, bool *changed)
@@ -224,6 +247,11 @@ static void update_blocks(void *arg, size_t begin, size_t end)
         size_t at = block * KERNEL_BLOCK, left = state->scalars.count - at, count = left < KERNEL_BLOCK ? left : KERNEL_BLOCK;
         if (is_simple(update, block, at)) {
             most = fmaxf(most, sum_few(update, at, count, &value_changed));
+            continue;
+        }
+        if (field_params_cover(&state->params)) {
+            flag_changed |= map_block(update, at, count, values);
+            most = fmaxf(most, kernel_store(values, count, state->at + at, &value_changed));
             continue;
         }
         double *sums = state->sums ? state->sums + at : room;

@@ -11,7 +11,10 @@
 #include "base/huge_pages.h"
 #include "plant/influence.h"
 
+#define LEAST_KNOWN 0.1 /* gp: so much less than in the prior must the variance be, else nothing is known there */
 #define LEAST_SHARE 0.1 /* fin: of a value, so much comes from sensors; else nothing is known there but what is around */
+
+#define DEVIATIONS_MOST 4.0 /* of the stated one: where all sensors of a body are lost, there is no bound */
 
 struct key_head { /* without holes: compared as bytes */
     const struct asset *file;
@@ -128,7 +131,13 @@ static bool take_prepared(struct weights *weights, const struct influence_entry 
         weights->total[v] = 1;
     memset(weights->known, KNOWN_TOP | KNOWN_TOTAL, block_count(layout->vertex_count));
     weights->decay_m = (float)entry->decay_m;
-    if (weights->interpolation == INTERPOLATION_FIN)
+    if (weights->interpolation == INTERPOLATION_GP) {
+        weights->deviations = influence_array(influence, entry->deviations);
+        weights->priors = weights->deviations + layout->vertex_count;
+        weights->deviation = (float)entry->deviation;
+        weights->decay_m = (float)(entry->range_m / sqrt(8));
+    }
+    if (weights->interpolation == INTERPOLATION_FIN || weights->interpolation == INTERPOLATION_GP)
         weights->beyond_m = mem_try_array(layout->vertex_count, sizeof(float));
     if (memchr(weights->takes_part, 0, layout->sensor_count))
         weights->fill = influence_fill_create(influence_array(influence, entry->precision), layout->sensor_count, weights->takes_part);
@@ -137,7 +146,7 @@ static bool take_prepared(struct weights *weights, const struct influence_entry 
         weights->ones[i] = 1;
     if (weights->fill)
         influence_fill_values(weights->fill, weights->ones);
-    return weights->beyond_m || weights->interpolation != INTERPOLATION_FIN;
+    return weights->beyond_m || weights->interpolation == INTERPOLATION_HARMONIC;
 }
 
 struct weights *weights_create(const struct layout *layout, const struct field_params *params, float radius_m, const uint8_t *usable,
@@ -349,6 +358,28 @@ static void find_beyond(struct weights *weights, size_t begin, size_t count)
         weights->beyond_m[begin + j] = share[j] > 1e-30 ? weights->decay_m * (float)log(LEAST_SHARE / share[j]) : INFINITY;
 }
 
+void weights_deviations(const struct weights *weights, size_t begin, size_t count, float *out)
+{
+    double more[KERNEL_BLOCK] = { 0 };
+    if (weights->fill)
+        influence_fill_variances(weights->fill, weights->prepared + begin, weights->layout->vertex_count, count, more);
+    for (size_t j = 0; j < count; j++) {
+        double own = (double)weights->deviations[begin + j], most = DEVIATIONS_MOST * (double)weights->deviation;
+        out[j] = (float)fmin(sqrt(own * own + more[j]), most);
+    }
+}
+
+/* The same for a process: the variance that sensors take away falls by e^2 in each decay length. */
+static void find_unknown(struct weights *weights, size_t begin, size_t count)
+{
+    float deviations[KERNEL_BLOCK];
+    weights_deviations(weights, begin, count, deviations);
+    for (size_t j = 0; j < count; j++) {
+        double part = (double)deviations[j] / fmax((double)weights->priors[begin + j], 1e-30), known = 1 - part * part;
+        weights->beyond_m[begin + j] = known > 1e-30 ? weights->decay_m / 2 * (float)log(LEAST_KNOWN / known) : INFINITY;
+    }
+}
+
 static void nearest(struct weights *weights, size_t begin, size_t count)
 {
     float scratch[KERNEL_BLOCK], lost_m[KERNEL_BLOCK], no_limits_m[KERNEL_BLOCK], *near_m = weights->near_m + begin;
@@ -360,7 +391,9 @@ static void nearest(struct weights *weights, size_t begin, size_t count)
                            weights->takes_part[i]                       ? near_m
                            : weights->configured[i] == SENSOR_NO_LIMITS ? no_limits_m
                                                                         : lost_m);
-    if (weights->beyond_m)
+    if (weights->beyond_m && weights->deviations)
+        find_unknown(weights, begin, count);
+    else if (weights->beyond_m)
         find_beyond(weights, begin, count);
     for (size_t j = 0; j < count; j++)
         weights->place[begin + j] = (uint8_t)place_of(near_m[j], lost_m[j], no_limits_m[j], weights->reach_m);
@@ -440,16 +473,6 @@ static const float *const *columns_after(const struct weights *weights, size_t b
     return room;
 }
 
-/* Distances of the terms that are added next, from the asset file: each sensor's are elsewhere in memory, in pages of their own. */
-static void ask_for_distances(const struct weights *weights, size_t begin, size_t count, const struct weights_terms *terms, size_t next)
-{
-    for (size_t k = next; k < next + KERNEL_COLUMNS && k < terms->count; k++) {
-        const struct layout_sensor *sensor = &weights->layout->sensors[weights->members[terms->members[k]]];
-        for (size_t j = 0; j < count && sensor->along_m && weights->distance == DISTANCE_GEODESIC; j += KERNEL_LINE)
-            __builtin_prefetch(sensor->along_m + begin + j);
-    }
-}
-
 void weights_add(struct weights *weights, size_t begin, size_t count, const struct weights_terms *terms, const struct weights_sums *sums)
 {
     static const double ones[KERNEL_COLUMNS] = { 1, 1, 1, 1, 1, 1, 1, 1 };
@@ -461,8 +484,6 @@ void weights_add(struct weights *weights, size_t begin, size_t count, const stru
     for (size_t first = 0; first < terms->count; first += KERNEL_COLUMNS) {
         size_t left = terms->count - first, number = left < KERNEL_COLUMNS ? left : KERNEL_COLUMNS;
         const float *columns[KERNEL_COLUMNS], *heavy[KERNEL_COLUMNS], *after[KERNEL_COLUMNS];
-        if (!keeps && !weights->prepared)
-            ask_for_distances(weights, begin, count, terms, first + number);
         for (size_t k = 0; k < number; k++) {
             uint32_t member = terms->members[first + k];
             if (weights->prepared) {
@@ -485,8 +506,11 @@ void weights_add(struct weights *weights, size_t begin, size_t count, const stru
             if (sums->total)
                 kernel_add(sums->total, heavy, ones, number, count, NULL);
         }
-        for (size_t k = 0; sums->marked && k < number; k++)
-            if (terms->marked[first + k])
+        for (size_t k = 0; sums->marked && k < number; k++) {
+            if (terms->marked[first + k] && !weights->deviations)
                 kernel_add(sums->marked, &heavy[k], ones, 1, count, NULL);
+            for (size_t j = 0; terms->marked[first + k] && weights->deviations && j < count; j++) /* two may not cancel each other out */
+                sums->marked[j] += fabs((double)heavy[k][j]);
+        }
     }
 }

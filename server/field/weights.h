@@ -45,18 +45,21 @@ struct weights {
     uint8_t *takes_part;                         /* by sensor of the layout: it is used */
     uint32_t *members;                           /* used sensors of the layout; a column's number is its place here. Prepared: all */
     size_t member_count;
-    float *near_m, *top; /* by vertex: distance of the nearest usable sensor; scale (kernels.h) */
-    float *total;        /* by vertex: the weights' sum */
-    uint8_t *place;      /* by vertex: enum place */
-    uint8_t *lost;       /* by vertex: how far nearer the nearest lost sensor is than near_m, as weights_lacking */
-    uint8_t *known;      /* by block: bits of enum weights_known, what is filled of the four above */
+    float *near_m, *top;         /* by vertex: distance of the nearest usable sensor; scale (kernels.h) */
+    float *total;                /* by vertex: the weights' sum */
+    uint8_t *place;              /* by vertex: enum place */
+    uint8_t *lost;               /* by vertex: how far nearer the nearest lost sensor is than near_m, as weights_lacking */
+    uint8_t *known;              /* by block: bits of enum weights_known, what is filled of the four above */
     const float *prepared;       /* [member][vertex]: columns from the asset's influence file; NULL: made from distances */
     struct influence_fill *fill; /* prepared, and some sensor is lost; else NULL */
     double *ones;                /* prepared, by sensor: what 1 of all used ones makes of each; else NULL */
-    float decay_m;               /* fin */
-    float *beyond_m;             /* fin, by vertex: how far beyond the place where sensors say more than a tenth of the value; else NULL */
-    float *columns;      /* [block][member][KERNEL_BLOCK] of the first kept_blocks, or NULL; of others they are made anew each time */
-    uint8_t *kept;       /* [block][member]: its column is filled; beside columns */
+    float decay_m;               /* fin; gp: 1/k of its kernel */
+    const float *deviations;     /* gp, by vertex: how far the field may err while all sensors are used; else NULL */
+    const float *priors;         /* gp, by vertex: how far it would without any */
+    float deviation;             /* gp: that of the prior */
+    float *beyond_m;             /* fin, gp, by vertex: how far beyond the rim of what sensors know; else NULL */
+    float *columns; /* [block][member][KERNEL_BLOCK] of the first kept_blocks, or NULL; of others they are made anew each time */
+    uint8_t *kept;  /* [block][member]: its column is filled; beside columns */
     size_t kept_blocks;
     int users;           /* states that hold it */
     uint64_t used, sums; /* tick of the last use; how often it was summed */
@@ -96,6 +99,10 @@ uint8_t weights_lacking(const struct weights *weights, float beyond_m);
 /* Computes what is still missing of near_m, top and place for a block of vertices (begin: a multiple of KERNEL_BLOCK; count <=
    KERNEL_BLOCK). Thread: any, on different blocks. */
 void weights_prepare(struct weights *weights, size_t begin, size_t count);
+
+/* gp: writes the standard deviation at vertices of one block, exact for the sensors that are used but for the samples that it was measured
+   by while preparing. Takes (lost * lost) steps for each vertex. Thread: any. */
+void weights_deviations(const struct weights *weights, size_t begin, size_t count, float *out);
 
 /* Which columns to add, by what factors. */
 struct weights_terms {

@@ -9,9 +9,9 @@
 #include <string.h>
 
 #include "base/mem.h"
+#include "placing/mover.h"
 #include "plant/transform.h"
 #include "scene/far_sensors.h"
-#include "scene/manifest.h"
 #include "surface/relocation.h"
 #include "value/quality.h"
 
@@ -122,39 +122,6 @@ void placing_destroy(struct placing **pointer)
 
 /* --- movers ------------------------------------------------------------------------------------------------------------------ */
 
-static void shape_of(const struct scene_asset *asset, struct relocation_shape *shape)
-{
-    const struct asset_view *view = &asset->file->view;
-    const struct asset_level *finest = &view->levels[0];
-    const struct asset_primitive *first = &view->primitives[finest->first_primitive], *last = first + finest->primitive_count - 1;
-    *shape = (struct relocation_shape){ .positions_m = view->positions_m,
-                                        .normals = view->normals,
-                                        .vertex_count = view->header->vertex_count,
-                                        .triangles = view->indices + first->first_index,
-                                        .triangle_count = (last->first_index + last->index_count - first->first_index) / 3,
-                                        .tolerance_m = asset->plant->tolerance_m };
-}
-
-static struct relocation *make_mover(const struct placing *placing, int asset)
-{
-    const struct scene_asset *of = &placing->params.scene->assets[asset];
-    struct manifest manifest = { 0 };
-    struct relocation_shape shape;
-    char *path = NULL;
-    shape_of(of, &shape);
-    bool read = manifest_read(placing->params.log, placing->folder, &manifest);
-    const struct manifest_entry *entry = read ? manifest_find(&manifest, of->plant->id) : NULL;
-    if (entry && entry->surface) {
-        shape.surface_path = path = mem_printf("%s/%s", placing->folder, entry->surface);
-        shape.surface_key = strtoull(entry->surface, NULL, 16); /* KEY.surface */
-    }
-    struct relocation *relocation = relocation_create(placing->params.log, placing->params.workers, &shape);
-    mem_free(path);
-    if (read)
-        manifest_finish(&manifest);
-    return relocation;
-}
-
 static bool is_moved_on(const struct placing *placing, int asset)
 {
     for (const struct place_set *set = placing->sets; set; set = set->next)
@@ -183,7 +150,7 @@ static struct relocation *relocation_of(struct placing *placing, int asset)
 {
     struct warm *warm = &placing->warm[asset];
     if (!warm->relocation) {
-        warm->relocation = make_mover(placing, asset);
+        warm->relocation = mover_create(placing->params.log, placing->params.workers, placing->params.scene, placing->folder, asset);
         cool(placing, asset);
     }
     warm->used = ++placing->uses;

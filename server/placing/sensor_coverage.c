@@ -9,8 +9,7 @@
 #include "field/kernels.h"
 #include "plant/transform.h"
 
-/* A third of each triangle of the finest level, in square metres. */
-static double *areas_of(const struct asset_view *view)
+double *sensor_coverage_areas(const struct asset_view *view)
 {
     double *areas = mem_array(view->header->vertex_count, sizeof(*areas));
     const struct asset_level *finest = &view->levels[0];
@@ -96,7 +95,7 @@ bool sensor_coverage_find(const struct sensor_coverage_query *order, struct sens
     *out = (struct sensor_coverage){ .next_tags = { -1, -1 } };
     if (!layout)
         return false;
-    double *areas = areas_of(&asset->file->view), all = 0, far = 0, lost = 0;
+    double *areas = sensor_coverage_areas(&asset->file->view), all = 0, far = 0, lost = 0;
     double usual_m = isfinite(order->reach_m) ? order->reach_m / 2 : size_of(asset) / 5;
     struct nearest *nearest = mem_new(sizeof(*nearest));
     size_t farthest = 0;

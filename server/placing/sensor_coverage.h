@@ -28,4 +28,8 @@ struct sensor_coverage {
 /* Computes the coverage that the query asks for into *out. Returns false if no sensor of the group is on the asset. */
 bool sensor_coverage_find(const struct sensor_coverage_query *order, struct sensor_coverage *out);
 
+/* Returns the area that each vertex stands for, a third of each triangle of the finest level around it, in square metres. The caller frees
+   it (mem_free). */
+double *sensor_coverage_areas(const struct asset_view *view);
+
 #endif

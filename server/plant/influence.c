@@ -3,6 +3,7 @@
 #include "plant/influence.h"
 
 #include <math.h>
+#include <stddef.h>
 #include <string.h>
 
 #include "plant/plant_impl.h"
@@ -14,7 +15,9 @@ double plant_decay_m(const struct plant_asset *asset)
 
 void plant_influence_read(struct yaml_reader *reader, yaml_node_t *node, void *record)
 {
-    static const char *const names[INTERPOLATIONS] = { [INTERPOLATION_HARMONIC] = "harmonic", [INTERPOLATION_FIN] = "fin" };
+    static const char *const names[INTERPOLATIONS] = {
+        [INTERPOLATION_HARMONIC] = "harmonic", [INTERPOLATION_FIN] = "fin", [INTERPOLATION_GP] = "gp"
+    };
     struct plant_group *group = record;
     int count = yaml_list_count(reader, node, "prepare");
     for (int i = 0; i < count; i++) {
@@ -24,10 +27,40 @@ void plant_influence_read(struct yaml_reader *reader, yaml_node_t *node, void *r
         while (text && found < INTERPOLATIONS && strcmp(text, names[found]) != 0)
             found++;
         if (!text || found == INTERPOLATIONS)
-            yaml_expected(reader, item, "prepare", "harmonic or fin");
+            yaml_expected(reader, item, "prepare", "harmonic, fin or gp");
         else
             group->prepared |= 1u << found;
     }
+}
+
+void plant_gp_read(struct yaml_reader *reader, yaml_node_t *node, void *record)
+{
+    static const struct key keys[] = { { "range_m", KEY_NUMBER, false, offsetof(struct plant_gp, range_m), 1e-3, 1e6, NULL, NULL },
+                                       { "noise", KEY_NUMBER, false, offsetof(struct plant_gp, noise), 0, PLANT_MAX_VALUE, NULL, NULL },
+                                       { "deviation", KEY_NUMBER, false, offsetof(struct plant_gp, deviation), 1e-12, PLANT_MAX_VALUE, NULL,
+                                         NULL },
+                                       { "fit", KEY_NAME, false, offsetof(struct plant_gp, fit), 0, 0, NULL, NULL },
+                                       { 0 } };
+    struct plant_group *group = record;
+    struct yaml_map map;
+    yaml_map_read(reader, node, "gp", keys, &group->gp, &map);
+}
+
+/* Without readings to fit to, a quarter of the group's range is taken for what the surface varies by, and a 200th of it for noise. */
+void plant_gp_check(struct yaml_reader *reader, const struct yaml_map *map, const struct plant *plant, struct plant_group *group)
+{
+    struct plant_gp *gp = &group->gp;
+    if (gp->fit) {
+        plant_resolve_path(plant, &gp->fit);
+        return;
+    }
+    gp->deviation = isnan(gp->deviation) ? PLANT_GP_DEVIATION * (group->max - group->min) : gp->deviation;
+    gp->noise = isnan(gp->noise) ? PLANT_GP_NOISE * (group->max - group->min) : gp->noise;
+    if (plant_prepares(group, INTERPOLATION_GP) && isnan(gp->range_m))
+        yaml_error(
+            reader, yaml_map_place(map, "gp"),
+            "group %s: gp needs 'gp: { range_m: ... }', how far one place says something about another, or 'fit', a file of readings",
+            group->id ? group->id : "");
 }
 
 static bool has_sensor(const struct plant *plant, int group, int asset)

@@ -16,7 +16,7 @@
 #define SLACK 0.05
 enum { WHY_BYTES = 400, SHOWN_NODES = 6 };
 /* What serving takes, as measured with 20 million triangles in 3,040 assets: 3.1 GB. */
-enum { TRIANGLE_BYTES = 150, BASE_BYTES = 200 << 20 };
+enum { TRIANGLE_BYTES = 150, BASE_BYTES = 350 << 20 };
 
 struct check {
     const struct plant *plant;
@@ -240,20 +240,19 @@ static void check_sizes(const struct check *check, const double (*sizes_m)[3], F
     mem_free(longest_m);
 }
 
-static bool check_memory(const struct check *check)
+static bool check_memory(const struct check *check, size_t machine)
 {
-    size_t machine = memory_machine_bytes();
     uint64_t most = machine > BASE_BYTES ? (machine - BASE_BYTES) / TRIANGLE_BYTES : 0;
     if (check->triangles <= most)
         return true;
     diag_error(check->diag, check->plant->path, 0, 0,
-               "%.1f million triangles are too many: the %.1f GB of memory of this machine hold %.1f million. Leave parts of the plant "
+               "%.2f million triangles are too many: %.2f GB of memory hold %.2f million. Leave parts of the plant "
                "out, or import it with a larger --chord",
                (double)check->triangles / 1e6, (double)machine / 1e9, (double)most / 1e6);
     return false;
 }
 
-bool models_check(const struct plant *plant, struct diag *diag, FILE *out)
+bool models_check(const struct plant *plant, size_t memory_bytes, struct diag *diag, FILE *out)
 {
     struct check check = { .plant = plant, .diag = diag };
     bool *done = mem_array(plant->asset_count, sizeof(*done));
@@ -264,5 +263,5 @@ bool models_check(const struct plant *plant, struct diag *diag, FILE *out)
     check_sizes(&check, (const double(*)[3])sizes_m, out);
     mem_free(done);
     mem_free(sizes_m);
-    return check_memory(&check);
+    return check_memory(&check, memory_bytes ? memory_bytes : memory_machine_bytes());
 }

@@ -8,7 +8,7 @@
 #include "plant/plant.h"
 
 /* Adds findings to diag, and prints a line with the size of each asset to out (NULL: none). Returns false if the plant has more triangles
-   than this machine's memory holds; that is an error, too. */
-bool models_check(const struct plant *plant, struct diag *diag, FILE *out);
+   than a machine of so much memory (0: this one) can serve; that is an error, too. */
+bool models_check(const struct plant *plant, size_t memory_bytes, struct diag *diag, FILE *out);
 
 #endif

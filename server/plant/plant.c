@@ -126,6 +126,7 @@ static void free_groups(struct plant *plant)
     for (size_t i = 0; i < plant->group_count; i++) {
         mem_free(plant->groups[i].id);
         mem_free(plant->groups[i].quantity);
+        mem_free(plant->groups[i].gp.fit);
         mem_free(plant->groups[i].unit);
     }
     mem_free(plant->groups);

@@ -12,8 +12,15 @@
 
 #define PLANT_MAX_M 1e7 /* nothing is farther from the origin: plants may lie where their survey has them, 5,500 km north (UTM) */
 
-enum interpolation { INTERPOLATION_SHEPARD, INTERPOLATION_PAPER, INTERPOLATION_HARMONIC, INTERPOLATION_FIN, INTERPOLATIONS };
-enum distance_mode { DISTANCE_GEODESIC, DISTANCE_EUCLIDEAN };
+enum interpolation {
+    INTERPOLATION_SHEPARD,
+    INTERPOLATION_PAPER,
+    INTERPOLATION_HARMONIC,
+    INTERPOLATION_FIN,
+    INTERPOLATION_GP,
+    INTERPOLATIONS
+};
+enum distance_mode { DISTANCE_GEODESIC, DISTANCE_EUCLIDEAN, DISTANCE_HEAT, DISTANCES }; /* heat: as the paper finds geodesic ones */
 enum fill_mode { FILL_NONE, FILL_NEIGHBOURS };             /* may neighbours paint the place of a lost sensor? */
 enum plant_show { PLANT_SHOW_VALUE, PLANT_SHOW_OPERATOR }; /* what a client begins with: readings, or their places between limits */
 enum plant_start { PLANT_START_SHOWN, PLANT_START_GHOST, PLANT_START_HIDDEN }; /* an asset, until somebody asks for something else */
@@ -88,6 +95,11 @@ struct plant_mirror {  /* a bit of another alarm system */
     bool acknowledged; /* the bit says that, not that the alarm is there */
 };
 
+struct plant_gp {                     /* what the interpolation `gp` is prepared with */
+    double range_m, noise, deviation; /* NaN: to be fitted to readings */
+    char *fit;                        /* path of a file with readings; NULL: nothing is fitted */
+};
+
 enum { PLANT_BREAKS = 16, PLANT_ISOLINES = 32 };
 struct plant_group {
     char *id, *quantity, *unit;
@@ -101,8 +113,12 @@ struct plant_group {
     double radius_m;   /* R of Algorithm 1; 0 = the largest distance on the asset */
     double reach_m;    /* INFINITY: no limit */
     unsigned prepared; /* bit of each interpolation that plantcast-prep computes (plant/influence.h), its own too */
-    double disc_m;     /* harmonic, fin: radius of the disc that each sensor is */
+    double disc_m;     /* harmonic, fin, gp: radius of the disc that each sensor is */
     double ambient;    /* fin: what is around, in its unit; NaN: not stated */
+    bool directed;     /* some of its tags have a direction: it is shown with arrows */
+    bool heat;         /* geodesic: heat; plantcast-prep finds distances as the paper does too */
+    struct plant_gp gp;
+    double hot_spot_m; /* show: blind; of hot spots, the distance at which they are down to exp(-1/2) */
     bool cuts_singles; /* singles: cut; see plant_cuts_singles */
     enum fill_mode fill;
     bool log;                    /* scale: log; min > 0 */
@@ -259,6 +275,8 @@ struct plant_tag {
     struct plant_alarm_settings alarm_settings; /* resolved: own, else the group's */
     int suppressed_by;                          /* while this tag, a bit, is 1, by design; -1: none */
     struct plant_mirror mirror;
+    int direction[3];    /* tags that say where its value points: components along X, Y and Z of the plant, or a bearing */
+    int direction_count; /* 0: it has no direction; 1: a bearing, degrees; 3 */
     int line, column; /* of its name in the tag list */
 };
 

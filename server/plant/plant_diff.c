@@ -66,6 +66,14 @@ static void compare_limits(struct plant_diff *diff, const struct plant_tag *a, c
             say(diff, "tag %s: %s %g > %g", b->name, plant_limit_names[i], a->limits[i], b->limits[i]);
 }
 
+static bool same_direction(const struct plant *before, const struct plant_tag *a, const struct plant *after, const struct plant_tag *b)
+{
+    bool same = a->direction_count == b->direction_count;
+    for (int i = 0; i < b->direction_count && same; i++)
+        same = same_text(before->tags[a->direction[i]].name, after->tags[b->direction[i]].name);
+    return same;
+}
+
 static void compare_tags(struct plant_diff *diff, const struct plant *before, const struct plant_tag *a, const struct plant *after,
                          const struct plant_tag *b)
 {
@@ -79,6 +87,7 @@ static void compare_tags(struct plant_diff *diff, const struct plant *before, co
         !same_text(a->node, b->node) || memcmp(a->position_m, b->position_m, sizeof(a->position_m)) != 0 ||
             a->place_assumed != b->place_assumed,
         "place");
+    add(what, sizeof(what), !same_direction(before, a, after, b), "direction");
     add(what, sizeof(what),
         a->scaling != b->scaling || a->raw_low != b->raw_low || a->raw_high != b->raw_high || a->scaled_low != b->scaled_low ||
             a->scaled_high != b->scaled_high || a->negate != b->negate,
@@ -142,7 +151,9 @@ static bool same_group(const struct plant_group *a, const struct plant_group *b)
         same = same && same_number(a->limits[i], b->limits[i]);
     return same && a->interpolation == b->interpolation && a->distance == b->distance && a->strength == b->strength &&
            a->decay == b->decay && a->power == b->power && a->radius_m == b->radius_m && a->reach_m == b->reach_m &&
-           a->prepared == b->prepared && a->disc_m == b->disc_m && same_number(a->ambient, b->ambient) &&
+           a->prepared == b->prepared && a->heat == b->heat && a->disc_m == b->disc_m && same_number(a->ambient, b->ambient) &&
+           a->hot_spot_m == b->hot_spot_m && same_number(a->gp.range_m, b->gp.range_m) && same_number(a->gp.noise, b->gp.noise) &&
+           same_number(a->gp.deviation, b->gp.deviation) && same_text(a->gp.fit, b->gp.fit) &&
            a->cuts_singles == b->cuts_singles && a->fill == b->fill && a->log == b->log && a->break_count == b->break_count &&
            a->isoline_count == b->isoline_count && !memcmp(a->breaks, b->breaks, sizeof(a->breaks)) &&
            !memcmp(a->isolines, b->isolines, sizeof(a->isolines)) && a->alarm_settings.deadband == b->alarm_settings.deadband &&

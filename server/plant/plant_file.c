@@ -30,11 +30,11 @@ static const struct choice start_choices[] = {
 };
 static const struct choice unit_choices[] = { { "m", 1 }, { "mm", 1e-3 }, { "cm", 1e-2 }, { "in", 0.0254 }, { "ft", 0.3048 }, { 0 } };
 static const struct choice frame_choices[] = { { "plant", 0 }, { "asset", 1 }, { 0 } };
-static const struct choice interpolation_choices[] = { { "shepard", INTERPOLATION_SHEPARD },
-                                                       { "paper", INTERPOLATION_PAPER },
-                                                       { "harmonic", INTERPOLATION_HARMONIC },
-                                                       { "fin", INTERPOLATION_FIN },
-                                                       { 0 } };
+static const struct choice interpolation_choices[] = {
+    { "shepard", INTERPOLATION_SHEPARD }, { "paper", INTERPOLATION_PAPER }, { "harmonic", INTERPOLATION_HARMONIC },
+    { "fin", INTERPOLATION_FIN },         { "gp", INTERPOLATION_GP },       { 0 }
+};
+static const struct choice geodesic_choices[] = { { "exact", false }, { "heat", true }, { 0 } };
 static const struct choice distance_choices[] = { { "geodesic", DISTANCE_GEODESIC }, { "euclidean", DISTANCE_EUCLIDEAN }, { 0 } };
 static const struct choice fill_choices[] = { { "none", FILL_NONE }, { "neighbours", FILL_NEIGHBOURS }, { 0 } };
 static const struct choice units_choices[] = { { "convert", 0 }, { "as-written", 1 }, { 0 } };
@@ -354,6 +354,7 @@ static void read_group(struct yaml_reader *reader, yaml_node_t *node, struct pla
         { "alarm", KEY_CUSTOM, false, 0, 0, 0, NULL, plant_alarms_read_group },
         { "interpolation", KEY_CHOICE, false, offsetof(struct plant_group, interpolation), 0, 0, interpolation_choices, NULL },
         { "distance", KEY_CHOICE, false, offsetof(struct plant_group, distance), 0, 0, distance_choices, NULL },
+        { "geodesic", KEY_FLAG, false, offsetof(struct plant_group, heat), 0, 0, geodesic_choices, NULL },
         { "strength", KEY_NUMBER, false, offsetof(struct plant_group, strength), 0, 100, NULL, NULL },
         { "decay", KEY_NUMBER, false, offsetof(struct plant_group, decay), 0, 100, NULL, NULL },
         { "power", KEY_NUMBER, false, offsetof(struct plant_group, power), 0.5, 16, NULL, NULL },
@@ -362,6 +363,8 @@ static void read_group(struct yaml_reader *reader, yaml_node_t *node, struct pla
         { "prepare", KEY_CUSTOM, false, 0, 0, 0, NULL, plant_influence_read },
         { "disc_m", KEY_NUMBER, false, offsetof(struct plant_group, disc_m), 1e-4, 100, NULL, NULL },
         { "ambient", KEY_NUMBER, false, offsetof(struct plant_group, ambient), -PLANT_MAX_VALUE, PLANT_MAX_VALUE, NULL, NULL },
+        { "hot_spot_m", KEY_NUMBER, false, offsetof(struct plant_group, hot_spot_m), 1e-3, 1e6, NULL, NULL },
+        { "gp", KEY_CUSTOM, false, 0, 0, 0, NULL, plant_gp_read },
         { "singles", KEY_FLAG, false, offsetof(struct plant_group, cuts_singles), 0, 0, singles_choices, NULL },
         { "fill", KEY_CHOICE, false, offsetof(struct plant_group, fill), 0, 0, fill_choices, NULL },
         { "scale", KEY_FLAG, false, offsetof(struct plant_group, log), 0, 0, scale_choices, NULL },
@@ -377,11 +380,16 @@ static void read_group(struct yaml_reader *reader, yaml_node_t *node, struct pla
                                    .reach_m = INFINITY,
                                    .disc_m = PLANT_DISC_M,
                                    .ambient = NAN,
+                                   .hot_spot_m = PLANT_HOT_SPOT_M,
+                                   .gp = { NAN, NAN, NAN, NULL },
                                    .alarm_settings.priority = ALARM_PRIORITY_DEFAULT,
                                    .line = yaml_place(node).line };
     if (!yaml_map_read(reader, node, "a group", keys, group, &map))
         return;
     group->prepared |= 1u << group->interpolation;
+    if (group->heat && group->distance == DISTANCE_GEODESIC)
+        group->distance = DISTANCE_HEAT;
+    plant_gp_check(reader, &map, plant, group);
     if (!group->quantity && group->id)
         group->quantity = mem_strdup(group->id);
     if (yaml_map_good(&map, "min") && yaml_map_good(&map, "max") && group->min >= group->max)

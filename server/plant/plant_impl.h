@@ -26,6 +26,9 @@ void plant_tours_read(struct yaml_reader *reader, yaml_node_t *node, struct plan
 void plant_walls_read(struct yaml_reader *reader, yaml_node_t *node, struct plant *plant);
 /* Reads a group's list `prepare` (plant/influence.h). */
 void plant_influence_read(struct yaml_reader *reader, yaml_node_t *node, void *record);
+/* Reads a group's key `gp`; checks what it says and sets what it does not. */
+void plant_gp_read(struct yaml_reader *reader, yaml_node_t *node, void *group);
+void plant_gp_check(struct yaml_reader *reader, const struct yaml_map *map, const struct plant *plant, struct plant_group *group);
 /* Reports what is missing for fin: the group's ambient, and the thickness of assets with sensors of the group. */
 void plant_influence_check(const struct plant *plant, struct diag *diag);
 /* Report views, tags and tours that stops and panes name and that are not there; the tag list has been read. */

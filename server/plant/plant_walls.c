@@ -12,6 +12,8 @@ const char *const pane_kind_names[] = { [PANE_VIEWS] = "views",   [PANE_TREND] =
                                         [PANE_TILES] = "tiles", [PANE_CLOCK] = "clock", [PANE_TEXT] = "text",
                                         [PANE_TOUR] = "tour" };
 
+static const double BEZEL_MOST_MM = 200;
+
 static void add_item(struct wall_pane *pane, const yaml_node_t *node)
 {
     struct place place = yaml_place(node);
@@ -210,6 +212,66 @@ static void read_panes(struct yaml_reader *reader, yaml_node_t *node, void *reco
         read_pane(reader, yaml_list_item(reader, node, i), display, &display->panes[display->pane_count++]);
 }
 
+/* A number, or two: across and down. */
+static void read_bezel(struct yaml_reader *reader, yaml_node_t *node, void *record)
+{
+    double *bezel_mm = ((struct wall_tile *)record)->bezel_mm;
+    if (node->type == YAML_SCALAR_NODE) {
+        yaml_number(reader, node, "bezel_mm", 0, BEZEL_MOST_MM, &bezel_mm[0]);
+        bezel_mm[1] = bezel_mm[0];
+        return;
+    }
+    int count = yaml_list_count(reader, node, "bezel_mm");
+    if (count != 2)
+        yaml_error(reader, yaml_place(node), "bezel_mm: expected one number, or two: across and down; found %d", count);
+    for (int i = 0; i < count && i < 2; i++)
+        yaml_number(reader, yaml_list_item(reader, node, i), "bezel_mm", 0, BEZEL_MOST_MM, &bezel_mm[i]);
+}
+
+#define READ_TILE_AS(name, read)                                                          \
+    static void name(struct yaml_reader *reader, yaml_node_t *node, void *record)         \
+    {                                                                                     \
+        read(reader, node, &((struct wall_tile *)record)->pane);                          \
+    }
+READ_TILE_AS(read_tile_views, read_views)
+READ_TILE_AS(read_tile_tour, read_tour)
+
+static void read_tile(struct yaml_reader *reader, yaml_node_t *node, void *record)
+{
+    static const struct choice yes[] = { { "no", 0 }, { "yes", 1 }, { 0 } };
+    static const struct key keys[] = {
+        { "columns", KEY_INT, true, offsetof(struct wall_tile, columns), 1, WALL_DISPLAYS, NULL, NULL },
+        { "rows", KEY_INT, true, offsetof(struct wall_tile, rows), 1, WALL_DISPLAYS, NULL, NULL },
+        { "bezel_mm", KEY_CUSTOM, false, 0, 0, 0, NULL, read_bezel },
+        { "title", KEY_NAME, false, offsetof(struct wall_tile, pane.title), 0, 0, NULL, NULL },
+        { "every_s", KEY_NUMBER, false, offsetof(struct wall_tile, pane.every_s), 5, 86400, NULL, NULL },
+        { "on_alarm", KEY_FLAG, false, offsetof(struct wall_tile, pane.on_alarm), 0, 0, yes, NULL },
+        { "views", KEY_CUSTOM, false, 0, 0, 0, NULL, read_tile_views },
+        { "tour", KEY_CUSTOM, false, 0, 0, 0, NULL, read_tile_tour },
+        { 0 }
+    };
+    struct wall_tile *tile = &((struct wall *)record)->tile;
+    struct yaml_map map;
+    tile->pane.every_s = 30;
+    bool good = yaml_map_read(reader, node, "a tile", keys, tile, &map) && yaml_map_good(&map, "columns") && yaml_map_good(&map, "rows");
+    int count = tile->columns * tile->rows;
+    if (good && (count < 2 || count > WALL_DISPLAYS)) {
+        yaml_error(reader, map.place, "tile: expected 2 to %d displays, found %d columns and %d rows", WALL_DISPLAYS, tile->columns,
+                   tile->rows);
+        good = false;
+    }
+    if (good && yaml_map_has(&map, "views") == yaml_map_has(&map, "tour")) {
+        yaml_error(reader, map.place, "tile: expected either views or a tour");
+        good = false;
+    }
+    if (good && tile->pane.kind == PANE_TOUR && tile->pane.item_count > 1)
+        yaml_error(reader, yaml_map_place(&map, "tour"), "tour: expected one, found %zu", tile->pane.item_count);
+    if (good && tile->pane.kind == PANE_TOUR && yaml_map_has(&map, "every_s"))
+        yaml_error(reader, yaml_map_place(&map, "every_s"), "every_s: a tour has its own times");
+    if (!good)
+        tile->columns = tile->rows = 0;
+}
+
 static void read_displays(struct yaml_reader *reader, yaml_node_t *node, void *record)
 {
     static const struct key keys[] = { { "grid", KEY_CUSTOM, true, 0, 0, 0, NULL, read_grid },
@@ -232,6 +294,40 @@ static void read_dim(struct yaml_reader *reader, yaml_node_t *node, void *record
     plant_day_span_read(reader, node, "dim_hours", &dim->from_min, &dim->to_min);
 }
 
+static void pane_copy(const struct wall_pane *from, struct wall_pane *to)
+{
+    *to = *from;
+    to->area = mem_strdup("main");
+    to->title = from->title ? mem_strdup(from->title) : NULL;
+    for (size_t i = 0; i < from->item_count; i++)
+        to->items[i] = mem_strdup(from->items[i]);
+}
+
+/* The displays of the large picture come before the others. */
+static void add_tiles(struct yaml_reader *reader, const struct yaml_map *map, struct wall *wall)
+{
+    size_t tiles = (size_t)(wall->tile.columns * wall->tile.rows), others = wall->display_count;
+    if (tiles == 0)
+        return;
+    if (tiles + others > WALL_DISPLAYS) {
+        yaml_error(reader, yaml_map_place(map, "tile"), "tile: expected at most %d displays of a wall, found %zu of it and %zu others",
+                   WALL_DISPLAYS, tiles, others);
+        wall->tile.columns = wall->tile.rows = 0;
+        return;
+    }
+    struct wall_display *displays = mem_array(tiles + others, sizeof(*displays));
+    for (size_t i = 0; i < tiles; i++) {
+        displays[i] = (struct wall_display){ .row_count = 1, .pane_count = 1 };
+        displays[i].rows[0] = mem_strdup("main");
+        pane_copy(&wall->tile.pane, &displays[i].panes[0]);
+    }
+    if (others > 0)
+        memcpy(displays + tiles, wall->displays, others * sizeof(*displays));
+    mem_free(wall->displays);
+    wall->displays = displays;
+    wall->display_count = tiles + others;
+}
+
 void plant_walls_read(struct yaml_reader *reader, yaml_node_t *node, struct plant *plant)
 {
     static const struct key keys[] = { { "id", KEY_NAME, true, offsetof(struct wall, id), 0, 0, NULL, NULL },
@@ -239,7 +335,8 @@ void plant_walls_read(struct yaml_reader *reader, yaml_node_t *node, struct plan
                                        { "distance_m", KEY_NUMBER, false, offsetof(struct wall, metres), 0.5, 50, NULL, NULL },
                                        { "dim_hours", KEY_CUSTOM, false, 0, 0, 0, NULL, read_dim },
                                        { "dim_percent", KEY_NUMBER, false, offsetof(struct wall, dim_percent), 20, 100, NULL, NULL },
-                                       { "displays", KEY_CUSTOM, true, 0, 0, 0, NULL, read_displays },
+                                       { "tile", KEY_CUSTOM, false, 0, 0, 0, NULL, read_tile },
+                                       { "displays", KEY_CUSTOM, false, 0, 0, 0, NULL, read_displays },
                                        { 0 } };
     int count;
     plant->walls = plant_list_make(reader, node, "walls", 0, sizeof(*plant->walls), &count);
@@ -253,8 +350,19 @@ void plant_walls_read(struct yaml_reader *reader, yaml_node_t *node, struct plan
             continue;
         if (wall->id && !named_view_id_valid(wall->id))
             yaml_error(reader, yaml_map_place(&map, "id"), "id: expected letters, digits, '_', '-' and '.', found '%.60s'", wall->id);
+        if (!yaml_map_has(&map, "displays") && !yaml_map_has(&map, "tile"))
+            yaml_error(reader, map.place, "a wall: expected displays, or a tile, or both");
+        add_tiles(reader, &map, wall);
         plant_list_check_id(reader, &map, "wall", plant->walls, plant->wall_count, sizeof(*wall), offsetof(struct wall, line));
     }
+}
+
+const struct wall *wall_find(const struct plant *plant, const char *id)
+{
+    for (size_t i = 0; i < plant->wall_count; i++)
+        if (!strcmp(plant->walls[i].id, id))
+            return &plant->walls[i];
+    return NULL;
 }
 
 /* --- what panes name -------------------------------------------------------------------------------------------------------- */
@@ -284,24 +392,35 @@ static void check_items(const struct plant *plant, const struct wall_pane *pane,
     }
 }
 
+/* The displays of a large picture name the same: one of them is checked. */
+static size_t tiles_but_one(const struct wall *wall)
+{
+    int count = wall->tile.columns * wall->tile.rows;
+    return count > 0 ? (size_t)count - 1 : 0;
+}
+
 void plant_walls_check(const struct plant *plant, struct diag *diag)
 {
     for (size_t w = 0; w < plant->wall_count; w++)
-        for (size_t d = 0; d < plant->walls[w].display_count; d++)
+        for (size_t d = tiles_but_one(&plant->walls[w]); d < plant->walls[w].display_count; d++)
             for (size_t p = 0; p < plant->walls[w].displays[d].pane_count; p++)
                 check_items(plant, &plant->walls[w].displays[d].panes[p], diag);
+}
+
+static void free_pane(struct wall_pane *pane)
+{
+    mem_free(pane->area);
+    mem_free(pane->title);
+    for (size_t k = 0; k < pane->item_count; k++)
+        mem_free(pane->items[k]);
 }
 
 static void free_display(struct wall_display *display)
 {
     for (size_t i = 0; i < display->row_count; i++)
         mem_free(display->rows[i]);
-    for (size_t i = 0; i < display->pane_count; i++) {
-        mem_free(display->panes[i].area);
-        mem_free(display->panes[i].title);
-        for (size_t k = 0; k < display->panes[i].item_count; k++)
-            mem_free(display->panes[i].items[k]);
-    }
+    for (size_t i = 0; i < display->pane_count; i++)
+        free_pane(&display->panes[i]);
 }
 
 void plant_walls_free(struct plant *plant)
@@ -309,8 +428,49 @@ void plant_walls_free(struct plant *plant)
     for (size_t i = 0; i < plant->wall_count; i++) {
         for (size_t d = 0; d < plant->walls[i].display_count; d++)
             free_display(&plant->walls[i].displays[d]);
+        free_pane(&plant->walls[i].tile.pane);
         mem_free(plant->walls[i].displays);
         mem_free(plant->walls[i].id);
     }
     mem_free(plant->walls);
+}
+
+/* --- what a display shows ------------------------------------------------------------------------------------------------------ */
+
+const struct wall_display *wall_display_find(const struct plant *plant, const char *wall, int number)
+{
+    for (size_t i = 0; i < plant->wall_count; i++)
+        if (!strcmp(plant->walls[i].id, wall) && number >= 1 && (size_t)number <= plant->walls[i].display_count)
+            return &plant->walls[i].displays[number - 1];
+    return NULL;
+}
+
+bool wall_display_has(const struct wall_display *display, enum pane_kind kind, const char *item)
+{
+    for (size_t i = 0; display && i < display->pane_count; i++)
+        for (size_t n = 0; display->panes[i].kind == kind && n < display->panes[i].item_count; n++)
+            if (!item || !strcmp(display->panes[i].items[n], item))
+                return true;
+    return false;
+}
+
+bool wall_display_has_pictures(const struct wall_display *display)
+{
+    return wall_display_has(display, PANE_VIEWS, NULL) || wall_display_has(display, PANE_TOUR, NULL);
+}
+
+bool wall_display_shows_tag(const struct wall_display *display, const char *tag)
+{
+    return wall_display_has(display, PANE_TREND, tag) || wall_display_has(display, PANE_TILES, tag);
+}
+
+bool wall_display_shows_view(const struct plant *plant, const struct wall_display *display, const char *id)
+{
+    if (wall_display_has(display, PANE_VIEWS, id))
+        return true;
+    for (size_t t = 0; t < plant->tour_count; t++)
+        for (size_t s = 0; s < plant->tours[t].stop_count && wall_display_has(display, PANE_TOUR, plant->tours[t].id); s++)
+            if (!strcmp(plant->tours[t].stops[s].view, id))
+                return true;
+    return false;
 }

@@ -7,7 +7,8 @@
 
 bool plant_cuts_singles(const struct plant_group *group)
 {
-    return group->interpolation == INTERPOLATION_PAPER || plant_prepares(group, INTERPOLATION_FIN) || group->cuts_singles;
+    return group->interpolation == INTERPOLATION_PAPER || plant_prepares(group, INTERPOLATION_FIN) ||
+           plant_prepares(group, INTERPOLATION_GP) || group->cuts_singles;
 }
 
 size_t plant_singles(const struct plant *plant, int group, int *first)

@@ -61,6 +61,7 @@ static const struct column_name column_names[] = { /* the first name of a column
     { "Suppressed By", COL_SUPPRESSED_BY },
     { "Mirrors", COL_MIRRORS },
     { "Place", COL_PLACE },
+    { "Direction", COL_DIRECTION },
 };
 enum { NAME_COUNT = sizeof(column_names) / sizeof(*column_names) };
 

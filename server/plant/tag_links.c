@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Quality tags and heartbeats: names of other tags. */
+/* Quality tags, directions and heartbeats: names of other tags. */
 #include "plant/tag_links.h"
 
 #include <stdlib.h>
@@ -55,6 +55,23 @@ static void add(struct tag_links *links, struct tag_columns *columns, enum tag_c
     };
 }
 
+/* One name, or three with spaces between them. */
+static void add_direction(struct tag_links *links, struct tag_columns *columns, size_t tag)
+{
+    const char *at = cell_text(columns, COL_DIRECTION);
+    int count = 0;
+    for (at += strspn(at, " "); *at && count < 4; count++) {
+        size_t length = strcspn(at, " ");
+        add(links, columns, COL_DIRECTION, tag, mem_printf("%.*s", (int)length, at));
+        links->at[links->count - 1].direction = true;
+        at += length + strspn(at + length, " ");
+    }
+    if (count != 0 && count != 1 && count != 3)
+        cell_error(columns, COL_DIRECTION,
+                   "Direction: expected one tag, a bearing in degrees, or three, the components along X, Y and Z, found '%.60s'",
+                   cell_text(columns, COL_DIRECTION));
+}
+
 bool tag_is_derived(const struct tag_columns *columns)
 {
     return *cell_text(columns, COL_ADDRESS) == '=';
@@ -66,6 +83,7 @@ void tag_links_add(struct tag_links *links, struct tag_links *derived, struct ta
     const char *text = cell_text(columns, COL_QUALITY_TAG);
     if (tag_is_derived(columns))
         add(derived, columns, COL_ADDRESS, tag, NULL);
+    add_direction(links, columns, tag);
     if (!*text)
         return;
     char *name = read_form(text, quality);
@@ -99,6 +117,23 @@ static void resolve_quality(const struct tag_link *link, struct plant *plant, st
         diag_error(diag, plant->tags_path, link->line, link->column, "Quality Tag: '%.60s' has a quality tag of its own", link->to);
 }
 
+static void resolve_direction(const struct tag_link *link, struct plant *plant, struct diag *diag)
+{
+    struct plant_tag *tag = &plant->tags[link->tag];
+    int to = plant_find_tag(plant, link->to);
+    if (to < 0)
+        report_unknown(plant, diag, plant->tags_path, link->line, link->column, "Direction", link->to);
+    else if (to == (int)link->tag)
+        diag_error(diag, plant->tags_path, link->line, link->column, "Direction: expected other tags than '%.60s' itself", link->to);
+    else if (tag->group < 0 || tag->asset < 0 || tag->place_assumed)
+        diag_error(diag, plant->tags_path, link->line, link->column,
+                   "Direction: '%.60s' needs a group, an asset and a place of its own, from where it points", tag->name);
+    else if (tag->direction_count < 3)
+        tag->direction[tag->direction_count++] = to;
+    if (tag->direction_count > 0)
+        plant->groups[tag->group].directed = true;
+}
+
 static void resolve_heartbeat(struct plant_source *source, struct plant *plant, struct diag *diag)
 {
     source->heartbeat_tag = plant_find_tag(plant, source->heartbeat);
@@ -111,7 +146,7 @@ static void resolve_heartbeat(struct plant_source *source, struct plant *plant, 
 void tag_links_resolve(struct tag_links *links, struct plant *plant, struct diag *diag)
 {
     for (size_t i = 0; i < links->count; i++) {
-        resolve_quality(&links->at[i], plant, diag);
+        (links->at[i].direction ? resolve_direction : resolve_quality)(&links->at[i], plant, diag);
         mem_free(links->at[i].to);
     }
     mem_free(links->at);

@@ -9,6 +9,7 @@ struct tag_link {
     size_t tag;
     char *to;         /* a name; NULL: its address is an expression */
     int line, column; /* of the cell */
+    bool direction;   /* of the column Direction; else Quality Tag */
 };
 
 struct tag_links { /* zero-initialise */

@@ -59,12 +59,20 @@ struct day_span {
     int from_min, to_min;
 };
 
+/* One picture over the first columns * rows displays of a wall, row by row. */
+struct wall_tile {
+    int columns, rows;     /* 0: there is none */
+    double bezel_mm[2];    /* between the pictures of two neighbours: across, down */
+    struct wall_pane pane; /* what it shows: views or a tour */
+};
+
 struct wall {
     char *id;
     double inches, metres; /* of each display: its diagonal, and from how far it is read */
+    struct wall_tile tile;
     struct day_span dim;   /* when it is darker; equal ends: never */
     double dim_percent;    /* of its light, then */
-    struct wall_display *displays;
+    struct wall_display *displays; /* those of `tile` first: each is one pane, `main` */
     size_t display_count;
     int line;
 };
@@ -75,6 +83,16 @@ struct plant;
 /* Return what the plant file has by that id, or NULL. */
 const struct named_view *named_view_find(const struct plant *plant, const char *id);
 const struct tour *tour_find(const struct plant *plant, const char *id);
+const struct wall *wall_find(const struct plant *plant, const char *id);
+/* Returns a display of a wall of the plant file, NULL if it has none such. number: from 1. */
+const struct wall_display *wall_display_find(const struct plant *plant, const char *wall, int number);
+/* Return whether a display has a pane of views or a tour; whether a trend or a tile of it is of that tag; whether the
+   view with that id is in one. NULL: no. */
+bool wall_display_has_pictures(const struct wall_display *display);
+bool wall_display_shows_tag(const struct wall_display *display, const char *tag);
+bool wall_display_shows_view(const struct plant *plant, const struct wall_display *display, const char *id);
+/* Returns whether it has a pane of that kind, with that item; item NULL: with any. */
+bool wall_display_has(const struct wall_display *display, enum pane_kind kind, const char *item);
 /* Returns what is wrong with a title or with an address (static), or NULL. */
 const char *named_view_title_wrong(const char *title);
 const char *named_view_address_wrong(const char *address);

@@ -125,8 +125,8 @@ struct surface_field {
 /* Access to a cache of distances: a column is the distances of all points of the sampled surface from one source. Both callbacks run on any
    thread. */
 struct surface_columns {
-    bool (*fetch)(void *arg, size_t source, float *distances_m);      /* false: not known */
-    void (*keep)(void *arg, size_t source, const float *distances_m); /* one that was not known */
+    bool (*fetch)(void *arg, size_t source, float *distances_m); /* false: not known */
+    void (*keep)(void *arg, size_t source, float *distances_m);  /* one that was not known; rounded to what fetch() would give */
     void *arg;
 };
 /* Returns the number of points of the sampled surface, the length of a column. */

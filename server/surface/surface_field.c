@@ -79,8 +79,8 @@ static bool propagate(const struct solve *solve, struct abreast *abreast, float 
             memcpy(block + (s - first) * points, distance_m, points * sizeof(*block));
         else
             take_vertices(surface, distance_m, solve->out + s * surface->vertex_count);
-        if (solve->columns)
-            solve->columns->keep(solve->columns->arg, s, distance_m);
+        if (block && solve->columns)
+            solve->columns->keep(solve->columns->arg, s, block + (s - first) * points);
     }
     abreast->count = 0;
     return true;

@@ -1,0 +1,235 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* One sparse Cholesky factor with two unknowns a point, solved for each sensor. */
+#include "preprocess/influence/transport.h"
+
+#include <math.h>
+#include <stdatomic.h>
+
+#include "base/mem.h"
+#include "base/vec.h"
+#include "surface/geodesic/laplacian.h"
+
+#define LENGTHS 150.0 /* sqrt(t), the length of the heat, is not below this share of the surface's size: e^-709 is the smallest number */
+#define LEAST 1e-280  /* below it, what arrives has lost its direction */
+
+struct transport {
+    struct influence *influence;
+    const struct influence_mesh *mesh;
+    const struct influence_anchor *anchors;
+    const float (*vertex_normals)[3];
+    double (*normals)[3]; /* by point, unit */
+    struct laplacian laplacian;
+    cholmod_factor *factor;
+    atomic_bool failed;
+};
+
+/* --- the surface ------------------------------------------------------------------------------------------------------------ */
+
+/* Of the triangles around it, by their areas; of the largest one where they cancel out, as on a sheet with two sides. */
+static void find_normals(struct transport *transport)
+{
+    const struct trimesh *mesh = &transport->mesh->mesh;
+    double *largest = mem_array(mesh->point_count, sizeof(*largest)), (*spare)[3] = mem_array(mesh->point_count, sizeof(*spare));
+    for (size_t t = 0; t < mesh->tri_count; t++) {
+        double normal[3], size;
+        trimesh_normal(mesh, t, normal);
+        size = vec_length(normal);
+        for (int i = 0; i < 3; i++) {
+            uint32_t p = mesh->tris[t][i];
+            for (int c = 0; c < 3; c++) {
+                transport->normals[p][c] += normal[c];
+                spare[p][c] = size > largest[p] ? normal[c] : spare[p][c];
+            }
+            largest[p] = max_of(largest[p], size);
+        }
+    }
+    for (size_t p = 0; p < mesh->point_count; p++) {
+        bool cancels = !(vec_length(transport->normals[p]) > 1e-3 * largest[p]);
+        for (int c = 0; cancels && c < 3; c++)
+            transport->normals[p][c] = largest[p] > 0 ? spare[p][c] : c == 2;
+        vec_normalize(transport->normals[p]);
+    }
+    mem_free(largest);
+    mem_free(spare);
+}
+
+static double diffusion_time_m2(const struct transport *transport)
+{
+    const struct intrinsic *in = &transport->mesh->intrinsic;
+    const struct trimesh *mesh = &transport->mesh->mesh;
+    double sum_m = 0, low[3] = { INFINITY, INFINITY, INFINITY }, high[3] = { -INFINITY, -INFINITY, -INFINITY };
+    for (size_t t = 0; t < in->tri_count; t++)
+        for (int i = 0; i < 3; i++) {
+            sum_m += in->lengths[t][i];
+            for (int c = 0; c < 3; c++) {
+                low[c] = min_of(low[c], mesh->points[in->points[t][i]][c]);
+                high[c] = max_of(high[c], mesh->points[in->points[t][i]][c]);
+            }
+        }
+    double length_m = max_of(sum_m / (3 * (double)in->tri_count), vec_distance(low, high) / LENGTHS);
+    return length_m * length_m;
+}
+
+/* --- the system ------------------------------------------------------------------------------------------------------------- */
+
+struct triplets {
+    cholmod_triplet *list;
+    size_t count;
+};
+
+static void put(struct triplets *triplets, uint32_t row, uint32_t column, double value)
+{
+    ((int *)triplets->list->i)[triplets->count] = (int)row;
+    ((int *)triplets->list->j)[triplets->count] = (int)column;
+    ((double *)triplets->list->x)[triplets->count++] = value;
+}
+
+/* Two points: weight times the rotation from b's plane to a's, which has the higher row. */
+static void put_pair(const struct transport *transport, struct triplets *triplets, uint32_t a, uint32_t b, double weight)
+{
+    const uint32_t *row_of = transport->laplacian.row_of;
+    if (row_of[a] < row_of[b]) {
+        put_pair(transport, triplets, b, a, weight);
+        return;
+    }
+    double of_a[2][3], of_b[2][3];
+    vec_frame(transport->normals[a], of_a[0], of_a[1]);
+    vec_frame(transport->normals[b], of_b[0], of_b[1]);
+    for (int q = 0; q < 2; q++) {
+        vec_turn(of_b[q], transport->normals[b], transport->normals[a]);
+        for (uint32_t p = 0; p < 2; p++)
+            put(triplets, 2 * row_of[a] + p, 2 * row_of[b] + (uint32_t)q, weight * vec_dot(of_a[p], of_b[q]));
+    }
+}
+
+static cholmod_sparse *assemble(const struct transport *transport, double time_m2, cholmod_common *common)
+{
+    const struct laplacian *laplacian = &transport->laplacian;
+    const struct intrinsic *in = laplacian->in;
+    const size_t rows = 2 * laplacian->row_count, most = rows + 18 * in->tri_count;
+    struct triplets triplets = { cholmod_allocate_triplet(rows, rows, most, -1, CHOLMOD_REAL, common), 0 };
+    if (!triplets.list)
+        return NULL;
+    for (uint32_t i = 0; i < rows; i++)
+        put(&triplets, i, i, laplacian->mass_m2[i / 2]);
+    for (size_t t = 0; t < in->tri_count; t++) {
+        const struct laplacian_slope *s = &laplacian->slopes[t];
+        const double gx[3] = { -s->x1, s->x1, 0 }, gy[3] = { -s->y1 - s->y2, s->y1, s->y2 };
+        for (int i = 0; i < 3; i++)
+            for (int j = 0; j <= i; j++) {
+                const uint32_t a = in->points[t][i], b = in->points[t][j], row = 2 * laplacian->row_of[a];
+                double weight = time_m2 * s->area * (gx[i] * gx[j] + gy[i] * gy[j]);
+                if (a != b)
+                    put_pair(transport, &triplets, a, b, weight);
+                for (uint32_t p = 0; p < 2 && a == b; p++)
+                    put(&triplets, row + p, row + p, i == j ? weight : 2 * weight);
+            }
+    }
+    triplets.list->nnz = triplets.count;
+    cholmod_sparse *matrix = cholmod_triplet_to_sparse(triplets.list, triplets.count, common);
+    cholmod_free_triplet(&triplets.list, common);
+    return matrix;
+}
+
+static bool factorize(struct transport *transport, cholmod_common *common)
+{
+    cholmod_sparse *matrix = assemble(transport, diffusion_time_m2(transport), common);
+    transport->factor = matrix ? cholmod_analyze(matrix, common) : NULL;
+    bool good = transport->factor && cholmod_factorize(matrix, transport->factor, common) && common->status == CHOLMOD_OK;
+    cholmod_free_sparse(&matrix, common);
+    return good;
+}
+
+/* --- one sensor ------------------------------------------------------------------------------------------------------------- */
+
+/* A vector at the point nearest to it, at all points that it touches. */
+static void start_from(const struct transport *transport, size_t sensor, double *b)
+{
+    const struct influence_disc *disc = &transport->mesh->discs[sensor];
+    const double *normal = transport->normals[disc->points[0]];
+    double x[3], y[3];
+    vec_frame(normal, x, y);
+    for (size_t i = 0; i < disc->count; i++) {
+        const double *there = transport->normals[disc->points[i]];
+        double v[3] = { x[0], x[1], x[2] }, frame[2][3];
+        vec_turn(v, normal, there);
+        vec_frame(there, frame[0], frame[1]);
+        for (uint32_t p = 0; p < 2; p++)
+            b[2 * transport->laplacian.row_of[disc->points[i]] + p] += disc->shares[i] * vec_dot(frame[p], v);
+    }
+}
+
+static float angle_at(const struct transport *transport, size_t vertex, const double *u)
+{
+    const struct influence_anchor *anchor = &transport->anchors[vertex];
+    double normal[3], frame[2][3], x = 0, y = 0;
+    for (int c = 0; c < 3; c++)
+        normal[c] = (double)transport->vertex_normals[vertex][c];
+    vec_normalize(normal);
+    vec_frame(normal, frame[0], frame[1]);
+    for (int i = 0; i < 3; i++) {
+        const double *from = transport->normals[anchor->points[i]], *at = &u[2 * transport->laplacian.row_of[anchor->points[i]]];
+        double length = hypot(at[0], at[1]), of[2][3], v[3];
+        if (!(length > LEAST))
+            continue;
+        vec_frame(from, of[0], of[1]);
+        for (int c = 0; c < 3; c++)
+            v[c] = (double)anchor->weights[i] / length * (at[0] * of[0][c] + at[1] * of[1][c]);
+        vec_turn(v, from, normal);
+        x += vec_dot(v, frame[0]);
+        y += vec_dot(v, frame[1]);
+    }
+    return x == 0 && y == 0 ? INFINITY : (float)atan2(y, x);
+}
+
+static void solve_some(void *arg, size_t begin, size_t end)
+{
+    struct transport *transport = arg;
+    cholmod_common common;
+    cholmod_dense *u = NULL, *y = NULL, *e = NULL;
+    laplacian_start(&common);
+    for (size_t sensor = begin; sensor < end && !transport->failed; sensor++) {
+        cholmod_dense *b = cholmod_zeros(2 * transport->laplacian.row_count, 1, CHOLMOD_REAL, &common);
+        if (b)
+            start_from(transport, sensor, b->x);
+        if (b && cholmod_solve2(CHOLMOD_A, transport->factor, b, NULL, &u, NULL, &y, &e, &common))
+            for (size_t v = 0; v < transport->influence->vertex_count; v++)
+                transport->influence->shares[sensor * transport->influence->vertex_count + v] = angle_at(transport, v, u->x);
+        else
+            transport->failed = true;
+        cholmod_free_dense(&b, &common);
+    }
+    cholmod_free_dense(&u, &common);
+    cholmod_free_dense(&y, &common);
+    cholmod_free_dense(&e, &common);
+    cholmod_finish(&common);
+}
+
+bool transport_angles(struct influence *influence, struct log *log, struct workers *workers, const struct influence_mesh *mesh,
+                      const struct influence_anchor *anchors, const float (*normals)[3], size_t vertex_count)
+{
+    struct transport transport = { .influence = influence, .mesh = mesh, .anchors = anchors, .vertex_normals = normals };
+    cholmod_common common;
+    laplacian_start(&common);
+    *influence = (struct influence){ .count = mesh->source_count, .vertex_count = vertex_count };
+    influence->shares = mem_try_array(influence->count * vertex_count, sizeof(*influence->shares));
+    influence->precision = mem_try_array(influence->count * influence->count, sizeof(*influence->precision));
+    transport.normals = mem_try_array(mesh->mesh.point_count, sizeof(*transport.normals));
+    bool good = influence->shares && influence->precision && transport.normals && laplacian_init(&transport.laplacian, &mesh->intrinsic);
+    if (good)
+        find_normals(&transport);
+    good = good && factorize(&transport, &common);
+    if (good && workers)
+        workers_for(workers, influence->count, 1, solve_some, &transport);
+    else if (good)
+        solve_some(&transport, 0, influence->count);
+    good = good && !transport.failed;
+    if (!good)
+        log_err(log, "directions of %zu sensors on %zu points: %s", influence->count, mesh->mesh.point_count,
+                common.status == CHOLMOD_NOT_POSDEF ? "system is not positive definite" : "out of memory");
+    cholmod_free_factor(&transport.factor, &common);
+    cholmod_finish(&common);
+    laplacian_finish(&transport.laplacian);
+    mem_free(transport.normals);
+    return good;
+}

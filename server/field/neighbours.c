@@ -1,0 +1,159 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* From the stored precision, or from distances. */
+#include "field/neighbours.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "base/mem.h"
+#include "field/influence_fill.h"
+#include "field/layout.h"
+#include "plant/influence.h"
+#include "value/quality.h"
+
+#define AT_ONE_PLACE 1e-6 /* metres */
+
+static const struct influence_entry *entry_of(const struct layout *layout)
+{
+    static const enum interpolation order[] = { INTERPOLATION_GP, INTERPOLATION_HARMONIC, INTERPOLATION_FIN };
+    for (size_t i = 0; i < sizeof(order) / sizeof(*order); i++) {
+        const struct influence_entry *entry =
+            plant_prepares(layout->group, order[i]) ? influence_find(&layout->file->influence, layout->number, order[i]) : NULL;
+        if (entry && entry->sensor_count == layout->sensor_count)
+            return entry;
+    }
+    return NULL;
+}
+
+/* INFINITY: no way leads, or it is not known yet. */
+static double along_m(const struct layout *layout, size_t from, size_t to)
+{
+    const struct layout_sensor *sensor = &layout->sensors[from];
+    float room;
+    if (!layout_along(sensor, DISTANCE_GEODESIC) && !layout_is_in_file(sensor, DISTANCE_GEODESIC))
+        return INFINITY;
+    return (double)*layout_distances(layout, DISTANCE_GEODESIC, from, layout->sensors[to].vertex, 1, &room);
+}
+
+/* Some other good one is on its body; else nothing follows but rounding. */
+static bool is_told(const struct layout *layout, const uint8_t *used, size_t sensor)
+{
+    for (size_t j = 0; j < layout->sensor_count; j++)
+        if (j != sensor && used[j] && isfinite(along_m(layout, j, sensor)))
+            return true;
+    return false;
+}
+
+static void predict_prepared(const struct layout *layout, const struct influence_entry *entry, const uint8_t *used, struct neighbour *out)
+{
+    const size_t n = layout->sensor_count;
+    const double *precision = influence_array(&layout->file->influence, entry->precision);
+    const double around = entry->interpolation == INTERPOLATION_FIN ? layout->group->ambient : 0;
+    double *values = mem_array(n, sizeof(*values)), *own = mem_array(n, sizeof(*own));
+    struct influence_fill *fill = influence_fill_create(precision, n, used);
+    for (size_t i = 0; i < n; i++)
+        values[i] = used[i] ? out[i].value - around : 0;
+    influence_fill_values(fill, values);
+    influence_fill_own(fill, own);
+    for (size_t i = 0; i < n; i++) {
+        double pull = 0;
+        for (size_t j = 0; j < n; j++)
+            pull += precision[i * n + j] * values[j];
+        out[i].by = (enum interpolation)entry->interpolation;
+        if (!(own[i] > 0) || !is_told(layout, used, i))
+            continue;
+        out[i].predicted = around + (used[i] ? values[i] - pull / own[i] : values[i]);
+        if (entry->interpolation == INTERPOLATION_GP)
+            out[i].deviation = 1 / sqrt(own[i]);
+    }
+    influence_fill_destroy(&fill);
+    mem_free(values);
+    mem_free(own);
+}
+
+static void predict_by_distance(const struct layout *layout, const uint8_t *used, struct neighbour *out)
+{
+    for (size_t i = 0; i < layout->sensor_count; i++) {
+        double sum = 0, whole = 0, least_m = INFINITY;
+        for (size_t j = 0; j < layout->sensor_count; j++) {
+            const struct layout_sensor *other = &layout->sensors[j];
+            double away_m = along_m(layout, j, i);
+            if (j == i || !used[j] || !(away_m <= layout->group->reach_m) || !isfinite(away_m) || other->strength <= 0)
+                continue;
+            away_m = fmax(away_m, AT_ONE_PLACE);
+            double near = least_m / away_m; /* relative to the nearest so far: no power overflows */
+            if (away_m < least_m) {
+                double scale = isfinite(least_m) ? pow(away_m / least_m, layout->group->power) : 0;
+                sum *= scale;
+                whole *= scale;
+                least_m = away_m;
+                near = 1;
+            }
+            double fades = isfinite(layout->group->reach_m) ? 1 - away_m / layout->group->reach_m : 1;
+            double weight = (double)other->strength * pow(near, layout->group->power) * fades * fades;
+            sum += weight * out[j].value;
+            whole += weight;
+        }
+        out[i].by = INTERPOLATION_SHEPARD;
+        out[i].predicted = whole > 0 ? sum / whole : (double)NAN;
+    }
+}
+
+size_t neighbours_find(const struct scene *scene, int asset, int group, const struct snapshot *snapshot, struct neighbour **out)
+{
+    *out = NULL;
+    struct layout *layout = layout_create(scene, asset, group, NULL);
+    if (!layout || layout->assumed) {
+        layout_destroy(&layout);
+        return 0;
+    }
+    const size_t count = layout->sensor_count;
+    const struct influence_entry *entry = entry_of(layout);
+    uint8_t *used = mem_array(count, 1);
+    *out = mem_array(count, sizeof(**out));
+    for (size_t i = 0; i < count; i++) {
+        const struct reading *reading = &snapshot->readings[layout->sensors[i].tag];
+        used[i] = !quality_is_bad(reading->quality) && isfinite(reading->value);
+        (*out)[i] = (struct neighbour){ layout->sensors[i].tag, INTERPOLATION_SHEPARD, used[i] ? reading->value : (double)NAN, NAN, NAN };
+    }
+    if (entry && count <= NEIGHBOURS_MOST)
+        predict_prepared(layout, entry, used, *out);
+    else if (count <= NEIGHBOURS_MOST)
+        predict_by_distance(layout, used, *out);
+    mem_free(used);
+    layout_destroy(&layout);
+    return count;
+}
+
+const struct neighbours_kept *neighbours_look(struct neighbours_cache *cache, const struct scene *scene, int asset, int group,
+                                              const struct snapshot *snapshot)
+{
+    const size_t groups = scene->plant->group_count;
+    if (!cache->kept) {
+        cache->count = scene->asset_count * groups;
+        cache->kept = mem_array(cache->count, sizeof(*cache->kept));
+    }
+    struct neighbours_kept *kept = &cache->kept[(size_t)asset * groups + (size_t)group];
+    if (kept->taken_mono_ns && snapshot->taken_mono_ns - kept->taken_mono_ns < NEIGHBOURS_FRESH_NS)
+        return kept;
+    mem_free(kept->list);
+    kept->count = neighbours_find(scene, asset, group, snapshot, &kept->list);
+    kept->taken_mono_ns = snapshot->taken_mono_ns;
+    kept->taken_utc_ns = snapshot->taken_utc_ns;
+    return kept;
+}
+
+void neighbours_cache_finish(struct neighbours_cache *cache)
+{
+    for (size_t i = 0; i < cache->count; i++)
+        mem_free(cache->kept[i].list);
+    mem_free(cache->kept);
+    *cache = (struct neighbours_cache){ 0 };
+}
+
+double neighbour_off(const struct plant *plant, const struct neighbour *neighbour)
+{
+    const struct plant_group *group = &plant->groups[plant->tags[neighbour->tag].group];
+    double step = isnan(neighbour->deviation) ? PLANT_SEEN_PART * (group->max - group->min) : neighbour->deviation;
+    return (neighbour->value - neighbour->predicted) / step;
+}

@@ -1,0 +1,44 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Predicted without it: what the other good sensors of a group say at each sensor's place (leave-one-out). By the first of these that is
+   prepared for the group: gp, harmonic, fin, from the precision P of the prepared sensors, v_i - (P v)_i / P_ii (Dubrule, Cross validation
+   of kriging in a unique neighborhood, 1983); else by shepard from distances along the surface. Takes (sensors * sensors) steps, and
+   nothing of it is kept: of more than NEIGHBOURS_MOST sensors on an asset nothing is said. Thread: any that may read the scene. */
+#ifndef FIELD_NEIGHBOURS_H
+#define FIELD_NEIGHBOURS_H
+#include "scene/scene.h"
+#include "value/snapshot.h"
+
+#define NEIGHBOURS_MOST 512
+
+struct neighbour {
+    int tag;
+    enum interpolation by;
+    double value;     /* its reading; NaN: it cannot be used now */
+    double predicted; /* NaN: no other good sensor says anything about its place */
+    double deviation; /* gp: by how much reading and prediction may differ, standard deviation; else NaN */
+};
+
+/* Lists the sensors of the group on the asset whose places are known, in their order. Returns their number; 0: there are none. The caller
+   frees *out (mem_free). */
+size_t neighbours_find(const struct scene *scene, int asset, int group, const struct snapshot *snapshot, struct neighbour **out);
+/* What was found last, of each asset and group; zero-initialise. Thread: one. */
+struct neighbours_cache {
+    struct neighbours_kept {
+        struct neighbour *list;
+        size_t count;
+        int64_t taken_mono_ns, taken_utc_ns; /* the snapshot; 0: none yet */
+    } * kept; /* [asset][group]; NULL: none yet */
+    size_t count;
+};
+/* Returns what neighbours_find() found of a snapshot, of this one or of one at most NEIGHBOURS_FRESH_NS older: however many ask, it is
+   worked out once a second. Valid until the next call. The scene must be the same in all calls until neighbours_cache_finish(). */
+#define NEIGHBOURS_FRESH_NS INT64_C(1000000000)
+const struct neighbours_kept *neighbours_look(struct neighbours_cache *cache, const struct scene *scene, int asset, int group,
+                                              const struct snapshot *snapshot);
+/* Frees what is kept; leaves an empty cache. */
+void neighbours_cache_finish(struct neighbours_cache *cache);
+/* Returns by how many deviations a reading is off what the others say; where these are not known, of a twentieth of the group's range.
+   NaN: not known. */
+double neighbour_off(const struct plant *plant, const struct neighbour *neighbour);
+
+#endif

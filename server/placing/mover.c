@@ -1,0 +1,41 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Finds the kept surface of an asset. */
+#include "placing/mover.h"
+
+#include <stdlib.h>
+
+#include "base/mem.h"
+#include "scene/manifest.h"
+
+static void shape_of(const struct scene_asset *asset, struct relocation_shape *shape)
+{
+    const struct asset_view *view = &asset->file->view;
+    const struct asset_level *finest = &view->levels[0];
+    const struct asset_primitive *first = &view->primitives[finest->first_primitive], *last = first + finest->primitive_count - 1;
+    *shape = (struct relocation_shape){ .positions_m = view->positions_m,
+                                        .normals = view->normals,
+                                        .vertex_count = view->header->vertex_count,
+                                        .triangles = view->indices + first->first_index,
+                                        .triangle_count = (last->first_index + last->index_count - first->first_index) / 3,
+                                        .tolerance_m = asset->plant->tolerance_m };
+}
+
+struct relocation *mover_create(struct log *log, struct workers *workers, const struct scene *scene, const char *folder, int asset)
+{
+    const struct scene_asset *of = &scene->assets[asset];
+    struct manifest manifest = { 0 };
+    struct relocation_shape shape;
+    char *path = NULL;
+    shape_of(of, &shape);
+    bool read = manifest_read(log, folder, &manifest);
+    const struct manifest_entry *entry = read ? manifest_find(&manifest, of->plant->id) : NULL;
+    if (entry && entry->surface) {
+        shape.surface_path = path = mem_printf("%s/%s", folder, entry->surface);
+        shape.surface_key = strtoull(entry->surface, NULL, 16); /* KEY.surface */
+    }
+    struct relocation *relocation = relocation_create(log, workers, &shape);
+    mem_free(path);
+    if (read)
+        manifest_finish(&manifest);
+    return relocation;
+}
