@@ -36,6 +36,7 @@ static const char usage[] =
     "  --debug-view[=DIR]  also write ASSET.glb for each asset, to be opened in any glTF viewer: points, bridges, open edges, hidden\n"
     "                  patches, and the distance from a sensor in colour (DIR: NAME.debug beside NAME.yaml)\n"
     "  --asset ID      this asset alone\n"
+    "  --memory MB     of the machine that will serve it (default: this one's): a plant too large for it is refused, with what would fit\n"
     "  --sensor TAG    tag whose distances are shown (else each asset's first) or printed, as CSV: x,y,z,geodesic_m,euclidean_m (plant\n"
     "                  frame, metres)\n"
     "  --diff OLD NEW  what a new revision changes: assets added, removed, moved or changed, sensors whose surface moved, and tags that\n"
@@ -50,6 +51,7 @@ struct options {
     bool distances, json, all, debug_view, diff, help;
     const char *plant, *output, *asset, *sensor, *views, *revision; /* revision: what plant is compared with */
     double tolerance_m;
+    size_t memory_bytes; /* of the machine that serves it; 0: this one's */
 };
 
 static atomic_bool interrupted;
@@ -97,9 +99,11 @@ static int read_options(int argc, char **argv, struct options *options)
                                            { "debug-view", optional_argument, NULL, 'd' },
                                            { "asset", required_argument, NULL, 'a' },
                                            { "sensor", required_argument, NULL, 's' },
+                                           { "memory", required_argument, NULL, 'm' },
                                            { "help", no_argument, NULL, 'h' },
                                            { 0 } };
     int c;
+    long memory_mb;
     char *end;
     while ((c = getopt_long(argc, argv, "ho:r:", known, NULL)) != -1) {
         switch (c) {
@@ -113,6 +117,12 @@ static int read_options(int argc, char **argv, struct options *options)
         case 'd':
             options->debug_view = true;
             options->views = optarg;
+            break;
+        case 'm':
+            memory_mb = strtol(optarg, &end, 10);
+            if (end == optarg || *end || memory_mb < 1 || memory_mb > 1 << 24)
+                return wrong_use("--memory is a number of MB, not ", optarg);
+            options->memory_bytes = (size_t)memory_mb << 20;
             break;
         case 'a': options->asset = optarg; break;
         case 's': options->sensor = optarg; break;
@@ -169,10 +179,10 @@ static bool run_distances(const struct options *options, struct log *log, struct
 
 /* What is wrong with models and nodes shows in their heads, long before the rest of them has been read. What is not is prepared all the
    same; the errors come again at the end, of those assets alone that were tried. Returns false if the plant is too large. */
-static bool say_early(const struct plant *plant)
+static bool say_early(const struct plant *plant, size_t memory_bytes)
 {
     struct diag diag = { 0 }, errors = { 0 };
-    bool fits = models_check(plant, &diag, NULL);
+    bool fits = models_check(plant, memory_bytes, &diag, NULL);
     for (size_t i = 0; i < diag.count; i++)
         if (diag.items[i].severity == DIAG_ERROR)
             diag_copy(&errors, &diag.items[i]);
@@ -196,7 +206,7 @@ static bool run_all(const struct options *options, struct log *log, struct worke
         diag_error(diag, plant->path, 0, 0, "there is no asset %s", options->asset);
         return false;
     }
-    if (!say_early(plant))
+    if (!say_early(plant, options->memory_bytes))
         return false;
     bool good = prepare_run(&prepare, log, workers, plant, &params, diag);
     if (options->json)

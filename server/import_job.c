@@ -12,6 +12,7 @@
 #include "base/mem.h"
 #include "base/text.h"
 #include "importing/export_folder.h"
+#include "plant/plant_folder.h"
 #include "sibling.h"
 
 enum { FILES = 3, MOST_ARGUMENTS = 300 };
@@ -65,10 +66,9 @@ static ino_t find_revision(const struct import_job *job, const char *name)
 struct import_job *import_job_begin(const struct import_job_params *params)
 {
     struct import_job *job = mem_new(sizeof(*job));
-    const char *slash = strrchr(params->plant_path, '/');
     const char *const paths[FILES] = { params->plant_path, params->tags_path, plant_import_matches(params->import) };
     job->params = *params;
-    job->folder = slash ? mem_printf("%.*s", (int)(slash - params->plant_path), params->plant_path) : mem_strdup(".");
+    job->folder = plant_folder_of(params->plant_path);
     for (int i = 0; i < FILES; i++)
         job->paths[i] = mem_strdup(paths[i]);
     job->revision = find_revision(job, ".revision");
@@ -130,11 +130,22 @@ static char *run(struct import_job *job, struct arguments *list, enum import_pha
 {
     plant_import_set_phase(job->params.import, phase);
     list->at[list->count] = NULL;
-    char *why = sibling_run(
-        &(struct sibling_params){ .arguments = list->at, .stop = stop, .say = phase == IMPORT_PREPARING ? say_nothing : say, .arg = job });
+    char *why = sibling_run(&(struct sibling_params){ .arguments = list->at,
+                                                      .stop = stop,
+                                                      .say = phase == IMPORT_PREPARING ? say_nothing : say,
+                                                      .arg = job,
+                                                      .lent = job->params.lock });
     for (size_t i = 0; i < list->owned; i++)
         mem_free(list->own[i]);
     return why;
+}
+
+/* By which a program that changes the folder has it, as this one does. */
+static void add_lent(struct arguments *list)
+{
+    list->own[list->owned] = mem_printf("%d", SIBLING_LENT);
+    add(list, "--folder-lent");
+    add(list, list->own[list->owned++]);
 }
 
 static void add_option(struct arguments *list, const char *option, const char *value)
@@ -152,6 +163,7 @@ static char *read_models(struct import_job *job, const struct import_order *orde
     add(&list, "plantcast-import");
     if (order->anew)
         add(&list, "--anew");
+    add_lent(&list);
     add(&list, "-o");
     add(&list, job->folder);
     add_option(&list, "--units", order->units);
@@ -193,6 +205,7 @@ static char *match_tags(struct import_job *job, const struct import_order *order
         add(&list, "--decide");
         add(&list, decisions);
     }
+    add_lent(&list);
     if (*order->source.host)
         add_source(&list, &order->source);
     add(&list, job->params.plant_path);
@@ -279,6 +292,7 @@ char *import_job_undo(struct import_job *job)
     add(&list, "plantcast-import");
     add(&list, "--undo");
     add(&list, "--force");
+    add_lent(&list);
     add(&list, "-o");
     add(&list, job->folder);
     job->undoes = true;

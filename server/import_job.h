@@ -9,6 +9,7 @@ struct import_job_params {
     struct plant_import *import;
     const char *plant_path, *tags_path;
     const char *prepared;    /* folder of prepared assets */
+    int lock;                /* of the plant's folder, which is lent to the programs */
     bool (*stop)(void *arg); /* whether to end */
     void *arg;
 };

@@ -3,16 +3,17 @@
 #include <errno.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include "base/mem.h"
+#include "plant/plant_folder.h"
 #include "preprocess/import/commands.h"
 #include "preprocess/import/file_name.h"
 #include "preprocess/import/formats.h"
 #include "preprocess/import/options.h"
 #include "preprocess/import/plant_draft.h"
 #include "preprocess/import/revision/anew.h"
-#include "preprocess/import/revision/revision_files.h"
 #include "preprocess/import/serve.h"
 #include "preprocess/child/work_folder.h"
 #include "preprocess/model/gltf_shim.h"
@@ -22,6 +23,7 @@ enum { RVM_ITEM_LEVEL = 3 }; /* the file, its sites, their zones, and what is in
 struct import {
     const char *folder, *name;
     bool undo, force, dry_run;
+    int lent; /* plant_folder.h */
     struct conversion_params conversion;
     struct work_folder work;
     char **paths;
@@ -154,9 +156,14 @@ static int run(struct import *import)
     int status = work_folder_begin(&import->work, import->folder);
     if (status != 0)
         return fail_at(import->folder, strerror(-status));
-    int lock = revision_files_lock(import->folder, import->work.path);
+    char *why = NULL;
+    int lock = plant_folder_lock(
+        &(struct plant_folder_params){ .folder = import->folder, .own = import->work.path, .lent = import->lent }, &why);
     if (lock < 0)
-        status = fail_at(import->folder, lock == -EWOULDBLOCK ? "another import is at work in it" : strerror(-lock));
+        status = fail_at(import->folder, why);
+    else if (mkdir(import->work.path, 0700) != 0 && errno != EEXIST) /* who had the folder until now may have taken it for left over */
+        status = fail_at(import->work.path, strerror(errno));
+    mem_free(why);
     import->models = mem_array((size_t)import->count, sizeof(*import->models));
     for (int i = 0; i < import->count && status == 0; i++)
         status = convert(import, i);
@@ -201,6 +208,7 @@ int command_import(int argc, char **argv)
                                              { "anew", no_argument, NULL, 'a' },
                                              { "serve", no_argument, NULL, 's' },
                                              { "port", required_argument, NULL, 'p' },
+                                             { "folder-lent", required_argument, NULL, 'l' },
                                              OPTIONS_OF_CONVERSION,
                                              { 0 } };
     struct import import = { .conversion = options_default };
@@ -215,6 +223,7 @@ int command_import(int argc, char **argv)
         case 'f': import.force = true; break;
         case 'a': import.anew = true; break;
         case 's': serves = true; break;
+        case 'l': import.lent = atoi(optarg); break;
         case 'p': serve.port = optarg; break;
         case 'F': import_formats_print(stdout); return 0;
         case 'h': print_usage(stdout); return 0;
@@ -235,7 +244,7 @@ int command_import(int argc, char **argv)
         return 2;
     }
     if (import.undo)
-        return revise_undo(import.folder, import.force);
+        return revise_undo(import.folder, import.force, import.lent);
     if (two_alike(import.paths, import.count))
         return 1;
     char *stem = file_name_stem(import.paths[0]);

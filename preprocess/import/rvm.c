@@ -250,7 +250,8 @@ static bool chunk_id(const uint8_t *at, char id[5])
     return true;
 }
 
-bool rvm_is(const void *bytes, size_t count)
+/* Whether the bytes begin as an RVM file does. */
+static bool is_rvm(const void *bytes, size_t count)
 {
     char id[5];
     return count >= HEADER && chunk_id(bytes, id) && !strcmp(id, "HEAD");
@@ -374,7 +375,7 @@ bool rvm_read(struct cad_model *model, const void *bytes, size_t count, const st
     *r = (struct reader){ .bytes = bytes, .count = count, .model = model, .counts = counts, .why = why, .why_bytes = why_bytes };
     *counts = (struct rvm_counts){ 0 };
     why[0] = 0;
-    bool good = rvm_is(bytes, count) ? read_chunks(r) : fail(r, "not an RVM file: it does not begin with HEAD");
+    bool good = is_rvm(bytes, count) ? read_chunks(r) : fail(r, "not an RVM file: it does not begin with HEAD");
     for (size_t i = 0; i < r->primitive_count; i++)
         if (r->primitives[i].shape.contour_count > 0) {
             r->primitives[i].shape.contours = r->contours + r->primitives[i].first_contour;

@@ -24,7 +24,4 @@ struct rvm_params {
 bool rvm_read(struct cad_model *model, const void *bytes, size_t count, const struct rvm_params *params, struct rvm_counts *counts,
               char *why, size_t why_bytes);
 
-/* Whether the bytes begin as an RVM file does. */
-bool rvm_is(const void *bytes, size_t count);
-
 #endif

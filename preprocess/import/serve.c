@@ -13,6 +13,7 @@
 #include <unistd.h>
 
 #include "base/mem.h"
+#include "plant/plant_folder.h"
 #include "importing/export_folder.h"
 #include "preprocess/import/plant_draft.h"
 
@@ -94,6 +95,12 @@ int import_serve(const struct serve_params *params)
     int status = make_folder(params->folder);
     if (status == 0)
         status = make_folder(exports);
+    if (status == 0) { /* until the daemon takes this program's place */
+        char *why = NULL;
+        if (plant_folder_lock(&(struct plant_folder_params){ .folder = params->folder }, &why) < 0)
+            status = fail_at(params->folder, why);
+        mem_free(why);
+    }
     if (status == 0)
         status = plant_draft_begin(params->folder) == 0 ? 0 : 1;
     for (int i = 0; i < params->count && status == 0; i++)

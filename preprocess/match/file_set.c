@@ -9,7 +9,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/file.h>
 #include <sys/stat.h>
 #include <time.h>
 #include <unistd.h>
@@ -40,17 +39,12 @@ static bool is_left(int folder, const char *name)
     return false;
 }
 
-int file_set_lock(const char *folder)
+int file_set_lock(const struct plant_folder_params *params, char **why)
 {
-    int fd = open(folder, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    int fd = plant_folder_lock(params, why);
     if (fd < 0)
-        return -errno;
-    if (flock(fd, LOCK_EX | LOCK_NB) != 0) {
-        int status = -errno;
-        close(fd);
-        return status;
-    }
-    DIR *dir = opendir(folder);
+        return fd;
+    DIR *dir = opendir(params->folder);
     for (struct dirent *entry; dir && (entry = readdir(dir)) != NULL;)
         if (is_left(fd, entry->d_name))
             unlinkat(fd, entry->d_name, 0);

@@ -6,6 +6,7 @@
 #include <stdbool.h>
 
 #include "base/atomic_file.h"
+#include "plant/plant_folder.h"
 
 enum { FILE_SET_ROOM = 3 };
 
@@ -14,9 +15,8 @@ struct file_set { /* zero-initialise */
     int count;
 };
 
-/* Takes the folder for this program until the descriptor is closed, as imports do, and removes what killed runs left in it. Returns the
- * descriptor; -EWOULDBLOCK: another program has the folder. */
-int file_set_lock(const char *folder);
+/* Takes the folder as plant_folder_lock() does, and also removes what killed runs left in it. */
+int file_set_lock(const struct plant_folder_params *params, char **why);
 /* Writes what will be at `path` beside it, with the owner and rights of the file that is there; where that is a link, beside its target. */
 int file_set_add(struct file_set *set, const char *path, const char *text);
 /* Puts all of them in their places. On failure those before stay replaced, and the rest is removed. */

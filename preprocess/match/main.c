@@ -36,7 +36,7 @@ enum { EQUIPMENT_MOST = 100 };
 
 int main(int argc, char **argv)
 {
-    enum { RULES = 1, ALIASES, SOURCE, MODBUS, UNIT, ORDER, BASE, EQUIPMENT, DECIDE, DRY, HELP };
+    enum { RULES = 1, ALIASES, SOURCE, MODBUS, UNIT, ORDER, BASE, EQUIPMENT, DECIDE, LENT, DRY, HELP };
     static const struct option options[] = { { "rules", required_argument, NULL, RULES },
                                              { "aliases", required_argument, NULL, ALIASES },
                                              { "source", required_argument, NULL, SOURCE },
@@ -46,6 +46,7 @@ int main(int argc, char **argv)
                                              { "address-base", required_argument, NULL, BASE },
                                              { "equipment", required_argument, NULL, EQUIPMENT },
                                              { "decide", required_argument, NULL, DECIDE },
+                                             { "folder-lent", required_argument, NULL, LENT },
                                              { "dry-run", no_argument, NULL, DRY },
                                              { "help", no_argument, NULL, HELP },
                                              { 0 } };
@@ -88,6 +89,7 @@ int main(int argc, char **argv)
             equipment[params.equipment_count++] = optarg;
             break;
         case DECIDE: params.decisions = optarg; break;
+        case LENT: params.lent = atoi(optarg); break;
         case DRY: params.dry_run = true; break;
         case HELP: print_usage(stdout); return 0;
         default: print_usage(stderr); return 2;

@@ -422,7 +422,9 @@ static void print_result(const struct run *run)
     printf(run->by_hand > 0 ? "; %zu of them by hand\n" : "\n", run->by_hand);
     printf("places: %zu at a node of their own, %zu assumed\n", run->own_nodes, run->assumed);
     if (run->left_out > 0)
-        printf("%zu tags are not in the tag list: they are texts, or have no address that %s can read\n", run->left_out,
+        printf(run->left_out == 1 ? "%zu tag is not in the tag list: it is a text, or has no address that %s can read\n"
+                                  : "%zu tags are not in the tag list: they are texts, or have no address that %s can read\n",
+               run->left_out,
                run->source.id ? run->source.id : "a source");
     if (run->left > 0)
         printf("%zu tags of before are no longer in the list; what was decided about them stays: %s%s\n", run->left, run->left_names.at,
@@ -431,7 +433,8 @@ static void print_result(const struct run *run)
         printf("there is no source yet, so the tag list has no addresses: --modbus HOST makes one\n");
     for (size_t i = 0; i < run->quantities.count; i++)
         if (run->quantities.at[i].is_new)
-            printf("group %s: %zu tags\n", run->quantities.at[i].id, run->quantities.at[i].tags);
+            printf("group %s: %zu tag%s\n", run->quantities.at[i].id, run->quantities.at[i].tags,
+                   run->quantities.at[i].tags == 1 ? "" : "s");
 }
 
 static bool write_all(struct run *run)
@@ -470,14 +473,13 @@ static void finish(struct run *run)
 }
 
 /* Returns a descriptor, or a negative number, already told. */
-static int lock_folder(const char *plant)
+static int lock_folder(const struct matching_params *params)
 {
-    const char *slash = strrchr(plant, '/');
-    char *folder = slash ? mem_printf("%.*s", slash > plant ? (int)(slash - plant) : 1, plant) : mem_strdup(".");
-    int lock = file_set_lock(folder);
+    char *folder = plant_folder_of(params->plant), *why = NULL;
+    int lock = file_set_lock(&(struct plant_folder_params){ .folder = folder, .lent = params->lent }, &why);
     if (lock < 0)
-        fail_at(lock == -EWOULDBLOCK ? folder : plant,
-                lock == -EWOULDBLOCK ? "another import or match is at work in it" : strerror(-lock));
+        fail_at(lock == -EWOULDBLOCK ? folder : params->plant, why);
+    mem_free(why);
     mem_free(folder);
     return lock;
 }
@@ -485,7 +487,7 @@ static int lock_folder(const char *plant)
 int matching_run(const struct matching_params *params)
 {
     struct run run = { .params = params };
-    int lock = lock_folder(params->plant);
+    int lock = lock_folder(params);
     bool good = lock >= 0 && read_all(&run) && find_source(&run);
     if (good) {
         run.matches = matcher_run(&run.matcher, &run.list);

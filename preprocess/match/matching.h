@@ -16,6 +16,7 @@ struct matching_params {
     int unit;               /* of that source: unit identifier; -1: none is stated */
     const char *byte_order; /* of that source; NULL: none */
     int address_base;       /* likewise */
+    int lent;               /* plant_folder.h */
     bool dry_run;           /* says what it found, and writes nothing */
 };
 

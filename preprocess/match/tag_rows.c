@@ -175,7 +175,8 @@ static bool is_text(const char *type)
     return !strcasecmp(type, "String") || !strcasecmp(type, "Text") || !strcasecmp(type, "Char") || !strcasecmp(type, "DateTime");
 }
 
-bool tag_rows_leave_out(const struct export_tag *tag, const struct tag_source *source)
+/* It has no number, or no address that its source can have. */
+static bool is_left_out(const struct export_tag *tag, const struct tag_source *source)
 {
     struct modbus_address address;
     char why[200];
@@ -283,7 +284,7 @@ const char *tag_rows_put(struct tag_rows *rows, const struct tag_row_input *inpu
 {
     const struct export_tag *tag = input->tag;
     int at = find_row(rows, tag->fields[EXPORT_NAME]);
-    if (at < 0 && tag_rows_leave_out(tag, input->source))
+    if (at < 0 && is_left_out(tag, input->source))
         return NULL;
     struct table_row *row = at < 0 ? add_row(rows) : &rows->at[at];
     if (at < 0) {
@@ -295,7 +296,7 @@ const char *tag_rows_put(struct tag_rows *rows, const struct tag_row_input *inpu
         put_limits(rows, row, tag);
         put_equipment(rows, row, input);
     } else {
-        if (!*table_cell(row, find_column(rows, ADDRESS)) && !tag_rows_leave_out(tag, input->source))
+        if (!*table_cell(row, find_column(rows, ADDRESS)) && !is_left_out(tag, input->source))
             put_address(rows, row, input);
         if (may_put(input, table_cell(row, find_column(rows, ASSET))))
             put_equipment(rows, row, input);

@@ -36,8 +36,6 @@ struct tag_row_input {
 /* Adds a tag, or brings its row up to date, except where people changed it. Returns the id of the asset that the row has then, "" for none,
  * valid until the next call; NULL: it was left out. */
 const char *tag_rows_put(struct tag_rows *rows, const struct tag_row_input *input);
-/* Returns whether a tag would be left out: it has no number, or no address that its source can have. */
-bool tag_rows_leave_out(const struct export_tag *tag, const struct tag_source *source);
 /* Appends the list as text, without columns of our own that are blank in all rows. */
 void tag_rows_write(const struct tag_rows *rows, struct text *out);
 

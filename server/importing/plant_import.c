@@ -13,6 +13,7 @@
 #include "base/text.h"
 #include "base/utf8.h"
 #include "importing/export_folder.h"
+#include "plant/plant_folder.h"
 
 enum { MOST_SAID_BYTES = 64 * 1024 };
 
@@ -47,8 +48,7 @@ static void read_choice(struct plant_import *import)
 struct plant_import *plant_import_create(const char *plant_path)
 {
     struct plant_import *import = mem_new(sizeof(*import));
-    const char *slash = strrchr(plant_path, '/');
-    char *folder = slash ? mem_printf("%.*s", (int)(slash - plant_path + (slash == plant_path)), plant_path) : mem_strdup(".");
+    char *folder = plant_folder_of(plant_path);
     import->exports = export_folder_of(folder);
     import->matches = mem_printf("%s/matches.csv", folder);
     import->choice = mem_printf("%s/%s", import->exports, export_folder_choice());

@@ -27,7 +27,6 @@ extern "C" {
 namespace
 {
 
-constexpr int MAX_DEPTH = 400;            /* plantcast-prep reads 512 levels */
 constexpr double LONGEST_IN_METRES = 300; /* what is longer was drawn in millimetres */
 
 struct format {

@@ -3,7 +3,7 @@
  * becomes nodes; a part is tessellated once and shared by all its places. Prints what it noticed; its last line on stderr says why it
  * failed. */
 #include <BRepMesh_IncrementalMesh.hxx>
-#include <IGESCAFControl_Reader.hxx>
+#include <IGESControl_Reader.hxx>
 #include <Interface_Static.hxx>
 #include <Message.hxx>
 #include <Message_Messenger.hxx>
@@ -32,12 +32,12 @@
 #include <vector>
 
 #include "preprocess/glb/glb_scene.h"
+#include "preprocess/import/readers/iges_tree.hh"
 #include "preprocess/import/readers/reader.hh"
 
 namespace
 {
 
-constexpr int MAX_DEPTH = 400;          /* plantcast-prep reads 512 levels */
 constexpr size_t MAX_NODES = 2'000'000; /* an assembly of assemblies of ... grows without bounds */
 constexpr double ANGLE_RAD = 0.5;       /* between neighbouring facets, where the chord error would allow more */
 const double PLAIN[4] = { 0.35, 0.35, 0.35, 1 };
@@ -282,15 +282,14 @@ std::string read_step(const char *path, Handle(TDocStd_Document) document)
 
 std::string read_iges(const char *path, Handle(TDocStd_Document) document)
 {
-    IGESCAFControl_Reader iges;
-    iges.SetColorMode(Standard_True);
-    iges.SetNameMode(Standard_True);
-    iges.SetLayerMode(Standard_True);
+    IGESControl_Reader iges;
+    Interface_Static::SetCVal("read.iges.sequence", "none");
     if (iges.ReadFile(path) != IFSelect_RetDone)
         refuse("it is no IGES file, or is cut off");
-    if (!iges.Transfer(document))
+    iges_tree_add(iges, document);
+    if (iges.NbShapes() < 1)
         refuse("its shapes could not be read");
-    return "";
+    return iges_units(iges);
 }
 
 /* From millimetres to metres, and to Y up. */

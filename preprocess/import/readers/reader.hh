@@ -12,6 +12,8 @@
 
 #include "preprocess/glb/glb_scene.h"
 
+constexpr int MAX_DEPTH = 400; /* of a tree; plantcast-prep reads 512 levels */
+
 /* Ends the reading with these words as its reason: reader_main() prints them. */
 [[noreturn]] inline void refuse(const char *fmt, ...) __attribute__((format(printf, 1, 2)));
 inline void refuse(const char *fmt, ...)

@@ -11,6 +11,7 @@
 
 #include "base/atomic_file.h"
 #include "base/mem.h"
+#include "plant/plant_folder.h"
 #include "plant/recipe.h"
 #include "preprocess/import/revision/revision.h"
 #include "preprocess/import/revision/revision_files.h"
@@ -271,10 +272,11 @@ int revise(const struct revise_params *params)
     return status;
 }
 
-int revise_undo(const char *folder, bool forced)
+int revise_undo(const char *folder, bool forced, int lent)
 {
     struct text changed = { 0 }, done = { 0 };
-    int lock = revision_files_lock(folder, NULL), status = lock < 0 ? lock : 0;
+    char *why = NULL;
+    int lock = plant_folder_lock(&(struct plant_folder_params){ .folder = folder, .lent = lent }, &why), status = lock < 0 ? lock : 0;
     if (status == 0) {
         status = revision_files_undo(folder, forced, &changed, &done);
         close(lock);
@@ -283,12 +285,13 @@ int revise_undo(const char *folder, bool forced)
         fprintf(stderr, "%s: %s: changed since the import: %s; --force undoes it all the same, and keeps these as NAME.undone\n", program,
                 folder, changed.at);
     else if (status != 0)
-        fail_at(folder, status == -ENOENT        ? "there is nothing to undo"
-                        : status == -EWOULDBLOCK ? "another import is at work in it"
-                                                 : strerror(-status));
+        fail_at(folder, why                 ? why
+                        : status == -ENOENT ? "there is nothing to undo"
+                                            : strerror(-status));
     else
         printf("%s: as before the last import: %s\n", folder, done.at ? done.at : "");
     text_finish(&changed);
     text_finish(&done);
+    mem_free(why);
     return status == 0 ? 0 : 1;
 }

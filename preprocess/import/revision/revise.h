@@ -16,7 +16,8 @@ struct revise_params {
  * exit status: 0, or 1 with the reasons on standard error, and then nothing was changed. */
 int revise(const struct revise_params *params);
 
-/* Puts everything back as it was before the last revision. forced: files that have changed since, too. Returns the exit status. */
-int revise_undo(const char *folder, bool forced);
+/* Puts everything back as it was before the last revision. forced: files that have changed since, too. lent: plant_folder.h. Returns the
+ * exit status. */
+int revise_undo(const char *folder, bool forced, int lent);
 
 #endif

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Files of a plant's folder that are replaced together, and can be put back together: FOLDER/.revision keeps those of before. A program
- * that is killed at any time leaves either the old files or work that the next one finishes. Functions that return int return 0 or -errno.
- * Thread: one. */
+/* Files of a plant's folder that are replaced together, and can be put back together (plant_folder.h, which has to have the folder). A
+ * program that is killed at any time leaves either the old files or work that the next one finishes. Functions that return int return 0 or
+ * -errno. Thread: one. */
 #ifndef PREPROCESS_IMPORT_REVISION_FILES_H
 #define PREPROCESS_IMPORT_REVISION_FILES_H
 #include <stdbool.h>
@@ -15,9 +15,6 @@ struct revision_file {
     const char *before; /* its text as it was when it was read, or NULL */
 };
 
-/* Takes the folder for this program until the descriptor is closed, removes what killed ones left in it (but for `own`, a path), and
- * finishes what they had begun. Returns the descriptor; -EWOULDBLOCK: another program has the folder. */
-int revision_files_lock(const char *folder, const char *own);
 /* Replaces the files, in this order, and remembers those of before in place of what was remembered. work is a folder inside `folder`.
  * -ESTALE: a file is not as it was read (`before`); *changed is its name, and nothing was done. */
 int revision_files_apply(const char *folder, const char *work, const struct revision_file *files, size_t count, const char **changed);
