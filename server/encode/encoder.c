@@ -64,6 +64,19 @@ static bool find_dirty_rects(const struct encoder *encoder, const struct frame *
     return true;
 }
 
+/* Arrows are not in the pixels, but come with the picture: where one turns, or its direction is lost, there has to be one. */
+static bool arrows_equal(const struct frame *a, const struct frame *b)
+{
+    if (a->label_count != b->label_count)
+        return false;
+    for (size_t i = 0; i < a->label_count; i++) {
+        const struct frame_label *x = &a->labels[i], *y = &b->labels[i];
+        if (x->arrow != y->arrow || (x->arrow && (x->dx != y->dx || x->dy != y->dy || x->uncertain != y->uncertain)))
+            return false;
+    }
+    return true;
+}
+
 int encoder_send(struct encoder *encoder, struct frame *frame, const struct encoder_params *params)
 {
     struct dirty_rect rects[DIRTY_RECTS_MAX];
@@ -73,7 +86,7 @@ int encoder_send(struct encoder *encoder, struct frame *frame, const struct enco
         return -EAGAIN;
     int64_t begin_ns = clock_mono_ns();
     if (before && before->width_px == frame->width_px && before->height_px == frame->height_px && view_equal(&before->view, &frame->view) &&
-        !find_dirty_rects(encoder, frame, before, rects, &count))
+        !find_dirty_rects(encoder, frame, before, rects, &count) && arrows_equal(before, frame))
         return 0;
     int status = encoder->impl->send(encoder, frame, params, rects, count);
     if (status == 0)

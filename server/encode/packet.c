@@ -23,6 +23,7 @@ static struct frame *without_pixels(const struct frame *frame)
     memcpy((char *)copy + plain, (const char *)frame + plain, sizeof(*copy) - plain);
     atomic_init(&copy->refs, 1);
     copy->bgrx = NULL;
+    copy->whole = NULL;
     copy->markers = copy_of(frame->markers, frame->marker_count, sizeof(*frame->markers));
     copy->record = frame_record_ref(frame->record);
     copy->labels = copy_of(frame->labels, frame->label_count, sizeof(*frame->labels));

@@ -2,12 +2,17 @@
 /* Frames come and go. */
 #include "render/frame.h"
 
+#include <assert.h>
 #include <pthread.h>
 #include <stdatomic.h>
+#include <stddef.h>
+#include <string.h>
 
 #include "base/mem.h"
 #include "render/frame_record.h"
 #include "value/quality.h"
+
+static const float MARK_PX = 48; /* how far from its place a mark reaches */
 
 /* Pixels of frames that are gone: memory that is new to the process costs more than it takes to fill it. */
 enum { SPARES = 4 };
@@ -107,8 +112,57 @@ void frame_unref(struct frame **frame_ptr)
     mem_free(frame->markers);
     mem_free(frame->labels);
     frame_record_unref(&frame->record);
-    give_pixels(frame->bgrx, pixel_bytes(frame));
+    if (frame->whole)
+        frame_unref(&frame->whole);
+    else
+        give_pixels(frame->bgrx, pixel_bytes(frame));
     mem_free(frame);
+}
+
+/* A mark at the edge of a part is seen on both sides of it. */
+static bool is_near(const struct frame_part *part, float *x_px, float *y_px)
+{
+    *x_px -= (float)part->x_px;
+    *y_px -= (float)part->y_px;
+    return *x_px > -MARK_PX && *y_px > -MARK_PX && *x_px < (float)part->width_px + MARK_PX && *y_px < (float)part->height_px + MARK_PX;
+}
+
+static uint64_t hash_part(uint64_t content, const struct frame_part *part)
+{
+    const int parts[] = { part->x_px, part->y_px, part->width_px, part->height_px };
+    for (size_t i = 0; i < sizeof(parts) / sizeof(parts[0]); i++)
+        content = (content ^ (uint64_t)parts[i]) * 0x100000001b3u; /* FNV-1a */
+    return content;
+}
+
+struct frame *frame_cut(struct frame *whole, const struct frame_part *part)
+{
+    struct frame *frame = mem_new(sizeof(*frame));
+    size_t plain = offsetof(struct frame, view); /* others count its references meanwhile */
+    assert(part->x_px >= 0 && part->y_px >= 0 && part->x_px + part->width_px <= whole->width_px &&
+           part->y_px + part->height_px <= whole->height_px);
+    memcpy((char *)frame + plain, (const char *)whole + plain, sizeof(*frame) - plain);
+    atomic_init(&frame->refs, 1);
+    frame->whole = frame_ref(whole);
+    frame->bgrx = whole->bgrx + (size_t)part->y_px * (size_t)whole->stride_bytes + (size_t)part->x_px * 4;
+    frame->width_px = frame->view.width_px = part->width_px;
+    frame->height_px = frame->view.height_px = part->height_px;
+    frame->content = hash_part(whole->content, part);
+    frame->record = NULL;
+    frame->markers = mem_array(whole->marker_count + 1, sizeof(*frame->markers));
+    frame->labels = mem_array(whole->label_count + 1, sizeof(*frame->labels));
+    frame->marker_count = frame->label_count = 0;
+    for (size_t i = 0; i < whole->marker_count; i++) {
+        struct frame_marker marker = whole->markers[i];
+        if (is_near(part, &marker.x_px, &marker.y_px))
+            frame->markers[frame->marker_count++] = marker;
+    }
+    for (size_t i = 0; i < whole->label_count; i++) {
+        struct frame_label label = whole->labels[i];
+        if (is_near(part, &label.x_px, &label.y_px))
+            frame->labels[frame->label_count++] = label;
+    }
+    return frame;
 }
 
 /* What one half shows beside readings: what they differ from. */

@@ -18,10 +18,16 @@ struct frame_marker {
     uint8_t half;     /* of a split view: 1 is the right one */
 };
 
-struct frame_label { /* a place on an isoline, in sight */
+struct frame_label { /* a place on an isoline, or of an arrow, in sight */
     double value;
     float x_px, y_px;
-    uint8_t half;
+    float dx, dy; /* of an arrow: where it points in the picture, at most 1 long, shorter where it points away; 0, 0: not known where */
+    uint8_t half, arrow, uncertain;
+};
+#define FRAME_ARROW_PX(width_px) fmax(48, (width_px) / 24.0) /* between arrows, at least; the longest is almost as long */
+
+struct frame_part { /* of a picture, in its pixels, from the top left. width_px 0: all of it */
+    int x_px, y_px, width_px, height_px;
 };
 
 struct frame {
@@ -29,9 +35,10 @@ struct frame {
     struct view view; /* what it was drawn with */
     int width_px, height_px, stride_bytes;
     uint8_t *bgrx;                /* 4 bytes per pixel, rows from the top */
+    struct frame *whole;          /* whose pixels these are, a reference; NULL: its own */
     struct frame_marker *markers; /* sensors of the shown group */
     size_t marker_count;
-    struct frame_label *labels; /* where isolines may be labelled: more than there is room for */
+    struct frame_label *labels; /* where isolines may be labelled, more than there is room for; and arrows */
     size_t label_count;
     int64_t data_utc_ns;                      /* of the snapshot it shows */
     bool clock_unset;                         /* nothing kept the clock right that told it */
@@ -48,6 +55,9 @@ struct frame {
    baselines: of differences; NULL: there are none. */
 void frame_read_markers(struct frame *frame, const struct snapshot *snapshot, struct baselines *baselines);
 struct frame *frame_create(int width_px, int height_px); /* NULL: out of memory */
+/* Creates a picture of a part, which must lie in the whole; pixels are shared. Its markers and labels are those near the part. Never
+   NULL. */
+struct frame *frame_cut(struct frame *whole, const struct frame_part *part);
 struct frame *frame_ref(struct frame *frame);
 void frame_unref(struct frame **frame);
 /* Any thread: pixels of all frames that are there, and of some that are gone, for the next. */

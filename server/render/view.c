@@ -36,6 +36,7 @@ void view_default_scale(const struct scene *scene, struct view *view)
     field_default_range(scene, &view->field, &view->range_min, &view->range_max);
     view->ramp_interval = 0;
     memset(&view->color_scale, 0, sizeof(view->color_scale));
+    view->color_scale.log = view->field.show == SHOW_BLIND; /* it grows as exp(D^2) */
     if (view->field.show != SHOW_VALUE)
         return;
     view->color_scale.log = group->log;
@@ -207,6 +208,7 @@ bool view_equal(const struct view *a, const struct view *b)
     get_half(b, &b_shown);
     return a->width_px == b->width_px && a->height_px == b->height_px && same_camera(&a->camera, &b->camera) && a->tier == b->tier &&
            a->selected_asset == b->selected_asset && same_vector(a->light_dir, b->light_dir) && a->environment == b->environment &&
-           a->dark == b->dark && same_half(&a_shown, &b_shown) && visibility_equal(&a->visibility, &b->visibility) &&
-           a->at_us == b->at_us && a->split == b->split && (!a->split || same_half(&a->right, &b->right));
+           a->dark == b->dark && a->strip == b->strip && same_half(&a_shown, &b_shown) &&
+           visibility_equal(&a->visibility, &b->visibility) && a->at_us == b->at_us && a->split == b->split &&
+           (!a->split || same_half(&a->right, &b->right));
 }

@@ -56,6 +56,7 @@ struct view {
     int selected_asset;  /* outlined; -1: none */
     double light_dir[3]; /* towards the sun, plant frame, unit length */
     bool dark;           /* a dark backdrop; colours of the field stay what they are */
+    bool strip;          /* a legend strip for programs, where an overlay is drawn */
     int environment;     /* surroundings: 0 the built-in sky, then the plant's own */
     struct visibility visibility;
     int64_t at_us;           /* the instant that is shown, UTC; 0: now. Set by view_set_instant */

@@ -59,13 +59,33 @@ static size_t count_placed(const struct plant *plant, const struct plant_sensor 
     return placed;
 }
 
+/* What is not stated was fitted. */
+static bool is_as_stated(const struct plant_gp *gp, const struct influence_entry *entry)
+{
+    return (isnan(gp->range_m) || gp->range_m == entry->range_m) && (isnan(gp->noise) || gp->noise == entry->noise) &&
+           (isnan(gp->deviation) || gp->deviation == entry->deviation);
+}
+
 /* What was prepared for a group is what the plant file says now. */
+static bool has_entry(struct log *log, const struct scene_asset *asset, size_t group, uint32_t kind, size_t placed)
+{
+    const struct influence_entry *entry =
+        asset_open_influence(log, asset->file) ? influence_find(&asset->file->influence, (uint32_t)group, kind) : NULL;
+    return entry && entry->sensor_count == placed;
+}
+
 static bool influence_fits(struct log *log, const struct plant *plant, const struct scene_asset *asset, const struct plant_sensor *sensors,
                            size_t count)
 {
     for (size_t g = 0; g < plant->group_count; g++) {
         const struct plant_group *group = &plant->groups[g];
         size_t placed = plant_prepares_any(group) ? count_placed(plant, sensors, count, (int)g) : 0;
+        bool heat = group->heat && !has_entry(log, asset, g, INFLUENCE_HEAT, placed);
+        if (placed > 0 && (heat || (group->directed && !has_entry(log, asset, g, INFLUENCE_TRANSPORT, placed)))) {
+            log_err(log, "asset %s: has no usable %s for group %s; run plantcast-prep %s", asset->plant->id,
+                    heat ? "distances by heat" : "directions", group->id, plant->path);
+            return false;
+        }
         for (int i = INTERPOLATION_HARMONIC; placed > 0 && i < INTERPOLATIONS; i++) {
             if (!plant_prepares(group, (enum interpolation)i))
                 continue;
@@ -74,10 +94,12 @@ static bool influence_fits(struct log *log, const struct plant *plant, const str
                 return false;
             }
             const struct influence_entry *entry = influence_find(&asset->file->influence, (uint32_t)g, (uint32_t)i);
+            const struct plant_gp *gp = i == INTERPOLATION_GP ? &group->gp : NULL;
             double decay_m = i == INTERPOLATION_FIN ? plant_decay_m(asset->plant) : 0;
-            if (entry && entry->sensor_count == placed && entry->disc_m == group->disc_m && entry->decay_m == decay_m)
+            if (entry && entry->sensor_count == placed && entry->disc_m == group->disc_m && entry->decay_m == decay_m &&
+                (!gp || (entry->deviations && is_as_stated(gp, entry))))
                 continue;
-            log_err(log, "asset %s: the influence of group %s was prepared for another list, disc_m or wall; run plantcast-prep %s",
+            log_err(log, "asset %s: the influence of group %s was prepared for another list, disc_m, gp or wall; run plantcast-prep %s",
                     asset->plant->id, group->id, plant->path);
             return false;
         }

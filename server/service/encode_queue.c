@@ -336,10 +336,15 @@ static void run_job(void *arg)
 
 /* --- from frames to jobs ---------------------------------------------------------------------------------------------- */
 
+static bool same_part(const struct frame_part *a, const struct frame_part *b)
+{
+    return a->x_px == b->x_px && a->y_px == b->y_px && a->width_px == b->width_px && a->height_px == b->height_px;
+}
+
 static bool same_coding(const struct request_ticket *ticket, void *arg)
 {
     const struct frame_request *a = &ticket->request, *b = arg;
-    return a->codec == b->codec && a->overlay == b->overlay && same_quality(&a->quality, &b->quality);
+    return a->codec == b->codec && a->overlay == b->overlay && same_quality(&a->quality, &b->quality) && same_part(&a->part, &b->part);
 }
 
 /* Under lock. */
@@ -398,6 +403,8 @@ void encode_queue_submit(struct encode_queue *queue, struct frame *frame, struct
         struct frame_request first = group->tickets[0].request;
         struct request_group same = { 0 };
         request_group_split(group, same_coding, &first, &same);
-        submit_group(queue, frame, &same);
+        struct frame *shown = first.part.width_px ? frame_cut(frame, &first.part) : frame_ref(frame);
+        submit_group(queue, shown, &same);
+        frame_unref(&shown);
     }
 }

@@ -3,6 +3,7 @@
 #ifndef SERVICE_FRAME_REQUEST_H
 #define SERVICE_FRAME_REQUEST_H
 #include "encode/encoder.h"
+#include "render/frame.h"
 #include "render/view.h"
 #include "service/scheduler.h"
 
@@ -19,6 +20,8 @@ struct frame_request {
     bool of_data;     /* made for a reading that changed at view.input_ns */
     bool or_moving;   /* refined only if that is as quick as a preview; else a preview of moving_quality */
     struct encoder_params moving_quality;
+    struct frame_part part; /* what of the picture the client gets; the picture itself is drawn once for all parts */
+    uint64_t picture;       /* of tiles (session/session_tiles.h): which of their pictures it is, counted from 1; else 0 */
     bool only_replace; /* good only in place of a request that is not begun: the client may have no more frames under way */
     bool always;       /* draw and send even if the client shows the same already */
     bool alone;        /* must be decodable without anything sent before */

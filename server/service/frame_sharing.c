@@ -24,8 +24,11 @@ static bool remember(const struct request_ticket *ticket, void *arg)
     struct render_client *client = render_service_find(now->service, ticket->client);
     if (!client)
         return false;
-    client->has_content = true;
-    client->content = now->content;
+    if (!client->has_content || ticket->number >= client->content_number) { /* what comes after a newer one is not shown */
+        client->has_content = true;
+        client->content = now->content;
+        client->content_number = ticket->number;
+    }
     client->spent_ns[scheduler_share(ticket->request.urgency)] += now->cost_ns;
     client->account->spent_ns[scheduler_share(ticket->request.urgency)] += now->cost_ns;
     return true;

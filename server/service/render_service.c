@@ -23,28 +23,43 @@ static void replace(struct frame_request *old, const struct frame_request *reque
     *old = merged;
 }
 
-enum request_outcome render_service_request(struct render_service *service, uint64_t id, const struct frame_request *request)
+/* Under lock. */
+static enum request_outcome put(struct render_service *service, uint64_t id, const struct frame_request *request)
 {
-    enum request_outcome answer = REQUEST_ADDED;
-    pthread_mutex_lock(&service->lock);
     struct render_client *client = render_service_find(service, id);
     if (client && client->pending) {
         replace(&client->request, request);
-        answer = REQUEST_REPLACED;
-    } else if (request->only_replace) {
+        return REQUEST_REPLACED;
+    }
+    if (request->only_replace) {
         if (client)
             client->left |= request->urgency == URGENCY_INPUT;
-        answer = REQUEST_REFUSED;
-    } else {
-        int kind = scheduler_share(request->urgency);
-        client = client ? client : render_service_add_client(service, id, request->account);
-        client->request = *request;
-        client->pending = true;
-        client->spent_ns[kind] = scheduler_asked(client->spent_ns[kind], service->spent_ns[kind]);
-        time_accounts_asked(&service->accounts, client->account, kind);
+        return REQUEST_REFUSED;
     }
+    int kind = scheduler_share(request->urgency);
+    client = client ? client : render_service_add_client(service, id, request->account);
+    client->request = *request;
+    client->pending = true;
+    client->spent_ns[kind] = scheduler_asked(client->spent_ns[kind], service->spent_ns[kind]);
+    time_accounts_asked(&service->accounts, client->account, kind);
+    return REQUEST_ADDED;
+}
+
+enum request_outcome render_service_request(struct render_service *service, uint64_t id, const struct frame_request *request)
+{
+    pthread_mutex_lock(&service->lock);
+    enum request_outcome answer = put(service, id, request);
     pthread_mutex_unlock(&service->lock);
     return answer;
+}
+
+void render_service_request_all(struct render_service *service, size_t count, const uint64_t *clients, const struct frame_request *requests,
+                                enum request_outcome *outcomes)
+{
+    pthread_mutex_lock(&service->lock);
+    for (size_t i = 0; i < count; i++)
+        outcomes[i] = put(service, clients[i], &requests[i]);
+    pthread_mutex_unlock(&service->lock);
 }
 
 void render_service_wake(struct render_service *service)
@@ -142,7 +157,8 @@ static void give_back(struct render_service *service, struct encoded_frame *enco
     pthread_mutex_unlock(&service->lock);
 }
 
-void render_service_announce(void *arg)
+/* Notifies if there is something to be collected that nobody was notified of. Any thread. */
+static void announce(void *arg)
 {
     struct render_service *service = arg;
     pthread_mutex_lock(&service->lock);
@@ -157,7 +173,7 @@ void render_service_answer_without_frame(struct render_service *service, const s
 {
     for (size_t i = 0; i < group->count; i++)
         give_back(service, encoded_frame_create(&group->tickets[i], failed));
-    render_service_announce(service);
+    announce(service);
 }
 
 /* What could not be encoded was not shown: the client's next request is drawn, whatever it shows. */
@@ -170,7 +186,8 @@ static void forget_content(struct render_service *service, uint64_t id)
     pthread_mutex_unlock(&service->lock);
 }
 
-void render_service_on_encoded(void *arg, const struct request_ticket *ticket, struct packet *const *packets, int count, bool failed)
+/* Takes what the encode queue made of a ticket. Thread: a worker. */
+static void on_encoded(void *arg, const struct request_ticket *ticket, struct packet *const *packets, int count, bool failed)
 {
     struct encoded_frame *encoded = encoded_frame_create(ticket, failed);
     if (failed)
@@ -250,8 +267,8 @@ struct render_service *render_service_create(const struct render_service_params 
         .workers = params->workers,
         .counters = params->counters,
         .h264_library = params->h264_library ? params->h264_library : ENCODER_H264_LIBRARY,
-        .done = render_service_on_encoded,
-        .all_done = render_service_announce,
+        .done = on_encoded,
+        .all_done = announce,
         .done_arg = service,
     });
     if (!thread_start(service))

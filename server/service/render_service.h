@@ -46,6 +46,9 @@ enum request_outcome { REQUEST_ADDED, REQUEST_REPLACED, REQUEST_REFUSED };
    REQUEST_REPLACED: it took the place of one that had not been begun, and shares its answer. REQUEST_REFUSED: it was only good as a
    replacement (only_replace), and there was none to replace. Drawing begins with render_service_wake. */
 enum request_outcome render_service_request(struct render_service *service, uint64_t client, const struct frame_request *request);
+/* Does the same for several clients at once: requests for equal views are begun together, so that one frame answers all of them. */
+void render_service_request_all(struct render_service *service, size_t count, const uint64_t *clients, const struct frame_request *requests,
+                                enum request_outcome *outcomes);
 /* Lets the render thread begin. To be called after all requests of one event, so that equal ones share a frame. */
 void render_service_wake(struct render_service *service);
 /* Drops all that is waiting or encoded for the client. */

@@ -15,7 +15,7 @@ struct render_client {
     bool left; /* it wants another frame than the long job that is drawn for it */
     int64_t patience_ns; /* so long changed readings wait for a long job of it; 0: as at first */
     struct frame_request request;
-    uint64_t content;                   /* content hash of the last frame drawn for it */
+    uint64_t content, content_number;   /* content hash of the newest frame drawn for it, and that frame's number */
     int64_t spent_ns[SCHEDULER_SHARES]; /* drawing time that it was charged, by scheduler_share */
     struct time_account *account;       /* of its address */
 };
@@ -57,10 +57,6 @@ void render_service_remove_client(struct render_service *service, uint64_t id);
 
 /* Answers each request of the group without a frame: nothing new is to be seen, or drawing failed. Any thread. */
 void render_service_answer_without_frame(struct render_service *service, const struct request_group *group, bool failed);
-/* Takes what the encode queue made of a ticket (encode_queue_params.done). arg: the service. Thread: a worker. */
-void render_service_on_encoded(void *arg, const struct request_ticket *ticket, struct packet *const *packets, int count, bool failed);
-/* Calls params.notify if there is something to be collected that it was not called for. arg: the service. Any thread. */
-void render_service_announce(void *arg);
 
 /* --- render_thread.c -------------------------------------------------------------------------------------------------- */
 

@@ -276,7 +276,7 @@ static bool end(struct renderer *renderer, struct render_job *job)
     int64_t drawn_ns = clock_mono_ns();
     readback_get(&in_flight->readback, field_workers(renderer->fields.field), frame->bgrx, (size_t)frame->stride_bytes);
     markers_get(&in_flight->markers, &job->context, frame);
-    isolines_get(&in_flight->labels, &job->isolines, frame);
+    isolines_get(&in_flight->labels, &job->context, &job->isolines, frame);
     frame->render_ns += drawn_ns - start_ns;
     frame->readback_ns = clock_mono_ns() - drawn_ns;
     return true;

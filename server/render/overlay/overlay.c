@@ -9,6 +9,7 @@
 #include "base/clock.h"
 #include "base/mem.h"
 #include "render/overlay/overlay_pen.h"
+#include "render/overlay/text_face.h"
 #include "value/quality.h"
 
 bool box_meets(const struct box *a, const struct box *b)
@@ -74,14 +75,20 @@ void pen_font(struct pen *pen, double size, bool bold)
 double pen_text_width(struct pen *pen, const char *text)
 {
     cairo_text_extents_t extents;
+    cairo_save(pen->cairo);
+    text_face_choose(pen->cairo, text);
     cairo_text_extents(pen->cairo, text, &extents);
+    cairo_restore(pen->cairo);
     return extents.x_advance;
 }
 
 void pen_text(struct pen *pen, double x, double y, const char *text)
 {
+    cairo_save(pen->cairo);
+    text_face_choose(pen->cairo, text);
     cairo_move_to(pen->cairo, x, y);
     cairo_show_text(pen->cairo, text);
+    cairo_restore(pen->cairo);
 }
 
 void pen_number(double value, double range, char out[40])
@@ -280,6 +287,11 @@ static void draw(struct frame *frame, const struct scene *scene, const struct sn
     else if (!is_live(pen))
         draw_banner(pen, "NO LIVE DATA", NO_DATA_RGB);
     draw_rest(pen);
+    cairo_surface_flush(surface);
+    if (frame->view.strip && frame->view.look != LOOK_MATERIALS) { /* colours of materials say nothing */
+        pen_choose_half(pen, 0);
+        overlay_strip(pen, frame->bgrx, frame->stride_bytes);
+    }
     cairo_destroy(pen->cairo);
     cairo_surface_finish(surface);
     cairo_surface_destroy(surface);
@@ -332,7 +344,11 @@ static void find_window(const struct scene *scene, const struct view *view, doub
     if (unit > 0)
         pen_scale(pen, unit);
     double header_px = unit > 0 ? 0 : header_height(pen, 2) + 8 * pen->unit;
-    *out = (struct camera_window){ -1, 1 - 2 * legend_share(pen, view), -1, 1 - 2 * header_px / view->height_px };
+    double strip_px = unit == 0 && view->strip ? overlay_strip_height(view->width_px, view->height_px) : 0;
+    *out = (struct camera_window){ .left = -1,
+                                   .right = 1 - 2 * legend_share(pen, view),
+                                   .bottom = -1 + 2 * strip_px / view->height_px,
+                                   .top = 1 - 2 * header_px / view->height_px };
     cairo_destroy(pen->cairo);
     cairo_surface_destroy(surface);
     mem_free(pen);

@@ -47,6 +47,7 @@ static void write_caption(struct caption *caption, const struct view *own, const
     static const char *const looks[] = { "Default look", "Glossy look", "Flat look", "Materials" }; /* by enum look */
     static const char *const interpolations[INTERPOLATIONS] = { "Shepard", "Algorithm 1 of the paper", "Conduction along the wall",
                                                                 "Conduction and loss to the air" };
+    static const char *const distances[DISTANCES] = { "Geodesic distance", "Euclidean distance", "Geodesic distance by heat" };
     const struct field_params *a = &own->field, *b = &other->field;
     caption->count = 0;
     if (own->look != other->look)
@@ -54,7 +55,7 @@ static void write_caption(struct caption *caption, const struct view *own, const
     if (own->look == LOOK_MATERIALS || other->look == LOOK_MATERIALS)
         return;
     if (a->distance != b->distance)
-        add_line(caption, "%s distance", a->distance == DISTANCE_GEODESIC ? "Geodesic" : "Euclidean");
+        add_line(caption, "%s", distances[a->distance]);
     if (a->show == SHOW_DISTANCE || a->show != b->show)
         return;
     if (a->interpolation != b->interpolation)

@@ -6,15 +6,26 @@
 #include <time.h>
 
 #include "base/clock.h"
+#include "plant/influence.h"
 #include "render/overlay/overlay_pen.h"
 #include "render/shaded_colormap.h"
 
-enum { NOTES = 4, ROWS = 5 + ALARM_PRIORITIES };
+enum { NOTES = 4, ROWS = 7 + ALARM_PRIORITIES };
 static const double ROW = 1.5, NOTE = 1.3; /* heights, in text_px */
-enum row { ROW_BELOW, ROW_NO_LIMITS, ROW_NO_DATA, ROW_UNCERTAIN, ROW_UNPROVEN, ROW_ASSUMED, ROW_ALARM /* and the other priorities */ };
+enum row {
+    ROW_BELOW,
+    ROW_NO_LIMITS,
+    ROW_NO_DATA,
+    ROW_UNCERTAIN,
+    ROW_UNPROVEN,
+    ROW_ASSUMED,
+    ROW_ARROW,
+    ROW_NOWHERE,
+    ROW_ALARM /* and the other priorities */
+};
 /* What it says, and where its parts lie. */
 struct legend {
-    char title[160], above[60], below[60], since[120];
+    char title[160], above[60], below[60], since[120], longest[80];
     enum row rows[ROWS]; /* under the bar */
     const char *notes[NOTES];
     int row_count, note_count;
@@ -33,7 +44,7 @@ static void write_title(const struct pen *pen, struct legend *legend)
     const struct plant *plant = pen->scene->plant;
     const struct view *view = &pen->view;
     const char *unit = view_unit(plant, view), *quantity = plant->groups[view->field.group].quantity;
-    static const char *const forms[] = { "%s", "From %s", "\u0394 %s", "%s" }; /* by enum field_show */
+    static const char *const forms[] = { "%s", "From %s", "\u0394 %s", "%s", "\u00b1 %s", "Hot spot seen: %s" }; /* by enum field_show */
     const char *name = view->field.show == SHOW_DISTANCE ? plant->tags[view->field.sensor].name : quantity;
     char what[128];
     snprintf(what, sizeof(what), forms[view->field.show], name);
@@ -71,13 +82,13 @@ static bool shows_assumed(const struct pen *pen)
     return false;
 }
 
-/* A distance is never below 0, nor uncertain. */
+/* A distance is never below 0, nor uncertain; nor is what depends on no reading. */
 static void choose_rows(const struct pen *pen, struct legend *legend)
 {
     static const enum row values[] = { ROW_BELOW, ROW_NO_DATA, ROW_UNCERTAIN }, distances[] = { ROW_NO_DATA };
     static const enum row limits[] = { ROW_NO_LIMITS, ROW_NO_DATA, ROW_UNCERTAIN };
     const struct view *view = &pen->view;
-    bool is_distance = view->field.show == SHOW_DISTANCE && view->range_min <= 0;
+    bool is_distance = (view->field.show == SHOW_DISTANCE && view->range_min <= 0) || field_params_cover(&view->field);
     const enum row *rows = view_is_operator(view) ? limits : is_distance ? distances : values;
     legend->row_count = view_is_operator(view) || !is_distance ? 3 : 1;
     memcpy(legend->rows, rows, (size_t)legend->row_count * sizeof(*rows));
@@ -85,6 +96,10 @@ static void choose_rows(const struct pen *pen, struct legend *legend)
         legend->rows[legend->row_count++] = ROW_UNPROVEN;
     if (shows_assumed(pen))
         legend->rows[legend->row_count++] = ROW_ASSUMED;
+    if (overlay_has_arrows(pen)) {
+        legend->rows[legend->row_count++] = ROW_ARROW;
+        legend->rows[legend->row_count++] = ROW_NOWHERE;
+    }
     unsigned priorities = priorities_shown(pen);
     for (int i = 1; i <= ALARM_PRIORITIES; i++)
         if (priorities & 1u << i)
@@ -105,6 +120,13 @@ static void write_baseline(const struct pen *pen, struct legend *legend)
         add_note(legend, legend->since);
 }
 
+static void write_hot_spot(const struct pen *pen, struct legend *legend)
+{
+    const struct plant_group *group = &pen->scene->plant->groups[pen->view.field.group];
+    snprintf(legend->since, sizeof(legend->since), "of %g m, as %g %% of the range", group->hot_spot_m, 100 * PLANT_SEEN_PART);
+    add_note(legend, legend->since);
+}
+
 static void write_words(const struct pen *pen, struct legend *legend)
 {
     const struct view *view = &pen->view;
@@ -122,8 +144,16 @@ static void write_words(const struct pen *pen, struct legend *legend)
         if (view->color_scale.log)
             add_note(legend, "logarithmic scale");
     }
+    if (overlay_has_arrows(pen)) {
+        pen_number(overlay_arrow_value(pen), overlay_arrow_value(pen), number);
+        snprintf(legend->longest, sizeof(legend->longest), "%s %.30s", number, view_unit(pen->scene->plant, view));
+    }
     if (view->field.show == SHOW_DIFFERENCE)
         write_baseline(pen, legend);
+    if (view->field.show == SHOW_UNCERTAINTY)
+        add_note(legend, "standard deviation");
+    if (view->field.show == SHOW_BLIND)
+        write_hot_spot(pen, legend);
     if (!view_is_operator(view) && !colormap_at((size_t)view->colormap)->safe)
         add_note(legend, "may be misread");
     if (view->look == LOOK_GLOSSY) {
@@ -140,11 +170,13 @@ static const char *row_text(const struct legend *legend, enum row row)
                                          "uncertain",
                                          "unproven",
                                          "place assumed",
+                                         "",
+                                         "direction unknown",
                                          "alarm, priority 1",
                                          "alarm, priority 2",
                                          "alarm, priority 3",
                                          "alarm, priority 4" };
-    return row == ROW_BELOW ? legend->below : texts[row];
+    return row == ROW_BELOW ? legend->below : row == ROW_ARROW ? legend->longest : texts[row];
 }
 
 /* Below what lies over the picture already, where the card would lie on it. */
@@ -173,6 +205,8 @@ static void lay_out(struct pen *pen, struct legend *legend)
     for (int i = 0; i < legend->note_count; i++)
         width = fmax(width, pen_text_width(pen, legend->notes[i]));
     width = fmax(width, overlay_bar_width(pen));
+    if (legend->longest[0])
+        width = fmax(width, overlay_arrow_px(pen) + 0.55 * pen->text_px + pen_text_width(pen, legend->longest));
     legend->pad = 9 * pen->unit;
     double others = top + bottom + 2 * legend->pad;
     double bar_height = fmax(fmin(0.46 * area->height, area->height - others - 4 * legend->pad), 3 * pen->text_px);
@@ -252,6 +286,8 @@ static void draw_swatch(struct pen *pen, const struct box *box, enum row row)
         overlay_outline(pen, box->x + box->width / 2, box->y + box->height / 2, 0.27 * box->height, false);
         overlay_outline(pen, box->x + box->width / 2, box->y + box->height / 2, 0.47 * box->height, false);
         break;
+    case ROW_ARROW: /* beside it: draw_longest */ break;
+    case ROW_NOWHERE: overlay_unknown_direction(pen, box->x + box->width / 2, box->y + box->height / 2); break;
     default:
         overlay_ring(pen, box->x + box->width / 2, box->y + box->height / 2, 0.5 * box->height, (int)row - ROW_ALARM + 1, ALARM_ACTIVE);
         break;
@@ -264,13 +300,25 @@ static void draw_text(struct pen *pen, const struct legend *legend, double y, co
     pen_text(pen, legend->bar.x + legend->bar.width + 0.55 * pen->text_px, y + 0.92 * pen->text_px, text);
 }
 
+/* An arrow in its true length, and what it stands for. */
+static void draw_longest(struct pen *pen, const struct legend *legend, double y)
+{
+    double left = legend->card.x + legend->pad, long_px = overlay_arrow_px(pen);
+    overlay_arrow(pen, left + 0.5 * long_px, y + 0.55 * pen->text_px, long_px, 0, false);
+    pen_ink(pen, 0.95);
+    pen_text(pen, left + long_px + 0.55 * pen->text_px, y + 0.92 * pen->text_px, legend->longest);
+}
+
 static void draw_rows(struct pen *pen, const struct legend *legend)
 {
     double y = legend->bar.y + legend->bar.height + 0.55 * pen->text_px;
     pen_font(pen, 0.9, false);
     for (int i = 0; i < legend->row_count; i++, y += ROW * pen->text_px) {
         draw_swatch(pen, &(struct box){ legend->bar.x, y, legend->bar.width, 1.1 * pen->text_px }, legend->rows[i]);
-        draw_text(pen, legend, y, row_text(legend, legend->rows[i]));
+        if (legend->rows[i] == ROW_ARROW)
+            draw_longest(pen, legend, y);
+        else
+            draw_text(pen, legend, y, row_text(legend, legend->rows[i]));
     }
     pen_ink(pen, 1);
     for (int i = 0; i < legend->note_count; i++)

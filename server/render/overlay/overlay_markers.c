@@ -315,7 +315,7 @@ static void label_isolines(struct pen *pen)
     bool *done = mem_array(frame->label_count, sizeof(*done));
     for (size_t i = 0; i < frame->label_count && !view_is_operator(&pen->view); i++) {
         const struct frame_label *label = &frame->labels[i];
-        bool crowded = label->half != pen->half;
+        bool crowded = label->half != pen->half || label->arrow;
         for (size_t k = 0; k < i && !crowded; k++)
             crowded = done[k] && frame->labels[k].value == label->value &&
                       hypot(frame->labels[k].x_px - label->x_px, frame->labels[k].y_px - label->y_px) < least_px;
@@ -392,6 +392,7 @@ void overlay_markers(struct pen *pen)
     wanted.items = mem_array(count, sizeof(*wanted.items));
     wanted.texts = mem_array(count, sizeof(*wanted.texts));
     wanted.tags = mem_array(count, sizeof(*wanted.tags));
+    overlay_arrows(pen);
     for (size_t i = 0; i < count; i++) {
         const struct frame_marker *marker = &pen->frame->markers[chosen[i]];
         struct box mark = mark_box(pen, marker);

@@ -61,6 +61,10 @@ void overlay_bar(struct pen *pen, const struct box *bar);
 /* Return the width of the colour bar with all text beside it, and the part of it that is left of the bar itself. */
 double overlay_bar_width(struct pen *pen);
 double overlay_bar_left(struct pen *pen);
+/* Returns the height in pixels of the legend strip of a picture of that size; 0: it has none, being too small. */
+int overlay_strip_height(int width_px, int height_px);
+/* Writes the legend strip over the lowest rows of the picture, where it is wide and high enough. bgrx: the frame's pixels. */
+void overlay_strip(struct pen *pen, uint8_t *bgrx, int stride_bytes);
 /* Draws the legend of the half that is chosen. */
 void overlay_legend(struct pen *pen);
 /* Returns whether the legends of both halves of a split view are the same. Leaves the pen on the right half. */
@@ -77,6 +81,17 @@ bool overlay_unproven(const struct pen *pen, int tag);
 /* Draws an alarm ring. Its colour is the priority, its form the state: thick, unacknowledged; thin, acknowledged; hollow, returned to
    normal but not acknowledged. */
 void overlay_ring(struct pen *pen, double x, double y, double radius, int priority, enum alarm_status word);
+/* Returns whether the half that is chosen has arrows. */
+bool overlay_has_arrows(const struct pen *pen);
+/* Return how long the longest arrow is, in pixels, and the value that is as long. */
+double overlay_arrow_px(const struct pen *pen);
+double overlay_arrow_value(const struct pen *pen);
+/* Draws an arrow with its middle at (x, y); a dot where it has no length. uncertain: dashed. */
+void overlay_arrow(struct pen *pen, double x, double y, double dx_px, double dy_px, bool uncertain);
+/* Draws the cross that stands where a direction is not known. */
+void overlay_unknown_direction(struct pen *pen, double x, double y);
+/* Draws the arrows of the half that is chosen. */
+void overlay_arrows(struct pen *pen);
 /* Draws markers, alarm rings and labels of the half that is chosen. */
 void overlay_markers(struct pen *pen);
 /* Returns whether a marker lies in the chosen half, is not hidden by the plant, and is not covered by the overlay drawn so far. */

@@ -6,23 +6,29 @@
 #include <string.h>
 
 #include "base/mem.h"
+#include "base/vec.h"
+#include "render/matrix.h"
 #include "render/pick/markers.h"
 
-enum { POINTS_PER_LINE = 16, POINTS_MOST = 2048, LABELS_MOST = 128 };
+enum { POINTS_PER_LINE = 16, POINTS_MOST = 2048, LABELS_MOST = 128, ARROWS_MOST = 192 };
 static const double SPACING = 0.1, COARSE = 0.01; /* of an asset's size: between points; error of the level that is searched */
 static const double SAME_LINE = 4;                /* times as far apart as labels of different lines */
 
 void isolines_init(struct isolines *isolines, size_t asset_count)
 {
     isolines->sets = mem_array(asset_count, sizeof(*isolines->sets));
+    isolines->arrows = mem_array(asset_count, sizeof(*isolines->arrows));
     isolines->asset_count = asset_count;
 }
 
 void isolines_finish(struct isolines *isolines)
 {
-    for (size_t i = 0; i < isolines->asset_count; i++)
+    for (size_t i = 0; i < isolines->asset_count; i++) {
         mem_free(isolines->sets[i].points);
+        arrows_finish(&isolines->arrows[i]);
+    }
     mem_free(isolines->sets);
+    mem_free(isolines->arrows);
 }
 
 /* --- points on lines --------------------------------------------------------------------------------------------------------- */
@@ -134,7 +140,7 @@ static void update_set(struct isoline_set *set, const struct scene_asset *asset,
 
 /* --- which of them are seen -------------------------------------------------------------------------------------------------- */
 
-void isolines_collect(struct isolines *isolines, const struct frame_context *context, struct isoline_points *out)
+static void collect_lines(struct isolines *isolines, const struct frame_context *context, struct isoline_points *out)
 {
     double lines[VIEW_ALL_LINES];
     int line_count = view_lines(context->view, lines);
@@ -153,6 +159,41 @@ void isolines_collect(struct isolines *isolines, const struct frame_context *con
             if (clip_keeps(&context->view->visibility.clip, set->points[p].place_m))
                 out->at[out->count++] = set->points[p];
     }
+}
+
+static void collect_arrows(struct isolines *isolines, const struct frame_context *context, struct isoline_points *out)
+{
+    const struct scene *scene = context->gpu_scene->scene;
+    if (!isolines_has_arrows(scene, context->view)) /* fields that a trial leaves alone have theirs from before it */
+        return;
+    for (size_t i = 0; i < context->visible_count; i++) {
+        int asset = context->visible[i];
+        struct arrow_set *set = &isolines->arrows[asset];
+        const struct fields_entry *field = context->fields[asset];
+        if (!field || !field->slice || field->direction_count == 0 || field->params.show != SHOW_VALUE)
+            continue;
+        arrows_update(set, scene, asset, field);
+        mem_grow(&out->at, &out->capacity, out->count + set->count, sizeof(*out->at));
+        for (size_t p = 0; p < set->count && out->count < 2 * POINTS_MOST; p++) {
+            struct isoline_point point = { .value = arrows_value(set, p, field), .arrow = true, .uncertain = set->found[p].uncertain };
+            arrows_place(set, p, &scene->assets[asset], point.place_m, point.along);
+            point.slack_m = (float)fmax(1.5 * (double)set->error_m, 0.01 * size_of(&scene->assets[asset]));
+            if (isfinite(point.value) && clip_keeps(&context->view->visibility.clip, point.place_m))
+                out->at[out->count++] = point;
+        }
+    }
+}
+
+bool isolines_has_arrows(const struct scene *scene, const struct view *view)
+{
+    return view->look != LOOK_MATERIALS && view->field.show == SHOW_VALUE && !view->field.trial &&
+           scene->plant->groups[view->field.group].directed;
+}
+
+void isolines_collect(struct isolines *isolines, const struct frame_context *context, struct isoline_points *out)
+{
+    collect_lines(isolines, context, out);
+    collect_arrows(isolines, context, out);
 }
 
 /* Eye space, and slack. */
@@ -178,33 +219,67 @@ bool isolines_start(struct point_visibility *queries, const struct frame_context
 }
 
 /* A message goes with each frame: no more places than a picture has room for, and few of one line. */
-static bool has_room(const struct frame *frame, const float place[4], double value)
+static bool has_room(const struct frame *frame, const float place[4], const struct isoline_point *point)
 {
-    double least_px = fmax(40, frame->width_px / 32.0);
+    double lines_px = fmax(40, frame->width_px / 32.0), arrows_px = FRAME_ARROW_PX(frame->width_px);
+    int count = 0;
     for (size_t i = 0; i < frame->label_count; i++) {
         const struct frame_label *label = &frame->labels[i];
         double away_px = hypot((double)(label->x_px - place[0]), (double)(label->y_px - place[1]));
-        if (away_px < (label->value == value ? SAME_LINE * least_px : least_px))
+        if (label->arrow != point->arrow)
+            continue;
+        if (away_px < (point->arrow ? arrows_px : label->value == point->value ? SAME_LINE * lines_px : lines_px))
             return false;
+        count++;
     }
-    return frame->label_count < LABELS_MOST;
+    return count < (point->arrow ? ARROWS_MOST : LABELS_MOST);
+}
+
+/* How a unit vector at the point looks in the picture, in parts of its length if it lay in the picture's plane. */
+static void project_arrow(const struct frame_context *context, const struct isoline_point *point, struct frame_label *label)
+{
+    const struct view_constants *constants = &context->constants;
+    double from[3], to[3], from_clip[4], to_clip[4];
+    vec_sub(point->place_m, constants->eye_m, from);
+    double away_m = fmax(vec_length(from), 1e-6), step_m = 1e-3 * away_m;
+    for (int c = 0; c < 3; c++)
+        to[c] = from[c] + step_m * point->along[c];
+    matrix_point(constants->clip_from_eye, from, from_clip);
+    matrix_point(constants->clip_from_eye, to, to_clip);
+    if (!(from_clip[3] > 0 && to_clip[3] > 0))
+        return;
+    double scale_px = constants->pixel_per_metre > 0 ? constants->pixel_per_metre : constants->pixel_per_radian / from_clip[3];
+    double dx = 0.5 * (to_clip[0] / to_clip[3] - from_clip[0] / from_clip[3]) * context->view->width_px / (scale_px * step_m);
+    double dy = -0.5 * (to_clip[1] / to_clip[3] - from_clip[1] / from_clip[3]) * context->view->height_px / (scale_px * step_m);
+    double length = fmax(hypot(dx, dy), 1);
+    label->dx = (float)(round(100 * dx / length) / 100);
+    label->dy = (float)(round(100 * dy / length) / 100);
 }
 
 /* places: x, y in pixels, hidden. */
-static void give(const struct isoline_points *points, float (*places)[4], struct frame *frame)
+static void give(const struct frame_context *context, const struct isoline_points *points, float (*places)[4], struct frame *frame)
 {
     frame->labels = mem_array(points->count, sizeof(*frame->labels));
-    for (size_t i = 0; i < points->count; i++)
-        if (places[i][2] < 0.5f && has_room(frame, places[i], points->at[i].value))
-            frame->labels[frame->label_count++] = (struct frame_label){ .value = points->at[i].value,
-                                                                        .x_px = roundf(10 * places[i][0]) / 10,
-                                                                        .y_px = roundf(10 * places[i][1]) / 10 };
+    for (size_t i = 0; i < points->count; i++) {
+        const struct isoline_point *point = &points->at[i];
+        if (places[i][2] >= 0.5f || !has_room(frame, places[i], point))
+            continue;
+        struct frame_label *label = &frame->labels[frame->label_count++];
+        *label = (struct frame_label){ .value = point->value,
+                                       .x_px = roundf(10 * places[i][0]) / 10,
+                                       .y_px = roundf(10 * places[i][1]) / 10,
+                                       .arrow = point->arrow,
+                                       .uncertain = point->uncertain };
+        if (point->arrow)
+            project_arrow(context, point, label);
+    }
 }
 
-void isolines_get(const struct point_visibility *queries, const struct isoline_points *points, struct frame *frame)
+void isolines_get(const struct point_visibility *queries, const struct frame_context *context, const struct isoline_points *points,
+                  struct frame *frame)
 {
     if (points->count > 0)
-        give(points, queries->places, frame);
+        give(context, points, queries->places, frame);
 }
 
 void isolines_find(const struct frame_context *context, const struct isoline_points *points, const float *depth, size_t pitch_px,
@@ -216,6 +291,6 @@ void isolines_find(const struct frame_context *context, const struct isoline_poi
     fill_places(context, points, places);
     for (size_t i = 0; i < points->count; i++)
         markers_look(context, depth, pitch_px, places[i]);
-    give(points, places, frame);
+    give(context, points, places, frame);
     mem_free(places);
 }

@@ -1,13 +1,16 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Finds points on isolines where labels may be placed, spread over each asset, and which of them are visible in a picture. The lines
-   themselves are drawn with the field (shaders/field.glsl). Thread: the one of the GL context. */
+/* Finds points on isolines where labels may be placed, spread over each asset, and which of them are visible in a picture; likewise places
+   of arrows (arrows.h). The lines themselves are drawn with the field (shaders/field.glsl). Thread: the one of the GL context. */
 #ifndef RENDER_PICK_ISOLINES_H
 #define RENDER_PICK_ISOLINES_H
 #include "render/frame.h"
+#include "render/pick/arrows.h"
 #include "render/pick/point_visibility.h"
 
 struct isoline_point {
     double value, place_m[3]; /* plant frame */
+    double along[3];          /* of an arrow: where it points, plant frame; 0: not known */
+    bool arrow, uncertain;
     float slack_m;            /* depth tolerance: how far it may lie behind the surface drawn */
 };
 struct isoline_set { /* of one asset */
@@ -19,7 +22,8 @@ struct isoline_set { /* of one asset */
 };
 
 struct isolines {
-    struct isoline_set *sets; /* by asset */
+    struct isoline_set *sets; /* by asset, as the next */
+    struct arrow_set *arrows;
     size_t asset_count;
 };
 struct isoline_points { /* the points of one picture; zero-initialise, free `at` with mem_free() */
@@ -27,6 +31,8 @@ struct isoline_points { /* the points of one picture; zero-initialise, free `at`
     size_t count, capacity;
 };
 
+/* Returns whether a picture of this view has arrows. Pure. */
+bool isolines_has_arrows(const struct scene *scene, const struct view *view);
 void isolines_init(struct isolines *isolines, size_t asset_count);
 void isolines_finish(struct isolines *isolines);
 /* Returns how many of an asset's first vertices must have current scalars for isolines_collect(). Pure. */
@@ -36,7 +42,8 @@ void isolines_collect(struct isolines *isolines, const struct frame_context *con
 /* isolines_start() begins the visibility test on the GPU once the picture is resolved, and returns false if the GPU is out of memory, which
    is logged; isolines_get() stores the result in the frame once the GPU is done. */
 bool isolines_start(struct point_visibility *queries, const struct frame_context *context, const struct isoline_points *points);
-void isolines_get(const struct point_visibility *queries, const struct isoline_points *points, struct frame *frame);
+void isolines_get(const struct point_visibility *queries, const struct frame_context *context, const struct isoline_points *points,
+                  struct frame *frame);
 /* Does both on the CPU, from the picture's depth buffer: rows from the top, pitch_px apart. */
 void isolines_find(const struct frame_context *context, const struct isoline_points *points, const float *depth, size_t pitch_px,
                    struct frame *frame);

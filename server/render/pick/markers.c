@@ -5,6 +5,7 @@
 #include <math.h>
 
 #include "base/mem.h"
+#include "protocol/asset_distance.h"
 #include "render/matrix.h"
 
 bool marker_next(struct marker_iterator *iterator, struct marker_place *out)
@@ -111,13 +112,15 @@ static double distance_m(const struct marker_iterator *iterator, const struct ma
         return NAN;
     if (place->tag == params->sensor)
         return 0;
+    if (params->distance == DISTANCE_HEAT) /* the colours are by another way than the asset file's, which are at hand here */
+        return NAN;
     if (params->distance == DISTANCE_EUCLIDEAN) {
         const double *a = tried ? tried->place_m : from->surface_m, *b = place->surface_m;
         return hypot(hypot(a[0] - b[0], a[1] - b[1]), a[2] - b[2]);
     }
-    const float *along_m = tried ? trial_distances(tried) : file->geodesic_m + (size_t)from->column * file->header->vertex_count;
+    const float *tried_m = tried ? trial_distances(tried) : NULL;
     uint32_t vertex = tried_to ? tried_to->vertex : file->sensors[to->column].nearest_vertex;
-    double away_m = along_m ? (double)along_m[vertex] : INFINITY;
+    double away_m = tried_m ? (double)tried_m[vertex] : tried ? INFINITY : (double)asset_distance_m(file, from->column, vertex);
     return away_m < 1e30 ? away_m : NAN;
 }
 
@@ -134,6 +137,16 @@ static void give(const struct frame_context *context, float (*places)[4], size_t
         if (context->view->field.show == SHOW_DISTANCE)
             marker->value = distance_m(&iterator, &place, &context->view->field);
     }
+    field_give_trial(context->field, &trial);
+}
+
+void markers_measure(const struct frame_context *context, struct frame *frame)
+{
+    const struct trial *trial;
+    struct marker_iterator iterator = iterator_of(context, &trial);
+    struct marker_place place;
+    for (size_t i = 0; i < frame->marker_count && next_shown(&iterator, context, &place); i++)
+        frame->markers[i].value = context->view->field.show == SHOW_DISTANCE ? distance_m(&iterator, &place, &context->view->field) : 0;
     field_give_trial(context->field, &trial);
 }
 

@@ -26,6 +26,8 @@ double markers_slack_m(const struct scene_asset *asset);
    is logged; markers_get() stores the result in the frame once the GPU is done. */
 bool markers_start(struct point_visibility *queries, const struct frame_context *context);
 void markers_get(const struct point_visibility *queries, const struct frame_context *context, struct frame *frame);
+/* Works out anew what the markers of a frame say, their places being as they are. */
+void markers_measure(const struct frame_context *context, struct frame *frame);
 /* Does both on the CPU, from the picture's depth buffer: rows from the top, pitch_px apart. */
 void markers_find(const struct frame_context *context, const float *depth, size_t pitch_px, struct frame *frame);
 /* Tests one point as shaders/point_visibility.comp does. place: in, eye-space position and depth tolerance in metres; out, x and y in

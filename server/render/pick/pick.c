@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "base/mem.h"
+#include "protocol/asset_distance.h"
 #include "render/pick/markers.h"
 #include "scene/raycast.h"
 #include "value/quality.h"
@@ -115,16 +116,17 @@ static void read_field(const struct spot *spot, const struct scalars *scalars, s
 
 static double distance_of(const struct spot *spot, const struct field_sensor *sensor, const double place_file_m[3])
 {
-    const float *distances = sensor->along_m;
+    const struct asset_view *file = &spot->scene->assets[spot->hit.asset].file->view;
     double sum = 0;
-    if (spot->view->field.distance == DISTANCE_EUCLIDEAN || !distances) {
+    if (spot->view->field.distance == DISTANCE_EUCLIDEAN || (!sensor->in_file && !sensor->along_m)) {
         for (int i = 0; i < 3; i++)
             sum += pow(place_file_m[i] - (double)sensor->surface_m[i], 2);
         return sqrt(sum);
     }
     for (int k = 0; k < 3; k++)
         if (spot->hit.weights[k] != 0)
-            sum += spot->hit.weights[k] * (double)distances[spot->hit.corners[k]];
+            sum += spot->hit.weights[k] * (double)(sensor->in_file ? asset_distance_m(file, sensor->column, spot->hit.corners[k])
+                                                                   : sensor->along_m[spot->hit.corners[k]]);
     return sum;
 }
 
@@ -165,7 +167,7 @@ static void read_sensors(const struct spot *spot, struct field *field, const str
 static bool is_measured(const struct spot *spot, const struct field_params *params, const struct pick *pick)
 {
     return pick->state == PICK_BETWEEN && params->interpolation != INTERPOLATION_PAPER && params->show != SHOW_DISTANCE &&
-           pick->nearest_count > 0 && !pick->assumed &&
+           !field_params_cover(params) && pick->nearest_count > 0 && !pick->assumed &&
            pick->nearest[0].distance_m <= fmax(MEASURED_M, MEASURED_PX * spot->meter_per_pixel);
 }
 

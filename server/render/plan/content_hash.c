@@ -80,7 +80,8 @@ uint64_t content_hash(const struct frame_plan *plan)
     add_colors(&state, &plan->view);
     for (size_t i = 0; i < plan->visible_count; i++) {
         int asset = plan->visible[i];
-        uint64_t one[2] = { (uint64_t)asset, plan->fields[asset] ? plan->fields[asset]->content : 0 };
+        const struct fields_entry *entry = plan->fields[asset];
+        uint64_t one[3] = { (uint64_t)asset, entry ? entry->content : 0, entry ? entry->directions_content : 0 };
         add(&state, one, sizeof(one));
     }
     return XXH3_64bits_digest(&state);

@@ -28,6 +28,7 @@ static void entry_destroy(struct fields *fields, struct fields_entry *entry)
     fields->bytes -= entry->count * sizeof(*entry->shown);
     pool_unref(&entry->slice);
     glDeleteBuffers(1, &entry->sensors);
+    mem_free(entry->directions);
     mem_free(entry->shown);
     mem_free(entry);
 }
@@ -148,6 +149,22 @@ static bool upload(struct fields *fields, struct fields_entry *entry)
     return entry->uploaded = true;
 }
 
+/* Where the readings point now. Of a trial nobody knows. */
+static void take_directions(struct fields *fields, struct fields_entry *entry, const struct fields_ask *ask)
+{
+    const struct scene *scene = field_scene(fields->field);
+    if (ask->params->show != SHOW_VALUE || ask->params->trial || !scene->plant->groups[ask->params->group].directed)
+        return;
+    mem_free(entry->directions);
+    entry->direction_count = directions_read(scene, entry->asset, ask->params->group, ask->snapshot, &entry->directions);
+    entry->directions_content = XXH3_64bits(&entry->params, sizeof(entry->params)); /* on which they depend as well */
+    for (size_t i = 0; i < entry->direction_count; i++) {
+        const struct sensor_direction *d = &entry->directions[i];
+        const float said[6] = { d->vector[0], d->vector[1], d->vector[2], d->configured, d->known, d->uncertain };
+        entry->directions_content = XXH3_64bits_withSeed(said, sizeof(said), entry->directions_content);
+    }
+}
+
 /* What there is to show of one asset, and whether it is behind. NULL: nothing. */
 static struct fields_entry *look(struct fields *fields, const struct fields_ask *ask, int asset, size_t count)
 {
@@ -172,6 +189,7 @@ static struct fields_entry *look(struct fields *fields, const struct fields_ask 
             glDeleteBuffers(1, &entry->sensors);
         entry->sensors = 0;
     }
+    take_directions(fields, entry, ask);
     entry->wanted = count;
     entry->oldest_age_ns = scalars->oldest_age_ns;
     entry->used = ++fields->uses;
@@ -210,7 +228,8 @@ static void show_some(void *arg, size_t begin, size_t end)
 /* For fragments that work the field out themselves. */
 static void take_sensors(const struct fields *fields, struct fields_entry *entry)
 {
-    if (fields->reference && !entry->sensors && !interpolation_is_prepared(entry->params.interpolation)) /* no shader has their weights */
+    if (fields->reference && !entry->sensors && !interpolation_is_prepared(entry->params.interpolation) &&
+        !field_params_cover(&entry->params) && entry->params.distance != DISTANCE_HEAT) /* no shader has their weights or distances */
         entry->sensors = reference_sensors(fields->reference, entry->asset, &entry->params);
 }
 

@@ -3,6 +3,7 @@
    what is there. Least recently used ones go beyond a bound, but not those of the last picture. Thread: the one of the GL context. */
 #ifndef RENDER_PLAN_FIELDS_H
 #define RENDER_PLAN_FIELDS_H
+#include "field/directions.h"
 #include "field/field.h"
 #include <glad/gl.h>
 
@@ -24,6 +25,9 @@ struct fields_entry { /* without a slice: it could not be worked out or kept; dr
     GLuint sensors; /* 0, or for fragments that work the field out themselves (render/reference/reference.h) */
     int64_t oldest_age_ns;
     uint64_t used;
+    struct sensor_direction *directions; /* of a group that has some, else NULL (field/directions.h) */
+    size_t direction_count;
+    uint64_t directions_content;  /* hash of them */
     const struct scalars *behind; /* not NULL: to be shown next */
     size_t wanted;                /* of which so many are hashed */
 };

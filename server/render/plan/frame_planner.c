@@ -67,7 +67,10 @@ static size_t count_vertices(const struct frame_plan *plan, int asset)
     double lines[VIEW_ALL_LINES];
     size_t count = lod_level(plan->gpu_scene, &plan->constants, asset, plan->error_px)->vertex_count;
     size_t labels = view_lines(&plan->view, lines) > 0 ? isolines_vertex_count(&plan->gpu_scene->scene->assets[asset]) : 0;
-    return count > labels ? count : labels;
+    bool has_arrows = isolines_has_arrows(plan->gpu_scene->scene, &plan->view);
+    size_t arrows = has_arrows ? arrows_vertex_count(&plan->gpu_scene->scene->assets[asset]) : 0;
+    count = count > labels ? count : labels;
+    return count > arrows ? count : arrows;
 }
 
 struct frame_plan *frame_plan_create(const struct frame_planner *planner, const struct view *view)

@@ -6,6 +6,7 @@
 
 #include "base/mem.h"
 #include "gpu/mesh.h"
+#include "protocol/asset_distance.h"
 
 enum { BIND_SENSORS = 5, BIND_CORNERS = 6, BIND_POSITIONS = 7, UNIT_DISTANCES = 14, FIRST_TRIANGLE = 8 };
 enum { LANES = 4, CONFIGURED = 1, USABLE = 2, UNCERTAIN = 4 };
@@ -57,7 +58,7 @@ static struct sensors_head head_of(const struct reference *reference, int asset,
         .range = places ? 1 : (float)(group->max - group->min),
         .vertices = (float)reference->gpu_scene->of_asset[asset]->file->view.header->vertex_count,
         .paper = params->interpolation == INTERPOLATION_PAPER,
-        .geodesic = params->distance == DISTANCE_GEODESIC,
+        .geodesic = params->distance != DISTANCE_EUCLIDEAN, /* by heat: those of the asset file stand in */
         .fill = params->fill == FILL_NEIGHBOURS,
         .show = (int32_t)params->show,
     };
@@ -106,7 +107,7 @@ static GLuint upload_distances(struct log *log, const struct asset_view *view)
     }
     for (size_t i = 0; i < sensors; i++)
         for (size_t j = 0; j < vertices; j++)
-            texels[i / LANES * vertices + j][i % LANES] = view->geodesic_m[i * vertices + j];
+            texels[i / LANES * vertices + j][i % LANES] = asset_distance_m(view, i, j);
     GLuint buffer = mesh_buffer(log, "distances", groups * vertices * sizeof(*texels), texels, 0);
     mem_free(texels);
     return buffer;

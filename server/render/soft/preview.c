@@ -199,7 +199,7 @@ void soft_take_colormap(struct soft *soft, const struct shaded_colormap *colorma
 bool preview_draw(struct soft *soft, const struct frame_context *context, const struct light *light, const struct isoline_points *points,
                   struct frame *frame)
 {
-    bool lined = has_lines(context);
+    bool lined = has_lines(context) || points->count > 0; /* of what is kept, depths are not */
     if (!lined && soft_resolve_again(soft, &soft->kept, context, NULL, frame))
         return true;
     soft->context = context;

@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "base/mem.h"
+#include "render/pick/markers.h"
 #include "render/soft/tile.h"
 
 struct keeping {
@@ -148,17 +149,18 @@ bool soft_resolve_again(struct soft *soft, struct visibility_store *store, const
 {
     struct visibility_buffer *buffer = visibility_store_find(store, context->shape);
     struct frame_uniforms block;
-    if (!buffer || (context->colormap.lines && !buffer->lined))
+    if (!buffer || (context->colormap.lines && !buffer->lined) || (points && points->count > 0 && !buffer->depth))
         return false;
     frame_uniforms_fill(&block, context);
     soft_take_colormap(soft, &context->colormap, context->view->look == LOOK_GLOSSY && !buffer->gloss);
     resolve_read(buffer, context, soft->workers);
     resolve_colors(buffer, soft->colormap, &(struct resolve_lines){ block.lines[0], soft->lines }, block.scale[3], soft->workers, 0,
                    buffer->band_count, frame);
-    if (context->colormap.lines)
+    if (points && points->count > 0)
         isolines_find(context, points, buffer->depth, (size_t)buffer->width_px, frame);
     frame->markers = mem_array(buffer->marker_count, sizeof(*frame->markers));
     frame->marker_count = buffer->marker_count;
     memcpy(frame->markers, buffer->markers, buffer->marker_count * sizeof(*buffer->markers));
+    markers_measure(context, frame); /* distances may be others meanwhile */
     return true;
 }

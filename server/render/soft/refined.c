@@ -252,13 +252,13 @@ static bool find_caps(struct refined *refined, const struct frame *frame, size_t
     return true;
 }
 
-/* For labels of isolines. */
+/* For labels of isolines, and arrows. */
 static bool keep_depth(struct refined *refined)
 {
     const struct soft *soft = refined->soft;
     struct visibility_buffer *buffer = refined->buffer;
     size_t row = (size_t)buffer->width_px;
-    if (!buffer->lined)
+    if (!buffer->lined && !isolines_has_arrows(refined->context->gpu_scene->scene, refined->context->view))
         return true;
     buffer->depth = mem_try_array(row * (size_t)buffer->height_px, sizeof(*buffer->depth));
     for (size_t y = 0; y < (size_t)buffer->height_px && buffer->depth; y++)
@@ -403,7 +403,7 @@ bool refiner_keep(struct refiner *refiner, struct refined *refined, const struct
     if (refined->failed)
         return false;
     refined->buffer = NULL;
-    if (buffer->lined)
+    if (buffer->depth)
         isolines_find(context, points, buffer->depth, (size_t)buffer->width_px, frame);
     soft_give(&refiner->kept, context, buffer, frame);
     return true;
@@ -413,7 +413,8 @@ bool refiner_know(struct refiner *refiner, const struct frame_context *context)
 {
     double lines[VIEW_ALL_LINES];
     const struct visibility_buffer *buffer = visibility_store_find(&refiner->kept, context->shape);
-    return buffer && (buffer->lined || view_lines(context->view, lines) == 0);
+    return buffer && (buffer->lined || view_lines(context->view, lines) == 0) &&
+           (buffer->depth || !isolines_has_arrows(context->gpu_scene->scene, context->view));
 }
 
 bool refiner_resolve_again(struct refiner *refiner, const struct frame_context *context, const struct isoline_points *points,

@@ -1,0 +1,75 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* By fontconfig. One font has all of a text, as cairo's own text functions change none within it. */
+#include "render/overlay/text_face.h"
+
+#include <cairo-ft.h>
+#include <fontconfig/fontconfig.h>
+#include <pthread.h>
+#include <stdbool.h>
+#include <string.h>
+
+enum { FIRST_BEYOND = 0x590 }; /* Hebrew and all after it */
+
+static pthread_mutex_t lock = PTHREAD_MUTEX_INITIALIZER;
+/* --- below: under lock. What was found last, regular and bold */
+static struct found {
+    FcCharSet *letters; /* NULL: nothing yet */
+    cairo_font_face_t *face;
+} found[2];
+
+/* The letters of a text; NULL: DejaVu Sans has them. */
+static FcCharSet *letters_beyond(const char *text)
+{
+    FcCharSet *letters = FcCharSetCreate();
+    const FcChar8 *at = (const FcChar8 *)text;
+    bool beyond = false;
+    FcChar32 letter;
+    for (int count = (int)strlen(text), n; count > 0 && (n = FcUtf8ToUcs4(at, &letter, count)) > 0; at += n, count -= n) {
+        FcCharSetAddChar(letters, letter);
+        beyond |= letter >= FIRST_BEYOND && !(letter >= 0x2000 && letter < 0x2c00); /* but for dashes, arrows, signs */
+    }
+    if (beyond)
+        return letters;
+    FcCharSetDestroy(letters);
+    return NULL;
+}
+
+static void find(struct found *out, const FcCharSet *letters, bool bold)
+{
+    FcPattern *wanted = FcPatternCreate();
+    FcResult result;
+    FcPatternAddString(wanted, FC_FAMILY, (const FcChar8 *)"sans-serif");
+    FcPatternAddInteger(wanted, FC_WEIGHT, bold ? FC_WEIGHT_BOLD : FC_WEIGHT_REGULAR);
+    FcPatternAddBool(wanted, FC_SCALABLE, FcTrue);
+    FcPatternAddCharSet(wanted, FC_CHARSET, letters);
+    FcConfigSubstitute(NULL, wanted, FcMatchPattern);
+    FcDefaultSubstitute(wanted);
+    FcPattern *match = FcFontMatch(NULL, wanted, &result);
+    FcCharSet *has;
+    FcPatternDestroy(wanted);
+    if (!match)
+        return;
+    if (out->letters)
+        FcCharSetDestroy(out->letters);
+    if (out->face)
+        cairo_font_face_destroy(out->face);
+    out->letters = FcPatternGetCharSet(match, FC_CHARSET, 0, &has) == FcResultMatch ? FcCharSetCopy(has) : FcCharSetCreate();
+    out->face = cairo_ft_font_face_create_for_pattern(match);
+    FcPatternDestroy(match);
+}
+
+void text_face_choose(cairo_t *cairo, const char *text)
+{
+    FcCharSet *letters = letters_beyond(text);
+    cairo_font_face_t *now = cairo_get_font_face(cairo);
+    bool bold = cairo_font_face_get_type(now) == CAIRO_FONT_TYPE_TOY && cairo_toy_font_face_get_weight(now) == CAIRO_FONT_WEIGHT_BOLD;
+    if (!letters)
+        return;
+    pthread_mutex_lock(&lock);
+    if (!found[bold].letters || !FcCharSetIsSubset(letters, found[bold].letters))
+        find(&found[bold], letters, bold);
+    if (found[bold].face)
+        cairo_set_font_face(cairo, found[bold].face);
+    pthread_mutex_unlock(&lock);
+    FcCharSetDestroy(letters);
+}

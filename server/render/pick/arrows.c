@@ -1,0 +1,171 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Points of triangles, thinned out. */
+#include "render/pick/arrows.h"
+
+#include <math.h>
+
+#include "base/mem.h"
+#include "base/vec.h"
+
+enum { PLACES = 400, CANDIDATES_MOST = 20000, CUTS_MOST = 64 };
+static const double COARSE = 0.01; /* of an asset's size: error of the level that is searched */
+
+static const struct asset_level *coarse_level(const struct scene_asset *asset)
+{
+    const struct asset_view *view = &asset->file->view;
+    double size_m = 0;
+    uint32_t level = 0;
+    for (int c = 0; c < 3; c++)
+        size_m = max_of(size_m, asset->bounds_max_m[c] - asset->bounds_min_m[c]);
+    while (level + 1 < view->header->level_count && (double)view->levels[level + 1].error_m <= COARSE * size_m)
+        level++;
+    return &view->levels[level];
+}
+
+size_t arrows_vertex_count(const struct scene_asset *asset)
+{
+    return coarse_level(asset)->vertex_count;
+}
+
+/* --- places ----------------------------------------------------------------------------------------------------------------- */
+
+struct candidates {
+    const struct asset_view *view;
+    struct direction_place *at;
+    size_t count, capacity;
+    double spacing_m;
+};
+
+static void corners_of(const struct asset_view *view, const uint32_t corners[3], double out[3][3])
+{
+    for (int i = 0; i < 3; i++)
+        for (int c = 0; c < 3; c++)
+            out[i][c] = (double)view->positions_m[corners[i]][c];
+}
+
+static void point_of(const struct asset_view *view, const struct direction_place *place, double out[3])
+{
+    for (int c = 0; c < 3; c++) {
+        out[c] = 0;
+        for (int i = 0; i < 3; i++)
+            out[c] += (double)(place->weights[i] * view->positions_m[place->corners[i]][c]);
+    }
+}
+
+/* The middles of equal pieces, each about half as long as arrows are apart. */
+static void add_triangle(struct candidates *candidates, const uint32_t corners[3])
+{
+    double at[3][3], normal[3];
+    corners_of(candidates->view, corners, at);
+    vec_normal(at[0], at[1], at[2], normal);
+    double longest_m = max_of(vec_distance(at[0], at[1]), max_of(vec_distance(at[1], at[2]), vec_distance(at[2], at[0])));
+    if (!(vec_normalize(normal) > 0))
+        return;
+    int cuts = (int)min_of(ceil(2 * longest_m / candidates->spacing_m), CUTS_MOST);
+    for (int i = 0; i < cuts; i++)
+        for (int j = 0; j < 2 * (cuts - i) - 1; j++) { /* j odd: the pieces that stand on their heads */
+            double third = j % 2 ? 2.0 / 3 : 1.0 / 3, a = (i + third) / cuts, b = (j / 2 + third) / cuts;
+            mem_grow(&candidates->at, &candidates->capacity, candidates->count + 1, sizeof(*candidates->at));
+            candidates->at[candidates->count++] =
+                (struct direction_place){ .corners = { corners[0], corners[1], corners[2] },
+                                          .weights = { (float)(1 - a - b), (float)a, (float)b },
+                                          .normal = { (float)normal[0], (float)normal[1], (float)normal[2] } };
+        }
+}
+
+static bool is_apart(const struct arrow_set *set, const struct asset_view *view, const struct direction_place *place, double least_m)
+{
+    double here[3], there[3];
+    point_of(view, place, here);
+    for (size_t i = 0; i < set->count; i++) {
+        const float *a = set->places[i].normal, *b = place->normal;
+        point_of(view, &set->places[i], there);
+        if (a[0] * b[0] + a[1] * b[1] + a[2] * b[2] > 0 && vec_distance(here, there) < least_m) /* else: the other side of a wall */
+            return false;
+    }
+    return true;
+}
+
+/* Far apart first, so that whoever takes them in this order while there is room has them evenly spread. */
+static void thin_out(struct arrow_set *set, const struct candidates *candidates)
+{
+    set->places = mem_array(PLACES, sizeof(*set->places));
+    size_t step = candidates->count / CANDIDATES_MOST + 1;
+    for (double least_m = 4 * candidates->spacing_m; least_m >= candidates->spacing_m; least_m /= 2)
+        for (size_t i = 0; i < candidates->count && set->count < PLACES; i += step)
+            if (is_apart(set, candidates->view, &candidates->at[i], least_m))
+                set->places[set->count++] = candidates->at[i];
+    set->found = mem_array(set->count, sizeof(*set->found));
+}
+
+static void seek(struct arrow_set *set, const struct scene_asset *asset)
+{
+    struct candidates candidates = { .view = &asset->file->view };
+    const struct asset_level *level = coarse_level(asset);
+    for (int pass = 0; pass < 2; pass++) { /* the area, then places by it */
+        double area_m2 = 0;
+        for (uint32_t p = 0; p < level->primitive_count; p++) {
+            const struct asset_primitive *primitive = &candidates.view->primitives[level->first_primitive + p];
+            const uint32_t *corners = candidates.view->indices + primitive->first_index;
+            for (uint32_t i = 0; i < primitive->index_count; i += 3) {
+                double at[3][3], normal[3];
+                corners_of(candidates.view, corners + i, at);
+                vec_normal(at[0], at[1], at[2], normal);
+                area_m2 += 0.5 * vec_length(normal);
+                if (pass == 1)
+                    add_triangle(&candidates, corners + i);
+            }
+        }
+        candidates.spacing_m = sqrt(area_m2 / PLACES);
+        if (!(candidates.spacing_m > 0))
+            break;
+    }
+    set->error_m = level->error_m;
+    set->sought = true;
+    if (candidates.count > 0)
+        thin_out(set, &candidates);
+    mem_free(candidates.at);
+}
+
+/* --- directions ------------------------------------------------------------------------------------------------------------- */
+
+void arrows_update(struct arrow_set *set, const struct scene *scene, int asset, const struct fields_entry *field)
+{
+    if (!set->sought)
+        seek(set, &scene->assets[asset]);
+    if (set->content == field->directions_content)
+        return;
+    set->content = field->directions_content;
+    directions_find(scene, asset, &field->params, field->directions, field->direction_count, set->places, set->count, set->found);
+}
+
+double arrows_value(const struct arrow_set *set, size_t place, const struct fields_entry *field)
+{
+    const struct direction_place *at = &set->places[place];
+    double value = 0;
+    for (int i = 0; i < 3; i++) {
+        const struct scalar *scalar = &field->shown[at->corners[i]];
+        if (scalar->no_data)
+            return (double)NAN;
+        value += (double)(at->weights[i] * scalar->value);
+    }
+    return value;
+}
+
+void arrows_place(const struct arrow_set *set, size_t place, const struct scene_asset *asset, double place_m[3], double along[3])
+{
+    const double *m = asset->placement;
+    const float *to = set->found[place].along;
+    double file_m[3];
+    point_of(&asset->file->view, &set->places[place], file_m);
+    for (int c = 0; c < 3; c++) {
+        place_m[c] = m[c] * file_m[0] + m[4 + c] * file_m[1] + m[8 + c] * file_m[2] + m[12 + c];
+        along[c] = m[c] * (double)to[0] + m[4 + c] * (double)to[1] + m[8 + c] * (double)to[2];
+    }
+}
+
+void arrows_finish(struct arrow_set *set)
+{
+    mem_free(set->places);
+    mem_free(set->found);
+}
