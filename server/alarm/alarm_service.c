@@ -12,6 +12,7 @@
 #include "base/mem.h"
 #include "base/thread.h"
 
+enum { ROWS = 2048 /* changes that are remembered for a standby */ };
 enum { QUEUE_MAX = 1000000 /* samples that a tenth of a second may bring */, RATE_SLOTS = 60 };
 static const int64_t TICK_NS = NS_PER_S / 10, RATE_NS = 600 * NS_PER_S;
 
@@ -40,6 +41,8 @@ struct alarm_service {
     /* --- below: under thread.lock */
     struct alarms *alarms;
     int raised_now;
+    struct journal_entry *rows; /* a ring; NULL: there is no journal */
+    uint64_t row_count;         /* all that ever were */
     void (*changed)(void *arg); /* NULL: nobody listens */
     void *changed_arg;
 };
@@ -66,6 +69,8 @@ static void on_change(void *arg, const struct alarm_change *change)
     service->raised_now += change->event == ALARM_RAISE && alarm_status_is_annunciated(change->after);
     if (service->journal)
         journal_add(service->journal, change, change->alarm->name);
+    if (service->rows)
+        service->rows[++service->row_count % ROWS] = journal_entry_of(change, change->alarm->name);
 }
 
 static void on_tag(void *arg, int tag, enum alarm_kind kind, enum alarm_status status)
@@ -122,6 +127,17 @@ static void keep_all(struct alarm_service *service)
         const struct alarm *alarm = alarms_at(service->alarms, i);
         if (alarm_status_of(alarm) != ALARM_NORMAL)
             journal_keep(service->journal, alarm, alarm->name);
+    }
+}
+
+/* Those that were mirrored: of a standby. */
+static void keep_since(struct alarm_service *service, uint64_t number)
+{
+    for (int i = service->journal ? alarms_newest(service->alarms) : -1; i >= 0; i = alarms_at(service->alarms, i)->older) {
+        const struct alarm *alarm = alarms_at(service->alarms, i);
+        if (alarm->number <= number)
+            break;
+        journal_keep(service->journal, alarm, alarm->name);
     }
 }
 
@@ -212,7 +228,10 @@ static bool start_journal(struct alarm_service *service)
         .log = params->log, .counters = params->counters, .folder = params->folder, .keep_days = params->keep_days
     };
     const struct instant now = { clock_mono_ns(), clock_utc_ns() };
-    return !params->folder || (service->journal = journal_start(&journal, service->alarms, now));
+    if (!params->folder)
+        return true;
+    service->rows = mem_array(ROWS, sizeof(*service->rows));
+    return (service->journal = journal_start(&journal, service->alarms, now));
 }
 
 static void adopt(struct alarm_service *service, struct alarm_service *before)
@@ -236,7 +255,7 @@ struct alarm_service *alarm_service_start(const struct alarm_service_params *par
     add_counters(service);
     if (!params->mirrors)
         store_listen(params->store, on_sample, service);
-    bool good = params->mirrors || start_journal(service);
+    bool good = start_journal(service);
     if (params->before)
         adopt(service, params->before);
     service->params.before = NULL;
@@ -260,6 +279,7 @@ void alarm_service_stop(struct alarm_service **pointer)
     alarm_service_halt(service);
     alarms_destroy(&service->alarms);
     snapshot_destroy(&service->snapshot);
+    mem_free(service->rows);
     mem_free(service->queue.at);
     mem_free(service->taken.at);
     thread_finish(&service->thread);
@@ -317,11 +337,51 @@ const char *alarm_service_act(struct alarm_service *service, const char *name, e
 const char *alarm_service_mirror(struct alarm_service *service, const struct alarm *list, size_t count, bool whole)
 {
     pthread_mutex_lock(&service->thread.lock);
+    uint64_t before = alarms_number(service->alarms);
     const char *why = alarms_mirror(service->alarms, list, count, whole) ? NULL : "an alarm that is not there";
     uint64_t number = alarms_number(service->alarms);
+    keep_since(service, before);
     pthread_mutex_unlock(&service->thread.lock);
     tell(service, number);
     return why;
+}
+
+int64_t alarm_service_journal_utc_ns(const struct alarm_service *service)
+{
+    return service->journal ? journal_newest_utc_ns(service->journal) : 0;
+}
+
+uint64_t alarm_service_rows(struct alarm_service *service, uint64_t since, int64_t after_utc_ns,
+                            void (*each)(void *arg, const struct journal_entry *row), void *arg)
+{
+    pthread_mutex_lock(&service->thread.lock);
+    uint64_t last = service->row_count, first = last > ROWS && since < last - ROWS ? last - ROWS : since;
+    for (uint64_t i = first + 1; i <= last; i++)
+        if (service->rows[i % ROWS].utc_ns / 1000 > after_utc_ns / 1000) /* a journal has microseconds */
+            each(arg, &service->rows[i % ROWS]);
+    pthread_mutex_unlock(&service->thread.lock);
+    return last;
+}
+
+void alarm_service_mirror_row(struct alarm_service *service, const struct journal_entry *row)
+{
+    if (!service->journal)
+        return;
+    journal_add_entry(service->journal, row);
+    pthread_mutex_lock(&service->thread.lock);
+    service->rows[++service->row_count % ROWS] = *row; /* who led may lack it, when it comes back */
+    pthread_mutex_unlock(&service->thread.lock);
+}
+
+void alarm_service_lead(struct alarm_service *service)
+{
+    pthread_mutex_lock(&service->thread.lock);
+    alarms_lead(service->alarms, (struct instant){ clock_mono_ns(), clock_utc_ns() });
+    service->params.mirrors = false;
+    uint64_t number = alarms_number(service->alarms);
+    pthread_mutex_unlock(&service->thread.lock);
+    store_listen(service->params.store, on_sample, service);
+    tell(service, number);
 }
 
 void alarm_service_counts(struct alarm_service *service, struct alarm_counts *out)

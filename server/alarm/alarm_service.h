@@ -4,6 +4,7 @@
 #ifndef ALARM_ALARM_SERVICE_H
 #define ALARM_ALARM_SERVICE_H
 #include "alarm/alarms.h"
+#include "alarm/journal_file.h"
 #include "base/counters.h"
 #include "base/log.h"
 
@@ -44,6 +45,16 @@ const char *alarm_service_act(struct alarm_service *service, const char *name, e
 /* Takes the states of alarms as a core has them, by name and kind, in that order; whole: all others are normal. For a service that mirrors.
    Returns NULL, or why it cannot (static); then nothing changed. */
 const char *alarm_service_mirror(struct alarm_service *service, const struct alarm *list, size_t count, bool whole);
+/* Returns when the newest change was that the journal of a standby has; 0: it has none. Thread: that of alarm_service_mirror_row(). */
+int64_t alarm_service_journal_utc_ns(const struct alarm_service *service);
+/* Calls each, under the lock, for the changes of alarms after the one of that number and after a time, oldest first, as far as they are
+   remembered (some thousands). Returns the number of the last one. */
+uint64_t alarm_service_rows(struct alarm_service *service, uint64_t since, int64_t after_utc_ns,
+                            void (*each)(void *arg, const struct journal_entry *row), void *arg);
+/* Writes a change of an alarm that a core made into the journal, before alarm_service_mirror() takes the states after it. */
+void alarm_service_mirror_row(struct alarm_service *service, const struct journal_entry *row);
+/* A service that mirrors evaluates samples itself from now on, and goes on with the states that it was told. */
+void alarm_service_lead(struct alarm_service *service);
 /* Counts alarms by state. */
 void alarm_service_counts(struct alarm_service *service, struct alarm_counts *out);
 

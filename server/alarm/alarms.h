@@ -108,6 +108,8 @@ void alarms_restore(struct alarms *alarms, int index, const struct alarm *saved,
 /* Sets alarms, by name and kind, to what another daemon says they are, in that order; whole: all others are normal. Returns false if one is
    not there; then nothing changed. */
 bool alarms_mirror(struct alarms *alarms, const struct alarm *list, size_t count, bool whole);
+/* Ends mirroring: alarms go on from the states that they were set to, each held until its next sample. */
+void alarms_lead(struct alarms *alarms, struct instant now);
 /* Takes over the states of alarms of the same tag and kind from another plant, including running delays. */
 void alarms_adopt(struct alarms *alarms, const struct alarms *before);
 

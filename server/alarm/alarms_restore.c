@@ -124,6 +124,16 @@ bool alarms_mirror(struct alarms *alarms, const struct alarm *list, size_t count
     return good;
 }
 
+void alarms_lead(struct alarms *alarms, struct instant now)
+{
+    alarms->begun_ns = 0;
+    alarms->carried = 0;
+    for (size_t i = 0; i < alarms->count; i++) {
+        const struct alarm as_told = alarms->list[i];
+        alarms_restore(alarms, (int)i, &as_told, now);
+    }
+}
+
 static bool chatters(const struct alarm *alarm, int64_t now_mono_ns)
 {
     return alarm->raised_count >= ALARM_RECENT && now_mono_ns - alarm->recent_ns[alarm->raised_count % ALARM_RECENT] < ALARM_CHATTERING_NS;

@@ -24,6 +24,7 @@ struct journal {
     struct log *log;
     char *folder;
     double keep_days;
+    int64_t newest_utc_ns; /* when it was opened */
     struct {
         counter *rows, *lost, *waiting, *good;
     } counters;
@@ -142,7 +143,12 @@ static void put(struct journal *journal, const struct journal_entry *entry)
     pthread_mutex_unlock(&journal->thread.lock);
 }
 
-void journal_add(struct journal *journal, const struct alarm_change *change, const char *tag)
+int64_t journal_newest_utc_ns(const struct journal *journal)
+{
+    return journal->newest_utc_ns;
+}
+
+struct journal_entry journal_entry_of(const struct alarm_change *change, const char *tag)
 {
     struct journal_entry entry = {
         .alarm = *change->alarm,
@@ -156,6 +162,19 @@ void journal_add(struct journal *journal, const struct alarm_change *change, con
     strncpy(entry.tag, tag, sizeof(entry.tag) - 1);
     strncpy(entry.who, change->who, sizeof(entry.who) - 1);
     strncpy(entry.reason, change->reason, sizeof(entry.reason) - 1);
+    return entry;
+}
+
+void journal_add_entry(struct journal *journal, const struct journal_entry *entry)
+{
+    if (entry->utc_ns > journal->newest_utc_ns)
+        journal->newest_utc_ns = entry->utc_ns;
+    put(journal, entry);
+}
+
+void journal_add(struct journal *journal, const struct alarm_change *change, const char *tag)
+{
+    const struct journal_entry entry = journal_entry_of(change, tag);
     put(journal, &entry);
 }
 
@@ -190,6 +209,11 @@ static void restore(void *arg, const char *tag, const struct alarm *alarm)
         alarms_restore(restoring->alarms, index, alarm, restoring->now);
 }
 
+static void note_newest(void *arg, const struct journal_row *row)
+{
+    ((struct journal *)arg)->newest_utc_ns = row->t_us * 1000;
+}
+
 /* What is damaged, the thread sets aside when it writes. */
 static void restore_all(struct journal *journal, struct alarms *alarms, struct instant now)
 {
@@ -198,6 +222,9 @@ static void restore_all(struct journal *journal, struct alarms *alarms, struct i
     struct journal_file *file = journal_file_read(journal->log, journal->folder, &error);
     if (file)
         journal_file_states(file, restore, &restoring);
+    const struct journal_query newest = { .to_us = INT64_MAX, .before_id = INT64_MAX, .limit = 1 };
+    if (file)
+        journal_file_rows(file, &newest, note_newest, journal);
     journal_file_close(&file);
 }
 

@@ -20,6 +20,11 @@ struct journal *journal_start(const struct journal_params *params, struct alarms
 void journal_stop(struct journal **journal); /* writes what is pending and ends; &NULL is fine; leaves NULL */
 /* Queues a change to be written. Does not wait; names are copied. */
 void journal_add(struct journal *journal, const struct alarm_change *change, const char *tag);
+int64_t journal_newest_utc_ns(const struct journal *journal); /* returns the time of the newest row that it had when it
+   was opened, or got by journal_add_entry(). 0: none. Thread: that of the latter */
+/* Returns the row of a change; names are copied. */
+struct journal_entry journal_entry_of(const struct alarm_change *change, const char *tag);
+void journal_add_entry(struct journal *journal, const struct journal_entry *entry); /* likewise, of a row */
 /* Returns true, once, after a new file was begun: the caller then passes each alarm that is not normal to journal_keep(). */
 bool journal_asks(struct journal *journal);
 /* Queues the present state of an alarm to be written. */

@@ -29,6 +29,25 @@ json_t *core_alarms_message(struct alarm_service *service, uint64_t since, int64
     return json_pack("{s:s,s:b,s:I,s:o}", "type", "alarms", "whole", since == 0, "utc", (json_int_t)now_utc_ns, "list", list);
 }
 
+static void add_row(void *arg, const struct journal_entry *row)
+{
+    json_t *one = json_pack("{s:s,s:s,s:i,s:i,s:i,s:i,s:I,s:s,s:s}", "name", row->tag, "kind", alarm_kind_name(row->alarm.kind), "event",
+                            (int)row->event, "before", (int)row->before, "after", (int)row->after, "priority", row->alarm.priority, "utc",
+                            (json_int_t)row->utc_ns, "who", row->who, "reason", row->reason);
+    if (isfinite(row->value))
+        json_object_set_new(one, "value", json_real(row->value));
+    if (isfinite(row->alarm.limit))
+        json_object_set_new(one, "limit", json_real(row->alarm.limit));
+    json_array_append_new(arg, one);
+}
+
+void core_alarms_add_rows(json_t *message, struct alarm_service *service, uint64_t *row, int64_t after_utc_ns)
+{
+    json_t *rows = json_array();
+    *row = alarm_service_rows(service, *row, after_utc_ns, add_row, rows);
+    json_object_set_new(message, "rows", rows);
+}
+
 static bool get_text(const json_t *o, const char *name, char *out, size_t size)
 {
     const char *text = json_string_value(json_object_get(o, name));
@@ -72,6 +91,50 @@ static bool read_one(const json_t *one, int64_t core_utc_ns, int64_t now_mono_ns
     return good;
 }
 
+static bool get_number(const json_t *o, const char *name, int least, int most, int *out)
+{
+    const json_t *value = json_object_get(o, name);
+    json_int_t number = json_integer_value(value);
+    *out = (int)number;
+    return json_is_integer(value) && number >= least && number <= most;
+}
+
+static bool read_row(const json_t *one, struct journal_entry *out)
+{
+    const json_t *value = json_object_get(one, "value"), *limit = json_object_get(one, "limit");
+    const char *kind = json_string_value(json_object_get(one, "kind"));
+    int event, before, after;
+    *out = (struct journal_entry){ .changed = true, .value = value ? json_number_value(value) : NAN };
+    out->alarm.kind = kind ? alarm_kind_find(kind) : ALARM_NONE;
+    out->alarm.limit = limit ? json_number_value(limit) : NAN;
+    bool good = out->alarm.kind != ALARM_NONE && get_text(one, "name", out->tag, sizeof(out->tag)) &&
+                get_text(one, "who", out->who, sizeof(out->who)) && get_text(one, "reason", out->reason, sizeof(out->reason)) &&
+                get_ns(one, "utc", &out->utc_ns) && get_number(one, "event", 0, ALARM_EVENTS - 1, &event) &&
+                get_number(one, "before", 0, ALARM_STATUSES - 1, &before) && get_number(one, "after", 0, ALARM_STATUSES - 1, &after) &&
+                get_number(one, "priority", 1, ALARM_PRIORITIES, &out->alarm.priority);
+    if (good) {
+        out->event = (enum alarm_event)event;
+        out->before = (enum alarm_status)before;
+        out->after = (enum alarm_status)after;
+    }
+    return good;
+}
+
+/* Into the journal, and the states after them into the same file behind them. */
+static const char *take_rows(struct alarm_service *service, const json_t *rows)
+{
+    const json_t *one;
+    size_t i;
+    json_array_foreach(rows, i, one)
+    {
+        struct journal_entry row;
+        if (!read_row(one, &row))
+            return "a change of an alarm that cannot be one";
+        alarm_service_mirror_row(service, &row);
+    }
+    return NULL;
+}
+
 const char *core_alarms_take(struct alarm_service *service, const json_t *message)
 {
     const json_t *list = json_object_get(message, "list");
@@ -84,6 +147,8 @@ const char *core_alarms_take(struct alarm_service *service, const json_t *messag
     for (size_t i = 0; i < count && !why; i++)
         if (!read_one(json_array_get(list, i), utc_ns, clock_mono_ns(), &alarms[i]))
             why = "an alarm that cannot be one";
+    if (!why)
+        why = take_rows(service, json_object_get(message, "rows"));
     if (!why)
         why = alarm_service_mirror(service, alarms, count, json_is_true(json_object_get(message, "whole")));
     mem_free(alarms);

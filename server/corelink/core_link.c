@@ -20,6 +20,8 @@
 #include "corelink/core_alarms.h"
 #include "corelink/core_identity.h"
 #include "corelink/core_readings.h"
+#include "corelink/core_samples.h"
+#include "notify/notifier.h"
 #include "value/backoff.h"
 #include "value/lookup.h"
 
@@ -47,7 +49,7 @@ struct core_link {
     } hosts[CORE_URLS];
     int address;            /* that is tried now */
     int64_t heard_ns, begun_ns, least_ns, readings_ns; /* the last two: least_ns and at_ns of struct core_readings */
-    bool ended, taken, introduced, clock_said;
+    bool ended, taken, votes, introduced, clock_said; /* votes: it is not taken, but for its promises */
     bool at_fault;          /* what it said last is a fault of ours or the core's, and no lost link */
     char why[WHY_BYTES];    /* this connection ended */
     struct thread thread;
@@ -160,6 +162,28 @@ static void refuse(struct core_link *link, const char *why)
     end(link, why);
 }
 
+/* Whoever leads has other files than we have: its readings are none of ours, but it needs to know that we do not lead. */
+static void stay_to_vote(struct core_link *link, const char *why)
+{
+    char *said = link->hosts[link->turn.index].said[link->address], text[WHY_BYTES];
+    snprintf(text, sizeof(text), "%s", why);
+    link->votes = true;
+    counter_inc(link->refused, 1);
+    if (strcmp(text, said) != 0)
+        log_err(link->params.log, "core: %s: no readings: %s; it leads, and this core votes only", link->params.urls[link->turn.index],
+                text);
+    memcpy(said, text, sizeof(text));
+}
+
+static void on_refused(struct core_link *link, const json_t *message)
+{
+    const char *why = json_string_value(json_object_get(message, "why"));
+    if (link->params.keeper && json_is_true(json_object_get(message, "votes")))
+        stay_to_vote(link, why ? why : "it refuses us");
+    else
+        refuse(link, why ? why : "it refuses us");
+}
+
 static struct core_identity own_identity(const struct core_link *link)
 {
     return (struct core_identity){ link->params.version, link->params.plant->name, link->params.plant->hash };
@@ -173,6 +197,8 @@ static void on_core(struct core_link *link, const json_t *message)
         refuse(link, why);
     } else {
         link->taken = true;
+        if (link->params.historian)
+            historian_follow(link->params.historian);
         arrive(link, 0, mem_strdup(link->in.at));
     }
     mem_free(why);
@@ -219,6 +245,29 @@ static void on_answer(struct core_link *link, const json_t *message)
     }
 }
 
+/* The leader asks for time: nothing is sent where it cannot be promised. */
+static void on_lease(struct core_link *link, const json_t *message)
+{
+    const json_t *number = json_object_get(message, "number"), *sent = json_object_get(message, "sent_age_ms");
+    if (link->params.historian && json_is_integer(sent) && json_integer_value(sent) >= 0)
+        historian_sent_elsewhere(link->params.historian, json_integer_value(sent) * NS_PER_MS);
+    if (!link->params.keeper || !json_is_integer(number) || !lease_keeper_promise(link->params.keeper))
+        return;
+    pthread_mutex_lock(&link->thread.lock);
+    queue(link, json_text(json_pack("{s:s,s:O}", "type", "promise", "number", number), 0));
+    pthread_mutex_unlock(&link->thread.lock);
+    lws_callback_on_writable(link->wsi);
+}
+
+/* Who was told of which alarms. */
+static void on_told(struct core_link *link, const json_t *message)
+{
+    const char *kept = json_string_value(json_object_get(message, "kept"));
+    int error = kept && link->params.keeper && link->params.folder ? notifier_put_kept(link->params.folder, kept) : 0;
+    if (error)
+        log_err(link->params.log, "notify: what was told cannot be kept (%s); alarms may be told twice", strerror(-error));
+}
+
 static void on_text(struct core_link *link)
 {
     json_t *message = json_loadb(link->in.at, link->in.length, JSON_REJECT_DUPLICATES, NULL);
@@ -226,11 +275,17 @@ static void on_text(struct core_link *link)
     if (!type)
         refuse(link, "what it says is no JSON");
     else if (!strcmp(type, "refused"))
-        refuse(link, json_string_value(json_object_get(message, "why")) ?: "it refuses us");
+        on_refused(link, message);
+    else if (!strcmp(type, "standby"))
+        end(link, "it stands by: another core leads, or none yet");
     else if (!strcmp(type, "core"))
         on_core(link, message);
+    else if (!strcmp(type, "lease") && (link->taken || link->votes))
+        on_lease(link, message);
     else if (!link->taken)
         refuse(link, "it does not say who it is");
+    else if (!strcmp(type, "told"))
+        on_told(link, message);
     else if (!strcmp(type, "links"))
         on_links(link, message);
     else if (!strcmp(type, "alarms"))
@@ -270,6 +325,18 @@ static void set_up(struct core_link *link)
             link->hosts[i].said[k][0] = 0;
 }
 
+static void on_samples(struct core_link *link)
+{
+    struct sample_event *samples;
+    size_t count;
+    const char *why = core_samples_read(&samples, &count, link->params.plant->tag_count, link->in.at, link->in.length, clock_mono_ns());
+    if (why)
+        refuse(link, why);
+    else if (link->params.historian)
+        historian_mirror(link->params.historian, samples, count);
+    mem_free(samples);
+}
+
 static void on_bytes(struct core_link *link)
 {
     struct core_readings readings = { .at = link->readings, .least_ns = link->least_ns, .at_ns = link->readings_ns };
@@ -302,7 +369,9 @@ static void on_receive(struct core_link *link, const void *bytes, size_t count)
     text_add_bytes(&link->in, bytes, count);
     if (lws_remaining_packet_payload(link->wsi) != 0 || !lws_is_final_fragment(link->wsi))
         return;
-    if (lws_frame_is_binary(link->wsi))
+    if (lws_frame_is_binary(link->wsi) && link->taken && core_samples_is(link->in.at, link->in.length))
+        on_samples(link);
+    else if (lws_frame_is_binary(link->wsi))
         on_bytes(link);
     else
         on_text(link);
@@ -335,6 +404,11 @@ static void introduce(struct core_link *link, struct lws *wsi)
     const struct core_identity own = own_identity(link);
     json_t *message = core_identity_message("renderer", &own);
     json_object_set_new(message, "node", json_string(link->params.node));
+    if (link->params.keeper) {
+        json_object_set_new(message, "standby", json_true());
+        json_object_set_new(message, "id", json_string(lease_keeper_id(link->params.keeper)));
+        json_object_set_new(message, "journal", json_integer(alarm_service_journal_utc_ns(link->params.alarm_service)));
+    }
     pthread_mutex_lock(&link->thread.lock);
     queue(link, json_text(message, 0));
     pthread_mutex_unlock(&link->thread.lock);
@@ -516,7 +590,7 @@ static void run_connection(struct core_link *link)
 {
     struct core_url url;
     struct look look = { .link = link };
-    link->ended = link->taken = link->introduced = link->at_fault = false;
+    link->ended = link->taken = link->votes = link->introduced = link->at_fault = false;
     link->why[0] = 0;
     link->begun_ns = clock_mono_ns();
     link->least_ns = INT64_MAX;

@@ -6,6 +6,8 @@
 #include "alarm/alarm_service.h"
 #include "base/counters.h"
 #include "base/log.h"
+#include "corelink/lease_keeper.h"
+#include "history/historian.h"
 #include "value/store.h"
 
 #define CORE_SILENT_NS (2 * INT64_C(1000000000))
@@ -21,6 +23,9 @@ struct core_link_params {
     int url_count;
     const char *token_path, *ca_path;    /* file of the token; certificates that are trusted. NULL: none; the system's */
     const char *version, *node;          /* of this program; this renderer's name, for the core's log */
+    struct lease_keeper *keeper;         /* of a core that stands by: it promises what the leader asks. NULL: of a renderer */
+    struct historian *historian;         /* of such a core: it records what the leader does. NULL: nothing is recorded */
+    const char *folder;                  /* of such a core: where what its notifier is to know is kept. NULL: nowhere */
     void (*notify)(void *arg);           /* called by the thread when there is something to collect */
     void *notify_arg;
 };

@@ -27,6 +27,8 @@ enum {
     QUEUE_MAX = 4000000,   /* samples that one second may bring */
     WAITING_MAX = 4000000, /* rows that wait for a disk that takes them again */
     TIDY_ROWS = 200000,
+    TAG_LEADS = -1,   /* in place of a tag: from here on the samples are the store's */
+    TAG_FOLLOWS = -2, /* likewise: what comes is of another connection to the daemon that leads */
     RETRY_MAX_S = 30,
 };
 static const int64_t TICK_NS = NS_PER_S, TIDY_NS = 60 * NS_PER_S, KEEP_NS = 60 * NS_PER_S, STEP_NS = 2 * NS_PER_S,
@@ -59,7 +61,9 @@ struct historian {
     char *spool_path;          /* where they are; NULL: nowhere */
     struct month_file *file;
     struct event_queue taken;
-    bool recovered, failing;
+    bool recovered, failing, stands_by, fills;
+    int64_t fill_us;     /* fills: from when on points are to be read from the database */
+    int64_t mirrored_us; /* when the newest sample was taken that was mirrored; 0: none was */
     int64_t retry_ns, retry_after_ns, tidied_ns, kept_ns, utc_ahead_ns;
     struct thread thread;
     /* --- below: under thread.lock */
@@ -69,18 +73,57 @@ struct historian {
 
 /* --- from the store ----------------------------------------------------------------------------------------------------------- */
 
-static void on_sample(void *arg, const struct sample_event *event)
+static void queue_samples(struct historian *historian, const struct sample_event *samples, size_t count)
 {
-    struct historian *historian = arg;
     pthread_mutex_lock(&historian->thread.lock);
     struct event_queue *queue = &historian->queue;
-    if (queue->count < QUEUE_MAX) {
-        mem_grow(&queue->at, &queue->capacity, queue->count + 1, sizeof(*queue->at));
-        queue->at[queue->count++] = *event;
+    if (queue->count + count <= QUEUE_MAX) {
+        mem_grow(&queue->at, &queue->capacity, queue->count + count, sizeof(*queue->at));
+        memcpy(queue->at + queue->count, samples, count * sizeof(*samples));
+        queue->count += count;
     } else {
-        queue->lost++;
+        queue->lost += count;
     }
     pthread_mutex_unlock(&historian->thread.lock);
+}
+
+static void on_sample(void *arg, const struct sample_event *event)
+{
+    queue_samples(arg, event, 1);
+}
+
+void historian_mirror(struct historian *historian, const struct sample_event *samples, size_t count)
+{
+    if (count)
+        queue_samples(historian, samples, count);
+}
+
+void historian_follow(struct historian *historian)
+{
+    queue_samples(historian, &(struct sample_event){ .tag = TAG_FOLLOWS }, 1);
+}
+
+void historian_sent_elsewhere(struct historian *historian, int64_t age_ns)
+{
+    if (historian->postgres)
+        postgres_sent_elsewhere(historian->postgres, age_ns);
+}
+
+void historian_on_standby(struct historian *historian)
+{
+    if (historian->postgres)
+        postgres_fill_again(historian->postgres);
+}
+
+int64_t historian_sent_age_ns(struct historian *historian)
+{
+    return historian->postgres ? postgres_sent_age_ns(historian->postgres) : INT64_MAX;
+}
+
+void historian_lead(struct historian *historian)
+{
+    queue_samples(historian, &(struct sample_event){ .tag = TAG_LEADS, .utc_ns = clock_utc_ns() }, 1);
+    store_listen(historian->store, on_sample, historian);
 }
 
 static void put(struct historian *historian, int tag, const struct history_point *point)
@@ -115,6 +158,34 @@ static void leave_out(struct historian *historian, int64_t last_us)
             put(historian, (int)i, &(struct history_point){ last_us + 1, NAN, QUALITY_BAD_NO_COMMUNICATION });
 }
 
+/* It has recorded meanwhile what is not known here. */
+static void begin_to_follow(struct historian *historian)
+{
+    if (historian->mirrored_us)
+        leave_out(historian, historian->mirrored_us);
+    historian->fills = true;
+    historian->fill_us = historian->mirrored_us;
+}
+
+static void take_mirrored(struct historian *historian, int64_t t_us)
+{
+    if (historian->fills && historian->postgres)
+        postgres_fill(historian->postgres, historian->fill_us, t_us);
+    historian->fills = false;
+    if (t_us > historian->mirrored_us)
+        historian->mirrored_us = t_us;
+}
+
+/* Whoever led is gone. What it recorded after it was heard last, behind a cut, it may have sent to the database. */
+static void begin_to_lead(struct historian *historian, int64_t t_us)
+{
+    if (historian->mirrored_us)
+        leave_out(historian, historian->mirrored_us);
+    historian->stands_by = historian->fills = false;
+    if (historian->postgres)
+        postgres_lead(historian->postgres, historian->mirrored_us, t_us);
+}
+
 /* By the clock as it is now, and not as it was before. */
 static bool is_after_step(const struct sample_event *event, int64_t ahead_ns, int64_t step_ns)
 {
@@ -133,6 +204,16 @@ static void take_events(struct historian *historian, const struct now *now, int6
     bool left_out = step_ns <= 0;
     for (size_t i = 0; i < taken.count; i++) {
         const struct sample_event *event = &taken.at[i];
+        if (event->tag == TAG_LEADS) {
+            begin_to_lead(historian, event->utc_ns / 1000);
+            continue;
+        }
+        if (event->tag == TAG_FOLLOWS) {
+            begin_to_follow(historian);
+            continue;
+        }
+        if (historian->stands_by)
+            take_mirrored(historian, event->utc_ns / 1000);
         if (!left_out && is_after_step(event, ahead_ns, step_ns)) {
             leave_out(historian, (event->utc_ns - step_ns) / 1000);
             left_out = true;
@@ -161,7 +242,8 @@ static struct month_file *open_month(struct historian *historian, int month, int
 {
     struct month_file *file =
         month_file_open(historian->log, historian->folder, month, historian->tags, historian->plant->tag_count, error);
-    if (file && historian->postgres && (*error = month_file_use_outbox(file)))
+    bool sends = historian->postgres && (historian->recovered || !historian->stands_by);
+    if (file && sends && (*error = month_file_use_outbox(file)))
         month_file_close(&file);
     return file;
 }
@@ -428,8 +510,10 @@ static void tick(struct historian *historian, bool last)
 {
     const struct now now = look_at_clocks();
     int64_t mono_ns = now.mono_ns, utc_ns = now.utc_ns, step_ns = watch_clock(historian, &now);
+    step_ns = historian->stands_by ? 0 : step_ns; /* times are the other daemon's */
     take_events(historian, &now, step_ns);
-    take_qualities(historian, mono_ns, utc_ns);
+    if (!historian->stands_by)
+        take_qualities(historian, mono_ns, utc_ns);
     if (step_ns)
         note_step(historian, utc_ns, step_ns);
     if (historian->file && month_file_month(historian->file) != month_of(utc_ns / 1000))
@@ -539,7 +623,7 @@ static bool start_postgres(struct historian *historian, struct counters *counter
 {
     const struct postgres_params params = {
         .log = historian->log, .counters = counters, .plant = historian->plant, .folder = historian->folder,
-        .restored = on_restored, .arg = historian,
+        .stands_by = historian->stands_by, .restored = on_restored, .arg = historian,
     };
     return !historian->plant->history.postgres.url || (historian->postgres = postgres_start(&params));
 }
@@ -553,6 +637,7 @@ struct historian *historian_start(const struct historian_params *params)
     historian->store = params->store;
     historian->folder = mem_strdup(params->folder);
     historian->recovered = params->follows;
+    historian->stands_by = params->stands_by;
     historian->tags = history_tags(params->plant);
     historian->recorder = recorder_create(params->plant);
     historian->snapshot = snapshot_create(params->plant->tag_count);
@@ -562,7 +647,8 @@ struct historian *historian_start(const struct historian_params *params)
         historian_stop(&historian);
         return NULL;
     }
-    store_listen(params->store, on_sample, historian);
+    if (!params->stands_by)
+        store_listen(params->store, on_sample, historian);
     if (!thread_start(&historian->thread, params->log, "history", run, historian))
         historian_stop(&historian);
     return historian;

@@ -14,12 +14,25 @@ struct historian_params {
     const struct plant *plant;
     struct store *store; /* must outlive the historian */
     const char *folder;  /* made where it is missing */
+    bool stands_by;      /* it is told of samples by another daemon (historian_mirror), and not by the store, until historian_lead() */
     bool follows;        /* it continues for one that historian_end() ended: lines go on, and no gap is recorded */
 };
 
 struct historian;
 /* Starts recording. Returns NULL if there is no thread (logged). */
 struct historian *historian_start(const struct historian_params *params);
+/* Another daemon's samples come from now on. What it recorded before, and is not known here, is read from the database. */
+void historian_follow(struct historian *historian);
+/* Records samples that another daemon recorded, in their order. Only while it stands by. Thread: one. */
+void historian_mirror(struct historian *historian, const struct sample_event *samples, size_t count);
+/* Records the store's samples from now on. Of the time since the last one that was mirrored nothing is known. */
+void historian_lead(struct historian *historian);
+/* The one that led before may be back, and have sent the database what was left: it is read from there. */
+void historian_on_standby(struct historian *historian);
+/* The leader has sent the database all that it had recorded so long ago: it need not be sent from here. */
+void historian_sent_elsewhere(struct historian *historian, int64_t age_ns);
+/* Returns how long ago all that was recorded until then had been sent to the database; INT64_MAX: never, or there is none. */
+int64_t historian_sent_age_ns(struct historian *historian);
 /* Writes what is pending and ends, so that the historian of the next plant can continue. Tags that are not in it have no value from now on.
    Leaves NULL. */
 void historian_end(struct historian **historian, const struct plant *next);

@@ -52,6 +52,9 @@ static const char *const sql[SQL_COUNT] = {
     [SQL_SAMPLES_FROM] = "SELECT t, v, q FROM sample WHERE tag = ?1"
                          " AND t >= coalesce((SELECT max(t) FROM sample WHERE tag = ?1 AND t < ?2), ?2) ORDER BY t",
     [SQL_ALL_HELD] = "SELECT tag, t, v, q FROM held",
+    [SQL_FORGET_GAPS] = "DELETE FROM sample WHERE t BETWEEN ? AND ? AND q = ?",
+    [SQL_FORGET_GAP_NOTES] = "DELETE FROM event WHERE t BETWEEN ? AND ? AND kind = 'gap'",
+    [SQL_FORGET_OUTBOX_GAPS] = "DELETE FROM outbox WHERE t BETWEEN ? AND ? AND q = ?",
     [SQL_CLEAR_HELD] = "DELETE FROM held",
     [SQL_CLEAR_ROLLUPS] = "DELETE FROM rollup WHERE level_s = ? AND tag = ? AND t >= ? AND t < ?",
     [SQL_EVENTS] = "SELECT t, kind, text FROM event WHERE kind IN ('gap', 'clock')",

@@ -67,6 +67,8 @@ int month_file_tidy(struct month_file *file);
 size_t month_file_waiting(const struct month_file *file);
 /* Writes points of one tag, ascending, of any time of the month, and updates the rollups. */
 int month_file_import(struct month_file *file, int tag, const struct history_point *points, size_t count);
+/* Deletes points of a quality between two times: of a gap that is known better now. Points of these times are imported next. */
+int month_file_forget_gaps(struct month_file *file, int64_t from_us, int64_t to_us, uint32_t gap_quality);
 /* Recovers from a writer that did not end properly: records its newest samples, each followed by a gap. *ended_us: when it ended. */
 int month_file_recover(struct month_file *file, uint32_t gap_quality, int64_t *ended_us);
 int month_file_clear_held(struct month_file *file); /* deletes the newest samples: all are recorded, the month is over */

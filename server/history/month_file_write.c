@@ -318,6 +318,30 @@ int month_file_import(struct month_file *file, int tag, const struct history_poi
     return end(file, error);
 }
 
+static int forget(struct month_file *file, int which, int64_t from_us, int64_t to_us, uint32_t gap_quality)
+{
+    sqlite3_stmt *s = month_sql(file, which);
+    sqlite3_bind_int64(s, 1, from_us);
+    sqlite3_bind_int64(s, 2, to_us);
+    if (which != SQL_FORGET_GAP_NOTES)
+        sqlite3_bind_int64(s, 3, gap_quality);
+    return month_run(file, s, "cannot forget a gap");
+}
+
+int month_file_forget_gaps(struct month_file *file, int64_t from_us, int64_t to_us, uint32_t gap_quality)
+{
+    bool has_outbox = false;
+    int error = month_file_tidy(file);
+    if (error || (error = month_has_outbox(file, &has_outbox)) || (error = begin(file)))
+        return error;
+    error = forget(file, SQL_FORGET_GAPS, from_us, to_us, gap_quality);
+    if (!error)
+        error = forget(file, SQL_FORGET_GAP_NOTES, from_us, to_us, gap_quality);
+    if (!error && has_outbox) /* the other database knows better, too */
+        error = forget(file, SQL_FORGET_OUTBOX_GAPS, from_us, to_us, gap_quality);
+    return end(file, error);
+}
+
 /* The held points become rows, each with one behind it that says that nobody recorded. */
 static int end_lines(struct month_file *file, uint32_t gap_quality, int64_t *ended_us)
 {

@@ -84,6 +84,13 @@ int month_outbox_count(struct month_outbox *outbox, int64_t *count)
     return error;
 }
 
+int month_outbox_last(struct month_outbox *outbox, int64_t *seq)
+{
+    int64_t first;
+    int error = find_span(outbox, &first, seq);
+    return error;
+}
+
 /* --- reading ------------------------------------------------------------------------------------------------------------------ */
 
 typedef void take_row(struct month_outbox_batch *batch, sqlite3_stmt *row);

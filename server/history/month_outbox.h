@@ -40,6 +40,8 @@ struct month_outbox *month_outbox_open(struct log *log, const char *folder, int 
 void month_outbox_close(struct month_outbox **outbox); /* &NULL is fine; leaves NULL */
 /* Finds how many points there are, by their numbers. */
 int month_outbox_count(struct month_outbox *outbox, int64_t *count);
+/* Finds the number of the newest point, 0: there is none. */
+int month_outbox_last(struct month_outbox *outbox, int64_t *seq);
 /* Reads the oldest points, at most `most`, and all else that the batch has; what it had before is freed. */
 int month_outbox_read(struct month_outbox *outbox, size_t most, struct month_outbox_batch *batch);
 void month_outbox_batch_finish(struct month_outbox_batch *batch);

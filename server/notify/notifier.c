@@ -28,6 +28,9 @@ struct notifier {
     pthread_t thread;
     bool started;
     _Atomic bool stopping;
+    _Atomic uint64_t kept_number;
+    pthread_mutex_t kept_lock;
+    char *kept; /* under kept_lock; NULL: nothing yet */
     struct delivery *delivery;
     /* --- below: of the thread */
     struct outbox *outbox;
@@ -46,18 +49,58 @@ static int64_t now_us(void)
 
 /* --- the file --------------------------------------------------------------------------------------------------------------- */
 
+static int put_file(const char *path, const char *text, bool durable)
+{
+    struct atomic_file file;
+    int error = atomic_file_begin(&file, path, 0600);
+    if (!error && (error = atomic_file_write(&file, text, strlen(text))))
+        atomic_file_abandon(&file);
+    else if (!error)
+        error = atomic_file_commit(&file, durable);
+    return error;
+}
+
+/* For a daemon that stands by. Takes the text. */
+static void publish(struct notifier *notifier, char *text)
+{
+    pthread_mutex_lock(&notifier->kept_lock);
+    mem_free(notifier->kept);
+    notifier->kept = text;
+    pthread_mutex_unlock(&notifier->kept_lock);
+    atomic_fetch_add(&notifier->kept_number, 1);
+    if (notifier->params.kept)
+        notifier->params.kept(notifier->params.kept_arg);
+}
+
+uint64_t notifier_number(struct notifier *notifier)
+{
+    return atomic_load(&notifier->kept_number);
+}
+
+char *notifier_kept(struct notifier *notifier)
+{
+    pthread_mutex_lock(&notifier->kept_lock);
+    char *text = mem_strdup(notifier->kept ? notifier->kept : "{}");
+    pthread_mutex_unlock(&notifier->kept_lock);
+    return text;
+}
+
+int notifier_put_kept(const char *folder, const char *text)
+{
+    char *path = mem_printf("%s/" NOTIFIER_FILE, folder);
+    int error = put_file(path, text, false);
+    mem_free(path);
+    return error;
+}
+
 static void save(struct notifier *notifier)
 {
     notifier->unsaved |= outbox_is_changed(notifier->outbox);
     if (!notifier->unsaved)
         return;
     char *text = json_text(outbox_save(notifier->outbox), 0);
-    struct atomic_file file;
-    int error = atomic_file_begin(&file, notifier->path, 0600);
-    if (!error && (error = atomic_file_write(&file, text, strlen(text))))
-        atomic_file_abandon(&file);
-    else if (!error)
-        error = atomic_file_commit(&file, true);
+    publish(notifier, mem_strdup(text)); /* first: the disk may take its time */
+    int error = put_file(notifier->path, text, true);
     mem_free(text);
     if (error)
         log_err(notifier->params.log, "notify: %s cannot be written (%s): after a restart, alarms may be told twice or not at all",
@@ -214,8 +257,10 @@ struct notifier *notifier_start(const struct notifier_params *params)
     notifier->params = *params;
     notifier->path = mem_printf("%s/" NOTIFIER_FILE, params->folder);
     notifier->outbox = outbox_create(params->plant);
+    pthread_mutex_init(&notifier->kept_lock, NULL);
     add_counters(notifier);
     restore(notifier);
+    publish(notifier, json_text(outbox_save(notifier->outbox), 0));
     notifier->delivery = delivery_create(params->log, params->plant->notify);
     if (notifier->delivery)
         alarm_service_listen(params->alarm_service, wake, notifier);
@@ -243,6 +288,8 @@ void notifier_stop(struct notifier **pointer)
     for (size_t i = 0; i < notifier->params.plant->notify->recipient_count; i++)
         counter_set(notifier->counters[i].waiting, 0);
     outbox_destroy(&notifier->outbox);
+    pthread_mutex_destroy(&notifier->kept_lock);
+    mem_free(notifier->kept);
     mem_free(notifier->counters);
     mem_free(notifier->failing);
     mem_free(notifier->path);

@@ -28,7 +28,7 @@ struct sample_event {
     int64_t mono_ns, utc_ns;
 };
 typedef void store_listener(void *arg, const struct sample_event *event);
-enum { STORE_LISTENERS = 4 };
+enum { STORE_LISTENERS = 6 };
 
 struct store *store_create(const struct plant *plant); /* plant must outlive it */
 void store_destroy(struct store **store);

@@ -80,6 +80,8 @@ bool kept_list_mirror(struct kept_list *kept, json_t *list)
         return false;
     if (json_equal(kept->list, list))
         return true;
+    if (kept->path && !kept->unreadable) /* of a core that stands by: it is its own, once it leads */
+        return kept_list_put(kept, json_incref(list)) == NULL;
     json_decref(kept->list);
     kept->list = json_incref(list);
     kept->number++;

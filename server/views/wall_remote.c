@@ -79,10 +79,7 @@ void wall_remote_close(struct wall_remote **pointer)
 
 const char *wall_place_wrong(const struct plant *plant, const struct wall_place *place)
 {
-    const struct wall *wall = NULL;
-    for (size_t i = 0; i < plant->wall_count; i++)
-        if (!strcmp(plant->walls[i].id, place->wall))
-            wall = &plant->walls[i];
+    const struct wall *wall = wall_find(plant, place->wall);
     if (!wall)
         return "wall: there is no such wall";
     if (place->display < 1 || place->display > (int)wall->display_count)

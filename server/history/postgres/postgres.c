@@ -19,6 +19,9 @@
 #include "value/backoff.h"
 
 enum { BATCH_ROWS = 20000, ROUND_MS = 1000 };
+enum { NOTES = 128, SPANS = 16 };
+static const int64_t SLOW_US = 60 * INT64_C(1000000); /* by so much may the lines of tags end before the last of them */
+static const int64_t TWICE_NS = 10 * NS_PER_S; /* longer than points take from a sample to the files: so long both keep them */
 static const int64_t LOOK_NS = 30 * NS_PER_S, NEWEST_NS = 5 * NS_PER_S, SAY_LOST_NS = 60 * NS_PER_S;
 
 struct waiting_month {
@@ -26,9 +29,21 @@ struct waiting_month {
     int64_t count;
 };
 
+/* A standby's: what was in the outbox of a month at a time. */
+struct outbox_note {
+    int64_t at_ns, seq;
+    int month;
+};
+
+/* When another led: what it recorded is to be read, if it was sent at at_ns or later. */
+struct span {
+    int64_t from_us, to_us, at_ns;
+};
+
 struct postgres {
     struct postgres_params params;
     char *folder;
+    int64_t ended_us; /* where the files ended at the start */
     struct history_tag *tags;
     struct {
         counter *up, *points, *waiting, *lost, *restored;
@@ -36,6 +51,13 @@ struct postgres {
     pthread_t thread;
     bool started;
     int stop_fd; /* readable: end */
+    pthread_mutex_t lock;
+    /* --- below: under lock */
+    bool leads, ends_lines;
+    int64_t sent_ns;       /* monotonic: what was recorded before is in the database, by whoever leads; INT64_MIN: not known */
+    struct span spans[SPANS];
+    size_t span_count;
+    struct span led; /* the one before this daemon led; to_us 0: it did not begin to */
     /* --- below: of the thread */
     struct postgres_link *link; /* NULL: there is none */
     struct postgres_tables tables;
@@ -46,6 +68,9 @@ struct postgres {
     int64_t looked_ns, newest_ns, retry_ns, say_lost_ns;
     int64_t lost; /* and not said yet */
     char said[POSTGRES_WHY_BYTES]; /* in the log; empty: all is well */
+    bool alone, flushed;           /* nobody else writes there; what was left of an earlier run is sent */
+    struct outbox_note notes[NOTES];
+    size_t note_count;
 };
 
 static struct log *log_of(const struct postgres *postgres)
@@ -88,7 +113,7 @@ static void connect_now(struct postgres *postgres)
         give_up(postgres, why);
         return;
     }
-    if (!postgres_tables_open(&postgres->tables, postgres->link, plant, why)) {
+    if (!postgres_tables_open(&postgres->tables, postgres->link, plant, postgres->alone, why)) {
         give_up(postgres, *why ? why : postgres_link_why(postgres->link));
         return;
     }
@@ -118,6 +143,67 @@ static void restore(struct postgres *postgres)
     counter_inc(postgres->counters.restored, points);
     if (points)
         postgres->params.restored(postgres->params.arg);
+}
+
+/* It leads now: nobody else may write there, and lines that nobody goes on with end. */
+static void take_lead(struct postgres *postgres)
+{
+    pthread_mutex_lock(&postgres->lock);
+    bool leads = postgres->leads, ends_lines = postgres->ends_lines;
+    pthread_mutex_unlock(&postgres->lock);
+    if (leads && !postgres->alone) {
+        postgres_tables_finish(&postgres->tables);
+        postgres_link_close(&postgres->link);
+        postgres->alone = true;
+        postgres->retry_ns = 0;
+        connect_now(postgres);
+    }
+    if (!leads || !ends_lines || !postgres->link)
+        return;
+    if (!postgres_restore_end_lines(&postgres->tables, clock_utc_ns() / 1000)) {
+        give_up(postgres, postgres_link_why(postgres->link));
+        return;
+    }
+    pthread_mutex_lock(&postgres->lock);
+    postgres->ends_lines = false;
+    pthread_mutex_unlock(&postgres->lock);
+}
+
+/* Under the lock. */
+static bool is_due(const struct postgres *postgres, const struct span *span)
+{
+    return clock_mono_ns() >= span->at_ns + TWICE_NS && postgres->sent_ns >= span->at_ns;
+}
+
+/* What led before may have gone on behind a cut, and sent what it recorded: then its line ends later than the one here. */
+static bool fill_span(struct postgres *postgres, const struct span *span, bool leads, int64_t *points, char why[POSTGRES_WHY_BYTES])
+{
+    return (!leads || postgres_restore_end_span(&postgres->tables, span->from_us, span->to_us)) &&
+           postgres_restore_span(&postgres->restore, &postgres->tables, span->from_us, span->to_us, points, why);
+}
+
+/* Once whoever led then has had the time to send it, and what was recorded here is sent. */
+static void fill(struct postgres *postgres)
+{
+    pthread_mutex_lock(&postgres->lock);
+    struct span span = postgres->spans[0];
+    bool due = postgres->span_count && is_due(postgres, &span), leads = postgres->leads;
+    pthread_mutex_unlock(&postgres->lock);
+    if (!due || !postgres->link || postgres->restore.wanted)
+        return;
+    char why[POSTGRES_WHY_BYTES] = "";
+    int64_t points;
+    if (!fill_span(postgres, &span, leads, &points, why)) {
+        give_up(postgres, *why ? why : postgres_link_why(postgres->link));
+        return;
+    }
+    pthread_mutex_lock(&postgres->lock);
+    memmove(postgres->spans, postgres->spans + 1, --postgres->span_count * sizeof(span));
+    pthread_mutex_unlock(&postgres->lock);
+    counter_inc(postgres->counters.restored, points);
+    log_info(log_of(postgres), "history: %lld points of %.0f s when another core led are read from PostgreSQL", (long long)points,
+             (double)(span.to_us - span.from_us) / 1e6);
+    postgres->params.restored(postgres->params.arg);
 }
 
 /* --- what waits --------------------------------------------------------------------------------------------------------------- */
@@ -226,15 +312,56 @@ static bool send_month(struct postgres *postgres, struct waiting_month *month, b
     return good;
 }
 
+/* What the other has sent need not be sent from here; for a while both keep it. */
+static void forget_sent(struct postgres *postgres)
+{
+    pthread_mutex_lock(&postgres->lock);
+    int64_t until_ns = postgres->sent_ns;
+    pthread_mutex_unlock(&postgres->lock);
+    size_t done = 0;
+    while (done < postgres->note_count && until_ns != INT64_MIN && postgres->notes[done].at_ns <= until_ns - TWICE_NS)
+        done++;
+    if (done) {
+        const struct outbox_note *note = &postgres->notes[done - 1];
+        int error;
+        struct month_outbox *outbox = month_outbox_open(log_of(postgres), postgres->folder, note->month, &error);
+        if (outbox)
+            month_outbox_delete(outbox, note->seq);
+        month_outbox_close(&outbox);
+        postgres->note_count -= done;
+        memmove(postgres->notes, postgres->notes + done, postgres->note_count * sizeof(*postgres->notes));
+    }
+}
+
+/* Of the newest month: at its border the older one's are sent twice. */
+static void note_outbox(struct postgres *postgres)
+{
+    int error, month = postgres->month_count ? postgres->months[postgres->month_count - 1].month : 0;
+    int64_t seq = 0;
+    struct month_outbox *outbox =
+        postgres->month_count && postgres->note_count < NOTES ? month_outbox_open(log_of(postgres), postgres->folder, month, &error) : NULL;
+    if (outbox && month_outbox_last(outbox, &seq) == 0 && seq)
+        postgres->notes[postgres->note_count++] = (struct outbox_note){ clock_mono_ns(), seq, month };
+    month_outbox_close(&outbox);
+}
+
 /* The newest samples go with the newest month, now and then, and when the program ends. */
 static void send_all(struct postgres *postgres)
 {
     int64_t now_ns = clock_mono_ns();
-    bool newest = !postgres->newest_ns || now_ns - postgres->newest_ns >= NEWEST_NS || ends(postgres), good = true;
+    bool newest = postgres->alone && (!postgres->newest_ns || now_ns - postgres->newest_ns >= NEWEST_NS || ends(postgres)), good = true;
     for (size_t i = 0; i < postgres->month_count && postgres->link && good; i++)
         good = send_month(postgres, &postgres->months[i], newest && i + 1 == postgres->month_count);
     if (newest && good && postgres->link)
         postgres->newest_ns = now_ns;
+    if (!good || !postgres->link || waiting(postgres))
+        return;
+    postgres->flushed = true;
+    if (postgres->alone) {
+        pthread_mutex_lock(&postgres->lock);
+        postgres->sent_ns = now_ns - ROUND_MS * NS_PER_MS; /* the historian may have put some meanwhile */
+        pthread_mutex_unlock(&postgres->lock);
+    }
 }
 
 static void *run(void *arg)
@@ -246,13 +373,21 @@ static void *run(void *arg)
         last = poll(&fd, 1, ROUND_MS) > 0; /* what came before the end is sent yet */
         if (!last || !*postgres->said)
             connect_now(postgres);
-        if (!last)
+        take_lead(postgres);
+        if (!last) {
             restore(postgres);
+            fill(postgres);
+        }
         look_for_points(postgres);
         drop_oldest(postgres);
         counter_set(postgres->counters.waiting, waiting(postgres));
-        if (!postgres->restore.wanted || postgres->restore.next_month != INT_MAX) /* the lines there have ended */
-            send_all(postgres);
+        if (postgres->alone || !postgres->flushed) {
+            if (!postgres->restore.wanted || postgres->restore.next_month != INT_MAX) /* the lines there have ended */
+                send_all(postgres);
+        } else {
+            forget_sent(postgres);
+            note_outbox(postgres);
+        }
     } while (!last);
     return NULL;
 }
@@ -275,6 +410,82 @@ void postgres_count_lost(struct postgres *postgres, int64_t points)
     counter_inc(postgres->counters.lost, points);
 }
 
+void postgres_sent_elsewhere(struct postgres *postgres, int64_t age_ns)
+{
+    pthread_mutex_lock(&postgres->lock);
+    if (!postgres->leads)
+        postgres->sent_ns = clock_mono_ns() - age_ns;
+    pthread_mutex_unlock(&postgres->lock);
+}
+
+int64_t postgres_sent_age_ns(struct postgres *postgres)
+{
+    pthread_mutex_lock(&postgres->lock);
+    int64_t sent_ns = postgres->sent_ns;
+    pthread_mutex_unlock(&postgres->lock);
+    return sent_ns == INT64_MIN ? INT64_MAX : clock_mono_ns() - sent_ns;
+}
+
+/* From when the files end, or from so long before today as is kept. */
+static int64_t end_of_files_us(struct postgres *postgres)
+{
+    const int64_t day_us = INT64_C(86400000000);
+    int64_t first_us, last_us = clock_utc_ns() / 1000 - (int64_t)postgres->params.plant->history.keep_days * day_us;
+    size_t count;
+    int *months = month_list(postgres->folder, &count), error;
+    for (size_t i = 0; i < count; i++) {
+        struct month_file *file = month_file_read(log_of(postgres), postgres->folder, months[i], &error);
+        if (file)
+            month_file_span(file, &first_us, &last_us);
+        month_file_close(&file);
+    }
+    mem_free(months);
+    return last_us;
+}
+
+/* Under the lock. */
+static void add_span(struct postgres *postgres, const struct span *span)
+{
+    struct span *last = &postgres->spans[SPANS - 1];
+    if (postgres->span_count == SPANS) /* a connection that never lasts: as one */
+        *last = (struct span){ last->from_us, span->to_us, span->at_ns };
+    else
+        postgres->spans[postgres->span_count++] = *span;
+}
+
+static struct span span_of(const struct postgres *postgres, int64_t from_us, int64_t to_us)
+{
+    return (struct span){ from_us ? from_us : postgres->ended_us - SLOW_US, to_us, clock_mono_ns() };
+}
+
+void postgres_fill(struct postgres *postgres, int64_t from_us, int64_t to_us)
+{
+    const struct span span = span_of(postgres, from_us, to_us);
+    pthread_mutex_lock(&postgres->lock);
+    add_span(postgres, &span);
+    pthread_mutex_unlock(&postgres->lock);
+}
+
+void postgres_lead(struct postgres *postgres, int64_t from_us, int64_t to_us)
+{
+    pthread_mutex_lock(&postgres->lock);
+    postgres->leads = true;
+    postgres->ends_lines = !from_us;
+    postgres->sent_ns = INT64_MIN;
+    postgres->led = span_of(postgres, from_us, to_us);
+    add_span(postgres, &postgres->led);
+    pthread_mutex_unlock(&postgres->lock);
+}
+
+void postgres_fill_again(struct postgres *postgres)
+{
+    pthread_mutex_lock(&postgres->lock);
+    postgres->led.at_ns = clock_mono_ns();
+    if (postgres->led.to_us)
+        add_span(postgres, &postgres->led);
+    pthread_mutex_unlock(&postgres->lock);
+}
+
 struct postgres *postgres_start(const struct postgres_params *params)
 {
     struct postgres *postgres = mem_new(sizeof(*postgres));
@@ -282,7 +493,12 @@ struct postgres *postgres_start(const struct postgres_params *params)
     postgres->folder = mem_strdup(params->folder);
     postgres->tags = history_tags(params->plant);
     postgres->stop_fd = eventfd(0, EFD_CLOEXEC);
+    pthread_mutex_init(&postgres->lock, NULL);
+    postgres->alone = postgres->leads = !params->stands_by;
+    postgres->sent_ns = INT64_MIN;
+    postgres->ended_us = params->stands_by ? end_of_files_us(postgres) : 0;
     postgres_restore_init(&postgres->restore, params->log, params->plant, postgres->tags, postgres->folder);
+    postgres->restore.begins = params->stands_by;
     add_counters(postgres, params->counters);
     int error = postgres->stop_fd < 0 ? errno : pthread_create(&postgres->thread, NULL, run, postgres);
     postgres->started = !error;
@@ -306,6 +522,7 @@ void postgres_stop(struct postgres **pointer)
     postgres_link_close(&postgres->link);
     if (postgres->stop_fd >= 0)
         close(postgres->stop_fd);
+    pthread_mutex_destroy(&postgres->lock);
     mem_free(postgres->months);
     mem_free(postgres->tags);
     mem_free(postgres->folder);

@@ -12,6 +12,7 @@ struct postgres_params {
     struct counters *counters;
     const struct plant *plant; /* outlives it */
     const char *folder;        /* of the months */
+    bool stands_by;            /* another daemon writes there, until postgres_lead(): only what is left of an earlier run is sent */
     /* Called from its thread when points of the past have been put into the files (of a machine that had none). */
     void (*restored)(void *arg);
     void *arg;
@@ -22,6 +23,18 @@ struct postgres;
 struct postgres *postgres_start(const struct postgres_params *params);
 /* Counts points that were deleted from the files before they were sent. Thread: any. */
 void postgres_count_lost(struct postgres *postgres, int64_t points);
+/* This daemon writes there from to_us on. What led before was followed until from_us, 0: it was not, so that its lines end where it ended.
+   What it recorded later is filled in, as below. Any thread. */
+void postgres_lead(struct postgres *postgres, int64_t from_us, int64_t to_us);
+/* Likewise once more: there may be more of it now. Any thread. */
+void postgres_fill_again(struct postgres *postgres);
+/* While it stands by: the other has sent all that was recorded so long ago. Any thread. */
+void postgres_sent_elsewhere(struct postgres *postgres, int64_t age_ns);
+/* Returns how long ago all that had been recorded was sent; INT64_MAX: never yet. Any thread. */
+int64_t postgres_sent_age_ns(struct postgres *postgres);
+/* Has the points between two times, that another daemon recorded, put into the files in place of the gap that is there: once that one has
+   sent them. from_us 0: since the last point in the files. Any thread. */
+void postgres_fill(struct postgres *postgres, int64_t from_us, int64_t to_us);
 /* Sends what is pending, for two seconds at most, and ends. &NULL is fine; leaves NULL. */
 void postgres_stop(struct postgres **postgres);
 

@@ -24,6 +24,7 @@ struct postgres_link {
     PGconn *library;
     int stop_fd;
     int64_t stop_by_ns; /* 0: nobody ends the program */
+    int64_t connect_ns, answer_ns; /* how long what takes at most */
     struct {
         char *at;
         size_t length, capacity;
@@ -63,7 +64,7 @@ static bool wait_for(struct postgres_link *link, short events, int64_t until_ns)
 
 static bool flush(struct postgres_link *link)
 {
-    const int64_t until_ns = clock_mono_ns() + ANSWER_NS;
+    const int64_t until_ns = clock_mono_ns() + link->answer_ns;
     for (int left; (left = PQflush(link->library)) != 0;)
         if (left < 0 || !PQconsumeInput(link->library))
             return fail_as_library(link);
@@ -75,7 +76,7 @@ static bool flush(struct postgres_link *link)
 /* NULL, with *good: there are no more. */
 static PGresult *next_result(struct postgres_link *link, bool *good)
 {
-    const int64_t until_ns = clock_mono_ns() + ANSWER_NS;
+    const int64_t until_ns = clock_mono_ns() + link->answer_ns;
     *good = true;
     while (*good && PQisBusy(link->library))
         if (!wait_for(link, POLLIN, until_ns))
@@ -123,7 +124,7 @@ static void ignore_notice(void *arg, const PGresult *result)
 
 static bool connect_now(struct postgres_link *link)
 {
-    const int64_t until_ns = clock_mono_ns() + CONNECT_NS;
+    const int64_t until_ns = clock_mono_ns() + link->connect_ns;
     if (PQstatus(link->library) == CONNECTION_BAD)
         return fail_as_library(link);
     PQsetNoticeReceiver(link->library, ignore_notice, NULL);
@@ -137,6 +138,12 @@ static bool connect_now(struct postgres_link *link)
 
 struct postgres_link *postgres_link_open(const struct plant_postgres *postgres, int stop_fd, char why[POSTGRES_WHY_BYTES])
 {
+    return postgres_link_open_within(postgres, stop_fd, 0, why);
+}
+
+struct postgres_link *postgres_link_open_within(const struct plant_postgres *postgres, int stop_fd, int64_t patience_ns,
+                                                char why[POSTGRES_WHY_BYTES])
+{
     struct login_file login = { 0 };
     if (postgres->login && !login_file_read(postgres->login, &login, why))
         return NULL;
@@ -145,6 +152,8 @@ struct postgres_link *postgres_link_open(const struct plant_postgres *postgres, 
                            "tcp_user_timeout", "client_encoding", login.user ? "user" : NULL, "password", NULL };
     const char *values[] = { postgres->url, "plantcast", "10", "5", "3", "30000", "UTF8", login.user, login.password, NULL };
     link->stop_fd = stop_fd;
+    link->connect_ns = patience_ns ? patience_ns : CONNECT_NS;
+    link->answer_ns = patience_ns ? patience_ns : ANSWER_NS;
     link->library = PQconnectStartParams(keys, values, 1);
     login_file_forget(&login);
     if (link->library ? connect_now(link) : fail(link, "out of memory"))
@@ -162,6 +171,11 @@ void postgres_link_close(struct postgres_link **link)
     mem_free((*link)->copy.at);
     mem_free(*link);
     *link = NULL;
+}
+
+void postgres_link_set_patience(struct postgres_link *link, int64_t patience_ns)
+{
+    link->answer_ns = patience_ns;
 }
 
 const char *postgres_link_why(const struct postgres_link *link)
@@ -275,7 +289,7 @@ void postgres_copy_bool(struct postgres_link *link, bool value)
 
 bool postgres_copy_end(struct postgres_link *link)
 {
-    const int64_t until_ns = clock_mono_ns() + ANSWER_NS;
+    const int64_t until_ns = clock_mono_ns() + link->answer_ns;
     int put_now;
     postgres_copy_row(link, -1);
     while ((put_now = PQputCopyData(link->library, link->copy.at, (int)link->copy.length)) == 0)

@@ -16,6 +16,10 @@ struct postgres_link;
 /* Connects. stop_fd gets readable when the program ends: then nothing waits longer than two seconds. Returns NULL on failure, and says in
    why what it was. */
 struct postgres_link *postgres_link_open(const struct plant_postgres *postgres, int stop_fd, char why[POSTGRES_WHY_BYTES]);
+/* Likewise; neither connecting nor an answer takes longer than that. */
+struct postgres_link *postgres_link_open_within(const struct plant_postgres *postgres, int stop_fd, int64_t patience_ns,
+                                                char why[POSTGRES_WHY_BYTES]);
+void postgres_link_set_patience(struct postgres_link *link, int64_t patience_ns); /* that the next answers may take */
 void postgres_link_close(struct postgres_link **link); /* &NULL is fine; leaves NULL */
 const char *postgres_link_why(const struct postgres_link *link); /* returns what failed last */
 

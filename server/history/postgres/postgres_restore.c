@@ -72,7 +72,7 @@ static void end(struct postgres_restore *restore)
 /* --- there -------------------------------------------------------------------------------------------------------------------- */
 
 /* The lines of whoever recorded before end where it ended, as month_file_recover() ends them. */
-static bool end_lines(struct postgres_tables *tables, int64_t now_us)
+bool postgres_restore_end_lines(struct postgres_tables *tables, int64_t now_us)
 {
     static const char sql[] =
         "BEGIN;"
@@ -87,6 +87,24 @@ static bool end_lines(struct postgres_tables *tables, int64_t now_us)
         " LATERAL (SELECT t, q FROM sample WHERE tag = g.id ORDER BY t DESC LIMIT 1) l WHERE g.plant = %1$d AND l.q <> %2$u;"
         "COMMIT";
     return postgres_link_runf(tables->link, sql, tables->plant, QUALITY_BAD_NO_COMMUNICATION, (long long)(now_us / US_PER_S));
+}
+
+/* A mark that we put right behind what was heard last, or was the last there, may be within a line that it went on with. */
+bool postgres_restore_end_span(struct postgres_tables *tables, int64_t from_us, int64_t to_us)
+{
+#define AT(US) "('epoch'::timestamptz + " US " * interval '1 microsecond')"
+    static const char sql[] =
+        "BEGIN;"
+        "DELETE FROM sample s USING tag g WHERE g.id = s.tag AND g.plant = %1$d AND s.q = %2$u"
+        " AND s.t > " AT("%3$lld") " AND s.t < " AT("%4$lld")
+        " AND (s.t = " AT("(%3$lld + 1)") " OR EXISTS (SELECT FROM sample b WHERE b.tag = s.tag AND b.t = s.t - interval '1 microsecond'))"
+        " AND EXISTS (SELECT FROM sample n WHERE n.tag = s.tag AND n.t > s.t AND n.t < " AT("%4$lld") ");"
+        "INSERT INTO sample SELECT g.id, l.t + interval '1 microsecond', NULL, %2$u FROM tag g,"
+        " LATERAL (SELECT t, q FROM sample WHERE tag = g.id AND t < " AT("%4$lld") " ORDER BY t DESC LIMIT 1) l"
+        " WHERE g.plant = %1$d AND l.t > " AT("%3$lld") " AND l.q <> %2$u ON CONFLICT DO NOTHING;"
+        "COMMIT";
+#undef AT
+    return postgres_link_runf(tables->link, sql, tables->plant, QUALITY_BAD_NO_COMMUNICATION, (long long)from_us, (long long)to_us);
 }
 
 /* The months that it has points of, 0 in *count: none. */
@@ -126,10 +144,9 @@ static bool fail(char why[POSTGRES_WHY_BYTES], int error)
 }
 
 /* Points of one tag, up to the end of a month; so many at once that memory is bounded. */
-static bool restore_tag(struct postgres_tables *tables, const struct tag_there *there, struct month_file *file, int64_t *points,
-                        char why[POSTGRES_WHY_BYTES])
+static bool restore_tag(struct postgres_tables *tables, const struct tag_there *there, struct month_file *file, int64_t after_us,
+                        int64_t end_us, int64_t *points, char why[POSTGRES_WHY_BYTES])
 {
-    int64_t after_us = month_begin_us(month_file_month(file)) - 1, end_us = month_begin_us(month_file_month(file) + 1);
     char id[NUMBER_BYTES], after[NUMBER_BYTES], end[NUMBER_BYTES], most[NUMBER_BYTES];
     int count = POINTS_AT_ONCE, error = 0;
     snprintf(id, sizeof(id), "%d", there->id);
@@ -209,10 +226,40 @@ static bool restore_month(struct postgres_restore *restore, struct postgres_tabl
     struct month_file *file = month_file_open(restore->log, restore->folder, month, restore->tags, restore->plant->tag_count, &error);
     bool good = file ? true : fail(why, error);
     for (size_t i = 0; i < count && good; i++)
-        good = restore_tag(tables, &found[i], file, points, why);
+        good = restore_tag(tables, &found[i], file, month_begin_us(month) - 1, month_begin_us(month + 1), points, why);
     good = good && restore_events(tables, file, why);
     month_file_close(&file);
     mem_free(found);
+    return good;
+}
+
+static bool restore_span_of_month(struct postgres_restore *restore, struct postgres_tables *tables, struct month_file *file,
+                                  int64_t from_us, int64_t to_us, int64_t *points, char why[POSTGRES_WHY_BYTES])
+{
+    size_t count;
+    struct tag_there *found = find_tags(restore, tables, &count);
+    int error = found ? month_file_forget_gaps(file, from_us, to_us, QUALITY_BAD_NO_COMMUNICATION) : 0;
+    bool good = found && (!error || fail(why, error));
+    for (size_t i = 0; i < count && good; i++)
+        good = restore_tag(tables, &found[i], file, from_us, to_us, points, why);
+    mem_free(found);
+    return good;
+}
+
+bool postgres_restore_span(struct postgres_restore *restore, struct postgres_tables *tables, int64_t from_us, int64_t to_us,
+                           int64_t *points, char why[POSTGRES_WHY_BYTES])
+{
+    bool good = true;
+    *points = 0;
+    for (int month = month_of(from_us); month <= month_of(to_us) && good; month++) {
+        int64_t begin_us = month_begin_us(month) - 1, end_us = month_begin_us(month + 1);
+        int error;
+        struct month_file *file = month_file_open(restore->log, restore->folder, month, restore->tags, restore->plant->tag_count, &error);
+        good = file ? restore_span_of_month(restore, tables, file, from_us > begin_us ? from_us : begin_us,
+                                            to_us < end_us ? to_us : end_us, points, why)
+                    : fail(why, error);
+        month_file_close(&file);
+    }
     return good;
 }
 
@@ -222,7 +269,8 @@ bool postgres_restore_step(struct postgres_restore *restore, struct postgres_tab
     int first = 0, last = 0, oldest = month_of(now_us - (int64_t)(restore->plant->history.keep_days * 86400 * US_PER_S));
     bool any;
     *points = 0;
-    if ((restore->next_month == INT_MAX && !end_lines(tables, now_us)) || !find_months(tables, &first, &last, &any))
+    if ((restore->next_month == INT_MAX && !restore->begins && !postgres_restore_end_lines(tables, now_us)) ||
+        !find_months(tables, &first, &last, &any))
         return false;
     int month = restore->next_month < last ? restore->next_month : last;
     if (!any || month < first || month < oldest) {

@@ -73,7 +73,7 @@ static bool find_plant(struct postgres_tables *tables, const char *name)
     return id > 0;
 }
 
-bool postgres_tables_open(struct postgres_tables *tables, struct postgres_link *link, const struct plant *plant,
+bool postgres_tables_open(struct postgres_tables *tables, struct postgres_link *link, const struct plant *plant, bool alone,
                           char why[POSTGRES_WHY_BYTES])
 {
     const char *schema = plant->history.postgres.schema;
@@ -84,6 +84,8 @@ bool postgres_tables_open(struct postgres_tables *tables, struct postgres_link *
         !check_version(link, schema, why) || !find_plant(tables, plant->name) || !postgres_link_run(link, "COMMIT") ||
         !postgres_link_run(link, make_temporary))
         return false;
+    if (!alone)
+        return true;
     char *lock = mem_printf("SELECT pg_try_advisory_lock(hashtext('plantcast.%s'), %d)::int::bigint", schema, tables->plant);
     int64_t locked = ask_number(link, lock, NULL);
     mem_free(lock);

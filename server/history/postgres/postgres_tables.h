@@ -19,9 +19,9 @@ struct postgres_tables { /* of one connection; zero-initialise, free with postgr
     size_t tag_capacity;
 };
 
-/* Makes the tables where there are none, checks that they are of this version, and makes sure that nobody else writes for this plant. Says
-   in why what is wrong, if the server does not. */
-bool postgres_tables_open(struct postgres_tables *tables, struct postgres_link *link, const struct plant *plant,
+/* Makes the tables where there are none, checks that they are of this version, and, with `alone`, makes sure that nobody else writes for
+   this plant. Says in why what is wrong, if the server does not. */
+bool postgres_tables_open(struct postgres_tables *tables, struct postgres_link *link, const struct plant *plant, bool alone,
                           char why[POSTGRES_WHY_BYTES]);
 void postgres_tables_finish(struct postgres_tables *tables);
 /* Writes a batch in one transaction: points that are there already are replaced. newest: the newest samples and the events as well. */

@@ -1,0 +1,473 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The thread that talks to the database. What the standby answers comes in beside it. */
+#include "corelink/lease_keeper.h"
+
+#include <errno.h>
+#include <signal.h>
+#include <stdio.h>
+#include <string.h>
+#include <sys/eventfd.h>
+#include <sys/random.h>
+#include <time.h>
+#include <unistd.h>
+
+#include "base/clock.h"
+#include "base/mem.h"
+#include "base/thread.h"
+#include "history/postgres/postgres_link.h"
+
+enum { ASKED = 32, NUMBER_BYTES = 24 };
+static const int64_t PATIENCE_NS = NS_PER_S, LEAST_PATIENCE_NS = 50 * NS_PER_MS;
+static const int64_t GOODBYE_NS = 300 * NS_PER_MS; /* before the kernel ends the process: to say why, and to leave in good order */
+
+struct lease_keeper {
+    struct lease_keeper_params params;
+    struct plant_postgres postgres;
+    char *plant, *node;
+    int stop_fd;
+    timer_t timer; /* ends the process when the lease does */
+    bool has_timer;
+    struct {
+        counter *active, *epoch, *age, *database, *standby;
+    } counters;
+    /* --- below: of the thread */
+    struct postgres_link *link; /* NULL: there is none */
+    bool looks;                 /* what the row is now is not known */
+    bool told_won, told_lost;
+    char said[POSTGRES_WHY_BYTES], led_by[LEASE_NODE_BYTES];
+    int64_t namesake_beat; /* of the row, when another of our name was found there first; -1: it lives, as was said; 0: there is none */
+    struct thread thread;
+    /* --- below: under thread.lock */
+    struct lease lease;
+    char standby[LEASE_NODE_BYTES]; /* that is connected */
+    uint64_t asked;
+    struct {
+        uint64_t number;
+        int64_t sent_ns;
+    } questions[ASKED];
+};
+
+/* Goes on while the machine sleeps, and is never set. */
+static int64_t now_of_lease(void)
+{
+    struct timespec now;
+    clock_gettime(CLOCK_BOOTTIME, &now);
+    return (int64_t)now.tv_sec * NS_PER_S + now.tv_nsec;
+}
+
+/* Under the lock. Stopped, swapped out or in an endless loop: the kernel ends it then, and nothing of it runs again. */
+static void set_timer(struct lease_keeper *keeper)
+{
+    const struct lease *lease = &keeper->lease;
+    int64_t until_ns = lease->until_ns, soon_ns = now_of_lease() + GOODBYE_NS;
+    if (lease->lost && soon_ns < until_ns)
+        until_ns = soon_ns;
+    if (!lease->leads || !until_ns)
+        return;
+    const struct itimerspec when = { .it_value = { until_ns / NS_PER_S, until_ns % NS_PER_S } };
+    timer_settime(keeper->timer, TIMER_ABSTIME, &when, NULL);
+}
+
+/* --- the database --------------------------------------------------------------------------------------------------------------- */
+
+static void give_up(struct lease_keeper *keeper, const char *why)
+{
+    char cause[POSTGRES_WHY_BYTES];
+    snprintf(cause, sizeof(cause), "%.*s", (int)strcspn(why, "\n"), why);
+    if (!*keeper->said)
+        log_warn(keeper->params.log, "lease: PostgreSQL does not answer (%s)", cause);
+    memcpy(keeper->said, cause, sizeof(cause));
+    postgres_link_close(&keeper->link);
+    counter_set(keeper->counters.database, 0);
+    keeper->looks = true;
+}
+
+static bool is_well(struct lease_keeper *keeper)
+{
+    if (*keeper->said)
+        log_info(keeper->params.log, "lease: PostgreSQL answers again");
+    *keeper->said = 0;
+    counter_set(keeper->counters.database, 1);
+    return true;
+}
+
+/* As long as a leader may still wait. */
+static int64_t patience(struct lease_keeper *keeper)
+{
+    pthread_mutex_lock(&keeper->thread.lock);
+    bool leads = keeper->lease.leads && keeper->lease.until_ns;
+    int64_t left_ns = keeper->lease.until_ns - GOODBYE_NS - now_of_lease();
+    pthread_mutex_unlock(&keeper->thread.lock);
+    return !leads || left_ns > PATIENCE_NS ? PATIENCE_NS : left_ns > LEAST_PATIENCE_NS ? left_ns : LEAST_PATIENCE_NS;
+}
+
+static bool make_table(struct lease_keeper *keeper)
+{
+    const char *schema = keeper->postgres.schema;
+    if (!postgres_link_runf(keeper->link, "BEGIN; SELECT pg_advisory_xact_lock(hashtext('plantcast.%s'));"
+                                          "CREATE SCHEMA IF NOT EXISTS \"%s\"; SET LOCAL search_path = \"%s\";"
+                                          "CREATE TABLE IF NOT EXISTS lease(plant text PRIMARY KEY, epoch bigint NOT NULL,"
+                                          " beat bigint NOT NULL, leader text NOT NULL, instance bigint NOT NULL, standby text NOT NULL,"
+                                          " renewed timestamptz NOT NULL); COMMIT; SET search_path = \"%s\"",
+                            schema, schema, schema, schema))
+        return false;
+    PGresult *added = postgres_link_ask(keeper->link,
+                                        "INSERT INTO lease VALUES ($1, 0, 0, '', 0, '', now()) ON CONFLICT (plant) DO NOTHING", 1,
+                                        (const char *[]){ keeper->plant });
+    PQclear(added);
+    return added;
+}
+
+static bool connect_now(struct lease_keeper *keeper)
+{
+    char why[POSTGRES_WHY_BYTES];
+    if (keeper->link)
+        return true;
+    if (!(keeper->link = postgres_link_open_within(&keeper->postgres, keeper->stop_fd, patience(keeper), why))) {
+        give_up(keeper, why);
+        return false;
+    }
+    if (make_table(keeper))
+        return true;
+    give_up(keeper, postgres_link_why(keeper->link));
+    return false;
+}
+
+static void copy_name(char out[LEASE_NODE_BYTES], const PGresult *rows, int column)
+{
+    snprintf(out, LEASE_NODE_BYTES, "%s", PQgetvalue(rows, 0, column));
+}
+
+static bool read_row(struct lease_keeper *keeper, struct lease_row *row)
+{
+    PGresult *rows = postgres_link_ask(keeper->link, "SELECT epoch, beat, instance, leader, standby FROM lease WHERE plant = $1", 1,
+                                       (const char *[]){ keeper->plant });
+    bool there = rows && PQntuples(rows) == 1;
+    if (!rows)
+        give_up(keeper, postgres_link_why(keeper->link));
+    else if (!there)
+        give_up(keeper, "the row of this plant is gone");
+    if (there) {
+        *row = (struct lease_row){ postgres_int64(rows, 0, 0), postgres_int64(rows, 0, 1), postgres_int64(rows, 0, 2), "", "" };
+        copy_name(row->leader, rows, 3);
+        copy_name(row->standby, rows, 4);
+    }
+    PQclear(rows);
+    return there && is_well(keeper);
+}
+
+/* Changes the row if it is as it was seen: 1, it was changed; 0: it is another one; -1: nobody knows. */
+static int change_row(struct lease_keeper *keeper, const char *sql, const struct lease_row *seen, const char *name, int64_t instance)
+{
+    char epoch[NUMBER_BYTES], beat[NUMBER_BYTES], own[NUMBER_BYTES];
+    snprintf(epoch, sizeof(epoch), "%lld", (long long)seen->epoch);
+    snprintf(beat, sizeof(beat), "%lld", (long long)seen->beat);
+    snprintf(own, sizeof(own), "%lld", (long long)instance);
+    postgres_link_set_patience(keeper->link, patience(keeper));
+    PGresult *rows = postgres_link_ask(keeper->link, sql, 5, (const char *[]){ keeper->plant, epoch, beat, own, name });
+    int changed = rows ? PQntuples(rows) : -1;
+    PQclear(rows);
+    if (changed < 0)
+        give_up(keeper, postgres_link_why(keeper->link));
+    else
+        is_well(keeper);
+    return changed;
+}
+
+#define SEEN " WHERE plant = $1 AND epoch = $2::bigint AND beat = $3::bigint"
+static const char sql_bid[] = "UPDATE lease SET epoch = epoch + 1, beat = beat + 1, instance = $4::bigint, leader = $5, standby = '',"
+                              " renewed = now()" SEEN " RETURNING 1";
+static const char sql_renew[] = "UPDATE lease SET beat = beat + 1, standby = $5, renewed = now()" SEEN
+                                " AND instance = $4::bigint RETURNING 1";
+static const char sql_give_back[] = "UPDATE lease SET beat = beat + 1, leader = $5, standby = '', renewed = now()" SEEN
+                                    " AND instance = $4::bigint RETURNING 1";
+
+/* --- others of our name --------------------------------------------------------------------------------------------------------- */
+
+bool lease_name(char out[LEASE_NODE_BYTES], const char *node, const char *id)
+{
+    return snprintf(out, LEASE_NODE_BYTES, "%s %s", node, id) < LEASE_NODE_BYTES;
+}
+
+static int name_bytes(const char *node)
+{
+    const char *id = strrchr(node, ' ');
+    return id ? (int)(id - node) : (int)strlen(node);
+}
+
+/* One that has ended changes the row no more: it may be ourselves, before our disk was replaced. */
+static void look_for_namesake(struct lease_keeper *keeper, const struct lease_row *row)
+{
+    int own = name_bytes(keeper->node), bytes = name_bytes(row->leader);
+    bool same = own == bytes && !strncmp(row->leader, keeper->node, (size_t)own) && strcmp(row->leader, keeper->node) != 0;
+    if (!same || !keeper->namesake_beat) {
+        keeper->namesake_beat = same ? row->beat : 0;
+    } else if (keeper->namesake_beat > 0 && row->beat != keeper->namesake_beat) {
+        log_err(keeper->params.log, "lease: another core has the name %.*s, and leads: this one does not take its place; --node names them",
+                own, keeper->node);
+        keeper->namesake_beat = -1;
+    }
+}
+
+/* --- turns ---------------------------------------------------------------------------------------------------------------------- */
+
+static void look(struct lease_keeper *keeper)
+{
+    struct lease_row row;
+    postgres_link_set_patience(keeper->link, patience(keeper));
+    if (!read_row(keeper, &row))
+        return;
+    pthread_mutex_lock(&keeper->thread.lock);
+    lease_saw(&keeper->lease, &row, now_of_lease());
+    bool leads = keeper->lease.leads;
+    pthread_mutex_unlock(&keeper->thread.lock);
+    keeper->looks = false;
+    counter_set(keeper->counters.epoch, row.epoch);
+    if (!leads && strcmp(keeper->led_by, row.leader) != 0 && row.leader[0])
+        log_info(keeper->params.log, "lease: %.*s leads, epoch %lld; this core stands by", name_bytes(row.leader), row.leader,
+                 (long long)row.epoch);
+    if (!leads)
+        look_for_namesake(keeper, &row);
+    memcpy(keeper->led_by, row.leader, sizeof(keeper->led_by));
+}
+
+static void bid(struct lease_keeper *keeper)
+{
+    pthread_mutex_lock(&keeper->thread.lock);
+    bool may = lease_may_bid(&keeper->lease, now_of_lease());
+    struct lease_row seen = keeper->lease.row;
+    if (may)
+        lease_bid(&keeper->lease);
+    pthread_mutex_unlock(&keeper->thread.lock);
+    if (!may)
+        return;
+    int64_t sent_ns = now_of_lease();
+    int changed = change_row(keeper, sql_bid, &seen, keeper->node, keeper->lease.instance);
+    if (changed == 1) {
+        pthread_mutex_lock(&keeper->thread.lock);
+        lease_won(&keeper->lease, sent_ns);
+        set_timer(keeper);
+        pthread_mutex_unlock(&keeper->thread.lock);
+        counter_set(keeper->counters.epoch, seen.epoch + 1);
+    } else if (changed == 0) {
+        look(keeper);
+    }
+}
+
+static void renew(struct lease_keeper *keeper)
+{
+    char standby[LEASE_NODE_BYTES];
+    pthread_mutex_lock(&keeper->thread.lock);
+    memcpy(standby, keeper->standby, sizeof(standby));
+    lease_renew(&keeper->lease, standby);
+    struct lease_row seen = keeper->lease.row;
+    pthread_mutex_unlock(&keeper->thread.lock);
+    int64_t sent_ns = now_of_lease();
+    int changed = change_row(keeper, sql_renew, &seen, standby, keeper->lease.instance);
+    if (changed == 1) {
+        pthread_mutex_lock(&keeper->thread.lock);
+        lease_renewed(&keeper->lease, standby, sent_ns);
+        set_timer(keeper);
+        pthread_mutex_unlock(&keeper->thread.lock);
+        counter_set(keeper->counters.standby, standby[0] != 0);
+    } else if (changed == 0) {
+        look(keeper);
+    }
+}
+
+/* What became of it. */
+static void tell(struct lease_keeper *keeper)
+{
+    int64_t now_ns = now_of_lease();
+    pthread_mutex_lock(&keeper->thread.lock);
+    const struct lease *lease = &keeper->lease;
+    bool acts = lease_acts(lease, now_ns), lost = lease->lost, leads = lease->leads && lease->until_ns;
+    bool ends = lost || (leads && now_ns > lease->until_ns - GOODBYE_NS);
+    int64_t until_ns = lease->until_ns;
+    if (lost)
+        set_timer(keeper);
+    pthread_mutex_unlock(&keeper->thread.lock);
+    counter_set(keeper->counters.age, leads ? (now_ns + LEASE_HOLD_NS - until_ns) / 1000 : 0);
+    counter_set(keeper->counters.active, acts);
+    if (acts && !keeper->told_won) {
+        keeper->told_won = true;
+        log_info(keeper->params.log, "lease: this core leads, epoch %lld", (long long)lease->row.epoch);
+        keeper->params.won(keeper->params.arg);
+    }
+    if (ends && !keeper->told_lost) {
+        keeper->told_lost = true;
+        log_err(keeper->params.log, "lease: it is lost (%s); this core ends now, and polls nothing more",
+                lost ? "another leads, or the row was set by somebody" : "neither PostgreSQL nor a standby has confirmed it");
+        keeper->params.lost(keeper->params.arg);
+    }
+}
+
+/* When there is something to do next. */
+static int64_t take_turn(struct lease_keeper *keeper)
+{
+    int64_t began_ns = now_of_lease();
+    pthread_mutex_lock(&keeper->thread.lock);
+    bool leads = keeper->lease.leads;
+    pthread_mutex_unlock(&keeper->thread.lock);
+    if (!keeper->told_lost && connect_now(keeper)) {
+        if (keeper->looks || !leads)
+            look(keeper);
+        if (keeper->link && leads && !keeper->looks)
+            renew(keeper);
+        else if (keeper->link && !leads)
+            bid(keeper);
+    }
+    tell(keeper);
+    pthread_mutex_lock(&keeper->thread.lock);
+    int64_t next_ns = began_ns + (leads ? LEASE_RENEW_NS : LEASE_LOOK_NS), last_ns = keeper->lease.until_ns - GOODBYE_NS + 1;
+    pthread_mutex_unlock(&keeper->thread.lock);
+    return leads && !keeper->told_lost && last_ns > began_ns && last_ns < next_ns ? last_ns : next_ns; /* not to miss saying so */
+}
+
+static void *run(void *arg)
+{
+    struct lease_keeper *keeper = arg;
+    bool stopping = false;
+    while (!stopping) {
+        int64_t next_ns = take_turn(keeper), wait_ns;
+        pthread_mutex_lock(&keeper->thread.lock);
+        do {
+            wait_ns = next_ns - now_of_lease();
+            if (wait_ns > 0)
+                clock_cond_wait(&keeper->thread.wake, &keeper->thread.lock, clock_mono_ns() + wait_ns);
+            stopping = keeper->thread.stopping;
+        } while (!stopping && wait_ns > 0 && next_ns > now_of_lease());
+        pthread_mutex_unlock(&keeper->thread.lock);
+    }
+    return NULL;
+}
+
+/* --- from outside --------------------------------------------------------------------------------------------------------------- */
+
+bool lease_keeper_leads(struct lease_keeper *keeper)
+{
+    pthread_mutex_lock(&keeper->thread.lock);
+    bool acts = lease_acts(&keeper->lease, now_of_lease());
+    pthread_mutex_unlock(&keeper->thread.lock);
+    return acts;
+}
+
+void lease_keeper_set_standby(struct lease_keeper *keeper, const char *node)
+{
+    pthread_mutex_lock(&keeper->thread.lock);
+    snprintf(keeper->standby, sizeof(keeper->standby), "%s", node);
+    pthread_mutex_unlock(&keeper->thread.lock);
+}
+
+uint64_t lease_keeper_ask(struct lease_keeper *keeper)
+{
+    pthread_mutex_lock(&keeper->thread.lock);
+    uint64_t number = ++keeper->asked;
+    keeper->questions[number % ASKED].number = number;
+    keeper->questions[number % ASKED].sent_ns = now_of_lease();
+    pthread_mutex_unlock(&keeper->thread.lock);
+    return number;
+}
+
+void lease_keeper_promised(struct lease_keeper *keeper, const char *node, uint64_t number)
+{
+    pthread_mutex_lock(&keeper->thread.lock);
+    if (number && keeper->questions[number % ASKED].number == number && !keeper->thread.stopping) {
+        lease_promised(&keeper->lease, node, keeper->questions[number % ASKED].sent_ns);
+        set_timer(keeper);
+    }
+    pthread_mutex_unlock(&keeper->thread.lock);
+}
+
+const char *lease_keeper_id(const struct lease_keeper *keeper)
+{
+    return keeper->node + name_bytes(keeper->node) + 1;
+}
+
+bool lease_keeper_promise(struct lease_keeper *keeper)
+{
+    pthread_mutex_lock(&keeper->thread.lock);
+    bool good = lease_promise(&keeper->lease, now_of_lease());
+    pthread_mutex_unlock(&keeper->thread.lock);
+    return good;
+}
+
+/* --- life ----------------------------------------------------------------------------------------------------------------------- */
+
+static void add_counters(struct lease_keeper *keeper)
+{
+    struct counters *c = keeper->params.counters;
+    keeper->counters.active = counters_add(c, "plantcast_core_active", "gauge", "1 while this core leads: polls devices, owns alarms.");
+    keeper->counters.epoch = counters_add(c, "plantcast_core_epoch", "gauge", "How often the lead changed hands, as PostgreSQL has it.");
+    keeper->counters.age =
+        counters_add_seconds(c, "plantcast_core_lease_age_seconds", "gauge", "Since what confirmed this core's lease was sent.");
+    keeper->counters.database = counters_add(c, "plantcast_core_lease_database_up", "gauge", "1 while PostgreSQL answers about the lease.");
+    keeper->counters.standby = counters_add(c, "plantcast_core_standby", "gauge", "1 while a standby follows this core, and is named.");
+}
+
+static bool make_timer(struct lease_keeper *keeper)
+{
+    struct sigevent event = { .sigev_notify = SIGEV_SIGNAL, .sigev_signo = SIGKILL };
+    keeper->has_timer = timer_create(CLOCK_BOOTTIME, &event, &keeper->timer) == 0;
+    if (!keeper->has_timer)
+        log_err(keeper->params.log, "lease: no timer of the kernel that ends this core: %s", strerror(errno));
+    return keeper->has_timer;
+}
+
+struct lease_keeper *lease_keeper_create(const struct lease_keeper_params *params)
+{
+    struct lease_keeper *keeper = mem_new(sizeof(*keeper));
+    const struct plant_postgres *postgres = params->postgres;
+    int64_t instance = 0;
+    keeper->params = *params;
+    keeper->postgres.url = mem_strdup(postgres->url);
+    keeper->postgres.schema = mem_strdup(postgres->schema);
+    keeper->postgres.login = postgres->login ? mem_strdup(postgres->login) : NULL;
+    keeper->plant = mem_strdup(params->plant);
+    keeper->node = mem_strdup(params->node);
+    keeper->stop_fd = eventfd(0, EFD_CLOEXEC);
+    keeper->looks = true;
+    thread_init(&keeper->thread);
+    bool random = getrandom(&instance, sizeof(instance), 0) == sizeof(instance);
+    lease_init(&keeper->lease, params->node, instance);
+    add_counters(keeper);
+    if (keeper->stop_fd < 0 || !random)
+        log_err(params->log, "lease: %s", strerror(errno));
+    if (keeper->stop_fd < 0 || !random || !make_timer(keeper))
+        lease_keeper_destroy(&keeper);
+    return keeper;
+}
+
+bool lease_keeper_start(struct lease_keeper *keeper)
+{
+    return thread_start(&keeper->thread, keeper->params.log, "lease", run, keeper);
+}
+
+static void give_back(struct lease_keeper *keeper)
+{
+    if (keeper->link && lease_keeper_leads(keeper) &&
+        change_row(keeper, sql_give_back, &keeper->lease.row, "", keeper->lease.instance) == 1)
+        log_info(keeper->params.log, "lease: given back");
+}
+
+void lease_keeper_destroy(struct lease_keeper **pointer)
+{
+    struct lease_keeper *keeper = *pointer;
+    if (!keeper)
+        return;
+    thread_stop(&keeper->thread);
+    give_back(keeper);
+    if (keeper->has_timer)
+        timer_delete(keeper->timer);
+    postgres_link_close(&keeper->link);
+    if (keeper->stop_fd >= 0)
+        close(keeper->stop_fd);
+    thread_finish(&keeper->thread);
+    mem_free(keeper->postgres.url);
+    mem_free(keeper->postgres.schema);
+    mem_free(keeper->postgres.login);
+    mem_free(keeper->plant);
+    mem_free(keeper->node);
+    mem_free(keeper);
+    *pointer = NULL;
+}
