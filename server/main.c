@@ -58,8 +58,9 @@ static void print_usage(FILE *out)
           "                   =now: what lies in the folder exports beside the plant file, at once\n"
           "  --role ROLE      all: reads field devices and serves operators; core: likewise, and renderers may connect; render: has no\n"
           "                   field device, and takes readings and alarms from a core\n"
-          "  --core URL       render: wss://HOST:PORT of the core; again for another place where it may run (one core at a time)\n"
-          "  --core-token-file FILE, --core-ca FILE   render: its token, of the role renderer; certificates trusted for the core\n"
+          "  --core URL       render: wss://HOST:PORT of the core; again for the other of two, or another place where it may run\n"
+          "                   core: of the other core; one of the two leads, the other stands by and takes its place (needs postgres)\n"
+          "  --core-token-file FILE, --core-ca FILE   its token there, of the role renderer; certificates trusted for the core\n"
           "  --node NAME      this daemon's name among others, for the core's log\n"
           "  --agent-port PORT   where HAProxy's agent check asks how much this node can still draw; SIGUSR1 sends its sessions elsewhere\n"
           "  --check          read everything, report every error, start nothing\n"
@@ -348,10 +349,12 @@ static int take_role_option(int option, struct server_params *params)
 static const char *role_wrong(const struct server_params *params)
 {
     bool render = params->role == SERVER_RENDER;
-    if (render != (params->core_count > 0))
+    if (render && !params->core_count)
         return "--role render and --core URL belong together";
-    if (!render && (params->core_token || params->core_ca))
-        return "--core-token-file and --core-ca are for --role render";
+    if (params->role == SERVER_ALL && params->core_count)
+        return "--core URL is for --role render, and for --role core with another core";
+    if (!params->core_count && (params->core_token || params->core_ca))
+        return "--core-token-file and --core-ca belong to --core URL";
     if (render && params->imports)
         return "--import is for the core: --role render brings no plant in";
     return NULL;

@@ -61,7 +61,13 @@ struct plant_runtime *plant_runtime_read(const struct plant_runtime_context *con
 
 /* --- life ------------------------------------------------------------------------------------------------------------- */
 
-static bool start_historian(struct plant_runtime *runtime, bool follows)
+/* Others own the alarms, and poll. */
+static bool follows(const struct plant_runtime *runtime)
+{
+    return runtime->context->params->role == SERVER_RENDER || *runtime->context->follows;
+}
+
+static bool start_historian(struct plant_runtime *runtime, bool continues)
 {
     const struct plant_runtime_context *context = runtime->context;
     const struct historian_params params = { .log = context->log,
@@ -69,7 +75,8 @@ static bool start_historian(struct plant_runtime *runtime, bool follows)
                                              .plant = runtime->plant,
                                              .store = runtime->store,
                                              .folder = runtime->history,
-                                             .follows = follows };
+                                             .follows = continues,
+                                             .stands_by = follows(runtime) };
     return !runtime->history || (runtime->historian = historian_start(&params));
 }
 
@@ -83,7 +90,7 @@ static bool start_alarm_service(struct plant_runtime *runtime, struct alarm_serv
         .store = runtime->store,
         .folder = runtime->history,
         .keep_days = runtime->plant->history.keep_days,
-        .mirrors = context->params->role == SERVER_RENDER,
+        .mirrors = follows(runtime),
         .before = before,
         .notify = context->notify,
         .notify_arg = context->notify_arg,
@@ -97,8 +104,10 @@ static bool start_notifier(struct plant_runtime *runtime)
                                             .counters = runtime->context->counters,
                                             .plant = runtime->plant,
                                             .alarm_service = runtime->alarm_service,
-                                            .folder = runtime->history };
-    return !runtime->plant->notify || runtime->context->params->role == SERVER_RENDER || (runtime->notifier = notifier_start(&params));
+                                            .folder = runtime->history,
+                                            .kept = runtime->context->notify,
+                                            .kept_arg = runtime->context->notify_arg };
+    return !runtime->plant->notify || follows(runtime) || (runtime->notifier = notifier_start(&params));
 }
 
 static bool start_publisher(struct plant_runtime *runtime)
@@ -108,7 +117,7 @@ static bool start_publisher(struct plant_runtime *runtime)
                                              .plant = runtime->plant,
                                              .store = runtime->store,
                                              .alarm_service = runtime->alarm_service };
-    return !runtime->plant->publish || runtime->context->params->role == SERVER_RENDER || (runtime->publisher = publisher_start(&params));
+    return !runtime->plant->publish || follows(runtime) || (runtime->publisher = publisher_start(&params));
 }
 
 /* Made from what is loaded; works only once somebody asks. */
@@ -165,6 +174,9 @@ static bool start_core_link(struct plant_runtime *runtime)
                                        .ca_path = server->core_ca,
                                        .version = PLANTCAST_VERSION,
                                        .node = server->node,
+                                       .keeper = context->keeper,
+                                       .historian = runtime->historian,
+                                       .folder = runtime->history,
                                        .notify = context->notify,
                                        .notify_arg = context->notify_arg };
     memcpy(params.urls, server->cores, sizeof(params.urls));
@@ -174,7 +186,7 @@ static bool start_core_link(struct plant_runtime *runtime)
 bool plant_runtime_start_sources(struct plant_runtime *runtime)
 {
     const struct plant_runtime_context *context = runtime->context;
-    if (context->params->role == SERVER_RENDER)
+    if (follows(runtime))
         return start_core_link(runtime);
     runtime->sources = mem_array(runtime->plant->source_count, sizeof(*runtime->sources));
     for (size_t i = 0; i < runtime->plant->source_count; i++)
@@ -183,6 +195,21 @@ bool plant_runtime_start_sources(struct plant_runtime *runtime)
     if (runtime->plant->derived_count > 0)
         runtime->derived = derived_start(context->log, runtime->plant, runtime->store);
     return runtime->plant->derived_count == 0 || runtime->derived;
+}
+
+void plant_runtime_stop_following(struct plant_runtime *runtime)
+{
+    core_link_halt(runtime->core_link);
+}
+
+bool plant_runtime_lead(struct plant_runtime *runtime)
+{
+    core_link_stop(&runtime->core_link);
+    *runtime->context->follows = false;
+    if (runtime->historian)
+        historian_lead(runtime->historian);
+    alarm_service_lead(runtime->alarm_service);
+    return start_notifier(runtime) && start_publisher(runtime) && plant_runtime_start_sources(runtime);
 }
 
 const char *plant_runtime_h264_library(const struct server_params *params)
@@ -257,6 +284,8 @@ struct net_plant plant_runtime_net_plant(const struct plant_runtime *runtime)
         .pairings = runtime->pairings,
         .loop_checks = runtime->loop_checks,
         .core_link = runtime->core_link,
+        .historian = runtime->historian,
+        .notifier = runtime->notifier,
         .tag_list = runtime->tag_list,
         .history_folder = runtime->history,
     };

@@ -19,6 +19,8 @@ struct plant_runtime_context { /* what a reload keeps */
     struct counters *counters;
     struct audit *audit; /* NULL: nothing is recorded */
     struct workers *workers;
+    struct lease_keeper *keeper; /* of a core that has a standby, or is one; NULL: none */
+    bool *follows;               /* another core polls, and owns the alarms; plant_runtime_lead() ends it */
     void (*notify)(void *arg); /* called when frames, or changes of alarms, can be collected; any thread */
     void *notify_arg;
 };
@@ -35,7 +37,7 @@ struct plant_runtime {
     struct notifier *notifier;   /* NULL: nobody is told of alarms */
     struct publisher *publisher; /* NULL: nothing is published */
     struct source **sources; /* by index in plant->sources */
-    struct core_link *core_link; /* of a renderer, instead of sources; else NULL */
+    struct core_link *core_link; /* of a renderer, or a core that stands by, instead of sources; else NULL */
     struct source *derived;  /* computes derived tags; NULL: there are none */
     struct render_service *render_service;
     char *history; /* its folder; NULL: nothing is recorded */
@@ -63,6 +65,10 @@ void plant_runtime_open_lists(struct plant_runtime *runtime);
 bool plant_runtime_start_recording(struct plant_runtime *runtime, struct plant_runtime *before);
 /* Starts the field devices' sources and derived tags. Returns false on failure, already logged. */
 bool plant_runtime_start_sources(struct plant_runtime *runtime);
+/* Ends the link to the core that led. The loop then lets go of it (net_lead), and plant_runtime_lead() comes. */
+void plant_runtime_stop_following(struct plant_runtime *runtime);
+/* Polls and owns the alarms from now on, in the place of the core that was followed. Returns false on failure, already logged. */
+bool plant_runtime_lead(struct plant_runtime *runtime);
 /* Starts the render service. first: views that are to be quick to draw from the beginning. Returns false on failure, already logged. */
 bool plant_runtime_start_render_service(struct plant_runtime *runtime, const struct view *first, size_t first_count);
 /* Stops reading, recording and evaluating, for the runtime of `next` to continue. Frames are still drawn, of the last readings. */

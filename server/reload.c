@@ -6,6 +6,7 @@
 #include <malloc.h>
 #include <stdio.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "access/tokens.h"
 #include "base/clock.h"
@@ -14,9 +15,11 @@
 #include "base/thread.h"
 #include "import_job.h"
 #include "plant/plant_diff.h"
+#include "plant/plant_folder.h"
 #include "sibling.h"
 
 enum { FIRST = 16 }; /* views that the new plant is drawn from before it takes over */
+enum { WAIT_MS = 3000 }; /* for another program that changes the plant's folder */
 
 struct reload {
     const struct plant_runtime_context *context;
@@ -28,6 +31,9 @@ struct reload {
     char by[TOKEN_NAME_BYTES];     /* who asked for the one that is under way */
     const struct tag_save *saving; /* for whom this is done; NULL: for nobody's list */
     const char *kept;              /* the list before it */
+    pthread_mutex_t put_lock; /* held while the runtime is replaced, or begins to lead: one after the other */
+    struct thread leader;     /* does not wait until a plant is read, matched or prepared. Under its lock: */
+    bool leads;
     struct thread thread;
     /* --- below: under thread.lock */
     bool asked, imports;
@@ -182,10 +188,13 @@ static void put_in_force(struct reload *reload, struct plant_runtime *after, con
     struct plant_runtime *before = *reload->runtime;
     struct swap both = { .net = reload->net, .after = after };
     char *hash = mem_strdup(before->plant->hash);
+    pthread_mutex_lock(&reload->put_lock);
     plant_runtime_hand_over(before, after->plant);
     bool good = plant_runtime_start_recording(after, before) && plant_runtime_start_sources(after) && net_call(reload->net, swap, &both);
-    if (good) {
+    if (good)
         *reload->runtime = after;
+    pthread_mutex_unlock(&reload->put_lock);
+    if (good) {
         plant_runtime_destroy(&before);
         malloc_trim(0);
         reload_count(reload->context->counters, hash, false);
@@ -197,6 +206,20 @@ static void put_in_force(struct reload *reload, struct plant_runtime *after, con
         plant_runtime_destroy(&after);
     }
     mem_free(hash);
+}
+
+/* --- the plant's folder ------------------------------------------------------------------------------------------------- */
+
+/* Returns a descriptor, or a negative number with the reason in *why (mem_free). */
+static int lock_folder(const struct reload *reload, char **why)
+{
+    char *folder = plant_folder_of(reload->context->params->plant_path), *cause = NULL;
+    int lock = plant_folder_lock(&(struct plant_folder_params){ .folder = folder, .wait_ms = WAIT_MS }, &cause);
+    if (lock < 0)
+        *why = mem_printf("the plant's folder %s: %s; try again when that is done", folder, cause);
+    mem_free(cause);
+    mem_free(folder);
+    return lock;
 }
 
 /* Nothing has changed, if false comes: said already. */
@@ -220,6 +243,22 @@ static bool reload_now(struct reload *reload)
     plant_diff_finish(&diff);
     diag_finish(&diag);
     return good;
+}
+
+/* Files are read when no other program is replacing them. */
+static void reload_settled(struct reload *reload)
+{
+    struct diag none = { 0 };
+    char *folder = plant_folder_of(reload->context->params->plant_path), *why = NULL;
+    if (plant_folder_settle(&(struct plant_folder_params){ .folder = folder, .wait_ms = WAIT_MS }, &why)) {
+        reload_now(reload);
+    } else {
+        char *line = mem_printf("the plant's folder %s: %s; try again when that is done", folder, why);
+        refuse(reload, &none, line);
+        mem_free(line);
+    }
+    mem_free(why);
+    mem_free(folder);
 }
 
 /* --- another tag list ------------------------------------------------------------------------------------------------- */
@@ -259,8 +298,9 @@ static void save_now(struct reload *reload, const struct tag_save *save)
     struct log *log = reload->context->log;
     struct diag none = { 0 };
     char *kept = NULL, *why = NULL;
+    int lock = lock_folder(reload, &why);
     reload->saving = save;
-    if (!tag_file_put(save, &kept, &why)) {
+    if (lock < 0 || !tag_file_put(save, &kept, &why)) {
         refuse(reload, &none, why);
     } else {
         reload->kept = kept;
@@ -274,6 +314,8 @@ static void save_now(struct reload *reload, const struct tag_save *save)
     }
     reload->saving = NULL;
     reload->kept = NULL;
+    if (lock >= 0)
+        close(lock);
     mem_free(kept);
     mem_free(why);
 }
@@ -312,7 +354,8 @@ static void record_import(const struct reload *reload, const struct import_order
                                                              .why = why });
 }
 
-static void import_now(struct reload *reload, struct import_order *order)
+/* The folder is this daemon's from the first program to the last. */
+static void import_locked(struct reload *reload, struct import_order *order, int lock)
 {
     const struct plant_runtime_context *context = reload->context;
     char *folder = plant_runtime_prepared_folder(context->params, (*reload->runtime)->plant);
@@ -320,6 +363,7 @@ static void import_now(struct reload *reload, struct import_order *order)
                                               .plant_path = context->params->plant_path,
                                               .tags_path = (*reload->runtime)->plant->tags_path,
                                               .prepared = folder,
+                                              .lock = lock,
                                               .stop = is_cancelled,
                                               .arg = reload };
     struct import_job *job = import_job_begin(&params);
@@ -338,6 +382,61 @@ static void import_now(struct reload *reload, struct import_order *order)
     mem_free(remark);
     mem_free(why);
     mem_free(folder);
+}
+
+static void import_now(struct reload *reload, struct import_order *order)
+{
+    char *why = NULL;
+    int lock = lock_folder(reload, &why);
+    if (lock >= 0) {
+        import_locked(reload, order, lock);
+        close(lock);
+        return;
+    }
+    log_err(reload->context->log, "import: %s", why);
+    record_import(reload, order, why);
+    plant_import_end(reload->import, false, why);
+    mem_free(why);
+}
+
+/* --- in the place of another core ------------------------------------------------------------------------------------- */
+
+/* In the loop. */
+static void lead_in_loop(void *arg)
+{
+    struct reload *reload = arg;
+    const struct net_plant plant = plant_runtime_net_plant(*reload->runtime);
+    net_lead(reload->net, &plant);
+}
+
+static void lead_now(struct reload *reload, int64_t begun_ns)
+{
+    pthread_mutex_lock(&reload->put_lock);
+    struct plant_runtime *runtime = *reload->runtime;
+    plant_runtime_stop_following(runtime);
+    bool open = net_call(reload->net, lead_in_loop, reload);
+    bool good = open && plant_runtime_lead(runtime) && net_call(reload->net, lead_in_loop, reload);
+    pthread_mutex_unlock(&reload->put_lock);
+    if (good) {
+        log_info(reload->context->log, "core: polls devices and owns the alarms, after %.1f s", (double)(clock_mono_ns() - begun_ns) / 1e9);
+    } else if (open) {
+        log_err(reload->context->log, "core: it cannot lead; the daemon ends");
+        net_stop(reload->net);
+    }
+}
+
+static void *run_leader(void *arg)
+{
+    struct reload *reload = arg;
+    struct thread *thread = &reload->leader;
+    pthread_mutex_lock(&thread->lock);
+    while (!reload->leads && !thread->stopping)
+        pthread_cond_wait(&thread->wake, &thread->lock);
+    bool leads = !thread->stopping;
+    pthread_mutex_unlock(&thread->lock);
+    if (leads)
+        lead_now(reload, clock_mono_ns());
+    return NULL;
 }
 
 /* --- life ------------------------------------------------------------------------------------------------------------- */
@@ -368,7 +467,7 @@ static void *run(void *arg)
         if (reload->import && plant_import_next(reload->import, &order))
             import_now(reload, &order);
         if (asked)
-            reload_now(reload);
+            reload_settled(reload);
     }
 }
 
@@ -381,8 +480,11 @@ struct reload *reload_create(const struct plant_runtime_context *context, struct
     reload->runtime = runtime;
     reload->net = net;
     reload->supervision = supervision;
+    pthread_mutex_init(&reload->put_lock, NULL);
     thread_init(&reload->thread);
-    if (!thread_start(&reload->thread, context->log, "reload", run, reload))
+    thread_init(&reload->leader);
+    if (!thread_start(&reload->thread, context->log, "reload", run, reload) ||
+        (context->keeper && !thread_start(&reload->leader, context->log, "leader", run_leader, reload)))
         reload_destroy(&reload);
     return reload;
 }
@@ -392,9 +494,12 @@ void reload_destroy(struct reload **pointer)
     struct reload *reload = *pointer;
     if (!reload)
         return;
+    thread_stop(&reload->leader);
     thread_stop(&reload->thread);
     tag_save_free(reload->save);
+    thread_finish(&reload->leader);
     thread_finish(&reload->thread);
+    pthread_mutex_destroy(&reload->put_lock);
     mem_free(reload);
     *pointer = NULL;
 }
@@ -406,6 +511,14 @@ void reload_ask(struct reload *reload, const char *who)
     snprintf(reload->who, sizeof(reload->who), "%s", who);
     pthread_cond_signal(&reload->thread.wake);
     pthread_mutex_unlock(&reload->thread.lock);
+}
+
+void reload_lead(struct reload *reload)
+{
+    pthread_mutex_lock(&reload->leader.lock);
+    reload->leads = true;
+    pthread_cond_signal(&reload->leader.wake);
+    pthread_mutex_unlock(&reload->leader.lock);
 }
 
 void reload_save(struct reload *reload, struct tag_save *save)

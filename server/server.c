@@ -17,6 +17,7 @@
 #include "base/clock.h"
 #include "base/counters.h"
 #include "base/mem.h"
+#include "corelink/seat.h"
 #include "encode/encoder.h"
 #include "scene/far_sensors.h"
 #include "field/colormap.h"
@@ -25,10 +26,13 @@
 #include "reload.h"
 #include "sibling.h"
 #include "plant/model_check.h"
+#include "plant/plant_folder.h"
 #include "scene/scene_create.h"
 #include "value/read_plan_text.h"
 #include "value/series_check.h"
 #include "version.h"
+
+enum { SETTLE_MS = 3000 }; /* for an import that replaces files just now */
 
 struct server {
     struct server_params params;
@@ -38,6 +42,9 @@ struct server {
     struct plant_runtime_context context;
     struct plant_runtime *runtime;
     struct reload *reload;
+    struct seat seat;            /* of one of two cores */
+    struct lease_keeper *keeper; /* NULL: no other core may lead */
+    bool follows, lost;          /* another core polls; this one's lease is lost */
     struct supervision *supervision;
     struct agent *agent;         /* NULL: no load balancer asks */
     struct signing_key *signing_key; /* NULL: pictures are not signed */
@@ -197,6 +204,8 @@ static bool start_net(struct server *server)
         .version = PLANTCAST_VERSION,
         .node = server->params.role == SERVER_RENDER ? server->params.node : NULL,
         .is_core = server->params.role == SERVER_CORE,
+        .node_name = server->params.node,
+        .keeper = server->keeper,
         .reload = ask_reload,
         .save = server->params.role == SERVER_RENDER ? NULL : ask_save,
         .import = server->import,
@@ -280,10 +289,29 @@ static bool prepare(struct server *server)
     return good;
 }
 
+/* The plant file, models and tag list of one revision, never of two. */
+static bool settle_folder(struct server *server)
+{
+    const char *finished = NULL;
+    char *folder = plant_folder_of(server->params.plant_path), *why = NULL;
+    bool settled =
+        plant_folder_settle(&(struct plant_folder_params){ .folder = folder, .wait_ms = SETTLE_MS, .finished = &finished }, &why);
+    if (finished)
+        log_warn(server->log, "%s: %s that was killed is finished: the plant is the one after it", server->params.plant_path, finished);
+    if (!settled)
+        log_err(server->log, "%s: what lies in its folder is neither the plant before an import nor the one after it: %s",
+                server->params.plant_path, why);
+    mem_free(why);
+    mem_free(folder);
+    return settled;
+}
+
 /* Findings are printed, errors and warnings. */
 static bool read_plant(struct server *server)
 {
     struct diag diag = { 0 };
+    if (!settle_folder(server))
+        return false;
     server->runtime = plant_runtime_read(&server->context, &diag);
     if (!server->runtime && !diag.errors && prepare(server)) {
         diag_finish(&diag);
@@ -335,6 +363,68 @@ static bool load_signing_key(struct server *server)
     return true;
 }
 
+/* By the thread of the lease, until it is destroyed. */
+static void on_won(void *arg)
+{
+    struct server *server = arg;
+    pthread_mutex_lock(&server->wake_lock);
+    if (server->net)
+        reload_lead(server->reload);
+    pthread_mutex_unlock(&server->wake_lock);
+}
+
+/* The kernel ends the process where this is not enough. */
+static void on_lost(void *arg)
+{
+    struct server *server = arg;
+    pthread_mutex_lock(&server->wake_lock);
+    server->lost = true;
+    if (server->net)
+        net_stop(server->net);
+    pthread_mutex_unlock(&server->wake_lock);
+}
+
+static bool take_seat(struct server *server, char name[LEASE_NODE_BYTES])
+{
+    char *why = seat_take(&server->seat, server->runtime->history);
+    if (!why && !lease_name(name, server->params.node, server->seat.id))
+        why = mem_printf("--node: %s is longer than %d bytes", server->params.node,
+                         LEASE_NODE_BYTES - 2 - (int)strlen(server->seat.id));
+    if (why)
+        log_err(server->log, "%s", why);
+    bool good = !why;
+    mem_free(why);
+    return good;
+}
+
+/* Each of two cores begins as one that follows. */
+static bool make_keeper(struct server *server)
+{
+    const struct plant *plant = server->runtime->plant;
+    char name[LEASE_NODE_BYTES];
+    if (server->params.role != SERVER_CORE || !server->params.core_count)
+        return true;
+    if (!plant->history.postgres.url || plant->history.off) {
+        log_err(server->log, "%s: two cores need `postgres` of `history`: which of them leads stands there", server->params.plant_path);
+        return false;
+    }
+    if (!take_seat(server, name))
+        return false;
+    server->follows = true;
+    const struct lease_keeper_params params = {
+        .log = server->log,
+        .counters = server->counters,
+        .postgres = &plant->history.postgres,
+        .plant = plant->name,
+        .node = name,
+        .won = on_won,
+        .lost = on_lost,
+        .arg = server,
+    };
+    server->context.keeper = server->keeper = lease_keeper_create(&params);
+    return server->keeper;
+}
+
 static bool start_agent(struct server *server)
 {
     const struct server_params *params = &server->params;
@@ -347,7 +437,8 @@ static bool server_start(struct server *server)
     server->supervision = supervision_create(server->log, server->counters);
     supervision_starting(server->supervision, "reading the plant");
     server->context = (struct plant_runtime_context){
-        .params = &server->params, .log = server->log, .counters = server->counters, .notify = on_pictures, .notify_arg = server
+        .params = &server->params, .log = server->log, .counters = server->counters, .notify = on_pictures, .notify_arg = server,
+        .follows = &server->follows
     };
     if (!read_plant(server))
         return false;
@@ -364,8 +455,9 @@ static bool server_start(struct server *server)
     server->web = find_web(server->params.web);
     reload_count(server->counters, server->runtime->plant->hash, true);
     supervision_starting(server->supervision, "drawing the first picture");
-    return plant_runtime_start_recording(server->runtime, NULL) && plant_runtime_start_sources(server->runtime) &&
-           plant_runtime_start_render_service(server->runtime, NULL, 0) && start_import(server) && start_agent(server) && start_net(server);
+    return make_keeper(server) && plant_runtime_start_recording(server->runtime, NULL) && plant_runtime_start_sources(server->runtime) &&
+           plant_runtime_start_render_service(server->runtime, NULL, 0) && start_import(server) && start_agent(server) &&
+           start_net(server) && (!server->keeper || lease_keeper_start(server->keeper));
 }
 
 /* Against the flow of data: first who takes, last who gives. */
@@ -383,6 +475,8 @@ static void server_finish(struct server *server)
     audit_stop(&server->audit);
     plant_import_destroy(&server->import);
     plant_runtime_destroy(&server->runtime);
+    lease_keeper_destroy(&server->keeper); /* it gives the lease back: nothing polls any more */
+    seat_leave(&server->seat);
     workers_destroy(&server->workers);
     supervision_destroy(&server->supervision);
     counters_destroy(&server->counters);
@@ -447,7 +541,7 @@ int server_run(const struct server_params *params)
         supervision_stopping(server.supervision);
     }
     server_finish(&server);
-    return good || atomic_load(&told_to_end) ? 0 : 1;
+    return (good || atomic_load(&told_to_end)) && !server.lost ? 0 : 1;
 }
 
 static int check_prepared(const struct server_params *params, const struct plant *plant)
@@ -496,8 +590,13 @@ int server_check(const struct server_params *params)
     struct diag diag = { 0 };
     struct plant *plant = plant_load(params->plant_path, &diag);
     size_t sensors = 0;
+    char *folder = plant_folder_of(params->plant_path);
+    if (plant_folder_unsettled(folder))
+        diag_warning(&diag, params->plant_path, 0, 0,
+                     "an import that was killed has replaced a part of the files; the next start finishes it");
+    mem_free(folder);
     if (plant) {
-        models_check(plant, &diag, stdout);
+        models_check(plant, 0, &diag, stdout);
         series_check(plant, &diag);
         sensors = count_sensors(plant, &diag);
     }
@@ -507,8 +606,9 @@ int server_check(const struct server_params *params)
     if (!plant)
         fprintf(stderr, "plantcastd: %s: %d error%s\n", params->plant_path, diag.errors, diag.errors == 1 ? "" : "s");
     else
-        printf("%s: %zu assets, %zu groups, %zu sources, %zu tags, %zu of them sensors: %s", params->plant_path, plant->asset_count,
-               plant->group_count, plant->source_count, plant->tag_count, sensors, status ? "not good" : "good");
+        printf("%s: %zu assets, %zu groups, %zu source%s, %zu tags, %zu of them sensors: %s", params->plant_path, plant->asset_count,
+               plant->group_count, plant->source_count, plant->source_count == 1 ? "" : "s", plant->tag_count, sensors,
+               status ? "not good" : "good");
     if (plant && diag.errors + diag.warnings > 0)
         printf(" (%d error%s, %d warning%s)", diag.errors, diag.errors == 1 ? "" : "s", diag.warnings, diag.warnings == 1 ? "" : "s");
     if (plant)

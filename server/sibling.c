@@ -49,6 +49,8 @@ static int start(struct sibling *sibling)
         if (!error)
             error = posix_spawn_file_actions_adddup2(&actions, sibling->ends[i][1], i == STDOUT ? STDOUT_FILENO : STDERR_FILENO);
     }
+    if (!error && sibling->params->lent > 0)
+        error = posix_spawn_file_actions_adddup2(&actions, sibling->params->lent, SIBLING_LENT);
     if (!error)
         error = posix_spawn(&sibling->child, program, &actions, NULL, (char *const *)(uintptr_t)sibling->params->arguments, environ);
     posix_spawn_file_actions_destroy(&actions);

@@ -4,11 +4,14 @@
 #define SIBLING_H
 #include <stdbool.h>
 
+enum { SIBLING_LENT = 3 };
+
 struct sibling_params {
     const char *const *arguments;             /* ends in NULL; the first is the program's name */
     bool (*stop)(void *arg);                  /* asked several times a second: the program shall end */
     void (*say)(void *arg, const char *text); /* takes what it prints, piece by piece; NULL: it goes where ours goes */
     void *arg;                                /* of both */
+    int lent;                                 /* a descriptor that it has as SIBLING_LENT; 0: none */
 };
 
 /* Returns NULL if it ended well; else one line, the last that it wrote to stderr or what ended it; mem_free. */

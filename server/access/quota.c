@@ -32,6 +32,7 @@ static const struct {
     [QUOTA_ADDRESS_ANSWER_BYTES] = { "address-answer-bytes", 96 << 20, 1 << 20, INT64_C(1) << 40, "likewise of one address" },
     [QUOTA_LEAST_FPS] = { "least-fps", 5, 0, 1000, "frames/s that moving views keep when one more is let in" },
     [QUOTA_PATIENCE_S] = { "patience", 10, 1, 600, "seconds for a request, for hello, and for the rest of a message" },
+    [QUOTA_ANSWER_WAIT_S] = { "answer-wait", 120, 1, 3600, "seconds until an answer over HTTP is that it is not ready" },
 };
 
 struct quotas quotas_default(void)

@@ -9,6 +9,7 @@
 #include <openssl/evp.h>
 #include <openssl/rand.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
 #include <time.h>
@@ -76,6 +77,21 @@ bool tokens_views_valid(const char *views)
     for (char *id; good && (id = strsep(&rest, ","));)
         good = named_view_id_valid(id);
     return good;
+}
+
+bool tokens_parse_display(const char *text, struct token_holder *out)
+{
+    const char *colon = strchr(text, ':');
+    if (!colon || colon - text >= (ptrdiff_t)sizeof(out->wall) || strlen(colon + 1) > 2 || colon[1 + strspn(colon + 1, "0123456789")])
+        return false;
+    snprintf(out->wall, sizeof(out->wall), "%.*s", (int)(colon - text), text);
+    out->display = atoi(colon + 1);
+    return named_view_id_valid(out->wall) && out->display >= 1 && out->display <= WALL_DISPLAYS;
+}
+
+enum role tokens_role_of(const struct token_holder *holder)
+{
+    return holder->views[0] ? ROLE_OPEN : holder->role;
 }
 
 bool tokens_may_see(const struct token_holder *holder, const char *view)
@@ -148,6 +164,10 @@ int tokens_parse_line(const char *line, struct token_holder *out, const char **w
         if (*word)
             words[count++] = word;
     bool limited = count > 4 && !strcmp(words[count - 2], "views"), views_good = !limited || tokens_views_valid(words[count - 1]);
+    bool display = count > 4 && !strcmp(words[count - 2], "display");
+    bool display_good = !display || tokens_parse_display(words[count - 1], out);
+    if (display)
+        count -= 2;
     if (limited) {
         snprintf(out->views, sizeof(out->views), "%s", words[count - 1]);
         count -= 2;
@@ -162,11 +182,13 @@ int tokens_parse_line(const char *line, struct token_holder *out, const char **w
     if (role < ROLE_VIEWER && role != ROLE_RENDERER)
         *why = "the role is viewer, operator, engineer or renderer";
     else if (count != 3 && count != WORDS)
-        *why = "ROLE NAME SHA-256 [until YYYY-MM-DD] [unattended] [views ID,...] [plant PLANT] is expected";
+        *why = "ROLE NAME SHA-256 [until YYYY-MM-DD] [unattended] [views ID,... | display WALL:NUMBER] [plant PLANT] is expected";
     else if (!views_good)
         *why = "ids of views, with commas between them, are expected after `views`";
-    else if (limited && role != ROLE_VIEWER)
-        *why = "`views` limits viewers only";
+    else if (!display_good)
+        *why = "WALL:NUMBER is expected after `display`";
+    else if ((limited || display) && role != ROLE_VIEWER)
+        *why = "`views` and `display` limit viewers only";
     else if (!plant_good)
         *why = "the name of a plant is expected after `plant`";
     else if (!tokens_name_valid(words[1]))
@@ -199,6 +221,8 @@ void tokens_print_line(struct text *out, const struct token_holder *holder)
         text_add(out, " unattended");
     if (holder->views[0])
         text_add(out, " views %s", holder->views);
+    if (holder->display)
+        text_add(out, " display %s:%d", holder->wall, holder->display);
     if (holder->plant[0])
         text_add(out, " plant %s", holder->plant);
     text_add(out, "\n");
@@ -343,5 +367,8 @@ enum role tokens_role(const struct tokens *tokens, const struct token_holder *ho
         tokens->find_device(tokens->pairings, holder->hash, &device);
     if (!found)
         return device.role;
-    return now_utc_ns < found->until_utc_ns && !found->views[0] ? found->role : ROLE_NOBODY;
+    bool same = !strcmp(found->views, holder->views) && !strcmp(found->wall, holder->wall) && found->display == holder->display;
+    if (now_utc_ns >= found->until_utc_ns || !same)
+        return ROLE_NOBODY;
+    return tokens_role_of(found);
 }

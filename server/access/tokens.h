@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The file of tokens: one per line, `ROLE NAME SHA-256 [until YYYY-MM-DD] [unattended] [views ID,...] [plant PLANT]`. A
-   token that is not in it, or is for another plant, is not accepted; nor is any, once the file is gone or others may write it.
-   Thread: one. */
+/* The file of tokens: one per line, `ROLE NAME SHA-256 [until YYYY-MM-DD] [unattended] [views ID,... | display WALL:NUMBER]
+   [plant PLANT]`. A token that is not in it, or is for another plant, is not accepted; nor is any, once the file is gone or others may
+   write it. Thread: one. */
 #ifndef ACCESS_TOKENS_H
 #define ACCESS_TOKENS_H
 #include "base/log.h"
@@ -20,7 +20,7 @@ struct token_holder {
     char views[TOKEN_VIEWS_BYTES];  /* ids, with commas: it is good for pictures of these views of the plant file only; "": for all */
     bool unattended;                /* of a wall or a program: it is not locked when nobody is at the page */
     bool signed_in;                 /* a person, by the identity provider; the hash is that of a cookie */
-    char wall[NAMED_VIEW_ID_BYTES]; /* of a paired device: the only display that it may be */
+    char wall[NAMED_VIEW_ID_BYTES]; /* of a display: the only one that it may be */
     int display;                    /* likewise; 0: it is none */
 };
 
@@ -42,7 +42,8 @@ size_t tokens_count(const struct tokens *tokens);
 /* Looks a token up, in the file and among paired devices, and writes its holder into *out. Returns false if it is in neither (then
    out->role is ROLE_NOBODY), or has expired. */
 bool tokens_find(const struct tokens *tokens, const char *token, int64_t now_utc_ns, struct token_holder *out);
-/* Returns the role that the holder of a token has now; ROLE_NOBODY: the token was revoked or has expired. */
+/* Returns the role that the holder of a token has now; ROLE_NOBODY: the token was revoked, has expired, or is for other views or another
+   display now. */
 enum role tokens_role(const struct tokens *tokens, const struct token_holder *holder, int64_t now_utc_ns);
 
 /* --- for `plantcast token` --- */
@@ -60,6 +61,10 @@ bool tokens_name_valid(const char *name);
 bool tokens_plant_valid(const char *plant);
 /* Returns whether a token may be for these views: ids with commas. */
 bool tokens_views_valid(const char *views);
+/* Reads the display that a token is for, WALL:NUMBER, into *out. Returns false if it is none. */
+bool tokens_parse_display(const char *text, struct token_holder *out);
+/* Returns what the holder may do: ROLE_OPEN (pictures, and no more) where the token is for some views. */
+enum role tokens_role_of(const struct token_holder *holder);
 /* Returns whether the holder may see that view. */
 bool tokens_may_see(const struct token_holder *holder, const char *view);
 /* Parses YYYY-MM-DD, the last day (UTC) on which a token is valid. Returns false if it is not a date. */

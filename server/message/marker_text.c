@@ -12,7 +12,7 @@
 #include "message/json_values.h"
 #include "value/quality.h"
 
-enum { DIGITS = 7 };
+enum { DIGITS = 7, ARROW_DIGITS = 5 };
 static const float SAME_PX = 0.05f;
 
 static json_t *tenths(double px)
@@ -53,16 +53,26 @@ static bool same_places(const struct frame *frame, const struct known_markers *k
     return true;
 }
 
-static bool same_labels(const struct frame *frame, const struct known_markers *known)
+/* The next label from *at on, of isolines or of arrows. NULL: there is none. */
+static const struct frame_label *next_label(const struct frame_label *labels, size_t count, size_t *at, bool arrow)
 {
-    if (!known->any || frame->label_count != known->label_count)
-        return false;
-    for (size_t i = 0; i < frame->label_count; i++) {
-        const struct frame_label *a = &frame->labels[i], *b = &known->labels[i];
-        if (a->value != b->value || a->half != b->half || !(fabsf(a->x_px - b->x_px) < SAME_PX) || !(fabsf(a->y_px - b->y_px) < SAME_PX))
+    while (*at < count && labels[*at].arrow != arrow)
+        ++*at;
+    return *at < count ? &labels[(*at)++] : NULL;
+}
+
+static bool same_labels(const struct frame *frame, const struct known_markers *known, bool arrow)
+{
+    size_t at = 0, known_at = 0;
+    for (;;) {
+        const struct frame_label *a = next_label(frame->labels, frame->label_count, &at, arrow);
+        const struct frame_label *b = next_label(known->labels, known->label_count, &known_at, arrow);
+        if (!a || !b)
+            return !a && !b && (known->any || arrow);
+        if (a->value != b->value || a->half != b->half || a->uncertain != b->uncertain || a->dx != b->dx || a->dy != b->dy ||
+            !(fabsf(a->x_px - b->x_px) < SAME_PX) || !(fabsf(a->y_px - b->y_px) < SAME_PX))
             return false;
     }
-    return true;
 }
 
 static json_t *all_markers(const struct frame *frame)
@@ -96,10 +106,19 @@ static json_t *changed_values(const struct frame *frame, const struct known_mark
 static json_t *all_labels(const struct frame *frame)
 {
     json_t *list = json_array();
-    for (size_t i = 0; i < frame->label_count; i++) {
-        const struct frame_label *l = &frame->labels[i];
+    size_t at = 0;
+    for (const struct frame_label *l; (l = next_label(frame->labels, frame->label_count, &at, false));)
         json_array_append_new(list, json_pack("[f,o,o,i]", l->value, tenths(l->x_px), tenths(l->y_px), l->half));
-    }
+    return list;
+}
+
+static json_t *all_arrows(const struct frame *frame)
+{
+    json_t *list = json_array();
+    size_t at = 0;
+    for (const struct frame_label *l; (l = next_label(frame->labels, frame->label_count, &at, true));)
+        json_array_append_new(list, json_pack("[o,o,o,o,o,i,i]", tenths(l->x_px), tenths(l->y_px), number((double)l->dx),
+                                              number((double)l->dy), number(l->value), l->uncertain, l->half));
     return list;
 }
 
@@ -121,6 +140,7 @@ void marker_text_cache_finish(struct marker_text_cache *lists)
     frame_unref(&lists->frame);
     mem_free(lists->markers);
     mem_free(lists->labels);
+    mem_free(lists->arrows);
     *lists = (struct marker_text_cache){ 0 };
 }
 
@@ -159,9 +179,13 @@ char *marker_text(struct frame *frame, uint32_t seq, struct known_markers *known
     text_add(&text, "{\"type\":\"markers\",\"seq\":%u", seq);
     size_t head = text.length;
     add_markers(&text, frame, known, lists);
-    if (!same_labels(frame, known)) {
+    if (!same_labels(frame, known, false)) {
         lists->labels = lists->labels ? lists->labels : json_text(all_labels(frame), DIGITS);
         add_list(&text, "isolines", lists->labels);
+    }
+    if (!same_labels(frame, known, true)) {
+        lists->arrows = lists->arrows ? lists->arrows : json_text(all_arrows(frame), ARROW_DIGITS);
+        add_list(&text, "arrows", lists->arrows);
     }
     remember(known, frame);
     if (text.length == head)

@@ -15,7 +15,7 @@ struct known_markers { /* as a client was last told; zero-initialise; known_mark
 
 struct marker_text_cache { /* JSON lists of the last frame, for all who get it; zero-initialise; marker_text_cache_finish */
     struct frame *frame;
-    char *markers, *labels;
+    char *markers, *labels, *arrows;
 };
 
 /* Returns the message for the frame of number seq; mem_free. Returns NULL if the client knows all of it. Updates *known. */

@@ -43,7 +43,8 @@ enum message_type {
     MESSAGE_SEND_TO_WALL,
     MESSAGE_POINT,
     MESSAGE_PAIR,
-    MESSAGE_UNPAIR
+    MESSAGE_UNPAIR,
+    MESSAGE_LOOK
 };
 
 enum { TOKEN_MAX_CHARS = 128, RESUME_CHARS = 32, RESUME_MOST_CHARS = 8191 /* with a view in it */ };
@@ -76,6 +77,7 @@ enum params_given { /* which members a params message had */
                     GIVEN_CLIP = 1 << 24,
                     GIVEN_ENVIRONMENT = 1 << 25,
                     GIVEN_BACKDROP = 1 << 26,
+                    GIVEN_STRIP = 1 << 27,
 };
 
 enum baseline_change { BASELINE_STAYS, BASELINE_NONE, BASELINE_NAMED, BASELINE_NOW, BASELINE_SET, BASELINE_REMOVE };
@@ -92,7 +94,7 @@ struct params_change {
     bool range_of_group; /* range: null */
     double range_min, range_max;
     enum look look;
-    bool dark;
+    bool dark, strip;
     double light_dir[3];
     int environment;
     int selected_asset;
@@ -188,9 +190,10 @@ struct message {
     double idle_ms;                                            /* hello: since somebody was at the page; negative: not said */
     bool tokens;                                               /* hello: the view is to be told as a token whenever it changed */
     bool anew;                                                 /* hello: of what is resumed only its number, and who follows it */
+    char named[NAMED_VIEW_ID_BYTES];                           /* hello, look: a view of the plant file; hello: "": none */
     bool has_camera, has_params;                               /* hello */
     struct camera camera;                                      /* camera, hello */
-    uint32_t seq;                                              /* camera (hello: the camera's), ack, fit, pick */
+    uint32_t seq;                                              /* camera (hello: the camera's), ack, fit, pick, look */
     struct params_change params;                               /* params, hello */
     struct split_change split;                                 /* likewise; applied after params */
     struct fit fit;
@@ -210,6 +213,7 @@ struct message {
     struct note_request note;         /* note, remove_note */
     struct wall_request wall;         /* display, send_to_wall, point */
     struct pair_request pair;         /* pair, unpair */
+    struct wall_place tile;           /* hello: a tile of one picture over many displays; display 0: none */
 };
 
 /* Reads an instant (base/timestamp.h) of the argument `name` into *out, in microseconds UTC. Returns false, with *error set, for any other

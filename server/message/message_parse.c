@@ -106,7 +106,8 @@ static bool parse_hello(const struct plant *plant, const json_t *o, struct messa
     const json_t *camera = json_object_get(o, "camera"), *params = json_object_get(o, "params");
     bool resumes;
     if (!may_text(o, "token", out->token, sizeof(out->token), NULL, error) ||
-        !may_text(o, "resume", out->resume, sizeof(out->resume), &resumes, error))
+        !may_text(o, "resume", out->resume, sizeof(out->resume), &resumes, error) ||
+        !may_text(o, "named", out->named, sizeof(out->named), NULL, error))
         return false;
     if (((!resumes || json_object_get(o, "width") || json_object_get(o, "height")) && !size_parse(o, out, error)) ||
         ((!resumes || json_object_get(o, "codecs")) && !parse_codecs(plant, o, out, error)))
@@ -116,6 +117,12 @@ static bool parse_hello(const struct plant *plant, const json_t *o, struct messa
     out->idle_ms = -1;
     if (!may_number(o, "idle_ms", 0, 1e12, &out->idle_ms, NULL, error))
         return false;
+    if (!tile_parse(plant, o, out, error))
+        return false;
+    if (out->tile.display && !out->width_px) {
+        message_fail(error, "bad_field", "tile: width and height are needed");
+        return false;
+    }
     out->tokens = json_is_true(json_object_get(o, "tokens"));
     out->anew = json_is_true(json_object_get(o, "anew"));
     out->has_camera = json_is_object(camera);
@@ -199,6 +206,12 @@ static bool parse_lead(const struct plant *plant, const json_t *o, struct messag
     return false;
 }
 
+static bool parse_look(const struct plant *plant, const json_t *o, struct message *out, struct message_error *error)
+{
+    (void)plant;
+    return need_seq(o, &out->seq, error) && need_words(o, "named", true, out->named, sizeof(out->named), error);
+}
+
 static const struct {
     const char *name;
     enum message_type type;
@@ -232,6 +245,7 @@ static const struct {
     { "point", MESSAGE_POINT, point_parse },
     { "pair", MESSAGE_PAIR, pair_parse },
     { "unpair", MESSAGE_UNPAIR, unpair_parse },
+    { "look", MESSAGE_LOOK, parse_look },
 };
 
 static bool parse_object(const struct plant *plant, const json_t *o, struct message *out, struct message_error *error)

@@ -14,16 +14,21 @@ const struct name names_interpolation[] = { { "shepard", INTERPOLATION_SHEPARD }
                                             { "paper", INTERPOLATION_PAPER },
                                             { "harmonic", INTERPOLATION_HARMONIC },
                                             { "fin", INTERPOLATION_FIN },
+                                            { "gp", INTERPOLATION_GP },
                                             { NULL, 0 } };
-const struct name names_distance[] = { { "geodesic", DISTANCE_GEODESIC }, { "euclidean", DISTANCE_EUCLIDEAN }, { NULL, 0 } };
+const struct name names_distance[] = {
+    { "geodesic", DISTANCE_GEODESIC }, { "euclidean", DISTANCE_EUCLIDEAN }, { "heat", DISTANCE_HEAT }, { NULL, 0 }
+};
 const struct name names_fill[] = { { "none", FILL_NONE }, { "neighbours", FILL_NEIGHBOURS }, { NULL, 0 } };
 const struct name names_show[] = {
-    { "value", SHOW_VALUE }, { "distance", SHOW_DISTANCE }, { "difference", SHOW_DIFFERENCE }, { "operator", SHOW_OPERATOR }, { NULL, 0 }
+    { "value", SHOW_VALUE }, { "distance", SHOW_DISTANCE }, { "difference", SHOW_DIFFERENCE }, { "operator", SHOW_OPERATOR },
+    { "uncertainty", SHOW_UNCERTAINTY }, { "blind", SHOW_BLIND }, { NULL, 0 }
 };
 const struct name names_scale[] = { { "linear", false }, { "log", true }, { NULL, 0 } };
 const struct name names_look[] = {
     { "default", LOOK_DEFAULT }, { "glossy", LOOK_GLOSSY }, { "flat", LOOK_FLAT }, { "materials", LOOK_MATERIALS }, { NULL, 0 }
 };
+const struct name names_strip[] = { { "none", false }, { "legend", true }, { NULL, 0 } };
 const struct name names_backdrop[] = { { "light", false }, { "dark", true }, { NULL, 0 } };
 const struct name names_codec[] = { { "jpeg", WIRE_CODEC_JPEG }, { "png", WIRE_CODEC_PNG }, { "h264", WIRE_CODEC_H264 }, { NULL, 0 } };
 const struct name names_projection[] = { { "perspective", PROJECTION_PERSPECTIVE },

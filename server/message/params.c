@@ -37,6 +37,7 @@ static bool parse_names(const json_t *o, struct params_change *out, struct messa
         { "fill", names_fill, GIVEN_FILL, 0 },
         { "look", names_look, GIVEN_LOOK, 0 },
         { "backdrop", names_backdrop, GIVEN_BACKDROP, 0 },
+        { "strip", names_strip, GIVEN_STRIP, 0 },
     };
     for (size_t i = 0; i < sizeof(all) / sizeof(all[0]); i++) {
         bool given;
@@ -49,6 +50,7 @@ static bool parse_names(const json_t *o, struct params_change *out, struct messa
     out->field.fill = (enum fill_mode)all[2].value;
     out->look = (enum look)all[3].value;
     out->dark = all[4].value;
+    out->strip = all[5].value;
     return true;
 }
 
@@ -230,6 +232,8 @@ static void apply_look(const struct scene *scene, const struct params_change *ch
         view->look = change->look;
     if (change->given & GIVEN_BACKDROP)
         view->dark = change->dark;
+    if (change->given & GIVEN_STRIP)
+        view->strip = change->strip;
     if (change->given & GIVEN_LIGHT)
         memcpy(view->light_dir, change->light_dir, sizeof(view->light_dir));
     if (change->given & GIVEN_ENVIRONMENT)

@@ -39,6 +39,7 @@ static const struct {
     { "sensor", STRING },
     { "environment", STRING },
     { "backdrop", STRING },
+    { "strip", STRING },
     { "sensors", SENSORS },
     { "baseline", STRING },
     { "scale", STRING },

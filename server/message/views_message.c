@@ -71,11 +71,45 @@ static json_t *pane_of(const struct plant *plant, const struct wall_pane *pane)
     return said;
 }
 
-static json_t *tours_of(const struct plant *plant)
+static bool sees(const struct walls_reader *reader, const char *view)
+{
+    return !reader->sees || reader->sees(reader->arg, view);
+}
+
+static bool sees_tour(const struct walls_reader *reader, const struct tour *tour)
+{
+    for (size_t i = 0; i < tour->stop_count; i++)
+        if (!sees(reader, tour->stops[i].view))
+            return false;
+    return true;
+}
+
+static bool sees_pane(const struct plant *plant, const struct walls_reader *reader, const struct wall_pane *pane)
+{
+    if (!reader->sees)
+        return true;
+    if (pane->kind == PANE_TOUR)
+        return sees_tour(reader, tour_find(plant, pane->items[0]));
+    for (size_t i = 0; i < pane->item_count && pane->kind == PANE_VIEWS; i++)
+        if (!sees(reader, pane->items[i]))
+            return false;
+    return pane->kind == PANE_VIEWS || pane->kind == PANE_CLOCK || pane->kind == PANE_TEXT;
+}
+
+static bool is_told(const struct plant *plant, const struct walls_reader *reader, const struct tour *tour)
+{
+    if (!reader->wall)
+        return sees_tour(reader, tour);
+    return wall_display_has(wall_display_find(plant, reader->wall, reader->display), PANE_TOUR, tour->id);
+}
+
+static json_t *tours_of(const struct plant *plant, const struct walls_reader *reader)
 {
     json_t *tours = json_array();
     for (size_t t = 0; t < plant->tour_count; t++) {
         const struct tour *tour = &plant->tours[t];
+        if (!is_told(plant, reader, tour))
+            continue;
         json_t *stops = json_array();
         for (size_t s = 0; s < tour->stop_count; s++) {
             const struct tour_stop *stop = &tour->stops[s];
@@ -88,30 +122,46 @@ static json_t *tours_of(const struct plant *plant)
     return tours;
 }
 
-static json_t *display_of(const struct plant *plant, const struct wall_display *display)
+static json_t *display_of(const struct plant *plant, const struct walls_reader *reader, const struct wall *wall, size_t number)
 {
+    const struct wall_display *display = &wall->displays[number];
     json_t *rows = json_array(), *panes = json_array();
     for (size_t i = 0; i < display->row_count; i++)
         json_array_append_new(rows, json_string(display->rows[i]));
     for (size_t i = 0; i < display->pane_count; i++)
-        json_array_append_new(panes, pane_of(plant, &display->panes[i]));
+        if (sees_pane(plant, reader, &display->panes[i]))
+            json_array_append_new(panes, pane_of(plant, &display->panes[i]));
+    if (number < (size_t)(wall->tile.columns * wall->tile.rows) && json_array_size(panes) > 0)
+        json_object_set_new(json_array_get(panes, 0), "tile", json_pack("{s:i,s:i,s:I}", "columns", wall->tile.columns, "rows",
+                                                                        wall->tile.rows, "number", (json_int_t)number + 1));
     return json_pack("{s:o,s:o}", "grid", rows, "panes", panes);
 }
 
-char *walls_text(const struct plant *plant)
+/* Of another display no more is told than that it is there, so that each keeps its number. */
+static json_t *displays_of(const struct plant *plant, const struct walls_reader *reader, const struct wall *wall)
 {
+    json_t *displays = json_array();
+    for (size_t d = 0; d < wall->display_count; d++)
+        json_array_append_new(displays, !reader->wall || (int)d + 1 == reader->display ? display_of(plant, reader, wall, d)
+                                                                                       : json_pack("{s:[],s:[]}", "grid", "panes"));
+    return displays;
+}
+
+char *walls_text(const struct plant *plant, const struct walls_reader *reader)
+{
+    static const struct walls_reader anyone;
+    reader = reader ? reader : &anyone;
     json_t *walls = json_array();
     for (size_t i = 0; i < plant->wall_count; i++) {
         const struct wall *wall = &plant->walls[i];
-        json_t *displays = json_array();
-        for (size_t d = 0; d < wall->display_count; d++)
-            json_array_append_new(displays, display_of(plant, &wall->displays[d]));
+        if (reader->wall && strcmp(wall->id, reader->wall) != 0)
+            continue;
         json_t *said = json_pack("{s:s,s:f,s:f,s:o}", "id", wall->id, "inches", wall->inches, "distance_m", wall->metres, "displays",
-                                 displays);
+                                 displays_of(plant, reader, wall));
         if (wall->dim.from_min != wall->dim.to_min)
             json_object_set_new(said, "dim", json_pack("{s:i,s:i,s:f}", "from_min", wall->dim.from_min, "to_min", wall->dim.to_min,
                                                        "percent", wall->dim_percent));
         json_array_append_new(walls, said);
     }
-    return json_text(json_pack("{s:o,s:o}", "walls", walls, "tours", tours_of(plant)), 9);
+    return json_text(json_pack("{s:o,s:o}", "walls", walls, "tours", tours_of(plant, reader)), 9);
 }

@@ -22,6 +22,23 @@ static bool place_parse(const struct plant *plant, const json_t *o, bool pane, s
     return !wrong;
 }
 
+bool tile_parse(const struct plant *plant, const json_t *o, struct message *out, struct message_error *error)
+{
+    const json_t *tile = json_object_get(o, "tile");
+    struct message place = { 0 };
+    if (!tile)
+        return true;
+    if (!place_parse(plant, tile, false, &place, error))
+        return false;
+    const struct wall *wall = wall_find(plant, place.wall.place.wall);
+    if (place.wall.place.display > wall->tile.columns * wall->tile.rows) {
+        message_fail(error, "bad_field", "tile: display %d of wall %s is not one of its tiles", place.wall.place.display, wall->id);
+        return false;
+    }
+    out->tile = place.wall.place;
+    return true;
+}
+
 bool display_parse(const struct plant *plant, const json_t *o, struct message *out, struct message_error *error)
 {
     return place_parse(plant, o, false, out, error);

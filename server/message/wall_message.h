@@ -6,6 +6,8 @@
 
 /* Parse the messages into out->wall (of `send_to_wall` also view and title into out->view_edit) or out->pair. Return
    false with *error saying what is wrong. */
+/* Reads the member `tile` of hello, if there is one. */
+bool tile_parse(const struct plant *plant, const json_t *o, struct message *out, struct message_error *error);
 bool display_parse(const struct plant *plant, const json_t *o, struct message *out, struct message_error *error);
 bool send_to_wall_parse(const struct plant *plant, const json_t *o, struct message *out, struct message_error *error);
 bool point_parse(const struct plant *plant, const json_t *o, struct message *out, struct message_error *error);

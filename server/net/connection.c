@@ -308,7 +308,7 @@ bool connection_identify(struct server_context *server, struct lws *wsi, struct 
     if (!token[0])
         find_person(server, wsi, connection);
     if (connection->holder.role != ROLE_NOBODY)
-        connection->role = connection->holder.views[0] ? ROLE_OPEN : connection->holder.role; /* pictures, and no more */
+        connection->role = tokens_role_of(&connection->holder);
     else if (is_trusted(server, connection, name))
         connection->role = ROLE_ENGINEER;
     else if (params->open_viewers)

@@ -63,6 +63,11 @@ static void take(struct server_context *server, const char *text)
     json_decref(message);
 }
 
+bool core_end_leads(const struct server_context *server)
+{
+    return !server->params.plant.core_link && (!server->params.keeper || lease_keeper_leads(server->params.keeper));
+}
+
 void core_end_collect(struct server_context *server)
 {
     struct core_link *link = server->params.plant.core_link;

@@ -7,6 +7,8 @@
 
 /* Has sessions hand on to the plant's core_link, if it has one. */
 void core_end_bind(struct server_context *server);
+/* Returns whether this daemon polls and owns alarms: no renderer, and no core that stands by. */
+bool core_end_leads(const struct server_context *server);
 /* Takes what came from the core since. */
 void core_end_collect(struct server_context *server);
 

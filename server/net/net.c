@@ -146,6 +146,7 @@ static void tick(struct net *net, int64_t now_ns)
     if (net_check_links(&net->server))
         streams_on_readings(&net->server, false, true);
     streams_on_tick(&net->server);
+    http_on_tick(&net->server, now_ns);
     net_wake_render_service(&net->server);
     say_status(&net->server);
     net->ticked_ns = now_ns;
@@ -191,6 +192,16 @@ static void collect_picks(struct server_context *server)
     }
 }
 
+static void collect_signed(struct server_context *server)
+{
+    struct signing *signing = server->picture_signer ? picture_signer_collect(server->picture_signer) : NULL;
+    for (struct signing *next; signing; signing = next) {
+        next = signing->next;
+        http_on_signed(server, signing);
+        signing_free(&signing);
+    }
+}
+
 static void collect_history_answers(struct server_context *server)
 {
     struct history_answer *answer = server->history_queries ? history_queries_collect(server->history_queries) : NULL;
@@ -204,6 +215,10 @@ static void collect_history_answers(struct server_context *server)
 static void look_at_alarms(struct server_context *server)
 {
     uint64_t number = server->params.plant.alarm_service ? alarm_service_number(server->params.plant.alarm_service) : 0;
+    uint64_t told = server->params.plant.notifier ? notifier_number(server->params.plant.notifier) : 0;
+    if (told != server->told_number)
+        renderers_on_change(server);
+    server->told_number = told;
     if (number == server->alarms_number)
         return;
     server->alarms_number = number;
@@ -248,6 +263,7 @@ static void collect(struct net *net)
     look_at_alarms(server);
     collect_picks(server);
     collect_history_answers(server);
+    collect_signed(server);
     collect_historical_snapshots(server);
     collect_coverage(server);
     http_on_sign_ins(server);
@@ -456,7 +472,7 @@ struct net *net_create(const struct net_params *params)
     net_bind_plant(net);
     raise_file_limit(params->log, server->quotas);
     server->site = site_create(params->log, params->web_folder);
-    if (!open_access(net) || !open_context(net) || !net_open_history(net))
+    if (!open_access(net) || !open_context(net) || !net_open_history(net) || !net_open_signer(net))
         net_destroy(&net);
     return net;
 }
@@ -468,6 +484,7 @@ void net_destroy(struct net **net_ptr)
         return;
     lws_sul_cancel(&net->timer);
     history_queries_destroy(&net->server.history_queries); /* before what they wake */
+    picture_signer_destroy(&net->server.picture_signer);
     history_loader_destroy(&net->server.history_loader);
     openid_stop(&net->server.openid);
     if (net->server.lws)
@@ -484,9 +501,10 @@ void net_destroy(struct net **net_ptr)
     resumes_destroy(&net->server.session_context.resumes);
     alarm_text_cache_finish(&net->server.alarm_texts);
     tag_text_cache_finish(&net->server.tag_texts);
-    for (int i = 0; i < 2; i++)
+    for (int i = 0; i < LISTS; i++)
         mem_free(net->server.lists_said[i]);
     marker_text_cache_finish(&net->server.marker_lists);
+    neighbour_text_cache_finish(&net->server.neighbour_texts);
     snapshot_destroy(&net->server.snapshot);
     mem_free(net->server.changes);
     mem_free(net->server.links_up);

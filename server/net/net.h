@@ -34,6 +34,8 @@ void net_check_credentials(struct net *net);
 
 /* Releases all that belongs to the plant, which is to be destroyed. Sessions stay. */
 void net_release_plant(struct net *net);
+/* The core that was followed is gone, and its link halted: takes what is there of the same plant without it. */
+void net_lead(struct net *net, const struct net_plant *plant);
 /* Takes another plant, in which sessions look at what is still there by the same name. Returns false if history cannot be read any more,
    already logged. */
 bool net_take_plant(struct net *net, const struct net_plant *plant);

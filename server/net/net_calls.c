@@ -7,6 +7,7 @@
 
 void net_calls_init(struct net *net)
 {
+    pthread_mutex_init(&net->call.turn, NULL);
     pthread_mutex_init(&net->call.lock, NULL);
     pthread_cond_init(&net->call.done, NULL);
 }
@@ -15,10 +16,12 @@ void net_calls_finish(struct net *net)
 {
     pthread_cond_destroy(&net->call.done);
     pthread_mutex_destroy(&net->call.lock);
+    pthread_mutex_destroy(&net->call.turn);
 }
 
 bool net_call(struct net *net, void (*what)(void *arg), void *arg)
 {
+    pthread_mutex_lock(&net->call.turn);
     pthread_mutex_lock(&net->call.lock);
     bool open = !net->call.closed;
     net->call.what = what;
@@ -29,6 +32,7 @@ bool net_call(struct net *net, void (*what)(void *arg), void *arg)
     open = open && !net->call.what;
     net->call.what = NULL;
     pthread_mutex_unlock(&net->call.lock);
+    pthread_mutex_unlock(&net->call.turn);
     return open;
 }
 

@@ -20,6 +20,7 @@ struct net {
     int64_t cpu_ns; /* when it was last read */
     _Atomic bool stopping, look, drain, readings_changed;
     struct {
+        pthread_mutex_t turn; /* of who calls: one at a time */
         pthread_mutex_t lock;
         pthread_cond_t done;
         /* --- below: under lock */
@@ -44,6 +45,8 @@ void net_calls_close(struct net *net);
 void net_bind_plant(struct net *net);
 /* Starts the readers of the plant's history, if there is one. Returns false if they cannot start, already logged. */
 bool net_open_history(struct net *net);
+/* Starts the thread that signs pictures, if there is a key. Returns false if it cannot start, already logged. */
+bool net_open_signer(struct net *net);
 
 /* --- readings.c; thread: the loop --- */
 

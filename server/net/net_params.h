@@ -10,6 +10,8 @@
 #include "base/counters.h"
 #include "base/log.h"
 #include "corelink/core_link.h"
+#include "history/historian.h"
+#include "notify/notifier.h"
 #include "importing/plant_import.h"
 #include "loopcheck/loop_checks.h"
 #include "views/named_views.h"
@@ -31,6 +33,8 @@ struct net_plant { /* what belongs to one loaded plant; a reload brings another 
     struct pairings *pairings;
     struct named_views *named_views;
     struct core_link *core_link;     /* of a renderer; NULL: this daemon reads its devices itself */
+    struct historian *historian;     /* NULL: nothing is recorded */
+    struct notifier *notifier;       /* NULL: nobody is told of alarms */
     struct loop_checks *loop_checks; /* NULL: loops cannot be checked */
     const char *tag_list;            /* the text in force; NULL: not known */
     const char *history_folder;      /* NULL: nothing is recorded */
@@ -61,6 +65,8 @@ struct net_params {
     const char *version;
     const char *node;       /* as in struct session_context */
     bool is_core;           /* renderers may connect */
+    const char *node_name;  /* this daemon's among others */
+    struct lease_keeper *keeper; /* of a core that has a standby, or is one; NULL: none */
     void (*reload)(void *arg, const char *who);     /* called in the loop: load the plant anew, as who asks. NULL: it cannot be */
     void (*save)(void *arg, struct tag_save *save); /* called in the loop: put another tag list in force; takes it. NULL: it cannot be */
     struct plant_import *import;                    /* NULL: plants are not brought in here */

@@ -11,6 +11,14 @@ static void wake(void *arg)
     net_wake(arg);
 }
 
+bool net_open_signer(struct net *net)
+{
+    struct server_context *server = &net->server;
+    if (server->params.signing_key)
+        server->picture_signer = picture_signer_create(server->params.log, server->params.signing_key, wake, net);
+    return !server->params.signing_key || server->picture_signer;
+}
+
 bool net_open_history(struct net *net)
 {
     struct server_context *server = &net->server;
@@ -45,7 +53,7 @@ void net_bind_plant(struct net *net)
     server->session_context.snapshot = server->snapshot;
     server->session_context.baselines = server->params.plant.baselines;
     server->session_context.alarm_service = server->params.plant.alarm_service;
-    server->session_context.placing = server->params.save ? server->params.plant.placing : NULL;
+    server->session_context.placing = server->params.save && !server->params.plant.core_link ? server->params.plant.placing : NULL;
     server->session_context.loop_checks = server->params.plant.loop_checks;
     server->session_context.named_views = server->params.plant.named_views;
     server->session_context.notes = server->params.plant.notes;

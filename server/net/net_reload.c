@@ -48,6 +48,8 @@ void net_release_plant(struct net *net)
     for (struct stream *stream = server->streams; stream; stream = stream->next)
         stream->carried = session_carry(stream->session);
     http_release_plant(server);
+    if (server->picture_signer)
+        picture_signer_settle(server->picture_signer);
     core_end_collect(server); /* what was not answered any more */
     renderers_close(server, "the core has another configuration from now on");
     net_unwatch_readings(net);
@@ -56,15 +58,28 @@ void net_release_plant(struct net *net)
     resumes_forget_gone(server->session_context.resumes);
     tag_text_cache_finish(&server->tag_texts);
     alarm_text_cache_finish(&server->alarm_texts);
-    for (int i = 0; i < 2; i++) {
+    for (int i = 0; i < LISTS; i++) {
         mem_free(server->lists_said[i]);
         server->lists_said[i] = NULL;
     }
     marker_text_cache_finish(&server->marker_lists);
     server->marker_lists = (struct marker_text_cache){ .frame = NULL };
+    neighbour_text_cache_finish(&server->neighbour_texts);
     snapshot_destroy(&server->snapshot);
     mem_free(server->changes);
     mem_free(server->links_up);
+}
+
+void net_lead(struct net *net, const struct net_plant *plant)
+{
+    struct server_context *server = &net->server;
+    core_end_collect(server);
+    server->params.plant = *plant;
+    server->params.plant.core_link = NULL;
+    core_end_bind(server);
+    server->session_context.placing = server->params.save ? server->params.plant.placing : NULL;
+    net_check_links(server);
+    streams_on_readings(server, false, true);
 }
 
 bool net_take_plant(struct net *net, const struct net_plant *plant)

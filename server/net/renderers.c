@@ -13,12 +13,14 @@
 #include "corelink/core_alarms.h"
 #include "corelink/core_identity.h"
 #include "corelink/core_readings.h"
+#include "corelink/core_samples.h"
 #include "message/names.h"
 #include "net/connection.h"
+#include "net/core_end.h"
 #include "session/session_proxy.h"
 
 enum { BEAT_US = 200000, MOST_BYTES = 256 * 1024 /* of one message */, MOST_ANSWERS = 1024, PATIENCE_S = 5 };
-static const int64_t READINGS_NS = 500 * NS_PER_MS;
+static const int64_t READINGS_NS = 500 * NS_PER_MS, PATIENT_NS = 2 * NS_PER_S;
 
 struct lists_seen {
     uint64_t views, notes, walls, pointed;
@@ -28,11 +30,20 @@ struct renderer {
     struct lws *wsi;
     struct renderer *next;
     char name[64];           /* of its node, as it says */
+    char lease[LEASE_NODE_BYTES]; /* of a standby: what tells it from others of its name */
     struct text in, out;     /* out: what is being made, behind LWS_PRE bytes */
-    enum { RENDERER_NEW, RENDERER_TAKEN, RENDERER_REFUSED } state;
+    enum { RENDERER_NEW, RENDERER_TAKEN, RENDERER_VOTES, RENDERER_REFUSED } state; /* votes: is refused all but its promises */
     char *refusal;           /* why; NULL: it is not refused */
+    bool refusal_sent;       /* to one that votes */
     struct core_sent sent;
     bool alarms_sent, lists_sent, links_sent;
+    bool stands_by;          /* a core that follows this one, and takes its place */
+    bool samples_sent;       /* all of them, since the last readings */
+    bool asks;               /* it is to be asked for its promise */
+    struct core_samples *samples; /* that it is sent, for its history; NULL: none */
+    int64_t journal_utc_ns;  /* of a standby: the newest change that its journal has */
+    uint64_t told;           /* of a standby: likewise, of what the notifier keeps */
+    uint64_t rows;           /* of a standby: likewise, of the journal */
     uint64_t alarms;         /* the number of the last change that was sent */
     struct lists_seen lists;
     bool *links;             /* by source, as sent */
@@ -68,6 +79,23 @@ static struct core_identity own_identity(const struct server_context *server)
     return (struct core_identity){ server->params.version, plant->name, plant->hash };
 }
 
+/* One with other files is as good a witness that it does not lead. */
+static bool is_standby(const struct renderer *renderer)
+{
+    return renderer->stands_by && (renderer->state == RENDERER_TAKEN || renderer->state == RENDERER_VOTES);
+}
+
+/* The one whose promises count. */
+static void name_standby(struct server_context *server)
+{
+    const char *name = "";
+    for (const struct renderer *renderer = server->renderers; renderer; renderer = renderer->next)
+        if (is_standby(renderer))
+            name = renderer->lease;
+    if (server->params.keeper)
+        lease_keeper_set_standby(server->params.keeper, name);
+}
+
 static void count(struct server_context *server)
 {
     int taken = 0;
@@ -93,7 +121,8 @@ static void on_close(struct server_context *server, struct renderer **slot)
         at = &(*at)->next;
     *at = renderer->next;
     if (renderer->state == RENDERER_TAKEN)
-        log_warn(server->params.log, "renderer %s: gone", renderer->name);
+        log_warn(server->params.log, renderer->stands_by ? "standby %s: gone" : "renderer %s: gone", renderer->name);
+    core_samples_end(&renderer->samples);
     core_sent_finish(&renderer->sent);
     text_finish(&renderer->in);
     text_finish(&renderer->out);
@@ -102,6 +131,7 @@ static void on_close(struct server_context *server, struct renderer **slot)
     mem_free(renderer->refusal);
     mem_free(renderer);
     *slot = NULL;
+    name_standby(server);
     count(server);
 }
 
@@ -115,6 +145,7 @@ void renderers_close(struct server_context *server, const char *why)
 {
     for (struct renderer *renderer = server->renderers; renderer; renderer = renderer->next) {
         renderer->close_text = why;
+        core_samples_end(&renderer->samples); /* their store ends */
         lws_callback_on_writable(renderer->wsi);
     }
 }
@@ -148,10 +179,36 @@ static bool send_message(struct renderer *renderer, json_t *message)
     return send_out(renderer, LWS_WRITE_TEXT);
 }
 
+/* It goes on looking for who leads. */
+static bool send_standby(struct renderer *renderer)
+{
+    renderer->close_text = "it stands by";
+    return send_message(renderer, json_pack("{s:s}", "type", "standby"));
+}
+
+static bool send_question(const struct server_context *server, struct renderer *renderer)
+{
+    renderer->asks = false;
+    json_int_t number = (json_int_t)lease_keeper_ask(server->params.keeper);
+    json_t *message = json_pack("{s:s,s:I}", "type", "lease", "number", number);
+    int64_t age_ns = server->params.plant.historian ? historian_sent_age_ns(server->params.plant.historian) : INT64_MAX;
+    if (age_ns != INT64_MAX)
+        json_object_set_new(message, "sent_age_ms", json_integer(age_ns / NS_PER_MS + 1));
+    return send_message(renderer, message);
+}
+
 static bool send_refusal(struct renderer *renderer)
 {
-    renderer->close_text = "it is refused";
-    return send_message(renderer, json_pack("{s:s,s:s}", "type", "refused", "why", renderer->refusal));
+    bool votes = renderer->state == RENDERER_VOTES;
+    renderer->refusal_sent = true;
+    renderer->close_text = votes ? NULL : "it is refused";
+    return send_message(renderer, json_pack("{s:s,s:s,s:b}", "type", "refused", "why", renderer->refusal, "votes", votes));
+}
+
+/* Nothing else of this core is for one that votes. */
+static bool send_to_voter(const struct server_context *server, struct renderer *renderer)
+{
+    return !renderer->refusal_sent ? send_refusal(renderer) : !renderer->asks || send_question(server, renderer);
 }
 
 static bool links_differ(const struct server_context *server, const struct renderer *renderer)
@@ -195,7 +252,25 @@ static bool send_alarms(const struct server_context *server, struct renderer *re
 {
     uint64_t since = renderer->alarms_sent ? renderer->alarms : 0;
     renderer->alarms_sent = true;
-    return send_message(renderer, core_alarms_message(server->params.plant.alarm_service, since, clock_utc_ns(), &renderer->alarms));
+    json_t *message = core_alarms_message(server->params.plant.alarm_service, since, clock_utc_ns(), &renderer->alarms);
+    if (renderer->stands_by)
+        core_alarms_add_rows(message, server->params.plant.alarm_service, &renderer->rows, renderer->journal_utc_ns);
+    return send_message(renderer, message);
+}
+
+static bool send_told(struct notifier *notifier, struct renderer *renderer)
+{
+    renderer->told = notifier_number(notifier);
+    char *kept = notifier_kept(notifier);
+    json_t *message = json_pack("{s:s,s:s}", "type", "told", "kept", kept);
+    mem_free(kept);
+    return send_message(renderer, message);
+}
+
+static bool lacks_told(const struct server_context *server, const struct renderer *renderer)
+{
+    struct notifier *notifier = server->params.plant.notifier;
+    return renderer->stands_by && notifier && renderer->told != notifier_number(notifier);
 }
 
 static bool send_answer(struct renderer *renderer)
@@ -203,6 +278,17 @@ static bool send_answer(struct renderer *renderer)
     json_t *answer = json_incref(json_array_get(renderer->answers, 0));
     json_array_remove(renderer->answers, 0);
     return send_message(renderer, answer);
+}
+
+/* Sets *any: there were some. */
+static bool send_samples(const struct server_context *server, struct renderer *renderer, bool *any)
+{
+    begin(renderer);
+    int count = core_samples_write(renderer->samples, &renderer->out);
+    *any = count > 0;
+    if (count < 0)
+        log_err(server->params.log, "standby %s: ended: it took its samples too slowly; it reads them from PostgreSQL", renderer->name);
+    return count < 0 ? false : count == 0 || send_out(renderer, LWS_WRITE_BINARY);
 }
 
 static bool send_readings(struct server_context *server, struct renderer *renderer)
@@ -213,6 +299,26 @@ static bool send_readings(struct server_context *server, struct renderer *render
     return send_out(renderer, LWS_WRITE_BINARY);
 }
 
+/* Of those that waited for a standby. */
+static void wake_answers(const struct server_context *server)
+{
+    for (const struct renderer *one = server->renderers; one; one = one->next)
+        if (json_array_size(one->answers) > 0)
+            lws_callback_on_writable(one->wsi);
+}
+
+/* Until the one that would take our place was sent what somebody did, nobody is told that it is done; a slow one is not waited for. */
+static bool standby_lacks(const struct server_context *server)
+{
+    struct lists_seen lists = lists_now(server);
+    for (const struct renderer *one = server->renderers; one; one = one->next)
+        if (one->stands_by && one->state == RENDERER_TAKEN && !one->close_text && one->alarms_sent && one->lists_sent &&
+            clock_mono_ns() - one->told_ns < PATIENT_NS &&
+            (memcmp(&lists, &one->lists, sizeof(lists)) != 0 || one->alarms != alarm_service_number(server->params.plant.alarm_service)))
+            return true;
+    return false;
+}
+
 /* One message at a time: what changed most rarely first, readings last, which so are never newer than the alarms beside them; but readings
    that the others kept waiting come first, for without them the core counts as lost. */
 static bool send_next(struct server_context *server, struct renderer *renderer)
@@ -221,12 +327,16 @@ static bool send_next(struct server_context *server, struct renderer *renderer)
     renderer->since_ns = 0;
     if (renderer->state == RENDERER_NEW)
         return true;
+    if (renderer->state == RENDERER_VOTES)
+        return send_to_voter(server, renderer);
     if (renderer->state == RENDERER_REFUSED)
-        return send_refusal(renderer);
+        return renderer->refusal ? send_refusal(renderer) : send_standby(renderer);
     bool good, more = true, waits = renderer->told_ns && clock_mono_ns() - renderer->told_ns > READINGS_NS;
-    if (waits)
+    if (renderer->asks)
+        good = send_question(server, renderer);
+    else if (waits)
         good = send_readings(server, renderer);
-    else if (json_array_size(renderer->answers) > 0)
+    else if (json_array_size(renderer->answers) > 0 && !standby_lacks(server))
         good = send_answer(renderer);
     else if (links_differ(server, renderer))
         good = send_links(server, renderer);
@@ -234,8 +344,14 @@ static bool send_next(struct server_context *server, struct renderer *renderer)
         good = send_lists(server, renderer);
     else if (!renderer->alarms_sent || renderer->alarms != alarm_service_number(server->params.plant.alarm_service))
         good = send_alarms(server, renderer);
+    else if (lacks_told(server, renderer))
+        good = send_told(server->params.plant.notifier, renderer);
+    else if (renderer->samples && !renderer->samples_sent)
+        good = send_samples(server, renderer, &more), renderer->samples_sent = !more, more = true;
     else
-        more = false, good = send_readings(server, renderer);
+        more = renderer->samples_sent = false, good = send_readings(server, renderer);
+    if (good && renderer->stands_by && !more)
+        wake_answers(server);
     if (good && more)
         lws_callback_on_writable(renderer->wsi);
     return good;
@@ -243,20 +359,61 @@ static bool send_next(struct server_context *server, struct renderer *renderer)
 
 /* --- what comes --------------------------------------------------------------------------------------------------------------- */
 
+/* Two of one name, or two that follow, and nobody would know whose promise it is. */
+static char *standby_refusal(const struct server_context *server, struct renderer *one, const char *id)
+{
+    if (!server->params.keeper)
+        return mem_strdup("this core has no standby: it was started without --core");
+    if (!strcmp(one->name, server->params.node_name))
+        return mem_printf("both cores have the name %.63s: --node names them", one->name);
+    for (const struct renderer *other = server->renderers; other; other = other->next)
+        if (other != one && is_standby(other))
+            return mem_printf("%.63s stands by already", other->name);
+    if (!id || !lease_name(one->lease, one->name, id))
+        return mem_printf("the standby %.63s does not tell its id, or it is too long", one->name);
+    return NULL;
+}
+
+/* It comes again every second. */
+static void say_refusal(struct server_context *server, const struct renderer *renderer)
+{
+    char said[sizeof(server->renderer_refused)];
+    snprintf(said, sizeof(said), "renderer %s: refused: %s%s", renderer->name, renderer->refusal,
+             renderer->state == RENDERER_VOTES ? "; its promises count" : "");
+    if (strcmp(said, server->renderer_refused) != 0)
+        log_err(server->params.log, "%s", said);
+    memcpy(server->renderer_refused, said, sizeof(said));
+}
+
+/* Of a standby of this plant that has other files, or another version, for it is loaded anew or replaced before or after this core, the
+   promise counts. */
+static void judge(struct server_context *server, struct renderer *renderer, const json_t *message, const struct core_identity *own)
+{
+    const char *plant = json_string_value(json_object_get(message, "plant")), *id = json_string_value(json_object_get(message, "id"));
+    char *cannot_follow = core_identity_difference(message, "renderer", own);
+    char *cannot_stand_by = renderer->stands_by ? standby_refusal(server, renderer, id) : NULL;
+    bool votes = cannot_follow && renderer->stands_by && !cannot_stand_by && plant && !strcmp(plant, own->plant);
+    renderer->refusal = cannot_follow ? cannot_follow : cannot_stand_by;
+    renderer->state = !renderer->refusal ? RENDERER_TAKEN : votes ? RENDERER_VOTES : RENDERER_REFUSED;
+    if (renderer->refusal != cannot_stand_by)
+        mem_free(cannot_stand_by);
+}
+
 static void introduce(struct server_context *server, struct renderer *renderer, const json_t *message)
 {
     const struct core_identity own = own_identity(server);
     const struct plant *plant = server->session_context.plant;
     const char *node = json_string_value(json_object_get(message, "node"));
     snprintf(renderer->name, sizeof(renderer->name), "%s", node ? node : "");
-    renderer->refusal = core_identity_difference(message, "renderer", &own);
-    renderer->state = renderer->refusal ? RENDERER_REFUSED : RENDERER_TAKEN;
-    if (renderer->refusal) {
-        char said[sizeof(server->renderer_refused)];
-        snprintf(said, sizeof(said), "renderer %s: refused: %s", renderer->name, renderer->refusal);
-        if (strcmp(said, server->renderer_refused) != 0) /* it comes again every second */
-            log_err(server->params.log, "%s", said);
-        memcpy(server->renderer_refused, said, sizeof(said));
+    renderer->stands_by = json_is_true(json_object_get(message, "standby"));
+    if (!core_end_leads(server)) {
+        renderer->state = RENDERER_REFUSED;
+        return;
+    }
+    judge(server, renderer, message, &own);
+    name_standby(server);
+    if (renderer->state != RENDERER_TAKEN) {
+        say_refusal(server, renderer);
         return;
     }
     core_sent_init(&renderer->sent, plant->tag_count);
@@ -264,7 +421,12 @@ static void introduce(struct server_context *server, struct renderer *renderer, 
     json_t *hello = core_identity_message("core", &own);
     json_object_set_new(hello, "key", json_string(server->core_key));
     json_array_append_new(renderer->answers, hello);
-    log_info(server->params.log, "renderer %s: connected", renderer->name);
+    if (renderer->stands_by && server->params.plant.historian)
+        historian_on_standby(server->params.plant.historian);
+    renderer->journal_utc_ns = json_integer_value(json_object_get(message, "journal"));
+    if (renderer->stands_by)
+        renderer->samples = core_samples_listen(server->params.plant.store);
+    log_info(server->params.log, renderer->stands_by ? "standby %s: follows" : "renderer %s: connected", renderer->name);
     net_refresh_readings(server);
     count(server);
 }
@@ -285,6 +447,7 @@ static void act(struct server_context *server, struct renderer *renderer, const 
                           json_pack("{s:s,s:O,s:o}", "type", "answer", "id", json_object_get(message, "id"), "texts", texts));
     free(text);
     streams_on_alarms(server);
+    renderers_on_change(server);
 }
 
 static const char *on_message(struct server_context *server, struct renderer *renderer)
@@ -295,6 +458,8 @@ static const char *on_message(struct server_context *server, struct renderer *re
         why = "what it says is no JSON";
     else if (!strcmp(type, "renderer") && renderer->state == RENDERER_NEW)
         introduce(server, renderer, message);
+    else if (!strcmp(type, "promise") && is_standby(renderer) && server->params.keeper)
+        lease_keeper_promised(server->params.keeper, renderer->lease, (uint64_t)json_integer_value(json_object_get(message, "number")));
     else if (renderer->state != RENDERER_TAKEN)
         why = "it did not say who it is";
     else if (!strcmp(type, "act") && json_is_integer(json_object_get(message, "id")))
@@ -333,6 +498,7 @@ static int on_beat(struct server_context *server, struct renderer *renderer)
         return -1;
     }
     net_refresh_readings(server);
+    renderer->asks = is_standby(renderer);
     renderer->since_ns = renderer->since_ns ? renderer->since_ns : now_ns;
     lws_callback_on_writable(renderer->wsi);
     lws_set_timer_usecs(renderer->wsi, BEAT_US);

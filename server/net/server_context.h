@@ -10,8 +10,10 @@
 #include "net/address_limits.h"
 #include "net/latency_stages.h"
 #include "net/net_params.h"
+#include "net/picture_signer.h"
 #include "service/history_loader.h"
 #include "service/history_queries.h"
+#include "session/reply_neighbours.h"
 #include "session/session.h"
 #include "session/tag_text_cache.h"
 #include "session/view_token.h"
@@ -34,6 +36,13 @@ struct wall_displays {
     size_t count;
 };
 
+/* Pictures over many displays, each of one wall (stream_tiles.c). */
+struct tile_wall {
+    char wall[NAMED_VIEW_ID_BYTES]; /* "": free */
+    uint64_t leader;                /* id of the session; 0: none */
+    uint64_t asked, presented;      /* numbers of pictures */
+};
+
 struct server_context {
     struct net_params params;
     struct session_context session_context; /* what all sessions see */
@@ -45,6 +54,7 @@ struct server_context {
     struct lws_context *lws;
     struct history_queries *history_queries; /* NULL: nothing is recorded */
     struct history_loader *history_loader;   /* likewise */
+    struct picture_signer *picture_signer;   /* NULL: pictures are not signed */
     struct stream *streams, **by_client;     /* all connections to /stream; the same, by session id, ascending */
     size_t by_client_capacity;
     struct view_token_keys token_keys;               /* of a renderer: by which views are signed */
@@ -80,12 +90,15 @@ struct server_context {
     int64_t still_ns;                   /* what the last refined frame cost that was drawn anew */
     uint8_t out[LWS_PRE + SLICE_BYTES]; /* lws writes its framing in front of what is sent */
     struct tag_text_cache tag_texts;
-    char *lists_said[2];
+    char *lists_said[LISTS];
     struct alarm_text_cache alarm_texts;
+    uint64_t told_number;                  /* of the last change of what the notifier keeps that a standby was told of */
     uint64_t alarms_number;                /* of the last change of alarms that sessions were told of */
     struct marker_text_cache marker_lists; /* of the frame that was sent last */
+    struct neighbour_text_cache neighbour_texts;
     struct latency_stages latency;
     struct wall_displays displays;
+    struct tile_wall tile_walls[WALLS];
     struct {
         counter *sessions, *sessions_all, *frames, *frame_bytes, *messages, *errors, *dropped, *given_up, *stalled, *requests, *refused,
             *connections, *busy, *clock_set, *clock_error, *clock_leap,
@@ -143,6 +156,7 @@ int stream_check_upgrade(struct server_context *server, struct lws *wsi);
 int http_callback(struct lws *wsi, enum lws_callback_reasons reason, void *user, void *in, size_t len);
 /* Hand an answer to the HTTP request that waits for it, if it still does. The encoded frame is taken over; the text may be. */
 void http_on_frame(struct server_context *server, struct encoded_frame *encoded);
+void http_on_signed(struct server_context *server, struct signing *signing);
 void http_on_pick(struct server_context *server, const struct pick_answer *answer);
 void http_on_historical_snapshot(struct server_context *server, const struct history_loader_answer *answer);
 void http_on_history_answer(struct server_context *server, struct history_answer *piece);
@@ -152,6 +166,8 @@ void http_on_sign_ins(struct server_context *server);
 void http_on_reloaded(struct server_context *server, bool good, const char *text);
 /* Answers all requests that wait for the plant that is about to be replaced. */
 void http_release_plant(struct server_context *server);
+/* Answers requests that have waited too long. */
+void http_on_tick(struct server_context *server, int64_t now_ns);
 /* Sends a complete short answer in plain text. Returns what the lws callback is to return. */
 int http_answer(struct lws *wsi, int status, const char *text);
 

@@ -11,6 +11,7 @@
 #include "base/utf8.h"
 #include "net/stream.h"
 #include "net/connection.h"
+#include "session/session_tiles.h"
 
 enum { STREAM_CLOSE_STALLED = 4000, LAST_WORDS_S = 2, BACK_MAX_S = 60 };
 static const int64_t HEARD_OF_NS = 2 * NS_PER_S; /* so long load balancers take to hear that sessions are sent elsewhere */
@@ -103,6 +104,8 @@ static void on_close(struct server_context *server, struct stream **slot)
     stream_table_remove(server, stream);
     counter_set(server->counters.sessions, server->stream_count);
     count(server, stream);
+    if (session_is_tile(stream->session))
+        tiles_gather(server, stream->session->tile.place.wall, stream);
     follow_forget(server, stream);
     if (stream->session->hello)
         session_record_leave(stream->session, stream->close_text);
@@ -148,7 +151,9 @@ static void pump(struct server_context *server, struct stream *stream)
     }
     if (stream->close_code)
         return;
-    if (session_next_request(session, now_ns, &request)) {
+    if (session_is_tile(session)) {
+        tiles_pump(server, stream);
+    } else if (session_next_request(session, now_ns, &request)) {
         enum request_outcome answer = render_service_request(server->params.plant.render_service, session->id, &request);
         if (answer != REQUEST_REFUSED)
             session_requested(session, &request, answer == REQUEST_REPLACED);
@@ -229,6 +234,7 @@ void streams_on_tick(struct server_context *server)
     count_moving(server, now_ns);
     follow_share_steps(server);
     follow_tell(server, now_ns);
+    tiles_on_tick(server);
     for (struct stream *stream = server->streams; stream; stream = stream->next) {
         session_on_tick(stream->session, now_ns);
         if (is_drained(server, stream, now_ns))
@@ -325,7 +331,7 @@ static void note_login(struct server_context *server, struct stream *stream, boo
         holder.role = session->identity.role;
     if (!good)
         counter_inc(server->counters.refused, session->identity.login != LOGIN_HELD); /* whoever gets 1013 is counted there */
-    if (!good || session->identity.role > ROLE_OPEN)
+    if (!good || session->identity.role > ROLE_OPEN || holder.name[0])
         connection_log_login(server, stream->wsi, "stream", &holder, good ? LOGIN_GOOD_NEW : session->identity.login);
 }
 
@@ -344,7 +350,7 @@ static void on_message(struct server_context *server, struct stream *stream)
 {
     struct session *session = stream->session;
     int64_t now_ns = clock_mono_ns();
-    bool was_in = session->hello || session->close.code;
+    bool was_in = session->hello || session->close.code, was_hidden = session->hidden;
     if (!address_limits_count_message(server->limits, stream->usage, now_ns))
         session_too_fast(session, server->quotas->at[QUOTA_ADDRESS_MESSAGES], "of this address ");
     net_refresh_readings(server);
@@ -354,6 +360,8 @@ static void on_message(struct server_context *server, struct stream *stream)
         session_on_message(session, stream->in.at ? stream->in.at : "", stream->in.length, now_ns, clock_utc_ns());
     note_login(server, stream, was_in);
     follow_resolve(server, stream);
+    if (session_is_tile(session) && (!was_in || session->hidden != was_hidden))
+        tiles_gather(server, session->tile.place.wall, NULL);
     save_resolve(server, session);
     const struct pacer *pacer = session_take_shown(session);
     if (pacer)

@@ -59,6 +59,15 @@ void stream_give_up(struct server_context *server, struct stream *stream, int64_
 /* Takes a pong: measures the round trip, and at first the bandwidth. */
 void stream_on_pong(struct stream *stream, const void *bytes, size_t count);
 
+/* --- stream_tiles.c: sessions that are tiles of one picture --- */
+
+/* Asks for the next picture of a tile's wall, and has those shown that all have, if it is time. */
+void tiles_pump(struct server_context *server, const struct stream *stream);
+/* Notes that tiles came, went, or were left out: chooses who leads, and tells all. leaving: a stream that is being closed, or NULL. */
+void tiles_gather(struct server_context *server, const char *wall, const struct stream *leaving);
+/* Leaves out who holds up others, and lets them in again. Every tick. */
+void tiles_on_tick(struct server_context *server);
+
 /* --- stream_follow.c: sessions that are shown another's view --- */
 
 /* Resolves what the session's client asked for: to follow another, to hand over the lead, or to come back with its followers. */

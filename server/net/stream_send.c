@@ -26,7 +26,7 @@ static const struct text *padded(struct text *text)
 static bool write_markers(struct server_context *server, struct stream *stream, bool *wrote)
 {
     struct text text = { 0 };
-    bool open = session_is_open(stream->session);
+    bool open = session_is_open(stream->session) || stream->session->scope.tags; /* it may not read what stands at each sensor */
     char *markers = open ? NULL : marker_text(stream->sending->packet->frame, stream->seq, &stream->known, &server->marker_lists);
     *wrote = markers != NULL;
     if (!markers)
@@ -235,7 +235,7 @@ void stream_on_pong(struct stream *stream, const void *bytes, size_t count)
 
 bool stream_has_output(const struct stream *stream, int64_t now_ns)
 {
-    return stream->sending || stream->cut || stream->session->delivery.ready || session_has_text(stream->session, now_ns) ||
+    return stream->sending || stream->cut || session_has_frame(stream->session) || session_has_text(stream->session, now_ns) ||
            ping_due(stream, now_ns);
 }
 

@@ -59,3 +59,24 @@ char *reply_error_text(const struct message_error *error)
         json_object_set_new(object, "retry_after_s", json_integer(error->retry_after_s));
     return json_text(object, DIGITS);
 }
+
+char *reply_present_text(uint32_t seq, uint64_t picture, int64_t at_us)
+{
+    return json_text(json_pack("{s:s,s:I,s:I,s:I}", "type", "present", "seq", (json_int_t)seq, "picture", (json_int_t)picture, "at_us",
+                               (json_int_t)at_us),
+                     0);
+}
+
+char *reply_tiles_text(const struct wall *wall, const struct wall_place *place, const bool *there, const int64_t *late_us, bool leads)
+{
+    json_t *missing = json_array(), *late = json_array();
+    for (int i = 0; i < wall->tile.columns * wall->tile.rows; i++) {
+        if (!there[i])
+            json_array_append_new(missing, json_integer(i + 1));
+        else if (late_us[i])
+            json_array_append_new(late, json_pack("{s:i,s:I}", "display", i + 1, "since_us", (json_int_t)late_us[i]));
+    }
+    return json_text(json_pack("{s:s,s:i,s:i,s:i,s:b,s:o,s:o}", "type", "tiles", "columns", wall->tile.columns, "rows", wall->tile.rows,
+                               "display", place->display, "leads", leads, "missing", missing, "late", late),
+                     0);
+}

@@ -13,6 +13,7 @@
 #include "plant/influence.h"
 #include "plant/singles.h"
 #include "session/resume.h"
+#include "session/session.h"
 #include "session/view_token.h"
 
 static json_t *colour(const uint8_t rgb[3])
@@ -45,6 +46,8 @@ static json_t *prepared(const struct plant_group *group)
     for (int i = INTERPOLATION_HARMONIC; i < INTERPOLATIONS; i++)
         if (plant_prepares(group, (enum interpolation)i))
             json_array_append_new(list, string(name_of(names_interpolation, i)));
+    if (group->heat)
+        json_array_append_new(list, string("heat"));
     return list;
 }
 
@@ -62,6 +65,9 @@ static json_t *groups(const struct plant *plant)
         json_t *group = json_array_get(list, i);
         json_object_set_new(group, "singles", string(plant_cuts_singles(g) ? "cut" : "whole"));
         json_object_set_new(group, "prepared", prepared(g));
+        json_object_set_new(group, "hot_spot_m", number(g->hot_spot_m));
+        if (g->directed)
+            json_object_set_new(group, "directed", json_true());
         json_object_set_new(group, "scale", string(name_of(names_scale, g->log)));
         json_object_set_new(group, "breaks", number_list(g->breaks, g->break_count));
         json_object_set_new(group, "isolines", number_list(g->isolines, g->isoline_count));
@@ -193,10 +199,13 @@ static json_t *quotas_json(const struct quotas *quotas)
                      (json_int_t)quotas->at[QUOTA_MESSAGES], "pixels", (json_int_t)quotas->at[QUOTA_SESSION_PIXELS]);
 }
 
-static char *lists_text(const struct session_context *context, bool open)
+static char *lists_text(const struct session_context *context, enum lists kind)
 {
+    bool open = kind != LISTS_NAMED;
     json_t *object = json_object();
     set_lists(object, context, open);
+    if (kind == LISTS_VIEWS) /* what is not in them is not told of */
+        json_object_set_new(object, "assets", json_array());
     return json_text(object, DIGITS);
 }
 
@@ -210,13 +219,13 @@ static char *join(char *first, char *second)
 }
 
 /* Kept for the next who comes. mem_free. */
-static char *lists_said(const struct session_context *context, bool open)
+static char *lists_said(const struct session_context *context, enum lists kind)
 {
     if (!context->lists_said)
-        return lists_text(context, open);
-    if (!context->lists_said[open])
-        context->lists_said[open] = lists_text(context, open);
-    return mem_strdup(context->lists_said[open]);
+        return lists_text(context, kind);
+    if (!context->lists_said[kind])
+        context->lists_said[kind] = lists_text(context, kind);
+    return mem_strdup(context->lists_said[kind]);
 }
 
 char *reply_welcome_text(const struct session *session, int64_t now_utc_ns)
@@ -235,14 +244,18 @@ char *reply_welcome_text(const struct session *session, int64_t now_utc_ns)
     if (session->context->imports && session->identity.role == ROLE_ENGINEER)
         json_object_set_new(object, "imports", json_true());
     set_home(object, session->context, view->width_px, view->height_px);
+    bool narrowed = session->identity.holder.views[0];
+    if (narrowed)
+        json_object_set_new(json_object_get(object, "plant"), "only", session_scope_views(session));
     reply_set_params(params, session->context, view, session_is_open(session));
     json_object_set_new(object, "view", params);
-    return join(json_text(object, DIGITS), lists_said(session->context, session_is_open(session)));
+    enum lists kind = narrowed ? LISTS_VIEWS : session_is_open(session) ? LISTS_OPEN : LISTS_NAMED;
+    return join(json_text(object, DIGITS), lists_said(session->context, kind));
 }
 
 char *reply_api_plant_text(const struct session_context *context)
 {
     json_t *object = json_object();
     set_home(object, context, 1920, 1080);
-    return join(json_text(object, DIGITS), lists_said(context, false));
+    return join(json_text(object, DIGITS), lists_said(context, LISTS_NAMED));
 }

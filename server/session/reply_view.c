@@ -7,6 +7,7 @@
 #include "message/json_values.h"
 #include "message/names.h"
 #include "message/visibility.h"
+#include "session/session.h"
 #include "session/session_view.h"
 
 static json_t *tag_name(const struct plant *plant, int tag)
@@ -137,6 +138,8 @@ char *reply_following_text(const struct session *session)
         json_pack("{s:s,s:o,s:i,s:i}", "type", "following", "session", leader, "width", view->width_px, "height", view->height_px);
     if (session->following.left)
         json_object_set_new(object, "gone", json_true());
+    if (session_is_tile(session))
+        json_object_set_new(object, "params_seq", json_integer(view->params_seq));
     reply_set_params(object, session->context, view, session_is_open(session));
     return json_text(object, DIGITS);
 }

@@ -51,10 +51,12 @@ void session_destroy(struct session **session_ptr)
     session_drop_ready(session);
     session_time_end(session);
     session_place_leave(session);
+    session_scope_end(session);
     for (int i = 0; i < session->owed.reply_count; i++)
         mem_free(session->owed.replies[i]);
     mem_free(session->owed.tag_changes);
     mem_free(session->following.followers_text);
+    mem_free(session->tile.told);
     mem_free(session);
     *session_ptr = NULL;
 }
@@ -138,12 +140,27 @@ static bool on_params(struct session *session, const struct message *message, st
     return true;
 }
 
+static bool on_look(struct session *session, const struct message *message, struct message_error *error)
+{
+    if (!session_look(session, message->named, &session->view, error))
+        return false;
+    session_reply(session, reply_camera_text(&session->view.camera, message->seq));
+    session->owed.params_seq = session->view.params_seq;
+    session->owed.params = true;
+    return true;
+}
+
 static bool on_resize(struct session *session, const struct message *message, struct message_error *error)
 {
     if (!session_reserve_pixels(session, message->width_px, message->height_px, error))
         return false;
     session->view.width_px = message->width_px;
     session->view.height_px = message->height_px;
+    if (session_is_tile(session))
+        session_tile_fit(session, &session->tile.place, message->width_px, message->height_px, &session->view, &session->tile.layout);
+    session_scope_fit(session, &session->view);
+    if (session->scope.named[0] && session->identity.holder.views[0]) /* its author may have left the camera to the size */
+        return session_look(session, session->scope.named, &session->view, error);
     if (message->pixel_ratio > 0)
         session->pixel_ratio = message->pixel_ratio;
     return true;
@@ -249,15 +266,21 @@ static void on_send_to_wall(struct session *session, const struct message *messa
     session_reply(session, answer);
 }
 
-/* From now on it is told where desks point. A device that was paired is the display that it was paired as. */
-static bool on_display(struct session *session, const struct message *message, struct message_error *error)
+bool session_may_be(struct session *session, const struct wall_place *place, struct message_error *error)
 {
     const struct token_holder *holder = &session->identity.holder;
-    if (holder->display && (holder->display != message->wall.place.display || strcmp(holder->wall, message->wall.place.wall) != 0)) {
-        message_fail(error, "not_allowed", "this device was paired as display %d of wall %s", holder->display, holder->wall);
-        session_close(session, 1008, "this device was paired as another display");
+    if (!holder->display || (holder->display == place->display && !strcmp(holder->wall, place->wall)))
+        return true;
+    message_fail(error, "not_allowed", "this token is that of display %d of wall %s", holder->display, holder->wall);
+    session_close(session, 1008, "this token is that of another display");
+    return false;
+}
+
+/* From now on it is told where desks point. */
+static bool on_display(struct session *session, const struct message *message, struct message_error *error)
+{
+    if (!session_may_be(session, &message->wall.place, error))
         return false;
-    }
     session->display = message->wall.place;
     session->owed.pointers_sent = wall_remote_pointer_number(session->context->wall_remote);
     return true;
@@ -326,6 +349,7 @@ static bool act(struct session *session, const struct message *message, int64_t 
     case MESSAGE_POINT: on_point(session, message); return true;
     case MESSAGE_PAIR:
     case MESSAGE_UNPAIR: return on_pair(session, message, now_ns, now_utc_ns, error);
+    case MESSAGE_LOOK: session_on_input(session, now_ns); return on_look(session, message, error);
     case MESSAGE_PING: on_ping(session, message, now_ns, now_utc_ns); return true;
     }
     return true;
@@ -342,7 +366,8 @@ static bool in_order(const struct session *session, const struct message *messag
         return false;
     }
     /* What hello may say, its token decides. */
-    return message->type == MESSAGE_HELLO || role_may_send(session->identity.role, message, error);
+    return message->type == MESSAGE_HELLO ||
+           (role_may_send(session->identity.role, message, error) && session_scope_allows(session, message, error));
 }
 
 /* On a renderer. Returns whether it is somebody else's to do. */
@@ -369,15 +394,28 @@ void session_too_fast(struct session *session, int64_t count, const char *whose)
     session_reply_error(session, &error);
 }
 
+/* What was read beyond a second's messages counts for those after it: whoever writes without a pause is read at that pace. */
+static void begin_second(struct message_rate *rate, int64_t most, int64_t now_ns)
+{
+    int64_t seconds = (now_ns - rate->begin_ns) / NS_PER_S, allowed = seconds * most;
+    if (seconds <= 0)
+        return;
+    rate->begin_ns = rate->count > allowed ? rate->begin_ns + seconds * NS_PER_S : now_ns;
+    rate->count = rate->count > allowed ? rate->count - (int)allowed : 0;
+}
+
+static bool may_be_read_again(const struct session *session, int64_t now_ns)
+{
+    int64_t seconds = session->rate.count / session->context->quotas->at[QUOTA_MESSAGES];
+    return now_ns - session->rate.begin_ns >= (seconds > 1 ? seconds : 1) * NS_PER_S;
+}
+
 static void count_message(struct session *session, int64_t now_ns)
 {
     int64_t most = session->context->quotas->at[QUOTA_MESSAGES];
     session->stats.messages++;
     session->heard_ns = now_ns;
-    if (now_ns - session->rate.begin_ns >= NS_PER_S) {
-        session->rate.begin_ns = now_ns;
-        session->rate.count = 0;
-    }
+    begin_second(&session->rate, most, now_ns);
     if (++session->rate.count >= most)
         session_too_fast(session, most, "");
 }
@@ -444,7 +482,7 @@ void session_on_tick(struct session *session, int64_t now_ns)
     tell_token(session, now_ns);
     if (!session->hello && now_ns - session->opened_ns >= session->context->quotas->at[QUOTA_PATIENCE_S] * NS_PER_S)
         session_close(session, 1008, "no hello for too long");
-    if (session->rate.exceeded && now_ns - session->rate.begin_ns >= NS_PER_S)
+    if (session->rate.exceeded && may_be_read_again(session, now_ns))
         session->rate.exceeded = false;
     if (pacer_state(&session->delivery.pacer, now_ns) != PACER_FLOWS)
         session_pause(session);

@@ -3,6 +3,8 @@
    time is handed in. Thread: the loop. */
 #ifndef SESSION_SESSION_H
 #define SESSION_SESSION_H
+#include <jansson.h>
+
 #include "base/text.h"
 #include "session/session_context.h"
 #include "session/session_state.h"
@@ -74,6 +76,8 @@ bool session_next_request(const struct session *session, int64_t now_ns, struct 
 void session_requested(struct session *session, const struct frame_request *request, bool replaced);
 /* Takes over an encoded frame, or the news that there is none. */
 void session_on_frame(struct session *session, struct encoded_frame *encoded);
+/* Returns whether session_next_frame would return one now. */
+bool session_has_frame(const struct session *session);
 /* Takes out the next frame to send, which the caller then owns, and writes its number. NULL: none is ready. To be followed by
    session_wrote for each part of it. */
 struct encoded_frame *session_next_frame(struct session *session, int64_t now_ns, uint32_t *seq);
@@ -90,6 +94,9 @@ void session_begin(struct session *session, size_t bytes, int64_t took_ns);
 const struct pacer *session_take_shown(struct session *session);
 /* Takes a measured round trip. */
 void session_on_pong(struct session *session, int64_t rtt_ns, int64_t now_ns);
+
+/* Returns the views that a token of some views is for, as [{id, title}]. */
+json_t *session_scope_views(const struct session *session);
 
 /* --- texts ------------------------------------------------------------------------------------------------------------ */
 
@@ -141,6 +148,15 @@ void session_count_step(struct session *session);
 void session_choose_step(struct session *session);
 /* Has the client told who follows it, by numbers. */
 void session_say_followers(struct session *session, const uint64_t *sessions, size_t count, int64_t now_ns);
+
+/* --- tiles of one picture (session_tiles.h) ---------------------------------------------------------------------------- */
+
+bool session_is_tile(const struct session *session);
+/* Leaves the session out if it has held up the others for too long, and lets it in again after a while. Returns whether that changed. */
+bool session_tile_judge(struct session *session, int64_t now_ns, int64_t now_utc_ns);
+/* Tells the session which displays of its wall are there, if that changed. there, late_us: by display, from 0; late_us: since when it is
+   left out, UTC, 0: it is not. */
+void session_tile_tell(struct session *session, const bool *there, const int64_t *late_us, bool leads);
 
 /* --- placing sensors -------------------------------------------------------------------------------------------------- */
 

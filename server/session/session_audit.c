@@ -107,9 +107,14 @@ void session_record_pair(const struct session *session, const struct message *me
     record_kept(session, "device", mem_printf("%s %s", message->type == MESSAGE_PAIR ? "pair" : "unpair", id), answer);
 }
 
+static bool has_name(const struct session *session)
+{
+    return session->identity.role > ROLE_OPEN || session->identity.holder.name[0];
+}
+
 void session_record_leave(const struct session *session, const char *why)
 {
-    if (session->identity.role > ROLE_OPEN) /* who has no name is not told of */
+    if (has_name(session))
         record(session, "leave", "done", NULL, why);
 }
 
@@ -136,8 +141,14 @@ void session_record_params(const struct session *session, const struct message *
     record_baseline(session, &message->split.right);
 }
 
+/* A page that is dragged says so many times a second; whoever may see some views only is not told of each. */
+static bool is_idle(const struct session *session, const char *about)
+{
+    return session->identity.holder.views[0] && (!strcmp(about, "camera") || !strcmp(about, "params"));
+}
+
 void session_record_refusal(const struct session *session, const struct message_error *error)
 {
-    if (session->identity.role > ROLE_OPEN && !strcmp(error->code, "not_allowed"))
+    if (has_name(session) && !is_idle(session, error->about) && !strcmp(error->code, "not_allowed"))
         record(session, "access", "refused", NULL, error->text);
 }

@@ -11,6 +11,8 @@
 /* Set by the loop; sessions change only the members that say so. */
 struct view_token_keys;
 
+enum lists { LISTS_NAMED, LISTS_OPEN, LISTS_VIEWS, LISTS };
+
 struct session_context {
     const struct plant *plant;
     const struct scene *scene;
@@ -54,7 +56,8 @@ struct session_context {
     struct resumes *resumes;               /* changed by hello */
     struct admission *admission;           /* its pixels are changed by hello, resize and visible */
     struct tag_text_cache *tag_texts;      /* NULL: each text is made anew */
-    char **lists_said; /* two parts of `welcome` that sessions share: with names, and for open viewers; NULL: likewise */
+    char **lists_said; /* parts of `welcome` that sessions share, by enum lists: with names, for open viewers, for tokens of some views;
+                          NULL: likewise */
 };
 
 #endif

@@ -9,6 +9,8 @@
 
 void session_ask_follow(struct session *session, const struct message *message)
 {
+    if (session_is_tile(session)) /* it follows who leads the others */
+        return;
     session->following.wanted = message->follow;
     session->following.asked = true;
 }
@@ -54,7 +56,8 @@ void session_follow(struct session *session, struct session *leader, int64_t now
 
 void session_ask_lead(struct session *session, const struct message *message)
 {
-    session->following.heir_wanted = message->follow;
+    if (!session_is_tile(session)) /* tiles have their leader from where they stand */
+        session->following.heir_wanted = message->follow;
 }
 
 void session_inherit(struct session *heir, const struct session *session)

@@ -42,19 +42,24 @@ static void note_refined(struct session *session, const struct frame_request *re
 {
     struct view view = session_shown(session);
     view.tier = request->view.tier;
-    if (request->or_moving && request->view.tier == TIER_PREVIEW)
-        session->demand.refined = REFINED_NOT;
-    else if (request->view.tier == TIER_REFINED && !request->draft && !session->demand.input && view_equal(&view, &request->view))
+    if (request->view.tier == TIER_REFINED && !request->draft && !session->demand.input && view_equal(&view, &request->view))
         session->demand.refined = REFINED_FULL;
 }
 
 void session_on_frame(struct session *session, struct encoded_frame *encoded)
 {
+    session->demand.refining &= encoded->request.urgency != URGENCY_REFINE && session->delivery.pacer.asked > 1;
     if (encoded->failed)
         on_failure(session, &encoded->request);
     bool late = encoded->number < session->delivery.newest_number;
+    /* Whatever was refined before: also what came while this one was drawn, and also where it looks like the preview that is shown already,
+       and so none comes. */
+    if (encoded->request.view.tier == TIER_PREVIEW && !late)
+        session->demand.refined = REFINED_NOT;
     if (!encoded->packet || late) {
         session->stats.dropped += late;
+        if (session_is_tile(session) && !encoded->failed && !late)
+            session_tile_unchanged(session, encoded->request.picture);
         pacer_dropped(&session->delivery.pacer);
         encoded_frame_destroy(&encoded);
         return;
@@ -150,13 +155,14 @@ static void make_still(const struct session *session, struct frame_request *requ
     request->quality = request->draft ? DRAFT : STILL;
 }
 
-/* Whoever looks at a refined frame keeps it when readings change, if it is quick to colour again. */
+/* Whoever looks at a refined frame keeps it when readings change, if it is quick to colour again. Where it is not there yet, readings that
+   have waited for it long enough (render_thread_next.c) are shown by a preview: it may take a minute, as where light is baked first. */
 static void make_refreshed(const struct session *session, int64_t now_ns, struct frame_request *request)
 {
     const struct quality_ladder *ladder = &session->delivery.pacer.ladder;
     request->view.tier = TIER_REFINED;
     request->quality = STILL;
-    request->or_moving = !all_can_be_refined(session, now_ns);
+    request->or_moving = !all_can_be_refined(session, now_ns) || session->delivery.pacer.asked > 0;
     request->moving_quality.quality = quality_ladder_rung(ladder, quality_ladder_step(ladder, session->delivery.common_step)).quality;
 }
 
@@ -231,17 +237,33 @@ void session_choose_again(struct session *session, int64_t now_ns)
     session->codec.current = session->codec.choice.jpeg ? WIRE_CODEC_JPEG : WIRE_CODEC_H264;
 }
 
+bool session_begun(const struct session *session, int64_t now_ns)
+{
+    bool starts = session->demand.starting && now_ns - session->demand.starting_ns < START_NS;
+    return !starts && (!session->travel.first || session->following.leader);
+}
+
+/* What is being refined takes nothing of the network yet: readings do not wait for it, however slow the client is. */
+static bool may_ask(const struct session *session, int64_t now_ns)
+{
+    const struct pacer *pacer = &session->delivery.pacer;
+    bool only_refines = session->demand.refining && pacer->asked == 1 && pacer->flight_count == 0 && !pacer->cut;
+    return !session->delivery.ready && (only_refines || pacer_may_ask(pacer, now_ns));
+}
+
 bool session_next_request(const struct session *session, int64_t now_ns, struct frame_request *request)
 {
-    if ((session->demand.starting && now_ns - session->demand.starting_ns < START_NS) ||
-        (session->travel.first && !session->following.leader))
+    bool may_add = may_ask(session, now_ns);
+    if (!session_begun(session, now_ns) || !session->hello || session->hidden || !session_has_pixels(session) ||
+        (!may_add && session->delivery.pacer.asked == 0) || !session_wants(session, now_ns, request))
         return false;
-    bool may_add = !session->delivery.ready && pacer_may_ask(&session->delivery.pacer, now_ns);
-    if (!session->hello || session->hidden || !session_has_pixels(session) || (!may_add && session->delivery.pacer.asked == 0))
-        return false;
-    *request = (struct frame_request){
-        .view = session_shown(session), .codec = session->codec.current, .asked_ns = now_ns, .only_replace = !may_add
-    };
+    request->only_replace = !may_add;
+    return true;
+}
+
+bool session_wants(const struct session *session, int64_t now_ns, struct frame_request *request)
+{
+    *request = (struct frame_request){ .view = session_shown(session), .codec = session->codec.current, .asked_ns = now_ns };
     request->account = session->room.share ? session->room.share->account : 0;
     request->read_ns = request->view.at_us ? 0 : session->context->changed_ns; /* what was does not change */
     request->view.camera_seq = session->view.camera_seq;
@@ -253,6 +275,7 @@ void session_requested(struct session *session, const struct frame_request *requ
 {
     if (!replaced)
         pacer_asked(&session->delivery.pacer);
+    session->demand.refining = request->urgency == URGENCY_REFINE || (session->demand.refining && session->delivery.pacer.asked > 1);
     session->demand.input = session->demand.any = session->demand.data = false;
     session->demand.refined = request->view.tier != TIER_REFINED ? REFINED_NOT : request->draft ? REFINED_DRAFT : REFINED_FULL;
     if (session->demand.refined)
@@ -261,10 +284,16 @@ void session_requested(struct session *session, const struct frame_request *requ
 
 /* --- on its way ------------------------------------------------------------------------------------------------------- */
 
+/* A tile is sent one at a time: what says when to show it is not to wait behind the next. */
+bool session_has_frame(const struct session *session)
+{
+    return session->delivery.ready && (!session_is_tile(session) || session->delivery.pacer.flight_count == 0);
+}
+
 struct encoded_frame *session_next_frame(struct session *session, int64_t now_ns, uint32_t *seq)
 {
     struct encoded_frame *encoded = session->delivery.ready;
-    if (!encoded)
+    if (!session_has_frame(session))
         return NULL;
     const struct frame_request *request = &encoded->request;
     struct pacer_note note = { .moving = request->view.tier == TIER_PREVIEW,
@@ -276,6 +305,8 @@ struct encoded_frame *session_next_frame(struct session *session, int64_t now_ns
     session->delivery.ready = encoded->next;
     encoded->next = NULL;
     *seq = pacer_sent(&session->delivery.pacer, encoded_frame_bytes(encoded), &note, now_ns);
+    if (session_is_tile(session))
+        session_tile_sent(session, request->picture, *seq);
     return encoded;
 }
 

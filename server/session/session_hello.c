@@ -2,6 +2,7 @@
 /* The first message of a session: who it is, whether there is room for it, and what it looks at. */
 #include <string.h>
 
+#include "scene/scene_create.h"
 #include "session/session_impl.h"
 #include "session/resume.h"
 #include "session/view_token.h"
@@ -21,18 +22,13 @@ static bool judge_token(struct session *session, const char *token, int64_t now_
         session_close(session, 1013, "full: too many wrong tokens came from this address; try again later");
         return false;
     }
-    if (good && holder.views[0]) {
-        message_fail(error, "not_allowed", "this token is for pictures of the views %.100s, and opens no stream", holder.views);
-        session_close(session, 1008, "this token is for pictures of some views, and opens no stream");
-        return false;
-    }
     session->identity.holder = holder;
     if (!good) {
         message_fail(error, "bad_token", "this token is not, or no longer, let in");
         session_close(session, 1008, "this token is not let in");
         return false;
     }
-    session->identity.role = holder.role;
+    session->identity.role = tokens_role_of(&holder);
     return true;
 }
 
@@ -51,20 +47,43 @@ static bool identify(struct session *session, const struct message *message, int
     return false;
 }
 
-static bool admit(struct session *session, const struct view *view, struct message_error *error)
+/* A tile takes its part of the picture: all of them share that. */
+static bool admit(struct session *session, const struct message *message, const struct view *view, struct message_error *error)
 {
     const struct session_context *context = session->context;
-    const char *why = admission_refuses(context->admission, session->room.share, (int64_t)view->width_px * view->height_px);
+    bool is_tile = message->tile.display > 0;
+    int width_px = is_tile ? message->width_px : view->width_px, height_px = is_tile ? message->height_px : view->height_px;
+    const char *why = admission_refuses(context->admission, session->room.share, (int64_t)width_px * height_px);
     if (!why)
-        return session_reserve_pixels(session, view->width_px, view->height_px, error);
+        return session_reserve_pixels(session, width_px, height_px, error);
     message_fail(error, "full", "%s", why);
     error->retry_after_s = ADMISSION_RETRY_S;
     session_close(session, 1013, why);
     return false;
 }
 
+/* A tile may lead all the others, and they wait for it: it takes the token of that display, or an engineer's. */
+static bool begin_tile(struct session *session, const struct message *message, struct view *view, struct message_error *error)
+{
+    const struct wall_place *place = &message->tile;
+    if (session->identity.role < ROLE_ENGINEER && !session->identity.holder.display) {
+        message_fail(error, "not_allowed", "tile: it takes the token of display %d of wall %s, or the role engineer", place->display,
+                     place->wall);
+        return false;
+    }
+    if (!session_may_be(session, place, error))
+        return false;
+    if (!session_tile_fit(session, place, message->width_px, message->height_px, view, &session->tile.layout)) {
+        message_fail(error, "bad_field", "tile: the wall has no such tile");
+        return false;
+    }
+    session->tile.place = *place;
+    scene_home(session->context->scene, (double)view->width_px / view->height_px, &view->camera);
+    return true;
+}
+
 /* The view to begin with: the one it left, or the plant's own. */
-static bool begin_view(const struct session *session, const struct message *message, const struct resumed *resumed, struct view *view,
+static bool begin_view(struct session *session, const struct message *message, const struct resumed *resumed, struct view *view,
                        struct message_error *error)
 {
     if (!resumed && (message->width_px == 0 || message->codecs.count == 0)) {
@@ -83,6 +102,13 @@ static bool begin_view(const struct session *session, const struct message *mess
         view->height_px = message->height_px;
     }
     view->camera_seq = view->params_seq = 0;
+    if (message->tile.display && !begin_tile(session, message, view, error))
+        return false;
+    session_scope_fit(session, view);
+    if (session->identity.holder.views[0])
+        return session_scope_view(session, message->named, view, error);
+    if (message->named[0] && !session_look(session, message->named, view, error))
+        return false;
     if (message->has_camera) {
         view->camera = message->camera;
         view->camera_seq = message->seq;
@@ -138,20 +164,23 @@ bool session_hello(struct session *session, const struct message *message, int64
         session->identity.active_ns = now_ns - (int64_t)(message->idle_ms * 1e6);
     if (session->identity.holder.role != ROLE_NOBODY && session_left_alone(session, now_ns, error))
         return false;
+    bool narrowed = session->identity.holder.views[0] || session->identity.holder.display;
+    session_scope_begin(session);
     char secret[RESUME_CHARS + 1];
-    bool back = find_resumed(session, message->resume, now_ns, now_utc_ns, secret, &resumed);
+    bool back = !message->tile.display && find_resumed(session, message->resume, now_ns, now_utc_ns, secret, &resumed);
     const struct resumed *before = back && !message->anew ? &resumed : NULL; /* of which the view is taken, too */
     if (!begin_view(session, message, before, &view, error) ||
-        !session_choose_codec(session, message->codecs.count ? &message->codecs : &resumed.codecs, error) || !admit(session, &view, error))
+        !session_choose_codec(session, message->codecs.count ? &message->codecs : &resumed.codecs, error) ||
+        !admit(session, message, &view, error))
         return false;
     if (back)
         take_over(session, &resumed, secret);
     session->view = view;
-    if (message->has_params)
+    if (message->has_params && !session->identity.holder.views[0])
         session_record_params(session, message);
-    if (message->time.has_at)
+    if (message->time.has_at && !narrowed)
         session_time_begin(session, message->time.at_us, message->time.speed);
-    else if (before)
+    else if (before && !narrowed)
         session_time_begin(session, resumed.view.at_us, resumed.speed);
     session->identity.tokens = message->tokens;
     session->identity.resumed = session->identity.returned = back;

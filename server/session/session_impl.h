@@ -39,8 +39,35 @@ bool session_hello(struct session *session, const struct message *message, int64
 /* Applies the parameters of a message to a view: all, or none with *error and false. */
 bool session_apply_params(const struct session *session, const struct message *message, struct view *view, struct message_error *error);
 
+/* --- session_scope.c: tokens that are narrowed to views of the plant file, or to a wall's display ------------------------- */
+
+/* Returns whether the token lets the client send that message. If not, *error says why. */
+bool session_scope_allows(const struct session *session, const struct message *message, struct message_error *error);
+/* Begins with what the plant's display shows, for a device that was paired; again where the plant was loaded anew. */
+void session_scope_begin(struct session *session);
+void session_scope_end(struct session *session);
+/* Has the view be that of the plant file with this id, at its own size. Returns false, with *error, if the token is not for it, or it
+   cannot be shown. */
+bool session_look(struct session *session, const char *id, struct view *view, struct message_error *error);
+/* Likewise, for a token of some views; id "": the first of them. The session is closed where it cannot. */
+bool session_scope_view(struct session *session, const char *id, struct view *view, struct message_error *error);
+/* Cuts the view of a display that has no pane of pictures. */
+void session_scope_fit(const struct session *session, struct view *view);
+/* Takes a text that is to be sent (mem_free), and returns what of it the client may read. */
+char *session_scope_text(const struct session *session, char *text);
+
+/* --- session.c --------------------------------------------------------------------------------------------------------- */
+
+/* Returns whether the session may be that display: a device that was paired is the display that it was paired as. Else *error is set and
+   the session closes. */
+bool session_may_be(struct session *session, const struct wall_place *place, struct message_error *error);
+
 /* --- session_frames.c ------------------------------------------------------------------------------------------------- */
 
+/* Returns whether it does not wait for the first measure of the bandwidth, or for readings of an instant. */
+bool session_begun(const struct session *session, int64_t now_ns);
+/* Returns whether a frame is wanted now, and which, whatever may be under way. */
+bool session_wants(const struct session *session, int64_t now_ns, struct frame_request *request);
 /* Drops the frames that were not sent yet. */
 void session_drop_ready(struct session *session);
 /* Drops them, to be drawn anew, while the client takes nothing. */
@@ -93,6 +120,15 @@ void session_ask_lead(struct session *session, const struct message *message);
 char *session_carried_text(const struct session_context *context, const struct view *view);
 /* Gives a session the size and camera of `before` and what was carried, as far as its plant has that. */
 void session_look_again(struct session *session, const struct view *before, const char *carried);
+
+/* --- session_tile.c --------------------------------------------------------------------------------------------------- */
+
+/* Sets the size of the view by that of the display: all of the picture. Returns false if the plant has no such tile (any more). */
+bool session_tile_fit(const struct session *session, const struct wall_place *place, int width_px, int height_px, struct view *view,
+                      struct tile_layout *layout);
+/* Note that the answer to a request came without a picture, as the client shows that already; that a frame goes out. */
+void session_tile_unchanged(struct session *session, uint64_t picture);
+void session_tile_sent(struct session *session, uint64_t picture, uint32_t seq);
 
 /* --- session_place.c -------------------------------------------------------------------------------------------------- */
 

@@ -165,6 +165,20 @@ void session_take_plant(struct session *session, const char *carried)
     session->owed.following |= session->following.left != 0;
     session->following.left = 0; /* what is beneath is of the plant before */
     session_look_again(session, &before, carried);
+    const bool had_pictures = !session->scope.tags;
+    session_scope_begin(session);
+    if (had_pictures != !session->scope.tags)
+        session_close(session, 1012, "the display has other panes now"); /* of another size of picture */
+    struct message_error error = { 0 };
+    if (session->identity.holder.views[0] && !session_scope_view(session, session->scope.named, &session->view, &error))
+        session_reply_error(session, &error);
+    if (session_is_tile(session)) {
+        const struct tile_layout *layout = &session->tile.layout;
+        mem_free(session->tile.told);
+        session->tile.told = NULL;
+        if (!session_tile_fit(session, &session->tile.place, layout->width_px, layout->height_px, &session->view, &session->tile.layout))
+            session_close(session, 1012, "the plant has no such tile any more");
+    }
     session->owed.welcome = session->owed.tags_all = session->owed.status = session->demand.any = true;
     session->owed.params = false;
     session->owed.loop_checks = true;

@@ -11,6 +11,7 @@
 #include "session/admission.h"
 #include "session/codec_choice.h"
 #include "session/pacer.h"
+#include "session/tile_layout.h"
 #include "value/snapshot_cache.h"
 
 enum { SESSION_MAX_REPLIES = 64 };
@@ -69,6 +70,7 @@ struct frame_demand {
     int64_t data_ns;                /* oldest change of a reading that no frame was requested for */
     int64_t preview_ns, refined_ns; /* when the newest frame of each tier was requested */
     enum { REFINED_NOT, REFINED_DRAFT, REFINED_FULL } refined; /* the best refined frame requested of the view as it is */
+    bool refining; /* of what was requested and is not there yet, one is drawn between the frames of others, and may take a minute */
     double refined_bytes;                                      /* size of the last frame of full quality; 0: none was acknowledged */
     bool starting; /* the first frame waits until session_begin tells the bandwidth, for a second at most */
     int64_t starting_ns;
@@ -148,6 +150,22 @@ struct session_pick { /* a question about a pixel */
     struct pick_query query;
 };
 
+/* A tile of one picture over many displays (session_tiles.c). */
+enum { TILE_HELD = 8 };
+struct session_tile {
+    struct wall_place place;   /* display 0: it is none */
+    struct tile_layout layout; /* by the size of its own display; that of who leads counts */
+    struct tile_held {
+        uint64_t picture; /* of the wall */
+        uint32_t seq;     /* of the frame of this session that shows it */
+    } held[TILE_HELD];    /* sent and not presented, oldest first */
+    int held_count;
+    uint32_t presented_seq;
+    int64_t late_us;       /* since when it is left out, UTC; 0: it is not */
+    int64_t out_ns, in_ns; /* for how long it is left out; when it may come in again, or came */
+    char *told;            /* the last `tiles`; NULL: none */
+};
+
 struct message_rate {
     int64_t begin_ns; /* of the second that is counted */
     int count;
@@ -156,6 +174,12 @@ struct message_rate {
 
 struct session_stats { /* for the log and the counters */
     int64_t messages, errors, dropped;
+};
+
+/* What a narrowed token is good for (session_scope.c). */
+struct session_scope {
+    char named[NAMED_VIEW_ID_BYTES]; /* the view of the plant file that is shown; "": none of them */
+    bool *tags;                      /* of a paired display without pictures: those that it shows; NULL: all */
 };
 
 struct session {
@@ -178,7 +202,9 @@ struct session {
     struct session_pick pick;
     struct message_rate rate;
     struct session_stats stats;
+    struct session_scope scope;
     struct wall_place display; /* that it is; display 0: none */
+    struct session_tile tile;
     int64_t heard_ns;          /* when the client last said anything */
     int64_t settled_ns;        /* the last time at which nothing was owed to it */
 };

@@ -12,15 +12,16 @@
 
 static const int64_t TAGS_NS = 500 * NS_PER_MS; /* changed values, at most this often */
 
-static void add_owned(struct text *out, char *text)
+static void add_owned(const struct session *session, struct text *out, char *text)
 {
+    text = session_scope_text(session, text);
     text_add_bytes(out, text, strlen(text));
     mem_free(text);
 }
 
 static void add_reply(struct session *session, struct text *out)
 {
-    add_owned(out, session->owed.replies[0]);
+    add_owned(session, out, session->owed.replies[0]);
     session->owed.reply_count--;
     memmove(session->owed.replies, session->owed.replies + 1, (size_t)session->owed.reply_count * sizeof(session->owed.replies[0]));
 }
@@ -46,7 +47,7 @@ static bool alarms_due(const struct session *session)
 static bool loop_checks_due(const struct session *session)
 {
     const struct loop_checks *loop_checks = session->context->loop_checks;
-    return session->hello && !session_is_open(session) && loop_checks &&
+    return session->hello && !session_is_open(session) && !session->identity.holder.display && loop_checks &&
            (session->owed.loop_checks || loop_checks_number(loop_checks) > session->owed.loop_checks_sent);
 }
 
@@ -77,7 +78,8 @@ static bool pointers_due(const struct session *session)
 static void add_loop_checks(struct session *session, struct text *out)
 {
     const struct session_context *context = session->context;
-    add_owned(out, loop_checks_text(context->loop_checks, context->plant, session->owed.loop_checks_sent, session->owed.loop_checks));
+    add_owned(session, out,
+              loop_checks_text(context->loop_checks, context->plant, session->owed.loop_checks_sent, session->owed.loop_checks));
     session->owed.loop_checks_sent = loop_checks_number(context->loop_checks);
     session->owed.loop_checks = false;
 }
@@ -95,7 +97,7 @@ static void add_tags(struct session *session, int64_t now_ns, struct text *out)
     const struct session_context *context = session->context;
     const struct snapshot *snapshot = session_snapshot(session);
     struct tag_text_cache *cache = snapshot == context->snapshot ? context->tag_texts : NULL;
-    add_owned(out, tag_text_cache_get(cache, context->plant, snapshot, session->owed.tag_changes, session->owed.tags_all));
+    add_owned(session, out, tag_text_cache_get(cache, context->plant, snapshot, session->owed.tag_changes, session->owed.tags_all));
     session->owed.tags = session->owed.tags_all = false;
     session->owed.tags_ns = now_ns;
 }
@@ -104,42 +106,43 @@ bool session_next_text(struct session *session, int64_t now_ns, int64_t now_utc_
 {
     const struct session_context *context = session->context;
     if (session->owed.welcome) {
-        add_owned(out, reply_welcome_text(session, now_utc_ns));
+        add_owned(session, out, reply_welcome_text(session, now_utc_ns));
         session->owed.welcome = false;
     } else if (session->owed.reply_count > 0) {
         add_reply(session, out);
     } else if (session->owed.params) {
-        add_owned(out, reply_params_text(context, &session->view, session->owed.params_seq, session_is_open(session)));
+        add_owned(session, out, reply_params_text(context, &session->view, session->owed.params_seq, session_is_open(session)));
         session->owed.params = false;
     } else if (session->owed.following) {
-        add_owned(out, reply_following_text(session));
+        add_owned(session, out, reply_following_text(session));
         session->owed.following = false;
     } else if (session->owed.time) {
-        add_owned(out, reply_time_text(session));
+        add_owned(session, out, reply_time_text(session));
         session->owed.time = false;
         session->owed.told_beginning = session->context->history_first_us != 0;
     } else if (session->following.followers_text) {
-        add_owned(out, session->following.followers_text);
+        add_owned(session, out, session->following.followers_text);
         session->following.followers_text = NULL;
     } else if (loop_checks_due(session)) {
         add_loop_checks(session, out);
     } else if (views_due(session)) {
-        add_owned(out, named_views_text(context->named_views, NULL));
+        add_owned(session, out, named_views_text(context->named_views, NULL));
         session->owed.views_sent = named_views_number(context->named_views);
     } else if (notes_due(session)) {
-        add_owned(out, notes_text(context->notes, now_utc_ns / 1000));
+        add_owned(session, out, notes_text(context->notes, now_utc_ns / 1000));
         session->owed.notes_sent = notes_number(context->notes);
     } else if (walls_due(session)) {
-        add_owned(out, wall_remote_text(context->wall_remote));
+        add_owned(session, out, wall_remote_text(context->wall_remote));
         session->owed.walls_sent = wall_remote_number(context->wall_remote);
     } else if (pointers_due(session)) {
-        add_owned(out, wall_remote_pointers_text(context->wall_remote, session->owed.pointers_sent));
+        add_owned(session, out, wall_remote_pointers_text(context->wall_remote, session->owed.pointers_sent));
         session->owed.pointers_sent = wall_remote_pointer_number(context->wall_remote);
     } else if (status_due(session)) {
-        add_owned(out, reply_status_text(context, now_utc_ns));
+        add_owned(session, out, reply_status_text(context, now_utc_ns));
         session->owed.status = false;
     } else if (alarms_due(session)) {
-        add_owned(out, alarms_text(context->alarm_texts, context->alarm_service, context->plant, now_utc_ns, &session->owed.alarms_number));
+        add_owned(session, out,
+                  alarms_text(context->alarm_texts, context->alarm_service, context->plant, now_utc_ns, &session->owed.alarms_number));
         session->owed.alarms_sent = true;
     } else if (session_tags_due(session, now_ns)) {
         add_tags(session, now_ns, out);

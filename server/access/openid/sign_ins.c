@@ -31,7 +31,8 @@ static void to_base64url(const uint8_t bytes[32], char out[SIGN_IN_SECRET_CHARS 
     out[SIGN_IN_SECRET_CHARS] = 0;
 }
 
-bool sign_in_secret(char out[SIGN_IN_SECRET_CHARS + 1])
+/* 256 random bits, in base64url. False: the system has no randomness. */
+static bool make_secret(char out[SIGN_IN_SECRET_CHARS + 1])
 {
     uint8_t bytes[32];
     if (RAND_bytes(bytes, sizeof(bytes)) != 1)
@@ -117,7 +118,7 @@ const struct sign_in *sign_ins_begin(struct sign_ins *table, const uint8_t addre
 {
     struct sign_in *one = find_place(table, address, now_ns);
     *one = (struct sign_in){ .began_ns = 0 };
-    if (!sign_in_secret(one->state) || !sign_in_secret(one->nonce) || !sign_in_secret(one->verifier) || !sign_in_secret(one->binding))
+    if (!make_secret(one->state) || !make_secret(one->nonce) || !make_secret(one->verifier) || !make_secret(one->binding))
         return NULL;
     memcpy(one->address, address, sizeof(one->address));
     strcpy(one->path, sign_in_path_good(path) ? path : "/");
@@ -174,7 +175,7 @@ static void make_room(struct sign_ins *table, const char *sub, char **left)
 bool sign_ins_add_person(struct sign_ins *table, struct person *person, char cookie[SIGN_IN_SECRET_CHARS + 1], char **left)
 {
     *left = NULL;
-    if (!sign_in_secret(cookie)) {
+    if (!make_secret(cookie)) {
         *left = person->refresh_token;
         person->refresh_token = NULL;
         free_person(person);

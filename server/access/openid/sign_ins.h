@@ -49,8 +49,6 @@ void sign_ins_remove(struct sign_ins *table, struct person *person);
 /* Returns how many are signed in. */
 size_t sign_ins_count(const struct sign_ins *table);
 
-/* Makes a secret of 256 random bits, in base64url. Returns false if the system has no randomness. */
-bool sign_in_secret(char out[SIGN_IN_SECRET_CHARS + 1]);
 /* Writes the code challenge of a verifier (RFC 7636, S256). */
 void sign_in_challenge(const char *verifier, char out[SIGN_IN_SECRET_CHARS + 1]);
 /* Returns whether a page may be returned to: a path of this server, and no way to another. */

@@ -7,6 +7,7 @@
 #include "net/http/site.h"
 #include "net/tls.h"
 #include "net/connection.h"
+#include "net/core_end.h"
 
 static int alive(struct server_context *server, struct request *request)
 {
@@ -16,6 +17,8 @@ static int alive(struct server_context *server, struct request *request)
 
 static int ready(struct server_context *server, struct request *request)
 {
+    if (server->params.keeper && !core_end_leads(server))
+        return request_answer_text(request, HTTP_STATUS_SERVICE_UNAVAILABLE, "it stands by: another core leads, or none yet\n");
     if (render_service_ready(server->params.plant.render_service))
         return request_answer_text(request, HTTP_STATUS_OK, "ok\n");
     return request_answer_text(request, HTTP_STATUS_SERVICE_UNAVAILABLE, "the GL context was lost; a new one is being made\n");
@@ -41,34 +44,38 @@ static int file(struct server_context *server, struct request *request, const ch
     return request_answer(request, HTTP_STATUS_OK, found->type, bytes, found->count, "etag:", found->etag);
 }
 
+enum { VIEWS = 1, DISPLAY = 2 };
+
 static const struct {
     const char *path;
     int (*serve)(struct server_context *server, struct request *request);
     enum role least;
+    unsigned narrowed; /* which tokens may ask that are good for some views or for one display only */
 } routes[] = {
-    { "/healthz", alive, ROLE_NOBODY },
-    { "/readyz", ready, ROLE_NOBODY }, /* the loop only runs once model, GL and store are there; GL may go again */
-    { "/stream", stream_without_upgrade, ROLE_NOBODY },
-    { "/login", ask_login, ROLE_NOBODY },
-    { "/login/callback", ask_login_callback, ROLE_NOBODY },
-    { "/api/v1/me", api_me, ROLE_NOBODY },
-    { "/api/v1/pair", api_pair, ROLE_NOBODY },
-    { "/snapshot.png", ask_snapshot, ROLE_OPEN },
-    { "/metrics", metrics, ROLE_VIEWER },
-    { "/api/v1/plant", api_plant, ROLE_VIEWER },
-    { "/api/v1/tags", api_tags, ROLE_VIEWER },
-    { "/api/v1/proofs", api_loop_checks, ROLE_VIEWER },
-    { "/api/v1/views", api_views, ROLE_VIEWER },
-    { "/api/v1/walls", api_walls, ROLE_VIEWER },
-    { "/api/v1/notes", api_notes, ROLE_VIEWER },
-    { "/api/v1/pick", ask_pick, ROLE_VIEWER },
-    { "/api/v1/history", ask_history, ROLE_VIEWER },
-    { "/api/v1/history/gaps", ask_gaps, ROLE_VIEWER },
-    { "/api/v1/alarms", api_alarms, ROLE_VIEWER },
-    { "/api/v1/alarms/journal", ask_journal, ROLE_VIEWER },
-    { "/api/v1/devices", api_devices, ROLE_ENGINEER },
-    { "/api/v1/import", api_import, ROLE_ENGINEER },
-    { "/api/v1/import/matches", api_import_matches, ROLE_ENGINEER },
+    { "/healthz", alive, ROLE_NOBODY, 0 },
+    { "/readyz", ready, ROLE_NOBODY, 0 }, /* the loop only runs once model, GL and store are there; GL may go again */
+    { "/stream", stream_without_upgrade, ROLE_NOBODY, 0 },
+    { "/login", ask_login, ROLE_NOBODY, 0 },
+    { "/login/callback", ask_login_callback, ROLE_NOBODY, 0 },
+    { "/api/v1/me", api_me, ROLE_NOBODY, 0 },
+    { "/api/v1/pair", api_pair, ROLE_NOBODY, 0 },
+    { "/snapshot.png", ask_snapshot, ROLE_OPEN, VIEWS },
+    { "/metrics", metrics, ROLE_VIEWER, 0 },
+    { "/api/v1/plant", api_plant, ROLE_VIEWER, 0 },
+    { "/api/v1/tags", api_tags, ROLE_VIEWER, 0 },
+    { "/api/v1/neighbours", api_neighbours, ROLE_VIEWER, 0 },
+    { "/api/v1/proofs", api_loop_checks, ROLE_VIEWER, 0 },
+    { "/api/v1/views", api_views, ROLE_VIEWER, 0 },
+    { "/api/v1/walls", api_walls, ROLE_VIEWER, VIEWS | DISPLAY },
+    { "/api/v1/notes", api_notes, ROLE_VIEWER, 0 },
+    { "/api/v1/pick", ask_pick, ROLE_VIEWER, 0 },
+    { "/api/v1/history", ask_history, ROLE_VIEWER, DISPLAY },
+    { "/api/v1/history/gaps", ask_gaps, ROLE_VIEWER, DISPLAY },
+    { "/api/v1/alarms", api_alarms, ROLE_VIEWER, 0 },
+    { "/api/v1/alarms/journal", ask_journal, ROLE_VIEWER, 0 },
+    { "/api/v1/devices", api_devices, ROLE_ENGINEER, 0 },
+    { "/api/v1/import", api_import, ROLE_ENGINEER, 0 },
+    { "/api/v1/import/matches", api_import_matches, ROLE_ENGINEER, 0 },
 };
 static const char RELOAD_PATH[] = "/api/v1/reload", LOGOUT_PATH[] = "/logout"; /* POST */
 
@@ -92,13 +99,22 @@ static bool is_foreign_page(struct lws *wsi)
 
 static const struct refusal NEED_TOKEN = { HTTP_STATUS_UNAUTHORIZED, "a token is needed: Authorization: Bearer TOKEN\n" };
 static const struct refusal NOT_FOR_YOU = { HTTP_STATUS_FORBIDDEN, "viewers get pictures only\n" };
+static const struct refusal NOT_IN_VIEWS = { HTTP_STATUS_FORBIDDEN, "this token is good for pictures of some views only\n" };
+static const struct refusal NOT_ON_DISPLAY = { HTTP_STATUS_FORBIDDEN, "this device is good for its display of a wall only\n" };
 static const struct refusal NOT_ENGINEER = { HTTP_STATUS_FORBIDDEN, "this takes the role engineer\n" };
 static const struct refusal FOREIGN = { HTTP_STATUS_FORBIDDEN, "pages of other sites do not get this\n" };
 
 static int serve_route(struct server_context *server, struct request *request, size_t i)
 {
     enum role role = connection_of(request->wsi)->role;
-    if (role < routes[i].least) {
+    const struct token_holder *holder = &connection_of(request->wsi)->holder;
+    unsigned scope = holder->views[0] ? VIEWS : holder->display ? DISPLAY : 0;
+    if (scope && routes[i].least > ROLE_NOBODY) {
+        if (!(routes[i].narrowed & scope)) {
+            connection_record(server, request->wsi, "access", "refused", routes[i].path, "its token is good for less");
+            return refuse(request, scope == VIEWS ? &NOT_IN_VIEWS : &NOT_ON_DISPLAY);
+        }
+    } else if (role < routes[i].least) {
         bool engineer = routes[i].least == ROLE_ENGINEER;
         connection_record(server, request->wsi, "access", "refused", routes[i].path,
                           engineer ? "it takes the role engineer" : "pictures only");

@@ -2,6 +2,7 @@
 /* Answers to HTTP requests: head and body, and those that have to wait for theirs. */
 #include <string.h>
 
+#include "base/clock.h"
 #include "base/mem.h"
 #include "net/http/http_impl.h"
 #include "net/connection.h"
@@ -166,7 +167,24 @@ void request_await(struct server_context *server, struct request *request)
     request->next = server->snapshots;
     server->snapshots = request;
     request->usage = connection_of(request->wsi)->client;
-    lws_set_timeout(request->wsi, PENDING_TIMEOUT_HTTP_CONTENT, 60);
+    int64_t wait_s = server->quotas->at[QUOTA_ANSWER_WAIT_S]; /* for a picture, readings of the past, a reload */
+    request->until_ns = clock_mono_ns() + wait_s * NS_PER_S;
+    lws_set_timeout(request->wsi, PENDING_TIMEOUT_HTTP_CONTENT, (int)wait_s + 15);
+}
+
+void http_on_tick(struct server_context *server, int64_t now_ns)
+{
+    for (struct request *request = server->snapshots, *next; request; request = next) {
+        next = request->next;
+        if (now_ns < request->until_ns || request->pieces != PIECES_NONE)
+            continue;
+        request_forget(server, request);
+        request->reloads = false;
+        char *text = mem_printf("not ready within %d s (the first picture of a large plant takes longest); try again\n",
+                                (int)server->quotas->at[QUOTA_ANSWER_WAIT_S]);
+        request_answered(request, request_answer_later(request, text));
+        mem_free(text);
+    }
 }
 
 struct request *request_find(const struct server_context *server, uint64_t client)

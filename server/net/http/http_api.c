@@ -29,6 +29,18 @@ static int await_history(struct server_context *server, struct request *request,
     return 0;
 }
 
+/* A paired device reads what its display draws as trends. */
+static bool may_read(const struct server_context *server, const struct request *request, const struct history_query *query)
+{
+    const struct token_holder *holder = &connection_of(request->wsi)->holder;
+    const struct plant *plant = server->params.plant.scene->plant;
+    const struct wall_display *display = wall_display_find(plant, holder->wall, holder->display);
+    for (int i = 0; i < query->tag_count && holder->display; i++)
+        if (!wall_display_has(display, PANE_TREND, plant->tags[query->tags[i]].name))
+            return false;
+    return true;
+}
+
 static int ask_recorded(struct server_context *server, struct request *request, bool gaps)
 {
     struct history_query query;
@@ -41,6 +53,8 @@ static int ask_recorded(struct server_context *server, struct request *request, 
         !(gaps ? history_query_parse_gaps(args.list, args.count, now_us, &query, &error)
                : history_query_parse(server->params.plant.scene->plant, args.list, args.count, now_us, &query, &error)))
         return request_answer_error(request, &error);
+    if (!gaps && !may_read(server, request, &query))
+        return request_answer_text(request, HTTP_STATUS_FORBIDDEN, "this device's display shows no trend of that\n");
     return await_history(server, request, &query);
 }
 
@@ -174,6 +188,26 @@ int api_tags(struct server_context *server, struct request *request)
     return request_answer_json(request, reply_api_tags_text(&server->session_context, first, count));
 }
 
+/* What the others say of each sensor of a group; with tag=NAME of that one alone. */
+int api_neighbours(struct server_context *server, struct request *request)
+{
+    const struct plant *plant = server->session_context.plant;
+    struct message_error error = { 0 };
+    struct args args;
+    int group = -1, tag = -1;
+    if (!request_args(request->wsi, &args, &error))
+        return request_answer_error(request, &error);
+    if (args.count == 1 && !strncmp(args.list[0], "group=", 6))
+        group = plant_find_group(plant, args.list[0] + 6);
+    if (args.count == 1 && !strncmp(args.list[0], "tag=", 4))
+        tag = plant_find_tag(plant, args.list[0] + 4);
+    group = tag >= 0 ? plant->tags[tag].group : group;
+    if (group < 0)
+        return request_answer_text(request, HTTP_STATUS_BAD_REQUEST, "expected group=ID of a group, or tag=NAME of one of its tags\n");
+    net_refresh_readings(server);
+    return request_answer_json(request, neighbour_text(&server->neighbour_texts, &server->session_context, group, tag));
+}
+
 /* All views; with the query id=ID also the earlier versions of that one. */
 int api_views(struct server_context *server, struct request *request)
 {
@@ -202,9 +236,19 @@ int api_notes(struct server_context *server, struct request *request)
     return request_answer_json(request, notes_text_between(server->params.plant.notes, from_us, to_us));
 }
 
+static bool sees_view(const void *holder, const char *view)
+{
+    return tokens_may_see(holder, view);
+}
+
 int api_walls(struct server_context *server, struct request *request)
 {
-    return request_answer_json(request, walls_text(server->params.plant.scene->plant));
+    const struct token_holder *holder = &connection_of(request->wsi)->holder;
+    const struct walls_reader reader = { .wall = holder->display ? holder->wall : NULL,
+                                         .display = holder->display,
+                                         .sees = holder->views[0] ? sees_view : NULL,
+                                         .arg = holder };
+    return request_answer_json(request, walls_text(server->params.plant.scene->plant, &reader));
 }
 
 /* A display that has a secret of its own asks whether it was let in; it shows the digits meanwhile. */
@@ -243,13 +287,12 @@ int api_pair(struct server_context *server, struct request *request)
             place.display = atoi(args.list[i] + 8);
     if (wall_place_wrong(server->params.plant.scene->plant, &place))
         return request_answer_text(request, HTTP_STATUS_BAD_REQUEST, "expected wall=WALL and display=N, of the plant file\n");
-    if (!connection_header(request->wsi, WSI_TOKEN_HTTP_AUTHORIZATION, secret, sizeof(secret)) ||
-        strncasecmp(secret, "Pairing ", 8) != 0 || !pairings_secret_valid(secret + 8))
+    if (!connection_header(request->wsi, WSI_TOKEN_HTTP_AUTHORIZATION, secret, sizeof(secret)) || strncasecmp(secret, "Pairing ", 8) != 0 ||
+        !pairings_secret_valid(secret + 8))
         return request_answer_text(request, HTTP_STATUS_BAD_REQUEST, "expected Authorization: Pairing SECRET\n");
-    return pair(server, request, &(struct pairing_request){ .secret = secret + 8,
-                                                            .place = place,
-                                                            .address = connection->client->address,
-                                                            .from = connection->address });
+    return pair(server, request,
+                &(struct pairing_request){
+                    .secret = secret + 8, .place = place, .address = connection->client->address, .from = connection->address });
 }
 
 int api_devices(struct server_context *server, struct request *request)

@@ -31,6 +31,7 @@ struct request {
     } pieces;             /* its head was sent, and the body follows in pieces, chunked or up to the end of the connection */
     bool last_piece;      /* `body` is the last piece */
     uint64_t client;      /* its number while it waits (request_await) */
+    int64_t until_ns;     /* monotonic: then it is answered that what it waits for is not ready */
     bool reloads;         /* it waits for a reload of the plant */
     struct body *body_in; /* what is being uploaded; NULL: nothing */
     const char *step;     /* of an import: its path, static, for the audit trail */
@@ -113,6 +114,7 @@ int api_pair(struct server_context *server, struct request *request);
 int api_devices(struct server_context *server, struct request *request);
 int api_loop_checks(struct server_context *server, struct request *request);
 int api_tags(struct server_context *server, struct request *request);
+int api_neighbours(struct server_context *server, struct request *request);
 int metrics(struct server_context *server, struct request *request);
 
 /* Returns whether the page that sent this request may change things here: a page of another site may have its user's browser send it. */

@@ -23,11 +23,18 @@ struct body {
 };
 
 /* In the audit trail. The order itself is told of by the reload thread, at its end. */
-static void record(struct request *request, const char *result, const char *why)
+static void record_file(struct request *request, const char *file, const char *result, const char *why)
 {
     char *line = why ? mem_printf("%.*s", (int)strcspn(why, "\n"), why) : NULL;
-    connection_record(server_context_of(request->wsi), request->wsi, "import", result, request->step, line);
+    char *what = mem_printf("%s%s%s", request->step, *file ? " " : "", file);
+    connection_record(server_context_of(request->wsi), request->wsi, "import", result, what, line);
+    mem_free(what);
     mem_free(line);
+}
+
+static void record(struct request *request, const char *result, const char *why)
+{
+    record_file(request, "", result, why);
 }
 
 static int refuse_with(struct request *request, int status, const char *text)
@@ -50,9 +57,10 @@ static int answer_empty(struct request *request)
     return request_answer(request, HTTP_STATUS_OK, "application/json", mem_strdup("{}"), 2, NULL, NULL);
 }
 
-static int answer_done(struct request *request)
+/* file: of which it is done; "": of none. */
+static int answer_done(struct request *request, const char *file)
 {
-    record(request, "done", NULL);
+    record_file(request, file, "done", NULL);
     return answer_empty(request);
 }
 
@@ -135,7 +143,7 @@ static int cancel(struct server_context *server, struct request *request, const 
 {
     (void)args;
     plant_import_cancel(server->params.import);
-    return answer_done(request);
+    return answer_done(request, "");
 }
 
 static int remove_file(struct server_context *server, struct request *request, const struct args *args)
@@ -144,7 +152,7 @@ static int remove_file(struct server_context *server, struct request *request, c
     if (!take_argument(args, "name", name, sizeof(name)) || !export_name_good(name))
         return refuse_with(request, HTTP_STATUS_BAD_REQUEST, "this is no name of a file here\n");
     int error = export_folder_remove(plant_import_exports(server->params.import), name);
-    return error == 0 || error == -ENOENT ? answer_done(request) : fail_with(request, name, error);
+    return error == 0 || error == -ENOENT ? answer_done(request, name) : fail_with(request, name, error);
 }
 
 /* --- uploads ---------------------------------------------------------------------------------------------------------- */
@@ -239,7 +247,7 @@ int import_end_body(struct server_context *server, struct request *request)
         return order(server, request, &(struct import_order){ .decides = true });
     if (export_kind_of(name) == EXPORT_TAGS)
         export_folder_remove_tag_lists(folder, name);
-    return answer_done(request);
+    return answer_done(request, name);
 }
 
 void import_abandon_body(struct request *request)

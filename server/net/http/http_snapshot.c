@@ -10,7 +10,6 @@
 #include "message/view_address.h"
 #include "message/view_query.h"
 #include "plant/wall.h"
-#include "provenance/signed_picture.h"
 #include "session/reply.h"
 #include "net/connection.h"
 
@@ -182,36 +181,51 @@ static void say_values(const struct frame *frame, char out[96])
         snprintf(out + count, 96 - (size_t)count, "%lld", (long long)(frame->oldest_age_ns / 1000000));
 }
 
-/* The PNG file, signed where there is a key and the picture has a legend. NULL: it cannot be. */
-static char *picture_of(struct server_context *server, const struct asked *asked, const struct packet *packet, size_t *count)
+/* The PNG file, NULL: it cannot be made. Takes body. */
+static void answer_picture(struct server_context *server, struct request *request, const struct packet *packet, char *body, size_t count)
 {
-    if (packet->frame->record) {
-        const struct picture_origin origin = { .scene = server->params.plant.scene,
-                                               .args = (const char *const *)asked->args,
-                                               .arg_count = asked->arg_count,
-                                               .bare = asked->frame_request.overlay == OVERLAY_BARE,
-                                               .version = server->params.version };
-        return (char *)signed_picture_make(server->params.signing_key, &origin, packet, count);
-    }
-    *count = packet->count;
-    return memcpy(mem_array(packet->count, 1), packet->bytes, packet->count);
+    char values[96] = "";
+    if (packet)
+        say_values(packet->frame, values);
+    request_forget(server, request);
+    int status = body ? request_answer(request, HTTP_STATUS_OK, "image/png", body, count, "plantcast-frame:", values)
+                      : request_answer_text(request, HTTP_STATUS_INTERNAL_SERVER_ERROR, "the picture could not be made\n");
+    request_answered(request, status);
+}
+
+/* Where there is a key and the picture has a legend. Takes the frame, and the words of the query. */
+static void sign(struct server_context *server, struct asked *asked, struct encoded_frame *encoded)
+{
+    const struct picture_origin origin = { .scene = server->params.plant.scene,
+                                           .arg_count = asked->arg_count,
+                                           .bare = asked->frame_request.overlay == OVERLAY_BARE,
+                                           .version = server->params.version };
+    picture_signer_ask(server->picture_signer, encoded, &origin, asked->args);
+    asked->args = NULL;
+    asked->arg_count = 0;
 }
 
 void http_on_frame(struct server_context *server, struct encoded_frame *encoded)
 {
     struct request *request = request_find(server, encoded->client);
-    if (request) {
-        size_t count = 0;
-        char values[96] = "";
-        if (encoded->packet)
-            say_values(encoded->packet->frame, values);
-        char *body = encoded->packet ? picture_of(server, request->asked, encoded->packet, &count) : NULL;
-        request_forget(server, request);
-        int status = body ? request_answer(request, HTTP_STATUS_OK, "image/png", body, count, "plantcast-frame:", values)
-                          : request_answer_text(request, HTTP_STATUS_INTERNAL_SERVER_ERROR, "the picture could not be made\n");
-        request_answered(request, status);
+    const struct packet *packet = encoded->packet;
+    if (request && packet && packet->frame->record) {
+        sign(server, request->asked, encoded);
+        return;
     }
+    if (request)
+        answer_picture(server, request, packet, packet ? memcpy(mem_array(packet->count, 1), packet->bytes, packet->count) : NULL,
+                       packet ? packet->count : 0);
     encoded_frame_destroy(&encoded);
+}
+
+void http_on_signed(struct server_context *server, struct signing *signing)
+{
+    struct request *request = request_find(server, signing->encoded->client);
+    if (!request)
+        return;
+    answer_picture(server, request, signing->encoded->packet, (char *)signing->png, signing->count);
+    signing->png = NULL;
 }
 
 int ask_pick(struct server_context *server, struct request *request)
