@@ -168,7 +168,7 @@ static int from_plant(struct film *film)
         !(offline_renderer_open_history(&film->offline, film->options) && offline_renderer_open_gl(&film->offline, film->options)))
         code = 1;
     if (code == 0)
-        code = make_of(film, draw, film->options->tour ? walls_text(film->offline.plant) : NULL) ? 0 : 1;
+        code = make_of(film, draw, film->options->tour ? walls_text(film->offline.plant, NULL) : NULL) ? 0 : 1;
     offline_renderer_close(&film->offline);
     return code;
 }

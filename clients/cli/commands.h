@@ -22,6 +22,8 @@ int tags_browse(int argc, char **argv);
 int cmd_history(int argc, char **argv);
 /* Says whether a daemon is ready. */
 int cmd_ready(int argc, char **argv);
+/* Has a daemon of this machine send its sessions to other nodes. */
+int cmd_drain(int argc, char **argv);
 /* Has a daemon of this machine load its plant anew and says what came of it. */
 int cmd_reload(int argc, char **argv);
 /* Copies history, journal and configuration of a plant into a folder. */
@@ -32,7 +34,10 @@ int cmd_restore(int argc, char **argv);
 int cmd_fleet(int argc, char **argv);
 /* Verifies the audit trail of a daemon. */
 int cmd_audit(int argc, char **argv);
+/* Proposes places for more sensors. */
+int cmd_sensors(int argc, char **argv);
 int cmd_verify(int argc, char **argv);
+int cmd_read(int argc, char **argv);
 /* Makes, lists and revokes access tokens of a daemon. */
 int cmd_token(int argc, char **argv);
 

@@ -53,13 +53,16 @@ static const struct command {
     { "tags", "print the tags of a daemon and their values", cmd_tags },
     { "init", "make what the service plantcastd@NAME reads, with a certificate and first tokens", cmd_init },
     { "ready", "say by the exit status whether a daemon is ready", cmd_ready },
+    { "drain", "have a daemon of this machine send its sessions to other nodes", cmd_drain },
     { "reload", "have a daemon of this machine load its plant anew, and say what came of it", cmd_reload },
     { "history", "take series into a plant's history, or print what was recorded", cmd_history },
     { "backup", "history, journal and configuration of a plant, also while its daemon records", cmd_backup },
     { "restore", "what backup made, put in place", cmd_restore },
     { "fleet", "one page and one /metrics over the servers of many plants", cmd_fleet },
     { "token", "make, list and revoke what lets people and programs in", cmd_token },
+    { "sensors", "propose places for more sensors, and say what each would gain", cmd_sensors },
     { "verify", "say whether a signed picture is what the server drew, and draw it again", cmd_verify },
+    { "read", "the value at a pixel of a picture with a legend strip, also of a JPEG or a screenshot", cmd_read },
     { "audit", "say whether an audit trail is whole, or where it was changed", cmd_audit },
 };
 enum { COMMANDS = sizeof(commands) / sizeof(commands[0]) };

@@ -37,8 +37,8 @@ static const char view_usage[] =
     "  --projection NAME       perspective, orthographic       --height M   of an orthographic picture\n"
     "  --fit NAME              look at this asset or tag, --side top, bottom, front, back, left, right, iso or now; of the whole plant\n"
     "  --group ID              sensor group to show; the first one\n"
-    "  --distance MODE         geodesic or euclidean; the group's own, and so below\n"
-    "  --interpolation NAME    shepard, paper; harmonic, fin where prepared\n"
+    "  --distance MODE         geodesic, euclidean; heat where prepared; the group's own, and so below\n"
+    "  --interpolation NAME    shepard, paper; harmonic, fin, gp where prepared\n"
     "  --fill MODE             none or neighbours\n"
     "  --strength F, --decay F factors; --power P of shepard\n"
     "  --sensors TAG=STRENGTH[:DECAY],...   of single sensors, in place of the tag list's\n"
@@ -55,6 +55,7 @@ static const char view_usage[] =
     "  --look NAME             default, glossy, flat, materials  --light X,Y,Z   towards the sun\n"
     "  --environment NAME      surroundings that light the plant: sky, or one of the plant file\n"
     "  --backdrop NAME         light or dark: what is behind the plant\n"
+    "  --strip legend          a strip below, from which `plantcast read` tells values in a copy of the picture\n"
     "  --select ASSET          outline this asset\n"
     "  --split \"NAME=V;...\"    a second picture beside it, under the same camera; names as above without dashes, but\n"
     "                          ramp_interval, radius_m, reach_m. What is not named is as in the first\n"
@@ -90,6 +91,7 @@ static const struct {
     { "look", "look" },
     { "light", "light" },
     { "backdrop", "backdrop" },
+    { "strip", "strip" },
     { "environment", "environment" },
     { "select", "selected" },
     { "show", "show" },

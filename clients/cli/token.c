@@ -23,7 +23,7 @@ enum { MAX_FILE_BYTES = 1024 * 1024 };
 static void print_usage(FILE *out)
 {
     fputs("usage: plantcast token add FILE --role viewer|operator|engineer|renderer --name NAME [--until YYYY-MM-DD]\n"
-          "                           [--plant PLANT] [--unattended] [--views ID,...]\n"
+          "                           [--plant PLANT] [--unattended] [--views ID,... | --display WALL:NUMBER]\n"
           "       plantcast token list FILE\n"
           "       plantcast token revoke FILE NAME\n"
           "\n"
@@ -31,6 +31,7 @@ static void print_usage(FILE *out)
           "sees within 3 seconds what was added or revoked, and closes the sessions of what was revoked.\n"
           "--until: the last day on which it is good. --plant: it is good only for the plant of that name, where plants share the file.\n"
           "--views: it is a viewer's, and good for pictures (/snapshot.png?view=ID) of these views of the plant file only.\n"
+          "--display: it is a viewer's, and good for that display of a wall of the plant file only; implies --unattended.\n"
           "--unattended: of a wall or a program: plantcastd --lock-after does not lock it.\n"
           "It lies in a folder of root's, or of yours, and is no link. The daemon has to be able to read it: chown root:plantcast FILE;\n"
           "chmod 640 FILE\n",
@@ -162,9 +163,12 @@ static void print_holder(const struct token_holder *holder)
     char until[TIMESTAMP_BYTES] = "";
     if (holder->until_utc_ns < INT64_MAX)
         timestamp_print(holder->until_utc_ns / 1000, until);
-    printf("%-10s %s  %s%s%s%s%s%s%s%s\n", name_of(names_role, (int)holder->role), holder->name, *until ? "until " : "without end", until,
+    char display[sizeof(holder->wall) + 32] = "";
+    if (holder->display)
+        snprintf(display, sizeof(display), "  display %s:%d", holder->wall, holder->display);
+    printf("%-10s %s  %s%s%s%s%s%s%s%s%s\n", name_of(names_role, (int)holder->role), holder->name, *until ? "until " : "without end", until,
            holder->plant[0] ? "  plant " : "", holder->plant, holder->views[0] ? "  views " : "", holder->views,
-           holder->unattended ? "  unattended" : "", holder->until_utc_ns <= clock_utc_ns() ? "  (its time is over)" : "");
+           display, holder->unattended ? "  unattended" : "", holder->until_utc_ns <= clock_utc_ns() ? "  (its time is over)" : "");
 }
 
 static int list(const char *path)
@@ -224,6 +228,7 @@ static bool take_option(int option, struct token_holder *holder)
     case 'w': holder->unattended = true; return true;
     case 'p': snprintf(holder->plant, sizeof(holder->plant), "%s", optarg); return tokens_plant_valid(optarg);
     case 'v': snprintf(holder->views, sizeof(holder->views), "%s", optarg); return *optarg && tokens_views_valid(optarg);
+    case 'd': holder->unattended = true; return tokens_parse_display(optarg, holder);
     case 'u': return tokens_parse_day(optarg, &holder->until_utc_ns);
     default: return false;
     }
@@ -237,6 +242,7 @@ int cmd_token(int argc, char **argv)
                                              { "plant", required_argument, NULL, 'p' },
                                              { "unattended", no_argument, NULL, 'w' },
                                              { "views", required_argument, NULL, 'v' },
+                                             { "display", required_argument, NULL, 'd' },
                                              { "help", no_argument, NULL, 'h' },
                                              { NULL, 0, NULL, 0 } };
     struct token_holder holder = { .role = ROLE_NOBODY, .until_utc_ns = INT64_MAX };
@@ -254,8 +260,8 @@ int cmd_token(int argc, char **argv)
     }
     const char *what = argv[optind], *path = what ? argv[optind + 1] : NULL;
     int count = argc - optind;
-    if (holder.views[0] && holder.role != ROLE_VIEWER) {
-        fprintf(stderr, "plantcast: token: --views limits viewers only\n");
+    if ((holder.views[0] || holder.display) && (holder.role != ROLE_VIEWER || (holder.views[0] && holder.display))) {
+        fprintf(stderr, "plantcast: token: --views and --display limit viewers only, one of them\n");
         return 2;
     }
     if (count == 2 && !strcmp(what, "add") && holder.role != ROLE_NOBODY && holder.name[0])

@@ -9,6 +9,7 @@
 
 #include "base/mem.h"
 #include "message/view_address.h"
+#include "render/overlay/text_face.h"
 
 static const char *word(const json_t *o, const char *name)
 {
@@ -103,6 +104,7 @@ void tour_draw_text(const char *text, uint8_t *bgrx, int width_px, int height_px
     char *copy = mem_strdup(text);
     const char *lines[LINES];
     cairo_select_font_face(cairo, "DejaVu Sans", CAIRO_FONT_SLANT_NORMAL, CAIRO_FONT_WEIGHT_NORMAL);
+    text_face_choose(cairo, text);
     cairo_set_font_size(cairo, size);
     int count = break_lines(cairo, copy, 0.6 * width_px, lines);
     for (int i = 0; i < count; i++)

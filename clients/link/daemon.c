@@ -30,6 +30,13 @@ bool daemon_read_token(void)
     return good;
 }
 
+bool daemon_set_options(const char *token_file, const char *ca_file)
+{
+    token_path = token_file;
+    ca_path = ca_file;
+    return daemon_read_token();
+}
+
 /* The value of --NAME VALUE or --NAME=VALUE at *i; NULL: it is another option, or has none. */
 static const char *value_of(const char *name, int argc, char **argv, int *i)
 {

@@ -17,6 +17,8 @@ struct daemon_url {
 /* Removes --token-file and --ca, which all commands share, from the command line and remembers them. Returns false with the reason printed.
    Before any thread starts. */
 bool daemon_take_options(int *argc, char **argv);
+/* Likewise for a program that reads its command line itself; NULL: none. The paths stay the caller's. */
+bool daemon_set_options(const char *token_file, const char *ca_file);
 /* Reads the file of --token-file anew, if there was one. Returns false with the reason printed; the token then stays what it was. No
    request may be under way. */
 bool daemon_read_token(void);

@@ -5,7 +5,10 @@
 #include <math.h>
 #include <string.h>
 
+#include "clients/wall/brush.h"
+
 static const double CARD_RGB[3] = { 0.10, 0.11, 0.13 }, ALARM_RGB[3] = { 0.66, 0.12, 0.10 }, STRIP_RGB[3] = { 0.13, 0.15, 0.18 };
+static const double ASCENT = 1.07, HIGH = 1.36; /* of a line, in sizes of its letters */
 
 static int strip_px(int height_px)
 {
@@ -23,31 +26,16 @@ static void colour(cairo_t *cairo, const double rgb[3])
     cairo_set_source_rgb(cairo, rgb[0], rgb[1], rgb[2]);
 }
 
-static void font(cairo_t *cairo, double px, bool bold)
-{
-    cairo_select_font_face(cairo, "DejaVu Sans", CAIRO_FONT_SLANT_NORMAL, bold ? CAIRO_FONT_WEIGHT_BOLD : CAIRO_FONT_WEIGHT_NORMAL);
-    cairo_set_font_size(cairo, px);
-}
-
-static double width_of(cairo_t *cairo, const char *text)
-{
-    cairo_text_extents_t extents;
-    cairo_text_extents(cairo, text, &extents);
-    return extents.x_advance;
-}
-
-/* As large as it may be, and smaller where it would not fit. */
+/* As large as it may be, and smaller where it would not fit, its letters' foot at y. */
 static void centred(cairo_t *cairo, const char *text, double px, bool bold, double width, double y)
 {
-    font(cairo, px, bold);
-    double wide = width_of(cairo, text);
-    if (wide > 0.92 * width)
-        font(cairo, px * 0.92 * width / wide, bold);
-    cairo_move_to(cairo, 0.5 * (width - width_of(cairo, text)), y);
-    cairo_show_text(cairo, text);
+    double wide = brush_measure(cairo, px, bold, text).width;
+    px = wide > 0.92 * width ? px * 0.92 * width / wide : px;
+    struct box box = { 0, y - ASCENT * px, width, px };
+    brush_text(cairo, &box, px, bold, WHITE, ALIGN_CENTRE, false, text);
 }
 
-static char *time_text(const struct look *look, gint64 utc_us, const char *format)
+static char *time_text(const struct shown *look, gint64 utc_us, const char *format)
 {
     GDateTime *utc = g_date_time_new_from_unix_utc(utc_us / G_USEC_PER_SEC);
     GDateTime *local = utc ? g_date_time_to_timezone(utc, look->zone) : NULL;
@@ -57,7 +45,7 @@ static char *time_text(const struct look *look, gint64 utc_us, const char *forma
     return text ? text : g_strdup("");
 }
 
-static void draw_card(cairo_t *cairo, const struct canvas *canvas, const struct look *look, double height)
+static void draw_card(cairo_t *cairo, const struct canvas *canvas, const struct shown *look, double height)
 {
     double width = canvas->width_px, px = MIN(0.085 * height, 0.05 * width);
     colour(cairo, CARD_RGB);
@@ -66,7 +54,6 @@ static void draw_card(cairo_t *cairo, const struct canvas *canvas, const struct 
     colour(cairo, ALARM_RGB);
     cairo_rectangle(cairo, 0, 0.5 * height - 2.1 * px, width, 1.9 * px);
     cairo_fill(cairo);
-    cairo_set_source_rgb(cairo, 1, 1, 1);
     centred(cairo, look->headline, px, true, width, 0.5 * height - 0.8 * px);
     if (look->since_us) {
         char *time = time_text(look, look->since_us, "%Y-%m-%d %H:%M:%S %Z"), *text = g_strdup_printf("since %s", time);
@@ -74,11 +61,10 @@ static void draw_card(cairo_t *cairo, const struct canvas *canvas, const struct 
         g_free(text);
         g_free(time);
     }
-    cairo_set_source_rgb(cairo, 0.8, 0.8, 0.8);
     centred(cairo, look->detail, 0.5 * px, false, width, 0.5 * height + 2.1 * px);
 }
 
-static char *age_text(const struct look *look)
+static char *age_text(const struct shown *look)
 {
     if (!look->picture)
         return g_strdup("NO PICTURE");
@@ -90,36 +76,30 @@ static char *age_text(const struct look *look)
 }
 
 /* Clock and age at the right, where they have room in any case; the title has the rest. */
-static void draw_strip(cairo_t *cairo, const struct canvas *canvas, const struct look *look, gint64 utc_us, double y)
+static void draw_strip(cairo_t *cairo, const struct canvas *canvas, const struct shown *look, gint64 utc_us, double y)
 {
-    double height = canvas->height_px - y, px = 0.55 * height, pad = 0.5 * height, base = y + 0.66 * height;
+    double height = canvas->height_px - y, px = 0.55 * height, pad = 0.5 * height;
     char *clock = time_text(look, utc_us, "%Y-%m-%d  %H:%M:%S"), *age = age_text(look);
     colour(cairo, look->picture ? STRIP_RGB : ALARM_RGB);
     cairo_rectangle(cairo, 0, y, canvas->width_px, height);
     cairo_fill(cairo);
-    cairo_set_source_rgb(cairo, 1, 1, 1);
-    font(cairo, px, true);
-    double x = canvas->width_px - pad - width_of(cairo, clock);
-    cairo_move_to(cairo, x, base);
-    cairo_show_text(cairo, clock);
-    font(cairo, px, false);
-    x -= 1.5 * pad + width_of(cairo, age);
-    if (x > pad) {
-        cairo_move_to(cairo, x, base);
-        cairo_show_text(cairo, age);
+    double clock_px = brush_measure(cairo, px, true, clock).width, age_px = brush_measure(cairo, px, false, age).width;
+    struct box box = { pad, y + 0.5 * (height - HIGH * px), canvas->width_px - 2 * pad, HIGH * px };
+    brush_text(cairo, &box, px, true, WHITE, ALIGN_RIGHT, false, clock);
+    box.width -= clock_px + 1.5 * pad;
+    if (age_px < box.width) {
+        brush_text(cairo, &box, px, false, WHITE, ALIGN_RIGHT, false, age);
+        box.width -= age_px + pad;
     }
-    cairo_rectangle(cairo, pad, y, MAX(x - 2 * pad, 0), height);
-    cairo_clip(cairo);
-    cairo_move_to(cairo, pad, base);
-    cairo_show_text(cairo, look->title);
-    cairo_reset_clip(cairo);
+    if (box.width > 2 * px)
+        brush_text(cairo, &box, px, false, WHITE, ALIGN_LEFT, false, look->title);
     g_free(clock);
     g_free(age);
 }
 
 /* --- time code --------------------------------------------------------------------------------------------------------------- */
 
-static guint64 code_of(const struct look *look, gint64 utc_us)
+static guint64 code_of(const struct shown *look, gint64 utc_us)
 {
     guint64 time = (guint64)(utc_us / (G_USEC_PER_SEC / 10)) & ((G_GUINT64_CONSTANT(1) << CANVAS_TIME_BITS) - 1);
     guint64 code = (G_GUINT64_CONSTANT(2) << CANVAS_TIME_BITS | time) << 1 | (look->picture ? 0 : 1);
@@ -137,15 +117,26 @@ static void draw_code(cairo_t *cairo, const struct canvas *canvas, guint64 code)
     }
 }
 
-void canvas_draw(const struct canvas *canvas, guint8 *bgrx, int stride_bytes, const struct look *look, gint64 utc_us)
+static void draw_picture(cairo_t *cairo, const struct canvas *canvas, const struct shown *look, double height)
+{
+    if (look->shift_x || look->shift_y)
+        brush_fill(cairo, &(struct box){ 0, 0, canvas->width_px, height }, GROUND);
+    cairo_set_source_surface(cairo, look->picture, look->shift_x, look->shift_y);
+    cairo_paint(cairo);
+    if (look->dim > 0) {
+        cairo_set_source_rgba(cairo, 0, 0, 0, look->dim);
+        cairo_paint(cairo);
+    }
+}
+
+void canvas_draw(const struct canvas *canvas, guint8 *bgrx, int stride_bytes, const struct shown *look, gint64 utc_us)
 {
     cairo_surface_t *surface =
         cairo_image_surface_create_for_data(bgrx, CAIRO_FORMAT_RGB24, canvas->width_px, canvas->height_px, stride_bytes);
     cairo_t *cairo = cairo_create(surface);
     double height = canvas_picture_px(canvas->height_px);
     if (look->picture) {
-        cairo_set_source_surface(cairo, look->picture, 0, 0);
-        cairo_paint(cairo);
+        draw_picture(cairo, canvas, look, height);
     } else {
         draw_card(cairo, canvas, look, height);
     }

@@ -7,13 +7,15 @@
 #include <glib.h>
 #include <stdbool.h>
 
-struct look {                 /* what is to be seen now; all belongs to who says it, until he says the next */
+struct shown {                /* what is to be seen now; all belongs to who says it, until he says the next */
     cairo_surface_t *picture; /* NULL: the card */
     const char *headline, *detail;
     gint64 since_us; /* UTC, since when there is a card; 0: it does not matter */
     const char *title;
-    gint64 age_ms;   /* of the oldest value; -1: none takes part */
-    GTimeZone *zone; /* of the plant */
+    gint64 age_ms;        /* of the oldest value; -1: none takes part */
+    GTimeZone *zone;      /* of the plant */
+    int shift_x, shift_y; /* of the picture */
+    double dim;           /* 0: as bright as it is; 1: black */
 };
 
 struct canvas {
@@ -26,7 +28,7 @@ int canvas_picture_px(int height_px);
 /* Draws over the pixels (BGRX) the frame of the instant utc_us. Below all, if it has a time code, is a row of CANVAS_CODE_BITS blocks,
    white for 1, from left to right: 1, 0, the bits of the tenths of seconds since 1970 from the highest of CANVAS_TIME_BITS on, 1 if this
    is a card, and the parity of all before it. */
-void canvas_draw(const struct canvas *canvas, guint8 *bgrx, int stride_bytes, const struct look *look, gint64 utc_us);
+void canvas_draw(const struct canvas *canvas, guint8 *bgrx, int stride_bytes, const struct shown *look, gint64 utc_us);
 enum { CANVAS_TIME_BITS = 36, CANVAS_CODE_BITS = CANVAS_TIME_BITS + 4 };
 
 #endif

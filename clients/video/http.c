@@ -7,7 +7,7 @@
 #include <string.h>
 
 enum {
-    IDLE_S = 10,         /* a connection on which nothing moves for so long is closed */
+    IDLE_S = 10,           /* a connection on which nothing moves for so long is closed */
     MORE_CONNECTIONS = 32, /* than there may be readers: one that is kept open waits for its next request */
 };
 
@@ -146,7 +146,7 @@ static bool listen_at(struct http *http)
     return good;
 }
 
-struct http *http_create(const struct options *options, void (*metrics)(GString *out, void *data), void *data)
+struct http *http_create(const struct options *options, struct whep *whep, void (*metrics)(GString *out, void *data), void *data)
 {
     struct http *http = g_new0(struct http, 1);
     *http = (struct http){
@@ -165,9 +165,12 @@ struct http *http_create(const struct options *options, void (*metrics)(GString 
     soup_server_add_handler(http->server, "/metrics", on_metrics, http, NULL);
     if (options->hls_path)
         soup_server_add_handler(http->server, "/hls", on_hls, http, NULL);
+    if (whep)
+        whep_serve(whep, http->server);
     if (options->user) {
         SoupAuthDomain *domain = soup_auth_domain_basic_new("realm", "plantcast", "auth-callback", may_read, "auth-data", http, NULL);
         soup_auth_domain_add_path(domain, "/");
+        soup_auth_domain_remove_path(domain, "/whep"); /* it looks itself: a browser asks first whether it may */
         soup_server_add_auth_domain(http->server, domain);
         g_object_unref(domain);
     }

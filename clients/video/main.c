@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* `plantcast-video`: a view of a daemon as video. Draws a frame at each tick, whatever there is to be seen, and has it encoded once. */
+/* `plantcast-video`: a view of a daemon, or a display of a wall, as video. Draws a frame at each tick, whatever there is to be seen, and
+   has it encoded once. */
 #include <glib-unix.h>
 #include <locale.h>
 #include <signal.h>
@@ -11,16 +12,20 @@
 #include "http.h"
 #include "rtsp.h"
 #include "source.h"
+#include "wall_source.h"
+#include "whep.h"
 
 struct program {
     struct options options;
     GMainLoop *loop;
     struct canvas canvas;
-    struct source *source;
+    struct source *source;           /* of a view; NULL: */
+    struct wall_source *wall_source; /* of a display of a wall */
     struct outputs *outputs;
     struct encoder *encoder;
     struct rtsp *rtsp;
     struct branch srt, hls;
+    struct whep *whep; /* NULL: off */
     struct http *http;
     bool card; /* in the newest frame */
     GSource *ticks;
@@ -35,9 +40,12 @@ struct program {
 static void draw(struct program *program, guint64 index)
 {
     int stride_bytes = program->options.width_px * 4;
-    struct look look;
+    struct shown look;
     GstMapInfo map;
-    source_look(program->source, &look);
+    if (program->wall_source)
+        wall_source_look(program->wall_source, &look);
+    else
+        source_look(program->source, &look);
     program->card = !look.picture;
     if (!encoder_is_ready(program->encoder)) {
         program->late++;
@@ -69,6 +77,7 @@ static gboolean on_tick(gpointer data)
         index = program->next;
     program->late += index - program->next;
     draw(program, index);
+    whep_look(program->whep);
     program->next = index + 1;
     g_source_set_ready_time(program->ticks, time_of(program, program->next));
     if (now_us - program->alive_us > G_USEC_PER_SEC) {
@@ -117,12 +126,14 @@ static void write_metrics(GString *out, void *data)
     add_metric(out, "plantcast_video_bytes_total", "counter", "Bytes of them.", counts.bytes);
     add_metric(out, "plantcast_video_late_frames_total", "counter", "Frames left out since drawing or encoding was behind.", program->late);
     add_metric(out, "plantcast_video_dropped_frames_total", "counter", "Frames that an output did not take, or not yet.", counts.dropped);
-    add_metric(out, "plantcast_video_pictures_total", "counter", "Pictures from the server.", source_pictures(program->source));
+    add_metric(out, "plantcast_video_pictures_total", "counter", "Pictures from the server.",
+               program->wall_source ? wall_source_pictures(program->wall_source) : source_pictures(program->source));
     add_metric(out, "plantcast_video_card", "gauge", "1: a card is shown in place of a picture.", program->card);
     g_string_append_printf(out,
                            "# HELP plantcast_video_readers Who watches.\n# TYPE plantcast_video_readers gauge\n"
-                           "plantcast_video_readers{output=\"rtsp\"} %u\nplantcast_video_readers{output=\"srt\"} %d\n",
-                           rtsp_readers(program->rtsp), g_atomic_int_get(&program->srt.readers));
+                           "plantcast_video_readers{output=\"rtsp\"} %u\nplantcast_video_readers{output=\"srt\"} %d\n"
+                           "plantcast_video_readers{output=\"whep\"} %u\n",
+                           rtsp_readers(program->rtsp), g_atomic_int_get(&program->srt.readers), whep_readers(program->whep));
 }
 
 /* --- life ---------------------------------------------------------------------------------------------------------------------------- */
@@ -140,12 +151,16 @@ static bool begin(struct program *program)
     program->outputs = outputs_create();
     if (options->srt_port)
         srt_init(&program->srt, options, program->outputs);
+    if (options->whep)
+        program->whep = whep_create(options, program->outputs);
     if (options->hls_path)
         hls_init(&program->hls, options, program->outputs);
-    return (program->source = source_create(options)) && (program->encoder = encoder_create(options, program->outputs)) &&
+    bool sourced =
+        options->wall ? (program->wall_source = wall_source_create(options)) != NULL : (program->source = source_create(options)) != NULL;
+    return sourced && (program->encoder = encoder_create(options, program->outputs)) &&
            (!options->rtsp_port || (program->rtsp = rtsp_create(options, program->outputs))) &&
            (!options->srt_port || branch_begin(&program->srt)) && (!options->hls_path || branch_begin(&program->hls)) &&
-           (!options->http_port || (program->http = http_create(options, write_metrics, program)));
+           (!options->http_port || (program->http = http_create(options, program->whep, write_metrics, program)));
 }
 
 static void end(struct program *program)
@@ -154,12 +169,14 @@ static void end(struct program *program)
         g_source_destroy(program->ticks);
         g_source_unref(program->ticks);
     }
+    whep_destroy(&program->whep);
     http_destroy(&program->http);
     rtsp_destroy(&program->rtsp);
     branch_end(&program->srt);
     branch_end(&program->hls);
     encoder_destroy(&program->encoder);
     source_destroy(&program->source);
+    wall_source_destroy(&program->wall_source);
     outputs_destroy(&program->outputs);
     g_main_loop_unref(program->loop);
 }

@@ -11,8 +11,8 @@
 
 /* A picture is of the instant at which it was asked for. The one that is shown stays until the next is there: asked for EVERY after it, and
    received within SLOWEST; so it is never older than OLDEST. */
-static const gint64 OLDEST_US = 2700000, SLOWEST_US = 1300000, OTHERS_US = 1200000, VIEWS_US = 5000000,
-                    LIMITED_US = 600000000, DENIED_US = 8000000;
+static const gint64 OLDEST_US = 2700000, SLOWEST_US = 1300000, OTHERS_US = 1200000, VIEWS_US = 5000000, LIMITED_US = 600000000,
+                    DENIED_US = 8000000;
 
 enum ask { ASK_PLANT, ASK_VIEWS, ASK_PICTURE, ASK_COUNT };
 
@@ -110,8 +110,9 @@ static void take_plant(struct source *source, const json_t *o)
    picture cannot show it, and *error says why. */
 static char *query_of(const char *view, struct message_error *error)
 {
-    static const char *const left_out[] = { "at",    "selected", "fill",    "strength", "decay",
-                                            "power", "radius_m", "reach_m", "sensors",  NULL };
+    static const char *const left_out[] = {
+        "at", "selected", "fill", "strength", "decay", "power", "radius_m", "reach_m", "sensors", NULL
+    };
     struct view_address address;
     GString *query = g_string_new("");
     bool good = view_address_read(&address, *view == '#' ? view + 1 : view, error);
@@ -350,7 +351,7 @@ static void go_on(struct source *source, gint64 now_us)
 
 /* --- what may be shown ------------------------------------------------------------------------------------------ */
 
-void source_look(struct source *source, struct look *out)
+void source_look(struct source *source, struct shown *out)
 {
     gint64 now_us = g_get_monotonic_time();
     go_on(source, now_us);
@@ -360,7 +361,7 @@ void source_look(struct source *source, struct look *out)
                         : source->view_title   ? source->view_title
                         : source->limited      ? source->options->view
                                                : "";
-    *out = (struct look){ .title = title, .zone = source->zone, .headline = source->headline, .detail = source->detail, .age_ms = -1 };
+    *out = (struct shown){ .title = title, .zone = source->zone, .headline = source->headline, .detail = source->detail, .age_ms = -1 };
     if (young && !frozen) {
         if (source->since_us)
             fprintf(stderr, "plantcast-video: %s: pictures again\n", source->options->url);

@@ -12,7 +12,7 @@ struct source *source_create(const struct options *options);
 void source_destroy(struct source **source); /* &NULL is fine; leaves NULL */
 /* Looks after requests that take too long, begins those that are due, and says what is to be seen. Call it for each frame. What *out points
    to belongs to the source until the next call. */
-void source_look(struct source *source, struct look *out);
+void source_look(struct source *source, struct shown *out);
 guint64 source_pictures(const struct source *source); /* how many it got */
 
 #endif

@@ -71,7 +71,8 @@ static bool place(const struct player *player, const json_t *grid, struct pane *
 static void read_kind(struct pane *pane)
 {
     static const char *const names[] = {
-        [PANE_VIEWS] = "views", [PANE_ALARMS] = "alarms", [PANE_TILES] = "tiles", [PANE_CLOCK] = "clock", [PANE_TEXT] = "text",
+        [PANE_VIEWS] = "views", [PANE_ALARMS] = "alarms", [PANE_TILES] = "tiles",
+        [PANE_CLOCK] = "clock", [PANE_TEXT] = "text",     [PANE_TREND] = "trend",
     };
     pane->known = false;
     for (size_t i = 0; i < sizeof(names) / sizeof(names[0]); i++)
@@ -97,13 +98,24 @@ static void add_pane(struct player *player, const json_t *o, const json_t *grid)
     pane->items = json_object_get(o, "items");
     pane->stops = json_object_get(o, "stops");
     pane->every_s = fmax(1, json_number_value(json_object_get(o, "every_s")));
+    trend_finish(&pane->trend);
+    pane->trend.hours = json_number_value(json_object_get(o, "hours"));
     pane->on_alarm = json_is_true(json_object_get(o, "on_alarm"));
     pane->at = 0;
     pane->changed_ns = 0;
     pane->called = false;
     read_kind(pane);
-    if (!place(player, grid, pane))
+    const json_t *tile = json_object_get(o, "tile");
+    pane->view.tile.display = (int)json_integer_value(json_object_get(tile, "number"));
+    pane->view.tile.columns = (int)json_integer_value(json_object_get(tile, "columns"));
+    pane->view.tile.rows = (int)json_integer_value(json_object_get(tile, "rows"));
+    pane->view.tile.wall = player->wall_id;
+    if (tile) { /* from edge to edge */
+        pane->box = (struct box){ 0, 0, player->width_px, player->height_px };
+        pane->title_px = 0;
+    } else if (!place(player, grid, pane)) {
         return;
+    }
     text_finish(&pane->said);
     text_finish(&pane->state);
     text_finish(&pane->wanted);

@@ -10,7 +10,7 @@
 #include "base/mem.h"
 
 enum { TICK_US = 100000, MOST_TEXT_BYTES = 64 * 1024 * 1024, MOST_TRIES = 4, MOST_FAILURES = 5 };
-static const int64_t PING_NS = NS_PER_S, SILENT_NS = 5 * NS_PER_S, CONNECT_NS = 10 * NS_PER_S, WALLS_NS = 2 * NS_PER_S;
+static const int64_t PING_NS = NS_PER_S, SILENT_NS = 5 * NS_PER_S, CONNECT_NS = 10 * NS_PER_S, AGAIN_NS = 2 * NS_PER_S;
 static const double FIRST_S = 0.5, SPREAD_S = 2, DENIED_S = 10; /* wrong tokens are looked at ten times a minute */
 
 /* --- what goes -------------------------------------------------------------------------------------------------------------------- */
@@ -191,36 +191,34 @@ static void connect_link(struct link *link)
         on_gone(link);
 }
 
-static void end_walls(struct links *links)
+static void end_request(struct links_request *request)
 {
-    json_t *answer = links->asks_walls && links->body.at ? json_loadb(links->body.at, links->body.length, 0, NULL) : NULL;
-    const json_t *walls = json_object_get(answer, "walls");
-    links->asks_walls = false;
-    if (json_is_array(walls))
-        links->walls(links->arg, walls);
-    else
-        links->wants_walls = true;
+    struct links *links = request->links;
+    json_t *answer = request->under_way && request->body.at ? json_loadb(request->body.at, request->body.length, 0, NULL) : NULL;
+    request->under_way = false;
+    text_finish(&request->body);
+    if (!request->wanted) /* else it was asked for something else meanwhile, and this is of what was before */
+        links->got(links->arg, (enum links_get)(request - links->requests), answer);
     json_decref(answer);
-    text_finish(&links->body);
 }
 
-static void begin_walls(struct links *links)
+static void begin_request(struct links_request *request)
 {
-    char path[sizeof(links->url->base) + 24];
+    struct links *links = request->links;
+    char *path = mem_printf("%s%s", links->url->base, request->path);
     struct lws_client_connect_info info = {
-        .context = links->context, .path = path, .method = "GET", .protocol = "http", .userdata = links
+        .context = links->context, .path = path, .method = "GET", .protocol = "http", .userdata = request
     };
-    snprintf(path, sizeof(path), "%s/api/v1/walls", links->url->base);
     daemon_prepare_connection(links->url, &info);
-    links->wants_walls = false;
-    links->asks_walls = true;
-    links->walls_ns = clock_mono_ns();
-    links->body.length = 0;
+    request->wanted = false;
+    request->under_way = true;
+    request->begun_ns = clock_mono_ns();
     pthread_mutex_unlock(links->lock);
     bool begun = lws_client_connect_via_info(&info) != NULL;
     pthread_mutex_lock(links->lock);
+    mem_free(path);
     if (!begun)
-        end_walls(links);
+        end_request(request);
 }
 
 static void tick_link(struct link *link, int64_t now_ns)
@@ -249,8 +247,11 @@ static void tick(struct links *links)
     for (int i = 0; i < LINKS_MOST && !links->ends; i++)
         if (links->at[i].events)
             tick_link(&links->at[i], now_ns);
-    if (links->wants_walls && !links->asks_walls && !links->ends && now_ns - links->walls_ns >= WALLS_NS)
-        begin_walls(links);
+    for (int i = 0; i < GET_COUNT && !links->ends; i++) {
+        struct links_request *request = &links->requests[i];
+        if (request->wanted && !request->under_way && now_ns - request->begun_ns >= AGAIN_NS)
+            begin_request(request);
+    }
 }
 
 static void on_timer(lws_sorted_usec_list_t *sul)
@@ -319,23 +320,23 @@ static int on_stream(struct lws *wsi, enum lws_callback_reasons reason, void *us
 
 static int on_http(struct lws *wsi, enum lws_callback_reasons reason, void *user, void *in, size_t len)
 {
-    struct links *links = user;
+    struct links_request *request = user;
     char buffer[LWS_PRE + 16 * 1024], *at = buffer + LWS_PRE;
-    int room = sizeof(buffer) - LWS_PRE, status = 0;
+    int room = sizeof(buffer) - LWS_PRE;
     if (reason == LWS_CALLBACK_CLIENT_APPEND_HANDSHAKE_HEADER)
         return daemon_add_token(wsi, in, len);
     if (reason == LWS_CALLBACK_RECEIVE_CLIENT_HTTP) /* it calls back with what was read */
         return lws_http_client_read(wsi, &at, &room) < 0 ? -1 : 0;
-    if (!links || reason == LWS_CALLBACK_WSI_CREATE)
+    if (!request || reason == LWS_CALLBACK_WSI_CREATE)
         return 0;
-    pthread_mutex_lock(links->lock);
-    if (reason == LWS_CALLBACK_RECEIVE_CLIENT_HTTP_READ && links->body.length + len <= MOST_TEXT_BYTES)
-        text_add_bytes(&links->body, in, len);
-    else if (reason == LWS_CALLBACK_COMPLETED_CLIENT_HTTP || reason == LWS_CALLBACK_CLOSED_CLIENT_HTTP ||
-             reason == LWS_CALLBACK_CLIENT_CONNECTION_ERROR)
-        end_walls(links);
-    pthread_mutex_unlock(links->lock);
-    return status;
+    pthread_mutex_lock(request->links->lock);
+    if (reason == LWS_CALLBACK_RECEIVE_CLIENT_HTTP_READ && request->body.length + len <= MOST_TEXT_BYTES)
+        text_add_bytes(&request->body, in, len);
+    else if (request->under_way && (reason == LWS_CALLBACK_COMPLETED_CLIENT_HTTP || reason == LWS_CALLBACK_CLOSED_CLIENT_HTTP ||
+                                    reason == LWS_CALLBACK_CLIENT_CONNECTION_ERROR))
+        end_request(request);
+    pthread_mutex_unlock(request->links->lock);
+    return 0;
 }
 
 /* --- life --------------------------------------------------------------------------------------------------------------------------- */
@@ -395,13 +396,20 @@ void links_stop(struct links *links)
         drop_queue(&links->at[i]);
         text_finish(&links->at[i].in);
     }
-    text_finish(&links->body);
+    for (int i = 0; i < GET_COUNT; i++) {
+        text_finish(&links->requests[i].body);
+        mem_free(links->requests[i].path);
+    }
     links->context = NULL;
 }
 
-void links_ask_walls(struct links *links)
+void links_ask(struct links *links, enum links_get what, const char *path)
 {
-    links->wants_walls = true;
+    struct links_request *request = &links->requests[what];
+    mem_free(request->path);
+    request->path = mem_strdup(path);
+    request->links = links;
+    request->wanted = true;
     lws_cancel_service(links->context);
 }
 

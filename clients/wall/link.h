@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Connections to a server's /stream, each kept up for ever, and one request for its walls. One thread of their own services all of them and
-   calls back under the player's lock, but for `frame`. */
+/* Connections to a server's /stream, each kept up for ever, and requests for its walls and its history. One thread of their own services
+   all of them and calls back under the player's lock, but for `frame`. */
 #ifndef WALL_LINK_H
 #define WALL_LINK_H
 #include <jansson.h>
@@ -48,18 +48,29 @@ struct link {
     int queued;
 };
 
+/* A request that is made when it is asked for, one at a time. */
+enum links_get { GET_WALLS, GET_HISTORY, GET_COUNT };
+struct links_request {
+    /* --- below: of link.c */
+    struct links *links;
+    bool wanted, under_way;
+    int64_t begun_ns;
+    char *path;
+    struct text body;
+};
+
 struct links {
     pthread_mutex_t *lock;
     const struct daemon_url *url;
     struct link at[LINKS_MOST];
-    void (*walls)(void *arg, const json_t *walls); /* what /api/v1/walls says; under the lock */
+    /* What was answered; NULL: it failed. Under the lock. */
+    void (*got)(void *arg, enum links_get what, const json_t *answer);
     void *arg;
     /* --- below: of link.c */
     struct lws_context *context;
     pthread_t thread;
-    bool ends, started, wants_walls, asks_walls;
-    int64_t walls_ns; /* monotonic: when they were asked for last */
-    struct text body;
+    bool ends, started;
+    struct links_request requests[GET_COUNT];
     int64_t alive_ns;
     lws_sorted_usec_list_t timer;
 };
@@ -68,8 +79,9 @@ struct links {
 bool links_start(struct links *links);
 /* Closes all, ends the thread. */
 void links_stop(struct links *links);
-/* Asks for the walls, as soon as may be; by a call of walls(). Under the lock. */
-void links_ask_walls(struct links *links);
+/* Asks for a path below the server's base, as soon as may be, by a call of got(): two seconds after the one before of its kind at the
+   earliest. Under the lock. */
+void links_ask(struct links *links, enum links_get what, const char *path);
 /* Returns when the thread was last seen at work, monotonic. Any thread. */
 int64_t links_alive_ns(struct links *links);
 /* Sends a message, which it frees, once the server has greeted; else it is dropped. Under the lock. */

@@ -17,8 +17,8 @@
 #include "version.h"
 #include "words.h"
 
-enum { FAST_NS = 8000000, SLOW_NS = 50000000, SHIFTS = 8 };
-static const int64_t SHIFT_NS = 180 * NS_PER_S, STUCK_NS = 60 * NS_PER_S, WATCHDOG_NS = 2 * NS_PER_S, REST_NS = 250 * NS_PER_MS;
+enum { FAST_NS = 8000000, SLOW_NS = 50000000 };
+static const int64_t STUCK_NS = 60 * NS_PER_S, WATCHDOG_NS = 2 * NS_PER_S, REST_NS = 250 * NS_PER_MS;
 
 struct options {
     const char *wall, *language;
@@ -123,18 +123,9 @@ static int take_options(int argc, char **argv, struct options *options)
     return options->wall && options->wall[0] ? 0 : usage("--wall NAME is missing");
 }
 
-/* Nothing burns in: some pixels to one side or another, in turn. */
-static void shift_of(int64_t now_ns, int *x, int *y)
-{
-    static const int shifts[SHIFTS][2] = { { 0, 0 }, { 2, 1 }, { 3, -1 }, { 1, -3 }, { -1, -2 }, { -3, 0 }, { -2, 2 }, { 0, 3 } };
-    int at = (int)(now_ns / SHIFT_NS % SHIFTS);
-    *x = shifts[at][0];
-    *y = shifts[at][1];
-}
-
 struct shown {
     int64_t at_ns;
-    int x, y;
+    struct rules_shift shift;
     double light;
 };
 
@@ -142,15 +133,16 @@ struct shown {
 static bool show(struct player *player, struct screen *screen, int64_t now_ns, bool exposed, bool *changed, struct shown *shown)
 {
     struct box dirty;
-    struct shown now = { now_ns, 0, 0, player_brightness(player) };
-    shift_of(now_ns, &now.x, &now.y);
+    struct shown now = { now_ns, rules_shift(now_ns), player_brightness(player) };
+    if (player_is_tile(player)) /* lines would break where screens meet */
+        now.shift = (struct rules_shift){ 0 };
     *changed = player_draw(player, now_ns, &dirty);
     if (*changed)
         screen_update(screen, player->surface, &dirty);
-    if (!*changed && !exposed && now.x == shown->x && now.y == shown->y && now.light == shown->light)
+    if (!*changed && !exposed && now.shift.x == shown->shift.x && now.shift.y == shown->shift.y && now.light == shown->light)
         return true;
     *shown = now;
-    return screen_present(screen, now.x, now.y, now.light, player->ground);
+    return screen_present(screen, now.shift.x, now.shift.y, now.light, player->ground);
 }
 
 static bool take_events(struct player *player, struct screen *screen, bool *exposed)
@@ -180,7 +172,7 @@ static int run(struct player *player, struct screen *screen)
             break;
         if (!show(player, screen, now_ns, exposed, &changed, &shown))
             return 1;
-        if (changed)
+        if (changed || player_waits(player))
             moved_ns = now_ns;
         int64_t alive_ns = links_alive_ns(&player->links);
         if (now_ns - fed_ns >= WATCHDOG_NS && now_ns - alive_ns < STUCK_NS) {

@@ -234,7 +234,8 @@ static bool on_welcome(struct model *model, const json_t *message)
     forget_plant(model);
     json_decref(model->views);
     json_decref(model->orders);
-    model->views = model->orders = NULL;
+    json_decref(model->notes);
+    model->views = model->orders = model->notes = NULL;
     model->live = true; /* until status says otherwise */
     model->clock_set = true;
     model->welcome = json_deep_copy(message);
@@ -282,6 +283,8 @@ bool model_hear(struct model *model, const json_t *message, int64_t now_ns)
         keep_list(&model->views, message);
     else if (!strcmp(type, "walls"))
         keep_list(&model->orders, message);
+    else if (!strcmp(type, "notes"))
+        keep_list(&model->notes, message);
     return true;
 }
 

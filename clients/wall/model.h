@@ -30,7 +30,7 @@ struct model {
     struct model_alarm *list; /* those to be seen, one for each tag: those that wait first, then what is there, then by priority, the newest
                                  first */
     size_t list_count;
-    json_t *views, *orders;           /* lists; NULL: none */
+    json_t *views, *orders, *notes;   /* lists; NULL: none */
     int64_t offset_us, round_trip_ns; /* the server's clock less ours, by the shortest round trip */
     bool live, clock_set, simulated;  /* simulated: some of it was not measured */
 };

@@ -69,6 +69,7 @@ static void read_group(const json_t *o, struct plant_group *group)
     group->radius_m = number_or(o, "radius_m", 0);
     group->reach_m = number_or(o, "reach_m", INFINITY);
     group->cuts_singles = !strcmp(text_of(o, "singles"), "cut");
+    group->directed = json_is_true(json_object_get(o, "directed"));
     group->log = !strcmp(text_of(o, "scale"), "log") && group->min > 0;
     group->break_count = read_numbers(json_object_get(o, "breaks"), group->breaks, PLANT_BREAKS);
     group->isoline_count = read_numbers(json_object_get(o, "isolines"), group->isolines, PLANT_ISOLINES);

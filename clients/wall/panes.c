@@ -417,6 +417,7 @@ void pane_say(struct player *player, struct pane *pane, int64_t now_ns, struct t
     switch (pane->kind) {
     case PANE_ALARMS: say_alarms(player, pane, now_ns, said); break;
     case PANE_TILES: say_tiles(player, pane, now_ns, said); break;
+    case PANE_TREND: trend_say(player, pane, now_ns, said); break;
     case PANE_CLOCK: say_clock(player, pane, said); break;
     default: text_add(said, "%s\n", pane->title ? pane->title : ""); break;
     }
@@ -438,6 +439,11 @@ void pane_draw(struct player *player, struct pane *pane, cairo_t *cairo, int64_t
     switch (pane->kind) {
     case PANE_ALARMS: draw_alarms(player, pane, cairo); break;
     case PANE_TILES: draw_tiles(player, pane, cairo); break;
+    case PANE_TREND: {
+        struct box body = body_of(pane);
+        trend_draw(player, pane, cairo, &body);
+        break;
+    }
     case PANE_CLOCK: draw_clock(player, pane, cairo); break;
     default: draw_words(player, pane, cairo); break;
     }

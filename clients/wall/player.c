@@ -14,6 +14,7 @@
 #include "words.h"
 
 static const int64_t POINT_NS = 4 * NS_PER_S;
+static const char WALLS_PATH[] = "/api/v1/walls";
 
 /* --- what comes: on the network's thread, under the lock ----------------------------------------------------------------------- */
 
@@ -59,7 +60,7 @@ static void words_text(struct link *link, const json_t *message)
         player->denied = false;
         want_views(player);
         link_post(link, json_pack("{s:s,s:s,s:i}", "type", "display", "wall", player->wall_id, "display", player->display));
-        links_ask_walls(&player->links);
+        links_ask(&player->links, GET_WALLS, WALLS_PATH);
         for (int i = 0; i < player->pane_count; i++)
             if (player->panes[i].view.greeted && (player->panes[i].view.missed || !view_pane_fits(&player->panes[i].view, &player->model)))
                 link_restart(&player->links.at[1 + i]);
@@ -132,15 +133,27 @@ static bool view_frame(struct link *link, const struct wire_frame *frame, const 
     return view_pane_decode(&pane_of(link)->view, &player->lock, frame, payload);
 }
 
-static void on_walls(void *arg, const json_t *walls)
+static void on_walls(struct player *player, const json_t *walls)
 {
-    struct player *player = arg;
+    if (!json_is_array(walls)) {
+        links_ask(&player->links, GET_WALLS, WALLS_PATH);
+        return;
+    }
     if (player->walls && json_equal(player->walls, walls))
         return;
     json_decref(player->walls);
     player->walls = json_deep_copy(walls);
     layout_build(player);
     want_views(player);
+}
+
+static void on_got(void *arg, enum links_get what, const json_t *answer)
+{
+    struct player *player = arg;
+    if (what == GET_WALLS)
+        on_walls(player, json_object_get(answer, "walls"));
+    else
+        trend_take(player, answer);
 }
 
 /* --- life ------------------------------------------------------------------------------------------------------------------------- */
@@ -152,12 +165,13 @@ bool player_start(struct player *player)
     pthread_mutex_init(&player->lock, NULL);
     model_init(&player->model);
     player->call.shown = -1;
+    player->lost_ns = player->lost_ns ? player->lost_ns : PLAYER_LOST_NS;
     player->begun_ns = clock_mono_ns();
     player->surface = cairo_image_surface_create(CAIRO_FORMAT_RGB24, player->width_px, player->height_px);
     player->all_due = true;
     player->links.lock = &player->lock;
     player->links.url = &player->url;
-    player->links.walls = on_walls;
+    player->links.got = on_got;
     player->links.arg = player;
     for (int i = 0; i < 1 + WALL_PANES; i++)
         player->links.at[i] =
@@ -174,6 +188,7 @@ void player_finish(struct player *player)
         text_finish(&player->panes[i].state);
         text_finish(&player->panes[i].wanted);
         text_finish(&player->panes[i].words);
+        trend_finish(&player->panes[i].trend);
     }
     model_finish(&player->model);
     json_decref(player->wall);
@@ -202,6 +217,24 @@ static int minute_of(const struct player *player)
     time_t seconds = (time_t)(model_now_us(&player->model) / 1000000);
     struct tm local;
     return localtime_r(&seconds, &local) ? local.tm_hour * 60 + local.tm_min : 0;
+}
+
+bool player_is_tile(struct player *player)
+{
+    pthread_mutex_lock(&player->lock);
+    bool is_tile = player->pane_count > 0 && player->panes[0].view.tile.display > 0;
+    pthread_mutex_unlock(&player->lock);
+    return is_tile;
+}
+
+bool player_waits(struct player *player)
+{
+    bool waits = false;
+    pthread_mutex_lock(&player->lock);
+    for (int i = 0; i < player->pane_count; i++)
+        waits |= player->panes[i].view.tile.ordered;
+    pthread_mutex_unlock(&player->lock);
+    return waits;
 }
 
 double player_brightness(struct player *player)
@@ -251,10 +284,10 @@ static void say_card(const struct player *player, int64_t now_ns, struct text *c
     text_add(card, "%s", "");
     if (player->denied)
         text_add(card, "denied\n%s", say("walls.denied", NULL));
-    else if (now_ns - (heard_ns ? heard_ns : player->begun_ns) >= PLAYER_LOST_NS && heard_ns && player->model.welcome)
+    else if (now_ns - (heard_ns ? heard_ns : player->begun_ns) >= player->lost_ns && heard_ns && player->model.welcome)
         text_add(card, "lost\n%s",
                  say("walls.lost", "time", player_time(player, model_now_us(&player->model) - (now_ns - heard_ns) / 1000), NULL));
-    else if (now_ns - (heard_ns ? heard_ns : player->begun_ns) >= PLAYER_LOST_NS)
+    else if (now_ns - (heard_ns ? heard_ns : player->begun_ns) >= player->lost_ns)
         text_add(card, "lost\n%s", say("walls.never", NULL));
     else if (player->wrong[0])
         text_add(card, "wrong\n%s", player->wrong);
@@ -295,21 +328,47 @@ static void draw_banner(const struct player *player, cairo_t *cairo, const struc
     brush_text(cairo, &box, size, true, WHITE, ALIGN_CENTRE, false, text);
 }
 
+/* On the first tile alone. */
+static void draw_tile_title(const struct player *player, const struct pane *pane, cairo_t *cairo)
+{
+    double size = 13 * player->unit;
+    char title[512] = "";
+    const char *about = pane->said.at ? strchr(pane->said.at, '\n') : NULL;
+    if (about)
+        snprintf(title, sizeof(title), "%.*s%s%s", (int)(about - pane->said.at - 2), pane->said.at + 2, about[1] ? " \u00b7 " : "",
+                 about + 1);
+    if (!title[0])
+        return;
+    struct box box = { 0, 0, brush_measure(cairo, size, true, title).width + 2 * size, 1.9 * size };
+    brush_fill(cairo, &box, SURFACE);
+    box.x += size;
+    box.y += 0.25 * size;
+    brush_text(cairo, &box, size, true, INK, ALIGN_LEFT, false, title);
+}
+
 /* What is seen below its title, as a word; of "picture" also which. */
 static void say_state(const struct player *player, const struct pane *pane, int64_t now_ns, struct text *state)
 {
     const struct link *link = pane->view.link;
-    bool lost = link->heard_ns && now_ns - link->heard_ns >= PLAYER_LOST_NS;
+    bool lost = link->heard_ns && now_ns - link->heard_ns >= player->lost_ns;
     if (lost)
         text_add(state, "lost\n%s",
                  say("walls.lost", "time", player_time(player, model_now_us(&player->model) - (now_ns - link->heard_ns) / 1000), NULL));
+    else if (pane->view.tile.late_us)
+        text_add(state, "lost\n%s", say("walls.late", "time", player_time(player, pane->view.tile.late_us), NULL));
     else if (pane->view.refused[0])
         text_add(state, "refused\n%s", pane->view.refused);
     else if (!pane->view.picture || !pane->view.is_current)
         text_add(state, "wait\n%s", pane->view.greeted ? "\u2026" : say("health.connecting", NULL));
-    else
-        text_add(state, "picture %u %d\n%s", pane->view.frames, player->pointed == pane && now_ns - player->pointed_ns < POINT_NS,
-                 player->model.live ? "" : say("health.nodata", NULL));
+    else {
+        bool incomplete = pane->view.tile.leads && pane->view.tile.missing[0];
+        text_add(state, "picture %u %d", pane->view.frames, player->pointed == pane && now_ns - player->pointed_ns < POINT_NS);
+        notes_say(&player->model, state);
+        text_add(state, "\n%s",
+                 !player->model.live ? say("health.nodata", NULL)
+                 : incomplete        ? say("walls.missing", "displays", pane->view.tile.missing, NULL)
+                                     : "");
+    }
 }
 
 static void draw_state(struct player *player, struct pane *pane, cairo_t *cairo, int64_t now_ns)
@@ -321,10 +380,14 @@ static void draw_state(struct player *player, struct pane *pane, cairo_t *cairo,
     cairo_rectangle(cairo, body.x, body.y, body.width, body.height);
     cairo_clip(cairo);
     if (is_picture && view_pane_draw(&pane->view, &player->model, cairo, body.x, body.y)) {
+        if (pane->view.tile.display == 0)
+            notes_draw(&pane->view, &player->model, cairo, body.x, body.y);
         if (player->pointed == pane && now_ns - player->pointed_ns < POINT_NS)
             view_pane_point(&pane->view, cairo, body.x, body.y, player->pointed_m);
         if (*text)
             draw_banner(player, cairo, &body, text);
+        if (pane->view.tile.display == 1)
+            draw_tile_title(player, pane, cairo);
     } else {
         bool lost = !strncmp(pane->state.at, "lost", 4);
         double size = (lost ? 24 : 13) * player->unit;
@@ -357,6 +420,8 @@ static void draw_view(struct player *player, struct pane *pane, cairo_t *cairo, 
 {
     struct text said = { 0 }, state = { 0 };
     pane_choose(player, pane, now_ns);
+    if (pane->view.tile.display)
+        view_pane_flip(&pane->view, &player->model, model_now_us(&player->model));
     say_view_title(player, pane, now_ns, &said);
     say_state(player, pane, now_ns, &state);
     bool was_called = pane->said.at && pane->said.at[0] == '1';
@@ -369,8 +434,10 @@ static void draw_view(struct player *player, struct pane *pane, cairo_t *cairo, 
         for (size_t i = 0; i < player->model.list_count && pane->called && !alarm; i++)
             if (player->model.list[i].tag * ALARM_KINDS + (int)player->model.list[i].kind == player->call.shown)
                 alarm = &player->model.list[i];
-        pane_draw_title(player, pane, cairo, title, about, alarm ? alarm->priority : 0, alarm && alarm_status_is_cleared(alarm->status));
-        body_due |= pane->called; /* its frame goes around both */
+        if (pane->title_px > 0)
+            pane_draw_title(player, pane, cairo, title, about, alarm ? alarm->priority : 0,
+                            alarm && alarm_status_is_cleared(alarm->status));
+        body_due |= pane->called || pane->title_px <= 0; /* its frame goes around both */
         add_dirty(dirty, &(struct box){ pane->box.x, pane->box.y, pane->box.width, pane->title_px });
     }
     if (body_due) {
@@ -382,6 +449,8 @@ static void draw_view(struct player *player, struct pane *pane, cairo_t *cairo, 
 static void draw_other(struct player *player, struct pane *pane, cairo_t *cairo, int64_t now_ns, bool all, struct box *dirty)
 {
     struct text said = { 0 };
+    if (pane->known && pane->kind == PANE_TREND)
+        trend_ask(player, pane, now_ns);
     pane_say(player, pane, now_ns, &said);
     if (!differs(&pane->said, &said) && !all)
         return;

@@ -8,6 +8,7 @@
 #include "base/text.h"
 #include "link.h"
 #include "model.h"
+#include "notes.h"
 #include "plant/wall.h"
 #include "render/overlay/labels.h"
 #include "rules.h"
@@ -15,18 +16,29 @@
 
 #define PLAYER_LOST_NS 3000000000LL /* so long nothing is heard before it is said */
 
+/* What a pane of a trend shows: what was recorded of its tags. */
+struct trend {
+    double hours;
+    json_t *answer; /* of /api/v1/history; NULL: none came yet */
+    int64_t due_ns; /* monotonic: when it is to be asked for next */
+    bool asks;      /* it waits for an answer */
+    bool failed;    /* the last time */
+    uint32_t count; /* of answers */
+};
+
 struct pane {
     enum pane_kind kind;
     bool known;                           /* false: of a kind that this player does not know */
     const char *kind_name, *area, *title; /* title NULL: none. All three belong to the player's `wall`, as the next two do */
     const json_t *items, *stops;          /* stops: of a tour, how long each item is shown and what is said about it; else NULL */
-    struct box box;   /* all of it, in pixels */
-    struct text said; /* what was drawn last: when it differs, the pane is drawn anew */
-    double title_px;  /* height of its title */
+    struct box box;                       /* all of it, in pixels */
+    struct text said;                     /* what was drawn last: when it differs, the pane is drawn anew */
+    double title_px;                      /* height of its title */
     struct view_pane view;
     size_t at;          /* of views: which of the items */
     int64_t changed_ns; /* 0: never */
     double every_s;
+    struct trend trend;
     bool on_alarm, called;
     struct text wanted; /* what was asked for */
     struct text words;  /* its title now */
@@ -38,6 +50,7 @@ struct player {
     const char *wall_id;
     int display;
     bool by_gpu, dark;
+    int64_t lost_ns;                                              /* so long nothing is heard before it is said; 0: PLAYER_LOST_NS */
     int width_px, height_px, display_width_px, display_height_px; /* of the window, and of all of the display */
     pthread_mutex_t lock;
     struct links links;
@@ -67,6 +80,10 @@ bool player_start(struct player *player);
 void player_finish(struct player *player);
 /* Draws what has changed into player->surface. Returns whether anything has, with the part of it in *dirty. */
 bool player_draw(struct player *player, int64_t now_ns, struct box *dirty);
+/* Returns whether the display is a tile of one picture. */
+bool player_is_tile(struct player *player);
+/* Returns whether a tile is to show a picture at an instant that is near. */
+bool player_waits(struct player *player);
 /* Returns how bright the display is to be now, up to 1. */
 double player_brightness(struct player *player);
 /* Has it fit another size. */
@@ -82,6 +99,13 @@ void pane_draw_title(struct player *player, const struct pane *pane, cairo_t *ca
 const char *player_time(const struct player *player, int64_t us);
 /* Chooses what a pane of views shows, and asks for it (view_choice.c). */
 void pane_choose(struct player *player, struct pane *pane, int64_t now_ns);
+/* Of trends (trend.c): asks for what was recorded when it is due; takes it in, for the pane that asked last (NULL: there is no answer);
+   says what is shown, and draws it. */
+void trend_ask(struct player *player, struct pane *pane, int64_t now_ns);
+void trend_take(struct player *player, const json_t *answer);
+void trend_say(struct player *player, const struct pane *pane, int64_t now_ns, struct text *said);
+void trend_finish(struct trend *trend); /* leaves it empty */
+void trend_draw(struct player *player, const struct pane *pane, cairo_t *cairo, const struct box *body);
 /* Makes the panes of the display anew, out of player->walls, or says what is wrong (layout.c). */
 void layout_build(struct player *player);
 /* Returns the list of alarms as the rules have it, which the caller frees with mem_free(). */

@@ -28,7 +28,8 @@ struct rules_alarm *player_rules_alarms(const struct player *player)
 static const json_t *find_order(const struct player *player, const struct pane *pane)
 {
     char place[160];
-    snprintf(place, sizeof(place), "%s/%d/%s", player->wall_id, player->display, pane->area);
+    int display = pane->view.tile.display ? 1 : player->display; /* tiles are one picture, sent to the first */
+    snprintf(place, sizeof(place), "%s/%d/%s", player->wall_id, display, pane->area);
     for (size_t i = 0; i < json_array_size(player->model.orders); i++) {
         const json_t *order = json_array_get(player->model.orders, i);
         const char *id = json_string_value(json_object_get(order, "id"));
@@ -120,7 +121,11 @@ void pane_choose(struct player *player, struct pane *pane, int64_t now_ns)
     if (order && !alarm)
         say_order(player, order, &pane->words);
     want(player, pane, order, alarm, address, &wanted);
-    if (pane->view.greeted && view_pane_fits(&pane->view, model) && (!pane->wanted.at || strcmp(wanted.at, pane->wanted.at) != 0)) {
+    bool chooses = !pane->view.tile.display || pane->view.tile.leads;
+    if (!chooses)
+        pane->wanted.length = 0;
+    if (chooses && pane->view.greeted && view_pane_fits(&pane->view, model) &&
+        (!pane->wanted.at || strcmp(wanted.at, pane->wanted.at) != 0)) {
         pane->wanted.length = 0;
         text_add(&pane->wanted, "%s", wanted.at);
         pane->changed_ns = now_ns;

@@ -39,6 +39,10 @@ void view_pane_clear(struct view_pane *pane)
         cairo_surface_destroy(pane->overlay);
     pane->picture = pane->overlay = NULL;
     pane->is_current = pane->greeted = false;
+    pane->coming_count = 0;
+    json_decref(pane->coming_markers);
+    pane->coming_markers = NULL;
+    view_tile_clear(&pane->tile);
     forget_markers(pane);
 }
 
@@ -56,8 +60,11 @@ void view_pane_finish(struct view_pane *pane)
 json_t *view_pane_hello(const struct view_pane *pane)
 {
     json_t *codecs = decoder_has(WIRE_CODEC_H264) ? json_pack("[s,s,s]", "h264", "jpeg", "auto") : json_pack("[s]", "jpeg");
-    return json_pack("{s:s,s:i,s:i,s:f,s:o}", "type", "hello", "width", pane->width_px, "height", pane->height_px, "pixel_ratio",
-                     fmin(fmax(pane->unit, 0.25), 8), "codecs", codecs);
+    json_t *hello = json_pack("{s:s,s:i,s:i,s:f,s:o}", "type", "hello", "width", pane->width_px, "height", pane->height_px, "pixel_ratio",
+                              fmin(fmax(pane->unit, 0.25), 8), "codecs", codecs);
+    if (pane->tile.display)
+        json_object_set_new(hello, "tile", json_pack("{s:s,s:i}", "wall", pane->tile.wall, "display", pane->tile.display));
+    return hello;
 }
 
 /* The server's own reader does it; what is of one server alone, or needs the geometry, is set apart. */
@@ -144,6 +151,8 @@ static json_t *find_camera(const struct view_pane *pane, const struct model *mod
     struct camera camera = { .up = { 0, model->plant.up == AXIS_Y, model->plant.up == AXIS_Z }, .fov_deg = home->fov_deg };
     struct framing framing = { .asset = -1, .tag = tag, .side = SIDE_NOW };
     double aspect = (double)pane->width_px / pane->height_px;
+    if (pane->tile.display) /* all of the picture */
+        aspect *= (double)pane->tile.columns / pane->tile.rows;
     struct view view;
     memcpy(camera.eye_m, home->eye_m, sizeof(camera.eye_m));
     memcpy(camera.target_m, home->target_m, sizeof(camera.target_m));
@@ -248,18 +257,85 @@ static void take_values(struct view_pane *pane, const json_t *rows)
     }
 }
 
-static void take_isolines(struct view_pane *pane, const json_t *rows)
+/* Isolines, or arrows, in place of those that were there. */
+static void take_labels(struct view_pane *pane, const json_t *rows, bool arrows)
 {
-    mem_free(pane->frame.labels);
-    pane->frame.labels = mem_array(json_array_size(rows) + 1, sizeof(*pane->frame.labels));
-    pane->frame.label_count = json_array_size(rows);
+    struct frame *frame = &pane->frame;
+    struct frame_label *labels = mem_array(frame->label_count + json_array_size(rows) + 1, sizeof(*labels));
+    size_t count = 0;
+    for (size_t i = 0; i < frame->label_count; i++)
+        if (frame->labels[i].arrow != arrows)
+            labels[count++] = frame->labels[i];
     for (size_t i = 0; i < json_array_size(rows); i++) {
         const json_t *row = json_array_get(rows, i);
-        pane->frame.labels[i].value = json_number_value(json_array_get(row, 0));
-        pane->frame.labels[i].x_px = (float)json_number_value(json_array_get(row, 1));
-        pane->frame.labels[i].y_px = (float)json_number_value(json_array_get(row, 2));
-        pane->frame.labels[i].half = json_integer_value(json_array_get(row, 3)) != 0;
+        double numbers[7];
+        for (size_t k = 0; k < 7; k++)
+            numbers[k] = json_number_value(json_array_get(row, k));
+        const double *n = numbers;
+        labels[count++] = arrows ? (struct frame_label){ n[4], (float)n[0], (float)n[1], (float)n[2], (float)n[3], n[6] != 0, 1, n[5] != 0 }
+                                 : (struct frame_label){ .value = n[0], .x_px = (float)n[1], .y_px = (float)n[2], .half = n[3] != 0 };
     }
+    mem_free(frame->labels);
+    frame->labels = labels;
+    frame->label_count = count;
+}
+
+/* Legend and markers of a tile change with the picture that they belong to. */
+static void take_told(struct view_pane *pane)
+{
+    for (int i = pane->coming_count - 1; i >= 0; i--)
+        if (pane->coming[i].params_seq == pane->shown_params_seq) {
+            if (pane->coming[i].known)
+                pane->told = pane->coming[i].view;
+            pane->told_seq = pane->coming[i].known ? UINT32_MAX : 0;
+            pane->coming_count -= i + 1;
+            memmove(pane->coming, pane->coming + i + 1, (size_t)pane->coming_count * sizeof(pane->coming[0]));
+            break;
+        }
+    pane->is_current = pane->told_seq > 0; /* who leads chose it */
+    pane->overlay_due = true;
+}
+
+static void hear_told(struct view_pane *pane, const struct model *model, const json_t *message, uint32_t params_seq)
+{
+    struct told_view next = { .params_seq = params_seq };
+    next.known = read_view(model, message, pane->width_px, pane->height_px, &next.view);
+    if (pane->coming_count == TOLD_COMING)
+        memmove(pane->coming, pane->coming + 1, (size_t)--pane->coming_count * sizeof(pane->coming[0]));
+    pane->coming[pane->coming_count++] = next;
+    if (pane->picture)
+        take_told(pane);
+}
+
+static void take_marker_message(struct view_pane *pane, const struct model *model, const json_t *message)
+{
+    if (json_object_get(message, "markers"))
+        take_markers(pane, model, json_object_get(message, "markers"));
+    take_values(pane, json_object_get(message, "values"));
+    if (json_object_get(message, "isolines"))
+        take_labels(pane, json_object_get(message, "isolines"), false);
+    if (json_object_get(message, "arrows"))
+        take_labels(pane, json_object_get(message, "arrows"), true);
+    pane->overlay_due = true;
+}
+
+/* Those of a tile's pictures up to that frame. */
+static void take_marker_messages(struct view_pane *pane, const struct model *model, uint32_t seq)
+{
+    const json_t *first;
+    while ((first = json_array_get(pane->coming_markers, 0)) && json_integer_value(json_object_get(first, "seq")) <= (json_int_t)seq) {
+        take_marker_message(pane, model, first);
+        json_array_remove(pane->coming_markers, 0);
+    }
+}
+
+static void keep_marker_message(struct view_pane *pane, const struct model *model, const json_t *message)
+{
+    if (!pane->coming_markers)
+        pane->coming_markers = json_array();
+    json_array_append(pane->coming_markers, (json_t *)message);
+    if (json_array_size(pane->coming_markers) > MARKERS_COMING)
+        take_marker_messages(pane, model, (uint32_t)json_integer_value(json_object_get(json_array_get(pane->coming_markers, 0), "seq")));
 }
 
 bool view_pane_fits(const struct view_pane *pane, const struct model *model)
@@ -278,16 +354,19 @@ void view_pane_hear(struct view_pane *pane, const struct model *model, const jso
         snprintf(pane->refused, sizeof(pane->refused), "%s", text ? text : "?");
     } else if (!view_pane_fits(pane, model)) { /* the one of two sessions was told of a new plant, the other will be */
         pane->missed = true;
+    } else if (pane->tile.display && (!strcmp(type, "tiles") || !strcmp(type, "present"))) {
+        view_tile_hear(&pane->tile, type, message);
+    } else if (pane->tile.display && !strcmp(type, "following")) {
+        hear_told(pane, model, message, (uint32_t)json_integer_value(json_object_get(message, "params_seq")));
+    } else if (pane->tile.display && !strcmp(type, "params")) {
+        hear_told(pane, model, message, (uint32_t)json_integer_value(json_object_get(message, "seq")));
     } else if (!strcmp(type, "params")) {
         if (read_view(model, message, pane->width_px, pane->height_px, &pane->told))
             pane->told_seq = (uint32_t)json_integer_value(json_object_get(message, "seq"));
+    } else if (!strcmp(type, "markers") && pane->tile.display) {
+        keep_marker_message(pane, model, message);
     } else if (!strcmp(type, "markers")) {
-        if (json_object_get(message, "markers"))
-            take_markers(pane, model, json_object_get(message, "markers"));
-        take_values(pane, json_object_get(message, "values"));
-        if (json_object_get(message, "isolines"))
-            take_isolines(pane, json_object_get(message, "isolines"));
-        pane->overlay_due = true;
+        take_marker_message(pane, model, message);
     }
 }
 
@@ -312,9 +391,10 @@ static void put_part(struct view_pane *pane, const struct wire_frame *frame)
         memcpy(pane->canvas + (frame->y_px + y) * stride + (size_t)frame->x_px * 4, from + y * row_bytes, row_bytes);
 }
 
-static void show_canvas(struct view_pane *pane, const struct wire_frame *frame)
+/* model: of a tile. */
+static void show_pixels(struct view_pane *pane, const struct model *model, const struct wire_frame *frame, const uint8_t *pixels)
 {
-    int width_px = pane->canvas_width_px, height_px = pane->canvas_height_px;
+    int width_px = frame->full_width_px, height_px = frame->full_height_px;
     if (pane->picture &&
         (cairo_image_surface_get_width(pane->picture) != width_px || cairo_image_surface_get_height(pane->picture) != height_px)) {
         cairo_surface_destroy(pane->picture);
@@ -328,7 +408,7 @@ static void show_canvas(struct view_pane *pane, const struct wire_frame *frame)
     uint8_t *to = cairo_image_surface_get_data(pane->picture);
     size_t stride = (size_t)cairo_image_surface_get_stride(pane->picture);
     for (int y = 0; y < height_px; y++)
-        memcpy(to + (size_t)y * stride, pane->canvas + (size_t)y * (size_t)width_px * 4, (size_t)width_px * 4);
+        memcpy(to + (size_t)y * stride, pixels + (size_t)y * (size_t)width_px * 4, (size_t)width_px * 4);
     cairo_surface_mark_dirty(pane->picture);
     struct camera *camera = &pane->frame.view.camera;
     for (int i = 0; i < 3; i++) {
@@ -340,6 +420,11 @@ static void show_canvas(struct view_pane *pane, const struct wire_frame *frame)
     camera->height_m = (double)frame->height_m;
     pane->is_current = pane->params_seq > 0 && frame->camera_seq >= pane->camera_seq && frame->params_seq >= pane->params_seq &&
                        pane->told_seq >= pane->params_seq;
+    if (pane->tile.display) {
+        pane->shown_params_seq = frame->params_seq;
+        take_told(pane);
+        take_marker_messages(pane, model, frame->seq);
+    }
     pane->frame.data_utc_ns = (int64_t)frame->data_time_us * 1000;
     pane->shown_ns = clock_mono_ns();
     pane->frames++;
@@ -360,9 +445,21 @@ bool view_pane_decode(struct view_pane *pane, pthread_mutex_t *lock, const struc
     if (!last)
         return true;
     pthread_mutex_lock(lock);
-    if (pane->greeted)
-        show_canvas(pane, frame);
+    if (pane->greeted && pane->tile.display)
+        view_tile_keep(&pane->tile, frame, pane->canvas);
+    else if (pane->greeted)
+        show_pixels(pane, NULL, frame, pane->canvas);
     pthread_mutex_unlock(lock);
+    return true;
+}
+
+bool view_pane_flip(struct view_pane *pane, const struct model *model, int64_t now_us)
+{
+    struct tile_picture picture;
+    if (!view_tile_take(&pane->tile, now_us, &picture))
+        return false;
+    show_pixels(pane, model, &picture.frame, picture.pixels);
+    mem_free(picture.pixels);
     return true;
 }
 
@@ -390,7 +487,8 @@ static bool project(const struct camera *camera, double width_px, double height_
 /* Markers of the picture, in pixels of the pane; and of alarms that it does not show, as of another group, or behind something. */
 static void collect_markers(const struct view_pane *pane, const struct model *model, struct frame *frame)
 {
-    double x, y, across = (double)pane->width_px / pane->canvas_width_px, down = (double)pane->height_px / pane->canvas_height_px;
+    double x, y, across = (double)pane->width_px / cairo_image_surface_get_width(pane->picture),
+           down = (double)pane->height_px / cairo_image_surface_get_height(pane->picture);
     frame->markers = mem_array(pane->frame.marker_count + model->list_count + 1, sizeof(*frame->markers));
     frame->labels = mem_array(pane->frame.label_count + 1, sizeof(*frame->labels));
     for (size_t i = 0; i < pane->frame.marker_count; i++) {
@@ -405,7 +503,7 @@ static void collect_markers(const struct view_pane *pane, const struct model *mo
         frame->labels[i].y_px *= (float)down;
     }
     frame->label_count = pane->frame.label_count;
-    for (size_t i = 0; i < model->list_count && !frame->view.split; i++) {
+    for (size_t i = 0; i < model->list_count && !frame->view.split && !pane->tile.display; i++) {
         int tag = model->list[i].tag;
         bool known = tag < 0 || model->plant.tags[tag].asset < 0 || !model->plant.tags[tag].has_position;
         for (size_t k = 0; k < frame->marker_count && !known; k++)
@@ -432,6 +530,8 @@ static void draw_overlay(struct view_pane *pane, const struct model *model)
     frame.view.width_px = pane->width_px;
     frame.view.height_px = pane->height_px;
     collect_markers(pane, model, &frame);
+    if (pane->tile.display && pane->tile.display != pane->tile.columns * pane->tile.rows)
+        frame.view.look = LOOK_MATERIALS; /* the legend stands once on the wall: at its right edge */
     overlay_draw_pane(pane->overlay, &frame, &model->scene, model->snapshot, pane->unit);
     mem_free(frame.markers);
     mem_free(frame.labels);
@@ -458,6 +558,11 @@ bool view_pane_draw(struct view_pane *pane, const struct model *model, cairo_t *
     cairo_paint(cairo);
     cairo_restore(cairo);
     return true;
+}
+
+bool view_pane_project(const struct view_pane *pane, const double place_m[3], double *x, double *y)
+{
+    return project(&pane->frame.view.camera, pane->width_px, pane->height_px, place_m, x, y);
 }
 
 void view_pane_point(const struct view_pane *pane, cairo_t *cairo, double x, double y, const double place_m[3])

@@ -10,6 +10,14 @@
 #include "link.h"
 #include "model.h"
 #include "render/frame.h"
+#include "view_tile.h"
+
+enum { TOLD_COMING = 8, MARKERS_COMING = 32 };
+struct told_view {
+    uint32_t params_seq; /* of the pictures that are drawn by it */
+    bool known;          /* the player knows what it says */
+    struct view view;
+};
 
 struct view_pane {
     struct link *link;
@@ -23,6 +31,10 @@ struct view_pane {
     uint32_t camera_seq, params_seq; /* the newest that were asked for */
     struct view told;                /* what the server says is in force, by its answer number told_seq */
     uint32_t told_seq;
+    struct told_view coming[TOLD_COMING]; /* of a tile: of pictures that are not shown yet, the newest last */
+    int coming_count;
+    json_t *coming_markers; /* likewise, messages */
+    uint32_t shown_params_seq; /* of a tile's picture */
     char refused[200];                  /* why the server does not show what was asked for; "": it does */
     cairo_surface_t *picture, *overlay; /* NULL: none came yet. The overlay is as large as the pane */
     bool is_current;                    /* the picture is of what was asked for */
@@ -31,6 +43,7 @@ struct view_pane {
     uint32_t frames;
     struct frame frame; /* what the picture shows; its pixels are not used */
     bool by_gpu;
+    struct view_tile tile;
     /* --- below: of the network's thread */
     struct decoder *decoder;
     uint8_t *canvas; /* what parts of pictures are put together in */
@@ -54,8 +67,12 @@ void view_pane_show(struct view_pane *pane, const struct model *model, const cha
 void view_pane_show_tag(struct view_pane *pane, const struct model *model, int tag);
 /* Returns whether it speaks of the same plant as the model. */
 bool view_pane_fits(const struct view_pane *pane, const struct model *model);
+/* Of a tile: shows the picture whose time has come. Returns whether one came. */
+bool view_pane_flip(struct view_pane *pane, const struct model *model, int64_t now_us);
 /* Draws picture and overlay with the upper left corner there. Returns false if there is no picture of what was asked for. */
 bool view_pane_draw(struct view_pane *pane, const struct model *model, cairo_t *cairo, double x, double y);
+/* Returns whether a place of the plant is in front of the eye, and where it is in pixels of the pane. */
+bool view_pane_project(const struct view_pane *pane, const double place_m[3], double *x, double *y);
 /* Draws a cross-hair at a place of the plant, likewise. */
 void view_pane_point(const struct view_pane *pane, cairo_t *cairo, double x, double y, const double place_m[3]);
 

@@ -109,8 +109,12 @@ session.on('params', async () => {
     refresh();
     if ([params.hidden, params.isolate, params.ghost].some((ids) => ids?.length > 0))
         modules.get('shown');
-    if ([params, params.split].some((half) => half?.isolines?.length > 0))
-        modules.get('isolines');
+    for (const half of [params, params.split ?? {}]) {
+        if (half.isolines?.length > 0 || session.model?.group(half.group)?.directed)
+            modules.get('isolines');
+        if (['difference', 'uncertainty', 'blind'].includes(half.show))
+            modules.get('coverage');
+    }
     if (params.clip && !document.body.classList.contains('wall') && await modules.get('clipGizmo')) // by hand, but for a wall
         refresh();
 });

@@ -7,7 +7,7 @@ const CHOICES = {
     // null: any name; the server knows which there are
     group : null,
     interpolation : null,
-    distance : [ 'geodesic', 'euclidean' ],
+    distance : null,
     colormap : null,
     look : [ 'default', 'glossy', 'flat', 'materials' ],
     fill : [ 'none', 'neighbours' ],

@@ -15,7 +15,8 @@ export const PARAMS = [
 const SAID = [...PARAMS, 'sensor', 'baseline', 'baselines', 'sensors', 'unit']; // by the server
 export const ENGINEERS = ['fill', 'strength', 'decay', 'power', 'radius_m', 'reach_m', 'sensors']; // others may not ask for these
 const SHARED = ['light', 'environment', 'backdrop', 'selected', 'hidden', 'isolate', 'ghost', 'clip', 'split']; // by both halves
-const SETS = ['hidden', 'isolate', 'ghost']; // kept as they are, whatever the plant begins with by then
+// Kept as they are, whatever the plant begins with by then.
+const SETS = ['hidden', 'isolate', 'ghost'];
 const GROUPS_OWN = ['interpolation', 'distance', 'fill', 'power', 'radius_m', 'reach_m', 'scale', 'isolines'];
 const OF_THE_INSTANT = ['tags', 'picked']; // their time is that of what is shown
 const NOW = { atUs: null, speed: 0, fromUs: null };
@@ -453,7 +454,8 @@ const HANDLERS = {
             const id = `${tag}/${half}`;
             known.set(id, { ...known.get(id), value, quality: QUALITIES[quality] ?? null });
         }
-        known.isolines = message.isolines ?? newest.isolines ?? [];
+        known.isolines = message.isolines ?? newest.isolines;
+        known.arrows = message.arrows ?? newest.arrows;
         this.markers.set(message.seq, known);
     },
 

@@ -15,6 +15,7 @@ import { chooseTheme } from '../app/common/theme.js';
 import { renewIfOld } from '../app/install.js';
 import { areaOf, paneOf } from './panes.js';
 import { Pairing } from './pairing.js';
+import { tileOf } from './tile.js';
 
 const TICK_MS = 250, LOST_MS = 3000, SHIFT_MS = 180000;
 const SHIFTS = [[0, 0], [2, 1], [3, -1], [1, -3], [-1, -2], [-3, 0], [-2, 2], [0, 3]]; // pixels, in turn: nothing burns in
@@ -46,8 +47,14 @@ const call = new AlarmCall();
 
 // --- the grid
 
-function sayWrong(text) {
+function clear() {
+    for (const { close } of panes)
+        close?.();
     panes = [];
+}
+
+function sayWrong(text) {
+    clear();
     byId('grid').replaceChildren(make('p', { class: 'wrong' }, text));
 }
 
@@ -68,18 +75,21 @@ function build(walls) {
         return sayWrong(say('walls.unknown', { id: query.get('wall'), known: walls.map(({ id }) => id).join(', ') || say('none') }));
     if (!display)
         return sayWrong(say('walls.display', { n: number, id: wall.id, count: wall.displays.length }));
-    const grid = byId('grid'), context = { session, call, wall, display: number, theme: query.get('theme') };
+    const grid = byId('grid'), context = { session, call, wall, display: number, theme: query.get('theme'), streamUrl };
+    clear();
+    document.body.classList.toggle('tiled', display.panes.some(({ tile }) => tile));
     fit();
     grid.style.gridTemplateAreas = display.grid.map((row) => `"${row.trim().split(/ +/).map(areaOf).join(' ')}"`).join(' ');
     grid.style.gridTemplateRows = display.grid.map(() => 'minmax(0, 1fr)').join(' ');
     grid.style.gridTemplateColumns = display.grid[0].trim().split(/ +/).map(() => 'minmax(0, 1fr)').join(' ');
-    panes = display.panes.map((pane) => paneOf(pane, context));
+    panes = display.panes.map((pane) => (pane.tile ? tileOf(pane, context) : paneOf(pane, context)));
     grid.replaceChildren(...panes.map(({ element }) => element));
     return undefined;
 }
 
 // The server is to know which display this is.
-const sayWho = () => wall?.displays[number - 1] && session.post({ type: 'display', wall: wall.id, display: number });
+const sayWho = () => wall?.displays[number - 1] && !session.model?.plant.only &&
+    session.post({ type: 'display', wall: wall.id, display: number });
 
 async function look() {
     try {
@@ -136,7 +146,7 @@ session.on('welcome', () => {
 session.on('denied', () => {
     session.token = null;
     store('token', '');
-    panes = [];
+    clear();
     byId('grid').replaceChildren();
     pairing.show();
     shape = '';

@@ -35,6 +35,14 @@ function aboutTags({ model }, names) {
 
 const timeOf = (session, us) => zoneClock(session.model.plant.time_zone)(us / 1000).time;
 
+// Of the oldest reading in a picture, for who is told of no readings.
+function pictureAgeMs(session) {
+    const { picture } = session;
+    if (!picture || picture.oldestAgeMs === null)
+        return null;
+    return picture.oldestAgeMs + Math.max(0, session.clockUs() - picture.sentTimeUs) / 1000;
+}
+
 // The page, without what is pressed.
 function pageIn({ wall, theme, body }, kind, place) {
     const query = new URLSearchParams({ wall: `${wall.inches},${wall.distance_m}`, pane: kind, hangs: place, ...(theme ? { theme } : {}) });
@@ -49,7 +57,8 @@ function ViewsPane(pane, context) {
     const { session, call, title, element, wall, display } = context, place = `${wall.id}/${display}/${pane.area}`;
     const inner = pageIn(context, 'view', place), remembered = `plantcast.at.${place}`;
     let at = (Number(sessionStorage.getItem(remembered)) || 0) % pane.items.length, changedAt = null, shown = null, shownIn = null;
-    const titleOf = (id) => pane.title ?? session.views.find((view) => view.id === id)?.title ?? id;
+    const viewsOf = ({ model, views }) => model?.plant.only ?? views; // a token may be for some views only, which it names
+    const titleOf = (id) => pane.title ?? viewsOf(session).find((view) => view.id === id)?.title ?? id;
     const words = make('span', { class: 'said' }), about = make('span', { class: 'about' });
     title.append(words, about);
 
@@ -63,13 +72,21 @@ function ViewsPane(pane, context) {
         const id = pane.items[at];
         if (order?.view)
             page.modules.use('views', (views) => views.lookAt(order.view));
+        else if (page.session.model.plant.only)
+            page.session.post({ type: 'look', seq: 1, named: id });
         else
             page.modules.use('views', (views) => views.openNamed(id, false));
-        const known = page.session.views.some((view) => view.id === id);
+        const known = viewsOf(page.session).some((view) => view.id === id);
         const own = known ? titleOf(id) : say('named.unknown', { id });
         const said = !order && pane.stops?.[at].text;
         words.replaceChildren(order?.view ? order.title : own, ...(said ? [make('span', {}, ` · ${said}`)] : []),
             ...(order ? [' ', byWhom(order)] : []));
+    }
+
+    // Whether the picture is still of another group than that of the alarm.
+    function ofOther({ model, shown: params }, alarm) {
+        const group = model.tag(alarm.tag.name)?.group;
+        return Boolean(group) && params.group !== group;
     }
 
     function showAlarm(page, alarm) {
@@ -86,8 +103,9 @@ function ViewsPane(pane, context) {
         const { page } = inner;
         if (!page?.session.model || page.session.views.length === 0 && session.views.length > 0)
             return;
-        const { group, model } = page.session;
-        setText(about, group ? [quantityText(group), ageOf(model.oldestAgeMs(group.id, clock.now()))].join(' · ') : '');
+        const { model } = page.session, group = model.group(page.session.shown.group);
+        const ageMs = model.plant.only ? pictureAgeMs(page.session) : group && model.oldestAgeMs(group.id, clock.now());
+        setText(about, group ? [quantityText(group), ageOf(ageMs)].join(' · ') : '');
         const alarms = session.model.alarms.list(), nowUs = session.clockUs();
         const alarm = pane.on_alarm ? call.next(alarms, now, nowUs) : null;
         const order = session.walls?.list.find(({ id }) => id === place) ?? null;
@@ -100,6 +118,7 @@ function ViewsPane(pane, context) {
         const text = page.session.views.find((view) => view.id === pane.items[at])?.view, { width, height } = page.session.size;
         const wanted = alarm ? `${alarm.tag.name}/${alarm.kind}/${isGone(alarm.state)}` : JSON.stringify([at, order, text, width, height]);
         element.classList.toggle('called', Boolean(alarm));
+        element.classList.toggle('coming', Boolean(alarm) && ofOther(page.session, alarm)); // no legend of another quantity below its name
         if (wanted === shown && page === shownIn)
             return;
         [shown, shownIn] = [wanted, page];
@@ -138,7 +157,8 @@ function AlarmsPane(pane, { session, call, title, body }) {
     body.append(list, more);
 
     const rowOf = (alarm) => make('li', { class: [alarm.waiting ? 'waiting' : '', isGone(alarm.state) ? 'gone' : ''].join(' ') },
-        badge(alarm.priority, isGone(alarm.state)), make('b', {}, `${say(`kind.${alarm.kind}`)} ${alarm.tag.name}`),
+        badge(alarm.priority, isGone(alarm.state)),
+        make('b', {}, `${say(`kind.${alarm.kind}`)} `, make('span', { class: 'tag' }, alarm.tag.name)),
         make('span', { class: 'what' }, [limitText(session.model, alarm), alarm.tag.description].filter(Boolean).join(' · ')),
         make('time', {}, timeOf(session, alarm.raisedUs)));
     const rowOfMany = ({ asset, count, worst }) => make('li', { class: 'waiting' }, badge(worst.priority),

@@ -101,7 +101,6 @@ waiting: Warten auf das erste Bild
 right: Legende der rechten Hälfte
 colours: Farben von {min} bis {max}
 distance: Abstand von {tag}
-since: seit {when}
 operator: Nach den Grenzwerten jeder Messstelle.
 log: Logarithmische Skala.
 unsafe: Diese Farben können täuschen.

@@ -101,7 +101,6 @@ waiting: Waiting for the first picture
 right: Legend of the right half
 colours: Colours from {min} to {max}
 distance: Distance from {tag}
-since: since {when}
 operator: By each tag’s own limits.
 log: Logarithmic scale.
 unsafe: These colours may be misread.

@@ -100,7 +100,6 @@ waiting: 첫 화면을 기다리는 중
 right: 오른쪽 화면의 범례
 colours: {min}부터 {max}까지의 색
 distance: {tag}에서의 거리
-since: {when} 이후
 operator: 태그마다 정해진 한계 기준.
 log: 로그 눈금.
 unsafe: 잘못 읽기 쉬운 색입니다.

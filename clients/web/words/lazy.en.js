@@ -10,6 +10,8 @@ geodesic: Geodesic
 geodesic.why: Distance along the surface: heat does not jump across a gap
 euclidean: Euclidean
 euclidean.why: Straight distance through space
+heat: Heat on points
+heat.why: Along the surface as the paper finds it, on sampled points, to compare: errs by half a percent, and goes through thin walls
 
 [interpolation]
 shepard: Shepard
@@ -20,10 +22,31 @@ harmonic: Conduction
 harmonic.why: Steady heat conduction along the wall between sensors. Not where fluid or air takes the heat away, nor for pressure or flow
 fin: Conduction and loss
 fin.why: As conduction, but the wall loses heat to the air; unknown where sensors say under a tenth. Not for insulated or heated walls
+gp: Most probable
+gp.why: Gaussian process: most probable field, with its uncertainty. Not where parts that touch have nothing to do with each other
 
 [bar]
 distance: Distance
 interpolation: Interpolation
+
+[neighbours]
+say: Others say
+above: {predicted}; reads {by} more
+below: {predicted}; reads {by} less
+title: Sensors that disagree most
+why: What each reads, and what the others on its asset say without it. Not where a sensor is meant to differ, as at an inlet.
+
+[coverage]
+since: since {when}
+title: What sensors cover
+none: Off
+uncertainty: Uncertainty
+uncertainty.note: Standard deviation, by the sensors that are good now.
+uncertainty.why: How far the field may err, if the surface behaves as the kernel of gp expects. Not where its range is a guess.
+blind: Blind places
+blind.of: Hot spot seen: {name}
+blind.note: Smallest hot spot of {size} m of which the nearest sensor reads 5 % of the range.
+blind.why: How hot a small spot must get before any sensor shows it. Not for other shapes, nor where heat takes other ways.
 
 [picture]
 from: Distance from
@@ -44,6 +67,9 @@ around: Around
 around.why: Surroundings
 split: Split view
 right: Right half
+
+[arrows]
+unknown: Direction unknown
 
 [scale]
 linear: Linear
@@ -90,6 +116,8 @@ more(one): and {count} more
 more(other): and {count} more
 counts: {active} active, {waiting} to be acknowledged
 flood: Flood of alarms: {active} active, {waiting} to be acknowledged
+late: The link to this display is too slow; left out since {time}
+missing: Not shown: display {displays}
 
 [notes]
 legend: Notes

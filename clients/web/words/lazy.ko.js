@@ -10,6 +10,8 @@ geodesic: 측지 거리
 geodesic.why: 표면을 따르는 거리: 열은 틈을 건너뛰지 않습니다
 euclidean: 직선 거리
 euclidean.why: 공간을 가로지르는 직선 거리
+heat: 점 위의 열
+heat.why: 논문의 방법(뽑은 점 위의 거리), 비교용: 약 0.5 % 어긋나고 얇은 벽을 통과합니다
 
 [interpolation]
 shepard: Shepard
@@ -20,11 +22,32 @@ harmonic: 열전도
 harmonic.why: 센서 사이 벽면의 정상 열전도. 유체나 공기가 열을 빼앗는 곳, 압력·유량에는 믿지 마십시오
 fin: 전도와 손실
 fin.why: 열전도에 더해 벽이 공기로 열을 잃음. 센서의 몫이 10분의 1보다 작은 곳은 알 수 없음.
+gp: 가장 그럴듯한 값
+gp.why: 가우스 과정: 가장 그럴듯한 장과 그 불확실성. 서로 무관한 부품이 맞닿은 곳에는 맞지 않음
   단열되거나 가열되는 벽에는 믿지 마십시오
 
 [bar]
 distance: 거리
 interpolation: 보간
+
+[neighbours]
+say: 다른 센서의 예측
+above: {predicted}; {by} 높음
+below: {predicted}; {by} 낮음
+title: 가장 어긋나는 센서
+why: 각 센서의 값과, 그 센서 없이 같은 설비의 다른 센서가 말하는 값. 입구처럼 달라야 하는 곳은 제외
+
+[coverage]
+since: {when} 이후
+title: 센서가 미치는 곳
+none: 끔
+uncertainty: 불확실성
+uncertainty.note: 지금 정상인 센서에 따른 표준편차.
+uncertainty.why: 표면이 gp의 커널대로 변할 때 장이 벗어날 수 있는 크기. 범위가 추측이면 믿지 말 것
+blind: 사각지대
+blind.of: 보이는 열점: {name}
+blind.note: 크기 {size} m 열점 중 가장 가까운 센서가 범위의 5 %를 읽는 최소값
+blind.why: 작은 곳이 얼마나 뜨거워져야 센서가 보이는가. 다른 모양이나 다른 열 경로에는 맞지 않음
 
 [picture]
 from: 거리의 기준
@@ -45,6 +68,9 @@ around: 주변
 around.why: 주변 환경
 split: 화면 분할
 right: 오른쪽 화면
+
+[arrows]
+unknown: 방향을 알 수 없음
 
 [scale]
 linear: 선형
@@ -90,6 +116,8 @@ many: 경보 {count}건, 최고 {worst}
 more(other): 외 {count}건
 counts: 활성 {active}건, 확인 대기 {waiting}건
 flood: 경보 폭주: 활성 {active}건, 확인 대기 {waiting}건
+late: 이 화면의 연결이 너무 느려 {time}부터 제외됨
+missing: 표시되지 않음: 화면 {displays}
 
 [notes]
 legend: 메모

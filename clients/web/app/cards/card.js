@@ -8,6 +8,7 @@ import { standBeside } from './card_position.js';
 import { clock } from '../common/clock.js';
 import { byId, glyph, limitFlag, make, setText } from '../common/dom.js';
 import { closeButton, fill } from '../common/widgets.js';
+import { Neighbours, neighbourText } from './neighbours.js';
 
 export class Card {
     constructor({ session, selection, overlay, viewport, modules, selectTag, showTrend, addTrend }) {
@@ -24,8 +25,10 @@ export class Card {
         const { tag } = this;
         const marker = tag && this.overlay.marker(tag);
         this.element.hidden = !tag || (!marker && tag === this.selection.hover);
-        if (this.element.hidden)
+        if (this.element.hidden) {
+            this.neighbours?.show(null);
             return;
+        }
         this.element.classList.toggle('hover', tag === this.selection.hover && tag.name !== this.selection.tag);
         this.fill(tag);
         this.place(marker);
@@ -50,6 +53,8 @@ export class Card {
         const unproven = model.unproven(tag);
         setText(this.proof, unproven ? say(`proof.${unproven}`) : '');
         setText(this.assumed, tag.place === 'equipment' ? say('proof.assumed') : '');
+        if (group && tag.asset)
+            this.neighbours.show(`tag=${encodeURIComponent(tag.name)}`);
         this.adds.hidden = !this.modules.there('trends')?.takes(tag);
         const alarm = model.alarms.gravest(tag.index);
         this.limit.hidden = !alarm;
@@ -67,6 +72,14 @@ export class Card {
         this.assumed = make('p', { class: 'proof assumed' });
         this.quality = make('dd');
         this.age = make('dd');
+        this.others = make('dd');
+        this.othersTerm = make('dt', { hidden: true }, say('neighbours.say'));
+        this.neighbours?.show(null);
+        this.neighbours = new Neighbours(this.session, () => this.element.offsetParent !== null, ([row]) => {
+            const text = neighbourText(row, this.session.model.group(tag.group));
+            this.othersTerm.hidden = !text;
+            setText(this.others, text ?? '');
+        });
         const trend = (name, f, key) => make('button', { type: 'button', class: name, onclick: () => f(tag) }, say(key));
         this.adds = trend('add-trend', this.addTrend, 'card.add');
         fill(this.element,
@@ -74,6 +87,7 @@ export class Card {
             make('h3', {}, tag.name), make('p', { class: 'about' }, tag.description ?? ''), this.value, this.limit,
             this.proof, this.assumed,
             make('dl', {}, make('dt', {}, say('card.quality')), this.quality, make('dt', {}, say('card.age')), this.age,
+                this.othersTerm, this.others,
                 make('dt', {}, say('card.on')), make('dd', {}, on)),
             this.session.recorded ? make('div', { class: 'trends-of' }, trend('trend', this.showTrend, 'card.trend'), this.adds) : null,
             links.length > 0 ? make('p', { class: 'links' }, ...links) : null);

@@ -5,9 +5,10 @@ import { say } from '../../core/words.js';
 import { byId, make, setText } from './dom.js';
 
 const explained = (kind, ...values) => values.map((value) => [value, say(`${kind}.${value}`), say(`${kind}.${value}.why`)]);
-export const distances = () => explained('distance', 'geodesic', 'euclidean');
+export const distances = (group) => explained('distance', 'geodesic', 'euclidean', 'heat')
+    .filter(([value], i) => i < 2 || group?.prepared?.includes(value));
 // The first two can be chosen everywhere, the others where they were prepared for the group.
-export const interpolations = (group) => explained('interpolation', 'shepard', 'paper', 'harmonic', 'fin')
+export const interpolations = (group) => explained('interpolation', 'shepard', 'paper', 'harmonic', 'fin', 'gp')
     .filter(([value], i) => i < 2 || group?.prepared?.includes(value));
 export const fills = () => explained('fill', 'none', 'neighbours');
 

@@ -36,14 +36,18 @@ export class Method {
         return { name, fieldset, all, why: make('p', { class: 'quiet' }) };
     }
 
-    // The interpolations that were prepared for the group.
-    offer(group)
-    {
-        const choice = this.choices.find(({ name }) => name === 'interpolation'), all = interpolations(group);
-        if (all.length === choice.all.length && all.every(([ value ], i) => value === choice.all[i][0]))
+    // What was prepared for the group.
+    offer(group) {
+        this.offerOf('distance', distances(group));
+        this.offerOf('interpolation', interpolations(group));
+    }
+
+    offerOf(name, all) {
+        const choice = this.choices.find((one) => one.name === name);
+        if (all.length === choice.all.length && all.every(([value], i) => value === choice.all[i][0]))
             return;
         choice.all = all;
-        fillSegments(choice.fieldset, choice.name, all, (value) => this.session.setParams({ interpolation : value }));
+        fillSegments(choice.fieldset, name, all, (value) => this.session.setParams({ [name]: value }));
     }
 
     setFactor(name, value) {

@@ -8,6 +8,7 @@ import { byId, make, setText } from '../common/dom.js';
 import { distances, interpolations, Range } from '../common/number_fields.js';
 import { fillSegments, fillSelect, markSegment } from '../common/choices.js';
 import { collapsiblePanel } from '../common/collapsible.js';
+import { Disagreeing } from '../cards/neighbours.js';
 import { LOOKS, SHOWS } from '../toolbar/toolbar.js';
 
 const HALF = {
@@ -17,7 +18,7 @@ const HALF = {
 const ENGINEERS_HALF = ['distance', 'interpolation'];
 
 export class Picture {
-    constructor({ session, selection }) {
+    constructor({ session, selection, modules, selectTag }) {
         Object.assign(this, { session, selection });
         this.panel = byId('picture-panel');
         Object.assign(this, collapsiblePanel(this.panel, byId('picture-toggle'), () => this.update()));
@@ -33,6 +34,9 @@ export class Picture {
             byId(id).addEventListener('input', () => this.moveSun());
         this.addHalf();
         this.range = new Range(this);
+        modules.use('coverage', (coverage) => coverage.fill());
+        this.disagreeing = new Disagreeing({ session, selectTag });
+        byId('light').before(this.disagreeing.element);
         session.on('params', () => this.update());
         session.on('welcome', () => this.update());
     }
@@ -103,7 +107,7 @@ export class Picture {
         const choices = {
             group : model.groups.map((group) => [group.id, quantityText(group)]),
             show : plain(needs),
-            distance : plain(distances()),
+            distance : plain(distances(model.group(right.group))),
             interpolation : plain(interpolations(model.group(right.group))),
             colormap : model.colormaps.map(({ name }) => [name, title(name)]),
             look : plain(LOOKS),
@@ -118,6 +122,7 @@ export class Picture {
         const { model, params } = this.session;
         if (!model || !this.panel.classList.contains('open'))
             return;
+        this.disagreeing.update();
         byId('from-sensor').hidden = params.show !== 'distance';
         fillSelect(byId('sensor'), sensorsOf(this.session).map(({ name, asset }) => [name, `${name}, ${asset}`]), params.sensor ?? '');
         byId('from-baseline').hidden = params.show !== 'difference';

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Values on isolines, where nothing else is written. Loaded where there are isolines.
+// Values on isolines, where nothing else is written, and arrows. Loaded where there are isolines or arrows.
 import { decimalsFor, shortNumberText } from '../../core/format.js';
+import { Arrows } from './arrows.js';
 import { INK } from './overlay.js';
 
 const SPACING_PX = 160; // between two of the same value
@@ -9,6 +10,7 @@ export class Isolines {
     constructor({ session, overlay, refresh }) {
         Object.assign(this, { session, overlay });
         overlay.isolines = this;
+        overlay.arrows = new Arrows({ session, overlay });
         refresh();
     }
 

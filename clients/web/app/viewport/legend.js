@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The legend: the colours as the server uses them, with units, limits, and the patterns for what is not known.
-import { decimalsFor, quantityText, shortNumberText, unitText, zoneClock } from '../../core/format.js';
+import { decimalsFor, quantityText, shortNumberText, unitText } from '../../core/format.js';
 import { colourOf, edges, LIMIT_BANDS, placeOf, scaleTicks, spread, valueAt } from '../../core/legend.js';
 import { hatchAt, patternPeriodPx, ruleAt, stippleAt } from '../../core/patterns.js';
 import { say } from '../../core/words.js';
@@ -61,6 +61,8 @@ function at(element, place) {
     return element;
 }
 
+// By `show`, of the quantity's name and the parameters: title, what stands behind it, a note. Of rarer ones: coverage.js.
+export const TITLES = { distance: (name, { sensor }) => [say('legend.distance', { tag: sensor ?? '–' })] };
 const LIMIT_PLACES = { LL: -2, L: -1, H: 1, HH: 2 };
 
 export class Legend {
@@ -92,8 +94,8 @@ export class Legend {
 
     // What decides how it looks.
     contents(params) {
-        const { group, show, sensor, colormap, ramp_interval, scale, breaks, isolines, look, unit } = params;
-        return JSON.stringify([group, show, sensor, this.since(params), colormap, ramp_interval, this.session.rangeOf(params), scale,
+        const { group, show, colormap, ramp_interval, scale, breaks, isolines, look, unit } = params;
+        return JSON.stringify([group, show, this.title(params), colormap, ramp_interval, this.session.rangeOf(params), scale,
             breaks, isolines, look, unit, this.unproven(params), this.assumed(params)]);
     }
 
@@ -119,8 +121,16 @@ export class Legend {
             this.element.append(make('p', { class: 'note' }, note));
     }
 
-    notes({ look, scale }, map, isOperator) {
+    title(params) {
+        const name = quantityText(this.session.model.group(params.group));
+        const sign = { difference: 'Δ ', uncertainty: '± ', blind: '? ' }[params.show] ?? ''; // until coverage.js is there
+        return TITLES[params.show]?.(name, params) ?? [sign + name];
+    }
+
+    notes(params, map, isOperator) {
+        const { look, scale } = params;
         return [
+            this.title(params)[2],
             isOperator && say('legend.operator'),
             !isOperator && scale === 'log' && say('legend.log'),
             !isOperator && map.safe === false && say('legend.unsafe'),
@@ -129,20 +139,9 @@ export class Legend {
     }
 
     heading(group, params) {
-        const { show, sensor, unit } = params, name = quantityText(group), since = this.since(params);
-        const text = { difference: `Δ ${name}`, distance: say('legend.distance', { tag: sensor ?? '–' }) }[show] ?? name;
+        const { show, unit } = params, [text, since] = this.title(params);
         return make('h2', {}, text, ' ', make('span', {}, show === 'operator' ? '' : unitText(unit ?? group.unit)),
             since && make('span', { class: 'since' }, ` ${since}`));
-    }
-
-    // From when on a difference is: the name of what was kept, and the plant's time then; null: none is shown, or it is not known.
-    since({ show, baseline }) {
-        const { model } = this.session;
-        if (show !== 'difference' || !baseline?.time_us)
-            return null;
-        const clock = zoneClock(model.plant.time_zone), then = clock(baseline.time_us / 1000), now = clock(this.session.clockUs() / 1000);
-        const when = then.date === now.date ? then.time : `${then.day} ${then.time}`;
-        return say('legend.since', { when: baseline.name ? `${baseline.name}, ${when}` : when });
     }
 
     // below: whether there may be values below the range.

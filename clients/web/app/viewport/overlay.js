@@ -129,6 +129,7 @@ export class Overlay {
         this.radius = markerRadius(this.all.filter((marker) => !marker.occluded));
         const labels = this.labels();
         this.places = this.place(labels);
+        this.arrows?.draw();
         for (const marker of this.markers)
             this.drawMarker(marker);
         this.drawMore?.();

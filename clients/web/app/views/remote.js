@@ -44,7 +44,8 @@ export class Remote {
     async learn() {
         const { walls } = await ask('api/v1/walls', {}, this.session.token).then((answer) => answer.json(), () => ({ walls: [] }));
         this.panes = walls.flatMap(({ id: wall, displays }) => displays.flatMap(({ panes }, index) =>
-            panes.filter(({ kind }) => kind === 'views').map(({ area, title }) => ({ wall, display: index + 1, area, title }))));
+            panes.filter(({ kind, tile }) => kind === 'views' && !(tile?.number > 1))
+                .map(({ area, title }) => ({ wall, display: index + 1, area, title }))));
         const before = this.pane.value;
         fillSelect(this.pane, this.panes.map((pane) => [nameOf(pane), say('remote.where', { ...pane, area: pane.title ?? pane.area })]),
             this.panes.some((pane) => nameOf(pane) === before) ? before : nameOf(this.panes[0] ?? {}));

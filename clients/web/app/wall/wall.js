@@ -49,7 +49,7 @@ export async function hangOnWall(search, page) {
         if (name)
             session.connection.spreadMs = SPREAD_MS;
         if (name) // the server is to know which display shows this
-            session.greeted(() => session.post({ type: 'display', wall: name, display: Number(display) }));
+            session.greeted(() => session.model.plant.only || session.post({ type: 'display', wall: name, display: Number(display) }));
         const metres = fit();
         if (metres < wall.metres && await learnWords().then(() => true, () => false))
             tell(say('wall.far', { metres: numberText(metres, 1), wanted: wall.metres }), FAR_MS);

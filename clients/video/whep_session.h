@@ -1,0 +1,19 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* One reader by WebRTC: its connection, which carries on what the encoder made. Thread: that of the default main context. */
+#ifndef VIDEO_WHEP_SESSION_H
+#define VIDEO_WHEP_SESSION_H
+#include "options.h"
+#include "outputs.h"
+
+struct whep_session;
+/* Begins to answer an offer (SDP). answered is called once, later: with the answer and all ways to get here, or NULL if there can be none.
+   Returns NULL with *why set to a text that stays if the offer cannot be answered. The caller destroys it; then answered is
+   called no more. */
+struct whep_session *whep_session_create(const struct options *options, struct outputs *outputs, const char *offer,
+                                         void (*answered)(struct whep_session *session, const char *sdp, void *data), void *data,
+                                         const char **why);
+void whep_session_destroy(struct whep_session **session); /* &NULL is fine; leaves NULL */
+/* Returns whether its reader is there, or may still come. Call it once a second. */
+bool whep_session_is_alive(struct whep_session *session);
+
+#endif

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What the other sensors say of one (predicted without it), as the daemon works it out: one line of a card, and the list of those that
+// disagree most.
+import { decimalsFor, numberText, unitText } from '../../core/format.js';
+import { ask } from '../../core/history.js';
+import { say } from '../../core/words.js';
+import { make } from '../common/dom.js';
+
+const AGAIN_MS = 3000, LISTED = 5;
+
+const sensors = (query, token) => ask('api/v1/neighbours', query, token).then((answer) => answer.json()).then((rows) => rows.sensors)
+    .catch(() => []); // what was said before is no longer so
+
+// Such as 81.3 °C ± 2.0, and how far off the reading is; null: nothing is known.
+export function neighbourText(row, group) {
+    if (!row || row.predicted === null)
+        return null;
+    const number = (value) => numberText(value, decimalsFor(group.max - group.min)), unit = unitText(group.unit);
+    const predicted = `${number(row.predicted)} ${unit}${row.deviation === null ? '' : ` ± ${number(row.deviation)}`}`;
+    if (row.residual === null)
+        return predicted;
+    return say(row.residual < 0 ? 'neighbours.below' : 'neighbours.above', { predicted, by: `${number(Math.abs(row.residual))} ${unit}` });
+}
+
+// Asks again and again while isSeen(), but not in the past: the daemon knows of now. onRows(rows).
+export class Neighbours {
+    constructor(session, isSeen, onRows) {
+        Object.assign(this, { session, isSeen, onRows, query: null });
+    }
+
+    async show(query) {
+        const isLive = query && this.session.time.atUs === null;
+        if (!isLive)
+            this.onRows([]);
+        if (query === this.query)
+            return;
+        this.query = query;
+        clearTimeout(this.timer);
+        if (!query)
+            return;
+        if (isLive && this.isSeen()) {
+            const rows = await sensors(query, this.session.token);
+            if (this.query !== query)
+                return;
+            this.onRows(this.session.time.atUs === null ? rows : []);
+        }
+        this.timer = setTimeout(() => {
+            this.query = null;
+            this.show(query);
+        }, AGAIN_MS);
+    }
+}
+
+// Of the shown group, those whose readings are farthest from what the others say.
+export class Disagreeing {
+    constructor({ session, selectTag }) {
+        Object.assign(this, { session, selectTag });
+        this.list = make('div');
+        this.element = make('fieldset', { id: 'disagreeing' }, make('legend', {}, say('neighbours.title')), this.list,
+            make('p', { class: 'note' }, say('neighbours.why')));
+        this.neighbours = new Neighbours(session, () => this.element.closest('.open') !== null, (rows) => this.fill(rows));
+        session.on('params', () => this.update());
+    }
+
+    update() {
+        const { params } = this.session;
+        if (params)
+            this.neighbours.show(`group=${encodeURIComponent(params.group)}`);
+    }
+
+    fill(rows) {
+        const { model } = this.session;
+        this.list.replaceChildren(...rows.filter(({ off }) => off !== null).slice(0, LISTED).map((row) => {
+            const tag = model.tag(row.tag);
+            return make('div', { class: 'line' }, make('button', { type: 'button', onclick: () => this.selectTag(row.tag) }, row.tag),
+                make('span', {}, neighbourText(row, model.group(tag.group))));
+        }));
+        this.element.hidden = this.list.childElementCount === 0;
+    }
+}

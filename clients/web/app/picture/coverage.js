@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What the sensors cover, whatever they say: how far the field may err, and what nobody would see. With the legend's rarer titles. Loaded
+// where one of these is shown, and with the panel of the picture, where they are chosen.
+import { zoneClock } from '../../core/format.js';
+import { say } from '../../core/words.js';
+import { fillSegments, markSegment } from '../common/choices.js';
+import { byId, make, setText } from '../common/dom.js';
+import { SHOWS } from '../toolbar/toolbar.js';
+import { TITLES } from '../viewport/legend.js';
+
+const COVERS = ['uncertainty', 'blind'], OWN = SHOWS.length;
+
+export class Coverage {
+    constructor({ session }) {
+        this.session = session;
+        this.why = make('p', { class: 'note' });
+        this.fieldset = make('fieldset', { class: 'segments', id: 'coverage' }, make('legend', {}, say('coverage.title')));
+        TITLES.difference = (name, params) => [`Δ ${name}`, this.since(params)];
+        TITLES.uncertainty = (name) => [`± ${name}`, null, say('coverage.uncertainty.note')];
+        TITLES.blind = (name, { group }) =>
+            [say('coverage.blind.of', { name }), null, say('coverage.blind.note', { size: session.model.group(group).hot_spot_m })];
+        session.on('params', () => this.update());
+        this.update();
+        session.emit('shown'); // legends
+    }
+
+    // From when on a difference is: the name of what was kept, and the plant's time then; null: it is not known.
+    since({ baseline }) {
+        if (!baseline?.time_us)
+            return null;
+        const { model } = this.session, clock = zoneClock(model.plant.time_zone);
+        const then = clock(baseline.time_us / 1000), now = clock(this.session.clockUs() / 1000);
+        const when = then.date === now.date ? then.time : `${then.day} ${then.time}`;
+        return say('coverage.since', { when: baseline.name ? `${baseline.name}, ${when}` : when });
+    }
+
+    // Into the panel, at its first use.
+    fill() {
+        this.shown = [];
+        byId('scale').before(this.fieldset);
+        this.update();
+    }
+
+    update() {
+        const { model, params } = this.session;
+        if (!model)
+            return;
+        const now = COVERS.find((show) => show === params.show);
+        SHOWS.splice(OWN, 1, ...(now ? [[now, say(`coverage.${now}`)]] : []));
+        const may = COVERS.filter((show) => show === 'blind' || model.group(params.group)?.prepared?.includes('gp'));
+        if (this.shown && JSON.stringify(may) !== JSON.stringify(this.shown)) {
+            this.shown = may;
+            fillSegments(this.fieldset, 'coverage', [['', say('coverage.none')], ...may.map((show) => [show, say(`coverage.${show}`)])],
+                (show) => this.session.setParams({ show: show || 'value' }));
+            this.fieldset.append(this.why);
+        }
+        markSegment(this.fieldset, now ?? '');
+        setText(this.why, now ? say(`coverage.${now}.why`) : '');
+        this.why.hidden = !now;
+    }
+}

@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The session of a tile of one picture over many displays: frames are kept until the server says when all tiles show them.
+import { DecodeQueue } from '../core/decode_queue.js';
+import { Session } from '../core/session.js';
+
+const PING_MS = 2000, CLOCK_MS = 60000, EARLY_MS = 4; // the next picture of the screen comes within 17 ms
+
+export class TileSession extends Session {
+    // tile: { wall, display, columns, rows }. Events besides those of a session: tiles (who is there), shown (a frame, when it was, in
+    // microseconds of the server).
+    constructor({ tile, canvas, decoding, ...rest }) {
+        super(rest);
+        Object.assign(this, { tile, canvas, decoding, context: canvas.getContext('2d', { alpha: false }) });
+        this.tiles = { leads: false, missing: [], late: [] };
+        this.pongs = [];    // of the last minute: { at, us (the server's clock less ours), roundTripMs }
+        this.places = null; // of the markers of the frame that is shown: [tag, x, y, occluded, ...]
+        this.reset();
+        this.queue = new DecodeQueue({
+            decode: (frame) => decoding.decode(frame),
+            ready: (frame, picture, decodeMs) => this.keep(frame, picture, decodeMs),
+            failed: (frame) => this.passedOver(frame),
+            now: () => performance.now(),
+        });
+        decoding.onLost = () => this.askKeyFrame();
+        decoding.onCodecs = (codecs) => this.setCodecs(codecs);
+        this.on('frame', (frame) => this.queue.push(frame));
+        this.on('hello', () => {
+            this.queue.clear();
+            this.reset();
+        });
+        setInterval(() => this.post({ type: 'ping', t: this.now() }), PING_MS);
+    }
+
+    // What was kept is of a connection that is gone.
+    reset() {
+        for (const { picture } of this.kept ?? [])
+            picture.close?.();
+        this.kept = [];       // { frame, picture, decodeMs }, in order
+        this.order = null;    // { seq, picture, at_us } that is to be shown next
+        this.markerRows = []; // { seq, rows }
+    }
+
+    proofs() {
+        const { wall, display } = this.tile;
+        return { ...(this.token ? { token: this.token } : {}), tile: { wall, display } };
+    }
+
+    // Home of all of the picture, of which this is a part.
+    homeIn(width, height) {
+        return super.homeIn(width * this.tile.columns, height * this.tile.rows);
+    }
+
+    heard(message) {
+        if (message.type === 'present')
+            this.present(message);
+        else if (message.type === 'tiles')
+            this.tellTiles(message);
+        else if (message.type === 'following')
+            this.follow(message);
+        else
+            super.heard(message);
+        if (message.type === 'pong')
+            this.takeTime(message);
+        if (message.type === 'markers' && message.markers)
+            this.markerRows.push({ seq: message.seq, rows: message.markers });
+    }
+
+    // What is shown stays that of the picture, until one comes that is drawn by these.
+    follow(message) {
+        const { shown, picture } = this;
+        super.heard(message);
+        if (picture)
+            this.asked.set(picture.paramsSeq, shown);
+        this.asked.set(message.params_seq, this.params);
+    }
+
+    tellTiles(message) {
+        this.tiles = message;
+        this.emit('tiles');
+    }
+
+    takeTime({ t, time_us: us }) {
+        const now = this.now(), roundTripMs = now - t;
+        this.pongs = this.pongs.filter(({ at }) => now - at < CLOCK_MS);
+        this.pongs.push({ at: now, roundTripMs, us: us - (now - roundTripMs / 2) * 1000 });
+    }
+
+    // By the shortest round trip of the last minute: clocks drift, and queues only add.
+    get serverUs() {
+        const best = this.pongs.reduce((a, b) => (!a || b.roundTripMs < a.roundTripMs ? b : a), null);
+        return best ? best.us + this.now() * 1000 : this.clockUs();
+    }
+
+    keep(frame, picture, decodeMs) {
+        this.kept.push({ frame, picture, decodeMs });
+        if (!frame.more) // from here on it can be shown at once
+            this.connection.send({ type: 'ack', seq: frame.seq, decode_ms: Math.round(decodeMs * 100) / 100 });
+    }
+
+    present(message) {
+        const waits = this.order !== null;
+        this.order = message;
+        if (waits)
+            return;
+        const look = () => {
+            if (this.order && this.serverUs + EARLY_MS * 1000 >= this.order.at_us)
+                this.show(this.order);
+            if (this.order)
+                requestAnimationFrame(look);
+        };
+        requestAnimationFrame(look);
+    }
+
+    show({ seq, picture: number }) {
+        const drawn = this.kept.filter(({ frame }) => frame.seq <= seq);
+        this.kept = this.kept.filter(({ frame }) => frame.seq > seq);
+        this.order = null;
+        for (const { frame, picture } of drawn) {
+            if (this.canvas.width !== frame.fullWidth || this.canvas.height !== frame.fullHeight)
+                Object.assign(this.canvas, { width: frame.fullWidth, height: frame.fullHeight });
+            const { x, y, width, height } = frame;
+            this.context.drawImage(picture, 0, 0, width, height, x, y, width, height);
+            picture.close?.();
+        }
+        const last = drawn.at(-1);
+        if (!last)
+            return;
+        const known = this.markerRows.findLastIndex((one) => one.seq <= seq);
+        this.places = known < 0 ? this.places : this.markerRows[known].rows;
+        this.markerRows = this.markerRows.slice(known + 1);
+        this.drawn(last.frame, last.decodeMs);
+        this.emit('presented', { frame: last.frame, number, us: this.serverUs });
+    }
+}
