@@ -27,7 +27,7 @@ bin := $(if $(filter release,$(config)),$(build),$(out)/bin)
 no_packages := deps test-deps run test check test-long clean style layers deb bundle image test-deploy
 packages := yaml-0.1 jansson sqlite3 libpq libcurl libmodbus libmosquitto libprotobuf-c libwebsockets libssl libcrypto cjose \
             libturbojpeg \
-            libjpeg libpng zlib cairo libxxhash OpenImageIO
+            libjpeg libpng zlib cairo cairo-ft fontconfig libxxhash OpenImageIO
 ifneq ($(filter-out jpeg h264,$(CODECS))$(if $(filter jpeg,$(CODECS)),,none),)
 $(error CODECS=$(CODECS) is unknown: jpeg, or jpeg h264)
 endif
@@ -97,7 +97,7 @@ modules  := $(bin)/plantcast-images.so
 occt     := $(dir $(wildcard /usr/include/opencascade/STEPCAFControl_Reader.hxx))
 # From 7.8 on (Debian 13) its readers have libraries of other names.
 occt_libs := $(if $(wildcard /usr/lib/*/libTKDESTEP.so),DESTEP DEIGES,XDESTEP XDEIGES STEP IGES)
-occt_libs := $(patsubst %,-lTK%,$(occt_libs) XSBase RWMesh XCAF LCAF CAF CDF Mesh Prim TopAlgo BRep G3d Math ernel)
+occt_libs := $(patsubst %,-lTK%,$(occt_libs) XSBase RWMesh XCAF LCAF CAF CDF Mesh ShHealing Prim TopAlgo BRep G3d Math ernel)
 assimp   := $(wildcard /usr/include/assimp/Importer.hpp)
 readers  := $(if $(occt),$(bin)/plantcast-import-occt) $(if $(assimp),$(bin)/plantcast-import-assimp)
 # The player of a wall's displays, likewise.
@@ -106,8 +106,10 @@ no_player := $(if $(filter h264,$(CODECS)),,H.264) \
 player    := $(if $(strip $(no_player)),,$(bin)/plantcast-wall)
 
 # Video for who has no browser (clients/video), where its libraries are; else the build says what it lacks.
-video_packages := gstreamer-app-1.0 gstreamer-rtsp-server-1.0 libsoup-3.0 cairo jansson
-video_missing := $(foreach p,$(video_packages),$(if $(shell pkg-config --exists $(p) 2>/dev/null && echo yes),,$(p)))
+video_packages := gstreamer-app-1.0 gstreamer-rtsp-server-1.0 libsoup-3.0 pangocairo jansson gstreamer-webrtc-1.0 \
+    gstreamer-sdp-1.0
+video_missing := $(if $(filter h264,$(CODECS)),,H.264) \
+    $(foreach p,$(video_packages),$(if $(shell pkg-config --exists $(p) 2>/dev/null && echo yes),,$(p)))
 video := $(if $(strip $(video_missing)),,$(bin)/plantcast-video)
 video_cflags := $(if $(video),$(patsubst -I%,-isystem %,$(shell pkg-config --cflags $(video_packages))))
 
@@ -145,8 +147,9 @@ $(bin)/plantcast-prep: $(call objects,preprocess/main.c) $(out)/lib/prep.a $(arc
 # Reads what strangers' programs wrote: neither the daemon nor plantcast-prep links it.
 $(bin)/plantcast-import: $(call objects,preprocess/import/main.c) $(out)/lib/import.a $(out)/lib/match.a $(out)/lib/prep.a $(archives)
 	$(link) -lGLU
-$(out)/obj/preprocess/import/readers/occt.o: CXXFLAGS += -isystem $(occt)
-$(bin)/plantcast-import-occt: $(call objects,preprocess/import/readers/occt) $(out)/lib/prep.a $(out)/lib/base.a
+by_occt := $(call objects,$(addprefix preprocess/import/readers/,occt iges_tree))
+$(by_occt): CXXFLAGS += -isystem $(occt)
+$(bin)/plantcast-import-occt: $(by_occt) $(out)/lib/prep.a $(out)/lib/base.a
 	@mkdir -p $(@D); echo "  LINK $@"
 	@$(CXX) $(ldflags) -pie -o $@ $(filter %.o,$^) -Wl,--start-group $(filter %.a,$^) -Wl,--end-group \
 	    $(occt_libs) -ljansson
@@ -164,16 +167,16 @@ $(bin)/plantcast: $(call objects,$(cli_sources)) $(out)/lib/link.a $(archives)
 	$(link)
 player_sources := $(wildcard clients/wall/*.c)
 $(call objects,$(player_sources)): CFLAGS += $(shell pkg-config --cflags sdl2 pangocairo 2>/dev/null)
-$(out)/lib/player.a: $(call objects,$(filter-out %/main.c,$(player_sources)))
-$(bin)/plantcast-wall: $(call objects,clients/wall/main.c server/base/image_lazy.c) $(out)/lib/player.a $(out)/lib/link.a $(archives)
+# What draws a wall, for its window and for video.
+$(out)/lib/player.a: $(call objects,$(filter-out %/main.c %/screen.c,$(player_sources)))
+$(bin)/plantcast-wall: $(call objects,$(addprefix clients/wall/,main.c screen.c) server/base/image_lazy.c) $(out)/lib/player.a \
+    $(out)/lib/link.a $(archives)
 	$(link) $(shell pkg-config --libs sdl2 pangocairo 2>/dev/null)
 # Neither the daemon nor another program links its libraries.
 video_objects := $(call objects,$(if $(video),$(wildcard clients/video/*.c)))
 $(video_objects) $(patsubst %,$(out)/obj/%.alone,$(wildcard clients/video/*.h)): CFLAGS += $(video_cflags)
-$(bin)/plantcast-video: $(video_objects) $(call objects,$(addprefix server/message/,view_address.c message_error.c)) $(out)/lib/base.a
-	@mkdir -p $(@D); echo "  LINK $@"
-	@$(CC) $(ldflags) -pie -o $@ $(filter %.o,$^) -Wl,--start-group $(filter %.a,$^) -Wl,--end-group \
-	    $(shell pkg-config --libs $(video_packages)) -lm
+$(bin)/plantcast-video: $(video_objects) $(call objects,server/base/image_lazy.c) $(out)/lib/player.a $(out)/lib/link.a $(archives)
+	$(link) $(shell pkg-config --libs $(video_packages))
 $(bin)/plantcast-sim: $(call objects,$(sim_sources)) $(archives)
 	$(link)
 $(bin)/plantcast-demo: $(call objects,$(generate_sources)) $(archives)
@@ -273,8 +276,13 @@ $(out)/tests/%: $(out)/obj/tests/%.o $(support) $(archives) $(out)/lib/prep.a $(
 	$(link) -lcmocka
 # Draws as the command line does.
 $(out)/tests/gallery/album: $(filter-out %/main.o,$(call objects,$(cli_sources))) $(out)/lib/link.a
+$(out)/tests/validation/compare: $(filter-out %/main.o,$(call objects,$(cli_sources))) $(out)/lib/link.a
+$(out)/tests/validation/compare: ldflags += -Wl,--wrap=field_scalars_of
 # What stands before the real one, where a GPU is to fail.
 $(out)/tests/faults/libEGL.so.1: $(out)/obj/tests/faults/gl_faults.pic.o
+	@mkdir -p $(@D); echo "  LINK $@"; $(CC) $(ldflags) -shared -o $@ $<
+# Kills a program where the test says.
+$(out)/tests/faults/kill_at_rename.so: $(out)/obj/tests/faults/kill_at_rename.pic.o
 	@mkdir -p $(@D); echo "  LINK $@"; $(CC) $(ldflags) -shared -o $@ $<
 # Where memory runs out: the test decides.
 $(out)/tests/unit/relocation_test: ldflags += -Wl,--wrap=mem_try_array

@@ -51,14 +51,17 @@ install-demo: all
 # Debian packages, of what is committed.
 deb: clients/web/vendor/uPlot.js
 	@deploy/deb $(build)/deb "$(COMMIT)"
-# One archive that installs them without a network (SIGN=KEY.pem signs it), and a container image. Both need root and Debian's mirror.
+# One archive that installs them without a network (SIGN=KEY.pem signs it), one for displays of walls, and a container image. All need root
+# and Debian's mirror.
 suite := $(shell . /etc/os-release && echo $$VERSION_CODENAME)
 debs  := $(build)/deb
 bundle:
 	@deploy/bundle $(debs) $(build)/plantcast-bundle-$(suite).tar $(suite) $(SIGN)
+	@deploy/bundle --wall $(debs) $(build)/plantcast-wall-bundle-$(suite).tar $(suite) $(SIGN)
 image:
 	@deploy/image $(debs) $(build)/plantcast-image-$(suite).tar $(suite)
 # Of what these made, in chroots without a network.
 test-deploy:
-	@deploy/test/run $(debs) $(build)/plantcast-bundle-$(suite).tar $(build)/plantcast-image-$(suite).tar $(suite)
+	@deploy/test/run $(debs) $(build)/plantcast-bundle-$(suite).tar $(build)/plantcast-image-$(suite).tar $(suite) \
+	    $(build)/plantcast-wall-bundle-$(suite).tar
 .PHONY: install-demo deb bundle image test-deploy
