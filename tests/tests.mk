@@ -27,19 +27,22 @@ test-long: test-deps
 	@PLANTCAST_BIN=$(bin) PLANTCAST_OUT=$(out) LOSSES=200 node --test tests/e2e/wall_losses.mjs
 	@PLANTCAST_BIN=$(bin) PLANTCAST_OUT=$(out) LOSSES=20 node --test tests/e2e/gpu.mjs
 	@PLANTCAST_BIN=$(bin) VIDEO_S=600 node --test --test-name-pattern='every second' tests/e2e/video.mjs
-	@$(MAKE) --no-print-directory scale soak
+	@$(MAKE) --no-print-directory validation scale soak
 # 10 million triangles in 2,000 assets, prepared, killed and continued, within 8 GB: some minutes.
 scale: all $(out)/tests/scale/facility
 	@tests/scale/run $(out) $(bin) --kill
 	@tests/scale/run $(out) $(bin) --singles 250 --assets 100 --triangles 22200
 
-# Half an hour of clients that come, drag, stall and are cut off.
+# A day of a plant's life in an hour, or in so many minutes: make soak minutes=5. Then half an hour of clients that come, drag, stall and
+# are cut off.
 soak: all tests
+	@PLANTCAST_BIN=$(bin) PLANTCAST_OUT=$(out) MINUTES=$(or $(minutes),60) node --test tests/long/day.mjs
 	@PLANTCAST_BIN=$(bin) PLANTCAST_OUT=$(out) SOAK_S=$(or $(SOAK_S),1800) node --test tests/e2e/flow.mjs
 .PHONY: soak
 
 checked: demo style layers headers
 tests: all $(unit_tests) $(gpu_tests) $(out)/tests/scale/facility $(out)/tests/relay/relay $(out)/tests/faults/libEGL.so.1 \
+    $(out)/tests/faults/kill_at_rename.so $(out)/tests/validation/compare \
     $(if $(occt),$(out)/tests/cad/step_samples)
 unit: tests
 	@tests/run $(out) $(bin) unit
@@ -87,6 +90,12 @@ accuracy: $(patsubst %,$(out)/tests/unit/%_test,surface accuracy contact)
 	done; done
 	@tests/bench/accuracy tests/bench/RESULTS.md $(build)/accuracy/surface.* $(build)/accuracy/accuracy.* $(build)/accuracy/contact.*
 .PHONY: accuracy
+
+# The field held against simulated heat conduction: build/validation. write=1: the tables and pictures of tests/validation too.
+validation: test-deps
+	@$(MAKE) --no-print-directory all $(out)/tests/validation/compare
+	@tests/validation/run $(out) $(bin) $(if $(write),--write)
+.PHONY: validation
 
 # Every way of looking at a plant, to be looked at: build/gallery/sheet.png. only="demo cookie_line viewer": parts of it.
 gallery: test-deps

@@ -1,12 +1,24 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* `step_samples FOLDER`: a skid with two pumps and six bolts, as STEP in three schemas, in millimetres and inches, and as IGES. */
+/* `step_samples FOLDER`: a skid with two pumps and six bolts, as STEP in three schemas and as IGES, in millimetres, inches and metres. */
 #include <BRepPrimAPI_MakeBox.hxx>
 #include <BRepPrimAPI_MakeCylinder.hxx>
+#include <BRepToIGES_BREntity.hxx>
+#include <IGESBasic_Group.hxx>
+#include <IGESBasic_Name.hxx>
+#include <IGESBasic_SingularSubfigure.hxx>
+#include <IGESBasic_SubfigureDef.hxx>
 #include <IGESCAFControl_Writer.hxx>
+#include <IGESControl_Writer.hxx>
+#include <IGESData_IGESModel.hxx>
+#include <IGESData_LevelListEntity.hxx>
+#include <IGESGeom_TransformationMatrix.hxx>
+#include <IGESGraph_Color.hxx>
 #include <Interface_Static.hxx>
 #include <Message.hxx>
 #include <Message_Messenger.hxx>
 #include <STEPCAFControl_Writer.hxx>
+#include <TColStd_HArray2OfReal.hxx>
+#include <TCollection_HAsciiString.hxx>
 #include <TDataStd_Name.hxx>
 #include <TDocStd_Document.hxx>
 #include <TopExp_Explorer.hxx>
@@ -17,6 +29,7 @@
 
 #include <cstdio>
 #include <string>
+#include <vector>
 
 namespace
 {
@@ -75,6 +88,116 @@ bool write_step(const Handle(TDocStd_Document) & document, const std::string &pa
     return writer.Transfer(document, STEPControl_AsIs) && writer.Write(path.c_str()) == IFSelect_RetDone;
 }
 
+/* --- IGES: Open CASCADE's writer keeps no tree, so it is made entity by entity -------------------------------------------------------- */
+
+using entity = Handle(IGESData_IGESEntity);
+
+struct drawing {
+    IGESControl_Writer writer;
+    BRepToIGES_BREntity shapes;
+    double unit_mm;
+
+    drawing(const char *unit, double mm) : writer(unit, 0), unit_mm(mm) { shapes.SetModel(writer.Model()); }
+
+    entity named(const entity &what, const char *text)
+    {
+        Handle(IGESBasic_Name) name = new IGESBasic_Name;
+        name->Init(1, new TCollection_HAsciiString(text));
+        what->AddProperty(name);
+        return what;
+    }
+    Handle(IGESData_HArray1OfIGESEntity) list(const std::vector<entity> &from)
+    {
+        Handle(IGESData_HArray1OfIGESEntity) out = new IGESData_HArray1OfIGESEntity(1, static_cast<int>(from.size()));
+        for (size_t i = 0; i < from.size(); i++)
+            out->SetValue(static_cast<int>(i) + 1, from[i]);
+        return out;
+    }
+    entity group(const std::vector<entity> &of, const char *text)
+    {
+        Handle(IGESBasic_Group) out = new IGESBasic_Group;
+        out->Init(list(of));
+        return named(out, text);
+    }
+    Handle(IGESBasic_SubfigureDef) figure(int depth, const std::vector<entity> &of, const char *text)
+    {
+        Handle(IGESBasic_SubfigureDef) out = new IGESBasic_SubfigureDef;
+        out->Init(depth, new TCollection_HAsciiString(text), list(of));
+        return out;
+    }
+    entity place(const Handle(IGESBasic_SubfigureDef) & of, double x, double y, double z, const char *text, double scale = 1)
+    {
+        Handle(IGESBasic_SingularSubfigure) out = new IGESBasic_SingularSubfigure;
+        out->Init(of, gp_XYZ(x, y, z) / unit_mm, scale != 1, scale);
+        return named(out, text);
+    }
+    /* Its axis lies along x, and its foot at x, y. */
+    entity turned(const entity &what, double x, double y)
+    {
+        Handle(IGESGeom_TransformationMatrix) matrix = new IGESGeom_TransformationMatrix;
+        Handle(TColStd_HArray2OfReal) rows = new TColStd_HArray2OfReal(1, 3, 1, 4, 0);
+        rows->SetValue(1, 3, 1), rows->SetValue(2, 2, 1), rows->SetValue(3, 1, -1);
+        rows->SetValue(1, 4, x / unit_mm), rows->SetValue(2, 4, y / unit_mm);
+        matrix->Init(rows);
+        what->InitTransf(matrix);
+        return what;
+    }
+    entity colored(const entity &what, double red, double green, double blue) /* per cent */
+    {
+        Handle(IGESGraph_Color) color = new IGESGraph_Color;
+        color->Init(red, green, blue, new TCollection_HAsciiString("a colour"));
+        what->InitColor(color);
+        return what;
+    }
+    /* Groups have no colour in IGES, so each surface has. */
+    std::vector<entity> sides(const TopoDS_Shape &of, double red, double green, double blue)
+    {
+        std::vector<entity> out;
+        for (TopExp_Explorer side(of, TopAbs_FACE); side.More(); side.Next())
+            out.push_back(colored(shapes.TransferShape(side.Current()), red, green, blue));
+        return out;
+    }
+};
+
+/* The same skid; the motor's first side is blue. A casing lies, and a bolt is four times as large. */
+bool write_iges(const std::string &path, const char *unit, double unit_mm)
+{
+    drawing d(unit, unit_mm);
+    entity plate = d.shapes.TransferShape(BRepPrimAPI_MakeBox(2000, 1000, 20).Shape());
+    std::vector<entity> casing = d.sides(BRepPrimAPI_MakeCylinder(100, 300), 100, 0, 0);
+    std::vector<entity> motor = d.sides(BRepPrimAPI_MakeBox(200, 200, 200), 0, 100, 0);
+    d.colored(motor[0], 0, 0, 100);
+    entity bolt = d.shapes.TransferShape(BRepPrimAPI_MakeCylinder(10, 50).Shape());
+    auto casing_figure = d.figure(0, casing, "Casing"), bolt_figure = d.figure(0, { bolt }, "Bolt M20");
+    auto motor_figure = d.figure(0, { d.group(motor, "Box") }, "Motor");
+    auto pump = d.figure(1, { d.place(casing_figure, 0, 0, 0, "Casing:1"), d.place(motor_figure, 300, -100, 0, "Motor:1") }, "Pump");
+    auto plate_figure = d.figure(0, { plate }, "Plate");
+    std::vector<entity> all = { d.place(plate_figure, 0, 0, -20, "Plate:1"), d.place(pump, 300, 300, 0, "P-101A"),
+                                d.place(pump, 300, 700, 0, "P-101B/1") };
+    for (int i = 0; i < 6; i++)
+        all.push_back(d.place(bolt_figure, 100 + 300 * i, 50, 0, ("Bolt:" + std::to_string(i + 1)).c_str()));
+    all.push_back(d.turned(d.place(casing_figure, 0, 0, 0, "Turned"), 1000, 500));
+    all.push_back(d.place(bolt_figure, 1500, 900, 0, "Large bolt", 4));
+    d.writer.AddEntity(d.group(all, "Skid S-100"));
+    d.writer.ComputeModel();
+    return d.writer.Write(path.c_str());
+}
+
+/* Surfaces that are in no group, three on level 1, three on level 2: as many CAD systems export. */
+bool write_loose(const std::string &path)
+{
+    drawing d("MM", 1);
+    int count = 0;
+    TopoDS_Shape box = BRepPrimAPI_MakeBox(100, 200, 300);
+    for (TopExp_Explorer side(box, TopAbs_FACE); side.More(); side.Next()) {
+        entity face = d.shapes.TransferShape(side.Current());
+        face->InitLevel(Handle(IGESData_LevelListEntity)(), count++ < 3 ? 1 : 2);
+        d.writer.AddEntity(face);
+    }
+    d.writer.ComputeModel();
+    return d.writer.Write(path.c_str());
+}
+
 } // namespace
 
 int main(int argc, char **argv)
@@ -92,5 +215,7 @@ int main(int argc, char **argv)
                 write_step(skid, folder + "/skid_242.STEP", "AP242DIS", "M");
     IGESCAFControl_Writer iges;
     good = good && iges.Transfer(skid) && iges.Write((folder + "/skid.igs").c_str());
+    good = good && write_iges(folder + "/tree.igs", "MM", 1) && write_iges(folder + "/inches.IGES", "INCH", 25.4) &&
+           write_loose(folder + "/loose.igs");
     return good ? 0 : 1;
 }

@@ -96,7 +96,24 @@ test('a token for some views gets pictures of these, at any size, and nothing el
         rest: 'group=pressure', page: 'group=temperature&tag=TI-1&unknown=1',
     };
     const list = Object.entries(views).map(([id, view]) => `- { id: ${id}, view: "${view}" }\n`);
-    writeFileSync(plant.file, `${before_}views:\n${list.join('')}`);
+    const walls = `tours:
+- { id: round, stops: [{ view: left }, { view: flat, text: The plan }] }
+- { id: long, stops: [{ view: left }, { view: rest }] }
+walls:
+- id: room
+  displays:
+  - grid: [seen hidden when shown unseen list]
+    panes:
+    - { area: seen, views: [left, flat] }
+    - { area: hidden, views: [left, rest] }
+    - { area: when, clock: yes }
+    - { area: shown, tour: round }
+    - { area: unseen, tour: long }
+    - { area: list, alarms: yes }
+  - grid: [said]
+    panes: [{ area: said, text: Hello }]
+`;
+    writeFileSync(plant.file, `${before_}views:\n${list.join('')}${walls}`);
     const lobby = token('add', file, '--role', 'viewer', '--name', 'lobby', '--views', 'left,flat,page,gone').out.trim();
     const whole = token('add', file, '--role', 'viewer', '--name', 'whole').out.trim();
     assert.match(token('list', file).out, /^viewer +lobby {2}without end {2}views left,flat,page,gone$/m);
@@ -121,15 +138,14 @@ test('a token for some views gets pictures of these, at any size, and nothing el
         await said('view=page', lobby, 400, /unknown: a picture cannot show that/);
         await said('view=left&view=rest&width=320&height=200', lobby, 200, /PNG/); // the first is meant
         for (const url of ['/api/v1/plant', '/api/v1/tags', '/api/v1/views', '/api/v1/alarms', '/metrics', '/api/v1/pick?x=1&y=1&view=left',
-            '/api/v1/history?tags=TI-1&from=-1h', '/api/v1/notes', '/api/v1/walls'])
+            '/api/v1/history?tags=TI-1&from=-1h', '/api/v1/notes', '/api/v1/alarms/journal', '/api/v1/proofs', '/api/v1/history/gaps'])
             assert.equal((await ask(url, { bearer: lobby })).status, 403, url);
-        await assert.rejects(open({ protocol: `plantcast.v1, Authorization-Bearer.${lobby}` }), /403/);
-        await assert.rejects(open({ headers: [`Authorization: Bearer ${lobby}`] }), /403/);
-        const client = await open();
-        client.say({ type: 'hello', width: 320, height: 180, codecs: ['jpeg'], token: lobby });
-        assert.match((await client.text('error')).text, /pictures of the views left,flat,page,gone, and opens no stream/);
-        assert.equal((await client.until('a close', (c) => c.closed)).code, 1008);
-        assert.equal(client.frames.length, 0);
+        const { walls, tours } = JSON.parse((await ask('/api/v1/walls', { bearer: lobby })).body);
+        assert.deepEqual(walls[0].displays.map(({ panes }) => panes.map(({ area }) => area)), [['seen', 'when', 'shown'], ['said']]);
+        assert.deepEqual(tours.map(({ id }) => id), ['round']);
+        const all = JSON.parse((await ask('/api/v1/walls', { bearer: whole })).body).walls[0].displays;
+        assert.deepEqual(all.map(({ panes }) => panes.length), [6, 1]);
+        await streamsOnlyItsViews(lobby, whole);
         assert.match(readFileSync(path('views.log'), 'utf8'), /"who":"lobby"[^\n]*view=rest: this token is for the views/);
         // It shows what the same query does, without readings, whoever asks for it.
         const query = 'group=temperature&hidden=P-101A&camera=0,-4,2,0,0,0,40&width=320&height=200';
@@ -141,6 +157,48 @@ test('a token for some views gets pictures of these, at any size, and nothing el
         writeFileSync(plant.file, before_);
     }
 });
+
+// A stream of the token shows what its views show, whatever else is asked for, and tells of nothing but them.
+async function streamsOnlyItsViews(lobby, whole) {
+    const client = await open({ headers: [`Authorization: Bearer ${lobby}`] });
+    const camera = { eye: [0, -9, 2], target: [0, 0, 0], up: [0, 0, 1], fov: 40 };
+    const welcome = await client.hello({ camera: { seq: 1, ...camera }, params: { seq: 1, group: 'pressure', hidden: [] }, at_us: 1 });
+    assert.deepEqual([welcome.role, welcome.view.group, welcome.view.hidden], ['open', 'temperature', ['P-101A']]);
+    assert.deepEqual([welcome.tags, welcome.assets, welcome.links], [[], [], []]);
+    assert.deepEqual(welcome.plant.only.map(({ id }) => id), ['left', 'flat', 'page']);
+    const refused = async (message, text) => {
+        client.say(message);
+        assert.match((await client.text('error')).text, text, JSON.stringify(message));
+    };
+    const only = /this token is for (pictures of )?the views left,flat,page,gone/;
+    for (const message of [{ type: 'camera', seq: 2, ...camera }, { type: 'params', seq: 2, group: 'pressure' }, { type: 'fit', seq: 3 },
+        { type: 'pick', seq: 4, x: 1, y: 1 }, { type: 'time', at_us: 1 }, { type: 'follow', session: 7 }, { type: 'lead', session: 7 },
+        { type: 'look', seq: 5, named: 'rest' }, { type: 'look', seq: 5, named: 'left,flat' }])
+        await refused(message, only);
+    await refused({ type: 'look', seq: 6, named: 'gone' }, /the plant file has no view 'gone'/);
+    await refused({ type: 'look', seq: 6, named: 'page' }, /unknown: a picture cannot show that/);
+    client.say({ type: 'look', seq: 7, named: 'flat' });
+    const shown = await client.text('camera');
+    assert.deepEqual([shown.seq, shown.eye], [7, [0, -9, 2]]);
+    assert.equal((await client.text('params')).group, 'pressure');
+    client.say({ type: 'resize', width: 400, height: 240 });
+    client.say({ type: 'ping', t: 5 });
+    await client.text('pong');
+    const others = ['tags', 'alarms', 'markers', 'views', 'notes', 'walls', 'proofs'];
+    assert.deepEqual(client.texts.filter(({ type }) => others.includes(type)), []);
+    client.close();
+    const [other, wrong, anyone] = [await open(), await open(), await open()];
+    assert.equal((await other.hello({ token: lobby, named: 'flat' })).view.group, 'pressure');
+    wrong.say({ type: 'hello', width: 320, height: 180, codecs: ['jpeg'], token: lobby, named: 'rest' });
+    assert.match((await wrong.text('error')).text, only);
+    assert.equal((await wrong.until('a close', (c) => c.closed)).code, 1008);
+    assert.equal(wrong.frames.length, 0);
+    assert.equal((await anyone.hello({ token: whole, named: 'rest' })).view.group, 'pressure'); // anybody may begin with one
+    // Its list of views is another one from now on: it has to come back.
+    token('revoke', path('limited'), 'lobby');
+    assert.equal((await other.until('a close', (c) => c.closed, 20000)).code, 1008);
+    anyone.close();
+}
 
 test('a session that is left alone is locked, but not that of a wall; and what is said before anybody is in', { skip }, async () => {
     const file = path('attended'), notice = path('notice');

@@ -147,7 +147,7 @@ test('another plant, another configuration, a wrong token and a daemon that is n
     await alone.stop();
     assert.match(core.program.said, /renderer .*: refused: configuration: the renderer has/);
     for (const [bad, said] of [[['--role', 'renderer'], /--role: all, core or render/], [['--role', 'render'], /belong together/],
-        [['--core', 'ws://x:1'], /belong together/], [['--role', 'render', '--core', 'ftp://x'], /--core: not wss/]])
+        [['--core', 'ws://x:1'], /--core URL is for --role render/], [['--role', 'render', '--core', 'ftp://x'], /--core: not wss/]])
         assert.match(runProgram('plantcastd', [nodes.plant.file, ...bad]).err, said);
 });
 
@@ -182,6 +182,20 @@ test('an act that the core could not read ends no link; nor does a revoked token
     await until('Bad', async () => (await a.tags())['TI-1'].quality_name.startsWith('Bad'), 10);
     writeFileSync(nodes.tokenFile, lines);
     await all(async (node) => (await node.tags())['TI-1'].quality_name === 'Good');
+});
+
+test('`plantcast drain` sends the sessions of a daemon elsewhere; no other program gets its signal', options, async () => {
+    const c = await nodes.renderer('c', core), client = await c.client({}, { token: nodes.tokens.operator });
+    const stranger = runProgram('plantcast', ['drain', String(process.pid)]);
+    assert.deepEqual([stranger.code, stranger.err], [1, `plantcast: ${process.pid}: no plantcastd\n`]);
+    assert.equal(runProgram('plantcast', ['drain', 'c']).code, 2);
+    const pid = String(c.program.child.pid), began = performance.now();
+    assert.equal(runProgram('plantcast', ['drain', pid, '--wait', '0']).code, 0);
+    assert.ok(performance.now() - began < 5000);
+    await client.until('its end', ({ closed }) => closed, 20000);
+    assert.match(c.program.said, /drained: 1 sessions are sent elsewhere/);
+    await c.stop();
+    assert.equal(runProgram('plantcast', ['drain', pid]).code, 1);
 });
 
 const canMount = process.getuid() === 0 && spawnSync('unshare', ['--mount', 'true']).status === 0;

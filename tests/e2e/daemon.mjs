@@ -43,7 +43,7 @@ test('the command line: exit codes and reasons', { skip }, async () => {
         [['a.yaml', 'b.yaml'], 2, null, /b\.yaml/], [[plant.file, '--gl', 'vulkan'], 2, null, /vulkan/],
         [[plant.file, '--port', '70000'], 2, null, /70000/], [[plant.file, '--colour'], 2, null, /colour/],
         [[join(plant.folder, 'none.yaml')], 1, null, /none\.yaml/],
-        [['--check', plant.file], 0, /2 assets, 2 groups, 1 sources, 3 tags/, null],
+        [['--check', plant.file], 0, /2 assets, 2 groups, 1 source, 3 tags/, null],
         [[plant.file, '--listen', '0.0.0.0'], 1, null, /--open-viewers/],
         [[plant.file, '--listen', 'elsewhere'], 2, null, /not an IP address 'elsewhere'/],
         [[plant.file, '--prepared', join(plant.folder, 'nothing')], 1, null, /plantcast-prep/],

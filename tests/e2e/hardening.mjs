@@ -3,7 +3,7 @@
 // daemon that somebody else has got hold of.
 import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
-import { readFileSync } from 'node:fs';
+import { existsSync, readFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { test } from 'node:test';
 import { get, PlainClient } from './support/plain_client.mjs';
@@ -37,6 +37,19 @@ test('the unit is as closed as it can be: systemd-analyze says at most 2 of 10',
     for (const line of [/^MemoryMax=/m, /^UMask=0027$/m, /^CapabilityBoundingSet=$/m, /^StateDirectory=plantcast\/%i$/m])
         assert.match(readFileSync(UNIT, 'utf8'), line);
     assert.doesNotMatch(readFileSync(UNIT, 'utf8'), /^ReadWritePaths=/m, 'nothing but its own state');
+});
+
+test('each clause of IEC 62443-4-2 that is met names tests, which are there', () => {
+    const rows = readFileSync('deploy/IEC62443.md', 'utf8').split('\n').filter((line) => /^\| (CR|SAR) /.test(line));
+    assert.ok(rows.length >= 40, `${rows.length} clauses`);
+    for (const row of rows) {
+        const [, clause, state] = row.split('|').map((cell) => cell.trim());
+        const files = [...row.matchAll(/`((?:tests|deploy|server)\/[\w./]+)`/g)].map(([, path]) => path);
+        for (const path of files)
+            assert.ok(existsSync(path), `${clause}: there is no ${path}`);
+        if (/^met/.test(state))
+            assert.ok(files.some((path) => /^(tests|deploy\/test)\//.test(path)), `${clause} is said to be met, by no test`);
+    }
 });
 
 test('with the system calls that the unit leaves it, the daemon draws on llvmpipe, streams and records', {

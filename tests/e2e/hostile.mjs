@@ -3,7 +3,7 @@
 // daemon has what it had.
 import assert from 'node:assert/strict';
 import { spawn } from 'node:child_process';
-import { readdirSync } from 'node:fs';
+import { readdirSync, readFileSync } from 'node:fs';
 import { connect } from 'node:net';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
@@ -15,9 +15,12 @@ const absent = missing();
 const skip = absent.length > 0 ? `not built: ${absent.join(', ')}` : false;
 const noDemo = missingDemo();
 const sleep = (ms) => new Promise((done) => setTimeout(done, ms));
-const SILENT = 1000, PATIENCE_S = 3, FLOOD_PER_S = 10000;
+const SILENT = 1000, PATIENCE_S = 3, FLOOD_PER_S = 10000, PATIENCE_MS = 60000;
+const PINGS = 4000, MESSAGES_PER_S = 1000, ASKED_FPS = 54; // of 60 cameras a second
 const HELLO = { type: 'hello', width: 320, height: 180, codecs: ['jpeg'] };
-let plant;
+const LEAST_CPU_S = 0.4; // of one viewer that gets all its frames
+const MOST_TIMES = 5; // of the processor time that one viewer costs: all of them and the viewer
+let plant, quiet;
 
 before(async () => {
     if (skip)
@@ -28,11 +31,24 @@ before(async () => {
     assert.equal(runProgram('plantcast', ['token', 'add', tokens, '--role', 'viewer', '--name', 'somebody']).code, 0);
     await plant.startDaemon('--tokens', tokens, '--trust-local', '--limit', `patience=${PATIENCE_S}`,
         '--limit', `connections=${SILENT + 200}`);
+    quiet = await TinyPlant.create();
+    assert.equal(quiet.prepare().code, 0);
+    await quiet.startDaemon();
 });
-after(() => plant?.destroy());
+after(() => Promise.all([plant?.destroy(), quiet?.destroy()]));
 
 const closed = (client, timeoutMs = 20000) => client.until('a close', (c) => c.closed, timeoutMs);
 const metric = async (name) => Number((await get(plant.port, '/metrics')).body.toString().match(new RegExp(`^${name} (\\d+)`, 'm'))[1]);
+// Until it is so, or whoever waits has lost patience.
+async function reaches(is) {
+    for (const end = performance.now() + PATIENCE_MS; !await is() && performance.now() < end;)
+        await sleep(100);
+}
+// Seconds of a processor that a daemon has taken: utime and stime, in ticks of 10 ms.
+const cpuSeconds = ({ daemon }) => {
+    const fields = readFileSync(`/proc/${daemon.child.pid}/stat`, 'utf8').replace(/^.*\) /, '').split(' ');
+    return (Number(fields[11]) + Number(fields[12])) / 100;
+};
 const descriptors = () => readdirSync(`/proc/${plant.daemon.child.pid}/fd`).length;
 
 // A socket that says what it is told, and when it was closed.
@@ -45,9 +61,9 @@ function raw(port) {
 }
 
 // Frames per second of another client, a program of its own: its cameras move 60 times a second.
-function othersRate(seconds) {
+function othersRate(port, seconds) {
     return new Promise((done, fail) => {
-        const url = `http://127.0.0.1:${plant.port}/`;
+        const url = `http://127.0.0.1:${port}/`;
         const child = spawn(join(BIN, 'plantcast'), ['probe', url, '--seconds', String(seconds), '--size', '320x180', '--json']);
         let said = '', errors = '';
         child.stdout.on('data', (chunk) => { said += chunk; });
@@ -77,22 +93,28 @@ test('values beyond all sense are refused by name, and the next good ones hold',
     client.close();
 });
 
-test('ten thousand messages a second are read at the pace allowed, and all of them in the end', { skip }, async () => {
+test('ten thousand messages a second are read at the pace allowed, and all of them in the end', { skip }, async (t) => {
     const client = await PlainClient.open(plant.port);
+    t.after(() => client.close());
+    const pings = Buffer.concat(Array.from({ length: PINGS }, (_, t) => encodeFrame(1, `{"type":"ping","t":${t}}`)));
+    const before = [await metric('plantcast_messages_total'), await metric('plantcast_message_errors_total')];
+    const began = performance.now(); // the first second begins with hello
     await client.hello();
-    const pings = Buffer.concat(Array.from({ length: 2500 }, (_, t) => encodeFrame(1, `{"type":"ping","t":${t}}`)));
-    const began = performance.now();
     client.write(pings);
-    assert.equal((await client.text('error')).code, 'too_fast');
-    await client.until('the last answer', (c) => c.texts.some((m) => m.type === 'pong' && m.t === 2499), 20000);
-    assert.ok(performance.now() - began > 1500, 'a thousand a second');
-    client.close();
+    await client.until('the last answer', (c) => c.texts.some((m) => m.type === 'pong' && m.t === PINGS - 1), PATIENCE_MS);
+    const took = performance.now() - began, full = Math.floor(PINGS / MESSAGES_PER_S) - 1; // one second's may be out of the socket
+    assert.ok(took >= 1000 * full, `${PINGS} messages in ${took.toFixed(0)} ms, at ${MESSAGES_PER_S} a second`);
+    await reaches(async () => await metric('plantcast_messages_total') > before[0] + PINGS); // it counts once a second at least
+    const read = await metric('plantcast_messages_total') - before[0], told = await metric('plantcast_message_errors_total') - before[1];
+    assert.ok(read > PINGS, `${read} messages read`); // hello, and an acknowledgement of each frame
+    assert.ok(told >= full, `too fast: said ${told} times`);
+    assert.ok(client.texts.some((m) => m.code === 'too_fast'));
 });
 
-test('all at once: nobody else is slowed, and each has its answer', { skip }, async () => {
+test('all at once: nobody else is slowed, and each has its answer', { skip }, async (t) => {
     const { port } = plant;
+    await reaches(async () => await metric('plantcast_connections') <= 1); // who was there before has gone
     const filesBefore = descriptors();
-    const alone = await othersRate(2);
     const began = performance.now();
 
     const silent = Array.from({ length: SILENT }, () => raw(port));
@@ -122,7 +144,10 @@ test('all at once: nobody else is slowed, and each has its answer', { skip }, as
                 guesses.push(guess);
         }
     }, 100);
-    const beside = await othersRate(3);
+    // At the same time, as whatever else this machine does slows both.
+    const before = [plant, quiet].map(cpuSeconds);
+    const [beside, alone] = await Promise.all([plant, quiet].map((one) => othersRate(one.port, 4)));
+    const [took, tookAlone] = [plant, quiet].map((one, i) => cpuSeconds(one) - before[i]);
 
     const ended = await Promise.all([...silent, ...drips].map((socket) => socket.ended));
     clearInterval(timer);
@@ -135,26 +160,32 @@ test('all at once: nobody else is slowed, and each has its answer', { skip }, as
         assert.ok([1008, 1013].includes((await closed(guess)).code)); // the first ten, then they are slowed
     assert.equal(guesses[0].texts[0].code, 'bad_token');
     flood.close();
-    assert.ok(beside > 0.7 * alone, `${alone.toFixed(1)} frames/s alone, ${beside.toFixed(1)} beside all of them`);
-    console.log(`# ${alone.toFixed(1)} frames/s alone, ${beside.toFixed(1)} beside all of them`);
+    const busy = alone < ASKED_FPS; // others take so much that even who is left alone falls behind: it says nothing of this daemon
+    const rates = `${alone.toFixed(1)} frames/s of a daemon without them, ${beside.toFixed(1)} beside all of them; processor ` +
+        `${tookAlone.toFixed(2)} and ${took.toFixed(2)} s of 4`;
+    // However busy the machine is: what they cost is not hidden by what they slow.
+    assert.ok(took < MOST_TIMES * Math.max(tookAlone, LEAST_CPU_S), rates);
+    assert.ok(busy || beside > 0.7 * alone, rates);
+    console.log(`# ${rates}`);
 
-    for (const end = performance.now() + 5000; descriptors() > filesBefore && performance.now() < end;)
-        await sleep(100);
+    await reaches(() => descriptors() <= filesBefore);
     assert.ok(descriptors() <= filesBefore, `${filesBefore} descriptors before, ${descriptors()} after`);
-    await sleep(1200); // it counts once a second at least
+    await reaches(async () => await metric('plantcast_sessions') === 0 && await metric('plantcast_connections') <= 1);
     assert.equal(await metric('plantcast_sessions'), 0);
     assert.ok(await metric('plantcast_connections') <= 1, 'but the one that asks');
+    if (busy)
+        t.skip(`the rest is good; the machine is busy: ${alone.toFixed(1)} of 60 frames/s without any of them`);
 });
 
 test('beyond the limit connections are cut off, and there is room again once others go', { skip }, async () => {
     const all = Array.from({ length: SILENT + 300 }, () => raw(plant.port));
     const first = await Promise.race(all.map((socket) => socket.ended.then(() => performance.now())));
     assert.ok(first > 0);
-    await sleep(500);
+    await reaches(() => all.filter((socket) => socket.destroyed).length >= 50);
     assert.ok(all.filter((socket) => socket.destroyed).length >= 50);
     for (const socket of all)
         socket.destroy();
-    await sleep(300);
+    await reaches(() => get(plant.port, '/healthz').then(({ status }) => status === 200, () => false));
     assert.equal((await get(plant.port, '/healthz')).status, 200);
 });
 

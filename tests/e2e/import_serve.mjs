@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // `plantcast import --serve`: a plant is brought in on the page. Files are dropped, tags gone through and decided, units corrected.
 import assert from 'node:assert/strict';
-import { spawn } from 'node:child_process';
+import { spawn, spawnSync } from 'node:child_process';
 import { createHash } from 'node:crypto';
-import { existsSync, mkdtempSync, readdirSync, readFileSync, renameSync, rmSync, writeFileSync } from 'node:fs';
+import { once } from 'node:events';
+import { copyFileSync, existsSync, mkdtempSync, readdirSync, readFileSync, renameSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
@@ -193,10 +194,6 @@ test('what goes wrong is one line, and the plant before stays', options, async (
         await served.post('/decide', 'Tag,Status,Asset\nTT-9999,sure,nowhere\n');
         assert.match((await served.idle()).failed, /TT-9999: no asset is called 'nowhere'/);
         assert.deepEqual(['plant.yaml', 'tags.csv', 'matches.csv'].map((name) => served.read(name)), kept);
-        await served.post('/run');
-        await served.post('/cancel');
-        const { failed } = await served.idle();
-        assert.ok(failed === null || /ended before it was done/.test(failed), failed);
     } finally {
         await served.destroy();
     }
@@ -232,19 +229,51 @@ test('an import that fails or is cancelled once the new models are in place: the
         assert.equal((await served.idle()).failed, null);
         await breaks('');
         await breaks('?what=anew&units=ft');
-        // What somebody else saves meanwhile is not lost.
-        const before = files(), more = Array.from({ length: 60 }, (_, i) => `X-${i}`);
-        await bring([...NAMES, ...more]);
-        while (['reading', 'matching'].includes((await (await served.api('')).json()).phase))
-            await new Promise((done) => setTimeout(done, 10));
-        writeFileSync(join(served.folder, 'matches.csv'), 'mine\n');
-        await served.post('/cancel');
-        const { failed } = await served.idle(), after = files(), mine = createHash('md5').update('mine\n').digest('hex');
-        if (failed !== null) {
-            assert.deepEqual([after['plant.yaml'], after['plant.glb'], after['tags.csv']],
-                [before['plant.yaml'], before['plant.glb'], before['tags.csv']]);
-            assert.ok([after['matches.csv'], after['matches.csv.undone']].includes(mine));
+        // A model that is made by a program which waits while there is a file `wait`: an import cannot end before it is cancelled.
+        const [wait, waits, drawing] = ['wait', 'waits', 'box.cad'].map((name) => join(served.folder, name));
+        const command = 'test -e "${1%/*}/wait" && touch "${1%/*}/waits" && sleep 100; cp "$1" "$2"';
+        writeFileSync(drawing, boxes(['Box']));
+        writeFileSync(join(served.folder, 'plant.yaml'), served.read('plant.yaml').replace(/^assets:\n/m,
+            `convert:\n  - { model: box.glb, from: box.cad, command: ${JSON.stringify(command)} }\n\n$&` +
+            '  - { id: BOX, model: box.glb }\n'));
+        copyFileSync(drawing, join(served.folder, 'box.glb'));
+        await bring(NAMES);
+        assert.equal((await served.idle()).failed, null);
+        const before = files(), mine = createHash('md5').update('mine\n').digest('hex');
+        for (const saves of [false, true]) {
+            writeFileSync(wait, '');
+            writeFileSync(drawing, boxes(['Box'], saves ? 2 : 3));
+            await bring([...NAMES, saves ? 'X-1' : 'X-2']);
+            while (!existsSync(waits))
+                await new Promise((done) => setTimeout(done, 10));
+            assert.equal((await (await served.api('')).json()).phase, 'preparing');
+            assert.notEqual(files()['plant.glb'], before['plant.glb'], 'the new model is in place');
+            // Nobody else changes the folder meanwhile; whoever does without asking loses nothing.
+            const other = spawnSync(join(BIN, 'plantcast'), ['match', served.folder, join(served.folder, 'exports/tags.csv')]);
+            assert.match(String(other.stderr), /^plantcast match: .*: plantcastd \(process \d+\) is at work in it\n$/);
+            if (saves)
+                writeFileSync(join(served.folder, 'matches.csv'), 'mine\n');
+            for (const path of [wait, waits])
+                rmSync(path);
+            await served.post('/cancel');
+            const { failed } = await served.idle(), after = files();
+            assert.match(failed, /^plantcast-prep was ended before it was done$/);
+            for (const name of ['plant.yaml', 'plant.glb', 'tags.csv'])
+                assert.equal(after[name], before[name], name);
+            if (saves)
+                assert.ok([after['matches.csv'], after['matches.csv.undone']].includes(mine));
+            else
+                assert.equal(after['matches.csv'], before['matches.csv']);
         }
+        // While somebody else has the folder, an import does not begin.
+        const held = spawn('flock', [served.folder, 'sh', '-c', 'echo held; read line'], { stdio: ['pipe', 'pipe', 'ignore'] });
+        await once(held.stdout, 'data');
+        const now = files();
+        await bring([...NAMES, 'X-3']);
+        const { failed } = await served.idle();
+        held.stdin.end();
+        assert.match(failed, /^the plant's folder .*: (flock|sh) \(process \d+\) is at work in it; try again when that is done$/);
+        assert.deepEqual(files(), now);
         assert.equal(readdirSync(served.folder).filter((name) => /^\.(import|revision\.)/.test(name)).length, 0);
     } finally {
         await served.destroy();

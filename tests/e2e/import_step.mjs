@@ -70,10 +70,44 @@ test('a finer chord error has more triangles, Y up stands otherwise', { skip }, 
     assert.match(units.stderr, /STEP says itself what its units are/);
 }));
 
-test('IGES: a name, its size', { skip }, () => withSamples((folder) => {
-    const { list } = JSON.parse(plantcast('nodes', join(folder, 'skid.igs'), '--json').stdout);
-    assert.ok(near(list[0].size, [2, 1, 0.32]), JSON.stringify(list[0]));
-    assert.equal(list[1].name, 'Skid S-100');
+for (const { file, unit } of [{ file: 'tree.igs', unit: 'millimetre' }, { file: 'inches.IGES', unit: 'inch' }])
+    test(`${file}: tree, names, sizes, colours, shared parts`, { skip }, () => withSamples((folder) => {
+        const said = plantcast('import', join(folder, file), '-o', join(folder, 'plant')), stem = file.replace(/\.\w+$/, '');
+        assert.equal(said.status, 0, said.stderr);
+        assert.match(said.stdout, /5 parts in 13 places; chord error 1 mm; Z up/);
+        assert.match(said.stdout, new RegExp(`its units are: ${unit}`));
+        const glb = join(folder, 'plant', `${stem}.glb`), { list } = JSON.parse(plantcast('nodes', glb, '--json').stdout);
+        assert.deepEqual(list.map(({ path }) => path.split('/').slice(1).join('/')).slice(1), ['Skid S-100', 'Skid S-100/Plate:1',
+            ...['P-101A', 'P-101B/1'].flatMap((pump) => ['', '/Casing:1', '/Motor:1', '/Motor:1/Box']
+                .map((of) => `Skid S-100/${pump}${of}`)),
+            ...[1, 2, 3, 4, 5, 6].map((i) => `Skid S-100/Bolt:${i}`), 'Skid S-100/Turned', 'Skid S-100/Large bolt']);
+        const node = (end) => list.find(({ path }) => path.endsWith(end));
+        for (const [end, size, centre] of [['P-101B/1', [0.6, 0.2, 0.3], [0.5, 0.7, 0.15]],
+            ['P-101B/1/Motor:1', [0.2, 0.2, 0.2], [0.7, 0.7, 0.1]], ['Bolt:6', [0.02, 0.02, 0.05], [1.6, 0.05, 0.025]],
+            ['Turned', [0.3, 0.2, 0.2], [1.15, 0.5, 0]], ['Large bolt', [0.08, 0.08, 0.2], [1.5, 0.9, 0.1]]])
+            assert.ok(near(node(end).size, size) && near(node(end).centre, centre), JSON.stringify(node(end)));
+        assert.equal(node('P-101B/1').properties.Product, 'Pump');
+        const { nodes, meshes, materials } = readJson(glb);
+        assert.equal(meshes.length, 5, 'a part is tessellated once');
+        assert.equal(new Set(nodes.filter(({ name }) => /^Bolt:/.test(name)).map(({ mesh }) => mesh)).size, 1);
+        const colors = (name) => meshes[nodes.find((each) => each.name === name).mesh].primitives
+            .map(({ material }) => materials[material].pbrMetallicRoughness.baseColorFactor.slice(0, 3).map(Math.round).join(' ')).sort();
+        assert.deepEqual(colors('Turned'), ['1 0 0']);
+        assert.deepEqual(colors('Box'), ['0 0 1', '0 1 0'], 'one side is blue');
+        const daemon = spawnSync(join(BIN, 'plantcastd'), ['--check', join(folder, 'plant/plant.yaml')], { encoding: 'utf8' });
+        assert.equal(daemon.status, 0, daemon.stderr);
+    }));
+
+test('IGES without groups, and as Open CASCADE writes an assembly', { skip }, () => withSamples((folder) => {
+    const nodes = (file) => JSON.parse(plantcast('nodes', join(folder, file), '--json').stdout).list;
+    const [all, ...layers] = nodes('loose.igs');
+    assert.ok(near(all.size, [0.1, 0.2, 0.3]), JSON.stringify(all));
+    assert.deepEqual(layers.map(({ name, triangles, properties }) => [name, triangles, properties.Layer]),
+        [['Layer 1', 6, '1'], ['Layer 2', 6, '2']]);
+    const skid = nodes('skid.igs'); // its writer knows one level
+    assert.ok(near(skid[0].size, [2, 1, 0.32]), JSON.stringify(skid[0]));
+    assert.deepEqual(skid.slice(1, 6).map(({ name }) => name), ['Skid S-100', 'Plate:1', 'Casing:1', 'Motor:1', 'Casing:1']);
+    assert.ok(near(skid[5].size, [0.2, 0.2, 0.3]) && near(skid[5].centre, [0.3, 0.7, 0.15]), JSON.stringify(skid[5]));
 }));
 
 // Each ends within its time, and is refused in one line or read; nothing is left behind.

@@ -7,7 +7,7 @@ import { cpSync, existsSync, mkdirSync, mkdtempSync, readFileSync, rmSync, statS
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
-import { BIN, missing, runProgram, TinyPlant } from './support/tiny_plant.mjs';
+import { BIN, missing, Program, runProgram, TinyPlant } from './support/tiny_plant.mjs';
 import { freePort } from './support/ports.mjs';
 
 const absent = missing();
@@ -27,6 +27,8 @@ after(async () => {
 });
 const init = (...args) => runProgram('plantcast', ['init', ...args, '--root', root]);
 const etc = (...names) => join(root, 'etc/plantcast', ...names), mode = (path) => (statSync(path).mode & 0o777).toString(8);
+
+const UP = /^plantcast_source_up\{[^}]*\} 1$/m;
 
 test('init makes folders, plant file, certificate and tokens, and the daemon serves with them', { skip, timeout: 100000 }, async () => {
     const port = await freePort();
@@ -86,6 +88,35 @@ test('a certificate that certbot renewed is copied to the plants that name it', 
     assert.equal(readFileSync(etc('two/tls/privkey.pem'), 'utf8'), 'new privkey');
     assert.equal(mode(etc('two/tls/privkey.pem')), '640');
     assert.match(readFileSync(etc('three/tls/privkey.pem'), 'utf8'), /BEGIN PRIVATE KEY/);
+});
+
+test('`make run` twice on a machine: the second takes another port, and both are fed', { skip, timeout: 200000 }, async (t) => {
+    const own = await TinyPlant.create(), runs = [];
+    t.after(async () => {
+        for (const run of runs)
+            await run.stop();
+        await own.destroy();
+    });
+    const block = `  - id: plc1\n    type: modbus\n    host: 127.0.0.1\n    port: ${own.modbusPort}\n    poll_ms: 100\n` +
+        '    byte_order: ABCD\n    address_base: 1\n    simulated: yes\n';
+    const yaml = readFileSync(own.file, 'utf8').replace(/^ *- \{ id: plc1, .*\n/m, block);
+    writeFileSync(own.file, yaml);
+    const ports = [await freePort(), await freePort()];
+    for (const port of ports) {
+        runs.push(new Program('', [own.file, String(port)], {}, ['deploy/run']));
+        await runs.at(-1).line(/^plantcast: ready /m);
+    }
+    assert.match(runs[1].said, new RegExp(`port ${own.modbusPort} is taken; the simulated PLC has \\d+`));
+    assert.doesNotMatch(runs[0].said, /is taken/);
+    assert.equal(readFileSync(own.file, 'utf8'), yaml);
+    for (const port of ports) {
+        let metrics = '';
+        for (let i = 0; i < 300 && !UP.test(metrics); i++, await new Promise((done) => setTimeout(done, 100)))
+            metrics = await (await fetch(`http://127.0.0.1:${port}/metrics`)).text();
+        assert.match(metrics, UP);
+    }
+    for (const run of runs)
+        assert.deepEqual(await run.stop(), { code: 0, signal: null }, run.said);
 });
 
 test('without npm or a network no page without charts is built', () => {

@@ -365,6 +365,43 @@ test('a slow provider: codes wait in bounds, and the rights of 40 people end in 
     assert.equal(provider.live.size, 0, 'what ends here is revoked there');
 });
 
+// Signatures, requests and checks of rights are for threads of their own. Processor time of one thread says so on a busy machine, too.
+test('what people cost the loop: a log-in, a request by cookie, and their rights', { skip, timeout: 120000 }, async (t) => {
+    const PEOPLE = 32, REQUESTS = 100;
+    t.after(() => { provider.sub = 's1'; provider.claims.groups = ['operators']; });
+    const { pid } = plant.daemon.child;
+    const loop = () => Number(readFileSync(`/proc/${pid}/task/${pid}/schedstat`, 'utf8').split(' ')[0]) / 1e6; // ms
+    const cost = async (times, act) => {
+        const before_ = loop();
+        for (let i = 0; i < times; i++)
+            await act(i);
+        return (loop() - before_) / times;
+    };
+    let browser;
+    const login = await cost(PEOPLE, async (i) => {
+        provider.sub = `s${i % (PEOPLE / 16)}`; // a person has 16 at most
+        assert.equal((await (browser = new Browser()).signIn()).status, 303);
+    });
+    const asks = (headers) => cost(REQUESTS, async () => (await fetch(`http://127.0.0.1:${port}/api/v1/me`, { headers })).arrayBuffer());
+    const cookie = [...browser.jar].map(([name, value]) => `${name}=${value}`).join('; ');
+    assert.equal((await browser.me()).name, 'kim');
+    const byToken = await asks({ Authorization: `Bearer ${token}` }), byCookie = await asks({ cookie });
+    const refreshed = () => provider.asked.filter((what) => what === '/token').length;
+    const from = refreshed(), began = loop();
+    while (refreshed() < from + PEOPLE)
+        await sleep(20);
+    const check = (loop() - began) / PEOPLE;
+    provider.claims.groups = []; // nobody is left to the tests that follow
+    for (let i = 0; i < 400 && provider.live.size > 0; i++)
+        await sleep(50);
+    assert.equal(provider.live.size, 0);
+    t.diagnostic(`a log-in ${login.toFixed(2)} ms of the loop; a request by token ` +
+        `${byToken.toFixed(3)}, by cookie ${byCookie.toFixed(3)} ms; a check of rights ${check.toFixed(3)} ms`);
+    assert.ok(login < 5, `${login} ms of the loop for a log-in`);
+    assert.ok(byCookie < byToken + 0.5, `${byCookie} ms of the loop by cookie, ${byToken} by token`);
+    assert.ok(check < 2, `${check} ms of the loop for a check of rights`);
+});
+
 test('keys that cannot be had end nobody; signing out during a check leaves no refresh token', { skip, timeout: 120000 }, async (t) => {
     t.after(() => { Object.assign(provider, { keysStatus: 200, delay_ms: 0 }); });
     const browser = new Browser();

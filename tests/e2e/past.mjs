@@ -30,7 +30,8 @@ before(async () => {
         return;
     plant = await TinyPlant.create();
     appendFileSync(plant.file, 'views:\n- { id: near, view: "camera=3,-2,3,0,0,0,0,0,1,45&at=1" }\n- { id: all, view: "look=default" }\n'
-        + 'tours:\n- id: round\n  stops: [{ view: near, dwell_s: 2, text: The first of two }, { view: all, dwell_s: 3 }]\n');
+        + 'tours:\n- id: round\n  stops: [{ view: near, dwell_s: 2, text: The first of two \uccab \ubc88\uc9f8 }, '
+        + '{ view: all, dwell_s: 3 }]\n');
     assert.equal(plant.prepare().code, 0);
     writeFileSync(join(plant.folder, 'series.csv'), series());
     const imported = runProgram('plantcast', ['history', 'import', plant.file, join(plant.folder, 'series.csv')]);

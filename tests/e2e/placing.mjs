@@ -2,6 +2,8 @@
 // Placing sensors and proving them, by the protocol alone: what one engineer tries out nobody else sees, a list that is saved comes into
 // force with the one before beside it, and proofs outlive the daemon.
 import assert from 'node:assert/strict';
+import { spawn } from 'node:child_process';
+import { once } from 'node:events';
 import { appendFileSync, existsSync, readdirSync, readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
@@ -199,6 +201,32 @@ test('a list that cannot be prepared is put back', options, async () => {
     assert.equal(readFileSync(tagsFile, 'utf8'), good);
     assert.deepEqual(readdirSync(plant.folder).sort(), files);
     assert.equal((await probe(engineer)).nearest[0].tag, 'TI-1', 'and goes on as it was tried');
+    engineer.close();
+});
+
+test('while another program is at work in the plant\'s folder, a list is not saved, and frames go on', options, async (t) => {
+    const engineer = await enter(), good = readFileSync(tagsFile, 'utf8'), files = readdirSync(plant.folder).sort();
+    place(engineer, [{ tag: 'TI-9', asset: 'E-101', position: [0, 0.5, 0.25] }]);
+    await placed(engineer);
+    engineer.say('save_tags', { seq: ++seq });
+    const { hash } = await engineer.text('tags_diff');
+    const held = spawn('flock', [plant.folder, 'sh', '-c', 'echo held; read line'], { stdio: ['pipe', 'pipe', 'ignore'] });
+    t.after(() => held.stdin.end());
+    await once(held.stdout, 'data');
+    engineer.say('save_tags', { seq: ++seq, confirm: hash });
+    const began = performance.now();
+    await probe(engineer);
+    assert.ok(performance.now() - began < 2000, 'the loop does not wait');
+    const refused = await engineer.text('tags_saved', 60000);
+    assert.equal(refused.saved, false);
+    assert.match(refused.errors.join(), /^the plant's folder .*: (flock|sh) \(process \d+\) is at work in it; try again/);
+    assert.equal(readFileSync(tagsFile, 'utf8'), good);
+    assert.deepEqual(readdirSync(plant.folder).sort(), files);
+    // A short match or import is waited for; and it is the daemon's while it saves.
+    engineer.say('save_tags', { seq: ++seq, confirm: hash });
+    await new Promise((done) => setTimeout(done, 300));
+    held.stdin.end();
+    assert.equal((await engineer.text('tags_saved', 60000)).saved, true);
     engineer.close();
 });
 

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The plant loaded anew under clients that look at it: all of it or nothing, and nobody is sent away.
 import assert from 'node:assert/strict';
-import { readFileSync, writeFileSync } from 'node:fs';
+import { spawnSync } from 'node:child_process';
+import { closeSync, constants, openSync, readFileSync, renameSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
 import { Client } from './conformance/client.mjs';
@@ -144,5 +145,37 @@ test('again and again, by signal, under clients that move', options, async () =>
         client.say('camera', { seq: 9999, eye: [6, -6, 4], target: [1, 0, 0] });
         await client.wait('a picture in the end', () => client.pictures.length > shown);
         client.close();
+    }
+});
+
+// Whoever reads a pipe waits until somebody writes: so the reload is not ready before the test says so.
+test('who waits too long for an answer is told so, and can ask again', options, async () => {
+    const other = await TinyPlant.create(), tags = join(other.folder, 'tags.csv'), aside = join(other.folder, 'aside.csv');
+    const ask = () => fetch(`http://127.0.0.1:${other.port}/api/v1/reload`, { method: 'POST' });
+    try {
+        assert.equal(other.prepare().code, 0);
+        await other.startDaemon('--limit', 'answer-wait=1');
+        renameSync(tags, aside);
+        assert.equal(spawnSync('mkfifo', [tags]).status, 0);
+        const late = await ask();
+        assert.equal(late.status, 503);
+        assert.equal(late.headers.get('retry-after'), '2');
+        assert.match(await late.text(), /^not ready within 1 s \(.*\); try again$/m);
+        assert.equal((await fetch(`http://127.0.0.1:${other.port}/api/v1/plant`)).status, 200);
+        const pipe = join(other.folder, 'pipe');
+        renameSync(tags, pipe);
+        renameSync(aside, tags);
+        let again; // the empty pipe is refused, also to who asks before that is known; 503 on a slow machine
+        for (let i = 0; i < 100 && again?.status !== 200; i++) {
+            try {
+                closeSync(openSync(pipe, constants.O_WRONLY | constants.O_NONBLOCK)); // whoever waits to read it goes on
+            } catch (error) {
+                assert.equal(error.code, 'ENXIO'); // nobody does
+            }
+            again = await ask();
+        }
+        assert.equal(again.status, 200, await again.text());
+    } finally {
+        await other.destroy();
     }
 });

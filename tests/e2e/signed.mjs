@@ -2,7 +2,7 @@
 // Signed pictures: whole ones are good and are drawn again pixel for pixel, of now and of the past; whatever is changed in one is found.
 import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
-import { appendFileSync, chmodSync, readFileSync, writeFileSync } from 'node:fs';
+import { appendFileSync, chmodSync, readdirSync, readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
 import { chunksOf, pngOf, textOf, withRows, withText } from './support/png_chunks.mjs';
@@ -165,4 +165,40 @@ test('a key that is none, or that everybody may read, is refused', { skip }, () 
     const { code, err } = start(path('server.pem'));
     assert.notEqual(code, 0);
     assert.match(err, /everybody may read it/);
+});
+
+// CPU time of each thread so far, in ns, by id.
+function threadTimes(pid) {
+    const folder = `/proc/${pid}/task`;
+    return new Map(readdirSync(folder).map((id) => [id, Number(readFileSync(join(folder, id, 'schedstat'), 'utf8').split(' ')[0])]));
+}
+
+test('the loop does not wait for a signature: 10,000 readings are stated and signed beside it', { skip, timeout: 180000 }, async () => {
+    const lines = Array.from({ length: 10000 }, (_, i) => `X-${i},${400101 + i},Short,bar,spare,,,,,,3`);
+    writeFileSync(path('tags.csv'), `${readFileSync(path('tags.csv'), 'utf8')}${lines.join('\n')}\n`);
+    assert.equal(plant.prepare().code, 0);
+    await plant.daemon.stop();
+    chmodSync(path('server.pem'), 0o600);
+    await plant.sim.stop(); // readings that change would be work of the loop, too
+    await plant.startDaemon('--signing-key', path('server.pem'));
+    const { pid } = plant.daemon.child, count = 10;
+    const whole = await fetchPicture('width=320&height=200');
+    const before_ = threadTimes(pid);
+    for (let i = 0; i < count; i++)
+        await fetchPicture(`width=320&height=${200 + 2 * i}`);
+    const spent = [...threadTimes(pid)].map(([id, ns]) => [id, (ns - (before_.get(id) ?? 0)) / 1e6 / count]);
+    const loop = spent.find(([id]) => Number(id) === pid)[1]; // the main thread
+    const report = spent.map(([id, ms]) => `${readFileSync(`/proc/${pid}/task/${id}/comm`, 'utf8').trim()} ${ms.toFixed(2)}`).join(', ');
+    console.log(`# ms of CPU a signed picture, by thread: ${report}`);
+    assert.match(verify(whole).out, /signature is good/);
+    assert.ok(loop < 5, `${loop} ms of the loop a picture: ${report}`);
+    // A plant that is loaded anew while pictures are signed: each is answered, and those that are pictures are good.
+    const asked = Array.from({ length: 6 }, (_, i) => fetch(`http://127.0.0.1:${plant.port}/snapshot.png?width=320&height=${240 + 2 * i}`));
+    writeFileSync(plant.file, readFileSync(plant.file, 'utf8').replace(/^name: .*$/m, 'name: Another'));
+    plant.daemon.child.kill('SIGHUP');
+    for (const answer of await Promise.all(asked)) {
+        assert.ok([200, 503].includes(answer.status), String(answer.status));
+        if (answer.status === 200)
+            assert.match(verify(Buffer.from(await answer.arrayBuffer())).out, /signature is good/);
+    }
 });

@@ -7,6 +7,7 @@ import { connect, createServer } from 'node:net';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
+import { SCREENSHOTS } from './support/browser.mjs';
 import { freePort } from './support/ports.mjs';
 import { BIN, missing, Program, runProgram, TinyPlant } from './support/tiny_plant.mjs';
 
@@ -64,6 +65,34 @@ class Reader {
     async stop() {
         this.child.kill('SIGKILL');
         await this.ended;
+    }
+}
+
+// Waits until one picture has what is expected: of pane 1 (the left two thirds), the share of saturated pixels, and at its left edge that
+// of the red of an alarm's frame.
+const SHOTS = process.env.PLANTCAST_SHOTS === '1' ? SCREENSHOTS : null;
+async function pixelsUntil(url, expected, name) {
+    for (const end = Date.now() + 30000; ;) {
+        const picture = spawnSync('ffmpeg', ['-v', 'error', '-rtsp_transport', 'tcp', '-i', url, '-frames:v', '1', '-f', 'rawvideo',
+            '-pix_fmt', 'rgb24', 'pipe:1'], { maxBuffer: WIDTH * HEIGHT * 4, timeout: 20000 }).stdout;
+        const at = (x, y) => picture.subarray((y * WIDTH + x) * 3, (y * WIDTH + x) * 3 + 3);
+        const count = { coloured: 0, framed: 0 }, rows = [60, 300], columns = [20, 400];
+        for (let y = rows[0]; y < rows[1]; y++) {
+            for (let x = columns[0]; x < columns[1]; x++)
+                count.coloured += Math.max(...at(x, y)) - Math.min(...at(x, y)) > 60;
+            count.framed += [...Array(12).keys()].some((x) => at(x, y)[0] > 140 && at(x, y)[1] < 90 && at(x, y)[2] < 100);
+        }
+        count.coloured /= (rows[1] - rows[0]) * (columns[1] - columns[0]);
+        count.framed /= rows[1] - rows[0];
+        if (expected(count)) {
+            if (SHOTS) {
+                mkdirSync(SHOTS, { recursive: true });
+                spawnSync('ffmpeg', ['-v', 'error', '-y', '-f', 'rawvideo', '-pix_fmt', 'rgb24', '-s', `${WIDTH}x${HEIGHT}`, '-i', 'pipe:0',
+                    join(SHOTS, `${name}.png`)], { input: picture });
+            }
+            return;
+        }
+        assert.ok(Date.now() < end, `${name}: ${JSON.stringify(count)}`);
     }
 }
 
@@ -256,6 +285,61 @@ test('a token for one view shows that view, and no other; losing it ends the pic
     await plant.startDaemon();
 });
 
+test('a display of a wall: its panes as the player draws them, and a card once they are of before', options, async () => {
+    const port = await freePort(), tokens = join(plant.folder, 'tokens'), token = join(folder, 'token');
+    const walls = `views:\n  - { id: inside, title: \uc2dc\ud5d8\uc2e4 Room, view: "group=temperature" }\n` +
+        'walls:\n  - id: room\n    displays:\n' +
+        `    - grid: [main main list, main main time]\n      panes:\n      - { area: main, views: [inside], on_alarm: yes }\n` +
+        '      - { area: list, alarms: yes }\n      - { area: time, clock: yes }\n';
+    const made = runProgram('plantcast', ['token', 'add', tokens, '--role', 'viewer', '--name', 'display']);
+    assert.equal(made.code, 0, made.err);
+    writeFileSync(token, `${made.out.trim()}\n`);
+    await plant.daemon.stop();
+    writeFileSync(plant.file, readFileSync(plant.file, 'utf8').split('views:\n')[0] + walls);
+    plant.addAlarms();
+    await plant.startDaemon('--tokens', tokens);
+    const at = plant.port;
+    const program = await startVideo('--wall', 'room', '--display', '1', '--token-file', token, '--rtsp', String(port));
+    const source = rtsp(port, ''), reader = new Reader(source, '-rtsp_transport', 'tcp');
+    try {
+        await reader.until(({ card }) => !card);
+        // The plant in pane 1, and no red; then an alarm frames it.
+        await pixelsUntil(source, ({ coloured, framed }) => coloured > 0.01 && framed < 0.1, 'wall-video');
+        await plant.tell('set TI-1 95');
+        await pixelsUntil(source, ({ coloured, framed }) => coloured > 0.01 && framed > 0.8, 'wall-video-alarm');
+        // Values that are frozen, a server that hangs or dies, a token that is revoked.
+        plant.sim.child.kill('SIGSTOP');
+        let begun = Date.now(), last = await reader.until(({ card }) => card);
+        assert.ok(last.at - begun < 5000, `${last.at - begun} ms from the last value to the card`);
+        plant.sim.child.kill('SIGCONT');
+        await reader.until(({ card }) => !card);
+        for (const signal of ['SIGSTOP', 'SIGKILL']) {
+            begun = Date.now();
+            plant.daemon.child.kill(signal);
+            last = await reader.until(({ card }) => card);
+            assert.ok(last.at - begun < 3400, `${signal}: ${last.at - begun} ms to the card on the reader's screen`);
+            if (signal === 'SIGSTOP') {
+                plant.daemon.child.kill('SIGCONT');
+            } else {
+                await pixelsUntil(source, ({ coloured }) => coloured < 0.2, 'wall-video-card');
+                plant.daemon.stopped = true;
+                await plant.daemon.ended;
+                await plant.startDaemon('--tokens', tokens, '--port', String(at));
+            }
+            await reader.until(({ card }) => !card, 60000);
+        }
+        begun = Date.now();
+        assert.equal(runProgram('plantcast', ['token', 'revoke', tokens, 'display']).code, 0);
+        last = await reader.until(({ card }) => card);
+        assert.ok(last.at - begun < 3400, `${last.at - begun} ms from the token's end to the card`);
+    } finally {
+        await reader.stop();
+        await program.stop();
+    }
+    await plant.daemon.stop();
+    await plant.startDaemon('--port', String(at));
+});
+
 test('connections that say nothing are closed, and hold up nobody', options, async () => {
     const idle = await Promise.all(Array.from({ length: 40 }, () => new Promise((done, fail) => {
         const socket = connect(ports.http, '127.0.0.1', () => done(socket));
@@ -314,6 +398,9 @@ test('bad input: what is wrong is said', options, async () => {
         [[url, '--rtsp', '8554', '--size', '641x360'], 2, /even numbers/],
         [[url, '--rtsp', '8554', '--listen', '0.0.0.0'], 2, /whoever gets there would see the plant/],
         [[url, '--rtsp', '8554', '--view', 'a', '--query', 'b'], 2, /do not go together/],
+        [[url, '--rtsp', '8554', '--view', 'a', '--wall', 'b'], 2, /--wall goes with neither/],
+        [[url, '--rtsp', '8554', '--wall', 'b', '--display', '0'], 2, /--display 0: expected 1 to 16/],
+        [[url, '--rtsp', '8554', '--wall', 'b', '--language', 'fr'], 2, /--language fr: expected en, ko or de/],
         [[url, '--rtsp', '8554', '--token-file', join(folder, 'empty')], 2, /its first line/],
         [[url, '--rtsp', '8554', '--token-file', join(folder, 'none')], 2, /No such file/],
         [[url, '--rtsp', '8554', '--readers-file', join(folder, 'nameless')], 2, /USER:PASSWORD/],

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A display that nobody types a token into: its six digits, an engineer who lets it in, the display that it is from then on, and the end.
 import assert from 'node:assert/strict';
-import { chmodSync, mkdtempSync, readFileSync, rmSync } from 'node:fs';
+import { chmodSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
 import { openPage, shoot, waitForPicture } from './support/browser.mjs';
+import { PlainClient } from './support/plain_client.mjs';
 import { missing, startPlant } from './support/plant.mjs';
 import { runProgram } from './support/tiny_plant.mjs';
 
@@ -19,8 +20,9 @@ walls:
   displays:
   - grid: [main alarms]
     panes: [{ area: main, views: [whole] }, { area: alarms, alarms: yes }]
-  - grid: [clock]
-    panes: [{ area: clock, clock: yes }]
+  - grid: [tiles trend]
+    panes: [{ area: tiles, tiles: [TE-171] }, { area: trend, trend: [TE-172], hours: 1 }]
+- { id: tiled, tile: { columns: 2, rows: 1, views: whole } }
 `;
 const tokens = {};
 let folder, plant, wall, desk, id;
@@ -45,6 +47,9 @@ before(async () => {
     const file = join(folder, 'tokens');
     for (const role of ['operator', 'engineer'])
         tokens[role] = runProgram('plantcast', ['token', 'add', file, '--role', role, '--name', `${role}-1`]).out.trim();
+    tokens.viewer = runProgram('plantcast', ['token', 'add', file, '--role', 'viewer', '--name', 'viewer-1', '--unattended']).out.trim();
+    tokens.tile = runProgram('plantcast',
+        ['token', 'add', file, '--role', 'viewer', '--name', 'tile-2', '--display', 'tiled:2']).out.trim();
     chmodSync(file, 0o600);
     plant = await startPlant(`alarms: local\n${WALLS}`, () => {}, ['--tokens', file, '--audit', join(folder, 'audit')]);
     wall = await openPage(`${plant.url}?wall=room`, { viewport: { width: 1920, height: 1080 } });
@@ -59,6 +64,29 @@ after(async () => {
     await plant?.stop();
     if (folder)
         rmSync(folder, { recursive: true, force: true });
+});
+
+test('a tile takes the token of its display: who only looks on can neither lead a wall nor hold it up', options, async () => {
+    const port = Number(new URL(plant.url).port), open = [];
+    const hello = async (token, display) => {
+        const client = await PlainClient.open(port);
+        open.push(client);
+        client.say({ type: 'hello', width: 320, height: 180, codecs: ['jpeg'], token, tile: { wall: 'tiled', display } });
+        await client.until('an answer', () => client.texts.some(({ type }) => type === 'error' || type === 'welcome'));
+        return client;
+    };
+    for (const role of ['viewer', 'operator']) {
+        const [error] = (await hello(tokens[role], 1)).texts;
+        assert.deepEqual([error.type, error.code], ['error', 'not_allowed'], role);
+        assert.match(error.text, /tile: it takes the token of display 1 of wall tiled, or the role engineer/);
+    }
+    assert.match((await hello(tokens.tile, 1)).texts[0].text, /this token is that of display 2 of wall tiled/);
+    const tile = await hello(tokens.tile, 2);
+    await tile.until('the lead', () => tile.texts.some(({ type, leads }) => type === 'tiles' && leads));
+    assert.deepEqual((await tile.text('tiles')).missing, [1]); // nobody counts whom it refused
+    const other = await hello(tokens.engineer, 1);
+    await other.until('both', () => other.texts.some(({ type, missing: gone }) => type === 'tiles' && gone.length === 0));
+    open.forEach((client) => client.close());
 });
 
 test('it shows six digits, and nothing of the plant', options, async () => {
@@ -103,17 +131,120 @@ test('it is that display only, as a viewer, also after a restart of the daemon',
     await wall.page.reload();
     await wall.page.locator('.pane.alarms').waitFor({ timeout: 60000 });
     const secret = await wall.page.evaluate(() => localStorage.getItem('plantcast.wall.room.1'));
-    assert.equal((await get('api/v1/tags', `Bearer ${secret}`)).status, 200);
     assert.equal((await get('api/v1/devices', `Bearer ${secret}`)).status, 403);
     assert.deepEqual(await (await get('api/v1/pair?wall=room&display=1', `Pairing ${secret}`)).json(), { paired: true });
     assert.equal((await get('api/v1/pair?wall=room&display=2', `Pairing ${secret}`)).status, 409);
     await wall.page.evaluate(() => globalThis.wall.session.post({ type: 'display', wall: 'room', display: 2 }));
     const end = Date.now() + 20000;
-    while (!/was paired as display 1/.test(audit()) && Date.now() < end)
+    while (!/token is that of display 1/.test(audit()) && Date.now() < end)
         await new Promise((done) => setTimeout(done, 200));
-    assert.match(audit(), /refused.*was paired as display 1 of wall room/);
+    assert.match(audit(), /refused.*this token is that of display 1 of wall room/);
     await wall.page.reload();
     await wall.page.locator('.pane.alarms').waitFor({ timeout: 60000 });
+});
+
+// A client of that display; letIn: by the desk, which reads its digits.
+async function displayClient(display, secret, pairs) {
+    if (pairs) {
+        const { digits } = await (await get(`api/v1/pair?wall=room&display=${display}`, `Pairing ${secret}`)).json();
+        await desk.page.waitForFunction(() => globalThis.plantcast.session.connection.state === 'open', null, { timeout: 60000 });
+        await desk.page.evaluate((six) => globalThis.plantcast.session.post({ type: 'pair', seq: 9, digits: six }), digits);
+        const end = Date.now() + 20000;
+        while (!(await (await get(`api/v1/pair?wall=room&display=${display}`, `Pairing ${secret}`)).json()).paired && Date.now() < end)
+            await new Promise((done) => setTimeout(done, 200));
+    }
+    return PlainClient.open(Number(new URL(plant.url).port), { headers: [`Authorization: Bearer ${secret}`], host: 'localhost' });
+}
+
+const TILES = '[{ area: tiles, tiles: [TE-171] }', PICTURE = '[{ area: tiles, views: [whole] }';
+
+async function reload(from, to) {
+    writeFileSync(plant.file, readFileSync(plant.file, 'utf8').replace(from, to));
+    const answer = await fetch(`${plant.url}api/v1/reload`, { method: 'POST', headers: { Authorization: `Bearer ${tokens.engineer}` } });
+    assert.equal(answer.status, 200, await answer.text());
+}
+
+const PATHS = ['tags', 'plant', 'views', 'notes', 'alarms', 'alarms/journal', 'proofs', 'pick?x=1&y=1', 'history?tags=TE-171&from=-1h',
+    'devices', 'import'];
+
+test('its secret reads nothing but its display, before it has said a word', options, async () => {
+    const first = await wall.page.evaluate(() => localStorage.getItem('plantcast.wall.room.1'));
+    const second = `pc_${'1'.repeat(64)}`; // which has its digits
+    const tiles = await displayClient(2, second, true), pictures = await displayClient(1, first, false);
+    for (const secret of [first, second])
+        for (const path of [...PATHS.map((one) => `api/v1/${one}`), 'metrics', 'snapshot.png', 'snapshot.png?view=whole'])
+            assert.equal((await get(path, `Bearer ${secret}`)).status, 403, path);
+    const shape = async (secret) => {
+        const { walls } = await (await get('api/v1/walls', `Bearer ${secret}`)).json();
+        return walls[0].displays.map(({ panes }) => panes.length);
+    };
+    assert.deepEqual([await shape(first), await shape(second), await shape(tokens.engineer)], [[2, 0], [0, 2], [2, 2]]);
+    assert.equal((await get('api/v1/history?tags=TE-172&from=-1h', `Bearer ${second}`)).status, 200);
+    assert.equal((await get('api/v1/history?tags=TE-172,TE-171&from=-1h', `Bearer ${second}`)).status, 403);
+
+    const { tags } = await tiles.hello({ width: 640, height: 480 });
+    const mine = ['TE-171', 'TE-172'].map((name) => tags.findIndex((tag) => tag.name === name));
+    const read = new Set();
+    for (const end = Date.now() + 5000; Date.now() < end;) {
+        const { values } = await tiles.text('tags', 20000);
+        values.forEach(([tag]) => read.add(tag));
+    }
+    assert.deepEqual([...read].sort((a, b) => a - b), mine.sort((a, b) => a - b)); // readings of what it shows, and of nothing else
+    const frame = await tiles.frameWhere('a picture', () => true);
+    assert.deepEqual([frame.width, frame.height], [16, 16]);
+    assert.equal(tiles.texts.filter(({ type }) => ['markers', 'proofs'].includes(type)).length, 0);
+    assert.deepEqual(tiles.texts.filter(({ type }) => type === 'views' || type === 'notes').flatMap(({ list }) => list), []);
+    for (const message of [{ type: 'pick', seq: 1, x: 1, y: 1 }, { type: 'time', at_us: 1 }, { type: 'follow', session: 1 }]) {
+        tiles.say(message);
+        assert.match((await tiles.text('error')).text, /this token is that of display 2 of wall room/, message.type);
+    }
+    await pictures.hello({ width: 640, height: 480 });
+    assert.ok((await pictures.text('tags', 20000)).values.length > 100); // an alarm may call any place of the plant into its picture
+    assert.deepEqual((await pictures.text('views', 20000)).list.map(({ id: view }) => view), ['whole']);
+    pictures.close();
+
+    await reload(TILES, PICTURE);
+    assert.deepEqual(await tiles.until('the end', ({ closed }) => closed), { code: 1012, text: 'the display has other panes now' });
+    const again = await displayClient(2, second, false);
+    await again.hello({ width: 640, height: 480 });
+    const larger = await again.frameWhere('a picture', () => true);
+    assert.deepEqual([larger.width, larger.height], [640, 480]);
+    again.close();
+    await reload(PICTURE, TILES);
+});
+
+// The page of a display, with a secret or token that it was given before.
+async function wallPage(display, key, token) {
+    const screen = await openPage(`${plant.url}healthz`, { viewport: { width: 1280, height: 720 } });
+    await screen.page.evaluate(([name, text]) => localStorage.setItem(name, text), [key, token]);
+    await screen.page.goto(`${plant.url}?wall=room&display=${display}`);
+    return screen;
+}
+
+test('the pages of a display that is let in, and of a token of some views, show what they may', options, async () => {
+    const tiles = await wallPage(2, 'plantcast.wall.room.2', `pc_${'1'.repeat(64)}`);
+    await tiles.page.waitForFunction(() => /\d/.test(document.querySelector('.tile .value')?.textContent ?? ''), null, { timeout: 60000 });
+    const trend = tiles.page.frameLocator('.pane.trend iframe');
+    await trend.locator('.uplot').first().waitFor({ timeout: 60000 });
+    await new Promise((done) => setTimeout(done, 3000));
+    await shoot(tiles.page, 'wall-device');
+    assert.deepEqual(tiles.errors, []);
+    await tiles.close();
+
+    const file = join(folder, 'tokens');
+    const made = runProgram('plantcast', ['token', 'add', file, '--role', 'viewer', '--name', 'lobby', '--unattended', '--views', 'whole']);
+    const lobby = made.out.trim();
+    await new Promise((done) => setTimeout(done, 4000)); // the daemon looks every 3 s
+    const seen = await wallPage(1, 'plantcast.wall', lobby);
+    await seen.page.locator('.pane.views .said', { hasText: 'Whole unit' }).waitFor({ timeout: 60000 });
+    await seen.page.waitForFunction(() => document.querySelector('.pane.views iframe').contentWindow.plantcast?.session.picture, null,
+        { timeout: 90000 });
+    await new Promise((done) => setTimeout(done, 3000));
+    await shoot(seen.page, 'wall-views-token');
+    assert.equal(await seen.page.locator('.pane').count(), 1);
+    assert.doesNotMatch(audit(), /refused.*lobby|lobby.*refused/);
+    assert.deepEqual(seen.errors, []);
+    await seen.close();
 });
 
 test('a viewer notes, sends and points at nothing; who may stands in the audit trail', options, async () => {

@@ -9,6 +9,7 @@ import { join } from 'node:path';
 import { after, before, test } from 'node:test';
 import { SCREENSHOTS } from './support/browser.mjs';
 import { residentKb, sanitized } from './support/crowd.mjs';
+import { PlainClient } from './support/plain_client.mjs';
 import { BIN, missing, startPlant } from './support/plant.mjs';
 import { missingDisplay, savePng, startDisplay } from './support/x_display.mjs';
 
@@ -31,12 +32,13 @@ walls:
     panes:
     - { area: top, trend: [TE-171, TE-172], hours: 1 }
     - { area: bottom, title: To do, text: [Check P-101A, Clean F-101] }
+- { id: tiled, tile: { columns: 2, rows: 1, views: whole } }
 `;
 const WIDTH = 1280, HEIGHT = 720, MAIN = [10, 40, 840, 700], ALARMS = [860, 30, 1270, 230];
 const folder = mkdtempSync(join(tmpdir(), 'plantcast-wall-')), tokens = join(folder, 'tokens'), tokenFile = join(folder, 'token');
 const sleep = (ms) => new Promise((done) => setTimeout(done, ms));
 const players = [];
-let plant, display, main;
+let plant, display, main, operator, engineer, tokenOf1, tokenOf2, tokenOfTile;
 
 const token = (...args) => spawnSync(join(BIN, 'plantcast'), ['token', ...args], { encoding: 'utf8' }).stdout.trim();
 
@@ -53,8 +55,8 @@ function startPlayer(args, env = {}) {
 }
 
 // Of a part of what is seen: the shares of black, of white, of the ground, of saturated colours, and of the red of an alarm's frame.
-function shares([left, top, right, bottom], step = 3) {
-    const { at } = display.grab(), count = { black: 0, white: 0, plain: 0, coloured: 0, red: 0, orange: 0 };
+function shares([left, top, right, bottom], step = 3, { at } = display.grab()) {
+    const count = { black: 0, white: 0, plain: 0, coloured: 0, red: 0, orange: 0, paper: 0, blue: 0 };
     let all = 0;
     for (let y = top; y < bottom; y += step) {
         for (let x = left; x < right; x += step, all++) {
@@ -64,6 +66,8 @@ function shares([left, top, right, bottom], step = 3) {
             count.plain += r === 0xf4 && g === 0xf5 && b === 0xf6;
             count.coloured += spread > 60;
             count.red += Math.abs(r - 0xc4) + Math.abs(g - 0x0d) + Math.abs(b - 0x20) < 20;
+            count.paper += r === 0xff && g === 0xf7 && b === 0xd6;
+            count.blue += Math.abs(r - 0x0b) + Math.abs(g - 0x5c) + Math.abs(b - 0x93) < 20;
             count.orange += Math.abs(r - 0xe0) + Math.abs(g - 0x6a) + Math.abs(b - 0x0a) < 20;
         }
     }
@@ -90,7 +94,11 @@ const shoot = (name) => process.env.PLANTCAST_SHOTS === '1' && savePng(display.g
 before(async () => {
     if (why)
         return;
-    writeFileSync(tokenFile, token('add', tokens, '--role', 'viewer', '--name', 'wall-1'));
+    writeFileSync(tokenFile, token('add', tokens, '--role', 'viewer', '--name', 'wall-1', '--display', 'room:1'));
+    [tokenOf2, tokenOfTile] = ['room:2', 'tiled:2'].map((of, i) =>
+        token('add', tokens, '--role', 'viewer', '--name', `other-${i}`, '--display', of));
+    engineer = token('add', tokens, '--role', 'engineer', '--name', 'engineer');
+    operator = token('add', tokens, '--role', 'operator', '--name', 'crew');
     chmodSync(tokens, 0o600);
     plant = await startPlant(`alarms: local\n${WALLS}`, () => {}, ['--tokens', tokens]);
     display = await startDisplay(WIDTH, HEIGHT);
@@ -110,6 +118,19 @@ test('it shows a wall', options, async () => {
     assert.match(main.said, /plantcast-wall: x11, \w+, 1280x720/);
     await until(ALARMS, ({ plain }) => plain > 0.7, 10000, 'no alarm');
     shoot('wall-player');
+});
+
+test('a note of the crew is pinned where it is, until it is removed', options, async () => {
+    const crew = await PlainClient.open(Number(new URL(plant.url).port), { headers: [`Authorization: Bearer ${operator}`] });
+    await crew.hello();
+    await until(MAIN, ({ paper }) => paper === 0, 1000, 'no note');
+    crew.say({ type: 'note', seq: 1, tag: 'TE-171', text: 'Check this again at 14:00' });
+    const { id } = await crew.text('noted');
+    await until(MAIN, ({ paper }) => paper > 0.001, 10000, 'the note');
+    shoot('wall-player-note');
+    crew.say({ type: 'remove_note', seq: 2, id });
+    await until(MAIN, ({ paper }) => paper === 0, 10000, 'it goes');
+    crew.close();
 });
 
 test('an alarm takes the place of a view, and stands in the list', options, async () => {
@@ -154,21 +175,58 @@ test('without its token it is dark within 3 s, and another one brings it back', 
     assert.ok(ms < 4000, `${ms} ms`); // the server looks at its file every second
     assert.ok(shares(WHOLE).coloured < 0.001, 'nothing of the plant is left');
     shoot('wall-player-denied');
-    writeFileSync(tokenFile, token('add', tokens, '--role', 'viewer', '--name', 'wall-2'));
+    tokenOf1 = token('add', tokens, '--role', 'viewer', '--name', 'wall-2', '--display', 'room:1');
+    writeFileSync(tokenFile, tokenOf1);
     await until(MAIN, showsPlant, 90000, 'the plant comes back');
 });
 
-test('another display, without OpenGL; what it cannot show is said by name', options, async () => {
+test('another display, without OpenGL: a trend of what was recorded, a text', options, async () => {
     await main.stop();
+    writeFileSync(tokenFile, tokenOf2);
     const other = startPlayer(['--wall', 'room', '--display', '2', '--language', 'ko'], { SDL_RENDER_DRIVER: 'software' });
     await until([10, 400, 1270, 700], ({ plain }) => plain > 0.8, 20000, 'a text');
-    await sleep(1000);
+    await until([10, 30, 1270, 350], ({ blue, plain }) => blue > 0.001 && plain < 0.2, 20000, 'a trend');
     assert.match(other.said, /software/);
     shoot('wall-player-2');
     assert.equal(await other.stop(), 0);
 });
 
+// The other tile leads, and acknowledges a picture late: until then all keep the one before.
+test('a tile keeps its legend as long as the picture that it is of', options, async () => {
+    const leader = await PlainClient.open(Number(new URL(plant.url).port));
+    await leader.hello({ width: WIDTH, height: HEIGHT, token: engineer, tile: { wall: 'tiled', display: 1 } });
+    await leader.until('the lead', () => leader.texts.some(({ type, leads }) => type === 'tiles' && leads));
+    leader.say({ type: 'params', seq: 1, look: 'flat' });
+    writeFileSync(tokenFile, tokenOfTile);
+    const tile = startPlayer(['--wall', 'tiled', '--display', '2']);
+    const LEGEND = [WIDTH - 240, 160, WIDTH - 180, 500], PICTURE = [0, 50, 0.7 * WIDTH, HEIGHT];
+    await until(LEGEND, ({ coloured }) => coloured > 0.1, 60000, 'a legend in colours');
+    await until(PICTURE, ({ coloured }) => coloured > 0.01, 60000, 'a picture in colours');
+    leader.acknowledge = false;
+    const coloured = shares(PICTURE).coloured;
+    leader.say({ type: 'params', seq: 2, look: 'materials' }); // which has no legend
+    const seen = [], LOOKS = 4;
+    let waited = 0;
+    for (const end = performance.now() + 60000; !/^gray gray/.test(seen.at(-1)); await sleep(20)) {
+        assert.ok(performance.now() < end, [...new Set(seen)].join());
+        const grab = display.grab(), legend = shares(LEGEND, 3, grab).coloured < 0.05;
+        const picture = shares(PICTURE, 3, grab).coloured < 0.5 * coloured;
+        seen.push(`${legend ? 'gray' : 'colours'} ${picture ? 'gray' : 'colours'}`);
+        const made = leader.frames.filter(({ params_seq: seq }) => seq === 2);
+        waited += made.length > 0 && !leader.acknowledge;
+        if (waited < LOOKS || leader.acknowledge)
+            continue;
+        leader.acknowledge = true;
+        leader.say({ type: 'ack', seq: made.at(-1).seq });
+    }
+    assert.deepEqual([...new Set(seen)], ['colours colours', 'gray gray'], 'the legend changes with the picture');
+    shoot('wall-player-tile');
+    leader.close();
+    assert.equal(await tile.stop(), 0);
+});
+
 test('it starts within 2 s', options, async () => {
+    writeFileSync(tokenFile, tokenOf1);
     const took = [];
     for (let i = 0; i < 5 && !(took.at(-1) < 2000); i++) { // the best: other programs may be busy meanwhile
         await until(MAIN, ({ plain, coloured }) => plain < 0.1 && coloured < 0.01, 10000, 'no player is there');

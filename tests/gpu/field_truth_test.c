@@ -10,6 +10,7 @@
 
 #include <cmocka.h>
 
+#include "protocol/asset_distance.h"
 #include "render/shaded_colormap.h"
 #include "tests/support/rig.h"
 #include "value/quality.h"
@@ -31,7 +32,7 @@ static int set_up(void **state)
     const struct asset_view *view = &toy->scene.assets[0].file->view;
     for (size_t i = 0; i < SENSORS; i++)
         for (size_t v = GRID * GRID; v < view->header->vertex_count; v++)
-            ((float *)view->geodesic_m)[i * view->header->vertex_count + v] = INFINITY;
+            ((uint16_t *)asset_distance_codes(view, i, v))[v % ASSET_DISTANCE_BLOCK] = ASSET_DISTANCE_NONE;
     stand_init(&stand, &rig, toy);
     for (int i = 0; i < SENSORS; i++)
         toy_set(stand.snapshot, i, i == HOTTEST ? 95 : 20 + i, QUALITY_GOOD);

@@ -108,7 +108,7 @@ static void test_the_demo_plant(void **state)
     struct tally tally = { 0 };
     assert_true(site_init(&site, &rig, SITE_DEMO, NULL));
     renderer_use_gl(site.renderer, true);
-    for (int i = 0; i < 40 && (i < sweep(40, 6) || tally.left_out < least); i++) {
+    for (int i = 0; i < 40 && (i < sweep(40, 3) || tally.left_out < least); i++) {
         struct view view;
         look_anyhow(site.scene, &view);
         compare(&tally, site.renderer, &view, site.snapshot);
@@ -155,7 +155,7 @@ static void test_cubes(void **state)
         double gap_m = (double[]){ 0, 0.02, 0.3 }[i];
         stand_init(&stand, &rig, make_city(gap_m));
         renderer_use_gl(stand.renderer, true);
-        for (int k = 0; k < sweep(25, 4); k++) {
+        for (int k = 0; k < sweep(25, 2); k++) {
             struct view view;
             look_anyhow(&stand.toy->scene, &view);
             compare(&tally, stand.renderer, &view, stand.snapshot);

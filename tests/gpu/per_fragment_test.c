@@ -12,6 +12,7 @@
 #include <cmocka.h>
 
 #include "base/mem.h"
+#include "protocol/asset_distance.h"
 #include "render/renderer_compare.h"
 #include "tests/support/cad.h"
 #include "tests/support/rig.h"
@@ -88,12 +89,12 @@ static bool find_spot(double x_m, double y_m, struct spot *spot)
 
 static double distance_of(const struct spot *spot, int sensor, enum distance_mode mode)
 {
-    const float *along_m = file()->geodesic_m + (size_t)sensor * file()->header->vertex_count, *at = file()->sensors[sensor].surface_m;
+    const float *at = file()->sensors[sensor].surface_m;
     double sum = 0;
     if (mode == DISTANCE_EUCLIDEAN)
         return hypot(spot->at_m[0] - (double)at[0], spot->at_m[1] - (double)at[1]);
     for (int c = 0; c < 3; c++)
-        sum += spot->parts[c] * (double)along_m[spot->corners[c]];
+        sum += spot->parts[c] * (double)asset_distance_m(file(), (size_t)sensor, spot->corners[c]);
     return sum;
 }
 
@@ -103,7 +104,7 @@ static double largest_m(void)
     double most_m = 0;
     for (int i = 0; i < SENSORS; i++)
         for (uint32_t v = 0; v < file()->header->vertex_count; v++)
-            most_m = fmax(most_m, (double)file()->geodesic_m[(size_t)i * file()->header->vertex_count + v]);
+            most_m = fmax(most_m, (double)asset_distance_m(file(), (size_t)i, v));
     return most_m;
 }
 

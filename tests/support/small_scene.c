@@ -4,6 +4,8 @@
 
 #include <math.h>
 
+#include "protocol/asset_distance.h"
+
 static struct plant_asset plant_assets[] = {
     { .id = "E-101", .tag = "E-101", .description = "Feed / effluent exchanger", .unit_m = 1 },
     { .id = "P-101A", .tag = "P-101 A", .description = NULL, .unit_m = 1 },
@@ -83,8 +85,9 @@ static struct plant plant = {
 static struct asset_header header = { .vertex_count = 3, .sensor_count = 2 };
 static const float positions_m[3][3] = { { -2.5f, 0, 2.375f }, { 2.5f, 0, 2.375f }, { 0, 0, 0.5f } };
 static const struct asset_sensor file_sensors[2] = { { .surface_m = { -2.5f, 0, 2.375f } }, { .surface_m = { 2.5f, 0, 2.375f } } };
-static const float geodesic_m[6] = { 0, 7, INFINITY, 7, 0, 4 };
-static struct asset file = { .view = { .header = &header, .positions_m = positions_m, .sensors = file_sensors, .geodesic_m = geodesic_m } };
+/* 0, 7 and none from the one; 7, 0 and 4 m from the other. */
+static const uint16_t geodesic[2 * ASSET_DISTANCE_BLOCK] = { 0, 0x8e00, ASSET_DISTANCE_NONE, [ASSET_DISTANCE_BLOCK] = 0x8e00, 0, 0x8800 };
+static struct asset file = { .view = { .header = &header, .positions_m = positions_m, .sensors = file_sensors, .geodesic = geodesic } };
 static struct scene_sensor sensors[] = {
     { .tag = 0, .column = 0, .position_m = { -2.5, 0, 2.4 }, .surface_m = { -2.5, 0, 2.375 }, .surface_distance_m = 0.025 },
     { .tag = 1, .column = 1, .position_m = { 2.5, 0, 2.4 }, .surface_m = { 2.5, 0, 2.4 } },

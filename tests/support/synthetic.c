@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "base/mem.h"
+#include "protocol/asset_distance.h"
 #include "value/quality.h"
 
 uint64_t synthetic_random(uint64_t *state) /* splitmix64 */
@@ -147,9 +148,10 @@ void synthetic_destroy(struct synthetic **synthetic_ptr)
     *synthetic_ptr = NULL;
 }
 
-float *synthetic_geodesic(struct synthetic *synthetic, size_t sensor)
+void synthetic_set_distance(struct synthetic *synthetic, size_t sensor, size_t vertex, float distance_m)
 {
-    return (float *)synthetic->file.view.geodesic_m + sensor * synthetic->file.view.header->vertex_count;
+    uint16_t *codes = (uint16_t *)asset_distance_codes(&synthetic->file.view, sensor, vertex);
+    codes[vertex % ASSET_DISTANCE_BLOCK] = asset_distance_code(distance_m);
 }
 
 float (*synthetic_positions(struct synthetic *synthetic))[3]

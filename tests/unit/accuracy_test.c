@@ -47,10 +47,18 @@ static long same_place(const struct oracle_mesh *outer, const float p[3])
     return -1;
 }
 
+static uint64_t seed;
+
+/* By default two shapes of the four are tried, those that the seed says; all are drawn, so that each is what it is when all are tried. */
+static bool is_shape_tried(int row)
+{
+    return sweep_takes((int)(seed % 2), row ^ row >> 1, 2);
+}
+
 /* The first source is a vertex, the second lies inside a triangle; by default one of them is tried, of each shape another one. */
 static bool is_source_tried(int row, int source)
 {
-    return sweep_takes(row, source, SOURCES);
+    return is_shape_tried(row) && sweep_takes(row, source, SOURCES);
 }
 
 static void find_truth(struct truth *truth, int row, const struct cad *clean, const struct oracle_mesh *outer)
@@ -131,6 +139,10 @@ static void test_faults(const char *name, int row, const struct cad *clean, cons
             continue;
         struct cad broken;
         cad_break(&broken, clean, (enum cad_fault)fault, &chance, vertex_of);
+        if (!is_shape_tried(row)) {
+            cad_finish(&broken);
+            continue;
+        }
         cad_put(&broken, &place);
         struct surface *surface = surface_create(the_log, workers, (const float(*)[3])broken.positions, broken.vertex_count,
                                                  broken.triangles, broken.triangle_count, &(struct surface_params){ 0 });
@@ -154,6 +166,8 @@ static void test_alone(const char *name, int row, struct cad *clean)
     struct oracle_mesh mesh = mesh_of(clean, 0, clean->vertex_count, 0, clean->triangle_count);
     test_faults(name, row, clean, &mesh);
     cad_finish(clean);
+    if (!is_shape_tried(row))
+        skip();
 }
 
 /* The solver takes minutes under a sanitizer, and is not what they watch. */
@@ -199,6 +213,8 @@ static void interpenetrating_pipes(void **state)
     struct oracle_mesh outer;
     (void)state;
     skip_if_watched();
+    if (!is_shape_tried(3)) /* nothing is drawn after it */
+        skip();
     cad_closed_pipe(&clean, &chance, 0.5, 4, 100, 110, 10, 0, middle);
     size_t vertices = clean.vertex_count, triangles = clean.triangle_count;
     struct cad second = { 0 };
@@ -220,6 +236,13 @@ static void interpenetrating_pipes(void **state)
     free((void *)outer.triangles);
 }
 
+static int set_up(void **state)
+{
+    int failed = surface_case_set_up(state);
+    seed = chance.state;
+    return failed;
+}
+
 int main(void)
 {
     cmocka_set_message_output(CM_OUTPUT_TAP);
@@ -229,5 +252,5 @@ int main(void)
         cmocka_unit_test(thin_walled_box),
         cmocka_unit_test(interpenetrating_pipes),
     };
-    return cmocka_run_group_tests(tests, surface_case_set_up, surface_case_tear_down);
+    return cmocka_run_group_tests(tests, set_up, surface_case_tear_down);
 }

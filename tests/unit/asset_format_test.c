@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Asset files: what is built is read back, and every kind of damage is refused with its reason. */
+#include "protocol/asset_distance.h"
 #include "protocol/asset_format.h"
 
 #include <math.h>
@@ -138,7 +139,8 @@ static void what_is_built_is_read_back(void **state)
     assert_memory_equal(v.levels, levels, sizeof(levels));
     assert_memory_equal(v.clusters, clusters, sizeof(clusters));
     assert_memory_equal(v.sensors, sensors, sizeof(sensors));
-    assert_memory_equal(v.geodesic_m, geodesic, sizeof(geodesic));
+    for (size_t i = 0; i < 8; i++)
+        assert_true(asset_distance_m(&v, i / 4, i % 4) == geodesic[i]);
     assert_memory_equal(v.texels, texels, sizeof(texels));
     assert_string_equal(v.names + v.primitives[1].name, "part");
     free(f.bytes);
@@ -194,8 +196,8 @@ static void the_layout_is_pinned(void **state)
     assert_int_equal(sizeof(struct asset_sensor), 40);
     assert_int_equal(ASSET_SECTION_COUNT, 15);
     struct file f = build(&good);
-    assert_memory_equal(f.bytes, "PLCASSET\4\0\0\0\x68\1\0\0", 16);
-    assert_int_equal(XXH3_64bits(f.bytes + 360, f.size - 360), 0x2abd732e407f55edull); /* changes only with the format's version */
+    assert_memory_equal(f.bytes, "PLCASSET\5\0\0\0\x68\1\0\0", 16);
+    assert_int_equal(XXH3_64bits(f.bytes + 360, f.size - 360), 0x111241323613397full); /* changes only with the format's version */
     free(f.bytes);
 }
 
@@ -220,8 +222,8 @@ static void truncated_or_foreign_files_are_refused(void **state)
     memcpy(f.bytes, "glTF", 4);
     refused_sealed(&f, "magic");
     f = build(&good);
-    f.header->version = 5;
-    refused_sealed(&f, "version 5, this program reads version 4");
+    f.header->version = 6;
+    refused_sealed(&f, "version 6, this program reads version 5");
     f = build(&good);
     f.header->header_bytes = 320;
     refused_sealed(&f, "header of 320 bytes");
@@ -270,7 +272,7 @@ static void sections_out_of_bounds_are_refused(void **state)
     }
     struct file f = build(&good);
     f.header->sections[ASSET_GEODESIC].bytes -= 4;
-    refused_sealed(&f, "section geodesic: 28 bytes, expected 32");
+    refused_sealed(&f, "section geodesic: 1020 bytes, expected 1024");
     f = build(&good);
     f.header->sensor_count = UINT32_MAX;
     refused_sealed(&f, "section sensors");
@@ -516,12 +518,65 @@ static void wrong_sensors_are_refused(void **state)
     f = build(&good);
     ((struct asset_sensor *)part(&f, ASSET_SENSORS))[1].nearest_vertex = 4;
     refused_sealed(&f, "sensor 1: nearest vertex 4 of 4");
-    f = build(&good);
-    ((float *)part(&f, ASSET_GEODESIC))[5] = NAN;
-    refused_sealed(&f, "sensor 1: distance nan m at vertex 1");
-    f = build(&good);
-    ((float *)part(&f, ASSET_GEODESIC))[2] = -1;
-    refused_sealed(&f, "sensor 0: distance -1 m at vertex 2");
+}
+
+/* Every code is a distance, farther than the code before, and the nearest one to what lies up to half-way to its neighbours. */
+static void distances_have_16_bits(void **state)
+{
+    (void)state;
+    assert_true(asset_distance_of(0) == 0 && asset_distance_of(ASSET_DISTANCE_NONE) == INFINITY);
+    assert_int_equal(asset_distance_code(INFINITY), ASSET_DISTANCE_NONE);
+    assert_int_equal(asset_distance_code(NAN), ASSET_DISTANCE_NONE);
+    assert_true(asset_distance_of(asset_distance_code(1e6f)) > 129e3f && asset_distance_of(asset_distance_code(1e6f)) < 131e3f);
+    for (uint32_t code = 0; asset_distance_of((uint16_t)code) < ASSET_DISTANCE_MOST_M; code++) {
+        float here_m = asset_distance_of((uint16_t)code), next_m = asset_distance_of((uint16_t)(code + 1)), between_m = next_m - here_m;
+        assert_true(next_m > here_m && between_m <= fmaxf(here_m * 0x1p-11f, 0x1p-25f));
+        assert_int_equal(asset_distance_code(here_m), code);
+        assert_int_equal(asset_distance_code(here_m + 0.49f * between_m), code);
+        if (next_m < ASSET_DISTANCE_MOST_M)
+            assert_int_equal(asset_distance_code(here_m + 0.51f * between_m), code + 1);
+    }
+}
+
+/* More vertices than a block has. */
+static void distances_lie_in_blocks(void **state)
+{
+    enum { VERTICES = 600, SENSORS = 3 };
+    static float at[VERTICES][3], up[VERTICES][3], along_m[SENSORS * VERTICES];
+    static struct asset_sensor on[SENSORS];
+    struct asset_parts parts = good;
+    struct asset_view v;
+    char why[200] = "";
+    (void)state;
+    for (size_t i = 0; i < VERTICES; i++) {
+        up[i][2] = 1;
+        at[i][0] = (float)i;
+        for (size_t s = 0; s < SENSORS; s++)
+            along_m[s * VERTICES + i] = (float)(s * 1024 + i); /* exactly, or nearly */
+    }
+    parts.positions_m = (const float(*)[3])at;
+    parts.normals = (const float(*)[3])up;
+    parts.texcoords = parts.second_texcoords = NULL;
+    parts.colors = NULL;
+    parts.levels = NULL;
+    parts.clusters = NULL;
+    parts.sensors = on;
+    parts.geodesic_m = along_m;
+    parts.vertex_count = VERTICES;
+    parts.sensor_count = SENSORS;
+    struct asset_material plain = materials[0];
+    plain.base_color_texture = plain.occlusion_texture = ASSET_NO_TEXTURE;
+    plain.second = 0;
+    parts.materials = &plain;
+    struct file f = build(&parts);
+    if (!asset_view_init(&v, f.bytes, f.size, why))
+        fail_msg("%s", why);
+    assert_int_equal(v.header->sections[ASSET_GEODESIC].bytes, 3 * 768 * 2);
+    for (size_t i = 0; i < VERTICES; i++)
+        for (size_t s = 0; s < SENSORS; s++)
+            assert_float_equal(asset_distance_m(&v, s, i), along_m[s * VERTICES + i], along_m[s * VERTICES + i] * 0x1p-12f);
+    assert_int_equal(asset_distance_codes(&v, 2, 599)[599 % ASSET_DISTANCE_BLOCK + 1], ASSET_DISTANCE_NONE);
+    free(f.bytes);
 }
 
 int main(void)
@@ -531,6 +586,8 @@ int main(void)
         cmocka_unit_test(what_is_built_is_read_back),
         cmocka_unit_test(the_smallest_asset_is_good),
         cmocka_unit_test(the_layout_is_pinned),
+        cmocka_unit_test(distances_have_16_bits),
+        cmocka_unit_test(distances_lie_in_blocks),
         cmocka_unit_test(truncated_or_foreign_files_are_refused),
         cmocka_unit_test(every_flipped_bit_is_noticed),
         cmocka_unit_test(sections_out_of_bounds_are_refused),

@@ -16,6 +16,7 @@
 
 #include "base/mem.h"
 #include "preprocess/cache/folder.h"
+#include "protocol/asset_distance.h"
 #include "tests/support/glb.h"
 #include "tests/support/prep_case.h"
 #include "tests/support/temp.h"
@@ -263,7 +264,7 @@ static double error_in(const struct awkward *a, const struct asset_view *view, c
         const double corner[2] = { (double)view->positions_m[v[c]][0], (double)view->positions_m[v[c]][1] };
         distances_from(a, view, corner, at_corner);
         for (size_t s = 0; s < a->sensor_count && geodesic; s++)
-            at_corner[s] = (double)view->geodesic_m[s * view->header->vertex_count + v[c]];
+            at_corner[s] = (double)asset_distance_m(view, s, v[c]);
         weights_of(a, at_corner, weights);
         for (size_t s = 0; s < a->sensor_count; s++)
             shown[s] += part[c] * weights[s];

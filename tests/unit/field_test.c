@@ -14,6 +14,7 @@
 
 #include "base/mem.h"
 #include "field/field.h"
+#include "protocol/asset_distance.h"
 #include "tests/support/synthetic.h"
 #include "value/quality.h"
 
@@ -35,7 +36,7 @@ static double truth_distance(const struct synthetic *plant, const struct field_p
 {
     const struct asset_view *view = &plant->file.view;
     if (params->distance == DISTANCE_GEODESIC)
-        return (double)view->geodesic_m[sensor * view->header->vertex_count + vertex];
+        return (double)asset_distance_m(view, sensor, vertex);
     double sum = 0;
     for (int axis = 0; axis < 3; axis++) {
         double d = (double)view->sensors[sensor].surface_m[axis] - (double)view->positions_m[vertex][axis];
@@ -231,8 +232,8 @@ static void test_worked_example_of_the_paper(void **state)
     struct rig rig = rig_create(synthetic_create(.vertices = 300, .sensors = 2, .max = 1));
     rig.params.interpolation = INTERPOLATION_PAPER;
     rig.params.radius_m = 10;
-    synthetic_geodesic(rig.plant, 0)[7] = 1; /* d = 0.9 */
-    synthetic_geodesic(rig.plant, 1)[7] = 8; /* d = 0.2 */
+    synthetic_set_distance(rig.plant, 0, 7, 1); /* d = 0.9 */
+    synthetic_set_distance(rig.plant, 1, 7, 8); /* d = 0.2 */
     set(&rig, 0, 0.8, QUALITY_GOOD);
     set(&rig, 1, 0.3, QUALITY_GOOD);
     double value = (double)show(&rig)->at[7].value;
@@ -360,7 +361,8 @@ static void test_two_sensors_at_one_place_are_averaged(void **state)
 {
     (void)state;
     struct rig rig = rig_create(synthetic_create(.vertices = 300, .sensors = 3));
-    memcpy(synthetic_geodesic(rig.plant, 1), synthetic_geodesic(rig.plant, 0), 300 * sizeof(float));
+    for (size_t v = 0; v < 300; v++)
+        synthetic_set_distance(rig.plant, 1, v, asset_distance_m(&rig.plant->file.view, 0, v));
     rig.plant->plant.tags[1].strength = 3;
     set(&rig, 0, 10, QUALITY_GOOD);
     set(&rig, 1, 30, QUALITY_GOOD);
@@ -382,9 +384,11 @@ static void test_losing_the_hottest_is_not_painted_over(void **state)
         size_t lost = 0;
         for (size_t j = 0; j < scalars->count; j++) {
             size_t nearest = 0;
-            for (size_t i = 1; i < 5; i++)
-                if (synthetic_geodesic(rig.plant, i)[j] < synthetic_geodesic(rig.plant, nearest)[j])
+            for (size_t i = 1; i < 5; i++) {
+                float least_m = asset_distance_m(&rig.plant->file.view, nearest, j), m = asset_distance_m(&rig.plant->file.view, i, j);
+                if (m < least_m || (m == least_m && nearest == 2)) /* as near as the lost one: its place */
                     nearest = i;
+            }
             lost += nearest == 2;
             assert_int_equal(scalars->at[j].no_data, nearest == 2 && !fill ? 255 : 0);
             assert_int_equal(scalars->at[j].uncertain > 127, nearest == 2 && fill);
@@ -400,7 +404,8 @@ static void test_a_good_twin_keeps_the_place(void **state)
 {
     (void)state;
     struct rig rig = rig_create(synthetic_create(.vertices = 300, .sensors = 3));
-    memcpy(synthetic_geodesic(rig.plant, 1), synthetic_geodesic(rig.plant, 0), 300 * sizeof(float));
+    for (size_t v = 0; v < 300; v++)
+        synthetic_set_distance(rig.plant, 1, v, asset_distance_m(&rig.plant->file.view, 0, v));
     set(&rig, 0, 50, QUALITY_BAD_SENSOR_FAILURE);
     set(&rig, 1, 60, QUALITY_GOOD);
     const struct scalars *scalars = show(&rig);
@@ -611,8 +616,8 @@ static void test_half_the_weight_uncertain(void **state)
     for (int paper = 0; paper < 2; paper++) {
         rig.params.interpolation = paper ? INTERPOLATION_PAPER : INTERPOLATION_SHEPARD;
         for (size_t j = 0; j < 3; j++) { /* nearer to the good one, between, nearer to the uncertain one */
-            synthetic_geodesic(rig.plant, 0)[10 + j] = 1 + (float)j;
-            synthetic_geodesic(rig.plant, 1)[10 + j] = 3 - (float)j;
+            synthetic_set_distance(rig.plant, 0, 10 + j, 1 + (float)j);
+            synthetic_set_distance(rig.plant, 1, 10 + j, 3 - (float)j);
         }
         set(&rig, 0, 10, QUALITY_GOOD);
         set(&rig, 1, 20, QUALITY_UNCERTAIN_LAST_USABLE);
@@ -653,7 +658,7 @@ static void test_a_sensor_out_of_reach_does_not_make_its_place_lost(void **state
     (void)state;
     struct rig rig = rig_create(synthetic_create(.vertices = 300, .sensors = 2));
     for (size_t j = 0; j < 300; j++)
-        synthetic_geodesic(rig.plant, 0)[j] = INFINITY; /* Bad, and on another part */
+        synthetic_set_distance(rig.plant, 0, j, INFINITY); /* Bad, and on another part */
     set(&rig, 0, 90, QUALITY_BAD_SENSOR_FAILURE);
     set(&rig, 1, 40, QUALITY_GOOD);
     const struct scalars *scalars = show(&rig);
@@ -671,8 +676,8 @@ static void test_reach_ends_the_field(void **state)
     set(&rig, 1, 70, QUALITY_GOOD);
     const float near_m[] = { 1.5f, 2.0f, 2.001f, 5 };
     for (size_t k = 0; k < 4; k++) {
-        synthetic_geodesic(rig.plant, 0)[20 + k] = near_m[k];
-        synthetic_geodesic(rig.plant, 1)[20 + k] = 7;
+        synthetic_set_distance(rig.plant, 0, 20 + k, near_m[k]);
+        synthetic_set_distance(rig.plant, 1, 20 + k, 7);
     }
     const struct scalars *scalars = show(&rig);
     for (size_t k = 0; k < 4; k++) {
@@ -698,12 +703,13 @@ static void test_a_sensor_fades_towards_its_reach(void **state)
         set(&rig, 0, 20, QUALITY_GOOD);
         set(&rig, 1, 80, QUALITY_GOOD);
         for (size_t k = 0; k < 200; k++) { /* the second one's reach ends at 150 */
-            synthetic_geodesic(rig.plant, 0)[20 + k] = 2;
-            synthetic_geodesic(rig.plant, 1)[20 + k] = 2.5f + 0.01f * (float)k;
+            synthetic_set_distance(rig.plant, 0, 20 + k, 2);
+            synthetic_set_distance(rig.plant, 1, 20 + k, 2.5f + 0.01f * (float)k);
         }
-        synthetic_geodesic(rig.plant, 0)[20] = synthetic_geodesic(rig.plant, 1)[20] = 4; /* as far as both reach: of both */
-        synthetic_geodesic(rig.plant, 0)[21] = 3.999f;                                   /* alone, it is not seen to fade */
-        synthetic_geodesic(rig.plant, 1)[21] = 4.001f;
+        synthetic_set_distance(rig.plant, 0, 20, 4);
+        synthetic_set_distance(rig.plant, 1, 20, 4);      /* as far as both reach: of both */
+        synthetic_set_distance(rig.plant, 0, 21, 3.999f); /* alone, it is not seen to fade */
+        synthetic_set_distance(rig.plant, 1, 21, 4.001f);
         const struct scalar *at = show(&rig)->at + 20;
         double weight = (paper ? exp(-1 / 8.0) : pow(2 / 3.0, 2)) * pow(0.5, 2); /* at 3 m it has half of what the nearest has left */
         double part = weight / (1 + weight);
@@ -1352,15 +1358,15 @@ static void test_distance_from_one_sensor(void **state)
     assert_null(field_scalars(rig.field, 0, &rig.params, rig.plant->snapshot)); /* it stands on the other */
     const struct scalars *way = field_scalars(rig.field, 1, &rig.params, rig.plant->snapshot);
     const struct scalars *line = field_scalars(rig.field, 1, &straight, rig.plant->snapshot);
-    const float *want = synthetic_geodesic(rig.plant, 1);
     float most = 0;
     assert_int_equal(way->asset, 1);
     assert_int_equal(way->count, 500);
     assert_true(way->version && line->version > way->version && way->oldest_age_ns == INT64_MAX);
     for (size_t j = 0; j < 480; j++) {
-        assert_true(way->at[j].value == want[j] && !way->at[j].no_data);
+        float want = asset_distance_m(&rig.plant->file.view, 1, j);
+        assert_true(way->at[j].value == want && !way->at[j].no_data);
         assert_true(line->at[j].value <= way->at[j].value + 1e-5f);
-        most = fmaxf(most, want[j]);
+        most = fmaxf(most, want);
     }
     assert_true(way->at[1].value == 0 && line->at[1].value == 0);
     for (size_t j = 480; j < 500; j++)

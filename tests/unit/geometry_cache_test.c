@@ -21,6 +21,7 @@
 #include "base/mem.h"
 #include "preprocess/cache/folder.h"
 #include "preprocess/pipeline/geometry_cache.h"
+#include "protocol/asset_distance.h"
 #include "surface/mesh/bvh.h"
 #include "surface/surface_store.h"
 #include "tests/support/cad.h"
@@ -395,7 +396,7 @@ static float value_at(const struct asset_view *view, uint32_t vertex)
 {
     double sum = 0, weights = 0;
     for (uint32_t s = 0; s < view->header->sensor_count; s++) {
-        double d = fmax(1e-5, (double)view->geodesic_m[(size_t)s * view->header->vertex_count + vertex]), weight = 1 / (d * d);
+        double d = fmax(1e-5, (double)asset_distance_m(view, (size_t)s, vertex)), weight = 1 / (d * d);
         sum += (s * 7 % 3 == 0) * weight;
         weights += weight;
     }
@@ -467,7 +468,7 @@ static void assert_on_vertices(const struct prepared *at)
     for (uint32_t s = 0; s < MANY; s++) {
         uint32_t v = view->sensors[s].nearest_vertex;
         assert_memory_equal(view->positions_m[v], view->sensors[s].surface_m, sizeof(float[3]));
-        assert_true(view->geodesic_m[(size_t)s * view->header->vertex_count + v] == 0);
+        assert_true(asset_distance_m(view, (size_t)s, v) == 0);
     }
 }
 

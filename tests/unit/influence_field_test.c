@@ -12,7 +12,10 @@
 #include <cmocka.h>
 
 #include "base/mem.h"
+#include "field/directions.h"
 #include "field/field.h"
+#include "field/neighbours.h"
+#include "placing/sensor_suggest.h"
 #include "scene/scene_create.h"
 #include "tests/support/cad.h"
 #include "tests/support/model_maker.h"
@@ -237,6 +240,424 @@ static void test_fin_knows_how_far_it_sees(void **state)
     finish(&u);
 }
 
+/* What the paper's way of finding distances says is what ours does, on a strip that is as wide as a sensor is from its edge. */
+static void test_distances_by_heat(void **state)
+{
+    struct prep_case *c = *state;
+    struct plant_in_use u;
+    float ours[64];
+    begin(&u, c, "", ", geodesic: heat", 3);
+    assert_int_equal(u.params.distance, DISTANCE_HEAT);
+    for (int pass = 0; pass < 2; pass++) {
+        u.params.show = pass ? SHOW_VALUE : SHOW_DISTANCE;
+        u.params.sensor = pass ? -1 : 1;
+        for (int i = 0; i < 64; i++) {
+            double x_m = STRIP_M * i / 63;
+            u.params.distance = DISTANCE_GEODESIC;
+            ours[i] = look(&u, x_m)->value;
+            u.params.distance = DISTANCE_HEAT;
+            assert_true(fabs((double)(look(&u, x_m)->value - ours[i])) < (pass ? 0.3 : 0.06));
+            assert_true(pass || fabs((double)ours[i] - fabs(x_m - place_of(1))) < 0.12);
+        }
+        u.params.distance = DISTANCE_HEAT;
+        bool differs = false; /* by which it is seen that it is another way */
+        for (int i = 0; i < 64; i++)
+            differs = differs || look(&u, STRIP_M * i / 63)->value != ours[i];
+        assert_true(differs);
+    }
+    finish(&u);
+    write_plant(c, "", "", 3);
+    prep_case_expect(c, "$PLANT", 0);
+    assert_true(use(&u, c));
+    u.params.distance = DISTANCE_HEAT;
+    assert_non_null(strstr(field_params_wrong(u.plant, &u.params), "geodesic: heat"));
+    finish(&u);
+    write_plant(c, "", ", geodesic: heat", 3); /* the plant file asks for it, nobody prepared it */
+    assert_false(use(&u, c));
+    write_plant(c, "", ", geodesic: diffusion", 3);
+    prep_case_expect(c, "$PLANT", 1);
+    prep_case_says(&c->err, "geodesic: expected");
+}
+
+/* Four sensors along the strip, each with three components, or a bearing. */
+static void write_directions(struct prep_case *c, bool bearings)
+{
+    static const char *const directions[2] = { "U%zu V%zu W%zu", "B%zu" };
+    struct text rows = { 0 };
+    text_add(&rows, "Tag Name,Address,Data Type,Source,Group,Asset,X,Y,Z,Direction\n");
+    for (size_t i = 0; i < 4; i++) {
+        text_add(&rows, "T%zu,%zu,Float,plc,temperature,S,%g,0.05,0,", i, 400001 + 2 * i, 2 + 2 * (double)i);
+        text_add(&rows, directions[bearings], i, i, i);
+        text_add(&rows, "\n");
+    }
+    for (size_t i = 0; i < 4; i++)
+        for (size_t k = 0; k < 4; k++)
+            text_add(&rows, "%c%zu,%zu,Float,plc,,,,,,\n", "UVWB"[k], i, 400101 + 8 * i + 2 * k);
+    mem_free(temp_write(c->folder, "tags.csv", rows.at, rows.length));
+    text_finish(&rows);
+}
+
+static struct direction points_at(struct plant_in_use *u, double x_m)
+{
+    const struct asset_view *view = &u->scene->assets[0].file->view;
+    struct direction_place place = { .weights = { 1, 0, 0 }, .normal = { 0, 0, 1 } };
+    struct sensor_direction *said;
+    struct direction found;
+    double best_m = INFINITY;
+    for (uint32_t v = 0; v < view->header->vertex_count; v++) {
+        double away_m = fabs((double)view->positions_m[v][0] + view->header->origin_m[0] - x_m);
+        if (away_m < best_m)
+            place.corners[0] = v;
+        best_m = fmin(best_m, away_m);
+    }
+    size_t count = directions_read(u->scene, 0, 0, u->snapshot, &said);
+    assert_int_equal(count, 4);
+    directions_find(u->scene, 0, &u->params, said, count, &place, 1, &found);
+    mem_free(said);
+    return found;
+}
+
+static void say(struct plant_in_use *u, const char *tag, size_t sensor, double value)
+{
+    char name[16];
+    snprintf(name, sizeof(name), "%s%zu", tag, sensor);
+    u->snapshot->readings[plant_find_tag(u->plant, name)].value = value;
+}
+
+static void expect_along(const struct direction *found, double x, double y)
+{
+    assert_true(found->known && fabs((double)found->along[0] - x) < 0.02 && fabs((double)found->along[1] - y) < 0.02 &&
+                fabs((double)found->along[2]) < 1e-6);
+}
+
+/* Their sum by 1 / D^2, and what is not known of it. */
+static void test_directions(void **state)
+{
+    struct prep_case *c = *state;
+    struct plant_in_use u;
+    write_model(c);
+    write_plant(c, "", "", 1);
+    write_directions(c, false);
+    assert_false(use(&u, c)); /* nobody prepared them */
+    prep_case_expect(c, "$PLANT", 0);
+    assert_true(use(&u, c));
+    for (size_t i = 0; i < 4; i++) {
+        say(&u, "T", i, 5);
+        say(&u, "U", i, 3);
+        say(&u, "V", i, i < 2 ? 4 : -4);
+        say(&u, "W", i, 0);
+    }
+    struct direction found = points_at(&u, 2);
+    expect_along(&found, 0.6, 0.8);
+    found = points_at(&u, 5);
+    expect_along(&found, 1, 0);
+    say(&u, "U", 1, 0), say(&u, "U", 2, 0);
+    say(&u, "T", 0, 0), say(&u, "T", 3, 0); /* what stands still says nothing of where to */
+    found = points_at(&u, 5);
+    assert_false(found.known); /* halfway between two that are opposite */
+    found = points_at(&u, 4.5);
+    expect_along(&found, 0, 1);
+    struct reading *lost = &u.snapshot->readings[plant_find_tag(u.plant, "V1")];
+    lost->quality = QUALITY_UNCERTAIN;
+    assert_true(points_at(&u, 4.2).uncertain && !points_at(&u, 5.8).uncertain);
+    lost->quality = QUALITY_BAD;
+    assert_false(points_at(&u, 4.5).known);
+    assert_true(points_at(&u, 5.5).known);
+    lost->quality = QUALITY_GOOD;
+    say(&u, "V", 1, 0.1), say(&u, "W", 1, 5); /* upright on the strip */
+    assert_false(points_at(&u, 4.5).known);
+    finish(&u);
+    write_directions(c, true);
+    prep_case_expect(c, "$PLANT", 0);
+    assert_true(use(&u, c));
+    for (size_t i = 0; i < 4; i++) {
+        say(&u, "T", i, i == 3 ? -1 : 1);
+        say(&u, "B", i, 90.0 * (double)i);
+    }
+    for (size_t i = 0; i < 4; i++) { /* clockwise from +Y; where the value is negative it points back */
+        found = points_at(&u, 2 + 2 * (double)i);
+        expect_along(&found, (const double[]){ 0, 1, 0, 1 }[i], (const double[]){ 1, 0, -1, 0 }[i]);
+    }
+    finish(&u);
+}
+
+#define GP_KEYS ", interpolation: gp, gp: { range_m: 3, noise: 0.5, deviation: 30 }, disc_m: 0.1"
+
+/* Readings as they are from sensor to sensor; a lost one leaves the field of the others, and a changed one is followed. */
+static void test_gp_meets_readings_and_lets_lost_ones_go(void **state)
+{
+    struct prep_case *c = *state;
+    struct plant_in_use u;
+    begin(&u, c, "", GP_KEYS, SENSORS);
+    for (size_t i = 0; i < SENSORS; i++)
+        assert_true(fabs((double)look(&u, place_of(i))->value - 10.0 * (double)i) < 1);
+    u.snapshot->readings[4].value = 90;
+    look(&u, 0);
+    assert_true(fabs((double)look(&u, place_of(4))->value - 90) < 1.5);
+    u.params.fill = FILL_NEIGHBOURS;
+    u.snapshot->readings[4] = (struct reading){ .value = 5000, .quality = QUALITY_BAD };
+    assert_true(fabs((double)look(&u, place_of(4))->value - 40) < 3);
+    u.params.show = SHOW_OPERATOR; /* rows add up to 1, so it can */
+    assert_null(field_params_wrong(u.plant, &u.params));
+    finish(&u);
+}
+
+/* It does not depend on what sensors say, grows where one is lost, and never passes what the prior allows. */
+static void test_uncertainty_depends_on_who_is_good(void **state)
+{
+    struct prep_case *c = *state;
+    struct plant_in_use u;
+    double low, high;
+    begin(&u, c, "", GP_KEYS, SENSORS);
+    field_params_set_show(u.plant, &u.params, SHOW_UNCERTAINTY);
+    field_default_range(u.scene, &u.params, &low, &high);
+    assert_true(low == 0 && fabs(high - 30) < 1e-9);
+    const double at_sensor = (double)look(&u, place_of(4))->value, between = (double)look(&u, place_of(4) + 0.4)->value;
+    print_message("deviation: %.2f at a sensor, %.2f between two\n", at_sensor, between);
+    assert_true(at_sensor < 1.5 && between > 1.2 * at_sensor && between < 15);
+    uint64_t version = u.scalars->version;
+    u.snapshot->readings[4].value = 12345;
+    assert_true((double)look(&u, place_of(4))->value == at_sensor && u.scalars->version == version);
+    u.snapshot->readings[4].quality = QUALITY_BAD;
+    const struct scalar *lost = look(&u, place_of(4));
+    assert_true((double)lost->value > 2 * between && (double)lost->value < 30 && lost->no_data == 255);
+    u.snapshot->readings[4].quality = QUALITY_GOOD;
+    assert_true((double)look(&u, place_of(4))->value == at_sensor);
+    u.params.interpolation = INTERPOLATION_SHEPARD;
+    assert_non_null(strstr(field_params_wrong(u.plant, &u.params), "uncertainty is that of 'gp'"));
+    finish(&u);
+}
+
+/* Where sensors take away less than a tenth of the prior's variance, nothing is known. */
+static void test_gp_knows_how_far_it_sees(void **state)
+{
+    struct prep_case *c = *state;
+    struct plant_in_use u;
+    begin(&u, c, "", ", interpolation: gp, gp: { range_m: 0.8, noise: 0.5, deviation: 30 }, disc_m: 0.1", 2);
+    assert_int_equal(look(&u, place_of(1))->no_data, 0);
+    assert_int_equal(look(&u, 6)->no_data, 255);
+    finish(&u);
+}
+
+static double predicted_of(const struct plant_in_use *u, size_t sensor, double *deviation)
+{
+    struct neighbour *found;
+    assert_int_equal(neighbours_find(u->scene, 0, 0, u->snapshot, &found), u->plant->tag_count);
+    assert_int_equal(found[sensor].tag, sensor);
+    double predicted = found[sensor].predicted;
+    *deviation = found[sensor].deviation;
+    mem_free(found);
+    return predicted;
+}
+
+/* However many ask, it is worked out once a second. */
+static void test_what_others_say_is_kept_for_a_second(void **state)
+{
+    struct prep_case *c = *state;
+    struct plant_in_use u;
+    struct neighbours_cache cache = { 0 };
+    begin(&u, c, "", ", interpolation: gp, gp: { range_m: 0.8, noise: 0.5, deviation: 30 }, disc_m: 0.1", 2);
+    u.snapshot->taken_mono_ns = 1;
+    const struct neighbours_kept *kept = neighbours_look(&cache, u.scene, 0, 0, u.snapshot);
+    double first = kept->list[0].value;
+    u.snapshot->readings[0].value += 3;
+    u.snapshot->taken_mono_ns += NEIGHBOURS_FRESH_NS - 1;
+    assert_true(neighbours_look(&cache, u.scene, 0, 0, u.snapshot)->list[0].value == first);
+    u.snapshot->taken_mono_ns++;
+    kept = neighbours_look(&cache, u.scene, 0, 0, u.snapshot);
+    assert_true(kept->list[0].value == first + 3 && kept->taken_mono_ns == u.snapshot->taken_mono_ns);
+    neighbours_cache_finish(&cache);
+    finish(&u);
+}
+
+/* What the others say of a sensor is the same whether it is good, whatever it reads, or lost; with others lost, too. */
+static void test_others_do_not_hear_a_sensor_itself(void **state)
+{
+    static const char *const keys[] = { GP_KEYS, ", prepare: [harmonic], disc_m: 0.1", ", prepare: [fin], ambient: 20, disc_m: 0.1", "" };
+    struct prep_case *c = *state;
+    for (int k = 0; k < 4; k++) {
+        struct plant_in_use u;
+        double good, lost, deviation, other;
+        begin(&u, c, ", thickness_m: 0.05", keys[k], SENSORS);
+        for (int others = 0; others < 2; others++) {
+            u.snapshot->readings[6].quality = others ? QUALITY_BAD : QUALITY_GOOD;
+            u.snapshot->readings[7].quality = others ? QUALITY_BAD : QUALITY_GOOD;
+            u.snapshot->readings[4] = (struct reading){ .value = 77, .quality = QUALITY_GOOD };
+            good = predicted_of(&u, 4, &deviation);
+            u.snapshot->readings[4].value = -500;
+            assert_true(fabs(predicted_of(&u, 4, &other) - good) < 1e-6 * 500);
+            u.snapshot->readings[4].quality = QUALITY_BAD;
+            lost = predicted_of(&u, 4, &other);
+            assert_true(fabs(lost - good) < 1e-6 * 500);
+            assert_true(k > 0 ? isnan(deviation) : fabs(other / deviation - 1) < 1e-6 && deviation > 0.5 && deviation < 30);
+            if (k < 2)
+                assert_true(fabs(good - 40) < (k ? 0.5 : 3)); /* straight between its neighbours */
+        }
+        for (size_t i = 0; i < SENSORS; i++)
+            u.snapshot->readings[i].quality = i == 4 ? QUALITY_GOOD : QUALITY_BAD;
+        assert_true(isnan(predicted_of(&u, 4, &deviation)));
+        finish(&u);
+    }
+}
+
+/* Two neighbours 0.8 m away, two 1.6 m and so on, by 1 / D^2. */
+static void test_others_by_distance(void **state)
+{
+    struct prep_case *c = *state;
+    struct plant_in_use u;
+    double sum = 0, whole = 0, deviation;
+    begin(&u, c, "", "", SENSORS);
+    for (size_t i = 0; i < SENSORS; i++) {
+        double away = fabs(place_of(i) - place_of(4));
+        sum += i == 4 ? 0 : 10.0 * (double)i / (away * away);
+        whole += i == 4 ? 0 : 1 / (away * away);
+    }
+    assert_true(fabs(predicted_of(&u, 4, &deviation) - sum / whole) < 1);
+    finish(&u);
+}
+
+/* A twentieth of the range at a sensor, e^2 times that two sizes away, with what is good. */
+static void test_blind_places(void **state)
+{
+    struct prep_case *c = *state;
+    struct plant_in_use u;
+    double low, high;
+    begin(&u, c, "", ", hot_spot_m: 0.2", SENSORS);
+    u.params.show = SHOW_BLIND;
+    field_default_range(u.scene, &u.params, &low, &high);
+    assert_true(fabs(low - 5) < 1e-9 && fabs(high - 100) < 1e-9);
+    assert_true(fabs((double)look(&u, place_of(4))->value - 5) < 0.5);
+    assert_true(fabs(log((double)look(&u, place_of(4) + 0.4)->value / 5) - 2) < 0.5);
+    u.snapshot->readings[4].quality = QUALITY_BAD;
+    const struct scalar *lost = look(&u, place_of(4));
+    assert_true(fabs(log((double)lost->value / 5) - 8) < 1.2); /* four sizes from both neighbours */
+    assert_int_equal(lost->no_data, 0);
+    u.params.reach_m = 0.1; /* whatever the group's reach */
+    assert_int_equal(look(&u, place_of(4))->no_data, 0);
+    finish(&u);
+}
+
+/* gp does not know what is far from its two sensors; that nobody would see a hot spot there is known all the same. Where nobody knows where
+   sensors are, nothing is known of either. */
+static void test_blind_places_are_told_where_gp_knows_nothing(void **state)
+{
+    struct prep_case *c = *state;
+    struct plant_in_use u;
+    begin(&u, c, "", ", interpolation: gp, gp: { range_m: 0.8, noise: 0.5, deviation: 30 }, disc_m: 0.1, hot_spot_m: 0.2", 2);
+    assert_true(look(&u, STRIP_M - 0.5)->no_data);
+    u.params.show = SHOW_BLIND;
+    assert_int_equal(look(&u, STRIP_M - 0.5)->no_data, 0);
+    assert_true(look(&u, STRIP_M - 0.5)->value >= 100);
+    assert_true(fabs((double)look(&u, place_of(1))->value - 5) < 0.5);
+    for (size_t i = 0; i < u.plant->tag_count; i++)
+        u.plant->tags[i].place_assumed = true;
+    field_destroy(&u.field);
+    u.field = field_create(u.workers, u.scene);
+    assert_null(field_scalars(u.field, 0, &u.params, u.snapshot));
+    field_params_set_show(u.plant, &u.params, SHOW_UNCERTAINTY);
+    assert_null(field_scalars(u.field, 0, &u.params, u.snapshot));
+    field_params_set_show(u.plant, &u.params, SHOW_VALUE);
+    assert_non_null(field_scalars(u.field, 0, &u.params, u.snapshot));
+    finish(&u);
+}
+
+/* On a strip with two sensors at its beginning the first place is where it sees nothing for as long as it reaches, and each gains less than
+   the one before; the best of all places, tried one by one, gains no more than that. */
+static void test_suggestions_gain_less_and_less(void **state)
+{
+    struct prep_case *c = *state;
+    struct plant_in_use u;
+    struct suggestion list[5];
+    begin(&u, c, "", ", hot_spot_m: 0.4", 2);
+    char *folder = plant_prepared_folder(u.plant);
+    struct suggest_query query = { the_log, u.workers, u.scene, folder, 0, -1, 5 };
+    const double seen_m = 0.4 * sqrt(2 * log(20));
+    assert_int_equal(sensor_suggest(&query, list), 5);
+    double before = list[0].before, best = 0;
+    for (size_t i = 0; i < 5; i++) {
+        print_message("%.2f m: %.4f to %.4f, unseen %.3f to %.3f\n", list[i].at_m[0], list[i].before, list[i].after, list[i].unseen_before,
+                      list[i].unseen_after);
+        assert_true(list[i].before == before && list[i].after < before && list[i].unseen_after <= list[i].unseen_before);
+        if (i > 0)
+            assert_true(list[i].before - list[i].after <= 1.02 * (list[i - 1].before - list[i - 1].after));
+        before = list[i].after;
+    }
+    assert_true(list[0].at_m[0] > place_of(1) + seen_m && list[0].at_m[0] < STRIP_M - seen_m / 2);
+    for (double x = 0; x < STRIP_M; x += 0.05) { /* by hand, along a line */
+        double gain = 0;
+        for (double at = 0.005; at < STRIP_M; at += 0.01) {
+            double near = fmin(fabs(at - place_of(0)), fabs(at - place_of(1))), now = fmin(near, fabs(at - x));
+            gain += 0.01 / STRIP_M * (fmin(1, near * near / (seen_m * seen_m)) - fmin(1, now * now / (seen_m * seen_m)));
+        }
+        best = fmax(best, gain);
+    }
+    print_message("the best place gains %.4f, what was suggested %.4f\n", best, list[0].before - list[0].after);
+    assert_true(fabs(list[0].before - list[0].after - best) < 0.03 * best);
+    query.asset = 0;
+    query.count = 1;
+    assert_int_equal(sensor_suggest(&query, list), 1);
+    mem_free(folder);
+    finish(&u);
+}
+
+static void test_gp_bad_input(void **state)
+{
+    struct prep_case *c = *state;
+    struct plant_in_use u;
+    write_model(c);
+    write_plant(c, "", ", prepare: [gp]", 2);
+    prep_case_expect(c, "$PLANT", 1);
+    prep_case_says(&c->err, "group temperature: gp needs 'gp: { range_m: ... }'");
+    write_plant(c, "", ", prepare: [gp], gp: { range_m: 0, noise: -1 }", 2);
+    prep_case_expect(c, "$PLANT", 1);
+    prep_case_says(&c->err, "range_m");
+    prep_case_says(&c->err, "noise");
+    write_plant(c, "", ", prepare: [gp], gp: { fit: nothing.csv }", 3);
+    prep_case_expect(c, "$PLANT", 1);
+    prep_case_says(&c->err, "nothing.csv: cannot be read");
+    write_plant(c, "", ", prepare: [gp], gp: { range_m: 0.001 }", 3);
+    prep_case_expect(c, "$PLANT", 1);
+    prep_case_says(&c->err, "gp's range_m 0.001 is too short for its surface");
+    write_plant(c, "", ", prepare: [gp], gp: { range_m: 100000, noise: 0 }", 3);
+    prep_case_expect(c, "$PLANT", 0);
+    assert_true(use(&u, c));
+    u.params.interpolation = INTERPOLATION_GP;
+    for (size_t i = 0; i < 3; i++) {
+        u.snapshot->readings[i].value = i == 1 ? 80 : 20;
+        look(&u, 0);
+    }
+    assert_true(fabs((double)look(&u, place_of(1))->value - 80) < 2);
+    finish(&u);
+    write_plant(c, "", ", prepare: [gp], gp: { range_m: 90000, noise: 0 }", 3); /* another is not taken for it */
+    assert_false(use(&u, c));
+}
+
+/* Range, noise and deviation out of a file; a changed file is fitted anew. */
+static void test_gp_fitted_to_readings(void **state)
+{
+    struct prep_case *c = *state;
+    struct plant_in_use u;
+    struct text rows = { 0 };
+    text_add(&rows, "time,T0,T1,T2,T3\n");
+    for (int t = 0; t < 40; t++)
+        text_add(&rows, "%d,%g,%g,%g,%g\n", t, 20 + 9 * sin(t), 20 + 8 * sin(t + 0.2), 20 + 8 * sin(t + 0.5), 20 + 9 * sin(t + 0.8));
+    write_model(c);
+    mem_free(temp_write_text(c->folder, "readings.csv", rows.at));
+    write_plant(c, "", ", interpolation: gp, gp: { fit: readings.csv }", 4);
+    prep_case_expect(c, "$PLANT", 0);
+    assert_true(use(&u, c));
+    const struct influence_entry *entry = influence_find(&u.scene->assets[0].file->influence, 0, INTERPOLATION_GP);
+    print_message("fitted: range %.2f m, noise %.2f, deviation %.2f\n", entry->range_m, entry->noise, entry->deviation);
+    assert_true(entry->range_m > 0.5 && entry->deviation > 0.5 && entry->deviation < 100 && entry->noise < 5);
+    look(&u, place_of(0));
+    finish(&u);
+    text_add(&rows, "40,1,2\n");
+    mem_free(temp_write_text(c->folder, "readings.csv", "T0,T1\n"));
+    prep_case_expect(c, "$PLANT", 1);
+    prep_case_says(&c->err, "line 1: no column 'T2'");
+    text_finish(&rows);
+}
+
 static void test_what_is_missing_is_said(void **state)
 {
     struct prep_case *c = *state;
@@ -247,7 +668,7 @@ static void test_what_is_missing_is_said(void **state)
     prep_case_says(&c->err, "asset S: fin, which group temperature asks for, needs 'thickness_m'");
     write_plant(c, "", ", prepare: [kriging]", 2);
     prep_case_expect(c, "$PLANT", 1);
-    prep_case_says(&c->err, "prepare: expected harmonic or fin");
+    prep_case_says(&c->err, "prepare: expected harmonic, fin or gp");
     write_plant(c, ", thickness_m: 0", ", prepare: [harmonic]", 2);
     prep_case_expect(c, "$PLANT", 1);
     prep_case_says(&c->err, "thickness_m");
@@ -308,6 +729,19 @@ int main(void)
         cmocka_unit_test_setup_teardown(test_steps_and_lost_sensors_agree_with_all_anew, set_up, tear_down),
         cmocka_unit_test_setup_teardown(test_lost_sensor_is_bridged_and_its_place_unknown, set_up, tear_down),
         cmocka_unit_test_setup_teardown(test_fin_knows_how_far_it_sees, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(test_distances_by_heat, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(test_directions, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(test_gp_meets_readings_and_lets_lost_ones_go, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(test_uncertainty_depends_on_who_is_good, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(test_gp_knows_how_far_it_sees, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(test_what_others_say_is_kept_for_a_second, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(test_others_do_not_hear_a_sensor_itself, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(test_others_by_distance, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(test_suggestions_gain_less_and_less, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(test_blind_places, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(test_blind_places_are_told_where_gp_knows_nothing, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(test_gp_bad_input, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(test_gp_fitted_to_readings, set_up, tear_down),
         cmocka_unit_test_setup_teardown(test_what_is_missing_is_said, set_up, tear_down),
         cmocka_unit_test_setup_teardown(test_not_prepared_is_refused, set_up, tear_down),
         cmocka_unit_test_setup_teardown(test_damaged_file, set_up, tear_down),

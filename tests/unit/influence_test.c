@@ -31,7 +31,7 @@ static void solve(struct solved *s, const double (*places_m)[3], size_t count, d
     struct vertex_embedding *embedding = vertex_embedding_create(s->surface, (const float(*)[3])s->shape.positions, NULL, vertices,
                                                                  s->shape.triangles, s->shape.triangle_count);
     struct influence_anchor *anchors = mem_array(vertices, sizeof(*anchors));
-    assert_true(influence_mesh_init(&mesh, s->surface, places_m, count, disc_m));
+    assert_true(influence_mesh_init(&mesh, s->surface, places_m, count, disc_m, INFINITY));
     influence_mesh_anchors(&mesh, embedding, vertices, anchors);
     influence_finish(&s->influence);
     assert_true(influence_conduct(&s->influence, the_log, workers, &mesh, decay_m, anchors, vertices));

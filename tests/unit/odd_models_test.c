@@ -20,6 +20,7 @@
 #include "base/text.h"
 #include "tests/support/model_maker.h"
 #include "tests/support/prep_case.h"
+#include "tests/support/sweep.h"
 #include "tests/support/temp.h"
 
 #define PLANT(asset)                                                                                                                       \
@@ -207,7 +208,7 @@ static void what_is_told_to_end_ends(void **state)
     prep_case_plant(c, PLANT("tag: A"));
     prep_case_tags(c, "T1,400001,Float,plc,temperature,A,,0,0,0\n");
     write_plates(c, 1200, 800, (double[]){ 12, 8 }, 1, here);
-    for (int i = 0; i < 2; i++) {
+    for (int i = 0; i < sweep(2, 1); i++) {
         int status = 0;
         pid_t child = start(c), ended = 0;
         for (int tries = 0; tries < 12000 && seconds_of(child) < WELL_BEGUN_S; tries++)

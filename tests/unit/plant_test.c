@@ -433,7 +433,7 @@ static void bad_choices_list_the_allowed(void **state)
           { "plant.yaml", 2, 65, "sensor_frame: expected plant or asset, found 'world'" },
           { "plant.yaml", 2, 79, "start: expected shown, ghost or hidden, found 'away'" });
     load_with(f, 3, "groups: [{ id: g, unit: K, min: 0, max: 1, interpolation: idw, distance: [geodesic], fill: some }]");
-    FOUND(f, { "plant.yaml", 3, 59, "interpolation: expected shepard, paper, harmonic or fin, found 'idw'" },
+    FOUND(f, { "plant.yaml", 3, 59, "interpolation: expected shepard, paper, harmonic, fin or gp, found 'idw'" },
           { "plant.yaml", 3, 74, "distance: expected geodesic or euclidean, found a list" },
           { "plant.yaml", 3, 92, "fill: expected none or neighbours, found 'some'" });
     load_with(f, 4, "sources: [{ id: s, type: ethip, host: h, byte_order: abcd, address_base: 2 }]");

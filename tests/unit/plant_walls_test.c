@@ -4,6 +4,7 @@
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>
+#include <string.h>
 #include <cmocka.h>
 
 #include "base/mem.h"
@@ -39,7 +40,7 @@ static void all_keys_are_read(void **state)
     assert_int_equal(c->plant->view_count, 2);
     assert_string_equal(c->plant->views[1].title, "Near by");
     assert_int_equal(c->plant->wall_count, 1);
-    char *text = walls_text(c->plant);
+    char *text = walls_text(c->plant, NULL);
     assert_string_equal(text,
                         "{\"walls\":[{\"id\":\"room\",\"inches\":65.0,\"distance_m\":4.5,\"displays\":[{\"grid\":[\"main main side\","
                         "\"main main low\"],\"panes\":[{\"area\":\"main\",\"kind\":\"views\",\"title\":\"Plant\",\"items\":[\"all\","
@@ -58,6 +59,57 @@ static void all_keys_are_read(void **state)
                         "\"group=t&camera=1,2,3\",\"dwell_s\":8.0,\"text\":\"Look here\"},{\"id\":\"all\",\"view\":\"group=t\",\"dwel"
                         "l_s\":15.0,\"text\":null}]}]}");
     mem_free(text);
+}
+
+static void tiles_are_the_first_displays(void **state)
+{
+    struct plant_case *c = *state;
+    load(c, "views: [{ id: all, view: group=t }]\n"
+            "walls:\n- { id: big, tile: { columns: 3, rows: 2, bezel_mm: [8, 6.5], views: all, every_s: 9, on_alarm: yes },\n"
+            "    displays: [{ grid: [a], panes: [{ area: a, clock: yes }] }] }\n"
+            "- { id: two, tile: { columns: 2, rows: 1, views: [all, all] } }");
+    plant_case_assert_loaded(c, 0);
+    const struct wall *wall = wall_find(c->plant, "big");
+    assert_non_null(wall);
+    assert_null(wall_find(c->plant, "none"));
+    assert_int_equal(wall->display_count, 7);
+    assert_true(wall->tile.bezel_mm[0] == 8 && wall->tile.bezel_mm[1] == 6.5);
+    for (int i = 0; i < 6; i++) {
+        assert_string_equal(wall->displays[i].panes[0].area, "main");
+        assert_string_equal(wall->displays[i].panes[0].items[0], "all");
+        assert_true(wall->displays[i].panes[0].on_alarm && wall->displays[i].panes[0].every_s == 9);
+    }
+    assert_int_equal(wall->displays[6].panes[0].kind, PANE_CLOCK);
+    assert_true(wall_find(c->plant, "two")->tile.bezel_mm[0] == 0 && wall_find(c->plant, "two")->display_count == 2);
+    char *text = walls_text(c->plant, NULL);
+    assert_non_null(strstr(text, "\"tile\":{\"columns\":3,\"rows\":2,\"number\":6}"));
+    assert_non_null(strstr(text, "\"kind\":\"clock\",\"title\":null,\"items\":[\"yes\"],\"every_s\":30.0,\"hours\":8.0,"
+                                 "\"on_alarm\":false}"));
+    mem_free(text);
+}
+
+static void wrong_tiles_are_said_at_their_place(void **state)
+{
+    struct plant_case *c = *state;
+    load(c, "views: [{ id: all, view: group=t }]\nwalls:\n- { id: a, tile: { columns: 1, rows: 1, views: all } }\n"
+            "- { id: b, tile: { columns: 5, rows: 4, views: all } }\n- { id: c, tile: { columns: 2, rows: 2 } }\n"
+            "- { id: d, tile: { columns: 2, rows: 2, bezel_mm: 900, views: all } }\n"
+            "- { id: e, tile: { columns: 2, rows: 2, bezel_mm: [1, 2, 3], views: all } }\n- { id: f }\n"
+            "- { id: g, tile: { columns: 4, rows: 4, views: all }, displays: [{ grid: [a], panes: [] }] }\n"
+            "- { id: h, tile: { columns: 2, rows: 2, tour: [x, y] } }\n- { id: i, tile: { columns: 2.5, rows: 2, tour: x } }");
+    FOUND(c, { "plant.yaml", 8, 18, "tile: expected 2 to 16 displays, found 1 columns and 1 rows" },
+          { "plant.yaml", 9, 18, "tile: expected 2 to 16 displays, found 5 columns and 4 rows" },
+          { "plant.yaml", 10, 18, "tile: expected either views or a tour" }, { "plant.yaml", 11, 51, "bezel_mm" },
+          { "plant.yaml", 12, 51, "bezel_mm: expected one number, or two" }, { "plant.yaml", 13, 3, "expected displays, or a tile" },
+          { "plant.yaml", 14, 18, "found 16 of it and 1 others" }, { "plant.yaml", 15, 47, "tour: expected one, found 2" },
+          { "plant.yaml", 16, 29, "columns" });
+}
+
+static void what_a_tile_names_is_checked_once(void **state)
+{
+    struct plant_case *c = *state;
+    load(c, "walls:\n- { id: a, tile: { columns: 2, rows: 2, tour: rond } }");
+    FOUND(c, { "plant.yaml", 7, 47, "tour: `tours` has no 'rond'" });
 }
 
 static void what_is_wrong_is_said_at_its_place(void **state)
@@ -120,6 +172,9 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup_teardown(all_keys_are_read, plant_case_set_up, plant_case_tear_down),
+        cmocka_unit_test_setup_teardown(tiles_are_the_first_displays, plant_case_set_up, plant_case_tear_down),
+        cmocka_unit_test_setup_teardown(wrong_tiles_are_said_at_their_place, plant_case_set_up, plant_case_tear_down),
+        cmocka_unit_test_setup_teardown(what_a_tile_names_is_checked_once, plant_case_set_up, plant_case_tear_down),
         cmocka_unit_test_setup_teardown(what_is_wrong_is_said_at_its_place, plant_case_set_up, plant_case_tear_down),
         cmocka_unit_test_setup_teardown(a_grid_is_made_of_rectangles, plant_case_set_up, plant_case_tear_down),
         cmocka_unit_test_setup_teardown(what_tours_name_must_be_there, plant_case_set_up, plant_case_tear_down),

@@ -20,6 +20,7 @@
 #include "base/mem.h"
 #include "base/text.h"
 #include "preprocess/cache/folder.h"
+#include "protocol/asset_distance.h"
 #include "tests/support/glb.h"
 #include "tests/support/model_seeds.h"
 #include "tests/support/prep_case.h"
@@ -149,8 +150,8 @@ static void a_plant_is_prepared(void **state)
     assert_true(v->sensors[1].node_hash != 0 && v->sensors[0].node_hash == 0);
     for (uint32_t i = 0; i < v->header->vertex_count; i++) { /* on a plate, the way along the surface is the straight line */
         float x = v->positions_m[i][0] + 1, y = v->positions_m[i][1] + 0.5f;
-        assert_float_equal(v->geodesic_m[i], hypotf(x, y), 1e-3);
-        assert_float_equal(v->geodesic_m[v->header->vertex_count + i], hypotf(2 - x, 1 - y), 1e-3);
+        assert_float_equal(asset_distance_m(v, 0, i), hypotf(x, y), 1e-3);
+        assert_float_equal(asset_distance_m(v, 1, i), hypotf(2 - x, 1 - y), 1e-3);
     }
     folder_close(&file);
     mem_free(folder);
@@ -408,6 +409,8 @@ static void what_is_wrong_is_said_with_its_place(void **state)
     assert_string_equal(state_of(report, 0), "unchanged");
     assert_string_equal(state_of(report, 3), "failed");
     json_decref(report);
+    prep_case_expect(s, "$PLANT --memory 100", 1);
+    prep_case_says(&s->err, "plant.yaml: error: 0.00 million triangles are too many: 0.10 GB of memory hold 0.00 million.");
     prep_case_expect(s, "$PLANT --output /proc/no/such/place", 1);
     prep_case_says(&s->err, "cannot be made");
 }
@@ -421,6 +424,7 @@ static void wrong_use_is_told_from_wrong_input(void **state)
     prep_case_expect(s, "--no-such-option", 2);
     prep_case_expect(s, "$PLANT more", 2);
     prep_case_expect(s, "$PLANT --report xml", 2);
+    prep_case_expect(s, "$PLANT --memory much", 2);
     prep_case_expect(s, "/no/such/plant.yaml", 1);
 }
 

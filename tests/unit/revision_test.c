@@ -19,6 +19,7 @@
 #include <cmocka.h>
 
 #include "base/mem.h"
+#include "plant/plant_folder.h"
 #include "preprocess/import/revision/asset_edit.h"
 #include "tests/support/temp.h"
 
@@ -56,6 +57,14 @@ static void begin(const char *folder)
     mem_free(temp_write_text(folder, "matches.csv", "old"));
 }
 
+static int take(const char *folder, const char *own)
+{
+    char *why = NULL;
+    int lock = plant_folder_lock(&(struct plant_folder_params){ .folder = folder, .own = own }, &why);
+    mem_free(why);
+    return lock;
+}
+
 /* Also replaces a list in a folder of its own, and remembers one that stays as it is. */
 static int apply_to(const char *folder, const char *plant_as_read)
 {
@@ -63,7 +72,7 @@ static int apply_to(const char *folder, const char *plant_as_read)
     struct revision_file files[FILES + 2];
     const char *changed = NULL;
     mkdir(own, 0777);
-    int lock = revision_files_lock(folder, own);
+    int lock = take(folder, own);
     for (int i = 0; i < FILES; i++)
         files[i] = (struct revision_file){ names[i], temp_write_text(own, names[i], "new"), i == PLANT ? plant_as_read : NULL };
     files[FILES] = (struct revision_file){ list, temp_write_text(own, "list", "new"), "old" };
@@ -88,7 +97,7 @@ static int apply(const char *folder)
 static int undo(const char *folder, bool forced)
 {
     struct text changed = { 0 }, done = { 0 };
-    int lock = revision_files_lock(folder, NULL), status = lock < 0 ? lock : revision_files_undo(folder, forced, &changed, &done);
+    int lock = take(folder, NULL), status = lock < 0 ? lock : revision_files_undo(folder, forced, &changed, &done);
     if (lock >= 0)
         close(lock);
     text_finish(&changed);
@@ -211,7 +220,7 @@ static void sweep(bool killed)
             if (undoing)
                 assert_int_equal(apply(folder), 0);
             ended = run_until(folder, undoing, step, killed);
-            int lock = revision_files_lock(folder, NULL); /* whoever comes next */
+            int lock = take(folder, NULL); /* whoever comes next */
             assert_true(lock >= 0);
             close(lock);
             bool new = all(folder, true);
@@ -245,7 +254,7 @@ static void an_undoing_that_was_killed_while_tidying_up_is_done(void **state)
     (void)state;
     assert_int_equal(mkdir(left, 0777), 0);
     assert_int_equal(mkdir(old, 0777), 0);
-    int lock = revision_files_lock(folder, NULL);
+    int lock = take(folder, NULL);
     assert_true(lock >= 0);
     close(lock);
     assert_int_not_equal(access(left, F_OK), 0);
@@ -258,9 +267,9 @@ static void one_program_at_a_time(void **state)
 {
     char *folder = temp_folder_create();
     (void)state;
-    int lock = revision_files_lock(folder, NULL);
+    int lock = take(folder, NULL);
     assert_true(lock >= 0);
-    assert_int_equal(revision_files_lock(folder, NULL), -EWOULDBLOCK);
+    assert_int_equal(take(folder, NULL), -EWOULDBLOCK);
     close(lock);
     temp_folder_destroy(&folder);
 }

@@ -515,6 +515,80 @@ static void data_on_a_loaded_server_does_not_put_refinement_off_for_ever(void **
     assert_in_range(refined, 2, 4);
 }
 
+/* What was being refined was given up for readings of which nothing is to be seen: the preview that is shown does not stay. */
+static void data_that_changes_nothing_does_not_end_a_refinement_that_it_overtook(void **state)
+{
+    struct session_case *f = *state;
+    struct frame_request refined, data;
+    greet(f);
+    show(f);
+    f->now_ns += NS_PER_S;
+    f->context.overloaded = true;
+    assert_true(ask(f, &refined) && refined.view.tier == TIER_REFINED);
+    session_on_data(f->session, f->now_ns += 1500 * MS);
+    assert_true(ask(f, &data) && data.or_moving);
+    paint(f, &refined, true); /* abandoned: no frame */
+    data.view.tier = TIER_PREVIEW;
+    paint(f, &data, true); /* the preview that is shown */
+    f->now_ns += 4 * NS_PER_S;
+    assert_true(ask(f, &refined) && refined.view.tier == TIER_REFINED);
+}
+
+/* Nothing says yet that the server is loaded: readings do not wait until what takes a minute is refined. */
+static void data_does_not_wait_for_the_first_refined_picture(void **state)
+{
+    struct session_case *f = *state;
+    struct frame_request refined, data, preview;
+    greet(f);
+    show(f);
+    f->now_ns += NS_PER_S;
+    assert_true(ask(f, &refined) && refined.view.tier == TIER_REFINED);
+    for (int i = 0; i < 5; i++) { /* over a link so slow that one frame fills it */
+        session_on_data(f->session, f->now_ns += 3 * NS_PER_S);
+        assert_true(ask(f, &data) && (i > 0 || (data.view.tier == TIER_REFINED && data.or_moving)));
+        session_on_data(f->session, f->now_ns += 100 * MS);
+        assert_false(ask(f, &preview));
+        data.view.tier = TIER_PREVIEW;
+        carry(f, &data, 20000, 800 * MS);
+    }
+    paint(f, &refined, false);
+    ack(f, send_picture(f));
+    f->now_ns += NS_PER_S;
+    session_on_data(f->session, f->now_ns);
+    assert_true(ask(f, &data) && data.view.tier == TIER_REFINED && !data.or_moving); /* under a refined picture, where all can be */
+}
+
+/* A preview that was asked for while something was being refined, and drawn once that had come, does not stay either: one for readings that
+   waited, and one for a client that decodes something else. */
+static void a_preview_that_comes_after_a_refined_picture_does_not_stay(void **state)
+{
+    struct session_case *f = *state;
+    struct frame_request refined, preview;
+    greet(f);
+    show(f);
+    f->context.overloaded = true;
+    for (int of_codec = 0; of_codec < 2; of_codec++) {
+        f->now_ns += 2 * NS_PER_S;
+        assert_true(ask(f, &refined) && refined.view.tier == TIER_REFINED);
+        if (of_codec)
+            say(f, "{\"type\":\"codecs\",\"codecs\":[\"png\"]}");
+        else
+            show_data(f, false); /* overtakes it */
+        session_on_data(f->session, f->now_ns += 500 * MS);
+        assert_true(ask(f, &preview) && preview.view.tier == TIER_PREVIEW);
+        paint(f, &refined, false);
+        ack(f, send_picture(f));
+        paint(f, &preview, false);
+        ack(f, send_picture(f));
+    }
+    f->now_ns += 2 * NS_PER_S;
+    assert_true(ask(f, &refined) && refined.view.tier == TIER_REFINED);
+    paint(f, &refined, false);
+    ack(f, send_picture(f));
+    f->now_ns += 2 * NS_PER_S;
+    assert_false(ask(f, &preview));
+}
+
 /* A minute of readings that change twice a second: the refined picture stays, whatever else the server has to do. */
 static void data_leaves_a_refined_picture_that_is_quick_to_color(void **state)
 {
@@ -732,6 +806,23 @@ static void too_many_messages_are_put_off(void **state)
     assert_false(f->session->rate.exceeded);
 }
 
+/* What had left the socket before it was told to stop is read at once; it counts for the seconds after. */
+static void messages_beyond_a_second_count_for_the_next(void **state)
+{
+    struct session_case *f = *state;
+    const int most = (int)f->quotas.at[QUOTA_MESSAGES], beyond = most / 4, seconds = 12;
+    int read = 0;
+    greet(f);
+    for (int tick = 0; tick < 10 * seconds; tick++, f->now_ns += 100 * MS) {
+        session_on_tick(f->session, f->now_ns);
+        for (int left = f->session->rate.exceeded ? 0 : most + beyond; left > 0; left--, read++) {
+            left = f->session->rate.exceeded && left > beyond ? beyond : left;
+            say(f, "{\"type\":\"camera\",\"seq\":1,\"eye\":[9,9,9],\"target\":[0,0,1]}");
+        }
+    }
+    assert_in_range(read, (seconds - 1) * most, seconds * most + beyond);
+}
+
 static void acks_for_nothing_are_errors(void **state)
 {
     struct session_case *f = *state;
@@ -934,6 +1025,9 @@ int main(void)
         TEST(others_may_move_for_a_while_not_for_ever),
         TEST(data_on_a_loaded_server_is_not_refined_at_once),
         TEST(data_on_a_loaded_server_does_not_put_refinement_off_for_ever),
+        TEST(data_that_changes_nothing_does_not_end_a_refinement_that_it_overtook),
+        TEST(data_does_not_wait_for_the_first_refined_picture),
+        TEST(a_preview_that_comes_after_a_refined_picture_does_not_stay),
         TEST(data_leaves_a_refined_picture_that_is_quick_to_color),
         TEST(a_slow_client_gets_less_and_everything_in_the_end),
         TEST(a_refined_picture_that_is_out_of_date_is_not_sent_on),
@@ -944,6 +1038,7 @@ int main(void)
         TEST(what_is_shown_is_confirmed),
         TEST(a_client_that_does_not_read_costs_a_bounded_list),
         TEST(too_many_messages_are_put_off),
+        TEST(messages_beyond_a_second_count_for_the_next),
         TEST(acks_for_nothing_are_errors),
         TEST(a_fit_is_answered_with_a_camera_and_moves_nothing),
         TEST(a_pick_is_asked_once_and_answered),

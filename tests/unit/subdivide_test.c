@@ -16,6 +16,7 @@
 #include "base/vec.h"
 #include "preprocess/geometry/welded_positions.h"
 #include "preprocess/subdivision/subdivide.h"
+#include "protocol/asset_distance.h"
 #include "surface/mesh/bvh.h"
 #include "surface/mesh/trimesh.h"
 
@@ -221,15 +222,22 @@ static double largest(const struct body *body, int group, bool geodesic)
 /* As they come into a file. */
 static void take_columns(const struct distance_rows *rows, float *columns)
 {
-    const size_t bytes = rows->vertex_count * rows->sensor_count * sizeof(*columns), before = 12;
+    const size_t count = asset_distance_count(rows->sensor_count, rows->vertex_count), bytes = count * sizeof(uint16_t), before = 12;
     FILE *file = tmpfile();
+    uint16_t *codes = mem_array(count, sizeof(*codes));
     assert_non_null(file);
     assert_int_equal(distance_rows_write(rows, NULL, fileno(file), (off_t)before), 0);
     assert_int_equal(fseek(file, 0, SEEK_END), 0);
     assert_int_equal(ftell(file), before + bytes);
     assert_int_equal(fseek(file, (long)before, SEEK_SET), 0);
-    assert_int_equal(fread(columns, 1, bytes, file), bytes);
+    assert_int_equal(fread(codes, 1, bytes, file), bytes);
     fclose(file);
+    const struct asset_header header = { .sensor_count = (uint32_t)rows->sensor_count };
+    const struct asset_view view = { .header = &header, .geodesic = codes };
+    for (size_t s = 0; s < rows->sensor_count; s++)
+        for (size_t v = 0; v < rows->vertex_count; v++)
+            columns[s * rows->vertex_count + v] = asset_distance_m(&view, s, v);
+    mem_free(codes);
 }
 
 static void prepare(struct body *body, const double (*points)[3])

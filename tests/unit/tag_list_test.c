@@ -163,6 +163,31 @@ static void tags_vouch_for_other_tags(void **state)
           { "tags.csv", 9, 9, "Quality Tag: 'B' has a quality tag of its own" });
 }
 
+static void directions_are_tags(void **state)
+{
+    struct plant_case *c = *state;
+    static const char header[] = "Tag Name,Address,Group,Asset,X,Y,Z,Place,Direction\n";
+    char *good = mem_printf("%sU,40001,temp,E-101,0,0,0,,A B  C\nV,40002,temp,E-101,1,0,0,,D\nW,40003,temp,E-101,1,0,0,,\n"
+                            "A,40004,,,,,,,\nB,40005,,,,,,,\nC,40006,,,,,,,\nD,40007,,,,,,,\n", header);
+    plant_case_load(c, yaml, good);
+    mem_free(good);
+    plant_case_assert_loaded(c, 0);
+    const struct plant_tag *t = c->plant->tags;
+    assert_true(t[0].direction_count == 3 && t[0].direction[0] == 3 && t[0].direction[1] == 4 && t[0].direction[2] == 5);
+    assert_true(t[1].direction_count == 1 && t[1].direction[0] == 6 && t[2].direction_count == 0);
+    assert_true(c->plant->groups[plant_find_group(c->plant, "temp")].directed);
+    char *bad = mem_printf("%sU,40001,temp,E-101,0,0,0,,A A\nV,40002,temp,E-101,1,0,0,,V\nW,40003,temp,E-101,1,0,0,,AA\n"
+                           "A,40004,,,,,,,W\nB,40005,temp,E-101,,,,equipment,W\n", header);
+    plant_case_load(c, yaml, bad);
+    mem_free(bad);
+    FOUND(c,
+          { "tags.csv", 2, 27, "Direction: expected one tag, a bearing in degrees, or three, the components along X, Y and Z, found" },
+          { "tags.csv", 3, 27, "Direction: expected other tags than 'V' itself" },
+          { "tags.csv", 4, 27, "Direction: unknown tag 'AA'" },
+          { "tags.csv", 5, 15, "Direction: 'A' needs a group, an asset and a place of its own, from where it points" },
+          { "tags.csv", 6, 33, "Direction: 'B' needs a group, an asset and a place" });
+}
+
 static void references_are_looked_up(void **state)
 {
     struct plant_case *c = *state;
@@ -408,6 +433,7 @@ int main(void)
         TEST(where_long_values_begin_is_never_guessed),
         TEST(instruments_say_what_they_can_measure),
         TEST(tags_vouch_for_other_tags),
+        TEST(directions_are_tags),
         TEST(references_are_looked_up),
         TEST(addresses_and_types_are_checked),
         TEST(places_are_whole),

@@ -96,6 +96,40 @@ static void a_token_may_be_for_one_plant(void **state)
     text_finish(&text);
 }
 
+static void a_token_may_be_for_one_display(void **state)
+{
+    struct fixture *f = *state;
+    struct token_holder holder = { .role = ROLE_VIEWER, .name = "tile", .until_utc_ns = INT64_MAX, .wall = "room", .display = 12 }, read;
+    struct text text = { 0 };
+    const char *why;
+    tokens_hash("pc_tile", holder.hash);
+    holder.unattended = true;
+    tokens_print_line(&text, &holder);
+    assert_non_null(strstr(text.at, " unattended display room:12\n"));
+    write_file(f, text.at, 0600);
+    struct tokens *tokens = tokens_create(f->log, f->path);
+    assert_true(tokens_find(tokens, "pc_tile", NOW_NS, &read));
+    assert_string_equal(read.wall, "room");
+    assert_int_equal(read.display, 12);
+    assert_true(read.unattended);
+    assert_int_equal(tokens_role(tokens, &read, NOW_NS), ROLE_VIEWER);
+    read.display = 1; /* the file says another one now */
+    assert_int_equal(tokens_role(tokens, &read, NOW_NS), ROLE_NOBODY);
+    tokens_destroy(&tokens);
+    static const char *const bad[] = { "room", "room:", "room:0", "room:17", "room:1x", "room:-1", "room:111111111111", ":1", "a b:1", "" };
+    for (size_t i = 0; i < sizeof(bad) / sizeof(bad[0]); i++) {
+        assert_false(tokens_parse_display(bad[i], &read));
+        char *line = mem_printf("viewer x %064d display %s", 0, bad[i]);
+        assert_int_equal(tokens_parse_line(line, &read, &why), -1);
+        mem_free(line);
+    }
+    char *line = mem_printf("operator x %064d display room:1", 0);
+    assert_int_equal(tokens_parse_line(line, &read, &why), -1);
+    assert_non_null(strstr(why, "limit viewers only"));
+    mem_free(line);
+    text_finish(&text);
+}
+
 static void holders_are_found_by_their_tokens(void **state)
 {
     struct fixture *f = *state;
@@ -241,7 +275,7 @@ static void a_token_may_be_for_some_views(void **state)
     holder.role = ROLE_OPERATOR;
     tokens_print_line(&text, &holder);
     assert_int_equal(tokens_parse_line(text.at, &read, &why), -1);
-    assert_string_equal(why, "`views` limits viewers only");
+    assert_string_equal(why, "`views` and `display` limit viewers only");
     text_finish(&text);
     assert_false(tokens_views_valid("") || tokens_views_valid("a,,b") || tokens_views_valid("a b") || tokens_views_valid("a,"));
 }
@@ -264,8 +298,8 @@ int main(void)
     cmocka_set_message_output(CM_OUTPUT_TAP);
 #define TEST(name) cmocka_unit_test_setup_teardown(name, set_up, tear_down)
     const struct CMUnitTest tests[] = {
-        TEST(a_token_may_be_for_one_plant),              TEST(a_token_may_be_for_some_views),
-        TEST(time_runs_out),
+        TEST(a_token_may_be_for_one_display),            TEST(a_token_may_be_for_one_plant),
+        TEST(a_token_may_be_for_some_views),             TEST(time_runs_out),
         TEST(holders_are_found_by_their_tokens),
         TEST(files_that_others_may_touch_let_in_nobody), TEST(wrong_lines_let_in_nobody_and_leave_the_others),
         TEST(a_changed_file_is_read_and_revokes),        TEST(made_tokens_differ_and_hash_as_others_do),

@@ -13,6 +13,7 @@
 
 #include "base/mem.h"
 #include "field/field.h"
+#include "protocol/asset_distance.h"
 #include "tests/support/synthetic.h"
 
 enum { VERTICES = 900, SENSORS = 6, MOVED = 2, TO = 400 };
@@ -92,7 +93,7 @@ static double truth(const struct fixture *f, const float *moved_m, size_t vertex
 {
     double sum = 0, total = 0;
     for (size_t i = 0; i < SENSORS; i++) {
-        double d = (double)(i == MOVED ? moved_m[vertex] : f->plant->file.view.geodesic_m[i * VERTICES + vertex]);
+        double d = (double)(i == MOVED ? moved_m[vertex] : asset_distance_m(&f->plant->file.view, i, vertex));
         if (d == 0)
             return f->plant->snapshot->readings[i].value;
         sum += f->plant->snapshot->readings[i].value / (d * d);

@@ -13,6 +13,7 @@
 
 #include "base/cache_file.h"
 #include "base/mem.h"
+#include "protocol/asset_distance.h"
 #include "scene/asset.h"
 #include "surface/surface_store.h"
 #include "tests/support/cad.h"
@@ -156,13 +157,13 @@ static size_t count_far(const struct asset_view *view, const struct surface *sur
     for (size_t i = 0; i < index_count; i++)
         of_finest[triangles[i]] = 1;
     for (size_t s = 0; s < view->header->sensor_count; s++) {
-        const float *stored_m = view->geodesic_m + s * count, *p = view->sensors[s].surface_m;
+        const float *p = view->sensors[s].surface_m;
         double largest_m = 0;
         assert_true(vertex_embedding_distances(embedding, (const double[3]){ (double)p[0], (double)p[1], (double)p[2] }, found_m));
         for (size_t v = 0; v < count; v++)
-            largest_m = fmax(largest_m, (double)stored_m[v]);
+            largest_m = fmax(largest_m, (double)asset_distance_m(view, s, v));
         for (size_t v = 0; v < count; v++) {
-            double error_m = fabs((double)stored_m[v] - (double)found_m[v]);
+            double error_m = fabs((double)asset_distance_m(view, s, v) - (double)found_m[v]);
             assert_true(!of_finest[v] || error_m < FAR * largest_m);
             coarser += !of_finest[v];
             far += !of_finest[v] && error_m > FAR * largest_m;

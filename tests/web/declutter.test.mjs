@@ -58,7 +58,7 @@ test('from near by all are drawn', () => {
     assert.equal(thinOut(near).length, 900);
 });
 
-// A quarter of a degree each picture, about 2,000 sensors; and one that trembles by a fraction of a pixel.
+// A quarter of a degree each picture, about 2,000 sensors; and one that trembles by less than a tenth of a pixel.
 const sensors = Array.from({ length: 2000 }, () => [random(-12, 12), random(-12, 12), random(0, 10)]);
 function drawnFrom(angle, before) {
     const camera = { eye: [40 * Math.cos(angle), 40 * Math.sin(angle), 20], target: [0, 0, 4], up: [0, 0, 1], fov: 45 };
@@ -89,10 +89,21 @@ test('while the camera turns markers stay, and do not come and go', () => {
     assert.ok(changes / shown < 0.02 && flickers < changes / 10);
 });
 
-test('while the camera trembles nothing changes', () => {
-    const steady = drawnFrom(1, drawnFrom(1, new Set()));
-    let before = steady;
-    for (let n = 0; n < 20; n++)
-        before = drawnFrom(1 + random(-2e-5, 2e-5), before);
-    assert.deepEqual([...before], [...steady]);
+// Who stands on the edge of a crowd may come with a picture, but then stays: 0.8 of the distance is enough for it.
+test('while the camera trembles no marker comes and goes', () => {
+    const changed = new Set();
+    for (let angle = 1; angle <= 5; angle++) {
+        let before = drawnFrom(angle, drawnFrom(angle, new Set()));
+        changed.clear();
+        for (let n = 0; n < 15; n++) {
+            const next = drawnFrom(angle + random(-1e-4, 1e-4), before);
+            for (let id = 0; id < sensors.length; id++) {
+                if (before.has(id) === next.has(id))
+                    continue;
+                assert.ok(!changed.has(id), `${id} changes a second time`);
+                changed.add(id);
+            }
+            before = next;
+        }
+    }
 });

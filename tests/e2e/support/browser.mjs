@@ -42,6 +42,21 @@ async function profileWith(args, shape) {
     return context;
 }
 
+// A browser of its own on an X display, as large as that. clockMs: so much its clock is ahead.
+export async function browserOn(display, url, width, height, clockMs = 0) {
+    const { chromium } = await import('playwright-core');
+    const args = [...QUIET, '--kiosk', '--window-position=0,0', `--window-size=${width},${height}`];
+    const browser = await chromium.launch({ executablePath: CHROMIUM, headless: false, env: { ...process.env, DISPLAY: display }, args });
+    const page = await (await browser.newContext({ viewport: null })).newPage();
+    await page.addInitScript((ms) => {
+        const { now } = Date, { timeOrigin } = performance;
+        Date.now = () => now.call(Date) + ms;
+        Object.defineProperty(performance, 'timeOrigin', { value: timeOrigin + ms });
+    }, clockMs);
+    await page.goto(url);
+    return { page, close: () => browser.close() };
+}
+
 // { page, errors, close }. The page remembers nothing of others. errors: what went wrong in it and what it tried to fetch from elsewhere.
 // before: a function that runs in the page before its own scripts; arrange(page): what else to do before. screen.args: the browser's;
 // screen.profile: it has a browser of its own, with a profile.

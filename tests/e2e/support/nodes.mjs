@@ -18,8 +18,9 @@ export async function until(what, good, seconds = 20) {
 }
 
 export class Node {
-    constructor(plant, args, file = plant.file) {
-        this.program = new Program('plantcastd', [file, ...args]);
+    // before: the program that starts the daemon, which takes its path and arguments after these.
+    constructor(plant, args, file = plant.file, before = []) {
+        this.program = new Program('plantcastd', [file, ...args], {}, before);
     }
 
     async ready() {

@@ -121,12 +121,16 @@ export class PostgresServer {
 
 // Passes bytes on to a port of this machine until it is cut: then all connections end, and new ones are refused until it is mended.
 export class CuttableLink {
-    static async open(port) {
+    // at: where it listens, { host, port }; freeze() lets nothing through without closing anything, as a cut cable does.
+    static async open(port, at = {}) {
         const link = new CuttableLink();
         link.sockets = new Set();
         link.server = createServer((near) => {
             const far = connect(port, '127.0.0.1');
             let count = 0;
+            if (link.isFrozen)
+                for (const socket of [near, far])
+                    socket.pause();
             for (const socket of [near, far]) {
                 link.sockets.add(socket);
                 socket.on('error', () => {});
@@ -145,7 +149,7 @@ export class CuttableLink {
                 }
             });
         });
-        await new Promise((done) => link.server.listen(0, '127.0.0.1', done));
+        await new Promise((done) => link.server.listen(at.port ?? 0, at.host ?? '127.0.0.1', done));
         link.port = link.server.address().port;
         return link;
     }
@@ -156,7 +160,16 @@ export class CuttableLink {
         for (const socket of this.sockets)
             socket.destroy();
     }
-    mend() { this.isCut = false; }
+    freeze() {
+        this.isFrozen = true;
+        for (const socket of this.sockets)
+            socket.pause();
+    }
+    mend() {
+        this.isCut = this.isFrozen = false;
+        for (const socket of this.sockets)
+            socket.resume();
+    }
 
     close() {
         this.cut();

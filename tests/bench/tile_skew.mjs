@@ -1,0 +1,171 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Two tiles on two screens, in two browsers and in two players: how far apart in time they show the same picture, by a number in the
+// pixels. Boxes that are hidden or not are the digits of that number; both tiles have it. Screens are looked at, not what programs say.
+import assert from 'node:assert/strict';
+import { spawn } from 'node:child_process';
+import { existsSync, writeFileSync } from 'node:fs';
+import { join } from 'node:path';
+import { after, afterEach, before, test } from 'node:test';
+import { browserOn, SCREENSHOTS } from '../e2e/support/browser.mjs';
+import { PlainClient } from '../e2e/support/plain_client.mjs';
+import { BIN, missing, TinyPlant } from '../e2e/support/tiny_plant.mjs';
+import { missingDisplay, savePng, startDisplay } from '../e2e/support/x_display.mjs';
+
+const PLAYER = join(BIN, 'plantcast-wall'), absent = missing();
+const why = (absent.length > 0 ? `not built: ${absent.join(', ')}` : null) ?? missingDisplay();
+const options = { skip: why ?? false, timeout: 240000 };
+const [WIDTH, HEIGHT] = [640, 360], SPAN_M = 20, BITS = 5, PLACES_M = [1.2, 2.7, 4.2, 5.7, 7.2];
+const FRAME_MS = 1000 / 30, CHANGE_MS = 200, CLOCK_MS = 5000;
+const boxes = [-1, 1].flatMap((side) => PLACES_M.map((x, i) => ({ id: `${side < 0 ? 'L' : 'R'}${i}`, x: side * x })));
+const sleep = (ms) => new Promise((done) => setTimeout(done, ms));
+const screens = [], ending = [];
+let plant;
+
+before(async () => {
+    if (options.skip)
+        return;
+    plant = await TinyPlant.create();
+    writeFileSync(plant.file, `plant:
+  name: Numbers
+assets:
+${boxes.map(({ id, x }) => `  - { id: ${id}, model: box.gltf, placement: { translate: [${x}, 0, 0] } }`).join('\n')}
+groups: [{ id: temperature, quantity: Temperature, unit: °C, min: 0, max: 100 }]
+sources:
+  - { id: plc1, type: modbus, host: 127.0.0.1, port: ${plant.modbusPort}, poll_ms: 1000, byte_order: ABCD, address_base: 1 }
+tags: tags.csv
+views: [{ id: all, view: "group=temperature" }]
+walls: [{ id: wall, tile: { columns: 2, rows: 1, views: all } }]
+`);
+    writeFileSync(join(plant.folder, 'tags.csv'),
+        'Tag Name,Address,Data Type,Group,Asset,X,Y,Z\nTI-1,400001,Float,temperature,L0,0.5,0,0\n');
+    const { code, err } = plant.prepare();
+    assert.equal(code, 0, err);
+    await plant.startSim();
+    await plant.startDaemon();
+    screens.push(await startDisplay(WIDTH, HEIGHT), await startDisplay(WIDTH, HEIGHT));
+});
+afterEach(async () => {
+    for (const end of ending.splice(0))
+        await end();
+});
+after(async () => {
+    for (const screen of screens)
+        await screen.stop();
+    await plant?.destroy();
+});
+
+// Who leads: its camera looks at the row of boxes, its parameters hide some.
+async function driver() {
+    const client = await PlainClient.open(plant.port);
+    await client.hello({ width: WIDTH, height: HEIGHT, codecs: ['jpeg'], tile: { wall: 'wall', display: 1 } });
+    await client.until('the lead', () => client.texts.some(({ type, leads }) => type === 'tiles' && leads));
+    client.say({ type: 'camera', seq: 1, eye: [0, -50, 0], target: [0, 0, 0], up: [0, 0, 1], projection: 'orthographic',
+        height_m: (SPAN_M * HEIGHT) / (2 * WIDTH) });
+    client.seq = 0;
+    ending.push(() => client.close());
+    client.tell = (number) => {
+        const gray = number ^ (number >> 1); // neighbours differ in one digit: no mixture of two is a third
+        client.say({ type: 'params', seq: ++client.seq, look: 'materials',
+            hidden: boxes.filter((_, i) => gray >> (i % BITS) & 1).map(({ id }) => id) });
+    };
+    client.tell(0);
+    return client;
+}
+
+// The pixels at the digits of one screen. area: where the picture is on it.
+function digits(screen, side, area) {
+    const { at } = screen.grab();
+    return PLACES_M.map((m) => {
+        const part = side === 0 ? 1 - m / (SPAN_M / 2) : m / (SPAN_M / 2);
+        return at(area.x + part * area.width, area.y + 0.5 * area.height)[1];
+    });
+}
+
+function reader(shown, hidden) {
+    const middle = shown.map((light, i) => (light + hidden[i]) / 2), darker = shown.map((light, i) => light < hidden[i]);
+    return (now) => {
+        let gray = 0, number = 0;
+        now.forEach((light, i) => { gray |= Number(light < middle[i] !== darker[i]) << i; });
+        for (; gray; gray >>= 1)
+            number ^= gray;
+        return number;
+    };
+}
+
+// Shows five numbers a second; [[ms when the number was first seen, ...], ...] by screen.
+async function watch(name, client, areas, seconds) {
+    const settle = async (number) => {
+        client.tell(number);
+        await sleep(2000);
+        return areas.map((area, side) => digits(screens[side], side, area));
+    };
+    const differ = (one, other) => one.every((lights, side) => lights.every((light, i) => Math.abs(light - other[side][i]) > 10));
+    let shown = await settle(0), hidden = await settle(0b10101); // Gray code of it: every digit
+    for (const end = performance.now() + 60000; !differ(shown, hidden); hidden = await settle(0b10101)) {
+        assert.ok(performance.now() < end, `no digits to be read: ${JSON.stringify([shown, hidden])}`);
+        shown = await settle(0);
+        for (const side of [0, 1])
+            savePng(screens[side].grab(), join(SCREENSHOTS, `wall-skew-${name}-${side + 1}.png`));
+    }
+    const read = shown.map((light, side) => reader(light, hidden[side])), seen = [[], []];
+    const begin = performance.now();
+    let number = 1, next = begin;
+    while (performance.now() - begin < seconds * 1000) {
+        if (performance.now() >= next) {
+            client.tell(number++ % (1 << BITS));
+            next += CHANGE_MS;
+        }
+        for (const side of [0, 1]) {
+            const value = read[side](digits(screens[side], side, areas[side])), at = performance.now();
+            if (seen[side].at(-1)?.value !== value)
+                seen[side].push({ value, at });
+        }
+        await sleep(1);
+    }
+    return seen;
+}
+
+// Of pictures that both showed: how far apart.
+function skews([left, right]) {
+    const out = [];
+    for (const { value, at } of left) {
+        const other = right.filter((one) => one.value === value).map((one) => Math.abs(one.at - at)).sort((a, b) => a - b)[0];
+        if (other < 800)
+            out.push(other);
+    }
+    return out.sort((a, b) => a - b);
+}
+
+function judge(name, seen, seconds) {
+    const all = skews(seen), part = (share) => all[Math.min(all.length - 1, Math.floor(share * all.length))];
+    console.log(`# ${name}: ${(all.length / seconds).toFixed(1)} pictures a second on both; apart by ${part(0.5).toFixed(0)} ms (half), ${
+        part(0.95).toFixed(0)} ms (95 of 100), ${all.at(-1).toFixed(0)} ms (worst)`);
+    assert.ok(all.length > 20, `${all.length} pictures`);
+    assert.ok(all.length > 0.9 * Math.max(...seen.map((one) => one.length)), 'what one shows the other shows');
+    assert.ok(part(0.95) <= FRAME_MS, `${part(0.95)} ms apart`);
+}
+
+test('two browsers, one with a clock that is 5 s off', options, async () => {
+    const client = await driver(), url = `http://127.0.0.1:${plant.port}/wall.html?wall=wall&display=`;
+    const open = await Promise.all(screens.map((screen, i) => browserOn(screen.name, `${url}${i + 1}`, WIDTH, HEIGHT, i ? CLOCK_MS : 0)));
+    ending.push(...open.map(({ close }) => close));
+    const areas = await Promise.all(open.map(({ page }) => page.evaluate(async () => {
+        while (!globalThis.wall?.panes[0]?.session?.picture)
+            await new Promise((done) => { setTimeout(done, 100); });
+        return { x: screenX + outerWidth - innerWidth, y: screenY + outerHeight - innerHeight, width: innerWidth, height: innerHeight };
+    })));
+    judge('browsers', await watch('browsers', client, areas, 10), 10);
+});
+
+test('two players', { ...options, skip: options.skip || (existsSync(PLAYER) ? false : 'not built: plantcast-wall') }, async () => {
+    const client = await driver(), area = { x: 0, y: 0, width: WIDTH, height: HEIGHT };
+    const players = screens.map((screen, i) => spawn(PLAYER,
+        [`http://127.0.0.1:${plant.port}/`, '--wall', 'wall', '--display', String(i + 1), '--software'],
+        { env: { ...process.env, DISPLAY: screen.name, SDL_VIDEODRIVER: 'x11', LIBGL_ALWAYS_SOFTWARE: '1' }, stdio: 'ignore' }));
+    ending.push(...players.map((player) => async () => {
+        const gone = new Promise((done) => { player.once('exit', done); });
+        player.kill();
+        await gone;
+    }));
+    judge('players', await watch('players', client, [area, area], 10), 10);
+});

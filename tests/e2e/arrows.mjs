@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A wind that blows round a tank, from four sensors with directions to arrows: what a client is told, what the page draws, what a snapshot
+// shows; and a lost direction, whose place is unknown.
+import assert from 'node:assert/strict';
+import { writeFileSync } from 'node:fs';
+import { join } from 'node:path';
+import { after, before, test } from 'node:test';
+import { openPage, settle, shoot, waitForPicture } from './support/browser.mjs';
+import { missing, TinyPlant } from './support/tiny_plant.mjs';
+
+const absent = missing();
+const options = { skip: absent.length > 0 ? `not built: ${absent.join(', ')}` : false, timeout: 200000 };
+const SENSORS = [0, 90, 180, 270];
+let plant, browser;
+
+// A sphere of radius 1, its poles on the z axis.
+function tank(around = 48, up = 24) {
+    const positions = [], indices = [];
+    for (let j = 0; j <= up; j++)
+        for (let i = 0; i <= around; i++) {
+            const a = 2 * Math.PI * i / around, b = Math.PI * j / up;
+            positions.push(Math.sin(b) * Math.cos(a), Math.sin(b) * Math.sin(a), Math.cos(b));
+        }
+    for (let j = 0; j < up; j++)
+        for (let i = 0; i < around; i++) {
+            const at = j * (around + 1) + i;
+            indices.push(at, at + around + 1, at + 1, at + 1, at + around + 1, at + around + 2);
+        }
+    const bytes = Buffer.concat([Buffer.from(new Float32Array(positions).buffer), Buffer.from(new Uint16Array(indices).buffer)]);
+    return JSON.stringify({
+        asset: { version: '2.0' }, scene: 0, scenes: [{ nodes: [0] }], nodes: [{ name: 'tank', mesh: 0 }],
+        meshes: [{ primitives: [{ attributes: { POSITION: 0, NORMAL: 0 }, indices: 1 }] }],
+        buffers: [{ byteLength: bytes.length, uri: `data:application/octet-stream;base64,${bytes.toString('base64')}` }],
+        bufferViews: [{ buffer: 0, byteOffset: 0, byteLength: positions.length * 4 },
+            { buffer: 0, byteOffset: positions.length * 4, byteLength: indices.length * 2 }],
+        accessors: [
+            { bufferView: 0, componentType: 5126, count: positions.length / 3, type: 'VEC3', min: [-1, -1, -1], max: [1, 1, 1] },
+            { bufferView: 1, componentType: 5123, count: indices.length, type: 'SCALAR' },
+        ],
+    });
+}
+
+const address = (n) => 400001 + 2 * n;
+const speedTag = (degrees) => `WS-${degrees}`, bearingTag = (degrees) => `WD-${degrees}`;
+
+before(async () => {
+    if (options.skip)
+        return;
+    plant = await TinyPlant.create();
+    writeFileSync(join(plant.folder, 'tank.gltf'), tank());
+    writeFileSync(plant.file, `plant: { name: Wind, view: { eye: [3.2, -3.2, 1.6], target: [0, 0, 0] } }
+assets:
+  - { id: T-1, model: tank.gltf, up: z }
+groups:
+  - { id: wind, quantity: Wind, unit: m/s, min: 0, max: 12 }
+sources:
+  - { id: plc1, type: modbus, host: 127.0.0.1, port: ${plant.modbusPort}, poll_ms: 100, timeout_ms: 300, byte_order: ABCD, address_base: 1 }
+tags: tags.csv
+`);
+    const rows = SENSORS.flatMap((degrees, i) => {
+        const a = degrees * Math.PI / 180, place = [Math.cos(a), Math.sin(a), 0].map((n) => n.toFixed(4));
+        return [`${speedTag(degrees)},${address(2 * i)},Float,m/s,wind,T-1,${place},600,${bearingTag(degrees)}`,
+            `${bearingTag(degrees)},${address(2 * i + 1)},Float,,,,,,,2,`];
+    });
+    writeFileSync(join(plant.folder, 'tags.csv'),
+        `Tag Name,Address,Data Type,Eng Units,Group,Asset,X,Y,Z,Stale s,Direction\n${rows.join('\n')}\n`);
+    const { code, err } = plant.prepare();
+    assert.equal(code, 0, err);
+    await plant.startSim();
+    await plant.startDaemon();
+    for (const [i, degrees] of SENSORS.entries()) {
+        await plant.tell(`set ${speedTag(degrees)} ${6 + 2 * i}`);
+        await plant.tell(`set ${bearingTag(degrees)} ${(360 - degrees) % 360}`); // counter-clockwise round the tank, seen from above
+    }
+    browser = await openPage(`http://127.0.0.1:${plant.port}/`);
+    await waitForPicture(browser.page);
+});
+after(async () => {
+    await browser?.close();
+    await plant?.destroy();
+});
+
+// Of the picture that is drawn, as the page was told: [x, y, dx, dy, value, uncertain, half], and the picture's size.
+const arrows = () => browser.page.evaluate(() => {
+    const { session } = globalThis.plantcast, { picture } = session;
+    return { rows: session.markersOf(picture.seq)?.arrows ?? [], width: picture.fullWidth, height: picture.fullHeight };
+});
+const isUnknown = ([, , dx, dy]) => dx === 0 && dy === 0;
+async function until(what, good) {
+    for (const end = Date.now() + 60000; ;) {
+        const found = await arrows();
+        if (good(found))
+            return found;
+        assert.ok(Date.now() < end, `${what}: ${JSON.stringify(found)}`);
+        await new Promise((done) => setTimeout(done, 100));
+    }
+}
+
+test('arrows go round the tank as the wind does, from where sensors are to where none is', options, async () => {
+    // At the pole the four of them cancel out.
+    const known = ({ rows }) => rows.length > 15 && rows.filter(isUnknown).length < 3 && rows.every((row) => row[5] === 0);
+    const { rows, width, height } = await until('directions known', known);
+    let front = 0;
+    for (const [x, y, dx, dy, value, uncertain] of rows) {
+        assert.ok(value >= 6 && value <= 12 && uncertain === 0, `${value}`);
+        assert.ok(Math.hypot(dx, dy) < 1.01);
+        if (Math.abs(x - width / 2) > height / 8 || Math.abs(y - height / 2) > height / 8)
+            continue;
+        assert.ok(dx > 0.7 && Math.abs(dy) < 0.4, `seen from outside, to the right: at ${x}, ${y}: ${dx}, ${dy}`);
+        front++;
+    }
+    console.log(`# ${rows.length} arrows, ${front} in front`);
+    assert.ok(front > 2);
+    const apart = Math.min(...rows.flatMap(([x, y], i) => rows.slice(i + 1).map(([u, v]) => Math.hypot(u - x, v - y))));
+    assert.ok(apart >= Math.max(48, width / 24) - 0.2, `${apart}`);
+});
+
+test('the page draws them, and its legend says how long they are', options, async () => {
+    const key = browser.page.locator('.legend .arrow-key');
+    await key.waitFor();
+    assert.match(await key.textContent(), /12\s*m\/s/);
+    await settle(browser.page);
+    await shoot(browser.page, 'arrows');
+    assert.deepEqual(browser.errors, []);
+});
+
+test('where a direction is lost it is unknown, and only there', options, async () => {
+    const before = (await arrows()).rows.filter(isUnknown).length;
+    await plant.tell(`fail ${bearingTag(270)}`);
+    const { rows } = await until('more unknown', ({ rows: all }) => all.filter(isUnknown).length > before + 3);
+    assert.ok(!rows.every(isUnknown));
+    await settle(browser.page);
+    await shoot(browser.page, 'arrows_unknown');
+});

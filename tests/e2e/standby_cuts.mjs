@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Two cores, and what lies between them and the database cut, frozen and restarted: one cut changes nothing, two end the leader before the
+// other begins, and at no instant do two poll.
+import assert from 'node:assert/strict';
+import { readFileSync, writeFileSync } from 'node:fs';
+import { after, before, test } from 'node:test';
+import { PostgresServer } from './support/postgres_server.mjs';
+import { missingTwoCores, sleep, terms, TwoCores, until } from './support/two_cores.mjs';
+
+const skip = missingTwoCores(), options = { skip, timeout: 240000 };
+let server, two;
+
+before(async () => {
+    if (skip)
+        return;
+    server = await PostgresServer.start();
+    server.makeDatabase('plants');
+    two = await TwoCores.create(server);
+    await two.plant.tell('set TI-1 50');
+    await Promise.all([two.start('one'), two.start('two')]);
+    await two.followed(await two.leader());
+});
+after(async () => {
+    await two?.destroy();
+    await server?.destroy();
+});
+
+test('one cut changes nothing: between the cores, to the database on either side; nor does its restart', options, async () => {
+    const core = await two.leader(), other = two.other(core);
+    await two.followed(core);
+    for (const [what, link] of [['between the cores', other.toOther], ['leader and database', core.toDatabase],
+        ['standby and database', other.toDatabase]])
+        for (const how of ['cut', 'freeze']) {
+            await link[how]();
+            await two.goesOn(core, 4.5).catch((error) => { throw new Error(`${what}, ${how}: ${error.message}`); });
+            await link.mend();
+            await until(`it is as before (${what}, ${how})`, async () => await core.node.metric('plantcast_core_lease_database_up') === 1 &&
+                await other.node.metric('plantcast_core_lease_database_up') === 1, 30);
+            await two.followed(core);
+        }
+    await server.restart();
+    await two.goesOn(core, 5);
+    server.freeze();
+    await two.goesOn(core, 8);
+    server.thaw();
+    await two.followed(core);
+});
+
+test('a leader that reaches neither ends before the other begins', options, async (t) => {
+    for (const how of ['cut', 'freeze']) {
+        const core = await two.leader(), other = two.other(core);
+        await two.followed(core);
+        const { pause_ms } = await two.takeOver(core, () => Promise.all([core.toDatabase[how](), other.toOther[how]()]));
+        t.diagnostic(`${how}: ${pause_ms.toFixed(0)} ms without a poller`);
+        await core.program.ended;
+        assert.match(core.program.said, /lease: it is lost \(neither/);
+        await core.toDatabase.mend();
+        await other.toOther.mend();
+        await two.restart(core);
+    }
+});
+
+test('with the database away and the standby gone it stops; whoever finds the database first leads again', options, async () => {
+    const core = await two.leader(), other = two.other(core);
+    await two.followed(core);
+    for (const one of [core, other])
+        one.program.stopped = true;
+    await core.toDatabase.cut();
+    await other.toDatabase.cut();
+    await two.goesOn(core, 4);
+    other.program.child.kill('SIGKILL');
+    await core.program.ended;
+    const polled = await two.network.pollerCount();
+    await two.start(core.name);
+    await sleep(5000);
+    assert.ok(!await two.ready(core));
+    assert.equal(await two.network.pollerCount(), polled);
+    await core.toDatabase.mend();
+    await other.toDatabase.mend();
+    await two.start(other.name);
+    await two.leader();
+    assert.deepEqual(await two.network.overlaps(), []);
+});
+
+
+test('a leader that was loaded anew goes on by the promise of a standby that was not', options, async () => {
+    const core = await two.leader(), other = two.other(core), text = readFileSync(two.file, 'utf8');
+    await two.followed(core);
+    for (const one of [core, other])
+        await one.toDatabase.cut();
+    writeFileSync(two.file, text.replace('deadband_percent: 0', 'deadband_percent: 0.5'));
+    core.program.child.kill('SIGHUP');
+    await core.program.line(/reload: configuration/);
+    await other.program.line(/configuration: the renderer has .*votes only/);
+    await two.goesOn(core, 5);
+    assert.match(core.program.said, /refused: configuration: .*; its promises count/);
+    other.program.child.kill('SIGHUP');
+    await other.program.line(/reload: configuration/);
+    for (const one of [core, other])
+        await one.toDatabase.mend();
+    await two.followed(core);
+    await two.goesOn(core, 1);
+});
+
+test('others of the names of both are told, and take nobody\'s place while the leader has no way to the database', options, async () => {
+    const core = await two.leader(), other = two.other(core);
+    await two.followed(core);
+    const more = [['three', '127.0.0.4', core, /another core has the name/], ['four', '127.0.0.5', other, /stands by already/]];
+    const started = await Promise.all(more.map(async ([name, host, as, says]) => {
+        const one = await two.makeCore(name, host);
+        one.toOther = await two.network.link(core.port);
+        await two.startCore(one, as.name);
+        await one.program.line(says, 30000);
+        return one;
+    }));
+    await core.toDatabase.cut();
+    await two.goesOn(core, 6);
+    assert.deepEqual(started.map(terms), [0, 0]);
+    await core.toDatabase.mend();
+    await Promise.all(started.map((one) => one.program.stop()));
+    await two.followed(core);
+});

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Links that can be cut, and a tap before a device, on a thread of their own: a test that waits for a program does not hold them up.
+import { connect, createServer } from 'node:net';
+import { isMainThread, parentPort, Worker } from 'node:worker_threads';
+import { CuttableLink } from './postgres_server.mjs';
+
+const now = () => performance.timeOrigin + performance.now(); // the same for all threads
+
+// Passes requests on to the device, and notes when each connection asked first and last.
+async function openTap(pollers, port, devicePort) {
+    const server = createServer((near) => {
+        const far = connect(devicePort, '127.0.0.1');
+        let poller = null;
+        near.on('data', (bytes) => {
+            if (!poller)
+                pollers.push(poller = { first: now() });
+            poller.last = now();
+            far.write(bytes);
+        });
+        far.on('data', (bytes) => near.write(bytes));
+        for (const socket of [near, far]) {
+            socket.on('error', () => {});
+            socket.on('close', () => { near.destroy(); far.destroy(); });
+        }
+    });
+    await new Promise((done) => server.listen(port, '127.0.0.1', done));
+}
+
+if (!isMainThread) {
+    const links = [], pollers = [];
+    const does = {
+        link: async (port, at) => {
+            const link = await CuttableLink.open(port, at);
+            return { n: links.push(link) - 1, port: link.port };
+        },
+        set: (n, how) => links[n][how](),
+        tap: (port, devicePort) => openTap(pollers, port, devicePort),
+        pollers: () => pollers,
+    };
+    parentPort?.on('message', async ({ id, what, args }) => parentPort.postMessage({ id, answer: await does[what](...args) }));
+}
+
+export class Network {
+    constructor() {
+        this.worker = new Worker(new URL(import.meta.url));
+        this.waiting = new Map();
+        this.worker.on('message', ({ id, answer }) => { this.waiting.get(id)(answer); this.waiting.delete(id); });
+    }
+    ask(what, ...args) {
+        const id = (this.asked = (this.asked ?? 0) + 1);
+        return new Promise((done) => {
+            this.waiting.set(id, done);
+            this.worker.postMessage({ id, what, args });
+        });
+    }
+
+    // A link to a port of this machine: { port, cut(), freeze(), mend() }.
+    async link(port, at = {}) {
+        const { n, port: own } = await this.ask('link', port, at);
+        return { port: own, cut: () => this.ask('set', n, 'cut'), freeze: () => this.ask('set', n, 'freeze'),
+            mend: () => this.ask('set', n, 'mend') };
+    }
+    tap(port, devicePort) { return this.ask('tap', port, devicePort); }
+
+    // What two polled at the same time, by how many milliseconds; [] is what is wanted.
+    async overlaps() {
+        const pollers = await this.ask('pollers'), found = [];
+        for (let i = 1; i < pollers.length; i++)
+            for (let k = 0; k < i; k++)
+                if (pollers[i].first <= pollers[k].last)
+                    found.push(pollers[k].last - pollers[i].first);
+        return found;
+    }
+    // How long nobody polled at most, in milliseconds, since then.
+    async longestPause(since) {
+        const turns = (await this.ask('pollers')).filter(({ last }) => last >= since);
+        return Math.max(0, ...turns.slice(1).map(({ first }, i) => first - turns[i].last));
+    }
+    async pollerCount() { return (await this.ask('pollers')).length; }
+    now() { return now(); }
+    close() { return this.worker.terminate(); }
+}

@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Two cores of one plant, each with a network of its own that can be cut: to the other, to the database; and a tap before the device that
+// knows who polls, and when.
+import assert from 'node:assert/strict';
+import { spawnSync } from 'node:child_process';
+import { mkdirSync, readFileSync, writeFileSync } from 'node:fs';
+import { join } from 'node:path';
+import { Network } from './network_thread.mjs';
+import { Node, Nodes, sleep, until } from './nodes.mjs';
+import { freePort } from './ports.mjs';
+import { missingPostgres } from './postgres_server.mjs';
+import { missing, runProgram } from './tiny_plant.mjs';
+
+export const TAKE_OVER_MS = 5000;
+
+// Why these tests cannot run here; false: they can.
+export function missingTwoCores() {
+    const absent = missing();
+    if (absent.length > 0)
+        return `not built: ${absent.join(', ')}`;
+    const canMount = process.getuid() === 0 && spawnSync('unshare', ['--mount', 'true']).status === 0;
+    return missingPostgres() ?? (canMount ? false : 'nothing can be mounted here');
+}
+
+// How often it began to poll.
+export const terms = (core) => core.program.said.match(/polls devices and owns the alarms/g)?.length ?? 0;
+export const kill = (core, signal) => () => core.program.child.kill(signal);
+
+export class TwoCores {
+    // server: PostgresServer with a database; more: YAML at the end of the plant file.
+    static async create(server, more = '') {
+        const two = new TwoCores();
+        two.server = server;
+        two.nodes = await Nodes.create();
+        const { plant } = two.nodes, tapPort = await freePort();
+        two.plant = plant;
+        two.databasePort = await freePort();
+        two.network = new Network();
+        await two.network.tap(tapPort, plant.modbusPort);
+        two.file = join(plant.folder, 'two.yaml');
+        writeFileSync(join(plant.folder, 'login'), server.login, { mode: 0o600 });
+        const url = server.url(two.databasePort).replace('127.0.0.1', 'db.test');
+        writeFileSync(two.file, `${readFileSync(plant.file, 'utf8').replace(`port: ${plant.modbusPort}`, `port: ${tapPort}`)}history:
+  deadband_percent: 0
+  postgres: { url: "${url}", login: login }
+${more}`);
+        const prepared = runProgram('plantcast-prep', [two.file], 60000);
+        if (prepared.code !== 0)
+            throw new Error(prepared.err);
+        const one = await two.makeCore('one', '127.0.0.2'), other = await two.makeCore('two', '127.0.0.3');
+        two.cores = { one, two: other };
+        one.toOther = await two.network.link(other.port);
+        other.toOther = await two.network.link(one.port);
+        return two;
+    }
+
+    // With a history, a port and a way to the database of its own.
+    async makeCore(name, host) {
+        const { plant } = this.nodes;
+        mkdirSync(join(plant.folder, name));
+        const hosts = join(plant.folder, name, 'hosts');
+        writeFileSync(hosts, `127.0.0.1 localhost\n${host} db.test\n`);
+        return { name, hosts, port: await freePort(), file: this.file,
+            toDatabase: await this.network.link(this.server.port, { host, port: this.databasePort }) };
+    }
+
+    // It follows the other or leads, as it comes. as: the name that it has.
+    start(name, as = name) { return this.startCore(this.cores[name], as); }
+    async startCore(core, as = core.name) {
+        const { plant, rendererFile, tokenFile } = this.nodes;
+        core.node = new Node(plant, ['--role', 'core', '--port', String(core.port), '--node', as, '--trust-local', '--tokens', tokenFile,
+            '--core', `ws://127.0.0.1:${core.toOther.port}`, '--core-token-file', rendererFile,
+            '--history', join(plant.folder, core.name, 'history')], core.file,
+        ['unshare', '--mount', 'sh', '-c', `mount --bind ${core.hosts} /etc/hosts && exec "$@"`, 'sh']);
+        core.program = core.node.program;
+        this.nodes.all.push(core.node);
+        await core.node.ready();
+        return core;
+    }
+
+    renderer(name, ...more) {
+        const urls = Object.values(this.cores).flatMap(({ port }) => ['--core', `ws://127.0.0.1:${port}`]);
+        return this.nodes.start(['--role', 'render', ...urls, '--core-token-file', this.nodes.rendererFile, '--node', name, '--port', '0',
+            ...more], this.file);
+    }
+
+    runs(core) { return core.node && core.program.child.exitCode === null && core.program.child.signalCode === null; }
+
+    async ready(core) {
+        if (!this.runs(core))
+            return false;
+        try {
+            return (await core.node.fetch('/readyz')).status === 200;
+        } catch {
+            return false;
+        }
+    }
+    // Waits for the one that leads; never two.
+    async leader(seconds = 20) {
+        return until('one that leads', async () => {
+            const ready = [];
+            for (const core of Object.values(this.cores))
+                if (await this.ready(core))
+                    ready.push(core);
+            return ready.length === 1 && ready[0];
+        }, seconds);
+    }
+    other(core) { return Object.values(this.cores).find((one) => one !== core); }
+    // Waits until the other follows, and its promises count.
+    followed(core) {
+        return until('a standby that is named', async () => await core.node.metric('plantcast_core_standby') === 1 &&
+            (await this.other(core).node.tags())['TI-1'].quality_name === 'Good');
+    }
+
+    // Kills or stops who leads; returns who leads then, and for how long nobody polled.
+    async takeOver(core, how) {
+        const other = this.other(core), since = this.network.now() - 500;
+        core.program.stopped = true;
+        await how();
+        this.takeOvers = (this.takeOvers ?? 0) + 1;
+        await until(`${other.name} leads`, () => this.ready(other), 15);
+        await until('readings there', async () => (await other.node.tags())['TI-1'].quality_name === 'Good', 5);
+        await sleep(300);
+        const pause_ms = await this.network.longestPause(since);
+        assert.deepEqual(await this.network.overlaps(), []);
+        assert.ok(pause_ms > 0 && pause_ms <= TAKE_OVER_MS, `${pause_ms} ms without a poller`);
+        return { leads: other, pause_ms };
+    }
+    async restart(core) {
+        await core.program.ended;
+        await this.start(core.name);
+    }
+    // For so long nothing may change: who leads goes on, and nobody else.
+    async goesOn(core, seconds) {
+        const since = this.network.now(), other = this.other(core), before = terms(other);
+        await sleep(seconds * 1000);
+        assert.ok(await this.ready(core), `${core.name} leads:\n${core.program.said.slice(-2000)}`);
+        assert.ok(!await this.ready(other));
+        assert.equal(terms(other), before);
+        assert.deepEqual(await this.network.overlaps(), []);
+        assert.ok(await this.network.longestPause(since) < 1500);
+    }
+
+    async destroy() {
+        await this.nodes.destroy();
+        await this.network?.close();
+    }
+}
+
+export { sleep, until };

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The field held against simulated heat conduction in a bent pipe of coarse elements (tests/validation has the parts and the whole).
+import assert from 'node:assert/strict';
+import { spawnSync } from 'node:child_process';
+import { existsSync, mkdtempSync, readFileSync, rmSync } from 'node:fs';
+import { tmpdir } from 'node:os';
+import { join, resolve } from 'node:path';
+import { after, before, test } from 'node:test';
+import { BIN } from './support/tiny_plant.mjs';
+
+const OUT = resolve(process.env.PLANTCAST_OUT ?? 'build/release');
+const absent = [['gmsh', 'gmsh'], ['ccx', 'calculix-ccx']].filter(([program]) => spawnSync('which', [program]).status !== 0);
+const needed = [join(BIN, 'plantcast-prep'), join(OUT, 'tests/validation/compare')].filter((path) => !existsSync(path));
+const skip = absent.length > 0 ? `not installed: ${absent.map(([, name]) => name).join(', ')}` :
+    needed.length > 0 ? `not built: ${needed}` : false;
+let folder, part;
+
+before(() => {
+    if (skip)
+        return;
+    folder = mkdtempSync(join(tmpdir(), 'plantcast-validation-'));
+    const { status, stderr } = spawnSync('tests/validation/run', [OUT, BIN, '--folder', folder, '--parts', 'bent', '--sensors', '5,20',
+        '--coarser', '2.5', '--no-pictures'], { encoding: 'utf8', timeout: 240000 });
+    assert.equal(status, 0, stderr);
+    [part] = JSON.parse(readFileSync(join(folder, 'validation.json'), 'utf8'));
+});
+after(() => folder && rmSync(folder, { recursive: true }));
+
+const errors = (sensors, interpolation, distance = '') => part.rows.find((row) => row.sensors === sensors &&
+    row.interpolation === interpolation && row.distance === distance).outside;
+
+// The solution itself: no hotter than where it is held at 200, no colder than what is around; mostly at neither.
+test('CalculiX solves what was asked', { skip }, () => {
+    assert.ok(part.nodes > 2000 && part.triangles > 4000, `${part.nodes} nodes`);
+    assert.ok(Math.abs(part.high - 200) < 0.01 && part.low > 20 && part.low < 40, `${part.low} to ${part.high}`);
+});
+
+// In kelvin, of 180 between hottest and coldest. Bounds are a third above what was measured.
+for (const [sensors, interpolation, distance, mean, p95] of [
+    [20, 'shepard', 'geodesic', 6.3, 18.6], [20, 'harmonic', '', 4.6, 13], [20, 'fin', '', 4.8, 27], [5, 'fin', '', 11.8, 54],
+]) {
+    test(`${interpolation} from ${sensors} sensors`, { skip }, () => {
+        const { mean: is, p95: high, unknown } = errors(sensors, interpolation, distance);
+        assert.ok(is <= mean && high <= p95, `mean ${is} K (${mean}), 95 % ${high} K (${p95})`);
+        assert.ok(unknown < 0.02, `${100 * unknown} % unknown`);
+    });
+}
+
+// The walls of both legs are as far apart as the pipe is thick: straight distances mix a hot leg with a cold one.
+test('along the surface is nearer than straight across the gap', { skip }, () => {
+    const along = errors(20, 'shepard', 'geodesic').mean, straight = errors(20, 'shepard', 'euclidean').mean;
+    assert.ok(along < 0.85 * straight, `${along} K along, ${straight} K straight`);
+});

@@ -1,0 +1,235 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// One picture over many displays, as the server makes it: drawn once, cut without a seam, shown by all at one instant or not at all.
+import assert from 'node:assert/strict';
+import { appendFileSync, readFileSync, writeFileSync } from 'node:fs';
+import { join } from 'node:path';
+import { after, before, test } from 'node:test';
+import { Canvas } from './support/png_pixels.mjs';
+import { get, PlainClient } from './support/plain_client.mjs';
+import { Relay, relayMissing } from './support/relay.mjs';
+import { missing, TinyPlant } from './support/tiny_plant.mjs';
+
+const absent = missing();
+const options = { skip: absent.length > 0 ? `not built: ${absent.join(', ')}` : false, timeout: 240000 };
+const [WIDTH, HEIGHT] = [320, 180], KEY = 1, STILL = 2, MORE = 8;
+const WALLS = `
+views: [{ id: all, title: All, view: "group=temperature" }]
+walls:
+- { id: seamless, tile: { columns: 3, rows: 2, views: all } }
+- id: framed
+  inches: 10
+  tile: { columns: 2, rows: 2, bezel_mm: [20, 10], views: all }
+  displays: [{ grid: [a], panes: [{ area: a, clock: yes }] }]
+`;
+const BEZEL = [20, 10].map((mm) => Math.round((mm * Math.hypot(WIDTH, HEIGHT)) / (10 * 25.4)));
+const sleep = (ms) => new Promise((done) => setTimeout(done, ms));
+let plant;
+
+before(async () => {
+    if (options.skip)
+        return;
+    plant = await TinyPlant.create();
+    appendFileSync(plant.file, WALLS);
+    const tags = join(plant.folder, 'tags.csv'); // no reading goes stale because the machine is busy: pictures are compared
+    writeFileSync(tags, readFileSync(tags, 'utf8').replace(/,1$/gm, ',600'));
+    assert.equal(plant.prepare().code, 0);
+    await plant.startSim();
+    await plant.startDaemon();
+    const values = { 'TI-1': 80, 'TI-2': 20, 'PI-1': 5 }; // from now on nothing changes by itself
+    for (const [tag, value] of Object.entries(values))
+        await plant.tell(`set ${tag} ${value}`);
+    for (let read = []; read.length === 0 || read.some(({ name, value }) => value !== values[name]); await sleep(20))
+        ({ tags: read } = JSON.parse((await get(plant.port, '/api/v1/tags')).body));
+});
+after(() => plant?.destroy());
+
+async function tileOf(wall, display, { port = plant.port, codecs = ['png'], ...more } = {}) {
+    const client = await PlainClient.open(port);
+    await client.hello({ width: WIDTH, height: HEIGHT, codecs, tile: { wall, display }, ...more });
+    client.display = display;
+    return client;
+}
+const tilesOf = (wall, count, more) => Promise.all(Array.from({ length: count }, (_, i) => tileOf(wall, i + 1, more)));
+const close = (clients) => clients.forEach((client) => client.close());
+const presents = (client) => client.texts.filter(({ type }) => type === 'present');
+const tilesSaid = (client) => client.texts.filter(({ type }) => type === 'tiles').at(-1);
+const leaderOf = (clients) => clients[0].until('one that leads', () => clients.find((client) => tilesSaid(client)?.leads));
+const camera = (seq, turn) =>
+    ({ type: 'camera', seq, eye: [1.5 + 6 * Math.sin(turn), -6 * Math.cos(turn), 3], target: [1.5, 0, 0], up: [0, 0, 1], fov: 40 });
+
+function canvasAt(client, seq) {
+    const canvas = new Canvas(), frames = client.frames.filter((one) => one.seq <= seq);
+    for (const frame of frames.slice(frames.findLastIndex(({ flags, x, y }) => flags & KEY && x === 0 && y === 0)))
+        canvas.draw(frame);
+    return canvas;
+}
+
+// The newest picture that all were told to show: [{ seq, at_us }, ...] by client.
+const picture = (clients) => clients[0].until('a picture that all show', () => {
+    const common = presents(clients[0]).reverse().find(({ picture: number }) => clients.every((client) =>
+        presents(client).some((one) => one.picture === number)));
+    return common && clients.map((client) => presents(client).find((one) => one.picture === common.picture));
+});
+
+// Moves a client's camera until there is a picture as it is wanted; the number of that frame, and of its camera.
+async function moveUntil(client, wanted, still) {
+    for (let seq = 1; seq < 200; seq++) {
+        client.say(camera(seq, 0.3));
+        const good = (frame) => !(frame.flags & MORE) && Boolean(frame.flags & STILL) === still && wanted(frame);
+        const end = performance.now() + (still ? 60000 : 500);
+        while (performance.now() < end) {
+            const found = client.frames.find((frame) => frame.camera_seq === seq && good(frame));
+            if (found)
+                return found.seq;
+            await sleep(20);
+        }
+    }
+    throw new Error('no such picture');
+}
+
+// What one client with all of the picture sees.
+async function whole(width, height, still) {
+    const client = await PlainClient.open(plant.port);
+    await client.hello({ width, height, codecs: ['png'] });
+    await client.frameWhere('a first picture', () => true);
+    const seq = await moveUntil(client, (frame) => frame.full_width === width, still);
+    const canvas = canvasAt(client, seq);
+    client.close();
+    return canvas;
+}
+
+// Readings stand still meanwhile, and so does what is seen. Fewer pixels, as a loaded machine has it, would be compared with others.
+async function compare(wall, columns, rows, [across, down]) {
+    const width = columns * WIDTH + (columns - 1) * across, height = rows * HEIGHT + (rows - 1) * down;
+    for (const still of [false, true]) {
+        const clients = await tilesOf(wall, columns * rows), leader = await leaderOf(clients);
+        await picture(clients);
+        const told = (frame) => presents(leader).find(({ seq }) => seq === frame.seq);
+        const all = (frame) => told(frame) && clients.map((client) => presents(client).find((one) => one.picture === told(frame).picture));
+        const seq = await moveUntil(leader, (frame) => frame.full_width === WIDTH && all(frame)?.every(Boolean), still);
+        const shown = all({ seq });
+        const canvases = clients.map((client, i) => canvasAt(client, shown[i].seq));
+        assert.equal(new Set(shown.map(({ at_us: us }) => us)).size, 1);
+        close(clients);
+        const large = await whole(width, height, still);
+        for (const [i, tile] of canvases.entries()) {
+            const x = (i % columns) * (WIDTH + across), y = Math.floor(i / columns) * (HEIGHT + down);
+            assert.deepEqual([tile.width, tile.height], [WIDTH, HEIGHT]);
+            assert.equal(tile.differsFrom(large, x, y), 0, `display ${i + 1} of ${wall}, ${still ? 'refined' : 'preview'}`);
+        }
+        const colours = new Set(Array.from({ length: large.rgb.length / 3 }, (_, i) => large.rgb.readUIntBE(3 * i, 3)));
+        assert.ok(colours.size > 100, `${colours.size} colours: there is something to compare`);
+    }
+}
+
+test('six tiles are the large picture, pixel by pixel, preview and refined', options, () => compare('seamless', 3, 2, [0, 0]));
+test('behind bezels the picture goes on', options, async () => {
+    assert.ok(BEZEL[0] > 20 && BEZEL[1] > 10);
+    await compare('framed', 2, 2, BEZEL);
+});
+
+const metric = async (name) => Number((await get(plant.port, '/metrics')).body.toString().match(new RegExp(`^${name} (\\S+)`, 'm'))[1]);
+
+test('a moving picture is drawn once for all tiles, and each is told to show it at one instant', options, async () => {
+    const clients = await tilesOf('seamless', 6, { codecs: ['jpeg'] }), leader = await leaderOf(clients);
+    await picture(clients);
+    await sleep(1500);
+    const before = await metric('plantcast_renders_total'), first = presents(leader).at(-1).picture, began = performance.now();
+    for (let seq = 1; performance.now() - began < 4000; seq++) {
+        leader.say(camera(seq, seq / 50));
+        await sleep(33);
+    }
+    await sleep(1000);
+    const drawn = await metric('plantcast_renders_total') - before;
+    const numbers = presents(leader).map((one) => one.picture).filter((number) => number > first);
+    assert.ok(numbers.length > 20, `${numbers.length} pictures`);
+    assert.ok(drawn <= numbers.length + 8, `${drawn} drawn, ${numbers.length} shown`);
+    for (const number of numbers) {
+        const all = clients.map((client) => presents(client).find((one) => one.picture === number));
+        assert.ok(all.every(Boolean), `picture ${number} by all`);
+        assert.equal(new Set(all.map(({ at_us: us }) => us)).size, 1);
+        for (const [i, client] of clients.entries())
+            assert.ok(client.frames.some((frame) => frame.seq === all[i].seq), 'told only of what it has');
+        const sizes = new Set(all.map(({ seq }, i) => clients[i].frames.find((frame) => frame.seq === seq).full_width));
+        assert.equal(sizes.size, 1, 'of one quality');
+    }
+    close(clients);
+});
+
+test('a tile that is gone is named, and the others go on; the lead passes on with its view', options, async () => {
+    const clients = await tilesOf('seamless', 6, { codecs: ['jpeg'] }), leader = await leaderOf(clients);
+    leader.say(camera(5, 2));
+    await picture(clients);
+    await sleep(1500);
+    const rest = clients.filter((client) => client !== leader);
+    leader.close();
+    const next = await rest[0].until('another that leads', () => rest.find((client) => tilesSaid(client)?.leads));
+    for (const client of rest)
+        await client.until('the one that is missing', () => tilesSaid(client)?.missing.join() === String(leader.display), 3000);
+    const before = presents(next).at(-1).picture, eye = camera(0, 2).eye;
+    next.say({ type: 'params', seq: 1, look: 'flat' });
+    const shown = await rest[0].until('a picture of those left', () =>
+        rest.every((client) => presents(client).at(-1).picture > before) && presents(next).at(-1));
+    const frame = next.frames.find(({ seq }) => seq === shown.seq);
+    for (let i = 0; i < 3; i++)
+        assert.ok(Math.abs(frame.eye[i] - eye[i]) < 1e-3, `${frame.eye} is not ${eye}: the view stays`);
+    const back = await tileOf('seamless', leader.display, { codecs: ['jpeg'] });
+    await picture([...rest, back]);
+    await next.until('nobody missing', () => tilesSaid(next).missing.length === 0, 5000);
+    close([...rest, back]);
+});
+
+test('a slow link slows all evenly', { ...options, skip: options.skip || (relayMissing() ?? false) }, async () => {
+    const relay = await Relay.open(plant.port, { bytesPerS: 60000, delayMs: 20 });
+    const clients = [...await tilesOf('framed', 3, { codecs: ['jpeg'] })];
+    clients.push(await tileOf('framed', 4, { codecs: ['jpeg'], port: relay.port }));
+    const leader = await leaderOf(clients), began = performance.now();
+    await picture(clients);
+    for (let seq = 1; performance.now() - began < 6000; seq++) {
+        leader.say(camera(seq, seq / 50));
+        await sleep(33);
+    }
+    await sleep(1500);
+    const sets = clients.map((client) => presents(client).map((one) => one.picture)), shared = sets[0].filter((n) => n > sets[3][0]);
+    assert.ok(shared.length > 10, `${shared.length} pictures`);
+    for (const set of sets)
+        assert.deepEqual(set.filter((n) => n > sets[3][0]), shared, 'no tile shows a picture that another does not');
+    close(clients);
+    relay.close();
+});
+
+test('one that takes nothing is left out and told so, and comes back', options, async () => {
+    const clients = await tilesOf('framed', 3, { codecs: ['jpeg'] }), stuck = await tileOf('framed', 4, { codecs: ['jpeg'] });
+    await picture([...clients, stuck]);
+    stuck.acknowledge = false;
+    const leader = await leaderOf([...clients, stuck]), number = presents(leader).at(-1).picture;
+    const moving = setInterval(() => leader.say(camera(++moving.seq, moving.seq / 50)), 50);
+    moving.seq = 100;
+    await leader.until('what is late', () => tilesSaid(leader).late.some(({ display }) => display === 4), 10000);
+    await stuck.until('being told', () => tilesSaid(stuck).late.some(({ display, since_us: us }) => display === 4 && us > 1.6e15), 3000);
+    const then = presents(leader).at(-1).picture;
+    assert.ok(then <= number + 3, 'nothing is shown without it before');
+    await leader.until('pictures of the others', () => presents(leader).at(-1).picture > then + 5, 10000);
+    assert.ok(presents(stuck).at(-1).picture <= then);
+    stuck.acknowledge = true;
+    stuck.say({ type: 'ack', seq: stuck.frames.at(-1).seq });
+    await stuck.until('it takes part again', () => tilesSaid(leader).late.length === 0 && presents(stuck).at(-1).picture > then + 5, 30000);
+    clearInterval(moving);
+    close([...clients, stuck]);
+});
+
+test('what is no tile is refused by name', options, async () => {
+    for (const [tile, text] of [[{ wall: 'nowhere', display: 1 }, /no such wall/], [{ wall: 'seamless', display: 7 }, /no such display/],
+        [{ wall: 'framed', display: 5 }, /display 5 of wall framed is not one of its tiles/]]) {
+        const client = await PlainClient.open(plant.port);
+        client.say({ type: 'hello', width: WIDTH, height: HEIGHT, codecs: ['png'], tile });
+        assert.match((await client.text('error')).text, text);
+        client.close();
+    }
+    const client = await PlainClient.open(plant.port);
+    client.say({ type: 'hello', width: 4096, height: 2160, codecs: ['jpeg'], tile: { wall: 'seamless', display: 1 } });
+    const frame = await client.frameWhere('a smaller picture', () => true);
+    const width = frame.full_width;
+    assert.ok(width <= 2730 && width > 1000 && frame.flags & KEY, `${width}: three of 4096 are more than a picture has`);
+    client.close();
+});

@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A day of a plant's life in an hour: temperatures that were measured on a rig, 24 times as fast; twenty people who drag the model about;
+// the plant file changed and read again, devices that stop answering, a tag that is refused, a disk that takes nothing. MINUTES: how long.
+// Stated: memory, descriptors, threads and latency, and how they grow. Held to: a field that is that of a fresh computation to the last
+// bit, a history without a hole, descriptors and threads that do not grow.
+import assert from 'node:assert/strict';
+import { spawn, spawnSync } from 'node:child_process';
+import { existsSync, readdirSync, readFileSync, writeFileSync } from 'node:fs';
+import { join, resolve } from 'node:path';
+import { after, before, test } from 'node:test';
+import { get } from '../e2e/support/plain_client.mjs';
+import { BIN, missing, runProgram, TinyPlant } from '../e2e/support/tiny_plant.mjs';
+
+const SERIES = resolve('../shared/data/sensors/hydraulic/hydraulic_ts_1hz.csv'), MINUTES = Number(process.env.MINUTES ?? 60);
+const absent = missing();
+const skip = absent.length > 0 ? `not built: ${absent.join(', ')}` : existsSync(SERIES) ? false : `${SERIES} is not there`;
+const SESSIONS = 20, PROBE_S = 15, GROWTH = 1.1, WAIT_MS = 120000;
+const sleep = (ms) => new Promise((done) => setTimeout(done, ms));
+const pid = () => plant.daemon.child.pid;
+let plant;
+
+async function until(what, ask) {
+    for (const end = Date.now() + WAIT_MS; ; await sleep(200)) {
+        const found = await ask();
+        if (found)
+            return found;
+        assert.ok(Date.now() < end, `not within ${WAIT_MS / 1000} s: ${what}`);
+    }
+}
+const tags = async () => new Map(JSON.parse((await get(plant.port, '/api/v1/tags')).body).tags.map((tag) => [tag.name, tag]));
+const hold = async (tag, value) => {
+    await plant.tell(`set ${tag} ${value}`);
+    await until(`${tag} is ${value}`, async () => {
+        const now = (await tags()).get(tag);
+        return now.value === value && now.quality_name.startsWith('Good');
+    });
+};
+
+function measure() {
+    const status = readFileSync(`/proc/${pid()}/status`, 'utf8');
+    const of = (key) => Number(status.match(new RegExp(`^${key}:\\s+(\\d+)`, 'm'))[1]);
+    return { memory_mb: of('VmRSS') / 1024, threads: of('Threads'), descriptors: readdirSync(`/proc/${pid()}/fd`).length };
+}
+
+// Twenty who drag.
+const crowd = () => new Promise((done, fail) => {
+    const child = spawn(join(BIN, 'plantcast'), ['probe', `http://127.0.0.1:${plant.port}/`, '--sessions', String(SESSIONS), '--seconds',
+        String(PROBE_S), '--motion', 'random', '--size', '320x180', '--blind', '--json'], { stdio: ['ignore', 'pipe', 'inherit'] });
+    let out = '';
+    child.stdout.on('data', (chunk) => { out += chunk; });
+    child.on('error', fail);
+    child.on('exit', () => done(JSON.parse(out)));
+});
+
+// What happens to a plant, one a round, while people look.
+const events = [
+    async function reload() {
+        const text = readFileSync(plant.file, 'utf8'), turn = /description: warm/.test(text);
+        const [was, is] = turn ? ['warm', 'cold'] : ['cold', 'warm'];
+        writeFileSync(plant.file, text.replace(`description: ${was}`, `description: ${is}`));
+        const answer = await (await fetch(`http://127.0.0.1:${plant.port}/api/v1/reload`, { method: 'POST' })).json();
+        assert.ok(answer.reloaded, JSON.stringify(answer));
+    },
+    async function lost() {
+        await plant.tell('pause');
+        await until('readings are Bad', async () => (await tags()).get('TI-2').quality_name.startsWith('Bad'));
+        await plant.tell('resume');
+        await until('readings are Good', async () => (await tags()).get('TI-2').quality_name.startsWith('Good'));
+    },
+    async function refused() {
+        await plant.tell('fail TI-2');
+        await until('TI-2 is not Good', async () => !(await tags()).get('TI-2').quality_name.startsWith('Good'));
+        await plant.tell('release TI-2');
+    },
+    async function full() {
+        const limit = (bytes) => spawnSync('prlimit', ['--pid', String(pid()), `--fsize=${bytes}`]).status;
+        assert.equal(limit('1:unlimited'), 0);
+        await sleep(5000);
+        assert.equal(limit('unlimited:unlimited'), 0);
+    },
+];
+
+// At places of both boxes: the daemon's field, after all that it has been through, and that of a program which begins with these readings.
+async function drift(round) {
+    for (const [i, tag] of ['TI-1', 'TI-2', 'PI-1'].entries())
+        await hold(tag, [20 + round % 50, 70 - round % 50, round % 10][i]);
+    const now = await tags(), values = join(plant.folder, 'values.csv'), view = ['--size', '320x180', '--fit', 'E-101', '--side', 'iso'];
+    writeFileSync(values, ['TI-1', 'TI-2', 'PI-1'].map((name) => `${name},${now.get(name).value}`).join('\n'));
+    let worst = 0, compared = 0;
+    for (const at of ['150,80', '160,90', '170,100', '140,100']) {
+        const [live, fresh] = [[`http://127.0.0.1:${plant.port}/`], [plant.file, '--values', values]].map((from) =>
+            JSON.parse(runProgram('plantcast', ['snapshot', ...from, ...view, '--pick', at], WAIT_MS).out).value);
+        if (typeof live !== 'number' && typeof fresh !== 'number')
+            continue;
+        worst = Math.max(worst, Math.abs(live - fresh));
+        compared++;
+    }
+    assert.ok(compared > 0, 'something is compared');
+    for (const tag of ['TI-1', 'TI-2'])
+        await plant.tell(`release ${tag}`);
+    return worst;
+}
+
+// By least squares, an hour.
+function slope(rows, key) {
+    const n = rows.length, mean = (of) => rows.reduce((sum, row) => sum + of(row), 0) / n;
+    const t = mean((row) => row.hours), y = mean((row) => row[key]);
+    return mean((row) => (row.hours - t) * (row[key] - y)) / mean((row) => (row.hours - t) ** 2);
+}
+
+before(async () => {
+    if (skip)
+        return;
+    plant = await TinyPlant.create();
+    assert.equal(plant.prepare().code, 0);
+    await plant.startSim('--values', SERIES, '--map', 'TI-1=TS1', '--map', 'TI-2=TS4', '--speed', '24', '--loop');
+    await plant.startDaemon();
+});
+after(() => plant?.destroy());
+
+test(`a day's life in ${MINUTES} minutes`, { skip, timeout: (MINUTES + 20) * 60000 }, async () => {
+    const began = Date.now(), rows = [], marks = [];
+    for (let round = 0; round === 0 || Date.now() - began < MINUTES * 60000; round++) {
+        const event = events[round % events.length], looking = crowd();
+        await event();
+        const { input_to_frame_ms: waited } = await looking;
+        const off = await drift(round);
+        const mark = 5 + round / 64; // exact, whatever it passes through
+        await hold('PI-1', mark);
+        marks.push(mark);
+        rows.push({ hours: (Date.now() - began) / 3.6e6, ...measure(), p95_ms: waited.p95, off });
+        console.log(`# ${event.name}: ${JSON.stringify(rows.at(-1))}`);
+        assert.equal(off, 0, 'the field is that of a fresh computation');
+    }
+    for (const key of ['memory_mb', 'descriptors', 'threads', 'p95_ms'])
+        console.log(`# ${key}: ${rows[0][key].toFixed(1)} at first, ${rows.at(-1)[key].toFixed(1)} at last, ` +
+            `${slope(rows, key).toFixed(2)} an hour`);
+    // The least of each third: a connection that is closing, or a month that is being written, has a descriptor for a moment.
+    const third = Math.ceil(rows.length / 3), least = (part, key) => Math.min(...part.map((row) => row[key]));
+    for (const [key, growth] of [['descriptors', 1], ['threads', 1], ['memory_mb', GROWTH]]) {
+        const early = least(rows.slice(0, third), key), late = least(rows.slice(-third), key);
+        assert.ok(late <= growth * early, `${key}: ${early} in the first third, ${late} in the last`);
+    }
+    const kept = await until('history has all marks', () => {
+        const { out } = runProgram('plantcast', ['history', 'export', plant.file, '--tags', 'PI-1', '--from',
+            String(Math.floor(began / 1000))], WAIT_MS);
+        const values = new Set(out.split('\n').map((line) => Number(line.split(',')[2])));
+        return marks.every((mark) => values.has(mark)) && values.size;
+    });
+    console.log(`# history: ${kept} values, ${marks.length} of ${marks.length} marks`);
+});

@@ -1,0 +1,444 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Two never lead at once: three nodes and a database whose connections are cut, whose messages come late or twice too late, whose clocks
+   run apart, and which are killed, stopped for seconds and started again, by chance. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+#include <cmocka.h>
+
+#include "corelink/lease.h"
+#include "tests/support/sweep.h"
+
+#define MS INT64_C(1000000)
+#define S (1000 * MS)
+enum { NODES = 3, FLIGHTS = 512, STEP_MS = 10 };
+#define PATIENCE_NS S /* after which an answer of the database is waited for no more */
+
+enum what { LOOK, BID, RENEW, RELEASE, ROW, DONE, ASK, PROMISE };
+struct flight { /* a message on its way */
+    int64_t at_ns; /* when it arrives, of the world; 0: free */
+    enum what what;
+    int from, to;  /* nodes; NODES: the database */
+    uint64_t life; /* of the node that it is for, or from */
+    struct lease_row row; /* what it says, or expects */
+    char standby[LEASE_NODE_BYTES];
+    bool good;
+    int64_t sent_ns; /* on the clock of the node */
+};
+
+struct node {
+    struct lease lease;
+    uint64_t life;       /* a process; 0: none runs */
+    int64_t starts_ns, wakes_ns, next_ns, asked_ns; /* of the world */
+    int64_t ahead_ns, sent_ns; /* sent: on its own clock */
+    double rate;
+    bool waits;
+    int64_t waits_since_ns;
+    int times_led;
+};
+
+struct world {
+    int64_t now_ns;
+    struct lease_row row;
+    struct node nodes[NODES];
+    bool cut[NODES + 1][NODES + 1];
+    int64_t frozen_ns; /* the database answers again then */
+    struct flight flights[FLIGHTS];
+    uint64_t lives;
+    unsigned seed;
+    bool calm;
+    int most, changes; /* most that led at once */
+};
+
+static int chance(struct world *world, int n)
+{
+    world->seed = world->seed * 1664525u + 1013904223u;
+    return (int)((world->seed >> 8) % (unsigned)n);
+}
+
+static int64_t clock_of(const struct world *world, const struct node *node)
+{
+    return node->ahead_ns + (int64_t)((double)world->now_ns * node->rate);
+}
+
+static struct flight *send(struct world *world, enum what what, int from, int to)
+{
+    if (world->cut[from][to] || world->cut[to][from])
+        return NULL;
+    for (int i = 0; i < FLIGHTS; i++) {
+        struct flight *flight = &world->flights[i];
+        if (flight->at_ns)
+            continue;
+        int64_t late_ns = world->calm || chance(world, 20) ? chance(world, 40) * MS : chance(world, 9000) * MS;
+        *flight = (struct flight){ .at_ns = world->now_ns + late_ns + 1, .what = what, .from = from, .to = to };
+        flight->life = world->nodes[from < NODES ? from : to].life;
+        return flight;
+    }
+    return NULL;
+}
+
+static void start(struct world *world, int i)
+{
+    struct node *node = &world->nodes[i];
+    char name[2] = { (char)('a' + i), 0 };
+    node->life = ++world->lives;
+    node->waits = false;
+    node->rate = 1 + (chance(world, 400) - 200) / 10000.0; /* two in a hundred */
+    node->ahead_ns = chance(world, 1000000) * MS;
+    lease_init(&node->lease, name, (int64_t)node->life);
+}
+
+static void end(struct world *world, struct node *node)
+{
+    node->life = 0;
+    node->starts_ns = world->now_ns + (100 + chance(world, 4000)) * MS;
+}
+
+/* --- the database --------------------------------------------------------------------------------------------------------------- */
+
+static bool expects(const struct lease_row *a, const struct lease_row *b)
+{
+    return a->epoch == b->epoch && a->beat == b->beat;
+}
+
+static void change(struct world *world, struct flight *flight)
+{
+    struct lease_row *row = &world->row;
+    flight->good = expects(row, &flight->row);
+    if (flight->what == RENEW || flight->what == RELEASE)
+        flight->good &= row->instance == flight->row.instance;
+    if (!flight->good)
+        return;
+    row->beat++;
+    switch (flight->what) {
+    case BID:
+        row->epoch++;
+        row->instance = flight->row.instance;
+        snprintf(row->leader, sizeof(row->leader), "%c", 'a' + flight->from);
+        row->standby[0] = 0;
+        break;
+    case RENEW: memcpy(row->standby, flight->standby, sizeof(row->standby)); break;
+    default: row->leader[0] = row->standby[0] = 0; break;
+    }
+}
+
+static void on_database(struct world *world, struct flight *flight)
+{
+    struct flight asked = *flight;
+    if (world->now_ns < world->frozen_ns) { /* it does it later */
+        flight->at_ns = world->frozen_ns + 1;
+        return;
+    }
+    flight->at_ns = 0;
+    if (asked.what != LOOK)
+        change(world, &asked);
+    struct flight *answer = send(world, asked.what == LOOK ? ROW : DONE, NODES, asked.from);
+    if (!answer)
+        return;
+    answer->life = asked.life;
+    answer->row = world->row;
+    answer->good = asked.good;
+    answer->sent_ns = asked.sent_ns;
+    memcpy(answer->standby, asked.standby, sizeof(answer->standby));
+    answer->from = asked.what; /* what was asked */
+}
+
+/* --- a node --------------------------------------------------------------------------------------------------------------------- */
+
+static void on_node(struct world *world, struct node *node, int i, const struct flight *flight)
+{
+    int64_t now_ns = clock_of(world, node);
+    switch (flight->what) {
+    case ROW:
+        if (flight->sent_ns == node->sent_ns && node->waits) {
+            node->waits = false;
+            lease_saw(&node->lease, &flight->row, now_ns);
+        }
+        break;
+    case DONE:
+        if (flight->sent_ns != node->sent_ns || !node->waits)
+            break;
+        node->waits = false;
+        if (!flight->good) {
+            lease_saw(&node->lease, &flight->row, now_ns);
+        } else if (flight->from == BID) {
+            lease_won(&node->lease, flight->sent_ns);
+            node->times_led++;
+        } else if (flight->from == RENEW) {
+            lease_renewed(&node->lease, flight->standby, flight->sent_ns);
+        }
+        break;
+    case ASK:
+        if (!lease_promise(&node->lease, now_ns))
+            break;
+        struct flight *promise = send(world, PROMISE, i, flight->from);
+        if (promise) {
+            promise->sent_ns = flight->sent_ns;
+            promise->life = flight->life; /* of who asked */
+        }
+        break;
+    case PROMISE: {
+        const char name[2] = { (char)('a' + flight->from), 0 };
+        lease_promised(&node->lease, name, flight->sent_ns);
+        break;
+    }
+    default: break;
+    }
+}
+
+/* The node that the leader is connected to: the first that it reaches. */
+static int follower_of(const struct world *world, int i)
+{
+    for (int k = 0; k < NODES; k++)
+        if (k != i && world->nodes[k].life && !world->cut[i][k] && !world->cut[k][i])
+            return k;
+    return -1;
+}
+
+static void ask_database(struct world *world, struct node *node, int i, enum what what, const char *standby)
+{
+    struct flight *flight = send(world, what, i, NODES);
+    node->waits = true;
+    node->waits_since_ns = world->now_ns;
+    node->sent_ns = clock_of(world, node) + (int64_t)node->life % 7; /* so that it is another each time */
+    if (!flight)
+        return;
+    flight->row = node->lease.row;
+    flight->row.instance = node->lease.instance;
+    flight->sent_ns = node->sent_ns;
+    snprintf(flight->standby, sizeof(flight->standby), "%s", standby);
+}
+
+static void lead(struct world *world, struct node *node, int i)
+{
+    int follower = follower_of(world, i);
+    const char name[2] = { follower < 0 ? 0 : (char)('a' + follower), 0 };
+    if (!node->waits && chance(world, 10) == 0 && node->sent_ns && !world->calm) { /* in doubt after a lost connection */
+        ask_database(world, node, i, LOOK, "");
+    } else if (!node->waits) {
+        lease_renew(&node->lease, name);
+        ask_database(world, node, i, RENEW, name);
+    }
+    struct flight *question = follower >= 0 ? send(world, ASK, i, follower) : NULL;
+    if (question) {
+        question->sent_ns = clock_of(world, node);
+        question->life = node->life;
+    }
+}
+
+static void follow(struct world *world, struct node *node, int i)
+{
+    if (node->waits)
+        return;
+    if (lease_may_bid(&node->lease, clock_of(world, node))) {
+        lease_bid(&node->lease);
+        ask_database(world, node, i, BID, "");
+    } else {
+        ask_database(world, node, i, LOOK, "");
+    }
+}
+
+static void run_node(struct world *world, int i)
+{
+    struct node *node = &world->nodes[i];
+    if (!node->life && world->now_ns >= node->starts_ns)
+        start(world, i);
+    if (!node->life)
+        return;
+    if (node->lease.leads && !lease_acts(&node->lease, clock_of(world, node)) && node->lease.until_ns) { /* the kernel ends it */
+        end(world, node);
+        return;
+    }
+    if (world->now_ns < node->wakes_ns || world->now_ns < node->next_ns)
+        return;
+    node->next_ns = world->now_ns + (node->lease.leads ? LEASE_RENEW_NS : LEASE_LOOK_NS);
+    if (node->waits && world->now_ns - node->waits_since_ns > PATIENCE_NS) {
+        node->waits = false;
+        ask_database(world, node, i, LOOK, "");
+    }
+    if (node->lease.leads)
+        lead(world, node, i);
+    else
+        follow(world, node, i);
+}
+
+static void deliver(struct world *world, struct flight *flight)
+{
+    struct node *node = flight->to < NODES ? &world->nodes[flight->to] : NULL;
+    if (!node) {
+        on_database(world, flight);
+        return;
+    }
+    bool asks = flight->what == ASK; /* it is for whoever runs there */
+    if (node->life && world->now_ns < node->wakes_ns) {
+        flight->at_ns = node->wakes_ns + 1;
+        return;
+    }
+    struct flight came = *flight;
+    flight->at_ns = 0;
+    if (node->life && (asks || node->life == came.life))
+        on_node(world, node, came.to, &came);
+}
+
+static void disturb(struct world *world)
+{
+    if (world->calm || chance(world, 40))
+        return;
+    int i = chance(world, NODES + 1), k = chance(world, NODES + 1);
+    switch (chance(world, 6)) {
+    case 0:
+    case 1: world->cut[i][k] ^= i != k; break;
+    case 2: memset(world->cut, 0, sizeof(world->cut)); break;
+    case 3:
+        if (i < NODES && world->nodes[i].life)
+            end(world, &world->nodes[i]);
+        break;
+    case 4:
+        if (i < NODES)
+            world->nodes[i].wakes_ns = world->now_ns + chance(world, 10000) * MS;
+        break;
+    default: world->frozen_ns = world->now_ns + chance(world, 8000) * MS; break;
+    }
+}
+
+static int leaders(const struct world *world)
+{
+    int count = 0;
+    for (int i = 0; i < NODES; i++)
+        count += world->nodes[i].life && lease_acts(&world->nodes[i].lease, clock_of(world, &world->nodes[i]));
+    return count;
+}
+
+static void run(struct world *world, int64_t ns)
+{
+    for (int64_t end_ns = world->now_ns + ns; world->now_ns < end_ns; world->now_ns += STEP_MS * MS) {
+        disturb(world);
+        for (int i = 0; i < FLIGHTS; i++)
+            if (world->flights[i].at_ns && world->flights[i].at_ns <= world->now_ns)
+                deliver(world, &world->flights[i]);
+        for (int i = 0; i < NODES; i++)
+            run_node(world, i);
+        int count = leaders(world);
+        world->most = count > world->most ? count : world->most;
+    }
+}
+
+static void never_two_and_one_in_the_end(void **state)
+{
+    (void)state;
+    unsigned seed = (unsigned)time(NULL);
+    int terms = 0;
+    printf("# seed %u\n", seed);
+    struct world *world = malloc(sizeof(*world));
+    for (int round = 0; round < sweep(4000, 150); round++) {
+        memset(world, 0, sizeof(*world));
+        world->seed = seed + (unsigned)round;
+        world->now_ns = S;
+        run(world, 120 * S);
+        world->calm = true;
+        memset(world->cut, 0, sizeof(world->cut));
+        world->frozen_ns = 0;
+        run(world, 30 * S);
+        if (leaders(world) != 1)
+            fail_msg("round %d of seed %u: %d lead after half a minute of calm", round, seed, leaders(world));
+        if (world->most > 1)
+            fail_msg("round %d of seed %u: two lead", round, seed);
+        for (int i = 0; i < NODES; i++)
+            terms += world->nodes[i].times_led;
+    }
+    free(world);
+    printf("# %d terms\n", terms);
+    assert_true(terms > 150);
+}
+
+/* --- the rule, line by line ----------------------------------------------------------------------------------------------------- */
+
+static struct lease follower(const char *node, const struct lease_row *row, int64_t now_ns)
+{
+    struct lease lease;
+    lease_init(&lease, node, 7);
+    lease_saw(&lease, row, now_ns);
+    return lease;
+}
+
+static void a_follower_waits_for_what_binds_it(void **state)
+{
+    (void)state;
+    const struct lease_row free_row = { 0 }, led = { .epoch = 3, .beat = 9, .instance = 5, .leader = "a", .standby = "b" };
+    struct lease b = follower("b", &free_row, S);
+    assert_false(lease_may_bid(&b, 4 * S - 1)); /* who gave it back, or whether the database was made anew, it does not say */
+    assert_true(lease_may_bid(&b, 4 * S));
+    b = follower("b", &led, 10 * S);
+    assert_false(lease_may_bid(&b, 13 * S - 1));
+    assert_true(lease_may_bid(&b, 13 * S));
+    assert_true(lease_promise(&b, 12 * S));
+    assert_false(lease_may_bid(&b, 15 * S - 1));
+    assert_true(lease_may_bid(&b, 15 * S));
+    struct lease_row renewed = led;
+    renewed.beat++;
+    lease_saw(&b, &renewed, 14 * S);
+    assert_false(lease_may_bid(&b, 17 * S - 1));
+    lease_bid(&b);
+    assert_false(lease_promise(&b, 17 * S));
+    struct lease c = follower("c", &led, 10 * S);
+    assert_false(lease_may_bid(&c, 1000 * S)); /* b may have promised */
+    struct lease a = follower("a", &led, 10 * S);
+    assert_true(lease_may_bid(&a, 13 * S)); /* started again */
+}
+
+static void a_leader_counts_the_standby_that_the_row_names(void **state)
+{
+    (void)state;
+    const struct lease_row none = { 0 };
+    struct lease a = follower("a", &none, S);
+    lease_bid(&a);
+    lease_won(&a, S);
+    assert_true(lease_acts(&a, 3 * S - 1));
+    assert_false(lease_acts(&a, 3 * S));
+    lease_promised(&a, "b", 2 * S);
+    assert_false(lease_acts(&a, 3 * S));
+    lease_renew(&a, "b");
+    lease_renewed(&a, "b", 2 * S);
+    lease_promised(&a, "b", 3 * S);
+    assert_true(lease_acts(&a, 5 * S - 1));
+    lease_renew(&a, "");
+    lease_promised(&a, "b", 4 * S); /* the row may name nobody by now */
+    assert_false(lease_acts(&a, 5 * S));
+    struct lease_row other = a.row;
+    other.epoch++;
+    other.instance = 99;
+    lease_saw(&a, &other, 4 * S);
+    assert_true(a.lost);
+    assert_false(lease_acts(&a, 4 * S));
+}
+
+static void a_bid_whose_answer_is_lost_is_found_in_the_row(void **state)
+{
+    (void)state;
+    const struct lease_row none = { 0 };
+    struct lease a = follower("a", &none, S);
+    lease_bid(&a);
+    struct lease_row won = { .epoch = 1, .beat = 1, .instance = 7, .leader = "a" };
+    lease_saw(&a, &won, 2 * S);
+    assert_true(a.leads);
+    assert_false(lease_acts(&a, 2 * S)); /* when it was, nobody knows: a renewal says */
+    lease_renewed(&a, "", 2 * S);
+    assert_true(lease_acts(&a, 2 * S));
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_follower_waits_for_what_binds_it),
+        cmocka_unit_test(a_leader_counts_the_standby_that_the_row_names),
+        cmocka_unit_test(a_bid_whose_answer_is_lost_is_found_in_the_row),
+        cmocka_unit_test(never_two_and_one_in_the_end),
+    };
+    cmocka_set_message_output(CM_OUTPUT_TAP);
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
