@@ -18,6 +18,7 @@
 
 enum { ASKED = 32, NUMBER_BYTES = 24 };
 static const int64_t PATIENCE_NS = NS_PER_S, LEAST_PATIENCE_NS = 50 * NS_PER_MS;
+static const int64_t GONE_NS = 10 * NS_PER_S; /* a standby whose connection ended is back by then, as after a reload */
 static const int64_t GOODBYE_NS = 300 * NS_PER_MS; /* before the kernel ends the process: to say why, and to leave in good order */
 
 struct lease_keeper {
@@ -39,7 +40,8 @@ struct lease_keeper {
     struct thread thread;
     /* --- below: under thread.lock */
     struct lease lease;
-    char standby[LEASE_NODE_BYTES]; /* that is connected */
+    char standby[LEASE_NODE_BYTES]; /* that is connected, or was until gone_ns */
+    int64_t gone_ns;                /* 0: it is connected */
     uint64_t asked;
     struct {
         uint64_t number;
@@ -258,7 +260,10 @@ static void renew(struct lease_keeper *keeper)
 {
     char standby[LEASE_NODE_BYTES];
     pthread_mutex_lock(&keeper->thread.lock);
+    if (keeper->gone_ns && now_of_lease() - keeper->gone_ns >= GONE_NS)
+        keeper->standby[0] = 0;
     memcpy(standby, keeper->standby, sizeof(standby));
+    bool follows = standby[0] && !keeper->gone_ns;
     lease_renew(&keeper->lease, standby);
     struct lease_row seen = keeper->lease.row;
     pthread_mutex_unlock(&keeper->thread.lock);
@@ -269,7 +274,7 @@ static void renew(struct lease_keeper *keeper)
         lease_renewed(&keeper->lease, standby, sent_ns);
         set_timer(keeper);
         pthread_mutex_unlock(&keeper->thread.lock);
-        counter_set(keeper->counters.standby, standby[0] != 0);
+        counter_set(keeper->counters.standby, follows);
     } else if (changed == 0) {
         look(keeper);
     }
@@ -355,7 +360,9 @@ bool lease_keeper_leads(struct lease_keeper *keeper)
 void lease_keeper_set_standby(struct lease_keeper *keeper, const char *node)
 {
     pthread_mutex_lock(&keeper->thread.lock);
-    snprintf(keeper->standby, sizeof(keeper->standby), "%s", node);
+    keeper->gone_ns = *node ? 0 : now_of_lease();
+    if (*node)
+        snprintf(keeper->standby, sizeof(keeper->standby), "%s", node);
     pthread_mutex_unlock(&keeper->thread.lock);
 }
 

@@ -30,7 +30,8 @@ void lease_keeper_destroy(struct lease_keeper **keeper);
 bool lease_keeper_leads(struct lease_keeper *keeper); /* returns whether this node leads */
 
 /* --- for a leader: the standby that is connected --- */
-/* Names it, "": there is none any more. Its promises count once the row names it. */
+/* Names it; "": its connection has ended. Its promises count once the row names it, which it does for 10 s after its connection has ended:
+   where the database is lost in the moment of a reload, its promises are all there is. */
 void lease_keeper_set_standby(struct lease_keeper *keeper, const char *node);
 /* Returns the number of a question that is sent to the standby now. */
 uint64_t lease_keeper_ask(struct lease_keeper *keeper);
