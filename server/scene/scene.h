@@ -30,6 +30,7 @@ struct scene_asset {
 
 struct scene {
     const struct plant *plant;
+    char *folder;               /* of the prepared files; NULL: it was made here */
     struct scene_asset *assets; /* by index in plant->assets */
     size_t asset_count;
     double bounds_min_m[3], bounds_max_m[3];

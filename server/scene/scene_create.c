@@ -259,6 +259,7 @@ struct scene *scene_create(struct log *log, const struct plant *plant, const cha
         return NULL;
     struct scene *scene = mem_new(sizeof(*scene));
     scene->plant = plant;
+    scene->folder = mem_strdup(prepared_folder);
     scene->asset_count = plant->asset_count;
     scene->assets = mem_array(plant->asset_count, sizeof(*scene->assets));
     empty_box(scene->bounds_min_m, scene->bounds_max_m);
@@ -301,6 +302,7 @@ void scene_destroy(struct scene **scene_ptr)
     }
     mem_free(scene->assets);
     mem_free(scene->extremes_m);
+    mem_free(scene->folder);
     mem_free(scene);
     *scene_ptr = NULL;
 }

@@ -5,8 +5,10 @@
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 #include <cmocka.h>
 
@@ -51,6 +53,14 @@ static bool init_scene(struct gpu_scene *gpu_scene, const struct toy *toy)
     return gpu_scene_init(gpu_scene, rig.gl, &toy->scene, &sky);
 }
 
+static int count_steps(struct light *light, const struct light_key *key)
+{
+    int steps = 1;
+    while (!light_step(light, key, 0))
+        steps++;
+    return steps;
+}
+
 /* With and without the light of the sky to be worked out. */
 static void test_bits_make_the_same_light(void **state)
 {
@@ -61,10 +71,7 @@ static void test_bits_make_the_same_light(void **state)
     assert_true(init_scene(&gpu_scene, stand.toy) && light_init(&at_once, &gpu_scene, &environments) &&
                 light_init(&in_bits, &gpu_scene, &environments));
     for (int i = 0; i < 2; i++) {
-        int steps = 1;
-        while (!light_step(&in_bits, &suns[i], 0))
-            steps++;
-        assert_true(steps > (int)gpu_scene.scene->asset_count);
+        assert_true(count_steps(&in_bits, &suns[i]) > (int)gpu_scene.scene->asset_count);
         struct light_set *a = light_get(&at_once, &suns[i]), *b = light_get(&in_bits, &suns[i]);
         assert_true(a && b && !in_bits.bake);
         assert_same_light(&gpu_scene, a, b);
@@ -72,6 +79,59 @@ static void test_bits_make_the_same_light(void **state)
     light_finish(&at_once);
     light_finish(&in_bits);
     gpu_scene_finish(&gpu_scene);
+}
+
+static void damage(const char *path)
+{
+    FILE *file = fopen(path, "r+");
+    assert_non_null(file);
+    assert_int_equal(fseek(file, 70000, SEEK_SET), 0);
+    int byte = fgetc(file);
+    assert_int_equal(fseek(file, 70000, SEEK_SET), 0);
+    fputc(byte ^ 1, file);
+    fclose(file);
+}
+
+/* The next start reads it, bakes the rest, and comes to the same light for another sun too; not from a file that is damaged, or of a plant
+   in which something was moved. */
+static void test_openness_is_kept(void **state)
+{
+    struct gpu_scene gpu_scene;
+    struct light anew, first, second;
+    struct openness openness;
+    const struct light_key suns[2] = { sun(1), sun(2) };
+    char folder[] = "/tmp/plantcast-light-XXXXXX", path[64];
+    (void)state;
+    assert_non_null(mkdtemp(folder));
+    snprintf(path, sizeof(path), "%s/openness", folder);
+    assert_true(init_scene(&gpu_scene, stand.toy));
+    assert_true(light_init(&anew, &gpu_scene, &environments));
+    const int all = count_steps(&anew, &suns[0]);
+    stand.toy->scene.folder = folder;
+    assert_false(openness_open(&openness, &gpu_scene));
+    assert_true(light_init(&first, &gpu_scene, &environments));
+    assert_int_equal(count_steps(&first, &suns[0]), all);
+    light_finish(&first);
+    assert_int_equal(access(path, R_OK), 0);
+    assert_true(light_init(&second, &gpu_scene, &environments));
+    assert_true(count_steps(&second, &suns[0]) < all / 2);
+    for (int i = 0; i < 2; i++)
+        assert_same_light(&gpu_scene, light_get(&anew, &suns[i]), light_get(&second, &suns[i]));
+    assert_null(second.writer);
+    light_finish(&second);
+
+    stand.toy->scene.assets[0].placement[12] += 0.5;
+    assert_false(openness_open(&openness, &gpu_scene));
+    stand.toy->scene.assets[0].placement[12] -= 0.5;
+    assert_true(openness_open(&openness, &gpu_scene));
+    openness_close(&openness);
+    damage(path);
+    assert_false(openness_open(&openness, &gpu_scene));
+    stand.toy->scene.folder = NULL;
+    light_finish(&anew);
+    gpu_scene_finish(&gpu_scene);
+    unlink(path);
+    rmdir(folder);
 }
 
 /* A wall whose corners stick in others: as bright in between as it is, not as dark as its corners. */
@@ -260,6 +320,7 @@ int main(void)
         cmocka_unit_test(test_many_lights_fit_in_a_bound),     cmocka_unit_test(test_the_nearest_sun_stands_in),
         cmocka_unit_test(test_a_moving_session_does_not_wait), cmocka_unit_test(test_a_still_picture_waits_for_its_light),
         cmocka_unit_test(test_the_first_light_is_rough),       cmocka_unit_test(test_one_light_stays),
+        cmocka_unit_test(test_openness_is_kept),
     };
     cmocka_set_message_output(CM_OUTPUT_TAP);
     if (!rig_init(&rig, "light_test"))

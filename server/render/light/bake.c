@@ -11,7 +11,7 @@
 #include "render/light/sun_frame.h"
 #include "render/matrix.h"
 
-enum { SKY_DIRECTIONS = 32, SKY_MAP_PX = 1024, SUN_MAP_PX = 4096, GROUND_PX = 256 };
+enum { SKY_DIRECTIONS = 32, SKY_MAP_PX = 1024, SUN_MAP_PX = 4096 };
 static const uint8_t ROUGH_OPENNESS = 190; /* of 255 */
 static const double LARGE_FACE_TEXELS = 8; /* of the sky's maps */
 static const double SUN_MARGIN = 0.002;    /* of its map's width, empty at its rim: taps reach beyond a place */
@@ -209,15 +209,16 @@ static size_t smaller(size_t a, size_t b)
 static void ground_bit(struct bake *bake)
 {
     const struct gpu_scene *gpu_scene = bake->gpu_scene;
-    int rows = !gpu_scene->gl->software ? GROUND_PX : bake->with_sky ? SKY_ROWS : SUN_ROWS;
-    size_t first = (size_t)bake->row * GROUND_PX, end = smaller(first + (size_t)rows * GROUND_PX, GROUND_PX * GROUND_PX);
+    int rows = !gpu_scene->gl->software ? OPENNESS_GROUND_PX : bake->with_sky ? SKY_ROWS : SUN_ROWS;
+    const size_t row = OPENNESS_GROUND_PX;
+    size_t first = (size_t)bake->row * row, end = smaller(first + (size_t)rows * row, row * row);
     glUseProgram(bake->with_sky ? bake->programs->ground_sky : bake->programs->ground_sun);
     set_uniforms(bake, bake->plant_from_ground, first, end);
     glUniform3f(11, (float)gpu_scene->up[0], (float)gpu_scene->up[1], (float)gpu_scene->up[2]);
     glBindImageTexture(0, bake->set.ground, 0, GL_FALSE, 0, GL_READ_WRITE, GL_RG8);
     glDispatchCompute((GLuint)(end - first + 63) / 64, 1, 1);
     bake->row += rows;
-    if (bake->row >= GROUND_PX)
+    if (bake->row >= OPENNESS_GROUND_PX)
         bake->part = bake->set.key.rough ? BAKE_VERTICES : BAKE_FACES;
 }
 
@@ -300,13 +301,13 @@ static void vertices_bit(struct bake *bake)
 
 size_t bake_bytes(const struct gpu_scene *gpu_scene)
 {
-    size_t side = (size_t)sun_map_px(gpu_scene), bytes = 2 * side * side + 2 * GROUND_PX * GROUND_PX;
+    size_t side = (size_t)sun_map_px(gpu_scene), bytes = 2 * side * side + 2 * OPENNESS_GROUND_PX * OPENNESS_GROUND_PX;
     for (size_t i = 0; i < gpu_scene->scene->asset_count; i++)
         bytes += 4 * gpu_scene->of_asset[i]->mesh.vertex_count;
     return bytes;
 }
 
-static bool make_buffers(struct bake *bake, const struct light_set *from)
+static bool make_buffers(struct bake *bake, const struct light_set *from, struct openness *kept)
 {
     const struct gpu_scene *gpu_scene = bake->gpu_scene;
     struct light_set *set = &bake->set;
@@ -327,16 +328,21 @@ static bool make_buffers(struct bake *bake, const struct light_set *from)
         if (from)
             glCopyNamedBufferSubData(from->baked[i]->page->buffer, slice->page->buffer, (GLintptr)pool_offset(from->baked[i]),
                                      (GLintptr)pool_offset(slice), (GLsizeiptr)pool_bytes(slice));
+        else if (kept && !openness_upload(kept, gpu_scene, slice))
+            return false;
     }
     glCreateTextures(GL_TEXTURE_2D, 1, &set->ground);
-    glTextureStorage2D(set->ground, 1, GL_RG8, GROUND_PX, GROUND_PX);
+    glTextureStorage2D(set->ground, 1, GL_RG8, OPENNESS_GROUND_PX, OPENNESS_GROUND_PX);
     glTextureParameteri(set->ground, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
     glTextureParameteri(set->ground, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
     glTextureParameteri(set->ground, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
     if (set->key.rough)
         glClearTexImage(set->ground, 0, GL_RG, GL_UNSIGNED_BYTE, (const uint8_t[]){ 0, ROUGH_OPENNESS });
     if (from)
-        glCopyImageSubData(from->ground, GL_TEXTURE_2D, 0, 0, 0, 0, set->ground, GL_TEXTURE_2D, 0, 0, 0, 0, GROUND_PX, GROUND_PX, 1);
+        glCopyImageSubData(from->ground, GL_TEXTURE_2D, 0, 0, 0, 0, set->ground, GL_TEXTURE_2D, 0, 0, 0, 0, OPENNESS_GROUND_PX,
+                           OPENNESS_GROUND_PX, 1);
+    else if (kept)
+        openness_upload_ground(kept, set->ground);
     return true;
 }
 
@@ -349,12 +355,12 @@ static bool make_sky(struct bake *bake)
 }
 
 struct bake *bake_begin(const struct gpu_scene *gpu_scene, const struct bake_programs *programs, const double plant_from_ground[16],
-                        const struct light_key *key, const struct light_set *from)
+                        const struct light_key *key, const struct light_set *from, struct openness *kept)
 {
     struct bake *bake = mem_new(sizeof(*bake));
     *bake = (struct bake){ .gpu_scene = gpu_scene, .programs = programs, .plant_from_ground = plant_from_ground };
     visibility_start(gpu_scene->scene->plant, &bake->start);
-    bake->with_sky = !from && !key->rough;
+    bake->with_sky = !from && !kept && !key->rough;
     struct sun_frame sun;
     int size_px = sun_map_px(gpu_scene);
     bake->part = bake->with_sky ? BAKE_SKY_MAPS : BAKE_SUN_MAP;
@@ -369,7 +375,7 @@ struct bake *bake_begin(const struct gpu_scene *gpu_scene, const struct bake_pro
     gl_pass_enter("light");
     glCreateFramebuffers(1, &bake->framebuffer);
     glNamedFramebufferDrawBuffer(bake->framebuffer, GL_NONE);
-    bool good = make_buffers(bake, from) && (!bake->with_sky || make_sky(bake));
+    bool good = make_buffers(bake, from, kept) && (!bake->with_sky || make_sky(bake));
     bake->set.sun_map = make_map(GL_TEXTURE_2D, size_px, 1);
     if (!gl_pass_leave(gpu_scene->gl, "light") || !good)
         bake_abandon(&bake);

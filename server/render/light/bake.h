@@ -1,12 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Bakes one set of light in small steps, so that pictures can be drawn in between: a shadow map of the sun, and the light that reaches each
    vertex and the ground. Sky light and openness (ambient occlusion) come from depth maps taken from 32 directions. Openness depends on
-   neither sun nor environment, so it is copied from a set that has it. It is that of the whole plant; where assets are hidden, it is only
-   kept from being too dark. Thread: the one of the GL context. */
+   neither sun nor environment, so it is copied from a set that has it, or read from a file. It is that of the whole plant; where assets are
+   hidden, it is only kept from being too dark. Thread: the one of the GL context. */
 #ifndef RENDER_BAKE_H
 #define RENDER_BAKE_H
 #include "gpu/pool.h"
 #include "render/gl/gpu_scene.h"
+#include "render/light/openness.h"
 
 struct light_key {
     double towards[3];       /* direction to the sun; plant frame, unit length */
@@ -40,10 +41,11 @@ struct bake;
 /* Returns the lower bound of openness, 0..1, when only `shown` is visible: what hidden assets covered must not stay dark. */
 double bake_least_open(const struct gpu_scene *gpu_scene, const struct visibility *shown);
 /* Begins to bake a set for `key`. from: a set to copy openness from; it is read during the call only, must not be rough, and must have no
-   larger bake_least_open(). NULL: openness is baked as well, which is most of the work, unless the key is rough. Returns NULL if the GPU is
-   out of memory; that is logged. The caller ends it with bake_end() or bake_abandon(). */
+   larger bake_least_open(). kept: where from is NULL, the plant's openness, read during the call only. Both NULL: openness is baked as
+   well, which is most of the work, unless the key is rough. Returns NULL if the GPU is out of memory; that is logged. The caller ends it
+   with bake_end() or bake_abandon(). */
 struct bake *bake_begin(const struct gpu_scene *gpu_scene, const struct bake_programs *programs, const double plant_from_ground[16],
-                        const struct light_key *key, const struct light_set *from);
+                        const struct light_key *key, const struct light_set *from, struct openness *kept);
 /* Returns the key it was begun with. */
 const struct light_key *bake_key(const struct bake *bake);
 /* Issues the next few milliseconds of work; the key's environment must be bound (render/light/environments.h). Returns true once all work

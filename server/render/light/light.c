@@ -51,6 +51,7 @@ void light_finish(struct light *light)
     for (int i = 0; i < LIGHT_SETS; i++)
         if (light->sets[i].id)
             drop(light, &light->sets[i]);
+    openness_writer_finish(&light->writer);
     bake_programs_finish(&light->programs);
 }
 
@@ -137,8 +138,22 @@ static const struct light_set *find_open(const struct light *light, const struct
 
 static bool begin(struct light *light, const struct light_key *key)
 {
-    light->bake = bake_begin(light->gpu_scene, &light->programs, light->plant_from_ground, key, find_open(light, key));
+    const struct light_set *from = find_open(light, key);
+    struct openness openness = { 0 };
+    bool kept = !from && !key->rough && openness_open(&openness, light->gpu_scene);
+    light->bake = bake_begin(light->gpu_scene, &light->programs, light->plant_from_ground, key, from, kept ? &openness : NULL);
+    light->kept |= kept;
+    openness_close(&openness);
     return light->bake != NULL;
+}
+
+/* Once: where assets are hidden, a set has not the openness of the whole plant. */
+static void keep_openness(struct light *light, const struct light_set *set)
+{
+    if (light->kept || set->key.rough || bake_least_open(light->gpu_scene, &set->key.shown) > 0)
+        return;
+    light->kept = true;
+    light->writer = openness_write(light->gpu_scene, set->baked, set->ground);
 }
 
 static void drop_rough(struct light *light)
@@ -165,6 +180,7 @@ static struct light_set *end(struct light *light)
     set->id = ++light->last_id;
     set->used = ++light->uses;
     light->bytes += set->bytes;
+    keep_openness(light, set);
     return set;
 }
 

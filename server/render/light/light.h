@@ -17,6 +17,8 @@ struct light {
     struct light_set sets[LIGHT_SETS];
     struct bake *bake; /* in progress; NULL: none */
     uint64_t uses, last_id;
+    bool kept; /* openness is in its file, or cannot be */
+    struct openness_writer *writer; /* of that file; NULL: none */
 };
 
 /* Compiles the programs; bakes nothing yet. Returns false if that fails; it is logged. */
