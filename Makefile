@@ -281,8 +281,8 @@ $(out)/tests/validation/compare: ldflags += -Wl,--wrap=field_scalars_of
 # What stands before the real one, where a GPU is to fail.
 $(out)/tests/faults/libEGL.so.1: $(out)/obj/tests/faults/gl_faults.pic.o
 	@mkdir -p $(@D); echo "  LINK $@"; $(CC) $(ldflags) -shared -o $@ $<
-# Kills a program where the test says.
-$(out)/tests/faults/kill_at_rename.so: $(out)/obj/tests/faults/kill_at_rename.pic.o
+# Kills a program where the test says; sets its clock wrong.
+$(out)/tests/faults/%.so: $(out)/obj/tests/faults/%.pic.o
 	@mkdir -p $(@D); echo "  LINK $@"; $(CC) $(ldflags) -shared -o $@ $<
 # Where memory runs out: the test decides.
 $(out)/tests/unit/relocation_test: ldflags += -Wl,--wrap=mem_try_array

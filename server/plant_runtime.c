@@ -4,6 +4,7 @@
 
 #include <string.h>
 
+#include "base/clock.h"
 #include "base/mem.h"
 #include "scene/far_sensors.h"
 #include "field/colormap.h"
@@ -206,6 +207,7 @@ bool plant_runtime_lead(struct plant_runtime *runtime)
 {
     core_link_stop(&runtime->core_link);
     *runtime->context->follows = false;
+    clock_follow(0);
     if (runtime->historian)
         historian_lead(runtime->historian);
     alarm_service_lead(runtime->alarm_service);

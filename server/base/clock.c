@@ -22,6 +22,18 @@ int64_t clock_utc_ns(void)
     return read_ns(CLOCK_REALTIME);
 }
 
+static _Atomic int64_t core_ahead_ns;
+
+void clock_follow(int64_t ahead_ns)
+{
+    core_ahead_ns = ahead_ns;
+}
+
+int64_t clock_plant_ns(void)
+{
+    return clock_utc_ns() + core_ahead_ns;
+}
+
 int64_t clock_work_ns(void)
 {
     struct timespec now;

@@ -28,6 +28,8 @@
 enum { CORE_ACT_BYTES = 200 * 1024 /* less than a core takes */ };
 enum { MOST_BYTES = 64 << 20 /* of one message */, TOKEN_BYTES = 256, WHY_BYTES = 300, LOOK_US = 200000, ADDRESSES = 8 };
 static const int64_t CONNECT_NS = 4 * NS_PER_S, CLOCKS_NS = 2 * NS_PER_S /* that clocks may differ before it is said */;
+static const int64_t STEP_NS = 500 * NS_PER_MS; /* what differs less is left: a clock that pages reckon with does not step for it */
+static const int64_t QUICK_NS = 100 * NS_PER_MS; /* only who comes as quickly tells the time */
 
 struct waiting {
     uint64_t id, client; /* id 0: free */
@@ -299,14 +301,16 @@ static void on_text(struct core_link *link)
     json_decref(message);
 }
 
-/* Readings carry ages; only what is shown as a time is the core's. */
-static void compare_clocks(struct core_link *link, int64_t core_utc_ns)
+/* Readings carry ages; what is shown as a time is the core's. */
+static void compare_clocks(struct core_link *link, int64_t core_utc_ns, int64_t late_ns)
 {
     int64_t ahead_ns = core_utc_ns - clock_utc_ns();
+    if (late_ns < QUICK_NS && llabs(core_utc_ns - clock_plant_ns()) > STEP_NS)
+        clock_follow(ahead_ns);
     bool differ = llabs(ahead_ns) > CLOCKS_NS;
     counter_set(link->behind, ahead_ns / 1000);
     if (differ && !link->clock_said)
-        log_warn(link->params.log, "core: its clock is %.1f s %s this machine's: times of readings and alarms are the core's",
+        log_warn(link->params.log, "core: its clock is %.1f s %s this machine's: all times are the core's",
                  (double)llabs(ahead_ns) / 1e9, ahead_ns > 0 ? "ahead of" : "behind");
     link->clock_said = differ;
 }
@@ -354,7 +358,7 @@ static void on_bytes(struct core_link *link)
         return;
     }
     store_mirror(link->params.store, readings.at, readings.count, now_ns);
-    compare_clocks(link, readings.utc_ns);
+    compare_clocks(link, readings.utc_ns, readings.late_ns);
     if (!link->is_up)
         set_up(link);
 }

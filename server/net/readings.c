@@ -25,7 +25,7 @@ static int64_t changed_ns(const struct snapshot *snapshot, const struct reading 
 bool net_take_snapshot(struct server_context *server)
 {
     bool changed = false;
-    server->next_change_ns = store_take(server->params.plant.store, clock_mono_ns(), clock_utc_ns(), server->snapshot);
+    server->next_change_ns = store_take(server->params.plant.store, clock_mono_ns(), clock_plant_ns(), server->snapshot);
     server->data_ns = server->snapshot->taken_mono_ns;
     for (size_t i = 0; i < server->snapshot->count; i++) {
         const struct reading *reading = &server->snapshot->readings[i];

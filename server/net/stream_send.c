@@ -104,7 +104,7 @@ static struct wire_frame frame_header(const struct stream *stream)
         .params_seq = encoded->request.view.params_seq,
         .oldest_age_ms = frame->oldest_age_ns == INT64_MAX ? WIRE_NO_AGE : us_of(frame->oldest_age_ns / 1000),
         .data_time_us = (uint64_t)(frame->data_utc_ns / 1000),
-        .sent_time_us = (uint64_t)(clock_utc_ns() / 1000),
+        .sent_time_us = (uint64_t)(clock_plant_ns() / 1000),
         .wait_us = us_of(encoded->wait_ns),
         .field_us = us_of(frame->field_ns),
         .render_us = us_of(frame->render_ns + frame->readback_ns),
@@ -264,7 +264,7 @@ bool stream_send(struct server_context *server, struct stream *stream)
     padded(&text);
     if (session_tags_due(session, now_ns))
         net_refresh_readings(server);
-    if (session_next_text(session, now_ns, clock_utc_ns(), &text)) {
+    if (session_next_text(session, now_ns, clock_plant_ns(), &text)) {
         note_first(stream, text.length, now_ns);
         good = write_text(stream, text.at + LWS_PRE, text.length - LWS_PRE);
     } else if ((stream->sending = session_next_frame(session, now_ns, &stream->seq))) {

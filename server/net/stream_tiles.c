@@ -148,7 +148,7 @@ void tiles_pump(struct server_context *server, const struct stream *stream)
     }
     if (!tiles.leader)
         return;
-    session_tiles_present(&tiles, &wall->presented, now_ns, clock_utc_ns());
+    session_tiles_present(&tiles, &wall->presented, now_ns, clock_plant_ns());
     request(server, wall, &tiles, now_ns);
     for (size_t i = 0; i < tiles.count; i++)
         if (stream_has_output(streams[i], now_ns))
@@ -157,7 +157,7 @@ void tiles_pump(struct server_context *server, const struct stream *stream)
 
 void tiles_on_tick(struct server_context *server)
 {
-    int64_t now_ns = clock_mono_ns(), now_utc_ns = clock_utc_ns();
+    int64_t now_ns = clock_mono_ns(), now_utc_ns = clock_plant_ns();
     for (struct stream *stream = server->streams; stream; stream = stream->next) {
         struct session *session = stream->session;
         if (!session_is_tile(session) || !session->hello)

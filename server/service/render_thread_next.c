@@ -138,7 +138,7 @@ void render_thread_refresh(struct render_thread *thread)
     service->new_data = false;
     pthread_mutex_unlock(&service->lock);
     if (new_data || thread->stale || now_ns - thread->snapshot->taken_mono_ns > SNAPSHOT_MAX_AGE_NS)
-        store_snapshot(service->params.store, now_ns, clock_utc_ns(), thread->snapshot);
+        store_snapshot(service->params.store, now_ns, clock_plant_ns(), thread->snapshot);
     thread->stale = false;
 }
 

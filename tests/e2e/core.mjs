@@ -5,9 +5,9 @@ import { spawnSync } from 'node:child_process';
 import { readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
-import { Nodes, sleep, until } from './support/nodes.mjs';
+import { Node, Nodes, sleep, until } from './support/nodes.mjs';
 import { PlainClient } from './support/plain_client.mjs';
-import { missing, Program, runProgram } from './support/tiny_plant.mjs';
+import { BIN, missing, Program, runProgram } from './support/tiny_plant.mjs';
 
 const absent = missing();
 const options = { skip: absent.length > 0 ? `not built: ${absent.join(', ')}` : false, timeout: 120000 };
@@ -149,6 +149,41 @@ test('another plant, another configuration, a wrong token and a daemon that is n
     for (const [bad, said] of [[['--role', 'renderer'], /--role: all, core or render/], [['--role', 'render'], /belong together/],
         [['--core', 'ws://x:1'], /--core URL is for --role render/], [['--role', 'render', '--core', 'ftp://x'], /--core: not wss/]])
         assert.match(runProgram('plantcastd', [nodes.plant.file, ...bad]).err, said);
+});
+
+// A build with another number: nothing else of it differs.
+function otherVersion() {
+    const { out } = runProgram('plantcastd', ['--version']), [, version] = /^plantcastd (\d\S*)/.exec(out);
+    const program = join(nodes.plant.folder, 'plantcastd'), other = version.replace(/\d$/, (digit) => String((Number(digit) + 5) % 10));
+    const text = readFileSync(join(BIN, 'plantcastd'), 'latin1').replaceAll(`plantcastd ${version}`, `plantcastd ${other}`)
+        .replaceAll(`version="${version}"`, `version="${other}"`);
+    writeFileSync(program, text.replaceAll(`\0${version}\0`, `\0${other}\0`), { encoding: 'latin1', mode: 0o755 });
+    return { program, version, other };
+}
+
+test('another version, and another plant of the same tags, are named by both; their readings are none', options, async () => {
+    const { program, version, other } = otherVersion(), path = (name) => join(nodes.plant.folder, name);
+    const said = spawnSync(program, ['--version'], { encoding: 'utf8' }).stdout;
+    assert.match(said, new RegExp(`^plantcastd ${other.replaceAll('.', '\\.')}`));
+    const named = path('named.yaml');
+    writeFileSync(named, readFileSync(nodes.plant.file, 'utf8').replace('name: Two boxes', 'name: Another plant'));
+    assert.equal(runProgram('plantcast-prep', [named], 60000).code, 0);
+    for (const [name, file, before_, theirs, ours] of [['newer', nodes.plant.file, ['sh', '-c', `shift; exec ${program} "$@"`, 'sh'],
+        `version: the renderer has ${other}, this node ${version}`, `version: the renderer has ${other}, this node ${version}`],
+    ['elsewhere', named, [], 'plant: the renderer has Another plant, this node Two boxes', 'plant: the renderer has Another plant']]) {
+        const renderer = new Node(nodes.plant, ['--role', 'render', '--port', '0', '--trust-local', '--core', core.url, '--node', name,
+            '--core-token-file', nodes.rendererFile], file, before_);
+        nodes.all.push(renderer);
+        await renderer.ready();
+        await renderer.program.line(new RegExp(`no readings: .*${ours}`), 20000);
+        await until('its refusal', () => core.program.said.includes(`renderer ${name}: refused: ${theirs}`));
+        await sleep(2500); // it comes again, and again
+        assert.equal(core.program.said.split(`renderer ${name}: refused`).length, 2, 'it is said once');
+        assert.ok(Object.values(await renderer.tags()).every(({ value }) => value === null));
+        assert.equal(await renderer.metric('plantcast_core_up'), 0);
+        await renderer.stop();
+    }
+    assert.equal((await a.tags())['TI-1'].quality_name, 'Good', 'others go on');
 });
 
 test('a renderer\'s token opens no stream; strangers at /core are ended', options, async () => {

@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// OPC UA servers that lie about sizes, fall silent between rare messages, tell times of the future, or are at the second address of their
-// name.
+// OPC UA servers that lie about sizes, fall silent between rare messages, tell times of the future or of a wrong clock, or are at the
+// second address of their name.
 import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
 import { readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { test } from 'node:test';
+import { clockOff, missingClocks } from './support/clocks.mjs';
 import { distort, LIES, tellLies } from './support/lying_server.mjs';
-import { opcuaOptions, shareOpcua } from './support/opcua.mjs';
+import { makeCertificate, opcuaOptions, shareOpcua } from './support/opcua.mjs';
 import { freePort } from './support/ports.mjs';
 
 const options = opcuaOptions(180000);
@@ -77,6 +78,25 @@ test('a reading whose source is an hour ahead is shown, and not as if it came fr
     const ahead = await plant.until('TI-1', { ...good, value: 33 });
     assert.ok(ahead.age_ms >= 0 && ahead.age_ms < 5000, `${ahead.age_ms} ms`);
 });
+
+const clocks = { ...options, skip: options.skip || (missingClocks() ?? false) };
+for (const [off_s, word] of [[3600, 'ahead of'], [-3600, 'behind']])
+    test(`a server whose clock is an hour ${word} ours is believed in all but that`, clocks, async () => {
+        const day = (days) => `${new Date(Date.now() + days * 86400e3).toISOString().replace(/[-:T]/g, '').slice(0, 14)}Z`;
+        for (const name of ['yesterday', 'client2'])
+            makeCertificate(server.folder, name, { dates: [day(-1), day(1)] }); // valid by both clocks
+        server.trust('yesterday');
+        await server.restart({ env: clockOff(off_s), certificate: 'yesterday' });
+        const stale = ROWS[0].replace('TI-1', 'OLD').replace('s=TI-1', 's=TI-2').replace(/0\.5,0,0,,/, '0.5,0,0,5,');
+        await plant.run(server.security('', 'client2'), [...ROWS, stale], 30);
+        await server.set('TI-1', 34);
+        const { age_ms } = await plant.until('TI-1', { ...good, value: 34 });
+        const past_s = off_s < 0 ? -off_s : 0;
+        assert.ok(age_ms >= past_s * 1000 && age_ms < (past_s + 9) * 1000, `${age_ms} ms`);
+        await plant.until('OLD', off_s < 0 ? { quality_name: 'Bad_CommunicationError', value: null } : good, 20);
+        await plant.said(new RegExp(`source plc: its times are 3[56]\\d\\d\\.\\d s ${word} this machine's clock`));
+        assert.equal(plant.daemon.said.match(/its times are/g).length, 1, 'it is said once');
+    });
 
 // The first of its two addresses takes no connection.
 const named = { ...options, skip: options.skip || !canMount && 'no right to mount' };

@@ -46,7 +46,7 @@ static int ask_recorded(struct server_context *server, struct request *request, 
     struct history_query query;
     struct message_error error = { 0 };
     struct args args;
-    int64_t now_us = clock_utc_ns() / 1000;
+    int64_t now_us = clock_plant_ns() / 1000;
     if (!server->history_queries)
         return request_answer_text(request, HTTP_STATUS_NOT_FOUND, HTTP_NOTHING_RECORDED);
     if (!request_args(request->wsi, &args, &error) ||
@@ -73,7 +73,7 @@ static bool read_alarm_query(struct server_context *server, struct request *requ
 {
     struct args args;
     return request_args(request->wsi, &args, error) &&
-           alarm_query_parse(server->params.plant.scene->plant, journal, args.list, args.count, clock_utc_ns() / 1000, query, error);
+           alarm_query_parse(server->params.plant.scene->plant, journal, args.list, args.count, clock_plant_ns() / 1000, query, error);
 }
 
 int api_alarms(struct server_context *server, struct request *request)
@@ -84,7 +84,7 @@ int api_alarms(struct server_context *server, struct request *request)
         return request_answer_text(request, HTTP_STATUS_NOT_FOUND, "there are no alarms here\n");
     if (!read_alarm_query(server, request, false, &query, &error))
         return request_answer_error(request, &error);
-    char *text = alarms_api_text(server->params.plant.alarm_service, server->params.plant.scene->plant, &query, clock_utc_ns());
+    char *text = alarms_api_text(server->params.plant.alarm_service, server->params.plant.scene->plant, &query, clock_plant_ns());
     return query.csv ? request_answer(request, HTTP_STATUS_OK, "text/csv; charset=utf-8", text, strlen(text), NULL, NULL)
                      : request_answer_json(request, text);
 }
@@ -223,7 +223,7 @@ int api_notes(struct server_context *server, struct request *request)
 {
     struct message_error error = { 0 };
     struct args args;
-    int64_t now_us = clock_utc_ns() / 1000, from_us = now_us - INT64_C(3600000000), to_us = now_us;
+    int64_t now_us = clock_plant_ns() / 1000, from_us = now_us - INT64_C(3600000000), to_us = now_us;
     if (!request_args(request->wsi, &args, &error))
         return request_answer_error(request, &error);
     for (size_t i = 0; i < args.count; i++) {

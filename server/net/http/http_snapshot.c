@@ -21,7 +21,7 @@ static struct params_context context_of(const struct server_context *server)
 {
     return (struct params_context){ .scene = server->params.plant.scene,
                                     .baselines = server->params.plant.baselines,
-                                    .now_us = clock_utc_ns() / 1000 };
+                                    .now_us = clock_plant_ns() / 1000 };
 }
 
 /* Whether that view of the plant file may be seen by whoever asks. */

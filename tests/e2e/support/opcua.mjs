@@ -88,12 +88,13 @@ export class OpcuaServer {
             spawnSync('openssl', ['x509', '-in', `${name}.crt`, '-out', `trusted/${name}.pem`], { cwd: this.folder });
     }
 
-    // Ends it if it runs, and starts it with these settings (opcua_server.mjs).
+    // Ends it if it runs, and starts it with these settings (opcua_server.mjs). env: variables of its process.
     async restart(settings = this.settings ?? {}) {
         await this.kill();
         this.settings = settings;
         const told = JSON.stringify({ folder: this.folder, port: this.port, ...settings });
-        this.child = spawn(process.execPath, [join(HERE, 'opcua_server.mjs'), told], { stdio: ['pipe', 'pipe', 'pipe'] });
+        this.child = spawn(process.execPath, [join(HERE, 'opcua_server.mjs'), told],
+            { stdio: ['pipe', 'pipe', 'pipe'], env: { ...process.env, ...this.settings.env } });
         this.said = '';
         this.answers = [];
         const child = this.child;

@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A core, a renderer and a page whose clocks are an hour apart: ages are those of the readings, and all times are the core's.
+import assert from 'node:assert/strict';
+import { join } from 'node:path';
+import { after, before, test } from 'node:test';
+import { openPage, shoot, waitForHealth, waitForPicture } from './support/browser.mjs';
+import { missingClocks, withClockOff } from './support/clocks.mjs';
+import { Node, Nodes, until } from './support/nodes.mjs';
+import { missing } from './support/tiny_plant.mjs';
+
+const absent = missing(), HOUR_S = 3600;
+const options = { skip: absent.length > 0 ? `not built: ${absent.join(', ')}` : missingClocks() ?? false, timeout: 120000 };
+let nodes;
+
+before(async () => {
+    if (options.skip)
+        return;
+    nodes = await Nodes.create();
+    for (const [tag, value] of [['TI-1', 20], ['TI-2', 20], ['PI-1', 5]])
+        await nodes.plant.tell(`set ${tag} ${value}`);
+});
+after(() => nodes?.destroy());
+
+// Has the page's clock be wrong, before anything of it runs.
+const wrongDate = (ms) => {
+    const Real = Date;
+    globalThis.Date = class extends Real {
+        constructor(...given) {
+            super(...(given.length > 0 ? given : [Real.now() + ms]));
+        }
+
+        static now() { return Real.now() + ms; }
+    };
+};
+const startCore = async (name, off_s) => {
+    const args = ['--role', 'core', '--port', '0', '--trust-local', '--tokens', nodes.tokenFile,
+        '--history', join(nodes.plant.folder, name)];
+    const core = new Node(nodes.plant, args, nodes.plant.file, withClockOff(off_s));
+    nodes.all.push(core);
+    return core.ready();
+};
+const near = (us, wanted_us, s, what) => assert.ok(Math.abs(us - wanted_us) < s * 1e6, `${what}: ${(us - wanted_us) / 1e6} s apart`);
+const alarmOf = async (node) => (await (await node.fetch('/api/v1/alarms')).json()).alarms
+    .find(({ tag, state }) => tag === 'TI-1' && state === 'unacknowledged');
+
+for (const off_s of [HOUR_S, -HOUR_S])
+    test(`a core an hour ${off_s > 0 ? 'ahead of' : 'behind'} its renderer, and a page an hour beyond that`, options, async () => {
+        await nodes.plant.tell('set TI-1 20');
+        const core = await startCore(`off${off_s}`, off_s), renderer = await nodes.renderer('far', core);
+        const coreUs = () => (Date.now() + off_s * 1000) * 1000;
+        await renderer.program.line(new RegExp(`its clock is 3\\d{3}\\.\\d s ${off_s > 0 ? 'ahead of' : 'behind'} this machine's`), 10000);
+        assert.ok(Math.abs(await renderer.metric('plantcast_core_clock_ahead_seconds') - off_s) < 5);
+        await until('readings', async () => (await renderer.tags())['TI-1'].quality_name === 'Good');
+        await nodes.plant.tell('set TI-1 95.5');
+        const raised = await until('an alarm', () => alarmOf(renderer));
+        assert.deepEqual(raised, await alarmOf(core));
+
+        const client = await renderer.client({}, { token: nodes.tokens.operator });
+        client.say({ type: 'ping', t: 1 });
+        near((await client.text('pong')).time_us, coreUs(), 5, 'the clock that clients are told');
+        const { headers } = await renderer.fetch('/snapshot.png?width=320&height=200&fit=E-101');
+        const [header, at_us, age_ms] = /data_time_us=(\d+), oldest_age_ms=(\d+)/.exec(headers.get('plantcast-frame'));
+        near(Number(at_us), coreUs(), 5, 'the time in a picture');
+        assert.ok(Number(age_ms) < 5000, header);
+        for (const { age_ms: age, name } of Object.values(await renderer.tags()))
+            assert.ok(age >= 0 && age < 5000, `${name}: ${age} ms`);
+        client.say({ type: 'alarm', seq: 2, action: 'shelve', alarms: [['TI-1', 'H']], for_s: 2, reason: 'is looked at' });
+        await client.text('alarmed');
+        const shelved = performance.now();
+        await until('its return', () => alarmOf(renderer), 10);
+        assert.ok(performance.now() - shelved > 1500, 'it was away for 2 s, not for an hour less');
+        client.close();
+
+        const { page, errors, close } = await openPage(`http://127.0.0.1:${renderer.port}/`, { viewport: { width: 1280, height: 800 } },
+            null, (one) => one.addInitScript(wrongDate, 2 * off_s * 1000));
+        await waitForPicture(page);
+        await waitForHealth(page, 'live');
+        await page.locator('#alarm-strip').click();
+        const since = await page.locator('#alarms-list .since').first().textContent();
+        assert.match(since, / \d+(\.\d)? (s|min)\b/, since);
+        const time = /\d\d:\d\d:\d\d/.exec(await page.locator('#clock').textContent())[0];
+        const times = [...Array(20).keys()].map((s) => new Date(coreUs() / 1000 - s * 1000).toISOString().slice(11, 19));
+        assert.ok(times.includes(time), `${time} is not ${times[0]}`);
+        assert.match(await page.locator('#age').textContent(), /^[\d.]+ s$/);
+        await shoot(page, `clocks${off_s}`);
+        assert.deepEqual(errors, []);
+        await close();
+        await renderer.stop();
+        await core.stop();
+        assert.equal(renderer.program.said.match(/its clock is/g).length, 1, 'it is said once');
+    });
