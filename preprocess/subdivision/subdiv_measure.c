@@ -7,6 +7,7 @@
 #include "base/mem.h"
 #include "base/vec.h"
 #include "preprocess/subdivision/subdivide_impl.h"
+#include "protocol/asset_distance.h"
 #include "surface/mesh/bvh.h"
 
 #define PROBABLE 0.4  /* of an error that would matter: if an edge errs by less at its middle, it does so everywhere */
@@ -532,6 +533,19 @@ static void try_insides(void *arg, size_t begin, size_t end)
     room_finish(&room, job->subdiv);
 }
 
+/* Beyond a reach the nearest sensor has all of a value: as it is written, since two may then be as near. */
+static void round_beyond_reach(const struct linear_error *linear, float *geodesic_m)
+{
+    for (size_t g = 0; g < linear->group_count; g++) {
+        const struct linear_error_group *group = &linear->groups[g];
+        for (size_t i = 0; i < group->count && group->of.reach_m < INFINITY; i++) {
+            float *far_m = &geodesic_m[group->columns[i]];
+            if (*far_m >= group->of.reach_m)
+                *far_m = asset_distance_of(asset_distance_code(*far_m));
+        }
+    }
+}
+
 static void measure_places(void *arg, size_t begin, size_t end)
 {
     const struct job *job = arg;
@@ -546,6 +560,7 @@ static void measure_places(void *arg, size_t begin, size_t end)
             struct sight sight = sight_of_edge(subdiv, &subdiv->mesh.cuts[job->edges[i]], &notes);
             measure_always(&sight, point, geodesic_m);
         }
+        round_beyond_reach(subdiv->in->linear, geodesic_m);
         struct interp_norm *norms = subdiv->norms + place * subdiv->norm_count;
         if (subdiv->interp)
             linear_error_weights(subdiv->in->linear, point, geodesic_m, false, subdiv->interp + place * subdiv->samples, norms);
