@@ -18,7 +18,7 @@ struct openness { /* mapped: the ground's texels, then those of the vertices, as
 /* Opens the plant's file. Returns false if there is none that is valid; then there is nothing to close. */
 bool openness_open(struct openness *openness, const struct gpu_scene *gpu_scene);
 void openness_close(struct openness *openness); /* a zeroed one is fine */
-/* Uploads that of the next asset into the third byte of each texel of its slice. Returns false if the GPU is out of memory; it is logged. */
+/* Uploads that of the next asset into the third byte of each texel of its slice. Returns false if the GPU is out of memory (logged). */
 bool openness_upload(struct openness *openness, const struct gpu_scene *gpu_scene, const struct pool_slice *slice);
 /* Uploads that of the ground into the second byte of each texel. */
 void openness_upload_ground(const struct openness *openness, GLuint ground);
