@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Models and sensors that are awkward for the field, prepared by plantcast-prep: the finest level is true to a step of colour (1/255 of the
    range) for any readings, or the report names the asset and by how much it errs. All on plates, where the truth is a formula; plates and
-   places are drawn at random, by default from one seed: of 61 others, 114 and 139 were over a bound (one place of 20,000 by 7 steps where two
-   sensors stand 0.1 mm apart; eight places by 1.13). */
+   places are drawn at random, by default from one seed. Of 61 others, 114 and 139 were over a bound: one place of 20,000 by 7 steps, where
+   two sensors stand 0.1 mm apart, and eight places by 1.13. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
