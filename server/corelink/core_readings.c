@@ -2,41 +2,15 @@
 /* "PCR1", count, the core's clock and its monotonic one; then for each reading: tag, quality, value, age, source time. Little-endian. */
 #include "corelink/core_readings.h"
 
-#include <endian.h>
 #include <math.h>
 #include <string.h>
 
 #include "base/mem.h"
+#include "corelink/little_endian.h"
 #include "value/quality.h"
 
 enum { DRIFT = 5000 /* one part of so many: by no more do two machines' clocks drift apart */ };
 static const char MAGIC[4] = { 'P', 'C', 'R', '1' };
-
-static void put32(uint8_t *at, uint32_t value)
-{
-    value = htole32(value);
-    memcpy(at, &value, sizeof(value));
-}
-
-static void put64(uint8_t *at, uint64_t value)
-{
-    value = htole64(value);
-    memcpy(at, &value, sizeof(value));
-}
-
-static uint32_t get32(const uint8_t *at)
-{
-    uint32_t value;
-    memcpy(&value, at, sizeof(value));
-    return le32toh(value);
-}
-
-static uint64_t get64(const uint8_t *at)
-{
-    uint64_t value;
-    memcpy(&value, at, sizeof(value));
-    return le64toh(value);
-}
 
 void core_sent_init(struct core_sent *sent, size_t tag_count)
 {

@@ -2,12 +2,12 @@
 /* "PCS1", count; then for each sample: tag, quality, value, time. Little-endian. */
 #include "corelink/core_samples.h"
 
-#include <endian.h>
 #include <math.h>
 #include <pthread.h>
 #include <string.h>
 
 #include "base/mem.h"
+#include "corelink/little_endian.h"
 #include "value/quality.h"
 
 enum { AT_ONCE = 20000 };
@@ -54,32 +54,6 @@ void core_samples_end(struct core_samples **pointer)
     mem_free(samples->at);
     mem_free(samples);
     *pointer = NULL;
-}
-
-static void put32(uint8_t *at, uint32_t value)
-{
-    value = htole32(value);
-    memcpy(at, &value, sizeof(value));
-}
-
-static void put64(uint8_t *at, uint64_t value)
-{
-    value = htole64(value);
-    memcpy(at, &value, sizeof(value));
-}
-
-static uint32_t get32(const uint8_t *at)
-{
-    uint32_t value;
-    memcpy(&value, at, sizeof(value));
-    return le32toh(value);
-}
-
-static uint64_t get64(const uint8_t *at)
-{
-    uint64_t value;
-    memcpy(&value, at, sizeof(value));
-    return le64toh(value);
 }
 
 static void write_one(struct text *out, const struct sample_event *event)
