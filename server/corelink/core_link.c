@@ -58,6 +58,7 @@ struct core_link {
     /* --- below: under thread.lock */
     struct lws_context *context; /* NULL: not connected */
     bool is_up;
+    int up_index;           /* of the URL that readings come from */
     struct text *out;       /* messages that wait to be sent */
     size_t out_count, out_capacity;
     struct waiting waiting[CORE_ACTS];
@@ -319,6 +320,7 @@ static void set_up(struct core_link *link)
 {
     pthread_mutex_lock(&link->thread.lock);
     link->is_up = true;
+    link->up_index = link->turn.index;
     pthread_mutex_unlock(&link->thread.lock);
     counter_set(link->up, 1 + link->turn.index);
     counter_inc(link->connects, 1);
@@ -510,6 +512,23 @@ bool core_link_url_good(const char *url)
 {
     struct core_url parsed;
     return parse_url(url, &parsed);
+}
+
+bool core_link_peer(struct core_link *link, struct core_peer *out)
+{
+    struct core_url url;
+    pthread_mutex_lock(&link->thread.lock);
+    bool up = link->is_up;
+    int index = link->up_index;
+    pthread_mutex_unlock(&link->thread.lock);
+    if (!up || !parse_url(link->params.urls[index], &url))
+        return false;
+    bool address = strchr(url.host, ':'); /* IPv6 */
+    snprintf(out->url, sizeof(out->url), "http%s://%s%s%s:%d", url.tls ? "s" : "", address ? "[" : "", url.host, address ? "]" : "",
+             url.port);
+    out->authorization = link->authorization;
+    out->ca_path = link->params.ca_path;
+    return true;
 }
 
 /* The system's resolver has no timeout, and lws would wait for it. Each try takes the next address of the name. False: why. */

@@ -40,6 +40,14 @@ void core_link_halt(struct core_link *link);
 void core_link_stop(struct core_link **link); /* likewise, and frees; &NULL is fine; leaves NULL */
 bool core_link_is_up(struct core_link *link); /* returns whether readings come. Any thread */
 
+/* Where else the core answers, for HTTP. */
+struct core_peer {
+    char url[320];                            /* http or https, without a path */
+    const char *authorization, *ca_path; /* the value of that header, "": none; as of params. Both live as long as the link */
+};
+/* Returns which core readings come from now. False: from none. Any thread */
+bool core_link_peer(struct core_link *link, struct core_peer *out);
+
 struct core_act {
     uint64_t client;          /* whose answer it will be */
     const char *who, *from;   /* the person, and the address */

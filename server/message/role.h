@@ -7,7 +7,7 @@
 
 enum role {
     ROLE_NOBODY, /* has yet to say who it is */
-    ROLE_RENDERER, /* no person: another daemon, which may open /core and nothing else */
+    ROLE_RENDERER, /* no person: another daemon, which may open /core and ask for history, and nothing else */
     ROLE_OPEN,   /* anyone, under --open-viewers */
     ROLE_VIEWER,
     ROLE_OPERATOR,

@@ -26,13 +26,16 @@ bool net_open_history(struct net *net)
     const struct history_loader_params history_loader = { .log = server->params.log,
                                                           .plant = plant->scene->plant,
                                                           .folder = plant->history_folder,
+                                                          .core_link = plant->core_link,
                                                           .snapshot_cache = plant->snapshot_cache,
                                                           .notify = wake,
                                                           .notify_arg = net };
-    server->session_context.snapshot_cache = plant->history_folder ? plant->snapshot_cache : NULL;
-    if (!plant->history_folder)
+    bool any = plant->history_folder || (plant->core_link && !plant->scene->plant->history.off); /* a renderer asks its core */
+    server->session_context.snapshot_cache = any ? plant->snapshot_cache : NULL;
+    if (!any)
         return true;
-    server->history_queries = history_queries_create(server->params.log, plant->scene->plant, plant->history_folder, wake, net);
+    server->history_queries =
+        history_queries_create(server->params.log, plant->scene->plant, plant->history_folder, plant->core_link, wake, net);
     server->history_loader = history_loader_create(&history_loader);
     return server->history_queries && server->history_loader;
 }

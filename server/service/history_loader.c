@@ -9,6 +9,7 @@
 #include "base/clock.h"
 #include "base/mem.h"
 #include "base/thread.h"
+#include "corelink/core_history.h"
 #include "history/history.h"
 
 static const int64_t SPAN_NS = 60 * NS_PER_S; /* months come and go no more often than that */
@@ -21,7 +22,9 @@ struct wanted {
 
 struct history_loader {
     struct history_loader_params params;
-    struct history_reader *reader; /* of the thread; so below */
+    _Atomic bool stop;
+    struct history_reader *reader; /* of the thread; so below. NULL: the core is asked */
+    struct core_history *core;     /* NULL: history is here */
     struct history_tag *tags;
     int64_t spanned_ns;
     struct thread thread;
@@ -90,6 +93,19 @@ int64_t history_loader_first_us(struct history_loader *loader)
 
 /* --- the thread ------------------------------------------------------------------------------------------------------- */
 
+static bool read_here(struct history_loader *loader, int64_t at_us, struct snapshot *snapshot)
+{
+    return history_at(loader->reader, loader->tags, at_us, snapshot) == 0 &&
+           alarms_at_instant(loader->params.log, loader->reader, loader->params.folder, loader->params.plant, snapshot) == 0;
+}
+
+static bool read_from_core(struct history_loader *loader, int64_t at_us, struct snapshot *snapshot)
+{
+    int64_t first_us;
+    snapshot->taken_utc_ns = at_us * 1000;
+    return core_history_instant(loader->core, at_us, snapshot, &first_us);
+}
+
 static bool read_instant(struct history_loader *loader, int64_t at_us)
 {
     const struct historical_snapshot *there = snapshot_cache_take(loader->params.snapshot_cache, at_us);
@@ -98,8 +114,7 @@ static bool read_instant(struct history_loader *loader, int64_t at_us)
         return true;
     }
     struct snapshot *snapshot = snapshot_create(loader->params.plant->tag_count);
-    bool good = history_at(loader->reader, loader->tags, at_us, snapshot) == 0 &&
-                alarms_at_instant(loader->params.log, loader->reader, loader->params.folder, loader->params.plant, snapshot) == 0;
+    bool good = loader->core ? read_from_core(loader, at_us, snapshot) : read_here(loader, at_us, snapshot);
     if (good)
         snapshot_cache_add(loader->params.snapshot_cache, at_us, snapshot);
     snapshot_destroy(&snapshot);
@@ -112,7 +127,9 @@ static void look_at_span(struct history_loader *loader)
     if (loader->spanned_ns && now_ns - loader->spanned_ns < SPAN_NS)
         return;
     loader->spanned_ns = now_ns;
-    if (!history_span(loader->reader, &first_us, &last_us)) {
+    bool any = loader->core ? core_history_instant(loader->core, 0, NULL, &first_us) && first_us > 0
+                            : history_span(loader->reader, &first_us, &last_us);
+    if (!any) {
         first_us = 0;
         loader->spanned_ns = 0; /* nothing is there yet: look again soon, and with the next question */
     }
@@ -170,11 +187,14 @@ struct history_loader *history_loader_create(const struct history_loader_params 
 {
     struct history_loader *loader = mem_new(sizeof(*loader));
     loader->params = *params;
-    loader->reader = history_reader_create(params->log, params->folder);
+    if (params->folder)
+        loader->reader = history_reader_create(params->log, params->folder);
+    else
+        loader->core = core_history_create(params->log, params->core_link, &loader->stop);
     loader->tags = history_tags(params->plant);
     loader->last = &loader->answers;
     thread_init(&loader->thread);
-    if (!thread_start(&loader->thread, params->log, "history: instants", run, loader))
+    if ((!loader->reader && !loader->core) || !thread_start(&loader->thread, params->log, "history: instants", run, loader))
         history_loader_destroy(&loader);
     return loader;
 }
@@ -184,12 +204,14 @@ void history_loader_destroy(struct history_loader **pointer)
     struct history_loader *loader = *pointer;
     if (!loader)
         return;
+    loader->stop = true;
     thread_stop(&loader->thread);
     for (struct history_loader_answer *answer = loader->answers, *next; answer; answer = next) {
         next = answer->next;
         mem_free(answer);
     }
     history_reader_destroy(&loader->reader);
+    core_history_destroy(&loader->core);
     mem_free(loader->tags);
     mem_free(loader->wanted);
     thread_finish(&loader->thread);

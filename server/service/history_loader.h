@@ -4,6 +4,7 @@
 #ifndef SERVICE_HISTORY_LOADER_H
 #define SERVICE_HISTORY_LOADER_H
 #include "base/log.h"
+#include "corelink/core_link.h"
 #include "plant/plant.h"
 #include "value/snapshot_cache.h"
 
@@ -17,7 +18,8 @@ struct history_loader_answer { /* mem_free */
 struct history_loader_params {
     struct log *log;
     const struct plant *plant;
-    const char *folder; /* of the history */
+    const char *folder; /* of the history; NULL: the core has it */
+    struct core_link *core_link; /* of a renderer, which outlives the loader; else NULL */
     struct snapshot_cache *snapshot_cache;
     void (*notify)(void *arg); /* called on the loader's thread when there is an answer */
     void *notify_arg;

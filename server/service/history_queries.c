@@ -9,8 +9,10 @@
 #include "base/clock.h"
 #include "base/mem.h"
 #include "base/text.h"
+#include "corelink/core_history.h"
 #include "history/history.h"
 #include "history/series_text.h"
+#include "service/remote_history.h"
 
 enum { THREADS = 2 };                            /* one address takes one at a time: what it asks does not hold up another's question */
 static const size_t PIECE_BYTES = 256 * 1024;    /* a piece ends with the tag that makes it as long, */
@@ -29,7 +31,9 @@ struct question {
 struct history_queries {
     struct log *log;
     const struct plant *plant;
-    char *folder;
+    char *folder; /* NULL: the core is asked */
+    struct core_link *core_link;
+    _Atomic bool stop;
     void (*notify)(void *arg);
     void *notify_arg;
     pthread_t threads[THREADS];
@@ -69,6 +73,17 @@ static void print_json(const struct question *question, const struct plant_tag *
         text_add(out, "]}\n");
 }
 
+/* The next tag of it, from the core, which writes it as it would be written here. */
+static bool fetch_tag(const struct history_queries *queries, struct core_history *core, struct question *question, struct text *out)
+{
+    const struct history_query *query = &question->query;
+    const char *tag = queries->plant->tags[query->tags[question->next_tag]].name;
+    bool first = question->next_tag == 0, last = question->next_tag + 1 == query->tag_count;
+    question->next_tag++;
+    return query->csv ? remote_history_csv(core, query, tag, first, &question->buckets, out)
+                      : remote_history_json(core, query, tag, first, last, out);
+}
+
 /* The next tag of it. False: history could not be read. */
 static bool read_tag(struct history_queries *queries, struct history_reader *reader, struct question *question, struct text *out)
 {
@@ -98,22 +113,32 @@ static bool print_gaps(struct history_reader *reader, const struct history_query
     return true;
 }
 
-static struct history_answer *read_piece(struct history_queries *queries, struct history_reader *reader, struct question *question)
+static bool read_whole(struct history_queries *queries, struct history_reader *reader, struct core_history *core,
+                       const struct history_query *query, struct text *out)
+{
+    if (core)
+        return remote_history_whole(core, query, out);
+    if (query->gaps)
+        return print_gaps(reader, query, out);
+    alarms_journal_text(queries->log, queries->folder, &query->alarms, out);
+    return true;
+}
+
+static struct history_answer *read_piece(struct history_queries *queries, struct history_reader *reader, struct core_history *core,
+                                         struct question *question)
 {
     const struct history_query *query = &question->query;
     struct history_answer *piece = mem_new(sizeof(*piece));
     struct text text = { 0 };
     int64_t begin_ns = clock_mono_ns();
-    bool series = !query->journal && !query->gaps, good = true;
+    bool series = !query->journal && !query->gaps, good = core || reader;
     *piece = (struct history_answer){ .client = query->client, .csv = query->journal ? query->alarms.csv : query->csv };
     piece->first = question->next_tag == 0;
-    if (query->journal)
-        alarms_journal_text(queries->log, queries->folder, &query->alarms, &text);
-    else if (query->gaps)
-        good = print_gaps(reader, query, &text);
+    if (good && !series)
+        good = read_whole(queries, reader, core, query, &text);
     while (good && series && question->next_tag < query->tag_count && text.length < PIECE_BYTES &&
            (text.length == 0 || clock_mono_ns() - begin_ns < PIECE_NS))
-        good = read_tag(queries, reader, question, &text);
+        good = core ? fetch_tag(queries, core, question, &text) : read_tag(queries, reader, question, &text);
     piece->last = !good || !series || question->next_tag == query->tag_count;
     if (good && text.length > 0) { /* a text that grew has room to spare, and it may lie there for long */
         piece->text = mem_array(text.length + 1, 1);
@@ -192,9 +217,11 @@ static void *run(void *arg)
 {
     struct worker *worker = arg;
     struct history_queries *queries = worker->queries;
-    struct history_reader *reader = history_reader_create(queries->log, queries->folder);
+    struct history_reader *reader = queries->folder ? history_reader_create(queries->log, queries->folder) : NULL;
+    struct core_history *core = queries->folder ? NULL : core_history_create(queries->log, queries->core_link, &queries->stop);
     int index = worker->index;
-    history_reader_show_by(reader, queries->plant);
+    if (reader)
+        history_reader_show_by(reader, queries->plant);
     mem_free(worker);
     pthread_mutex_lock(&queries->lock);
     while (!queries->stopping) {
@@ -208,7 +235,7 @@ static void *run(void *arg)
         queries->at_work[index] = question->query.account;
         queries->working[index] = question;
         pthread_mutex_unlock(&queries->lock);
-        struct history_answer *piece = read_piece(queries, reader, question);
+        struct history_answer *piece = read_piece(queries, reader, core, question);
         pthread_mutex_lock(&queries->lock);
         queries->at_work[index] = 0;
         queries->working[index] = NULL;
@@ -220,20 +247,22 @@ static void *run(void *arg)
     }
     pthread_mutex_unlock(&queries->lock);
     history_reader_destroy(&reader);
+    core_history_destroy(&core);
     return NULL;
 }
 
 /* --- life ------------------------------------------------------------------------------------------------------------- */
 
-struct history_queries *history_queries_create(struct log *log, const struct plant *plant, const char *folder, void (*notify)(void *arg),
-                                               void *arg)
+struct history_queries *history_queries_create(struct log *log, const struct plant *plant, const char *folder, struct core_link *core_link,
+                                               void (*notify)(void *arg), void *arg)
 {
     struct history_queries *queries = mem_new(sizeof(*queries));
     pthread_mutex_init(&queries->lock, NULL);
     pthread_cond_init(&queries->wake, NULL);
     queries->log = log;
     queries->plant = plant;
-    queries->folder = mem_strdup(folder);
+    queries->folder = folder ? mem_strdup(folder) : NULL;
+    queries->core_link = core_link;
     queries->notify = notify;
     queries->notify_arg = arg;
     queries->last = &queries->answers;
@@ -265,7 +294,7 @@ void history_queries_destroy(struct history_queries **pointer)
     if (!queries)
         return;
     pthread_mutex_lock(&queries->lock);
-    queries->stopping = true;
+    queries->stopping = queries->stop = true;
     pthread_cond_broadcast(&queries->wake);
     pthread_mutex_unlock(&queries->lock);
     for (int i = 0; i < queries->thread_count; i++)

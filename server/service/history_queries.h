@@ -9,30 +9,11 @@
 #include <stdint.h>
 
 #include "base/log.h"
-#include "message/alarm_text.h"
-#include "message/message.h"
+#include "corelink/core_link.h"
 #include "plant/plant.h"
+#include "service/history_query.h"
 
-enum { HISTORY_QUERY_TAGS = 64, HISTORY_QUERY_POINTS = 20000, HISTORY_QUERIES_MOST = 128 };
-
-struct history_query {
-    uint64_t client;
-    uint64_t account;             /* whose turn it takes: the client's address; 0: one for all such */
-    int tags[HISTORY_QUERY_TAGS]; /* indices */
-    int tag_count, max_points;
-    int64_t from_us, to_us;
-    bool csv;
-    bool gaps;    /* instead of series: when nothing was recorded */
-    bool journal; /* instead of series: the alarm journal, as `alarms` says */
-    struct alarm_query alarms;
-};
-
-/* Parses `tags=A,B&from=-8h&to=now&points=1000&format=csv`, decoded, into *query. Returns false with *error saying what is wrong. Pure. */
-bool history_query_parse(const struct plant *plant, const char *const *args, size_t count, int64_t now_us, struct history_query *query,
-                         struct message_error *error);
-/* Parses `from=-8h&to=now` into a query for recording gaps. Returns false with *error saying what is wrong. Pure. */
-bool history_query_parse_gaps(const char *const *args, size_t count, int64_t now_us, struct history_query *query,
-                              struct message_error *error);
+enum { HISTORY_QUERIES_MOST = 128 };
 
 struct history_answer { /* one piece of an answer; history_answer_free */
     uint64_t client;
@@ -48,9 +29,9 @@ struct history_queries;
 void history_answer_free(struct history_answer **answer);
 
 /* Starts the threads; notify(arg) is called on one of them when there is a piece. Returns NULL if they cannot start, already logged.
-   plant must outlive it. */
-struct history_queries *history_queries_create(struct log *log, const struct plant *plant, const char *folder, void (*notify)(void *arg),
-                                               void *arg);
+   plant must outlive it. folder: of the history; NULL: the core has it, which core_link, that outlives it, too, leads to. */
+struct history_queries *history_queries_create(struct log *log, const struct plant *plant, const char *folder, struct core_link *core_link,
+                                               void (*notify)(void *arg), void *arg);
 /* Ends the threads. &NULL is fine; leaves NULL. */
 void history_queries_destroy(struct history_queries **queries);
 /* Queues a copy of the query. Returns false when HISTORY_QUERIES_MOST are being answered. */

@@ -57,7 +57,12 @@ static int set_up(void **state)
     plant_by_hand_tag(s.plant, "A", TABLE_HOLDING, 0, DATA_FLOAT32)->deadband = 0;
     record(&s);
     s.snapshot_cache = snapshot_cache_create();
-    const struct history_loader_params params = { s.log, s.plant, s.folder, s.snapshot_cache, on_answer, &s };
+    const struct history_loader_params params = { .log = s.log,
+                                                  .plant = s.plant,
+                                                  .folder = s.folder,
+                                                  .snapshot_cache = s.snapshot_cache,
+                                                  .notify = on_answer,
+                                                  .notify_arg = &s };
     s.loader = history_loader_create(&params);
     *state = &s;
     return 0;

@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "base/mem.h"
+#include "corelink/core_instant.h"
 #include "net/http/http_impl.h"
 #include "net/http/site.h"
 #include "net/tls.h"
@@ -44,13 +45,13 @@ static int file(struct server_context *server, struct request *request, const ch
     return request_answer(request, HTTP_STATUS_OK, found->type, bytes, found->count, "etag:", found->etag);
 }
 
-enum { VIEWS = 1, DISPLAY = 2 };
+enum { VIEWS = 1, DISPLAY = 2, NODE = 4 };
 
 static const struct {
     const char *path;
     int (*serve)(struct server_context *server, struct request *request);
     enum role least;
-    unsigned narrowed; /* which tokens may ask that are good for some views or for one display only */
+    unsigned narrowed; /* which tokens may ask that are good for some views, for one display, or for a renderer only */
 } routes[] = {
     { "/healthz", alive, ROLE_NOBODY, 0 },
     { "/readyz", ready, ROLE_NOBODY, 0 }, /* the loop only runs once model, GL and store are there; GL may go again */
@@ -69,10 +70,11 @@ static const struct {
     { "/api/v1/walls", api_walls, ROLE_VIEWER, VIEWS | DISPLAY },
     { "/api/v1/notes", api_notes, ROLE_VIEWER, 0 },
     { "/api/v1/pick", ask_pick, ROLE_VIEWER, 0 },
-    { "/api/v1/history", ask_history, ROLE_VIEWER, DISPLAY },
-    { "/api/v1/history/gaps", ask_gaps, ROLE_VIEWER, DISPLAY },
+    { "/api/v1/history", ask_history, ROLE_VIEWER, DISPLAY | NODE },
+    { "/api/v1/history/gaps", ask_gaps, ROLE_VIEWER, DISPLAY | NODE },
     { "/api/v1/alarms", api_alarms, ROLE_VIEWER, 0 },
-    { "/api/v1/alarms/journal", ask_journal, ROLE_VIEWER, 0 },
+    { "/api/v1/alarms/journal", ask_journal, ROLE_VIEWER, NODE },
+    { CORE_INSTANT_PATH, ask_instant, ROLE_ENGINEER, NODE },
     { "/api/v1/devices", api_devices, ROLE_ENGINEER, 0 },
     { "/api/v1/import", api_import, ROLE_ENGINEER, 0 },
     { "/api/v1/import/matches", api_import_matches, ROLE_ENGINEER, 0 },
@@ -114,7 +116,7 @@ static int serve_route(struct server_context *server, struct request *request, s
             connection_record(server, request->wsi, "access", "refused", routes[i].path, "its token is good for less");
             return refuse(request, scope == VIEWS ? &NOT_IN_VIEWS : &NOT_ON_DISPLAY);
         }
-    } else if (role < routes[i].least) {
+    } else if (role < routes[i].least && !(role == ROLE_RENDERER && (routes[i].narrowed & NODE))) {
         bool engineer = routes[i].least == ROLE_ENGINEER;
         connection_record(server, request->wsi, "access", "refused", routes[i].path,
                           engineer ? "it takes the role engineer" : "pictures only");

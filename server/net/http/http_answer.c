@@ -207,7 +207,7 @@ void request_forget(struct server_context *server, struct request *request)
     request->usage->pictures -= request->asked != NULL;
     server->question_count -= request->asks;
     request->usage->questions -= request->asks;
-    request->asks = false;
+    request->asks = request->asks_instant = false;
     render_service_forget(server->params.plant.render_service, request->client);
     if (server->history_queries)
         history_queries_forget(server->history_queries, request->client);

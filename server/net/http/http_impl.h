@@ -24,6 +24,7 @@ struct request {
     size_t count, sent;
     struct address_usage *holder; /* in whose answer_bytes the body is counted; NULL: in none. The connection holds the reference */
     bool asks;                    /* a history query is being answered */
+    bool asks_instant;            /* it is one for the readings of an instant, of a renderer */
     enum {
         PIECES_NONE,
         PIECES_CHUNKED,
@@ -98,6 +99,7 @@ int ask_pick(struct server_context *server, struct request *request);
 int ask_history(struct server_context *server, struct request *request);
 int ask_gaps(struct server_context *server, struct request *request);
 int ask_journal(struct server_context *server, struct request *request);
+int ask_instant(struct server_context *server, struct request *request);
 int ask_login(struct server_context *server, struct request *request);
 int ask_login_callback(struct server_context *server, struct request *request);
 int ask_logout(struct server_context *server, struct request *request);
@@ -116,6 +118,9 @@ int api_loop_checks(struct server_context *server, struct request *request);
 int api_tags(struct server_context *server, struct request *request);
 int api_neighbours(struct server_context *server, struct request *request);
 int metrics(struct server_context *server, struct request *request);
+
+/* Answers ask_instant: the instant was read, or could not be. */
+void answer_instant(struct server_context *server, struct request *request, const struct history_loader_answer *loaded);
 
 /* Returns whether the page that sent this request may change things here: a page of another site may have its user's browser send it. */
 bool request_may_change(struct server_context *server, struct request *request);

@@ -265,6 +265,10 @@ void http_on_historical_snapshot(struct server_context *server, const struct his
     struct request *request = request_find(server, history_loader->client);
     if (!request)
         return;
+    if (request->asks_instant) {
+        answer_instant(server, request, history_loader);
+        return;
+    }
     struct asked *asked = request->asked;
     asked->historical = history_loader->good ? snapshot_cache_take(server->params.plant.snapshot_cache, history_loader->at_us) : NULL;
     if (asked->historical) {

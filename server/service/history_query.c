@@ -3,7 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "service/history_queries.h"
+#include "service/history_query.h"
 
 static bool has_tag(const struct history_query *query, int tag)
 {

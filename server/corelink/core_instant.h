@@ -1,0 +1,17 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The readings of an instant that a core recorded, as bytes, for a renderer. Pure. Thread: any. */
+#ifndef CORELINK_CORE_INSTANT_H
+#define CORELINK_CORE_INSTANT_H
+#include "base/text.h"
+#include "value/snapshot.h"
+
+#define CORE_INSTANT_PATH "/core/instant"
+enum { CORE_INSTANT_HEAD_BYTES = 16, CORE_INSTANT_READING_BYTES = 32 };
+
+/* Appends them. first_us: the instant at which the core's history begins, 0: it has none. snapshot: NULL: that alone. */
+void core_instant_write(struct text *out, int64_t first_us, const struct snapshot *snapshot);
+/* Reads them into *snapshot, which has a reading for each tag; its clocks stay as they are. snapshot: NULL: only *first_us is wanted.
+   Returns NULL, or what is wrong (static). */
+const char *core_instant_read(const void *bytes, size_t count, int64_t *first_us, struct snapshot *snapshot);
+
+#endif

@@ -1,0 +1,53 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The readings of an instant, for renderers: they keep no history of their own. */
+#include <stdlib.h>
+
+#include "corelink/core_instant.h"
+#include "net/connection.h"
+#include "net/http/http_impl.h"
+
+static const char BINARY[] = "application/octet-stream";
+
+static int answer(struct server_context *server, struct request *request, const struct snapshot *snapshot)
+{
+    struct text text = { 0 };
+    core_instant_write(&text, history_loader_first_us(server->history_loader), snapshot);
+    return request_answer(request, HTTP_STATUS_OK, BINARY, text.at, text.length, NULL, NULL);
+}
+
+/* at_us=0: only where history begins. */
+int ask_instant(struct server_context *server, struct request *request)
+{
+    struct message_error error = { 0 };
+    struct args args;
+    if (!server->history_loader)
+        return request_answer_text(request, HTTP_STATUS_NOT_FOUND, HTTP_NOTHING_RECORDED);
+    if (!request_args(request->wsi, &args, &error))
+        return request_answer_error(request, &error);
+    const char *text = arg_of(&args, "at_us");
+    char *end = NULL;
+    long long at_us = text ? strtoll(text, &end, 10) : -1;
+    if (at_us < 0 || end == text || *end || at_us == INT64_MAX)
+        return request_answer_text(request, HTTP_STATUS_BAD_REQUEST, "at_us: expected microseconds since 1970\n");
+    if (at_us == 0)
+        return answer(server, request, NULL);
+    struct address_usage *usage = connection_of(request->wsi)->client;
+    if (server->question_count >= server->quotas->at[QUOTA_QUESTIONS] || !address_limits_may_ask(server->limits, usage))
+        return request_answer_later(request, "too much is being asked; try again\n");
+    request_await(server, request);
+    request->asks = request->asks_instant = true;
+    usage->questions++;
+    server->question_count++;
+    history_loader_ask(server->history_loader, request->client, at_us);
+    return 0;
+}
+
+void answer_instant(struct server_context *server, struct request *request, const struct history_loader_answer *loaded)
+{
+    struct snapshot_cache *cache = server->params.plant.snapshot_cache;
+    const struct historical_snapshot *historical = loaded->good ? snapshot_cache_take(cache, loaded->at_us) : NULL;
+    request_forget(server, request);
+    request_answered(request, historical ? answer(server, request, &historical->snapshot)
+                                         : request_answer_text(request, HTTP_STATUS_INTERNAL_SERVER_ERROR, HTTP_UNREADABLE));
+    snapshot_cache_give(cache, &historical);
+}

@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A renderer keeps no history: trends, gaps, the journal, pictures and sessions of the past, and differences from then, come from its core.
+import assert from 'node:assert/strict';
+import { writeFileSync } from 'node:fs';
+import { join } from 'node:path';
+import { after, before, test } from 'node:test';
+import { openPage, settle, shoot, travel, waitForHealth, waitForPicture } from './support/browser.mjs';
+import { Client, FLAG } from './conformance/client.mjs';
+import { missingClocks, withClockOff } from './support/clocks.mjs';
+import { Node, Nodes, sleep, until } from './support/nodes.mjs';
+import { missing, runProgram } from './support/tiny_plant.mjs';
+
+const absent = missing();
+const options = { skip: absent.length > 0 ? `not built: ${absent.join(', ')}` : missingClocks() ?? false, timeout: 120000 };
+const BEGIN_S = Math.floor(Date.now() / 1000) - 7200;
+const at = (s) => (BEGIN_S + s) * 1e6, iso = (s) => new Date((BEGIN_S + s) * 1000).toISOString();
+let nodes, core, renderer;
+
+// TI-1 waves for an hour, TI-2 is bad from minute 10 to 20, then nothing is recorded; a tag's every sample is kept.
+function series() {
+    const lines = ['Tag,Time,Value,Quality'];
+    for (let s = 0; s <= 3600; s++)
+        lines.push(`TI-1,${BEGIN_S + s},${(50 + 40 * Math.sin(s / 3)).toFixed(2)},Good`);
+    for (let s = 0; s <= 3600; s += 10)
+        lines.push(s >= 600 && s < 1200 ? `TI-2,${BEGIN_S + s},,0x80050000` : `TI-2,${BEGIN_S + s},${30 + s / 100},Good`);
+    return `${lines.join('\n')}\n`;
+}
+
+before(async () => {
+    if (options.skip)
+        return;
+    nodes = await Nodes.create();
+    writeFileSync(join(nodes.plant.folder, 'series.csv'), series());
+    const imported = runProgram('plantcast', ['history', 'import', nodes.plant.file, join(nodes.plant.folder, 'series.csv')]);
+    assert.equal(imported.code, 0, imported.err);
+    for (const [tag, value] of [['TI-1', 95], ['TI-2', 20], ['PI-1', 5]])
+        await nodes.plant.tell(`set ${tag} ${value}`);
+    core = await nodes.core();
+    renderer = await nodes.renderer('far', core);
+    await until('readings', async () => (await renderer.tags())['TI-1'].quality_name === 'Good');
+});
+after(() => nodes?.destroy());
+
+const body = async (node, path, token) => {
+    const answer = await node.fetch(path, token);
+    return [answer.status, answer.headers.get('content-type'), await answer.text()];
+};
+const range = `from=${iso(-60)}&to=${iso(4000)}`;
+
+test('series, gaps and the journal are the core\'s, to the byte', options, async () => {
+    await until('an alarm in the journal', async () => (await body(core, '/api/v1/alarms/journal'))[2].includes('TI-1'));
+    for (const path of [`/api/v1/history?tags=TI-1&${range}&points=100`, `/api/v1/history?tags=TI-1,TI-2,PI-1&${range}`,
+        `/api/v1/history?tags=TI-2,TI-1&${range}&points=20000`, `/api/v1/history?tags=PI-1,TI-1,TI-2&${range}&points=400&format=csv`,
+        `/api/v1/history?tags=TI-1,TI-2&${range}&points=20000&format=csv`, `/api/v1/history/gaps?${range}`,
+        `/api/v1/alarms/journal?to=${iso(7300)}`, `/api/v1/alarms/journal?format=csv&tag=TI-1&from=${iso(0)}&limit=5`]) {
+        const [there, here] = [await body(core, path), await body(renderer, path)];
+        assert.equal(there[0], 200, there[2]);
+        assert.deepEqual(here, there, path);
+    }
+    const [status, , text] = await body(renderer, `/api/v1/history?tags=TI-2,TI-1&from=${iso(0)}&to=${iso(1200)}&points=400&format=csv`);
+    assert.equal(status, 200);
+    assert.match(text, /^Tag,Time,Value[^]*\r\nTag,Time,Low/, 'of both kinds');
+    assert.equal((await body(renderer, '/api/v1/history?tags=NO-1'))[0], 400);
+});
+
+test('pictures of the past are equal to the byte; readings of then have the quality of then', options, async () => {
+    for (const s of [5, 900, 5000]) {
+        const path = `/snapshot.png?width=240&height=160&fit=E-101&at=${iso(s)}`;
+        const [one, other] = await Promise.all([core, renderer].map(
+            async (node) => Buffer.from(await (await node.fetch(path)).arrayBuffer())));
+        assert.equal(one.subarray(1, 4).toString(), 'PNG', one.toString());
+        assert.ok(one.equals(other), `${s} s: ${one.length}, ${other.length} bytes`);
+    }
+    const seen = async (node) => {
+        const client = await Client.open(node.port);
+        await client.hello({ token: nodes.tokens.operator });
+        const { from_us } = await client.wait('a beginning', () => client.texts.find((m) => m.type === 'time' && m.from_us));
+        client.say('time', { at_us: at(900), speed: 0 });
+        await client.picture('of then', (p) => p.flags & FLAG.past && p.data_time_us === at(900));
+        const tags = await client.wait('tags of then', () => client.texts.find((m) => m.type === 'tags' && m.time_us === at(900)));
+        client.say('params', { seq: 7, show: 'difference', baseline: { set: 'then' } });
+        const { baseline } = await client.wait('a baseline of then', () => client.texts.find((m) => m.type === 'params' && m.seq === 7));
+        client.say('time', { at_us: at(1000), speed: 60 });
+        await client.picture('a minute later', (p) => p.flags & FLAG.past && p.data_time_us > at(1060));
+        client.close();
+        return { from_us, values: tags.values, baseline };
+    };
+    const [there, here] = [await seen(core), await seen(renderer)];
+    assert.equal(there.from_us, at(0));
+    assert.deepEqual(here, there);
+    assert.equal(here.values[1][3], 'Bad_CommunicationError');
+    assert.deepEqual(here.baseline, { name: 'then', time_us: at(900) });
+});
+
+test('the page of a renderer has trends and the past', options, async () => {
+    const { page, errors, close } = await openPage(`http://127.0.0.1:${renderer.port}/`, { viewport: { width: 1440, height: 900 } });
+    await waitForPicture(page);
+    await waitForHealth(page, 'live');
+    await page.evaluate(() => globalThis.plantcast.selectTag(globalThis.plantcast.session.model.tag('TI-1')));
+    await page.locator('#card .trend').click();
+    await page.locator('#trend-chart canvas').waitFor();
+    assert.match(await page.locator('#trend-tags').textContent(), /TI-1.*°C/);
+    await travel(page, at(900));
+    await page.waitForFunction((us) => globalThis.plantcast.session.time.atUs === us, at(900));
+    await settle(page);
+    await page.waitForFunction(() => globalThis.plantcast.trends.chart.data[0].length > 100); // of an hour with a reading each second
+    assert.match(await page.locator('#clock-name').textContent(), /^Then/);
+    await shoot(page, 'core-history');
+    assert.deepEqual(errors, []);
+    await close();
+});
+
+test('by tokens: people at the renderer ask by their own, the renderer by its own, and for nothing else', options, async () => {
+    const path = `/api/v1/history?tags=TI-1&${range}`, proxy = ['--behind-proxy', '--host', '127.0.0.1'];
+    const args = ['--role', 'core', '--port', '0', '--tokens', nodes.tokenFile, ...proxy];
+    const strict = new Node(nodes.plant, [...args, '--history', join(nodes.plant.folder, 'strict')]);
+    nodes.all.push(strict);
+    await strict.ready();
+    const far = await nodes.renderer('strict', strict, ...proxy);
+    await until('readings', async () => (await far.tags(nodes.tokens.viewer))['TI-1'].quality_name === 'Good');
+    assert.equal((await body(far, path))[0], 401);
+    assert.equal((await body(far, path, nodes.tokens.viewer))[0], 200);
+    assert.equal((await body(far, path, nodes.tokens.renderer))[0], 200);
+    for (const [asked, token, status] of [[path, 'renderer', 200], ['/api/v1/tags', 'renderer', 403], ['/metrics', 'renderer', 403],
+        ['/snapshot.png', 'renderer', 403], ['/core/instant?at_us=1', 'viewer', 403], ['/core/instant?at_us=1', 'operator', 403],
+        ['/core/instant?at_us=1', 'renderer', 200], ['/core/instant?at_us=-1', 'renderer', 400],
+        ['/core/instant?at_us=1e3', 'renderer', 400], ['/core/instant', 'renderer', 400]])
+        assert.equal((await body(strict, asked, nodes.tokens[token]))[0], status, `${asked} by ${token}`);
+    await far.stop();
+    await strict.stop();
+});
+
+test('"an hour ago" is the core\'s, also where the renderer\'s clock is an hour off', options, async () => {
+    const args = ['--role', 'render', '--port', '0', '--trust-local', '--core', core.url, '--core-token-file', nodes.rendererFile];
+    const off = new Node(nodes.plant, args, nodes.plant.file, withClockOff(-3600));
+    nodes.all.push(off);
+    await off.ready();
+    await until('readings', async () => (await off.tags())['TI-1'].quality_name === 'Good');
+    const { from_us, to_us } = JSON.parse((await body(off, '/api/v1/history?tags=TI-1&from=-1h'))[2]);
+    assert.ok(Math.abs(to_us - Date.now() * 1000) < 5e6 && to_us - from_us === 3600e6, `${from_us} to ${to_us}`);
+    await off.stop();
+});
+
+test('without its core a renderer says that it has no history, once in its log; it has it again afterwards', options, async () => {
+    const path = `/api/v1/history?tags=TI-1&${range}&points=50`, before_ = await body(renderer, path), { port } = core;
+    const picture = `/snapshot.png?width=240&height=160&at=${iso(77)}`;
+    await core.stop('SIGKILL');
+    await until('its loss', async () => await renderer.metric('plantcast_core_up') === 0);
+    for (let i = 0; i < 3; i++)
+        assert.deepEqual((await body(renderer, path)).slice(0, 1), [500]);
+    assert.equal((await renderer.fetch(picture)).status, 500);
+    assert.ok(renderer.program.said.match(/history: the core: \/api\/v1\/history: there is no connection to it/g).length <= 2);
+    core = await nodes.core(port);
+    await until('readings', async () => (await renderer.tags())['TI-1'].quality_name === 'Good');
+    assert.deepEqual(await body(renderer, path), before_);
+    assert.equal((await renderer.fetch(picture)).status, 200);
+    core.program.child.kill('SIGSTOP'); // it takes the question, and does not answer
+    const waits = renderer.fetch(path).catch(() => null);
+    await sleep(300);
+    assert.equal((await renderer.fetch('/healthz')).status, 200, 'nobody else waits');
+    core.program.child.kill('SIGCONT');
+    await waits;
+});

@@ -1,0 +1,105 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Readings of an instant from a core to a renderer: to the bit; and nothing is believed that cannot be. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+#include <cmocka.h>
+
+#include "base/mem.h"
+#include "corelink/core_instant.h"
+#include "value/alarm.h"
+#include "value/quality.h"
+
+enum { TAGS = 3, ROUNDS = 200000 };
+static const int64_t FIRST_US = INT64_C(1790000000000001);
+
+static struct text make_message(struct snapshot *snapshot)
+{
+    struct text text = { 0 };
+    snapshot->readings[0] = (struct reading){ .value = 0.1 + 0.2,
+                                              .quality = QUALITY_GOOD,
+                                              .alarm = ALARM_HH,
+                                              .alarm_status = ALARM_ACKNOWLEDGED,
+                                              .received_utc_ns = INT64_C(1790000000000000007),
+                                              .age_ns = 12345678901 };
+    snapshot->readings[1] = (struct reading){ .value = NAN, .quality = QUALITY_BAD_SENSOR_FAILURE, .age_ns = INT64_MAX };
+    core_instant_write(&text, FIRST_US, snapshot);
+    return text;
+}
+
+static void each_comes_to_the_bit(void **state)
+{
+    (void)state;
+    struct snapshot *sent = snapshot_create(TAGS), *got = snapshot_create(TAGS);
+    struct text text = make_message(sent);
+    int64_t first_us = 0;
+    assert_null(core_instant_read(text.at, text.length, &first_us, got));
+    assert_int_equal(first_us, FIRST_US);
+    for (int i = 0; i < TAGS; i++) {
+        const struct reading *a = &sent->readings[i], *b = &got->readings[i];
+        assert_memory_equal(&a->value, &b->value, sizeof(a->value));
+        assert_int_equal(a->quality, b->quality);
+        assert_int_equal(a->alarm, b->alarm);
+        assert_int_equal(a->alarm_status, b->alarm_status);
+        assert_int_equal(a->received_utc_ns, b->received_utc_ns);
+        assert_int_equal(a->age_ns, b->age_ns);
+    }
+    text_finish(&text);
+    core_instant_write(&text, 0, NULL);
+    assert_null(core_instant_read(text.at, text.length, &first_us, NULL));
+    assert_int_equal(first_us, 0);
+    assert_string_equal(core_instant_read(text.at, text.length, &first_us, got), "not one reading for each tag");
+    text_finish(&text);
+    snapshot_destroy(&sent);
+    snapshot_destroy(&got);
+}
+
+static void any_bytes_are_read_or_refused(void **state)
+{
+    (void)state;
+    struct snapshot *snapshot = snapshot_create(TAGS), *got = snapshot_create(TAGS);
+    struct text text = make_message(snapshot);
+    unsigned seed = (unsigned)time(NULL);
+    int refused = 0;
+    printf("# seed %u\n", seed);
+    srand(seed);
+    for (int round = 0; round < ROUNDS; round++) {
+        size_t length = rand() % 4 ? text.length : (size_t)rand() % (text.length + 1);
+        uint8_t *bytes = mem_array(length + 1, 1); /* its own, so that a read beyond its end is found */
+        int64_t first_us;
+        memcpy(bytes, text.at, length);
+        for (int i = rand() % 4; i > 0 && length > 0; i--)
+            bytes[(size_t)rand() % length] = (uint8_t)rand();
+        if (core_instant_read(bytes, length, &first_us, got)) {
+            refused++;
+        } else {
+            assert_true(first_us >= 0);
+            for (int i = 0; i < TAGS; i++) {
+                const struct reading *one = &got->readings[i];
+                assert_true(one->age_ns >= 0 && one->alarm < ALARM_KINDS && one->alarm_status < ALARM_STATUSES);
+                assert_true(quality_is_bad(one->quality) || isfinite(one->value));
+            }
+        }
+        mem_free(bytes);
+    }
+    assert_true(refused > ROUNDS / 10 && refused < ROUNDS);
+    text_finish(&text);
+    snapshot_destroy(&snapshot);
+    snapshot_destroy(&got);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(each_comes_to_the_bit),
+        cmocka_unit_test(any_bytes_are_read_or_refused),
+    };
+    cmocka_set_message_output(CM_OUTPUT_TAP);
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
