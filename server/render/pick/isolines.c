@@ -161,27 +161,47 @@ static void collect_lines(struct isolines *isolines, const struct frame_context 
     }
 }
 
+static bool has_directions(const struct fields_entry *field)
+{
+    return field && field->slice && field->direction_count > 0 && field->params.show == SHOW_VALUE;
+}
+
+static void add_arrow(const struct arrow_set *set, size_t place, const struct frame_context *context, int asset, struct isoline_points *out)
+{
+    const struct scene_asset *of = &context->gpu_scene->scene->assets[asset];
+    struct isoline_point point = { .value = arrows_value(set, place, context->fields[asset]),
+                                   .arrow = true,
+                                   .uncertain = set->found[place].uncertain,
+                                   .slack_m = (float)fmax(1.5 * (double)set->error_m, 0.01 * size_of(of)) };
+    arrows_place(set, place, of, point.place_m, point.along);
+    if (!isfinite(point.value) || !clip_keeps(&context->view->visibility.clip, point.place_m))
+        return;
+    mem_grow(&out->at, &out->capacity, out->count + 1, sizeof(*out->at));
+    out->at[out->count++] = point;
+}
+
+/* The first place of each asset, then the second of each, and so on, until there are enough: so all have their share, and as each asset's
+   places begin with those that are farthest apart, what it has is spread over it. */
 static void collect_arrows(struct isolines *isolines, const struct frame_context *context, struct isoline_points *out)
 {
     const struct scene *scene = context->gpu_scene->scene;
+    const size_t most = out->count + 2 * POINTS_MOST;
+    size_t longest = 0;
     if (!isolines_has_arrows(scene, context->view)) /* fields that a trial leaves alone have theirs from before it */
         return;
     for (size_t i = 0; i < context->visible_count; i++) {
         int asset = context->visible[i];
-        struct arrow_set *set = &isolines->arrows[asset];
-        const struct fields_entry *field = context->fields[asset];
-        if (!field || !field->slice || field->direction_count == 0 || field->params.show != SHOW_VALUE)
+        if (!has_directions(context->fields[asset]))
             continue;
-        arrows_update(set, scene, asset, field);
-        mem_grow(&out->at, &out->capacity, out->count + set->count, sizeof(*out->at));
-        for (size_t p = 0; p < set->count && out->count < 2 * POINTS_MOST; p++) {
-            struct isoline_point point = { .value = arrows_value(set, p, field), .arrow = true, .uncertain = set->found[p].uncertain };
-            arrows_place(set, p, &scene->assets[asset], point.place_m, point.along);
-            point.slack_m = (float)fmax(1.5 * (double)set->error_m, 0.01 * size_of(&scene->assets[asset]));
-            if (isfinite(point.value) && clip_keeps(&context->view->visibility.clip, point.place_m))
-                out->at[out->count++] = point;
-        }
+        arrows_update(&isolines->arrows[asset], scene, asset, context->fields[asset]);
+        longest = isolines->arrows[asset].count > longest ? isolines->arrows[asset].count : longest;
     }
+    for (size_t place = 0; place < longest && out->count < most; place++)
+        for (size_t i = 0; i < context->visible_count && out->count < most; i++) {
+            int asset = context->visible[i];
+            if (has_directions(context->fields[asset]) && place < isolines->arrows[asset].count)
+                add_arrow(&isolines->arrows[asset], place, context, asset, out);
+        }
 }
 
 bool isolines_has_arrows(const struct scene *scene, const struct view *view)
@@ -254,6 +274,8 @@ static void project_arrow(const struct frame_context *context, const struct isol
     double length = fmax(hypot(dx, dy), 1);
     label->dx = (float)(round(100 * dx / length) / 100);
     label->dy = (float)(round(100 * dy / length) / 100);
+    if (label->dx == 0 && label->dy == 0 && vec_length(point->along) > 0) /* straight at the eye or away from it: known all the same */
+        label->dx = dx < 0 ? -0.01f : 0.01f;
 }
 
 /* places: x, y in pixels, hidden. */
