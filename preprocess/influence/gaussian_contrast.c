@@ -7,57 +7,39 @@
 
 #include "base/mem.h"
 
-static bool factor(size_t n, double *a, double *log_det)
+/* LAPACK, which comes with OpenBLAS, as Fortran calls it. Its columns are our rows: "U" is our lower triangle. */
+void dpotrf_(const char *uplo, const int *n, double *a, const int *lda, int *info, size_t uplo_length);
+void dpotri_(const char *uplo, const int *n, double *a, const int *lda, int *info, size_t uplo_length);
+
+/* a = L L', in place of its lower triangle. */
+static bool factor(size_t count, double *a, double *log_det)
 {
+    const int n = (int)count, pitch = n > 1 ? n : 1;
+    int info = 0;
+    dpotrf_("U", &n, a, &pitch, &info, 1);
     *log_det = 0;
-    for (size_t i = 0; i < n; i++) {
-        double *row = a + i * n;
-        for (size_t j = 0; j <= i; j++) {
-            double sum = row[j];
-            for (size_t k = 0; k < j; k++)
-                sum -= row[k] * a[j * n + k];
-            if (i != j)
-                row[j] = sum / a[j * n + j];
-            else if (!(sum > 0))
-                return false;
-            else
-                *log_det += log(sum), row[i] = sqrt(sum);
-        }
-    }
-    return true;
+    for (size_t i = 0; info == 0 && i < count; i++)
+        *log_det += 2 * log(a[i * (count + 1)]);
+    return info == 0 && isfinite(*log_det);
 }
 
-/* L^-1 over L, then its transpose times itself. */
-static void invert(size_t n, double *lower, double *inverse)
+/* From L the inverse of L L', whole. */
+static bool invert(size_t count, const double *lower, double *inverse)
 {
-    for (size_t j = 0; j < n; j++) { /* columns of L^-1, kept as rows of `inverse` */
-        double *column = inverse + j * n;
-        memset(column, 0, n * sizeof(*column));
-        column[j] = 1 / lower[j * n + j];
-        for (size_t i = j + 1; i < n; i++) {
-            double sum = 0;
-            for (size_t k = j; k < i; k++)
-                sum -= lower[i * n + k] * column[k];
-            column[i] = sum / lower[i * n + i];
-        }
-    }
-    for (size_t i = 0; i < n; i++)
-        for (size_t j = 0; j <= i; j++) {
-            double sum = 0;
-            for (size_t k = i; k < n; k++)
-                sum += inverse[i * n + k] * inverse[j * n + k];
-            lower[i * n + j] = sum;
-        }
-    for (size_t i = 0; i < n; i++)
-        for (size_t j = 0; j < n; j++)
-            inverse[i * n + j] = lower[i > j ? i * n + j : j * n + i];
+    const int n = (int)count, pitch = n > 1 ? n : 1;
+    int info = 0;
+    memcpy(inverse, lower, count * count * sizeof(*inverse));
+    dpotri_("U", &n, inverse, &pitch, &info, 1);
+    for (size_t i = 0; i < count; i++)
+        for (size_t j = i + 1; j < count; j++)
+            inverse[i * count + j] = inverse[j * count + i];
+    return info == 0;
 }
 
 bool gaussian_contrast(size_t count, const uint32_t *body, double *covariance, double *precision, double *means, double *log_det)
 {
-    if (!factor(count, covariance, log_det))
+    if (!factor(count, covariance, log_det) || !invert(count, covariance, precision))
         return false;
-    invert(count, covariance, precision);
     double *weights = mem_array(count, sizeof(*weights)), *wholes = mem_array(count, sizeof(*wholes));
     for (size_t i = 0; i < count; i++)
         for (size_t j = 0; j < count; j++)
