@@ -73,7 +73,7 @@ static void read_token_line(const char *text)
     require(found >= 0 || why, "a refusal has a reason");
     if (found != 1)
         return;
-    require(holder.role >= ROLE_VIEWER && tokens_name_valid(holder.name), "a holder");
+    require((holder.role >= ROLE_VIEWER || holder.role == ROLE_RENDERER) && tokens_name_valid(holder.name), "a holder");
     tokens_print_line(&line, &holder);
     require(tokens_parse_line(line.at, &again, &why) == 1 && again.role == holder.role && !strcmp(again.name, holder.name) &&
                 !memcmp(again.hash, holder.hash, sizeof(holder.hash)) && again.until_utc_ns == holder.until_utc_ns,
