@@ -68,7 +68,7 @@ static bool follows(const struct plant_runtime *runtime)
     return runtime->context->params->role == SERVER_RENDER || *runtime->context->follows;
 }
 
-static bool start_historian(struct plant_runtime *runtime, bool continues)
+static bool start_historian(struct plant_runtime *runtime, const struct plant_runtime *before)
 {
     const struct plant_runtime_context *context = runtime->context;
     const struct historian_params params = { .log = context->log,
@@ -76,7 +76,8 @@ static bool start_historian(struct plant_runtime *runtime, bool continues)
                                              .plant = runtime->plant,
                                              .store = runtime->store,
                                              .folder = runtime->history,
-                                             .follows = continues,
+                                             .follows = before != NULL,
+                                             .owed = before ? &before->owed : NULL,
                                              .stands_by = follows(runtime) };
     return !runtime->history || (runtime->historian = historian_start(&params));
 }
@@ -157,7 +158,7 @@ bool plant_runtime_start_recording(struct plant_runtime *runtime, struct plant_r
         runtime->loop_checks = loop_checks_open(runtime->context->log, runtime->plant, runtime->history);
     if (runtime->render_service)
         render_service_set_loop_checks(runtime->render_service, runtime->loop_checks);
-    return start_historian(runtime, before != NULL) && start_alarm_service(runtime, before ? before->alarm_service : NULL) &&
+    return start_historian(runtime, before) && start_alarm_service(runtime, before ? before->alarm_service : NULL) &&
            start_notifier(runtime) && start_publisher(runtime);
 }
 
@@ -264,7 +265,7 @@ static void stop_sources(struct plant_runtime *runtime)
 void plant_runtime_hand_over(struct plant_runtime *runtime, const struct plant *next)
 {
     stop_sources(runtime);
-    historian_end(&runtime->historian, next);
+    historian_end(&runtime->historian, next, &runtime->owed);
     notifier_stop(&runtime->notifier);
     publisher_stop(&runtime->publisher);
     alarm_service_halt(runtime->alarm_service);

@@ -33,6 +33,7 @@ struct plant_runtime {
     struct baselines *baselines;
     struct snapshot_cache *snapshot_cache;
     struct historian *historian; /* NULL: nothing is recorded */
+    struct postgres_owed owed;   /* by the historian, once another plant is in force */
     struct alarm_service *alarm_service;
     struct notifier *notifier;   /* NULL: nobody is told of alarms */
     struct publisher *publisher; /* NULL: nothing is published */

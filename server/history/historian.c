@@ -69,6 +69,7 @@ struct historian {
     /* --- below: under thread.lock */
     struct event_queue queue;
     const struct plant *next; /* whose historian follows; NULL: none */
+    struct postgres_owed *owed; /* becomes what is still to be read, for that one; NULL: there is none */
 };
 
 /* --- from the store ----------------------------------------------------------------------------------------------------------- */
@@ -619,11 +620,11 @@ static void on_restored(void *arg)
     atomic_store(&historian->restored, true);
 }
 
-static bool start_postgres(struct historian *historian, struct counters *counters)
+static bool start_postgres(struct historian *historian, struct counters *counters, const struct postgres_owed *owed)
 {
     const struct postgres_params params = {
         .log = historian->log, .counters = counters, .plant = historian->plant, .folder = historian->folder,
-        .stands_by = historian->stands_by, .restored = on_restored, .arg = historian,
+        .stands_by = historian->stands_by, .owed = owed, .restored = on_restored, .arg = historian,
     };
     return !historian->plant->history.postgres.url || (historian->postgres = postgres_start(&params));
 }
@@ -643,7 +644,7 @@ struct historian *historian_start(const struct historian_params *params)
     historian->snapshot = snapshot_create(params->plant->tag_count);
     take_spool(historian);
     add_counters(historian, params->counters);
-    if (!start_postgres(historian, params->counters)) {
+    if (!start_postgres(historian, params->counters, params->owed)) {
         historian_stop(&historian);
         return NULL;
     }
@@ -661,7 +662,7 @@ void historian_stop(struct historian **pointer)
         return;
     store_unlisten(historian->store, on_sample, historian);
     thread_stop(&historian->thread);
-    postgres_stop(&historian->postgres);
+    postgres_stop(&historian->postgres, historian->owed);
     month_file_close(&historian->file);
     recorder_destroy(&historian->recorder);
     snapshot_destroy(&historian->snapshot);
@@ -679,12 +680,13 @@ void historian_stop(struct historian **pointer)
     *pointer = NULL;
 }
 
-void historian_end(struct historian **historian, const struct plant *next)
+void historian_end(struct historian **historian, const struct plant *next, struct postgres_owed *owed)
 {
     if (!*historian)
         return;
     pthread_mutex_lock(&(*historian)->thread.lock);
     (*historian)->next = next;
+    (*historian)->owed = owed;
     pthread_mutex_unlock(&(*historian)->thread.lock);
     historian_stop(historian);
 }

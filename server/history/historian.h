@@ -5,6 +5,7 @@
 #define HISTORY_HISTORIAN_H
 #include "base/counters.h"
 #include "base/log.h"
+#include "history/postgres/postgres.h"
 #include "plant/plant.h"
 #include "value/store.h"
 
@@ -16,6 +17,7 @@ struct historian_params {
     const char *folder;  /* made where it is missing */
     bool stands_by;      /* it is told of samples by another daemon (historian_mirror), and not by the store, until historian_lead() */
     bool follows;        /* it continues for one that historian_end() ended: lines go on, and no gap is recorded */
+    const struct postgres_owed *owed; /* likewise, by that one; read by the call. NULL: nothing */
 };
 
 struct historian;
@@ -34,8 +36,8 @@ void historian_sent_elsewhere(struct historian *historian, int64_t age_ns);
 /* Returns how long ago all that was recorded until then had been sent to the database; INT64_MAX: never, or there is none. */
 int64_t historian_sent_age_ns(struct historian *historian);
 /* Writes what is pending and ends, so that the historian of the next plant can continue. Tags that are not in it have no value from now on.
-   Leaves NULL. */
-void historian_end(struct historian **historian, const struct plant *next);
+   *owed becomes what was still to be read from the database. Leaves NULL. */
+void historian_end(struct historian **historian, const struct plant *next, struct postgres_owed *owed);
 /* Writes what is pending and ends. &NULL is fine; leaves NULL. */
 void historian_stop(struct historian **historian);
 

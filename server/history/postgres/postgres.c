@@ -19,7 +19,7 @@
 #include "value/backoff.h"
 
 enum { BATCH_ROWS = 20000, ROUND_MS = 1000 };
-enum { NOTES = 128, SPANS = 16 };
+enum { NOTES = 128, SPANS = POSTGRES_SPANS };
 static const int64_t SLOW_US = 60 * INT64_C(1000000); /* by so much may the lines of tags end before the last of them */
 static const int64_t TWICE_NS = 10 * NS_PER_S; /* longer than points take from a sample to the files: so long both keep them */
 static const int64_t LOOK_NS = 30 * NS_PER_S, NEWEST_NS = 5 * NS_PER_S, SAY_LOST_NS = 60 * NS_PER_S;
@@ -33,11 +33,6 @@ struct waiting_month {
 struct outbox_note {
     int64_t at_ns, seq;
     int month;
-};
-
-/* When another led: what it recorded is to be read, if it was sent at at_ns or later. */
-struct span {
-    int64_t from_us, to_us, at_ns;
 };
 
 struct postgres {
@@ -55,9 +50,7 @@ struct postgres {
     /* --- below: under lock */
     bool leads, ends_lines;
     int64_t sent_ns;       /* monotonic: what was recorded before is in the database, by whoever leads; INT64_MIN: not known */
-    struct span spans[SPANS];
-    size_t span_count;
-    struct span led; /* the one before this daemon led; to_us 0: it did not begin to */
+    struct postgres_owed owed;
     /* --- below: of the thread */
     struct postgres_link *link; /* NULL: there is none */
     struct postgres_tables tables;
@@ -170,13 +163,14 @@ static void take_lead(struct postgres *postgres)
 }
 
 /* Under the lock. */
-static bool is_due(const struct postgres *postgres, const struct span *span)
+static bool is_due(const struct postgres *postgres, const struct postgres_span *span)
 {
     return clock_mono_ns() >= span->at_ns + TWICE_NS && postgres->sent_ns >= span->at_ns;
 }
 
 /* What led before may have gone on behind a cut, and sent what it recorded: then its line ends later than the one here. */
-static bool fill_span(struct postgres *postgres, const struct span *span, bool leads, int64_t *points, char why[POSTGRES_WHY_BYTES])
+static bool fill_span(struct postgres *postgres, const struct postgres_span *span, bool leads, int64_t *points,
+                      char why[POSTGRES_WHY_BYTES])
 {
     return (!leads || postgres_restore_end_span(&postgres->tables, span->from_us, span->to_us)) &&
            postgres_restore_span(&postgres->restore, &postgres->tables, span->from_us, span->to_us, points, why);
@@ -186,8 +180,8 @@ static bool fill_span(struct postgres *postgres, const struct span *span, bool l
 static void fill(struct postgres *postgres)
 {
     pthread_mutex_lock(&postgres->lock);
-    struct span span = postgres->spans[0];
-    bool due = postgres->span_count && is_due(postgres, &span), leads = postgres->leads;
+    struct postgres_span span = postgres->owed.spans[0];
+    bool due = postgres->owed.span_count && is_due(postgres, &span), leads = postgres->leads;
     pthread_mutex_unlock(&postgres->lock);
     if (!due || !postgres->link || postgres->restore.wanted)
         return;
@@ -198,7 +192,7 @@ static void fill(struct postgres *postgres)
         return;
     }
     pthread_mutex_lock(&postgres->lock);
-    memmove(postgres->spans, postgres->spans + 1, --postgres->span_count * sizeof(span));
+    memmove(postgres->owed.spans, postgres->owed.spans + 1, --postgres->owed.span_count * sizeof(span));
     pthread_mutex_unlock(&postgres->lock);
     counter_inc(postgres->counters.restored, points);
     log_info(log_of(postgres), "history: %lld points of %.0f s when another core led are read from PostgreSQL", (long long)points,
@@ -444,23 +438,23 @@ static int64_t end_of_files_us(struct postgres *postgres)
 }
 
 /* Under the lock. */
-static void add_span(struct postgres *postgres, const struct span *span)
+static void add_span(struct postgres *postgres, const struct postgres_span *span)
 {
-    struct span *last = &postgres->spans[SPANS - 1];
-    if (postgres->span_count == SPANS) /* a connection that never lasts: as one */
-        *last = (struct span){ last->from_us, span->to_us, span->at_ns };
+    struct postgres_span *last = &postgres->owed.spans[SPANS - 1];
+    if (postgres->owed.span_count == SPANS) /* a connection that never lasts: as one */
+        *last = (struct postgres_span){ last->from_us, span->to_us, span->at_ns };
     else
-        postgres->spans[postgres->span_count++] = *span;
+        postgres->owed.spans[postgres->owed.span_count++] = *span;
 }
 
-static struct span span_of(const struct postgres *postgres, int64_t from_us, int64_t to_us)
+static struct postgres_span span_of(const struct postgres *postgres, int64_t from_us, int64_t to_us)
 {
-    return (struct span){ from_us ? from_us : postgres->ended_us - SLOW_US, to_us, clock_mono_ns() };
+    return (struct postgres_span){ from_us ? from_us : postgres->ended_us - SLOW_US, to_us, clock_mono_ns() };
 }
 
 void postgres_fill(struct postgres *postgres, int64_t from_us, int64_t to_us)
 {
-    const struct span span = span_of(postgres, from_us, to_us);
+    const struct postgres_span span = span_of(postgres, from_us, to_us);
     pthread_mutex_lock(&postgres->lock);
     add_span(postgres, &span);
     pthread_mutex_unlock(&postgres->lock);
@@ -472,17 +466,26 @@ void postgres_lead(struct postgres *postgres, int64_t from_us, int64_t to_us)
     postgres->leads = true;
     postgres->ends_lines = !from_us;
     postgres->sent_ns = INT64_MIN;
-    postgres->led = span_of(postgres, from_us, to_us);
-    add_span(postgres, &postgres->led);
+    postgres->owed.led = span_of(postgres, from_us, to_us);
+    add_span(postgres, &postgres->owed.led);
     pthread_mutex_unlock(&postgres->lock);
 }
 
+/* Of a standby that comes again and again, the time before waits twice at most: the first one's turn comes however often it
+   does, and the other is read once what the newest connection can bring is there. */
 void postgres_fill_again(struct postgres *postgres)
 {
+    struct postgres_span *newest = NULL;
+    int waiting = 0;
     pthread_mutex_lock(&postgres->lock);
-    postgres->led.at_ns = clock_mono_ns();
-    if (postgres->led.to_us)
-        add_span(postgres, &postgres->led);
+    postgres->owed.led.at_ns = clock_mono_ns();
+    for (size_t i = 0; i < postgres->owed.span_count; i++)
+        if (postgres->owed.spans[i].from_us == postgres->owed.led.from_us && postgres->owed.spans[i].to_us == postgres->owed.led.to_us)
+            waiting++, newest = &postgres->owed.spans[i];
+    if (waiting > 1)
+        newest->at_ns = postgres->owed.led.at_ns;
+    else if (postgres->owed.led.to_us)
+        add_span(postgres, &postgres->owed.led);
     pthread_mutex_unlock(&postgres->lock);
 }
 
@@ -496,6 +499,8 @@ struct postgres *postgres_start(const struct postgres_params *params)
     pthread_mutex_init(&postgres->lock, NULL);
     postgres->alone = postgres->leads = !params->stands_by;
     postgres->sent_ns = INT64_MIN;
+    if (params->owed)
+        postgres->owed = *params->owed;
     postgres->ended_us = params->stands_by ? end_of_files_us(postgres) : 0;
     postgres_restore_init(&postgres->restore, params->log, params->plant, postgres->tags, postgres->folder);
     postgres->restore.begins = params->stands_by;
@@ -504,12 +509,12 @@ struct postgres *postgres_start(const struct postgres_params *params)
     postgres->started = !error;
     if (error) {
         log_err(params->log, "history: no thread for PostgreSQL: %s", strerror(error));
-        postgres_stop(&postgres);
+        postgres_stop(&postgres, NULL);
     }
     return postgres;
 }
 
-void postgres_stop(struct postgres **pointer)
+void postgres_stop(struct postgres **pointer, struct postgres_owed *owed)
 {
     struct postgres *postgres = *pointer;
     if (!postgres)
@@ -518,6 +523,8 @@ void postgres_stop(struct postgres **pointer)
         eventfd_write(postgres->stop_fd, 1);
         pthread_join(postgres->thread, NULL);
     }
+    if (owed)
+        *owed = postgres->owed;
     postgres_tables_finish(&postgres->tables);
     postgres_link_close(&postgres->link);
     if (postgres->stop_fd >= 0)

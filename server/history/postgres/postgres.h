@@ -7,12 +7,24 @@
 #include "base/log.h"
 #include "plant/plant.h"
 
+enum { POSTGRES_SPANS = 16 };
+/* When another daemon led: what it recorded is to be read, if it was sent at at_ns (monotonic) or later. */
+struct postgres_span {
+    int64_t from_us, to_us, at_ns;
+};
+struct postgres_owed { /* what is still to be read */
+    struct postgres_span spans[POSTGRES_SPANS];
+    size_t span_count;
+    struct postgres_span led; /* the time before this daemon led; to_us 0: it did not begin to */
+};
+
 struct postgres_params {
     struct log *log;
     struct counters *counters;
     const struct plant *plant; /* outlives it */
     const char *folder;        /* of the months */
     bool stands_by;            /* another daemon writes there, until postgres_lead(): only what is left of an earlier run is sent */
+    const struct postgres_owed *owed; /* by the one before, of the same folder; read by the call. NULL: nothing */
     /* Called from its thread when points of the past have been put into the files (of a machine that had none). */
     void (*restored)(void *arg);
     void *arg;
@@ -35,7 +47,8 @@ int64_t postgres_sent_age_ns(struct postgres *postgres);
 /* Has the points between two times, that another daemon recorded, put into the files in place of the gap that is there: once that one has
    sent them. from_us 0: since the last point in the files. Any thread. */
 void postgres_fill(struct postgres *postgres, int64_t from_us, int64_t to_us);
-/* Sends what is pending, for two seconds at most, and ends. &NULL is fine; leaves NULL. */
-void postgres_stop(struct postgres **postgres);
+/* Sends what is pending, for two seconds at most, and ends. owed: becomes what was still to be read; NULL: nobody wants it. &NULL is fine,
+   and leaves *owed; leaves NULL. */
+void postgres_stop(struct postgres **postgres, struct postgres_owed *owed);
 
 #endif

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A core that took another's place and is loaded anew at once still reads what that one recorded behind a cut; for a standby that comes
+// again and again it reads it twice more at most.
+import assert from 'node:assert/strict';
+import { readFileSync, writeFileSync } from 'node:fs';
+import { after, before, test } from 'node:test';
+import { PostgresServer } from './support/postgres_server.mjs';
+import { kill, missingTwoCores, sleep, TwoCores, until } from './support/two_cores.mjs';
+
+const skip = missingTwoCores(), options = { skip, timeout: 240000 }, CUT_S = 6, RETURNS = 5;
+const READ = /history: \d+ points of \d+ s when another core led are read from PostgreSQL/g;
+let server, two;
+
+before(async () => {
+    if (skip)
+        return;
+    server = await PostgresServer.start();
+    server.makeDatabase('plants');
+    two = await TwoCores.create(server);
+    await Promise.all([two.start('one'), two.start('two')]);
+    await two.followed(await two.leader());
+});
+after(async () => {
+    await two?.destroy();
+    await server?.destroy();
+});
+
+const valuesOf = async (core, from_us, to_us) => {
+    const path = `/api/v1/history?tags=TI-1&points=20000&from=${from_us / 1e6}&to=${to_us / 1e6}`;
+    return (await (await core.node.fetch(path)).json()).series[0].points.map(([, value]) => value);
+};
+
+test('what was recorded behind a cut is read although the plant is loaded anew meanwhile', options, async () => {
+    const core = await two.leader(), other = two.other(core), from_us = Date.now() * 1000;
+    await other.toOther.cut();
+    for (let i = 0; i < CUT_S * 2; i++) { // of these the other knows nothing
+        await two.plant.tell(`set TI-1 ${i % 2 ? 71 : 31}`);
+        await sleep(500);
+    }
+    await until('all being sent', async () => await core.node.metric('plantcast_postgres_waiting_points') === 0);
+    await sleep(2000);
+    const to_us = Date.now() * 1000;
+    await two.takeOver(core, kill(core, 'SIGKILL'));
+    writeFileSync(two.file, readFileSync(two.file, 'utf8').replace('max: 100 }', 'max: 101 }'));
+    other.program.child.kill('SIGHUP');
+    await other.program.line(/reload: configuration/);
+    assert.equal(other.program.said.match(READ), null, 'it was loaded anew before');
+    await until('the points of then', async () => (await valuesOf(other, from_us, to_us))
+        .filter((value) => value === 71).length >= CUT_S - 2, 60);
+    await other.toOther.mend();
+    await two.restart(core);
+    await two.followed(other);
+});
+
+test('a standby that comes again and again does not have it read as often', options, async () => {
+    const core = await two.leader(), other = two.other(core);
+    await until('nothing left', async () => { // of the test before
+        const { length } = core.program.said.match(READ) ?? [];
+        await sleep(13000);
+        return length === core.program.said.match(READ)?.length;
+    }, 100);
+    const { length } = core.program.said.match(READ);
+    for (let i = 0; i < RETURNS; i++) {
+        await other.toOther.cut();
+        await sleep(500);
+        await other.toOther.mend();
+        await two.followed(core);
+    }
+    await sleep(30000);
+    const more = core.program.said.match(READ).length - length;
+    assert.ok(more >= 1 && more <= 2, `read ${more} times after ${RETURNS} returns`);
+});
