@@ -268,11 +268,12 @@ static void take_labels(struct view_pane *pane, const json_t *rows, bool arrows)
             labels[count++] = frame->labels[i];
     for (size_t i = 0; i < json_array_size(rows); i++) {
         const json_t *row = json_array_get(rows, i);
-        double numbers[7];
-        for (size_t k = 0; k < 7; k++)
+        double numbers[8];
+        for (size_t k = 0; k < 8; k++)
             numbers[k] = json_number_value(json_array_get(row, k));
         const double *n = numbers;
-        labels[count++] = arrows ? (struct frame_label){ n[4], (float)n[0], (float)n[1], (float)n[2], (float)n[3], n[6] != 0, 1, n[5] != 0 }
+        labels[count++] = arrows ? (struct frame_label){ n[4], (float)n[0], (float)n[1], (float)n[2], (float)n[3], n[6] != 0, 1, n[5] != 0,
+                                                            (uint16_t)n[7] }
                                  : (struct frame_label){ .value = n[0], .x_px = (float)n[1], .y_px = (float)n[2], .half = n[3] != 0 };
     }
     mem_free(frame->labels);

@@ -71,7 +71,8 @@ static bool arrows_equal(const struct frame *a, const struct frame *b)
         return false;
     for (size_t i = 0; i < a->label_count; i++) {
         const struct frame_label *x = &a->labels[i], *y = &b->labels[i];
-        if (x->arrow != y->arrow || (x->arrow && (x->dx != y->dx || x->dy != y->dy || x->uncertain != y->uncertain)))
+        if (x->arrow != y->arrow || x->stroke != y->stroke ||
+            (x->arrow && (x->dx != y->dx || x->dy != y->dy || x->uncertain != y->uncertain)))
             return false;
     }
     return true;

@@ -27,6 +27,7 @@ size_t directions_read(const struct scene *scene, int asset, int group, const st
 struct direction_place { /* a point of a triangle of the asset file */
     uint32_t corners[3];
     float weights[3], normal[3];
+    uint32_t triangle; /* its number, as whoever placed it counts them; directions_find() does not look at it */
 };
 struct direction {
     float along[3]; /* unit, tangent, in the axes of the asset file */

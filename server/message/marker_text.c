@@ -70,6 +70,7 @@ static bool same_labels(const struct frame *frame, const struct known_markers *k
         if (!a || !b)
             return !a && !b && (known->any || arrow);
         if (a->value != b->value || a->half != b->half || a->uncertain != b->uncertain || a->dx != b->dx || a->dy != b->dy ||
+            a->stroke != b->stroke ||
             !(fabsf(a->x_px - b->x_px) < SAME_PX) || !(fabsf(a->y_px - b->y_px) < SAME_PX))
             return false;
     }
@@ -116,9 +117,13 @@ static json_t *all_arrows(const struct frame *frame)
 {
     json_t *list = json_array();
     size_t at = 0;
-    for (const struct frame_label *l; (l = next_label(frame->labels, frame->label_count, &at, true));)
-        json_array_append_new(list, json_pack("[o,o,o,o,o,i,i]", tenths(l->x_px), tenths(l->y_px), number((double)l->dx),
-                                              number((double)l->dy), number(l->value), l->uncertain, l->half));
+    for (const struct frame_label *l; (l = next_label(frame->labels, frame->label_count, &at, true));) {
+        json_t *row = json_pack("[o,o,o,o,o,i,i]", tenths(l->x_px), tenths(l->y_px), number((double)l->dx), number((double)l->dy),
+                                number(l->value), l->uncertain, l->half);
+        if (l->stroke != 0)
+            json_array_append_new(row, json_integer(l->stroke));
+        json_array_append_new(list, row);
+    }
     return list;
 }
 

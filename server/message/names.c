@@ -28,6 +28,9 @@ const struct name names_scale[] = { { "linear", false }, { "log", true }, { NULL
 const struct name names_look[] = {
     { "default", LOOK_DEFAULT }, { "glossy", LOOK_GLOSSY }, { "flat", LOOK_FLAT }, { "materials", LOOK_MATERIALS }, { NULL, 0 }
 };
+const struct name names_arrows[] = {
+    { "arrows", DIRECTIONS_ARROWS }, { "strokes", DIRECTIONS_STROKES }, { "none", DIRECTIONS_NONE }, { NULL, 0 }
+};
 const struct name names_strip[] = { { "none", false }, { "legend", true }, { NULL, 0 } };
 const struct name names_backdrop[] = { { "light", false }, { "dark", true }, { NULL, 0 } };
 const struct name names_codec[] = { { "jpeg", WIRE_CODEC_JPEG }, { "png", WIRE_CODEC_PNG }, { "h264", WIRE_CODEC_H264 }, { NULL, 0 } };

@@ -38,6 +38,7 @@ static bool parse_names(const json_t *o, struct params_change *out, struct messa
         { "look", names_look, GIVEN_LOOK, 0 },
         { "backdrop", names_backdrop, GIVEN_BACKDROP, 0 },
         { "strip", names_strip, GIVEN_STRIP, 0 },
+        { "arrows", names_arrows, GIVEN_ARROWS, 0 },
     };
     for (size_t i = 0; i < sizeof(all) / sizeof(all[0]); i++) {
         bool given;
@@ -51,6 +52,7 @@ static bool parse_names(const json_t *o, struct params_change *out, struct messa
     out->look = (enum look)all[3].value;
     out->dark = all[4].value;
     out->strip = all[5].value;
+    out->directions = (enum directions_look)all[6].value;
     return true;
 }
 
@@ -234,6 +236,8 @@ static void apply_look(const struct scene *scene, const struct params_change *ch
         view->dark = change->dark;
     if (change->given & GIVEN_STRIP)
         view->strip = change->strip;
+    if (change->given & GIVEN_ARROWS)
+        view->directions = change->directions;
     if (change->given & GIVEN_LIGHT)
         memcpy(view->light_dir, change->light_dir, sizeof(view->light_dir));
     if (change->given & GIVEN_ENVIRONMENT)

@@ -40,6 +40,7 @@ static const struct {
     { "environment", STRING },
     { "backdrop", STRING },
     { "strip", STRING },
+    { "arrows", STRING },
     { "sensors", SENSORS },
     { "baseline", STRING },
     { "scale", STRING },

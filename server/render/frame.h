@@ -23,6 +23,7 @@ struct frame_label { /* a place on an isoline, or of an arrow, in sight */
     float x_px, y_px;
     float dx, dy; /* of an arrow: where it points in the picture, at most 1 long, shorter where it points away; 0, 0: not known where */
     uint8_t half, arrow, uncertain;
+    uint16_t stroke; /* of a point of a stroke: its number in the half, the same for those that follow it; 0: an arrow */
 };
 #define FRAME_ARROW_PX(width_px) fmax(48, (width_px) / 24.0) /* between arrows, at least; the longest is almost as long */
 

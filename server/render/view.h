@@ -17,6 +17,7 @@ enum look {
     LOOK_FLAT,     /* no shading */
     LOOK_MATERIALS /* no field: all assets as their models say, in full colour */
 };
+enum directions_look { DIRECTIONS_ARROWS, DIRECTIONS_STROKES, DIRECTIONS_NONE }; /* of a group that has them */
 enum tier { TIER_PREVIEW, TIER_REFINED };
 #define VIEW_MAX_SIDE_PX 8192
 #define VIEW_MAX_PIXELS (16 * 1024 * 1024)
@@ -56,6 +57,7 @@ struct view {
     int selected_asset;  /* outlined; -1: none */
     double light_dir[3]; /* towards the sun, plant frame, unit length */
     bool dark;           /* a dark backdrop; colours of the field stay what they are */
+    enum directions_look directions;
     bool strip;          /* a legend strip for programs, where an overlay is drawn */
     int environment;     /* surroundings: 0 the built-in sky, then the plant's own */
     struct visibility visibility;

@@ -97,6 +97,7 @@ static void set_params(json_t *object, const struct session_context *context, co
     json_object_set_new(object, "light", vector(view->light_dir));
     json_object_set_new(object, "environment", string(reply_environment_name(plant, view->environment)));
     json_object_set_new(object, "backdrop", string(name_of(names_backdrop, view->dark)));
+    json_object_set_new(object, "arrows", string(name_of(names_arrows, view->directions)));
     json_object_set_new(object, "selected", view->selected_asset < 0 ? json_null() : string(plant->assets[view->selected_asset].id));
     visibility_print(plant, &view->visibility, object);
 }

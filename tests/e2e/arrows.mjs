@@ -124,6 +124,68 @@ test('the page draws them, and its legend says how long they are', options, asyn
     assert.deepEqual(browser.errors, []);
 });
 
+test('strokes follow the wind round the tank, each to the right where it is seen from in front, and run', options, async () => {
+    await browser.page.evaluate(() => globalThis.plantcast.session.setParams({ arrows: 'strokes' }));
+    const { rows, width, height } = await until('strokes', ({ rows: all }) => all.filter((row) => row[7] > 0).length > 60);
+    const numbers = new Set(rows.map((row) => row[7] ?? 0).filter((number) => number > 0));
+    const strokes = new Map([...numbers].map((number) => [number, rows.filter((row) => row[7] === number)]));
+    let front = 0;
+    for (const points of strokes.values()) {
+        assert.ok(points.length <= 12);
+        for (const [i, [x, y, toX, toY]] of points.slice(1).entries()) {
+            const [px, py, fromX, fromY] = points[i], dx = (fromX + toX) / 2, dy = (fromY + toY) / 2, long = Math.hypot(x - px, y - py);
+            if (long < 4 || Math.hypot(dx, dy) < 0.3)
+                continue; // towards the eye
+            const along = ((x - px) * dx + (y - py) * dy) / long / Math.hypot(dx, dy);
+            assert.ok(along > 0.8, `goes where its direction says: ${along} at ${px}, ${py}`);
+            if (Math.abs(px - width / 2) < height / 8 && Math.abs(py - height / 2) < height / 8) {
+                assert.ok(x > px, `${px} ${x}`);
+                front++;
+            }
+        }
+    }
+    console.log(`# ${strokes.size} strokes, ${rows.length} points, ${front} steps in front`);
+    assert.ok(strokes.size > 8 && strokes.size <= 48 && front > 10);
+    const pixels = () => browser.page.evaluate(() => {
+        const canvas = document.getElementById('strokes');
+        const { data } = canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height);
+        return data.reduce((sum, value, i) => (sum * 31 + value * (i % 251)) % 1000003, 0);
+    });
+    const seen = new Set();
+    for (const end = Date.now() + 20000; seen.size < 3; seen.add(await pixels()))
+        assert.ok(Date.now() < end, 'dashes run');
+    for (const points of strokes.values())
+        assert.ok(points.length > 1, 'a head alone is no stroke');
+    await browser.page.waitForFunction(() => !document.querySelector('.arrow-key canvas')); // their length says nothing
+    await shoot(browser.page, 'strokes');
+    const answer = await fetch(`http://127.0.0.1:${plant.port}/snapshot.png?width=960&height=540&arrows=strokes`);
+    const png = Buffer.from(await answer.arrayBuffer());
+    assert.equal(png.readUInt32BE(16), 960);
+    if (process.env.PLANTCAST_OUT)
+        writeFileSync(join(process.env.PLANTCAST_OUT, 'strokes_snapshot.png'), png);
+    await browser.page.evaluate(() => globalThis.plantcast.session.setParams({ arrows: 'none' }));
+    await until('none', ({ rows: all }) => all.length === 0);
+    await browser.page.waitForFunction(() => document.getElementById('strokes').hidden && !document.querySelector('.arrow-key'));
+    await browser.page.evaluate(() => globalThis.plantcast.session.setParams({ arrows: 'arrows' }));
+    await until('arrows again', ({ rows: all }) => all.length > 15 && all.every((row) => row.length === 7));
+    assert.deepEqual(browser.errors, []);
+});
+
+test('the panel of the picture says what is drawn, and when not to trust it', options, async () => {
+    const { page } = browser;
+    await page.click('#picture-toggle');
+    await page.locator('#directions .note').waitFor();
+    assert.match(await page.locator('#directions .note').textContent(), /interpolate/);
+    await page.locator('#directions label', { hasText: 'Strokes' }).click();
+    await until('strokes', ({ rows }) => rows.some((row) => row[7] > 0));
+    assert.match(await page.locator('#directions .note').textContent(), /Not as paths/);
+    await shoot(page, 'strokes_panel');
+    await page.locator('#directions label', { hasText: 'Arrows' }).click();
+    await until('arrows', ({ rows }) => rows.length > 15 && rows.every((row) => row.length === 7));
+    await page.click('#picture-toggle');
+    assert.deepEqual(browser.errors, []);
+});
+
 test('where a direction is lost it is unknown, and only there', options, async () => {
     const before = (await arrows()).rows.filter(isUnknown).length;
     await plant.tell(`fail ${bearingTag(270)}`);

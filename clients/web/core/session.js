@@ -9,12 +9,12 @@ import { say } from './words.js';
 
 export const PARAMS = [
     'group', 'interpolation', 'distance', 'fill', 'strength', 'decay', 'power', 'radius_m', 'reach_m', 'colormap', 'ramp_interval', 'range',
-    'scale', 'breaks', 'isolines', 'look', 'light', 'environment', 'backdrop', 'selected', 'hidden', 'isolate', 'ghost', 'clip', 'show',
-    'split',
+    'scale', 'breaks', 'isolines', 'look', 'light', 'environment', 'backdrop', 'arrows', 'selected', 'hidden', 'isolate', 'ghost', 'clip',
+    'show', 'split',
 ];
 const SAID = [...PARAMS, 'sensor', 'baseline', 'baselines', 'sensors', 'unit']; // by the server
 export const ENGINEERS = ['fill', 'strength', 'decay', 'power', 'radius_m', 'reach_m', 'sensors']; // others may not ask for these
-const SHARED = ['light', 'environment', 'backdrop', 'selected', 'hidden', 'isolate', 'ghost', 'clip', 'split']; // by both halves
+const SHARED = ['light', 'environment', 'backdrop', 'arrows', 'selected', 'hidden', 'isolate', 'ghost', 'clip', 'split']; // by both halves
 // Kept as they are, whatever the plant begins with by then.
 const SETS = ['hidden', 'isolate', 'ghost'];
 const GROUPS_OWN = ['interpolation', 'distance', 'fill', 'power', 'radius_m', 'reach_m', 'scale', 'isolines'];

@@ -71,6 +71,13 @@ split: Geteilte Ansicht
 right: Rechte Hälfte
 
 [arrows]
+title: Richtungen
+arrows: Pfeile
+arrows.why: So lang wie der Wert. Nicht zwischen Flächen und nicht als berechnete Strömung: sie interpolieren, was Sensoren sagen.
+strokes: Striche
+strokes.why: Wohin es geht; sie laufen schneller, wo der Wert größer ist. Nicht als Bahnen eines Fluids: sie interpolieren Sensoren.
+none: Keine
+none.why: Richtungen werden nicht gezeichnet; Farben zeigen nur den Wert.
 unknown: Richtung unbekannt
 
 [scale]

@@ -69,6 +69,13 @@ split: Split view
 right: Right half
 
 [arrows]
+title: Directions
+arrows: Arrows
+arrows.why: As long as the value. Not between surfaces, nor as a flow that was computed: they interpolate what sensors say.
+strokes: Strokes
+strokes.why: Where to; they run faster where the value is larger. Not as paths of a fluid: they interpolate what sensors say now.
+none: None
+none.why: Directions are not drawn; colours show the value alone.
 unknown: Direction unknown
 
 [scale]

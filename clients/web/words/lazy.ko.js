@@ -70,6 +70,13 @@ split: 화면 분할
 right: 오른쪽 화면
 
 [arrows]
+title: 방향
+arrows: 화살표
+arrows.why: 길이는 값. 면 사이의 공간이나 계산된 유동으로 믿지 말 것: 센서 값을 보간한 것
+strokes: 흐름선
+strokes.why: 값이 클수록 빨리 흐르는 선. 유체의 경로로 믿지 말 것: 센서 값을 보간
+none: 없음
+none.why: 방향을 그리지 않음. 색은 값만 나타냄
 unknown: 방향을 알 수 없음
 
 [scale]

@@ -9,7 +9,9 @@
 
 bool overlay_has_arrows(const struct pen *pen)
 {
-    return pen->view.field.show == SHOW_VALUE && !pen->view.field.trial && pen->scene->plant->groups[pen->view.field.group].directed;
+    const struct field_params *field = &pen->view.field;
+    return pen->view.directions != DIRECTIONS_NONE && field->show == SHOW_VALUE && !field->trial &&
+           pen->scene->plant->groups[field->group].directed;
 }
 
 double overlay_arrow_px(const struct pen *pen)
@@ -67,6 +69,29 @@ void overlay_unknown_direction(struct pen *pen, double x, double y)
     stroke_both(pen, 1.6 * pen->unit, false);
 }
 
+/* The points of a stroke that begins at `from`, with a head at its end. Returns the index of its last. */
+static size_t draw_stroke(struct pen *pen, size_t from)
+{
+    const struct frame_label *label = &pen->frame->labels[from], *last = label;
+    const double head = 6 * pen->unit;
+    size_t end = from + 1;
+    bool uncertain = label->uncertain;
+    cairo_new_path(pen->cairo);
+    cairo_move_to(pen->cairo, (double)label->x_px, (double)label->y_px);
+    for (; end < pen->frame->label_count && label[end - from].stroke == label->stroke && label[end - from].half == label->half; end++) {
+        last = &label[end - from];
+        uncertain |= last->uncertain;
+        cairo_line_to(pen->cairo, (double)last->x_px, (double)last->y_px);
+    }
+    double ux = (double)last->dx, uy = (double)last->dy, length = hypot(ux, uy);
+    for (int side = -1; side <= 1 && length > 0.1; side += 2) {
+        cairo_move_to(pen->cairo, (double)last->x_px, (double)last->y_px);
+        cairo_rel_line_to(pen->cairo, head * (-0.85 * ux - side * 0.5 * uy) / length, head * (-0.85 * uy + side * 0.5 * ux) / length);
+    }
+    stroke_both(pen, 1.6 * pen->unit, uncertain);
+    return end - 1;
+}
+
 void overlay_arrows(struct pen *pen)
 {
     double scale = overlay_arrow_px(pen) / overlay_arrow_value(pen);
@@ -75,7 +100,9 @@ void overlay_arrows(struct pen *pen)
         double length = fmin(scale * fabs(label->value), overlay_arrow_px(pen));
         if (!label->arrow || label->half != pen->half)
             continue;
-        if (label->dx == 0 && label->dy == 0)
+        if (label->stroke != 0)
+            i = draw_stroke(pen, i);
+        else if (label->dx == 0 && label->dy == 0)
             overlay_unknown_direction(pen, (double)label->x_px, (double)label->y_px);
         else
             overlay_arrow(pen, (double)label->x_px, (double)label->y_px, length * (double)label->dx, length * (double)label->dy,

@@ -96,8 +96,9 @@ static void choose_rows(const struct pen *pen, struct legend *legend)
         legend->rows[legend->row_count++] = ROW_UNPROVEN;
     if (shows_assumed(pen))
         legend->rows[legend->row_count++] = ROW_ASSUMED;
-    if (overlay_has_arrows(pen)) {
-        legend->rows[legend->row_count++] = ROW_ARROW;
+    if (overlay_has_arrows(pen)) { /* a stroke's length says nothing */
+        if (view->directions == DIRECTIONS_ARROWS)
+            legend->rows[legend->row_count++] = ROW_ARROW;
         legend->rows[legend->row_count++] = ROW_NOWHERE;
     }
     unsigned priorities = priorities_shown(pen);
@@ -144,7 +145,7 @@ static void write_words(const struct pen *pen, struct legend *legend)
         if (view->color_scale.log)
             add_note(legend, "logarithmic scale");
     }
-    if (overlay_has_arrows(pen)) {
+    if (overlay_has_arrows(pen) && view->directions == DIRECTIONS_ARROWS) {
         pen_number(overlay_arrow_value(pen), overlay_arrow_value(pen), number);
         snprintf(legend->longest, sizeof(legend->longest), "%s %.30s", number, view_unit(pen->scene->plant, view));
     }

@@ -10,7 +10,7 @@
 enum { PLACES = 400, CANDIDATES_MOST = 20000, CUTS_MOST = 64 };
 static const double COARSE = 0.01; /* of an asset's size: error of the level that is searched */
 
-static const struct asset_level *coarse_level(const struct scene_asset *asset)
+const struct asset_level *arrows_level(const struct scene_asset *asset)
 {
     const struct asset_view *view = &asset->file->view;
     double size_m = 0;
@@ -24,7 +24,7 @@ static const struct asset_level *coarse_level(const struct scene_asset *asset)
 
 size_t arrows_vertex_count(const struct scene_asset *asset)
 {
-    return coarse_level(asset)->vertex_count;
+    return arrows_level(asset)->vertex_count;
 }
 
 /* --- places ----------------------------------------------------------------------------------------------------------------- */
@@ -53,7 +53,7 @@ static void point_of(const struct asset_view *view, const struct direction_place
 }
 
 /* The middles of equal pieces, each about half as long as arrows are apart. */
-static void add_triangle(struct candidates *candidates, const uint32_t corners[3])
+static void add_triangle(struct candidates *candidates, const uint32_t corners[3], uint32_t triangle)
 {
     double at[3][3], normal[3];
     corners_of(candidates->view, corners, at);
@@ -69,7 +69,8 @@ static void add_triangle(struct candidates *candidates, const uint32_t corners[3
             candidates->at[candidates->count++] =
                 (struct direction_place){ .corners = { corners[0], corners[1], corners[2] },
                                           .weights = { (float)(1 - a - b), (float)a, (float)b },
-                                          .normal = { (float)normal[0], (float)normal[1], (float)normal[2] } };
+                                          .normal = { (float)normal[0], (float)normal[1], (float)normal[2] },
+                                          .triangle = triangle };
         }
 }
 
@@ -101,25 +102,27 @@ static void thin_out(struct arrow_set *set, const struct candidates *candidates)
 static void seek(struct arrow_set *set, const struct scene_asset *asset)
 {
     struct candidates candidates = { .view = &asset->file->view };
-    const struct asset_level *level = coarse_level(asset);
+    const struct asset_level *level = arrows_level(asset);
     for (int pass = 0; pass < 2; pass++) { /* the area, then places by it */
         double area_m2 = 0;
+        uint32_t triangle = 0;
         for (uint32_t p = 0; p < level->primitive_count; p++) {
             const struct asset_primitive *primitive = &candidates.view->primitives[level->first_primitive + p];
             const uint32_t *corners = candidates.view->indices + primitive->first_index;
-            for (uint32_t i = 0; i < primitive->index_count; i += 3) {
+            for (uint32_t i = 0; i < primitive->index_count; i += 3, triangle++) {
                 double at[3][3], normal[3];
                 corners_of(candidates.view, corners + i, at);
                 vec_normal(at[0], at[1], at[2], normal);
                 area_m2 += 0.5 * vec_length(normal);
                 if (pass == 1)
-                    add_triangle(&candidates, corners + i);
+                    add_triangle(&candidates, corners + i, triangle);
             }
         }
         candidates.spacing_m = sqrt(area_m2 / PLACES);
         if (!(candidates.spacing_m > 0))
             break;
     }
+    set->spacing_m = candidates.spacing_m;
     set->error_m = level->error_m;
     set->sought = true;
     if (candidates.count > 0)
@@ -141,7 +144,11 @@ void arrows_update(struct arrow_set *set, const struct scene *scene, int asset, 
 
 double arrows_value(const struct arrow_set *set, size_t place, const struct fields_entry *field)
 {
-    const struct direction_place *at = &set->places[place];
+    return arrows_value_at(&set->places[place], field);
+}
+
+double arrows_value_at(const struct direction_place *at, const struct fields_entry *field)
+{
     double value = 0;
     for (int i = 0; i < 3; i++) {
         const struct scalar *scalar = &field->shown[at->corners[i]];
@@ -154,13 +161,18 @@ double arrows_value(const struct arrow_set *set, size_t place, const struct fiel
 
 void arrows_place(const struct arrow_set *set, size_t place, const struct scene_asset *asset, double place_m[3], double along[3])
 {
+    arrows_place_at(&set->places[place], &set->found[place], asset, place_m, along);
+}
+
+void arrows_place_at(const struct direction_place *at, const struct direction *to, const struct scene_asset *asset, double place_m[3],
+                     double along[3])
+{
     const double *m = asset->placement;
-    const float *to = set->found[place].along;
     double file_m[3];
-    point_of(&asset->file->view, &set->places[place], file_m);
+    point_of(&asset->file->view, at, file_m);
     for (int c = 0; c < 3; c++) {
         place_m[c] = m[c] * file_m[0] + m[4 + c] * file_m[1] + m[8 + c] * file_m[2] + m[12 + c];
-        along[c] = m[c] * (double)to[0] + m[4 + c] * (double)to[1] + m[8 + c] * (double)to[2];
+        along[c] = m[c] * (double)to->along[0] + m[4 + c] * (double)to->along[1] + m[8 + c] * (double)to->along[2];
     }
 }
 

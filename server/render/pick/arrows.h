@@ -10,19 +10,27 @@ struct arrow_set { /* of one asset; zero-initialise, finish with arrows_finish()
     struct direction_place *places; /* those that are farthest apart come first */
     struct direction *found;
     size_t count;
+    double spacing_m; /* about so far apart, were all of them drawn */
     float error_m;    /* of the level that they lie on */
     bool sought;      /* places are there, if there are any */
     uint64_t content; /* what `found` was found from */
 };
 
+/* Returns the level that the places lie on; their triangles are numbered through its primitives. Pure. */
+const struct asset_level *arrows_level(const struct scene_asset *asset);
 /* Returns how many of an asset's first vertices must have current scalars. Pure. */
 size_t arrows_vertex_count(const struct scene_asset *asset);
 /* Brings the directions up to date with what the entry shows. */
 void arrows_update(struct arrow_set *set, const struct scene *scene, int asset, const struct fields_entry *field);
 /* Returns the field's value at a place, in its unit; NaN where there is no data. */
 double arrows_value(const struct arrow_set *set, size_t place, const struct fields_entry *field);
+/* Likewise at any place of the asset's file. */
+double arrows_value_at(const struct direction_place *at, const struct fields_entry *field);
 /* Writes where a place is, and where an arrow points there, in the plant frame. */
 void arrows_place(const struct arrow_set *set, size_t place, const struct scene_asset *asset, double place_m[3], double along[3]);
+/* Likewise, of a place of the asset's file and its direction. */
+void arrows_place_at(const struct direction_place *at, const struct direction *to, const struct scene_asset *asset, double place_m[3],
+                     double along[3]);
 void arrows_finish(struct arrow_set *set);
 
 #endif

@@ -10,7 +10,7 @@
 #include "render/matrix.h"
 #include "render/pick/markers.h"
 
-enum { POINTS_PER_LINE = 16, POINTS_MOST = 2048, LABELS_MOST = 128, ARROWS_MOST = 192 };
+enum { POINTS_PER_LINE = 16, POINTS_MOST = 2048, LABELS_MOST = 128, ARROWS_MOST = 192, STROKES_SHOWN = 48 };
 static const double SPACING = 0.1, COARSE = 0.01; /* of an asset's size: between points; error of the level that is searched */
 static const double SAME_LINE = 4;                /* times as far apart as labels of different lines */
 
@@ -18,6 +18,7 @@ void isolines_init(struct isolines *isolines, size_t asset_count)
 {
     isolines->sets = mem_array(asset_count, sizeof(*isolines->sets));
     isolines->arrows = mem_array(asset_count, sizeof(*isolines->arrows));
+    isolines->strokes = mem_array(asset_count, sizeof(*isolines->strokes));
     isolines->asset_count = asset_count;
 }
 
@@ -26,9 +27,11 @@ void isolines_finish(struct isolines *isolines)
     for (size_t i = 0; i < isolines->asset_count; i++) {
         mem_free(isolines->sets[i].points);
         arrows_finish(&isolines->arrows[i]);
+        strokes_finish(&isolines->strokes[i]);
     }
     mem_free(isolines->sets);
     mem_free(isolines->arrows);
+    mem_free(isolines->strokes);
 }
 
 /* --- points on lines --------------------------------------------------------------------------------------------------------- */
@@ -180,6 +183,34 @@ static void add_arrow(const struct arrow_set *set, size_t place, const struct fr
     out->at[out->count++] = point;
 }
 
+/* All points of a stroke, or none; where nothing is known, the arrow that says so. */
+static void add_stroke(const struct isolines *isolines, size_t place, const struct frame_context *context, int asset,
+                       struct isoline_points *out)
+{
+    const struct scene_asset *of = &context->gpu_scene->scene->assets[asset];
+    const struct arrow_set *arrows = &isolines->arrows[asset];
+    const struct stroke_set *set = &isolines->strokes[asset];
+    if (place >= set->count || set->lengths[place] == 0) {
+        if (!arrows->found[place].known)
+            add_arrow(arrows, place, context, asset, out);
+        return;
+    }
+    const uint16_t number = ++out->stroke_count;
+    mem_grow(&out->at, &out->capacity, out->count + STROKE_POINTS, sizeof(*out->at));
+    for (int n = 0; n < set->lengths[place]; n++) {
+        const struct stroke_point *at = &set->points[place][n];
+        struct isoline_point point = { .value = arrows_value_at(&at->place, context->fields[asset]),
+                                       .arrow = true,
+                                       .uncertain = at->to.uncertain,
+                                       .stroke = number,
+                                       .slack_m = (float)fmax(1.5 * (double)arrows->error_m, 0.01 * size_of(of)) };
+        arrows_place_at(&at->place, &at->to, of, point.place_m, point.along);
+        if (!isfinite(point.value) || !clip_keeps(&context->view->visibility.clip, point.place_m))
+            break;
+        out->at[out->count++] = point;
+    }
+}
+
 /* The first place of each asset, then the second of each, and so on, until there are enough: so all have their share, and as each asset's
    places begin with those that are farthest apart, what it has is spread over it. */
 static void collect_arrows(struct isolines *isolines, const struct frame_context *context, struct isoline_points *out)
@@ -194,19 +225,25 @@ static void collect_arrows(struct isolines *isolines, const struct frame_context
         if (!has_directions(context->fields[asset]))
             continue;
         arrows_update(&isolines->arrows[asset], scene, asset, context->fields[asset]);
+        if (context->view->directions == DIRECTIONS_STROKES)
+            strokes_update(&isolines->strokes[asset], &isolines->arrows[asset], scene, asset, context->fields[asset]);
         longest = isolines->arrows[asset].count > longest ? isolines->arrows[asset].count : longest;
     }
     for (size_t place = 0; place < longest && out->count < most; place++)
         for (size_t i = 0; i < context->visible_count && out->count < most; i++) {
             int asset = context->visible[i];
-            if (has_directions(context->fields[asset]) && place < isolines->arrows[asset].count)
+            if (!has_directions(context->fields[asset]) || place >= isolines->arrows[asset].count)
+                continue;
+            if (context->view->directions == DIRECTIONS_STROKES)
+                add_stroke(isolines, place, context, asset, out);
+            else
                 add_arrow(&isolines->arrows[asset], place, context, asset, out);
         }
 }
 
 bool isolines_has_arrows(const struct scene *scene, const struct view *view)
 {
-    return view->look != LOOK_MATERIALS && view->field.show == SHOW_VALUE && !view->field.trial &&
+    return view->look != LOOK_MATERIALS && view->directions != DIRECTIONS_NONE && view->field.show == SHOW_VALUE && !view->field.trial &&
            scene->plant->groups[view->field.group].directed;
 }
 
@@ -278,23 +315,68 @@ static void project_arrow(const struct frame_context *context, const struct isol
         label->dx = dx < 0 ? -0.01f : 0.01f;
 }
 
+/* Which stroke is being given, and how: of each, the first of its parts that is in sight. */
+struct giving {
+    uint16_t stroke;
+    bool begun, ended;
+    int count;
+};
+
+/* Returns whether a point of a stroke is part of the picture. Strokes begin as far apart as arrows. */
+static bool goes_on(struct giving *giving, const struct frame *frame, const float place[4], const struct isoline_point *point)
+{
+    if (point->stroke != giving->stroke)
+        *giving = (struct giving){ .stroke = point->stroke, .count = giving->count };
+    bool hidden = place[2] >= 0.5f, begins = !giving->begun;
+    if (giving->ended || (hidden && begins))
+        return false;
+    giving->ended = hidden;
+    if (hidden || !begins)
+        return !hidden;
+    giving->begun = true;
+    for (size_t i = 0; i < frame->label_count; i++) {
+        const struct frame_label *label = &frame->labels[i];
+        bool first = i == 0 || label->stroke == 0 || frame->labels[i - 1].stroke != label->stroke;
+        if (label->arrow && first && hypot((double)(label->x_px - place[0]), (double)(label->y_px - place[1])) <
+            FRAME_ARROW_PX(frame->width_px))
+            giving->ended = true;
+    }
+    giving->ended |= giving->count == STROKES_SHOWN;
+    giving->count += !giving->ended;
+    return !giving->ended;
+}
+
+/* Takes the stroke that was given last away again if no more than one of its points is in sight. */
+static void drop_short_stroke(struct frame *frame, uint16_t next)
+{
+    const size_t count = frame->label_count;
+    const struct frame_label *last = count > 0 ? &frame->labels[count - 1] : NULL;
+    if (last && last->stroke != 0 && last->stroke != next && (count < 2 || frame->labels[count - 2].stroke != last->stroke))
+        frame->label_count--;
+}
+
 /* places: x, y in pixels, hidden. */
 static void give(const struct frame_context *context, const struct isoline_points *points, float (*places)[4], struct frame *frame)
 {
+    struct giving giving = { 0 };
     frame->labels = mem_array(points->count, sizeof(*frame->labels));
     for (size_t i = 0; i < points->count; i++) {
         const struct isoline_point *point = &points->at[i];
-        if (places[i][2] >= 0.5f || !has_room(frame, places[i], point))
+        drop_short_stroke(frame, point->stroke);
+        bool seen = point->stroke ? goes_on(&giving, frame, places[i], point) : places[i][2] < 0.5f && has_room(frame, places[i], point);
+        if (!seen)
             continue;
         struct frame_label *label = &frame->labels[frame->label_count++];
         *label = (struct frame_label){ .value = point->value,
                                        .x_px = roundf(10 * places[i][0]) / 10,
                                        .y_px = roundf(10 * places[i][1]) / 10,
                                        .arrow = point->arrow,
-                                       .uncertain = point->uncertain };
+                                       .uncertain = point->uncertain,
+                                       .stroke = point->stroke };
         if (point->arrow)
             project_arrow(context, point, label);
     }
+    drop_short_stroke(frame, 0);
 }
 
 void isolines_get(const struct point_visibility *queries, const struct frame_context *context, const struct isoline_points *points,

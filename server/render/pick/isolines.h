@@ -6,11 +6,13 @@
 #include "render/frame.h"
 #include "render/pick/arrows.h"
 #include "render/pick/point_visibility.h"
+#include "render/pick/strokes.h"
 
 struct isoline_point {
     double value, place_m[3]; /* plant frame */
     double along[3];          /* of an arrow: where it points, plant frame; 0: not known */
     bool arrow, uncertain;
+    uint16_t stroke;          /* its number in this picture, from 1, the same for all of its points; 0: not of a stroke */
     float slack_m;            /* depth tolerance: how far it may lie behind the surface drawn */
 };
 struct isoline_set { /* of one asset */
@@ -24,11 +26,13 @@ struct isoline_set { /* of one asset */
 struct isolines {
     struct isoline_set *sets; /* by asset, as the next */
     struct arrow_set *arrows;
+    struct stroke_set *strokes;
     size_t asset_count;
 };
 struct isoline_points { /* the points of one picture; zero-initialise, free `at` with mem_free() */
     struct isoline_point *at;
     size_t count, capacity;
+    uint16_t stroke_count;
 };
 
 /* Returns whether a picture of this view has arrows. Pure. */

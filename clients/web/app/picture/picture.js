@@ -8,6 +8,7 @@ import { byId, make, setText } from '../common/dom.js';
 import { distances, interpolations, Range } from '../common/number_fields.js';
 import { fillSegments, fillSelect, markSegment } from '../common/choices.js';
 import { collapsiblePanel } from '../common/collapsible.js';
+import { Directions } from './directions.js';
 import { Disagreeing } from '../cards/neighbours.js';
 import { LOOKS, SHOWS } from '../toolbar/toolbar.js';
 
@@ -36,7 +37,8 @@ export class Picture {
         this.range = new Range(this);
         modules.use('coverage', (coverage) => coverage.fill());
         this.disagreeing = new Disagreeing({ session, selectTag });
-        byId('light').before(this.disagreeing.element);
+        this.directions = new Directions({ session });
+        byId('light').before(this.directions.element, this.disagreeing.element);
         session.on('params', () => this.update());
         session.on('welcome', () => this.update());
     }
@@ -123,6 +125,7 @@ export class Picture {
         if (!model || !this.panel.classList.contains('open'))
             return;
         this.disagreeing.update();
+        this.directions.update();
         byId('from-sensor').hidden = params.show !== 'distance';
         fillSelect(byId('sensor'), sensorsOf(this.session).map(({ name, asset }) => [name, `${name}, ${asset}`]), params.sensor ?? '');
         byId('from-baseline').hidden = params.show !== 'difference';

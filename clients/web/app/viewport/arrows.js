@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Arrows of a group whose sensors have directions: as long as the field's value, and a cross where it is not known where to.
+// Arrows of a group whose sensors have directions: as long as the field's value, and a cross where it is not known where to; or strokes,
+// along which dashes run, on a canvas of their own.
 import { decimalsFor, shortNumberText, unitText } from '../../core/format.js';
 import { halves } from '../../core/split_view.js';
 import { say } from '../../core/words.js';
@@ -8,6 +9,7 @@ import { INK } from './overlay.js';
 
 const LONGEST_PX = (width) => 0.95 * Math.max(48, width / 24); // of the picture; the server leaves a little more between them
 const HEAD = 7, CROSS = 'M-3 -3L3 3M-3 3L3 -3', DOT = 'M-.6 0A.6 .6 0 1 0 .6 0A.6 .6 0 1 0 -.6 0';
+const DASH = [5, 11], FASTEST_PX = 60; // a second, of the larger end of the range
 const isUnknown = (dx, dy) => dx === 0 && dy === 0;
 
 // Along x, its middle at 0.
@@ -16,9 +18,16 @@ function shape(length) {
     return new Path2D(`M${-tip} 0H${tip}M${tip - 0.85 * head} ${-head / 2}L${tip} 0L${tip - 0.85 * head} ${head / 2}`);
 }
 
+// With its tip at 0, along x.
+const head = () => new Path2D(`M${-0.85 * HEAD} ${-HEAD / 2}L0 0L${-0.85 * HEAD} ${HEAD / 2}`);
+
 export class Arrows {
     constructor({ session, overlay }) {
-        Object.assign(this, { session, overlay });
+        Object.assign(this, { session, overlay, strokes: [] });
+        this.running = make('canvas', { id: 'strokes', 'aria-hidden': 'true' });
+        overlay.canvas.before(this.running);
+        this.still = window.matchMedia('(prefers-reduced-motion: reduce)');
+        this.still.addEventListener('change', () => this.run());
     }
 
     get scale() {
@@ -32,11 +41,18 @@ export class Arrows {
 
     draw() {
         const { picture, shown } = this.session;
+        this.strokes = [];
         if (!picture)
             return;
         const parts = halves(shown, picture.shownWidth), [across, down] = this.scale, c = this.overlay.context;
-        for (const [px, py, dx, dy, value, uncertain, half] of this.session.markersOf(picture.seq)?.arrows ?? []) {
+        for (const [px, py, dx, dy, value, uncertain, half, number] of this.session.markersOf(picture.seq)?.arrows ?? []) {
             const { params, width } = parts[half] ?? parts[0];
+            if (number) {
+                const at = [(px + (picture.shownWidth - picture.fullWidth) / 2) * across, py * down];
+                const speed = Math.min(1, Math.abs(value) / this.longestIn(params));
+                this.addToStroke({ at, to: [dx, dy], half, number, uncertain, speed });
+                continue;
+            }
             const length = LONGEST_PX(width) * Math.min(1, Math.abs(value) / this.longestIn(params)) * Math.hypot(dx, dy) * across;
             c.save();
             c.translate((px + (picture.shownWidth - picture.fullWidth) / 2) * across, py * down);
@@ -44,11 +60,57 @@ export class Arrows {
             this.stroke(isUnknown(dx, dy) ? new Path2D(CROSS) : length < 2 ? new Path2D(DOT) : shape(length), uncertain);
             c.restore();
         }
+        for (const { path, end, to } of this.strokes)
+            path.addPath(head(), new DOMMatrix().translate(...end).rotate(Math.atan2(to[1], to[0]) * 180 / Math.PI));
+        if (this.still.matches)
+            this.strokes.forEach(({ path, uncertain }) => this.stroke(path, uncertain));
+        this.run();
         this.explain();
     }
 
-    stroke(path, uncertain) {
-        const c = this.overlay.context;
+    addToStroke({ at, half, number, uncertain, speed, to }) {
+        const last = this.strokes.at(-1), goesOn = last?.number === number && last.half === half;
+        if (!goesOn)
+            this.strokes.push({ half, number, speed, uncertain: 0, path: new Path2D(), line: new Path2D() });
+        const stroke = this.strokes.at(-1);
+        for (const path of [stroke.path, stroke.line])
+            path[goesOn ? 'lineTo' : 'moveTo'](...at);
+        Object.assign(stroke, { end: at, to, uncertain: stroke.uncertain || uncertain });
+    }
+
+    // White dashes along dark strokes, below all that is written, as long as there are any and motion is wanted.
+    run() {
+        const { canvas } = this.overlay, moves = this.strokes.length > 0 && !this.still.matches;
+        this.running.hidden = !moves;
+        if (this.frame || !moves)
+            return;
+        const next = (ms) => {
+            const c = this.running.getContext('2d');
+            this.frame = null;
+            if (this.strokes.length === 0 || this.still.matches)
+                return this.run();
+            for (const side of ['width', 'height'])
+                if (this.running[side] !== canvas[side])
+                    this.running[side] = canvas[side];
+            c.setTransform(this.overlay.context.getTransform());
+            c.clearRect(0, 0, this.overlay.wide, this.overlay.high);
+            this.strokes.forEach(({ path, uncertain }) => this.stroke(path, uncertain, c));
+            c.lineCap = 'round';
+            c.lineWidth = 1.6;
+            c.strokeStyle = 'white';
+            c.setLineDash(DASH);
+            for (const { line, speed } of this.strokes) {
+                c.lineDashOffset = -(ms / 1000 * speed * FASTEST_PX) % (DASH[0] + DASH[1]);
+                c.stroke(line);
+            }
+            c.setLineDash([]);
+            this.frame = requestAnimationFrame(next);
+            return null;
+        };
+        this.frame = requestAnimationFrame(next);
+    }
+
+    stroke(path, uncertain, c = this.overlay.context) {
         c.lineCap = c.lineJoin = 'round';
         c.lineWidth = 3.6;
         c.strokeStyle = 'rgb(255 255 255 / 0.85)';
@@ -68,15 +130,18 @@ export class Arrows {
         const legends = [...this.overlay.viewport.element.querySelectorAll('.legend')];
         halves(shown, picture.shownWidth).forEach(({ params, width }, half) => {
             const legend = legends[half], group = this.session.model.group(params.group);
-            const key = legend?.querySelector('.arrow-key'), wanted = group?.directed && params.show === 'value';
+            const key = legend?.querySelector('.arrow-key'), wanted = group?.directed && params.show === 'value' && shown.arrows !== 'none';
             if (!legend || legend.hidden || !wanted)
                 return key?.remove();
             const value = this.longestIn(params), length = LONGEST_PX(width) * this.scale[0];
-            const text = `${shortNumberText(value, decimalsFor(value))}\u202f${unitText(params.unit ?? group.unit)}`;
+            const strokes = shown.arrows === 'strokes'; // their length says nothing
+            const text = strokes ? '' : `${shortNumberText(value, decimalsFor(value))}\u202f${unitText(params.unit ?? group.unit)}`;
             const unknown = rows.some(([, , dx, dy, , , of]) => of === half && isUnknown(dx, dy)), says = `${text}/${length}/${unknown}`;
             if (key?.dataset.says === says)
                 return null;
             key?.remove();
+            if (strokes)
+                return unknown && legend.append(make('p', { class: 'note arrow-key', 'data-says': says }, `× ${say('arrows.unknown')}`));
             const canvas = make('canvas', { 'aria-hidden': 'true' }), ratio = window.devicePixelRatio;
             Object.assign(canvas, { width: (length + 4) * ratio, height: 12 * ratio });
             canvas.style.cssText = `width:${length + 4}px;height:12px;vertical-align:middle`;
