@@ -6,6 +6,8 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "refusal.h"
+
 enum {
     IDLE_S = 10,           /* a connection on which nothing moves for so long is closed */
     MORE_CONNECTIONS = 32, /* than there may be readers: one that is kept open waits for its next request */
@@ -123,7 +125,9 @@ static gboolean on_connection(GSocketService *service, GSocketConnection *connec
     GSocketAddress *here = g_socket_connection_get_local_address(connection, NULL);
     GSocketAddress *there = g_socket_connection_get_remote_address(connection, NULL);
     if (here && there) {
-        g_socket_set_timeout(g_socket_connection_get_socket(connection), IDLE_S);
+        GSocket *socket = g_socket_connection_get_socket(connection);
+        g_socket_set_timeout(socket, IDLE_S);
+        refusal_know(there, socket);
         ++*http->connections;
         g_object_weak_ref(G_OBJECT(connection), on_closed, g_rc_box_acquire(http->connections));
         soup_server_accept_iostream(http->server, G_IO_STREAM(connection), here, there, NULL);

@@ -4,6 +4,7 @@
 
 #include <string.h>
 
+#include "refusal.h"
 #include "whep_session.h"
 
 enum { MOST_BYTES = 64 * 1024, ID_BYTES = 16 };
@@ -186,8 +187,6 @@ static void on_request(SoupServer *server, SoupServerMessage *message, const cha
     const char *method = soup_server_message_get_method(message), *id = path + strlen(PATH);
     (void)server;
     (void)query;
-    if (soup_server_message_get_status(message)) /* refused before its body came */
-        return;
     allow_pages(message);
     if (!strcmp(method, "OPTIONS"))
         soup_server_message_set_status(message, SOUP_STATUS_NO_CONTENT, NULL);
@@ -210,16 +209,15 @@ static void on_headers(SoupServer *server, SoupServerMessage *message, const cha
 {
     SoupMessageHeaders *headers = soup_server_message_get_request_headers(message);
     bool sized = soup_message_headers_get_encoding(headers) == SOUP_ENCODING_CONTENT_LENGTH;
-    (void)server;
     (void)path;
     (void)query;
     (void)data;
     if (strcmp(soup_server_message_get_method(message), "POST") != 0 ||
         (sized && soup_message_headers_get_content_length(headers) <= MOST_BYTES))
         return;
-    soup_message_body_set_accumulate(soup_server_message_get_request_body(message), FALSE);
     allow_pages(message);
     answer(message, SOUP_STATUS_REQUEST_ENTITY_TOO_LARGE, "an offer has at most 64 KiB, and says how many\n");
+    refusal_send(server, message);
 }
 
 /* --- life ------------------------------------------------------------------------------------------------------------------------ */

@@ -3,6 +3,7 @@
 import assert from 'node:assert/strict';
 import { existsSync, mkdtempSync, rmSync, writeFileSync } from 'node:fs';
 import { createServer } from 'node:http';
+import { connect } from 'node:net';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
@@ -178,6 +179,29 @@ test('a server that is gone: the card within 3 s, and the picture comes back', o
     const { at } = await until(1, ({ card }) => card);
     assert.ok(at - begun < 3400, `${at - begun} ms`);
     plant.daemon.child.kill('SIGCONT');
+    await until(1, ({ card }) => !card);
+});
+
+// Sends a head and the beginning of a body, then a byte more every 50 ms if it drips. What came back until the server closed.
+function say(lines, drips) {
+    return new Promise((done) => {
+        const socket = connect({ port, host: '127.0.0.1', allowHalfOpen: Boolean(drips) }); // who drips goes on after the server's end
+        socket.write(`POST /whep HTTP/1.1\r\nHost: x\r\n${lines.join('\r\n')}\r\n\r\n`);
+        const drip = drips && setInterval(() => socket.write('x'), 50);
+        let text = '';
+        socket.on('data', (bytes) => { text += bytes; });
+        socket.on('error', () => {});
+        socket.on('close', () => { clearInterval(drip); done(text); });
+    });
+}
+
+test('an offer that is too large is refused before it was sent, and its connection ends', options, async () => {
+    const type = 'Content-Type: application/sdp', huge = [type, 'Content-Length: 100000000000'];
+    for (const [lines, drips] of [[huge], [[type, 'Transfer-Encoding: chunked']], [[...huge, 'Expect: 100-continue']], [huge, true]])
+        assert.match(await say(lines, drips), /^HTTP\/1.1 413 .*at most 64 KiB, and says how many\n$/s);
+    const reply = await fetch(url(), { method: 'POST', body: 'x'.repeat(8 << 20), headers: { 'Content-Type': 'application/sdp' } });
+    assert.equal(reply.status, 413);
+    assert.equal(reply.headers.get('Access-Control-Allow-Origin'), '*');
     await until(1, ({ card }) => !card);
 });
 
