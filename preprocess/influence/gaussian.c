@@ -11,6 +11,7 @@
 #include "base/vec.h"
 #include "preprocess/influence/gaussian_contrast.h"
 #include "surface/geodesic/laplacian.h"
+#include "surface/geodesic/solver.h"
 
 #define BLOCK 32  /* right-hand sides solved together; also samples, so that these do not depend on how many threads there are */
 #define TILE 256  /* vertices that a thread works on at once */
@@ -133,33 +134,27 @@ static void solve_kernels(void *arg, size_t begin, size_t end)
 {
     struct solving *solving = arg;
     const size_t rows = solving->laplacian.row_count;
-    cholmod_common common;
-    cholmod_dense *u = NULL, *w = NULL, *y = NULL, *e = NULL;
-    laplacian_start(&common);
+    struct solver solver;
+    solver_init(&solver);
     for (size_t first = begin; first < end && !solving->failed; first += BLOCK) {
         size_t count = end - first < BLOCK ? end - first : BLOCK;
-        cholmod_dense *b = cholmod_zeros(rows, count, CHOLMOD_REAL, &common);
+        double *b = solver_begin(&solver, rows, count);
         for (size_t k = 0; b && k < count; k++) {
             const struct influence_disc *disc = &solving->mesh->discs[first + k];
             for (size_t i = 0; i < disc->count; i++)
-                ((double *)b->x)[k * rows + solving->laplacian.row_of[disc->points[i]]] += disc->shares[i];
+                b[k * rows + solving->laplacian.row_of[disc->points[i]]] += disc->shares[i];
         }
-        bool good = b && cholmod_solve2(CHOLMOD_A, solving->factor, b, NULL, &u, NULL, &y, &e, &common);
-        for (size_t k = 0; good && k < count; k++)
+        const double *u = b ? solver_solve(&solver, solving->factor) : NULL;
+        for (size_t k = 0; u && k < count; k++)
             for (size_t i = 0; i < rows; i++)
-                ((double *)u->x)[k * rows + i] *= solving->laplacian.mass_m2[i];
-        good = good && cholmod_solve2(CHOLMOD_A, solving->factor, u, NULL, &w, NULL, &y, &e, &common);
-        for (size_t k = 0; good && k < count; k++)
-            take_kernel(solving, first + k, (const double *)w->x + k * rows);
-        if (!good)
+                b[k * rows + i] = u[k * rows + i] * solving->laplacian.mass_m2[i];
+        u = u ? solver_solve(&solver, solving->factor) : NULL;
+        for (size_t k = 0; u && k < count; k++)
+            take_kernel(solving, first + k, u + k * rows);
+        if (!u)
             solving->failed = true;
-        cholmod_free_dense(&b, &common);
     }
-    cholmod_free_dense(&u, &common);
-    cholmod_free_dense(&w, &common);
-    cholmod_free_dense(&y, &common);
-    cholmod_free_dense(&e, &common);
-    cholmod_finish(&common);
+    solver_finish(&solver);
 }
 
 static void over(struct workers *workers, size_t count, size_t grain, void (*body)(void *arg, size_t begin, size_t end), void *arg)
@@ -323,21 +318,21 @@ static void sample_blocks(void *arg, size_t begin, size_t end)
     const struct influence *influence = solving->influence;
     const size_t rows = solving->laplacian.row_count, n = influence->count, vertices = influence->vertex_count;
     float *fields = mem_try_array(BLOCK * vertices, sizeof(*fields)), *readings = mem_array(BLOCK * n, sizeof(*readings));
-    cholmod_common common;
-    cholmod_dense *u = NULL, *y = NULL, *e = NULL;
-    laplacian_start(&common);
-    cholmod_dense *b = cholmod_zeros(rows, BLOCK, CHOLMOD_REAL, &common);
+    struct solver solver;
+    solver_init(&solver);
+    double *b = solver_begin(&solver, rows, BLOCK);
     bool good = fields && b;
     for (size_t block = begin; good && block < end; block++) {
         struct normal normals[BLOCK];
         for (size_t k = 0; k < BLOCK; k++) {
             normals[k] = (struct normal){ .state = (block * BLOCK + k) << 32 };
             for (size_t i = 0; i < rows; i++)
-                ((double *)b->x)[k * rows + i] = sqrt(solving->laplacian.mass_m2[i]) * next_normal(&normals[k]);
+                b[k * rows + i] = sqrt(solving->laplacian.mass_m2[i]) * next_normal(&normals[k]);
         }
-        good = cholmod_solve2(CHOLMOD_A, solving->factor, b, NULL, &u, NULL, &y, &e, &common);
+        const double *u = solver_solve(&solver, solving->factor);
+        good = u != NULL;
         for (size_t k = 0; good && k < BLOCK; k++)
-            take_sample(solving, (const double *)u->x + k * rows, &normals[k], fields + k * vertices, readings + k * n);
+            take_sample(solving, u + k * rows, &normals[k], fields + k * vertices, readings + k * n);
         if (good)
             cblas_sgemm(CblasRowMajor, CblasNoTrans, CblasNoTrans, BLOCK, (int)vertices, (int)n, 1, readings, (int)n, influence->shares,
                         (int)vertices, 1, fields, (int)vertices);
@@ -346,11 +341,7 @@ static void sample_blocks(void *arg, size_t begin, size_t end)
     }
     if (!good)
         solving->failed = true;
-    cholmod_free_dense(&b, &common);
-    cholmod_free_dense(&u, &common);
-    cholmod_free_dense(&y, &common);
-    cholmod_free_dense(&e, &common);
-    cholmod_finish(&common);
+    solver_finish(&solver);
     mem_free(fields);
     mem_free(readings);
 }

@@ -9,6 +9,7 @@
 #include "base/mem.h"
 #include "base/vec.h"
 #include "surface/geodesic/laplacian.h"
+#include "surface/geodesic/solver.h"
 
 #define CONTACT 1e5         /* readings are met within about a hundred-thousandth of what neighbours differ by */
 #define REGULARISATION 1e-9 /* in shares of a body's area: rounding leaves no body quite singular */
@@ -102,28 +103,23 @@ static void solve_some(void *arg, size_t begin, size_t end)
 {
     struct conduct *conduct = arg;
     const size_t rows = conduct->laplacian.row_count;
-    cholmod_common common;
-    cholmod_dense *u = NULL, *y = NULL, *e = NULL;
-    laplacian_start(&common);
+    struct solver solver;
+    solver_init(&solver);
     for (size_t first = begin; first < end && !conduct->failed; first += conduct->block) {
         size_t count = end - first < conduct->block ? end - first : conduct->block;
-        cholmod_dense *b = cholmod_zeros(rows, count, CHOLMOD_REAL, &common);
+        double *b = solver_begin(&solver, rows, count);
         for (size_t k = 0; b && k < count; k++) {
             const struct influence_disc *disc = &conduct->mesh->discs[first + k];
             for (size_t i = 0; i < disc->count; i++)
-                ((double *)b->x)[k * rows + conduct->laplacian.row_of[disc->points[i]]] += CONTACT * disc->shares[i];
+                b[k * rows + conduct->laplacian.row_of[disc->points[i]]] += CONTACT * disc->shares[i];
         }
-        if (b && cholmod_solve2(CHOLMOD_A, conduct->factor, b, NULL, &u, NULL, &y, &e, &common))
-            for (size_t k = 0; k < count; k++)
-                take(conduct, first + k, (const double *)u->x + k * rows);
-        else
+        const double *u = b ? solver_solve(&solver, conduct->factor) : NULL;
+        for (size_t k = 0; u && k < count; k++)
+            take(conduct, first + k, u + k * rows);
+        if (!u)
             conduct->failed = true;
-        cholmod_free_dense(&b, &common);
     }
-    cholmod_free_dense(&u, &common);
-    cholmod_free_dense(&y, &common);
-    cholmod_free_dense(&e, &common);
-    cholmod_finish(&common);
+    solver_finish(&solver);
 }
 
 static void make_symmetric(struct influence *influence)

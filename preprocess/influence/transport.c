@@ -8,6 +8,7 @@
 #include "base/mem.h"
 #include "base/vec.h"
 #include "surface/geodesic/laplacian.h"
+#include "surface/geodesic/solver.h"
 
 #define LENGTHS 150.0 /* sqrt(t), the length of the heat, is not below this share of the surface's size: e^-709 is the smallest number */
 #define LEAST 1e-280  /* below it, what arrives has lost its direction */
@@ -185,24 +186,19 @@ static float angle_at(const struct transport *transport, size_t vertex, const do
 static void solve_some(void *arg, size_t begin, size_t end)
 {
     struct transport *transport = arg;
-    cholmod_common common;
-    cholmod_dense *u = NULL, *y = NULL, *e = NULL;
-    laplacian_start(&common);
+    struct solver solver;
+    solver_init(&solver);
     for (size_t sensor = begin; sensor < end && !transport->failed; sensor++) {
-        cholmod_dense *b = cholmod_zeros(2 * transport->laplacian.row_count, 1, CHOLMOD_REAL, &common);
+        double *b = solver_begin(&solver, 2 * transport->laplacian.row_count, 1);
         if (b)
-            start_from(transport, sensor, b->x);
-        if (b && cholmod_solve2(CHOLMOD_A, transport->factor, b, NULL, &u, NULL, &y, &e, &common))
-            for (size_t v = 0; v < transport->influence->vertex_count; v++)
-                transport->influence->shares[sensor * transport->influence->vertex_count + v] = angle_at(transport, v, u->x);
-        else
+            start_from(transport, sensor, b);
+        const double *u = b ? solver_solve(&solver, transport->factor) : NULL;
+        for (size_t v = 0; u && v < transport->influence->vertex_count; v++)
+            transport->influence->shares[sensor * transport->influence->vertex_count + v] = angle_at(transport, v, u);
+        if (!u)
             transport->failed = true;
-        cholmod_free_dense(&b, &common);
     }
-    cholmod_free_dense(&u, &common);
-    cholmod_free_dense(&y, &common);
-    cholmod_free_dense(&e, &common);
-    cholmod_finish(&common);
+    solver_finish(&solver);
 }
 
 bool transport_angles(struct influence *influence, struct log *log, struct workers *workers, const struct influence_mesh *mesh,

@@ -9,6 +9,7 @@
 #include "base/mem.h"
 #include "base/vec.h"
 #include "surface/geodesic/laplacian.h"
+#include "surface/geodesic/solver.h"
 
 /* L alone is singular on every piece of surface; this much of M, in shares of the piece's area, moves distances by a millionth. */
 #define REGULARISATION 1e-6
@@ -109,31 +110,22 @@ static void flow(const struct heat *heat, double *u, double *b)
 
 bool heat_solve(const struct heat *heat, const struct heat_source *sources, size_t source_count, double *out)
 {
-    cholmod_common common;
-    cholmod_dense *u = NULL, *d = NULL, *y = NULL, *e = NULL;
-    cholmod_start(&common);
-    common.print = 0;
+    struct solver solver;
+    solver_init(&solver);
     size_t n = heat->laplacian.row_count;
-    cholmod_dense *b = cholmod_zeros(n, source_count, CHOLMOD_REAL, &common);
-    bool good = b != NULL;
-    for (size_t s = 0; good && s < source_count; s++)
+    double *b = solver_begin(&solver, n, source_count);
+    for (size_t s = 0; b && s < source_count; s++)
         for (int i = 0; i < 3; i++)
-            ((double *)b->x)[s * n + heat->laplacian.row_of[sources[s].points[i]]] += sources[s].weights[i];
-    good = good && cholmod_solve2(CHOLMOD_A, heat->diffusion, b, NULL, &u, NULL, &y, &e, &common);
-    for (size_t s = 0; good && s < source_count; s++)
-        flow(heat, (double *)u->x + s * n, (double *)b->x + s * n);
-    good = good && cholmod_solve2(CHOLMOD_A, heat->poisson, b, NULL, &d, NULL, &y, &e, &common);
-    for (size_t s = 0; good && s < source_count; s++)
+            b[s * n + heat->laplacian.row_of[sources[s].points[i]]] += sources[s].weights[i];
+    double *u = b ? solver_solve(&solver, heat->diffusion) : NULL;
+    for (size_t s = 0; u && s < source_count; s++)
+        flow(heat, u + s * n, b + s * n);
+    u = u ? solver_solve(&solver, heat->poisson) : NULL;
+    for (size_t s = 0; u && s < source_count; s++)
         for (size_t i = 0; i < heat->in->point_count; i++)
-            out[s * heat->in->point_count + i] =
-                heat->laplacian.row_of[i] == TRIMESH_NONE ? 0 : ((double *)d->x)[s * n + heat->laplacian.row_of[i]];
-    if (!good)
+            out[s * heat->in->point_count + i] = heat->laplacian.row_of[i] == TRIMESH_NONE ? 0 : u[s * n + heat->laplacian.row_of[i]];
+    if (!u)
         log_err(heat->log, "heat method: %zu sources on %zu points: out of memory", source_count, n);
-    cholmod_free_dense(&b, &common);
-    cholmod_free_dense(&u, &common);
-    cholmod_free_dense(&d, &common);
-    cholmod_free_dense(&y, &common);
-    cholmod_free_dense(&e, &common);
-    cholmod_finish(&common);
-    return good;
+    solver_finish(&solver);
+    return u != NULL;
 }
