@@ -11,6 +11,7 @@
 #include "surface/geodesic/solver.h"
 
 #define LENGTHS 150.0 /* sqrt(t), the length of the heat, is not below this share of the surface's size: e^-709 is the smallest number */
+#define LONGEST 400.0 /* nor below this share of the longest way along it, which on what is folded is many times its size */
 #define LEAST 1e-280  /* below it, what arrives has lost its direction */
 
 struct transport {
@@ -54,6 +55,83 @@ static void find_normals(struct transport *transport)
     mem_free(spare);
 }
 
+/* Edges of triangles around each point: which other end, how long. */
+struct ways {
+    size_t *first; /* by point, and one more */
+    struct way {
+        uint32_t to;
+        double length_m;
+    } *at;
+    uint32_t *queue;
+    double *gone_m; /* by point; < 0: not come to yet */
+};
+
+static void find_ways(const struct intrinsic *in, size_t point_count, struct ways *ways)
+{
+    size_t *next = mem_array(point_count + 1, sizeof(*next));
+    ways->first = mem_array(point_count + 1, sizeof(*ways->first));
+    ways->at = mem_array(6 * in->tri_count + 1, sizeof(*ways->at));
+    ways->queue = mem_array(point_count + 1, sizeof(*ways->queue));
+    ways->gone_m = mem_array(point_count + 1, sizeof(*ways->gone_m));
+    for (size_t t = 0; t < in->tri_count; t++)
+        for (int i = 0; i < 3; i++)
+            ways->first[in->points[t][i] + 1] += 2;
+    for (size_t p = 0; p < point_count; p++)
+        next[p + 1] = ways->first[p + 1] += ways->first[p];
+    for (size_t t = 0; t < in->tri_count; t++)
+        for (int i = 0; i < 3; i++) {
+            uint32_t a = in->points[t][i], b = in->points[t][(i + 1) % 3];
+            ways->at[next[a]++] = (struct way){ b, in->lengths[t][i] };
+            ways->at[next[b]++] = (struct way){ a, in->lengths[t][i] };
+        }
+    for (size_t p = 0; p < point_count; p++)
+        ways->gone_m[p] = -1;
+    mem_free(next);
+}
+
+/* Goes along edges from a point to all that are joined with it. Returns how many these are, in queue[]; *farthest: the one whose way was
+   longest. */
+static size_t spread(struct ways *ways, uint32_t from, uint32_t *farthest)
+{
+    size_t count = 1;
+    ways->queue[0] = *farthest = from;
+    ways->gone_m[from] = 0;
+    for (size_t i = 0; i < count; i++)
+        for (size_t k = ways->first[ways->queue[i]]; k < ways->first[ways->queue[i] + 1]; k++) {
+            uint32_t to = ways->at[k].to;
+            if (ways->gone_m[to] >= 0)
+                continue;
+            ways->gone_m[to] = ways->gone_m[ways->queue[i]] + ways->at[k].length_m;
+            ways->queue[count++] = to;
+            if (ways->gone_m[to] > ways->gone_m[*farthest])
+                *farthest = to;
+        }
+    return count;
+}
+
+/* How long the longest way on any of the pieces is, nearly: from the point that is farthest from any to the one farthest from it. */
+static double longest_way_m(const struct intrinsic *in, size_t point_count)
+{
+    struct ways ways;
+    double longest_m = 0;
+    find_ways(in, point_count, &ways);
+    for (uint32_t p = 0; p < point_count; p++) {
+        if (ways.gone_m[p] >= 0)
+            continue;
+        uint32_t end, other;
+        size_t count = spread(&ways, p, &end);
+        for (size_t i = 0; i < count; i++)
+            ways.gone_m[ways.queue[i]] = -1;
+        spread(&ways, end, &other);
+        longest_m = max_of(longest_m, ways.gone_m[other]);
+    }
+    mem_free(ways.first);
+    mem_free(ways.at);
+    mem_free(ways.queue);
+    mem_free(ways.gone_m);
+    return longest_m;
+}
+
 static double diffusion_time_m2(const struct transport *transport)
 {
     const struct intrinsic *in = &transport->mesh->intrinsic;
@@ -68,6 +146,7 @@ static double diffusion_time_m2(const struct transport *transport)
             }
         }
     double length_m = max_of(sum_m / (3 * (double)in->tri_count), vec_distance(low, high) / LENGTHS);
+    length_m = max_of(length_m, longest_way_m(in, mesh->point_count) / LONGEST);
     return length_m * length_m;
 }
 

@@ -106,6 +106,37 @@ static void test_plane(void **state)
     finish(&c);
 }
 
+/* A long strip, folded like an accordion: 40 m of way in a box of 2.3 m. It can be unfolded, so what a vector has across the strip it keeps
+   to the end. */
+static void test_accordion(void **state)
+{
+    (void)state;
+    const double length_m = 40, forth = 0.05, up = sqrt(1 - forth * forth);
+    struct carried c = { 0 };
+    cad_plate(&c.shape, &chance, 1600, 3, length_m, 0.06, 0);
+    c.normals = mem_array(c.shape.vertex_count, sizeof(*c.normals));
+    double least_m = INFINITY;
+    for (size_t v = 0; v < c.shape.vertex_count; v++)
+        least_m = fmin(least_m, (double)c.shape.positions[v][0]);
+    for (size_t v = 0; v < c.shape.vertex_count; v++) {
+        double along_m = (double)c.shape.positions[v][0] - least_m, leg = fmod(along_m, 2);
+        c.normals[v][0] = (float)(leg < 1 ? -up : up);
+        c.normals[v][2] = (float)forth;
+        c.shape.positions[v][0] = (float)(forth * along_m);
+        c.shape.positions[v][2] = (float)(up * (leg < 1 ? leg : 2 - leg));
+    }
+    carry(&c, 0);
+    double first[3], here[3], worst = 0;
+    vector_at(&c, 0, first);
+    for (size_t v = 1; v < c.shape.vertex_count; v++) {
+        vector_at(&c, v, here); /* asserts that it is known */
+        worst = fmax(worst, fabs(first[1] - here[1]));
+    }
+    printf("# accordion: worst %.2g\n", worst);
+    assert_true(worst < 0.02);
+    finish(&c);
+}
+
 /* Along great circles, as far as near the antipode, where all of them meet. */
 static void test_sphere(void **state)
 {
@@ -179,6 +210,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_plane),
+        cmocka_unit_test(test_accordion),
         cmocka_unit_test(test_sphere),
         cmocka_unit_test(test_box),
     };
