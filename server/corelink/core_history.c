@@ -3,6 +3,7 @@
 #include "corelink/core_history.h"
 
 #include <curl/curl.h>
+#include <stdatomic.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -35,7 +36,7 @@ static int look(void *arg, curl_off_t a, curl_off_t b, curl_off_t c, curl_off_t 
 {
     const struct core_history *history = arg;
     (void)a, (void)b, (void)c, (void)d;
-    return *history->stop;
+    return atomic_load(history->stop);
 }
 
 struct core_history *core_history_create(struct log *log, struct core_link *link, const _Atomic bool *stop)
@@ -94,7 +95,7 @@ static bool fail(struct core_history *history, const char *path, const char *why
 {
     char said[sizeof(history->said)];
     snprintf(said, sizeof(said), "%.*s: %s", (int)strcspn(path, "?"), path, why);
-    if (strcmp(said, history->said) != 0 && !*history->stop)
+    if (strcmp(said, history->said) != 0 && !atomic_load(history->stop))
         log_err(history->log, "history: the core: %s", said);
     memcpy(history->said, said, sizeof(said));
     return false;

@@ -3,6 +3,7 @@
 #include "service/history_loader.h"
 
 #include <errno.h>
+#include <stdatomic.h>
 #include <string.h>
 
 #include "alarm/alarms_at_instant.h"
@@ -204,7 +205,7 @@ void history_loader_destroy(struct history_loader **pointer)
     struct history_loader *loader = *pointer;
     if (!loader)
         return;
-    loader->stop = true;
+    atomic_store(&loader->stop, true);
     thread_stop(&loader->thread);
     for (struct history_loader_answer *answer = loader->answers, *next; answer; answer = next) {
         next = answer->next;

@@ -3,6 +3,7 @@
 #include "service/history_queries.h"
 
 #include <pthread.h>
+#include <stdatomic.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -294,7 +295,8 @@ void history_queries_destroy(struct history_queries **pointer)
     if (!queries)
         return;
     pthread_mutex_lock(&queries->lock);
-    queries->stopping = queries->stop = true;
+    queries->stopping = true;
+    atomic_store(&queries->stop, true);
     pthread_cond_broadcast(&queries->wake);
     pthread_mutex_unlock(&queries->lock);
     for (int i = 0; i < queries->thread_count; i++)

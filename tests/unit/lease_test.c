@@ -417,6 +417,23 @@ static void a_leader_counts_the_standby_that_the_row_names(void **state)
     assert_false(lease_acts(&a, 4 * S));
 }
 
+/* A database that was restored has a row of the same leader from before: who wins it next, nobody may have seen. */
+static void a_leader_whose_row_is_of_another_epoch_has_lost_it(void **state)
+{
+    (void)state;
+    const struct lease_row none = { 0 };
+    struct lease a = follower("a", &none, S);
+    lease_bid(&a);
+    lease_won(&a, S);
+    struct lease_row restored = a.row;
+    lease_saw(&a, &restored, 2 * S);
+    assert_false(a.lost);
+    restored.epoch--;
+    lease_saw(&a, &restored, 2 * S);
+    assert_true(a.lost);
+    assert_false(lease_acts(&a, 2 * S));
+}
+
 static void a_bid_whose_answer_is_lost_is_found_in_the_row(void **state)
 {
     (void)state;
@@ -436,6 +453,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_follower_waits_for_what_binds_it),
         cmocka_unit_test(a_leader_counts_the_standby_that_the_row_names),
+        cmocka_unit_test(a_leader_whose_row_is_of_another_epoch_has_lost_it),
         cmocka_unit_test(a_bid_whose_answer_is_lost_is_found_in_the_row),
         cmocka_unit_test(never_two_and_one_in_the_end),
     };
