@@ -6,25 +6,13 @@
 
 #include "base/mem.h"
 #include "base/vec.h"
+#include "render/pick/coarse_level.h"
 
 enum { PLACES = 400, CANDIDATES_MOST = 20000, CUTS_MOST = 64 };
-static const double COARSE = 0.01; /* of an asset's size: error of the level that is searched */
-
-const struct asset_level *arrows_level(const struct scene_asset *asset)
-{
-    const struct asset_view *view = &asset->file->view;
-    double size_m = 0;
-    uint32_t level = 0;
-    for (int c = 0; c < 3; c++)
-        size_m = max_of(size_m, asset->bounds_max_m[c] - asset->bounds_min_m[c]);
-    while (level + 1 < view->header->level_count && (double)view->levels[level + 1].error_m <= COARSE * size_m)
-        level++;
-    return &view->levels[level];
-}
 
 size_t arrows_vertex_count(const struct scene_asset *asset)
 {
-    return arrows_level(asset)->vertex_count;
+    return coarse_level(asset)->vertex_count;
 }
 
 /* --- places ----------------------------------------------------------------------------------------------------------------- */
@@ -102,7 +90,7 @@ static void thin_out(struct arrow_set *set, const struct candidates *candidates)
 static void seek(struct arrow_set *set, const struct scene_asset *asset)
 {
     struct candidates candidates = { .view = &asset->file->view };
-    const struct asset_level *level = arrows_level(asset);
+    const struct asset_level *level = coarse_level(asset);
     for (int pass = 0; pass < 2; pass++) { /* the area, then places by it */
         double area_m2 = 0;
         uint32_t triangle = 0;

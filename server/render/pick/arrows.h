@@ -16,8 +16,6 @@ struct arrow_set { /* of one asset; zero-initialise, finish with arrows_finish()
     uint64_t content; /* what `found` was found from */
 };
 
-/* Returns the level that the places lie on; their triangles are numbered through its primitives. Pure. */
-const struct asset_level *arrows_level(const struct scene_asset *asset);
 /* Returns how many of an asset's first vertices must have current scalars. Pure. */
 size_t arrows_vertex_count(const struct scene_asset *asset);
 /* Brings the directions up to date with what the entry shows. */

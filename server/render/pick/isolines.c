@@ -8,10 +8,11 @@
 #include "base/mem.h"
 #include "base/vec.h"
 #include "render/matrix.h"
+#include "render/pick/coarse_level.h"
 #include "render/pick/markers.h"
 
 enum { POINTS_PER_LINE = 16, POINTS_MOST = 2048, LABELS_MOST = 128, ARROWS_MOST = 192, STROKES_SHOWN = 48 };
-static const double SPACING = 0.1, COARSE = 0.01; /* of an asset's size: between points; error of the level that is searched */
+static const double SPACING = 0.1; /* of an asset's size: between points */
 static const double SAME_LINE = 4;                /* times as far apart as labels of different lines */
 
 void isolines_init(struct isolines *isolines, size_t asset_count)
@@ -91,32 +92,16 @@ static void search_edge(struct search *search, uint32_t a, uint32_t b)
             add_point(search, i, a, b);
 }
 
-static const struct asset_level *coarse_level(const struct asset_view *view, double error_m)
-{
-    uint32_t level = 0;
-    while (level + 1 < view->header->level_count && (double)view->levels[level + 1].error_m <= error_m)
-        level++;
-    return &view->levels[level];
-}
-
-static double size_of(const struct scene_asset *asset)
-{
-    double size_m = 0;
-    for (int c = 0; c < 3; c++)
-        size_m = fmax(size_m, asset->bounds_max_m[c] - asset->bounds_min_m[c]);
-    return size_m;
-}
-
 size_t isolines_vertex_count(const struct scene_asset *asset)
 {
-    return coarse_level(&asset->file->view, COARSE * size_of(asset))->vertex_count;
+    return coarse_level(asset)->vertex_count;
 }
 
 static void search_asset(struct search *search)
 {
     const struct asset_view *view = &search->asset->file->view;
-    search->size_m = size_of(search->asset);
-    const struct asset_level *level = coarse_level(view, COARSE * search->size_m);
+    search->size_m = coarse_size_m(search->asset);
+    const struct asset_level *level = coarse_level(search->asset);
     search->slack_m = (float)fmax(1.5 * (double)level->error_m, 0.01 * search->size_m);
     search->set->count = 0;
     for (uint32_t p = 0; p < level->primitive_count; p++) {
@@ -175,7 +160,7 @@ static void add_arrow(const struct arrow_set *set, size_t place, const struct fr
     struct isoline_point point = { .value = arrows_value(set, place, context->fields[asset]),
                                    .arrow = true,
                                    .uncertain = set->found[place].uncertain,
-                                   .slack_m = (float)fmax(1.5 * (double)set->error_m, 0.01 * size_of(of)) };
+                                   .slack_m = (float)fmax(1.5 * (double)set->error_m, 0.01 * coarse_size_m(of)) };
     arrows_place(set, place, of, point.place_m, point.along);
     if (!isfinite(point.value) || !clip_keeps(&context->view->visibility.clip, point.place_m))
         return;
@@ -203,7 +188,7 @@ static void add_stroke(const struct isolines *isolines, size_t place, const stru
                                        .arrow = true,
                                        .uncertain = at->to.uncertain,
                                        .stroke = number,
-                                       .slack_m = (float)fmax(1.5 * (double)arrows->error_m, 0.01 * size_of(of)) };
+                                       .slack_m = (float)fmax(1.5 * (double)arrows->error_m, 0.01 * coarse_size_m(of)) };
         arrows_place_at(&at->place, &at->to, of, point.place_m, point.along);
         if (!isfinite(point.value) || !clip_keeps(&context->view->visibility.clip, point.place_m))
             break;

@@ -8,6 +8,7 @@
 
 #include "base/mem.h"
 #include "base/vec.h"
+#include "render/pick/coarse_level.h"
 
 #define STROKE_NONE UINT32_MAX
 enum { CROSSINGS_MOST = 64 };         /* of edges within one step */
@@ -227,7 +228,7 @@ void strokes_update(struct stroke_set *set, const struct arrow_set *arrows, cons
                     const struct fields_entry *field)
 {
     const struct asset_view *view = &scene->assets[asset].file->view;
-    const struct asset_level *level = arrows_level(&scene->assets[asset]);
+    const struct asset_level *level = coarse_level(&scene->assets[asset]);
     size_t tri_count = 0, tri = 0;
     if (set->sought && set->content == arrows->content)
         return;

@@ -1,0 +1,25 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Levels are sorted, the finest first. */
+#include "render/pick/coarse_level.h"
+
+#include <math.h>
+
+static const double COARSE = 0.01; /* of an asset's size */
+
+double coarse_size_m(const struct scene_asset *asset)
+{
+    double size_m = 0;
+    for (int c = 0; c < 3; c++)
+        size_m = fmax(size_m, asset->bounds_max_m[c] - asset->bounds_min_m[c]);
+    return size_m;
+}
+
+const struct asset_level *coarse_level(const struct scene_asset *asset)
+{
+    const struct asset_view *view = &asset->file->view;
+    const double error_m = COARSE * coarse_size_m(asset);
+    uint32_t level = 0;
+    while (level + 1 < view->header->level_count && (double)view->levels[level + 1].error_m <= error_m)
+        level++;
+    return &view->levels[level];
+}
