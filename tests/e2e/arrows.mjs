@@ -194,3 +194,13 @@ test('where a direction is lost it is unknown, and only there', options, async (
     await settle(browser.page);
     await shoot(browser.page, 'arrows_unknown');
 });
+
+test('dashed arrows are those of uncertain readings, and the legend says so', options, async () => {
+    const key = browser.page.locator('.legend .arrow-key');
+    assert.doesNotMatch(await key.textContent(), /Uncertain/);
+    await plant.tell('pause'); // no communication: the last usable values
+    await until('uncertain', ({ rows }) => rows.some((row) => row[5]));
+    await browser.page.waitForFunction(() => /Uncertain/.test(document.querySelector('.legend .arrow-key')?.textContent));
+    await settle(browser.page);
+    await shoot(browser.page, 'arrows_uncertain');
+});

@@ -9,6 +9,7 @@ import { INK } from './overlay.js';
 
 const LONGEST_PX = (width) => 0.95 * Math.max(48, width / 24); // of the picture; the server leaves a little more between them
 const HEAD = 7, CROSS = 'M-3 -3L3 3M-3 3L3 -3', DOT = 'M-.6 0A.6 .6 0 1 0 .6 0A.6 .6 0 1 0 -.6 0';
+const UNCERTAIN = [3, 2.5], UNCERTAIN_PX = 24; // its dashes, and how long it is in a legend
 const DASH = [5, 11], FASTEST_PX = 60; // a second, of the larger end of the range
 const isUnknown = (dx, dy) => dx === 0 && dy === 0;
 
@@ -20,6 +21,20 @@ function shape(length) {
 
 // With its tip at 0, along x.
 const head = () => new Path2D(`M${-0.85 * HEAD} ${-HEAD / 2}L0 0L${-0.85 * HEAD} ${HEAD / 2}`);
+
+// An arrow for a legend.
+function sample(length, dashes = []) {
+    const canvas = make('canvas', { 'aria-hidden': 'true' }), ratio = window.devicePixelRatio, c = canvas.getContext('2d');
+    Object.assign(canvas, { width: (length + 4) * ratio, height: 12 * ratio });
+    canvas.style.cssText = `width:${length + 4}px;height:12px;vertical-align:middle`;
+    c.setTransform(ratio, 0, 0, ratio, (length / 2 + 2) * ratio, 6 * ratio);
+    c.lineWidth = 1.6;
+    c.lineCap = c.lineJoin = 'round';
+    c.setLineDash(dashes);
+    c.strokeStyle = INK;
+    c.stroke(shape(length));
+    return canvas;
+}
 
 export class Arrows {
     constructor({ session, overlay }) {
@@ -115,7 +130,7 @@ export class Arrows {
         c.lineWidth = 3.6;
         c.strokeStyle = 'rgb(255 255 255 / 0.85)';
         c.stroke(path);
-        c.setLineDash(uncertain ? [3, 2.5] : []);
+        c.setLineDash(uncertain ? UNCERTAIN : []);
         c.lineWidth = 1.6;
         c.strokeStyle = INK;
         c.stroke(path);
@@ -123,7 +138,7 @@ export class Arrows {
         c.setLineDash([]);
     }
 
-    // In each legend, the longest arrow in its true length, and what a cross is where there is one.
+    // In each legend, the longest arrow in its true length, and what dashes and a cross are where there are some.
     explain() {
         const { shown, picture } = this.session;
         const rows = this.session.markersOf(picture.seq)?.arrows ?? [];
@@ -136,23 +151,16 @@ export class Arrows {
             const value = this.longestIn(params), length = LONGEST_PX(width) * this.scale[0];
             const strokes = shown.arrows === 'strokes'; // their length says nothing
             const text = strokes ? '' : `${shortNumberText(value, decimalsFor(value))}\u202f${unitText(params.unit ?? group.unit)}`;
-            const unknown = rows.some(([, , dx, dy, , , of]) => of === half && isUnknown(dx, dy)), says = `${text}/${length}/${unknown}`;
+            const own = rows.filter(([, , , , , , of]) => of === half), unknown = own.some(([, , dx, dy]) => isUnknown(dx, dy));
+            const dashed = own.some(([, , , , , uncertain]) => uncertain), says = `${text}/${length}/${unknown}/${dashed}`;
             if (key?.dataset.says === says)
                 return null;
             key?.remove();
-            if (strokes)
-                return unknown && legend.append(make('p', { class: 'note arrow-key', 'data-says': says }, `× ${say('arrows.unknown')}`));
-            const canvas = make('canvas', { 'aria-hidden': 'true' }), ratio = window.devicePixelRatio;
-            Object.assign(canvas, { width: (length + 4) * ratio, height: 12 * ratio });
-            canvas.style.cssText = `width:${length + 4}px;height:12px;vertical-align:middle`;
-            const c = canvas.getContext('2d');
-            c.setTransform(ratio, 0, 0, ratio, (length / 2 + 2) * ratio, 6 * ratio);
-            c.lineWidth = 1.6;
-            c.lineCap = c.lineJoin = 'round';
-            c.strokeStyle = INK;
-            c.stroke(shape(length));
-            const keys = unknown ? [make('br'), `× ${say('arrows.unknown')}`] : [];
-            return legend.append(make('p', { class: 'note arrow-key', 'data-says': says }, canvas, ` ${text}`, ...keys));
+            const lines = [...(strokes ? [] : [[sample(length), ` ${text}`]]),
+                ...(dashed ? [[sample(UNCERTAIN_PX, UNCERTAIN), ` ${say('legend.uncertain')}`]] : []),
+                ...(unknown ? [[`× ${say('arrows.unknown')}`]] : [])];
+            const keys = lines.flatMap((line, i) => (i ? [make('br'), ...line] : line));
+            return keys.length > 0 && legend.append(make('p', { class: 'note arrow-key', 'data-says': says }, ...keys));
         });
     }
 }
