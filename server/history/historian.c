@@ -243,8 +243,7 @@ static struct month_file *open_month(struct historian *historian, int month, int
 {
     struct month_file *file =
         month_file_open(historian->log, historian->folder, month, historian->tags, historian->plant->tag_count, error);
-    bool sends = historian->postgres && (historian->recovered || !historian->stands_by);
-    if (file && sends && (*error = month_file_use_outbox(file)))
+    if (file && historian->postgres && (*error = month_file_use_outbox(file)))
         month_file_close(&file);
     return file;
 }
@@ -267,7 +266,7 @@ static int recover(struct historian *historian)
         int64_t ended_us = INT64_MIN;
         if (!file)
             break;
-        error = month_file_recover(file, QUALITY_BAD_NO_COMMUNICATION, &ended_us);
+        error = month_file_recover(file, QUALITY_BAD_NO_COMMUNICATION, !historian->stands_by, &ended_us);
         if (!error)
             error = month_file_tidy(file);
         if (!error && ended_us != INT64_MIN)

@@ -69,8 +69,9 @@ size_t month_file_waiting(const struct month_file *file);
 int month_file_import(struct month_file *file, int tag, const struct history_point *points, size_t count);
 /* Deletes points of a quality between two times: of a gap that is known better now. Points of these times are imported next. */
 int month_file_forget_gaps(struct month_file *file, int64_t from_us, int64_t to_us, uint32_t gap_quality);
-/* Recovers from a writer that did not end properly: records its newest samples, each followed by a gap. *ended_us: when it ended. */
-int month_file_recover(struct month_file *file, uint32_t gap_quality, int64_t *ended_us);
+/* Recovers from a writer that did not end properly: records its newest samples, each followed by a gap. sends_gaps: gaps are put into the
+   outbox too, where there is one; else samples alone, since another daemon records now. *ended_us: when it ended. */
+int month_file_recover(struct month_file *file, uint32_t gap_quality, bool sends_gaps, int64_t *ended_us);
 int month_file_clear_held(struct month_file *file); /* deletes the newest samples: all are recorded, the month is over */
 /* Deletes what is older than a time, as far as it has been tidied. The room that it leaves is for what comes next; with `shrink`, the disk
    gets it back, if the file was begun with auto_vacuum (struct month_file_size, shrinks). *unsent is increased by how many of the points

@@ -342,8 +342,9 @@ int month_file_forget_gaps(struct month_file *file, int64_t from_us, int64_t to_
     return end(file, error);
 }
 
-/* The held points become rows, each with one behind it that says that nobody recorded. */
-static int end_lines(struct month_file *file, uint32_t gap_quality, int64_t *ended_us)
+/* The held points become rows, each with one behind it that says that nobody recorded. Of who led last the other database has the
+   line's end; somebody else goes on with it there. */
+static int end_lines(struct month_file *file, uint32_t gap_quality, bool sends_gaps, int64_t *ended_us)
 {
     sqlite3_stmt *held = month_sql(file, SQL_ALL_HELD);
     int code, error = 0;
@@ -351,9 +352,10 @@ static int end_lines(struct month_file *file, uint32_t gap_quality, int64_t *end
         int64_t id = sqlite3_column_int64(held, 0);
         struct history_point point = month_point(held, 1);
         struct history_point gap = { .t_us = point.t_us + 1, .value = NAN, .quality = gap_quality };
-        error = record(file, SQL_ADD_RECENT, id, &point);
-        if (!error && point.quality != gap_quality) {
-            error = record(file, SQL_ADD_RECENT, id, &gap);
+        bool ends = point.quality == gap_quality;
+        error = !ends || sends_gaps ? record(file, SQL_ADD_RECENT, id, &point) : put(file, SQL_ADD_RECENT, id, &point);
+        if (!error && !ends) {
+            error = sends_gaps ? record(file, SQL_ADD_RECENT, id, &gap) : put(file, SQL_ADD_RECENT, id, &gap);
             file->waiting++;
         }
         file->waiting++;
@@ -369,14 +371,14 @@ int month_file_clear_held(struct month_file *file)
     return month_run(file, month_sql(file, SQL_CLEAR_HELD), "cannot clear what was held");
 }
 
-int month_file_recover(struct month_file *file, uint32_t gap_quality, int64_t *ended_us)
+int month_file_recover(struct month_file *file, uint32_t gap_quality, bool sends_gaps, int64_t *ended_us)
 {
     size_t waiting = file->waiting;
     int error = begin(file);
     if (error)
         return error;
     *ended_us = INT64_MIN;
-    error = end_lines(file, gap_quality, ended_us);
+    error = end_lines(file, gap_quality, sends_gaps, ended_us);
     if (!error)
         error = month_file_clear_held(file);
     error = end(file, error);

@@ -205,17 +205,6 @@ test('SIGSTOP for 10 s, then SIGCONT: the kernel has ended it, and it polls not 
     await two.restart(core);
 });
 
-// For so long nothing may change: who leads goes on, and nobody else.
-async function goesOn(core, seconds) {
-    const since = two.network.now(), other = two.other(core), before = terms(other);
-    await sleep(seconds * 1000);
-    assert.ok(await two.ready(core), `${core.name} leads:\n${core.program.said.slice(-2000)}`);
-    assert.ok(!await two.ready(other));
-    assert.equal(terms(other), before);
-    assert.deepEqual(await two.network.overlaps(), []);
-    assert.ok(await two.network.longestPause(since) < 1500);
-}
-
 test('a standby that is loading its plant takes over as fast', options, async (t) => {
     const core = await two.leader(), other = two.other(core), list = `${two.plant.folder}/tags.csv`;
     await two.followed(core);

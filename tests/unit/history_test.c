@@ -308,7 +308,7 @@ static void a_restart_leaves_a_gap(void **state)
     int64_t ended_us;
     record(s, NOVEMBER, 100);
     struct month_file *file = open_file(s, NOVEMBER);
-    assert_int_equal(month_file_recover(file, QUALITY_BAD_NO_COMMUNICATION, &ended_us), 0);
+    assert_int_equal(month_file_recover(file, QUALITY_BAD_NO_COMMUNICATION, true, &ended_us), 0);
     assert_int_equal(ended_us, NOVEMBER + 99 * S);
     assert_int_equal(month_file_tidy(file), 0);
     assert_int_equal(month_file_import(file, 0, &(struct history_point){ NOVEMBER + 500 * S, 60, 0 }, 1), 0);

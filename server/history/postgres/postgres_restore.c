@@ -71,13 +71,13 @@ static void end(struct postgres_restore *restore)
 
 /* --- there -------------------------------------------------------------------------------------------------------------------- */
 
-/* The lines of whoever recorded before end where it ended, as month_file_recover() ends them. */
+/* The lines of whoever recorded before end where it ended, as month_file_recover() ends them. What it had newest is kept though there is later
+   than that: a standby may have sent the first of its own already. */
 bool postgres_restore_end_lines(struct postgres_tables *tables, int64_t now_us)
 {
     static const char sql[] =
         "BEGIN;"
-        "INSERT INTO sample SELECT n.* FROM newest n JOIN tag g ON g.id = n.tag WHERE g.plant = %1$d AND n.t > ALL"
-        " (SELECT t FROM (SELECT t FROM sample WHERE tag = n.tag ORDER BY t DESC LIMIT 1) last) ON CONFLICT DO NOTHING;"
+        "INSERT INTO sample SELECT n.* FROM newest n JOIN tag g ON g.id = n.tag WHERE g.plant = %1$d ON CONFLICT DO NOTHING;"
         "DELETE FROM newest USING tag g WHERE g.id = newest.tag AND g.plant = %1$d;"
         "INSERT INTO event SELECT %1$d, t, 'gap', format('not recorded for %%s s', extract(epoch FROM to_timestamp(%3$lld) - t)::bigint)"
         " FROM (SELECT max(l.t) AS t FROM tag g,"
