@@ -71,8 +71,8 @@ static void end(struct postgres_restore *restore)
 
 /* --- there -------------------------------------------------------------------------------------------------------------------- */
 
-/* The lines of whoever recorded before end where it ended, as month_file_recover() ends them. What it had newest is kept though there is later
-   than that: a standby may have sent the first of its own already. */
+/* The lines of whoever recorded before end where it ended, as month_file_recover() ends them. What it had newest is kept though there is
+   later than that: a standby may have sent the first of its own already. */
 bool postgres_restore_end_lines(struct postgres_tables *tables, int64_t now_us)
 {
     static const char sql[] =
