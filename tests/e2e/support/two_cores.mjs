@@ -97,13 +97,20 @@ ${more}`);
     }
     // Waits for the one that leads; never two.
     async leader(seconds = 20) {
-        return until('one that leads', async () => {
-            const ready = [];
-            for (const core of Object.values(this.cores))
-                if (await this.ready(core))
-                    ready.push(core);
-            return ready.length === 1 && ready[0];
-        }, seconds);
+        let ready = [];
+        try {
+            return await until('one that leads', async () => {
+                ready = [];
+                for (const core of Object.values(this.cores))
+                    if (await this.ready(core))
+                        ready.push(core);
+                return ready.length === 1 && ready[0];
+            }, seconds);
+        } catch (error) {
+            const said = Object.values(this.cores).map((core) =>
+                `${core.name}${ready.includes(core) ? ' (ready)' : ''}${this.runs(core) ? '' : ' (ended)'}:\n${core.program?.said.slice(-1500)}`);
+            throw new Error(`${error.message}\n${said.join('\n')}`);
+        }
     }
     other(core) { return Object.values(this.cores).find((one) => one !== core); }
     // Waits until the other follows, and its promises count.
