@@ -107,8 +107,8 @@ ${more}`);
                 return ready.length === 1 && ready[0];
             }, seconds);
         } catch (error) {
-            const said = Object.values(this.cores).map((core) =>
-                `${core.name}${ready.includes(core) ? ' (ready)' : ''}${this.runs(core) ? '' : ' (ended)'}:\n${core.program?.said.slice(-1500)}`);
+            const state = (core) => `${ready.includes(core) ? ' (ready)' : ''}${this.runs(core) ? '' : ' (ended)'}`;
+            const said = Object.values(this.cores).map((core) => `${core.name}${state(core)}:\n${core.program?.said.slice(-1500)}`);
             throw new Error(`${error.message}\n${said.join('\n')}`);
         }
     }
