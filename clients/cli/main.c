@@ -9,16 +9,16 @@
 #include "commands.h"
 #include "clients/link/daemon.h"
 
-/* Another program beside this one reads what strangers' programs wrote, so that this one does not. `ending`: of its name. */
+/* Another program beside this one reads what strangers' programs wrote, so that this one does not. `ending`: of its name. Where no /proc says
+   where this one is, it is looked for as a shell would. */
 static int run_beside(const char *ending, char **argv)
 {
-    char path[PATH_MAX];
+    char path[PATH_MAX] = "plantcast";
     ssize_t length = readlink("/proc/self/exe", path, sizeof(path) - strlen(ending) - 1);
-    if (length > 0) {
-        memcpy(path + length, ending, strlen(ending) + 1);
-        execv(path, argv);
-    }
-    fprintf(stderr, "plantcast: %s%s: %s\n", length > 0 ? path : "plantcast", length > 0 ? "" : ending, strerror(errno));
+    size_t end = length > 0 ? (size_t)length : strlen("plantcast");
+    memcpy(path + end, ending, strlen(ending) + 1);
+    execvp(path, argv);
+    fprintf(stderr, "plantcast: %s: %s\n", path, strerror(errno));
     return 1;
 }
 
