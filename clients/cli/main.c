@@ -9,8 +9,8 @@
 #include "commands.h"
 #include "clients/link/daemon.h"
 
-/* Another program beside this one reads what strangers' programs wrote, so that this one does not. `ending`: of its name. Where no /proc says
-   where this one is, it is looked for as a shell would. */
+/* Another program beside this one reads what strangers' programs wrote, so that this one does not. `ending`: of its name. Where no /proc
+   says where this one is, it is looked for as a shell would. */
 static int run_beside(const char *ending, char **argv)
 {
     char path[PATH_MAX] = "plantcast";
