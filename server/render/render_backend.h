@@ -18,7 +18,7 @@ struct render_backend {
     bool (*init)(struct renderer *renderer);
     void (*finish)(struct renderer *renderer);
     /* Returns whether it draws such frames. */
-    bool (*can)(const struct renderer *renderer, const struct frame_context *context);
+    bool (*can)(const struct frame_context *context);
     /* Returns whether it draws this frame in about the time of a preview. */
     bool (*is_quick)(struct renderer *renderer, const struct frame_context *context);
     /* Begins to draw the job's frame. at_once: begin is followed by end or submit, and by nothing else; otherwise other frames may be

@@ -139,7 +139,7 @@ bool renderer_light_job(struct renderer *renderer, struct render_job *job)
 
 static const struct render_backend *choose_backend(const struct renderer *renderer, const struct frame_context *context)
 {
-    bool soft = renderer->by_soft && !renderer->always_gl && render_backend_soft.can(renderer, context);
+    bool soft = renderer->by_soft && !renderer->always_gl && render_backend_soft.can(context);
     return soft ? &render_backend_soft : &render_backend_gl;
 }
 

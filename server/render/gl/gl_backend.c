@@ -69,9 +69,8 @@ static void finish(struct renderer *renderer)
     renderer->by_gl = NULL;
 }
 
-static bool can(const struct renderer *renderer, const struct frame_context *context)
+static bool can(const struct frame_context *context)
 {
-    (void)renderer;
     (void)context;
     return true;
 }

@@ -164,7 +164,7 @@ static bool add_asset(struct soft *soft, int asset, const struct model_level *le
     fill_mesh(soft, &soft->meshes[soft->mesh_count], asset, level);
     struct soft_found *found = &soft->found[soft->mesh_count++];
     found->parts = parts_of(soft, model, level);
-    found->ramp = soft->ramp_of_model[model - soft->gpu_scene->models];
+    found->material = soft->material_of_model[model - soft->gpu_scene->models];
     found->both_sides = both_sides || mesh->cut; /* the inner side of what is cut shows */
     matrix_invert(soft->gpu_scene->scene->assets[asset].placement, file_from_plant);
     find_eye(soft, eye_m);
@@ -252,6 +252,6 @@ void soft_find_triangle(const struct soft *soft, uint32_t id, struct soft_triang
     const struct soft_part *part = &found->parts->parts[found->items[local / PART_TRIANGLES].part];
     triangle->id = id;
     triangle->mesh = (uint32_t)mesh;
-    triangle->material = found->ramp + part->material;
+    triangle->material = found->material + part->material;
     soft_part_triangle(found->parts, part, local % PART_TRIANGLES, triangle->vertices);
 }

@@ -7,6 +7,7 @@
 #include "base/mem.h"
 #include "render/soft/kernels.h"
 #include "render/soft/lanes.h"
+#include "render/soft/ramp_rows.h"
 #include "render/soft/ramps.h"
 #include "render/gl/ghosts.h"
 #include "render/pick/markers.h"
@@ -26,23 +27,25 @@ static const struct soft_kernels *choose_kernels(void)
     return &soft_kernels_plain;
 }
 
-/* Those of all models in one row. */
+/* Of all models, those that are equal once. */
 static void copy_ramps(struct soft *soft)
 {
     const struct gpu_scene *gpu_scene = soft->gpu_scene;
-    soft->ramp_of_model = mem_array(gpu_scene->model_count, sizeof(*soft->ramp_of_model));
+    soft->material_of_model = mem_array(gpu_scene->model_count, sizeof(*soft->material_of_model));
     for (size_t m = 0; m < gpu_scene->model_count; m++) {
-        soft->ramp_of_model[m] = (uint32_t)soft->ramp_count;
-        soft->ramp_count += gpu_scene->models[m].material_count;
+        soft->material_of_model[m] = (uint32_t)soft->material_count;
+        soft->material_count += gpu_scene->models[m].material_count;
     }
-    soft->muted_ramps = mem_array(soft->ramp_count * RAMP_STEPS, sizeof(*soft->muted_ramps));
-    soft->own_ramps = mem_array(soft->ramp_count * RAMP_STEPS, sizeof(*soft->own_ramps));
+    soft->muted_ramps = mem_array(soft->material_count * RAMP_STEPS, sizeof(*soft->muted_ramps));
+    soft->own_ramps = mem_array(soft->material_count * RAMP_STEPS, sizeof(*soft->own_ramps));
     for (size_t m = 0; m < gpu_scene->model_count; m++) {
         const struct model *model = &gpu_scene->models[m];
-        size_t first = (size_t)soft->ramp_of_model[m] * RAMP_STEPS, bytes = model->material_count * RAMP_STEPS * sizeof(uint32_t);
+        size_t first = (size_t)soft->material_of_model[m] * RAMP_STEPS, bytes = model->material_count * RAMP_STEPS * sizeof(uint32_t);
         memcpy(soft->muted_ramps + first, model->ramp_texels[MODEL_MUTED], bytes);
         memcpy(soft->own_ramps + first, model->ramp_texels[MODEL_OWN], bytes);
     }
+    soft->ramp_of_material = mem_array(soft->material_count, sizeof(*soft->ramp_of_material));
+    ramp_rows_pack(soft->muted_ramps, soft->own_ramps, soft->material_count, RAMP_STEPS, MOST_RAMPS, soft->ramp_of_material);
 }
 
 struct soft *soft_create(struct workers *workers, const struct gpu_scene *gpu_scene, const struct sky *sky, struct soft *keeper)
@@ -74,15 +77,11 @@ void soft_destroy(struct soft **soft_ptr)
     mem_free(soft->parts);
     mem_free(soft->muted_ramps);
     mem_free(soft->own_ramps);
-    mem_free(soft->ramp_of_model);
+    mem_free(soft->ramp_of_material);
+    mem_free(soft->material_of_model);
     mem_free(soft->glossy);
     mem_free(soft);
     *soft_ptr = NULL;
-}
-
-bool preview_can(const struct soft *soft)
-{
-    return soft->ramp_count <= MOST_RAMPS;
 }
 
 /* Lines are worked out with the triangles: such a picture is drawn anew each time. */

@@ -27,10 +27,10 @@ static lanes material_of(const struct asset_material *material)
 static void find_materials(struct refiner *refiner)
 {
     const struct gpu_scene *gpu_scene = refiner->gpu_scene;
-    refiner->materials = mem_array(refiner->soft->ramp_count, sizeof(*refiner->materials));
+    refiner->materials = mem_array(refiner->soft->material_count, sizeof(*refiner->materials));
     for (size_t m = 0; m < gpu_scene->model_count; m++)
         for (size_t i = 0; i < gpu_scene->models[m].material_count; i++)
-            refiner->materials[refiner->soft->ramp_of_model[m] + i] = material_of(&gpu_scene->models[m].file->view.materials[i]);
+            refiner->materials[refiner->soft->material_of_model[m] + i] = material_of(&gpu_scene->models[m].file->view.materials[i]);
 }
 
 struct refiner *refiner_create(struct workers *workers, const struct gpu_scene *gpu_scene, const struct sky *sky, struct soft *soft,

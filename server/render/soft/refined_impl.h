@@ -32,7 +32,7 @@ struct refiner {
     const struct sky *sky;
     struct soft *soft; /* keeps the light */
     const struct environments *environments;
-    lanes *materials;                  /* BASE ...; by soft->ramp_of_model and number in the model */
+    lanes *materials;                  /* BASE ...; by number of the material */
     struct refined_light light;
     struct soft_tones tones;
     struct refined *spare;

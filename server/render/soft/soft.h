@@ -24,7 +24,6 @@ size_t soft_kept_bytes(const struct soft *soft);  /* of these */
 size_t soft_room_bytes(const struct soft *soft);  /* to draw in */
 size_t soft_light_bytes(const struct soft *soft); /* read back */
 void soft_rest(struct soft *soft);                /* drops all three */
-bool preview_can(const struct soft *soft); /* there are not too many materials */
 /* Pixels, markers and labels. False: out of memory, or the GL context is lost; logged. */
 bool preview_draw(struct soft *soft, const struct frame_context *context, const struct light *light, const struct isoline_points *points,
                   struct frame *frame);

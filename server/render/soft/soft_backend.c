@@ -32,9 +32,9 @@ static void finish(struct renderer *renderer)
     renderer->by_soft = NULL;
 }
 
-static bool can(const struct renderer *renderer, const struct frame_context *context)
+static bool can(const struct frame_context *context)
 {
-    return !context->reference && (context->view->tier == TIER_REFINED || preview_can(renderer->by_soft->soft));
+    return !context->reference;
 }
 
 static bool is_quick(struct renderer *renderer, const struct frame_context *context)

@@ -57,7 +57,7 @@ struct soft_item { /* a part that may be seen */
 
 struct soft_found { /* what of one mesh may be seen; kept from picture to picture */
     const struct soft_parts *parts;
-    uint32_t ramp; /* of its first material */
+    uint32_t material; /* its first */
     bool both_sides;
     float eye_m[3]; /* in the frame of its file */
     struct soft_rect rect;
@@ -82,9 +82,10 @@ struct soft {
     struct workers *workers;
     const struct soft_kernels *kernels;
     const struct gpu_scene *gpu_scene;
-    uint32_t *muted_ramps, *own_ramps, *ramp_of_model; /* colours, RAMP_STEPS to a row; first row, by number of the model */
-    size_t ramp_count;
-    const struct soft_material *materials; /* the keeper's; as rows of ramps */
+    size_t material_count;                               /* of all models */
+    uint32_t *material_of_model;                         /* the first, by number of the model */
+    uint32_t *muted_ramps, *own_ramps, *ramp_of_material; /* colours, RAMP_STEPS to a row; row, by number of the material */
+    const struct soft_material *materials;               /* the keeper's */
     const uint32_t *backdrops; /* struct sky */
     const uint32_t *colormap;  /* the picture's, and below: struct shaded_colormap, or glossy */
     const float *lines;

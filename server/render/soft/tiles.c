@@ -93,7 +93,7 @@ static void begin_part(struct soft_tile *tile, const struct soft_found *found, c
     tile->mesh = &tile->soft->meshes[found - tile->soft->found];
     tile->parts = found->parts;
     tile->part = &found->parts->parts[item->part];
-    tile->material = &tile->soft->materials[found->ramp + tile->part->material];
+    tile->material = &tile->soft->materials[found->material + tile->part->material];
     tile->cuts = cuts;
 }
 
@@ -136,7 +136,8 @@ static void draw_part(struct soft_tile *tile, const struct soft_found *found, co
     if (tile->face_count == 0)
         return;
     tile->first_id = found->first_id + (uint32_t)(item - found->items) * PART_TRIANGLES;
-    kernels->raster_faces(tile, mesh->has_field ? MARK_FIELD : MARK_CONTEXT | (found->ramp + part->material) << 16);
+    uint32_t ramp = tile->soft->ramp_of_material[found->material + part->material];
+    kernels->raster_faces(tile, mesh->has_field ? MARK_FIELD : MARK_CONTEXT | ramp << 16);
     struct soft_rect rect = faces_rect(tile), blocks = blocks_of(tile, &rect);
     kernels->look_again(tile, &blocks);
 }

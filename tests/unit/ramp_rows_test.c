@@ -1,0 +1,110 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Rows of colours that previews look up: equal ones are kept once, and there are never too many. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+#include <cmocka.h>
+
+#include "base/mem.h"
+#include "render/soft/ramp_rows.h"
+
+enum { STEPS = 4, MOST = 100 };
+
+struct setup {
+    size_t count;
+    uint32_t *muted, *own, *was_muted, *was_own, *rows;
+};
+
+static void begin(struct setup *s, size_t count)
+{
+    s->count = count;
+    for (uint32_t **at = &s->muted; at <= &s->rows; at++)
+        *at = mem_array(count * STEPS, sizeof(**at));
+}
+
+static size_t pack(struct setup *s)
+{
+    memcpy(s->was_muted, s->muted, s->count * STEPS * sizeof(*s->muted));
+    memcpy(s->was_own, s->own, s->count * STEPS * sizeof(*s->own));
+    return ramp_rows_pack(s->muted, s->own, s->count, STEPS, MOST, s->rows);
+}
+
+static void end(struct setup *s)
+{
+    for (uint32_t **at = &s->muted; at <= &s->rows; at++)
+        mem_free(*at);
+}
+
+/* The colours of a material, from black to its own; as context it is grey, but for one bit. */
+static void set(struct setup *s, size_t material, uint32_t color, uint32_t grey)
+{
+    for (uint32_t i = 0; i < STEPS; i++) {
+        uint32_t *own = &s->own[material * STEPS + i];
+        *own = 0xff000000;
+        for (int channel = 0; channel < 24; channel += 8)
+            *own |= (color >> channel & 0xff) * i / (STEPS - 1) << channel;
+        s->muted[material * STEPS + i] = grey;
+    }
+}
+
+static void equal_ones_are_kept_once(void **state)
+{
+    (void)state;
+    struct setup s;
+    begin(&s, 5000);
+    for (size_t i = 0; i < s.count; i++) {
+        uint32_t shade = (uint32_t)(i * 7919 % 50);
+        set(&s, i, 0x102030 + shade, 0x808080 + (shade == 7 && i > 2500)); /* one looks different as context */
+    }
+    assert_int_equal(pack(&s), 51);
+    for (size_t i = 0; i < s.count; i++) {
+        assert_true(s.rows[i] < 51);
+        assert_memory_equal(s.own + s.rows[i] * STEPS, s.was_own + i * STEPS, STEPS * sizeof(uint32_t));
+        assert_memory_equal(s.muted + s.rows[i] * STEPS, s.was_muted + i * STEPS, STEPS * sizeof(uint32_t));
+    }
+    end(&s);
+}
+
+static void too_many_share_those_that_are_near(void **state)
+{
+    (void)state;
+    struct setup s;
+    begin(&s, 20000);
+    for (size_t i = 0; i < s.count; i++)
+        set(&s, i, (uint32_t)i * 2654435761u & 0xffffff, 0x808080);
+    size_t rows = pack(&s);
+    assert_in_range(rows, 9, MOST); /* two bits of each channel */
+    for (size_t i = 0; i < s.count; i++) {
+        assert_true(s.rows[i] < rows);
+        uint32_t got = s.own[(s.rows[i] + 1) * STEPS - 1], wanted = s.was_own[(i + 1) * STEPS - 1];
+        assert_int_equal(got & 0xc0c0c0, wanted & 0xc0c0c0);
+    }
+    end(&s);
+}
+
+static void as_many_as_may_be_are_kept_apart(void **state)
+{
+    (void)state;
+    struct setup s;
+    begin(&s, MOST);
+    for (size_t i = 0; i < s.count; i++)
+        set(&s, i, (uint32_t)i, 0x808080);
+    assert_int_equal(pack(&s), MOST);
+    for (size_t i = 0; i < s.count; i++)
+        assert_int_equal(s.rows[i], i);
+    end(&s);
+    assert_int_equal(ramp_rows_pack(NULL, NULL, 0, STEPS, MOST, NULL), 0);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(equal_ones_are_kept_once),
+        cmocka_unit_test(too_many_share_those_that_are_near),
+        cmocka_unit_test(as_many_as_may_be_are_kept_apart),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
