@@ -123,10 +123,10 @@ clients/web/vendor/uPlot.js: clients/web/package-lock.json
 ifc := $(addprefix preprocess/import/readers/,package-lock.json glb_writer.mjs ifc.mjs)
 $(bin)/plantcast-import-ifc/ifc.mjs: $(ifc)
 	@echo "  NPM  $(@D)"; deploy/vendor_ifc $(build)/npm-ifc $(@D); [ ! -f $@ ] || touch $@
-# Icons of the page, and its version.
+# Icons of the page, numbers that it shares with the shaders, and its version.
 page := $(filter-out clients/web/made/%,$(wildcard clients/web/*.* clients/web/*/*.* clients/web/*/*/*.*))
-clients/web/made/version.js: deploy/stamp $(page) clients/web/vendor/uPlot.js
-	@echo "  WEB  $(@D)"; deploy/stamp clients/web
+clients/web/made/version.js: deploy/stamp $(page) clients/web/vendor/uPlot.js shaders/constants.glsl
+	@echo "  WEB  $(@D)"; deploy/stamp clients/web shaders/constants.glsl
 programs: all
 no-player:
 	@echo "  without plantcast-wall, the player of a wall's displays: no $(strip $(no_player))"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What shaders, render/soft and the page share: render/soft includes this file too, and a test compares what the page says. Nothing but
-// numbers, so that it is both GLSL and C.
+// What shaders, render/soft and the page share: render/soft includes this file too, and the build makes the page's of it (deploy/stamp).
+// Nothing but numbers, so that it is both GLSL and C.
 #ifndef CONSTANTS_GLSL
 #define CONSTANTS_GLSL
 

@@ -1,11 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The patterns that say "no data" and "uncertain", as the server draws them (shaders/field.glsl).
+import { PATTERNS } from '../made/constants.js';
 
-// As in shaders/constants.glsl.
-export const PATTERNS = {
-    PATTERN_PERIODS: 90, PATTERN_LEAST_PX: 6, HATCH_SLANT: 1.4142, HATCH_EDGE: 0.25, STIPPLE_RADIUS: 0.26, RULE_EDGE: 0.36,
-    HATCH_LIGHT_GREY: 240, HATCH_DARK_GREY: 150, STIPPLE_GREY: 64, RULE_LIGHT_GREY: 226, RULE_DARK_GREY: 196,
-};
 const grey = (level) => [level, level, level];
 const HATCH = [grey(PATTERNS.HATCH_LIGHT_GREY), grey(PATTERNS.HATCH_DARK_GREY)], STIPPLE = grey(PATTERNS.STIPPLE_GREY);
 const RULE = [grey(PATTERNS.RULE_LIGHT_GREY), grey(PATTERNS.RULE_DARK_GREY)];
