@@ -146,9 +146,11 @@ test('without its core a renderer says that it has no history, once in its log; 
     const picture = `/snapshot.png?width=240&height=160&at=${iso(77)}`;
     await core.stop('SIGKILL');
     await until('its loss', async () => await renderer.metric('plantcast_core_up') === 0);
-    for (let i = 0; i < 3; i++)
-        assert.deepEqual((await body(renderer, path)).slice(0, 1), [500]);
-    assert.equal((await renderer.fetch(picture)).status, 500);
+    for (const one of [path, path, path, picture, `/api/v1/history/gaps?${range}`, '/api/v1/alarms/journal']) {
+        const answer = await renderer.fetch(one);
+        assert.deepEqual([answer.status, Number(answer.headers.get('retry-after')) > 0], [503, true], one);
+        assert.match(await answer.text(), /^history is the core's, and it does not give it now; try again\n$/, one);
+    }
     assert.ok(renderer.program.said.match(/history: the core: \/api\/v1\/history: there is no connection to it/g).length <= 2);
     core = await nodes.core(port);
     await until('readings', async () => (await renderer.tags())['TI-1'].quality_name === 'Good');

@@ -73,6 +73,8 @@ const SAID = [
         'the server is short of memory; the last picture stays'],
     ['session: %llu is not connected, or is this one', [7], 'session 7 is not connected any more'],
     ['session: %llu does not follow this one', [7], 'session 7 is not connected any more'],
+    ["history is the core's, and it does not give it now; try again", [],
+        'history is kept by the core, which cannot be reached; try again'],
     ["history cannot be read; the server's log says why", [], 'nothing is recorded here, or it cannot be read'],
     ['this daemon records nothing (history: record: no)', [], 'nothing is recorded here, or it cannot be read'],
 ];

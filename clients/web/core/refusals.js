@@ -50,6 +50,7 @@ const KNOWN = [
     [/too narrow for two pictures$/, 'narrow'],
     [/out of memory; the last picture stays$/, 'memory'],
     [/^(\d+) (?:is not connected|does not follow this one)/, 'gone', (session) => ({ session })],
+    [/^history is the core's/, 'coreless'],
     [/^history cannot be read|^this daemon records nothing/, 'history'],
 ];
 // What has no words of ours, by its code.

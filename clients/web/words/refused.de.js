@@ -50,6 +50,7 @@ placeless: dieser Sensor hat keinen Ort in dieser Messgröße
 narrow: das Bild ist zu schmal für zwei Hälften
 memory: dem Server fehlt Speicher; das letzte Bild bleibt
 gone: die Sitzung {session} ist nicht mehr verbunden
+coreless: Aufzeichnungen hat der Kern, der nicht zu erreichen ist; noch einmal versuchen
 history: hier wird nichts aufgezeichnet, oder es ist nicht lesbar
 
 [role]

@@ -50,6 +50,7 @@ placeless: that sensor has no place in this quantity
 narrow: the picture is too narrow for two halves
 memory: the server is short of memory; the last picture stays
 gone: session {session} is not connected any more
+coreless: history is kept by the core, which cannot be reached; try again
 history: nothing is recorded here, or it cannot be read
 
 [role]

@@ -118,6 +118,13 @@ int request_answer_later(struct request *request, const char *why)
     return request_answer(request, HTTP_STATUS_SERVICE_UNAVAILABLE, HTTP_TEXT, mem_strdup(why), strlen(why), "retry-after:", "2");
 }
 
+int request_answer_unreadable(const struct server_context *server, struct request *request)
+{
+    if (server->params.plant.core_link && !server->params.plant.history_folder)
+        return request_answer_later(request, "history is the core's, and it does not give it now; try again\n");
+    return request_answer_text(request, HTTP_STATUS_INTERNAL_SERVER_ERROR, "history cannot be read; the log says why\n");
+}
+
 int request_answer_json(struct request *request, char *text)
 {
     return request_answer(request, HTTP_STATUS_OK, "application/json", text, strlen(text), NULL, NULL);

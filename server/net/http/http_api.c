@@ -130,7 +130,7 @@ void http_on_history_answer(struct server_context *server, struct history_answer
     }
     request_forget(server, request);
     if (!answer->text) /* what was begun cannot be taken back, but it can be seen not to be whole */
-        request_answered(request, answer->first ? request_answer_text(request, HTTP_STATUS_INTERNAL_SERVER_ERROR, HTTP_UNREADABLE) : -1);
+        request_answered(request, answer->first ? request_answer_unreadable(server, request) : -1);
     else
         request_answered(request, whole ? answer_whole(request, answer, type) : chunked_begin(request, type));
 }

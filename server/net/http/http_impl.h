@@ -49,7 +49,6 @@ struct args { /* of the query, decoded */
 
 #define HTTP_TEXT "text/plain; charset=utf-8"
 #define HTTP_NOTHING_RECORDED "this daemon records nothing (history: record: no)\n"
-#define HTTP_UNREADABLE "history cannot be read; the log says why\n"
 
 /* Functions that return int return what the lws callback is to return. */
 
@@ -66,6 +65,8 @@ void chunked_append(struct request *request, char *body, size_t count, bool last
 int chunked_write(struct server_context *server, struct request *request);
 /* Sends 503 with Retry-After. */
 int request_answer_later(struct request *request, const char *why);
+/* Says that history cannot be read: 500, or of a renderer, whose core has it, 503 with Retry-After. */
+int request_answer_unreadable(const struct server_context *server, struct request *request);
 /* Sends JSON; takes text (mem_free). */
 int request_answer_json(struct request *request, char *text);
 /* Sends 400 with the error's text. */

@@ -47,7 +47,6 @@ void answer_instant(struct server_context *server, struct request *request, cons
     struct snapshot_cache *cache = server->params.plant.snapshot_cache;
     const struct historical_snapshot *historical = loaded->good ? snapshot_cache_take(cache, loaded->at_us) : NULL;
     request_forget(server, request);
-    request_answered(request, historical ? answer(server, request, &historical->snapshot)
-                                         : request_answer_text(request, HTTP_STATUS_INTERNAL_SERVER_ERROR, HTTP_UNREADABLE));
+    request_answered(request, historical ? answer(server, request, &historical->snapshot) : request_answer_unreadable(server, request));
     snapshot_cache_give(cache, &historical);
 }

@@ -277,5 +277,5 @@ void http_on_historical_snapshot(struct server_context *server, const struct his
         return;
     }
     request_forget(server, request);
-    request_answered(request, request_answer_text(request, HTTP_STATUS_INTERNAL_SERVER_ERROR, HTTP_UNREADABLE));
+    request_answered(request, request_answer_unreadable(server, request));
 }
