@@ -52,27 +52,69 @@ static bool know_triangle(struct deviation *surface, const uint32_t v[3])
     return is_new;
 }
 
-void deviation_init(struct deviation *surface, const float (*positions_m)[3], const uint32_t *first_there, const uint32_t *part,
-                    size_t part_count, const uint32_t *triangles, size_t triangle_count)
+struct deviation_part {
+    struct trimesh mesh; /* the arrays are those of all; tri_count 0: it has no triangle here */
+    struct bvh *bvh;     /* NULL: it is not measured */
+};
+
+/* The triangles' numbers, part by part. Free with mem_free. */
+static size_t *sort_by_part(const struct deviation_params *params, const uint32_t *triangles, size_t count)
 {
-    *surface = (struct deviation){ .part = part, .has_part = mem_array(part_count, 1) };
+    size_t *first = mem_array(params->part_count + 1, sizeof(*first)), *order = mem_array(count, sizeof(*order));
+    for (size_t t = 0; t < count; t++)
+        first[params->part[triangles[3 * t]] + 1]++;
+    for (size_t p = 0; p < params->part_count; p++)
+        first[p + 1] += first[p];
+    for (size_t t = 0; t < count; t++)
+        order[first[params->part[triangles[3 * t]]]++] = t;
+    mem_free(first);
+    return order;
+}
+
+/* Of triangles that are there part by part. */
+static void list_parts(struct deviation *surface)
+{
+    const struct trimesh *mesh = &surface->mesh;
+    for (size_t t = 0; t < mesh->tri_count; t++) {
+        struct trimesh *of = &surface->parts[surface->part[surface->index[mesh->tris[t][0]]]].mesh;
+        if (of->tri_count++ == 0) {
+            of->points = mesh->points;
+            of->point_count = mesh->point_count;
+            of->tris = mesh->tris + t;
+        }
+    }
+}
+
+static void index_parts(struct deviation *surface, const char *only)
+{
+    for (size_t p = 0; p < surface->part_count; p++)
+        if (surface->parts[p].mesh.tri_count && (!only || only[p]))
+            surface->parts[p].bvh = bvh_create(&surface->parts[p].mesh);
+}
+
+void deviation_init(struct deviation *surface, const struct deviation_params *params, const uint32_t *triangles, size_t triangle_count)
+{
+    *surface = (struct deviation){ .part = params->part,
+                                   .part_count = params->part_count,
+                                   .parts = mem_array(params->part_count, sizeof(*surface->parts)) };
     for (size_t i = 0; i < 3 * triangle_count; i++)
         surface->highest = triangles[i] > surface->highest ? triangles[i] : surface->highest;
     surface->has = mem_array(surface->highest + 1, 1);
     uint32_t *point_of = mem_array(surface->highest + 1, sizeof(*point_of));
-    size_t capacity = 0;
+    size_t capacity = 0, *order = sort_by_part(params, triangles, triangle_count);
     make_room_to_know(surface, triangle_count);
-    for (size_t t = 0; t < triangle_count; t++) {
+    for (size_t i = 0; i < triangle_count; i++) {
+        size_t t = order[i];
         uint32_t corners[3], v[3];
         for (size_t c = 0; c < 3; c++)
-            v[c] = first_there[triangles[3 * t + c]];
+            v[c] = params->first_there[triangles[3 * t + c]];
         if (!know_triangle(surface, v))
             continue;
         for (int c = 0; c < 3; c++) {
-            const float *at = positions_m[v[c]];
+            const float *at = params->positions_m[v[c]];
             const double p[3] = { (double)at[0], (double)at[1], (double)at[2] };
             if (!surface->has[v[c]]) {
-                surface->has[v[c]] = surface->has_part[part[v[c]]] = 1;
+                surface->has[v[c]] = 1;
                 point_of[v[c]] = trimesh_add_point(&surface->mesh, p);
                 mem_grow(&surface->index, &capacity, surface->mesh.point_count, sizeof(*surface->index));
                 surface->index[point_of[v[c]]] = v[c];
@@ -82,16 +124,23 @@ void deviation_init(struct deviation *surface, const float (*positions_m)[3], co
         trimesh_add_tri(&surface->mesh, corners[0], corners[1], corners[2], (uint32_t)t);
     }
     mem_free(point_of);
-    surface->bvh = bvh_create(&surface->mesh);
+    mem_free(order);
+    list_parts(surface);
+    if (params->anywhere)
+        surface->whole = bvh_create(&surface->mesh);
+    else
+        index_parts(surface, params->only);
 }
 
 void deviation_finish(struct deviation *surface)
 {
-    bvh_destroy(&surface->bvh);
+    for (size_t p = 0; p < surface->part_count; p++)
+        bvh_destroy(&surface->parts[p].bvh);
+    bvh_destroy(&surface->whole);
     trimesh_finish(&surface->mesh);
+    mem_free(surface->parts);
     mem_free(surface->index);
     mem_free(surface->has);
-    mem_free(surface->has_part);
     mem_free(surface->known);
     *surface = (struct deviation){ 0 };
 }
@@ -115,13 +164,15 @@ struct probing {
     float *found_m;       /* of each point, then of each triangle */
 };
 
-struct probe { /* a point, and the part that it is of */
-    const struct deviation *to;
-    bool anywhere; /* against all of `to` */
-    uint32_t part;
+struct near { /* a thread's: a triangle of a part of `to` that was near to some point before, or TRIMESH_NONE */
+    uint32_t part, tri;
+};
+
+struct probe { /* a point, and what it is measured against */
+    const struct bvh *bvh; /* NULL: there is nothing of its part */
     double known_m;
     double point[3];
-    uint32_t *near; /* the thread's: a triangle of `to` that was near to some point before, or TRIMESH_NONE */
+    struct near *near;
 };
 
 static uint32_t part_of(const struct deviation *surface, uint32_t tri)
@@ -129,41 +180,38 @@ static uint32_t part_of(const struct deviation *surface, uint32_t tri)
     return surface->part[surface->index[surface->mesh.tris[tri][0]]];
 }
 
-static bool is_of_part(const void *arg, uint32_t tri)
-{
-    const struct probe *probe = arg;
-    return part_of(probe->to, tri) == probe->part;
-}
-
 /* 0: no more than is known. Looks near by first: most points are where they should be. */
 static double distance_of(const struct probe *probe, double expected_m)
 {
     struct bvh_place place;
-    bool (*counts)(const void *, uint32_t) = probe->anywhere ? NULL : is_of_part;
-    if (!probe->anywhere && !probe->to->has_part[probe->part])
+    if (!probe->bvh)
         return INFINITY;
     if (isinf(probe->known_m) ||
-        (probe->known_m > 0 && bvh_any_within(probe->to->bvh, probe->point, probe->known_m, counts, probe, probe->near)))
+        (probe->known_m > 0 && bvh_any_within(probe->bvh, probe->point, probe->known_m, NULL, NULL, &probe->near->tri)))
         return 0;
-    bvh_nearest(probe->to->bvh, probe->point, 2 * expected_m, counts, probe, &place);
+    bvh_nearest(probe->bvh, probe->point, 2 * expected_m, NULL, NULL, &place);
     if (place.tri == TRIMESH_NONE)
-        bvh_nearest(probe->to->bvh, probe->point, INFINITY, counts, probe, &place);
+        bvh_nearest(probe->bvh, probe->point, INFINITY, NULL, NULL, &place);
     return place.distance_m;
 }
 
-static struct probe probe_of(const struct probing *probing, uint32_t part, uint32_t *near)
+static struct probe probe_of(const struct probing *probing, uint32_t part, struct near *near)
 {
+    const struct deviation *to = probing->to;
+    if (!probing->anywhere && near->part != part)
+        *near = (struct near){ part, TRIMESH_NONE };
     return (struct probe){
-        .to = probing->to, .anywhere = probing->anywhere, .part = part, .known_m = (double)probing->known_m[part], .near = near
+        .bvh = probing->anywhere ? to->whole : to->parts[part].bvh, .known_m = (double)probing->known_m[part], .near = near
     };
 }
 
-static void probe_point(const struct probing *probing, size_t i, uint32_t *near)
+static void probe_point(const struct probing *probing, size_t i, struct near *near)
 {
     const struct deviation *from = probing->from;
-    struct probe probe = probe_of(probing, from->part[from->index[i]], near);
-    if ((probing->only && !probing->only[probe.part]) || shares_point(probing->to, from->index[i]))
+    uint32_t part = from->part[from->index[i]];
+    if ((probing->only && !probing->only[part]) || shares_point(probing->to, from->index[i]))
         return;
+    struct probe probe = probe_of(probing, part, near);
     memcpy(probe.point, from->mesh.points[i], sizeof(probe.point));
     probing->found_m[i] = (float)distance_of(&probe, probing->expected_m);
 }
@@ -174,7 +222,7 @@ static double longest_edge(const struct trimesh *mesh, const uint32_t v[3])
                   max_of(vec_distance(mesh->points[v[1]], mesh->points[v[2]]), vec_distance(mesh->points[v[2]], mesh->points[v[0]])));
 }
 
-static double probe_at(const struct probing *probing, size_t t, const double w[3], uint32_t *near)
+static double probe_at(const struct probing *probing, size_t t, const double w[3], struct near *near)
 {
     const struct trimesh *mesh = &probing->from->mesh;
     const uint32_t *v = mesh->tris[t];
@@ -184,7 +232,7 @@ static double probe_at(const struct probing *probing, size_t t, const double w[3
     return distance_of(&probe, probing->expected_m);
 }
 
-static double probe_inside(const struct probing *probing, size_t t, int cuts, uint32_t *near)
+static double probe_inside(const struct probing *probing, size_t t, int cuts, struct near *near)
 {
     double most_m = 0;
     for (int i = 0; i <= cuts; i++)
@@ -197,7 +245,7 @@ static double probe_inside(const struct probing *probing, size_t t, int cuts, ui
 }
 
 /* Corners are probed; a triangle no larger than what is expected cannot stray much farther. */
-static void probe_triangle(const struct probing *probing, size_t t, uint32_t *near)
+static void probe_triangle(const struct probing *probing, size_t t, struct near *near)
 {
     const struct deviation *from = probing->from;
     const uint32_t *v = from->mesh.tris[t], indices[3] = { from->index[v[0]], from->index[v[1]], from->index[v[2]] };
@@ -216,7 +264,7 @@ static void probe_triangle(const struct probing *probing, size_t t, uint32_t *ne
 static void probe_some(void *arg, size_t begin, size_t end)
 {
     const struct probing *probing = arg;
-    uint32_t near = TRIMESH_NONE;
+    struct near near = { 0, TRIMESH_NONE };
     for (size_t i = begin; i < end; i++)
         if (i < probing->from->mesh.point_count)
             probe_point(probing, i, &near);

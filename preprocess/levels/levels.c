@@ -120,7 +120,13 @@ static float error_of_lost(const struct making *making, const uint32_t *welds, s
     for (uint32_t p = 0; p < of->part_count; p++)
         any |= lost[p] = making->version[p] == ABSENT && !making->omissions[p].alone;
     if (any) {
-        deviation_init(&level, (const float(*)[3])of->positions_m, of->first_there, of->part, of->part_count, welds, count / 3);
+        deviation_init(&level,
+                       &(struct deviation_params){ .positions_m = (const float(*)[3])of->positions_m,
+                                                   .first_there = of->first_there,
+                                                   .part = of->part,
+                                                   .part_count = of->part_count,
+                                                   .anywhere = true },
+                       welds, count / 3);
         deviation_measure_lost(&making->versions.first, &level, lost, expected_m, apart_m, making->workers);
         deviation_finish(&level);
     }
@@ -153,7 +159,7 @@ static float face_parts(const struct making *making, uint32_t *welds, size_t cou
     if (levels_face(of, making->used, making->contrary, most_m, welds, count, moved)) {
         struct deviation level;
         const struct deviation *first = &making->versions.first;
-        deviation_init(&level, (const float(*)[3])of->positions_m, of->first_there, of->part, of->part_count, welds, count / 3);
+        levels_surface(&level, of, moved, welds, count);
         for (uint32_t p = 0; p < of->part_count; p++)
             error_m = fmaxf(error_m, moved[p] ? most_m[p] : 0);
         deviation_measure(&level, first, moved, (double)error_m, apart_m, making->workers);

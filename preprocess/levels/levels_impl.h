@@ -48,6 +48,8 @@ struct versions {
 
 /* Simplifies the asset step by step, each version from the one before, and measures the error of each part. workers may be NULL. */
 void versions_make(struct versions *versions, const struct welds *welds, struct workers *workers);
+/* Makes of triangles (welds, three each: count of them) a surface that is measured, of these parts only (NULL: of all). */
+void levels_surface(struct deviation *surface, const struct welds *welds, const char *only, const uint32_t *corners, size_t count);
 /* Frees all versions. */
 void versions_finish(struct versions *versions);
 

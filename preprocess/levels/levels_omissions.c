@@ -16,10 +16,22 @@
 #define AROUND 4.0f      /* sizes: parts so near to each other are looked at together */
 #define PROBES 4         /* on each edge of a part's triangles */
 
+#define CLASSES_MAX 20
+#define FEWER 0.75 /* of the triangles of the class before, at most: a class with more would not be worth its own tree */
+
+/* The triangles of all parts larger than than_m. A small part is looked for among those that may hide it only: in one tree of all
+   triangles its own and its neighbours' would be met first, at every probe. */
+struct size_class {
+    float than_m;
+    struct trimesh mesh; /* the points are those of all */
+    struct bvh *bvh;
+};
+
 struct search {
     const struct welds *welds;
     struct trimesh mesh;
-    struct bvh *bvh;
+    struct size_class classes[CLASSES_MAX]; /* smallest parts first */
+    size_t class_count;
     uint32_t *part;         /* of each triangle */
     uint32_t *first, *tris; /* of each part: its triangles */
     struct omission *omissions;
@@ -50,29 +62,90 @@ static void list_tris(struct search *search)
 
 /* --- on others ------------------------------------------------------------------------------------------------------------ */
 
+static bool may_lie_on_others(const struct welds *welds, size_t part)
+{
+    return (double)welds->size_m[part] <= SMALL * welds->whole_m;
+}
+
+static size_t count_larger(const struct search *search, float than_m)
+{
+    size_t count = 0;
+    for (size_t t = 0; t < search->mesh.tri_count; t++)
+        count += search->welds->size_m[search->part[t]] > than_m;
+    return count;
+}
+
+static void add_class(struct search *search, float than_m, size_t count)
+{
+    struct size_class *class = &search->classes[search->class_count++];
+    const struct trimesh *all = &search->mesh;
+    *class = (struct size_class){ .than_m = than_m, .mesh = { .points = all->points, .point_count = all->point_count } };
+    class->mesh.tris = mem_array(count, sizeof(*class->mesh.tris));
+    class->mesh.tri_source = mem_array(count, sizeof(*class->mesh.tri_source));
+    for (uint32_t t = 0; t < all->tri_count; t++)
+        if (search->welds->size_m[search->part[t]] > than_m) {
+            memcpy(class->mesh.tris[class->mesh.tri_count], all->tris[t], sizeof(*all->tris));
+            class->mesh.tri_source[class->mesh.tri_count++] = t;
+        }
+    class->bvh = bvh_create(&class->mesh);
+}
+
+/* Each part's limit is at or above that of one class; of those the last is taken. */
+static void make_classes(struct search *search)
+{
+    const struct welds *welds = search->welds;
+    float least_m = INFINITY, most_m = (float)(MUCH_LARGER * SMALL * welds->whole_m);
+    for (size_t p = 0; p < welds->part_count; p++)
+        least_m = may_lie_on_others(welds, p) ? fminf(least_m, MUCH_LARGER * welds->size_m[p]) : least_m;
+    if (isinf(least_m))
+        return;
+    size_t last = count_larger(search, least_m);
+    add_class(search, least_m, last);
+    for (float than_m = fmaxf(2 * least_m, 1e-5f * most_m); than_m <= most_m && search->class_count < CLASSES_MAX; than_m *= 2) {
+        size_t count = count_larger(search, than_m);
+        if ((double)count <= FEWER * (double)last) {
+            add_class(search, than_m, count);
+            last = count;
+        }
+    }
+}
+
+static void finish_classes(struct search *search)
+{
+    for (size_t c = 0; c < search->class_count; c++) {
+        bvh_destroy(&search->classes[c].bvh);
+        mem_free(search->classes[c].mesh.tris);
+        mem_free(search->classes[c].mesh.tri_source);
+    }
+}
+
 struct larger {
     const struct search *search;
+    const struct size_class *class;
     float than_m;
+    uint32_t near; /* a triangle of the class that was near to the probe before, or TRIMESH_NONE */
 };
 
 static bool is_larger(const void *arg, uint32_t tri)
 {
     const struct larger *larger = arg;
-    return larger->search->welds->size_m[larger->search->part[tri]] > larger->than_m;
+    return larger->search->welds->size_m[larger->search->part[larger->class->mesh.tri_source[tri]]] > larger->than_m;
 }
 
 /* How far a triangle's edges are from larger parts, if that is more. INFINITY: beyond the limit. */
-static float look_from(const struct larger *larger, uint32_t tri, double limit_m, float apart_m)
+static float look_from(struct larger *larger, uint32_t tri, double limit_m, float apart_m)
 {
-    const struct search *search = larger->search;
-    const struct trimesh *mesh = &search->mesh;
+    const struct trimesh *mesh = &larger->search->mesh;
+    const struct bvh *bvh = larger->class->bvh;
     for (int i = 0; i < 3 * PROBES && !isinf(apart_m); i++) {
         const double *a = mesh->points[mesh->tris[tri][i / PROBES]], *b = mesh->points[mesh->tris[tri][(i / PROBES + 1) % 3]];
         double t = (double)(i % PROBES) / PROBES, point[3];
         struct bvh_place place;
         for (int axis = 0; axis < 3; axis++)
             point[axis] = a[axis] + t * (b[axis] - a[axis]);
-        bvh_nearest(search->bvh, point, limit_m, is_larger, larger, &place);
+        if (apart_m > 0 && bvh_any_within(bvh, point, (double)apart_m, is_larger, larger, &larger->near))
+            continue;
+        bvh_nearest(bvh, point, limit_m, is_larger, larger, &place);
         apart_m = place.tri == TRIMESH_NONE ? INFINITY : fmaxf(apart_m, (float)place.distance_m);
     }
     return apart_m;
@@ -83,9 +156,11 @@ static void look_for_larger(void *arg, size_t begin, size_t end)
     const struct search *search = arg;
     for (size_t p = begin; p < end; p++) {
         float size_m = search->welds->size_m[p], apart_m = 0;
-        struct larger larger = { search, MUCH_LARGER * size_m };
-        if ((double)size_m > SMALL * search->welds->whole_m)
+        struct larger larger = { search, search->classes, MUCH_LARGER * size_m, TRIMESH_NONE };
+        if (!may_lie_on_others(search->welds, p))
             continue;
+        while (larger.class + 1 < search->classes + search->class_count && larger.class[1].than_m <= larger.than_m)
+            larger.class ++;
         for (uint32_t i = search->first[p]; i < search->first[p + 1] && !isinf(apart_m); i++)
             apart_m = look_from(&larger, search->tris[i], (double)size_m / 2, apart_m);
         if (!isinf(apart_m))
@@ -102,7 +177,7 @@ static size_t list_boxes(const struct search *search, struct box *boxes)
     size_t count = 0;
     for (uint32_t p = 0; p < welds->part_count; p++) {
         struct box *box = &boxes[count];
-        if (!isinf(search->omissions[p].from_m) || (double)welds->size_m[p] > SMALL * welds->whole_m)
+        if (!isinf(search->omissions[p].from_m) || !may_lie_on_others(welds, p))
             continue;
         box->part = p;
         for (int axis = 0; axis < 3; axis++) {
@@ -155,13 +230,13 @@ void omissions_find(struct omission *omissions, const struct welds *welds, struc
     if (welds->part_count < 2)
         return;
     list_tris(&search);
-    search.bvh = bvh_create(&search.mesh);
+    make_classes(&search);
     if (workers)
         workers_for(workers, welds->part_count, 16, look_for_larger, &search);
     else
         look_for_larger(&search, 0, welds->part_count);
     look_for_lonely(&search);
-    bvh_destroy(&search.bvh);
+    finish_classes(&search);
     trimesh_finish(&search.mesh);
     mem_free(search.part);
     mem_free(search.first);

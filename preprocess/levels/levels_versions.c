@@ -60,16 +60,26 @@ static double halve(struct version *to, const struct version *from, const struct
     return (double)error * scale_m;
 }
 
+void levels_surface(struct deviation *surface, const struct welds *welds, const char *only, const uint32_t *corners, size_t count)
+{
+    deviation_init(surface,
+                   &(struct deviation_params){ .positions_m = (const float(*)[3])welds->positions_m,
+                                               .first_there = welds->first_there,
+                                               .part = welds->part,
+                                               .part_count = welds->part_count,
+                                               .only = only },
+                   corners, count / 3);
+}
+
 static void measure(struct version *version, const struct version *before, const struct welds *welds, const struct deviation *first,
                     double expected_m, struct workers *workers)
 {
     struct deviation surface;
     char *changed = mem_array(welds->part_count, 1);
-    deviation_init(&surface, (const float(*)[3])welds->positions_m, welds->first_there, welds->part, welds->part_count, version->welds,
-                   version->count / 3);
     memcpy(version->error_m, before->error_m, welds->part_count * sizeof(*version->error_m));
     for (size_t p = 0; p < welds->part_count; p++)
         changed[p] = version->tris[p] != before->tris[p] && (double)before->error_m[p] <= LEVELS_FARTHEST * welds->whole_m;
+    levels_surface(&surface, welds, changed, version->welds, version->count);
     deviation_measure(&surface, first, changed, expected_m, version->error_m, workers);
     deviation_measure(first, &surface, changed, expected_m, version->error_m, workers);
     deviation_finish(&surface);
@@ -94,8 +104,7 @@ void versions_make(struct versions *versions, const struct welds *welds, struct 
     for (size_t i = 0; i < model->count; i++)
         model->welds[i] = welds->of_vertex[g->indices[i]];
     count_tris(model, welds);
-    deviation_init(&versions->first, (const float(*)[3])welds->positions_m, welds->first_there, welds->part, welds->part_count,
-                   model->welds, model->count / 3);
+    levels_surface(&versions->first, welds, NULL, model->welds, model->count);
     while (versions->count < VERSIONS_MAX && triangles_of(versions) > LEAST_TRIANGLES) {
         const struct version *before = &versions->at[versions->count - 1];
         struct version *version = add_version(versions, welds, before->count);

@@ -127,6 +127,8 @@ uint64_t build_key(uint64_t geometry_key, const struct plant *plant, const struc
         hash_field(&state, plant, sensors, sensor_count, i);
     }
     hash_gp(&state, plant, sensors, sensor_count);
+    if (sensor_count && !sensor_distances_matter(plant, sensors, sensor_count))
+        XXH3_64bits_update(&state, "a", 1);
     return XXH3_64bits_digest(&state);
 }
 
@@ -200,6 +202,12 @@ static void find_distances(struct build *build)
         !sensor_distances_find(&build->measured, build->log, build->workers, build->input, &build->geometry, build->output, why);
     if (build->failed[1])
         memcpy(build->why, why, sizeof(why));
+}
+
+static void assume_sensors(struct build *build)
+{
+    if (build->input->sensor_count > 0)
+        sensor_distances_assume(&build->measured, build->workers, build->input, &build->geometry);
 }
 
 /* --- and so do splitting and the check ----------------------------------------------------------------------------------------- */
@@ -449,9 +457,9 @@ static bool build_file(struct build *build)
 {
     const struct build_input *input = build->input;
     struct clusters clusters = { 0 };
-    bool any = input->sensor_count > 0;
+    bool any = sensor_distances_matter(input->plant, input->sensors, input->sensor_count);
     uint32_t own = build->geometry.vertex_count;
-    if (!run_both(build, input->cache ? NULL : make_levels, any ? find_distances : NULL))
+    if (!run_both(build, input->cache ? NULL : make_levels, any ? find_distances : assume_sensors))
         return false;
     if (any) {
         pack_parts(build);
@@ -461,6 +469,8 @@ static bool build_file(struct build *build)
         build->keeping = workers_begin(build->workers, write_caches, build);
         surface_field_finish(&build->measured.field); /* it is large */
     }
+    if (!any && input->sensor_count > 0)
+        sensor_distances_even(&build->distances, input->sensor_count, own);
     for (size_t l = 0; l < build->levels.count && !any; l++)
         begin_clusters(build, &build->levels.at[l]);
     end_clusters(build, &clusters);

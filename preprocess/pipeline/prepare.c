@@ -19,6 +19,7 @@
 #include "preprocess/cache/model_cache.h"
 #include "preprocess/cache/folder.h"
 #include "preprocess/pipeline/progress.h"
+#include "preprocess/pipeline/sensor_distances.h"
 #include "preprocess/pipeline/build_report_json.h"
 
 #define FAR_M 0.25       /* a sensor farther from its surface than this, */
@@ -406,7 +407,7 @@ static void parse_batch(struct run *run)
             lose(asset, model->why);
         } else {
             double own = own_triangles(asset, model);
-            asset->work = own + (asset->sensor_count ? SENSORS_WORK : 0);
+            asset->work = own + (sensor_distances_matter(prepare->plant, asset->sensors, asset->sensor_count) ? SENSORS_WORK : 0);
             triangles += own;
         }
         progress_expect(&run->progress, asset->work);

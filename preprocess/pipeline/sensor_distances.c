@@ -8,8 +8,10 @@
 
 #include "base/clock.h"
 #include "base/mem.h"
+#include "base/vec.h"
 #include "preprocess/cache/distance_cache.h"
 #include "preprocess/pipeline/geometry_cache.h"
+#include "surface/mesh/bvh.h"
 
 bool build_sensor_place(const struct gltf_model *model, const struct geometry_params *geometry, const struct plant_sensor *sensor,
                         double place_m[3], char why[MODEL_WHY_BYTES])
@@ -19,11 +21,24 @@ bool build_sensor_place(const struct gltf_model *model, const struct geometry_pa
 }
 
 /* Where each sensor is, less the origin. */
-static void place_sensors(const struct build_input *input, const struct geometry *geometry, double (*places)[3])
+static void place_sensors(struct sensor_distances *measured, const struct build_input *input, const struct geometry *geometry)
 {
+    measured->places_m = mem_array(input->sensor_count, sizeof(*measured->places_m));
+    measured->sensors = mem_array(input->sensor_count, sizeof(*measured->sensors));
     for (size_t i = 0; i < input->sensor_count; i++)
         for (int axis = 0; axis < 3; axis++)
-            places[i][axis] = input->sensors[i].position_m[axis] - geometry->origin_m[axis];
+            measured->places_m[i][axis] = input->sensors[i].position_m[axis] - geometry->origin_m[axis];
+}
+
+static struct asset_sensor sensor_at(const struct plant_sensor *sensor, const double place_m[3], const double surface_m[3],
+                                     double distance_m, uint32_t vertex)
+{
+    struct asset_sensor out = { .surface_distance_m = (float)distance_m, .nearest_vertex = vertex, .node_hash = sensor->node_hash };
+    for (int axis = 0; axis < 3; axis++) {
+        out.position_m[axis] = (float)place_m[axis];
+        out.surface_m[axis] = (float)surface_m[axis];
+    }
+    return out;
 }
 
 struct drop {
@@ -39,13 +54,7 @@ static void drop_some(void *arg, size_t begin, size_t end)
     for (size_t i = begin; i < end; i++) {
         struct surface_place at;
         surface_nearest(drop->surface, drop->places[i], &at);
-        for (int axis = 0; axis < 3; axis++) {
-            drop->out[i].position_m[axis] = (float)drop->places[i][axis];
-            drop->out[i].surface_m[axis] = (float)at.position_m[axis];
-        }
-        drop->out[i].surface_distance_m = (float)at.distance_m;
-        drop->out[i].nearest_vertex = at.vertex;
-        drop->out[i].node_hash = drop->input->sensors[i].node_hash;
+        drop->out[i] = sensor_at(&drop->input->sensors[i], drop->places[i], at.position_m, at.distance_m, at.vertex);
     }
 }
 
@@ -95,9 +104,7 @@ bool sensor_distances_find(struct sensor_distances *measured, struct log *log, s
 {
     struct build_report *report = &output->report;
     int64_t start_ns = clock_mono_ns();
-    measured->places_m = mem_array(input->sensor_count, sizeof(*measured->places_m));
-    measured->sensors = mem_array(input->sensor_count, sizeof(*measured->sensors));
-    place_sensors(input, g, measured->places_m);
+    place_sensors(measured, input, g);
     char cause[SURFACE_WHY_BYTES] = "out of memory";
     if (!measured->surface)
         measured->surface = surface_create(log, workers, (const float(*)[3])g->positions_m, g->vertex_count, g->indices, g->index_count / 3,
@@ -110,6 +117,64 @@ bool sensor_distances_find(struct sensor_distances *measured, struct log *log, s
     report->surface_s = (double)(made_ns - start_ns) / NS_PER_S;
     report->solve_s = (double)(clock_mono_ns() - made_ns) / NS_PER_S;
     return true;
+}
+
+/* --- where all places are assumed --------------------------------------------------------------------------------------------- */
+
+bool sensor_distances_matter(const struct plant *plant, const struct plant_sensor *sensors, size_t count)
+{
+    for (size_t i = 0; i < count; i++)
+        if (!plant->tags[sensors[i].tag].place_assumed)
+            return true;
+    return false;
+}
+
+struct assume {
+    const struct bvh *bvh;
+    const struct build_input *input;
+    struct sensor_distances *measured;
+    const struct trimesh *mesh;
+};
+
+static void assume_some(void *arg, size_t begin, size_t end)
+{
+    const struct assume *assume = arg;
+    for (size_t i = begin; i < end; i++) {
+        const double *place_m = assume->measured->places_m[i];
+        struct bvh_place at;
+        bvh_nearest(assume->bvh, place_m, INFINITY, NULL, NULL, &at);
+        const uint32_t *v = assume->mesh->tris[at.tri];
+        uint32_t nearest = v[0];
+        for (int c = 1; c < 3; c++)
+            if (vec_distance2(assume->mesh->points[v[c]], place_m) < vec_distance2(assume->mesh->points[nearest], place_m))
+                nearest = v[c];
+        assume->measured->sensors[i] = sensor_at(&assume->input->sensors[i], place_m, at.point, at.distance_m, nearest);
+    }
+}
+
+void sensor_distances_assume(struct sensor_distances *measured, struct workers *workers, const struct build_input *input,
+                             const struct geometry *g)
+{
+    struct trimesh mesh = { 0 };
+    place_sensors(measured, input, g);
+    for (uint32_t v = 0; v < g->vertex_count; v++)
+        trimesh_add_point(
+            &mesh, (const double[3]){ (double)g->positions_m[v][0], (double)g->positions_m[v][1], (double)g->positions_m[v][2] });
+    for (uint32_t i = 0; i < g->index_count; i += 3)
+        trimesh_add_tri(&mesh, g->indices[i], g->indices[i + 1], g->indices[i + 2], i / 3);
+    struct bvh *bvh = bvh_create(&mesh);
+    struct assume assume = { bvh, input, measured, &mesh };
+    workers_for(workers, input->sensor_count, 8, assume_some, &assume);
+    bvh_destroy(&bvh);
+    trimesh_finish(&mesh);
+}
+
+void sensor_distances_even(struct distance_rows *distances, size_t sensor_count, uint32_t vertex_count)
+{
+    *distances = (struct distance_rows){ .distances_m = mem_array(sensor_count, sizeof(*distances->distances_m)),
+                                         .place_of = mem_array(vertex_count, sizeof(*distances->place_of)),
+                                         .sensor_count = sensor_count,
+                                         .vertex_count = vertex_count };
 }
 
 void sensor_distances_finish(struct sensor_distances *measured)

@@ -5,6 +5,7 @@
 #include "base/log.h"
 #include "base/workers.h"
 #include "preprocess/pipeline/build_io.h"
+#include "preprocess/subdivision/distance_rows.h"
 
 struct sensor_distances {
     struct surface *surface;
@@ -18,6 +19,15 @@ struct sensor_distances {
    cases. */
 bool sensor_distances_find(struct sensor_distances *measured, struct log *log, struct workers *workers, const struct build_input *input,
                            const struct geometry *geometry, struct build_output *output, char why[MODEL_WHY_BYTES]);
+/* Returns whether any sensor stands at a place that is known. Those whose place is assumed stand for the whole asset, evenly: without
+   others no distance from them says anything, and no surface is needed. */
+bool sensor_distances_matter(const struct plant *plant, const struct plant_sensor *sensors, size_t count);
+/* Instead of sensor_distances_find(), where no distance matters: projects the sensors onto the nearest triangle of the geometry, also of
+   one that other parts hide. */
+void sensor_distances_assume(struct sensor_distances *measured, struct workers *workers, const struct build_input *input,
+                             const struct geometry *geometry);
+/* Makes the distances of sensors that stand for the whole asset: 0 at every vertex. The caller finishes them. */
+void sensor_distances_even(struct distance_rows *distances, size_t sensor_count, uint32_t vertex_count);
 /* Frees surface, distances and sensors. */
 void sensor_distances_finish(struct sensor_distances *measured);
 

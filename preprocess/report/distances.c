@@ -6,6 +6,7 @@
 
 #include "plant/transform.h"
 #include "preprocess/cache/folder.h"
+#include "preprocess/pipeline/sensor_distances.h"
 #include "protocol/asset_distance.h"
 
 static int column_of(const struct prepare_asset *asset, int tag)
@@ -41,6 +42,13 @@ bool distances_print(const struct prepare *prepare, const char *folder, int asse
     char why[200] = "there is none";
     if (column < 0) {
         diag_error(diag, prepare->plant->tags_path, prepare->plant->tags[tag].line, 0, "tag %s is no sensor of asset %s",
+                   prepare->plant->tags[tag].name, asset->plant->id);
+        return false;
+    }
+    if (prepare->plant->tags[tag].place_assumed &&
+        !sensor_distances_matter(prepare->plant, asset->sensors, asset->sensor_count)) {
+        diag_error(diag, prepare->plant->tags_path, prepare->plant->tags[tag].line, 0,
+                   "tag %s: its place on asset %s is assumed: it stands for all of it, and no distance from it was found",
                    prepare->plant->tags[tag].name, asset->plant->id);
         return false;
     }

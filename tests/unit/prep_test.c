@@ -366,6 +366,49 @@ static void a_field_that_is_constant_needs_no_triangles(void **state)
     assert_true(triangles[2] == triangles[1]);
 }
 
+/* Sensors that stand for their whole asset need neither a surface nor triangles of their own; beside one whose place is known they do. */
+static void assumed_places_need_no_surface(void **state)
+{
+    struct prep_case *c = *state;
+    static const char rows[] = "Tag Name,Address,Data Type,Source,Group,Asset,Node,X,Y,Z,Place\n"
+                               "T1,400001,Float,plc,temperature,A,,0.31,0.42,0.1,equipment\n"
+                               "T2,400003,Float,plc,temperature,A,,1.63,0.57,0,%s\n";
+    for (int known = 0; known < 2; known++) {
+        char *tags = mem_printf(rows, known ? "position" : "equipment");
+        mem_free(temp_write_text(c->folder, "tags.csv", tags));
+        mem_free(tags);
+        prep_case_plant(c, "plant: { name: Assumed }\nassets: [{ id: A, model: model.glb, nodes: plate-1, up: z }]\n"
+                           "groups: [{ id: temperature, unit: K, min: 0, max: 1 }]\n"
+                           "sources: [{ id: plc, type: modbus, host: h, byte_order: CDAB, address_base: 1 }]\ntags: tags.csv\n");
+        prep_case_expect(c, "$PLANT --report json", 0);
+        json_t *report = prep_case_json(&c->out);
+        const json_t *surface = json_object_get(json_array_get(json_object_get(report, "assets"), 0), "surface");
+        assert_int_equal(json_is_null(surface), !known);
+        assert_int_equal(prep_case_number(report, "assets.0.vertices_added") > 0, known);
+        assert_float_equal(prep_case_number(report, "assets.0.sensors.0.surface_distance_m"), 0.1, 1e-6);
+        assert_float_equal(prep_case_number(report, "assets.0.sensors.1.surface_distance_m"), 0, 1e-6);
+        json_decref(report);
+        uint64_t key;
+        struct folder_file file;
+        char *path = prep_case_file(c, ".asset", &key), *folder = temp_path(c->folder, "plant.prepared"), why[200];
+        assert_int_equal(folder_open(&file, folder, key, why), 1);
+        const struct asset_view *view = &file.view;
+        assert_int_equal(view->header->sensor_count, 2);
+        float most_m = 0;
+        for (uint32_t v = 0; v < view->header->vertex_count; v++)
+            most_m = fmaxf(most_m, fmaxf(asset_distance_m(view, 0, v), asset_distance_m(view, 1, v)));
+        assert_true(known ? most_m > 1 && most_m < 3 : most_m == 0);
+        const float *nearest = view->positions_m[view->sensors[0].nearest_vertex], *at = view->sensors[0].surface_m;
+        assert_true(hypot((double)(nearest[0] - at[0]), (double)(nearest[1] - at[1])) < (known ? 1e-6 : 0.036)); /* squares of 5 cm */
+        folder_close(&file);
+        mem_free(folder);
+        mem_free(path);
+        prep_case_expect(c, "distances $PLANT --asset A --sensor T1", !known);
+        if (!known)
+            prep_case_says(&c->err, "tags.csv:2: error: tag T1: its place on asset A is assumed");
+    }
+}
+
 static void a_new_revision_costs_what_it_changes(void **state)
 {
     struct prep_case *s = *state;
@@ -442,6 +485,7 @@ int main(void)
         WITH_PLANT(two_at_a_time_take_turns),
         WITH_PLANT(who_waits_says_for_whom_and_can_be_stopped),
         WITH_PLANT(a_field_that_is_constant_needs_no_triangles),
+        WITH_PLANT(assumed_places_need_no_surface),
         WITH_PLANT(a_new_revision_costs_what_it_changes),
         WITH_PLANT(distances_are_printed),
         WITH_PLANT(textures_are_read),

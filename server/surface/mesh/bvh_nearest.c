@@ -156,9 +156,10 @@ void bvh_build_wide(struct bvh *bvh)
     const struct trimesh *mesh = bvh->mesh;
     double largest = 0;
     int halvings = 0;
-    for (size_t p = 0; p < mesh->point_count; p++)
-        for (int axis = 0; axis < 3; axis++)
-            largest = max_of(largest, fabs(mesh->points[p][axis]));
+    for (size_t t = 0; t < mesh->tri_count; t++) /* of many small meshes of the same points, each must not look at all of them */
+        for (int i = 0; i < 3; i++)
+            for (int axis = 0; axis < 3; axis++)
+                largest = max_of(largest, fabs(mesh->points[mesh->tris[t][i]][axis]));
     while ((mesh->tri_count + ((size_t)1 << halvings) - 1) >> halvings > BVH_WIDE)
         halvings++;
     if (mesh->tri_count)
