@@ -11,14 +11,16 @@ const PROGRAM = '/usr/sbin/haproxy', SHIPPED = new URL('../../../deploy/proxy/ha
 export const missingHaproxy = () => (existsSync(PROGRAM) ? null : 'haproxy is not installed');
 
 export class Haproxy {
-    // renderers: [{ port, agentPort }], core: { port }
-    static async start(renderers, core) {
+    // renderers: [{ port, agentPort }], core and standby: { port }
+    static async start(renderers, core, standby = null) {
         const proxy = new Haproxy();
         proxy.folder = mkdtempSync(join(tmpdir(), 'plantcast-haproxy-'));
         proxy.port = await freePort();
         let text = readFileSync(SHIPPED, 'utf8').replaceAll(/ ssl verify required ca-file \S+/g, '')
             .replace(/bind :443 .*/, `bind 127.0.0.1:${proxy.port}`).replace('/run/haproxy', proxy.folder)
             .replace('server core 10.0.0.10:8443', `server core 127.0.0.1:${core.port}`);
+        if (standby)
+            text = text.replace('# server standby 10.0.0.20:8443', `server standby 127.0.0.1:${standby.port}`);
         renderers.forEach(({ port, agentPort }, i) => {
             text = text.replace(`10.0.0.1${i + 1}:8443`, `127.0.0.1:${port}`)
                 .replace(`cookie r${i + 1} agent-port 8404`, `cookie r${i + 1} agent-port ${agentPort}`);
@@ -34,8 +36,8 @@ export class Haproxy {
         return proxy;
     }
 
-    // What `show stat` says of each server: { r1: { status, weight, sessions } }
-    async servers() {
+    // What `show stat` says of each server of a backend: { r1: { status, weight, sessions } }
+    async servers(backend = 'renderers') {
         const text = await new Promise((done, fail) => {
             const socket = connect(join(this.folder, 'admin.sock'), () => socket.end('show stat\n'));
             let said = '';
@@ -45,7 +47,7 @@ export class Haproxy {
         });
         const [head, ...lines] = text.trim().split('\n').map((line) => line.replace(/^# /, '').split(','));
         const column = (line, name) => line[head.indexOf(name)];
-        return Object.fromEntries(lines.filter((line) => column(line, 'pxname') === 'renderers' && /^r\d$/.test(column(line, 'svname')))
+        return Object.fromEntries(lines.filter((line) => column(line, 'pxname') === backend && column(line, 'svname') !== 'BACKEND')
             .map((line) => [column(line, 'svname'), { status: column(line, 'status'), weight: Number(column(line, 'weight')),
                 sessions: Number(column(line, 'scur')) }]));
     }

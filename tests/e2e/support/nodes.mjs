@@ -31,7 +31,7 @@ export class Node {
 
     get url() { return `ws://127.0.0.1:${this.port}`; }
 
-    async fetch(path, token) {
+    async fetch(path, token = this.token) {
         const headers = token ? { authorization: `Bearer ${token}` } : {};
         return fetch(`http://127.0.0.1:${this.port}${path}`, { headers, signal: AbortSignal.timeout(10000) });
     }

@@ -27,10 +27,10 @@ export const terms = (core) => core.program.said.match(/polls devices and owns t
 export const kill = (core, signal) => () => core.program.child.kill(signal);
 
 export class TwoCores {
-    // server: PostgresServer with a database; more: YAML at the end of the plant file.
-    static async create(server, more = '') {
+    // server: PostgresServer with a database; more: YAML at the end of the plant file; access: who is let in to the cores.
+    static async create(server, more = '', access = ['--trust-local']) {
         const two = new TwoCores();
-        two.server = server;
+        Object.assign(two, { server, access });
         two.nodes = await Nodes.create();
         const { plant } = two.nodes, tapPort = await freePort();
         two.plant = plant;
@@ -68,11 +68,12 @@ ${more}`);
     start(name, as = name) { return this.startCore(this.cores[name], as); }
     async startCore(core, as = core.name) {
         const { plant, rendererFile, tokenFile } = this.nodes;
-        core.node = new Node(plant, ['--role', 'core', '--port', String(core.port), '--node', as, '--trust-local', '--tokens', tokenFile,
+        core.node = new Node(plant, ['--role', 'core', '--port', String(core.port), '--node', as, ...this.access, '--tokens', tokenFile,
             '--core', `ws://127.0.0.1:${core.toOther.port}`, '--core-token-file', rendererFile,
             '--history', join(plant.folder, core.name, 'history')], core.file,
         ['unshare', '--mount', 'sh', '-c', `mount --bind ${core.hosts} /etc/hosts && exec "$@"`, 'sh']);
         core.program = core.node.program;
+        core.node.token = this.access.includes('--trust-local') ? undefined : this.nodes.tokens.viewer;
         this.nodes.all.push(core.node);
         await core.node.ready();
         return core;

@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// HAProxy in front of two cores and a renderer: what only the core answers comes from whoever leads, also after kill -9, and sessions at
+// the renderer are not lost.
+import assert from 'node:assert/strict';
+import { after, before, test } from 'node:test';
+import { Haproxy, missingHaproxy } from './support/haproxy.mjs';
+import { get, PlainClient } from './support/plain_client.mjs';
+import { freePort } from './support/ports.mjs';
+import { PostgresServer } from './support/postgres_server.mjs';
+import { kill, missingTwoCores, TAKE_OVER_MS, TwoCores, until } from './support/two_cores.mjs';
+
+const skip = missingTwoCores() || (missingHaproxy() ?? false), options = { skip, timeout: 120000 };
+const CHECKS_MS = 1500; // the proxy asks once a second
+const HOST = ['--behind-proxy', '--host', 'plant.example', '--host', '127.0.0.1'];
+let server, two, renderer, proxy;
+
+before(async () => {
+    if (skip)
+        return;
+    server = await PostgresServer.start();
+    server.makeDatabase('plants');
+    two = await TwoCores.create(server, '', HOST);
+    for (const [tag, value] of [['TI-1', 50], ['TI-2', 20], ['PI-1', 5]])
+        await two.plant.tell(`set ${tag} ${value}`);
+    await Promise.all([two.start('one'), two.start('two')]);
+    await two.followed(await two.leader());
+    const agentPort = await freePort();
+    renderer = await two.renderer('r1', '--agent-port', String(agentPort), ...HOST);
+    proxy = await Haproxy.start([Object.assign(renderer, { agentPort })], two.cores.one, two.cores.two);
+    await until('the proxy and the renderer', async () => /^UP/.test((await proxy.servers().catch(() => null))?.r1.status));
+});
+after(async () => {
+    await proxy?.destroy();
+    await two?.destroy();
+    await server?.destroy();
+});
+
+const ask = (path, token = two.nodes.tokens.viewer) => get(proxy.port, path, 'GET', `Authorization: Bearer ${token}\r\n`);
+// Which of the two cores the proxy sends to.
+const chosen = async () => {
+    const { core, standby } = await proxy.servers('core');
+    return [[core, 'one'], [standby, 'two']].filter(([{ status }]) => /^UP/.test(status)).map(([, name]) => name).join();
+};
+const journal = async () => JSON.parse((await ask('/api/v1/alarms/journal?tag=TI-1')).body).rows;
+
+async function operator() {
+    const client = await PlainClient.open(proxy.port);
+    client.say({ type: 'hello', tokens: true, token: two.nodes.tokens.operator, width: 160, height: 90, codecs: ['jpeg'] });
+    await client.text('welcome', 10000);
+    return client;
+}
+
+test('of two cores the proxy asks the one that leads', options, async () => {
+    const core = await two.leader();
+    await until('the proxy\'s choice', async () => await chosen() === core.name, 5);
+    assert.equal((await ask('/api/v1/history?tags=TI-1')).status, 200);
+    assert.equal((await ask('/api/v1/history?tags=TI-1', 'wrong')).status, 401);
+});
+
+for (const [signal, how] of [['SIGKILL', 'kill -9'], ['SIGTERM', 'an end in good order']])
+    test(`${how}: the other answers in its place, and who is at the renderer stays`, options, async (t) => {
+        const core = await two.leader(), other = two.other(core), anna = await operator();
+        await two.followed(core);
+        await two.plant.tell('set TI-1 95');
+        await until('the alarm', async () => (await journal()).some(({ state }) => state === 'unacknowledged'), 10);
+        const rows = (await journal()).length, began = performance.now();
+        await two.takeOver(core, kill(core, signal));
+        await until('an answer', async () => (await ask('/api/v1/alarms/journal?tag=TI-1')).status === 200, 10);
+        const took = performance.now() - began;
+        t.diagnostic(`answers again after ${(took / 1000).toFixed(1)} s`);
+        assert.ok(took < TAKE_OVER_MS + CHECKS_MS, `${took} ms`);
+        assert.equal(await chosen(), other.name);
+        await until('readings at the renderer', async () =>
+            (await renderer.tags(two.nodes.tokens.viewer))['TI-1'].quality_name === 'Good', 5);
+        anna.say({ type: 'alarm', seq: 1, action: 'acknowledge', alarms: [['TI-1', 'H']] });
+        assert.equal((await anna.text('alarmed')).done, 1);
+        const acknowledged = async () => (await journal()).filter(({ event, who }) => event === 'acknowledge' && who === 'anna').length;
+        await until('the acknowledgement in the journal', async () => await acknowledged() === (signal === 'SIGKILL' ? 1 : 2), 5);
+        assert.ok((await journal()).length > rows, 'what was there before is there');
+        assert.equal(anna.closed, null);
+        anna.close();
+        await two.plant.tell('set TI-1 50');
+        await two.restart(core);
+        await two.followed(other);
+        assert.equal(await chosen(), other.name, 'who came back stands by');
+    });
