@@ -122,6 +122,95 @@ static void check_point(const struct trimesh *mesh, const struct bvh *bvh, const
     check_any(mesh, bvh, point, third, distance_m - near_m, tri, false);
 }
 
+/* --- what a ray and a box meet --------------------------------------------------------------------------------------------------- */
+
+static void mark(void *arg, uint32_t tri)
+{
+    ((char *)arg)[tri]++;
+}
+
+static void mark_hit(void *arg, uint32_t tri, double t)
+{
+    assert_true(t > 0);
+    mark(arg, tri);
+}
+
+/* By Cramer's rule. 0 and 1: outside and inside by far, -1: so near to an edge, or to the origin, that rounding decides. */
+static int meets_slowly(const struct trimesh *mesh, uint32_t tri, const double from[3], const double way[3])
+{
+    const uint32_t *v = mesh->tris[tri];
+    double ab[3], ac[3], ao[3], n[3], side[3];
+    vec_sub(mesh->points[v[1]], mesh->points[v[0]], ab);
+    vec_sub(mesh->points[v[2]], mesh->points[v[0]], ac);
+    vec_sub(from, mesh->points[v[0]], ao);
+    vec_cross(ab, ac, n);
+    double det = -vec_dot(way, n), t = vec_dot(ao, n) / det;
+    vec_cross(ao, way, side);
+    double u = vec_dot(ac, side) / det, w = -vec_dot(ab, side) / det, least = min_of(min_of(u, w), min_of(1 - u - w, t));
+    return fabs(det) < 1e-9 || fabs(least) < 1e-6 ? -1 : least > 0;
+}
+
+static void check_ray(const struct trimesh *mesh, const struct bvh *bvh, const double from[3], const double way[3], int counts[2])
+{
+    char *met = mem_array(mesh->tri_count, 1);
+    bvh_ray(bvh, from, way, mark_hit, met);
+    for (uint32_t t = 0; t < mesh->tri_count; t++) {
+        int expected = meets_slowly(mesh, t, from, way);
+        if (expected >= 0) {
+            assert_int_equal(met[t], expected);
+            counts[expected]++;
+        }
+    }
+    mem_free(met);
+}
+
+/* Every triangle whose box comes that near is visited, once; one that is well beyond is not. */
+static void check_box(const struct trimesh *mesh, const struct bvh *bvh, const double low[3], const double high[3], double margin_m)
+{
+    char *met = mem_array(mesh->tri_count, 1);
+    bvh_overlaps(bvh, low, high, margin_m, mark, met);
+    for (uint32_t t = 0; t < mesh->tri_count; t++) {
+        double apart_m = -INFINITY;
+        for (int axis = 0; axis < 3; axis++) {
+            const uint32_t *v = mesh->tris[t];
+            double a = mesh->points[v[0]][axis], b = mesh->points[v[1]][axis], c = mesh->points[v[2]][axis];
+            apart_m = max_of(apart_m, max_of(min_of(a, min_of(b, c)) - high[axis], low[axis] - max_of(a, max_of(b, c))));
+        }
+        if (apart_m <= margin_m)
+            assert_int_equal(met[t], 1);
+        else
+            assert_true(met[t] == 0 || apart_m < margin_m + 0.1);
+    }
+    mem_free(met);
+}
+
+static void test_what_rays_and_boxes_meet(void **state)
+{
+    static const size_t counts[] = { 0, 1, 8, 9, 65, 513, 3000 };
+    static const double shifts_m[] = { 0, 3e4 };
+    int met[2] = { 0 };
+    (void)state;
+    for (size_t i = 0; i < sizeof(counts) / sizeof(*counts); i++)
+        for (size_t j = 0; j < 2; j++) {
+            struct trimesh mesh;
+            make_mesh(&mesh, counts[i], shifts_m[j]);
+            struct bvh *bvh = bvh_create(&mesh);
+            for (int p = 0; p < 60; p++) {
+                double from[3], way[3], high[3];
+                for (int axis = 0; axis < 3; axis++) {
+                    from[axis] = (axis < 2 ? shifts_m[j] : 0) + between(-4, 10);
+                    way[axis] = p % 4 == 3 && axis != p % 3 ? 0 : between(-1, 1); /* some along an axis */
+                    high[axis] = from[axis] + (p % 5 ? between(0, 4) : 0);        /* some a point */
+                }
+                check_ray(&mesh, bvh, from, way, met);
+                check_box(&mesh, bvh, from, high, p % 3 ? 0 : between(0, 1));
+            }
+            bvh_destroy(&bvh);
+            trimesh_finish(&mesh);
+        }
+    assert_true(met[0] > 100000 && met[1] > 1000);
+}
+
 /* Counts that fill the nodes, just do not, and just exceed them; far from the origin, where floats are coarse; points far away, on
    corners, and on planes. */
 static void test_finds_the_nearest(void **state)
@@ -198,6 +287,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_finds_the_nearest),
+        cmocka_unit_test(test_what_rays_and_boxes_meet),
         cmocka_unit_test(test_equally_near_ones_go_by_number),
         cmocka_unit_test(test_a_parallel_segment_crosses_nothing),
     };

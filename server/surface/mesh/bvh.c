@@ -9,7 +9,6 @@
 #include "surface/mesh/bvh_impl.h"
 
 #define LEAF_TRIS 4u
-#define STACK_NODES 128
 #define SAME_PLACE 1e-6 /* of the longest side: where a segment is parallel to a triangle, rounding decides where their planes meet */
 
 static void box_of(const struct bvh *bvh, uint32_t first, uint32_t count, double low[3], double high[3])
@@ -112,34 +111,9 @@ void bvh_destroy(struct bvh **bvh_ptr)
     *bvh_ptr = NULL;
 }
 
-void bvh_overlaps(const struct bvh *bvh, const double low[3], const double high[3], double margin_m, void (*visit)(void *arg, uint32_t tri),
-                  void *arg)
-{
-    uint32_t stack[STACK_NODES];
-    int depth = 0;
-    if (bvh->node_count)
-        stack[depth++] = 0;
-    while (depth) {
-        uint32_t at = stack[--depth];
-        const struct bvh_node *node = &bvh->nodes[at];
-        bool apart = false;
-        for (int axis = 0; axis < 3; axis++)
-            apart = apart || node->low[axis] > high[axis] + margin_m || node->high[axis] < low[axis] - margin_m;
-        if (apart)
-            continue;
-        if (node->count) {
-            for (uint32_t i = node->first; i < node->first + node->count; i++)
-                visit(arg, bvh->order[i]);
-        } else {
-            stack[depth++] = node->first;
-            stack[depth++] = at + 1;
-        }
-    }
-}
-
-/* Moeller & Trumbore 1997. t in lengths of direction, unbounded. */
-static bool line_meets(const double p[3], const double direction[3], const double a[3], const double b[3], const double c[3], double *t,
-                       double weights[3])
+/* Moeller & Trumbore 1997. */
+bool bvh_line_meets(const double p[3], const double direction[3], const double a[3], const double b[3], const double c[3], double *t,
+                    double weights[3])
 {
     double ab[3], ac[3], ap[3], h[3], q[3];
     vec_sub(b, a, ab);
@@ -162,48 +136,10 @@ bool triangle_crossed(const double p[3], const double q[3], const double a[3], c
 {
     double direction[3], at[3], place[3];
     vec_sub(q, p, direction);
-    if (!line_meets(p, direction, a, b, c, t, weights) || *t < 0 || *t > 1)
+    if (!bvh_line_meets(p, direction, a, b, c, t, weights) || *t < 0 || *t > 1)
         return false;
     vec_mix(p, q, *t, at);
     for (int axis = 0; axis < 3; axis++)
         place[axis] = weights[0] * a[axis] + weights[1] * b[axis] + weights[2] * c[axis];
     return vec_distance(at, place) <= SAME_PLACE * max_of(vec_length(direction), max_of(vec_distance(a, b), vec_distance(a, c)));
-}
-
-static bool box_meets_ray(const struct bvh_node *node, const double origin[3], const double inverse[3])
-{
-    double near = 0, far = INFINITY;
-    for (int axis = 0; axis < 3; axis++) {
-        double t0 = (node->low[axis] - origin[axis]) * inverse[axis], t1 = (node->high[axis] - origin[axis]) * inverse[axis];
-        near = max_of(near, min_of(t0, t1));
-        far = min_of(far, max_of(t0, t1));
-    }
-    return near <= far;
-}
-
-void bvh_ray(const struct bvh *bvh, const double origin[3], const double direction[3], void (*visit)(void *arg, uint32_t tri, double t),
-             void *arg)
-{
-    uint32_t stack[STACK_NODES];
-    int depth = 0;
-    const double inverse[3] = { 1 / direction[0], 1 / direction[1], 1 / direction[2] };
-    if (bvh->node_count)
-        stack[depth++] = 0;
-    while (depth) {
-        uint32_t at = stack[--depth];
-        const struct bvh_node *node = &bvh->nodes[at];
-        if (!box_meets_ray(node, origin, inverse))
-            continue;
-        for (uint32_t i = node->first; i < node->first + node->count; i++) {
-            const uint32_t *v = bvh->mesh->tris[bvh->order[i]];
-            double t, weights[3];
-            if (line_meets(origin, direction, bvh->mesh->points[v[0]], bvh->mesh->points[v[1]], bvh->mesh->points[v[2]], &t, weights) &&
-                t > 0)
-                visit(arg, bvh->order[i], t);
-        }
-        if (!node->count) {
-            stack[depth++] = node->first;
-            stack[depth++] = at + 1;
-        }
-    }
 }

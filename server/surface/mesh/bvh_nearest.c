@@ -11,8 +11,6 @@
 #include "base/vec.h"
 #include "surface/mesh/bvh_impl.h"
 
-#define IS_TRIANGLE 0x80000000u
-#define STACK 256         /* seven of each node on the way down wait, and there are 10 or less */
 #define BOX_MARGIN 2.4e-7 /* of the largest coordinate, four roundings of it: a point in the box is in it in floats too */
 #define MARGIN 1e-5       /* of a square in floats, many times what it is off by */
 
@@ -131,7 +129,7 @@ static struct box build_wide(struct bvh *bvh, uint32_t first, uint32_t count, in
     for (size_t i = 0; i < BVH_WIDE; i++) {
         struct box box = { { INFINITY, INFINITY, INFINITY }, { -INFINITY, -INFINITY, -INFINITY } };
         if (!halvings && i < count) {
-            node.child[i] = bvh->order[first + i] | IS_TRIANGLE;
+            node.child[i] = bvh->order[first + i] | BVH_IS_TRIANGLE;
             box = box_of_tri(bvh->mesh, bvh->order[first + i], margin);
         } else if (halvings && i < lanes) {
             box = build_wide(bvh, firsts[i], firsts[i + 1] - firsts[i], halvings - ((halvings - 1) % 3 + 1), margin);
@@ -242,7 +240,7 @@ SIMD_BODY void search(struct search *s, look *look_at)
 {
     const float p[3] = { (float)s->point[0], (float)s->point[1], (float)s->point[2] };
     const struct bvh_wide *wide = s->bvh->wide;
-    uint64_t stack[STACK];
+    uint64_t stack[BVH_STACK];
     float limit2 = in_floats(s->best2);
     size_t depth = s->bvh->wide_count ? push_near(look_at, &wide[s->bvh->wide_count - 1], p, limit2, stack) : 0;
     while (depth) {
@@ -252,11 +250,11 @@ SIMD_BODY void search(struct search *s, look *look_at)
         memcpy(&distance2, &bits, sizeof(bits));
         if (distance2 > limit2)
             continue;
-        if (!(child & IS_TRIANGLE)) {
+        if (!(child & BVH_IS_TRIANGLE)) {
             depth += push_near(look_at, &wide[child], p, limit2, stack + depth);
             continue;
         }
-        child &= ~IS_TRIANGLE;
+        child &= ~BVH_IS_TRIANGLE;
         if (s->allowed && !s->allowed(s->arg, child))
             continue;
         try_tri(s->bvh, child, s->point, &s->best2, s->place);

@@ -162,19 +162,21 @@ static bool is_near(const struct solid *solid, const double place[3], double mar
 
 static bool is_inside(const struct solid *solid, const double place[3], double same_m)
 {
-    int outside = 0;
+    int outside = 0, inside = 0;
     if (!is_near(solid, place, 0))
         return false;
-    for (int r = 0; r < RAYS && outside <= RAYS - RAYS_INSIDE; r++) {
+    for (int r = 0; r < RAYS && outside <= RAYS - RAYS_INSIDE && inside < RAYS_INSIDE; r++) {
         struct hits hits;
         hits.solid = solid;
         hits.direction = directions[r];
         hits.same_m = same_m;
         hits.count = hits.turns = 0;
         bvh_ray(solid->bvh, place, directions[r], count_hit, &hits);
-        outside += !says_inside(&hits);
+        bool says = says_inside(&hits);
+        inside += says;
+        outside += !says;
     }
-    return outside <= RAYS - RAYS_INSIDE;
+    return inside >= RAYS_INSIDE;
 }
 
 struct face { /* in question: its middle and normal, and the solid that it is part of, if that is closed */
