@@ -64,14 +64,15 @@ ${more}`);
             toDatabase: await this.network.link(this.server.port, { host, port: this.databasePort }) };
     }
 
-    // It follows the other or leads, as it comes. as: the name that it has.
+    // It follows the other or leads, as it comes. as: the name that it has. Its member before: the program that starts it.
     start(name, as = name) { return this.startCore(this.cores[name], as); }
     async startCore(core, as = core.name) {
         const { plant, rendererFile, tokenFile } = this.nodes;
         core.node = new Node(plant, ['--role', 'core', '--port', String(core.port), '--node', as, ...this.access, '--tokens', tokenFile,
             '--core', `ws://127.0.0.1:${core.toOther.port}`, '--core-token-file', rendererFile,
             '--history', join(plant.folder, core.name, 'history')], core.file,
-        ['unshare', '--mount', 'sh', '-c', `mount --bind ${core.hosts} /etc/hosts && exec "$@"`, 'sh']);
+        ['unshare', '--mount', 'sh', '-c', `mount --bind ${core.hosts} /etc/hosts && exec "$@"`, 'sh',
+            ...(core.before ?? [])]);
         core.program = core.node.program;
         core.node.token = this.access.includes('--trust-local') ? undefined : this.nodes.tokens.viewer;
         this.nodes.all.push(core.node);

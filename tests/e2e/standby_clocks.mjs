@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Two cores whose clocks are an hour apart: the standby says so, takes over as fast, and nothing is lost, told twice or older than it is.
+// What a core whose clock is behind recorded while the other was away, the other does not read afterwards: the database has it.
+import assert from 'node:assert/strict';
+import { after, before, test } from 'node:test';
+import { missingClocks, withClockOff } from './support/clocks.mjs';
+import { PostgresServer } from './support/postgres_server.mjs';
+import { kill, missingTwoCores, sleep, TwoCores, until } from './support/two_cores.mjs';
+
+const skip = missingTwoCores() || (missingClocks() ?? false), options = { skip, timeout: 240000 };
+const HOUR_S = 3600;
+let server;
+
+before(async () => {
+    server = skip ? null : await PostgresServer.start();
+});
+after(() => server?.destroy());
+
+const json = async (node, path) => (await node.fetch(path)).json();
+const alarm = async (node) => (await json(node, '/api/v1/alarms')).alarms.find(({ tag, kind }) => tag === 'TI-1' && kind === 'H');
+
+// What is recorded of TI-2 and good, [[time_us, value], ...], at a core and in its database.
+async function recorded(node) {
+    const now_s = Date.now() / 1000, span = `from=${now_s - 2 * HOUR_S}&to=${now_s + 2 * HOUR_S}`;
+    const { series } = await json(node, `/api/v1/history?tags=TI-2&${span}&points=20000`);
+    return series[0].points.filter(([, value, quality]) => value !== null && quality === 0).map(([us, value]) => [us, value]);
+}
+const sent = () => server.ask(`SELECT (extract(epoch FROM s.t) * 1000000)::bigint, s.v FROM plantcast.sample s
+    JOIN plantcast.tag g ON g.id = s.tag WHERE g.name = 'TI-2' AND s.q = 0 AND s.v IS NOT NULL ORDER BY s.t`)
+    .map(([us, value]) => [Number(us), Number(value)]);
+
+async function move(two) {
+    for (let i = 0; i < 20; i++) {
+        await two.plant.tell(`set TI-2 ${20 + i % 7}`);
+        await sleep(150);
+    }
+}
+
+for (const off_s of [HOUR_S, -HOUR_S])
+    test(`a standby whose clock is an hour ${off_s > 0 ? 'ahead' : 'behind'} takes over, and the other from it`, options, async (t) => {
+        server.makeDatabase(off_s > 0 ? 'ahead' : 'behind');
+        const two = await TwoCores.create(server), { one, two: other } = two.cores;
+        other.before = withClockOff(off_s);
+        try {
+            for (const [tag, value] of [['TI-1', 95], ['TI-2', 20], ['PI-1', 5]])
+                await two.plant.tell(`set ${tag} ${value}`);
+            await two.start('one');
+            await two.leader();
+            await two.start('two');
+            await two.followed(one);
+            await other.program.line(new RegExp(`its clock is 3[56]\\d\\d\\.\\d s ${off_s > 0 ? 'behind' : 'ahead of'} this machine's`));
+            await until('the alarm at the standby', async () => (await alarm(other.node))?.state === 'unacknowledged', 10);
+            const anna = await one.node.client({}, { token: two.nodes.tokens.operator });
+            anna.say({ type: 'alarm', seq: 1, action: 'acknowledge', alarms: [['TI-1', 'H']] });
+            await anna.text('alarmed');
+            anna.close();
+            await move(two);
+            const first = await two.takeOver(one, kill(one, 'SIGKILL')), began_us = Date.now() * 1000;
+            t.diagnostic(`${first.pause_ms.toFixed(0)} ms without a poller`);
+            const kept = await alarm(other.node), { tags } = await json(other.node, '/api/v1/tags?count=9');
+            assert.deepEqual([kept.state, kept.who], ['acknowledged', 'anna']);
+            t.diagnostic(`raised ${((kept.raised_us - began_us) / 1e6).toFixed(0)} s before`);
+            for (const { name, age_ms } of tags.filter(({ value }) => value !== null))
+                assert.ok(age_ms >= 0 && age_ms < 5000, `${name}: ${age_ms} ms`);
+            await move(two);
+            const ofTwo = await recorded(other.node);
+            await two.plant.tell('set TI-1 50');
+            await until('the end of the alarm', async () => !await alarm(other.node), 10);
+            await two.restart(one);
+            await two.followed(other);
+            const second = await two.takeOver(other, kill(other, 'SIGKILL'));
+            t.diagnostic(`${second.pause_ms.toFixed(0)} ms without a poller`);
+            assert.equal(await alarm(one.node), undefined, 'what ended has ended');
+            await move(two);
+            await two.restart(other);
+            await two.followed(one);
+            await sleep(7000); // the newest samples are sent
+            const events = (await json(one.node, '/api/v1/alarms/journal?tag=TI-1')).rows.map(({ event }) => event);
+            assert.equal(new Set(events).size, events.length, `each once: ${events}`);
+            const times = (points) => [0, off_s].map((from_s) =>
+                points.filter(([us]) => Math.abs(us - began_us - from_s * 1e6) < 120e6).length);
+            for (const [what, points, least] of [['two, while it led', ofTwo, [10, 15]], ['one', await recorded(one.node), [30, 0]],
+                ['the database', sent(), [30, 15]]]) {
+                const [right, wrong] = times(points);
+                t.diagnostic(`${what}: ${right} by the right clock, ${wrong} by the other`);
+                assert.ok(right >= least[0] && wrong >= least[1], `${what}: ${right} by the right clock, ${wrong} by the other`);
+                assert.equal(right + wrong, points.length, `${what}: no other times`);
+            }
+        } finally {
+            await two.destroy();
+        }
+    });
