@@ -255,7 +255,9 @@ $(gen)/embedded.c: deploy/embed $(embedded_files)
 # --- tests: one program per file --------------------------------------------------------------------------------------------
 unit_tests := $(patsubst tests/%.c,$(out)/tests/%,$(wildcard tests/unit/*_test.c))
 gpu_tests  := $(patsubst tests/%.c,$(out)/tests/%,$(wildcard tests/gpu/*_test.c))
-support    := $(call objects,$(wildcard tests/support/*.c tests/support/*.cc))
+# An archive, as the layers: a test is linked with what it uses, and does not load the 285 libraries of all of them.
+support    := $(out)/lib/support.a
+$(support): $(call objects,$(wildcard tests/support/*.c tests/support/*.cc))
 # The exact solver that distances are held against, by CGAL.
 $(out)/tests/unit/accuracy_test $(out)/tests/unit/contact_test: $(call objects,$(wildcard tests/oracle/*.cc))
 $(out)/tests/unit/accuracy_test $(out)/tests/unit/contact_test: pkg_libs += -lgmp -lmpfr
