@@ -8,7 +8,7 @@ import { BUILD } from './plant.mjs';
 import { sweep } from './sweep.mjs';
 
 const CHROMIUM = process.env.CHROMIUM ?? '/usr/bin/chromium';
-// The same engine without windows, menus and their own processes, which take four times as long as an empty page. Whole in `make test-long`.
+// The same engine without windows, menus and their own processes, which take four times as long as an empty page. `make test-long` has all.
 const SHELL = '/usr/bin/chromium-headless-shell';
 const HEADLESS = sweep(CHROMIUM, existsSync(SHELL) && !process.env.CHROMIUM ? SHELL : CHROMIUM);
 const QUIET = [
