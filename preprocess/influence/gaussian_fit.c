@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A grid of ranges and of shares of noise, then a finer one around the best; the deviation follows from both. */
+/* A grid of ranges by some of the sensors, then by all of them a parabola through the best ones; for each range a grid of shares of noise
+   and a finer one around the best. The deviation follows from both. */
 #include "preprocess/influence/gaussian_fit.h"
 
 #include <math.h>
@@ -12,9 +13,12 @@
 #include "plant/number.h"
 #include "preprocess/influence/gaussian_contrast.h"
 
-#define RANGES 9  /* of the coarse grid, evenly in logarithms; as many of the fine one */
+#define RANGES 9  /* of the grid, evenly in logarithms */
+#define FEW 96    /* sensors that these are tried with: a range costs two solves for each */
+#define CLOSER 3  /* times that the parabola is laid through better ones */
 #define SHARES 13 /* noise by deviation, from GAUSSIAN_LEAST_NOISE to MOST_SHARE */
 #define MOST_SHARE 3.0
+#define SAME 0.02 /* logarithms of ranges: nearer than readings can tell */
 #define LEAST_INSTANTS 8 /* fewer say nothing about three numbers */
 #define LEAST_SENSORS 3
 
@@ -167,17 +171,135 @@ static void try_range(struct fit *fit, double range_m, const double *kernel, con
     }
 }
 
-static bool try_ranges(struct fit *fit, struct log *log, struct workers *workers, const struct influence_mesh *mesh, double first_m,
-                       double last_m, int count)
+static double logarithm(double x) /* where `log` is the one that is written to */
 {
-    for (int i = 0; i < count; i++) {
-        double *kernel = NULL, range_m = count == 1 ? first_m : first_m * pow(last_m / first_m, (double)i / (count - 1));
-        uint32_t *body = NULL;
-        if (!gaussian_covariance(log, workers, mesh, range_m, &kernel, &body))
+    return log(x);
+}
+
+struct trial { /* the best for a range */
+    double log_range, likelihood;
+};
+
+/* False: out of memory, logged. */
+static bool try_one(struct fit *fit, struct log *log, struct workers *workers, const struct influence_mesh *mesh, double log_range,
+                    struct trial *trial)
+{
+    const struct gaussian_params best = fit->best;
+    const double best_likelihood = fit->best_likelihood;
+    double *kernel = NULL;
+    uint32_t *body = NULL;
+    if (!gaussian_covariance(log, workers, mesh, exp(log_range), &kernel, &body))
+        return false;
+    fit->best_likelihood = -INFINITY;
+    try_range(fit, exp(log_range), kernel, body);
+    *trial = (struct trial){ log_range, fit->best_likelihood };
+    if (!(fit->best_likelihood > best_likelihood)) {
+        fit->best = best;
+        fit->best_likelihood = best_likelihood;
+    }
+    mem_free(kernel);
+    mem_free(body);
+    return true;
+}
+
+static void begin_fit(struct fit *fit, const struct gaussian_params *stated, const struct readings_table *table)
+{
+    const size_t n = table->count;
+    *fit = (struct fit){ .stated = stated, .table = table, .best_likelihood = -INFINITY };
+    fit->scatter = mem_array(n * n, sizeof(*fit->scatter));
+    fit->room[0] = mem_array(n * n, sizeof(double));
+    fit->room[1] = mem_array(n * n, sizeof(double));
+    fit->means = mem_array(n, sizeof(*fit->means));
+    find_scatter(fit);
+}
+
+static void finish_fit(struct fit *fit)
+{
+    mem_free(fit->scatter);
+    mem_free(fit->room[0]);
+    mem_free(fit->room[1]);
+    mem_free(fit->means);
+}
+
+/* Every so-manieth sensor, so that there are FEW at most. */
+static void pick_few(const struct influence_mesh *mesh, const struct readings_table *table, struct influence_mesh *few_of_mesh,
+                     struct readings_table *few_of_table)
+{
+    const size_t n = table->count, count = n < FEW ? n : FEW;
+    *few_of_mesh = *mesh;
+    few_of_mesh->source_count = count;
+    few_of_mesh->discs = mem_array(count, sizeof(*few_of_mesh->discs));
+    *few_of_table = (struct readings_table){ .count = count, .instants = table->instants };
+    few_of_table->values = mem_array(table->instants * count, sizeof(*few_of_table->values));
+    for (size_t i = 0; i < count; i++) {
+        const size_t from = i * n / count;
+        few_of_mesh->discs[i] = mesh->discs[from];
+        for (size_t t = 0; t < table->instants; t++)
+            few_of_table->values[t * count + i] = table->values[t * n + from];
+    }
+}
+
+/* The best of the grid. */
+static bool look_around(const struct gaussian_params *stated, struct log *log, struct workers *workers, const struct influence_mesh *mesh,
+                        const struct readings_table *table, double first, double step, double *log_range)
+{
+    struct influence_mesh few_of_mesh;
+    struct readings_table few_of_table;
+    struct fit fit;
+    struct trial trial;
+    pick_few(mesh, table, &few_of_mesh, &few_of_table);
+    begin_fit(&fit, stated, &few_of_table);
+    bool good = true;
+    for (int i = 0; good && i < RANGES; i++)
+        good = try_one(&fit, log, workers, &few_of_mesh, first + step * i, &trial);
+    *log_range = fit.best.range_m > 0 ? logarithm(fit.best.range_m) : first;
+    finish_fit(&fit);
+    mem_free(few_of_table.values);
+    mem_free(few_of_mesh.discs);
+    return good;
+}
+
+/* Where the parabola through three of them is highest; NAN: nowhere between. */
+static double summit(const struct trial at[3])
+{
+    double a = at[1].log_range - at[0].log_range, b = at[1].log_range - at[2].log_range;
+    double fa = at[1].likelihood - at[0].likelihood, fb = at[1].likelihood - at[2].likelihood;
+    double over = a * fb - b * fa, up = a * a * fb - b * b * fa;
+    return over != 0 && isfinite(up / over) ? at[1].log_range - up / over / 2 : NAN;
+}
+
+/* Three of them around the best, a step apart, then closer. */
+static bool close_in(struct fit *fit, struct log *log, struct workers *workers, const struct influence_mesh *mesh, double start,
+                     double step, double first, double last)
+{
+    struct trial at[3];
+    start = min_of(max_of(start, first + step), last - step);
+    for (int i = 0; i < 3; i++)
+        if (!try_one(fit, log, workers, mesh, start + step * (i - 1), &at[i]))
             return false;
-        try_range(fit, range_m, kernel, body);
-        mem_free(kernel);
-        mem_free(body);
+    while (at[0].likelihood > at[1].likelihood && at[0].log_range > first) {
+        at[2] = at[1], at[1] = at[0];
+        if (!try_one(fit, log, workers, mesh, at[1].log_range - step, &at[0]))
+            return false;
+    }
+    while (at[2].likelihood > at[1].likelihood && at[2].log_range < last) {
+        at[0] = at[1], at[1] = at[2];
+        if (!try_one(fit, log, workers, mesh, at[1].log_range + step, &at[2]))
+            return false;
+    }
+    for (int i = 0; i < CLOSER; i++) {
+        double log_range = summit(at);
+        struct trial found;
+        if (!(log_range > at[0].log_range && log_range < at[2].log_range) || fabs(log_range - at[1].log_range) < SAME)
+            break;
+        if (!try_one(fit, log, workers, mesh, log_range, &found))
+            return false;
+        if (found.likelihood <= at[1].likelihood)
+            at[found.log_range < at[1].log_range ? 0 : 2] = found;
+        else {
+            at[found.log_range < at[1].log_range ? 2 : 0] = at[1];
+            at[1] = found;
+        }
     }
     return true;
 }
@@ -186,25 +308,22 @@ bool gaussian_fit(struct gaussian_params *params, struct log *log, struct worker
                   const struct readings_table *table, double least_m, double most_m, char why[300])
 {
     const size_t n = table->count;
-    struct fit fit = { .stated = params, .table = table, .best_likelihood = -INFINITY };
+    struct fit fit;
     if (n < LEAST_SENSORS) {
         snprintf(why, 300, "%zu sensors on one asset: nothing can be fitted to fewer than %d; state range_m, noise and deviation", n,
                  LEAST_SENSORS);
         return false;
     }
-    fit.scatter = mem_array(n * n, sizeof(*fit.scatter));
-    fit.room[0] = mem_array(n * n, sizeof(double));
-    fit.room[1] = mem_array(n * n, sizeof(double));
-    fit.means = mem_array(n, sizeof(*fit.means));
-    find_scatter(&fit);
+    begin_fit(&fit, params, table);
     bool good;
     if (isnan(params->range_m)) {
-        double step = pow(most_m / least_m, 1.0 / (RANGES - 1));
-        good = try_ranges(&fit, log, workers, mesh, least_m, most_m, RANGES);
-        double around_m = fit.best.range_m;
-        good = good && try_ranges(&fit, log, workers, mesh, max_of(around_m / step, least_m), min_of(around_m * step, most_m), RANGES);
-    } else
-        good = try_ranges(&fit, log, workers, mesh, params->range_m, params->range_m, 1);
+        double first = logarithm(least_m), last = logarithm(most_m), step = (last - first) / (RANGES - 1), start;
+        good = look_around(params, log, workers, mesh, table, first, step, &start) &&
+               close_in(&fit, log, workers, mesh, start, step / 2, first, last);
+    } else {
+        struct trial trial;
+        good = try_one(&fit, log, workers, mesh, logarithm(params->range_m), &trial);
+    }
     if (!good)
         snprintf(why, 300, "nothing could be fitted: see above");
     else if (!(fit.best.deviation > 0)) {
@@ -212,9 +331,6 @@ bool gaussian_fit(struct gaussian_params *params, struct log *log, struct worker
         good = false;
     } else
         *params = fit.best;
-    mem_free(fit.scatter);
-    mem_free(fit.room[0]);
-    mem_free(fit.room[1]);
-    mem_free(fit.means);
+    finish_fit(&fit);
     return good;
 }
