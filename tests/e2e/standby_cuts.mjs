@@ -120,3 +120,26 @@ test('others of the names of both are told, and take nobody\'s place while the l
     await Promise.all(started.map((one) => one.program.stop()));
     await two.followed(core);
 });
+
+test('of bids that the database takes up at the same time one is taken', options, async (t) => {
+    for (const core of Object.values(two.cores))
+        await core.program.stop();
+    const row = () => server.ask('SELECT epoch, leader FROM plantcast.lease')[0], [before_] = row();
+    const release = await server.lock('SELECT 1 FROM plantcast.lease');
+    const waiting = () => server.ask("SELECT 1 FROM pg_stat_activity WHERE wait_event_type = 'Lock' AND query LIKE 'UPDATE lease%'").length;
+    try {
+        await Promise.all([two.start('one'), two.start('two')]);
+        await sleep(4000); // both have bid
+        await until('bids that wait', () => waiting() >= 4);
+        t.diagnostic(`${waiting()} bids wait`);
+    } finally {
+        await release();
+    }
+    const core = await two.leader();
+    const [epoch, leader] = row();
+    assert.equal(Number(epoch), Number(before_) + 1);
+    assert.ok(leader.startsWith(`${core.name} `), leader);
+    assert.equal(terms(two.other(core)), 0);
+    assert.deepEqual(await two.network.overlaps(), []);
+    await two.followed(core);
+});

@@ -73,6 +73,22 @@ export class PostgresServer {
             '-U', user, '-d', database, '-c', sql], { encoding: 'utf8', env: { ...process.env, TZ: 'UTC', PGTZ: 'UTC' } });
     }
 
+    // Locks what the query finds until the function that is returned is called.
+    async lock(query) {
+        const held = `/* held */ BEGIN; ${query} FOR UPDATE; SELECT pg_sleep(600)`;
+        const child = spawn(join(FOLDER, 'psql'), ['-XAtq', '-h', this.folder, '-p', String(this.port), '-U', 'owner', '-d', this.database,
+            '-c', held], { stdio: 'ignore' });
+        const ended = new Promise((done) => child.once('exit', done));
+        const holders = "FROM pg_stat_activity WHERE query LIKE '/* held */%' AND wait_event = 'PgSleep'";
+        for (const end = performance.now() + 20000; this.ask(`SELECT pid ${holders}`).length === 0; await sleep(50))
+            if (performance.now() > end || child.exitCode !== null)
+                throw new Error('nothing is locked');
+        return async () => {
+            this.ask(`SELECT pg_terminate_backend(pid) ${holders}`);
+            await ended;
+        };
+    }
+
     // Rows of columns.
     ask(sql) {
         const { status, stdout, stderr } = this.psql(sql);
