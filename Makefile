@@ -137,7 +137,7 @@ no-video:
 $(bin)/plantcast-init: deploy/init
 	@mkdir -p $(@D); cp $< $@
 
-# Programs load what reads images when there is one to be read; tests are linked with it.
+# What reads images is loaded when there is one to be read.
 lazy := $(filter-out $(bin)/plantcast-demo,$(programs))
 $(lazy): $(call objects,server/base/image_lazy.c) | $(modules)
 $(bin)/plantcastd: $(call objects,$(wildcard server/*.c)) $(archives)
@@ -274,7 +274,12 @@ $(out)/obj/tests/cad/step_samples.o: CXXFLAGS += -isystem $(occt)
 $(out)/tests/cad/step_samples: $(call objects,tests/cad/step_samples)
 	@mkdir -p $(@D); echo "  LINK $@"; $(CXX) $(ldflags) -pie -o $@ $^ $(occt_libs)
 $(out)/tests/bench/field_degree: $(call objects,tests/bench/cut_mesh)
-$(out)/tests/%: $(out)/obj/tests/%.o $(support) $(archives) $(out)/lib/prep.a $(sim_archive)
+# Those that read no image do not load what reads images, as programs do not: it is where theirs would be installed.
+images_of_tests := $(out)/tests/lib/plantcast/plantcast-images.so
+$(images_of_tests): $(bin)/plantcast-images.so
+	@mkdir -p $(@D); cp $< $@.new && mv $@.new $@
+$(out)/tests/%: $(out)/obj/tests/%.o $(call objects,server/base/image_lazy.c) $(support) $(archives) $(out)/lib/prep.a $(sim_archive) \
+    | $(images_of_tests)
 	$(link) -lcmocka
 # Draws as the command line does.
 $(out)/tests/gallery/album: $(filter-out %/main.o,$(call objects,$(cli_sources))) $(out)/lib/link.a

@@ -106,5 +106,6 @@ int main(void)
         cmocka_unit_test(too_many_share_those_that_are_near),
         cmocka_unit_test(as_many_as_may_be_are_kept_apart),
     };
+    cmocka_set_message_output(CM_OUTPUT_TAP);
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
