@@ -98,6 +98,25 @@ for (const [off_s, word] of [[3600, 'ahead of'], [-3600, 'behind']])
         assert.equal(plant.daemon.said.match(/its times are/g).length, 1, 'it is said once');
     });
 
+// By such a clock certificates that were made just now are not valid yet: the server's own, and ours.
+test('a server whose clock is before its certificate is read, and said; a certificate of tomorrow is refused by name', clocks, async () => {
+    const day = (days) => `${new Date(Date.now() + days * 86400e3).toISOString().replace(/[-:T]/g, '').slice(0, 14)}Z`;
+    for (const [name, from, to] of [['tomorrow', 1, 2], ['today', -1 / 48, 1], ['us', -1 / 48, 1]])
+        makeCertificate(server.folder, name, { dates: [day(from), day(to)] });
+    server.trust('tomorrow', 'today');
+    await server.restart({ env: clockOff(90000), certificate: 'tomorrow' }); // valid by the server's clock
+    await plant.start(server.security('', 'us'), ROWS);
+    await plant.said(/BadCertificateTimeInvalid: the server's certificate: certificate is not yet valid/);
+    assert.equal((await server.tell({})).sessions, 0);
+    await plant.daemon.stop();
+    await server.restart({ env: clockOff(-3600), certificate: 'today' }); // since half an hour, by ours
+    await plant.run(server.security('', 'us'), ROWS, 30);
+    await server.set('TI-1', 35);
+    const { age_ms } = await plant.until('TI-1', { ...good, value: 35 });
+    assert.ok(age_ms >= 3600e3 && age_ms < 3609e3, `${age_ms} ms`);
+    await plant.said(/source plc: its times are 3[56]\d\d\.\d s behind this machine's clock/);
+});
+
 // The first of its two addresses takes no connection.
 const named = { ...options, skip: options.skip || !canMount && 'no right to mount' };
 test('of a name with several addresses, each is tried', named, async () => {
