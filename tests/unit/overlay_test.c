@@ -217,6 +217,47 @@ static void the_legend_says_glossy(void **state)
     assert_true(legend_differs_px(LOOK_GLOSSY) > 500);
 }
 
+/* The legend's pixels that differ between two frames with an arrow each; both arrows lie far from the legend. */
+static int arrow_legends_differ_px(const struct frame_label *label, const struct frame_label *other)
+{
+    const struct frame_label *labels[2] = { label, other };
+    struct frame *frames[2];
+    for (int i = 0; i < 2; i++) {
+        frames[i] = frame_create(WIDTH, HEIGHT);
+        view_default(&stand.toy->scene, WIDTH, HEIGHT, &frames[i]->view);
+        frames[i]->view.directions = DIRECTIONS_ARROWS;
+        memset(frames[i]->bgrx, 255, (size_t)frames[i]->stride_bytes * HEIGHT);
+        frames[i]->labels = mem_array(1, sizeof(*frames[i]->labels));
+        frames[i]->label_count = 1;
+        frames[i]->labels[0] = *labels[i];
+        overlay_draw(frames[i], &stand.toy->scene, stand.snapshot, NULL);
+    }
+    int count = 0;
+    for (int y = 0; y < HEIGHT; y++)
+        for (int x = WIDTH * 3 / 4; x < WIDTH; x++)
+            count += memcmp(frames[0]->bgrx + y * frames[0]->stride_bytes + 4 * x,
+                            frames[1]->bgrx + y * frames[1]->stride_bytes + 4 * x, 3) != 0;
+    frame_unref(&frames[0]);
+    frame_unref(&frames[1]);
+    return count;
+}
+
+static void the_legend_lists_unknown_directions_where_there_are_any(void **state)
+{
+    (void)state;
+    const struct frame_label east = { .x_px = 200, .y_px = 200, .value = 50, .arrow = true, .dx = 1 };
+    struct frame_label north = east, nowhere = east, still = east;
+    north.dx = 0;
+    north.dy = 1;
+    nowhere.dx = 0;
+    still.value = 0; /* a dot: its direction is known */
+    stand.toy->plant.groups[0].directed = true;
+    assert_int_equal(arrow_legends_differ_px(&east, &north), 0);
+    assert_int_equal(arrow_legends_differ_px(&east, &still), 0);
+    assert_true(arrow_legends_differ_px(&east, &nowhere) > 200);
+    stand.toy->plant.groups[0].directed = false;
+}
+
 static void what_rounds_to_nought_has_no_sign(void **state)
 {
     (void)state;
@@ -275,6 +316,7 @@ int main(void)
         cmocka_unit_test(halves_say_what_they_differ_in),    cmocka_unit_test(halves_share_a_legend_that_says_the_same),
         cmocka_unit_test(alarms_out_of_sight_are_listed),    cmocka_unit_test(any_number_of_alarms_fits),
         cmocka_unit_test(a_bare_one_tells_of_no_sensor),     cmocka_unit_test(the_legend_says_glossy),
+        cmocka_unit_test(the_legend_lists_unknown_directions_where_there_are_any),
         cmocka_unit_test(what_rounds_to_nought_has_no_sign), cmocka_unit_test(the_window_is_what_is_left_free),
     };
     cmocka_set_message_output(CM_OUTPUT_TAP);

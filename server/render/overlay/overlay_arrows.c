@@ -58,6 +58,11 @@ void overlay_arrow(struct pen *pen, double x, double y, double dx_px, double dy_
     stroke_both(pen, 1.6 * pen->unit, uncertain);
 }
 
+bool overlay_is_unknown_direction(const struct frame_label *label)
+{
+    return label->arrow && label->stroke == 0 && label->dx == 0 && label->dy == 0;
+}
+
 void overlay_unknown_direction(struct pen *pen, double x, double y)
 {
     const double reach = 3 * pen->unit;
@@ -102,7 +107,7 @@ void overlay_arrows(struct pen *pen)
             continue;
         if (label->stroke != 0)
             i = draw_stroke(pen, i);
-        else if (label->dx == 0 && label->dy == 0)
+        else if (overlay_is_unknown_direction(label))
             overlay_unknown_direction(pen, (double)label->x_px, (double)label->y_px);
         else
             overlay_arrow(pen, (double)label->x_px, (double)label->y_px, length * (double)label->dx, length * (double)label->dy,

@@ -82,6 +82,15 @@ static bool shows_assumed(const struct pen *pen)
     return false;
 }
 
+/* Whether a cross stands in the picture, in either half: a legend that halves share speaks of both. */
+static bool shows_unknown_direction(const struct pen *pen)
+{
+    for (size_t i = 0; i < pen->frame->label_count; i++)
+        if (overlay_is_unknown_direction(&pen->frame->labels[i]))
+            return true;
+    return false;
+}
+
 /* A distance is never below 0, nor uncertain; nor is what depends on no reading. */
 static void choose_rows(const struct pen *pen, struct legend *legend)
 {
@@ -99,7 +108,8 @@ static void choose_rows(const struct pen *pen, struct legend *legend)
     if (overlay_has_arrows(pen)) { /* a stroke's length says nothing */
         if (view->directions == DIRECTIONS_ARROWS)
             legend->rows[legend->row_count++] = ROW_ARROW;
-        legend->rows[legend->row_count++] = ROW_NOWHERE;
+        if (shows_unknown_direction(pen))
+            legend->rows[legend->row_count++] = ROW_NOWHERE;
     }
     unsigned priorities = priorities_shown(pen);
     for (int i = 1; i <= ALARM_PRIORITIES; i++)
@@ -205,6 +215,8 @@ static void lay_out(struct pen *pen, struct legend *legend)
         width = fmax(width, beside + pen_text_width(pen, row_text(legend, legend->rows[i])));
     for (int i = 0; i < legend->note_count; i++)
         width = fmax(width, pen_text_width(pen, legend->notes[i]));
+    if (overlay_has_arrows(pen)) /* listed or not: the window that the plant is fitted into is known before the crosses are */
+        width = fmax(width, beside + pen_text_width(pen, row_text(legend, ROW_NOWHERE)));
     width = fmax(width, overlay_bar_width(pen));
     if (legend->longest[0])
         width = fmax(width, overlay_arrow_px(pen) + 0.55 * pen->text_px + pen_text_width(pen, legend->longest));

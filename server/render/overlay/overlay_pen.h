@@ -88,6 +88,8 @@ double overlay_arrow_px(const struct pen *pen);
 double overlay_arrow_value(const struct pen *pen);
 /* Draws an arrow with its middle at (x, y); a dot where it has no length. uncertain: dashed. */
 void overlay_arrow(struct pen *pen, double x, double y, double dx_px, double dy_px, bool uncertain);
+/* Returns whether a cross stands for this label: an arrow whose direction is not known. */
+bool overlay_is_unknown_direction(const struct frame_label *label);
 /* Draws the cross that stands where a direction is not known. */
 void overlay_unknown_direction(struct pen *pen, double x, double y);
 /* Draws the arrows of the half that is chosen. */
