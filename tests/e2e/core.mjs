@@ -7,7 +7,8 @@ import { join } from 'node:path';
 import { after, before, test } from 'node:test';
 import { Node, Nodes, sleep, until } from './support/nodes.mjs';
 import { PlainClient } from './support/plain_client.mjs';
-import { BIN, missing, Program, runProgram } from './support/tiny_plant.mjs';
+import { otherVersion } from './support/other_version.mjs';
+import { missing, Program, runProgram } from './support/tiny_plant.mjs';
 
 const absent = missing();
 const options = { skip: absent.length > 0 ? `not built: ${absent.join(', ')}` : false, timeout: 120000 };
@@ -151,18 +152,8 @@ test('another plant, another configuration, a wrong token and a daemon that is n
         assert.match(runProgram('plantcastd', [nodes.plant.file, ...bad]).err, said);
 });
 
-// A build with another number: nothing else of it differs.
-function otherVersion() {
-    const { out } = runProgram('plantcastd', ['--version']), [, version] = /^plantcastd (\d\S*)/.exec(out);
-    const program = join(nodes.plant.folder, 'plantcastd'), other = version.replace(/\d$/, (digit) => String((Number(digit) + 5) % 10));
-    const text = readFileSync(join(BIN, 'plantcastd'), 'latin1').replaceAll(`plantcastd ${version}`, `plantcastd ${other}`)
-        .replaceAll(`version="${version}"`, `version="${other}"`);
-    writeFileSync(program, text.replaceAll(`\0${version}\0`, `\0${other}\0`), { encoding: 'latin1', mode: 0o755 });
-    return { program, version, other };
-}
-
 test('another version, and another plant of the same tags, are named by both; their readings are none', options, async () => {
-    const { program, version, other } = otherVersion(), path = (name) => join(nodes.plant.folder, name);
+    const { program, version, other } = otherVersion(nodes.plant.folder), path = (name) => join(nodes.plant.folder, name);
     const said = spawnSync(program, ['--version'], { encoding: 'utf8' }).stdout;
     assert.match(said, new RegExp(`^plantcastd ${other.replaceAll('.', '\\.')}`));
     const named = path('named.yaml');

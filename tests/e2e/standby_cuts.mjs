@@ -4,8 +4,9 @@
 import assert from 'node:assert/strict';
 import { readFileSync, writeFileSync } from 'node:fs';
 import { after, before, test } from 'node:test';
+import { otherVersion } from './support/other_version.mjs';
 import { PostgresServer } from './support/postgres_server.mjs';
-import { missingTwoCores, sleep, terms, TwoCores, until } from './support/two_cores.mjs';
+import { kill, missingTwoCores, sleep, terms, TwoCores, until } from './support/two_cores.mjs';
 
 const skip = missingTwoCores(), options = { skip, timeout: 240000 };
 let server, two;
@@ -142,4 +143,28 @@ test('of bids that the database takes up at the same time one is taken', options
     assert.equal(terms(two.other(core)), 0);
     assert.deepEqual(await two.network.overlaps(), []);
     await two.followed(core);
+});
+
+test('a standby of another version is named, shows nothing, votes, and takes over: so both are brought to it', options, async () => {
+    const core = await two.leader(), other = two.other(core), newer = otherVersion(two.plant.folder);
+    await two.followed(core);
+    const begin = async (one) => {
+        one.before = ['sh', '-c', `shift; exec ${newer.program} "$@"`, 'sh'];
+        await two.start(one.name);
+    };
+    await other.program.stop('SIGKILL');
+    await begin(other);
+    await other.program.line(new RegExp(`version: the renderer has ${newer.other}, this node ${newer.version}.*votes only`), 20000);
+    assert.match(core.program.said, new RegExp(`refused: version: the renderer has ${newer.other}, .*; its promises count`));
+    assert.ok(Object.values(await other.node.tags()).every(({ value }) => value === null));
+    await until('its promise', async () => await core.node.metric('plantcast_core_standby') === 1);
+    await core.toDatabase.cut(); // by its promise alone
+    await two.goesOn(core, 4);
+    await core.toDatabase.mend();
+    const { leads } = await two.takeOver(core, kill(core, 'SIGTERM'));
+    assert.equal(leads, other);
+    await core.program.ended;
+    await begin(core);
+    await two.followed(other);
+    await two.goesOn(other, 1);
 });
