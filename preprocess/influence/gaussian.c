@@ -9,6 +9,7 @@
 
 #include "base/mem.h"
 #include "base/vec.h"
+#include "preprocess/influence/gaussian_bodies.h"
 #include "preprocess/influence/gaussian_contrast.h"
 #include "surface/geodesic/laplacian.h"
 #include "surface/geodesic/solver.h"
@@ -21,13 +22,11 @@
 struct solving {
     const struct influence_mesh *mesh;
     const struct influence_anchor *anchors;
-    struct influence *influence; /* NULL: only the covariance is wanted */
+    struct influence *influence;
     struct gaussian_params params;
     struct laplacian laplacian;
     cholmod_factor *factor;
-    uint32_t *component;       /* by point */
-    double *constant;          /* by component: what is the same everywhere in the kernel */
-    uint32_t *body;            /* by sensor: component */
+    struct gaussian_bodies bodies;
     double *covariance;        /* [sensor][sensor], as the system gives it */
     double *scale;             /* by component: to that of the stated deviation; 0: no sensor */
     double *means;             /* by sensor: its weight in the mean of its body */
@@ -47,25 +46,15 @@ static bool begin(struct solving *solving, cholmod_common *common)
     if (!laplacian_init(&solving->laplacian, &solving->mesh->intrinsic))
         return false;
     const struct laplacian *laplacian = &solving->laplacian;
-    solving->component = mem_array(mesh->point_count, sizeof(*solving->component));
-    solving->constant = mem_array(mesh->point_count, sizeof(*solving->constant));
+    for (size_t r = 0; r < laplacian->row_count; r++)
+        laplacian->mass_m2[r] = max_of(laplacian->mass_m2[r], 1e-30);
+    gaussian_bodies_init(&solving->bodies, solving->mesh, laplacian);
     solving->scale = mem_array(mesh->point_count, sizeof(*solving->scale));
-    solving->body = mem_array(count, sizeof(*solving->body));
     solving->means = mem_array(count, sizeof(*solving->means));
     solving->covariance = mem_try_array(count * count, sizeof(*solving->covariance));
-    trimesh_components(mesh, solving->component);
-    for (size_t s = 0; s < count; s++)
-        solving->body[s] = solving->component[solving->mesh->discs[s].points[0]];
     double *diagonal = mem_array(laplacian->row_count, sizeof(*diagonal));
-    for (size_t p = 0; p < mesh->point_count; p++)
-        if (laplacian->row_of[p] != TRIMESH_NONE) {
-            double area_m2 = max_of(laplacian->mass_m2[laplacian->row_of[p]], 1e-30);
-            laplacian->mass_m2[laplacian->row_of[p]] = area_m2;
-            solving->constant[solving->component[p]] += area_m2;
-            diagonal[laplacian->row_of[p]] = k * k * area_m2;
-        }
-    for (size_t c = 0; c < mesh->point_count; c++) /* 1 is an eigenvector: of the kernel this much is one constant */
-        solving->constant[c] = solving->constant[c] > 0 ? 1 / (k * k * k * k * solving->constant[c]) : 0;
+    for (size_t r = 0; r < laplacian->row_count; r++)
+        diagonal[r] = k * k * laplacian->mass_m2[r];
     cholmod_sparse *matrix = solving->covariance ? laplacian_assemble(laplacian, diagonal, 1, common) : NULL;
     mem_free(diagonal);
     solving->factor = matrix ? cholmod_analyze(matrix, common) : NULL;
@@ -78,10 +67,8 @@ static void finish(struct solving *solving, cholmod_common *common)
 {
     cholmod_free_factor(&solving->factor, common);
     laplacian_finish(&solving->laplacian);
-    mem_free(solving->component);
-    mem_free(solving->constant);
+    gaussian_bodies_finish(&solving->bodies);
     mem_free(solving->scale);
-    mem_free(solving->body);
     mem_free(solving->means);
     mem_free(solving->covariance);
     mem_free((void *)solving->squares);
@@ -109,25 +96,24 @@ static double at_vertex(const struct solving *solving, size_t vertex, const doub
 
 static uint32_t body_of_vertex(const struct solving *solving, size_t vertex)
 {
-    return solving->component[solving->anchors[vertex].points[0]];
+    return solving->bodies.component[solving->anchors[vertex].points[0]];
 }
 
 /* --- the kernel of each sensor ----------------------------------------------------------------------------------------------- */
 
-/* The constant is taken out here, where there are digits for it. */
+/* What is the same everywhere on the body is taken out here, where there are digits for it. */
 static void take_kernel(const struct solving *solving, size_t sensor, const double *u)
 {
     const size_t count = solving->mesh->source_count;
-    const uint32_t body = solving->body[sensor];
+    const uint32_t body = solving->bodies.of_sensor[sensor];
+    const double k2 = 8 / (solving->params.range_m * solving->params.range_m);
+    const double constant = gaussian_bodies_constant(&solving->bodies, body) / (k2 * k2);
     for (size_t other = 0; other < count; other++)
-        solving->covariance[sensor * count + other] =
-            solving->body[other] == body ? on_disc(solving, other, u) - solving->constant[body] : 0;
-    if (!solving->influence)
-        return;
+        solving->covariance[sensor * count + other] = solving->bodies.of_sensor[other] == body ? on_disc(solving, other, u) - constant : 0;
     const size_t vertices = solving->influence->vertex_count;
     float *share = solving->influence->shares + sensor * vertices;
     for (size_t v = 0; v < vertices; v++)
-        share[v] = body_of_vertex(solving, v) == body ? (float)(at_vertex(solving, v, u) - solving->constant[body]) : 0;
+        share[v] = body_of_vertex(solving, v) == body ? (float)(at_vertex(solving, v, u) - constant) : 0;
 }
 
 static void solve_kernels(void *arg, size_t begin, size_t end)
@@ -165,30 +151,6 @@ static void over(struct workers *workers, size_t count, size_t grain, void (*bod
         body(arg, 0, count);
 }
 
-/* Finds by how much each body's kernel is to be multiplied for a deviation of 1 at its sensors. */
-static void find_scales(struct solving *solving)
-{
-    const size_t count = solving->mesh->source_count;
-    for (size_t i = 0; i < count; i++) {
-        double sum = 0;
-        size_t members = 0;
-        for (size_t j = 0; j < count; j++)
-            if (solving->body[j] == solving->body[i])
-                sum += solving->covariance[j * count + j], members++;
-        solving->scale[solving->body[i]] = sum > 0 ? (double)members / sum : 0;
-    }
-}
-
-static void scale_covariance(struct solving *solving)
-{
-    const size_t count = solving->mesh->source_count;
-    for (size_t i = 0; i < count; i++)
-        for (size_t j = 0; j <= i; j++) {
-            double *a = &solving->covariance[i * count + j], *b = &solving->covariance[j * count + i];
-            *a = *b = solving->scale[solving->body[i]] * (*a + *b) / 2;
-        }
-}
-
 /* --- from kernels to influence ----------------------------------------------------------------------------------------------- */
 
 /* H = P k + the weights in the mean, in place of k. Vertices [begin, end) in tiles. */
@@ -214,7 +176,8 @@ static void weigh_tiles(void *arg, size_t begin, size_t end)
         const size_t first = tile * TILE, width = vertices - first < TILE ? vertices - first : TILE;
         for (size_t i = 0; i < n; i++)
             for (size_t v = 0; v < width; v++)
-                in[i * TILE + v] = variance * solving->scale[solving->body[i]] * (double)influence->shares[i * vertices + first + v];
+                in[i * TILE + v] =
+                    variance * solving->scale[solving->bodies.of_sensor[i]] * (double)influence->shares[i * vertices + first + v];
         cblas_dgemm(CblasRowMajor, CblasNoTrans, CblasNoTrans, (int)n, (int)width, (int)n, 1, influence->precision, (int)n, in, TILE, 0,
                     out, TILE);
         for (size_t v = 0; v < width; v++) { /* k' P k + 2 m' k - m' S m: what is left of the variance around the body's mean, less that */
@@ -222,7 +185,7 @@ static void weigh_tiles(void *arg, size_t begin, size_t end)
             double taken = 0;
             size_t of_body = n;
             for (size_t i = 0; i < n; i++)
-                if (solving->body[i] == body) {
+                if (solving->bodies.of_sensor[i] == body) {
                     taken += in[i * TILE + v] * (out[i * TILE + v] + 2 * solving->means[i]);
                     of_body = i;
                 }
@@ -230,7 +193,7 @@ static void weigh_tiles(void *arg, size_t begin, size_t end)
         }
         for (size_t i = 0; i < n; i++)
             for (size_t v = 0; v < width; v++) {
-                bool own = body_of_vertex(solving, first + v) == solving->body[i];
+                bool own = body_of_vertex(solving, first + v) == solving->bodies.of_sensor[i];
                 influence->shares[i * vertices + first + v] = own ? (float)(out[i * TILE + v] + solving->means[i]) : 0;
             }
     }
@@ -246,7 +209,7 @@ static bool find_precision(struct solving *solving)
     double log_det, *sum = mem_try_array(n * n, sizeof(*sum));
     for (size_t i = 0; sum && i < n * n; i++)
         sum[i] = variance * solving->covariance[i] + (i % (n + 1) == 0 ? noise * noise : 0);
-    bool good = sum && gaussian_contrast(n, solving->body, sum, solving->influence->precision, solving->means, &log_det);
+    bool good = sum && gaussian_contrast(n, solving->bodies.of_sensor, sum, solving->influence->precision, solving->means, &log_det);
     mem_free(sum);
     return good;
 }
@@ -286,10 +249,10 @@ static void take_sample(const struct solving *solving, const double *u, struct n
     double *level = mem_array(solving->mesh->mesh.point_count, sizeof(*level));
     const double noise = max_of(solving->params.noise / solving->params.deviation, GAUSSIAN_LEAST_NOISE);
     for (size_t i = n; i-- > 0;)
-        level[solving->body[i]] = on_disc(solving, i, u);
+        level[solving->bodies.of_sensor[i]] = on_disc(solving, i, u);
     for (size_t i = 0; i < n; i++) {
-        double size = sqrt(solving->scale[solving->body[i]]);
-        readings[i] = -(float)(size * (on_disc(solving, i, u) - level[solving->body[i]]) + noise * next_normal(normal));
+        double size = sqrt(solving->scale[solving->bodies.of_sensor[i]]);
+        readings[i] = -(float)(size * (on_disc(solving, i, u) - level[solving->bodies.of_sensor[i]]) + noise * next_normal(normal));
     }
     for (size_t v = 0; v < solving->influence->vertex_count; v++) {
         uint32_t body = body_of_vertex(solving, v);
@@ -379,10 +342,8 @@ bool gaussian_solve(struct influence *influence, struct log *log, struct workers
     if (good)
         over(workers, count, BLOCK, solve_kernels, &solving);
     good = good && !solving.failed;
-    if (good) {
-        find_scales(&solving);
-        scale_covariance(&solving);
-    }
+    if (good)
+        gaussian_bodies_scale(&solving.bodies, count, solving.covariance, solving.scale);
     good = good && find_precision(&solving);
     if (good) {
         for (size_t i = 0; i < count; i++)
@@ -396,31 +357,6 @@ bool gaussian_solve(struct influence *influence, struct log *log, struct workers
     else
         log_err(log, "Gaussian process between %zu sensors on %zu points, range %g m: %s", count, mesh->mesh.point_count, params->range_m,
                 common.status == CHOLMOD_NOT_POSDEF ? "system is not positive definite" : "out of memory");
-    finish(&solving, &common);
-    cholmod_finish(&common);
-    return good;
-}
-
-bool gaussian_covariance(struct log *log, struct workers *workers, const struct influence_mesh *mesh, double range_m, double **covariance,
-                         uint32_t **body)
-{
-    struct solving solving = { .mesh = mesh, .params.range_m = range_m };
-    cholmod_common common;
-    laplacian_start(&common);
-    bool good = begin(&solving, &common);
-    if (good)
-        over(workers, mesh->source_count, BLOCK, solve_kernels, &solving);
-    good = good && !solving.failed;
-    if (good) {
-        find_scales(&solving);
-        scale_covariance(&solving);
-        *covariance = solving.covariance;
-        *body = solving.body;
-        solving.covariance = NULL;
-        solving.body = NULL;
-    } else
-        log_err(log, "covariance of %zu sensors on %zu points, range %g m: out of memory", mesh->source_count, mesh->mesh.point_count,
-                range_m);
     finish(&solving, &common);
     cholmod_finish(&common);
     return good;

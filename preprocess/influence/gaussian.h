@@ -27,9 +27,4 @@ struct gaussian_params {
 bool gaussian_solve(struct influence *influence, struct log *log, struct workers *workers, const struct influence_mesh *mesh,
                     const struct gaussian_params *params, const struct influence_anchor *anchors, size_t vertex_count);
 
-/* The covariance between sensors for deviation 1 and no noise, [sensor][sensor], and each sensor's body; the caller frees both (mem_free).
-   Returns false as above; then there is nothing to free. */
-bool gaussian_covariance(struct log *log, struct workers *workers, const struct influence_mesh *mesh, double range_m, double **covariance,
-                         uint32_t **body);
-
 #endif

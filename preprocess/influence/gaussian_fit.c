@@ -12,13 +12,14 @@
 #include "plant/csv.h"
 #include "plant/number.h"
 #include "preprocess/influence/gaussian_contrast.h"
+#include "preprocess/influence/gaussian_covariance.h"
 
 #define RANGES 9  /* of the grid, evenly in logarithms */
-#define FEW 96    /* sensors that these are tried with: a range costs two solves for each */
+#define FEW 96    /* sensors that these are tried with */
 #define CLOSER 3  /* times that the parabola is laid through better ones */
 #define SHARES 13 /* noise by deviation, from GAUSSIAN_LEAST_NOISE to MOST_SHARE */
 #define MOST_SHARE 3.0
-#define SAME 0.02 /* logarithms of ranges: nearer than readings can tell */
+#define SAME 0.02        /* logarithms of ranges: nearer than readings can tell */
 #define LEAST_INSTANTS 8 /* fewer say nothing about three numbers */
 #define LEAST_SENSORS 3
 
@@ -97,6 +98,9 @@ void readings_table_finish(struct readings_table *table)
 struct fit {
     const struct gaussian_params *stated;
     const struct readings_table *table;
+    struct log *log;
+    struct workers *workers;
+    struct gaussian_covariance covariance;
     double *scatter; /* [sensor][sensor]: sum over instants of products of two readings less the mean over all of both */
     double *room[2], *means;
     struct gaussian_params best;
@@ -133,12 +137,13 @@ static size_t count_bodies(const uint32_t *body, size_t count)
 }
 
 /* With covariance s^2 (K + share^2 1); s: as stated, or the best. */
-static void try_share(struct fit *fit, double range_m, const double *kernel, const uint32_t *body, double share, double deviation)
+static void try_share(struct fit *fit, double range_m, double share, double deviation)
 {
     const size_t n = fit->table->count;
+    const uint32_t *body = fit->covariance.bodies.of_sensor;
     const double instants = (double)fit->table->instants, freedom = instants * (double)(n - count_bodies(body, n));
     double log_det, misfit = 0;
-    memcpy(fit->room[0], kernel, n * n * sizeof(*kernel));
+    memcpy(fit->room[0], fit->covariance.values, n * n * sizeof(double));
     for (size_t i = 0; i < n; i++)
         fit->room[0][i * (n + 1)] += share * share;
     if (freedom <= 0 || !gaussian_contrast(n, body, fit->room[0], fit->room[1], fit->means, &log_det))
@@ -154,7 +159,7 @@ static void try_share(struct fit *fit, double range_m, const double *kernel, con
 }
 
 /* What is stated is kept: with a stated noise its share follows from the deviation, which is then sought in its place. */
-static void try_range(struct fit *fit, double range_m, const double *kernel, const uint32_t *body)
+static void try_range(struct fit *fit, double range_m)
 {
     const struct gaussian_params *stated = fit->stated;
     double step = log(MOST_SHARE / GAUSSIAN_LEAST_NOISE) / (SHARES - 1), centre = NAN;
@@ -165,7 +170,7 @@ static void try_range(struct fit *fit, double range_m, const double *kernel, con
             if (!isnan(stated->noise) && !isnan(stated->deviation))
                 share = max_of(stated->noise / stated->deviation, GAUSSIAN_LEAST_NOISE);
             double deviation = isnan(stated->noise) || !isnan(stated->deviation) ? stated->deviation : stated->noise / share;
-            try_share(fit, range_m, kernel, body, share, deviation);
+            try_share(fit, range_m, share, deviation);
         }
         centre = fit->best.deviation > 0 ? fit->best.noise / fit->best.deviation : GAUSSIAN_LEAST_NOISE;
     }
@@ -181,40 +186,39 @@ struct trial { /* the best for a range */
 };
 
 /* False: out of memory, logged. */
-static bool try_one(struct fit *fit, struct log *log, struct workers *workers, const struct influence_mesh *mesh, double log_range,
-                    struct trial *trial)
+static bool try_one(struct fit *fit, double log_range, struct trial *trial)
 {
     const struct gaussian_params best = fit->best;
     const double best_likelihood = fit->best_likelihood;
-    double *kernel = NULL;
-    uint32_t *body = NULL;
-    if (!gaussian_covariance(log, workers, mesh, exp(log_range), &kernel, &body))
+    if (!gaussian_covariance_find(&fit->covariance, fit->log, fit->workers, exp(log_range)))
         return false;
     fit->best_likelihood = -INFINITY;
-    try_range(fit, exp(log_range), kernel, body);
+    try_range(fit, exp(log_range));
     *trial = (struct trial){ log_range, fit->best_likelihood };
     if (!(fit->best_likelihood > best_likelihood)) {
         fit->best = best;
         fit->best_likelihood = best_likelihood;
     }
-    mem_free(kernel);
-    mem_free(body);
     return true;
 }
 
-static void begin_fit(struct fit *fit, const struct gaussian_params *stated, const struct readings_table *table)
+/* False: out of memory, logged; finish_fit() even so. */
+static bool begin_fit(struct fit *fit, const struct gaussian_params *stated, struct log *log, struct workers *workers,
+                      const struct influence_mesh *mesh, const struct readings_table *table)
 {
     const size_t n = table->count;
-    *fit = (struct fit){ .stated = stated, .table = table, .best_likelihood = -INFINITY };
+    *fit = (struct fit){ .stated = stated, .table = table, .log = log, .workers = workers, .best_likelihood = -INFINITY };
     fit->scatter = mem_array(n * n, sizeof(*fit->scatter));
     fit->room[0] = mem_array(n * n, sizeof(double));
     fit->room[1] = mem_array(n * n, sizeof(double));
     fit->means = mem_array(n, sizeof(*fit->means));
     find_scatter(fit);
+    return gaussian_covariance_init(&fit->covariance, log, mesh);
 }
 
 static void finish_fit(struct fit *fit)
 {
+    gaussian_covariance_finish(&fit->covariance);
     mem_free(fit->scatter);
     mem_free(fit->room[0]);
     mem_free(fit->room[1]);
@@ -248,10 +252,9 @@ static bool look_around(const struct gaussian_params *stated, struct log *log, s
     struct fit fit;
     struct trial trial;
     pick_few(mesh, table, &few_of_mesh, &few_of_table);
-    begin_fit(&fit, stated, &few_of_table);
-    bool good = true;
+    bool good = begin_fit(&fit, stated, log, workers, &few_of_mesh, &few_of_table);
     for (int i = 0; good && i < RANGES; i++)
-        good = try_one(&fit, log, workers, &few_of_mesh, first + step * i, &trial);
+        good = try_one(&fit, first + step * i, &trial);
     *log_range = fit.best.range_m > 0 ? logarithm(fit.best.range_m) : first;
     finish_fit(&fit);
     mem_free(few_of_table.values);
@@ -269,22 +272,21 @@ static double summit(const struct trial at[3])
 }
 
 /* Three of them around the best, a step apart, then closer. */
-static bool close_in(struct fit *fit, struct log *log, struct workers *workers, const struct influence_mesh *mesh, double start,
-                     double step, double first, double last)
+static bool close_in(struct fit *fit, double start, double step, double first, double last)
 {
     struct trial at[3];
     start = min_of(max_of(start, first + step), last - step);
     for (int i = 0; i < 3; i++)
-        if (!try_one(fit, log, workers, mesh, start + step * (i - 1), &at[i]))
+        if (!try_one(fit, start + step * (i - 1), &at[i]))
             return false;
     while (at[0].likelihood > at[1].likelihood && at[0].log_range > first) {
         at[2] = at[1], at[1] = at[0];
-        if (!try_one(fit, log, workers, mesh, at[1].log_range - step, &at[0]))
+        if (!try_one(fit, at[1].log_range - step, &at[0]))
             return false;
     }
     while (at[2].likelihood > at[1].likelihood && at[2].log_range < last) {
         at[0] = at[1], at[1] = at[2];
-        if (!try_one(fit, log, workers, mesh, at[1].log_range + step, &at[2]))
+        if (!try_one(fit, at[1].log_range + step, &at[2]))
             return false;
     }
     for (int i = 0; i < CLOSER; i++) {
@@ -292,7 +294,7 @@ static bool close_in(struct fit *fit, struct log *log, struct workers *workers, 
         struct trial found;
         if (!(log_range > at[0].log_range && log_range < at[2].log_range) || fabs(log_range - at[1].log_range) < SAME)
             break;
-        if (!try_one(fit, log, workers, mesh, log_range, &found))
+        if (!try_one(fit, log_range, &found))
             return false;
         if (found.likelihood <= at[1].likelihood)
             at[found.log_range < at[1].log_range ? 0 : 2] = found;
@@ -314,15 +316,13 @@ bool gaussian_fit(struct gaussian_params *params, struct log *log, struct worker
                  LEAST_SENSORS);
         return false;
     }
-    begin_fit(&fit, params, table);
-    bool good;
-    if (isnan(params->range_m)) {
+    bool good = begin_fit(&fit, params, log, workers, mesh, table);
+    if (good && isnan(params->range_m)) {
         double first = logarithm(least_m), last = logarithm(most_m), step = (last - first) / (RANGES - 1), start;
-        good = look_around(params, log, workers, mesh, table, first, step, &start) &&
-               close_in(&fit, log, workers, mesh, start, step / 2, first, last);
-    } else {
+        good = look_around(params, log, workers, mesh, table, first, step, &start) && close_in(&fit, start, step / 2, first, last);
+    } else if (good) {
         struct trial trial;
-        good = try_one(&fit, log, workers, mesh, logarithm(params->range_m), &trial);
+        good = try_one(&fit, logarithm(params->range_m), &trial);
     }
     if (!good)
         snprintf(why, 300, "nothing could be fitted: see above");

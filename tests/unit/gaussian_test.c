@@ -14,6 +14,7 @@
 #include "base/mem.h"
 #include "base/vec.h"
 #include "field/influence_fill.h"
+#include "preprocess/influence/gaussian_covariance.h"
 #include "preprocess/influence/gaussian_fit.h"
 #include "surface/geodesic/laplacian.h"
 #include "tests/support/surface_case.h"
@@ -442,6 +443,35 @@ static void test_threads_change_nothing(void **state)
     finish(&s);
 }
 
+/* Without solving for a sensor, for ranges from a tenth of the plate to ten times it. */
+static void test_covariance_agrees_with_a_dense_one(void **state)
+{
+    (void)state;
+    static const double ranges_m[4] = { 0.25, 0.8, 3, 20 };
+    struct solved s = { 0 };
+    struct gaussian_covariance found;
+    cad_plate(&s.shape, &chance, 17, 9, 2, 1, 0.3);
+    prepare_coarse(&s, few_places, FEW, 0.2);
+    assert_true(gaussian_covariance_init(&found, the_log, &s.mesh));
+    for (int r = 0; r < 4; r++) {
+        struct dense d = { 0 };
+        double worst = 0;
+        make_dense(&d, &s.mesh, ranges_m[r]);
+        assert_true(gaussian_covariance_find(&found, the_log, r % 2 ? workers : NULL, ranges_m[r]));
+        for (size_t i = 0; i < FEW; i++)
+            for (size_t j = 0; j < FEW; j++) {
+                double expected = covariance(&d, d.sensing + i * d.rows, d.sensing + j * d.rows);
+                worst = fmax(worst, fabs(found.values[i * FEW + j] - expected));
+            }
+        print_message("range %g m: covariances %.1e off at most\n", ranges_m[r], worst);
+        assert_true(worst < 2e-4);
+        mem_free(d.kernel);
+        mem_free(d.sensing);
+    }
+    gaussian_covariance_finish(&found);
+    finish(&s);
+}
+
 /* --- fitting ----------------------------------------------------------------------------------------------------------------- */
 
 static double gaussian(void)
@@ -457,8 +487,8 @@ static void test_fit_finds_what_made_the_readings(void **state)
     enum { SENSORS = 24, INSTANTS = 200 };
     struct solved s = { 0 };
     struct readings_table table = { .count = SENSORS, .instants = INSTANTS };
-    double places[SENSORS][3] = { { 0 } }, *kernel, *root;
-    uint32_t *body;
+    struct gaussian_covariance kernel;
+    double places[SENSORS][3] = { { 0 } }, *root;
     char why[300];
     for (size_t i = 0; i < SENSORS; i++) {
         places[i][0] = i % 2 ? places[i - 1][0] + 0.02 : 1.97 * cad_random(&chance);
@@ -466,11 +496,12 @@ static void test_fit_finds_what_made_the_readings(void **state)
     }
     cad_plate(&s.shape, &chance, 31, 16, 2, 1, 0.2);
     prepare(&s, (const double(*)[3])places, SENSORS, 0.03, 0.05);
-    assert_true(gaussian_covariance(the_log, workers, &s.mesh, 0.7, &kernel, &body));
+    assert_true(gaussian_covariance_init(&kernel, the_log, &s.mesh));
+    assert_true(gaussian_covariance_find(&kernel, the_log, workers, 0.7));
     root = mem_array(SENSORS * SENSORS, sizeof(*root));
     for (size_t i = 0; i < SENSORS; i++)
         for (size_t j = 0; j <= i; j++) {
-            double sum = kernel[i * SENSORS + j] + (i == j) * 1e-9;
+            double sum = kernel.values[i * SENSORS + j] + (i == j) * 1e-9;
             for (size_t k = 0; k < j; k++)
                 sum -= root[i * SENSORS + k] * root[j * SENSORS + k];
             root[i * SENSORS + j] = i == j ? sqrt(sum) : sum / root[j * SENSORS + j];
@@ -498,8 +529,7 @@ static void test_fit_finds_what_made_the_readings(void **state)
     table.count = 2;
     assert_false(gaussian_fit(&p, the_log, workers, &s.mesh, &table, 0.1, 6, why));
     readings_table_finish(&table);
-    mem_free(kernel);
-    mem_free(body);
+    gaussian_covariance_finish(&kernel);
     mem_free(root);
     finish(&s);
 }
@@ -548,6 +578,7 @@ int main(void)
         cmocka_unit_test(test_one_sensor_and_bodies_apart),
         cmocka_unit_test(test_all_in_a_line_and_a_kernel_longer_than_all),
         cmocka_unit_test(test_threads_change_nothing),
+        cmocka_unit_test(test_covariance_agrees_with_a_dense_one),
         cmocka_unit_test(test_fit_finds_what_made_the_readings),
         cmocka_unit_test(test_tables),
     };
