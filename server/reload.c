@@ -158,6 +158,12 @@ static bool start_render_service(struct reload *reload, struct plant_runtime *af
 }
 
 /* In the loop. */
+static void release_recording(void *arg)
+{
+    net_release_recording(arg);
+}
+
+/* In the loop. */
 static void swap(void *arg)
 {
     struct swap *swap = arg;
@@ -189,8 +195,11 @@ static void put_in_force(struct reload *reload, struct plant_runtime *after, con
     struct swap both = { .net = reload->net, .after = after };
     char *hash = mem_strdup(before->plant->hash);
     pthread_mutex_lock(&reload->put_lock);
-    plant_runtime_hand_over(before, after->plant);
-    bool good = plant_runtime_start_recording(after, before) && plant_runtime_start_sources(after) && net_call(reload->net, swap, &both);
+    bool good = net_call(reload->net, release_recording, reload->net);
+    if (good) {
+        plant_runtime_hand_over(before, after->plant);
+        good = plant_runtime_start_recording(after, before) && plant_runtime_start_sources(after) && net_call(reload->net, swap, &both);
+    }
     if (good)
         *reload->runtime = after;
     pthread_mutex_unlock(&reload->put_lock);

@@ -10,7 +10,6 @@
 #include "corelink/little_endian.h"
 #include "value/quality.h"
 
-enum { AT_ONCE = 20000 };
 static const char MAGIC[4] = { 'P', 'C', 'S', '1' };
 
 struct core_samples {
@@ -72,7 +71,7 @@ int core_samples_write(struct core_samples *samples, struct text *out)
 {
     uint8_t head[CORE_SAMPLES_HEAD_BYTES];
     pthread_mutex_lock(&samples->lock);
-    size_t count = samples->count < AT_ONCE ? samples->count : AT_ONCE;
+    size_t count = samples->count < CORE_SAMPLES_AT_ONCE ? samples->count : CORE_SAMPLES_AT_ONCE;
     bool lost = samples->lost;
     if (count && !lost) {
         memcpy(head, MAGIC, sizeof(MAGIC));
@@ -112,7 +111,7 @@ const char *core_samples_read(struct sample_event **out, size_t *out_count, size
     if (!core_samples_is(bytes, count))
         return "no message of samples";
     size_t told = get32(at + 4);
-    if (told > AT_ONCE || count != CORE_SAMPLES_HEAD_BYTES + told * CORE_SAMPLE_BYTES)
+    if (told > CORE_SAMPLES_AT_ONCE || count != CORE_SAMPLES_HEAD_BYTES + told * CORE_SAMPLE_BYTES)
         return "its length is not that of its samples";
     struct sample_event *samples = mem_array(told + 1, sizeof(*samples));
     for (size_t i = 0; i < told; i++)

@@ -5,15 +5,20 @@
 #include "base/text.h"
 #include "value/store.h"
 
-enum { CORE_SAMPLES_HEAD_BYTES = 8, CORE_SAMPLE_BYTES = 24, CORE_SAMPLES_MOST = 2000000 /* that wait */ };
+enum {
+    CORE_SAMPLES_HEAD_BYTES = 8,
+    CORE_SAMPLE_BYTES = 24,
+    CORE_SAMPLES_AT_ONCE = 20000, /* in one message */
+    CORE_SAMPLES_MOST = 2000000   /* that wait */
+};
 
 /* What waits for one standby. */
 struct core_samples;
 /* Listens to the store from now on, which outlives it. */
 struct core_samples *core_samples_listen(struct store *store);
 void core_samples_end(struct core_samples **samples); /* &NULL is fine; leaves NULL */
-/* Appends the message with samples that wait, as many as one takes. Returns how many; 0: none waits, nothing was appended; -1: too many
-   waited, and some are lost. */
+/* Appends the message with samples that wait, CORE_SAMPLES_AT_ONCE at most. Returns how many; 0: none waits, nothing was appended; -1: too
+   many waited, and some are lost. */
 int core_samples_write(struct core_samples *samples, struct text *out);
 
 /* Returns whether the message is one of samples. */

@@ -32,6 +32,8 @@ void net_check_credentials(struct net *net);
 
 /* --- in the loop, while the plant is loaded anew --- */
 
+/* Lets go of the plant's historian and notifier, which end before the rest of it. */
+void net_release_recording(struct net *net);
 /* Releases all that belongs to the plant, which is to be destroyed. Sessions stay. */
 void net_release_plant(struct net *net);
 /* The core that was followed is gone, and its link halted: takes what is there of the same plant without it. */

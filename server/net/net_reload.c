@@ -42,6 +42,12 @@ size_t net_views(struct net *net, const struct net_plant *next, struct view *out
 
 /* --- the old one, the new one ----------------------------------------------------------------------------------------- */
 
+void net_release_recording(struct net *net)
+{
+    net->server.params.plant.historian = NULL;
+    net->server.params.plant.notifier = NULL;
+}
+
 void net_release_plant(struct net *net)
 {
     struct server_context *server = &net->server;

@@ -47,6 +47,7 @@ struct renderer {
     uint64_t alarms;         /* the number of the last change that was sent */
     struct lists_seen lists;
     bool *links;             /* by source, as sent */
+    json_t *hello;           /* who this core is, before anything else; NULL: it was sent */
     json_t *answers;         /* that wait to be sent */
     int64_t told_ns;         /* monotonic: when readings were sent last */
     int64_t since_ns;        /* monotonic: since when something waits to be sent; 0: nothing */
@@ -126,6 +127,7 @@ static void on_close(struct server_context *server, struct renderer **slot)
     core_sent_finish(&renderer->sent);
     text_finish(&renderer->in);
     text_finish(&renderer->out);
+    json_decref(renderer->hello);
     json_decref(renderer->answers);
     mem_free(renderer->links);
     mem_free(renderer->refusal);
@@ -280,12 +282,13 @@ static bool send_answer(struct renderer *renderer)
     return send_message(renderer, answer);
 }
 
-/* Sets *any: there were some. */
-static bool send_samples(const struct server_context *server, struct renderer *renderer, bool *any)
+/* Once it has sent less than a whole message, readings are next, also where new samples have come meanwhile: else, on a slow network, new
+   ones always would have. */
+static bool send_samples(const struct server_context *server, struct renderer *renderer)
 {
     begin(renderer);
     int count = core_samples_write(renderer->samples, &renderer->out);
-    *any = count > 0;
+    renderer->samples_sent = count < CORE_SAMPLES_AT_ONCE;
     if (count < 0)
         log_err(server->params.log, "standby %s: ended: it took its samples too slowly; it reads them from PostgreSQL", renderer->name);
     return count < 0 ? false : count == 0 || send_out(renderer, LWS_WRITE_BINARY);
@@ -319,6 +322,13 @@ static bool standby_lacks(const struct server_context *server)
     return false;
 }
 
+static bool send_hello(struct renderer *renderer)
+{
+    json_t *hello = renderer->hello;
+    renderer->hello = NULL;
+    return send_message(renderer, hello);
+}
+
 /* One message at a time: what changed most rarely first, readings last, which so are never newer than the alarms beside them; but readings
    that the others kept waiting come first, for without them the core counts as lost. */
 static bool send_next(struct server_context *server, struct renderer *renderer)
@@ -332,7 +342,9 @@ static bool send_next(struct server_context *server, struct renderer *renderer)
     if (renderer->state == RENDERER_REFUSED)
         return renderer->refusal ? send_refusal(renderer) : send_standby(renderer);
     bool good, more = true, waits = renderer->told_ns && clock_mono_ns() - renderer->told_ns > READINGS_NS;
-    if (renderer->asks)
+    if (renderer->hello)
+        good = send_hello(renderer);
+    else if (renderer->asks)
         good = send_question(server, renderer);
     else if (waits)
         good = send_readings(server, renderer);
@@ -347,7 +359,7 @@ static bool send_next(struct server_context *server, struct renderer *renderer)
     else if (lacks_told(server, renderer))
         good = send_told(server->params.plant.notifier, renderer);
     else if (renderer->samples && !renderer->samples_sent)
-        good = send_samples(server, renderer, &more), renderer->samples_sent = !more, more = true;
+        good = send_samples(server, renderer);
     else
         more = renderer->samples_sent = false, good = send_readings(server, renderer);
     if (good && renderer->stands_by && !more)
@@ -418,9 +430,8 @@ static void introduce(struct server_context *server, struct renderer *renderer, 
     }
     core_sent_init(&renderer->sent, plant->tag_count);
     renderer->links = mem_array(plant->source_count + 1, sizeof(*renderer->links));
-    json_t *hello = core_identity_message("core", &own);
-    json_object_set_new(hello, "key", json_string(server->core_key));
-    json_array_append_new(renderer->answers, hello);
+    renderer->hello = core_identity_message("core", &own);
+    json_object_set_new(renderer->hello, "key", json_string(server->core_key));
     if (renderer->stands_by && server->params.plant.historian)
         historian_on_standby(server->params.plant.historian);
     renderer->journal_utc_ns = json_integer_value(json_object_get(message, "journal"));

@@ -6,7 +6,7 @@ import { readFileSync, writeFileSync } from 'node:fs';
 import { after, before, test } from 'node:test';
 import { otherVersion } from './support/other_version.mjs';
 import { PostgresServer } from './support/postgres_server.mjs';
-import { kill, missingTwoCores, sleep, terms, TwoCores, until } from './support/two_cores.mjs';
+import { kill, missingTwoCores, sleep, TAKE_OVER_MS, terms, TwoCores, until } from './support/two_cores.mjs';
 
 const skip = missingTwoCores(), options = { skip, timeout: 240000 };
 let server, two;
@@ -101,6 +101,22 @@ test('a leader that was loaded anew goes on by the promise of a standby that was
         await one.toDatabase.mend();
     await two.followed(core);
     await two.goesOn(core, 1);
+});
+
+test('a leader is loaded anew while the database says nothing, and its standby asks all the time', options, async (t) => {
+    const core = await two.leader();
+    await two.followed(core);
+    await core.toDatabase.freeze();
+    const since = two.network.now();
+    core.program.said = '';
+    core.program.child.kill('SIGHUP');
+    await core.program.line(/reload: configuration/, 60000);
+    await two.goesOn(core, 3);
+    const pause_ms = await two.network.longestPause(since);
+    t.diagnostic(`${pause_ms.toFixed(0)} ms without a poller`);
+    assert.ok(pause_ms < TAKE_OVER_MS);
+    await core.toDatabase.mend();
+    await two.followed(core);
 });
 
 test('others of the names of both are told, and take nobody\'s place while the leader has no way to the database', options, async () => {

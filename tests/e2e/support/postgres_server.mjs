@@ -137,12 +137,13 @@ export class PostgresServer {
 
 // Passes bytes on to a port of this machine until it is cut: then all connections end, and new ones are refused until it is mended.
 export class CuttableLink {
-    // at: where it listens, { host, port }; freeze() lets nothing through without closing anything, as a cut cable does.
+    // at: where it listens, and from where it connects, { host, port, from }; freeze() lets nothing through without closing anything, as a
+    // cut cable does.
     static async open(port, at = {}) {
         const link = new CuttableLink();
         link.sockets = new Set();
         link.server = createServer((near) => {
-            const far = connect(port, '127.0.0.1');
+            const far = connect({ port, host: '127.0.0.1', localAddress: at.from });
             let count = 0;
             if (link.isFrozen)
                 for (const socket of [near, far])

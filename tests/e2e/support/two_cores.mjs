@@ -12,6 +12,7 @@ import { missingPostgres } from './postgres_server.mjs';
 import { missing, runProgram } from './tiny_plant.mjs';
 
 export const TAKE_OVER_MS = 5000;
+export const STANDBY_HOST = '127.0.0.9'; // where the leader sees the other come from
 
 // Why these tests cannot run here; false: they can.
 export function missingTwoCores() {
@@ -49,8 +50,8 @@ ${more}`);
             throw new Error(prepared.err);
         const one = await two.makeCore('one', '127.0.0.2'), other = await two.makeCore('two', '127.0.0.3');
         two.cores = { one, two: other };
-        one.toOther = await two.network.link(other.port);
-        other.toOther = await two.network.link(one.port);
+        one.toOther = await two.network.link(other.port, { from: STANDBY_HOST });
+        other.toOther = await two.network.link(one.port, { from: STANDBY_HOST });
         return two;
     }
 
@@ -97,27 +98,31 @@ ${more}`);
             return false;
         }
     }
-    // Waits for the one that leads; never two.
-    async leader(seconds = 20) {
-        let ready = [];
+    // What both said, at the end of an error's text.
+    async waitsFor(what, good, seconds) {
         try {
-            return await until('one that leads', async () => {
-                ready = [];
-                for (const core of Object.values(this.cores))
-                    if (await this.ready(core))
-                        ready.push(core);
-                return ready.length === 1 && ready[0];
-            }, seconds);
+            return await until(what, good, seconds);
         } catch (error) {
-            const state = (core) => `${ready.includes(core) ? ' (ready)' : ''}${this.runs(core) ? '' : ' (ended)'}`;
-            const said = Object.values(this.cores).map((core) => `${core.name}${state(core)}:\n${core.program?.said.slice(-1500)}`);
-            throw new Error(`${error.message}\n${said.join('\n')}`);
+            const state = async (core) => `${await this.ready(core) ? ' (ready)' : ''}${this.runs(core) ? '' : ' (ended)'}`;
+            for (const core of Object.values(this.cores))
+                error.message += `\n${core.name}${await state(core)}:\n${core.program?.said.slice(-1500)}`;
+            throw error;
         }
+    }
+    // Waits for the one that leads; never two.
+    leader(seconds) {
+        return this.waitsFor('one that leads', async () => {
+            const ready = [];
+            for (const core of Object.values(this.cores))
+                if (await this.ready(core))
+                    ready.push(core);
+            return ready.length === 1 && ready[0];
+        }, seconds);
     }
     other(core) { return Object.values(this.cores).find((one) => one !== core); }
     // Waits until the other follows, and its promises count.
     followed(core) {
-        return until('a standby that is named', async () => await core.node.metric('plantcast_core_standby') === 1 &&
+        return this.waitsFor('a standby that is named', async () => await core.node.metric('plantcast_core_standby') === 1 &&
             (await this.other(core).node.tags())['TI-1'].quality_name === 'Good');
     }
 

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Whoever is told that something is done finds it done whatever happens to the leader: also where the way to the standby is slow
+// (tests/faults/late_peer.c) and the leader is killed the moment the answer is there.
+import assert from 'node:assert/strict';
+import { existsSync } from 'node:fs';
+import { resolve } from 'node:path';
+import { after, before, test } from 'node:test';
+import { PostgresServer } from './support/postgres_server.mjs';
+import { kill, missingTwoCores, STANDBY_HOST, TwoCores, until } from './support/two_cores.mjs';
+
+const LIBRARY = resolve(process.env.PLANTCAST_OUT ?? 'build/release', 'tests/faults/late_peer.so'), LATE_MS = 100, ROUNDS = 3;
+const skip = missingTwoCores() || (existsSync(LIBRARY) ? false : 'not built: late_peer.so');
+let server, two;
+
+before(async () => {
+    if (skip)
+        return;
+    server = await PostgresServer.start();
+    server.makeDatabase('plants');
+    two = await TwoCores.create(server);
+    for (const core of Object.values(two.cores))
+        core.before = ['env', `LD_PRELOAD=${LIBRARY}`, `LATE_PEER=${STANDBY_HOST}`, `LATE_MS=${LATE_MS}`,
+            'ASAN_OPTIONS=verify_asan_link_order=0'];
+    await two.plant.tell('set TI-1 50');
+    await Promise.all([two.start('one'), two.start('two')]);
+    await two.followed(await two.leader());
+});
+after(async () => {
+    await two?.destroy();
+    await server?.destroy();
+});
+
+test('an answer comes once the standby has what was done', { skip, timeout: 240000 }, async (t) => {
+    const renderer = await two.renderer('r');
+    for (let round = 0; round < ROUNDS; round++) {
+        const core = await two.leader();
+        await two.followed(core);
+        await until('the renderer is there', async () => (await renderer.tags())['TI-1'].quality_name === 'Good', 10);
+        const anna = await renderer.client({}, { token: two.nodes.tokens.operator }), began = performance.now();
+        anna.say({ type: 'note', seq: 1 + round, text: `round ${round}`, asset: 'E-101' });
+        await anna.text('noted');
+        const answered_ms = performance.now() - began;
+        const { leads } = await two.takeOver(core, kill(core, 'SIGKILL'));
+        const notes = await (await leads.node.fetch('/api/v1/notes')).text();
+        for (let i = 0; i <= round; i++)
+            assert.match(notes, new RegExp(`round ${i}`), `answered after ${answered_ms.toFixed(0)} ms`);
+        t.diagnostic(`answered after ${answered_ms.toFixed(0)} ms`);
+        anna.close();
+        await two.restart(core);
+    }
+});

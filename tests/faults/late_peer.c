@@ -1,0 +1,83 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* LD_PRELOAD: sockets of the peer at the IPv4 address LATE_PEER can be written to only LATE_MS after poll() was first asked for it, as if
+   its network were slow. */
+#include <arpa/inet.h>
+#include <dlfcn.h>
+#include <netinet/in.h>
+#include <poll.h>
+#include <stdatomic.h>
+#include <stdbool.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/socket.h>
+#include <time.h>
+
+#define EXPORTED __attribute__((visibility("default")))
+#define FDS 4096
+
+static atomic_llong asked_ms[FDS]; /* when it was first asked for since it was last written to; 0: not since */
+
+static long long now_ms(void)
+{
+    struct timespec now;
+    clock_gettime(CLOCK_MONOTONIC, &now);
+    return now.tv_sec * 1000LL + now.tv_nsec / 1000000;
+}
+
+static bool is_late_peer(int fd)
+{
+    const char *peer = getenv("LATE_PEER");
+    struct sockaddr_storage address = { 0 };
+    struct sockaddr_in *ipv4 = (struct sockaddr_in *)&address;
+    const struct sockaddr_in6 *ipv6 = (const struct sockaddr_in6 *)&address;
+    socklen_t size = sizeof(address);
+    uint32_t from = 0;
+    if (!peer || fd < 0 || fd >= FDS || getpeername(fd, (struct sockaddr *)&address, &size) != 0)
+        return false;
+    if (address.ss_family == AF_INET)
+        from = ipv4->sin_addr.s_addr;
+    else if (address.ss_family == AF_INET6) /* an IPv4 address as IPv6 writes it */
+        memcpy(&from, ipv6->sin6_addr.s6_addr + 12, sizeof(from));
+    return from == inet_addr(peer);
+}
+
+static long long late_ms(void)
+{
+    const char *text = getenv("LATE_MS");
+    return text ? atoll(text) : 0;
+}
+
+/* What is still to be waited for until it may be written to. */
+static long long wait_ms(int fd)
+{
+    long long now = now_ms(), none = 0;
+    atomic_compare_exchange_strong(&asked_ms[fd], &none, now);
+    return asked_ms[fd] + late_ms() - now;
+}
+
+EXPORTED int poll(struct pollfd *fds, nfds_t count, int timeout_ms)
+{
+    static int (*real)(struct pollfd *, nfds_t, int);
+    short *events = calloc(count + 1, sizeof(*events));
+    if (!real)
+        *(void **)&real = dlsym(RTLD_NEXT, "poll");
+    for (nfds_t i = 0; i < count; i++) {
+        events[i] = fds[i].events;
+        if ((fds[i].events & POLLOUT) && is_late_peer(fds[i].fd)) {
+            long long wait = wait_ms(fds[i].fd);
+            if (wait > 0) {
+                fds[i].events &= (short)~POLLOUT;
+                timeout_ms = timeout_ms < 0 || timeout_ms > wait ? (int)wait : timeout_ms;
+            }
+        }
+    }
+    int result = real(fds, count, timeout_ms);
+    for (nfds_t i = 0; i < count; i++) {
+        fds[i].events = events[i];
+        if (result > 0 && (fds[i].revents & (POLLOUT | POLLHUP)) && fds[i].fd >= 0 && fds[i].fd < FDS)
+            asked_ms[fds[i].fd] = 0;
+    }
+    free(events);
+    return result;
+}
