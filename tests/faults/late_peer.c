@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* LD_PRELOAD: sockets of the peer at the IPv4 address LATE_PEER can be written to only LATE_MS after poll() was first asked for it, as if
    its network were slow. */
+#undef _FORTIFY_SOURCE /* whose poll() would be defined already */
 #include <arpa/inet.h>
 #include <dlfcn.h>
 #include <netinet/in.h>
