@@ -44,11 +44,16 @@ static bool is_told(const struct layout *layout, const uint8_t *used, size_t sen
     return false;
 }
 
+static double level_of(const struct layout *layout, const struct influence_entry *entry)
+{
+    return entry && entry->interpolation == INTERPOLATION_FIN ? layout->group->ambient : 0;
+}
+
 static void predict_prepared(const struct layout *layout, const struct influence_entry *entry, const uint8_t *used, struct neighbour *out)
 {
     const size_t n = layout->sensor_count;
     const double *precision = influence_array(&layout->file->influence, entry->precision);
-    const double around = entry->interpolation == INTERPOLATION_FIN ? layout->group->ambient : 0;
+    const double around = level_of(layout, entry);
     double *values = mem_array(n, sizeof(*values)), *own = mem_array(n, sizeof(*own));
     struct influence_fill *fill = influence_fill_create(precision, n, used);
     for (size_t i = 0; i < n; i++)
@@ -99,29 +104,78 @@ static void predict_by_distance(const struct layout *layout, const uint8_t *used
     }
 }
 
-size_t neighbours_find(const struct scene *scene, int asset, int group, const struct snapshot *snapshot, struct neighbour **out)
+struct neighbours {
+    struct layout *layout;
+    const struct influence_entry *entry; /* NULL: from distances */
+};
+
+struct neighbours *neighbours_create(const struct scene *scene, int asset, int group)
 {
-    *out = NULL;
     struct layout *layout = layout_create(scene, asset, group, NULL);
     if (!layout || layout->assumed) {
         layout_destroy(&layout);
-        return 0;
+        return NULL;
     }
+    struct neighbours *neighbours = mem_new(sizeof(*neighbours));
+    *neighbours = (struct neighbours){ layout, entry_of(layout) };
+    return neighbours;
+}
+
+void neighbours_destroy(struct neighbours **neighbours)
+{
+    if (*neighbours)
+        layout_destroy(&(*neighbours)->layout);
+    mem_free(*neighbours);
+    *neighbours = NULL;
+}
+
+size_t neighbours_count(const struct neighbours *neighbours)
+{
+    return neighbours->layout->sensor_count;
+}
+
+int neighbours_tag(const struct neighbours *neighbours, size_t sensor)
+{
+    return neighbours->layout->sensors[sensor].tag;
+}
+
+double neighbours_level(const struct neighbours *neighbours)
+{
+    return level_of(neighbours->layout, neighbours->entry);
+}
+
+void neighbours_predict(const struct neighbours *neighbours, const double *values, struct neighbour *out)
+{
+    const struct layout *layout = neighbours->layout;
     const size_t count = layout->sensor_count;
-    const struct influence_entry *entry = entry_of(layout);
     uint8_t *used = mem_array(count, 1);
+    for (size_t i = 0; i < count; i++) {
+        used[i] = isfinite(values[i]);
+        out[i] = (struct neighbour){ layout->sensors[i].tag, INTERPOLATION_SHEPARD, used[i] ? values[i] : (double)NAN, NAN, NAN };
+    }
+    if (neighbours->entry && count <= NEIGHBOURS_MOST)
+        predict_prepared(layout, neighbours->entry, used, out);
+    else if (count <= NEIGHBOURS_MOST)
+        predict_by_distance(layout, used, out);
+    mem_free(used);
+}
+
+size_t neighbours_find(const struct scene *scene, int asset, int group, const struct snapshot *snapshot, struct neighbour **out)
+{
+    struct neighbours *neighbours = neighbours_create(scene, asset, group);
+    *out = NULL;
+    if (!neighbours)
+        return 0;
+    const size_t count = neighbours_count(neighbours);
+    double *values = mem_array(count, sizeof(*values));
     *out = mem_array(count, sizeof(**out));
     for (size_t i = 0; i < count; i++) {
-        const struct reading *reading = &snapshot->readings[layout->sensors[i].tag];
-        used[i] = !quality_is_bad(reading->quality) && isfinite(reading->value);
-        (*out)[i] = (struct neighbour){ layout->sensors[i].tag, INTERPOLATION_SHEPARD, used[i] ? reading->value : (double)NAN, NAN, NAN };
+        const struct reading *reading = &snapshot->readings[neighbours_tag(neighbours, i)];
+        values[i] = quality_is_bad(reading->quality) ? (double)NAN : reading->value;
     }
-    if (entry && count <= NEIGHBOURS_MOST)
-        predict_prepared(layout, entry, used, *out);
-    else if (count <= NEIGHBOURS_MOST)
-        predict_by_distance(layout, used, *out);
-    mem_free(used);
-    layout_destroy(&layout);
+    neighbours_predict(neighbours, values, *out);
+    mem_free(values);
+    neighbours_destroy(&neighbours);
     return count;
 }
 

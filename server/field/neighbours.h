@@ -18,6 +18,19 @@ struct neighbour {
     double deviation; /* gp: by how much reading and prediction may differ, standard deviation; else NaN */
 };
 
+/* The sensors of one group on one asset, to be asked again and again with other values. */
+struct neighbours;
+/* Returns NULL if there are none whose places are known. The scene must outlive it; the caller destroys it. */
+struct neighbours *neighbours_create(const struct scene *scene, int asset, int group);
+void neighbours_destroy(struct neighbours **neighbours); /* &NULL is fine; leaves NULL */
+size_t neighbours_count(const struct neighbours *neighbours);
+/* Returns the tag of a sensor. */
+int neighbours_tag(const struct neighbours *neighbours, size_t sensor);
+/* Returns what is said where all sensors read it: `ambient` by fin; 0 by the others, which say so of any value. */
+double neighbours_level(const struct neighbours *neighbours);
+/* Says what the others say of each sensor. values: by sensor; NaN: it cannot be used. out: by sensor. */
+void neighbours_predict(const struct neighbours *neighbours, const double *values, struct neighbour *out);
+
 /* Lists the sensors of the group on the asset whose places are known, in their order. Returns their number; 0: there are none. The caller
    frees *out (mem_free). */
 size_t neighbours_find(const struct scene *scene, int asset, int group, const struct snapshot *snapshot, struct neighbour **out);

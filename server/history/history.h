@@ -31,6 +31,10 @@ int history_series(struct history_reader *reader, const char *tag, int64_t from_
                    struct history_series *out);
 void history_series_finish(struct history_series *series);
 
+/* Reads means of a tag over whole hours: `hours` of them, to the last one that is over at to_us. Each is that of its line; NaN where under
+   half of the hour has a value. */
+int history_hourly(struct history_reader *reader, const char *tag, int64_t to_us, int hours, double *means);
+
 /* Finds the first and the last time of what is recorded. Returns false if there is nothing, or it cannot be read (logged). */
 bool history_span(struct history_reader *reader, int64_t *first_us, int64_t *last_us);
 /* Lists the times between from and to when nothing at all was recorded, though something was before and after; ascending, without

@@ -35,7 +35,7 @@ bool net_open_history(struct net *net)
     if (!any)
         return true;
     server->history_queries =
-        history_queries_create(server->params.log, plant->scene->plant, plant->history_folder, plant->core_link, wake, net);
+        history_queries_create(server->params.log, plant->scene->plant, plant->scene, plant->history_folder, plant->core_link, wake, net);
     server->history_loader = history_loader_create(&history_loader);
     return server->history_queries && server->history_loader;
 }

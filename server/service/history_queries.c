@@ -13,6 +13,7 @@
 #include "corelink/core_history.h"
 #include "history/history.h"
 #include "history/series_text.h"
+#include "service/drift_report.h"
 #include "service/remote_history.h"
 
 enum { THREADS = 2 };                            /* one address takes one at a time: what it asks does not hold up another's question */
@@ -21,8 +22,9 @@ static const int64_t PIECE_NS = 100 * NS_PER_MS; /* or that took as long */
 
 struct question {
     struct history_query query;
-    int next_tag; /* to be read */
+    int next_tag; /* to be read; of drifting sensors: asset */
     bool buckets; /* as the last line of a CSV file that names columns says */
+    bool listed;  /* some drifting sensors are in it */
     bool wanted;  /* its next piece is */
     bool forgotten;
     uint64_t served; /* when its newest piece was begun; 0: it has none */
@@ -32,6 +34,7 @@ struct question {
 struct history_queries {
     struct log *log;
     const struct plant *plant;
+    const struct scene *scene;
     char *folder; /* NULL: the core is asked */
     struct core_link *core_link;
     _Atomic bool stop;
@@ -85,6 +88,12 @@ static bool fetch_tag(const struct history_queries *queries, struct core_history
                       : remote_history_json(core, query, tag, first, last, out);
 }
 
+/* How many times the history is read for an answer that comes in pieces. */
+static int steps_of(const struct history_queries *queries, const struct history_query *query)
+{
+    return !query->drift ? query->tag_count : query->tag >= 0 ? 1 : (int)queries->scene->asset_count;
+}
+
 /* The next tag of it. False: history could not be read. */
 static bool read_tag(struct history_queries *queries, struct history_reader *reader, struct question *question, struct text *out)
 {
@@ -98,6 +107,24 @@ static bool read_tag(struct history_queries *queries, struct history_reader *rea
         print_json(question, tag, &series, out);
     history_series_finish(&series);
     question->next_tag++;
+    return good;
+}
+
+/* The sensors on the next asset. */
+static bool read_asset(struct history_queries *queries, struct history_reader *reader, struct question *question, struct text *out)
+{
+    const struct history_query *query = &question->query;
+    int asset = query->tag >= 0 ? queries->plant->tags[query->tag].asset : question->next_tag;
+    struct drift_report report;
+    if (question->next_tag == 0)
+        drift_text_begin(out, queries->plant, query->group, query->to_us);
+    bool good = asset < 0 || drift_report_read(&report, reader, queries->scene, asset, query->group, query->to_us);
+    if (good && asset >= 0) {
+        drift_text_add(out, queries->plant, &report, query->tag, &question->listed);
+        drift_report_finish(&report);
+    }
+    if (++question->next_tag == steps_of(queries, query))
+        drift_text_end(out);
     return good;
 }
 
@@ -118,7 +145,7 @@ static bool read_whole(struct history_queries *queries, struct history_reader *r
                        const struct history_query *query, struct text *out)
 {
     if (core)
-        return remote_history_whole(core, query, out);
+        return remote_history_whole(core, queries->plant, query, out);
     if (query->gaps)
         return print_gaps(reader, query, out);
     alarms_journal_text(queries->log, queries->folder, &query->alarms, out);
@@ -132,15 +159,17 @@ static struct history_answer *read_piece(struct history_queries *queries, struct
     struct history_answer *piece = mem_new(sizeof(*piece));
     struct text text = { 0 };
     int64_t begin_ns = clock_mono_ns();
-    bool series = !query->journal && !query->gaps, good = core || reader;
+    bool pieces = !query->journal && !query->gaps && !(query->drift && core), good = core || reader;
     *piece = (struct history_answer){ .client = query->client, .csv = query->journal ? query->alarms.csv : query->csv };
     piece->first = question->next_tag == 0;
-    if (good && !series)
+    if (good && !pieces)
         good = read_whole(queries, reader, core, query, &text);
-    while (good && series && question->next_tag < query->tag_count && text.length < PIECE_BYTES &&
+    while (good && pieces && question->next_tag < steps_of(queries, query) && text.length < PIECE_BYTES &&
            (text.length == 0 || clock_mono_ns() - begin_ns < PIECE_NS))
-        good = core ? fetch_tag(queries, core, question, &text) : read_tag(queries, reader, question, &text);
-    piece->last = !good || !series || question->next_tag == query->tag_count;
+        good = core           ? fetch_tag(queries, core, question, &text)
+               : query->drift ? read_asset(queries, reader, question, &text)
+                              : read_tag(queries, reader, question, &text);
+    piece->last = !good || !pieces || question->next_tag == steps_of(queries, query);
     if (good && text.length > 0) { /* a text that grew has room to spare, and it may lie there for long */
         piece->text = mem_array(text.length + 1, 1);
         piece->length = text.length;
@@ -254,14 +283,15 @@ static void *run(void *arg)
 
 /* --- life ------------------------------------------------------------------------------------------------------------- */
 
-struct history_queries *history_queries_create(struct log *log, const struct plant *plant, const char *folder, struct core_link *core_link,
-                                               void (*notify)(void *arg), void *arg)
+struct history_queries *history_queries_create(struct log *log, const struct plant *plant, const struct scene *scene, const char *folder,
+                                               struct core_link *core_link, void (*notify)(void *arg), void *arg)
 {
     struct history_queries *queries = mem_new(sizeof(*queries));
     pthread_mutex_init(&queries->lock, NULL);
     pthread_cond_init(&queries->wake, NULL);
     queries->log = log;
     queries->plant = plant;
+    queries->scene = scene;
     queries->folder = folder ? mem_strdup(folder) : NULL;
     queries->core_link = core_link;
     queries->notify = notify;

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* History queries: series, recording gaps and the alarm journal, read for HTTP on threads of their own. An answer comes in pieces of some
-   hundred kilobytes, each made when it is asked for, so that a slow reader costs the memory of one piece. Addresses take turns.
-   Thread: any. */
+/* History queries: series, recording gaps, drifting sensors and the alarm journal, read for HTTP on threads of their own. An answer comes
+   in pieces of some hundred kilobytes, each made when it is asked for, so that a slow reader costs the memory of one piece. Addresses take
+   turns. Thread: any. */
 #ifndef SERVICE_HISTORY_QUERIES_H
 #define SERVICE_HISTORY_QUERIES_H
 #include <stdbool.h>
@@ -11,6 +11,7 @@
 #include "base/log.h"
 #include "corelink/core_link.h"
 #include "plant/plant.h"
+#include "scene/scene.h"
 #include "service/history_query.h"
 
 enum { HISTORY_QUERIES_MOST = 128 };
@@ -29,9 +30,10 @@ struct history_queries;
 void history_answer_free(struct history_answer **answer);
 
 /* Starts the threads; notify(arg) is called on one of them when there is a piece. Returns NULL if they cannot start, already logged.
-   plant must outlive it. folder: of the history; NULL: the core has it, which core_link, that outlives it, too, leads to. */
-struct history_queries *history_queries_create(struct log *log, const struct plant *plant, const char *folder, struct core_link *core_link,
-                                               void (*notify)(void *arg), void *arg);
+   plant and scene must outlive it; scene: of the plant; NULL: nobody asks for drifting sensors. folder: of the history; NULL: the core has
+   it, which core_link, that outlives it, too, leads to. */
+struct history_queries *history_queries_create(struct log *log, const struct plant *plant, const struct scene *scene, const char *folder,
+                                               struct core_link *core_link, void (*notify)(void *arg), void *arg);
 /* Ends the threads. &NULL is fine; leaves NULL. */
 void history_queries_destroy(struct history_queries **queries);
 /* Queues a copy of the query. Returns false when HISTORY_QUERIES_MOST are being answered. */

@@ -117,3 +117,23 @@ bool history_query_parse_gaps(const char *const *args, size_t count, int64_t now
     message_fail(error, "bad_field", "from: expected an earlier instant than to");
     return false;
 }
+
+bool history_query_parse_drift(const struct plant *plant, const char *const *args, size_t count, int64_t now_us,
+                               struct history_query *query, struct message_error *error)
+{
+    *query = (struct history_query){ .drift = true, .group = -1, .tag = -1, .to_us = now_us };
+    for (size_t i = 0; i < count; i++) {
+        if (!strncmp(args[i], "to=", 3)) {
+            if (!message_take_time("to", args[i] + 3, now_us, &query->to_us, error))
+                return false;
+        } else if (!strncmp(args[i], "group=", 6) && query->group < 0) {
+            query->group = plant_find_group(plant, args[i] + 6);
+        } else if (!strncmp(args[i], "tag=", 4) && query->group < 0) {
+            query->tag = plant_find_tag(plant, args[i] + 4);
+            query->group = query->tag >= 0 ? plant->tags[query->tag].group : -1;
+        }
+    }
+    if (query->group < 0)
+        message_fail(error, "bad_field", "expected group=ID of a group, or tag=NAME of one of its tags");
+    return query->group >= 0;
+}

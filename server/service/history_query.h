@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What is asked of recorded history: series, recording gaps, or the alarm journal. Pure. Thread: any. */
+/* What is asked of recorded history: series, recording gaps, drifting sensors, or the alarm journal. Pure. Thread: any. */
 #ifndef SERVICE_HISTORY_QUERY_H
 #define SERVICE_HISTORY_QUERY_H
 #include <stdbool.h>
@@ -19,6 +19,8 @@ struct history_query {
     int tag_count, max_points;
     int64_t from_us, to_us;
     bool csv;
+    bool drift;   /* instead of series: which sensors drifted in the week before to_us (service/drift_report.h), */
+    int group, tag; /* of this group, or of this tag alone; else -1 */
     bool gaps;    /* instead of series: when nothing was recorded */
     bool journal; /* instead of series: the alarm journal, as `alarms` says */
     struct alarm_query alarms;
@@ -30,5 +32,8 @@ bool history_query_parse(const struct plant *plant, const char *const *args, siz
 /* Parses `from=-8h&to=now` into a query for recording gaps. Returns false with *error saying what is wrong. Pure. */
 bool history_query_parse_gaps(const char *const *args, size_t count, int64_t now_us, struct history_query *query,
                               struct message_error *error);
+/* Parses `group=ID` or `tag=NAME`, and perhaps `to=-1d`, into a query for sensors that drifted. Likewise. */
+bool history_query_parse_drift(const struct plant *plant, const char *const *args, size_t count, int64_t now_us,
+                               struct history_query *query, struct message_error *error);
 
 #endif

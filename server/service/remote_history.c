@@ -86,11 +86,16 @@ static void add_journal(struct text *path, const struct alarm_query *query)
         add_number(path, "before", query->before_id);
 }
 
-bool remote_history_whole(struct core_history *core, const struct history_query *query, struct text *out)
+bool remote_history_whole(struct core_history *core, const struct plant *plant, const struct history_query *query, struct text *out)
 {
     struct text path = { 0 };
     if (query->journal) {
         add_journal(&path, &query->alarms);
+    } else if (query->drift) {
+        text_add(&path, "/api/v1/drift");
+        core_history_add(&path, query->tag >= 0 ? "tag" : "group",
+                         query->tag >= 0 ? plant->tags[query->tag].name : plant->groups[query->group].id);
+        add_time(&path, "to", query->to_us);
     } else {
         text_add(&path, "/api/v1/history/gaps");
         add_time(&path, "from", query->from_us);

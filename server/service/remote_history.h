@@ -13,7 +13,7 @@ bool remote_history_json(struct core_history *core, const struct history_query *
 /* Likewise in CSV. *buckets: the columns of the line before; becomes those of this one. */
 bool remote_history_csv(struct core_history *core, const struct history_query *query, const char *tag, bool first, bool *buckets,
                         struct text *out);
-/* Gaps, or the journal. */
-bool remote_history_whole(struct core_history *core, const struct history_query *query, struct text *out);
+/* Gaps, drifting sensors, or the journal. */
+bool remote_history_whole(struct core_history *core, const struct plant *plant, const struct history_query *query, struct text *out);
 
 #endif

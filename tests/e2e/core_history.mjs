@@ -52,6 +52,7 @@ test('series, gaps and the journal are the core\'s, to the byte', options, async
     for (const path of [`/api/v1/history?tags=TI-1&${range}&points=100`, `/api/v1/history?tags=TI-1,TI-2,PI-1&${range}`,
         `/api/v1/history?tags=TI-2,TI-1&${range}&points=20000`, `/api/v1/history?tags=PI-1,TI-1,TI-2&${range}&points=400&format=csv`,
         `/api/v1/history?tags=TI-1,TI-2&${range}&points=20000&format=csv`, `/api/v1/history/gaps?${range}`,
+        `/api/v1/drift?group=temperature&to=${iso(3700)}`, `/api/v1/drift?tag=TI-1&to=${iso(3700)}`,
         `/api/v1/alarms/journal?to=${iso(7300)}`, `/api/v1/alarms/journal?format=csv&tag=TI-1&from=${iso(0)}&limit=5`]) {
         const [there, here] = [await body(core, path), await body(renderer, path)];
         assert.equal(there[0], 200, there[2]);

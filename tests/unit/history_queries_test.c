@@ -54,7 +54,7 @@ static int set_up(void **state)
         assert_int_equal(month_file_import(file, 0, &(struct history_point){ NOW - (50 - i) * US_PER_S, i, 0 }, 1), 0);
     month_file_close(&file);
     mem_free(tags);
-    s.queries = history_queries_create(s.log, s.plant, s.folder, NULL, on_answer, &s);
+    s.queries = history_queries_create(s.log, s.plant, NULL, s.folder, NULL, on_answer, &s);
     *state = &s;
     return 0;
 }

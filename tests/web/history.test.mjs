@@ -2,6 +2,7 @@
 // What was recorded, as charts and the slider draw it: lines with their gaps and spikes, alarms, ticks; and a session in the past.
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
+import { residuals, stretches } from '../../clients/web/app/cards/drift.js';
 import { readAddress, writeAddress } from '../../clients/web/core/address.js';
 import {
     arrowS, ask, BAD, clustered, gaps, limitLines, line, lost, nextTo, raised, ticks, UNCERTAIN, witnesses,
@@ -120,4 +121,11 @@ test('a date field is by the clock of the plant', () => {
         assert.equal(fieldInstant(bad, 'UTC'), null, bad);
     assert.equal(fieldText(Date.parse('2026-11-21T22:27:02.9Z') * 1000, 'Asia/Seoul'), '2026-11-22T07:27:02');
     assert.equal(fieldInstant('2026-11-22T07:27:02', 'UTC'), Date.parse('2026-11-22T07:27:02Z') * 1000);
+});
+
+test('a week of residuals: a line for each stretch, as high as it is against sigma', () => {
+    assert.deepEqual(residuals([[0, 5, 3], [1, null, 3], [2, 5, null], [3, 4, 4]]), [2, null, null, 0]);
+    assert.deepEqual(stretches([0, 1, null, 1, 1, null, 5], 0.5), ['0.5,26.0 1.5,21.2', '3.5,21.2 4.5,21.2']);
+    assert.deepEqual(stretches([2, 2], 1), ['0.5,14.0 1.5,14.0']);
+    assert.deepEqual(stretches([null, null], 1), []);
 });

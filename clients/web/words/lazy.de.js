@@ -38,6 +38,13 @@ below: {predicted}; zeigt {by} weniger
 title: Sensoren mit größter Abweichung
 why: Was jeder zeigt, und was die anderen seiner Anlage ohne ihn sagen. Nicht, wo einer abweichen soll, wie am Einlass.
 
+[drift]
+week: Drift in einer Woche
+found: {by}: driftet
+none: {by}: keine Drift zu sehen
+unknown: {by}: nicht feststellbar
+why: Weg von dem, was die anderen sagen, nach Stundenmitteln. Nicht, wo die Anlage selbst die Unterschiede ändert.
+
 [coverage]
 since: seit {when}
 title: Was Sensoren abdecken

@@ -36,6 +36,13 @@ below: {predicted}; reads {by} less
 title: Sensors that disagree most
 why: What each reads, and what the others on its asset say without it. Not where a sensor is meant to differ, as at an inlet.
 
+[drift]
+week: Drift in a week
+found: {by}: drifts
+none: {by}: no drift seen
+unknown: {by}: cannot be told
+why: Away from what the others say, by hourly means. Not where the plant itself changed how places differ.
+
 [coverage]
 since: since {when}
 title: What sensors cover

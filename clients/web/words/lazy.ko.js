@@ -37,6 +37,13 @@ below: {predicted}; {by} 낮음
 title: 가장 어긋나는 센서
 why: 각 센서의 값과, 그 센서 없이 같은 설비의 다른 센서가 말하는 값. 입구처럼 달라야 하는 곳은 제외
 
+[drift]
+week: 주간 드리프트
+found: {by}: 드리프트 있음
+none: {by}: 드리프트 안 보임
+unknown: {by}: 알 수 없음
+why: 시간 평균으로 본, 다른 센서의 예측에서 벗어난 정도. 운전 자체로 위치별 차이가 바뀐 곳은 제외
+
 [coverage]
 since: {when} 이후
 title: 센서가 미치는 곳

@@ -72,6 +72,7 @@ static const struct {
     { "/api/v1/pick", ask_pick, ROLE_VIEWER, 0 },
     { "/api/v1/history", ask_history, ROLE_VIEWER, DISPLAY | NODE },
     { "/api/v1/history/gaps", ask_gaps, ROLE_VIEWER, DISPLAY | NODE },
+    { "/api/v1/drift", ask_drift, ROLE_VIEWER, NODE },
     { "/api/v1/alarms", api_alarms, ROLE_VIEWER, 0 },
     { "/api/v1/alarms/journal", ask_journal, ROLE_VIEWER, NODE },
     { CORE_INSTANT_PATH, ask_instant, ROLE_ENGINEER, NODE },

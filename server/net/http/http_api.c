@@ -68,6 +68,19 @@ int ask_gaps(struct server_context *server, struct request *request)
     return ask_recorded(server, request, true);
 }
 
+int ask_drift(struct server_context *server, struct request *request)
+{
+    struct history_query query;
+    struct message_error error = { 0 };
+    struct args args;
+    if (!server->history_queries)
+        return request_answer_text(request, HTTP_STATUS_NOT_FOUND, HTTP_NOTHING_RECORDED);
+    if (!request_args(request->wsi, &args, &error) ||
+        !history_query_parse_drift(server->params.plant.scene->plant, args.list, args.count, clock_plant_ns() / 1000, &query, &error))
+        return request_answer_error(request, &error);
+    return await_history(server, request, &query);
+}
+
 static bool read_alarm_query(struct server_context *server, struct request *request, bool journal, struct alarm_query *query,
                              struct message_error *error)
 {

@@ -98,6 +98,7 @@ void request_answered(struct request *request, int result);
 int ask_snapshot(struct server_context *server, struct request *request);
 int ask_pick(struct server_context *server, struct request *request);
 int ask_history(struct server_context *server, struct request *request);
+int ask_drift(struct server_context *server, struct request *request);
 int ask_gaps(struct server_context *server, struct request *request);
 int ask_journal(struct server_context *server, struct request *request);
 int ask_instant(struct server_context *server, struct request *request);

@@ -8,6 +8,7 @@ import { standBeside } from './card_position.js';
 import { clock } from '../common/clock.js';
 import { byId, glyph, limitFlag, make, setText } from '../common/dom.js';
 import { closeButton, fill } from '../common/widgets.js';
+import { driftCurve, driftOf, driftText } from './drift.js';
 import { Neighbours, neighbourText } from './neighbours.js';
 
 export class Card {
@@ -80,6 +81,9 @@ export class Card {
             this.othersTerm.hidden = !text;
             setText(this.others, text ?? '');
         });
+        this.week = make('dd', {});
+        this.weekTerm = make('dt', { hidden: true }, say('drift.week'));
+        this.showDrift(tag);
         const trend = (name, f, key) => make('button', { type: 'button', class: name, onclick: () => f(tag) }, say(key));
         this.adds = trend('add-trend', this.addTrend, 'card.add');
         fill(this.element,
@@ -87,10 +91,19 @@ export class Card {
             make('h3', {}, tag.name), make('p', { class: 'about' }, tag.description ?? ''), this.value, this.limit,
             this.proof, this.assumed,
             make('dl', {}, make('dt', {}, say('card.quality')), this.quality, make('dt', {}, say('card.age')), this.age,
-                this.othersTerm, this.others,
+                this.othersTerm, this.others, this.weekTerm, this.week,
                 make('dt', {}, say('card.on')), make('dd', {}, on)),
             this.session.recorded ? make('div', { class: 'trends-of' }, trend('trend', this.showTrend, 'card.trend'), this.adds) : null,
             links.length > 0 ? make('p', { class: 'links' }, ...links) : null);
+    }
+
+    async showDrift(tag) {
+        const { week, weekTerm } = this, group = this.session.model.group(tag.group);
+        const [row] = group && tag.asset ? await driftOf(this.session, { tag: tag.name }) : [];
+        const text = driftText(row, group);
+        weekTerm.hidden = !text;
+        week.replaceChildren(...text ? [text, driftCurve(row)].filter(Boolean) : []);
+        week.classList.toggle('drifts', row?.verdict === 'found');
     }
 
     place(marker) {

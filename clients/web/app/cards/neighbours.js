@@ -5,6 +5,7 @@ import { decimalsFor, numberText, unitText } from '../../core/format.js';
 import { ask } from '../../core/history.js';
 import { say } from '../../core/words.js';
 import { make } from '../common/dom.js';
+import { driftOf, driftText } from './drift.js';
 
 const AGAIN_MS = 3000, LISTED = 5;
 
@@ -56,9 +57,15 @@ export class Disagreeing {
     constructor({ session, selectTag }) {
         Object.assign(this, { session, selectTag });
         this.list = make('div');
+        this.drifting = make('div', { id: 'drifting', hidden: true });
         this.element = make('fieldset', { id: 'disagreeing' }, make('legend', {}, say('neighbours.title')), this.list,
-            make('p', { class: 'note' }, say('neighbours.why')));
-        this.neighbours = new Neighbours(session, () => this.element.closest('.open') !== null, (rows) => this.fill(rows));
+            make('p', { class: 'note' }, say('neighbours.why')), this.drifting);
+        const isSeen = () => this.element.closest('.open') !== null;
+        this.neighbours = new Neighbours(session, isSeen, (rows) => {
+            this.fill(rows);
+            if (isSeen())
+                this.fillDrifting(session.params.group);
+        });
         session.on('params', () => this.update());
     }
 
@@ -68,13 +75,25 @@ export class Disagreeing {
             this.neighbours.show(`group=${encodeURIComponent(params.group)}`);
     }
 
+    line(row, text) {
+        const group = this.session.model.group(this.session.model.tag(row.tag).group);
+        return make('div', { class: 'line' }, make('button', { type: 'button', onclick: () => this.selectTag(row.tag) }, row.tag),
+            make('span', {}, text(row, group)));
+    }
+
     fill(rows) {
-        const { model } = this.session;
-        this.list.replaceChildren(...rows.filter(({ off }) => off !== null).slice(0, LISTED).map((row) => {
-            const tag = model.tag(row.tag);
-            return make('div', { class: 'line' }, make('button', { type: 'button', onclick: () => this.selectTag(row.tag) }, row.tag),
-                make('span', {}, neighbourText(row, model.group(tag.group))));
-        }));
-        this.element.hidden = this.list.childElementCount === 0;
+        const known = rows.filter(({ off }) => off !== null).slice(0, LISTED);
+        this.list.replaceChildren(...known.map((row) => this.line(row, neighbourText)));
+        this.element.hidden = known.length === 0;
+    }
+
+    async fillDrifting(group) {
+        const found = (await driftOf(this.session, { group })).filter(({ verdict }) => verdict === 'found');
+        if (this.session.params.group !== group)
+            return;
+        found.sort((a, b) => Math.abs(b.change / b.scatter) - Math.abs(a.change / a.scatter));
+        this.drifting.hidden = found.length === 0;
+        this.drifting.replaceChildren(make('p', { class: 'note' }, say('drift.week')),
+            ...found.slice(0, LISTED).map((row) => this.line(row, driftText)), make('p', { class: 'note' }, say('drift.why')));
     }
 }

@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// How far a sensor drifted in a week away from what the others say of it, as the daemon finds it in what was recorded (PROTOCOL.md,
+// /api/v1/drift): a line of a card with the week as a curve, and those that were found in a list.
+import { decimalsFor, numberText, unitText } from '../../core/format.js';
+import { ask } from '../../core/history.js';
+import { say } from '../../core/words.js';
+
+const WIDTH = 168, HEIGHT = 28, AGAIN_MS = 600000;
+const kept = new Map(); // query: { at, rows }; it changes once an hour
+
+// A promise of rows; none where nothing is recorded or the daemon cannot say.
+export async function driftOf(session, query) {
+    const key = JSON.stringify(query), known = kept.get(key);
+    if (!session.recorded || session.time.atUs !== null)
+        return [];
+    if (known && Date.now() - known.at < AGAIN_MS)
+        return known.rows;
+    const rows = await ask('api/v1/drift', query, session.token).then((answer) => answer.json()).then(({ sensors }) => sensors)
+        .catch(() => null);
+    if (rows)
+        kept.set(key, { at: Date.now(), rows });
+    return rows ?? [];
+}
+
+// Such as +1.4 °C ± 0.2; null: nothing can be said.
+function changeText({ change, error }, group) {
+    const digits = Math.max(1, decimalsFor(group.max - group.min));
+    return `${change < 0 ? '−' : '+'}${numberText(Math.abs(change), digits)} ${unitText(group.unit)} ± ${numberText(error, digits)}`;
+}
+
+export function driftText(row, group) {
+    if (!row || (row.verdict === 'unknown' && row.change === null))
+        return null;
+    return say(`drift.${row.verdict}`, { by: changeText(row, group) });
+}
+
+// Reading less what the others say, by hour: null where either is not known. Pure.
+export const residuals = (hours) => hours.map(([, value, predicted]) => (value === null || predicted === null ? null : value - predicted));
+
+// The points of each stretch without a gap, for a polyline; what is less than a drift would be does not fill the height. Pure.
+export function stretches(values, sigma) {
+    const known = values.filter((value) => value !== null), low = Math.min(...known), high = Math.max(...known), all = [[]];
+    const span = Math.max(high - low, 6 * sigma);
+    values.forEach((value, i) => {
+        if (value === null)
+            return void all.push([]);
+        const y = HEIGHT / 2 - (value - (low + high) / 2) / span * (HEIGHT - 4);
+        all.at(-1).push(`${i + 0.5},${y.toFixed(1)}`);
+    });
+    return all.filter((points) => points.length > 1).map((points) => points.join(' '));
+}
+
+// The week as a curve; null: there is nothing to draw.
+export function driftCurve(row) {
+    if (row.scatter === null)
+        return null;
+    const lines = stretches(residuals(row.by_hour ?? []), row.scatter);
+    if (lines.length === 0)
+        return null;
+    const NS = 'http://www.w3.org/2000/svg', svg = document.createElementNS(NS, 'svg');
+    svg.setAttribute('viewBox', `0 0 ${WIDTH} ${HEIGHT}`);
+    svg.setAttribute('class', 'drift-curve');
+    svg.setAttribute('aria-hidden', 'true');
+    for (const points of lines) {
+        const line = document.createElementNS(NS, 'polyline');
+        line.setAttribute('points', points);
+        svg.append(line);
+    }
+    return svg;
+}

@@ -1,0 +1,37 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Sensors that drift: over a week of hourly means, a reading is what the others say of it (neighbours.h), times a gain, after a lag, and a
+   straight line in time. That line is the drift. Each sensor counts less what is its own (own[sensor] + common[hour]), so that one that
+   is lost for a day does not move what is said of the others. By least squares, whose error is that of dependent residuals (Newey & West
+   1987), since what a plant does lasts for hours. A sensor that drifts pulls at what is said of all the others: the clearest one is found
+   first, and left out before the others are judged. Pure. Thread: any. */
+#ifndef FIELD_DRIFT_H
+#define FIELD_DRIFT_H
+#include "field/neighbours.h"
+
+enum { DRIFT_HOURS = 168, DRIFT_HOURS_LEAST = 84 }; /* a week; of fewer nothing is said */
+#define DRIFT_SIGMAS 3.0 /* as many of its scatter count as a drift, */
+#define DRIFT_ERRORS 4.0 /* if they are as many of the drift's own standard errors */
+
+enum drift_verdict {
+    DRIFT_UNKNOWN, /* too little is recorded, under three sensors, or the plant changed so that a drift could not be told from it */
+    DRIFT_NONE,    /* none, and one of DRIFT_SIGMAS would have been seen */
+    DRIFT_FOUND,
+};
+
+struct drift {
+    enum drift_verdict verdict;
+    double change;  /* over the week, in the unit; NaN: not known */
+    double error;   /* its standard error */
+    double scatter; /* sigma: how far readings otherwise are from what follows from the others, noise included */
+    int hours;      /* that count */
+};
+
+/* One sensor. values, predicted: by hour; NaN: none. noise: by how much a reading errs and is recorded coarsely, above 0. */
+void drift_fit(const double *values, const double *predicted, int hours, double noise, struct drift *out);
+/* All sensors that can be asked. values: [hour][sensor]; noise: by sensor; out: by sensor. predicted: [hour][sensor], what is said without
+   those that were found, and with what is the sensor's own; may be NULL. Takes (hours * sensors * sensors) steps, and as many again for
+   each that is found. */
+void drift_find(const struct neighbours *neighbours, const double *values, int hours, const double *noise, struct drift *out,
+                double *predicted);
+
+#endif

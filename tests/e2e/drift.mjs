@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A sensor that drifts away from what the others say: found in recorded history, by the daemon as by the tool, and told on the page.
+import assert from 'node:assert/strict';
+import { writeFileSync } from 'node:fs';
+import { join } from 'node:path';
+import { after, before, test } from 'node:test';
+import { openPage, settle, shoot, waitForHealth, waitForPicture } from './support/browser.mjs';
+import { missing, runProgram, TinyPlant } from './support/tiny_plant.mjs';
+
+const absent = missing();
+const options = { skip: absent.length > 0 ? `not built: ${absent.join(', ')}` : false, timeout: 120000 };
+const HOUR = 3600, HOURS = 168, END_S = Math.floor(Date.now() / 1000 / HOUR) * HOUR, BEGIN_S = END_S - HOURS * HOUR;
+const TAGS = `Tag Name,Address,Data Type,Eng Units,Description,Group,Asset,X,Y,Z,Stale s
+TI-1,400001,Float,°C,left,temperature,E-101,0.5,0,0,1
+TI-2,400003,Float,°C,right,temperature,E-101,-0.5,0,0,1
+TI-3,400005,Float,°C,front,temperature,E-101,0,-0.5,0,1
+TI-4,400007,Float,°C,top,temperature,E-101,0,0,0.5,1
+PI-1,400009,Float,bar,pump,pressure,P-101A,3,0,0.5,1
+`;
+let plant, url;
+
+// All four go up and down with the day; TI-3 reads ever more, by 8 K in the week. TI-4 is lost for a day.
+function series() {
+    const lines = ['Tag,Time,Value,Quality'];
+    for (let quarter = 0; quarter < HOURS * 4; quarter++) {
+        const day = 10 * Math.sin(quarter / 96 * 2 * Math.PI) + 3 * Math.sin(quarter / 11), lost = quarter >= 96 && quarter < 192;
+        const values = [60 + day, 50 + 0.8 * day, 55 + 1.1 * day + 8 * quarter / (HOURS * 4), lost ? '' : 45 + 0.9 * day];
+        values.forEach((value, i) => lines.push(value === '' ? `TI-${i + 1},${BEGIN_S + quarter * 900},,0x80050000`
+            : `TI-${i + 1},${BEGIN_S + quarter * 900},${value.toFixed(3)},Good`));
+    }
+    return `${lines.join('\n')}\n`;
+}
+
+before(async () => {
+    if (options.skip)
+        return;
+    plant = await TinyPlant.create();
+    writeFileSync(join(plant.folder, 'tags.csv'), TAGS);
+    assert.equal(plant.prepare().code, 0);
+    writeFileSync(join(plant.folder, 'series.csv'), series());
+    const { code, err } = runProgram('plantcast', ['history', 'import', plant.file, join(plant.folder, 'series.csv')]);
+    assert.equal(code, 0, err);
+    await plant.startSim();
+    await plant.startDaemon();
+    url = `http://127.0.0.1:${plant.port}/`;
+});
+after(() => plant?.destroy());
+
+const ask = async (query) => {
+    const answer = await fetch(`${url}api/v1/drift?${query}`);
+    return [answer.status, answer.ok ? await answer.json() : await answer.text()];
+};
+
+test('the one that drifts is found, and no other', options, async () => {
+    const [status, { from_us: from, to_us: to, group, unit, sensors }] = await ask('group=temperature');
+    assert.equal(status, 200);
+    assert.deepEqual([group, unit, to - from], ['temperature', '°C', HOURS * HOUR * 1e6]);
+    assert.deepEqual(sensors.map(({ tag, verdict }) => [tag, verdict]),
+        [['TI-1', 'none'], ['TI-2', 'none'], ['TI-3', 'found'], ['TI-4', 'none']]);
+    assert.ok(Math.abs(sensors[2].change - 8) < 1, `${sensors[2].change} of 8 K`);
+    assert.ok(sensors[3].hours >= HOURS - 26 && sensors[3].hours < HOURS - 20, 'a lost day is missing');
+    const [, { sensors: [one] }] = await ask('tag=TI-3');
+    assert.equal(one.by_hour.length, HOURS);
+    assert.equal(one.by_hour[0][0], from);
+    assert.ok(one.by_hour.at(-2)[1] - one.by_hour.at(-2)[2] > one.by_hour[1][1] - one.by_hour[1][2] + 5);
+    assert.deepEqual((await ask('group=pressure'))[1].sensors.map(({ verdict, change }) => [verdict, change]), [['unknown', null]]);
+});
+
+test('the tool says the same; a week before nothing is known', options, async () => {
+    const { code, out, err } = runProgram('plantcast', ['sensors', 'drift', plant.file, '--group', 'temperature']);
+    assert.equal(code, 1, err);
+    const [, { sensors }] = await ask('group=temperature');
+    assert.deepEqual(out.trim().split('\n').slice(1).map((line) => line.split(',').slice(0, 2)), sensors.map((s) => [s.tag, s.verdict]));
+    const before = runProgram('plantcast', ['sensors', 'drift', plant.file, '--group', 'temperature', '--to', '-7d']);
+    assert.equal(before.code, 0, before.err);
+    assert.ok(before.out.trim().split('\n').slice(1).every((line) => line.split(',')[1] === 'unknown'), before.out);
+    assert.equal(runProgram('plantcast', ['sensors', 'drift', plant.file, '--group', 'speed']).code, 2);
+    for (const query of ['', 'group=speed', 'tag=TI-9', 'group=temperature&to=never'])
+        assert.equal((await ask(query))[0], 400, query);
+});
+
+test('the page lists it, and its card shows the week', options, async () => {
+    for (const [tag, value] of [['TI-1', 60], ['TI-2', 50], ['TI-3', 63], ['TI-4', 45]])
+        await plant.tell(`set ${tag} ${value}`);
+    const languages = [['en', /\+[78]\.\d °C.*: drifts/, /no drift seen/], ['de', /\+[78],\d °C.*: driftet/, /keine Drift/],
+        ['ko', /\+[78]\.\d °C.*드리프트 있음/, /안 보임/]];
+    for (const [language, found, none] of languages.slice(0, process.env.PLANTCAST_SHOTS ? 3 : 1)) {
+        const { page, errors, close } = await openPage(`${url}?lang=${language}`, { viewport: { width: 1280, height: 800 } });
+        await waitForPicture(page);
+        await waitForHealth(page, 'live');
+        await page.evaluate(() => globalThis.plantcast.selectTag(globalThis.plantcast.session.model.tag('TI-3')));
+        await page.locator('#card .drifts .drift-curve').waitFor();
+        assert.match(await page.locator('#card .drifts').textContent(), found);
+        await settle(page);
+        await shoot(page, `drift-card-${language}`);
+        await page.evaluate(() => globalThis.plantcast.selectTag(globalThis.plantcast.session.model.tag('TI-1')));
+        await page.waitForFunction(() => document.querySelector('#card .drift-curve') && !document.querySelector('#card .drifts'));
+        assert.match(await page.locator('#card').textContent(), none);
+        await page.locator('#picture-toggle').click();
+        await page.locator('#drifting:not([hidden]) .line').first().waitFor();
+        assert.equal(await page.locator('#drifting .line').count(), 1);
+        assert.match(await page.locator('#drifting .line').textContent(), /TI-3/);
+        await page.locator('#drifting').scrollIntoViewIfNeeded();
+        await shoot(page, `drift-list-${language}`);
+        assert.deepEqual(errors, []);
+        await close();
+    }
+});

@@ -1,0 +1,411 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Drifting sensors: the fit against plain least squares, and real series (../shared/data/sensors) stretched over a week, as they are and
+   with a drift put into one sensor. The limit of an alarm is a tenth of the group's range beyond all that was ever read. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <cmocka.h>
+
+#include "base/log.h"
+#include "base/mem.h"
+#include "field/drift.h"
+#include "scene/scene_create.h"
+#include "tests/support/cad.h"
+#include "tests/support/model_maker.h"
+#include "tests/support/prep_case.h"
+#include "tests/support/temp.h"
+
+#define SERIES "../shared/data/sensors/"
+enum { SENSORS = 5 };
+
+/* --- the fit ------------------------------------------------------------------------------------------------------------- */
+
+static double random_in(double low, double high)
+{
+    return low + (high - low) * rand() / (double)RAND_MAX;
+}
+
+/* Gauss' elimination of the normal equations. */
+static void solve(double a[4][5])
+{
+    for (int i = 0; i < 4; i++) {
+        int pivot = i;
+        for (int r = i + 1; r < 4; r++)
+            pivot = fabs(a[r][i]) > fabs(a[pivot][i]) ? r : pivot;
+        for (int c = 0; c < 5; c++) {
+            double x = a[i][c];
+            a[i][c] = a[pivot][c];
+            a[pivot][c] = x;
+        }
+        for (int r = 0; r < 4; r++)
+            for (int c = 4; c >= i && r != i; c--)
+                a[r][c] -= a[r][i] / a[i][i] * a[i][c];
+    }
+}
+
+static double slow_change(const double *values, const double *predicted, int hours)
+{
+    double a[4][5] = { 0 }, lagging = predicted[0];
+    for (int h = 0; h < hours; h++) {
+        lagging += h > 0 ? (predicted[h] - lagging) / 12 : 0;
+        const double row[] = { 1, predicted[h], lagging, (h + 0.5) / hours - 0.5, values[h] };
+        for (int r = 0; r < 4 && isfinite(values[h]); r++)
+            for (int c = 0; c < 5; c++)
+                a[r][c] += row[r] * row[c];
+    }
+    solve(a);
+    return a[3][4] / a[3][3];
+}
+
+static void test_fit_is_least_squares(void **state)
+{
+    double values[DRIFT_HOURS], predicted[DRIFT_HOURS];
+    (void)state;
+    srand(1);
+    for (int round = 0; round < 200; round++) {
+        double gain = random_in(0.5, 2), change = random_in(-5, 5), noise = random_in(0.01, 1), at = 50;
+        struct drift drift;
+        for (int h = 0; h < DRIFT_HOURS; h++) {
+            at += random_in(-1, 1);
+            predicted[h] = at;
+            values[h] = gain * at + change * h / DRIFT_HOURS + random_in(-noise, noise);
+            if (h % 9 == round % 9)
+                values[h] = NAN;
+        }
+        drift_fit(values, predicted, DRIFT_HOURS, 0.01, &drift);
+        assert_int_equal(drift.hours, DRIFT_HOURS - (DRIFT_HOURS + 8 - round % 9) / 9);
+        assert_true(fabs(drift.change - slow_change(values, predicted, DRIFT_HOURS)) < 1e-6);
+        assert_true(fabs(drift.change - change) < 10 * drift.error);
+        assert_true(fabs(drift.scatter - hypot(noise / sqrt(3), 0.01)) < 0.2 * drift.scatter); /* of an even distribution */
+        if (fabs(change) > 4 * drift.scatter && fabs(change) > 10 * drift.error)
+            assert_int_equal(drift.verdict, DRIFT_FOUND);
+    }
+}
+
+/* No drift can be told from readings that are not there, or from a plant that itself went one way all week. */
+static void test_what_cannot_be_told_is_unknown(void **state)
+{
+    double values[DRIFT_HOURS], predicted[DRIFT_HOURS];
+    struct drift drift;
+    (void)state;
+    for (int h = 0; h < DRIFT_HOURS; h++) {
+        values[h] = h < DRIFT_HOURS_LEAST - 1 ? 50 + h : NAN;
+        predicted[h] = 50;
+    }
+    drift_fit(values, predicted, DRIFT_HOURS, 0.2, &drift);
+    assert_int_equal(drift.verdict, DRIFT_UNKNOWN);
+    assert_true(isnan(drift.change) && drift.hours == DRIFT_HOURS_LEAST - 1);
+    for (int h = 0; h < DRIFT_HOURS; h++) {
+        predicted[h] = 50 + h;
+        values[h] = 50 + 1.1 * h;
+    }
+    drift_fit(values, predicted, DRIFT_HOURS, 0.2, &drift);
+    assert_int_equal(drift.verdict, DRIFT_UNKNOWN);
+    for (int h = 0; h < DRIFT_HOURS; h++) /* stuck, like all others: no drift, and it would have been seen */
+        values[h] = predicted[h] = 50;
+    drift_fit(values, predicted, DRIFT_HOURS, 0.2, &drift);
+    assert_int_equal(drift.verdict, DRIFT_NONE);
+}
+
+/* --- real series ---------------------------------------------------------------------------------------------------------- */
+
+struct series {
+    const char *file, *columns[SENSORS];
+    int count; /* of columns */
+    double noise, beyond; /* of a reading; of the alarm's limit: a tenth of the range */
+    double hours[DRIFT_HOURS][SENSORS];
+};
+
+static void read_series(struct series *s)
+{
+    char *path = mem_printf(SERIES "%s", s->file), *line = NULL;
+    FILE *file = fopen(path, "r");
+    size_t room = 0, rows = 0, row = 0;
+    int column[SENSORS];
+    mem_free(path);
+    if (!file)
+        skip();
+    assert_true(getline(&line, &room, file) > 0);
+    for (int i = 0; i < s->count; i++) {
+        char *rest = line;
+        column[i] = 0;
+        for (char *name; (name = strsep(&rest, ",\n")) && strcmp(name, s->columns[i]) != 0; column[i]++)
+            if (rest)
+                rest[-1] = ','; /* for the next name */
+        if (rest)
+            rest[-1] = ',';
+    }
+    long begin = ftell(file);
+    while (getline(&line, &room, file) > 0)
+        rows++;
+    fseek(file, begin, SEEK_SET);
+    double counted[DRIFT_HOURS] = { 0 };
+    memset(s->hours, 0, sizeof(s->hours));
+    for (; getline(&line, &room, file) > 0; row++) {
+        size_t hour = row * DRIFT_HOURS / rows;
+        char *rest = line;
+        counted[hour]++;
+        for (int c = 0; rest; c++) {
+            double value = atof(rest);
+            for (int i = 0; i < s->count; i++)
+                s->hours[hour][i] += c == column[i] ? value : 0;
+            rest = strchr(rest, ',') ? strchr(rest, ',') + 1 : NULL;
+        }
+    }
+    for (int h = 0; h < DRIFT_HOURS; h++)
+        for (int i = 0; i < s->count; i++)
+            s->hours[h][i] /= counted[h];
+    free(line);
+    fclose(file);
+}
+
+struct row_of_sensors {
+    struct log *log;
+    struct plant *plant;
+    struct scene *scene;
+    struct neighbours *neighbours;
+};
+
+/* A strip with so many sensors, 0.4 m apart. */
+static void stand_sensors(struct prep_case *c, int count, struct row_of_sensors *out)
+{
+    struct cad_random random;
+    struct cad cad = { 0 };
+    struct maker maker;
+    struct text rows = { 0 };
+    size_t size;
+    cad_random_start(&random);
+    cad_plate(&cad, &random, 24, 3, 2.4, 0.3, 0);
+    maker_init(&maker);
+    int positions = maker_numbers(&maker, cad.positions, cad.vertex_count * sizeof(*cad.positions), FLOAT, cad.vertex_count, "VEC3");
+    int indices =
+        maker_numbers(&maker, cad.triangles, cad.triangle_count * 3 * sizeof(*cad.triangles), UINT, cad.triangle_count * 3, "SCALAR");
+    maker_node(&maker, "strip", maker_mesh(&maker, json_pack("{s:{s:i},s:i}", "attributes", "POSITION", positions, "indices", indices)),
+               NULL);
+    char *glb = maker_glb(&maker, &size);
+    mem_free(temp_write(c->folder, "model.glb", glb, size));
+    mem_free(glb);
+    maker_finish(&maker);
+    cad_finish(&cad);
+    prep_case_plant(c, "plant: { name: Strip }\n"
+                       "assets:\n"
+                       "  - { id: S, model: model.glb, up: z }\n"
+                       "groups:\n"
+                       "  - { id: temperature, unit: K, min: 0, max: 100 }\n"
+                       "sources:\n"
+                       "  - { id: plc, type: modbus, host: 127.0.0.1, byte_order: ABCD, address_base: 1 }\n"
+                       "tags: tags.csv\n");
+    for (int i = 0; i < count; i++)
+        text_add(&rows, "T%d,%d,Float,plc,temperature,S,,%g,0.15,0\n", i, 400001 + 2 * i, 0.4 + 0.4 * i);
+    prep_case_tags(c, rows.at);
+    text_finish(&rows);
+    prep_case_expect(c, "$PLANT", 0);
+    out->log = log_create(LOG_ERROR);
+    out->plant = plant_load_or_print(c->plant);
+    assert_non_null(out->plant);
+    char *prepared = plant_prepared_folder(out->plant);
+    out->scene = scene_create(out->log, out->plant, prepared);
+    mem_free(prepared);
+    assert_non_null(out->scene);
+    out->neighbours = neighbours_create(out->scene, 0, 0);
+    assert_non_null(out->neighbours);
+    assert_int_equal(neighbours_count(out->neighbours), count);
+    for (int i = 0; i < count; i++)
+        assert_int_equal(neighbours_tag(out->neighbours, (size_t)i), i);
+}
+
+static void leave(struct row_of_sensors *row)
+{
+    neighbours_destroy(&row->neighbours);
+    scene_destroy(&row->scene);
+    plant_destroy(&row->plant);
+    log_destroy(&row->log);
+}
+
+/* The week's first hours, with a drift that is `change` after all of them put into one sensor. */
+static void find(const struct row_of_sensors *row, const struct series *s, int hours, int sensor, double change, struct drift *out)
+{
+    double values[DRIFT_HOURS * SENSORS], noise[SENSORS];
+    for (int h = 0; h < hours; h++)
+        for (int i = 0; i < s->count; i++)
+            values[h * s->count + i] = s->hours[h][i] + (i == sensor ? change * h / DRIFT_HOURS : 0);
+    for (int i = 0; i < s->count; i++)
+        noise[i] = s->noise;
+    drift_find(row->neighbours, values, hours, noise, out, NULL);
+}
+
+/* Looked at each hour from half a week on. Returns how many different sensors are accused in all that time; *times: how often. */
+static int accused(const struct row_of_sensors *row, const struct series *s, int *times)
+{
+    bool ever[SENSORS] = { false };
+    int sensors = 0;
+    *times = 0;
+    for (int hours = DRIFT_HOURS_LEAST; hours <= DRIFT_HOURS; hours++) {
+        struct drift drifts[SENSORS];
+        find(row, s, hours, 0, 0, drifts);
+        for (int i = 0; i < s->count; i++) {
+            bool found = drifts[i].verdict == DRIFT_FOUND;
+            *times += found;
+            sensors += found && !ever[i];
+            ever[i] |= found;
+        }
+    }
+    return sensors;
+}
+
+static struct series all_series[] = {
+    { "hydraulic/hydraulic_ts_1hz.csv", { "TS1", "TS2", "TS3", "TS4" }, 4, 0.2, 4, { { 0 } } },
+    { "tep/tep_d00_normal.csv", { "XMEAS09", "XMEAS11", "XMEAS18", "XMEAS21", "XMEAS22" }, 5, 0.5, 10, { { 0 } } },
+    { "tep/tep_d04_reactor_cooling_step.csv", { "XMEAS09", "XMEAS11", "XMEAS18", "XMEAS21", "XMEAS22" }, 5, 0.5, 10, { { 0 } } },
+    { "tep/tep_d06_a_feed_loss.csv", { "XMEAS09", "XMEAS11", "XMEAS18", "XMEAS21", "XMEAS22" }, 5, 0.5, 10, { { 0 } } },
+};
+
+static void test_false_accusations_are_counted(void **state)
+{
+    static const int most[] = { 1, 0, 0, 0 }; /* sensors; the rig's cooler is changed from 3 to 100 %, and d06 loses a feed */
+    for (size_t k = 0; k < sizeof(all_series) / sizeof(*all_series); k++) {
+        struct series *s = &all_series[k];
+        struct row_of_sensors row;
+        int times;
+        read_series(s);
+        stand_sensors(*state, s->count, &row);
+        int sensors = accused(&row, s, &times);
+        printf("# %s: %d of %d sensors accused in a week, %d times of %d\n", s->file, sensors, s->count, times,
+               s->count * (DRIFT_HOURS - DRIFT_HOURS_LEAST + 1));
+        assert_true(sensors <= most[k]);
+        leave(&row);
+    }
+}
+
+struct search {
+    int hours;      /* when it was found; 0: it was not */
+    double drifted; /* by then */
+    double limit;   /* how far the reading was still from its alarm's limit: the least so far */
+};
+
+static struct search search(const struct row_of_sensors *row, const struct series *s, int sensor, double change)
+{
+    struct search out = { 0, 0, INFINITY };
+    double extreme = s->hours[0][sensor];
+    for (int h = 1; h < DRIFT_HOURS; h++)
+        extreme = change > 0 ? fmax(extreme, s->hours[h][sensor]) : fmin(extreme, s->hours[h][sensor]);
+    for (int h = 0; h < DRIFT_HOURS; h++) {
+        struct drift drifts[SENSORS];
+        out.drifted = change * h / DRIFT_HOURS;
+        out.limit = fmin(out.limit, s->beyond + fabs(extreme - s->hours[h][sensor]) - fabs(out.drifted));
+        if (h + 1 < DRIFT_HOURS_LEAST)
+            continue;
+        find(row, s, h + 1, sensor, change, drifts);
+        if (drifts[sensor].verdict == DRIFT_FOUND) {
+            out.hours = h + 1;
+            break;
+        }
+    }
+    return out;
+}
+
+/* sigma: the scatter of the sensor without a drift. */
+static void test_a_drift_is_found_before_its_alarm(void **state)
+{
+    static const double sizes[] = { 4, 8 }; /* sigmas in a week */
+    static const int least[][2] = { { 2, 4 }, { 10, 10 } }; /* of the rig the plant's own changes hide some */
+    for (size_t k = 0; k < 2; k++) {
+        struct series *s = &all_series[k];
+        struct row_of_sensors row;
+        struct drift none[SENSORS];
+        read_series(s);
+        stand_sensors(*state, s->count, &row);
+        find(&row, s, DRIFT_HOURS, 0, 0, none);
+        for (int size = 0; size < 2; size++) {
+            int found = 0, tries = 0;
+            double most_sigmas = 0, least_limit = INFINITY;
+            for (int i = 0; i < s->count; i++)
+                for (int sign = -1; sign <= 1; sign += 2, tries++) {
+                    struct search at = search(&row, s, i, sign * sizes[size] * none[i].scatter);
+                    found += at.hours > 0;
+                    if (at.hours == 0)
+                        continue;
+                    assert_true(at.limit > 0); /* no alarm by then */
+                    most_sigmas = fmax(most_sigmas, fabs(at.drifted) / none[i].scatter);
+                    least_limit = fmin(least_limit, at.limit);
+                }
+            printf("# %s, %g sigma in a week: %d of %d found, at %.1f sigma at most, %.1f K or more before the alarm\n", s->file,
+                   sizes[size], found, tries, most_sigmas, least_limit);
+            assert_true(found >= least[k][size]);
+            if (k == 1 && size == 0)
+                assert_true(most_sigmas < 3.7);
+        }
+        leave(&row);
+    }
+}
+
+/* With the drifting one left out, the others are judged by each other: none of them is accused for it. */
+static void test_one_that_drifts_does_not_accuse_others(void **state)
+{
+    struct series *s = &all_series[1];
+    struct row_of_sensors row;
+    struct drift drifts[SENSORS];
+    read_series(s);
+    stand_sensors(*state, s->count, &row);
+    for (int i = 0; i < s->count; i++) {
+        find(&row, s, DRIFT_HOURS, i, 20, drifts);
+        for (int k = 0; k < s->count; k++)
+            assert_int_equal(drifts[k].verdict == DRIFT_FOUND, k == i);
+        assert_true(fabs(drifts[i].change - 20) < 4 * drifts[i].error + 1);
+    }
+    leave(&row);
+}
+
+/* Nor does one that is lost for a day and a half, whatever it reads otherwise. */
+static void test_one_that_is_lost_for_a_while_accuses_nobody(void **state)
+{
+    struct series s = all_series[1];
+    struct row_of_sensors row;
+    struct drift drifts[SENSORS];
+    read_series(&s);
+    stand_sensors(*state, s.count, &row);
+    for (int i = 0; i < s.count; i++) {
+        struct series lossy = s;
+        for (int h = 20; h < 56; h++)
+            lossy.hours[h][i] = NAN;
+        find(&row, &lossy, DRIFT_HOURS, 0, 0, drifts);
+        for (int k = 0; k < s.count; k++) {
+            assert_int_equal(drifts[k].verdict, DRIFT_NONE);
+            assert_int_equal(drifts[k].hours, k == i ? DRIFT_HOURS - 36 : DRIFT_HOURS);
+        }
+    }
+    leave(&row);
+}
+
+static void test_of_two_nobody_can_tell_which(void **state)
+{
+    struct series two = all_series[1];
+    struct row_of_sensors row;
+    struct drift drifts[SENSORS];
+    two.count = 2;
+    read_series(&two);
+    stand_sensors(*state, 2, &row);
+    find(&row, &two, DRIFT_HOURS, 0, 20, drifts);
+    for (int i = 0; i < 2; i++)
+        assert_int_equal(drifts[i].verdict, DRIFT_UNKNOWN);
+    leave(&row);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_fit_is_least_squares),
+        cmocka_unit_test(test_what_cannot_be_told_is_unknown),
+        cmocka_unit_test_setup_teardown(test_false_accusations_are_counted, prep_case_set_up, prep_case_tear_down),
+        cmocka_unit_test_setup_teardown(test_a_drift_is_found_before_its_alarm, prep_case_set_up, prep_case_tear_down),
+        cmocka_unit_test_setup_teardown(test_one_that_drifts_does_not_accuse_others, prep_case_set_up, prep_case_tear_down),
+        cmocka_unit_test_setup_teardown(test_one_that_is_lost_for_a_while_accuses_nobody, prep_case_set_up, prep_case_tear_down),
+        cmocka_unit_test_setup_teardown(test_of_two_nobody_can_tell_which, prep_case_set_up, prep_case_tear_down),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
