@@ -13,6 +13,8 @@ void stamped_writer_init(struct stamped_writer *writer, const struct plant *plan
     *writer = (struct stamped_writer){ .store = store, .plant = plant };
     writer->samples = mem_array(plant->tag_count, sizeof(*writer->samples));
     writer->last = mem_array(plant->tag_count, sizeof(*writer->last));
+    for (size_t i = 0; i < plant->tag_count; i++) /* a time before this machine was started is before 0 */
+        writer->last[i].mono_ns = INT64_MIN;
 }
 
 void stamped_writer_finish(struct stamped_writer *writer)

@@ -149,6 +149,33 @@ static void status_codes_and_times_stay_as_they_are(void **state)
     store_destroy(&store);
     plant_by_hand_destroy(&plant);
 }
+
+/* A machine that was started a minute ago is told of readings of an hour ago. */
+static void what_is_older_than_the_machine_s_start_is_as_old_as_it_is(void **state)
+{
+    (void)state;
+    static const int64_t minute_ns = 60 * 1000000000LL;
+    struct plant *plant = plant_by_hand_create(1);
+    plant_by_hand_source(plant, "plc", 4840);
+    plant_by_hand_tag(plant, "A", TABLE_HOLDING, 0, DATA_FLOAT64)->stale_s = 600;
+    struct store *store = store_create(plant);
+    struct snapshot *snapshot = snapshot_create(1);
+    struct stamped_writer writer;
+    stamped_writer_init(&writer, plant, store);
+    for (int minutes = 60; minutes > 57; minutes--) {
+        const struct stamped_value value = { .value = 4, .quality = QUALITY_GOOD, .utc_ns = NOW_UTC_NS - minutes * minute_ns };
+        stamped_writer_begin(&writer, minute_ns, NOW_UTC_NS);
+        stamped_writer_add(&writer, 0, &value, false, true);
+        stamped_writer_end(&writer);
+        store_snapshot(store, minute_ns, NOW_UTC_NS, snapshot);
+        assert_true(snapshot->readings[0].age_ns == minutes * minute_ns);
+        assert_false(quality_is_good(snapshot->readings[0].quality)); /* stale */
+    }
+    stamped_writer_finish(&writer);
+    snapshot_destroy(&snapshot);
+    store_destroy(&store);
+    plant_by_hand_destroy(&plant);
+}
 #endif
 
 int main(void)
@@ -159,6 +186,7 @@ int main(void)
         cmocka_unit_test(every_number_is_read),
         cmocka_unit_test(what_is_no_number_is_bad),
         cmocka_unit_test(status_codes_and_times_stay_as_they_are),
+        cmocka_unit_test(what_is_older_than_the_machine_s_start_is_as_old_as_it_is),
 #endif
     };
     cmocka_set_message_output(CM_OUTPUT_TAP);
