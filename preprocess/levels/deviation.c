@@ -145,6 +145,11 @@ void deviation_finish(struct deviation *surface)
     *surface = (struct deviation){ 0 };
 }
 
+const struct bvh *deviation_hierarchy(const struct deviation *surface, size_t part)
+{
+    return surface->parts[part].bvh;
+}
+
 static bool shares_point(const struct deviation *surface, uint32_t index)
 {
     return index <= surface->highest && surface->has[index];

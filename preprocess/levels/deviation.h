@@ -34,6 +34,9 @@ void deviation_init(struct deviation *surface, const struct deviation_params *pa
 /* Frees the surface. */
 void deviation_finish(struct deviation *surface);
 
+/* Returns the hierarchy of a part's triangles; NULL: it has none, or was not to be measured. It lives as long as the surface. */
+const struct bvh *deviation_hierarchy(const struct deviation *surface, size_t part);
+
 /* Raises apart_m[part] to the largest distance from the surface `from` to the same part of `to`, probed at vertices and inside large
    triangles, except triangles that both have. INFINITY where `to` has nothing of the part. only: parts to measure (NULL: all). expected_m:
    about the distance hoped for, which steers how densely triangles are probed. workers may be NULL. */

@@ -15,6 +15,8 @@
 #define FAR_WORTH 0.85      /* likewise, */
 #define STEP 1.3            /* and at so many times its error, at least */
 #define WAIT 1.1            /* times the error, for what else comes until then */
+#define MISSED 1.05f        /* times the error: what is left out may be missed by so much */
+#define MOST_TRIES 4        /* of moving faces, each by half as much as before */
 
 struct making {
     struct workers *workers;
@@ -25,7 +27,9 @@ struct making {
     char *contrary; /* of each part */
     /* so far: */
     uint32_t *version; /* of each part; ABSENT: it is left out */
+    uint32_t *shown;   /* likewise, in the last level */
     size_t tri_count;
+    float tried_m; /* the error of the last level, or of what was not worth being one */
 };
 
 #define ABSENT VERSIONS_MAX
@@ -110,12 +114,11 @@ static void write_level(struct making *making, struct level *level, const uint32
     mem_free(fill);
 }
 
-/* What of a part that is left out lay on others is seen in their place. */
-static float error_of_lost(const struct making *making, const uint32_t *welds, size_t count, double expected_m)
+/* What of a part that is left out lay on others is seen in their place. Raises apart_m of these parts to how far that is. */
+static void measure_lost(const struct making *making, const uint32_t *welds, size_t count, double expected_m, float *apart_m)
 {
     const struct welds *of = &making->welds;
     struct deviation level;
-    float *apart_m = mem_array(of->part_count, sizeof(*apart_m)), most_m = 0;
     char *lost = mem_array(of->part_count, 1), any = 0;
     for (uint32_t p = 0; p < of->part_count; p++)
         any |= lost[p] = making->version[p] == ABSENT && !making->omissions[p].alone;
@@ -130,14 +133,11 @@ static float error_of_lost(const struct making *making, const uint32_t *welds, s
         deviation_measure_lost(&making->versions.first, &level, lost, expected_m, apart_m, making->workers);
         deviation_finish(&level);
     }
-    for (uint32_t p = 0; p < of->part_count; p++)
-        most_m = fmaxf(most_m, apart_m[p]);
-    mem_free(apart_m);
     mem_free(lost);
-    return most_m;
 }
 
-static float error_of(const struct making *making, const uint32_t *welds, size_t count)
+/* But for what is left out and lay on others. */
+static float error_of_parts(const struct making *making)
 {
     float most_m = 0;
     for (uint32_t p = 0; p < making->welds.part_count; p++)
@@ -145,52 +145,126 @@ static float error_of(const struct making *making, const uint32_t *welds, size_t
             most_m = fmaxf(most_m, making->versions.at[making->version[p]].error_m[p]);
         else if (making->omissions[p].alone)
             most_m = fmaxf(most_m, making->omissions[p].from_m);
-    return fmaxf(most_m, error_of_lost(making, welds, count, (double)most_m));
+    return most_m;
 }
 
-/* Returns how far the parts err of which faces were moved. */
-static float face_parts(const struct making *making, uint32_t *welds, size_t count)
+/* Moves faces that have no vertex on their side, and lowers most_m of parts that this makes err by more than the limit. Returns whether
+   there is any of these. */
+static bool try_facing(const struct making *making, uint32_t *welds, size_t count, float limit_m, float *most_m)
 {
     const struct welds *of = &making->welds;
-    float *most_m = mem_array(of->part_count, sizeof(*most_m)), *apart_m = mem_array(of->part_count, sizeof(*apart_m)), error_m = 0;
-    char *moved = mem_array(of->part_count, 1);
-    for (uint32_t p = 0; p < of->part_count; p++)
-        most_m[p] = making->version[p] == ABSENT ? 0 : making->versions.at[making->version[p]].error_m[p];
+    float *apart_m = mem_array(of->part_count, sizeof(*apart_m));
+    char *moved = mem_array(of->part_count, 1), any = 0;
     if (levels_face(of, making->used, making->contrary, most_m, welds, count, moved)) {
         struct deviation level;
         const struct deviation *first = &making->versions.first;
         levels_surface(&level, of, moved, welds, count);
-        for (uint32_t p = 0; p < of->part_count; p++)
-            error_m = fmaxf(error_m, moved[p] ? most_m[p] : 0);
-        deviation_measure(&level, first, moved, (double)error_m, apart_m, making->workers);
-        deviation_measure(first, &level, moved, (double)error_m, apart_m, making->workers);
+        deviation_measure(&level, first, moved, (double)limit_m, apart_m, making->workers);
+        deviation_measure(first, &level, moved, (double)limit_m, apart_m, making->workers);
         deviation_finish(&level);
         for (uint32_t p = 0; p < of->part_count; p++)
-            error_m = fmaxf(error_m, apart_m[p]);
+            if (apart_m[p] > limit_m) {
+                most_m[p] = most_m[p] > limit_m / 4 ? most_m[p] / 2 : 0;
+                any = 1;
+            }
     }
-    mem_free(most_m);
     mem_free(apart_m);
     mem_free(moved);
-    return error_m;
+    return any;
 }
 
-static void add_level(struct making *making, struct levels *levels)
+/* As many as a level may that errs by so much already: of a part that would err by more, only those that need not move as far. */
+static void face_parts(const struct making *making, uint32_t *welds, size_t count, float limit_m)
+{
+    float *most_m = mem_array(making->welds.part_count, sizeof(*most_m));
+    uint32_t *before = mem_array(count, sizeof(*before));
+    memcpy(before, welds, count * sizeof(*before));
+    for (uint32_t p = 0; p < making->welds.part_count; p++)
+        most_m[p] = making->version[p] == ABSENT ? 0 : making->versions.at[making->version[p]].error_m[p];
+    for (int i = 0; i < MOST_TRIES && try_facing(making, welds, count, limit_m, most_m); i++)
+        memcpy(welds, before, count * sizeof(*before));
+    mem_free(most_m);
+    mem_free(before);
+}
+
+/* The triangles of all parts, in the version of each. */
+static uint32_t *list_welds(const struct making *making, size_t *count)
 {
     uint32_t *welds = mem_array(3 * making->tri_count, sizeof(*welds));
-    size_t count = 0;
+    *count = 0;
     for (uint32_t v = 0; v < making->versions.count; v++) {
         const struct version *version = &making->versions.at[v];
         for (size_t i = 0; i < version->count; i += 3)
             if (making->version[making->welds.part[version->welds[i]]] == v) {
-                memcpy(welds + count, version->welds + i, 3 * sizeof(*welds));
-                count += 3;
+                memcpy(welds + *count, version->welds + i, 3 * sizeof(*welds));
+                *count += 3;
             }
     }
-    struct level *level = &levels->at[levels->count++];
-    float moved_m = face_parts(making, welds, count);
-    write_level(making, level, welds, count);
-    level->error_m = fmaxf(fmaxf(error_of(making, welds, count), moved_m), (level - 1)->error_m);
+    return welds;
+}
+
+/* The coarsest version of a part that errs by no more; it only gets coarser from level to level. */
+static uint32_t version_within(const struct making *making, uint32_t part, float error_m)
+{
+    uint32_t best = making->shown[part];
+    for (uint32_t v = best + 1; v < making->versions.count; v++)
+        if (making->versions.at[v].error_m[part] <= error_m)
+            best = v;
+    return best;
+}
+
+/* Brings parts back, of this level, that would be missed by more than the others err: what they lie on may have moved away from them.
+   Returns whether there are any. */
+static bool bring_back(struct making *making, const float *apart_m, float error_m, char *back)
+{
+    bool any = false;
+    for (uint32_t p = 0; p < making->welds.part_count; p++)
+        if (apart_m[p] > MISSED * error_m && making->shown[p] != ABSENT) {
+            making->version[p] = version_within(making, p, error_m);
+            making->tri_count += tris_of(making, p);
+            back[p] = 1;
+            any = true;
+        }
+    return any;
+}
+
+/* Whether what there is so far is a level that is worth its room after the last one. */
+static bool is_worth(const struct making *making, const struct level *last, float error_m)
+{
+    double before = (double)(last->index_count / 3), now = (double)making->tri_count;
+    return now <= NEAR_WORTH * before || (before <= FAR_TRIANGLES && now <= FAR_WORTH * before && error_m >= (float)STEP * last->error_m);
+}
+
+/* Not if it is no longer worth it with the parts that come back. */
+static void add_level(struct making *making, struct levels *levels)
+{
+    size_t count, parts = making->welds.part_count;
+    float *apart_m = mem_array(parts, sizeof(*apart_m)), error_m = error_of_parts(making);
+    char *back = mem_array(parts, 1);
+    const struct level *last = &levels->at[levels->count - 1];
+    uint32_t *welds = list_welds(making, &count);
+    measure_lost(making, welds, count, (double)error_m, apart_m);
+    if (bring_back(making, apart_m, error_m, back)) {
+        mem_free(welds);
+        welds = list_welds(making, &count);
+    }
+    for (size_t p = 0; p < parts; p++)
+        error_m = fmaxf(error_m, back[p] ? 0 : apart_m[p]);
+    error_m = fmaxf(error_m, last->error_m);
+    making->tried_m = error_m;
+    if (is_worth(making, last, error_m)) {
+        struct level *level = &levels->at[levels->count++];
+        level->error_m = error_m;
+        face_parts(making, welds, count, error_m);
+        write_level(making, level, welds, count);
+        memcpy(making->shown, making->version, parts * sizeof(*making->shown));
+    }
+    for (uint32_t p = 0; p < parts; p++)
+        if (back[p])
+            let_happen(making, &(struct event){ .part = p, .version = ABSENT });
     mem_free(welds);
+    mem_free(apart_m);
+    mem_free(back);
 }
 
 /* --- all ------------------------------------------------------------------------------------------------------------------ */
@@ -204,25 +278,20 @@ static void copy_finest(struct level *level, const struct geometry *g)
     memcpy(level->primitives, g->primitives, g->primitive_count * sizeof(*level->primitives));
 }
 
-/* Whether what there is so far is a level that is worth its room after the last one. */
-static bool is_worth(const struct making *making, const struct level *last, float error_m)
-{
-    double before = (double)(last->index_count / 3), now = (double)making->tri_count;
-    return now <= NEAR_WORTH * before || (before <= FAR_TRIANGLES && now <= FAR_WORTH * before && error_m >= (float)STEP * last->error_m);
-}
-
 static void make_coarse(struct making *making, struct levels *levels)
 {
     struct event *events = mem_array(making->welds.part_count * (making->versions.count + 1), sizeof(*events));
     size_t count = list_events(making, events);
     making->used = mem_array(making->welds.geometry->vertex_count, 1);
     making->version = mem_array(making->welds.part_count, sizeof(*making->version));
+    making->shown = mem_array(making->welds.part_count, sizeof(*making->shown));
     memset(making->used, 1, making->welds.geometry->vertex_count);
     making->contrary = mem_array(making->welds.part_count, 1);
     levels_find_contrary(&making->welds, making->contrary);
     for (size_t i = 0; i < count && levels->count < LEVELS_MAX;) {
         let_happen(making, &events[i++]);
-        if (!is_worth(making, &levels->at[levels->count - 1], events[i - 1].error_m))
+        if (events[i - 1].error_m < (float)WAIT * making->tried_m ||
+            !is_worth(making, &levels->at[levels->count - 1], events[i - 1].error_m))
             continue;
         float until_m = (float)WAIT * events[i - 1].error_m;
         while (i < count && events[i].error_m <= until_m)
@@ -253,6 +322,7 @@ bool levels_make(struct levels *levels, const struct geometry *geometry, struct 
     mem_free(making.used);
     mem_free(making.contrary);
     mem_free(making.version);
+    mem_free(making.shown);
     return good;
 }
 

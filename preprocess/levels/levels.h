@@ -36,9 +36,9 @@ struct levels {
 
 /* Simplifies the geometry into levels, finest first. Each has at most 0.6 of the triangles of the one before (0.85 for far levels, which
    many instances are drawn with). Borders between materials, texture seams and vertex colours stay in place within the error. Parts that
-   lie on much larger ones (bolts on a flange) are left out of levels whose error exceeds their height by a tenth; small isolated parts,
-   of levels whose error is no less than their size. Returns false if out of memory, and then there is nothing to finish. workers may be
-   NULL. */
+   lie on much larger ones (bolts on a flange) are left out of levels whose error exceeds their height by a tenth, unless what they lie on
+   has moved so far that they would be missed by more than the level errs; small isolated parts, of levels whose error is no less than
+   their size. Returns false if out of memory, and then there is nothing to finish. workers may be NULL. */
 bool levels_make(struct levels *levels, const struct geometry *geometry, struct workers *workers);
 /* Frees one level's arrays. */
 void level_finish(struct level *level);

@@ -1,20 +1,21 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Halves an asset's triangles again and again, and measures what that did to each part. */
+/* Simplifies an asset step by step, and measures what that did to each part. */
 #include <math.h>
 #include <meshoptimizer.h>
 #include <string.h>
 
 #include "base/mem.h"
+#include "preprocess/levels/levels_bounded.h"
 #include "preprocess/levels/levels_impl.h"
 
-#define SHRINK 0.55     /* of the triangles of the version before, are asked for */
-#define SHRINK_FAR 0.72 /* likewise where that has so many: levels that many instances are drawn with lie close together */
-#define FAR_LEAST 2000
-#define FAR_MOST 20000
-#define STUCK 0.9          /* likewise; a version with more is the last */
-#define LEAST_TRIANGLES 60 /* fewer are not simplified */
-#define NEAR 0.01          /* of the size: versions that err less keep open borders as they are, or hair gaps between patches would open */
-#define BEYOND 3.0         /* times the simplifier's own error, which is a mean over planes and no bound, is about what comes out */
+#define SHRINK 0.55           /* of the triangles of the version before, are asked for */
+#define STUCK 0.9             /* likewise; one with more is the last that is made so */
+#define HALVED_LEAST 40000    /* triangles: a version with more is halved as a whole, quickly; then edges are collapsed one by one, */
+#define COLLAPSED_MOST 100000 /* also where it could not be halved, but not with more than these */
+#define STEP 1.3              /* times the error that the version before was allowed */
+#define LEAST_TRIANGLES 60    /* fewer are not simplified */
+#define NEAR 0.01             /* of the size: versions that err less keep open borders, or hair gaps between patches would open */
+#define BEYOND 3.0            /* times the simplifier's own error, which is a mean over planes and no bound, is about what comes out */
 
 static size_t triangles_of(const struct versions *versions)
 {
@@ -36,15 +37,9 @@ static void count_tris(struct version *version, const struct welds *welds)
         version->tris[welds->part[version->welds[i]]]++;
 }
 
-static double shrink_of(const struct version *from)
-{
-    size_t tris = from->count / 3;
-    return tris >= FAR_LEAST && tris <= FAR_MOST ? SHRINK_FAR : SHRINK;
-}
-
 static size_t simplify(const struct welds *welds, const struct version *from, uint32_t *to, unsigned options, float *error)
 {
-    size_t target = (size_t)(shrink_of(from) * (double)(from->count / 3)) * 3;
+    size_t target = (size_t)(SHRINK * (double)(from->count / 3)) * 3;
     return meshopt_simplify(to, from->welds, from->count, &welds->positions_m[0][0], welds->count, sizeof(*welds->positions_m), target, 1,
                             options, error);
 }
@@ -55,7 +50,7 @@ static double halve(struct version *to, const struct version *from, const struct
     float error = 0;
     double scale_m = (double)meshopt_simplifyScale(&welds->positions_m[0][0], welds->count, sizeof(*welds->positions_m));
     to->count = simplify(welds, from, to->welds, meshopt_SimplifyLockBorder, &error);
-    if ((double)to->count > 1.1 * shrink_of(from) * (double)from->count || (double)error * scale_m > NEAR * welds->whole_m)
+    if ((double)to->count > 1.1 * SHRINK * (double)from->count || (double)error * scale_m > NEAR * welds->whole_m)
         to->count = simplify(welds, from, to->welds, 0, &error);
     return (double)error * scale_m;
 }
@@ -95,17 +90,114 @@ static void drop_last(struct versions *versions)
     *version = (struct version){ 0 };
 }
 
-void versions_make(struct versions *versions, const struct welds *welds, struct workers *workers)
+/* --- edge by edge -------------------------------------------------------------------------------------------------------------- */
+
+struct collapsing {
+    const struct welds *welds;
+    const struct deviation *first;
+    const struct version *from;
+    struct bounded **parts; /* NULL: it has no triangle left */
+    size_t *first_corner;   /* of each part, in `corners`: the triangles of `from`, part by part */
+    uint32_t *corners;
+    size_t *first_place; /* of each part, in `places`: the model's vertices, part by part */
+    double (*places)[3];
+    double error_m; /* allowed */
+};
+
+/* From counts at p + 2 to beginnings at p + 1, which filling makes those at p. */
+static void add_up(size_t *first, size_t parts)
 {
-    const struct geometry *g = welds->geometry;
-    versions->count = 0;
-    struct version *model = add_version(versions, welds, g->index_count);
-    model->count = g->index_count;
-    for (size_t i = 0; i < model->count; i++)
-        model->welds[i] = welds->of_vertex[g->indices[i]];
-    count_tris(model, welds);
-    levels_surface(&versions->first, welds, NULL, model->welds, model->count);
-    while (versions->count < VERSIONS_MAX && triangles_of(versions) > LEAST_TRIANGLES) {
+    for (size_t p = 2; p < parts + 2; p++)
+        first[p] += first[p - 1];
+}
+
+static void sort_by_part(struct collapsing *collapsing)
+{
+    const struct version *from = collapsing->from;
+    const struct deviation *first = collapsing->first;
+    const uint32_t *part = collapsing->welds->part;
+    size_t parts = collapsing->welds->part_count, points = first->mesh.point_count;
+    collapsing->first_corner = mem_array(parts + 2, sizeof(*collapsing->first_corner));
+    collapsing->first_place = mem_array(parts + 2, sizeof(*collapsing->first_place));
+    collapsing->corners = mem_array(from->count, sizeof(*collapsing->corners));
+    collapsing->places = mem_array(points, sizeof(*collapsing->places));
+    for (size_t i = 0; i < from->count; i++)
+        collapsing->first_corner[part[from->welds[i]] + 2]++;
+    for (size_t i = 0; i < points; i++)
+        collapsing->first_place[part[first->index[i]] + 2]++;
+    add_up(collapsing->first_corner, parts);
+    add_up(collapsing->first_place, parts);
+    for (size_t i = 0; i < from->count; i++)
+        collapsing->corners[collapsing->first_corner[part[from->welds[i]] + 1]++] = from->welds[i];
+    for (size_t i = 0; i < points; i++)
+        memcpy(collapsing->places[collapsing->first_place[part[first->index[i]] + 1]++], first->mesh.points[i], sizeof(double[3]));
+}
+
+static void begin_parts(void *arg, size_t begin, size_t end)
+{
+    const struct collapsing *collapsing = arg;
+    for (size_t p = begin; p < end; p++) {
+        size_t corner = collapsing->first_corner[p], place = collapsing->first_place[p];
+        if (collapsing->from->tris[p] > 0)
+            collapsing->parts[p] = bounded_create(collapsing->welds, collapsing->corners + corner, collapsing->first_corner[p + 1] - corner,
+                                                  (const double(*)[3])collapsing->places + place, collapsing->first_place[p + 1] - place,
+                                                  deviation_hierarchy(collapsing->first, p));
+    }
+}
+
+static void simplify_parts(void *arg, size_t begin, size_t end)
+{
+    const struct collapsing *collapsing = arg;
+    for (size_t p = begin; p < end; p++)
+        if (collapsing->parts[p])
+            bounded_simplify(collapsing->parts[p], collapsing->error_m);
+}
+
+static void for_parts(struct collapsing *collapsing, void (*body)(void *arg, size_t begin, size_t end), struct workers *workers)
+{
+    if (workers)
+        workers_for(workers, collapsing->welds->part_count, 1, body, collapsing);
+    else
+        body(collapsing, 0, collapsing->welds->part_count);
+}
+
+static void read_parts(const struct collapsing *collapsing, struct version *version)
+{
+    for (size_t p = 0; p < collapsing->welds->part_count; p++)
+        if (collapsing->parts[p]) {
+            bounded_read(collapsing->parts[p], version->welds + version->count);
+            version->count += 3 * bounded_count(collapsing->parts[p]);
+        }
+}
+
+/* As many versions as there is room for, the last with the largest error of any use. */
+static void make_collapsed(struct versions *versions, const struct welds *welds, struct workers *workers)
+{
+    struct collapsing collapsing = { .welds = welds, .first = &versions->first, .from = &versions->at[versions->count - 1] };
+    collapsing.parts = mem_array(welds->part_count, sizeof(*collapsing.parts));
+    sort_by_part(&collapsing);
+    for_parts(&collapsing, begin_parts, workers);
+    collapsing.error_m = LEVELS_FARTHEST * welds->whole_m * pow(STEP, (double)versions->count + 1 - VERSIONS_MAX);
+    for (; versions->count < VERSIONS_MAX; collapsing.error_m *= STEP) {
+        const struct version *before = &versions->at[versions->count - 1];
+        struct version *version = add_version(versions, welds, before->count);
+        for_parts(&collapsing, simplify_parts, workers);
+        read_parts(&collapsing, version);
+        count_tris(version, welds);
+        measure(version, before, welds, &versions->first, collapsing.error_m, workers);
+    }
+    for (size_t p = 0; p < welds->part_count; p++)
+        bounded_destroy(&collapsing.parts[p]);
+    mem_free(collapsing.parts);
+    mem_free(collapsing.first_corner);
+    mem_free(collapsing.first_place);
+    mem_free(collapsing.corners);
+    mem_free(collapsing.places);
+}
+
+static void make_halves(struct versions *versions, const struct welds *welds, struct workers *workers)
+{
+    while (versions->count < VERSIONS_MAX && triangles_of(versions) > HALVED_LEAST) {
         const struct version *before = &versions->at[versions->count - 1];
         struct version *version = add_version(versions, welds, before->count);
         double error_m = halve(version, before, welds);
@@ -116,6 +208,21 @@ void versions_make(struct versions *versions, const struct welds *welds, struct 
         count_tris(version, welds);
         measure(version, before, welds, &versions->first, fmax(BEYOND * error_m, 1e-5 * welds->whole_m), workers);
     }
+}
+
+void versions_make(struct versions *versions, const struct welds *welds, struct workers *workers)
+{
+    const struct geometry *g = welds->geometry;
+    versions->count = 0;
+    struct version *model = add_version(versions, welds, g->index_count);
+    model->count = g->index_count;
+    for (size_t i = 0; i < model->count; i++)
+        model->welds[i] = welds->of_vertex[g->indices[i]];
+    count_tris(model, welds);
+    levels_surface(&versions->first, welds, NULL, model->welds, model->count);
+    make_halves(versions, welds, workers);
+    if (triangles_of(versions) > LEAST_TRIANGLES && triangles_of(versions) <= COLLAPSED_MOST)
+        make_collapsed(versions, welds, workers);
 }
 
 void versions_finish(struct versions *versions)

@@ -1,0 +1,511 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Half-edge collapses in the order of how far they move the surface. Each triangle knows which places of the first surface are nearest to
+   it (Ciampalini et al., Multiresolution decimation based on global error, The Visual Computer 1997); what a collapse does to these, and
+   how far the new triangles are from the first surface, is worked out when it is the next in turn. */
+#include "preprocess/levels/levels_bounded.h"
+
+#include <string.h>
+
+#include "base/mem.h"
+#include "base/vec.h"
+
+#define RING 48      /* triangles around a point, at most: others stay */
+#define TURN 0.4     /* the cosine between a triangle's old and new normal is larger */
+#define BORDER 0.5   /* of the error: how far open borders and seams may move */
+#define STRETCH 0.05 /* of how much longer edges get: counts as an error, since the field would have to cut them */
+#define NONE UINT32_MAX
+
+struct face {
+    uint32_t point[3], weld[3]; /* NONE, NONE, NONE: it is gone */
+    uint32_t first;             /* of its places */
+    double normal[3];           /* of the length of its area */
+    double longest_m;           /* of its edges */
+};
+
+struct turn {      /* a point whose removal is in the heap */
+    float error_m; /* what it will be at least */
+    uint32_t point, stamp, target;
+    bool is_known; /* found out, and not only bounded */
+};
+
+struct bounded {
+    const struct welds *welds;
+    const struct bvh *first;
+    double (*points)[3];
+    float *moved_m;   /* of each point: how far the borders and seams at it have moved */
+    uint32_t *corner; /* of each point: one of its corners (3 to a face), then the next of each corner */
+    uint32_t *next;
+    uint32_t *stamp; /* of each point: changes with the triangles around it */
+    struct face *faces;
+    size_t point_count, face_count, left;
+    double (*places)[3];
+    uint32_t *next_place;
+    struct turn *heap;
+    size_t heap_count, heap_capacity;
+    uint32_t near; /* a triangle of the first surface */
+};
+
+/* --- heap ---------------------------------------------------------------------------------------------------------------------- */
+
+static bool is_before(const struct turn *a, const struct turn *b)
+{
+    return a->error_m != b->error_m ? a->error_m < b->error_m : a->point < b->point;
+}
+
+static void push(struct bounded *b, struct turn turn)
+{
+    size_t i = b->heap_count++;
+    mem_grow(&b->heap, &b->heap_capacity, b->heap_count, sizeof(*b->heap));
+    for (; i > 0 && is_before(&turn, &b->heap[(i - 1) / 2]); i = (i - 1) / 2)
+        b->heap[i] = b->heap[(i - 1) / 2];
+    b->heap[i] = turn;
+}
+
+static struct turn pop(struct bounded *b)
+{
+    struct turn top = b->heap[0], last = b->heap[--b->heap_count];
+    size_t i = 0;
+    for (size_t child; (child = 2 * i + 1) < b->heap_count; i = child) {
+        child += child + 1 < b->heap_count && is_before(&b->heap[child + 1], &b->heap[child]);
+        if (!is_before(&b->heap[child], &last))
+            break;
+        b->heap[i] = b->heap[child];
+    }
+    b->heap[i] = last;
+    return top;
+}
+
+/* --- the triangles around a point ------------------------------------------------------------------------------------------------ */
+
+struct ring {
+    uint32_t point, corners[RING];
+    int count; /* RING + 1: too many */
+    uint32_t ends[2 * RING];
+    bool is_feature[2 * RING]; /* the edge to that end is a border or a seam */
+    int end_count, feature_count;
+};
+
+static void list_ring(struct bounded *b, uint32_t point, struct ring *ring)
+{
+    uint32_t *link = &b->corner[point];
+    ring->point = point;
+    ring->count = 0;
+    while (*link != NONE && ring->count <= RING) {
+        uint32_t corner = *link;
+        if (b->faces[corner / 3].point[corner % 3] != point) { /* gone since */
+            *link = b->next[corner];
+            continue;
+        }
+        if (ring->count < RING)
+            ring->corners[ring->count] = corner;
+        ring->count++;
+        link = &b->next[corner];
+    }
+}
+
+static void list_ends(struct bounded *b, struct ring *ring)
+{
+    uint32_t weld_here[2 * RING], weld_there[2 * RING];
+    int times[2 * RING];
+    ring->end_count = ring->feature_count = 0;
+    for (int c = 0; c < ring->count; c++)
+        for (uint32_t i = 1; i < 3; i++) {
+            const struct face *face = &b->faces[ring->corners[c] / 3];
+            uint32_t at = ring->corners[c] % 3, to = (at + i) % 3, end = face->point[to];
+            int e = 0;
+            while (e < ring->end_count && ring->ends[e] != end)
+                e++;
+            if (e == ring->end_count) {
+                ring->ends[ring->end_count++] = end;
+                weld_here[e] = face->weld[at];
+                weld_there[e] = face->weld[to];
+                times[e] = 0;
+                ring->is_feature[e] = false;
+            }
+            times[e]++;
+            ring->is_feature[e] |= weld_here[e] != face->weld[at] || weld_there[e] != face->weld[to];
+        }
+    for (int e = 0; e < ring->end_count; e++) {
+        ring->is_feature[e] |= times[e] == 1;
+        ring->feature_count += ring->is_feature[e];
+    }
+}
+
+static double distance_to(const double p[3], const double a[3], const double b[3], const double c[3])
+{
+    double w[3], at[3];
+    triangle_nearest(p, a, b, c, w);
+    for (int i = 0; i < 3; i++)
+        at[i] = w[0] * a[i] + w[1] * b[i] + w[2] * c[i];
+    return vec_distance(p, at);
+}
+
+static double distance_to_line(const double p[3], const double a[3], const double b[3])
+{
+    double ab[3], ap[3], at[3];
+    vec_sub(b, a, ab);
+    vec_sub(p, a, ap);
+    double along = vec_dot(ap, ab) / max_of(vec_dot(ab, ab), 1e-300);
+    vec_mix(a, b, min_of(max_of(along, 0), 1), at);
+    return vec_distance(p, at);
+}
+
+static bool has_point(const struct face *face, uint32_t point)
+{
+    return face->point[0] == point || face->point[1] == point || face->point[2] == point;
+}
+
+/* What a corner's weld becomes where the point goes to the target: as in the triangles between them. NONE: nothing says. */
+static uint32_t weld_after(const struct bounded *b, const struct ring *ring, uint32_t target, uint32_t weld)
+{
+    uint32_t found = NONE;
+    for (int c = 0; c < ring->count; c++) {
+        const struct face *face = &b->faces[ring->corners[c] / 3];
+        for (int i = 0; i < 3; i++)
+            if (face->point[i] == target && face->weld[ring->corners[c] % 3] == weld) {
+                if (found != NONE && found != face->weld[i])
+                    return NONE;
+                found = face->weld[i];
+            }
+    }
+    return found;
+}
+
+/* The corners of a triangle of the ring once the point is at the target. */
+static void moved_face(const struct bounded *b, uint32_t corner, uint32_t target, const double *at[3])
+{
+    const struct face *face = &b->faces[corner / 3];
+    for (uint32_t i = 0; i < 3; i++)
+        at[i] = b->points[i == corner % 3 ? target : face->point[i]];
+}
+
+/* How far it moves borders and seams; INFINITY: they would not stay. */
+static double border_of(const struct bounded *b, const struct ring *ring, int target)
+{
+    int other = -1;
+    if (ring->feature_count == 0)
+        return 0;
+    if (ring->feature_count != 2 || !ring->is_feature[target])
+        return INFINITY;
+    for (int e = 0; e < ring->end_count; e++)
+        if (ring->is_feature[e] && e != target)
+            other = e;
+    return (double)b->moved_m[ring->point] +
+           distance_to_line(b->points[ring->point], b->points[ring->ends[target]], b->points[ring->ends[other]]);
+}
+
+static double longest_edge(const double *const at[3])
+{
+    return max_of(vec_distance(at[0], at[1]), max_of(vec_distance(at[1], at[2]), vec_distance(at[2], at[0])));
+}
+
+/* At least so far does the collapse move the surface; INFINITY: it may not be. */
+static double bound_of(const struct bounded *b, const struct ring *ring, int target)
+{
+    uint32_t to = ring->ends[target];
+    double nearest_m = INFINITY, border_m = border_of(b, ring, target) / BORDER, before_m = 0, longest_m = 0;
+    for (int c = 0; c < ring->count && !isinf(border_m); c++) {
+        const struct face *face = &b->faces[ring->corners[c] / 3];
+        const double *at[3];
+        double normal[3];
+        before_m = max_of(before_m, face->longest_m);
+        if (has_point(face, to))
+            continue;
+        moved_face(b, ring->corners[c], to, at);
+        vec_normal(at[0], at[1], at[2], normal);
+        double product = vec_length(normal) * vec_length(face->normal);
+        if (!(vec_dot(normal, face->normal) > TURN * product) || weld_after(b, ring, to, face->weld[ring->corners[c] % 3]) == NONE)
+            return INFINITY;
+        longest_m = max_of(longest_m, longest_edge(at));
+        nearest_m = min_of(nearest_m, distance_to(b->points[ring->point], at[0], at[1], at[2]));
+    }
+    return max_of(nearest_m, border_m) + STRETCH * max_of(longest_m - before_m, 0);
+}
+
+/* How far from the first surface a point is, if that is more. */
+static double raise(struct bounded *b, const double point[3], double error_m)
+{
+    struct bvh_place place;
+    if (error_m > 0 && bvh_any_within(b->first, point, error_m, NULL, NULL, &b->near))
+        return error_m;
+    bvh_nearest(b->first, point, INFINITY, NULL, NULL, &place);
+    return max_of(error_m, place.distance_m);
+}
+
+/* How far the places around are from the triangles as they will be, and these from the first surface; no farther than is enough. */
+static double error_of(struct bounded *b, const struct ring *ring, uint32_t to, double error_m, double enough_m)
+{
+    const double *at[RING][3];
+    int count = 0;
+    for (int c = 0; c < ring->count; c++)
+        if (!has_point(&b->faces[ring->corners[c] / 3], to))
+            moved_face(b, ring->corners[c], to, at[count++]);
+    for (int c = 0; c < ring->count && error_m <= enough_m; c++)
+        for (uint32_t s = b->faces[ring->corners[c] / 3].first; s != NONE && error_m <= enough_m; s = b->next_place[s]) {
+            double nearest_m = INFINITY;
+            for (int f = 0; f < count && nearest_m > error_m; f++)
+                nearest_m = min_of(nearest_m, distance_to(b->places[s], at[f][0], at[f][1], at[f][2]));
+            error_m = max_of(error_m, nearest_m);
+        }
+    for (int f = 0; f < count && error_m <= enough_m; f++) {
+        double middle[4][3];
+        for (int i = 0; i < 3; i++) {
+            middle[0][i] = (at[f][0][i] + at[f][1][i] + at[f][2][i]) / 3;
+            for (int e = 0; e < 3; e++)
+                middle[1 + e][i] = 0.5 * (at[f][e][i] + at[f][(e + 1) % 3][i]);
+        }
+        for (int m = 0; m < 4; m++)
+            error_m = raise(b, middle[m], error_m);
+    }
+    return error_m;
+}
+
+/* --- collapsing ------------------------------------------------------------------------------------------------------------------ */
+
+/* The cheapest collapse of a point, by what is certain of it. */
+static void offer(struct bounded *b, uint32_t point)
+{
+    struct ring ring;
+    struct turn turn = { INFINITY, point, ++b->stamp[point], NONE, false };
+    list_ring(b, point, &ring);
+    if (ring.count == 0 || ring.count > RING)
+        return;
+    list_ends(b, &ring);
+    for (int e = 0; e < ring.end_count; e++) {
+        float error_m = (float)bound_of(b, &ring, e);
+        if (error_m < turn.error_m) {
+            turn.error_m = error_m;
+            turn.target = ring.ends[e];
+        }
+    }
+    if (turn.target != NONE)
+        push(b, turn);
+}
+
+static void add_place(struct bounded *b, uint32_t face, uint32_t place)
+{
+    b->next_place[place] = b->faces[face].first;
+    b->faces[face].first = place;
+}
+
+static void measure_face(const struct bounded *b, struct face *face)
+{
+    const double *const at[3] = { b->points[face->point[0]], b->points[face->point[1]], b->points[face->point[2]] };
+    vec_normal(at[0], at[1], at[2], face->normal);
+    face->longest_m = longest_edge(at);
+}
+
+static void rehome(struct bounded *b, const uint32_t *faces, int count, uint32_t place)
+{
+    double nearest_m = INFINITY;
+    uint32_t best = faces[0];
+    for (int f = 0; f < count; f++) {
+        const uint32_t *v = b->faces[faces[f]].point;
+        double away_m = distance_to(b->places[place], b->points[v[0]], b->points[v[1]], b->points[v[2]]);
+        if (away_m < nearest_m) {
+            nearest_m = away_m;
+            best = faces[f];
+        }
+    }
+    add_place(b, best, place);
+}
+
+static void collapse(struct bounded *b, const struct ring *ring, int target)
+{
+    uint32_t to = ring->ends[target], places = NONE, kept[RING], after[RING];
+    int count = 0;
+    float border_m = (float)border_of(b, ring, target);
+    for (int c = 0; c < ring->count; c++)
+        after[c] = weld_after(b, ring, to, b->faces[ring->corners[c] / 3].weld[ring->corners[c] % 3]);
+    for (int c = 0; c < ring->count; c++) {
+        uint32_t corner = ring->corners[c];
+        struct face *face = &b->faces[corner / 3];
+        while (face->first != NONE) {
+            uint32_t place = face->first;
+            face->first = b->next_place[place];
+            b->next_place[place] = places;
+            places = place;
+        }
+        if (has_point(face, to)) {
+            face->point[0] = face->point[1] = face->point[2] = NONE;
+            b->left--;
+            continue;
+        }
+        face->point[corner % 3] = to;
+        face->weld[corner % 3] = after[c];
+        measure_face(b, face);
+        b->next[corner] = b->corner[to];
+        b->corner[to] = corner;
+        kept[count++] = corner / 3;
+    }
+    b->corner[ring->point] = NONE;
+    while (places != NONE) {
+        uint32_t place = places;
+        places = b->next_place[place];
+        rehome(b, kept, count, place);
+    }
+    for (int e = 0; e < ring->end_count && border_m > 0; e++)
+        if (ring->is_feature[e])
+            b->moved_m[ring->ends[e]] = fmaxf(b->moved_m[ring->ends[e]], border_m);
+    for (int e = 0; e < ring->end_count; e++)
+        offer(b, ring->ends[e]);
+}
+
+static int index_of(const struct ring *ring, uint32_t end)
+{
+    for (int e = 0; e < ring->end_count; e++)
+        if (ring->ends[e] == end)
+            return e;
+    return -1;
+}
+
+/* The cheapest in the heap: done if it is known to err no more, else found out about. */
+static void take_turn(struct bounded *b, double error_m)
+{
+    struct turn turn = pop(b);
+    struct ring ring;
+    if (turn.stamp != b->stamp[turn.point])
+        return;
+    list_ring(b, turn.point, &ring);
+    list_ends(b, &ring);
+    int target = index_of(&ring, turn.target);
+    if (!turn.is_known) {
+        turn.error_m = (float)error_of(b, &ring, turn.target, (double)turn.error_m, error_m);
+        turn.is_known = (double)turn.error_m <= error_m;
+        if (!turn.is_known || (b->heap_count > 0 && b->heap[0].error_m < turn.error_m)) {
+            push(b, turn);
+            return;
+        }
+    }
+    collapse(b, &ring, target);
+}
+
+void bounded_simplify(struct bounded *b, double error_m)
+{
+    while (b->heap_count > 0 && (double)b->heap[0].error_m <= error_m && b->left > 2)
+        take_turn(b, error_m);
+}
+
+/* --- all ------------------------------------------------------------------------------------------------------------------------ */
+
+static void number_points(struct bounded *b, const uint32_t *corners, size_t count)
+{
+    const struct welds *welds = b->welds;
+    uint32_t low = NONE, high = 0;
+    for (size_t i = 0; i < count; i++) {
+        uint32_t there = welds->first_there[corners[i]];
+        low = there < low ? there : low;
+        high = there > high ? there : high;
+    }
+    uint32_t *number = mem_array((size_t)high - low + 1, sizeof(*number));
+    for (size_t i = 0; i < count; i++) {
+        uint32_t there = welds->first_there[corners[i]], *at = &number[there - low];
+        if (*at == 0) {
+            *at = (uint32_t)++b->point_count;
+            for (int axis = 0; axis < 3; axis++)
+                b->points[b->point_count - 1][axis] = (double)welds->positions_m[there][axis];
+        }
+        b->faces[i / 3].point[i % 3] = *at - 1;
+        b->faces[i / 3].weld[i % 3] = corners[i];
+    }
+    mem_free(number);
+    b->face_count = count / 3;
+}
+
+/* Lines and points, which nobody sees. */
+static void drop_empty(struct bounded *b)
+{
+    size_t kept = 0;
+    for (size_t f = 0; f < b->face_count; f++) {
+        const uint32_t *v = b->faces[f].point;
+        if (v[0] != v[1] && v[1] != v[2] && v[2] != v[0])
+            b->faces[kept++] = b->faces[f];
+    }
+    b->face_count = b->left = kept;
+}
+
+static void link_corners(struct bounded *b)
+{
+    memset(b->corner, 0xff, b->point_count * sizeof(*b->corner));
+    for (size_t i = 3 * b->face_count; i-- > 0;) {
+        uint32_t *first = &b->corner[b->faces[i / 3].point[i % 3]];
+        b->next[i] = *first;
+        *first = (uint32_t)i;
+    }
+}
+
+static void take_places(struct bounded *b, const double (*places)[3], size_t count)
+{
+    struct trimesh mesh = { .points = b->points, .point_count = b->point_count };
+    mesh.tris = mem_array(b->face_count, sizeof(*mesh.tris));
+    for (size_t f = 0; f < b->face_count; f++) {
+        memcpy(mesh.tris[f], b->faces[f].point, sizeof(*mesh.tris));
+        measure_face(b, &b->faces[f]);
+        b->faces[f].first = NONE;
+    }
+    mesh.tri_count = b->face_count;
+    struct bvh *bvh = bvh_create(&mesh);
+    b->places = mem_array(count, sizeof(*b->places));
+    b->next_place = mem_array(count, sizeof(*b->next_place));
+    memcpy(b->places, places, count * sizeof(*places));
+    for (size_t s = 0; s < count; s++) {
+        struct bvh_place place;
+        bvh_nearest(bvh, places[s], INFINITY, NULL, NULL, &place);
+        if (place.tri != TRIMESH_NONE)
+            add_place(b, place.tri, (uint32_t)s);
+    }
+    bvh_destroy(&bvh);
+    mem_free(mesh.tris);
+}
+
+struct bounded *bounded_create(const struct welds *welds, const uint32_t *corners, size_t count, const double (*places)[3],
+                               size_t place_count, const struct bvh *first)
+{
+    struct bounded *b = mem_new(sizeof(*b));
+    *b = (struct bounded){ .welds = welds, .first = first, .near = TRIMESH_NONE };
+    b->points = mem_array(count, sizeof(*b->points));
+    b->faces = mem_array(count / 3, sizeof(*b->faces));
+    b->next = mem_array(count, sizeof(*b->next));
+    number_points(b, corners, count);
+    drop_empty(b);
+    b->moved_m = mem_array(b->point_count, sizeof(*b->moved_m));
+    b->corner = mem_array(b->point_count, sizeof(*b->corner));
+    b->stamp = mem_array(b->point_count, sizeof(*b->stamp));
+    link_corners(b);
+    take_places(b, places, place_count);
+    for (uint32_t p = 0; p < b->point_count; p++)
+        offer(b, p);
+    return b;
+}
+
+void bounded_destroy(struct bounded **bounded)
+{
+    struct bounded *b = *bounded;
+    if (!b)
+        return;
+    mem_free(b->points);
+    mem_free(b->moved_m);
+    mem_free(b->corner);
+    mem_free(b->next);
+    mem_free(b->stamp);
+    mem_free(b->faces);
+    mem_free(b->places);
+    mem_free(b->next_place);
+    mem_free(b->heap);
+    mem_free(b);
+    *bounded = NULL;
+}
+
+size_t bounded_count(const struct bounded *b)
+{
+    return b->left;
+}
+
+void bounded_read(const struct bounded *b, uint32_t *corners)
+{
+    for (size_t f = 0; f < b->face_count; f++)
+        if (b->faces[f].point[0] != NONE) {
+            memcpy(corners, b->faces[f].weld, sizeof(b->faces[f].weld));
+            corners += 3;
+        }
+}
