@@ -4,6 +4,7 @@
 # CODECS = jpeg: without H.264, and so without libavcodec.
 config ?= release
 build  ?= build
+.DEFAULT_GOAL := all
 CODECS ?= jpeg h264
 ifeq ($(origin CC),default)
 CC := gcc
