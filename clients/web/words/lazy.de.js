@@ -558,6 +558,7 @@ missed: Dort ist keine Oberfläche.
 moves: Ausprobiert, nur für Sie
 nomoves: Nichts ist versetzt. Was Sie ausprobieren, sehen nur Sie, bis es gespeichert ist.
 off: {metres} m neben der Oberfläche
+left: nicht an {asset}, wie die Liste sagt
 waiting: gerade Abstände, die entlang der Oberfläche folgen
 straight: nur gerade Abstände
 ready: entlang der Oberfläche
@@ -576,6 +577,7 @@ diff.after: nachher
 diff.line: Zeile {n}
 diff.note: Die Liste, wie sie ist, bleibt daneben stehen. Danach gilt sie für alle; das dauert einige Sekunden.
 diff.conflict: {file} wurde von jemand anderem geändert und ist noch nicht geladen. Nichts wurde gespeichert; das wurde geändert:
+diff.left: {tag} war an {left} und ist jetzt an {asset}: Ist das gewollt?
 diff.more: … und {count} weitere Zeilen
 cancel: Abbrechen
 confirm: Speichern und in Kraft setzen

@@ -556,6 +556,7 @@ missed: There is no surface at that place.
 moves: Tried out, for you alone
 nomoves: Nothing is moved. What you try out only you can see, until it is saved.
 off: {metres} m off the surface
+left: not on {asset}, as the tag list has it
 waiting: straight distances, those along the surface follow
 straight: straight distances only
 ready: along the surface
@@ -574,6 +575,7 @@ diff.after: after
 diff.line: line {n}
 diff.note: The list as it is stays beside it. It is then in force for everybody; that takes some seconds.
 diff.conflict: {file} was changed by somebody else and is not loaded yet. Nothing was saved; this is what they changed:
+diff.left: {tag} was on {left}, and is on {asset} now: is that meant?
 diff.more: … and {count} more lines
 cancel: Cancel
 confirm: Save and put in force

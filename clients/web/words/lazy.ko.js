@@ -552,6 +552,7 @@ missed: 그곳에는 표면이 없습니다.
 moves: 시험 중, 본인에게만 보임
 nomoves: 옮긴 것이 없습니다. 시험하는 위치는 저장할 때까지 본인에게만 보입니다.
 off: 표면에서 {metres} m 떨어짐
+left: 태그 목록의 {asset} 위가 아님
 waiting: 직선 거리, 표면 거리는 곧 이어짐
 straight: 직선 거리만
 ready: 표면을 따라
@@ -572,6 +573,7 @@ diff.line: {n}행
 diff.note: 지금의 목록은 옆에 그대로 남습니다. 저장하면 모두에게 적용되며 몇 초가 걸립니다.
 diff.conflict: {file}을(를) 다른 사람이 바꾸었고 아직 불러오지 않았습니다.
     저장하지 않았습니다. 바뀐 내용:
+diff.left: {tag}은(는) {left} 위에 있었고 이제 {asset} 위에 있습니다. 맞습니까?
 diff.more: … 그 밖에 {count}행
 cancel: 취소
 confirm: 저장하고 적용

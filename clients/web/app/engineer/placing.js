@@ -152,14 +152,21 @@ export class Placing {
         this.undo.disabled = this.undone.length === 0;
         this.back.disabled = this.save.disabled = this.moves.length === 0;
         this.none.hidden = this.moves.length > 0;
-        fill(this.tried, ...this.moves.map(({ tag, asset, position }) => this.row(tag, asset, position, model.placed.get(tag))));
+        fill(this.tried, ...this.moves.map((move) => this.row(move, model.placed.get(move.tag))));
         this.showTags();
         this.refresh();
     }
 
-    row(tag, asset, position, placed) {
-        const off = placed && placed.distance_m > placed.limit_m;
+    // The equipment that the plant has it on, if it is tried out on other equipment.
+    left({ tag, asset }) {
+        const known = this.session.model.tag(tag), own = (known?.saved ?? known)?.asset;
+        return own && own !== asset ? own : null;
+    }
+
+    row(move, placed) {
+        const { tag, asset, position } = move, off = placed && placed.distance_m > placed.limit_m, left = this.left(move);
         return make('li', {}, make('b', {}, tag), ` ${say('eng.on', { asset })} `,
+            left ? make('span', { class: 'off' }, say('eng.left', { asset: left })) : null,
             make('span', { class: 'place' }, position.map((v) => numberText(v, 3)).join(' · ')),
             make('span', { class: off ? 'along off' : 'along' },
                 off ? say('eng.off', { metres: metres(placed.distance_m) }) : along(placed)));
@@ -210,6 +217,8 @@ export class Placing {
         const confirm = make('button', { type: 'button', class: 'go', onclick: () => this.confirm(hash) }, say('eng.confirm'));
         fill(this.dialog, make('h2', {}, say('eng.diff', { file })),
             make('p', {}, conflict ? say('eng.diff.conflict', { file }) : say('eng.diff.note')),
+            ...this.moves.filter((move) => this.left(move)).map((move) =>
+                make('p', { class: 'off' }, say('eng.diff.left', { ...move, left: this.left(move) }))),
             make('div', { class: 'lines', tabindex: '0' }, ...lines.map(change)),
             more > 0 ? make('p', {}, say('eng.diff.more', { count: more })) : null,
             make('div', { class: 'line' }, make('button', { type: 'button', onclick: close }, say('eng.cancel')),

@@ -96,6 +96,7 @@ export class Import {
         this.showPerson();
         if (this.open) {
             this.exports.look();
+            this.table.showAgain();
             this.table.refresh();
         }
         (this.open ? this.pick : this.button).focus({ preventScroll: true });

@@ -8,16 +8,18 @@ import { LongList } from '../assets/list.js';
 import { make, setText } from '../common/dom.js';
 import { fill } from '../common/widgets.js';
 
-const ROW_PX = 44, ROOM = 1.9;
+const ROW_PX = 44, ROOM = 1.9, AROUND_M = 1, MOST_AROUND = 20;
 const union = (boxes) => ({
     min: [0, 1, 2].map((i) => Math.min(...boxes.map(({ min }) => min[i]))),
     max: [0, 1, 2].map((i) => Math.max(...boxes.map(({ max }) => max[i]))),
 });
 
+const meet = (a, b, m) => [0, 1, 2].every((i) => a.min[i] < b.max[i] + m && b.min[i] < a.max[i] + m);
+
 export class TagTable {
     // save(): sends the decisions.
     constructor({ page, lit, save }) {
-        Object.assign(this, { page, lit, save, filter: 'all', chosen: null });
+        Object.assign(this, { page, lit, save, filter: 'all', chosen: null, shown: null });
         this.matches = new Matches((name) => this.isPlaced(name));
         this.build();
     }
@@ -47,7 +49,7 @@ export class TagTable {
     // null: the tag is no sensor.
     isPlaced(name) {
         const tag = this.page.session.model?.tag(name);
-        return tag?.asset ? Boolean(tag.position) && tag.place !== 'equipment' : null;
+        return tag?.asset && tag.group ? Boolean(tag.position) && tag.place !== 'equipment' : null;
     }
 
     set(text) {
@@ -207,12 +209,32 @@ export class TagTable {
         this.refresh();
     }
 
+    // One piece of equipment, so that clicks fall on it: what is around it is looked through, all else is hidden.
+    showAlone(id) {
+        const { session } = this.page, { model, params } = session, asset = model.asset(id);
+        if (!asset)
+            return;
+        const around = model.assets.filter((other) => other !== asset && meet(other.bounds, asset.bounds, AROUND_M));
+        this.showAgain();
+        this.shown = { isolate: params.isolate ?? [], ghost: params.ghost ?? [], alone: id };
+        session.setParams({ isolate: [id], ghost: around.slice(0, MOST_AROUND).map((other) => other.id) });
+    }
+
+    // What was shown before, unless somebody chose otherwise meanwhile.
+    showAgain() {
+        const { session } = this.page, { isolate = [], ghost, alone } = this.shown ?? {};
+        this.shown = null;
+        if (alone && session.params.isolate?.length === 1 && session.params.isolate[0] === alone)
+            session.setParams({ isolate, ghost });
+    }
+
     // Where it is on its equipment is said in the engineer's panel.
     place() {
         const tag = this.page.session.model.tag(this.chosen.tag);
         if (!tag?.group)
             return;
         this.lit.show({ assets: [] });
+        this.showAlone(tag.asset);
         this.page.modules.use('engineer', (engineer) => {
             if (!engineer.open)
                 engineer.toggle();
