@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // preprocess/YOUR_PLANT.md, walked: each command is typed as it stands there, and each line that stands below it has to be among what it
-// says. Only ports are others, and times are not compared.
+// says; what is clicked on the page is called as it is there, and what it answers stands there. Only ports are others, and times are not
+// compared.
 import assert from 'node:assert/strict';
 import { spawn, spawnSync } from 'node:child_process';
 import { copyFileSync, existsSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { test } from 'node:test';
-import { arrive, openPage, settle, shoot, waitForPicture } from './support/browser.mjs';
+import { arrive, drawnAt, land, openPage, settle, shoot, waitForPicture } from './support/browser.mjs';
 import { freePort } from './support/ports.mjs';
 import { BIN, missing } from './support/tiny_plant.mjs';
 
@@ -62,23 +63,151 @@ test('what the page says is typed, and what it shows comes', { skip, timeout: 40
                 for (const line of blocks(page, '').find((code) => code.startsWith('Tag,Status')).trim().split('\n'))
                     assert.ok(readFileSync(join(folder, 'plant/matches.csv'), 'utf8').includes(`${line}\n`), line);
             if (/^plantcastd --port/.test(command)) {
-                const seen = await openPage(`http://127.0.0.1:${port}/?lang=en`, { viewport: { width: 1280, height: 800 } });
-                await waitForPicture(seen.page);
-                for (let good = 0; good < 9;) {
+                for (let good = 0; good < 10;) {
                     const { tags } = await (await fetch(`http://127.0.0.1:${port}/api/v1/tags`)).json();
                     good = tags.filter(({ quality }) => quality === 'good').length;
                     await new Promise((done) => setTimeout(done, 200));
                 }
-                await settle(seen.page);
-                await arrive(seen.page);
-                await shoot(seen.page, 'walk-4-live');
-                assert.deepEqual(seen.errors, []);
-                await seen.close();
+                const picture = await fetch(`http://127.0.0.1:${port}/snapshot.png?width=640&height=400`);
+                assert.equal(picture.status, 200);
             }
         }
         const { plant } = await (await fetch(`http://127.0.0.1:${port}/api/v1/plant`)).json();
         assert.equal(plant.name, 'plm-sample');
     } finally {
+        for (const child of running) {
+            const ended = new Promise((done) => child.once('exit', done));
+            child.kill();
+            await ended;
+        }
+        rmSync(folder, { recursive: true });
+    }
+});
+
+// The steps of the section `On a page`, in the order in which they stand there.
+test('what the page says is clicked, and what it shows comes', { skip, timeout: 400000 }, async () => {
+    const folder = mkdtempSync(join(tmpdir(), 'plantcast-walk-')), device = await freePort(), running = [];
+    const section = page.slice(page.indexOf('## On a page'), page.indexOf('## 1. The model'));
+    const written = section.slice(section.indexOf('1. ')).replace(/\s+/g, ' ');
+    let at = 0; // how far it was read
+    const read = (text) => {
+        const found = written.indexOf(text, at);
+        assert.ok(found >= 0, `not on the page, or before what was done last: ${text}`);
+        at = found + text.length;
+        return text;
+    };
+    const named = (text) => read(`*${text}*`).slice(1, -1);
+    const here = { cwd: folder, env: { ...process.env, PATH: `${BIN}:${process.env.PATH}` } };
+    const run = async (command, ready) => {
+        const child = spawn('sh', ['-c', `exec ${command}`], here);
+        let out = '';
+        running.push(child);
+        for (const pipe of [child.stdout, child.stderr])
+            pipe.on('data', (bytes) => { out += bytes; });
+        for (let i = 0; i < 600 && !ready.test(out) && child.exitCode === null; i++)
+            await new Promise((done) => setTimeout(done, 100));
+        assert.match(out, ready, command);
+        return ready.exec(out);
+    };
+    let seen;
+    try {
+        for (const name of ['plm-sample.rvm', 'plm-sample.att'])
+            copyFileSync(join(CAD, name), join(folder, name));
+        writeFileSync(join(folder, 'kepware.csv'), blocks(page, 'csv')[0]);
+        const serve = blocks(section, '')[0].split('\n').find((line) => line.startsWith('$ ')).slice(2).replace(/ +#.*$/, '');
+        const [, address] = await run(serve.replace('--serve', '--serve --port 0'), /ready (http:\S+)/);
+        seen = await openPage(`${address}?lang=en`, { viewport: { width: 1280, height: 800 } });
+        const room = seen.page, panel = room.locator('#import'), button = (name) => room.getByRole('button', { name, exact: true });
+        const row = (tag) => panel.locator('.row').filter({ has: room.locator('b', { hasText: new RegExp(`^${tag}$`) }) });
+        const said = (text) => room.waitForFunction((what) =>
+            document.getElementById('import').innerText.replace(/\s+/g, ' ').includes(what), text, { timeout: 100000 })
+            .catch(async () => assert.fail(`not said: ${text}; but: ${await panel.innerText()}`));
+        const filter = (name) => panel.locator('.segments label', { hasText: new RegExp(`^\\d+${name}$`) });
+        const idle = () => room.waitForFunction(() => !document.querySelector('#import.busy') &&
+            !document.querySelector('#import .row.decided'), null, { timeout: 60000 });
+        await waitForPicture(room);
+        await settle(room);
+        await shoot(room, 'page-1-empty');
+
+        // 1. The files.
+        await said(named('Drop a model and a tag list here, or choose files'));
+        const files = ['plm-sample.rvm', 'plm-sample.att', 'kepware.csv'].map((name) => join(folder, read(`\`${name}\``).slice(1, -1)));
+        await panel.locator('input[type=file]').setInputFiles(files);
+        await room.waitForFunction(() => globalThis.plantcast.session.model.assets.length === 19, null, { timeout: 200000 });
+        await said(named('The plant is in force'));
+
+        // 2. Its size.
+        await said(read('12.5 × 6.45 × 8.00 m'));
+        await panel.locator('summary', { hasText: named('Size') }).click();
+        assert.ok(await panel.getByLabel(named('Show a person of 1.8 m beside it')).isChecked());
+        await arrive(room);
+        await shoot(room, 'page-2-plant');
+        await panel.locator('summary', { hasText: 'Size' }).click();
+
+        // 3. Its tags.
+        for (const name of ['Matched', 'Doubtful', 'Unmatched', 'Unplaced'])
+            read(`${await filter(name).locator('b').textContent()} ${name}`);
+        await filter(named('Doubtful')).click();
+        await row(read('TT-1111')).click();
+        await arrive(room);
+        await shoot(room, 'page-3-candidates');
+        await panel.getByRole('button', { name: /-ART1111PO-/ }).click();
+        read('-ART1111PO-');
+        await button(named('Save')).click();
+        await idle();
+        await room.waitForFunction(() => globalThis.plantcast.session.model.tag('TT-1111')?.asset === '-ART1111PO-');
+
+        // 4. A place.
+        await filter(named('Unplaced')).click();
+        await row(read('ART1105BA_TT01')).click();
+        await arrive(room);
+        await panel.getByRole('button', { name: named('Place by hand') }).click();
+        await room.waitForFunction(() => /ART1105BA_TT01/.test(document.querySelector('#engineer .hint')?.textContent ?? ''));
+        await land(room);
+        const place = await room.evaluate(() => globalThis.plantcast.session.model.tag('ART1105BA_TT01').position);
+        const { x, y } = await drawnAt(room, place);
+        await room.mouse.move(x, y);
+        await room.mouse.down();
+        for (let i = 1; i <= 6; i++) {
+            await room.mouse.move(x, y - i);
+            await room.waitForTimeout(50);
+        }
+        await room.mouse.up();
+        await room.waitForFunction(() => globalThis.plantcast.session.model.placed.size === 1);
+        assert.equal(await room.locator('#engineer .off').count(), 0, 'it is on its equipment');
+        await room.mouse.move(640, 5); // no card over the picture
+        await arrive(room);
+        await shoot(room, 'page-4-placed');
+        await room.locator('#engineer').getByRole('button', { name: named('Save …') }).click();
+        await settle(room);
+        await shoot(room, 'page-4b-save');
+        await button(named('Save and put in force')).click();
+        await room.waitForFunction(() => globalThis.plantcast.session.model.tag('ART1105BA_TT01').place === undefined, null,
+            { timeout: 60000 });
+        await arrive(room);
+        await shoot(room, 'page-4c-saved');
+
+        // 5. Its values.
+        await room.locator('#import-toggle').click();
+        await panel.locator('summary', { hasText: named('Values') }).click();
+        for (const [label, value] of [['Modbus TCP device', '127.0.0.1'], ['Port', '5020']])
+            await panel.getByLabel(named(label)).fill(read(`\`${value}\``).slice(1, -1).replace('5020', device));
+        await panel.getByLabel(named('Byte order')).selectOption(read('`CDAB`').slice(1, -1));
+        await button(named('Connect')).click();
+        await said(`127.0.0.1:${device}`);
+        await idle();
+        const [, sim] = /`(plantcast-sim [^`]*)`/.exec(written.slice(at));
+        await run(read(sim), /listening/);
+        await said(read('10 of 10 tags have values'));
+        await arrive(room);
+        await shoot(room, 'page-5-values');
+        await room.locator('#import').getByRole('button', { name: 'Close' }).click();
+        await room.locator('#home').click();
+        await arrive(room);
+        await shoot(room, 'page-6-live');
+        assert.deepEqual(seen.errors, []);
+    } finally {
+        await seen?.close();
         for (const child of running) {
             const ended = new Promise((done) => child.once('exit', done));
             child.kill();
