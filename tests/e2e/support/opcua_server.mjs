@@ -36,8 +36,9 @@ const folder = own.addFolder(space.rootFolder.objects, { browseName: 'Plant' });
 const nodes = {};
 const add = (name, dataType, value, more = {}) => {
     const { arrayType, ...others } = more;
-    nodes[name] = { dataType, arrayType, node: own.addVariable({ componentOf: folder, browseName: name, nodeId: `s=${name}`, dataType,
-        minimumSamplingInterval: 50, ...others, value: { dataType, arrayType, value } }) };
+    const node = own.addVariable({ componentOf: folder, browseName: name, nodeId: `s=${name}`, dataType, minimumSamplingInterval: 50,
+        ...others, value: { dataType, arrayType, value } });
+    nodes[name] = { dataType, arrayType, first: value, node };
 };
 add('TI-1', 'Double', 20);
 add('TI-2', 'Float', 21.5);
@@ -49,7 +50,7 @@ add('Temps', 'Double', new Float64Array([1, 2, 3]), { arrayType: VariantArrayTyp
 const bounded = own.addAnalogDataItem({ componentOf: folder, browseName: 'Bounded', nodeId: 's=Bounded', dataType: 'Double',
     engineeringUnitsRange: { low: 0, high: 100 }, description: 'of 0 to 100 °C', minimumSamplingInterval: 50 });
 bounded.setValueFromSource(new Variant({ dataType: DataType.Double, value: 50 }));
-nodes.Bounded = { dataType: 'Double', node: bounded };
+nodes.Bounded = { dataType: 'Double', first: 50, node: bounded };
 for (let i = 0; i < (told.many ?? 0); i++)
     add(`N${i}`, 'Double', i);
 
@@ -71,6 +72,11 @@ createInterface({ input: process.stdin }).on('line', (line) => {
             set({ name: `N${i}`, value: order.each + i });
     else if (order.set)
         set(order.set);
+    else if (order.anew) {
+        for (const [name, { first }] of Object.entries(nodes))
+            set({ name, value: first });
+        counts.write = counts.call = 0;
+    }
     console.log(JSON.stringify({ done: true, sessions: server.currentSessionCount, ...counts }));
 });
 await server.start();
