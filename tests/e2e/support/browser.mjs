@@ -20,6 +20,11 @@ export const DESKTOP = { viewport: { width: 1920, height: 1080 } };
 export const TABLET = { viewport: { width: 1024, height: 768 }, deviceScaleFactor: 2, hasTouch: true };
 export const PHONE = { viewport: { width: 390, height: 844 }, deviceScaleFactor: 2, hasTouch: true, isMobile: true };
 
+// Has the camera of this program's pages go where it is sent at once, as for people who want no motion: of a flight each frame costs
+// 15 ms of a processor in the browser alone. `make test-long` has all flights.
+let motion = 'no-preference';
+export const withoutFlights = () => { motion = sweep('no-preference', 'reduce'); };
+
 // One browser for all pages of a test program, for each set of its own arguments.
 const browsers = new Map();
 
@@ -64,7 +69,7 @@ export async function browserOn(display, url, width, height, clockMs = 0) {
 // before: a function that runs in the page before its own scripts; arrange(page): what else to do before. screen.args: the browser's;
 // screen.profile: it has a browser of its own, with a profile.
 export async function openPage(url, screen = DESKTOP, before = null, arrange = () => {}) {
-    const { args = [], profile = false, ...shape } = screen;
+    const { args = [], profile = false, ...own } = screen, shape = { reducedMotion: motion, ...own };
     const context = await (profile ? profileWith(args, shape) : (await browserWith(args)).newContext(shape));
     const page = context.pages()[0] ?? await context.newPage();
     const errors = [];
