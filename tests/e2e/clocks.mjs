@@ -39,7 +39,9 @@ const startCore = async (name, off_s) => {
     nodes.all.push(core);
     return core.ready();
 };
-const near = (us, wanted_us, s, what) => assert.ok(Math.abs(us - wanted_us) < s * 1e6, `${what}: ${(us - wanted_us) / 1e6} s apart`);
+// Between two instants, to 5 s; on a busy machine an answer takes longer than that.
+const between = (us, first_us, last_us, what) => assert.ok(us > first_us - 5e6 && us < last_us + 5e6,
+    `${what}: ${(us - first_us) / 1e6} s after it was asked for, of ${(last_us - first_us) / 1e6} s`);
 const alarmOf = async (node) => (await (await node.fetch('/api/v1/alarms')).json()).alarms
     .find(({ tag, state }) => tag === 'TI-1' && state === 'unacknowledged');
 
@@ -48,7 +50,7 @@ for (const off_s of [HOUR_S, -HOUR_S])
         await nodes.plant.tell('set TI-1 20');
         const core = await startCore(`off${off_s}`, off_s), renderer = await nodes.renderer('far', core);
         const coreUs = () => (Date.now() + off_s * 1000) * 1000;
-        await renderer.program.line(new RegExp(`its clock is 3\\d{3}\\.\\d s ${off_s > 0 ? 'ahead of' : 'behind'} this machine's`), 10000);
+        await renderer.program.line(new RegExp(`its clock is 3\\d{3}\\.\\d s ${off_s > 0 ? 'ahead of' : 'behind'} this machine's`));
         assert.ok(Math.abs(await renderer.metric('plantcast_core_clock_ahead_seconds') - off_s) < 5);
         await until('readings', async () => (await renderer.tags())['TI-1'].quality_name === 'Good');
         await nodes.plant.tell('set TI-1 95.5');
@@ -56,18 +58,20 @@ for (const off_s of [HOUR_S, -HOUR_S])
         assert.deepEqual(raised, await alarmOf(core));
 
         const client = await renderer.client({}, { token: nodes.tokens.operator });
+        let asked_us = coreUs();
         client.say({ type: 'ping', t: 1 });
-        near((await client.text('pong')).time_us, coreUs(), 5, 'the clock that clients are told');
+        between((await client.text('pong')).time_us, asked_us, coreUs(), 'the clock that clients are told');
+        asked_us = coreUs();
         const { headers } = await renderer.fetch('/snapshot.png?width=320&height=200&fit=E-101');
         const [header, at_us, age_ms] = /data_time_us=(\d+), oldest_age_ms=(\d+)/.exec(headers.get('plantcast-frame'));
-        near(Number(at_us), coreUs(), 5, 'the time in a picture');
+        between(Number(at_us), asked_us, coreUs(), 'the time in a picture');
         assert.ok(Number(age_ms) < 5000, header);
         for (const { age_ms: age, name } of Object.values(await renderer.tags()))
             assert.ok(age >= 0 && age < 5000, `${name}: ${age} ms`);
         client.say({ type: 'alarm', seq: 2, action: 'shelve', alarms: [['TI-1', 'H']], for_s: 2, reason: 'is looked at' });
         await client.text('alarmed');
         const shelved = performance.now();
-        await until('its return', () => alarmOf(renderer), 10);
+        await until('its return', () => alarmOf(renderer), 60);
         assert.ok(performance.now() - shelved > 1500, 'it was away for 2 s, not for an hour less');
         client.close();
 

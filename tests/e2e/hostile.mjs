@@ -107,8 +107,12 @@ test('ten thousand messages a second are read at the pace allowed, and all of th
     await reaches(async () => await metric('plantcast_messages_total') > before[0] + PINGS); // it counts once a second at least
     const read = await metric('plantcast_messages_total') - before[0], told = await metric('plantcast_message_errors_total') - before[1];
     assert.ok(read > PINGS, `${read} messages read`); // hello, and an acknowledgement of each frame
-    assert.ok(told >= full, `too fast: said ${told} times`);
-    assert.ok(client.texts.some((m) => m.code === 'too_fast'));
+    // Where the machine is too busy to read so many within a second, nobody is too fast in it.
+    const reads = took < 1000 * (PINGS / MESSAGES_PER_S + 1), said = `too fast: said ${told} times in ${took.toFixed(0)} ms`;
+    assert.ok(told >= full || !reads, said);
+    assert.equal(client.texts.some((m) => m.code === 'too_fast'), told > 0, said);
+    if (told < full)
+        t.skip(`the rest is good; the machine is busy: ${said}`);
 });
 
 test('all at once: nobody else is slowed, and each has its answer', { skip }, async (t) => {

@@ -15,6 +15,7 @@ const QUIET = [
     '--no-sandbox', '--disable-gpu', '--disable-quic', '--no-first-run', '--disable-background-networking', '--disable-component-update',
     '--disable-sync',
 ];
+const PATIENCE_MS = 120000; // of whatever waits for a page: slower than that is no page, how busy the machine ever is
 export const SCREENSHOTS = join(BUILD, 'screenshots');
 export const DESKTOP = { viewport: { width: 1920, height: 1080 } };
 export const TABLET = { viewport: { width: 1024, height: 768 }, deviceScaleFactor: 2, hasTouch: true };
@@ -71,6 +72,7 @@ export async function browserOn(display, url, width, height, clockMs = 0) {
 export async function openPage(url, screen = DESKTOP, before = null, arrange = () => {}) {
     const { args = [], profile = false, ...own } = screen, shape = { reducedMotion: motion, ...own };
     const context = await (profile ? profileWith(args, shape) : (await browserWith(args)).newContext(shape));
+    context.setDefaultTimeout(PATIENCE_MS);
     const page = context.pages()[0] ?? await context.newPage();
     const errors = [];
     page.on('pageerror', (error) => errors.push(String(error)));
