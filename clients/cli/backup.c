@@ -180,7 +180,6 @@ static void remove_folder(const char *folder)
     rmdir(folder);
 }
 
-/* The folder has its name once all is in it. */
 /* By its time the daemon says in /metrics when the last backup was. Who may only read the history leaves none. */
 static void leave_stamp(const char *history)
 {
@@ -192,6 +191,7 @@ static void leave_stamp(const char *history)
     mem_free(path);
 }
 
+/* The folder has its name once all is in it. */
 static bool back_up(struct job *job, const struct plant *plant, const char *out)
 {
     const char *tags = base_name(plant->tags_path);

@@ -4,7 +4,7 @@
 
 #include "render/gl/gl_backend.h"
 #include "render/renderer_impl.h"
-#include "render/soft/soft_backend.h"
+#include "render/soft/soft.h"
 
 const char *const render_store_names[RENDER_STORES] = { "shown fields", "light", "still pictures", "targets", "drawing", "models" };
 
@@ -15,7 +15,7 @@ static const double ROOM_SHARE = 0.4;
 
 static size_t room_bytes(const struct renderer *renderer)
 {
-    return renderer->by_soft ? soft_room_bytes(renderer->by_soft->soft) + refiner_room_bytes(renderer->by_soft->refiner) : 0;
+    return renderer->by_soft ? soft_room_bytes(renderer->by_soft) : 0;
 }
 
 void renderer_measure_memory(const struct renderer *renderer, size_t out[RENDER_STORES])
@@ -27,8 +27,8 @@ void renderer_measure_memory(const struct renderer *renderer, size_t out[RENDER_
     out[STORE_ROOM] = room_bytes(renderer);
     out[STORE_MODELS] = 0;
     if (renderer->by_soft) {
-        out[STORE_LIGHT] += soft_light_bytes(renderer->by_soft->soft) + refiner_light_bytes(renderer->by_soft->refiner);
-        out[STORE_PICTURES] = soft_kept_bytes(renderer->by_soft->soft) + refiner_kept_bytes(renderer->by_soft->refiner);
+        out[STORE_LIGHT] += soft_light_bytes(renderer->by_soft);
+        out[STORE_PICTURES] = soft_kept_bytes(renderer->by_soft);
     }
     for (size_t i = 0; i < renderer->gpu_scene.model_count; i++) {
         const struct mesh *mesh = &renderer->gpu_scene.models[i].mesh;
@@ -39,15 +39,15 @@ void renderer_measure_memory(const struct renderer *renderer, size_t out[RENDER_
 void renderer_bound_memory(struct renderer *renderer, size_t bytes)
 {
     if (renderer->by_soft && (double)room_bytes(renderer) > ROOM_SHARE * (double)bytes)
-        refiner_drop_spare(renderer->by_soft->refiner);
+        soft_drop_spare(renderer->by_soft);
     size_t room = room_bytes(renderer), least = bytes - (size_t)(ROOM_SHARE * (double)bytes);
     double left = (double)(room < bytes - least ? bytes - room : least);
     renderer->fields.bound_bytes = (size_t)(FIELDS_SHARE * left / 2);
     light_bound(&renderer->light, (size_t)(LIGHT_SHARE * left));
     targets_bound(&renderer->by_gl->targets, (size_t)(TARGETS_SHARE * left));
     if (renderer->by_soft) {
-        soft_bound(renderer->by_soft->soft, (size_t)(PREVIEWS_SHARE * left));
-        refiner_bound(renderer->by_soft->refiner, (size_t)(REFINED_SHARE * left));
+        soft_bound(renderer->by_soft, TIER_PREVIEW, (size_t)(PREVIEWS_SHARE * left));
+        soft_bound(renderer->by_soft, TIER_REFINED, (size_t)(REFINED_SHARE * left));
     }
 }
 
@@ -57,8 +57,6 @@ void renderer_drop_caches(struct renderer *renderer)
     fields_drop(&renderer->fields);
     light_drop(&renderer->light, &usual);
     targets_finish(&renderer->by_gl->targets);
-    if (renderer->by_soft) {
-        refiner_rest(renderer->by_soft->refiner);
-        soft_rest(renderer->by_soft->soft);
-    }
+    if (renderer->by_soft)
+        soft_rest(renderer->by_soft);
 }

@@ -10,7 +10,7 @@
 
 struct gl_backend; /* render/gl/gl_backend.h */
 struct render_job;
-struct soft_backend; /* render/soft/soft_backend.h */
+struct soft; /* render/soft/soft.h */
 
 struct renderer {
     struct gl *gl;
@@ -26,7 +26,7 @@ struct renderer {
     struct isolines isolines;
     struct shaded_colormap_cache colormaps;
     struct gl_backend *by_gl;
-    struct soft_backend *by_soft; /* NULL: a GPU draws all */
+    struct soft *by_soft; /* NULL: a GPU draws all */
     bool always_gl;
     int64_t bake_budget_ns;  /* 0: none */
     struct visibility shown; /* by the last frame that was drawn at once */

@@ -6,7 +6,6 @@
 #include "base/mem.h"
 #include "render/soft/kernels.h"
 #include "render/renderer_impl.h"
-#include "render/soft/soft_backend.h"
 #include "tests/support/soft_case.h"
 #include "value/quality.h"
 
@@ -296,7 +295,7 @@ enum { OTHER_KERNELS = sizeof(other_kernels) / sizeof(other_kernels[0]) };
 
 static void compare_kernels(const struct view *view, const struct soft_kernels *other)
 {
-    const struct soft_kernels **kernels = &stand.renderer->by_soft->soft->kernels, *widest = *kernels;
+    const struct soft_kernels **kernels = &stand.renderer->by_soft->kernels, *widest = *kernels;
     struct frame *wide = stand_draw(&stand, view);
     *kernels = other;
     struct frame *same = stand_draw(&stand, view); /* the second of its view: drawn, and kept to be coloured again */
@@ -309,7 +308,7 @@ static void compare_kernels(const struct view *view, const struct soft_kernels *
 /* The loops for wider registers leave the same bits as those for any machine. */
 static void test_kernels(void **state)
 {
-    const struct soft_kernels *widest = stand.renderer->by_soft->soft->kernels;
+    const struct soft_kernels *widest = stand.renderer->by_soft->kernels;
     static const int widths_px[] = { 640, 333, 37, 322, 330 }; /* the last tile is 16 or 8 columns wide, and a row high */
     struct view view;
     (void)state;

@@ -26,7 +26,7 @@ static void keep_closed_faces(struct soft_tile *tile)
 
 void soft_count_part(struct soft_tile *tile, const struct soft_found *found, const struct soft_item *item)
 {
-    const struct soft_kernels *kernels = tile->soft->kernels;
+    const struct soft_kernels *kernels = tile->raster->soft->kernels;
     const struct soft_part *part = tile->part;
     if (!tile->mesh->cut || !bounds_bodies(found->parts, part))
         return;
@@ -43,11 +43,11 @@ void soft_count_part(struct soft_tile *tile, const struct soft_found *found, con
     kernels->count_faces(tile);
 }
 
-float soft_entry_depth(const struct soft *soft, float x, float y)
+float raster_entry_depth(const struct raster *raster, float x, float y)
 {
     float top = 1, bottom = 0;
-    for (int i = 0; i < soft->cut_count; i++) {
-        const float *plane = soft->cuts[i];
+    for (int i = 0; i < raster->cut_count; i++) {
+        const float *plane = raster->cuts[i];
         float here = plane[0] * x + plane[1] * y + plane[3];
         if (plane[2] > 0)
             bottom = fmaxf(bottom, -here / plane[2]);
@@ -61,14 +61,14 @@ float soft_entry_depth(const struct soft *soft, float x, float y)
 
 void soft_cap_tile(struct soft_tile *tile)
 {
-    const struct soft *soft = tile->soft;
+    const struct raster *raster = tile->raster;
     for (int row = tile->rect.top; row <= tile->rect.bottom; row++) {
-        size_t start = (size_t)row * (size_t)soft->pitch_px;
+        size_t start = (size_t)row * (size_t)raster->pitch_px;
         for (int column = tile->rect.left; column <= tile->rect.right; column++) {
-            uint32_t *mark = &soft->marks[start + (size_t)column];
-            float depth = (int32_t)*mark > 0 ? soft_entry_depth(soft, (float)column + 0.5f, (float)row + 0.5f) : 0;
+            uint32_t *mark = &raster->marks[start + (size_t)column];
+            float depth = (int32_t)*mark > 0 ? raster_entry_depth(raster, (float)column + 0.5f, (float)row + 0.5f) : 0;
             *mark = depth > 0 ? MARK_CAP : 0;
-            soft->depth[start + (size_t)column] = depth;
+            raster->depth[start + (size_t)column] = depth;
         }
     }
 }

@@ -14,14 +14,14 @@ struct near_corner near_corner_of(const struct soft_mesh *mesh, uint32_t vertex,
 }
 
 /* Over 0 on the side that stays. plane: 0 the near one, then left, right, top, bottom of the band, then those that cut. */
-static float inside(const struct soft *soft, const struct near_corner *corner, int plane)
+static float inside(const struct raster *raster, const struct near_corner *corner, int plane)
 {
     const float *at = corner->at;
     if (plane >= NEAR_PLANES) {
-        const float *cut = soft->cuts[plane - NEAR_PLANES];
+        const float *cut = raster->cuts[plane - NEAR_PLANES];
         return cut[0] * at[0] + cut[1] * at[1] + cut[2] * at[2] + cut[3] * at[3];
     }
-    float width = (float)soft->width_px * at[3], height = (float)soft->height_px * at[3];
+    float width = (float)raster->width_px * at[3], height = (float)raster->height_px * at[3];
     switch (plane) {
     case 0: return at[3] - at[2];
     case 1: return at[0] + width;
@@ -48,12 +48,12 @@ static struct near_corner between(const struct near_corner *in, const struct nea
     return corner;
 }
 
-static int cut_by(const struct soft *soft, int plane, const struct near_corner *at, int count, struct near_corner *out)
+static int cut_by(const struct raster *raster, int plane, const struct near_corner *at, int count, struct near_corner *out)
 {
     int kept = 0;
     for (int i = 0; i < count; i++) {
         const struct near_corner *here = &at[i], *next = &at[(i + 1) % count];
-        float from = inside(soft, here, plane), to = inside(soft, next, plane);
+        float from = inside(raster, here, plane), to = inside(raster, next, plane);
         if (from >= 0)
             out[kept++] = *here;
         if (from >= 0 && to < 0)
@@ -64,13 +64,13 @@ static int cut_by(const struct soft *soft, int plane, const struct near_corner *
     return kept;
 }
 
-int near_cut(const struct soft *soft, int cuts, const struct near_corner at[3], struct near_corner out[NEAR_CORNERS])
+int near_cut(const struct raster *raster, int cuts, const struct near_corner at[3], struct near_corner out[NEAR_CORNERS])
 {
     struct near_corner before[NEAR_CORNERS];
-    int count = cut_by(soft, 0, at, 3, out);
+    int count = cut_by(raster, 0, at, 3, out);
     for (int plane = 1; plane < NEAR_PLANES + cuts; plane++) {
         memcpy(before, out, (size_t)count * sizeof(*before));
-        count = cut_by(soft, plane, before, count, out);
+        count = cut_by(raster, plane, before, count, out);
     }
     return count >= 3 ? count : 0;
 }

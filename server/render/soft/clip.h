@@ -19,7 +19,7 @@ struct near_corner { /* in clip space, x and y in pixels; a and b as a vertex ca
 struct near_corner near_corner_of(const struct soft_mesh *mesh, uint32_t vertex, float a, float b, uint32_t flags);
 /* What lies beyond the near plane and in the band, and is left by the first `cuts` planes that cut. How many corners it has, in order:
    0, or 3 and more. */
-int near_cut(const struct soft *soft, int cuts, const struct near_corner at[3], struct near_corner out[NEAR_CORNERS]);
+int near_cut(const struct raster *raster, int cuts, const struct near_corner at[3], struct near_corner out[NEAR_CORNERS]);
 
 static inline struct near_patterns near_patterns_of(uint32_t flags)
 {

@@ -35,7 +35,7 @@ static int cut(struct soft_tile *tile, const int numbers[3], int out[NEAR_CORNER
         int n = numbers[i];
         at[i] = near_corner_of(tile->mesh, vertices[n], corners->a[n], corners->b[n], corners->flags[n]);
     }
-    int count = near_cut(tile->soft, tile->mesh->cut ? tile->cuts : 0, at, left);
+    int count = near_cut(tile->raster, tile->mesh->cut ? tile->cuts : 0, at, left);
     for (int i = 0; i < count; i++)
         out[i] = add_corner(corners, &left[i]);
     return count;
@@ -46,7 +46,7 @@ void soft_cut_corners(struct soft_tile *tile)
     struct soft_corners *corners = &tile->corners;
     for (int i = 0; i < tile->part->vertex_count; i++) {
         float at[4] = { corners->x[i], corners->y[i], corners->depth[i], 1 };
-        if (corners->inverse_w[i] > 0 && soft_is_cut_off(tile->soft, at, tile->cuts))
+        if (corners->inverse_w[i] > 0 && raster_is_cut_off(tile->raster, at, tile->cuts))
             corners->inverse_w[i] = 0;
     }
     corners->cut = true;

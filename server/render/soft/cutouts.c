@@ -21,7 +21,7 @@ bool soft_is_hole(const struct soft_cutout *cutout, float x, float y)
 void soft_add_fragment(const struct soft_tile *tile, int sample, const struct soft_face *face, int column, int row, float depth)
 {
     struct soft_fragments *fragments = tile->fragments;
-    if (column >= tile->soft->width_px)
+    if (column >= tile->raster->width_px)
         return;
     size_t pixel = (size_t)(row - tile->rect.top) * (size_t)tile->pitch_px + (size_t)column;
     mem_grow(&fragments->at, &fragments->capacity, fragments->count + 1, sizeof(*fragments->at));

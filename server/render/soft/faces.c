@@ -24,7 +24,7 @@ void soft_place_part(struct soft_tile *tile, const struct soft_mesh *mesh, const
     const float *places = soft_part_places(parts, part);
     const uint32_t *vertices = parts->vertices + part->first_vertex;
     lanes none = { 0 }, low = none + 1e30f, high = none;
-    float width = (float)tile->soft->width_px, height = (float)tile->soft->height_px;
+    float width = (float)tile->raster->width_px, height = (float)tile->raster->height_px;
     for (int i = 0; i < part->vertex_count; i += LANES) {
         fetch_carried(mesh, vertices + i);
         lanes x = *(const lanes *)(places + i), y = *(const lanes *)(places + rounded + i), z = *(const lanes *)(places + 2 * rounded + i);
@@ -53,11 +53,11 @@ void soft_place_part(struct soft_tile *tile, const struct soft_mesh *mesh, const
 }
 
 /* As colormap_column and colormap_row in shaders/field.glsl. numbers: of those that carry, up to whole lanes. */
-SOFT_INLINE void carry_field(const struct soft *soft, const struct soft_mesh *mesh, const uint32_t *vertices, const uint8_t *numbers,
+SOFT_INLINE void carry_field(const struct raster *raster, const struct soft_mesh *mesh, const uint32_t *vertices, const uint8_t *numbers,
                              int count, struct soft_corners *corners)
 {
     const float slack = 1e-5f, columns = COLORMAP_PLACES / (1 + 2 * slack);
-    bool log = soft->block.scale[2] > 0.5f;
+    bool log = raster->block.scale[2] > 0.5f;
     uint32_t all = 0;
     for (int i = 0; i < count; i += LANES) {
         lanes value;
@@ -71,9 +71,9 @@ SOFT_INLINE void carry_field(const struct soft *soft, const struct soft_mesh *me
             corners->flags[number] = flags;
             all |= flags;
         }
-        lanes place = (value - soft->block.scale[0]) * soft->block.scale[1];
+        lanes place = (value - raster->block.scale[0]) * raster->block.scale[1];
         lanes a = log ? value : lanes_clamp(place * columns + (1 + slack * columns), -FARTHEST, FARTHEST);
-        lanes b = __builtin_convertvector((lanes_int)light, lanes) * (1 / 255.0f) * soft->block.shade[0] + soft->block.shade[1];
+        lanes b = __builtin_convertvector((lanes_int)light, lanes) * (1 / 255.0f) * raster->block.shade[0] + raster->block.shade[1];
         for (int l = 0; l < LANES; l++) {
             corners->a[numbers[i + l]] = a[l];
             corners->b[numbers[i + l]] = b[l];
@@ -82,13 +82,13 @@ SOFT_INLINE void carry_field(const struct soft *soft, const struct soft_mesh *me
     corners->all_flags = all & SOFT_PATTERNS;
 }
 
-SOFT_INLINE void carry_nothing(const struct soft *soft, const struct soft_mesh *mesh, const uint32_t *vertices, const uint8_t *numbers,
+SOFT_INLINE void carry_nothing(const struct raster *raster, const struct soft_mesh *mesh, const uint32_t *vertices, const uint8_t *numbers,
                                int count, struct soft_corners *corners)
 {
     for (int i = 0; i < count; i++) {
         int n = numbers[i];
         corners->a[n] = 0;
-        corners->b[n] = (float)mesh->baked[vertices[n]][0] * (1 / 255.0f) * soft->block.shade[0] + soft->block.shade[1];
+        corners->b[n] = (float)mesh->baked[vertices[n]][0] * (1 / 255.0f) * raster->block.shade[0] + raster->block.shade[1];
         corners->flags[n] = SOFT_NOTHING_KNOWN;
     }
     corners->all_flags = SOFT_NO_DATA;
@@ -136,9 +136,9 @@ void soft_carry_part(struct soft_tile *tile, const struct soft_mesh *mesh, const
     uint8_t numbers[PART_VERTICES + LANES];
     int count = tile->corners.cut ? list_all(part, numbers) : list_used(tile, numbers);
     if (mesh->scalars)
-        carry_field(tile->soft, mesh, vertices, numbers, count, &tile->corners);
+        carry_field(tile->raster, mesh, vertices, numbers, count, &tile->corners);
     else if (mesh->has_field)
-        carry_nothing(tile->soft, mesh, vertices, numbers, count, &tile->corners);
+        carry_nothing(tile->raster, mesh, vertices, numbers, count, &tile->corners);
     else
         carry_context(mesh, vertices, numbers, count, &tile->corners);
 }

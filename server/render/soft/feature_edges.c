@@ -64,18 +64,18 @@ SOFT_INLINE lanes edge(const struct view_of_depth *view, int x, int y, lanes her
 
 SOFT_KERNEL void refined_ink_band(const struct refined *refined, int number)
 {
-    const struct soft *soft = refined->soft;
-    struct view_of_depth view = { soft->depth, soft->width_px, soft->height_px, soft->pitch_px, soft->block.back[3] };
-    int end = (number + 1) * REFINED_ROWS < soft->height_px ? (number + 1) * REFINED_ROWS : soft->height_px;
+    const struct raster *raster = &refined->raster;
+    struct view_of_depth view = { raster->depth, raster->width_px, raster->height_px, raster->pitch_px, raster->block.back[3] };
+    int end = (number + 1) * REFINED_ROWS < raster->height_px ? (number + 1) * REFINED_ROWS : raster->height_px;
     for (int y = number * REFINED_ROWS; y < end; y++)
-        for (int x = 0; x < soft->width_px; x += LANES) {
+        for (int x = 0; x < raster->width_px; x += LANES) {
             lanes here = at(&view, x, y);
             lanes most = high(high(edge(&view, x, y, here, 1, 0), edge(&view, x, y, here, -1, 0)),
                               high(edge(&view, x, y, here, 0, 1), edge(&view, x, y, here, 0, -1)));
-            uint8_t *ink = refined->buffer->ink + (size_t)y * (size_t)soft->width_px + (size_t)x;
+            uint8_t *ink = refined->buffer->ink + (size_t)y * (size_t)raster->width_px + (size_t)x;
             if (!lanes_any(most > 0.0f))
                 continue;
-            for (int i = 0; i < LANES && x + i < soft->width_px; i++)
+            for (int i = 0; i < LANES && x + i < raster->width_px; i++)
                 ink[i] = (uint8_t)(most[i] * VISIBILITY_INK + 0.5f);
         }
 }

@@ -21,6 +21,7 @@ void soft_free_light(const struct soft *soft, struct soft_light *light)
     mem_free(light->baked);
     mem_free(light->sun_map);
     mem_free(light->ground);
+    mem_free(light->open);
     *light = (struct soft_light){ 0 };
 }
 
@@ -81,11 +82,14 @@ static bool read_ground(const struct soft *soft, struct soft_light *light, GLuin
     uint8_t(*texels)[2] = mem_try_array(side * side, sizeof(*texels)), *factors = mem_try_array(side * side, 1);
     light->ground_px = size;
     light->ground = mem_try_array(side * side, sizeof(*light->ground));
-    bool good = texels && factors && light->ground;
+    light->open = mem_try_array(side * side, 1);
+    bool good = texels && factors && light->ground && light->open;
     if (good) {
         glGetTextureImage(ground, 0, GL_RG, GL_UNSIGNED_BYTE, (GLsizei)(side * side * 2), texels);
-        for (size_t i = 0; i < side * side; i++)
+        for (size_t i = 0; i < side * side; i++) {
+            light->open[i] = texels[i][1];
             factors[i] = ground_factor(texels[i], ((double)(i % side) + 0.5) / (double)side, ((double)(i / side) + 0.5) / (double)side);
+        }
         for (size_t i = 0; i < side * side; i++) {
             size_t right = i % side + 1 < side ? 1 : 0, below = i / side + 1 < side ? side : 0;
             light->ground[i] = factors[i] | (uint32_t)factors[i + right] << 8 | (uint32_t)factors[i + below] << 16 |

@@ -9,5 +9,5 @@ const struct soft_kernels soft_kernels_of_set = {
     .raster_faces = soft_raster_faces,
     .count_faces = soft_count_faces,
     .look_again = soft_look_again,
-    .color = soft_color,
+    .color = raster_color,
 };

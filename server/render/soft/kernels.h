@@ -18,7 +18,7 @@ struct soft_kernels {
     /* How far these blocks reach now. */
     void (*look_again)(struct soft_tile *tile, const struct soft_rect *blocks);
     /* From marks; begins at a whole SOFT_STRETCH_MOST. */
-    void (*color)(const struct soft *soft, const struct soft_rect *rect);
+    void (*color)(const struct raster *raster, const struct soft_rect *rect);
 };
 extern const struct soft_kernels soft_kernels_plain, soft_kernels_wide, soft_kernels_widest; /* but for plain: on x86 only */
 
@@ -34,13 +34,13 @@ extern const struct soft_kernels soft_kernels_plain, soft_kernels_wide, soft_ker
 #define soft_raster_faces SOFT_IN_SET(soft_raster_faces, SOFT_SET)
 #define soft_count_faces SOFT_IN_SET(soft_count_faces, SOFT_SET)
 #define soft_look_again SOFT_IN_SET(soft_look_again, SOFT_SET)
-#define soft_color SOFT_IN_SET(soft_color, SOFT_SET)
+#define raster_color SOFT_IN_SET(raster_color, SOFT_SET)
 void soft_place_part(struct soft_tile *tile, const struct soft_mesh *mesh, const struct soft_parts *parts, const struct soft_part *part);
 void soft_carry_part(struct soft_tile *tile, const struct soft_mesh *mesh, const struct soft_parts *parts, const struct soft_part *part);
 void soft_find_faces(struct soft_tile *tile, const struct soft_mesh *mesh, const struct soft_found *found, const struct soft_part *part);
 void soft_raster_faces(const struct soft_tile *tile, uint32_t mark);
 void soft_count_faces(const struct soft_tile *tile);
 void soft_look_again(struct soft_tile *tile, const struct soft_rect *blocks);
-void soft_color(const struct soft *soft, const struct soft_rect *rect);
+void raster_color(const struct raster *raster, const struct soft_rect *rect);
 
 #endif

@@ -15,53 +15,53 @@ static void copy_columns(const double from[16], float to[4][4])
 }
 
 /* Clip space from pixels and depth, for w = 1. */
-static void clip_from_pixel(const struct soft *soft, double out[16])
+static void clip_from_pixel(const struct raster *raster, double out[16])
 {
     matrix_identity(out);
-    out[0] = 2.0 / soft->width_px;
-    out[5] = -2.0 / soft->height_px;
+    out[0] = 2.0 / raster->width_px;
+    out[5] = -2.0 / raster->height_px;
     out[12] = -1;
     out[13] = 1;
 }
 
-static void aim_sun(struct soft *soft, const double clip[16])
+static void aim_sun(struct raster *raster, const double clip[16])
 {
-    const struct frame_context *context = soft->context;
+    const struct frame_context *context = raster->context;
     double plant_from_clip[16], out[16];
     matrix_invert(context->constants.clip_from_plant, plant_from_clip);
     matrix_multiply(context->light->texture_from_plant, plant_from_clip, out);
     matrix_multiply(out, clip, out);
     for (int c = 0; c < 4; c++)
         out[4 * c + 2] += frame_sun_slack(context) * out[4 * c + 3];
-    copy_columns(out, soft->sun_from_pixel);
+    copy_columns(out, raster->sun_from_pixel);
 }
 
 /* Where a pixel looks: near.xyz / near.w of shaders/sky.vert, whose w is the same everywhere. */
-static void aim_rays(struct soft *soft, const double clip[16])
+static void aim_rays(struct raster *raster, const double clip[16])
 {
     double eye_from_clip[16], out[16];
-    matrix_invert(soft->context->constants.clip_from_eye, eye_from_clip);
+    matrix_invert(raster->context->constants.clip_from_eye, eye_from_clip);
     matrix_multiply(eye_from_clip, clip, out);
     double w = out[11] + out[15]; /* at depth 1 */
-    if (soft->context->constants.pixel_per_metre > 0) {
-        memset(soft->ray_from_pixel, 0, sizeof(soft->ray_from_pixel));
+    if (raster->context->constants.pixel_per_metre > 0) {
+        memset(raster->ray_from_pixel, 0, sizeof(raster->ray_from_pixel));
         for (int r = 0; r < 3; r++)
-            soft->ray_from_pixel[2][r] = (float)-soft->context->constants.back[r];
+            raster->ray_from_pixel[2][r] = (float)-raster->context->constants.back[r];
         return;
     }
     for (int r = 0; r < 3; r++) {
-        soft->ray_from_pixel[0][r] = (float)(out[r] / w);
-        soft->ray_from_pixel[1][r] = (float)(out[4 + r] / w);
-        soft->ray_from_pixel[2][r] = (float)((out[8 + r] + out[12 + r]) / w);
+        raster->ray_from_pixel[0][r] = (float)(out[r] / w);
+        raster->ray_from_pixel[1][r] = (float)(out[4 + r] / w);
+        raster->ray_from_pixel[2][r] = (float)((out[8 + r] + out[12 + r]) / w);
     }
 }
 
 /* Over n pixels a straight line errs from the sine of a ray's height by at most 0.15 n^2 / f^2, f being the eye's distance from the picture
    in pixels: the direction of a ray turns by 1 / f at most from pixel to pixel, and its second difference is no more than 1.2 / f^2. */
-static void choose_stretch(struct soft *soft)
+static void choose_stretch(struct raster *raster)
 {
     static const double most = 1; /* columns of the backdrop: half a level at the horizon, where it changes most */
-    const float(*m)[3] = soft->ray_from_pixel;
+    const float(*m)[3] = raster->ray_from_pixel;
     double step2 = 0, area2 = 0, volume = 0;
     for (int r = 0; r < 3; r++) {
         int a = (r + 1) % 3, b = (r + 2) % 3;
@@ -74,21 +74,21 @@ static void choose_stretch(struct soft *soft)
     int n = SOFT_STRETCH_MOST;
     while (n >= SOFT_STRETCH_LEAST && !(0.15 * n * n * turn2 * SKY_BACKDROPS / 2 <= most))
         n /= 2;
-    soft->stretch_px = n >= SOFT_STRETCH_LEAST ? n : 1;
+    raster->stretch_px = n >= SOFT_STRETCH_LEAST ? n : 1;
 }
 
 /* The ground is flat: its coordinates and the picture's map to each other by 3x3 matrices. */
-static void aim_ground(struct soft *soft, const struct light *light)
+static void aim_ground(struct raster *raster, const struct light *light)
 {
     double clip[16];
-    float(*to)[3] = soft->ground_from_pixel;
-    soft->has_ground = sky_sees_ground(soft->context, light);
-    matrix_multiply(soft->context->constants.clip_from_plant, light->plant_from_ground, clip);
+    float(*to)[3] = raster->ground_from_pixel;
+    raster->has_ground = sky_sees_ground(raster->context, light);
+    matrix_multiply(raster->context->constants.clip_from_plant, light->plant_from_ground, clip);
     double h[3][3]; /* rows: x w, y w in pixels, w; columns: u, v, 1 */
     for (int c = 0; c < 3; c++) {
         const double *column = &clip[c == 2 ? 12 : 4 * c];
-        h[0][c] = 0.5 * soft->width_px * (column[3] + column[0]);
-        h[1][c] = 0.5 * soft->height_px * (column[3] - column[1]);
+        h[0][c] = 0.5 * raster->width_px * (column[3] + column[0]);
+        h[1][c] = 0.5 * raster->height_px * (column[3] - column[1]);
         h[2][c] = column[3];
     }
     double determinant = 0;
@@ -107,45 +107,46 @@ static void aim_ground(struct soft *soft, const struct light *light)
         to[i / 3][i % 3] = (float)((double)to[i / 3][i % 3] * sign / size);
 }
 
-void soft_aim_cuts(struct soft *soft)
+void raster_aim_cuts(struct raster *raster)
 {
-    float half[2] = { 0.5f * (float)soft->width_px, 0.5f * (float)soft->height_px };
-    int count = soft->context->view->visibility.clip.plane_count;
-    soft->cut_count = 0;
+    float half[2] = { 0.5f * (float)raster->width_px, 0.5f * (float)raster->height_px };
+    int count = raster->context->view->visibility.clip.plane_count;
+    raster->cut_count = 0;
     for (int leave = 0; leave < 2; leave++) {
         for (int i = 0; i < count; i++) {
-            const float *plane = soft->block.clip[i];
-            float *out = soft->cuts[soft->cut_count];
+            const float *plane = raster->block.clip[i];
+            float *out = raster->cuts[raster->cut_count];
             if ((plane[2] < 0) == leave)
                 continue;
             out[0] = plane[0] / half[0];
             out[1] = -plane[1] / half[1];
             out[2] = plane[2];
-            out[3] = plane[3] - plane[0] + plane[1] + out[0] * soft->shift_px[0] + out[1] * soft->shift_px[1];
-            soft->cut_count++;
+            out[3] = plane[3] - plane[0] + plane[1] + out[0] * raster->shift_px[0] + out[1] * raster->shift_px[1];
+            raster->cut_count++;
         }
         if (!leave)
-            soft->entry_count = soft->cut_count;
+            raster->entry_count = raster->cut_count;
     }
 }
 
-bool soft_is_cut_off(const struct soft *soft, const float at[4], int planes)
+bool raster_is_cut_off(const struct raster *raster, const float at[4], int planes)
 {
     for (int i = 0; i < planes; i++) {
-        const float *plane = soft->cuts[i];
+        const float *plane = raster->cuts[i];
         if (plane[0] * at[0] + plane[1] * at[1] + plane[2] * at[2] + plane[3] * at[3] < 0)
             return true;
     }
     return false;
 }
 
-bool soft_cuts_box(const struct soft *soft, const struct soft_mesh *mesh, int plane, const float low[3], const float high[3], bool *cut)
+bool raster_cuts_box(const struct raster *raster, const struct soft_mesh *mesh, int plane, const float low[3], const float high[3],
+                     bool *cut)
 {
     float most = 0, least = 0;
     for (int c = 0; c < 4; c++) {
         float by = 0;
         for (int r = 0; r < 4; r++)
-            by += soft->cuts[plane][r] * mesh->place[c][r];
+            by += raster->cuts[plane][r] * mesh->place[c][r];
         most += by * (c == 3 ? 1 : by > 0 ? high[c] : low[c]);
         least += by * (c == 3 ? 1 : by > 0 ? low[c] : high[c]);
     }
@@ -153,12 +154,12 @@ bool soft_cuts_box(const struct soft *soft, const struct soft_mesh *mesh, int pl
     return most < 0;
 }
 
-void soft_aim(struct soft *soft, const struct light *light)
+void raster_aim(struct raster *raster, const struct light *light)
 {
     double clip[16];
-    clip_from_pixel(soft, clip);
-    aim_sun(soft, clip);
-    aim_rays(soft, clip);
-    choose_stretch(soft);
-    aim_ground(soft, light);
+    clip_from_pixel(raster, clip);
+    aim_sun(raster, clip);
+    aim_rays(raster, clip);
+    choose_stretch(raster);
+    aim_ground(raster, light);
 }

@@ -53,39 +53,39 @@ SOFT_INLINE lanes sun_tap(const struct soft_light *light, lanes s, lanes t, lane
 }
 
 /* Heights over the horizon, as columns of the backdrop. They bend so little that they are worked out at the ends of stretches only: of
-   soft->stretch_px, as long as the picture lets them be. */
+   raster->stretch_px, as long as the picture lets them be. */
 struct heights {
     float first, step; /* at the middle of the first pixel; from pixel to pixel */
 };
 
-static float height_at(const struct soft *soft, float x, float y)
+static float height_at(const struct raster *raster, float x, float y)
 {
-    const float(*m)[3] = soft->ray_from_pixel;
+    const float(*m)[3] = raster->ray_from_pixel;
     float up = 0, square = 0;
     for (int r = 0; r < 3; r++) {
         float ray = x * m[0][r] + (y * m[1][r] + m[2][r]);
-        up += ray * (float)soft->gpu_scene->up[r];
+        up += ray * (float)raster->soft->gpu_scene->up[r];
         square += ray * ray;
     }
     return up / sqrtf(square) * 1023.5f + 1024.0f;
 }
 
 /* Of the stretch that begins there. */
-static inline struct heights heights_from(const struct soft *soft, int column, int row)
+static inline struct heights heights_from(const struct raster *raster, int column, int row)
 {
-    float y = (float)row + 0.5f, x = (float)column + 0.5f, first = height_at(soft, x, y);
-    return (struct heights){ first, (height_at(soft, x + (float)soft->stretch_px, y) - first) / (float)soft->stretch_px };
+    float y = (float)row + 0.5f, x = (float)column + 0.5f, first = height_at(raster, x, y);
+    return (struct heights){ first, (height_at(raster, x + (float)raster->stretch_px, y) - first) / (float)raster->stretch_px };
 }
 
-SOFT_INLINE lanes_int backdrop_at(const struct soft *soft, const struct heights *heights, int column, int row)
+SOFT_INLINE lanes_int backdrop_at(const struct raster *raster, const struct heights *heights, int column, int row)
 {
     lanes x = LANES_IOTA + ((float)column + 0.5f);
-    lanes height = (LANES_IOTA + (float)(column & (soft->stretch_px - 1))) * heights->step + heights->first;
-    for (int i = 0; i < LANES && soft->stretch_px == 1; i++)
-        height[i] = height_at(soft, (float)(column + i) + 0.5f, (float)row + 0.5f);
+    lanes height = (LANES_IOTA + (float)(column & (raster->stretch_px - 1))) * heights->step + heights->first;
+    for (int i = 0; i < LANES && raster->stretch_px == 1; i++)
+        height[i] = height_at(raster, (float)(column + i) + 0.5f, (float)row + 0.5f);
     lanes_int at = lanes_whole(lanes_clamp(height, 0, SKY_BACKDROPS - 1));
-    lanes_int tile = (soft->context->view->dark ? SKY_ROUNDINGS : 0) + (row & 3) * 4 + (lanes_whole(x) & 3);
-    return gather(soft->backdrops, tile * SKY_BACKDROPS + at);
+    lanes_int tile = (raster->context->view->dark ? SKY_ROUNDINGS : 0) + (row & 3) * 4 + (lanes_whole(x) & 3);
+    return gather(raster->soft->backdrops, tile * SKY_BACKDROPS + at);
 }
 
 /* factor: 256 leaves a colour as it is. */

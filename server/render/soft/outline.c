@@ -24,54 +24,54 @@ static void brush_init(struct brush *brush, double width_px)
         }
 }
 
-static void stamp(const struct soft *soft, uint8_t *rim, const struct brush *brush, int x, int y)
+static void stamp(const struct raster *raster, uint8_t *rim, const struct brush *brush, int x, int y)
 {
     int reach = brush->reach_px;
-    int left = x - reach > 0 ? x - reach : 0, right = x + reach < soft->width_px ? x + reach : soft->width_px - 1;
-    int top = y - reach > 0 ? y - reach : 0, bottom = y + reach < soft->height_px ? y + reach : soft->height_px - 1;
+    int left = x - reach > 0 ? x - reach : 0, right = x + reach < raster->width_px ? x + reach : raster->width_px - 1;
+    int top = y - reach > 0 ? y - reach : 0, bottom = y + reach < raster->height_px ? y + reach : raster->height_px - 1;
     for (int v = top; v <= bottom; v++)
         for (int u = left; u <= right; u++) {
-            uint8_t *at = &rim[(size_t)v * (size_t)soft->pitch_px + (size_t)u];
+            uint8_t *at = &rim[(size_t)v * (size_t)raster->pitch_px + (size_t)u];
             uint8_t ink = brush->rim[v - y + MOST_REACH_PX][u - x + MOST_REACH_PX];
             *at = ink > *at ? ink : *at;
         }
 }
 
 /* Covered, with a neighbour that is not. */
-static bool is_rim(const struct soft *soft, int x, int y)
+static bool is_rim(const struct raster *raster, int x, int y)
 {
-    const uint32_t *mark = soft->marks + (size_t)y * (size_t)soft->pitch_px + (size_t)x;
-    return *mark && ((x > 0 && !mark[-1]) || (x + 1 < soft->width_px && !mark[1]) || (y > 0 && !mark[-soft->pitch_px]) ||
-                     (y + 1 < soft->height_px && !mark[soft->pitch_px]));
+    const uint32_t *mark = raster->marks + (size_t)y * (size_t)raster->pitch_px + (size_t)x;
+    return *mark && ((x > 0 && !mark[-1]) || (x + 1 < raster->width_px && !mark[1]) || (y > 0 && !mark[-raster->pitch_px]) ||
+                     (y + 1 < raster->height_px && !mark[raster->pitch_px]));
 }
 
-static void paint(const struct soft *soft, const uint8_t *rim)
+static void paint(const struct raster *raster, const uint8_t *rim)
 {
-    for (int y = 0; y < soft->height_px; y++) {
-        size_t row = (size_t)y * (size_t)soft->pitch_px;
-        uint8_t *out = soft->out + (size_t)y * soft->out_stride_bytes;
-        for (int x = 0; x < soft->width_px; x++) {
-            uint8_t ink = soft->marks[row + (size_t)x] ? 0 : rim[row + (size_t)x];
+    for (int y = 0; y < raster->height_px; y++) {
+        size_t row = (size_t)y * (size_t)raster->pitch_px;
+        uint8_t *out = raster->out + (size_t)y * raster->out_stride_bytes;
+        for (int x = 0; x < raster->width_px; x++) {
+            uint8_t ink = raster->marks[row + (size_t)x] ? 0 : rim[row + (size_t)x];
             for (int c = 0; c < 3 && ink; c++)
                 out[4 * x + c] = ink == RIM_DARK ? dark_bgr[c] : (uint8_t)(out[4 * x + c] * 0.1 + 229.5 + 0.5);
         }
     }
 }
 
-const uint8_t *soft_rim(const struct soft *soft)
+const uint8_t *raster_rim(const struct raster *raster)
 {
     struct brush brush;
-    uint8_t *rim = (uint8_t *)soft->depth; /* which is done with */
-    brush_init(&brush, lines_outline_px(soft->context->view));
-    memset(rim, 0, (size_t)soft->pitch_px * (size_t)soft->height_px);
-    for (int y = 0; y < soft->height_px; y++)
-        for (int x = 0; x < soft->width_px; x++)
-            if (is_rim(soft, x, y))
-                stamp(soft, rim, &brush, x, y);
+    uint8_t *rim = (uint8_t *)raster->depth; /* which is done with */
+    brush_init(&brush, lines_outline_px(raster->context->view));
+    memset(rim, 0, (size_t)raster->pitch_px * (size_t)raster->height_px);
+    for (int y = 0; y < raster->height_px; y++)
+        for (int x = 0; x < raster->width_px; x++)
+            if (is_rim(raster, x, y))
+                stamp(raster, rim, &brush, x, y);
     return rim;
 }
 
-void soft_outline(const struct soft *soft)
+void raster_outline(const struct raster *raster)
 {
-    paint(soft, soft_rim(soft));
+    paint(raster, raster_rim(raster));
 }

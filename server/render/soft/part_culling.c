@@ -14,7 +14,7 @@
 #define BEFORE 2.0f       /* nearer than the near plane */
 
 /* Where a box may be in the picture. False: outside. */
-SOFT_INLINE bool project(const struct soft *soft, const struct soft_mesh *mesh, const float low[3], const float high[3],
+SOFT_INLINE bool project(const struct raster *raster, const struct soft_mesh *mesh, const float low[3], const float high[3],
                          struct soft_rect *rect, float *near)
 {
     const lanes_int right = { 0, -1, 0, -1, 0, -1, 0, -1 }, upper = { 0, 0, -1, -1, 0, 0, -1, -1 }, front = { 0, 0, 0, 0, -1, -1, -1, -1 };
@@ -23,7 +23,7 @@ SOFT_INLINE bool project(const struct soft *soft, const struct soft_mesh *mesh, 
     lanes z = lanes_choose(front, none + high[2], none + low[2]);
     for (int r = 0; r < 4; r++)
         at[r] = mesh->place[0][r] * x + mesh->place[1][r] * y + mesh->place[2][r] * z + mesh->place[3][r];
-    *rect = (struct soft_rect){ 0, 0, soft->width_px - 1, soft->height_px - 1 };
+    *rect = (struct soft_rect){ 0, 0, raster->width_px - 1, raster->height_px - 1 };
     *near = BEFORE;
     if (lanes_any((at[3] <= 0.0f) | (at[2] > at[3])))
         return lanes_any((at[3] > 0.0f) & (at[2] <= at[3])) != 0;
@@ -36,17 +36,17 @@ SOFT_INLINE bool project(const struct soft *soft, const struct soft_mesh *mesh, 
         bottom = py[i] > bottom ? py[i] : bottom;
         nearest = depth[i] > nearest ? depth[i] : nearest;
     }
-    const float slack = SLACK_PX + soft->reach_px;
+    const float slack = SLACK_PX + raster->reach_px;
     left += 0.5f - slack; /* whose middles lie within */
     top += 0.5f - slack;
     last += 0.5f + slack;
     bottom += 0.5f + slack;
-    if (last < 1 || bottom < 1 || left >= (float)soft->width_px || top >= (float)soft->height_px || nearest < 0)
+    if (last < 1 || bottom < 1 || left >= (float)raster->width_px || top >= (float)raster->height_px || nearest < 0)
         return false;
     rect->left = left > 0 ? (int)left : 0;
     rect->top = top > 0 ? (int)top : 0;
-    rect->right = last < (float)soft->width_px ? (int)last - 1 : rect->right;
-    rect->bottom = bottom < (float)soft->height_px ? (int)bottom - 1 : rect->bottom;
+    rect->right = last < (float)raster->width_px ? (int)last - 1 : rect->right;
+    rect->bottom = bottom < (float)raster->height_px ? (int)bottom - 1 : rect->bottom;
     *near = nearest * (1 + SLACK_DEPTH);
     return rect->left <= rect->right && rect->top <= rect->bottom;
 }
@@ -60,19 +60,19 @@ static void include(struct soft_rect *rect, const struct soft_rect *other)
 }
 
 /* Nothing of the part is left, nor does it bound what is. */
-static bool is_cut_away(const struct soft *soft, const struct soft_mesh *mesh, const struct asset_cluster *box, struct soft_item *item)
+static bool is_cut_away(const struct raster *raster, const struct soft_mesh *mesh, const struct asset_cluster *box, struct soft_item *item)
 {
     item->cut = item->beyond = false;
-    for (int p = 0; p < soft->cut_count && mesh->cut; p++) {
-        bool away = soft_cuts_box(soft, mesh, p, box->low_m, box->high_m, &item->cut);
-        if (away && (p < soft->entry_count || !soft->counts_bodies))
+    for (int p = 0; p < raster->cut_count && mesh->cut; p++) {
+        bool away = raster_cuts_box(raster, mesh, p, box->low_m, box->high_m, &item->cut);
+        if (away && (p < raster->entry_count || !raster->counts_bodies))
             return true;
         item->beyond |= away;
     }
     return false;
 }
 
-SOFT_KERNEL static void find_parts(const struct soft *soft, const struct soft_mesh *mesh, struct soft_found *found)
+SOFT_KERNEL static void find_parts(const struct raster *raster, const struct soft_mesh *mesh, struct soft_found *found)
 {
     found->count = 0;
     found->rect = (struct soft_rect){ INT16_MAX, INT16_MAX, -1, -1 };
@@ -81,9 +81,9 @@ SOFT_KERNEL static void find_parts(const struct soft *soft, const struct soft_me
         struct soft_item *item = &found->items[found->count];
         if (!part->double_sided && !found->both_sides && !mesh->mirrored && asset_cluster_turned_away(&part->cluster, found->eye_m))
             continue;
-        if (!project(soft, mesh, part->cluster.low_m, part->cluster.high_m, &item->rect, &item->near))
+        if (!project(raster, mesh, part->cluster.low_m, part->cluster.high_m, &item->rect, &item->near))
             continue;
-        if (is_cut_away(soft, mesh, &part->cluster, item))
+        if (is_cut_away(raster, mesh, &part->cluster, item))
             continue;
         item->part = p;
         include(&found->rect, &item->rect);
@@ -93,18 +93,18 @@ SOFT_KERNEL static void find_parts(const struct soft *soft, const struct soft_me
 
 static void find_meshes(void *arg, size_t begin, size_t end)
 {
-    struct soft *soft = arg;
+    struct raster *raster = arg;
     for (size_t m = begin; m < end; m++) {
-        struct soft_found *found = &soft->found[m];
+        struct soft_found *found = &raster->found[m];
         mem_grow(&found->items, &found->capacity, found->parts->part_count, sizeof(*found->items));
-        find_parts(soft, &soft->meshes[m], found);
+        find_parts(raster, &raster->meshes[m], found);
     }
 }
 
 /* NULL: out of memory. */
-static const struct soft_parts *parts_of(struct soft *soft, const struct model *model, const struct model_level *level)
+static const struct soft_parts *parts_of(struct raster *raster, const struct model *model, const struct model_level *level)
 {
-    struct soft_parts **of_model = &soft->keeper->parts[model - soft->gpu_scene->models];
+    struct soft_parts **of_model = &raster->soft->parts[model - raster->soft->gpu_scene->models];
     if (!*of_model)
         *of_model = mem_array(model->level_count, sizeof(**of_model));
     struct soft_parts *parts = &(*of_model)[level - model->levels];
@@ -116,27 +116,28 @@ static const struct soft_parts *parts_of(struct soft *soft, const struct model *
 }
 
 /* Whose side of a surface is seen. In an orthographic picture all rays are parallel: far enough away for floats not to tell. */
-static void find_eye(const struct soft *soft, double eye_m[3])
+static void find_eye(const struct raster *raster, double eye_m[3])
 {
-    const struct view_constants *constants = &soft->context->constants;
+    const struct view_constants *constants = &raster->context->constants;
     for (int c = 0; c < 3; c++)
-        eye_m[c] = constants->pixel_per_metre > 0 ? soft->gpu_scene->middle_m[c] + 1e6 * soft->gpu_scene->radius_m * constants->back[c]
-                                                  : constants->eye_m[c];
+        eye_m[c] = constants->pixel_per_metre > 0
+                       ? raster->soft->gpu_scene->middle_m[c] + 1e6 * raster->soft->gpu_scene->radius_m * constants->back[c]
+                       : constants->eye_m[c];
 }
 
-/* An asset, its vertices counted on from soft->vertex_count. */
-static void fill_mesh(struct soft *soft, struct soft_mesh *mesh, int index, const struct model_level *level)
+/* An asset, its vertices counted on from raster->vertex_count. */
+static void fill_mesh(struct raster *raster, struct soft_mesh *mesh, int index, const struct model_level *level)
 {
-    const struct frame_context *context = soft->context;
+    const struct frame_context *context = raster->context;
     const struct scene_asset *asset = &context->gpu_scene->scene->assets[index];
-    double clip[16], half[2] = { 0.5 * soft->width_px, 0.5 * soft->height_px };
+    double clip[16], half[2] = { 0.5 * raster->width_px, 0.5 * raster->height_px };
     *mesh = (struct soft_mesh){
         .asset = index,
         .file = &asset->file->view,
         .has_field = context->fields[index] != NULL,
         .scalars = context->fields[index] ? context->fields[index]->shown : NULL,
-        .baked = (const uint8_t(*)[4])soft->light->baked[index],
-        .first_vertex = (uint32_t)soft->vertex_count,
+        .baked = (const uint8_t(*)[4])raster->light->baked[index],
+        .first_vertex = (uint32_t)raster->vertex_count,
         .vertex_count = level->vertex_count,
         .mirrored = scene_asset_mirrored(asset),
         .cut = clip_touches(&context->view->visibility.clip, asset->bounds_min_m, asset->bounds_max_m),
@@ -146,91 +147,91 @@ static void fill_mesh(struct soft *soft, struct soft_mesh *mesh, int index, cons
     matrix_multiply(context->constants.clip_from_plant, asset->placement, clip);
     view_constants_bring_forward(&context->constants, asset, clip);
     for (int c = 0; c < 4; c++) {
-        mesh->place[c][0] = (float)(half[0] * (clip[4 * c + 3] + clip[4 * c]) - (double)soft->shift_px[0] * clip[4 * c + 3]);
-        mesh->place[c][1] = (float)(half[1] * (clip[4 * c + 3] - clip[4 * c + 1]) - (double)soft->shift_px[1] * clip[4 * c + 3]);
+        mesh->place[c][0] = (float)(half[0] * (clip[4 * c + 3] + clip[4 * c]) - (double)raster->shift_px[0] * clip[4 * c + 3]);
+        mesh->place[c][1] = (float)(half[1] * (clip[4 * c + 3] - clip[4 * c + 1]) - (double)raster->shift_px[1] * clip[4 * c + 3]);
         mesh->place[c][2] = (float)clip[4 * c + 2];
         mesh->place[c][3] = (float)clip[4 * c + 3];
     }
-    soft->vertex_count += level->vertex_count;
+    raster->vertex_count += level->vertex_count;
 }
 
-static bool add_asset(struct soft *soft, int asset, const struct model_level *level, bool both_sides)
+static bool add_asset(struct raster *raster, int asset, const struct model_level *level, bool both_sides)
 {
-    const struct model *model = soft->gpu_scene->of_asset[asset];
+    const struct model *model = raster->soft->gpu_scene->of_asset[asset];
     double file_from_plant[16], eye_m[3], eye[4];
-    mem_grow(&soft->meshes, &soft->mesh_capacity, soft->mesh_count + 1, sizeof(*soft->meshes));
-    mem_grow(&soft->found, &soft->found_capacity, soft->mesh_count + 1, sizeof(*soft->found));
-    const struct soft_mesh *mesh = &soft->meshes[soft->mesh_count];
-    fill_mesh(soft, &soft->meshes[soft->mesh_count], asset, level);
-    struct soft_found *found = &soft->found[soft->mesh_count++];
-    found->parts = parts_of(soft, model, level);
-    found->material = soft->material_of_model[model - soft->gpu_scene->models];
+    mem_grow(&raster->meshes, &raster->mesh_capacity, raster->mesh_count + 1, sizeof(*raster->meshes));
+    mem_grow(&raster->found, &raster->found_capacity, raster->mesh_count + 1, sizeof(*raster->found));
+    const struct soft_mesh *mesh = &raster->meshes[raster->mesh_count];
+    fill_mesh(raster, &raster->meshes[raster->mesh_count], asset, level);
+    struct soft_found *found = &raster->found[raster->mesh_count++];
+    found->parts = parts_of(raster, model, level);
+    found->material = raster->soft->material_of_model[model - raster->soft->gpu_scene->models];
     found->both_sides = both_sides || mesh->cut; /* the inner side of what is cut shows */
-    matrix_invert(soft->gpu_scene->scene->assets[asset].placement, file_from_plant);
-    find_eye(soft, eye_m);
+    matrix_invert(raster->soft->gpu_scene->scene->assets[asset].placement, file_from_plant);
+    find_eye(raster, eye_m);
     matrix_point(file_from_plant, eye_m, eye);
     for (int c = 0; c < 3; c++)
         found->eye_m[c] = (float)eye[c];
-    soft->blends |= found->parts && found->parts->blended && !mesh->has_field;
-    if (!found->parts || !mesh->cut || !soft->counts_bodies)
+    raster->blends |= found->parts && found->parts->blended && !mesh->has_field;
+    if (!found->parts || !mesh->cut || !raster->counts_bodies)
         return found->parts != NULL;
-    return soft_parts_close(&soft->keeper->parts[model - soft->gpu_scene->models][level - model->levels], mesh->file,
+    return soft_parts_close(&raster->soft->parts[model - raster->soft->gpu_scene->models][level - model->levels], mesh->file,
                             asset_closed(model->file, (uint32_t)(level - model->levels)), level->vertex_count);
 }
 
-static void start(struct soft *soft, bool counts_bodies)
+static void start(struct raster *raster, bool counts_bodies)
 {
-    soft->mesh_count = soft->vertex_count = 0;
-    soft->blends = false;
-    soft->counts_bodies = counts_bodies;
+    raster->mesh_count = raster->vertex_count = 0;
+    raster->blends = false;
+    raster->counts_bodies = counts_bodies;
 }
 
-bool soft_find(struct soft *soft, bool bodies)
+bool raster_find(struct raster *raster, bool bodies)
 {
-    const struct frame_context *context = soft->context;
+    const struct frame_context *context = raster->context;
     bool good = true;
-    start(soft, bodies && soft->cut_count > 0);
+    start(raster, bodies && raster->cut_count > 0);
     for (size_t i = 0; i < context->visible_count && good; i++)
-        good = add_asset(soft, context->visible[i], frame_level(context, context->visible[i]), false);
+        good = add_asset(raster, context->visible[i], frame_level(context, context->visible[i]), false);
     if (!good)
         return false;
-    workers_for(soft->workers, soft->mesh_count, 1, find_meshes, soft);
+    workers_for(raster->soft->workers, raster->mesh_count, 1, find_meshes, raster);
     uint32_t id = 0;
-    for (size_t m = 0; m < soft->mesh_count; m++) {
-        soft->found[m].first_id = id;
-        id += (uint32_t)soft->found[m].count * PART_TRIANGLES;
+    for (size_t m = 0; m < raster->mesh_count; m++) {
+        raster->found[m].first_id = id;
+        id += (uint32_t)raster->found[m].count * PART_TRIANGLES;
     }
     return true;
 }
 
-bool soft_find_only(struct soft *soft, int asset)
+bool raster_find_only(struct raster *raster, int asset)
 {
-    start(soft, false);
-    if (!add_asset(soft, asset, frame_level(soft->context, asset), true))
+    start(raster, false);
+    if (!add_asset(raster, asset, frame_level(raster->context, asset), true))
         return false;
-    find_meshes(soft, 0, 1);
+    find_meshes(raster, 0, 1);
     return true;
 }
 
-bool soft_find_ghosts(struct soft *soft)
+bool raster_find_ghosts(struct raster *raster)
 {
-    start(soft, false);
-    for (size_t i = 0; i < soft->gpu_scene->scene->asset_count; i++) {
-        if (!ghosts_shows(soft->context, i))
+    start(raster, false);
+    for (size_t i = 0; i < raster->soft->gpu_scene->scene->asset_count; i++) {
+        if (!ghosts_shows(raster->context, i))
             continue;
-        const struct model_level *level = gpu_scene_level(soft->gpu_scene, &soft->context->constants, (int)i, 1);
-        if (!add_asset(soft, (int)i, level, true))
+        const struct model_level *level = gpu_scene_level(raster->soft->gpu_scene, &raster->context->constants, (int)i, 1);
+        if (!add_asset(raster, (int)i, level, true))
             return false;
     }
-    workers_for(soft->workers, soft->mesh_count, 1, find_meshes, soft);
+    workers_for(raster->soft->workers, raster->mesh_count, 1, find_meshes, raster);
     return true;
 }
 
 /* The mesh that has this id; likely: looked at first. */
-static size_t mesh_of(const struct soft *soft, uint32_t id, size_t likely)
+static size_t mesh_of(const struct raster *raster, uint32_t id, size_t likely)
 {
-    const struct soft_found *found = soft->found;
-    size_t low = 0, high = soft->mesh_count;
+    const struct soft_found *found = raster->found;
+    size_t low = 0, high = raster->mesh_count;
     if (found[likely].first_id <= id && (likely + 1 == high || id < found[likely + 1].first_id))
         return likely;
     while (high - low > 1) {
@@ -243,11 +244,11 @@ static size_t mesh_of(const struct soft *soft, uint32_t id, size_t likely)
     return low;
 }
 
-void soft_find_triangle(const struct soft *soft, uint32_t id, struct soft_triangle *triangle)
+void raster_find_triangle(const struct raster *raster, uint32_t id, struct soft_triangle *triangle)
 {
     uint32_t number = id & ~ID_BACK;
-    size_t mesh = mesh_of(soft, number, triangle->mesh);
-    const struct soft_found *found = &soft->found[mesh];
+    size_t mesh = mesh_of(raster, number, triangle->mesh);
+    const struct soft_found *found = &raster->found[mesh];
     uint32_t local = number - found->first_id;
     const struct soft_part *part = &found->parts->parts[found->items[local / PART_TRIANGLES].part];
     triangle->id = id;

@@ -12,12 +12,12 @@ struct ink {
     bool log;
     float low, over;    /* logarithmic scales: place = (log2(value) - low) * over */
     float line_px;      /* width; 0: there are none */
-    const float *lines; /* as struct soft */
+    const float *lines; /* as struct raster */
 };
 
-SOFT_INLINE struct ink ink_of(const struct soft *soft)
+SOFT_INLINE struct ink ink_of(const struct raster *raster)
 {
-    const struct frame_uniforms *block = &soft->block;
+    const struct frame_uniforms *block = &raster->block;
     return (struct ink){
         .last_row = (int32_t)block->shade[2],
         .pattern_px = block->scale[3],
@@ -26,7 +26,7 @@ SOFT_INLINE struct ink ink_of(const struct soft *soft)
         .low = block->scale[0],
         .over = block->scale[1],
         .line_px = block->lines[0],
-        .lines = soft->lines,
+        .lines = raster->lines,
     };
 }
 

@@ -7,7 +7,7 @@
 #include "render/soft/tile.h"
 
 struct keeping {
-    const struct soft *soft;
+    const struct raster *raster;
     struct visibility_buffer *buffer;
 };
 
@@ -37,10 +37,10 @@ void soft_weights(const struct soft_mesh *mesh, const uint32_t vertices[3], doub
 
 static void find_spot(const struct keeping *keeping, struct visibility_band *band, uint32_t id, struct spot *spot)
 {
-    const struct soft *soft = keeping->soft;
+    const struct raster *raster = keeping->raster;
     struct soft_triangle triangle = { 0 };
-    soft_find_triangle(soft, id, &triangle);
-    const struct soft_mesh *mesh = &soft->meshes[triangle.mesh];
+    raster_find_triangle(raster, id, &triangle);
+    const struct soft_mesh *mesh = &raster->meshes[triangle.mesh];
     uint32_t of_picture[3];
     for (int i = 0; i < 3; i++)
         of_picture[i] = mesh->first_vertex + triangle.vertices[i];
@@ -69,7 +69,7 @@ static uint32_t weights_at(const struct spot *spot, double x, double y)
 static void keep_band(const struct keeping *keeping, int number)
 {
     enum { SPOTS = 256 };
-    const struct soft *soft = keeping->soft;
+    const struct raster *raster = keeping->raster;
     struct visibility_buffer *buffer = keeping->buffer;
     struct visibility_band *band = &buffer->bands[number];
     struct spot spots[SPOTS]; /* by id: neighbours in a row, and the rows above, show the same triangles */
@@ -77,10 +77,10 @@ static void keep_band(const struct keeping *keeping, int number)
         spots[i].id = UINT32_MAX;
     int end = (number + 1) * buffer->band_rows < buffer->height_px ? (number + 1) * buffer->band_rows : buffer->height_px;
     for (int y = number * buffer->band_rows; y < end; y++) {
-        size_t from = (size_t)y * (size_t)soft->pitch_px, to = (size_t)y * (size_t)buffer->width_px;
-        const uint32_t *out = (const uint32_t *)(const void *)(soft->out + (size_t)y * soft->out_stride_bytes);
+        size_t from = (size_t)y * (size_t)raster->pitch_px, to = (size_t)y * (size_t)buffer->width_px;
+        const uint32_t *out = (const uint32_t *)(const void *)(raster->out + (size_t)y * raster->out_stride_bytes);
         for (size_t x = 0; x < (size_t)buffer->width_px; x++) {
-            uint32_t mark = soft->marks[from + x], id = soft->ids[from + x];
+            uint32_t mark = raster->marks[from + x], id = raster->ids[from + x];
             if (!(mark & MARK_FIELD) || mark & MARK_CONTEXT) {
                 buffer->surfaces[to + x] = VISIBILITY_FIXED | (out[x] & 0xffffff);
                 continue;
@@ -101,30 +101,30 @@ static void keep_bands(void *arg, size_t begin, size_t end)
         keep_band(arg, (int)band);
 }
 
-struct visibility_buffer *soft_keep(struct soft *soft)
+struct visibility_buffer *raster_keep(struct raster *raster)
 {
-    struct visibility_buffer *buffer = visibility_buffer_create(soft->width_px, soft->height_px, BAND_ROWS);
+    struct visibility_buffer *buffer = visibility_buffer_create(raster->width_px, raster->height_px, BAND_ROWS);
     if (!buffer)
         return NULL;
-    for (size_t m = 0; m < soft->mesh_count; m++) {
-        const struct soft_mesh *mesh = &soft->meshes[m];
+    for (size_t m = 0; m < raster->mesh_count; m++) {
+        const struct soft_mesh *mesh = &raster->meshes[m];
         if (mesh->has_field)
             visibility_buffer_add_mesh(buffer, &(struct visibility_mesh){ .asset = mesh->asset,
                                                                           .first_vertex = mesh->first_vertex,
                                                                           .vertex_count = mesh->vertex_count });
     }
-    struct keeping keeping = { soft, buffer };
-    workers_for(soft->workers, (size_t)buffer->band_count, 1, keep_bands, &keeping);
+    struct keeping keeping = { raster, buffer };
+    workers_for(raster->soft->workers, (size_t)buffer->band_count, 1, keep_bands, &keeping);
     return buffer;
 }
 
-void soft_keep_rim(const struct soft *soft, struct visibility_buffer *buffer)
+void raster_keep_rim(const struct raster *raster, struct visibility_buffer *buffer)
 {
-    const uint8_t *rim = soft_rim(soft);
-    for (int y = 0; y < soft->height_px; y++) {
-        size_t from = (size_t)y * (size_t)soft->pitch_px, to = (size_t)y * (size_t)soft->width_px;
-        for (size_t x = 0; x < (size_t)soft->width_px; x++)
-            if (rim[from + x] && !soft->marks[from + x])
+    const uint8_t *rim = raster_rim(raster);
+    for (int y = 0; y < raster->height_px; y++) {
+        size_t from = (size_t)y * (size_t)raster->pitch_px, to = (size_t)y * (size_t)raster->width_px;
+        for (size_t x = 0; x < (size_t)raster->width_px; x++)
+            if (rim[from + x] && !raster->marks[from + x])
                 buffer->ink[to + x] = rim[from + x] == RIM_DARK ? VISIBILITY_RIM_DARK : VISIBILITY_RIM_LIGHT;
     }
 }
@@ -134,29 +134,27 @@ static void forget(void *buffer)
     visibility_buffer_destroy(&(struct visibility_buffer *){ buffer });
 }
 
-void soft_give(struct visibility_store *store, const struct frame_context *context, struct visibility_buffer *buffer,
-               const struct frame *frame)
+void soft_keep(struct soft *soft, const struct frame_context *context, struct visibility_buffer *buffer, const struct frame *frame)
 {
     buffer->markers = mem_array(frame->marker_count, sizeof(*buffer->markers));
     buffer->marker_count = frame->marker_count;
     if (frame->marker_count > 0)
         memcpy(buffer->markers, frame->markers, frame->marker_count * sizeof(*buffer->markers));
-    visibility_store_give(store, context->shape, buffer, visibility_buffer_bytes(buffer), forget);
+    visibility_store_give(&soft->kept[context->view->tier], context->shape, buffer, visibility_buffer_bytes(buffer), forget);
 }
 
-bool soft_resolve_again(struct soft *soft, struct visibility_store *store, const struct frame_context *context,
-                        const struct isoline_points *points, struct frame *frame)
+bool soft_resolve_again(struct soft *soft, const struct frame_context *context, const struct isoline_points *points, struct frame *frame)
 {
-    struct visibility_buffer *buffer = visibility_store_find(store, context->shape);
+    struct visibility_buffer *buffer = visibility_store_find(&soft->kept[context->view->tier], context->shape);
     struct frame_uniforms block;
-    if (!buffer || (context->colormap.lines && !buffer->lined) || (points && points->count > 0 && !buffer->depth))
+    if (!buffer || (context->colormap.lines && !buffer->lined) || (points->count > 0 && !buffer->depth))
         return false;
     frame_uniforms_fill(&block, context);
-    soft_take_colormap(soft, &context->colormap, context->view->look == LOOK_GLOSSY && !buffer->gloss);
+    const uint32_t *colormap = soft_colormap(soft, &context->colormap, context->view->look == LOOK_GLOSSY && !buffer->gloss);
     resolve_read(buffer, context, soft->workers);
-    resolve_colors(buffer, soft->colormap, &(struct resolve_lines){ block.lines[0], soft->lines }, block.scale[3], soft->workers, 0,
+    resolve_colors(buffer, colormap, &(struct resolve_lines){ block.lines[0], context->colormap.nearest }, block.scale[3], soft->workers, 0,
                    buffer->band_count, frame);
-    if (points && points->count > 0)
+    if (points->count > 0)
         isolines_find(context, points, buffer->depth, (size_t)buffer->width_px, frame);
     frame->markers = mem_array(buffer->marker_count, sizeof(*frame->markers));
     frame->marker_count = buffer->marker_count;

@@ -274,7 +274,7 @@ static uint32_t mark_of_back(const struct soft_tile *tile, const struct soft_fac
 
 void soft_raster_faces(const struct soft_tile *tile, uint32_t mark)
 {
-    struct ink ink = ink_of(tile->soft);
+    struct ink ink = ink_of(tile->raster);
     bool one_by_one = tile->material->cut_out || tile->draws == DRAW_BLENDED;
     const struct soft_face *waiting[LANES];
     int count = 0;
@@ -312,7 +312,7 @@ static void count_face(const struct soft_tile *tile, const struct soft_face *fac
     for (int e = 0; e < 3; e++)
         edge_init(&edges[e], &v[e], &v[(e + 1) % 3]);
     for (int row = face->top; row <= face->bottom; row++) {
-        uint32_t *counts = tile->soft->marks + (size_t)row * (size_t)tile->soft->pitch_px;
+        uint32_t *counts = tile->raster->marks + (size_t)row * (size_t)tile->raster->pitch_px;
         float sides[3];
         for (int e = 0; e < 3; e++)
             sides[e] = edge_row(&edges[e], (float)row + 0.5f);

@@ -4,10 +4,9 @@
 #define RENDER_SOFT_REFINED_IMPL_H
 #include "render/soft/soft_impl.h"
 #include "render/soft/lanes.h"
-#include "render/soft/refined.h"
+#include "render/light/environments.h"
 #include "render/soft/tile.h"
 #include "render/soft/tones.h"
-#include "render/soft/visibility_store.h"
 
 enum { REFINED_ROWS = 16, SAMPLES = VISIBILITY_MOST_PARTS };
 /* From a pixel's middle: a square turned so that edges of any slant take all steps. */
@@ -20,28 +19,8 @@ extern const float refined_samples[SAMPLES][2];
 enum { NORMAL_X, NORMAL_Y, NORMAL_Z, AMBIENT, OPEN, TINT }; /* of a vertex, in `lanes`: eight numbers */
 enum { BASE, METALLIC = 3, ROUGHNESS, EMISSIVE };           /* of a material, likewise */
 
-struct refined_light { /* what previews do not have of it */
-    uint64_t id;
-    uint8_t *open; /* of the ground, rows from the top */
-    int open_px;   /* of a side */
-};
-
-struct refiner {
-    struct workers *workers;
-    const struct gpu_scene *gpu_scene;
-    const struct sky *sky;
-    struct soft *soft; /* keeps the light */
-    const struct environments *environments;
-    lanes *materials;                  /* BASE ...; by number of the material */
-    struct refined_light light;
-    struct soft_tones tones;
-    struct refined *spare;
-    struct visibility_store kept; /* struct visibility_buffer */
-};
-
 struct refined {
-    struct refiner *refiner;
-    struct soft *soft; /* parts, depth */
+    struct raster raster;
     enum {
         REFINED_CAPS,
         REFINED_FIND,
@@ -80,7 +59,6 @@ struct shaded_items { /* per item of the field */
     struct visibility_gloss *gloss;
 };
 
-bool refined_read_light(struct refiner *refiner, const struct light_set *set);
 /* Which triangle is nearest at each sample of a band; rows of pitch_px. fragments: of what is blended before it. */
 void refined_raster_band(const struct refined *refined, int band, const struct soft_sample samples[SAMPLES],
                          struct soft_fragments *fragments);

@@ -8,7 +8,7 @@
 void refined_keep_place(const struct refined *refined, struct visibility_band *band, const struct item *item, float w1, float w2,
                         const struct shaded_items *out, size_t at)
 {
-    const struct soft_mesh *mesh = &refined->soft->meshes[item->triangle.mesh];
+    const struct soft_mesh *mesh = &refined->raster.meshes[item->triangle.mesh];
     const uint32_t *v = item->triangle.vertices, first = mesh->first_vertex;
     size_t before = band->triangle_count;
     out->triangles[at] = visibility_add_triangle(band, (uint32_t[3]){ first + v[0], first + v[1], first + v[2] });
@@ -23,7 +23,7 @@ void refined_keep_place(const struct refined *refined, struct visibility_band *b
 SOFT_KERNEL void refined_shade_field(const struct refined *refined, struct visibility_band *band, const struct item *items, size_t count,
                                      const struct shaded_items *out)
 {
-    const float *shade = refined->soft->block.shade;
+    const float *shade = refined->raster.block.shade;
     for (size_t first = 0; first < count; first += LANES) {
         struct spot spot;
         size_t some = count - first < LANES ? count - first : LANES;
@@ -51,8 +51,8 @@ SOFT_INLINE lanes margin(lanes at)
 
 SOFT_INLINE lanes open_at(const struct refined *refined, lanes u, lanes v)
 {
-    const uint8_t *open = refined->refiner->light.open;
-    int side = refined->soft->light->ground_px;
+    const uint8_t *open = refined->raster.light->open;
+    int side = refined->raster.light->ground_px;
     float last = (float)side - 1;
     lanes x = lanes_clamp(u * (float)side - 0.5f, 0, last), y = lanes_clamp(v * (float)side - 0.5f, 0, last), out;
     for (int i = 0; i < LANES; i++) {
@@ -68,7 +68,7 @@ SOFT_INLINE lanes open_at(const struct refined *refined, lanes u, lanes v)
 /* What shadow leaves of the ground's brightness, 0..256: shaders/ground.frag. */
 SOFT_INLINE lanes_int ground_at(const struct refined *refined, lanes x, float y)
 {
-    const float(*g)[3] = refined->soft->ground_from_pixel;
+    const float(*g)[3] = refined->raster.ground_from_pixel;
     const float(*m)[4] = refined->sun_from_ground;
     lanes u = x * g[0][0] + (y * g[0][1] + g[0][2]), v = x * g[1][0] + (y * g[1][1] + g[1][2]);
     lanes w = x * g[2][0] + (y * g[2][1] + g[2][2]);
@@ -80,24 +80,24 @@ SOFT_INLINE lanes_int ground_at(const struct refined *refined, lanes x, float y)
         return whole;
     for (int r = 0; r < 3; r++)
         place[r] = u * m[0][r] + v * m[1][r] + (m[3][r] + refined->ground_step[r]);
-    lanes sun = sun_visible(refined->soft->light, place[0], place[1], place[2]);
+    lanes sun = sun_visible(refined->raster.light, place[0], place[1], place[2]);
     lanes dark = least_of((float)GROUND_SUN * (1.0f - sun) + (float)GROUND_SKY * (1.0f - open_at(refined, u, v)), all((float)GROUND_MOST));
     return lanes_choose_int(inside, lanes_whole((1.0f - margin(u) * margin(v) * dark) * 256.0f + 0.5f), whole);
 }
 
 SOFT_KERNEL void refined_shade_sky(const struct refined *refined, int row, const uint8_t *wanted, uint32_t *colors)
 {
-    const struct soft *soft = refined->soft;
+    const struct raster *raster = &refined->raster;
     struct heights heights = { 0 };
-    for (int column = 0; column < soft->width_px; column += LANES) {
+    for (int column = 0; column < raster->width_px; column += LANES) {
         uint64_t any;
         memcpy(&any, wanted + column, sizeof(any));
-        if ((column & (soft->stretch_px - 1)) == 0)
-            heights = heights_from(soft, column, row);
+        if ((column & (raster->stretch_px - 1)) == 0)
+            heights = heights_from(raster, column, row);
         if (!any)
             continue;
-        lanes_int color = backdrop_at(soft, &heights, column, row);
-        if (soft->has_ground)
+        lanes_int color = backdrop_at(raster, &heights, column, row);
+        if (raster->has_ground)
             color = darkened(color, ground_at(refined, LANES_IOTA + ((float)column + 0.5f), (float)row + 0.5f));
         color &= 0xffffff;
         memcpy(colors + column, &color, sizeof(color));

@@ -8,27 +8,27 @@
 #include "render/soft/section_colors.h"
 
 /* How much of the sun is seen, 0..1. */
-SOFT_INLINE lanes sun_at(const struct soft *soft, lanes x, float y, lanes depth)
+SOFT_INLINE lanes sun_at(const struct raster *raster, lanes x, float y, lanes depth)
 {
-    const float(*m)[4] = soft->sun_from_pixel;
+    const float(*m)[4] = raster->sun_from_pixel;
     lanes s[4];
     for (int r = 0; r < 4; r++)
         s[r] = x * m[0][r] + (y * m[1][r] + m[3][r]) + depth * m[2][r];
     lanes over = 1.0f / s[3];
-    return sun_tap(soft->light, s[0] * over, s[1] * over, s[2] * over);
+    return sun_tap(raster->light, s[0] * over, s[1] * over, s[2] * over);
 }
 
-SOFT_INLINE lanes_int context_color(const struct soft *soft, lanes_int marks, lanes x, float y, lanes depth)
+SOFT_INLINE lanes_int context_color(const struct raster *raster, lanes_int marks, lanes x, float y, lanes depth)
 {
     lanes ambient = byte_of(marks, 1) * (1 / 255.0f), facing = byte_of(marks, 0) * (1 / 255.0f);
-    lanes sum = lanes_clamp((float)LIGHT_AMBIENT * ambient + (float)LIGHT_SUN * facing * sun_at(soft, x, y, depth), 0, 1);
+    lanes sum = lanes_clamp((float)LIGHT_AMBIENT * ambient + (float)LIGHT_SUN * facing * sun_at(raster, x, y, depth), 0, 1);
     lanes_int step = lanes_whole(sum * (RAMP_STEPS - 1) + 0.5f);
-    lanes_int color = gather(soft->ramps, (marks >> 16 & (MOST_RAMPS - 1)) * RAMP_STEPS + step);
-    float bright = soft->block.up[3] > 0 ? soft->block.up[3] : 1;
-    if (!soft->greys && bright == 1)
+    lanes_int color = gather(raster->ramps, (marks >> 16 & (MOST_RAMPS - 1)) * RAMP_STEPS + step);
+    float bright = raster->block.up[3] > 0 ? raster->block.up[3] : 1;
+    if (!raster->greys && bright == 1)
         return color;
     lanes blue = bright * byte_of(color, 0), green = bright * byte_of(color, 1), red = bright * byte_of(color, 2);
-    if (!soft->greys)
+    if (!raster->greys)
         return lanes_whole(blue + 0.5f) | lanes_whole(green + 0.5f) << 8 | lanes_whole(red + 0.5f) << 16 | (int32_t)0xff000000;
     return lanes_whole((float)GREY_BLUE * blue + (float)GREY_GREEN * green + (float)GREY_RED * red + 0.5f) * 0x010101 | (int32_t)0xff000000;
 }
@@ -64,10 +64,10 @@ SOFT_INLINE lanes_int lined(const uint32_t *marks, lanes_int color)
 }
 
 /* What shadow leaves of the ground's brightness, 0..256. */
-SOFT_INLINE lanes_int ground_at(const struct soft *soft, lanes x, float y)
+SOFT_INLINE lanes_int ground_at(const struct raster *raster, lanes x, float y)
 {
-    const float(*m)[3] = soft->ground_from_pixel;
-    const struct soft_light *light = soft->light;
+    const float(*m)[3] = raster->ground_from_pixel;
+    const struct soft_light *light = raster->light;
     float size = (float)light->ground_px;
     lanes u = x * m[0][0] + (y * m[0][1] + m[0][2]), v = x * m[1][0] + (y * m[1][1] + m[1][2]), w = x * m[2][0] + (y * m[2][1] + m[2][2]);
     lanes one = (lanes){ 0 } + 1.0f;
@@ -87,18 +87,18 @@ SOFT_INLINE lanes_int ground_at(const struct soft *soft, lanes x, float y)
     return lanes_choose_int(inside, factor, (lanes_int){ 0 } + 256);
 }
 
-SOFT_INLINE lanes_int sky_color(const struct soft *soft, const struct heights *heights, int column, int row)
+SOFT_INLINE lanes_int sky_color(const struct raster *raster, const struct heights *heights, int column, int row)
 {
-    lanes_int color = backdrop_at(soft, heights, column, row);
-    if (!soft->has_ground)
+    lanes_int color = backdrop_at(raster, heights, column, row);
+    if (!raster->has_ground)
         return color;
-    return darkened(color, ground_at(soft, LANES_IOTA + ((float)column + 0.5f), (float)row + 0.5f));
+    return darkened(color, ground_at(raster, LANES_IOTA + ((float)column + 0.5f), (float)row + 0.5f));
 }
 
 /* What a cut opens. */
-SOFT_INLINE lanes_int section_color(const struct soft *soft, lanes_int marks, lanes x, float y)
+SOFT_INLINE lanes_int section_color(const struct raster *raster, lanes_int marks, lanes x, float y)
 {
-    const float(*m)[3] = soft->ray_from_pixel;
+    const float(*m)[3] = raster->ray_from_pixel;
     lanes v[3], n[3], square = { 0 };
     for (int r = 0; r < 3; r++) {
         v[r] = -(x * m[0][r] + (y * m[1][r] + m[2][r]));
@@ -109,50 +109,50 @@ SOFT_INLINE lanes_int section_color(const struct soft *soft, lanes_int marks, la
         v[r] *= over;
     inside_normal(marks, n);
     lanes_int is_cap = (marks & (int32_t)MARK_CAP) == (int32_t)MARK_CAP;
-    return lanes_choose_int(is_cap, cap_color(x, y, soft->block.scale[3]), inside_color(v, n, soft->block.up)) | (int32_t)0xff000000;
+    return lanes_choose_int(is_cap, cap_color(x, y, raster->block.scale[3]), inside_color(v, n, raster->block.up)) | (int32_t)0xff000000;
 }
 
 /* All eight of a field, or all empty: as most are. */
-SOFT_INLINE lanes_int color_at(const struct soft *soft, const struct heights *heights, int column, int row)
+SOFT_INLINE lanes_int color_at(const struct raster *raster, const struct heights *heights, int column, int row)
 {
-    size_t place = (size_t)row * (size_t)soft->pitch_px + (size_t)column;
-    const uint32_t *mark = soft->marks + place;
+    size_t place = (size_t)row * (size_t)raster->pitch_px + (size_t)column;
+    const uint32_t *mark = raster->marks + place;
     lanes_int marks = *(const lanes_int *)mark, color;
     if (!lanes_any((~marks & (int32_t)MARK_FIELD) | (marks & (int32_t)MARK_CONTEXT))) {
-        color = gather(soft->colormap, marks & (int32_t)MARK_PLACE);
+        color = gather(raster->colormap, marks & (int32_t)MARK_PLACE);
         if (lanes_any(marks & MARK_LINE_WHOLE << MARK_LINE))
             color = lined(mark, color);
         return color;
     }
     if (!lanes_any(marks))
-        return sky_color(soft, heights, column, row);
+        return sky_color(raster, heights, column, row);
     lanes_int kinds = marks & (int32_t)MARK_KIND, is_field = kinds == (int32_t)MARK_FIELD, is_sky = marks == 0;
     lanes_int is_context = kinds == (int32_t)MARK_CONTEXT, is_section = kinds == (int32_t)MARK_SECTION;
-    color = gather(soft->colormap, marks & is_field & (int32_t)MARK_PLACE);
+    color = gather(raster->colormap, marks & is_field & (int32_t)MARK_PLACE);
     if (lanes_any(marks & is_field & MARK_LINE_WHOLE << MARK_LINE))
         color = lined(mark, color);
     lanes x = LANES_IOTA + ((float)column + 0.5f);
     if (lanes_any(is_section))
-        color = lanes_choose_int(is_section, section_color(soft, marks, x, (float)row + 0.5f), color);
+        color = lanes_choose_int(is_section, section_color(raster, marks, x, (float)row + 0.5f), color);
     if (lanes_any(is_context)) {
-        lanes depth = *(const lanes *)(soft->depth + place);
-        color = lanes_choose_int(is_context, context_color(soft, marks & is_context, x, (float)row + 0.5f, depth), color);
+        lanes depth = *(const lanes *)(raster->depth + place);
+        color = lanes_choose_int(is_context, context_color(raster, marks & is_context, x, (float)row + 0.5f, depth), color);
     }
     if (lanes_any(is_sky))
-        color = lanes_choose_int(is_sky, sky_color(soft, heights, column, row), color);
+        color = lanes_choose_int(is_sky, sky_color(raster, heights, column, row), color);
     return color;
 }
 
-void soft_color(const struct soft *soft, const struct soft_rect *rect)
+void raster_color(const struct raster *raster, const struct soft_rect *rect)
 {
     for (int row = rect->top; row <= rect->bottom; row++) {
-        uint8_t *out = soft->out + (size_t)row * soft->out_stride_bytes;
+        uint8_t *out = raster->out + (size_t)row * raster->out_stride_bytes;
         struct heights heights = { 0 };
         for (int column = rect->left; column <= rect->right; column += LANES) {
-            if ((column & (soft->stretch_px - 1)) == 0)
-                heights = heights_from(soft, column, row);
-            lanes_int color = color_at(soft, &heights, column, row);
-            int count = soft->width_px - column;
+            if ((column & (raster->stretch_px - 1)) == 0)
+                heights = heights_from(raster, column, row);
+            lanes_int color = color_at(raster, &heights, column, row);
+            int count = raster->width_px - column;
             memcpy(out + 4 * column, &color, count < LANES ? 4 * (size_t)count : sizeof(color));
         }
     }

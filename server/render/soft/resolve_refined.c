@@ -80,7 +80,7 @@ static const struct soft_triangle *triangle_of(struct recent *recent, uint32_t i
     struct soft_triangle *triangle = &recent->triangles[(id ^ id >> 9) % RECENT];
     if (triangle->id != id) {
         triangle->mesh = recent->mesh;
-        soft_find_triangle(recent->refined->soft, id, triangle);
+        raster_find_triangle(&recent->refined->raster, id, triangle);
         recent->mesh = triangle->mesh;
     }
     return triangle;
@@ -149,7 +149,7 @@ static int by_depth(const void *a, const void *b)
 static void shade_layers(struct recent *recent, struct layers *layers, int top, const struct soft_sample samples[SAMPLES])
 {
     const struct refined *refined = recent->refined;
-    size_t pitch = (size_t)refined->soft->pitch_px, count = layers->fragments.count;
+    size_t pitch = (size_t)refined->raster.pitch_px, count = layers->fragments.count;
     struct soft_fragment *fragments = layers->fragments.at;
     qsort(fragments, count, sizeof(*fragments), by_triangle);
     for (size_t i = 0, end; i < count; i = end) {
@@ -207,7 +207,7 @@ static void blend(const struct layers *layers, size_t first, size_t end, uint16_
 
 static void add_item(const struct refined *refined, struct row *row, const struct item *item, int column)
 {
-    const struct soft_mesh *mesh = &refined->soft->meshes[item->triangle.mesh];
+    const struct soft_mesh *mesh = &refined->raster.meshes[item->triangle.mesh];
     if (mesh->has_field && !(item->triangle.id & ID_BACK)) {
         row->field_columns[row->field_count] = column;
         row->field[row->field_count++] = *item;
@@ -254,12 +254,12 @@ static void add_mixed(struct recent *recent, struct row *row, const struct soft_
 static void sort_row(struct recent *recent, struct row *row, const struct soft_sample samples[SAMPLES], size_t start, int y,
                      const struct layers *layers, size_t *layered)
 {
-    const struct soft *soft = recent->refined->soft;
+    const struct raster *raster = &recent->refined->raster;
     row->field_count = row->surface_count = row->mixed_count = 0;
     row->any_sky = row->any_cap = false;
-    memset(row->sky, 0, (size_t)soft->pitch_px);
-    memset(row->caps, 0, (size_t)soft->pitch_px);
-    for (int column = 0; column < soft->width_px; column++) {
+    memset(row->sky, 0, (size_t)raster->pitch_px);
+    memset(row->caps, 0, (size_t)raster->pitch_px);
+    for (int column = 0; column < raster->width_px; column++) {
         size_t at = start + (size_t)column;
         uint32_t first = samples[0].ids[at];
         size_t over = *layered;
@@ -289,7 +289,7 @@ static void add_color(struct visibility_mixed *mixed, uint32_t color, unsigned s
 
 static uint32_t cap_at(const struct refined *refined, int column, int y)
 {
-    return (uint32_t)cap_color((lanes){ 0 } + ((float)column + 0.5f), (float)y + 0.5f, refined->soft->block.scale[3])[0];
+    return (uint32_t)cap_color((lanes){ 0 } + ((float)column + 0.5f), (float)y + 0.5f, refined->raster.block.scale[3])[0];
 }
 
 static uint32_t keep_mixed(const struct refined *refined, struct visibility_band *band, const struct row *row, const struct mixed *from,
@@ -357,11 +357,11 @@ static void shade_rows(struct recent *recent, int number, const struct soft_samp
 {
     size_t layered = 0;
     const struct refined *refined = recent->refined;
-    const struct soft *soft = refined->soft;
+    const struct raster *raster = &refined->raster;
     struct visibility_band *band = &refined->buffer->bands[number];
-    int top = number * REFINED_ROWS, end = top + REFINED_ROWS < soft->height_px ? top + REFINED_ROWS : soft->height_px;
+    int top = number * REFINED_ROWS, end = top + REFINED_ROWS < raster->height_px ? top + REFINED_ROWS : raster->height_px;
     for (int y = top; y < end; y++) {
-        size_t start = (size_t)(y - top) * (size_t)soft->pitch_px;
+        size_t start = (size_t)(y - top) * (size_t)raster->pitch_px;
         struct shaded_items shaded = { row->triangles, row->weights, row->rows, row->gloss };
         sort_row(recent, row, samples, start, y, layers, &layered);
         (refined->buffer->gloss ? refined_shade_gloss : refined_shade_field)(refined, band, row->field, row->field_count, &shaded);
@@ -369,19 +369,19 @@ static void shade_rows(struct recent *recent, int number, const struct soft_samp
         if (row->any_sky)
             refined_shade_sky(refined, y, row->sky, row->sky_colors);
         keep_row(refined, band, row, y);
-        memcpy(soft->depth + (size_t)y * (size_t)soft->pitch_px, samples[0].depth + start, (size_t)soft->pitch_px * sizeof(float));
+        memcpy(raster->depth + (size_t)y * (size_t)raster->pitch_px, samples[0].depth + start, (size_t)raster->pitch_px * sizeof(float));
     }
 }
 
 bool refined_shade_band(const struct refined *refined, int number)
 {
-    size_t pixels = REFINED_ROWS * (size_t)refined->soft->pitch_px;
+    size_t pixels = REFINED_ROWS * (size_t)refined->raster.pitch_px;
     struct soft_sample samples[SAMPLES];
     struct row row;
     struct layers layers = { 0 };
     float *memory = mem_try_array(pixels, SAMPLES * (sizeof(float) + sizeof(uint32_t)));
     struct recent *recent = mem_new(sizeof(*recent));
-    bool good = row_init(&row, refined->soft->pitch_px) && memory;
+    bool good = row_init(&row, refined->raster.pitch_px) && memory;
     recent->refined = refined;
     for (int i = 0; i < RECENT; i++)
         recent->triangles[i].id = ID_NOTHING;

@@ -10,8 +10,8 @@
 /* How the place on the plant changes from pixel to pixel. */
 static void place_slopes(const struct refined *refined, const struct soft_triangle *triangle, const float by[3], float out[3])
 {
-    const struct soft_mesh *mesh = &refined->soft->meshes[triangle->mesh];
-    const double *placement = refined->refiner->gpu_scene->scene->assets[mesh->asset].placement;
+    const struct soft_mesh *mesh = &refined->raster.meshes[triangle->mesh];
+    const double *placement = refined->raster.soft->gpu_scene->scene->assets[mesh->asset].placement;
     float of_file[3] = { 0 };
     for (int i = 0; i < 3; i++)
         for (int c = 0; c < 3; c++)
@@ -56,8 +56,8 @@ static void map_normal(const float dx[3], const float dy[3], float uv[3][2], con
 static void wear_maps(const struct refined *refined, const struct soft_triangle *triangle, const struct soft_spread *spread, size_t i,
                       struct surface *surface, vec *glow)
 {
-    const struct soft_material *material = &refined->soft->materials[triangle->material];
-    const struct asset_view *file = refined->soft->meshes[triangle->mesh].file;
+    const struct soft_material *material = &refined->raster.soft->materials.at[triangle->material];
+    const struct asset_view *file = refined->raster.meshes[triangle->mesh].file;
     float uv[2][3][2], texels[MODEL_MAPS][4];
     soft_spread_coordinates(file->texcoords, triangle->vertices, spread, uv[0]);
     soft_spread_coordinates(file->second_texcoords, triangle->vertices, spread, uv[1]);
@@ -97,8 +97,8 @@ SOFT_INLINE void wear(const struct refined *refined, const struct item *items, s
 {
     for (size_t i = 0; i < count; i++) {
         const struct soft_triangle *triangle = &items[i].triangle;
-        const struct soft_material *material = &refined->soft->materials[triangle->material];
-        const struct soft_mesh *mesh = &refined->soft->meshes[triangle->mesh];
+        const struct soft_material *material = &refined->raster.soft->materials.at[triangle->material];
+        const struct soft_mesh *mesh = &refined->raster.meshes[triangle->mesh];
         struct soft_spread spread;
         double weights[3][3];
         if (!material->mapped && !alphas)
@@ -146,8 +146,8 @@ SOFT_INLINE void see(const struct refined *refined, const struct item *items, si
 SOFT_KERNEL void refined_shade_surfaces(const struct refined *refined, const struct item *items, size_t count, uint32_t *colors,
                                         float *alphas)
 {
-    const struct soft_tones *tones = &refined->refiner->tones;
-    float bright = refined->soft->block.up[3]; /* of context; 0: as it is */
+    const struct soft_tones *tones = refined->raster.soft->tones;
+    float bright = refined->raster.block.up[3]; /* of context; 0: as it is */
     bool greys = view_is_operator(refined->context->view);
     for (size_t first = 0; first < count; first += LANES) {
         struct lit lit;
@@ -163,7 +163,7 @@ SOFT_KERNEL void refined_shade_surfaces(const struct refined *refined, const str
         lanes_int packed = pack_color(c.x, c.y, c.z);
         if (lanes_any(spot->back & spot->cut)) {
             lanes_int inside = inside_color((lanes[3]){ v.x, v.y, v.z }, (lanes[3]){ spot->normal.x, spot->normal.y, spot->normal.z },
-                                            refined->soft->block.up);
+                                            refined->raster.block.up);
             packed = lanes_choose_int(spot->back & spot->cut, inside, packed);
         }
         for (size_t i = 0; i < some; i++)
@@ -200,7 +200,7 @@ SOFT_KERNEL void refined_shade_gloss(const struct refined *refined, struct visib
                 soft_pack_light((float[3]){ besides.x[i], besides.y[i], besides.z[i] }),
             };
             refined_keep_place(refined, band, &items[first + i], lit.spot.weights[1][i], lit.spot.weights[2][i], out, first + i);
-            out->rows[first + i] = (uint8_t)refined->soft->block.shade[1];
+            out->rows[first + i] = (uint8_t)refined->raster.block.shade[1];
         }
     }
 }

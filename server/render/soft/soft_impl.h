@@ -3,6 +3,7 @@
 #ifndef RENDER_SOFT_SOFT_IMPL_H
 #define RENDER_SOFT_SOFT_IMPL_H
 #include "render/soft/flags.h"
+#include "render/soft/lanes.h"
 #include "render/soft/soft.h"
 #include "render/soft/parts.h"
 #include "render/soft/textures.h"
@@ -72,37 +73,19 @@ struct soft_light {       /* a light_set, read back */
     uint16_t *sun_map;    /* rows from the top; one more row and column than it has */
     int sun_map_px;
     uint32_t *ground; /* a byte each: this texel, its right, lower, lower right neighbour; 255: no shadow */
-    int ground_px;
+    uint8_t *open;    /* of the ground, which refined frames look up; rows from the top */
+    int ground_px;    /* of a side, of both */
     uint64_t used;
 };
 enum { SOFT_LIGHTS = 2, SOFT_SHAPES = 16 };
 
-struct soft_kernels;
-struct soft {
-    struct workers *workers;
-    const struct soft_kernels *kernels;
-    const struct gpu_scene *gpu_scene;
-    size_t material_count;                               /* of all models */
-    uint32_t *material_of_model;                         /* the first, by number of the model */
-    uint32_t *muted_ramps, *own_ramps, *ramp_of_material; /* colours, RAMP_STEPS to a row; row, by number of the material */
-    const struct soft_material *materials;               /* the keeper's */
-    const uint32_t *backdrops; /* struct sky */
-    const uint32_t *colormap;  /* the picture's, and below: struct shaded_colormap, or glossy */
-    const float *lines;
-    uint32_t *glossy;       /* of that version: rows are colours in a light */
-    uint64_t glossy_version;
-    struct soft_light lights[SOFT_LIGHTS];
-    uint64_t uses;
-    struct visibility_store kept; /* struct visibility_buffer, of cameras that stand still */
-    uint64_t shapes[SOFT_SHAPES]; /* content_hash_shape of the last pictures drawn */
-    size_t shape_count;
-    struct soft *keeper;       /* of the parts and materials that it draws: itself, or another */
-    struct soft_materials own_materials;
-    struct soft_parts **parts; /* by number of the model, level; made when they are first needed */
-    /* --- of the picture being drawn */
+struct raster { /* what one frame is rasterized from, and into; its room is kept for the next one */
+    struct soft *soft;
     const struct frame_context *context;
     const struct soft_light *light;
-    const uint32_t *ramps; /* the picture's */
+    const uint32_t *ramps;    /* of struct soft */
+    const uint32_t *colormap; /* and below: struct shaded_colormap, or glossy */
+    const float *lines;
     struct frame_uniforms block;
     struct soft_mesh *meshes;
     struct soft_found *found; /* by mesh */
@@ -128,49 +111,75 @@ struct soft {
     int stretch_px; /* of the sky: from SOFT_STRETCH_LEAST to SOFT_STRETCH_MOST, a power of two; 1: each pixel by itself */
 };
 
+struct soft_kernels;
+struct soft { /* what all frames share */
+    struct workers *workers;
+    const struct soft_kernels *kernels;
+    const struct gpu_scene *gpu_scene;
+    const struct environments *environments;
+    size_t material_count;                                /* of all models */
+    uint32_t *material_of_model;                          /* the first, by number of the model */
+    uint32_t *muted_ramps, *own_ramps, *ramp_of_material; /* colours, RAMP_STEPS to a row; row, by number of the material */
+    struct soft_materials materials;
+    lanes *shading;            /* by number of the material: BASE ... of refined_impl.h */
+    const uint32_t *backdrops; /* struct sky */
+    struct soft_tones *tones;
+    uint32_t *glossy; /* of that version of a colour map: rows are colours in a light */
+    uint64_t glossy_version;
+    struct soft_light lights[SOFT_LIGHTS];
+    uint64_t uses;
+    struct soft_parts **parts;                      /* by number of the model, level; made when they are first needed */
+    struct visibility_store kept[TIER_REFINED + 1]; /* struct visibility_buffer, of cameras that stand still; by tier */
+    uint64_t shapes[SOFT_SHAPES];                   /* content_hash_shape of the last previews drawn */
+    size_t shape_count;
+    struct raster preview;
+    struct refined *spare; /* refined frames that are under way hold their own */
+};
+
 /* From the GPU; NULL: out of memory, logged. */
 const struct soft_light *soft_get_light(struct soft *soft, const struct light_set *set);
 void soft_free_light(const struct soft *soft, struct soft_light *light);
-/* Looks colours up in that one from now on; it must stay until the picture is drawn. */
-void soft_take_colormap(struct soft *soft, const struct shaded_colormap *colormap, bool glossy);
+/* Where colours are looked up: in that colour map, which must stay meanwhile. */
+const uint32_t *soft_colormap(struct soft *soft, const struct shaded_colormap *colormap, bool glossy);
+void raster_finish(struct raster *raster); /* drops its room; it can draw again */
+size_t raster_bytes(const struct raster *raster);
+void refined_destroy(struct refined **refined); /* &NULL is fine; leaves NULL */
+size_t refined_bytes(const struct refined *refined);
 /* The steps. */
-void soft_aim(struct soft *soft, const struct light *light);                  /* the matrices from pixels */
-void soft_aim_cuts(struct soft *soft);                                        /* before all that follows */
-bool soft_is_cut_off(const struct soft *soft, const float at[4], int planes); /* x w, y w in pixels, z, w */
+void raster_aim(struct raster *raster, const struct light *light);                  /* the matrices from pixels */
+void raster_aim_cuts(struct raster *raster);                                        /* before all that follows */
+bool raster_is_cut_off(const struct raster *raster, const float at[4], int planes); /* x w, y w in pixels, z, w */
 /* A box of the mesh: none of it is left by that plane; or some is not (*cut: as it was, else). */
-bool soft_cuts_box(const struct soft *soft, const struct soft_mesh *mesh, int plane, const float low[3], const float high[3], bool *cut);
+bool raster_cuts_box(const struct raster *raster, const struct soft_mesh *mesh, int plane, const float low[3], const float high[3],
+                     bool *cut);
 /* Where the ray of that place in the picture comes into what is left: depth. 0: nowhere, or its eye is within. */
-float soft_entry_depth(const struct soft *soft, float x, float y);
+float raster_entry_depth(const struct raster *raster, float x, float y);
 /* Meshes, and which of their parts may be seen; bodies: or bound what is cut open. False: out of memory. */
-bool soft_find(struct soft *soft, bool bodies);
-bool soft_find_only(struct soft *soft, int asset); /* the same of one, from both sides */
-bool soft_find_ghosts(struct soft *soft);          /* of what is only hinted at; and below, how much of a line each pixel has, of 255 */
-bool soft_ghosts(struct soft *soft, uint8_t *veil, uint8_t bgr[3]); /* rows of width_px; marks are lost. False: out of memory */
-void soft_paint_ghosts(const struct soft *soft, const uint8_t *veil, const uint8_t bgr[3]);
-enum soft_output { SOFT_CAPS, SOFT_DEPTH, SOFT_COLORS };           /* only marks of caps; marks and depth; and colours */
-void soft_tiles(struct soft *soft, enum soft_output output);       /* of what was found */
-bool soft_make_room(struct soft *soft, const struct frame *frame); /* false: out of memory */
+bool raster_find(struct raster *raster, bool bodies);
+bool raster_find_only(struct raster *raster, int asset); /* the same of one, from both sides */
+bool raster_find_ghosts(struct raster *raster); /* of what is only hinted at; and below, how much of a line each pixel has, of 255 */
+bool raster_ghosts(struct raster *raster, uint8_t *veil, uint8_t bgr[3]); /* rows of width_px; marks are lost. False: out of memory */
+void raster_paint_ghosts(const struct raster *raster, const uint8_t *veil, const uint8_t bgr[3]);
+enum soft_output { SOFT_CAPS, SOFT_DEPTH, SOFT_COLORS };                 /* only marks of caps; marks and depth; and colours */
+void raster_tiles(struct raster *raster, enum soft_output output);       /* of what was found */
+bool raster_make_room(struct raster *raster, const struct frame *frame); /* false: out of memory */
 enum soft_rim { RIM_NONE, RIM_LIGHT, RIM_DARK };
-const uint8_t *soft_rim(const struct soft *soft); /* per pixel, rows of pitch_px; in place of depth */
-/* What is needed to colour it again, while soft->ids says what is seen and the frame has all but rims: no ink and no markers yet. NULL:
+const uint8_t *raster_rim(const struct raster *raster); /* per pixel, rows of pitch_px; in place of depth */
+/* What is needed to colour it again, while raster->ids says what is seen and the frame has all but rims: no ink and no markers yet. NULL:
    out of memory. */
-struct visibility_buffer *soft_keep(struct soft *soft);
-void soft_keep_rim(const struct soft *soft, struct visibility_buffer *buffer); /* likewise: depth is lost */
-/* Hands it over to a store, with the frame's markers. */
-void soft_give(struct visibility_store *store, const struct frame_context *context, struct visibility_buffer *buffer,
-               const struct frame *frame);
-/* Pixels, markers and labels, if the store has such a picture. points: of its isolines. False: it has not. */
-bool soft_resolve_again(struct soft *soft, struct visibility_store *store, const struct frame_context *context,
-                        const struct isoline_points *points, struct frame *frame);
+struct visibility_buffer *raster_keep(struct raster *raster);
+void raster_keep_rim(const struct raster *raster, struct visibility_buffer *buffer); /* likewise: depth is lost */
+/* Keeps it, with the frame's markers. */
+void soft_keep(struct soft *soft, const struct frame_context *context, struct visibility_buffer *buffer, const struct frame *frame);
 struct soft_triangle {
-    uint32_t id; /* of struct soft_sample, or of soft->ids */
+    uint32_t id; /* of struct soft_sample, or of raster->ids */
     uint32_t mesh, material;
     uint32_t vertices[3]; /* of the file */
 };
 /* Finds which triangle of what was found has that id. triangle->mesh is looked at first: that of a neighbour, or 0. */
-void soft_find_triangle(const struct soft *soft, uint32_t id, struct soft_triangle *triangle);
+void raster_find_triangle(const struct raster *raster, uint32_t id, struct soft_triangle *triangle);
 /* Of the corners of a triangle (vertices of the file), planes over the picture: up to a factor, the parts that they have of a place. */
 void soft_weights(const struct soft_mesh *mesh, const uint32_t vertices[3], double weights[3][3]);
-void soft_outline(const struct soft *soft); /* of all that has a mark; depth is lost */
+void raster_outline(const struct raster *raster); /* of all that has a mark; depth is lost */
 
 #endif

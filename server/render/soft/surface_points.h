@@ -31,10 +31,10 @@ struct corners {                    /* of eight triangles, seen from the spots: 
 /* As place_part in faces.c; a corner that has no place in the picture may lie behind the eye. */
 SOFT_INLINE void see_corners(const struct refined *refined, const struct item *item, int i, struct corners *out)
 {
-    const struct soft *soft = refined->soft;
-    const struct soft_mesh *mesh = &soft->meshes[item->triangle.mesh];
+    const struct raster *raster = &refined->raster;
+    const struct soft_mesh *mesh = &raster->meshes[item->triangle.mesh];
     const quad *place = (const quad *)mesh->place;
-    float width = (float)soft->width_px, height = (float)soft->height_px;
+    float width = (float)raster->width_px, height = (float)raster->height_px;
     quad at[3];
     bool placed = true;
     for (int k = 0; k < 3; k++) {
@@ -131,7 +131,7 @@ SOFT_INLINE quad quad_of_bytes(const uint8_t bytes[4])
 SOFT_INLINE void attributes_at(const struct refined *refined, const struct soft_triangle *triangle, const float weights[3], bool with_tint,
                                float out[8])
 {
-    const struct soft_mesh *mesh = &refined->soft->meshes[triangle->mesh];
+    const struct soft_mesh *mesh = &refined->raster.meshes[triangle->mesh];
     const float *turn = refined->normals[triangle->mesh];
     float n[3] = { 0, 0, 0 };
     quad baked = { 0, 0, 0, 0 }, tint = { 255, 255, 255, 255 };
@@ -161,13 +161,13 @@ SOFT_INLINE void look(const struct refined *refined, const struct item *items, s
     float rows[LANES][8], materials[LANES][8];
     for (int i = 0; i < LANES; i++) {
         const struct item *item = &items[(size_t)i < count ? (size_t)i : count - 1];
-        const struct soft_mesh *mesh = &refined->soft->meshes[item->triangle.mesh];
+        const struct soft_mesh *mesh = &refined->raster.meshes[item->triangle.mesh];
         see_corners(refined, item, i, &corners);
         spot->x[i] = item->x;
         spot->y[i] = item->y;
         spot->mirrored[i] = mesh->mirrored ? -1 : 0;
         if (with_material) {
-            memcpy(materials[i], &refined->refiner->materials[item->triangle.material], sizeof(lanes));
+            memcpy(materials[i], &refined->raster.soft->shading[item->triangle.material], sizeof(lanes));
             spot->cut[i] = mesh->cut ? -1 : 0;
         }
     }
@@ -185,7 +185,7 @@ SOFT_INLINE void look(const struct refined *refined, const struct item *items, s
 
 SOFT_INLINE vec view_of(const struct refined *refined, const struct spot *spot)
 {
-    const float(*m)[3] = refined->soft->ray_from_pixel;
+    const float(*m)[3] = refined->raster.ray_from_pixel;
     lanes ray[3];
     for (int r = 0; r < 3; r++)
         ray[r] = -(spot->x * m[0][r] + spot->y * m[1][r] + m[2][r]);
@@ -225,12 +225,12 @@ SOFT_INLINE lanes sun_at(const struct refined *refined, const struct spot *spot,
     lanes over = 1.0f / at[3];
     for (int r = 0; r < 3; r++)
         place[r] = at[r] * over + n.x * step[0][r] + n.y * step[1][r] + n.z * step[2][r];
-    return sun_visible(refined->soft->light, place[0], place[1], place[2]);
+    return sun_visible(refined->raster.light, place[0], place[1], place[2]);
 }
 
 SOFT_INLINE vec towards_sun(const struct refined *refined)
 {
-    const float *sun = refined->soft->block.sun;
+    const float *sun = refined->raster.block.sun;
     return (vec){ all(sun[0]), all(sun[1]), all(sun[2]) };
 }
 

@@ -51,7 +51,7 @@ struct soft_fragments { /* zero-initialise; mem_free at */
 };
 
 struct soft_tile {
-    const struct soft *soft;
+    const struct raster *raster;
     struct soft_rect rect; /* whole lanes wide */
     struct soft_sample samples[MOST_SAMPLES];
     int sample_count, pitch_px;                /* pitch: of their rows */
@@ -60,8 +60,8 @@ struct soft_tile {
     struct soft_corners corners;
     struct soft_face faces[MOST_FACES];
     int face_count;
-    uint32_t first_id; /* of the part's triangles, in soft->ids */
-    int cuts;          /* planes that cut, of those of soft->cuts */
+    uint32_t first_id; /* of the part's triangles, in raster->ids */
+    int cuts;          /* planes that cut, of those of raster->cuts */
     enum { DRAW_ALL, DRAW_OPAQUE, DRAW_BLENDED } draws;
     struct soft_fragments *fragments; /* DRAW_BLENDED: what is drawn, instead of what is nearest */
     /* --- of the part being drawn */
@@ -79,8 +79,8 @@ static inline uint32_t soft_id(const struct soft_tile *tile, const struct soft_f
 /* Rasterizes what was found in a rectangle (whole lanes wide, no larger than a tile) into these samples, which hold the depth of what hides
    it already. Nothing but depth and ids is written; what is blended is added to the fragments, where nothing opaque hides it. On a
    worker. */
-void soft_raster_samples(const struct soft *soft, const struct soft_rect *rect, const struct soft_sample samples[MOST_SAMPLES],
-                         int pitch_px, float reach_px, struct soft_fragments *fragments);
+void raster_samples(const struct raster *raster, const struct soft_rect *rect, const struct soft_sample samples[MOST_SAMPLES], int pitch_px,
+                    float reach_px, struct soft_fragments *fragments);
 
 /* A triangle whose texture cuts holes. */
 struct soft_cutout {

@@ -37,9 +37,9 @@ static int by_order(const void *a, const void *b)
 
 static void fill_list(const struct soft_tile *tile, struct list *list)
 {
-    const struct soft *soft = tile->soft;
-    for (size_t m = 0; m < soft->mesh_count; m++) {
-        const struct soft_found *found = &soft->found[m];
+    const struct raster *raster = tile->raster;
+    for (size_t m = 0; m < raster->mesh_count; m++) {
+        const struct soft_found *found = &raster->found[m];
         if (!overlap(&found->rect, &tile->rect))
             continue;
         mem_grow(&list->entries, &list->capacity, list->count + found->count, sizeof(*list->entries));
@@ -90,10 +90,10 @@ static struct soft_rect faces_rect(const struct soft_tile *tile)
 
 static void begin_part(struct soft_tile *tile, const struct soft_found *found, const struct soft_item *item, int cuts)
 {
-    tile->mesh = &tile->soft->meshes[found - tile->soft->found];
+    tile->mesh = &tile->raster->meshes[found - tile->raster->found];
     tile->parts = found->parts;
     tile->part = &found->parts->parts[item->part];
-    tile->material = &tile->soft->materials[found->material + tile->part->material];
+    tile->material = &tile->raster->soft->materials.at[found->material + tile->part->material];
     tile->cuts = cuts;
 }
 
@@ -112,7 +112,7 @@ static void carry_nothing(struct soft_tile *tile)
 static void carry(struct soft_tile *tile, const struct soft_found *found)
 {
     if (tile->samples[0].marks)
-        tile->soft->kernels->carry_part(tile, tile->mesh, found->parts, tile->part);
+        tile->raster->soft->kernels->carry_part(tile, tile->mesh, found->parts, tile->part);
     else
         carry_nothing(tile);
 }
@@ -121,7 +121,7 @@ static void draw_part(struct soft_tile *tile, const struct soft_found *found, co
 {
     const struct soft_mesh *mesh = tile->mesh;
     const struct soft_part *part = tile->part;
-    const struct soft_kernels *kernels = tile->soft->kernels;
+    const struct soft_kernels *kernels = tile->raster->soft->kernels;
     kernels->place_part(tile, mesh, found->parts, part);
     if (item->cut)
         soft_cut_corners(tile);
@@ -136,7 +136,7 @@ static void draw_part(struct soft_tile *tile, const struct soft_found *found, co
     if (tile->face_count == 0)
         return;
     tile->first_id = found->first_id + (uint32_t)(item - found->items) * PART_TRIANGLES;
-    uint32_t ramp = tile->soft->ramp_of_material[found->material + part->material];
+    uint32_t ramp = tile->raster->soft->ramp_of_material[found->material + part->material];
     kernels->raster_faces(tile, mesh->has_field ? MARK_FIELD : MARK_CONTEXT | ramp << 16);
     struct soft_rect rect = faces_rect(tile), blocks = blocks_of(tile, &rect);
     kernels->look_again(tile, &blocks);
@@ -151,14 +151,14 @@ static bool is_drawn(const struct soft_tile *tile)
 
 static void draw_list(struct soft_tile *tile, const struct list *list)
 {
-    const struct soft *soft = tile->soft;
+    const struct raster *raster = tile->raster;
     for (size_t i = 0; i < list->count; i++) {
-        const struct soft_found *found = &soft->found[list->entries[i].mesh];
+        const struct soft_found *found = &raster->found[list->entries[i].mesh];
         const struct soft_item *item = &found->items[list->entries[i].item];
         struct soft_rect blocks = blocks_of(tile, &item->rect);
         if (item->beyond || is_hidden(tile, &blocks, item->near))
             continue;
-        begin_part(tile, found, item, soft->cut_count);
+        begin_part(tile, found, item, raster->cut_count);
         if (is_drawn(tile))
             draw_part(tile, found, item);
     }
@@ -167,17 +167,17 @@ static void draw_list(struct soft_tile *tile, const struct list *list)
 static void look_at_all(struct soft_tile *tile)
 {
     struct soft_rect blocks = blocks_of(tile, &tile->rect);
-    tile->soft->kernels->look_again(tile, &blocks);
+    tile->raster->soft->kernels->look_again(tile, &blocks);
 }
 
 /* Before all else: what is behind a body that is cut open is hidden. */
 static void draw_caps(struct soft_tile *tile, const struct list *list)
 {
-    const struct soft *soft = tile->soft;
+    const struct raster *raster = tile->raster;
     for (size_t i = 0; i < list->count; i++) {
-        const struct soft_found *found = &soft->found[list->entries[i].mesh];
+        const struct soft_found *found = &raster->found[list->entries[i].mesh];
         const struct soft_item *item = &found->items[list->entries[i].item];
-        begin_part(tile, found, item, soft->entry_count);
+        begin_part(tile, found, item, raster->entry_count);
         soft_count_part(tile, found, item);
     }
     soft_cap_tile(tile);
@@ -188,59 +188,59 @@ static void clear(const struct soft_tile *tile)
 {
     size_t bytes = (size_t)(tile->rect.right + 1 - tile->rect.left) * sizeof(float);
     for (int row = tile->rect.top; row <= tile->rect.bottom; row++) {
-        size_t start = (size_t)row * (size_t)tile->soft->pitch_px + (size_t)tile->rect.left;
-        memset(tile->soft->depth + start, 0, bytes);
-        memset(tile->soft->marks + start, 0, bytes);
+        size_t start = (size_t)row * (size_t)tile->raster->pitch_px + (size_t)tile->rect.left;
+        memset(tile->raster->depth + start, 0, bytes);
+        memset(tile->raster->marks + start, 0, bytes);
     }
 }
 
-static int columns_of(const struct soft *soft)
+static int columns_of(const struct raster *raster)
 {
-    return (soft->pitch_px + TILE_WIDTH_PX - 1) / TILE_WIDTH_PX;
+    return (raster->pitch_px + TILE_WIDTH_PX - 1) / TILE_WIDTH_PX;
 }
 
-static void draw_tile(const struct soft *soft, int number, enum soft_output output, struct list *list)
+static void draw_tile(const struct raster *raster, int number, enum soft_output output, struct list *list)
 {
     struct soft_tile tile; /* not set to anything: corners and faces are large, and few are used */
-    int left = number % columns_of(soft) * TILE_WIDTH_PX, top = number / columns_of(soft) * TILE_HEIGHT_PX;
-    tile.soft = soft;
+    int left = number % columns_of(raster) * TILE_WIDTH_PX, top = number / columns_of(raster) * TILE_HEIGHT_PX;
+    tile.raster = raster;
     tile.rect = (struct soft_rect){ left, top, left + TILE_WIDTH_PX - 1, top + TILE_HEIGHT_PX - 1 };
-    if (tile.rect.right >= soft->pitch_px)
-        tile.rect.right = soft->pitch_px - 1;
-    if (tile.rect.bottom >= soft->height_px)
-        tile.rect.bottom = soft->height_px - 1;
-    size_t first = (size_t)top * (size_t)soft->pitch_px + (size_t)left;
-    tile.samples[0] = (struct soft_sample){ soft->depth + first, soft->marks + first, soft->ids ? soft->ids + first : NULL, 0, 0 };
+    if (tile.rect.right >= raster->pitch_px)
+        tile.rect.right = raster->pitch_px - 1;
+    if (tile.rect.bottom >= raster->height_px)
+        tile.rect.bottom = raster->height_px - 1;
+    size_t first = (size_t)top * (size_t)raster->pitch_px + (size_t)left;
+    tile.samples[0] = (struct soft_sample){ raster->depth + first, raster->marks + first, raster->ids ? raster->ids + first : NULL, 0, 0 };
     tile.sample_count = 1;
-    tile.pitch_px = soft->pitch_px;
+    tile.pitch_px = raster->pitch_px;
     tile.reach_px = 0;
     tile.draws = DRAW_ALL;
     memset(tile.farthest, 0, sizeof(tile.farthest));
     clear(&tile);
     fill_list(&tile, list);
-    if (soft->counts_bodies)
+    if (raster->counts_bodies)
         draw_caps(&tile, list);
     if (output != SOFT_CAPS)
         draw_list(&tile, list);
 }
 
-void soft_raster_samples(const struct soft *soft, const struct soft_rect *rect, const struct soft_sample samples[MOST_SAMPLES],
-                         int pitch_px, float reach_px, struct soft_fragments *fragments)
+void raster_samples(const struct raster *raster, const struct soft_rect *rect, const struct soft_sample samples[MOST_SAMPLES], int pitch_px,
+                    float reach_px, struct soft_fragments *fragments)
 {
     struct soft_tile tile;
     struct list list = { 0 };
-    tile.soft = soft;
+    tile.raster = raster;
     tile.rect = *rect;
     memcpy(tile.samples, samples, sizeof(tile.samples));
     tile.sample_count = MOST_SAMPLES;
     tile.pitch_px = pitch_px;
     tile.reach_px = reach_px;
-    tile.draws = soft->blends ? DRAW_OPAQUE : DRAW_ALL;
+    tile.draws = raster->blends ? DRAW_OPAQUE : DRAW_ALL;
     tile.fragments = fragments;
     look_at_all(&tile);
     fill_list(&tile, &list);
     draw_list(&tile, &list);
-    if (soft->blends) {
+    if (raster->blends) {
         tile.draws = DRAW_BLENDED;
         draw_list(&tile, &list);
     }
@@ -248,31 +248,31 @@ void soft_raster_samples(const struct soft *soft, const struct soft_rect *rect, 
 }
 
 struct drawing {
-    const struct soft *soft;
+    const struct raster *raster;
     enum soft_output output;
 };
 
 static void draw_tiles(void *arg, size_t begin, size_t end)
 {
     const struct drawing *drawing = arg;
-    const struct soft *soft = drawing->soft;
+    const struct raster *raster = drawing->raster;
     struct list list = { 0 };
     for (size_t t = begin; t < end; t++) {
         list.count = 0;
-        draw_tile(soft, (int)t, drawing->output, &list);
+        draw_tile(raster, (int)t, drawing->output, &list);
         if (drawing->output == SOFT_COLORS) {
-            int left = (int)t % columns_of(soft) * TILE_WIDTH_PX, top = (int)t / columns_of(soft) * TILE_HEIGHT_PX;
-            int right = left + TILE_WIDTH_PX < soft->width_px ? left + TILE_WIDTH_PX : soft->width_px;
-            int bottom = top + TILE_HEIGHT_PX < soft->height_px ? top + TILE_HEIGHT_PX : soft->height_px;
-            soft->kernels->color(soft, &(struct soft_rect){ left, top, right - 1, bottom - 1 });
+            int left = (int)t % columns_of(raster) * TILE_WIDTH_PX, top = (int)t / columns_of(raster) * TILE_HEIGHT_PX;
+            int right = left + TILE_WIDTH_PX < raster->width_px ? left + TILE_WIDTH_PX : raster->width_px;
+            int bottom = top + TILE_HEIGHT_PX < raster->height_px ? top + TILE_HEIGHT_PX : raster->height_px;
+            raster->soft->kernels->color(raster, &(struct soft_rect){ left, top, right - 1, bottom - 1 });
         }
     }
     mem_free(list.entries);
 }
 
-void soft_tiles(struct soft *soft, enum soft_output output)
+void raster_tiles(struct raster *raster, enum soft_output output)
 {
-    struct drawing drawing = { soft, output };
-    int rows = (soft->height_px + TILE_HEIGHT_PX - 1) / TILE_HEIGHT_PX;
-    workers_for(soft->workers, (size_t)(columns_of(soft) * rows), 1, draw_tiles, &drawing);
+    struct drawing drawing = { raster, output };
+    int rows = (raster->height_px + TILE_HEIGHT_PX - 1) / TILE_HEIGHT_PX;
+    workers_for(raster->soft->workers, (size_t)(columns_of(raster) * rows), 1, draw_tiles, &drawing);
 }
