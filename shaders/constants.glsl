@@ -51,5 +51,45 @@
 #define STIPPLE_GREY 64
 #define RULE_LIGHT_GREY 226
 #define RULE_DARK_GREY 196
+// Edges, of what is farther by that part: none, all of it. What is nearer goes on for so many pixels at least, and for all of an edge.
+#define EDGE_RGB 0.08, 0.10, 0.14
+#define EDGE_MOST 0.5
+#define EDGE_FROM 0.006
+#define EDGE_TO 0.03
+#define EDGE_THIN_PX 3
+#define EDGE_WIDE_PX 6
+// Isolines: on colours of more brightness than that, and on others.
+#define ISOLINE_BRIGHT 0.32
+#define ISOLINE_DARK_RGB 0.07, 0.09, 0.12
+#define ISOLINE_LIGHT 0.93
+#define ISOLINE_MOST 0.8
+// Ghosts, over a light backdrop and a dark one: lines where depth falls by that part or bends; level ones.
+#define GHOST_ON_LIGHT_RGB 0.20, 0.26, 0.33
+#define GHOST_ON_DARK_RGB 0.56, 0.64, 0.72
+#define GHOST_FALL_MOST 0.9
+#define GHOST_FALL_FROM 0.004
+#define GHOST_FALL_TO 0.012
+#define GHOST_BEND_MOST 0.55
+#define GHOST_BEND_FROM 0.0003
+#define GHOST_BEND_TO 0.0009
+#define GHOST_LEAST 0.05
+#define GHOST_LEVEL 0.4
+#define GHOST_LEVEL_PX 10
+// The rim of what is selected: a dark line within a white one.
+#define RIM_RGB 0.05, 0.09, 0.16
+#define RIM_WHITE 0.9
+// What a cut opens: the inner side of a surface, brighter the more it faces the viewer and up; a solid body, with darker stripes.
+#define INSIDE_RGB 0.40, 0.41, 0.43
+#define INSIDE_LEAST 0.72
+#define INSIDE_TOWARDS 0.28
+#define INSIDE_UP 0.12
+#define CAP_RGB 0.36, 0.37, 0.39
+#define CAP_STRIPE 0.07
+#define CAP_PERIOD 0.9
+#define CAP_STRIPE_FROM 0.28
+#define CAP_STRIPE_TO 0.40
+// Taps of the sun's shadow: texels to the corners of their square, and which way these lie.
+#define SUN_SPREAD 1.58
+#define SUN_TURN 0.949, 0.316
 
 #endif

@@ -101,8 +101,8 @@ vec3 field_color(FIELD_TYPE field, float light)
     vec3 color = colormap_color(part > 0.5 ? second : column, row); // one look-up
 #endif
 #ifdef RICH
-    vec3 ink = dot(color, vec3(GREY_RED, GREY_GREEN, GREY_BLUE)) > 0.32 ? vec3(0.07, 0.09, 0.12) : vec3(0.93);
-    color = mix(color, ink, max(field.y, field.w) > 0.5 ? 0.0 : 0.8 * line);
+    vec3 ink = dot(color, vec3(GREY_RED, GREY_GREEN, GREY_BLUE)) > ISOLINE_BRIGHT ? vec3(ISOLINE_DARK_RGB) : vec3(ISOLINE_LIGHT);
+    color = mix(color, ink, max(field.y, field.w) > 0.5 ? 0.0 : ISOLINE_MOST * line);
 #endif
     return color;
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Assets that are only hinted at: lines where their depth breaks or bends, and a thin level one each ten pixels in between, so that
 // the colours behind stay what they are. No dots and no slanting lines: those say uncertain and no data.
+#include "constants.glsl"
 #include "frame.glsl"
 layout(binding = 0) uniform sampler2D ghosts; // their depth; 0: none
 layout(binding = 1) uniform sampler2D depth;  // of all else
@@ -28,10 +29,11 @@ void main()
         discard;
     float scale = frame.back.w > 0.0 ? frame.back.w : 1.0 / here;
     vec2 found = max(shape(pixel, here, scale, ivec2(1, 0)), shape(pixel, here, scale, ivec2(0, 1)));
-    float line = max(0.9 * smoothstep(0.004, 0.012, found.x), 0.55 * smoothstep(0.0003, 0.0009, found.y));
-    bool level = pixel.y % 10 == 0;
-    if (line < 0.05 && !level)
+    float line = max(GHOST_FALL_MOST * smoothstep(GHOST_FALL_FROM, GHOST_FALL_TO, found.x),
+                     GHOST_BEND_MOST * smoothstep(GHOST_BEND_FROM, GHOST_BEND_TO, found.y));
+    bool level = pixel.y % GHOST_LEVEL_PX == 0;
+    if (line < GHOST_LEAST && !level)
         discard;
-    vec3 ink = frame.lines.y > 0.0 ? vec3(0.56, 0.64, 0.72) : vec3(0.20, 0.26, 0.33);
-    color = vec4(ink, max(line, level ? 0.4 : 0.0));
+    vec3 ink = frame.lines.y > 0.0 ? vec3(GHOST_ON_DARK_RGB) : vec3(GHOST_ON_LIGHT_RGB);
+    color = vec4(ink, max(line, level ? GHOST_LEVEL : 0.0));
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A dark line with a light one around it, along the rim of what the mask covers: stands out from any colour of the field.
+#include "constants.glsl"
 layout(binding = 0) uniform sampler2D mask;
 layout(location = 0) uniform float width_px;
 layout(location = 0) in vec2 clip;
@@ -23,9 +24,9 @@ void main()
     if (texelFetch(mask, at, 0).r > 0.5)
         discard;
     if (ring(at, width_px) > 0.5)
-        color = vec4(0.05, 0.09, 0.16, 1.0);
+        color = vec4(RIM_RGB, 1.0);
     else if (ring(at, width_px * 2.0) > 0.5)
-        color = vec4(1.0, 1.0, 1.0, 0.9);
+        color = vec4(1.0, 1.0, 1.0, RIM_WHITE);
     else
         discard;
 }

@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // How much of the sun a point sees: four taps on a turned square, each one a mean of four comparisons that runs into its neighbours'.
+#include "constants.glsl"
 layout(binding = 2) uniform sampler2DShadow sun_map;
-
-const float SUN_SPREAD = 1.58; // texels, to the corners of the square: seen along rows, taps are a texel apart
 
 // normal: of the surface, to step off it.
 float sun_visibility(mat4 sun_from_here, vec3 place, vec3 normal, float texel_m)
 {
     vec3 p = (sun_from_here * vec4(place + normal * (texel_m * (1.0 + SUN_SPREAD)), 1.0)).xyz;
-    vec2 to = vec2(0.949, 0.316) * (SUN_SPREAD / float(textureSize(sun_map, 0).x));
+    vec2 to = vec2(SUN_TURN) * (SUN_SPREAD / float(textureSize(sun_map, 0).x));
     float sum = texture(sun_map, vec3(p.xy + to, p.z)) + texture(sun_map, vec3(p.xy - to, p.z));
     sum += texture(sun_map, vec3(p.x - to.y, p.y + to.x, p.z)) + texture(sun_map, vec3(p.x + to.y, p.y - to.x, p.z));
     return 0.25 * sum;

@@ -36,11 +36,9 @@ SOFT_INLINE lanes high(lanes a, lanes b)
 
 SOFT_INLINE lanes line(lanes rise)
 {
-    lanes t = lanes_clamp((rise - 0.006f) * (1 / (0.03f - 0.006f)), 0, 1);
+    lanes t = lanes_clamp((rise - (float)EDGE_FROM) * (1 / ((float)EDGE_TO - (float)EDGE_FROM)), 0, 1);
     return t * t * (3.0f - 2.0f * t);
 }
-
-enum { THIN = 3, WIDE = 6 };
 
 /* From here, one pixel to that side: whether it is nearer. */
 SOFT_INLINE lanes edge(const struct view_of_depth *view, int x, int y, lanes here, int dx, int dy)
@@ -53,13 +51,13 @@ SOFT_INLINE lanes edge(const struct view_of_depth *view, int x, int y, lanes her
     lanes ahead = next, left = next, right = next;
     if (!lanes_any(next > level))
         return zero;
-    for (int i = THIN; i <= WIDE; i++) {
+    for (int i = EDGE_THIN_PX; i <= EDGE_WIDE_PX; i++) {
         ahead = low(ahead, at(view, x + i * dx, y + i * dy));
         left = low(left, at(view, x + dx + (i - 1) * dy, y + dy + (i - 1) * dx));
         right = low(right, at(view, x + dx - (i - 1) * dy, y + dy - (i - 1) * dx));
         lines += line((low(ahead, high(left, right)) - level) * part);
     }
-    return lines * (1.0f / (WIDE - THIN + 1));
+    return lines * (1.0f / (EDGE_WIDE_PX - EDGE_THIN_PX + 1));
 }
 
 SOFT_KERNEL void refined_ink_band(const struct refined *refined, int number)

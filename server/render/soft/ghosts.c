@@ -5,9 +5,9 @@
 
 #include "base/mem.h"
 #include "render/soft/soft_impl.h"
+#include "shaders/constants.glsl"
 
-static const uint8_t ghost_bgr[2][3] = { { 84, 66, 51 }, { 184, 163, 143 } }; /* by backdrop: light, dark */
-enum { LEVEL_PX = 10 };
+static const double ghost_rgb[2][3] = { { GHOST_ON_LIGHT_RGB }, { GHOST_ON_DARK_RGB } }; /* by backdrop */
 
 struct hinting {
     const struct raster *raster;
@@ -37,9 +37,10 @@ static float line_at(const struct hinting *hinting, int x, int y, float here)
         falls = fmaxf(falls, (here - fminf(a, b) - fmaxf(fmaxf(a, b) - here, 0)) * scale);
         bends = fmaxf(bends, fabsf(a + b - 2 * here) * scale);
     }
-    float line = fmaxf(0.9f * smooth_step(0.004f, 0.012f, falls), 0.55f * smooth_step(0.0003f, 0.0009f, bends));
-    bool level = y % LEVEL_PX == 0;
-    return line < 0.05f && !level ? 0 : fmaxf(line, level ? 0.4f : 0);
+    float line = fmaxf((float)GHOST_FALL_MOST * smooth_step((float)GHOST_FALL_FROM, (float)GHOST_FALL_TO, falls),
+                       (float)GHOST_BEND_MOST * smooth_step((float)GHOST_BEND_FROM, (float)GHOST_BEND_TO, bends));
+    bool level = y % GHOST_LEVEL_PX == 0;
+    return line < (float)GHOST_LEAST && !level ? 0 : fmaxf(line, level ? (float)GHOST_LEVEL : 0);
 }
 
 static void hint_rows(void *arg, size_t begin, size_t end)
@@ -66,7 +67,8 @@ bool raster_ghosts(struct raster *raster, uint8_t *veil, uint8_t bgr[3])
     raster->depth = depth;
     struct hinting hinting = { raster, ghosts, veil };
     workers_for(raster->soft->workers, (size_t)raster->height_px, 16, hint_rows, &hinting);
-    memcpy(bgr, ghost_bgr[raster->context->view->dark], 3);
+    for (int c = 0; c < 3; c++)
+        bgr[c] = (uint8_t)lround(255 * ghost_rgb[raster->context->view->dark][2 - c]);
     mem_free(ghosts);
     return true;
 }

@@ -5,9 +5,10 @@
 
 #include "render/soft/soft_impl.h"
 #include "render/gl/lines.h"
+#include "shaders/constants.glsl"
 
 enum { MOST_REACH_PX = 32 };
-static const uint8_t dark_bgr[3] = { 41, 23, 13 };
+static const double dark_rgb[3] = { RIM_RGB };
 
 struct brush { /* half a side is reach_px; what a pixel of the rim does to those around it */
     int reach_px;
@@ -53,7 +54,8 @@ static void paint(const struct raster *raster, const uint8_t *rim)
         for (int x = 0; x < raster->width_px; x++) {
             uint8_t ink = raster->marks[row + (size_t)x] ? 0 : rim[row + (size_t)x];
             for (int c = 0; c < 3 && ink; c++)
-                out[4 * x + c] = ink == RIM_DARK ? dark_bgr[c] : (uint8_t)(out[4 * x + c] * 0.1 + 229.5 + 0.5);
+                out[4 * x + c] =
+                    (uint8_t)(ink == RIM_DARK ? 255 * dark_rgb[2 - c] + 0.5 : out[4 * x + c] * (1 - RIM_WHITE) + 255 * RIM_WHITE + 0.5);
         }
     }
 }

@@ -13,7 +13,7 @@
 
 /* Of a step, for each core: some milliseconds' worth. */
 enum { SHADED_BANDS = 1, BANDS = 8 };
-static const double OFF_SURFACE_TEXELS = 2.58; /* as sun_visibility in shaders/shadow.glsl */
+static const double OFF_SURFACE_TEXELS = 1 + SUN_SPREAD; /* as sun_visibility in shaders/shadow.glsl */
 
 /* --- life -------------------------------------------------------------------------------------------------------------------- */
 

@@ -51,7 +51,7 @@ static float rule(float y, float pattern_px)
 
 /* --- isolines: field_color in shaders/field.glsl once more ----------------------------------------------------------------------- */
 
-static const float LEAST_SLOPE = 1e-7f, MOST_LINE = 0.8f;
+static const float LEAST_SLOPE = 1e-7f, MOST_LINE = (float)ISOLINE_MOST;
 
 /* By how much the place on the scale changes from pixel to pixel. carried: of the corners; here: at the pixel. */
 static float slope_at(const struct coloring *coloring, const struct visibility_slopes *slopes, const float carried[3], float w1, float w2,
@@ -74,11 +74,17 @@ static float line_part(const struct coloring *coloring, float column, float slop
     return slope > LEAST_SLOPE ? clamped(0.5f * coloring->lines.line_px + 0.5f - fabsf(place - nearest) / slope, 0, 1) : 0;
 }
 
+static uint32_t packed(double red, double green, double blue)
+{
+    return (uint32_t)(255 * red + 0.5) << 16 | (uint32_t)(255 * green + 0.5) << 8 | (uint32_t)(255 * blue + 0.5);
+}
+
 static uint32_t lined(uint32_t color, float part)
 {
     float blue = (float)(color & 0xff), green = (float)(color >> 8 & 0xff), red = (float)(color >> 16 & 0xff);
-    bool bright = (float)GREY_RED * red + (float)GREY_GREEN * green + (float)GREY_BLUE * blue > 0.32f * 255;
-    return mix(color, bright ? 0x12171f : 0xededed, MOST_LINE * part);
+    bool bright = (float)GREY_RED * red + (float)GREY_GREEN * green + (float)GREY_BLUE * blue > (float)ISOLINE_BRIGHT * 255;
+    uint32_t line = bright ? packed(ISOLINE_DARK_RGB) : packed(ISOLINE_LIGHT, ISOLINE_LIGHT, ISOLINE_LIGHT);
+    return mix(color, line, MOST_LINE * part);
 }
 
 static inline float column_of_carried(const struct coloring *coloring, float carried)

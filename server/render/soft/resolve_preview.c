@@ -37,8 +37,8 @@ SOFT_INLINE lanes_int context_color(const struct raster *raster, lanes_int marks
 static void draw_lines(const uint32_t marks[LANES], uint32_t colors[LANES])
 {
     static const float grey_parts[3] = { (float)GREY_BLUE, (float)GREY_GREEN, (float)GREY_RED };
-    static const float dark[3] = { 0.12f * 255, 0.09f * 255, 0.07f * 255 };
-    const float bright = 0.93f * 255, most = 0.8f / MARK_LINE_WHOLE;
+    static const float dark_rgb[3] = { ISOLINE_DARK_RGB };
+    const float light = (float)ISOLINE_LIGHT * 255, most = (float)ISOLINE_MOST / MARK_LINE_WHOLE;
     for (int i = 0; i < LANES; i++) {
         float part = most * (float)(marks[i] >> MARK_LINE & MARK_LINE_WHOLE), grey = 0;
         uint32_t was = colors[i], now = 0;
@@ -47,7 +47,7 @@ static void draw_lines(const uint32_t marks[LANES], uint32_t colors[LANES])
         for (int c = 0; c < 3; c++)
             grey += grey_parts[c] * (float)(was >> (8 * c) & 0xff);
         for (int c = 0; c < 3; c++) {
-            float from = (float)(was >> (8 * c) & 0xff), to = grey > 0.32f * 255 ? dark[c] : bright;
+            float from = (float)(was >> (8 * c) & 0xff), to = grey > (float)ISOLINE_BRIGHT * 255 ? dark_rgb[2 - c] * 255 : light;
             now |= (uint32_t)(from + part * (to - from) + 0.5f) << (8 * c);
         }
         colors[i] = now | 0xff000000;

@@ -6,17 +6,20 @@
 
 #include "render/soft/soft_impl.h"
 #include "render/soft/vectors.h"
+#include "shaders/constants.glsl"
 
 enum { NORMAL_BITS = 14, NORMAL_MOST = (1 << NORMAL_BITS) - 1 };
 
 /* Of a body that is solid as far as the model says. */
 SOFT_INLINE lanes_int cap_color(lanes x, float y, float pattern_px)
 {
-    lanes phase = (x - y) * (1 / (0.9f * pattern_px)), whole = __builtin_convertvector(lanes_whole(phase), lanes);
+    lanes phase = (x - y) * (1 / ((float)CAP_PERIOD * pattern_px)), whole = __builtin_convertvector(lanes_whole(phase), lanes);
     lanes one = (lanes){ 0 } + 1.0f;
     phase -= whole - lanes_choose(whole > phase, one, (lanes){ 0 });
-    lanes t = lanes_clamp((lanes_most(phase - 0.5f, 0.5f - phase) - 0.28f) * (1 / (0.40f - 0.28f)), 0, 1), part = t * t * (3.0f - 2.0f * t);
-    return pack_color(0.36f - 0.07f * part, 0.37f - 0.07f * part, 0.39f - 0.07f * part);
+    const float from = (float)CAP_STRIPE_FROM, to = (float)CAP_STRIPE_TO;
+    lanes t = lanes_clamp((lanes_most(phase - 0.5f, 0.5f - phase) - from) * (1 / (to - from)), 0, 1), part = t * t * (3.0f - 2.0f * t);
+    static const float cap[3] = { CAP_RGB }, stripe = (float)CAP_STRIPE;
+    return pack_color(cap[0] - stripe * part, cap[1] - stripe * part, cap[2] - stripe * part);
 }
 
 /* Of the inner side of a surface. v: towards the viewer, of unit length; n: of the surface, to either side, of any length. */
@@ -25,8 +28,10 @@ SOFT_INLINE lanes_int inside_color(const lanes v[3], const lanes n[3], const flo
     lanes none = { 0 }, square = n[0] * n[0] + n[1] * n[1] + n[2] * n[2], towards = n[0] * v[0] + n[1] * v[1] + n[2] * v[2];
     lanes over = 1.0f / lanes_root(lanes_most(square, none + 1e-30f));
     over = lanes_choose(towards < 0.0f, -over, over);
-    lanes bright = 0.72f + over * (0.28f * towards + 0.12f * (n[0] * up[0] + n[1] * up[1] + n[2] * up[2]));
-    return pack_color(0.40f * bright, 0.41f * bright, 0.43f * bright);
+    lanes bright =
+        (float)INSIDE_LEAST + over * ((float)INSIDE_TOWARDS * towards + (float)INSIDE_UP * (n[0] * up[0] + n[1] * up[1] + n[2] * up[2]));
+    static const float inside[3] = { INSIDE_RGB };
+    return pack_color(inside[0] * bright, inside[1] * bright, inside[2] * bright);
 }
 
 /* A normal of any length as a mark of the inner side: folded flat from an octahedron. */

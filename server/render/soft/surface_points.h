@@ -209,7 +209,8 @@ SOFT_INLINE vec facing(const struct spot *spot, vec view)
 /* Four taps on a turned square. s, t, depth: 0..1 over the map, a step off the surface. Outside it nothing stands in the light. */
 SOFT_INLINE lanes sun_visible(const struct soft_light *light, lanes s, lanes t, lanes depth)
 {
-    const float spread = 1.58f / (float)light->sun_map_px, u = 0.949f * spread, v = 0.316f * spread;
+    static const float turn[2] = { SUN_TURN };
+    const float spread = (float)SUN_SPREAD / (float)light->sun_map_px, u = turn[0] * spread, v = turn[1] * spread;
     lanes sum = sun_tap(light, s + u, t + v, depth) + sun_tap(light, s - u, t - v, depth);
     sum += sun_tap(light, s - v, t + u, depth) + sun_tap(light, s + v, t - u, depth);
     return lanes_choose((s > 0.0f) & (s < 1.0f) & (t > 0.0f) & (t < 1.0f), 0.25f * sum, all(1));

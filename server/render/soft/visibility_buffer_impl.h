@@ -9,6 +9,7 @@
 #include "render/soft/flags.h"
 #include "render/soft/lanes.h"
 #include "render/soft/visibility_buffer.h"
+#include "shaders/constants.glsl"
 
 static const float SLACK = 1e-5f, COLUMNS_OF_RANGE = COLORMAP_PLACES / (1 + 2 * 1e-5f);
 
@@ -39,8 +40,9 @@ static inline bool has_ink(const struct visibility_buffer *buffer, size_t pixel)
 static inline uint32_t inked(const struct visibility_buffer *buffer, size_t pixel, uint32_t color)
 {
     typedef uint8_t octets __attribute__((vector_size(4)));
-    static const quad rim_dark_bgr = { 41, 23, 13 }, ink_bgr = { 0.14f * 255, 0.10f * 255, 0.08f * 255 };
-    static const float most_ink = 0.5f; /* as shaders/edges.frag */
+    static const float ink_rgb[3] = { EDGE_RGB }, rim_rgb[3] = { RIM_RGB }, most_ink = (float)EDGE_MOST, white = (float)RIM_WHITE;
+    const quad ink_bgr = { ink_rgb[2] * 255, ink_rgb[1] * 255, ink_rgb[0] * 255 };
+    const quad rim_dark_bgr = { rim_rgb[2] * 255, rim_rgb[1] * 255, rim_rgb[0] * 255 };
     uint8_t ink = buffer->ink[pixel];
     octets bytes;
     memcpy(&bytes, &color, sizeof(color));
@@ -54,7 +56,7 @@ static inline uint32_t inked(const struct visibility_buffer *buffer, size_t pixe
     if (ink == VISIBILITY_RIM_DARK)
         now = rim_dark_bgr;
     if (ink == VISIBILITY_RIM_LIGHT)
-        now = 0.1f * now + 229.5f;
+        now = (1 - white) * now + 255 * white;
     bytes = __builtin_convertvector(__builtin_convertvector(now + 0.5f, quad_int), octets);
     memcpy(&color, &bytes, sizeof(color));
     return color;
