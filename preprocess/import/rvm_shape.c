@@ -404,7 +404,7 @@ struct polygon { /* what GLU's callbacks need */
     uint32_t three[3];
     int count;
     double (*made)[3]; /* crossings of edges, found by GLU */
-    size_t made_count, made_room;
+    size_t made_count;
 };
 
 static void on_vertex(void *vertex, void *user)

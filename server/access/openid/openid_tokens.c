@@ -75,7 +75,6 @@ static struct person *make_person(struct openid *openid, json_t *claims, const j
     struct person *person = mem_new(sizeof(*person));
     person->holder = holder;
     person->sub = mem_strdup(text_of(claims, "sub"));
-    person->began_utc_ns = clock_utc_ns();
     keep_tokens(person, tokens);
     return person;
 }

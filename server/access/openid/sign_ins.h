@@ -17,9 +17,9 @@ struct sign_in { /* a log-in that was sent to the provider */
 struct person {                 /* who is signed in; members that are texts are owned */
     struct token_holder holder; /* its hash is that of the session's cookie */
     char *sub, *refresh_token, *access_token;
-    int64_t began_utc_ns, access_until_s; /* UTC; 0: not said */
-    int64_t active_ns;                    /* monotonic: when the person was last at the page */
-    int64_t check_ns;                     /* monotonic: when rights are to be checked next */
+    int64_t access_until_s; /* UTC; 0: not said */
+    int64_t active_ns;      /* monotonic: when the person was last at the page */
+    int64_t check_ns;       /* monotonic: when rights are to be checked next */
     uint64_t number;
     bool checking; /* a thread is asking for them */
 };
