@@ -23,7 +23,8 @@
 #include "tests/support/sweep.h"
 #include "tests/support/synthetic.h"
 
-enum { WIDTH_PX = 640, HEIGHT_PX = 360, PIXELS = WIDTH_PX * HEIGHT_PX };
+/* By default a quarter of the pixels, of which as many are looked at. */
+static int width_px, height_px;
 enum { VIEWS = 14, SAMPLES = 715 }; /* samples: of a view */
 enum { CLOSE_PX = 32 };             /* samples of two pixels, each way */
 static const double TOLERANCE = 1.0 / 255;
@@ -69,8 +70,8 @@ static double error_beyond(const struct span *span, double value)
 /* At that pixel, and as wide as its neighbours' middles are apart. */
 static void look_close(const struct view *view, int x, int y, struct view *close)
 {
-    double right[3], up[3], forward[3], per_px = 2 * tan(view->camera.fov_deg * M_PI / 360) / HEIGHT_PX;
-    double u = per_px * (x + 0.5 - 0.5 * WIDTH_PX), v = per_px * (0.5 * HEIGHT_PX - y - 0.5);
+    double right[3], up[3], forward[3], per_px = 2 * tan(view->camera.fov_deg * M_PI / 360) / height_px;
+    double u = per_px * (x + 0.5 - 0.5 * width_px), v = per_px * (0.5 * height_px - y - 0.5);
     *close = *view;
     close->width_px = close->height_px = CLOSE_PX;
     camera_basis(&view->camera, right, up, forward);
@@ -83,10 +84,10 @@ static void look_close(const struct view *view, int x, int y, struct view *close
 static double error_within_a_pixel(struct site *site, const struct seen *seen, size_t at, double value)
 {
     struct span span = { INFINITY, -INFINITY };
-    int x = (int)(at % WIDTH_PX), y = (int)(at / WIDTH_PX);
-    for (int v = y > 0 ? y - 1 : 0; v <= y + 1 && v < HEIGHT_PX; v++)
-        for (int u = x > 0 ? x - 1 : 0; u <= x + 1 && u < WIDTH_PX; u++)
-            widen(&span, seen->finest[v * WIDTH_PX + u]);
+    int x = (int)(at % width_px), y = (int)(at / width_px);
+    for (int v = y > 0 ? y - 1 : 0; v <= y + 1 && v < height_px; v++)
+        for (int u = x > 0 ? x - 1 : 0; u <= x + 1 && u < width_px; u++)
+            widen(&span, seen->finest[v * width_px + u]);
     if (error_beyond(&span, value) <= TOLERANCE || seen->shown_is_finest)
         return error_beyond(&span, value);
     struct view close;
@@ -104,7 +105,7 @@ static double error_within_a_pixel(struct site *site, const struct seen *seen, s
 static void compare(struct site *site, const struct seen *seen, size_t samples, int camera, struct tally *tally)
 {
     for (size_t i = 0, tries = 0; i < samples && tries < 100 * samples; tries++) {
-        size_t at = (size_t)(synthetic_random_unit(&site->random) * PIXELS);
+        size_t at = (size_t)(synthetic_random_unit(&site->random) * width_px * height_px);
         if (!has_value(seen->shown[at]))
             continue;
         i++;
@@ -200,15 +201,15 @@ static bool ask_for(const struct site *site, const struct way *way, struct view 
 static void compare_views(struct site *site, const struct way *way, struct tally *tally)
 {
     static const double away[VIEWS / 2] = { 0.8, 1.2, 2, 4, 8, 16, 32 };
-    struct seen seen = { .shown = mem_array(PIXELS, sizeof(*seen.shown)),
-                         .here = mem_array(PIXELS, sizeof(*seen.here)),
-                         .finest = way->finest ? NULL : mem_array(PIXELS, sizeof(*seen.finest)),
+    struct seen seen = { .shown = mem_array((size_t)width_px * (size_t)height_px, sizeof(*seen.shown)),
+                         .here = mem_array((size_t)width_px * (size_t)height_px, sizeof(*seen.here)),
+                         .finest = way->finest ? NULL : mem_array((size_t)width_px * (size_t)height_px, sizeof(*seen.finest)),
                          .shown_is_finest = way->finest };
     for (int i = 0; i < VIEWS; i++) {
         struct view view;
         if (!sweep_takes(way->number, i, way->each))
             continue;
-        view_default(site->scene, WIDTH_PX, HEIGHT_PX, &view);
+        view_default(site->scene, width_px, height_px, &view);
         ask_for(site, way, &view);
         view.tier = way->tier;
         if (i % 2) /* else as the plant says */
@@ -255,7 +256,7 @@ static void compare_group(struct site *site, int group, int parity, int refused,
 {
     int bad = 0;
     struct view view;
-    view_default(site->scene, WIDTH_PX, HEIGHT_PX, &view);
+    view_default(site->scene, width_px, height_px, &view);
     for (int i = 0; i < 16; i++) {
         const struct way way = {
             .group = group,
@@ -328,6 +329,8 @@ int main(void)
         cmocka_unit_test(test_plant_room),
         cmocka_unit_test(test_cookie_line),
     };
+    width_px = sweep(640, 320);
+    height_px = sweep(360, 180);
     cmocka_set_message_output(CM_OUTPUT_TAP);
     if (!rig_init(&rig, "reference_test"))
         return 0;
