@@ -5,7 +5,7 @@ import { after, before, test } from 'node:test';
 import { camera, median, metrics, Mover, openFiles, openMany, Pace, residentKb, sanitized, sleep } from './support/crowd.mjs';
 import { PlainClient } from './support/plain_client.mjs';
 import { Relay, relayMissing } from './support/relay.mjs';
-import { sweep } from './support/sweep.mjs';
+import { seed, sweep } from './support/sweep.mjs';
 import { missing, TinyPlant } from './support/tiny_plant.mjs';
 
 const STALLED = 50, VIEWERS = 100, SOAK_S = Number(process.env.SOAK_S ?? sweep(20, 10));
@@ -150,8 +150,7 @@ async function wander(port, random, end) {
 }
 
 test(`random connects, drags, stalls and cuts for ${SOAK_S} s: nothing grows`, { skip, timeout: (SOAK_S + 60) * 1000 }, async () => {
-    const seed = Number(process.env.SEED ?? Date.now() % 1e9);
-    console.log(`# SEED=${seed}`);
+    console.log(`# PLANTCAST_SEED=${seed}`);
     let state = seed;
     const random = () => ((state = (state * 1103515245 + 12345) % 2147483648) / 2147483648);
     const filesBefore = openFiles(pid), begin = performance.now(), end = begin + SOAK_S * 1000;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // `plantcast match`: tag lists made from the names of real plants, matched and counted against the truth; lists that are in a bad way; what
 // people change by hand and a second run; and the whole way from an export of a CAD system to a picture.
+import { seed } from './support/sweep.mjs';
 import assert from 'node:assert/strict';
 import { spawn, spawnSync } from 'node:child_process';
 import { chmodSync, copyFileSync, cpSync, existsSync, lstatSync, mkdirSync, mkdtempSync, readdirSync, readFileSync, renameSync, rmSync,
@@ -18,7 +19,6 @@ const notBuilt = absent.length > 0 ? `not built: ${absent.join(', ')}` : false;
 const noData = notBuilt || (existsSync(join(DATA, 'cad')) ? false : 'no ../shared/data/cad');
 const run = (program, ...args) => spawnSync(join(BIN, program), args, { encoding: 'utf8', timeout: 300000 });
 const good = (said) => (assert.equal(said.status, 0, said.stderr), said);
-const seed = Number(process.env.SEED ?? Date.now() % 1000000);
 
 async function inFolder(f) {
     const folder = mkdtempSync(join(tmpdir(), 'plantcast-match-'));

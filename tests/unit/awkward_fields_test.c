@@ -11,7 +11,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 #include <jansson.h>
 #include <cmocka.h>
 
@@ -404,10 +403,8 @@ static void hundreds_of_sensors_on_nine_triangles(void **state)
 
 int main(void)
 {
-    const char *given = getenv("PLANTCAST_SEED");
     cmocka_set_message_output(CM_OUTPUT_TAP);
-    seed = given ? strtoull(given, NULL, 10) : sweep_is_whole() ? (uint64_t)time(NULL) : 1;
-    print_message("# PLANTCAST_SEED=%llu\n", (unsigned long long)seed);
+    seed = sweep_seed();
     const struct CMUnitTest tests[] = {
         WITH_FOLDER(edges_longer_than_the_reach),
         WITH_FOLDER(a_reach_shorter_than_the_sampling),

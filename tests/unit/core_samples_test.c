@@ -8,12 +8,12 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 #include <cmocka.h>
 
 #include "base/mem.h"
 #include "corelink/core_samples.h"
 #include "tests/support/plant_by_hand.h"
+#include "tests/support/sweep.h"
 #include "value/quality.h"
 
 #define S INT64_C(1000000000)
@@ -92,8 +92,7 @@ static void nonsense_is_refused(void **state)
 static void any_bytes_are_read_or_refused(void **state)
 {
     (void)state;
-    unsigned seed = (unsigned)time(NULL);
-    printf("# seed %u\n", seed);
+    unsigned seed = (unsigned)sweep_seed();
     struct text text = make_message();
     for (int round = 0; round < 20000; round++) {
         struct sample_event *got;

@@ -10,11 +10,11 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 
 #include "base/mem.h"
 #include "field/field.h"
 #include "protocol/asset_distance.h"
+#include "tests/support/sweep.h"
 #include "tests/support/synthetic.h"
 #include "value/quality.h"
 
@@ -211,14 +211,6 @@ static void assert_true_field(const struct rig *rig, double tolerance)
     }
 }
 
-static uint64_t fresh_seed(void)
-{
-    const char *given = getenv("SEED");
-    uint64_t seed = given ? strtoull(given, NULL, 0) : (uint64_t)time(NULL);
-    print_message("# SEED=%llu\n", (unsigned long long)seed);
-    return seed;
-}
-
 static double between(uint64_t *random, double low, double high)
 {
     return low + (high - low) * synthetic_random_unit(random);
@@ -269,7 +261,7 @@ static void randomize(struct rig *rig, uint64_t *random)
 static void test_random_input_is_as_plain_loops_say(void **state)
 {
     (void)state;
-    uint64_t seed = fresh_seed(), random = seed;
+    uint64_t seed = sweep_seed(), random = seed;
     for (int round = 0; round < 60; round++) {
         size_t sensors = 1 + synthetic_random(&random) % 24, vertices = 260 + synthetic_random(&random) % 600;
         struct synthetic *plant = synthetic_create(.vertices = vertices, .sensors = sensors, .island = 10, .seed = seed + (uint64_t)round);
@@ -287,7 +279,7 @@ static void test_random_input_is_as_plain_loops_say(void **state)
 static void test_extreme_parameters(void **state)
 {
     (void)state;
-    uint64_t random = fresh_seed();
+    uint64_t random = sweep_seed();
     struct rig rig = rig_create(synthetic_create(.vertices = 1500, .sensors = 9, .seed = random));
     const double powers[] = { 0.5, 2, 16 }, strengths[] = { 0, 1, 100 };
     for (int i = 0; i < 3; i++)
@@ -310,7 +302,7 @@ static void test_extreme_parameters(void **state)
 static void test_4096_sensors(void **state)
 {
     (void)state;
-    uint64_t random = fresh_seed();
+    uint64_t random = sweep_seed();
     struct rig rig = rig_create(synthetic_create(.vertices = 4400, .sensors = 4096, .seed = random));
     for (size_t i = 0; i < 4096; i += 7)
         set(&rig, i, 1e3, QUALITY_BAD_SENSOR_FAILURE);
@@ -337,7 +329,7 @@ static void test_4096_sensors(void **state)
 static void test_exact_at_the_sensor(void **state)
 {
     (void)state;
-    struct rig rig = rig_create(synthetic_create(.vertices = 700, .sensors = 12, .seed = fresh_seed()));
+    struct rig rig = rig_create(synthetic_create(.vertices = 700, .sensors = 12, .seed = sweep_seed()));
     const double powers[] = { 0.5, 1, 2, 3.7, 16 };
     for (int k = 0; k < 5; k++)
         for (int mode = 0; mode < 2; mode++) {
@@ -373,7 +365,7 @@ static void test_two_sensors_at_one_place_are_averaged(void **state)
 static void test_losing_the_hottest_is_not_painted_over(void **state)
 {
     (void)state;
-    struct rig rig = rig_create(synthetic_create(.vertices = 2000, .sensors = 5, .seed = fresh_seed()));
+    struct rig rig = rig_create(synthetic_create(.vertices = 2000, .sensors = 5, .seed = sweep_seed()));
     for (size_t i = 0; i < 5; i++)
         set(&rig, i, i == 2 ? 95 : 20, i == 2 ? QUALITY_BAD_SENSOR_FAILURE : QUALITY_GOOD);
     for (int way = 0; way < 4; way++) {
@@ -561,7 +553,7 @@ static void test_over_range_passes_shepard_and_not_paper(void **state)
 static void test_equal_readings_make_exactly_that(void **state)
 {
     (void)state;
-    struct rig rig = rig_create(synthetic_create(.vertices = 3000, .sensors = 11, .min = 0.1, .max = 0.3, .seed = fresh_seed()));
+    struct rig rig = rig_create(synthetic_create(.vertices = 3000, .sensors = 11, .min = 0.1, .max = 0.3, .seed = sweep_seed()));
     rig.params.power = 3.3;
     for (size_t i = 0; i < 11; i++)
         set(&rig, i, 0.3, QUALITY_GOOD);
@@ -773,7 +765,7 @@ static void test_an_asset_without_sensors_of_the_group_has_no_field(void **state
 static void test_an_hour_of_flicker_leaves_no_drift(void **state)
 {
     (void)state;
-    uint64_t random = fresh_seed();
+    uint64_t random = sweep_seed();
     struct rig rig = rig_create(synthetic_create(.vertices = 800, .sensors = 12, .seed = random));
     for (int paper = 0; paper < 2; paper++) {
         rig.params.interpolation = paper ? INTERPOLATION_PAPER : INTERPOLATION_SHEPARD;
@@ -794,7 +786,7 @@ static void test_flicker_at_any_moment_leaves_no_drift(void **state)
     static const uint32_t qualities[] = { QUALITY_GOOD, QUALITY_BAD_COMMUNICATION_ERROR, QUALITY_UNCERTAIN_LAST_USABLE,
                                           QUALITY_BAD_SENSOR_FAILURE };
     (void)state;
-    uint64_t random = fresh_seed();
+    uint64_t random = sweep_seed();
     struct rig rig = rig_create(synthetic_create(.vertices = 600, .sensors = 12, .seed = random));
     for (int paper = 0; paper < 2; paper++) {
         rig.params.interpolation = paper ? INTERPOLATION_PAPER : INTERPOLATION_SHEPARD;
@@ -833,7 +825,7 @@ static float worst_difference(const struct rig *rig)
 static void test_an_hour_of_changes_leaves_no_drift(void **state)
 {
     (void)state;
-    uint64_t random = fresh_seed();
+    uint64_t random = sweep_seed();
     struct rig rig = rig_create(synthetic_create(.vertices = 600, .sensors = 40, .seed = random));
     for (int paper = 0; paper < 2; paper++) {
         rig.params.interpolation = paper ? INTERPOLATION_PAPER : INTERPOLATION_SHEPARD;
@@ -865,7 +857,7 @@ static void test_sums_are_made_anew_now_and_then(void **state)
 static void test_a_day_of_changes_leaves_no_drift(void **state)
 {
     (void)state;
-    uint64_t random = fresh_seed();
+    uint64_t random = sweep_seed();
     struct rig rig = rig_create(synthetic_create(.vertices = 300, .sensors = 12, .seed = random));
     for (int tick = 0; tick < 86400; tick++) {
         set(&rig, synthetic_random(&random) % 12, between(&random, -1000, 1000), QUALITY_GOOD);
@@ -881,7 +873,7 @@ static void test_a_day_of_changes_leaves_no_drift(void **state)
 static void test_cut_of_the_work_does_not_matter(void **state)
 {
     (void)state;
-    uint64_t random = fresh_seed();
+    uint64_t random = sweep_seed();
     struct rig rig = rig_create(synthetic_create(.vertices = 70000, .sensors = 9, .seed = random));
     struct workers *one = workers_create(1), *many = workers_create(5);
     struct field *alone = field_create(one, &rig.plant->scene), *crowd = field_create(many, &rig.plant->scene);
@@ -1028,7 +1020,7 @@ static void test_dragging_stays_under_the_bound(void **state)
 static void test_without_room_for_columns_the_bits_are_the_same(void **state)
 {
     (void)state;
-    uint64_t random = fresh_seed();
+    uint64_t random = sweep_seed();
     struct rig rig = rig_create(synthetic_create(.vertices = 3000, .sensors = 37, .seed = random));
     struct field *tight = field_create(workers, &rig.plant->scene), *half = field_create(workers, &rig.plant->scene);
     const size_t columns = (size_t)3000 * 37 * sizeof(float);
@@ -1099,7 +1091,7 @@ static void test_few_sensors_are_summed_in_one_go(void **state)
 {
     (void)state;
     enum { VERTICES = 1100 };
-    uint64_t random = fresh_seed();
+    uint64_t random = sweep_seed();
     for (size_t sensors = 1; sensors <= 9; sensors++)
         for (int paper = 0; paper < 2; paper++) {
             struct rig rig = rig_create(synthetic_create(.vertices = VERTICES, .sensors = sensors, .seed = random + sensors));
@@ -1142,7 +1134,7 @@ static void check_many_at_once(size_t sensors)
     enum { ASSETS = 12, VERTICES = 1500 };
     struct rig rig = rig_create(synthetic_create(.vertices = VERTICES, .sensors = sensors, .assets = ASSETS));
     struct field *alone = field_create(workers, &rig.plant->scene);
-    uint64_t random = fresh_seed();
+    uint64_t random = sweep_seed();
     size_t bounds[] = { FIELD_DEFAULT_BYTES, 100000 };
     for (int round = 0; round < 60; round++) {
         int assets[ASSETS];
@@ -1228,7 +1220,7 @@ static void test_far_assets_have_room_for_what_is_drawn(void **state)
 static void test_a_level_is_a_prefix(void **state)
 {
     (void)state;
-    uint64_t random = fresh_seed();
+    uint64_t random = sweep_seed();
     struct rig rig = rig_create(synthetic_create(.vertices = 3000, .sensors = 20, .seed = random));
     const size_t counts[] = { 300, 3000, 300, 300, 1, 2000, 700, 2999 };
     for (int paper = 0; paper < 2; paper++) {
@@ -1265,7 +1257,7 @@ static void test_a_prefix_costs_less(void **state)
 static void test_in_pieces_it_is_the_same(void **state)
 {
     (void)state;
-    uint64_t random = fresh_seed();
+    uint64_t random = sweep_seed();
     struct rig rig = rig_create(synthetic_create(.vertices = 5000, .sensors = 30, .seed = random));
     for (int round = 0; round < 6; round++) {
         double first = between(&random, 0, 100);
@@ -1410,7 +1402,7 @@ static void assert_difference(const struct rig *rig, const struct snapshot *then
 static void test_difference_is_that_of_two_fields(void **state)
 {
     (void)state;
-    uint64_t random = fresh_seed();
+    uint64_t random = sweep_seed();
     struct rig rig = rig_create(synthetic_create(.vertices = 900, .sensors = 12, .island = 9, .seed = random));
     struct baselines *baselines = baselines_create();
     field_set_baselines(rig.field, baselines);
@@ -1467,7 +1459,7 @@ static void test_difference_needs_both(void **state)
 static void test_overrides_are_as_if_configured(void **state)
 {
     (void)state;
-    struct rig rig = rig_create(synthetic_create(.vertices = 700, .sensors = 6, .seed = fresh_seed()));
+    struct rig rig = rig_create(synthetic_create(.vertices = 700, .sensors = 6, .seed = sweep_seed()));
     for (int paper = 0; paper < 2; paper++) {
         rig.params.interpolation = paper ? INTERPOLATION_PAPER : INTERPOLATION_SHEPARD;
         struct field_params overridden = rig.params;

@@ -5,11 +5,11 @@
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stdlib.h>
-#include <time.h>
 
 #include <cmocka.h>
 
 #include "base/clock.h"
+#include "tests/support/sweep.h"
 
 static const int64_t MS = NS_PER_MS;
 
@@ -361,8 +361,7 @@ static void who_see_the_same_take_one_step(void **state)
 static void random_clients(void **state)
 {
     (void)state;
-    unsigned seed = (unsigned)time(NULL);
-    print_message("# seed %u\n", seed);
+    unsigned seed = (unsigned)sweep_seed();
     struct pacer pacer = fresh();
     pacer.last_seq = 100;
     for (int i = 0; i < 100000; i++) {

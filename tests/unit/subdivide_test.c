@@ -9,7 +9,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 #include <cmocka.h>
 
 #include "base/mem.h"
@@ -49,14 +48,6 @@ static double random_unit(uint32_t *seed)
 
 /* Of random bodies; another at each time in full only: of 120 seeds one has a farthest level whose few pixels within the outline are more
    than assert_pixels() allows beside a sensor. */
-static uint32_t first_seed(void)
-{
-    const char *given = getenv("PLANTCAST_SEED");
-    uint32_t seed = given ? (uint32_t)strtoul(given, NULL, 10) : sweep_is_whole() ? (uint32_t)time(NULL) : 1;
-    print_message("# PLANTCAST_SEED=%u\n", seed);
-    return seed;
-}
-
 static uint32_t add_vertex(struct geometry *g, double x, double y, double z, double nx, double ny, double nz)
 {
     const float p[3] = { (float)x, (float)y, (float)z }, n[3] = { (float)nx, (float)ny, (float)nz };
@@ -836,7 +827,7 @@ static void make_random_plate(struct body *body, double points[SENSORS][3], uint
 
 static void random_plates_show_the_field(void **state)
 {
-    uint32_t seed = first_seed();
+    uint32_t seed = (uint32_t)sweep_seed();
     (void)state;
     for (int n = 0; n < 6; n++) {
         struct body body = { 0 };
@@ -905,7 +896,7 @@ static void make_random_ring(struct body *body, double points[SENSORS][3], uint3
 
 static void random_rings_show_the_field_on_every_level(void **state)
 {
-    uint32_t seed = first_seed();
+    uint32_t seed = (uint32_t)sweep_seed();
     (void)state;
     for (int n = 0; n < 3; n++) {
         struct body body = { .as_solved = true };

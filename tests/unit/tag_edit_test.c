@@ -8,13 +8,13 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 
 #include "base/atomic_file.h"
 #include "base/mem.h"
 #include "base/text.h"
 #include "plant/csv.h"
 #include "plant/tag_edit.h"
+#include "tests/support/sweep.h"
 
 static void expect(const char *text, const struct tag_edit *edits, size_t count, const char *expected)
 {
@@ -157,8 +157,7 @@ static void test_random_lists(void **state)
     char folder[] = "/tmp/tag_edit.XXXXXX";
     assert_non_null(mkdtemp(folder));
     char *before_path = mem_printf("%s/before.csv", folder), *after_path = mem_printf("%s/after.csv", folder);
-    seed = (unsigned)time(NULL);
-    print_message("# seed %u\n", seed);
+    seed = (unsigned)sweep_seed();
     for (int round = 0; round < 200; round++) {
         struct text text = { 0 };
         int rows = 1 + below(6), changed = below(rows);

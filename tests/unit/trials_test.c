@@ -9,11 +9,11 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 
 #include "base/mem.h"
 #include "field/field.h"
 #include "protocol/asset_distance.h"
+#include "tests/support/sweep.h"
 #include "tests/support/synthetic.h"
 
 enum { VERTICES = 900, SENSORS = 6, MOVED = 2, TO = 400 };
@@ -29,7 +29,7 @@ struct fixture {
 static int setup(void **state)
 {
     struct fixture *f = mem_new(sizeof(*f));
-    f->plant = synthetic_create(.vertices = VERTICES, .sensors = SENSORS, .assets = 2, .seed = (uint64_t)time(NULL));
+    f->plant = synthetic_create(.vertices = VERTICES, .sensors = SENSORS, .assets = 2, .seed = sweep_seed());
     f->workers = workers_create(2);
     f->field = field_create(f->workers, &f->plant->scene);
     f->trials = trials_create();

@@ -8,3 +8,6 @@ export const sweep = (whole, part) => (isWhole ? whole : part);
 // Whether item i of a row is tried: in full each, otherwise every n-th, another one of them in each row, so that over n rows each item
 // has its turn.
 export const takes = (row, i, n) => isWhole || i % n === row % n;
+
+// Where random numbers begin: as PLANTCAST_SEED says; else by default always the same, in full another one in each run.
+export const seed = Number(process.env.PLANTCAST_SEED ?? sweep(Date.now() % 1e9, 1));
