@@ -164,7 +164,7 @@ test('20,000 tags scroll smoothly', options, async (t) => {
 
 // Forced collections before each measure; ten seconds here, half an hour in `make test-long`.
 const USE_S = Number(process.env.USE_S ?? 10);
-test('memory does not grow with use', { ...options, timeout: options.timeout + 1000 * USE_S }, async (t) => {
+test('memory does not grow with use', { ...options, timeout: options.timeout + 2000 * USE_S }, async (t) => {
     const client = await page.context().newCDPSession(page);
     const heap = async () => {
         await client.send('HeapProfiler.collectGarbage');
@@ -197,9 +197,15 @@ test('memory does not grow with use', { ...options, timeout: options.timeout + 1
         await new Promise((done) => setTimeout(done, 500));
     }, ms);
     await use(3000); // what is made once is made
-    const before = await heap();
-    await use(USE_S * 1000);
-    const after = await heap();
+    let before = await heap(), after;
+    // A busy machine makes part of that later. What grows with use grows each time.
+    for (let times = 0; times < 2; times++) {
+        before = after ?? before;
+        await use(USE_S * 1000);
+        after = await heap();
+        if (after.megabytes < before.megabytes * 1.1 + 2 && after.nodes < before.nodes * 1.2 + 500)
+            break;
+    }
     t.diagnostic(`${USE_S} s: ${before.megabytes.toFixed(1)} -> ${after.megabytes.toFixed(1)} MB, ${before.nodes} -> ${after.nodes} nodes`);
     assert.ok(after.megabytes < before.megabytes * 1.1 + 2, `${before.megabytes} -> ${after.megabytes} MB`);
     assert.ok(after.nodes < before.nodes * 1.2 + 500, `${before.nodes} -> ${after.nodes} nodes`);
