@@ -160,6 +160,7 @@ struct session_tile {
         uint32_t seq;     /* of the frame of this session that shows it */
     } held[TILE_HELD];    /* sent and not presented, oldest first */
     int held_count;
+    uint64_t unchanged; /* the picture that is the same as the frame that is awaited; 0: none */
     uint32_t presented_seq;
     int64_t late_us;       /* since when it is left out, UTC; 0: it is not */
     int64_t out_ns, in_ns; /* for how long it is left out; when it may come in again, or came */

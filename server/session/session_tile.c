@@ -36,15 +36,31 @@ void session_tile_sent(struct session *session, uint64_t picture, uint32_t seq)
     tile->held[tile->held_count++] = (struct tile_held){ picture, seq };
 }
 
+/* What is unchanged is so from the frame that was drawn before, which may still be on its way from the encoder: the answer without a frame
+   overtakes it, and is then that frame's. */
 void session_tile_unchanged(struct session *session, uint64_t picture)
 {
+    struct session_tile *tile = &session->tile;
     struct encoded_frame *last = session->delivery.ready;
-    while (last && last->next)
-        last = last->next;
+    int others = session->delivery.pacer.asked - 1;
+    for (struct encoded_frame *ready = last; ready; last = ready, ready = ready->next)
+        others--;
+    if (others > 0) {
+        tile->unchanged = picture;
+        return;
+    }
+    tile->unchanged = 0;
     if (last)
         last->request.picture = picture;
     else
         session_tile_sent(session, picture, session->delivery.pacer.last_seq);
+}
+
+void session_tile_came(struct session *session, struct frame_request *request)
+{
+    if (request->picture < session->tile.unchanged)
+        request->picture = session->tile.unchanged;
+    session->tile.unchanged = 0;
 }
 
 /* --- who keeps up ---------------------------------------------------------------------------------------------------------- */

@@ -124,13 +124,30 @@ static uint64_t common(const struct session_tiles *tiles, uint64_t presented)
     return 0;
 }
 
+/* Where nothing is under way and somebody has a frame that is not shown, as where a request was replaced for one and no longer for
+   another, what they show would stay as it is: all are sent a picture anew. */
+static void ask_anew(const struct session_tiles *tiles)
+{
+    bool any = false;
+    for (size_t i = 0; i < tiles->count; i++) {
+        const struct session *member = tiles->members[i];
+        if (member->delivery.ready || member->delivery.pacer.asked > 0 || member->delivery.pacer.flight_count > 0)
+            return;
+        any |= member->delivery.pacer.acked.seq > member->tile.presented_seq;
+    }
+    for (size_t i = 0; i < tiles->count && any; i++)
+        tiles->members[i]->demand.any = true;
+}
+
 void session_tiles_present(const struct session_tiles *tiles, uint64_t *presented, int64_t now_ns, int64_t now_utc_ns)
 {
     uint64_t picture = common(tiles, *presented);
     int64_t wait_ns = 0;
     (void)now_ns;
-    if (!picture)
+    if (!picture) {
+        ask_anew(tiles);
         return;
+    }
     for (size_t i = 0; i < tiles->count; i++) {
         int64_t rtt_ns = channel_rtt_ns(&tiles->members[i]->delivery.pacer.channel);
         wait_ns = rtt_ns > wait_ns ? rtt_ns : wait_ns;

@@ -19,7 +19,8 @@ struct session_tiles { /* of one wall: those that take part, and one that leads 
    request: equal views, in the quality that the slowest can take. number: of that picture, larger than before. Once the service takes
    them, session_requested() is to be called. */
 bool session_tiles_next_request(const struct session_tiles *tiles, uint64_t number, int64_t now_ns, struct frame_request requests[]);
-/* Has all show the newest picture that all have, if that is newer than *presented, at one instant. */
+/* Has all show the newest picture that all have, if that is newer than *presented, at one instant. Where nothing is under way and some have
+   pictures that others have not, all want another one. */
 void session_tiles_present(const struct session_tiles *tiles, uint64_t *presented, int64_t now_ns, int64_t now_utc_ns);
 
 #endif

@@ -1,0 +1,113 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Tiles of one picture: what they are sent to show, and that none waits for ever for what another will not have. */
+#include "session/session_tiles.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+
+#include <cmocka.h>
+
+#include "base/mem.h"
+#include "session/session_impl.h"
+
+enum { TILES = 2 };
+struct wall_case {
+    struct session *members[TILES];
+    struct session_tiles tiles;
+};
+
+static void set_up(struct wall_case *wall)
+{
+    for (int i = 0; i < TILES; i++)
+        wall->members[i] = mem_new(sizeof(*wall->members[i]));
+    wall->tiles = (struct session_tiles){ .members = wall->members, .count = TILES, .leader = wall->members[0] };
+}
+
+static void tear_down(struct wall_case *wall)
+{
+    for (int i = 0; i < TILES; i++) {
+        for (int k = 0; k < wall->members[i]->owed.reply_count; k++)
+            mem_free(wall->members[i]->owed.replies[k]);
+        mem_free(wall->members[i]);
+    }
+}
+
+/* A tile has a frame of that picture, and has acknowledged it. */
+static void have(struct wall_case *wall, int i, uint64_t picture, uint32_t seq)
+{
+    session_tile_sent(wall->members[i], picture, seq);
+    wall->members[i]->delivery.pacer.acked.seq = seq;
+}
+
+static void test_what_all_have_is_shown(void **state)
+{
+    struct wall_case wall;
+    uint64_t presented = 5;
+    (void)state;
+    set_up(&wall);
+    have(&wall, 0, 6, 3);
+    have(&wall, 1, 6, 4);
+    have(&wall, 1, 7, 5);
+    session_tiles_present(&wall.tiles, &presented, 0, 0);
+    assert_int_equal(presented, 6);
+    for (int i = 0; i < TILES; i++) {
+        assert_int_equal(wall.members[i]->owed.reply_count, 1);
+        assert_false(wall.members[i]->demand.any);
+    }
+    tear_down(&wall);
+}
+
+static void test_of_two_pictures_none_is_waited_for(void **state)
+{
+    struct wall_case wall;
+    uint64_t presented = 5;
+    (void)state;
+    set_up(&wall);
+    have(&wall, 0, 6, 3);
+    have(&wall, 1, 7, 3);
+    wall.members[0]->delivery.pacer.asked = 1; /* it may have the other's yet */
+    session_tiles_present(&wall.tiles, &presented, 0, 0);
+    assert_false(wall.members[0]->demand.any || wall.members[1]->demand.any);
+    wall.members[0]->delivery.pacer.asked = 0;
+    session_tiles_present(&wall.tiles, &presented, 0, 0);
+    assert_true(wall.members[0]->demand.any && wall.members[1]->demand.any);
+    assert_int_equal(presented, 5);
+    tear_down(&wall);
+}
+
+/* 6 is drawn and on its way from the encoder; the answer that 7 is no other one comes before it. */
+static void test_an_answer_without_a_frame_overtakes_one(void **state)
+{
+    struct wall_case wall;
+    uint64_t presented = 5;
+    struct frame_request request = { .picture = 6 };
+    (void)state;
+    set_up(&wall);
+    have(&wall, 0, 5, 3);
+    wall.members[0]->delivery.pacer.last_seq = 3;
+    wall.members[0]->delivery.pacer.asked = 2;
+    session_tile_unchanged(wall.members[0], 7);
+    wall.members[0]->delivery.pacer.asked = 1;
+    have(&wall, 1, 7, 4);
+    session_tiles_present(&wall.tiles, &presented, 0, 0);
+    assert_int_equal(presented, 5); /* not 7 by the frame of 5 */
+    session_tile_came(wall.members[0], &request);
+    assert_int_equal(request.picture, 7);
+    wall.members[0]->delivery.pacer.asked = 0;
+    have(&wall, 0, request.picture, 4);
+    session_tiles_present(&wall.tiles, &presented, 0, 0);
+    assert_int_equal(presented, 7);
+    assert_int_equal(wall.members[0]->tile.presented_seq, 4);
+    tear_down(&wall);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_what_all_have_is_shown),
+        cmocka_unit_test(test_of_two_pictures_none_is_waited_for),
+        cmocka_unit_test(test_an_answer_without_a_frame_overtakes_one),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
