@@ -11,9 +11,12 @@
 #include "model_plant.h"
 #include "value/quality.h"
 
+static const int64_t TIMED_NS = 60 * NS_PER_S; /* links get slower, and a server's clock may be set */
+
 void model_init(struct model *model)
 {
-    *model = (struct model){ .rows = json_object(), .round_trip_ns = INT64_MAX };
+    int64_t now_ns = clock_mono_ns();
+    *model = (struct model){ .rows = json_object(), .round_trip_ns = INT64_MAX, .offset_us = (clock_utc_ns() - now_ns) / 1000 };
 }
 
 static void forget_plant(struct model *model)
@@ -36,11 +39,12 @@ void model_finish(struct model *model)
     json_decref(model->rows);
     json_decref(model->views);
     json_decref(model->orders);
+    json_decref(model->notes);
 }
 
 int64_t model_now_us(const struct model *model)
 {
-    return clock_utc_ns() / 1000 + model->offset_us;
+    return clock_mono_ns() / 1000 + model->offset_us;
 }
 
 void model_pong(struct model *model, const json_t *message, int64_t sent_ns, int64_t now_ns)
@@ -50,10 +54,14 @@ void model_pong(struct model *model, const json_t *message, int64_t sent_ns, int
     for (size_t i = 0; json_is_number(oldest) && i < model->plant.tag_count; i++) /* what did not change was read again */
         if (model->read_ns[i] && model->read_ns[i] < since_ns)
             model->read_ns[i] = since_ns;
-    if (rtt_ns < 0 || rtt_ns > model->round_trip_ns + NS_PER_MS) /* clocks drift apart: one that is about as short as the shortest counts */
+    bool known = model->round_trip_ns != INT64_MAX && now_ns - model->timed_ns < TIMED_NS;
+    if (rtt_ns < 0 || (known && rtt_ns > model->round_trip_ns + NS_PER_MS)) /* clocks drift apart: one that is about as short counts too */
         return;
-    model->round_trip_ns = rtt_ns;
-    model->offset_us = json_integer_value(json_object_get(message, "time_us")) - (clock_utc_ns() - rtt_ns / 2) / 1000;
+    if (!known || rtt_ns <= model->round_trip_ns) {
+        model->round_trip_ns = rtt_ns;
+        model->timed_ns = now_ns;
+    }
+    model->offset_us = json_integer_value(json_object_get(message, "time_us")) - (now_ns - rtt_ns / 2) / 1000;
 }
 
 /* --- readings ----------------------------------------------------------------------------------------------------------------- */

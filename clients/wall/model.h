@@ -31,7 +31,8 @@ struct model {
                                  first */
     size_t list_count;
     json_t *views, *orders, *notes;   /* lists; NULL: none */
-    int64_t offset_us, round_trip_ns; /* the server's clock less ours, by the shortest round trip */
+    int64_t offset_us; /* the server's clock less our monotonic one, which nobody sets, by the shortest round trip of about a minute */
+    int64_t round_trip_ns, timed_ns; /* that one; when it came */
     bool live, clock_set, simulated;  /* simulated: some of it was not measured */
 };
 
