@@ -97,7 +97,7 @@ void wall_source_look(struct wall_source *source, struct shown *out)
              player->model.welcome ? " \u00b7 " : "", player->wall_id, player->display);
     int64_t age_ns = source->card ? -1 : oldest_ns(&player->model, now_ns);
     pthread_mutex_unlock(&player->lock);
-    struct rules_shift shift = rules_shift(now_ns);
+    struct rules_shift shift = player_shift(player);
     *out = (struct shown){
         .picture = source->card ? NULL : player->surface,
         .headline = source->headline,

@@ -133,9 +133,7 @@ struct shown {
 static bool show(struct player *player, struct screen *screen, int64_t now_ns, bool exposed, bool *changed, struct shown *shown)
 {
     struct box dirty;
-    struct shown now = { now_ns, rules_shift(now_ns), player_brightness(player) };
-    if (player_is_tile(player)) /* lines would break where screens meet */
-        now.shift = (struct rules_shift){ 0 };
+    struct shown now = { now_ns, player_shift(player), player_brightness(player) };
     *changed = player_draw(player, now_ns, &dirty);
     if (*changed)
         screen_update(screen, player->surface, &dirty);

@@ -7,8 +7,10 @@
 
 /* Writes what makes another drawing of them: those that are in force now. */
 void notes_say(const struct model *model, struct text *said);
-/* Draws those that are in force, over the picture of a pane with the upper left corner there. A view that is split shows none: it has two
-   places for each. */
+/* Draws those that are in force, over the picture of a pane with the upper left corner there. A view that is split has them in its left
+   half. */
 void notes_draw(const struct view_pane *pane, const struct model *model, cairo_t *cairo, double x, double y);
+/* Draws where a desk points, and who, likewise. */
+void notes_draw_pointer(const struct view_pane *pane, cairo_t *cairo, double x, double y, const double place_m[3], const char *by);
 
 #endif

@@ -185,8 +185,9 @@ static void alarm_texts(const struct player *player, const struct alarm_row *row
         snprintf(what + strlen(what), 300 - strlen(what), "%s%s", what[0] ? " \u00b7 " : "", tag->description);
 }
 
-static void count_text(const struct player *player, bool flood, char out[200])
+void pane_count_alarms(const struct player *player, char out[200])
 {
+    bool flood = is_flood(player);
     char active[16], waiting[16];
     int counts[2] = { 0, 0 };
     for (size_t i = 0; i < player->model.list_count; i++) {
@@ -195,9 +196,8 @@ static void count_text(const struct player *player, bool flood, char out[200])
     }
     snprintf(active, sizeof(active), "%d", counts[0]);
     snprintf(waiting, sizeof(waiting), "%d", counts[1]);
-    if (!flood && !counts[0] && !counts[1])
-        snprintf(out, 200, "%s", say("alarms.none", NULL));
-    else
+    out[0] = 0;
+    if (flood || counts[0] || counts[1])
         snprintf(out, 200, "%s", say(flood ? "walls.flood" : "walls.counts", "active", active, "waiting", waiting, NULL));
 }
 
@@ -207,8 +207,9 @@ static void say_alarms(struct player *player, const struct pane *pane, int64_t n
     struct alarm_row *rows;
     char head[200], what[300], counts[200];
     size_t count = alarm_rows(player, flood, &rows);
-    count_text(player, flood, counts);
-    text_add(said, "%s\n%s\n%s\n", pane->title ? pane->title : say("alarms.title", NULL), about_age(now_ns - player->said_ns), counts);
+    pane_count_alarms(player, counts);
+    text_add(said, "%s\n%s\n%s\n", pane->title ? pane->title : say("alarms.title", NULL), about_age(now_ns - player->said_ns),
+             counts[0] ? counts : say("alarms.none", NULL));
     for (size_t i = 0; i < count; i++) {
         alarm_texts(player, &rows[i], head, what);
         text_add(said, "%d %d %d %s %s %s\n", rows[i].alarm->priority, (int)rows[i].alarm->status, (int)rows[i].alarm->waiting, head, what,

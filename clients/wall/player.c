@@ -34,18 +34,29 @@ static json_t *words_hello(struct link *link)
     return json_pack("{s:s,s:i,s:i,s:[s]}", "type", "hello", "width", 16, "height", 16, "codecs", "jpeg"); /* it is there for the words */
 }
 
+/* What is for one picture over many displays stands under the first of them. */
+static bool is_for_us(const struct player *player, const struct pane *pane, const json_t *place)
+{
+    const char *wall = json_string_value(json_object_get(place, "wall")), *area = json_string_value(json_object_get(place, "area"));
+    return wall && !strcmp(wall, player->wall_id) && area && !strcmp(area, pane->area) &&
+           json_integer_value(json_object_get(place, "display")) == (pane->view.tile.display ? 1 : player->display);
+}
+
 static void on_pointed(struct player *player, const json_t *message)
 {
     const json_t *list = json_object_get(message, "list");
     for (size_t i = 0; i < json_array_size(list); i++) {
         const json_t *one = json_array_get(list, i), *place = json_object_get(one, "position");
-        const char *area = json_string_value(json_object_get(one, "area"));
-        player->pointed = NULL;
-        for (int k = 0; k < player->pane_count && area && json_array_size(place) == 3; k++)
-            if (!strcmp(player->panes[k].area, area))
-                player->pointed = &player->panes[k];
+        const char *by = json_string_value(json_object_get(one, "by"));
+        int at = 0;
+        while (at < player->pane_count && !is_for_us(player, &player->panes[at], one))
+            at++;
+        if (at == player->pane_count)
+            continue;
+        player->pointed = json_array_size(place) == 3 ? &player->panes[at] : NULL;
         for (size_t c = 0; c < 3; c++)
             player->pointed_m[c] = json_number_value(json_array_get(place, c));
+        snprintf(player->pointed_by, sizeof(player->pointed_by), "%s", by ? by : "");
         player->pointed_ns = clock_mono_ns();
     }
 }
@@ -219,12 +230,17 @@ static int minute_of(const struct player *player)
     return localtime_r(&seconds, &local) ? local.tm_hour * 60 + local.tm_min : 0;
 }
 
-bool player_is_tile(struct player *player)
+struct rules_shift player_shift(struct player *player)
 {
     pthread_mutex_lock(&player->lock);
-    bool is_tile = player->pane_count > 0 && player->panes[0].view.tile.display > 0;
+    struct rules_shift shift = rules_shift(model_now_us(&player->model) * 1000);
     pthread_mutex_unlock(&player->lock);
-    return is_tile;
+    return shift;
+}
+
+static bool is_tile(const struct player *player)
+{
+    return player->pane_count > 0 && player->panes[0].view.tile.display > 0;
 }
 
 bool player_waits(struct player *player)
@@ -362,7 +378,9 @@ static void say_state(const struct player *player, const struct pane *pane, int6
         text_add(state, "wait\n%s", pane->view.greeted ? "\u2026" : say("health.connecting", NULL));
     else {
         bool incomplete = pane->view.tile.leads && pane->view.tile.missing[0];
-        text_add(state, "picture %u %d", pane->view.frames, player->pointed == pane && now_ns - player->pointed_ns < POINT_NS);
+        text_add(state, "picture %u", pane->view.frames);
+        if (player->pointed == pane && now_ns - player->pointed_ns < POINT_NS)
+            text_add(state, " %s %.3f %.3f %.3f", player->pointed_by, player->pointed_m[0], player->pointed_m[1], player->pointed_m[2]);
         notes_say(&player->model, state);
         text_add(state, "\n%s",
                  !player->model.live ? say("health.nodata", NULL)
@@ -380,10 +398,9 @@ static void draw_state(struct player *player, struct pane *pane, cairo_t *cairo,
     cairo_rectangle(cairo, body.x, body.y, body.width, body.height);
     cairo_clip(cairo);
     if (is_picture && view_pane_draw(&pane->view, &player->model, cairo, body.x, body.y)) {
-        if (pane->view.tile.display == 0)
-            notes_draw(&pane->view, &player->model, cairo, body.x, body.y);
+        notes_draw(&pane->view, &player->model, cairo, body.x, body.y);
         if (player->pointed == pane && now_ns - player->pointed_ns < POINT_NS)
-            view_pane_point(&pane->view, cairo, body.x, body.y, player->pointed_m);
+            notes_draw_pointer(&pane->view, cairo, body.x, body.y, player->pointed_m, player->pointed_by);
         if (*text)
             draw_banner(player, cairo, &body, text);
         if (pane->view.tile.display == 1)
@@ -409,7 +426,10 @@ static void say_view_title(const struct player *player, const struct pane *pane,
 {
     const struct model *model = &player->model;
     int group = pane->view.is_current ? pane->view.told.field.group : -1;
-    text_add(said, "%d %s\n", pane->called, pane->words.at ? pane->words.at : "");
+    char counts[200] = "";
+    if (pane->view.tile.display) /* no list of alarms is beside it */
+        pane_count_alarms(player, counts);
+    text_add(said, "%d %s%s%s\n", pane->called, pane->words.at ? pane->words.at : "", counts[0] ? " \u00b7 " : "", counts);
     if (group >= 0 && (size_t)group < model->plant.group_count)
         text_add(said, "%s \u00b7 %s%s%s", model->plant.groups[group].quantity,
                  say("walls.age", "age", say_age(model_oldest_ns(model, NULL, 0, group, now_ns)), NULL), model->simulated ? " \u00b7 " : "",
@@ -484,7 +504,7 @@ bool player_draw(struct player *player, int64_t now_ns, struct box *dirty)
     say_card(player, now_ns, &card);
     bool all = differs(&player->card, &card) || player->all_due;
     player->all_due = false;
-    player->ground = player->card.length > 0 ? 0 : GROUND;
+    player->ground = player->card.length > 0 || is_tile(player) ? 0 : GROUND;
     cairo_t *cairo = cairo_create(player->surface);
     struct box whole = { 0, 0, player->width_px, player->height_px };
     if (all)

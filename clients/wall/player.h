@@ -69,6 +69,7 @@ struct player {
     struct text card; /* what lies over everything; "": nothing */
     cairo_surface_t *surface;
     struct pane *pointed; /* at which a desk points; NULL: none */
+    char pointed_by[256]; /* who, from which desk */
     double pointed_m[3];
     int64_t pointed_ns;
 };
@@ -80,10 +81,10 @@ bool player_start(struct player *player);
 void player_finish(struct player *player);
 /* Draws what has changed into player->surface. Returns whether anything has, with the part of it in *dirty. */
 bool player_draw(struct player *player, int64_t now_ns, struct box *dirty);
-/* Returns whether the display is a tile of one picture. */
-bool player_is_tile(struct player *player);
 /* Returns whether a tile is to show a picture at an instant that is near. */
 bool player_waits(struct player *player);
+/* Returns by how much the picture is moved now, by the plant's clock: all displays of a wall are moved alike. */
+struct rules_shift player_shift(struct player *player);
 /* Returns how bright the display is to be now, up to 1. */
 double player_brightness(struct player *player);
 /* Has it fit another size. */
@@ -95,6 +96,8 @@ void pane_draw(struct player *player, struct pane *pane, cairo_t *cairo, int64_t
 /* Draws the title of a pane, with the age of its data at its end. */
 void pane_draw_title(struct player *player, const struct pane *pane, cairo_t *cairo, const char *text, const char *about, int priority,
                      bool hollow);
+/* Writes how many alarms there are, and that it is a flood; "" where there is none. */
+void pane_count_alarms(const struct player *player, char out[200]);
 /* Returns the plant's time of an instant, "10:05:00", in a buffer that is used again after 8 others. */
 const char *player_time(const struct player *player, int64_t us);
 /* Chooses what a pane of views shows, and asks for it (view_choice.c). */

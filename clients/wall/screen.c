@@ -4,7 +4,12 @@
 
 #include <SDL2/SDL.h>
 #include <math.h>
+#include <signal.h>
 #include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include "base/mem.h"
 
@@ -48,6 +53,27 @@ static bool make_renderer(struct screen *screen)
     return fail("neither OpenGL nor plain pixels can be shown");
 }
 
+/* SDL 2.26 ends at a Wayland compositor without a seat, as one has to which no keyboard, mouse or touch screen is plugged: another process
+   tries first. */
+static bool survives_wayland(void)
+{
+    const char *driver = getenv("SDL_VIDEODRIVER");
+    int status = 0;
+    if (!getenv("WAYLAND_DISPLAY") || (driver && strcmp(driver, "wayland") != 0))
+        return true;
+    pid_t child = fork();
+    if (child == 0) {
+        signal(SIGSEGV, SIG_DFL);
+        _exit(SDL_Init(SDL_INIT_VIDEO) != 0);
+    }
+    if (child < 0 || waitpid(child, &status, 0) != child || !WIFSIGNALED(status))
+        return true;
+    fprintf(stderr,
+            "plantcast-wall: SDL %d.%d.%d ends at this Wayland compositor, which has no seat: no keyboard, mouse or touch screen%s\n",
+            SDL_MAJOR_VERSION, SDL_MINOR_VERSION, SDL_PATCHLEVEL, driver ? "" : "; another way is looked for");
+    return false;
+}
+
 struct screen *screen_open(int width_px, int height_px, int monitor)
 {
     struct screen *screen = mem_new(sizeof(*screen));
@@ -57,6 +83,11 @@ struct screen *screen_open(int width_px, int height_px, int monitor)
     SDL_SetHint(SDL_HINT_VIDEO_MINIMIZE_ON_FOCUS_LOSS, "0");
     SDL_SetHint(SDL_HINT_RENDER_SCALE_QUALITY, "0");
     SDL_SetHint(SDL_HINT_NO_SIGNAL_HANDLERS, "1");
+    if (!survives_wayland()) {
+        if (getenv("SDL_VIDEODRIVER"))
+            goto error;
+        unsetenv("WAYLAND_DISPLAY");
+    }
     if (SDL_Init(SDL_INIT_VIDEO) != 0) { /* no sound is asked for */
         fail("no display");
         goto error;

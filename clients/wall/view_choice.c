@@ -104,10 +104,13 @@ void pane_choose(struct player *player, struct pane *pane, int64_t now_ns)
     const json_t *view = model_view(model, id ? id : "");
     const char *sent = string_of(order, "view"), *address = *sent ? sent : string_of(view, "view");
     struct text wanted = { 0 };
-    pane->called = alarm != NULL;
+    pane->called = alarm && (!pane->view.tile.display || pane->view.tile.leads);
     pane->words.length = 0;
     text_add(&pane->words, "%s", "");
-    if (alarm)
+    bool chooses = !pane->view.tile.display || pane->view.tile.leads;
+    if (!chooses) /* what is shown is known to the one that leads */
+        text_add(&pane->words, "%s", pane->title ? pane->title : player->wall_id);
+    else if (alarm)
         say_alarm(player, alarm, &pane->words);
     else if (*sent)
         text_add(&pane->words, "%s", string_of(order, "title"));
@@ -116,12 +119,11 @@ void pane_choose(struct player *player, struct pane *pane, int64_t now_ns)
     else
         text_add(&pane->words, "%s", pane->title ? pane->title : *string_of(view, "title") ? string_of(view, "title") : id);
     const char *said = string_of(json_array_get(pane->stops, pane->at), "text");
-    if (!order && !alarm && *said)
+    if (chooses && !order && !alarm && *said)
         text_add(&pane->words, " \u00b7 %s", said);
-    if (order && !alarm)
+    if (chooses && order && !alarm)
         say_order(player, order, &pane->words);
     want(player, pane, order, alarm, address, &wanted);
-    bool chooses = !pane->view.tile.display || pane->view.tile.leads;
     if (!chooses)
         pane->wanted.length = 0;
     if (chooses && pane->view.greeted && view_pane_fits(&pane->view, model) &&

@@ -485,6 +485,21 @@ static bool project(const struct camera *camera, double width_px, double height_
     return true;
 }
 
+/* Of the picture that a tile is a part of; of others the picture is the pane. A split one has the place in its left half. */
+bool view_pane_project(const struct view_pane *pane, const double place_m[3], double *x, double *y)
+{
+    const double *part = pane->tile.part;
+    bool is_tile = pane->tile.display > 0;
+    double width = is_tile ? pane->width_px / part[2] : pane->width_px, height = is_tile ? pane->height_px / part[3] : pane->height_px;
+    double shown = pane->told.split ? floor(width / 2) : width;
+    if ((is_tile && !(part[2] > 0 && part[3] > 0)) || !project(&pane->frame.view.camera, shown, height, place_m, x, y) || *x < 0 ||
+        *x >= shown || *y < 0 || *y >= height)
+        return false;
+    *x -= is_tile ? part[0] * width : 0;
+    *y -= is_tile ? part[1] * height : 0;
+    return true;
+}
+
 /* Markers of the picture, in pixels of the pane; and of alarms that it does not show, as of another group, or behind something. */
 static void collect_markers(const struct view_pane *pane, const struct model *model, struct frame *frame)
 {
@@ -504,12 +519,13 @@ static void collect_markers(const struct view_pane *pane, const struct model *mo
         frame->labels[i].y_px *= (float)down;
     }
     frame->label_count = pane->frame.label_count;
-    for (size_t i = 0; i < model->list_count && !frame->view.split && !pane->tile.display; i++) {
+    for (size_t i = 0; i < model->list_count; i++) {
         int tag = model->list[i].tag;
         bool known = tag < 0 || model->plant.tags[tag].asset < 0 || !model->plant.tags[tag].has_position;
         for (size_t k = 0; k < frame->marker_count && !known; k++)
             known = frame->markers[k].tag == tag;
-        if (known || !project(&frame->view.camera, pane->width_px, pane->height_px, model->plant.tags[tag].position_m, &x, &y))
+        if (known || !view_pane_project(pane, model->plant.tags[tag].position_m, &x, &y) || x < 0 || x >= pane->width_px || y < 0 ||
+            y >= pane->height_px)
             continue;
         const struct reading *reading = &model->snapshot->readings[tag];
         frame->markers[frame->marker_count++] = (struct frame_marker){
@@ -559,26 +575,4 @@ bool view_pane_draw(struct view_pane *pane, const struct model *model, cairo_t *
     cairo_paint(cairo);
     cairo_restore(cairo);
     return true;
-}
-
-bool view_pane_project(const struct view_pane *pane, const double place_m[3], double *x, double *y)
-{
-    return project(&pane->frame.view.camera, pane->width_px, pane->height_px, place_m, x, y);
-}
-
-void view_pane_point(const struct view_pane *pane, cairo_t *cairo, double x, double y, const double place_m[3])
-{
-    double at_x, at_y, radius = 22 * pane->unit;
-    if (!project(&pane->frame.view.camera, pane->width_px, pane->height_px, place_m, &at_x, &at_y))
-        return;
-    for (int pass = 0; pass < 2; pass++) {
-        cairo_new_path(cairo);
-        cairo_arc(cairo, x + at_x, y + at_y, radius, 0, 2 * M_PI);
-        cairo_set_line_width(cairo, (pass ? 3 : 7) * pane->unit);
-        if (pass)
-            cairo_set_source_rgb(cairo, 0.78, 0.05, 0.6);
-        else
-            cairo_set_source_rgb(cairo, 1, 1, 1);
-        cairo_stroke(cairo);
-    }
 }

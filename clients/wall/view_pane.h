@@ -71,9 +71,7 @@ bool view_pane_fits(const struct view_pane *pane, const struct model *model);
 bool view_pane_flip(struct view_pane *pane, const struct model *model, int64_t now_us);
 /* Draws picture and overlay with the upper left corner there. Returns false if there is no picture of what was asked for. */
 bool view_pane_draw(struct view_pane *pane, const struct model *model, cairo_t *cairo, double x, double y);
-/* Returns whether a place of the plant is in front of the eye, and where it is in pixels of the pane. */
+/* Returns whether a place of the plant is in the picture, which for a tile goes on beyond its pane; where it is in pixels of the pane. */
 bool view_pane_project(const struct view_pane *pane, const double place_m[3], double *x, double *y);
-/* Draws a cross-hair at a place of the plant, likewise. */
-void view_pane_point(const struct view_pane *pane, cairo_t *cairo, double x, double y, const double place_m[3]);
 
 #endif

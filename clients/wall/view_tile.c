@@ -38,6 +38,8 @@ void view_tile_hear(struct view_tile *tile, const char *type, const json_t *mess
         tile->at_us = json_integer_value(json_object_get(message, "at_us"));
     } else if (!strcmp(type, "tiles")) {
         const json_t *missing = json_object_get(message, "missing"), *late = json_object_get(message, "late");
+        for (size_t i = 0; i < 4; i++)
+            tile->part[i] = json_number_value(json_array_get(json_object_get(message, "part"), i));
         tile->leads = json_is_true(json_object_get(message, "leads"));
         tile->late_us = 0;
         tile->missing[0] = 0;

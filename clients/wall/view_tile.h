@@ -17,6 +17,7 @@ struct tile_picture {
 
 struct view_tile {
     int display, columns, rows; /* from 1, row by row; display 0: it is no tile */
+    double part[4];             /* of the whole picture: left, top, width, height, as shares of it; 0: not told yet */
     const char *wall;           /* the player's */
     bool leads;                 /* what it asks for is what all show */
     int64_t late_us;            /* since when it is left out; 0: it is not */

@@ -41,16 +41,17 @@ static bool may_lead(const struct stream *stream, const struct stream *leaving)
     return stream != leaving && session->hello && !session->hidden && !session->close.code && !session->tile.late_us;
 }
 
-/* Who leads goes on, while it is there; else the first display. */
+/* The first display that is there: the picture's title, which is on it, says what it chose. Of several who look at that one, who leads
+   goes on. */
 static struct session *choose(struct server_context *server, const struct tile_wall *wall, const struct stream *leaving)
 {
     struct session *first = NULL;
     for (struct stream *stream = server->streams; stream; stream = stream->next) {
         if (!is_of(stream, wall->wall) || !may_lead(stream, leaving))
             continue;
-        if (stream->session->id == wall->leader)
-            return stream->session;
-        if (!first || stream->session->tile.place.display < first->tile.place.display)
+        int display = stream->session->tile.place.display;
+        if (!first || display < first->tile.place.display ||
+            (display == first->tile.place.display && stream->session->id == wall->leader))
             first = stream->session;
     }
     return first;

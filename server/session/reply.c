@@ -67,8 +67,11 @@ char *reply_present_text(uint32_t seq, uint64_t picture, int64_t at_us)
                      0);
 }
 
-char *reply_tiles_text(const struct wall *wall, const struct wall_place *place, const bool *there, const int64_t *late_us, bool leads)
+char *reply_tiles_text(const struct wall *wall, const struct wall_place *place, const struct tile_layout *layout, const bool *there,
+                       const int64_t *late_us, bool leads)
 {
+    double width = tile_layout_width(layout), height = tile_layout_height(layout);
+    struct frame_part part = tile_layout_part(layout, place->display);
     json_t *missing = json_array(), *late = json_array();
     for (int i = 0; i < wall->tile.columns * wall->tile.rows; i++) {
         if (!there[i])
@@ -76,7 +79,9 @@ char *reply_tiles_text(const struct wall *wall, const struct wall_place *place, 
         else if (late_us[i])
             json_array_append_new(late, json_pack("{s:i,s:I}", "display", i + 1, "since_us", (json_int_t)late_us[i]));
     }
-    return json_text(json_pack("{s:s,s:i,s:i,s:i,s:b,s:o,s:o}", "type", "tiles", "columns", wall->tile.columns, "rows", wall->tile.rows,
-                               "display", place->display, "leads", leads, "missing", missing, "late", late),
-                     0);
+    json_t *shares = json_pack("[f,f,f,f]", part.x_px / width, part.y_px / height, part.width_px / width, part.height_px / height);
+    return json_text(json_pack("{s:s,s:i,s:i,s:i,s:o,s:b,s:o,s:o}", "type", "tiles", "columns", wall->tile.columns, "rows",
+                               wall->tile.rows, "display", place->display, "part", shares, "leads", leads, "missing", missing, "late",
+                               late),
+                     DIGITS);
 }

@@ -19,9 +19,10 @@ char *reply_status_text(const struct session_context *context, int64_t now_utc_n
 char *reply_pong_text(const struct snapshot *snapshot, double t, int64_t now_utc_ns);
 char *reply_time_text(const struct session *session);
 /* Says when a tile is to show the frame seq, which is the wall's picture of that number; which displays of its wall are there, by display
-   from 0, and since when some are left out. */
+   from 0, since when some are left out, and which part of the picture is this one's. */
 char *reply_present_text(uint32_t seq, uint64_t picture, int64_t at_us);
-char *reply_tiles_text(const struct wall *wall, const struct wall_place *place, const bool *there, const int64_t *late_us, bool leads);
+char *reply_tiles_text(const struct wall *wall, const struct wall_place *place, const struct tile_layout *layout, const bool *there,
+                       const int64_t *late_us, bool leads);
 /* Answers a fit. */
 char *reply_camera_text(const struct camera *camera, uint32_t seq);
 /* Answers a pick; query.seq 0: without a number. */

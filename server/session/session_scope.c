@@ -158,11 +158,20 @@ static bool shows_alarm(const struct session *session, const json_t *row)
     return wall_display_has(display_of(session), PANE_ALARMS, NULL) || shows_row(session, row);
 }
 
-static bool is_ours(const struct session *session, const json_t *item)
+static bool is_own(const struct session *session, const json_t *item)
 {
     const char *wall = json_string_value(json_object_get(item, "wall"));
     return wall && !strcmp(wall, session->identity.holder.wall) &&
            json_integer_value(json_object_get(item, "display")) == session->identity.holder.display;
+}
+
+/* Of its panes; what is for a picture over many displays stands under the first of them. */
+static bool is_ours(const struct session *session, const json_t *item)
+{
+    const char *id = json_string_value(json_object_get(item, "wall"));
+    const struct wall *wall = wall_find(session->context->plant, session->identity.holder.wall);
+    bool is_tile = wall && session->identity.holder.display <= wall->tile.columns * wall->tile.rows;
+    return is_own(session, item) || (is_tile && id && !strcmp(id, wall->id) && json_integer_value(json_object_get(item, "display")) == 1);
 }
 
 static bool shows_view(const struct session *session, const json_t *item)
@@ -184,7 +193,7 @@ static const struct {
     bool of_tags; /* only where the display shows no pictures */
 } filters[] = {
     { "tags", "values", shows_row, true },  { "alarms", "alarms", shows_alarm, true }, { "views", "list", shows_view, false },
-    { "notes", "list", shows_note, false }, { "walls", "list", is_ours, false },       { "walls", "displays", is_ours, false },
+    { "notes", "list", shows_note, false }, { "walls", "list", is_ours, false },       { "walls", "displays", is_own, false },
     { "pointed", "list", is_ours, false },
 };
 

@@ -95,7 +95,7 @@ void session_tile_tell(struct session *session, const bool *there, const int64_t
     const struct wall *wall = wall_find(session->context->plant, session->tile.place.wall);
     if (!wall || !session->hello || session->owed.welcome)
         return;
-    char *text = reply_tiles_text(wall, &session->tile.place, there, late_us, leads);
+    char *text = reply_tiles_text(wall, &session->tile.place, &session->tile.layout, there, late_us, leads);
     if (session->tile.told && !strcmp(session->tile.told, text)) {
         mem_free(text);
         return;

@@ -18,7 +18,7 @@ import { Pairing } from './pairing.js';
 import { tileOf } from './tile.js';
 
 const TICK_MS = 250, LOST_MS = 3000, SHIFT_MS = 180000;
-const SHIFTS = [[0, 0], [2, 1], [3, -1], [1, -3], [-1, -2], [-3, 0], [-2, 2], [0, 3]]; // pixels, in turn: nothing burns in
+const SHIFTS = [[0, 0], [2, 1], [3, -1], [1, -3], [-1, -2], [-3, 0], [-2, 2], [0, 3]]; // pixels, by the plant's clock: nothing burns in
 const LEAST = { width: 560, height: 315 }, LETTERS_MM = 100; // units that a display has at the least; of what is said of a lost server
 const query = new URLSearchParams(location.search), number = Math.max(1, Number(query.get('display')) || 1);
 
@@ -106,7 +106,7 @@ async function look() {
 
 // --- as time goes by
 
-let lostAt = null, shift = 0;
+let lostAt = null;
 function tick() {
     const now = clock.now(), { kind } = health(session, now), { model } = session;
     const gone = kind === 'lost' || kind === 'silent';
@@ -119,6 +119,9 @@ function tick() {
         return;
     for (const pane of panes)
         pane.tick(now);
+    const [x, y] = SHIFTS[Math.floor(session.clockUs() / 1000 / SHIFT_MS) % SHIFTS.length];
+    setVariable(document.body, '--x', `${x}px`);
+    setVariable(document.body, '--y', `${y}px`);
     if (wall) {
         const [hours, minutes] = timeOf(session.clockUs()).split(':').map(Number);
         const calls = model.alarms.list().some(({ waiting }) => waiting);
@@ -129,11 +132,6 @@ function tick() {
 const timeOf = (us) => zoneClock(session.model.plant.time_zone)(us / 1000).time;
 
 setInterval(tick, TICK_MS);
-setInterval(() => {
-    const [x, y] = SHIFTS[++shift % SHIFTS.length];
-    setVariable(document.body, '--x', `${x}px`);
-    setVariable(document.body, '--y', `${y}px`);
-}, SHIFT_MS);
 window.addEventListener('resize', fit);
 session.on('welcome', () => {
     pairing.hide();

@@ -29,7 +29,8 @@ function aboutTags({ model }, names) {
     const tags = names.map((name) => model.tag(name)).filter(Boolean);
     const groups = [...new Set(tags.map(({ group }) => model.group(group)))].filter(Boolean);
     const good = tags.filter(({ index }) => model.readings[index].quality !== 'bad');
-    const oldest = good.length > 0 ? Math.max(...good.map(({ index }) => model.ageMs(index, clock.now()) ?? 0)) : null;
+    const ages = good.map(({ index }) => model.ageMs(index, clock.now())).filter((ms) => ms !== null);
+    const oldest = ages.length > 0 ? Math.max(...ages) : null;
     return [groups.map(quantityText).join(', '), ageOf(oldest)].filter(Boolean).join(' · ');
 }
 

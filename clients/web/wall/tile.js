@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A display that is a tile of one picture over many: the picture without a frame, dots where readings are, labels of alarms; title and
-// legend once on the wall. Who leads chooses what all show.
+// A display that is a tile of one picture over many: the picture without a frame, dots where readings are, labels of alarms, notes, where
+// a desk points; title and legend once on the wall. Who leads chooses what all show.
 import { isGone } from '../core/alarms.js';
+import { projector } from '../core/camera.js';
 import { Connection } from '../core/connection.js';
 import { browserDecoding } from '../core/decoding.js';
 import { ageText, decimalsFor, numberText, quantityText, shortNumberText, unitText, zoneClock } from '../core/format.js';
 import { colourOf, scaleTicks, valueAt, placeOf } from '../core/legend.js';
 import { viewOf } from '../core/named_views.js';
+import { inForce, placeOf as placeOfNote } from '../core/notes.js';
 import { SPREAD_MS } from '../core/wall.js';
 import { say } from '../core/words.js';
 import { badge } from '../app/alarms/alarm_bar.js';
@@ -14,7 +16,7 @@ import { clock } from '../app/common/clock.js';
 import { make, setText, setVariable } from '../app/common/dom.js';
 import { TileSession } from './tile_session.js';
 
-const OLD_MS = 3000, STEPS = 64;
+const OLD_MS = 3000, STEPS = 64, POINTS_MS = 4000, REACH = 0.35; // of a tile's width: a label may begin on the tile beside
 
 // { element, kind, tick(now) }. pane: of /api/v1/walls, with `tile`; context: as of other panes.
 export function tileOf(pane, { session: words, call, wall, display, streamUrl }) {
@@ -52,7 +54,7 @@ export function tileOf(pane, { session: words, call, wall, display, streamUrl })
     let refused = '';
     session.on('error', ({ text }) => { refused = text; });
 
-    let at = 0, changedAt = null, shown = null;
+    let at = 0, changedAt = null, shown = null, called = null;
     const timeOf = (us) => zoneClock(words.model.plant.time_zone)(us / 1000).time;
     session.on('fitted', (camera) => session.setCamera(camera));
 
@@ -62,10 +64,12 @@ export function tileOf(pane, { session: words, call, wall, display, streamUrl })
         session.setCamera(camera);
     }
 
+    const findOrder = () => words.walls?.list.find(({ id }) => id === `${wall.id}/1/main`) ?? null;
+
     function lead(now) {
         const alarms = words.model.alarms.list(), nowUs = words.clockUs();
-        const alarm = pane.on_alarm ? call.next(alarms, now, nowUs) : null;
-        const order = words.walls?.list.find(({ id }) => id === `${wall.id}/1/main`) ?? null;
+        const alarm = pane.on_alarm ? call.next(alarms, now, nowUs) : null, order = findOrder();
+        called = alarm;
         const rests = order || alarms.some(({ waiting }) => waiting) || (pane.on_alarm && call.isFlood(alarms, nowUs));
         const dwell = (pane.stops?.[at].dwell_s ?? pane.every_s) * 1000;
         if (!rests && pane.items.length > 1 && changedAt !== null && now - changedAt >= dwell) {
@@ -88,16 +92,24 @@ export function tileOf(pane, { session: words, call, wall, display, streamUrl })
 
     // --- what is said
 
+    // What it shows is known to the one that leads: the first display, but where that is shown in several places.
     function sayTitle() {
-        const { model } = session, group = model.group(session.shown.group);
-        const alarm = words.model.alarms.list().find(({ waiting }) => waiting);
-        const about = group ? [quantityText(group), say('walls.age', { age: ageText(model.oldestAgeMs(group.id, clock.now()) ?? 0) })] : [];
-        const order = words.walls?.list.find(({ id }) => id === `${wall.id}/1/main`);
-        const view = session.views.find(({ id }) => id === pane.items[at]);
-        const name = pane.title ?? order?.title ?? (session.tiles.leads ? view?.title : null) ?? wall.id;
-        const parts = [name, ...about].join(' · ');
-        title.replaceChildren(...(alarm && pane.on_alarm ? [badge(alarm.priority, isGone(alarm.state)),
-            ` ${say(`kind.${alarm.kind}`)} ${alarm.tag.name} · `] : []), parts);
+        const { model } = session, group = model.group(session.shown.group), { leads } = session.tiles, order = leads ? findOrder() : null;
+        const alarms = words.model.alarms.list(), { active, waiting } = words.model.alarms.counts(), alarm = leads ? called : null;
+        const view = leads ? session.views.find(({ id }) => id === pane.items[at]) : null;
+        const who = order && [order.desk, order.by].filter(Boolean).join(', ');
+        const counts = call.isFlood(alarms, words.clockUs()) ? 'walls.flood' : 'walls.counts';
+        const parts = [
+            alarm ? say('walls.since', { time: timeOf(alarm.raisedUs) }) : order?.view ? order.title : pane.title ?? view?.title ?? wall.id,
+            !alarm && order && say(order.held ? 'walls.held' : 'walls.sent', { who, time: timeOf(order.time_us) }),
+            leads && !alarm && !order && pane.stops?.[at].text,
+            active + waiting > 0 && say(counts, { active, waiting }),
+            group && quantityText(group),
+            group && say('walls.age', { age: ageText(model.oldestAgeMs(group.id, clock.now())) }),
+            words.model.links.some(({ simulated }) => simulated) && say('simulated.all'),
+        ].filter(Boolean).join(' · ');
+        title.replaceChildren(...(alarm ? [badge(alarm.priority, isGone(alarm.state)), ` ${say(`kind.${alarm.kind}`)} ${alarm.tag.name} `]
+            : []), parts);
     }
 
     // Which displays are not there is said by the one that leads; what is wrong with itself, by each.
@@ -107,7 +119,8 @@ export function tileOf(pane, { session: words, call, wall, display, streamUrl })
         const others = session.tiles.missing.concat(session.tiles.late.map((one) => one.display)).sort((a, b) => a - b);
         const text = refused && !session.welcomed ? refused : own ? say('walls.late', { time: timeOf(own.since_us) })
             : silent ? say('walls.lost', { time: timeOf(words.clockUs(session.freshAt)) })
-                : session.tiles.leads && others.length > 0 ? say('walls.missing', { displays: others.join(', ') }) : '';
+                : words.model.live === false ? say('health.nodata')
+                    : session.tiles.leads && others.length > 0 ? say('walls.missing', { displays: others.join(', ') }) : '';
         said.hidden = text === '';
         said.classList.toggle('card', Boolean(own || silent || (refused && !session.welcomed)));
         element.classList.toggle('blank', Boolean(own || silent || !picture));
@@ -137,24 +150,90 @@ export function tileOf(pane, { session: words, call, wall, display, streamUrl })
             make('div', { class: 'scale' }, bar, ticks));
     }
 
-    session.on('presented', ({ frame }) => {
-        const alarms = words.model?.alarms.list().filter(({ state, waiting }) => waiting || !isGone(state)) ?? [];
-        const by = new Map(alarms.map((one) => [one.tag.index, one])), known = session.markersOf(frame.seq);
-        marks.replaceChildren(...(session.places ?? []).filter(([, , , occluded]) => !occluded).map(([index, x, y, , half = 0]) => {
-            const value = known?.get(`${index}/${half}`)?.value;
-            const alarm = by.get(index), tag = words.model?.tags[index], group = words.model?.group(tag?.group);
-            const mark = make('i', { class: alarm ? 'alarm' : 'dot' });
-            if (alarm)
-                mark.append(badge(alarm.priority, isGone(alarm.state)), ` ${tag.name} ${value === null || value === undefined || !group ? ''
-                    : `${numberText(value, decimalsFor(group.max - group.min))} ${unitText(tag.unit || group.unit)}`}`);
-            setVariable(mark, '--x', `${(100 * x) / frame.fullWidth}%`);
-            setVariable(mark, '--y', `${(100 * y) / frame.fullHeight}%`);
-            return mark;
-        }));
+    // --- what stands in the picture
+
+    let frame = null, pointer = null; // the picture that is shown; where a desk points: { position, by, until }
+
+    // Where a place of the plant is on this display, in shares of its sides; null: behind the eye, or far from here.
+    function placer() {
+        const [left, top, width, height] = session.tiles.part ?? [0, 0, 1, 1];
+        const project = projector(frame.camera, frame.fullWidth / width, frame.fullHeight / height);
+        const isNear = (share) => share > -REACH && share < 1 + REACH;
+        return (point) => {
+            const to = point && project(point);
+            const place = to && [to[0] / frame.fullWidth - left / width, to[1] / frame.fullHeight - top / height];
+            return place?.every(isNear) ? place : null;
+        };
+    }
+
+    function put(element, [x, y]) {
+        setVariable(element, '--x', `${100 * x}%`);
+        setVariable(element, '--y', `${100 * y}%`);
+        return element;
+    }
+
+    function markOf(alarm, value, behind) {
+        const { tag } = alarm, group = words.model.group(tag.group), mark = make('i', { class: behind ? 'alarm behind' : 'alarm' });
+        const said = value === null || value === undefined || !group ? ''
+            : `${numberText(value, decimalsFor(group.max - group.min))} ${unitText(tag.unit || group.unit)}`;
+        mark.append(badge(alarm.priority, isGone(alarm.state)), ` ${tag.name} ${said}`);
+        return mark;
+    }
+
+    // An alarm is marked wherever it is: also behind something, and of a quantity that is not shown.
+    function drawMarks() {
+        const { model } = words, place = placer(), known = session.markersOf(frame.seq), marked = new Set(), out = [];
+        const alarms = model.alarms.list().filter(({ state, waiting }) => waiting || !isGone(state));
+        const by = new Map(alarms.map((one) => [one.tag.index, one]));
+        for (const [index, x, y, occluded, half = 0] of session.places ?? []) {
+            const alarm = by.get(index), value = known?.get(`${index}/${half}`)?.value, spot = [x / frame.fullWidth, y / frame.fullHeight];
+            if (alarm || !occluded)
+                out.push(put(alarm ? markOf(alarm, value, occluded) : make('i', { class: 'dot' }), spot));
+            marked.add(index);
+        }
+        const add = (element, point) => {
+            const to = place(point);
+            if (to)
+                out.push(put(element, to));
+        };
+        for (const alarm of alarms.filter(({ tag: { index, position } }) => position && !marked.has(index))) {
+            const { value, quality } = model.readings[alarm.tag.index];
+            add(markOf(alarm, quality === 'bad' ? null : value, true), alarm.tag.position);
+        }
+        for (const note of inForce(session.notes, words.clockUs()))
+            add(make('p', { class: 'note' }, make('span', {}, note.text)), placeOfNote(session.model, note));
+        if (pointer)
+            add(make('p', { class: 'note pointer' }, make('span', {}, pointer.by)), pointer.position);
+        marks.replaceChildren(...out);
+    }
+
+    // Anew with each picture, and where what is marked has changed.
+    let marksOf = '';
+    function lookAtMarks() {
+        if (pointer && clock.now() > pointer.until)
+            pointer = null;
+        if (!frame || !words.model || !session.model)
+            return;
+        const now = JSON.stringify([frame.seq, session.tiles.part, pointer, inForce(session.notes, words.clockUs()),
+            words.model.alarms.list().map(({ id, state, priority }) => [id, state, priority])]);
+        if (now !== marksOf)
+            drawMarks();
+        marksOf = now;
+    }
+
+    session.on('presented', (presented) => {
+        ({ frame } = presented);
+        lookAtMarks();
+    });
+    words.on('pointed', () => {
+        const mine = words.pointed.filter((one) => one.wall === wall.id && one.display === 1 && one.area === 'main').at(-1);
+        if (mine)
+            pointer = mine.position ? { ...mine, until: clock.now() + POINTS_MS } : null;
+        lookAtMarks();
     });
 
     session.on('welcome', () => {
-        shown = null;
+        shown = frame = null;
         session.post({ type: 'display', wall: wall.id, display });
     });
     session.on('tiles', () => { shown = null; });
@@ -169,6 +248,7 @@ export function tileOf(pane, { session: words, call, wall, display, streamUrl })
         if (legend.isConnected)
             drawLegend();
         saySelf(now);
+        lookAtMarks();
     } };
 }
 

@@ -11,7 +11,7 @@ export class TileSession extends Session {
     constructor({ tile, canvas, decoding, ...rest }) {
         super(rest);
         Object.assign(this, { tile, canvas, decoding, context: canvas.getContext('2d', { alpha: false }) });
-        this.tiles = { leads: false, missing: [], late: [] };
+        this.tiles = { leads: false, part: null, missing: [], late: [] };
         this.pongs = [];    // of the last minute: { at, us (the server's clock less ours), roundTripMs }
         this.places = null; // of the markers of the frame that is shown: [tag, x, y, occluded, ...]
         this.reset();
