@@ -20,6 +20,7 @@ int cmd_clip(int argc, char **argv)
 #include "clients/link/daemon.h"
 #include "message/views_message.h"
 #include "offline_renderer.h"
+#include "signed_film.h"
 #include "tour.h"
 #include "video.h"
 
@@ -34,13 +35,14 @@ struct film {
     struct text query;
     const char *said; /* written into the pictures; "": nothing */
     long count;       /* of pictures that were made */
+    struct film_statements *statements; /* of a signed film */
 };
 
 /* The file is made with the first picture, whose size tells its own. */
 static bool add(struct film *film, uint8_t *bgrx, int width_px, int height_px, int stride_bytes)
 {
     if (!film->video)
-        film->video = video_create(film->options->out, width_px, height_px, film->options->fps);
+        film->video = video_create(film->options->out, width_px, height_px, film->options->fps, film->options->is_signed);
     if (*film->said)
         tour_draw_text(film->said, bgrx, width_px, height_px, stride_bytes);
     return film->video && video_add(film->video, bgrx, stride_bytes);
@@ -73,6 +75,15 @@ static bool add_png(struct film *film, const struct text *body)
     return good;
 }
 
+static bool take_statement(struct film *film, const struct text *body)
+{
+    if (film_statements_add(film->statements, (const uint8_t *)body->at, body->length))
+        return true;
+    fprintf(stderr, "plantcast: %s: a picture came without a signature: plantcastd --signing-key signs those of 256 pixels and more\n",
+            film->options->from);
+    return false;
+}
+
 static bool download(struct film *film, int64_t at_us)
 {
     struct text body = { 0 };
@@ -81,7 +92,7 @@ static bool download(struct film *film, int64_t at_us)
     int status = daemon_get(&film->url, path, &body);
     if (status && status != 200)
         fprintf(stderr, "plantcast: %s: the daemon answers %d: %s\n", film->options->from, status, body.at ? body.at : "");
-    bool good = status == 200 && add_png(film, &body);
+    bool good = status == 200 && (!film->options->is_signed || take_statement(film, &body)) && add_png(film, &body);
     text_finish(&body);
     mem_free(path);
     return good;
@@ -144,6 +155,8 @@ static bool make(struct film *film, picture_fn *picture, const json_t *stops)
         stop = json_array_get(stops, i);
         good = turn(film, stop) && shoot(film, picture, pictures_of(film, stop), count);
     }
+    if (good && options->is_signed)
+        good = film_statements_put(film->statements, film->video);
     good = video_finish(&film->video, good);
     if (good)
         printf("%s: %.0f pictures, %.1f s\n", options->out, count, count / options->fps);
@@ -188,11 +201,13 @@ static char *ask_tours(struct film *film)
 static int from_daemon(struct film *film)
 {
     int code = 2;
+    film->statements = film->options->is_signed ? film_statements_create() : NULL;
     if (daemon_url_parse(film->options->from, &film->url) && snapshot_query(film->options, &film->query)) {
         char *answer = film->options->tour ? ask_tours(film) : NULL;
         code = (answer || !film->options->tour) && make_of(film, download, answer) ? 0 : 1;
     }
     text_finish(&film->query);
+    film_statements_destroy(&film->statements);
     return code;
 }
 
@@ -201,8 +216,13 @@ int cmd_clip(int argc, char **argv)
     struct snapshot_options options;
     int code = snapshot_parse(argc, argv, true, &options);
     struct film film = { .options = &options, .said = "" };
+    bool daemon = code < 0 && strstr(options.from, "://");
+    if (code < 0 && options.is_signed && !daemon) {
+        fputs("plantcast: --signed: a daemon with --signing-key signs pictures: give its URL\n", stderr);
+        code = 2;
+    }
     if (code < 0)
-        code = strstr(options.from, "://") ? from_daemon(&film) : from_plant(&film);
+        code = daemon ? from_daemon(&film) : from_plant(&film);
     snapshot_options_finish(&options);
     return code;
 }

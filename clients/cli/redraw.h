@@ -11,7 +11,8 @@ struct redraw_options {
 };
 
 /* Draws the statement's view from its readings and compares pixels, configuration, asset files and, if asked to, readings; prints what
-   agrees and what does not. Returns 0: all agrees; 1: something does not; 2: it could not be drawn. */
-int redraw_compare(const struct redraw_options *options, const json_t *statement, const uint8_t *png, size_t count);
+   agrees and what does not. rgb: the picture's pixels, of the verified statement's size: red, green, blue, rows from the top. Returns 0:
+   all agrees; 1: something does not; 2: it could not be drawn. */
+int redraw_compare(const struct redraw_options *options, const json_t *statement, const uint8_t *rgb);
 
 #endif

@@ -30,6 +30,7 @@ struct snapshot_options {
     int64_t from_us, to_us;
     const char *tour; /* of a clip; NULL: one view */
     double speed, fps;
+    bool is_signed; /* of a clip: the server's signatures are kept */
     bool per_fragment, moving, no_overlay, offline_only; /* offline_only: something was asked for that a daemon does not offer */
 };
 

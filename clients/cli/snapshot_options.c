@@ -28,7 +28,9 @@ static const char clip_usage[] = "usage: plantcast clip (PLANT.yaml | http://HOS
                                  "  --tour ID               the views of this tour of the plant file, each for its time, with its text:\n"
                                  "                          in place of --to, and of all that is said below but --size\n"
                                  "  --speed F               seconds of the plant's in one of the film's; 60, of a tour 1\n"
-                                 "  --fps F                 pictures in one second of the film; 25\n";
+                                 "  --fps F                 pictures in one second of the film; 25\n"
+                                 "  --signed                of a daemon with --signing-key: with its signature of each picture, which\n"
+                                 "                          `plantcast verify` checks; without loss: larger, and not for browsers\n";
 static const char instant_usage[] =
     "  INSTANT                 2026-11-20T10:00:00Z, with an offset (+01:00), seconds since 1970, or back from now: -8h\n"
     "  --size WxH              pixels; 1280x720\n";
@@ -124,6 +126,7 @@ enum own_option {
     OPTION_TO,
     OPTION_TOUR,
     OPTION_SPEED,
+    OPTION_SIGNED,
     OPTION_FPS,
     OPTION_VALUES,
     OPTION_HISTORY,
@@ -147,6 +150,7 @@ static const struct option own[] = {
     { "to", required_argument, NULL, OPTION_TO },
     { "tour", required_argument, NULL, OPTION_TOUR },
     { "speed", required_argument, NULL, OPTION_SPEED },
+    { "signed", no_argument, NULL, OPTION_SIGNED },
     { "fps", required_argument, NULL, OPTION_FPS },
     { "values", required_argument, NULL, OPTION_VALUES },
     { "history", required_argument, NULL, OPTION_HISTORY },
@@ -234,6 +238,7 @@ static bool take_own(struct snapshot_options *options, int option, const char *t
     case OPTION_TO: return parse_instant(text, &options->to_text, &options->to_us);
     case OPTION_TOUR: options->tour = text; return true;
     case OPTION_SPEED: return parse_factor(text, 0.001, 1e6, &options->speed);
+    case OPTION_SIGNED: return options->is_signed = true;
     case OPTION_FPS: return parse_factor(text, 1, 120, &options->fps);
     case OPTION_HISTORY: options->history = text; return true;
     case OPTION_PREPARED: options->prepared = text; return true;
@@ -282,6 +287,10 @@ static int judge(const struct snapshot_options *options, bool clip, int left)
         return wrong(clip, "--from and --to are missing");
     if (options->tour && (options->to_text || !only_size(options)))
         return wrong(clip, "a tour says itself what is seen and for how long: only --size and --from have a place beside it");
+    if (options->is_signed && options->tour)
+        return wrong(clip, "--signed: a tour's texts are written into the pictures after the server has signed them");
+    if (options->is_signed && !strstr(options->out, ".mp4") && !strstr(options->out, ".mov"))
+        return wrong(clip, "--signed: signatures are kept in .mp4 and .mov");
     if (clip && !options->tour && options->from_us >= options->to_us)
         return wrong(clip, "--from is to be earlier than --to");
     return -1;

@@ -9,15 +9,18 @@
 #include "base/text.h"
 #include "base/timestamp.h"
 #include "commands.h"
+#include "provenance/png_pixels.h"
 #include "redraw.h"
+#include "signed_film.h"
 
 static const size_t MOST_BYTES = (size_t)256 << 20;
 
 static void print_usage(FILE *out)
 {
-    fputs("usage: plantcast verify PICTURE.png --key FILE [--plant PLANT.yaml [--prepared FOLDER] [--history FOLDER]]\n"
+    fputs("usage: plantcast verify (PICTURE.png | CLIP.mp4) --key FILE [--plant PLANT.yaml [--prepared FOLDER] [--history FOLDER]]\n"
           "\n"
-          "Says whether PICTURE.png is what a server with --signing-key drew: pixels, readings, time, view and configuration.\n"
+          "Says whether PICTURE.png, or each picture of CLIP.mp4 (plantcast clip --signed), is what a server with --signing-key drew:\n"
+          "pixels, readings, time, view and configuration; of a clip also whether one is missing between the first and the last.\n"
           "  --key FILE          the server's public key: openssl pkey -in signing.key -pubout -out FILE\n"
           "  --plant PLANT.yaml  draw it again from the readings that it tells, and count the pixels that agree within 1/255\n"
           "  --prepared FOLDER   where plantcast-prep put its files; PLANT.prepared beside the plant file\n"
@@ -44,6 +47,17 @@ static void print_statement(const char *path, const json_t *statement)
     puts(json_array_size(args) ? "" : " the plant's own");
 }
 
+/* statement: verified, so the pixels are there. */
+static int redraw(const struct redraw_options *options, const json_t *statement, const char *png, size_t count)
+{
+    char why[PNG_WHY_BYTES];
+    uint8_t *rgb = png_pixels((const uint8_t *)png, count, json_integer_value(json_object_get(statement, "width")),
+                              json_integer_value(json_object_get(statement, "height")), why);
+    int code = rgb ? redraw_compare(options, statement, rgb) : 2;
+    mem_free(rgb);
+    return code;
+}
+
 static int verify(const char *path, const char *key_path, const struct redraw_options *options)
 {
     char why[SIGNED_PICTURE_WHY_BYTES];
@@ -54,11 +68,17 @@ static int verify(const char *path, const char *key_path, const struct redraw_op
         fprintf(stderr, "plantcast: --key: %s\n", why);
     else if (!png)
         fprintf(stderr, "plantcast: %s: %m\n", path);
+    if (png && film_is_one((const uint8_t *)png, count)) {
+        int film = film_verify(key, path, options);
+        mem_free(png);
+        signing_key_destroy(&key);
+        return film;
+    }
     json_t *statement = png ? signed_picture_verify(key, (const uint8_t *)png, count, why) : NULL;
     int code = !png ? 2 : 0;
     if (statement) {
         print_statement(path, statement);
-        code = options->plant ? redraw_compare(options, statement, (const uint8_t *)png, count) : 0;
+        code = options->plant ? redraw(options, statement, png, count) : 0;
     } else if (png) {
         fprintf(stderr, "plantcast: %s: %s\n", path, why);
         code = 1;

@@ -19,6 +19,7 @@ struct video {
     AVStream *stream;
     AVFrame *picture;
     AVPacket *packet;
+    bool lossless;
     bool begun; /* the file is there, and has its head */
     int64_t next;
 };
@@ -35,27 +36,28 @@ static bool failed(const struct video *video, const char *what, int status)
 static void describe(struct video *video, int width_px, int height_px, double fps)
 {
     AVCodecContext *codec = video->codec;
-    codec->width = width_px & ~1;
-    codec->height = height_px & ~1;
-    codec->pix_fmt = AV_PIX_FMT_YUV420P;
+    codec->width = video->lossless ? width_px : width_px & ~1;
+    codec->height = video->lossless ? height_px : height_px & ~1;
+    codec->pix_fmt = video->lossless ? AV_PIX_FMT_BGR0 : AV_PIX_FMT_YUV420P;
     codec->framerate = av_d2q(fps, 1001000);
     codec->time_base = av_inv_q(codec->framerate);
-    codec->color_range = AVCOL_RANGE_MPEG;
-    codec->colorspace = AVCOL_SPC_SMPTE170M;
+    codec->color_range = video->lossless ? AVCOL_RANGE_JPEG : AVCOL_RANGE_MPEG;
+    codec->colorspace = video->lossless ? AVCOL_SPC_RGB : AVCOL_SPC_SMPTE170M;
     codec->color_primaries = AVCOL_PRI_BT709;
     codec->color_trc = AVCOL_TRC_IEC61966_2_1;
     codec->gop_size = (int)fmax(fps, 1); /* a place to go to in each second */
     if (video->format->oformat->flags & AVFMT_GLOBALHEADER)
         codec->flags |= AV_CODEC_FLAG_GLOBAL_HEADER;
     av_opt_set(codec->priv_data, "preset", "fast", 0);
-    av_opt_set(codec->priv_data, "crf", "18", 0);
+    av_opt_set(codec->priv_data, video->lossless ? "qp" : "crf", video->lossless ? "0" : "18", 0);
 }
 
 static bool open_codec(struct video *video, int width_px, int height_px, double fps)
 {
-    const AVCodec *library = avcodec_find_encoder_by_name("libx264");
+    const char *name = video->lossless ? "libx264rgb" : "libx264";
+    const AVCodec *library = avcodec_find_encoder_by_name(name);
     if (!library) {
-        fprintf(stderr, "plantcast: %s: this machine's libavcodec has no libx264\n", video->path);
+        fprintf(stderr, "plantcast: %s: this machine's libavcodec has no %s\n", video->path, name);
         return false;
     }
     video->codec = avcodec_alloc_context3(library);
@@ -87,16 +89,22 @@ static bool open_file(struct video *video)
     if (status < 0)
         return failed(video, "cannot be written", status);
     video->begun = true;
-    av_dict_set(&options, "movflags", "+faststart", 0);
+    av_dict_set(&options, "movflags", "+faststart+use_metadata_tags", 0);
     status = avformat_write_header(video->format, &options);
     av_dict_free(&options);
     return status >= 0 || failed(video, "cannot be written", status);
 }
 
-struct video *video_create(const char *path, int width_px, int height_px, double fps)
+void video_set_text(struct video *video, const char *key, const char *text)
+{
+    av_dict_set(&video->format->metadata, key, text, 0);
+}
+
+struct video *video_create(const char *path, int width_px, int height_px, double fps, bool lossless)
 {
     struct video *video = mem_new(sizeof(*video));
     video->path = path;
+    video->lossless = lossless;
     av_log_set_level(AV_LOG_ERROR);
     avformat_alloc_output_context2(&video->format, NULL, NULL, path);
     if (!video->format || video->format->oformat->video_codec == AV_CODEC_ID_NONE)
@@ -127,8 +135,11 @@ bool video_add(struct video *video, const uint8_t *bgrx, int stride_bytes)
     int status = av_frame_make_writable(picture);
     if (status < 0)
         return failed(video, "H.264", status);
-    ARGBToI420(bgrx, stride_bytes, picture->data[0], picture->linesize[0], picture->data[1], picture->linesize[1], picture->data[2],
-               picture->linesize[2], picture->width, picture->height);
+    if (video->lossless)
+        ARGBCopy(bgrx, stride_bytes, picture->data[0], picture->linesize[0], picture->width, picture->height);
+    else
+        ARGBToI420(bgrx, stride_bytes, picture->data[0], picture->linesize[0], picture->data[1], picture->linesize[1], picture->data[2],
+                   picture->linesize[2], picture->width, picture->height);
     picture->pts = video->next++;
     status = avcodec_send_frame(video->codec, picture);
     return status < 0 ? failed(video, "H.264", status) : write_packets(video);

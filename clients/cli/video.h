@@ -7,8 +7,11 @@
 #include <stdint.h>
 
 struct video;
-/* Opens the file. Odd sides are cut to even numbers. Returns NULL with the reason printed. */
-struct video *video_create(const char *path, int width_px, int height_px, double fps);
+/* Opens the file. Odd sides are cut to even numbers. lossless: nothing is cut, and what is decoded from it has the very colours of the
+   pictures, red, green and blue (H.264 High 4:4:4 Predictive; browsers do not play it). Returns NULL with the reason printed. */
+struct video *video_create(const char *path, int width_px, int height_px, double fps, bool lossless);
+/* Puts a text beside the pictures, in .mp4 and .mov, before video_finish(). */
+void video_set_text(struct video *video, const char *key, const char *text);
 /* Encodes one picture. Returns false with the reason printed. */
 bool video_add(struct video *video, const uint8_t *bgrx, int stride_bytes);
 /* Writes what is left if `good`, else deletes the file. Returns false if the file is not complete. Frees the video; leaves NULL. */

@@ -32,6 +32,16 @@ enum { SIGNED_PICTURE_WHY_BYTES = 256 };
    readings are those that it names; the caller drops it (json_decref). Else returns NULL, with the reason in `why`. */
 json_t *signed_picture_verify(const struct signing_key *key, const uint8_t *png, size_t count, char why[SIGNED_PICTURE_WHY_BYTES]);
 
+/* The same of a statement that stands elsewhere, without pixels: `text` of that length, and the signature as it is in pictures. */
+json_t *signed_statement_verify(const struct signing_key *key, const char *text, size_t length, const char *signature,
+                                char why[SIGNED_PICTURE_WHY_BYTES]);
+/* Returns whether a verified statement is of these pixels: red, green, blue, rows from the top. If not, the reason is in `why`. */
+bool signed_statement_has_pixels(const json_t *statement, const uint8_t *rgb, int width_px, int height_px,
+                                 char why[SIGNED_PICTURE_WHY_BYTES]);
+/* Finds statement and signature of a PNG file, each followed by a 0 byte; the caller frees both (mem_free). Returns false if there are
+   none; verifies nothing. */
+bool signed_picture_take(const uint8_t *png, size_t count, char **statement, char **signature);
+
 /* Returns a record with the readings, baselines and marks that a verified statement tells, for a plant with the same tags. The baselines
    are put into `baselines` under their names, too. Returns NULL, with the reason in `why`, if the statement tells none or names tags that
    the plant does not have. */

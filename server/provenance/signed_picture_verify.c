@@ -28,18 +28,26 @@ static bool is_signed(const struct signing_key *key, const char *statement, size
            FAIL("the signature is wrong: the statement was changed after it was signed");
 }
 
-static bool has_pixels(const json_t *statement, const uint8_t *png, size_t count, char why[SIGNED_PICTURE_WHY_BYTES])
+bool signed_statement_has_pixels(const json_t *statement, const uint8_t *rgb, int width_px, int height_px,
+                                 char why[SIGNED_PICTURE_WHY_BYTES])
 {
     char hash[PICTURE_HASH_BYTES];
     const char *expected = json_string_value(json_object_get(statement, "pixels_sha256"));
+    if (json_integer_value(json_object_get(statement, "width")) != width_px ||
+        json_integer_value(json_object_get(statement, "height")) != height_px)
+        return FAIL("it is of another size than the one that was signed");
+    picture_hash(rgb, 3 * (size_t)width_px * (size_t)height_px, hash);
+    return (*hash && expected && !strcmp(hash, expected)) || FAIL("the pixels are not those that were signed");
+}
+
+static bool has_pixels(const json_t *statement, const uint8_t *png, size_t count, char why[SIGNED_PICTURE_WHY_BYTES])
+{
     int64_t width_px = json_integer_value(json_object_get(statement, "width"));
     int64_t height_px = json_integer_value(json_object_get(statement, "height"));
     uint8_t *pixels = png_pixels(png, count, width_px, height_px, why);
-    if (!pixels)
-        return false;
-    picture_hash(pixels, 3 * (size_t)width_px * (size_t)height_px, hash);
+    bool same = pixels && signed_statement_has_pixels(statement, pixels, (int)width_px, (int)height_px, why);
     mem_free(pixels);
-    return (*hash && expected && !strcmp(hash, expected)) || FAIL("the pixels are not those that were signed");
+    return same;
 }
 
 static bool has_readings(const json_t *statement, char why[SIGNED_PICTURE_WHY_BYTES])
@@ -63,6 +71,32 @@ static bool is_known(const json_t *statement, char why[SIGNED_PICTURE_WHY_BYTES]
                 PICTURE_STATEMENT_VERSION);
 }
 
+json_t *signed_statement_verify(const struct signing_key *key, const char *text, size_t length, const char *signature,
+                                char why[SIGNED_PICTURE_WHY_BYTES])
+{
+    json_t *statement = NULL;
+    if (is_signed(key, text, length, signature, why) && !(statement = json_loadb(text, length, JSON_REJECT_DUPLICATES, NULL)))
+        snprintf(why, SIGNED_PICTURE_WHY_BYTES, "the statement is no JSON");
+    if (statement && !(is_known(statement, why) && has_readings(statement, why))) {
+        json_decref(statement);
+        statement = NULL;
+    }
+    return statement;
+}
+
+bool signed_picture_take(const uint8_t *png, size_t count, char **statement, char **signature)
+{
+    size_t length;
+    *statement = png_text_find(png, count, PICTURE_STATEMENT_KEYWORD, PICTURE_STATEMENT_MAX_BYTES, &length);
+    *signature = png_text_find(png, count, PICTURE_SIGNATURE_KEYWORD, PICTURE_SIGNATURE_BYTES, &length);
+    if (*statement && *signature)
+        return true;
+    mem_free(*statement);
+    mem_free(*signature);
+    *statement = *signature = NULL;
+    return false;
+}
+
 json_t *signed_picture_verify(const struct signing_key *key, const uint8_t *png, size_t count, char why[SIGNED_PICTURE_WHY_BYTES])
 {
     size_t length = 0, signature_length = 0;
@@ -75,9 +109,9 @@ json_t *signed_picture_verify(const struct signing_key *key, const uint8_t *png,
                  *type ? "it has a chunk that none of our pictures has: " : "it is no whole PNG file", type);
     else if (!text || !signature)
         snprintf(why, SIGNED_PICTURE_WHY_BYTES, "there is no %s in it, or the file is damaged", text ? "signature" : "statement");
-    else if (is_signed(key, text, length, signature, why) && !(statement = json_loadb(text, length, JSON_REJECT_DUPLICATES, NULL)))
-        snprintf(why, SIGNED_PICTURE_WHY_BYTES, "the statement is no JSON");
-    if (statement && !(is_known(statement, why) && has_pixels(statement, png, count, why) && has_readings(statement, why))) {
+    else
+        statement = signed_statement_verify(key, text, length, signature, why);
+    if (statement && !has_pixels(statement, png, count, why)) {
         json_decref(statement);
         statement = NULL;
     }

@@ -2,12 +2,15 @@
 // Signed pictures: whole ones are good and are drawn again pixel for pixel, of now and of the past; whatever is changed in one is found.
 import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
+import { createPrivateKey, sign } from 'node:crypto';
 import { appendFileSync, chmodSync, readdirSync, readFileSync, writeFileSync } from 'node:fs';
+import { get } from 'node:http';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
 import { chunksOf, pngOf, textOf, withRows, withText } from './support/png_chunks.mjs';
 import { missing, runProgram, TinyPlant } from './support/tiny_plant.mjs';
 
+const noFfmpeg = spawnSync('ffmpeg', ['-version']).status === 0 ? false : 'ffmpeg is not there';
 const absent = missing();
 const skip = absent.length > 0 ? `not built: ${absent.join(', ')}` : false;
 const sleep = (ms) => new Promise((done) => setTimeout(done, ms));
@@ -21,12 +24,16 @@ function makeKey(name) {
     chmodSync(path(`${name}.pem`), 0o600);
     openssl('pkey', '-in', path(`${name}.pem`), '-pubout', '-out', path(`${name}.pub`));
 }
-async function fetchPicture(query, token = null) {
-    const answer = await fetch(`http://127.0.0.1:${plant.port}/snapshot.png?${query}`,
-        token ? { headers: { Authorization: `Bearer ${token}` } } : {});
-    assert.equal(answer.status, 200, query);
-    return Buffer.from(await answer.arrayBuffer());
-}
+// By a connection of its own: while this program waits for another one, the server may end one that is idle.
+const fetchPicture = (query, token = null) => new Promise((done, fail) => {
+    get({ host: '127.0.0.1', port: plant.port, path: `/snapshot.png?${query}`, agent: false,
+        headers: token ? { Authorization: `Bearer ${token}` } : {} }, (answer) => {
+        const pieces = [];
+        answer.on('data', (piece) => pieces.push(piece)).on('error', fail);
+        answer.on('end', () => (answer.statusCode === 200 ? done(Buffer.concat(pieces))
+            : fail(new Error(`${answer.statusCode}: ${query}`))));
+    }).on('error', fail);
+});
 function verify(png, ...args) {
     writeFileSync(path('asked.png'), png);
     return runProgram('plantcast', ['verify', path('asked.png'), '--key', path('server.pub'), ...args], 60000);
@@ -98,6 +105,14 @@ test('so is a statement of another picture, and a signature of another key', { s
         /the signature is wrong/);
 });
 
+test('a statement of another version is signed well, and not understood', { skip }, () => {
+    const key = createPrivateKey(readFileSync(path('server.pem'))), text = textOf(picture, STATEMENT)
+        .replace('"plantcast_statement":1', '"plantcast_statement":2');
+    const by = textOf(picture, SIGNATURE).split(' ')[1], signature = sign(null, Buffer.from(text), key).toString('base64');
+    const changed = withText(withText(picture, STATEMENT, () => text), SIGNATURE, () => `ed25519 ${by} ${signature}`);
+    refused(changed, /the statement is of version 2; this program understands version 1/);
+});
+
 test('no file that would show something else is good', { skip }, () => {
     const chunks = chunksOf(picture), animated = { type: 'acTL', data: Buffer.from([0, 0, 0, 2, 0, 0, 0, 0]) };
     refused(pngOf(picture, [chunks[0], animated, ...chunks.slice(1)]), /a chunk that none of our pictures has: acTL/);
@@ -134,6 +149,51 @@ test('the past agrees with what was recorded', { skip }, async () => {
     assert.match(out, /3 of 3 readings agree with what was recorded/);
     const now = redraw(await fetchPicture('width=640&height=400'));
     assert.equal(now.code, 0, now.out + now.err);
+});
+
+const filmed = { skip: skip || noFfmpeg, timeout: 120000 };
+test('a film is good picture by picture; one that was changed, cut or made anew is not', filmed, () => {
+    const from = new Date(Date.now() - 4500).toISOString(), to = new Date(Date.now() - 3500).toISOString(), film = path('film.mp4');
+    const made = runProgram('plantcast', ['clip', `http://127.0.0.1:${plant.port}/`, '-o', film, '--from', from, '--to', to, '--speed', '1',
+        '--fps', '3', '--size', '321x200', '--signed'], 60000);
+    assert.equal(made.code, 0, made.err);
+    const check = (file, ...args) => runProgram('plantcast', ['verify', file, '--key', path('server.pub'), ...args], 90000);
+    const { code, out, err } = check(film, '--plant', plant.file, '--history', path('plant.history'));
+    assert.equal(code, 0, out + err);
+    assert.match(out, /the signatures of all 4 pictures are good, and none is missing/);
+    assert.equal(out.match(/64200 of 64200 pixels agree within 1\/255/g).length, 4);
+    assert.equal(out.match(/3 of 3 readings agree with what was recorded/g).length, 4);
+    const bad = (file, why) => {
+        const told = check(file);
+        assert.equal(told.code, 1, told.out);
+        assert.match(told.err, why);
+    };
+    const other = runProgram('plantcast', ['verify', film, '--key', path('other.pub')]);
+    assert.match(other.err, /picture 1: it was signed by another key/);
+    const anew = (name, ...how) => {
+        const { status, stderr } = spawnSync('ffmpeg', ['-v', 'error', '-y', '-i', film, '-map_metadata', '0', '-movflags',
+            'use_metadata_tags', ...how, path(name)], { encoding: 'utf8' });
+        assert.equal(status, 0, stderr);
+        return path(name);
+    };
+    const LOSSLESS = ['-c:v', 'libx264rgb', '-qp', '0'];
+    assert.equal(check(anew('same.mp4', ...LOSSLESS)).code, 0, 'the same pictures in other bytes');
+    bad(anew('lossy.mp4', '-c:v', 'libx264rgb', '-crf', '20'), /picture 1: the pixels are not those that were signed/);
+    bad(anew('yuv.mp4', '-c:v', 'libx264', '-pix_fmt', 'yuv420p', '-vf', 'crop=320:200'), /not as plantcast clip --signed encodes it/);
+    bad(anew('box.mp4', ...LOSSLESS, '-vf', "drawbox=10:10:1:1:red:fill:enable='eq(n,2)'"), /picture 3: the pixels are not those/);
+    const PASS = [...LOSSLESS, '-fps_mode', 'passthrough'];
+    bad(anew('less.mp4', ...PASS, '-vf', "select='not(eq(n,1))'"), /picture [23]: (the pixels are not those|it is not shown as long)/);
+    bad(anew('short.mp4', ...LOSSLESS, '-frames:v', '3'), /it has 3 pictures, and statements of 4/);
+    bad(anew('slow.mp4', ...PASS, '-vf', "setpts='if(gte(N,2),PTS+3/TB,PTS)'"), /not shown as long as the others/);
+    bad(anew('turned.mp4', '-c', 'copy', '-metadata:s:v', 'rotate=180'), /it would be shown turned/);
+    assert.equal(spawnSync('ffmpeg', ['-v', 'error', '-y', '-i', film, '-map_metadata', '-1', '-c', 'copy', path('bare.mp4')]).status, 0);
+    bad(path('bare.mp4'), /no statements in it/);
+    const bytes = readFileSync(film);
+    writeFileSync(path('cut.mp4'), bytes.subarray(0, bytes.length - 2000));
+    bad(path('cut.mp4'), /pictures|decoded|whole|read|damaged/);
+    const plain = runProgram('plantcast', ['clip', plant.file, '-o', film, '--from', from, '--to', to, '--signed']);
+    assert.equal(plain.code, 2);
+    assert.match(plain.err, /give its URL/);
 });
 
 test('who may see no readings is told none', { skip }, async () => {

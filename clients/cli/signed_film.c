@@ -1,0 +1,301 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Statements of all pictures as one text: JSON, compressed, in base64. */
+#include "signed_film.h"
+
+#include <inttypes.h>
+#include <openssl/evp.h>
+#include <stdio.h>
+#include <string.h>
+#include <zlib.h>
+
+#include "base/mem.h"
+#include "base/text.h"
+#include "base/timestamp.h"
+
+bool film_is_one(const uint8_t *bytes, size_t count)
+{
+    return count > 8 && !memcmp(bytes + 4, "ftyp", 4);
+}
+
+#ifndef PLANTCAST_H264
+int film_verify(const struct signing_key *key, const char *path, const struct redraw_options *options)
+{
+    (void)key;
+    (void)options;
+    fprintf(stderr, "plantcast: %s: this program was built without H.264 (CODECS=jpeg), and so without films\n", path);
+    return 2;
+}
+#else
+#include <libavcodec/avcodec.h>
+#include <libavformat/avformat.h>
+
+#define FILM_KEY "plantcast_statements"
+static const size_t MOST_BYTES = (size_t)64 << 20, MOST_TEXT_BYTES = (size_t)1 << 30; /* compressed, and not */
+
+/* --- writing ------------------------------------------------------------------------------------------------------------------- */
+
+struct film_statements {
+    struct text list; /* JSON, but for the last bracket */
+};
+
+struct film_statements *film_statements_create(void)
+{
+    return mem_new(sizeof(struct film_statements));
+}
+
+void film_statements_destroy(struct film_statements **statements)
+{
+    if (*statements)
+        text_finish(&(*statements)->list);
+    mem_free(*statements);
+    *statements = NULL;
+}
+
+bool film_statements_add(struct film_statements *statements, const uint8_t *png, size_t count)
+{
+    char *statement, *signature;
+    if (!signed_picture_take(png, count, &statement, &signature))
+        return false;
+    json_t *both = json_pack("[s,s]", statement, signature);
+    char *text = json_dumps(both, JSON_COMPACT | JSON_ENSURE_ASCII);
+    text_add(&statements->list, "%s", statements->list.length > 0 ? "," : "[");
+    text_add_bytes(&statements->list, text, strlen(text));
+    free(text);
+    json_decref(both);
+    mem_free(statement);
+    mem_free(signature);
+    return true;
+}
+
+bool film_statements_put(const struct film_statements *statements, struct video *video)
+{
+    struct text all = { 0 };
+    text_add_bytes(&all, statements->list.at, statements->list.length);
+    text_add(&all, "]");
+    uLongf count = compressBound(all.length);
+    uint8_t *bytes = mem_array(count, 1);
+    bool good = all.length <= MOST_TEXT_BYTES && compress2(bytes, &count, (const Bytef *)all.at, all.length, 9) == Z_OK;
+    good = good && count <= MOST_BYTES;
+    if (good) {
+        char *base64 = mem_array(4 * (count / 3 + 1) + 1, 1);
+        EVP_EncodeBlock((unsigned char *)base64, bytes, (int)count);
+        video_set_text(video, FILM_KEY, base64);
+        mem_free(base64);
+    } else {
+        fprintf(stderr, "plantcast: the statements of all pictures are too long for one film: fewer pictures, or a shorter time\n");
+    }
+    mem_free(bytes);
+    text_finish(&all);
+    return good;
+}
+
+/* --- reading ------------------------------------------------------------------------------------------------------------------- */
+
+struct film_reader {
+    AVFormatContext *format;
+    AVCodecContext *codec;
+    AVPacket *packet;
+    AVFrame *frame;
+    bool ended;
+    json_t *statements; /* [[statement, signature], ...] */
+    char why[SIGNED_PICTURE_WHY_BYTES];
+};
+
+#define FAIL(...) (snprintf(reader->why, sizeof(reader->why), __VA_ARGS__), false)
+
+/* Base64 of compressed JSON. */
+static bool read_statements(struct film_reader *reader)
+{
+    const AVDictionaryEntry *entry = av_dict_get(reader->format->metadata, FILM_KEY, NULL, AV_DICT_MATCH_CASE);
+    size_t length = entry ? strlen(entry->value) : 0;
+    if (length < 4 || length % 4 || length > 2 * MOST_BYTES)
+        return FAIL("there are no statements in it, or the file is damaged");
+    uint8_t *bytes = mem_array(length, 1);
+    int count = EVP_DecodeBlock(bytes, (const unsigned char *)entry->value, (int)length);
+    count -= (entry->value[length - 1] == '=') + (entry->value[length - 2] == '=');
+    struct text text = { 0 };
+    uint8_t piece[65536];
+    z_stream stream = { .next_in = bytes, .avail_in = count > 0 ? (uInt)count : 0 };
+    int status = inflateInit(&stream);
+    while (status == Z_OK && text.length < MOST_TEXT_BYTES) {
+        stream.next_out = piece;
+        stream.avail_out = sizeof(piece);
+        status = inflate(&stream, Z_NO_FLUSH);
+        text_add_bytes(&text, piece, sizeof(piece) - stream.avail_out);
+    }
+    inflateEnd(&stream);
+    reader->statements = status == Z_STREAM_END ? json_loadb(text.at, text.length, JSON_REJECT_DUPLICATES, NULL) : NULL;
+    text_finish(&text);
+    mem_free(bytes);
+    return json_is_array(reader->statements) || FAIL("its statements cannot be read");
+}
+
+/* One stream, which players show as it is. */
+static bool open_film(struct film_reader *reader, const char *path)
+{
+    av_log_set_level(AV_LOG_QUIET);
+    if (avformat_open_input(&reader->format, path, NULL, NULL) < 0 || avformat_find_stream_info(reader->format, NULL) < 0)
+        return FAIL("it is no whole film");
+    const AVStream *stream = reader->format->nb_streams == 1 ? reader->format->streams[0] : NULL;
+    if (!stream || stream->codecpar->codec_id != AV_CODEC_ID_H264)
+        return FAIL("it has more, or something else, in it than one film of H.264");
+    if (av_stream_get_side_data(stream, AV_PKT_DATA_DISPLAYMATRIX, NULL))
+        return FAIL("it would be shown turned");
+    const AVCodec *decoder = avcodec_find_decoder(AV_CODEC_ID_H264);
+    reader->codec = decoder ? avcodec_alloc_context3(decoder) : NULL;
+    reader->packet = av_packet_alloc();
+    reader->frame = av_frame_alloc();
+    if (!reader->codec || !reader->packet || !reader->frame || avcodec_parameters_to_context(reader->codec, stream->codecpar) < 0)
+        return FAIL("there is no decoder for it");
+    reader->codec->thread_count = 1;
+    reader->codec->err_recognition = AV_EF_EXPLODE | AV_EF_BITSTREAM | AV_EF_BUFFER | AV_EF_CRCCHECK;
+    return (avcodec_open2(reader->codec, decoder, NULL) >= 0 || FAIL("there is no decoder for it")) && read_statements(reader);
+}
+
+static void close_film(struct film_reader *reader)
+{
+    json_decref(reader->statements);
+    av_frame_free(&reader->frame);
+    av_packet_free(&reader->packet);
+    avcodec_free_context(&reader->codec);
+    avformat_close_input(&reader->format);
+}
+
+/* The next picture, into reader->frame. Returns false at the end, and with *reader->why where it cannot be decoded. */
+static bool next_picture(struct film_reader *reader)
+{
+    for (;;) {
+        int status = avcodec_receive_frame(reader->codec, reader->frame);
+        if (status >= 0)
+            return true;
+        if (status == AVERROR_EOF)
+            return false;
+        if (status != AVERROR(EAGAIN))
+            return FAIL("a picture cannot be decoded");
+        status = reader->ended ? AVERROR_EOF : av_read_frame(reader->format, reader->packet);
+        if (status < 0 && status != AVERROR_EOF)
+            return FAIL("it cannot be read to its end");
+        reader->ended = status < 0;
+        status = avcodec_send_packet(reader->codec, reader->ended ? NULL : reader->packet);
+        av_packet_unref(reader->packet);
+        if (status < 0 && status != AVERROR_EOF)
+            return FAIL("a picture cannot be decoded");
+    }
+}
+
+/* Red, green, blue. NULL: the picture has other colours. */
+static uint8_t *pixels_of(struct film_reader *reader)
+{
+    const AVFrame *frame = reader->frame;
+    if (frame->format != AV_PIX_FMT_GBRP || frame->crop_left || frame->crop_right || frame->crop_top || frame->crop_bottom) {
+        snprintf(reader->why, sizeof(reader->why), "a picture is not as plantcast clip --signed encodes it");
+        return NULL;
+    }
+    uint8_t *rgb = mem_array((size_t)frame->width * (size_t)frame->height, 3), *out = rgb;
+    for (int y = 0; y < frame->height; y++)
+        for (int x = 0; x < frame->width; x++, out += 3) {
+            out[0] = frame->data[2][y * frame->linesize[2] + x];
+            out[1] = frame->data[0][y * frame->linesize[0] + x];
+            out[2] = frame->data[1][y * frame->linesize[1] + x];
+        }
+    return rgb;
+}
+
+/* --- verifying ----------------------------------------------------------------------------------------------------------------- */
+
+struct film_check {
+    const struct signing_key *key;
+    const struct redraw_options *options;
+    struct film_reader reader;
+    json_t *first;           /* the first statement */
+    int64_t at_us, step_us;  /* of the picture before; between pictures, 0: not known yet */
+    int64_t pts, pts_step;   /* likewise, as players show them */
+    size_t count;            /* of pictures that are good */
+    int code;
+};
+
+/* The same plant, view and server as the first one, and as long after the one before as that after its own. */
+static bool follows(struct film_check *check, const json_t *statement)
+{
+    static const char *const same[] = { "server", "plant", "configuration", "assets", "width", "height", "bare" };
+    struct film_reader *reader = &check->reader;
+    int64_t at_us = json_integer_value(json_object_get(statement, "at_us")), pts = reader->frame->pts;
+    if (at_us == 0)
+        return FAIL("it is not of the past");
+    for (size_t i = 0; i < sizeof(same) / sizeof(*same) && check->first; i++)
+        if (!json_equal(json_object_get(statement, same[i]), json_object_get(check->first, same[i])))
+            return FAIL("its '%s' is another one than that of the first picture", same[i]);
+    const json_t *query = json_object_get(statement, "query"), *first = json_object_get(check->first, "query");
+    for (size_t i = 0; i < json_array_size(query) && check->first; i++) {
+        const char *arg = json_string_value(json_array_get(query, i));
+        if (strncmp(arg, "at=", 3) != 0 && !json_equal(json_array_get(query, i), json_array_get(first, i)))
+            return FAIL("its view is another one than that of the first picture");
+    }
+    int64_t step_us = at_us - check->at_us, pts_step = pts - check->pts;
+    if (check->count > 0 && (step_us <= 0 || (check->step_us && llabs(step_us - check->step_us) > 1)))
+        return FAIL("a picture is missing before it, was moved, or put in");
+    if (check->count > 0 && (pts_step <= 0 || (check->pts_step && pts_step != check->pts_step)))
+        return FAIL("it is not shown as long as the others");
+    check->step_us = check->count > 0 ? step_us : 0;
+    check->pts_step = check->count > 0 ? pts_step : 0;
+    check->at_us = at_us;
+    check->pts = pts;
+    return true;
+}
+
+static bool verify_picture(struct film_check *check)
+{
+    struct film_reader *reader = &check->reader;
+    const json_t *pair = json_array_get(reader->statements, check->count);
+    const char *text = json_string_value(json_array_get(pair, 0)), *signature = json_string_value(json_array_get(pair, 1));
+    uint8_t *rgb = pixels_of(reader);
+    json_t *statement = NULL;
+    bool good = rgb && ((text && signature) || FAIL("there is no statement of it"));
+    good = good && (statement = signed_statement_verify(check->key, text, strlen(text), signature, reader->why));
+    good = good && signed_statement_has_pixels(statement, rgb, reader->frame->width, reader->frame->height, reader->why);
+    good = good && follows(check, statement);
+    if (good && !check->first)
+        check->first = json_incref(statement);
+    if (good && check->options->plant) {
+        int code = redraw_compare(check->options, statement, rgb);
+        check->code = code > check->code ? code : check->code;
+    }
+    json_decref(statement);
+    mem_free(rgb);
+    return good;
+}
+
+static void print_film(const struct film_check *check, const char *path)
+{
+    char from[TIMESTAMP_BYTES], to[TIMESTAMP_BYTES];
+    timestamp_print(json_integer_value(json_object_get(check->first, "at_us")), from);
+    timestamp_print(check->at_us, to);
+    printf("%s: the signatures of all %zu pictures are good, and none is missing between the first and the last\n", path, check->count);
+    printf("  plant %s, configuration %s, plantcastd %s\n", json_string_value(json_object_get(check->first, "plant")),
+           json_string_value(json_object_get(check->first, "configuration")), json_string_value(json_object_get(check->first, "server")));
+    printf("  from %s to %s (history), a picture each %.6g s\n", from, to, (double)check->step_us / 1e6);
+}
+
+int film_verify(const struct signing_key *key, const char *path, const struct redraw_options *options)
+{
+    struct film_check check = { .key = key, .options = options };
+    struct film_reader *reader = &check.reader;
+    bool good = open_film(reader, path);
+    while (good && next_picture(reader)) {
+        good = verify_picture(&check);
+        check.count += good;
+        av_frame_unref(reader->frame);
+    }
+    good = good && !*reader->why;
+    if (good && check.count != json_array_size(reader->statements))
+        good = FAIL("it has %zu pictures, and statements of %zu", check.count, json_array_size(reader->statements));
+    good = good && (check.count > 0 || FAIL("there is no picture in it"));
+    if (good)
+        print_film(&check, path);
+    else
+        fprintf(stderr, "plantcast: %s: picture %zu: %s\n", path, check.count + 1, reader->why);
+    json_decref(check.first);
+    close_film(reader);
+    return good ? check.code : 1;
+}
+#endif
