@@ -179,7 +179,7 @@ static void ask(struct view_pane *pane, json_t *params, json_t *camera)
 
 void view_pane_show(struct view_pane *pane, const struct model *model, const char *address)
 {
-    static const char *const engineers[] = { "fill", "strength", "decay", "power", "radius_m", "reach_m" };
+    static const char *const engineers[] = { "fill", "strength", "decay", "power", "radius_m", "reach_m", "sensors" };
     json_t *given = view_address_params(address), *camera = view_address_camera(address);
     json_t *params = plain_params(pane, model, json_string_value(json_object_get(given, "group")));
     json_object_update(params, given);

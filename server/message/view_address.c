@@ -140,11 +140,10 @@ static bool add(struct view_address *out, const char *name, char *value, struct 
     return good && known;
 }
 
-bool view_address_read(struct view_address *out, const char *address, struct message_error *error)
+bool view_address_each(const char *address, view_address_field *take, void *arg)
 {
     char *copy = mem_strdup(address), *rest = copy;
     bool good = true;
-    *out = (struct view_address){ .count = 0 };
     for (char *part; good && (part = strsep(&rest, "&"));) {
         char *value = strchr(part, '=');
         if (!*part)
@@ -154,10 +153,27 @@ bool view_address_read(struct view_address *out, const char *address, struct mes
         decode(part);
         if (value)
             decode(value);
-        good = add(out, part, value ? value : part + strlen(part), error);
+        good = take(arg, part, value ? value : part + strlen(part));
     }
     mem_free(copy);
     return good;
+}
+
+struct reading {
+    struct view_address *out;
+    struct message_error *error;
+};
+
+static bool take(void *arg, const char *name, char *value)
+{
+    const struct reading *reading = arg;
+    return add(reading->out, name, value, reading->error);
+}
+
+bool view_address_read(struct view_address *out, const char *address, struct message_error *error)
+{
+    *out = (struct view_address){ .count = 0 };
+    return view_address_each(address, take, &(struct reading){ out, error });
 }
 
 void view_address_finish(struct view_address *address)

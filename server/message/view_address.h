@@ -1,11 +1,16 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What the address of the page has after `#`, as arguments of view_query_parse. Pure. */
+/* What the address of the page has after `#`: its fields, and these as arguments of view_query_parse. Pure. */
 #ifndef MESSAGE_VIEW_ADDRESS_H
 #define MESSAGE_VIEW_ADDRESS_H
 #include <stdbool.h>
 #include <stddef.h>
 
 #include "message/message_error.h"
+
+/* Takes a field: decoded, "" where there is no value. Returns false to stop. */
+typedef bool view_address_field(void *arg, const char *name, char *value);
+/* Hands over the fields of an address, one after the other. Returns false where `take` did. */
+bool view_address_each(const char *address, view_address_field *take, void *arg);
 
 enum { VIEW_ADDRESS_ARGS = 40 };
 

@@ -3,7 +3,13 @@
    commas. Pure. */
 #ifndef MESSAGE_VIEW_QUERY_H
 #define MESSAGE_VIEW_QUERY_H
+#include <jansson.h>
+
 #include "message/role.h"
+
+/* Reads the value of one argument, as in `camera` and `params` of the protocol. The caller owns it. NULL: it has another form, or no
+   argument has that name. */
+json_t *view_query_value(const char *name, const char *text);
 
 /* Builds *view from `args`, decoded `name=value` texts, as far as the role may ask for it. An instant (`at`) goes to view->at_us; its
    readings are yet to be found. place: where the required `x` and `y` of a pick are written; NULL: these are not arguments. Returns false
