@@ -442,7 +442,9 @@ test('what cannot be read is one line, and nothing is written', { skip: notBuilt
     boxPlant(folder, ['E-101']);
     const list = join(folder, 'export.csv'), before = readdirSync(folder);
     for (const [text, why] of [['', 'no header'], ['a,b\n1,2\n', 'no header'], ['Tag Name\n"x\n', 'a quote does not end'],
-        ['PK\x03\x04', 'not a spreadsheet'], ['{"tags": [', 'not JSON']]) {
+        ['PK\x03\x04', 'not a spreadsheet'], ['{"tags": [', 'not JSON'], ['['.repeat(200000), 'maximum parsing depth'],
+        [`${'{"tags":'.repeat(100000)}1${'}'.repeat(100000)}`, 'maximum parsing depth'], [Buffer.alloc(5000), 'no header'],
+        [`Tag Name${',a'.repeat(200000)}\n`, 'more than 1000 cells']]) {
         writeFileSync(list, text);
         const said = run('plantcast', 'match', folder, list);
         assert.equal(said.status, 1);

@@ -361,7 +361,7 @@ void convert(const char *input, const char *output, const char *units, const cha
     importer.SetIOHandler(new files); /* and owns it */
     const aiScene *scene = importer.ReadFile(input, steps | (from.own_normals ? 0U : static_cast<unsigned>(aiProcess_RemoveComponent)));
     if (!scene || !scene->mRootNode)
-        refuse("%.250s", importer.GetErrorString());
+        refuse("%.250s", strcmp(importer.GetErrorString(), "std::bad_alloc") ? importer.GetErrorString() : "out of memory");
     reader r = {};
     r.scene = scene;
     r.out = glb_scene_create("plantcast-import, Assimp");

@@ -4,6 +4,7 @@
  * failed. */
 #include <BRepMesh_IncrementalMesh.hxx>
 #include <IGESControl_Reader.hxx>
+#include <Interface_InterfaceModel.hxx>
 #include <Interface_Static.hxx>
 #include <Message.hxx>
 #include <Message_Messenger.hxx>
@@ -260,6 +261,19 @@ bool has_ending(const char *path, const char *ending)
     return length > count && !strcasecmp(path + length - count, ending);
 }
 
+/* Entities that could not be read as what they say they are: what they hold is missing, or is as nobody drew it. */
+void say_damaged(const Handle(Interface_InterfaceModel) & model)
+{
+    int damaged = 0, first = 0;
+    for (int i = 1; i <= model->NbEntities(); i++)
+        if (model->IsErrorEntity(i)) {
+            damaged++;
+            first = first ? first : i;
+        }
+    if (damaged > 0)
+        printf("damaged: %d of its %d entities could not be read, the first one is number %d\n", damaged, model->NbEntities(), first);
+}
+
 /* Returns the units that the file says it has. */
 std::string read_step(const char *path, Handle(TDocStd_Document) document)
 {
@@ -273,6 +287,7 @@ std::string read_step(const char *path, Handle(TDocStd_Document) document)
     step.ChangeReader().FileUnits(lengths, angles, solid_angles);
     if (!step.Transfer(document))
         refuse("its shapes could not be read");
+    say_damaged(step.Reader().WS()->Model());
     std::string units;
     for (int i = 1; i <= lengths.Length(); i++)
         if (units.find(lengths.Value(i).ToCString()) == std::string::npos)
@@ -289,6 +304,7 @@ std::string read_iges(const char *path, Handle(TDocStd_Document) document)
     iges_tree_add(iges, document);
     if (iges.NbShapes() < 1)
         refuse("its shapes could not be read");
+    say_damaged(iges.WS()->Model());
     return iges_units(iges);
 }
 
