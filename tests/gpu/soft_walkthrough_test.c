@@ -12,6 +12,7 @@
 
 #include "render/split_view.h"
 #include "tests/support/site.h"
+#include "tests/support/sweep.h"
 #include "tests/support/synthetic.h"
 
 enum { WIDTH_PX = 480, HEIGHT_PX = 270, PIXELS = WIDTH_PX * HEIGHT_PX };
@@ -90,13 +91,13 @@ static void walk(enum tier tier, int steps)
 static void test_moving(void **state)
 {
     (void)state;
-    walk(TIER_PREVIEW, 40);
+    walk(TIER_PREVIEW, sweep(40, 12));
 }
 
 static void test_still(void **state)
 {
     (void)state;
-    walk(TIER_REFINED, 12);
+    walk(TIER_REFINED, sweep(12, 4));
 }
 
 int main(void)
