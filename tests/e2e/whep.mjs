@@ -79,7 +79,9 @@ async function until(i, what, timeoutMs = 30000) {
 }
 
 async function metric(name) {
-    const text = await (await fetch(url('/metrics'), { headers: { Authorization: `Basic ${btoa(`wall:${PASSWORD}`)}` } })).text();
+    // On a connection of its own: one that has long been idle may be closed just when it is used again.
+    const headers = { Authorization: `Basic ${btoa(`wall:${PASSWORD}`)}`, Connection: 'close' };
+    const text = await (await fetch(url('/metrics'), { headers })).text();
     return Number(text.match(new RegExp(`^${name.replace(/[{}]/g, '\\$&')} (\\S+)$`, 'm'))[1]);
 }
 const readers = () => metric('plantcast_video_readers{output="whep"}');
