@@ -8,7 +8,7 @@ import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
 import { SCREENSHOTS } from './support/browser.mjs';
-import { residentKb, sanitized } from './support/crowd.mjs';
+import { Pace, residentKb, sanitized } from './support/crowd.mjs';
 import { PlainClient } from './support/plain_client.mjs';
 import { BIN, missing, startPlant } from './support/plant.mjs';
 import { missingDisplay, savePng, startDisplay } from './support/x_display.mjs';
@@ -86,6 +86,14 @@ async function until(box, expected, ms, what) {
     return performance.now() - begin;
 }
 
+// Holds what was promised within a time to it, where the machine is not too busy for that. pace: since before it began.
+function inTime(t, pace, ms, most) {
+    const { busy } = pace;
+    assert.ok(ms < most || busy, `${ms} ms`);
+    if (ms >= most)
+        t.skip(`the rest is good; after ${ms.toFixed(0)} ms; ${busy}`);
+}
+
 const WHOLE = [0, 0, WIDTH, HEIGHT];
 const isDark = ({ black }) => black > 0.5, showsPlant = ({ coloured, plain, black }) => coloured > 0.01 && plain < 0.1 && black < 0.1;
 const isCard = ({ black, white }) => black > 0.5 && white > 0.05; // with large letters
@@ -143,12 +151,13 @@ test('an alarm takes the place of a view, and stands in the list', options, asyn
     shoot('wall-player-alarm');
 });
 
-test('a server that is gone is said in large letters within 3 s, and it comes back by itself', options, async () => {
-    const resident = [];
+test('a server that is gone is said in large letters within 3 s, and it comes back by itself', options, async (t) => {
+    const resident = [], pace = new Pace();
+    t.after(() => pace.stop());
     for (let round = 0; round < 2; round++) {
         await plant.stopDaemon('SIGKILL');
-        const ms = await until(WHOLE, isCard, 8000, 'the card');
-        assert.ok(ms < 4200, `${ms} ms`); // 3 s after it was last heard, which was within the last second; it is drawn and grabbed
+        // 3 s after it was last heard, which was within the last second; it is drawn and grabbed
+        inTime(t, pace, await until(WHOLE, isCard, 60000, 'the card'), 4200);
         if (round === 0)
             shoot('wall-player-lost');
         await plant.startDaemon();
@@ -159,20 +168,23 @@ test('a server that is gone is said in large letters within 3 s, and it comes ba
     assert.ok(sanitized || resident[1] < 1.1 * resident[0] + 4096, `${resident} kB`);
 });
 
-test('a frozen server is no frozen picture', options, async () => {
+test('a frozen server is no frozen picture', options, async (t) => {
+    const pace = new Pace();
+    t.after(() => pace.stop());
     process.kill(plant.pid, 'SIGSTOP');
     try {
-        await until(WHOLE, isCard, 8000, 'the card');
+        inTime(t, pace, await until(WHOLE, isCard, 60000, 'the card'), 8000);
     } finally {
         process.kill(plant.pid, 'SIGCONT');
     }
     await until(MAIN, showsPlant, 60000, 'the plant comes back');
 });
 
-test('without its token it is dark within 3 s, and another one brings it back', options, async () => {
+test('without its token it is dark within 3 s, and another one brings it back', options, async (t) => {
+    const pace = new Pace();
+    t.after(() => pace.stop());
     token('revoke', tokens, 'wall-1');
-    const ms = await until(WHOLE, isDark, 8000, 'dark');
-    assert.ok(ms < 4000, `${ms} ms`); // the server looks at its file every second
+    inTime(t, pace, await until(WHOLE, isDark, 60000, 'dark'), 4000); // the server looks at its file every second
     assert.ok(shares(WHOLE).coloured < 0.001, 'nothing of the plant is left');
     shoot('wall-player-denied');
     tokenOf1 = token('add', tokens, '--role', 'viewer', '--name', 'wall-2', '--display', 'room:1');
