@@ -10,13 +10,13 @@
 #include "base/mem.h"
 #include "preprocess/levels/levels_impl.h"
 
-#define NEAR_WORTH 0.6      /* of the triangles of the level before, at most; */
-#define FAR_TRIANGLES 20000 /* of those with no more, many instances are drawn in one picture, so these lie closer together: */
+#define NEAR_WORTH 0.5      /* of the triangles of the level before, at most; */
+#define FAR_TRIANGLES 16000 /* of those with no more, many instances are drawn in one picture, so these lie closer together: */
 #define FAR_WORTH 0.85      /* likewise, */
 #define STEP 1.3            /* and at so many times its error, at least */
 #define WAIT 1.1            /* times the error, for what else comes until then */
 #define MISSED 1.05f        /* times the error: what is left out may be missed by so much */
-#define MOST_TRIES 4        /* of moving faces, each by half as much as before */
+#define MOST_TRIES 2        /* of moving faces: of all parts, then of those that do not err by more because of it */
 
 struct making {
     struct workers *workers;
@@ -148,8 +148,8 @@ static float error_of_parts(const struct making *making)
     return most_m;
 }
 
-/* Moves faces that have no vertex on their side, and lowers most_m of parts that this makes err by more than the limit. Returns whether
-   there is any of these. */
+/* Moves faces that have no vertex on their side, and sets most_m to 0 for parts that this makes err by more than the limit. Returns
+   whether there is any of these. */
 static bool try_facing(const struct making *making, uint32_t *welds, size_t count, float limit_m, float *most_m)
 {
     const struct welds *of = &making->welds;
@@ -164,7 +164,7 @@ static bool try_facing(const struct making *making, uint32_t *welds, size_t coun
         deviation_finish(&level);
         for (uint32_t p = 0; p < of->part_count; p++)
             if (apart_m[p] > limit_m) {
-                most_m[p] = most_m[p] > limit_m / 4 ? most_m[p] / 2 : 0;
+                most_m[p] = 0;
                 any = 1;
             }
     }
@@ -173,7 +173,7 @@ static bool try_facing(const struct making *making, uint32_t *welds, size_t coun
     return any;
 }
 
-/* As many as a level may that errs by so much already: of a part that would err by more, only those that need not move as far. */
+/* Of parts that do not err by more than the level does already because of it. */
 static void face_parts(const struct making *making, uint32_t *welds, size_t count, float limit_m)
 {
     float *most_m = mem_array(making->welds.part_count, sizeof(*most_m));

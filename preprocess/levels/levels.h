@@ -34,7 +34,7 @@ struct levels {
     size_t repeated; /* triangles of the finest with the same three corners as one before; 0 once they come out of the cache */
 };
 
-/* Simplifies the geometry into levels, finest first. Each has at most 0.6 of the triangles of the one before (0.85 for far levels, which
+/* Simplifies the geometry into levels, finest first. Each has at most half of the triangles of the one before (0.85 for far levels, which
    many instances are drawn with). Borders between materials, texture seams and vertex colours stay in place within the error. Parts that
    lie on much larger ones (bolts on a flange) are left out of levels whose error exceeds their height by a tenth, unless what they lie on
    has moved so far that they would be missed by more than the level errs; small isolated parts, of levels whose error is no less than

@@ -140,6 +140,13 @@ static double distance_to(const double p[3], const double a[3], const double b[3
     return vec_distance(p, at);
 }
 
+static double distance_to_plane(const double p[3], const double a[3], const double normal[3])
+{
+    double ap[3];
+    vec_sub(p, a, ap);
+    return fabs(vec_dot(ap, normal)) / vec_length(normal);
+}
+
 static double distance_to_line(const double p[3], const double a[3], const double b[3])
 {
     double ab[3], ap[3], at[3];
@@ -217,7 +224,7 @@ static double bound_of(const struct bounded *b, const struct ring *ring, int tar
         if (!(vec_dot(normal, face->normal) > TURN * product) || weld_after(b, ring, to, face->weld[ring->corners[c] % 3]) == NONE)
             return INFINITY;
         longest_m = max_of(longest_m, longest_edge(at));
-        nearest_m = min_of(nearest_m, distance_to(b->points[ring->point], at[0], at[1], at[2]));
+        nearest_m = min_of(nearest_m, distance_to_plane(b->points[ring->point], at[0], normal));
     }
     return max_of(nearest_m, border_m) + STRETCH * max_of(longest_m - before_m, 0);
 }
@@ -236,10 +243,13 @@ static double raise(struct bounded *b, const double point[3], double error_m)
 static double error_of(struct bounded *b, const struct ring *ring, uint32_t to, double error_m, double enough_m)
 {
     const double *at[RING][3];
+    uint32_t moved[RING];
     int count = 0;
     for (int c = 0; c < ring->count; c++)
-        if (!has_point(&b->faces[ring->corners[c] / 3], to))
+        if (!has_point(&b->faces[ring->corners[c] / 3], to)) {
+            moved[count] = ring->corners[c] % 3;
             moved_face(b, ring->corners[c], to, at[count++]);
+        }
     for (int c = 0; c < ring->count && error_m <= enough_m; c++)
         for (uint32_t s = b->faces[ring->corners[c] / 3].first; s != NONE && error_m <= enough_m; s = b->next_place[s]) {
             double nearest_m = INFINITY;
@@ -247,15 +257,14 @@ static double error_of(struct bounded *b, const struct ring *ring, uint32_t to, 
                 nearest_m = min_of(nearest_m, distance_to(b->places[s], at[f][0], at[f][1], at[f][2]));
             error_m = max_of(error_m, nearest_m);
         }
-    for (int f = 0; f < count && error_m <= enough_m; f++) {
-        double middle[4][3];
+    for (int f = 0; f < count && error_m <= enough_m; f++) { /* in its middle, and in that of an edge that the next one does not have */
+        double middle[2][3];
         for (int i = 0; i < 3; i++) {
             middle[0][i] = (at[f][0][i] + at[f][1][i] + at[f][2][i]) / 3;
-            for (int e = 0; e < 3; e++)
-                middle[1 + e][i] = 0.5 * (at[f][e][i] + at[f][(e + 1) % 3][i]);
+            middle[1][i] = 0.5 * (at[f][moved[f]][i] + at[f][(moved[f] + 1) % 3][i]);
         }
-        for (int m = 0; m < 4; m++)
-            error_m = raise(b, middle[m], error_m);
+        error_m = raise(b, middle[0], error_m);
+        error_m = raise(b, middle[1], error_m);
     }
     return error_m;
 }

@@ -13,6 +13,7 @@
 #define HALVED_LEAST 40000    /* triangles: a version with more is halved as a whole, quickly; then edges are collapsed one by one, */
 #define COLLAPSED_MOST 100000 /* also where it could not be halved, but not with more than these */
 #define STEP 1.3              /* times the error that the version before was allowed */
+#define ALIKE 0.92            /* of the triangles of the version before: one with more is not worth being measured */
 #define LEAST_TRIANGLES 60    /* fewer are not simplified */
 #define NEAR 0.01             /* of the size: versions that err less keep open borders, or hair gaps between patches would open */
 #define BEYOND 3.0            /* times the simplifier's own error, which is a mean over planes and no bound, is about what comes out */
@@ -177,12 +178,17 @@ static void make_collapsed(struct versions *versions, const struct welds *welds,
     collapsing.parts = mem_array(welds->part_count, sizeof(*collapsing.parts));
     sort_by_part(&collapsing);
     for_parts(&collapsing, begin_parts, workers);
-    collapsing.error_m = LEVELS_FARTHEST * welds->whole_m * pow(STEP, (double)versions->count + 1 - VERSIONS_MAX);
-    for (; versions->count < VERSIONS_MAX; collapsing.error_m *= STEP) {
+    double most_m = LEVELS_FARTHEST * welds->whole_m;
+    collapsing.error_m = most_m * pow(STEP, (double)versions->count + 1 - VERSIONS_MAX);
+    for (; collapsing.error_m < most_m * STEP && versions->count < VERSIONS_MAX; collapsing.error_m *= STEP) {
         const struct version *before = &versions->at[versions->count - 1];
         struct version *version = add_version(versions, welds, before->count);
         for_parts(&collapsing, simplify_parts, workers);
         read_parts(&collapsing, version);
+        if ((double)version->count > ALIKE * (double)before->count && collapsing.error_m < most_m) {
+            drop_last(versions);
+            continue;
+        }
         count_tris(version, welds);
         measure(version, before, welds, &versions->first, collapsing.error_m, workers);
     }
