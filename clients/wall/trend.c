@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Lines of what was recorded, with limits where there is one tag, as in the page: where there is no value there is no line. */
+/* Lines of what was recorded, with limits where there is one tag, as in the page; hatched where there is no value. */
 #include "player.h"
 
 #include <math.h>
@@ -16,7 +16,8 @@
 enum { LINES = 6 };
 static const int64_t FRESH_NS = 5 * NS_PER_S;
 static const double LETTERS = 11; /* units */
-static const uint32_t COLOURS[LINES] = { 0x0b5c93, 0xb34a00, 0x00734f, 0x8a3a73, 0x5b5b00, 0x4b4f56 }, LIMIT = 0x8a5a00, GRAVE = 0xa31515;
+static const uint32_t COLOURS[LINES] = { 0x0b5c93, 0xb34a00, 0x00734f, 0x8a3a73, 0x5b5b00, 0x4b4f56 }, LIMIT = 0x8a5a00, GRAVE = 0xa31515,
+                      GAP = 0x8b949c;
 /* clients/web/app/trends/trends.js: DASHES */
 static const double DASHES[LINES][4] = { { 0 }, { 8, 4 }, { 2, 3 }, { 10, 3, 2, 3 }, { 5, 5 }, { 1, 4 } };
 static const int DASH_COUNTS[LINES] = { 0, 2, 2, 4, 2, 2 };
@@ -141,13 +142,18 @@ static double value_step(double *low, double *high, int most)
     return step;
 }
 
-/* The values of a point: of one, or of the lowest and highest of a stretch. Returns false if it has none. */
+static uint32_t quality_of(const json_t *point, bool stretch)
+{
+    return (uint32_t)json_integer_value(json_array_get(point, stretch ? 7 : 2));
+}
+
+/* The values of a point: of one, or of the lowest and highest of a stretch. Returns false if it has none that is to be believed. */
 static bool values_of(const json_t *point, bool stretch, double *low, double *high)
 {
     const json_t *a = json_array_get(point, 1), *b = json_array_get(point, stretch ? 2 : 1);
     *low = json_number_value(a);
     *high = json_number_value(b);
-    return json_is_number(a) && json_is_number(b);
+    return json_is_number(a) && json_is_number(b) && (stretch || !quality_is_bad(quality_of(point, stretch)));
 }
 
 static bool is_stretch(const json_t *series)
@@ -269,6 +275,67 @@ static void draw_limits(const struct player *player, const struct chart *chart, 
     cairo_set_dash(cairo, NULL, 0, 0);
 }
 
+/* --- where there is no value (clients/web/core/history.js: gaps) --------------------------------------------------------------------- */
+
+struct gaps {
+    const struct chart *chart;
+    cairo_t *cairo;
+    struct box row;
+    uint32_t colour;
+};
+
+/* No value: hatched, as in the picture of the plant; uncertain: dots along the bottom. */
+static void draw_gap(const struct gaps *gaps, double from_us, double to_us, uint32_t quality)
+{
+    double em = gaps->chart->em, left = x_of(gaps->chart, from_us), right = fmax(left + 0.2 * em, x_of(gaps->chart, to_us));
+    double top = gaps->row.y, bottom = top + gaps->row.height, step = 0.7 * em, high = gaps->row.height;
+    if (to_us <= from_us || !(quality_is_bad(quality) || quality_is_uncertain(quality)))
+        return;
+    cairo_save(gaps->cairo);
+    cairo_set_source_rgba(gaps->cairo, (gaps->colour >> 16) / 255.0, (gaps->colour >> 8 & 255) / 255.0, (gaps->colour & 255) / 255.0,
+                          quality_is_bad(quality) ? 0.45 : 1);
+    if (quality_is_bad(quality)) {
+        cairo_rectangle(gaps->cairo, left, top, right - left, high);
+        cairo_clip(gaps->cairo);
+        for (double x = floor((left - high) / step) * step; x < right; x += step) {
+            cairo_move_to(gaps->cairo, x, bottom);
+            cairo_line_to(gaps->cairo, x + high, top);
+        }
+        cairo_set_line_width(gaps->cairo, 0.12 * em);
+        cairo_stroke(gaps->cairo);
+    } else {
+        for (double x = left; x < right; x += 0.6 * em)
+            cairo_rectangle(gaps->cairo, x, bottom - 0.5 * em, 0.3 * em, 0.3 * em);
+        cairo_fill(gaps->cairo);
+    }
+    cairo_restore(gaps->cairo);
+}
+
+/* Of several tags each in a row of its own. */
+static void draw_gaps(const struct chart *chart, cairo_t *cairo, size_t line)
+{
+    const json_t *series = series_of(chart, line), *points = json_object_get(series, "points");
+    bool stretch = is_stretch(series);
+    size_t count = json_array_size(points);
+    double length_us = (double)json_integer_value(json_object_get(series, "bucket_us"));
+    double high = chart->box.height / (double)chart->line_count;
+    struct gaps gaps = { chart, cairo, { chart->box.x, chart->box.y + (double)line * high, chart->box.width, high },
+                         chart->line_count > 1 ? COLOURS[line] : GAP };
+    double begin_us = count ? (double)json_integer_value(json_array_get(json_array_get(points, 0), 0)) : chart->to_us;
+    draw_gap(&gaps, chart->from_us, begin_us, QUALITY_BAD);
+    for (size_t i = 0; i < count; i++) {
+        const json_t *point = json_array_get(points, i), *next = json_array_get(points, i + 1);
+        double us = (double)json_integer_value(json_array_get(point, 0)), bad_us = json_number_value(json_array_get(point, 6));
+        double next_us = next ? (double)json_integer_value(json_array_get(next, 0)) : chart->to_us;
+        uint32_t quality = quality_of(point, stretch);
+        if (!stretch && !json_is_number(json_array_get(point, 1)))
+            quality = QUALITY_BAD;
+        if (stretch && bad_us > 0 && !quality_is_bad(quality)) /* somewhere in it */
+            draw_gap(&gaps, us, us + bad_us, QUALITY_BAD);
+        draw_gap(&gaps, stretch && quality_is_bad(quality) ? fmax(us, us + length_us - bad_us) : us, next_us, quality);
+    }
+}
+
 /* A point without a value ends the line; of a stretch, it goes through both ends of what it reached. */
 static void draw_line(const struct chart *chart, cairo_t *cairo, size_t line)
 {
@@ -359,6 +426,8 @@ void trend_draw(struct player *player, const struct pane *pane, cairo_t *cairo, 
     cairo_save(cairo);
     cairo_rectangle(cairo, chart.box.x, chart.box.y, chart.box.width, chart.box.height);
     cairo_clip(cairo);
+    for (size_t i = 0; i < chart.line_count; i++)
+        draw_gaps(&chart, cairo, i);
     for (size_t i = 0; i < chart.line_count; i++)
         draw_line(&chart, cairo, i);
     cairo_restore(cairo);

@@ -56,7 +56,7 @@ function startPlayer(args, env = {}) {
 
 // Of a part of what is seen: the shares of black, of white, of the ground, of saturated colours, and of the red of an alarm's frame.
 function shares([left, top, right, bottom], step = 3, { at } = display.grab()) {
-    const count = { black: 0, white: 0, plain: 0, coloured: 0, red: 0, orange: 0, paper: 0, blue: 0 };
+    const count = { black: 0, white: 0, plain: 0, coloured: 0, red: 0, orange: 0, paper: 0, blue: 0, bluish: 0 };
     let all = 0;
     for (let y = top; y < bottom; y += step) {
         for (let x = left; x < right; x += step, all++) {
@@ -68,6 +68,7 @@ function shares([left, top, right, bottom], step = 3, { at } = display.grab()) {
             count.red += Math.abs(r - 0xc4) + Math.abs(g - 0x0d) + Math.abs(b - 0x20) < 20;
             count.paper += r === 0xff && g === 0xf7 && b === 0xd6;
             count.blue += Math.abs(r - 0x0b) + Math.abs(g - 0x5c) + Math.abs(b - 0x93) < 20;
+            count.bluish += b - r > 25 && b > g;
             count.orange += Math.abs(r - 0xe0) + Math.abs(g - 0x6a) + Math.abs(b - 0x0a) < 20;
         }
     }
@@ -198,6 +199,7 @@ test('another display, without OpenGL: a trend of what was recorded, a text', op
     const other = startPlayer(['--wall', 'room', '--display', '2', '--language', 'ko'], { SDL_RENDER_DRIVER: 'software' });
     await until([10, 400, 1270, 700], ({ plain }) => plain > 0.8, 20000, 'a text');
     await until([10, 30, 1270, 350], ({ blue, plain }) => blue > 0.001 && plain < 0.2, 20000, 'a trend');
+    await until([200, 90, 600, 180], ({ bluish }) => bluish > 0.05, 20000, 'hatched where nothing was recorded');
     assert.match(other.said, /software/);
     shoot('wall-player-2');
     assert.equal(await other.stop(), 0);
