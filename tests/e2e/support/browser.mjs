@@ -37,7 +37,7 @@ export async function browserWith(args) {
 }
 after(() => Promise.all([...browsers.values()].map(async (browser) => (await browser).close())));
 
-// One with a profile on the disk, as people have: only there a page can be installed.
+// One with a profile on the disk, as people have: only there a page can be installed, or fill a screen.
 async function profileWith(args, shape) {
     const { chromium } = await import('playwright-core'), folder = mkdtempSync(join(tmpdir(), 'plantcast-chromium-'));
     const context = await chromium.launchPersistentContext(folder, { executablePath: CHROMIUM, ...shape, args: [...QUIET, ...args] });
@@ -51,19 +51,18 @@ async function profileWith(args, shape) {
     return context;
 }
 
-// A browser of its own on an X display, as large as that. clockMs: so much its clock is ahead.
+// A browser of its own that fills an X display of that size. clockMs: so much its clock is ahead.
 export async function browserOn(display, url, width, height, clockMs = 0) {
-    const { chromium } = await import('playwright-core');
-    const args = [...QUIET, '--kiosk', '--window-position=0,0', `--window-size=${width},${height}`];
-    const browser = await chromium.launch({ executablePath: CHROMIUM, headless: false, env: { ...process.env, DISPLAY: display }, args });
-    const page = await (await browser.newContext({ viewport: null })).newPage();
+    const args = ['--kiosk', '--window-position=0,0', `--window-size=${width},${height}`];
+    const context = await profileWith(args, { headless: false, viewport: null, env: { ...process.env, DISPLAY: display } });
+    const [page] = context.pages();
     await page.addInitScript((ms) => {
         const { now } = Date, { timeOrigin } = performance;
         Date.now = () => now.call(Date) + ms;
         Object.defineProperty(performance, 'timeOrigin', { value: timeOrigin + ms });
     }, clockMs);
     await page.goto(url);
-    return { page, close: () => browser.close() };
+    return { page, close: () => context.close() };
 }
 
 // { page, errors, close }. The page remembers nothing of others. errors: what went wrong in it and what it tried to fetch from elsewhere.
