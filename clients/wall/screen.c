@@ -92,6 +92,11 @@ struct screen *screen_open(int width_px, int height_px, int monitor)
         fail("no display");
         goto error;
     }
+    const char *driver = SDL_GetCurrentVideoDriver();
+    if (!getenv("SDL_VIDEODRIVER") && (!strcmp(driver, "offscreen") || !strcmp(driver, "dummy"))) {
+        fprintf(stderr, "plantcast-wall: no display: neither X11, Wayland nor KMS can be used\n"); /* nobody would see that one */
+        goto error;
+    }
     if (monitor >= SDL_GetNumVideoDisplays()) {
         fprintf(stderr, "plantcast-wall: --monitor %d: this machine has %d\n", monitor, SDL_GetNumVideoDisplays());
         goto error;

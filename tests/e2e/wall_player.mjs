@@ -268,4 +268,10 @@ test('what is not there is refused by name', options, async () => {
     const { status, stderr } = run(plant.url, '--wall', 'room');
     assert.equal(status, 1);
     assert.match(stderr, /no display/);
+    if (existsSync('/dev/dri')) // KMS might be a display
+        return;
+    const bare = Object.fromEntries(Object.entries(env).filter(([name]) => !/^(DISPLAY|WAYLAND_DISPLAY|XDG_RUNTIME_DIR|SDL_)/.test(name)));
+    const nobody = spawnSync(PROGRAM, [plant.url, '--wall', 'room'], { encoding: 'utf8', env: bare, timeout: 20000 });
+    assert.equal(nobody.status, 1, nobody.stderr);
+    assert.match(nobody.stderr, /no display: neither X11, Wayland nor KMS/);
 });
