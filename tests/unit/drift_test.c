@@ -407,5 +407,6 @@ int main(void)
         cmocka_unit_test_setup_teardown(test_one_that_is_lost_for_a_while_accuses_nobody, prep_case_set_up, prep_case_tear_down),
         cmocka_unit_test_setup_teardown(test_of_two_nobody_can_tell_which, prep_case_set_up, prep_case_tear_down),
     };
+    cmocka_set_message_output(CM_OUTPUT_TAP);
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

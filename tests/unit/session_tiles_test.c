@@ -109,5 +109,6 @@ int main(void)
         cmocka_unit_test(test_of_two_pictures_none_is_waited_for),
         cmocka_unit_test(test_an_answer_without_a_frame_overtakes_one),
     };
+    cmocka_set_message_output(CM_OUTPUT_TAP);
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -61,5 +61,6 @@ int main(void)
         cmocka_unit_test(test_short_ways_count),
         cmocka_unit_test(test_a_clock_that_is_set_is_followed),
     };
+    cmocka_set_message_output(CM_OUTPUT_TAP);
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
