@@ -182,31 +182,48 @@ static void put_pair(const struct transport *transport, struct triplets *triplet
     }
 }
 
+static void put_edges(const struct transport *transport, const cholmod_sparse *scalar, uint32_t *points, double *diagonal,
+                      struct triplets *triplets)
+{
+    const struct laplacian *laplacian = &transport->laplacian;
+    const int *first = scalar->p, *rows = scalar->i;
+    const double *values = scalar->x;
+    for (uint32_t p = 0; p < laplacian->in->point_count; p++)
+        if (laplacian->row_of[p] != TRIMESH_NONE)
+            points[laplacian->row_of[p]] = p;
+    for (size_t column = 0; column < laplacian->row_count; column++)
+        for (int k = first[column]; k < first[column + 1]; k++) {
+            if ((size_t)rows[k] == column || !(values[k] < 0))
+                continue;
+            put_pair(transport, triplets, points[rows[k]], points[column], values[k]);
+            diagonal[rows[k]] -= values[k];
+            diagonal[column] -= values[k];
+        }
+    for (uint32_t i = 0; i < 2 * laplacian->row_count; i++)
+        put(triplets, i, i, laplacian->mass_m2[i / 2] + diagonal[i / 2]);
+}
+
+/* The scalar matrix with a rotation at each of its edges. An edge of negative weight, as may be at a rim opposite an obtuse angle, is left
+   out: rotations that do not add up round a triangle are definite only where all weights are positive. */
 static cholmod_sparse *assemble(const struct transport *transport, double time_m2, cholmod_common *common)
 {
     const struct laplacian *laplacian = &transport->laplacian;
-    const struct intrinsic *in = laplacian->in;
-    const size_t rows = 2 * laplacian->row_count, most = rows + 18 * in->tri_count;
-    struct triplets triplets = { cholmod_allocate_triplet(rows, rows, most, -1, CHOLMOD_REAL, common), 0 };
-    if (!triplets.list)
-        return NULL;
-    for (uint32_t i = 0; i < rows; i++)
-        put(&triplets, i, i, laplacian->mass_m2[i / 2]);
-    for (size_t t = 0; t < in->tri_count; t++) {
-        const struct laplacian_slope *s = &laplacian->slopes[t];
-        const double gx[3] = { -s->x1, s->x1, 0 }, gy[3] = { -s->y1 - s->y2, s->y1, s->y2 };
-        for (int i = 0; i < 3; i++)
-            for (int j = 0; j <= i; j++) {
-                const uint32_t a = in->points[t][i], b = in->points[t][j], row = 2 * laplacian->row_of[a];
-                double weight = time_m2 * s->area * (gx[i] * gx[j] + gy[i] * gy[j]);
-                if (a != b)
-                    put_pair(transport, &triplets, a, b, weight);
-                for (uint32_t p = 0; p < 2 && a == b; p++)
-                    put(&triplets, row + p, row + p, i == j ? weight : 2 * weight);
-            }
+    cholmod_sparse *scalar = laplacian_assemble(laplacian, laplacian->mass_m2, time_m2, common);
+    const size_t rows = 2 * laplacian->row_count;
+    struct triplets triplets = { 0 };
+    if (scalar)
+        triplets.list = cholmod_allocate_triplet(rows, rows, rows + 4 * cholmod_nnz(scalar, common), -1, CHOLMOD_REAL, common);
+    uint32_t *points = triplets.list ? mem_try_array(laplacian->row_count, sizeof(*points)) : NULL;
+    double *diagonal = points ? mem_try_array(laplacian->row_count, sizeof(*diagonal)) : NULL;
+    cholmod_sparse *matrix = NULL;
+    if (diagonal) {
+        put_edges(transport, scalar, points, diagonal, &triplets);
+        triplets.list->nnz = triplets.count;
+        matrix = cholmod_triplet_to_sparse(triplets.list, triplets.count, common);
     }
-    triplets.list->nnz = triplets.count;
-    cholmod_sparse *matrix = cholmod_triplet_to_sparse(triplets.list, triplets.count, common);
+    mem_free(points);
+    mem_free(diagonal);
+    cholmod_free_sparse(&scalar, common);
     cholmod_free_triplet(&triplets.list, common);
     return matrix;
 }

@@ -206,6 +206,38 @@ static void test_box(void **state)
     finish(&c);
 }
 
+/* A sphere of which three in five triangles are there, some of them to a corner anywhere. At rims, and where more than two triangles meet,
+   edges may have negative weights, and rotations round a triangle do not add up; directions are known all the same. */
+static void test_tangle(void **state)
+{
+    (void)state;
+    struct carried c = { 0 };
+    cad_sphere(&c.shape, &chance, 8);
+    size_t kept = 0;
+    for (size_t t = 0; t < c.shape.triangle_count; t++) {
+        uint32_t *corners = &c.shape.triangles[3 * t];
+        if (cad_random(&chance) < 0.4)
+            continue;
+        if (cad_random(&chance) < 0.3)
+            corners[2] = (uint32_t)(cad_random(&chance) * (double)c.shape.vertex_count);
+        for (int i = 0; i < 3; i++)
+            c.shape.triangles[3 * kept + (size_t)i] = corners[i];
+        kept++;
+    }
+    c.shape.triangle_count = kept;
+    c.normals = mem_array(c.shape.vertex_count, sizeof(*c.normals));
+    for (size_t v = 0; v < c.shape.vertex_count; v++)
+        for (int i = 0; i < 3; i++)
+            c.normals[v][i] = c.shape.positions[v][i];
+    carry(&c, c.shape.triangles[0]);
+    size_t known = 0;
+    for (size_t v = 0; v < c.shape.vertex_count; v++)
+        known += isfinite((double)c.influence.shares[v]);
+    printf("# tangle: %zu of %zu vertices\n", known, c.shape.vertex_count);
+    assert_true(10 * known > 9 * c.shape.vertex_count);
+    finish(&c);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -213,6 +245,7 @@ int main(void)
         cmocka_unit_test(test_accordion),
         cmocka_unit_test(test_sphere),
         cmocka_unit_test(test_box),
+        cmocka_unit_test(test_tangle),
     };
     cmocka_set_message_output(CM_OUTPUT_TAP);
     return cmocka_run_group_tests(tests, surface_case_set_up, surface_case_tear_down);
