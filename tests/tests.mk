@@ -43,7 +43,7 @@ soak: all tests
 checked: demo style layers headers
 tests: all $(unit_tests) $(gpu_tests) $(out)/tests/scale/facility $(out)/tests/relay/relay $(out)/tests/faults/libEGL.so.1 \
     $(out)/tests/faults/kill_at_rename.so $(out)/tests/faults/clock_off.so $(out)/tests/faults/late_peer.so \
-    $(out)/tests/validation/compare \
+    $(out)/tests/validation/compare $(if $(video),$(out)/tests/faults/slow_answer.so) \
     $(if $(occt),$(out)/tests/cad/step_samples)
 unit: tests
 	@tests/run $(out) $(bin) unit

@@ -8,7 +8,7 @@
 #include "whep_session.h"
 
 enum { MOST_BYTES = 64 * 1024, ID_BYTES = 16 };
-static const char PATH[] = "/whep", TYPE[] = "application/sdp";
+static const char PATH[] = "/whep", TYPE[] = "application/sdp", RETRY_S[] = "5";
 
 struct place {
     struct whep *whep;
@@ -29,12 +29,27 @@ static void answer(SoupServerMessage *message, guint status, const char *text)
     soup_server_message_set_response(message, "text/plain; charset=utf-8", SOUP_MEMORY_COPY, text, strlen(text));
 }
 
+/* What may go another time. */
+static void put_off(SoupServerMessage *message, const char *text)
+{
+    soup_message_headers_replace(soup_server_message_get_response_headers(message), "Retry-After", RETRY_S);
+    answer(message, SOUP_STATUS_SERVICE_UNAVAILABLE, text);
+}
+
+static void refuse(SoupServerMessage *message, enum whep_fault fault, const char *text)
+{
+    if (fault == WHEP_BUSY)
+        put_off(message, text);
+    else
+        answer(message, fault == WHEP_BAD_OFFER ? SOUP_STATUS_BAD_REQUEST : SOUP_STATUS_NOT_IMPLEMENTED, text);
+}
+
 static void place_free(gpointer data)
 {
     struct place *place = data;
     if (place->message) {
         g_signal_handlers_disconnect_by_data(place->message, place);
-        answer(place->message, SOUP_STATUS_SERVICE_UNAVAILABLE, "this ends\n");
+        put_off(place->message, "this ends\n");
         soup_server_message_unpause(place->message);
         g_object_unref(place->message);
     }
@@ -89,7 +104,7 @@ static void allow_pages(SoupServerMessage *message)
     soup_message_headers_replace(headers, "Access-Control-Allow-Origin", "*");
     soup_message_headers_replace(headers, "Access-Control-Allow-Methods", "POST, DELETE, OPTIONS");
     soup_message_headers_replace(headers, "Access-Control-Allow-Headers", "Authorization, Content-Type");
-    soup_message_headers_replace(headers, "Access-Control-Expose-Headers", "Location");
+    soup_message_headers_replace(headers, "Access-Control-Expose-Headers", "Location, Retry-After");
     soup_message_headers_replace(headers, "Cache-Control", "no-store");
 }
 
@@ -104,7 +119,7 @@ static void on_disconnected(SoupServerMessage *message, struct place *place)
     }
 }
 
-static void on_answered(struct whep_session *session, const char *sdp, void *data)
+static void on_answered(struct whep_session *session, const char *sdp, enum whep_fault fault, void *data)
 {
     struct place *place = data;
     SoupServerMessage *message = g_steal_pointer(&place->message);
@@ -117,7 +132,7 @@ static void on_answered(struct whep_session *session, const char *sdp, void *dat
         soup_server_message_set_response(message, TYPE, SOUP_MEMORY_COPY, sdp, strlen(sdp));
         g_free(location);
     } else {
-        answer(message, SOUP_STATUS_BAD_REQUEST, "the offer cannot be answered\n");
+        refuse(message, fault, fault == WHEP_BAD_OFFER ? "the offer cannot be answered\n" : "busy, offer it again\n");
         g_ptr_array_remove_fast(place->whep->places, place);
     }
     soup_server_message_unpause(message);
@@ -145,15 +160,16 @@ static void post(struct whep *whep, SoupServerMessage *message)
         return;
     }
     if (whep->places->len >= (guint)whep->options->most_readers) {
-        answer(message, SOUP_STATUS_SERVICE_UNAVAILABLE, "too many are reading\n");
+        put_off(message, "too many are reading\n");
         return;
     }
     GBytes *bytes = soup_message_body_flatten(body);
     char *offer = g_strndup(g_bytes_get_data(bytes, NULL), g_bytes_get_size(bytes));
     struct place *place = g_new0(struct place, 1);
+    enum whep_fault fault = WHEP_UNABLE;
     place->whep = whep;
     make_id(place->id);
-    place->session = whep_session_create(whep->options, whep->outputs, offer, on_answered, place, &why);
+    place->session = whep_session_create(whep->options, whep->outputs, offer, on_answered, place, &fault, &why);
     if (place->session) {
         place->message = g_object_ref(message);
         g_signal_connect(message, "disconnected", G_CALLBACK(on_disconnected), place);
@@ -161,7 +177,7 @@ static void post(struct whep *whep, SoupServerMessage *message)
         g_ptr_array_add(whep->places, place);
     } else {
         char *text = g_strconcat(why, "\n", NULL);
-        answer(message, SOUP_STATUS_BAD_REQUEST, text);
+        refuse(message, fault, text);
         g_free(text);
         g_free(place);
     }

@@ -9,19 +9,23 @@
 #include <gst/sdp/sdp.h>
 #include <gst/webrtc/webrtc.h>
 
-static const gint64 GATHER_US = 3 * G_USEC_PER_SEC, CONNECT_US = 15 * G_USEC_PER_SEC, SILENT_US = 20 * G_USEC_PER_SEC;
+/* Of ways to get here those that were found by GATHER_US are enough. A busy machine may not even have made its key by then. */
+static const gint64 GATHER_US = 3 * G_USEC_PER_SEC, ANSWER_US = 12 * G_USEC_PER_SEC;
+static const gint64 CONNECT_US = 15 * G_USEC_PER_SEC, SILENT_US = 20 * G_USEC_PER_SEC;
+enum { FAILED = 1, BAD_OFFER = 2 };
 
 struct whep_session { /* counted: the connection's threads hold it, too */
     GstElement *pipeline, *rtc;
     struct outputs *outputs;
-    void (*answered)(struct whep_session *session, const char *sdp, void *data); /* NULL: it was called */
+    void (*answered)(struct whep_session *session, const char *sdp, enum whep_fault fault, void *data);
     void *data;
-    gint64 begun_us;
-    guint source;                     /* SSRC of the stream */
-    bool added;                       /* to the outputs */
-    gint gathered, failed, connected; /* atomic */
-    gint heard_s;                     /* atomic: when a report of the reader came last */
-    gint ended;                       /* atomic: destroyed */
+    gint64 begun_us;                     /* the answer; once there is one, the connection */
+    guint source;                        /* SSRC of the stream */
+    bool added;                          /* to the outputs */
+    gint described, gathered, connected; /* atomic */
+    gint failed;                         /* atomic: 0, or what came first of FAILED, BAD_OFFER */
+    gint heard_s;                        /* atomic: when a report of the reader came last */
+    gint ended;                          /* atomic: destroyed */
 };
 
 static struct whep_session *hold(struct whep_session *session)
@@ -95,6 +99,29 @@ static GstCaps *caps_of(const GstSDPMessage *offer)
 
 /* --- what comes from its threads --------------------------------------------------------------------------------------------------- */
 
+static void fail(struct whep_session *session, gint how)
+{
+    g_atomic_int_compare_and_exchange(&session->failed, 0, how);
+}
+
+/* Whether it is what the reader sent that is wrong, or what became of it here: memory, threads, an end meanwhile. */
+static gint fault_of(struct whep_session *session, const GstStructure *reply)
+{
+    GError *error = NULL;
+    gint how = FAILED;
+    if (reply)
+        gst_structure_get(reply, "error", G_TYPE_ERROR, &error, NULL);
+    if (g_error_matches(error, GST_WEBRTC_ERROR, GST_WEBRTC_ERROR_SDP_SYNTAX_ERROR) ||
+        g_error_matches(error, GST_WEBRTC_ERROR, GST_WEBRTC_ERROR_FINGERPRINT_FAILURE) ||
+        g_error_matches(error, GST_WEBRTC_ERROR, GST_WEBRTC_ERROR_TYPE_ERROR) ||
+        g_error_matches(error, GST_WEBRTC_ERROR, GST_WEBRTC_ERROR_INVALID_MODIFICATION))
+        how = BAD_OFFER;
+    else if (!g_atomic_int_get(&session->ended))
+        fprintf(stderr, "plantcast-video: WHEP: %s\n", error ? error->message : "an answer was given up");
+    g_clear_error(&error);
+    return how;
+}
+
 static void on_gathering(GstElement *rtc, GParamSpec *property, struct whep_session *session)
 {
     GstWebRTCICEGatheringState state;
@@ -113,7 +140,7 @@ static void on_connection(GstElement *rtc, GParamSpec *property, struct whep_ses
     if (state == GST_WEBRTC_PEER_CONNECTION_STATE_CONNECTED)
         g_atomic_int_set(&session->connected, 1);
     if (state == GST_WEBRTC_PEER_CONNECTION_STATE_FAILED || state == GST_WEBRTC_PEER_CONNECTION_STATE_CLOSED)
-        g_atomic_int_set(&session->failed, 1);
+        fail(session, FAILED);
 }
 
 static void on_report(GstElement *rtpbin, guint number, guint ssrc, struct whep_session *session)
@@ -124,6 +151,17 @@ static void on_report(GstElement *rtpbin, guint number, guint ssrc, struct whep_
     g_atomic_int_set(&session->heard_s, now_s());
 }
 
+static void on_described(GstPromise *promise, gpointer data)
+{
+    struct whep_session *session = data;
+    const GstStructure *reply = gst_promise_wait(promise) == GST_PROMISE_RESULT_REPLIED ? gst_promise_get_reply(promise) : NULL;
+    if (reply && gst_structure_has_field(reply, "error"))
+        fail(session, fault_of(session, reply));
+    else
+        g_atomic_int_set(&session->described, 1);
+    gst_promise_unref(promise);
+}
+
 static void on_answer(GstPromise *promise, gpointer data)
 {
     struct whep_session *session = data;
@@ -132,13 +170,11 @@ static void on_answer(GstPromise *promise, gpointer data)
     if (reply)
         gst_structure_get(reply, "answer", GST_TYPE_WEBRTC_SESSION_DESCRIPTION, &answer, NULL);
     if (answer) {
-        GstPromise *done = gst_promise_new();
-        g_signal_emit_by_name(session->rtc, "set-local-description", answer, done);
-        gst_promise_interrupt(done);
-        gst_promise_unref(done);
+        g_signal_emit_by_name(session->rtc, "set-local-description", answer,
+                              gst_promise_new_with_change_func(on_described, hold(session), release));
         gst_webrtc_session_description_free(answer);
     } else {
-        g_atomic_int_set(&session->failed, 1);
+        fail(session, fault_of(session, reply));
     }
     gst_promise_unref(promise);
 }
@@ -147,8 +183,10 @@ static void on_offer(GstPromise *promise, gpointer data)
 {
     struct whep_session *session = data;
     const GstStructure *reply = gst_promise_wait(promise) == GST_PROMISE_RESULT_REPLIED ? gst_promise_get_reply(promise) : NULL;
-    if (g_atomic_int_get(&session->ended) || (reply && gst_structure_has_field(reply, "error")))
-        g_atomic_int_set(&session->failed, 1);
+    if (g_atomic_int_get(&session->ended))
+        fail(session, FAILED);
+    else if (reply && gst_structure_has_field(reply, "error"))
+        fail(session, fault_of(session, reply));
     else
         g_signal_emit_by_name(session->rtc, "create-answer", NULL, gst_promise_new_with_change_func(on_answer, hold(session), release));
     gst_promise_unref(promise);
@@ -191,16 +229,27 @@ static char *answer_of(struct whep_session *session)
     return text ? name_source(session, text) : NULL;
 }
 
+/* Asks webrtcbin only for what it has: while it works at a description it holds a lock for which each question waits. */
 static gboolean look_for_answer(gpointer data)
 {
     struct whep_session *session = data;
-    bool late = g_get_monotonic_time() - session->begun_us > GATHER_US, failed = g_atomic_int_get(&session->failed);
+    gint64 waited_us = g_get_monotonic_time() - session->begun_us;
+    gint failed = g_atomic_int_get(&session->failed);
+    bool gathered = g_atomic_int_get(&session->gathered), late = waited_us > ANSWER_US;
     if (g_atomic_int_get(&session->ended))
         return G_SOURCE_REMOVE;
-    if (!g_atomic_int_get(&session->gathered) && !failed && !late)
+    bool described = g_atomic_int_get(&session->described);
+    char *text = described && !failed && (gathered || waited_us > GATHER_US) ? answer_of(session) : NULL;
+    if (text && !gathered && !late && !strstr(text, "\r\na=candidate:"))
+        g_clear_pointer(&text, g_free);
+    if (!text && !failed && !late)
         return G_SOURCE_CONTINUE;
-    char *text = failed ? NULL : answer_of(session);
-    session->answered(session, text, session->data);
+    if (!text && !failed)
+        fprintf(stderr, "plantcast-video: WHEP: no answer after %d s, this machine is busy\n", (int)(waited_us / G_USEC_PER_SEC));
+    if (!text)
+        fail(session, FAILED);
+    session->begun_us = g_get_monotonic_time();
+    session->answered(session, text, failed == BAD_OFFER ? WHEP_BAD_OFFER : WHEP_BUSY, session->data);
     g_free(text);
     return G_SOURCE_REMOVE;
 }
@@ -284,13 +333,14 @@ static bool begin(struct whep_session *session, const struct options *options, G
 }
 
 struct whep_session *whep_session_create(const struct options *options, struct outputs *outputs, const char *offer,
-                                         void (*answered)(struct whep_session *session, const char *sdp, void *data), void *data,
-                                         const char **why)
+                                         void (*answered)(struct whep_session *session, const char *sdp, enum whep_fault fault, void *data),
+                                         void *data, enum whep_fault *fault, const char **why)
 {
     GstSDPMessage *message = NULL;
     bool good = gst_sdp_message_new_from_text(offer, &message) == GST_SDP_OK && gst_sdp_message_medias_len(message) > 0;
     GstCaps *caps = good ? caps_of(message) : NULL;
     struct whep_session *session = NULL;
+    *fault = WHEP_BAD_OFFER;
     *why = !good ? "an offer in SDP with a video is expected" : "the offer has no H.264 with packetization-mode=1";
     if (!caps) {
         if (message)
@@ -304,6 +354,7 @@ struct whep_session *whep_session_create(const struct options *options, struct o
     session->begun_us = g_get_monotonic_time();
     session->heard_s = now_s();
     if (!begin(session, options, caps, message)) {
+        *fault = WHEP_UNABLE;
         *why = "WebRTC is not installed here";
         whep_session_destroy(&session);
     }

@@ -5,21 +5,23 @@ import { existsSync, mkdtempSync, rmSync, writeFileSync } from 'node:fs';
 import { createServer } from 'node:http';
 import { connect } from 'node:net';
 import { tmpdir } from 'node:os';
-import { join } from 'node:path';
+import { join, resolve } from 'node:path';
 import { after, before, test } from 'node:test';
 import { openPage, shoot } from './support/browser.mjs';
 import { freePort } from './support/ports.mjs';
 import { BIN, missing, Program, runProgram, TinyPlant } from './support/tiny_plant.mjs';
 
-const lacks = [...missing(), ...(existsSync(join(BIN, 'plantcast-video')) ? [] : ['plantcast-video'])];
+const SLOW = resolve(process.env.PLANTCAST_OUT ?? 'build/release', 'tests/faults/slow_answer.so');
+const lacks = [...missing(), ...(existsSync(join(BIN, 'plantcast-video')) ? [] : ['plantcast-video']),
+    ...(!existsSync(join(BIN, 'plantcast-video')) || existsSync(SLOW) ? [] : ['slow_answer.so'])];
 const options = { skip: lacks.length > 0 ? `not here: ${lacks.join(', ')}` : false, timeout: 180000 };
 const WIDTH = 640, HEIGHT = 360, FPS = 10, PASSWORD = 'long-password';
-let plant, folder, video, port, pages, page;
+let plant, folder, video, port, pages, page, slow;
 
 // In the page: watches, and reads the row of blocks at the bottom as video.mjs does.
 const watcher = () => {
     const BITS = 36, BLOCKS = BITS + 4;
-    globalThis.watch = async (url, token, more = []) => {
+    globalThis.watch = async (url, token, more, tries) => {
         const peer = new RTCPeerConnection(), element = document.createElement('video');
         peer.addTransceiver('video', { direction: 'recvonly' });
         for (const kind of more)
@@ -30,9 +32,15 @@ const watcher = () => {
         await peer.setLocalDescription(await peer.createOffer());
         const reply = await fetch(url, { method: 'POST', body: peer.localDescription.sdp,
             headers: { 'Content-Type': 'application/sdp', Authorization: `Bearer ${token}` } });
-        const answer = await reply.text();
-        if (reply.status !== 201)
-            return { status: reply.status, answer };
+        const answer = await reply.text(), retryS = Number(reply.headers.get('Retry-After'));
+        if (reply.status !== 201) {
+            peer.close();
+            element.remove();
+            if (reply.status !== 503 || tries <= 1)
+                return { status: reply.status, answer, retryS };
+            await new Promise((done) => setTimeout(done, 1000 * retryS)); // as a player does
+            return globalThis.watch(url, token, more, tries - 1);
+        }
         await peer.setRemoteDescription({ type: 'answer', sdp: answer });
         await element.play();
         globalThis.streams.push({ peer, element, place: new URL(reply.headers.get('Location'), url).href, token });
@@ -65,7 +73,8 @@ const watcher = () => {
 };
 
 const url = (path = '/whep') => `http://127.0.0.1:${port}${path}`;
-const watch = (token = PASSWORD, more = [], from = page) => from.evaluate(([u, t, m]) => globalThis.watch(u, t, m), [url(), token, more]);
+const watch = (token = PASSWORD, more = [], from = page, tries = 5) =>
+    from.evaluate((all) => globalThis.watch(...all), [url(), token, more, tries]);
 const look = (i = 0) => page.evaluate((n) => globalThis.look(n), i);
 
 async function until(i, what, timeoutMs = 30000) {
@@ -98,9 +107,11 @@ before(async () => {
     plant = await TinyPlant.running();
     folder = mkdtempSync(join(tmpdir(), 'plantcast-whep-'));
     writeFileSync(join(folder, 'readers'), `wall:${PASSWORD}\n`);
+    slow = join(folder, 'slow');
     port = await freePort();
     video = new Program('plantcast-video', [`http://127.0.0.1:${plant.port}/`, '--size', `${WIDTH}x${HEIGHT}`, '--fps', String(FPS),
-        '--time-code', '--readers-file', join(folder, 'readers'), '--http', String(port), '--whep', '--most-readers', '12']);
+        '--time-code', '--readers-file', join(folder, 'readers'), '--http', String(port), '--whep', '--most-readers', '12'],
+    {}, ['env', `LD_PRELOAD=${SLOW}`, `SLOW_ANSWER=${slow}`, 'ASAN_OPTIONS=verify_asan_link_order=0']);
     await video.line(/^plantcast-video: ready$/m);
     pages = createServer((_, response) => response.end('<!doctype html><title>x</title>'));
     await new Promise((done) => pages.listen(0, '127.0.0.1', done));
@@ -149,7 +160,8 @@ test('ten more cost no further encode, and each gets all', options, async () => 
     assert.ok(encoded < 1.2 * FPS * passed, `${encoded} frames encoded in ${passed} s`);
     assert.ok(got.every((n) => n > 0.6 * FPS * passed), `${got} in ${passed} s`);
     assert.equal((await watch()).status, 201); // the twelfth
-    assert.equal((await watch()).status, 503); // one too many
+    const { status, answer, retryS } = await watch(PASSWORD, [], page, 1);
+    assert.deepEqual([status, answer, retryS], [503, 'too many are reading\n', 5]);
 });
 
 test('who has no token, or another one, sees nothing', options, async () => {
@@ -172,6 +184,26 @@ test('DELETE ends it, and whoever goes without a word is forgotten', options, as
         await new Promise((done) => setTimeout(done, 500));
     }
     await until(1, ({ card }) => !card); // the others go on
+});
+
+test('a machine that is too busy to answer says so, and to come again', options, async () => {
+    const had = await readers();
+    writeFileSync(slow, '');
+    const refusal = watch(PASSWORD, [], page, 1);
+    await video.line(/no answer after \d+ s, this machine is busy/);
+    rmSync(slow);
+    const { status, answer, retryS } = await refusal;
+    assert.deepEqual([status, answer, retryS], [503, 'busy, offer it again\n', 5]);
+    for (const end = Date.now() + 60000; await readers() !== had;)
+        assert.ok(Date.now() < end, 'it still counts');
+    writeFileSync(slow, '');
+    const late = watch();
+    await new Promise((done) => setTimeout(done, 4000)); // longer than ways to get here are looked for
+    rmSync(slow);
+    assert.equal((await late).status, 201);
+    const last = await page.evaluate(() => globalThis.streams.length - 1);
+    await until(last, ({ card }) => !card);
+    assert.equal(await page.evaluate((i) => globalThis.end(i), last), 200);
 });
 
 test('a server that is gone: the card within 3 s, and the picture comes back', options, async () => {
