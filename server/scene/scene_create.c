@@ -4,9 +4,11 @@
 
 #include <errno.h>
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "base/mem.h"
+#include "base/workers.h"
 #include "plant/influence.h"
 #include "plant/recipe.h"
 #include "plant/sensors.h"
@@ -180,15 +182,6 @@ static void place_sensor(const struct scene_asset *asset, int column, int tag, s
     transform_point(asset->placement, surface, out->surface_m);
 }
 
-/* The file of an asset before it, if that has the same name; else opened. */
-static struct asset *open_file(struct log *log, const struct scene *scene, int index, const char *path)
-{
-    for (int i = 0; i < index; i++)
-        if (scene->assets[i].file && !strcmp(scene->assets[i].file->path, path))
-            return asset_ref(scene->assets[i].file);
-    return asset_open(log, path);
-}
-
 /* Not drawn, not measured, no part of the plant's box: what is left is that it is known, and why it is not there. */
 static bool create_missing(struct log *log, const struct scene *scene, struct scene_asset *asset, const struct manifest_entry *entry)
 {
@@ -200,12 +193,83 @@ static bool create_missing(struct log *log, const struct scene *scene, struct sc
     return asset->file != NULL;
 }
 
-static bool create_asset(struct log *log, struct scene *scene, int index, const struct manifest *manifest, uint64_t *hashes,
-                         const char *folder)
+/* Of an asset whose file is open, or could not be opened. */
+static bool create_asset(struct log *log, struct scene *scene, int index)
 {
     struct scene_asset *asset = &scene->assets[index];
     struct plant_sensor *sensors = NULL;
-    bool good = false;
+    if (!asset->file) {
+        log_err(log, "asset %s: has no usable file; run plantcast-prep %s", asset->plant->id, scene->plant->path);
+        return false;
+    }
+    size_t count = plant_sensors(scene->plant, index, &sensors);
+    bool good = sensors_fit(log, scene->plant, asset, sensors, count) && influence_fits(log, scene->plant, asset, sensors, count);
+    if (good) {
+        place(asset);
+        asset->sensors = mem_array(count, sizeof(*asset->sensors));
+        asset->sensor_count = count;
+        for (size_t i = 0; i < count; i++)
+            place_sensor(asset, (int)i, sensors[i].tag, &asset->sensors[i]);
+    }
+    mem_free(sensors);
+    return good;
+}
+
+/* --- files ------------------------------------------------------------------------------------------------------------------ */
+
+struct file_use {
+    const char *name; /* in the prepared folder */
+    int asset;
+};
+
+struct file_uses {
+    struct log *log;
+    struct scene *scene;
+    struct file_use *at;
+    size_t count;
+};
+
+static int compare_uses(const void *a, const void *b)
+{
+    return strcmp(((const struct file_use *)a)->name, ((const struct file_use *)b)->name);
+}
+
+static int compare_assets(const void *a, const void *b)
+{
+    return ((const struct file_use *)a)->asset - ((const struct file_use *)b)->asset;
+}
+
+/* Those that are the first of their name, for all that follow them and have it. */
+static void open_some(void *arg, size_t begin, size_t end)
+{
+    const struct file_uses *uses = arg;
+    for (size_t i = begin; i < end; i++) {
+        const char *name = uses->at[i].name;
+        if (i > 0 && !strcmp(uses->at[i - 1].name, name))
+            continue;
+        char *path = mem_printf("%s/%s", uses->scene->folder, name);
+        struct asset *file = asset_open(uses->log, path);
+        for (size_t u = i; file && u < uses->count && !strcmp(uses->at[u].name, name); u++)
+            uses->scene->assets[uses->at[u].asset].file = u == i ? file : asset_ref(file);
+        mem_free(path);
+    }
+}
+
+/* Opens each file once, on all cores: checking them takes longer than all else here. */
+static void open_files(struct file_uses *uses)
+{
+    qsort(uses->at, uses->count, sizeof(*uses->at), compare_uses);
+    struct workers *workers = workers_create(0);
+    workers_for(workers, uses->count, 1, open_some, uses);
+    workers_destroy(&workers);
+}
+
+/* Adds the asset's file to those to be opened, unless the asset is missing. Returns false if the file would not fit, logged. */
+static bool find_file(struct file_uses *uses, const struct manifest *manifest, uint64_t *hashes, int index)
+{
+    struct log *log = uses->log;
+    struct scene *scene = uses->scene;
+    struct scene_asset *asset = &scene->assets[index];
     asset->plant = &scene->plant->assets[index];
     const struct manifest_entry *entry = manifest_find(manifest, asset->plant->id);
     if (!entry) {
@@ -216,27 +280,8 @@ static bool create_asset(struct log *log, struct scene *scene, int index, const 
         return create_missing(log, scene, asset, entry);
     if (!recipe_fits(log, scene->plant, hashes, index, entry))
         return false;
-    char *path = mem_printf("%s/%s", folder, entry->file);
-    asset->file = open_file(log, scene, index, path);
-    if (!asset->file) {
-        log_err(log, "asset %s: has no usable file; run plantcast-prep %s", asset->plant->id, scene->plant->path);
-        goto done;
-    }
-    size_t count = plant_sensors(scene->plant, index, &sensors);
-    if (!sensors_fit(log, scene->plant, asset, sensors, count))
-        goto done;
-    if (!influence_fits(log, scene->plant, asset, sensors, count))
-        goto done;
-    place(asset);
-    asset->sensors = mem_array(count, sizeof(*asset->sensors));
-    asset->sensor_count = count;
-    for (size_t i = 0; i < count; i++)
-        place_sensor(asset, (int)i, sensors[i].tag, &asset->sensors[i]);
-    good = true;
-done:
-    mem_free(sensors);
-    mem_free(path);
-    return good;
+    uses->at[uses->count++] = (struct file_use){ entry->file, index };
+    return true;
 }
 
 /* --- all of them ------------------------------------------------------------------------------------------------------------ */
@@ -252,6 +297,30 @@ static bool bound_missing(struct scene *scene)
     return scene->bounds_min_m[0] <= scene->bounds_max_m[0];
 }
 
+/* Returns false if one does not fit, after all were looked at; logged. */
+static bool create_assets(struct log *log, struct scene *scene, const struct manifest *manifest)
+{
+    struct file_uses uses = { .log = log, .scene = scene, .at = mem_array(scene->asset_count, sizeof(*uses.at)) };
+    uint64_t *hashes = mem_array(scene->asset_count, sizeof(*hashes));
+    bool good = true;
+    for (size_t i = 0; i < scene->asset_count; i++)
+        good = find_file(&uses, manifest, hashes, (int)i) && good;
+    open_files(&uses);
+    qsort(uses.at, uses.count, sizeof(*uses.at), compare_assets);
+    for (size_t i = 0; i < uses.count; i++) {
+        const struct scene_asset *asset = &scene->assets[uses.at[i].asset];
+        if (!create_asset(log, scene, uses.at[i].asset)) {
+            good = false;
+            continue;
+        }
+        grow_box(scene->bounds_min_m, scene->bounds_max_m, asset->bounds_min_m);
+        grow_box(scene->bounds_min_m, scene->bounds_max_m, asset->bounds_max_m);
+    }
+    mem_free(hashes);
+    mem_free(uses.at);
+    return good;
+}
+
 struct scene *scene_create(struct log *log, const struct plant *plant, const char *prepared_folder)
 {
     struct manifest manifest;
@@ -263,20 +332,8 @@ struct scene *scene_create(struct log *log, const struct plant *plant, const cha
     scene->asset_count = plant->asset_count;
     scene->assets = mem_array(plant->asset_count, sizeof(*scene->assets));
     empty_box(scene->bounds_min_m, scene->bounds_max_m);
-    uint64_t *hashes = mem_array(plant->asset_count, sizeof(*hashes));
-    bool good = true;
-    for (size_t i = 0; i < plant->asset_count; i++) {
-        if (!create_asset(log, scene, (int)i, &manifest, hashes, prepared_folder)) {
-            good = false;
-            continue;
-        }
-        if (scene->assets[i].missing)
-            continue;
-        grow_box(scene->bounds_min_m, scene->bounds_max_m, scene->assets[i].bounds_min_m);
-        grow_box(scene->bounds_min_m, scene->bounds_max_m, scene->assets[i].bounds_max_m);
-    }
+    bool good = create_assets(log, scene, &manifest);
     manifest_finish(&manifest);
-    mem_free(hashes);
     if (good && !bound_missing(scene)) {
         log_err(log, "%s: every asset is missing; run plantcast-prep %s", prepared_folder, plant->path);
         good = false;
