@@ -123,8 +123,9 @@ static struct asset *prepared(struct prep_case *c)
     return asset;
 }
 
-struct most {                      /* that distances may differ, of the largest one */
-    double mean, worst, far_share; /* far: by more than 0.3 % */
+struct most {           /* that distances may differ, of the largest one */
+    double mean, worst; /* of the vertices that are compared */
+    double far_share;   /* vertices that differ by more than 0.3 %, of those of the finest level that are seen */
 };
 
 enum sight { UNSEEN, SEEN_FINEST, SEEN_COARSE };
@@ -163,7 +164,7 @@ static void compare(const struct asset *asset, size_t sensor, const struct reloc
 {
     const struct asset_view *view = &asset->view;
     float *stored = mem_array(view->header->vertex_count, sizeof(*stored));
-    double largest = 0, worst = 0, sum = 0, count = 0, far = 0;
+    double largest = 0, worst = 0, sum = 0, count = 0, far = 0, finest = 0;
     for (size_t v = 0; v < view->levels[0].vertex_count; v++) {
         stored[v] = asset_distance_m(view, sensor, v);
         assert_true(isfinite(stored[v]) == isfinite(result->geodesic_m[v]));
@@ -172,6 +173,7 @@ static void compare(const struct asset *asset, size_t sensor, const struct reloc
     }
     for (size_t v = 0; v < view->levels[0].vertex_count; v++) {
         double error = fabs((double)stored[v] - (double)result->geodesic_m[v]);
+        finest += isfinite(stored[v]) && sights[v] == SEEN_FINEST;
         if (!isfinite(stored[v]) || sights[v] != which)
             continue;
         worst = fmax(worst, error);
@@ -179,11 +181,11 @@ static void compare(const struct asset *asset, size_t sensor, const struct reloc
         far += error > FAR * largest;
         count++;
     }
-    print_message("# sensor %zu: differs from the stored distances by %.4f %% on average, %.4f %% at most; by over %g %% at %.2f %%\n",
-                  sensor, 100 * sum / count / largest, 100 * worst / largest, 100 * FAR, 100 * far / count);
+    print_message("# sensor %zu: differs from the stored distances by %.4f %% on average, %.4f %% at most; by over %g %% at %g of %g\n",
+                  sensor, 100 * sum / count / largest, 100 * worst / largest, 100 * FAR, far, count);
     assert_true(sum / count < most->mean * largest);
     assert_true(worst < most->worst * largest);
-    assert_true(far <= most->far_share * count);
+    assert_true(far <= most->far_share * finest);
     mem_free(stored);
 }
 
@@ -231,8 +233,8 @@ static void try_sensors(const struct asset *asset, const struct relocation_shape
 
 static void a_moved_sensor_has_the_distances_that_would_be_stored(void **state)
 {
-    static const struct most as_stored[] = { { 2e-4, 0.02, 2e-3 }, { 1e-3, 0.07, 0.03 } }; /* at most where two parts lie in each other */
-    static const struct most as_made_anew[] = { { 5e-4, 0.05, 0.015 }, { 2e-3, 0.08, 0.06 } };
+    static const struct most as_stored[] = { { 2e-4, 0.02, 2e-3 }, { 1e-3, 0.07, 0.0065 } }; /* at most where two parts lie in each other */
+    static const struct most as_made_anew[] = { { 5e-4, 0.05, 0.015 }, { 2e-3, 0.08, 0.013 } };
     struct asset *asset = prepared(*state);
     struct relocation_shape shape = finest_of(asset);
     char *path = prep_case_file(*state, ".surface", &shape.surface_key);
