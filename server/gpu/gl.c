@@ -70,12 +70,25 @@ static void copy_string(char out[128], GLenum name)
     snprintf(out, 128, "%s", text ? (const char *)text : "?");
 }
 
+static bool has_extension(const char *name)
+{
+    GLint count = 0;
+    glGetIntegerv(GL_NUM_EXTENSIONS, &count);
+    for (GLint i = 0; i < count; i++) {
+        const GLubyte *known = glGetStringi(GL_EXTENSIONS, (GLuint)i);
+        if (known && !strcmp((const char *)known, name))
+            return true;
+    }
+    return false;
+}
+
 static void read_capabilities(struct gl *gl)
 {
     copy_string(gl->vendor, GL_VENDOR);
     copy_string(gl->renderer, GL_RENDERER);
     copy_string(gl->version, GL_VERSION);
     gl->software = strstr(gl->renderer, "llvmpipe") || strstr(gl->renderer, "softpipe") || strstr(gl->renderer, "swrast");
+    gl->reads_in_place = gl->software && has_extension("GL_AMD_pinned_memory");
     glGetIntegerv(GL_MAX_TEXTURE_SIZE, &gl->max_texture_px);
     glGetIntegerv(GL_MAX_SAMPLES, &gl->max_samples);
 }

@@ -18,6 +18,7 @@ struct gl {
     enum gl_kind kind; /* what it became; never GL_AUTO */
     char vendor[128], renderer[128], version[128];
     bool software; /* llvmpipe, softpipe, swrast */
+    bool reads_in_place; /* software that draws from the caller's memory without a copy (GL_AMD_pinned_memory) */
     int max_texture_px, max_samples;
     const struct gl_impl *impl;
     struct log *log;

@@ -5,7 +5,6 @@
 #include <math.h>
 
 #include "base/mem.h"
-#include "gpu/gl.h"
 
 enum { BIND_POSITION, BIND_NORMAL, BIND_TEXCOORD, BIND_COLOR, BIND_SECOND_TEXCOORD, BIND_INSTANCE };
 
@@ -20,6 +19,32 @@ GLuint mesh_buffer(struct log *log, const char *name, size_t bytes, const void *
     log_err(log, "%s: the GPU has no room for %zu bytes", name, bytes);
     glDeleteBuffers(1, &buffer);
     return 0;
+}
+
+/* A buffer of the mesh, filled with data. */
+static GLuint own_buffer(struct mesh *mesh, struct log *log, const char *name, size_t bytes, const void *data)
+{
+    GLuint buffer = mesh_buffer(log, name, bytes, data, 0);
+    mesh->bytes += buffer ? bytes : 0;
+    return buffer;
+}
+
+/* Of data that the caller keeps: no copy, where GL reads it in place. */
+static GLuint kept_buffer(struct mesh *mesh, const struct gl *gl, const char *name, size_t bytes, const void *data)
+{
+    enum { EXTERNAL_VIRTUAL_MEMORY_BUFFER = 0x9160 }; /* of GL_AMD_pinned_memory, which glad does not know */
+    GLuint buffer = 0;
+    if (!gl->reads_in_place)
+        return own_buffer(mesh, gl->log, name, bytes, data);
+    gl_clear_errors();
+    glCreateBuffers(1, &buffer);
+    glBindBuffer(EXTERNAL_VIRTUAL_MEMORY_BUFFER, buffer);
+    glBufferData(EXTERNAL_VIRTUAL_MEMORY_BUFFER, (GLsizeiptr)bytes, data, GL_STATIC_DRAW);
+    glBindBuffer(EXTERNAL_VIRTUAL_MEMORY_BUFFER, 0);
+    if (gl_no_errors())
+        return buffer;
+    glDeleteBuffers(1, &buffer);
+    return own_buffer(mesh, gl->log, name, bytes, data);
 }
 
 static void attribute(GLuint vao, enum mesh_attribute location, GLuint binding, GLint size, GLenum type, GLboolean normalized,
@@ -80,7 +105,7 @@ static void fold(const float n[3], int16_t out[2])
     out[1] = to_short(below ? copysignf(1 - fabsf(x), y) : y);
 }
 
-static GLuint upload_normals(struct log *log, const char *name, size_t count, const float (*normals)[3])
+static GLuint upload_normals(struct mesh *mesh, struct log *log, const char *name, size_t count, const float (*normals)[3])
 {
     int16_t(*folded)[2] = mem_try_array(count, sizeof(*folded));
     if (!folded) {
@@ -89,13 +114,14 @@ static GLuint upload_normals(struct log *log, const char *name, size_t count, co
     }
     for (size_t i = 0; i < count; i++)
         fold(normals[i], folded[i]);
-    GLuint buffer = mesh_buffer(log, name, count * sizeof(*folded), folded, 0);
+    GLuint buffer = own_buffer(mesh, log, name, count * sizeof(*folded), folded);
     mem_free(folded);
     return buffer;
 }
 
 /* is_short: whether they became 16-bit numbers, where they can and there is memory to do it. */
-static GLuint upload_texcoords(struct log *log, const char *name, size_t count, const float (*texcoords)[2], bool *is_short)
+static GLuint upload_texcoords(struct mesh *mesh, struct log *log, const char *name, size_t count, const float (*texcoords)[2],
+                               bool *is_short)
 {
     const float *at = texcoords[0];
     size_t numbers = 2 * count, i = 0;
@@ -104,29 +130,31 @@ static GLuint upload_texcoords(struct log *log, const char *name, size_t count, 
     uint16_t *packed = i == numbers ? mem_try_array(numbers, sizeof(*packed)) : NULL;
     *is_short = packed != NULL;
     if (!packed)
-        return mesh_buffer(log, name, numbers * sizeof(*at), at, 0);
+        return own_buffer(mesh, log, name, numbers * sizeof(*at), at);
     for (i = 0; i < numbers; i++)
         packed[i] = (uint16_t)lrintf(65535 * at[i]);
-    GLuint buffer = mesh_buffer(log, name, numbers * sizeof(*packed), packed, 0);
+    GLuint buffer = own_buffer(mesh, log, name, numbers * sizeof(*packed), packed);
     mem_free(packed);
     return buffer;
 }
 
 /* --- life ----------------------------------------------------------------------------------------------------------------- */
 
-bool mesh_init(struct mesh *mesh, struct log *log, const char *name, const struct mesh_params *params)
+bool mesh_init(struct mesh *mesh, const struct gl *gl, const char *name, const struct mesh_params *params)
 {
     size_t vertices = params->vertex_count;
+    struct log *log = gl->log;
     *mesh = (struct mesh){ .vertex_count = vertices, .index_count = params->index_count };
-    mesh->positions = mesh_buffer(log, name, vertices * 12, params->positions_m, 0);
-    mesh->normals = upload_normals(log, name, vertices, params->normals);
-    mesh->indices = mesh_buffer(log, name, params->index_count * 4, params->indices, 0);
+    mesh->positions = kept_buffer(mesh, gl, name, vertices * 12, params->positions_m);
+    mesh->normals = upload_normals(mesh, log, name, vertices, params->normals);
+    mesh->indices = kept_buffer(mesh, gl, name, params->index_count * 4, params->indices);
     if (params->texcoords)
-        mesh->texcoords = upload_texcoords(log, name, vertices, params->texcoords, &mesh->short_texcoords);
+        mesh->texcoords = upload_texcoords(mesh, log, name, vertices, params->texcoords, &mesh->short_texcoords);
     if (params->second_texcoords)
-        mesh->second_texcoords = upload_texcoords(log, name, vertices, params->second_texcoords, &mesh->short_second_texcoords);
+        mesh->second_texcoords =
+            upload_texcoords(mesh, log, name, vertices, params->second_texcoords, &mesh->short_second_texcoords);
     if (params->colors)
-        mesh->colors = mesh_buffer(log, name, vertices * 4, params->colors, 0);
+        mesh->colors = kept_buffer(mesh, gl, name, vertices * 4, params->colors);
     if (!mesh->positions || !mesh->normals || !mesh->indices || (params->texcoords && !mesh->texcoords) ||
         (params->second_texcoords && !mesh->second_texcoords) || (params->colors && !mesh->colors)) {
         mesh_finish(mesh);
@@ -136,17 +164,6 @@ bool mesh_init(struct mesh *mesh, struct log *log, const char *name, const struc
     mesh->instanced_vao = describe(mesh);
     describe_instances(mesh->instanced_vao);
     return true;
-}
-
-static size_t texcoord_bytes(GLuint buffer, bool is_short)
-{
-    return !buffer ? 0 : is_short ? 4 : 8;
-}
-
-size_t mesh_vertex_bytes(const struct mesh *mesh)
-{
-    return 12 + 4 + texcoord_bytes(mesh->texcoords, mesh->short_texcoords) +
-           texcoord_bytes(mesh->second_texcoords, mesh->short_second_texcoords) + (mesh->colors ? 4 : 0);
 }
 
 void mesh_finish(struct mesh *mesh)

@@ -8,14 +8,16 @@
 
 #include <glad/gl.h>
 
-#include "base/log.h"
+#include "gpu/gl.h"
 
 /* Vertex attributes, by the location that every shader uses. */
 enum mesh_attribute { MESH_POSITION, MESH_NORMAL, MESH_TEXCOORD, MESH_COLOR, MESH_INSTANCE_NORMALS, MESH_SECOND_TEXCOORD = 7,
                       MESH_INSTANCE_PLACES };
 enum { MESH_INSTANCE_VECTORS = 10 }; /* of 4 floats: 3 from the location of normals on, then 7 from that of places on */
 
-struct mesh_params { /* pointers need only live for the call */
+/* Pointers need only live for the call, but for positions, colours and indices: GL on a processor reads them where they are
+   (gl.reads_in_place), so they stay there, unchanged, until mesh_finish(). */
+struct mesh_params {
     size_t vertex_count, index_count;
     const float (*positions_m)[3];
     const float (*normals)[3];
@@ -30,14 +32,13 @@ struct mesh_params { /* pointers need only live for the call */
    lie in 0..1, off by 1/131,070. */
 struct mesh {
     GLuint vao, instanced_vao, positions, normals, texcoords, second_texcoords, colors, indices;
-    size_t vertex_count, index_count;
+    size_t vertex_count, index_count, bytes; /* bytes: of its own buffers; what is read in place is none of them */
     bool short_texcoords, short_second_texcoords;
 };
 
-bool mesh_init(struct mesh *mesh, struct log *log, const char *name,
+bool mesh_init(struct mesh *mesh, const struct gl *gl, const char *name,
                const struct mesh_params *params); /* false: out of memory, logged */
 void mesh_finish(struct mesh *mesh);
-size_t mesh_vertex_bytes(const struct mesh *mesh); /* of each vertex, without light and scalar */
 void mesh_bind(const struct mesh *mesh); /* for the next draws */
 void mesh_bind_instances(const struct mesh *mesh, GLuint instances); /* of MESH_INSTANCE_VECTORS each, from its beginning */
 

@@ -30,10 +30,8 @@ void renderer_measure_memory(const struct renderer *renderer, size_t out[RENDER_
         out[STORE_LIGHT] += soft_light_bytes(renderer->by_soft);
         out[STORE_PICTURES] = soft_kept_bytes(renderer->by_soft);
     }
-    for (size_t i = 0; i < renderer->gpu_scene.model_count; i++) {
-        const struct mesh *mesh = &renderer->gpu_scene.models[i].mesh;
-        out[STORE_MODELS] += mesh->vertex_count * mesh_vertex_bytes(mesh) + 4 * mesh->index_count;
-    }
+    for (size_t i = 0; i < renderer->gpu_scene.model_count; i++)
+        out[STORE_MODELS] += renderer->gpu_scene.models[i].mesh.bytes;
 }
 
 void renderer_bound_memory(struct renderer *renderer, size_t bytes)

@@ -11,7 +11,7 @@ enum render_store {
     STORE_PICTURES, /* what still cameras see */
     STORE_TARGETS,  /* framebuffers */
     STORE_ROOM,     /* to draw in without a GPU */
-    STORE_MODELS,   /* geometry on the GPU: not a cache */
+    STORE_MODELS,   /* geometry on the GPU, and not in the files alone: not a cache */
     RENDER_STORES
 };
 extern const char *const render_store_names[RENDER_STORES];

@@ -56,7 +56,7 @@ static struct mesh make(bool with_texcoords, bool with_colors)
         params.texcoords = params.second_texcoords = texcoords;
     if (with_colors)
         params.colors = colors;
-    assert_true(mesh_init(&mesh, rig.log, "mesh", &params));
+    assert_true(mesh_init(&mesh, rig.gl, "mesh", &params));
     return mesh;
 }
 
@@ -138,24 +138,48 @@ static void test_others_stay_as_they_are(void **state)
     }
 }
 
-static void test_bytes_of_a_vertex(void **state)
+static void test_bytes_of_its_own(void **state)
 {
     (void)state;
     set_texcoords(0, 1);
     for (int more = 0; more < 4; more++) {
         struct mesh mesh = make(more & 1, more & 2);
-        GLuint buffers[] = { mesh.positions, mesh.normals, mesh.texcoords, mesh.second_texcoords, mesh.colors };
-        size_t sum = 0;
-        for (size_t i = 0; i < sizeof(buffers) / sizeof(buffers[0]); i++) {
+        GLuint buffers[] = { mesh.normals, mesh.texcoords, mesh.second_texcoords, mesh.positions, mesh.colors, mesh.indices };
+        size_t sum = 0, own = rig.gl->reads_in_place ? 3 : sizeof(buffers) / sizeof(buffers[0]);
+        for (size_t i = 0; i < own; i++) {
             GLint64 bytes = 0;
             if (buffers[i])
                 glGetNamedBufferParameteri64v(buffers[i], GL_BUFFER_SIZE, &bytes);
             sum += (size_t)bytes;
         }
-        assert_int_equal(sum, COUNT * mesh_vertex_bytes(&mesh));
-        assert_int_equal(mesh_vertex_bytes(&mesh), 16 + (more & 1 ? 8 : 0) + (more & 2 ? 4 : 0));
+        size_t copied = own > 3 ? COUNT * (12 + (more & 2 ? 4 : 0)) + sizeof(indices) : 0;
+        assert_int_equal(mesh.bytes, sum);
+        assert_int_equal(sum, COUNT * (4 + (more & 1 ? 8 : 0)) + copied);
         mesh_finish(&mesh);
     }
+}
+
+/* What is written into the caller's memory afterwards is there in the buffer, and not where it had to be copied. */
+static void test_what_is_kept_is_read_in_place(void **state)
+{
+    (void)state;
+    static float back_m[COUNT][3];
+    struct gl *gl = rig.gl;
+    if (!gl->reads_in_place) {
+        skip();
+        return;
+    }
+    for (int in_place = 1; in_place >= 0; in_place--) {
+        float before_m = positions_m[COUNT - 1][2];
+        gl->reads_in_place = in_place;
+        struct mesh mesh = make(false, true);
+        positions_m[COUNT - 1][2] = before_m + 1;
+        glGetNamedBufferSubData(mesh.positions, 0, sizeof(back_m), back_m);
+        assert_memory_equal(back_m, positions_m, sizeof(back_m) - sizeof(float));
+        assert_true(back_m[COUNT - 1][2] == (in_place ? before_m + 1 : before_m));
+        mesh_finish(&mesh);
+    }
+    gl->reads_in_place = true;
 }
 
 int main(void)
@@ -164,7 +188,8 @@ int main(void)
         cmocka_unit_test(test_normals_come_back),
         cmocka_unit_test(test_texture_coordinates_that_fit_are_short),
         cmocka_unit_test(test_others_stay_as_they_are),
-        cmocka_unit_test(test_bytes_of_a_vertex),
+        cmocka_unit_test(test_bytes_of_its_own),
+        cmocka_unit_test(test_what_is_kept_is_read_in_place),
     };
     cmocka_set_message_output(CM_OUTPUT_TAP);
     if (!rig_init(&rig, "mesh_test"))

@@ -19,7 +19,7 @@ static bool make_mesh(struct model *model, struct gl *gl)
         .colors = view->colors,
         .indices = view->indices,
     };
-    return mesh_init(&model->mesh, gl->log, model->file->path, &params);
+    return mesh_init(&model->mesh, gl, model->file->path, &params);
 }
 
 /* All primitives of one level that have that material. */
