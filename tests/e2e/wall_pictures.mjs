@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Three walls as a control room would have them, to be looked at from their distance. What is taken at 1920x1080 is in the README
+// (deploy/pictures).
+import assert from 'node:assert/strict';
+import { mkdirSync } from 'node:fs';
+import { join } from 'node:path';
+import { after, before, test } from 'node:test';
+import { openPage, SCREENSHOTS } from './support/browser.mjs';
+import { missing, startPlant } from './support/plant.mjs';
+import { sweep } from './support/sweep.mjs';
+
+const taken = sweep(true, process.env.PLANTCAST_SHOTS === '1'), why = missing();
+const options = { skip: why ?? false, timeout: 600000 };
+const more = { ...options, skip: why ?? (taken ? false : 'PLANTCAST_SHOTS=1 takes them all') };
+const SIZES = [[1920, 1080], [3840, 2160]], COLUMNS = 2, ROWS = 2, BEZEL_PX = 12;
+const WALLS = `
+views:
+- { id: whole, title: Whole unit, view: "group=temperature" }
+- { id: pressure, title: Pressures, view: "group=pressure" }
+- { id: fans, title: Fans, view: "group=vibration&asset=EA-101" }
+walls:
+- id: overview
+  inches: 75
+  distance_m: 4
+  displays:
+  - grid: [main main main alarms, main main main alarms, main main main clock]
+    panes:
+    - { area: main, views: [whole], on_alarm: yes }
+    - { area: alarms, alarms: yes }
+    - { area: clock, clock: yes }
+- id: six
+  inches: 75
+  distance_m: 3
+  displays:
+  - grid: [whole pressure alarms, trend tiles text]
+    panes:
+    - { area: whole, views: [whole] }
+    - { area: pressure, views: [pressure] }
+    - { area: alarms, alarms: yes }
+    - { area: trend, title: E-101 shell, trend: [TE-101, TE-104], hours: 0.1 }
+    - { area: tiles, title: E-101, tiles: [TE-101, TE-104, PT-101, PT-102] }
+    - { area: text, title: To do, text: ["P-101A: check the seal", "F-101: clean the filter"] }
+- id: tiles
+  inches: 55
+  distance_m: 5
+  tile: { columns: ${COLUMNS}, rows: ${ROWS}, bezel_mm: 8, views: [whole] }
+`;
+let plant;
+
+before(async () => {
+    if (why)
+        return;
+    plant = await startPlant(`alarms: local\n${WALLS}`);
+    await plant.ask('set TE-101 171.5');
+});
+after(() => plant?.stop());
+
+const open = (wall, display, [width, height]) =>
+    openPage(`${plant.url}wall.html?wall=${wall}&display=${display}`, { viewport: { width, height } });
+
+async function keep(page, name, [width]) {
+    mkdirSync(SCREENSHOTS, { recursive: true });
+    const path = join(SCREENSHOTS, `${name}-${width}`);
+    if (width === 1920)
+        await page.screenshot({ path: `${path}.jpg`, type: 'jpeg', quality: 50 });
+    await page.screenshot({ path: `${path}.png` });
+}
+
+// Until each pane of views has a refined picture of its own size and each trend its curves.
+const whole = () => [...document.querySelectorAll('.pane iframe')].every((frame) => {
+    const { session } = frame.contentWindow.plantcast ?? {}, { picture } = session ?? {};
+    return frame.closest('.trend') ? frame.contentWindow.plantcast?.trends?.series.length > 0 :
+        picture?.still && picture.cameraSeq === session.cameraSeq && picture.paramsSeq === session.paramsSeq && !session.cameraNews;
+});
+
+// Letters that do not fit into what they stand in.
+const cut = () => [...document.querySelectorAll('.pane h2, .pane p, .pane li, .pane b, .tile *, .clock *')].filter((element) =>
+    element.children.length === 0 && element.clientWidth > 0 && element.scrollWidth > element.clientWidth + 1)
+    .map((element) => `${element.className}: ${element.textContent}`);
+
+// What is not whole or lies otherwise than it says within a pane: its chart, how old its readings are, the ticks beside its colours.
+const amiss = () => [...document.querySelectorAll('.pane iframe')].flatMap((frame) => {
+    const { contentDocument: inner, contentWindow: { innerHeight } } = frame, found = [];
+    const box = (selector) => inner.querySelector(selector)?.getBoundingClientRect();
+    const chart = box('#trend-chart canvas'), bar = box('#legend .bar'), ticks = box('#legend .ticks'), age = box('.cell.age');
+    if (frame.closest('.trend') && !(chart?.height > 100 && chart.bottom <= innerHeight + 1))
+        found.push(`chart to ${chart?.bottom} of ${innerHeight}`);
+    if (!frame.closest('.trend') && !(age?.bottom <= innerHeight))
+        found.push(`age to ${age?.bottom} of ${innerHeight}`);
+    if (!frame.closest('.trend') && !(bar && ticks.left >= bar.right - 10 && Math.abs(ticks.height - bar.height) < 3))
+        found.push(`bar ${JSON.stringify(bar)}, ticks ${JSON.stringify(ticks)}`);
+    return found;
+});
+
+for (const wall of ['overview', 'six']) {
+    for (const size of SIZES) {
+        test(`${wall} at ${size.join('x')}`, wall === 'six' && size === SIZES[0] ? options : more, async () => {
+            const { page, close, errors } = await open(wall, 1, size);
+            await page.locator('.pane.alarms li', { hasText: 'TE-101' }).waitFor();
+            await page.waitForFunction(whole, null, { polling: 200 });
+            await page.waitForTimeout(2000);
+            await page.waitForFunction(whole, null, { polling: 200 });
+            await keep(page, `wall-${wall}`, size);
+            assert.deepEqual(await page.evaluate(cut), []);
+            assert.deepEqual(await page.evaluate(amiss), []);
+            assert.deepEqual(errors, []);
+            await close();
+        });
+    }
+}
+
+// As they hang beside each other, bezels between them.
+for (const size of SIZES) {
+    test(`tiles at ${size.join('x')}`, more, async () => {
+        const each = [size[0] / COLUMNS, size[1] / ROWS];
+        const opened = await Promise.all(Array.from({ length: COLUMNS * ROWS }, (_, i) => open('tiles', i + 1, each)));
+        await Promise.all(opened.map(({ page }) => page.waitForFunction(() => {
+            const canvas = document.querySelector('canvas');
+            return canvas?.width > 300 && document.getElementById('lost')?.hidden !== false;
+        })));
+        await opened[0].page.waitForTimeout(8000);
+        const shots = await Promise.all(opened.map(({ page }) => page.screenshot({ type: 'png' })));
+        const sheet = await openPage('about:blank', { viewport: { width: size[0], height: size[1] } });
+        const boxes = shots.map((png) => `<img src="data:image/png;base64,${png.toString('base64')}">`);
+        await sheet.page.setContent(`<style>body { margin: 0; background: #111; display: grid; gap: ${BEZEL_PX}px; height: 100vh;
+            grid-template: repeat(${ROWS}, 1fr) / repeat(${COLUMNS}, 1fr) } img { width: 100%; height: 100%; min-height: 0 }
+            </style>${boxes.join('')}`);
+        await keep(sheet.page, 'wall-tiles', size);
+        for (const { errors, close } of opened) {
+            assert.deepEqual(errors, []);
+            await close();
+        }
+        await sheet.close();
+    });
+}
