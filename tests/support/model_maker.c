@@ -125,3 +125,16 @@ char *maker_data_uri(const char *kind, const void *bytes, size_t count)
     }
     return text.at;
 }
+
+char *maker_glb_of(const struct cad *cad, const char *node, size_t *size)
+{
+    struct maker maker;
+    maker_init(&maker);
+    int positions = maker_numbers(&maker, cad->positions, cad->vertex_count * sizeof(*cad->positions), FLOAT, cad->vertex_count, "VEC3");
+    int indices =
+        maker_numbers(&maker, cad->triangles, cad->triangle_count * 3 * sizeof(*cad->triangles), UINT, cad->triangle_count * 3, "SCALAR");
+    maker_node(&maker, node, maker_mesh(&maker, json_pack("{s:{s:i},s:i}", "attributes", "POSITION", positions, "indices", indices)), NULL);
+    char *glb = maker_glb(&maker, size);
+    maker_finish(&maker);
+    return glb;
+}

@@ -6,6 +6,7 @@
 #include <stdint.h>
 
 #include "base/text.h"
+#include "tests/support/cad.h"
 
 enum { BYTE = 5120, UBYTE = 5121, SHORT = 5122, USHORT = 5123, UINT = 5125, FLOAT = 5126 };
 
@@ -30,6 +31,8 @@ json_t *maker_get(struct maker *maker, const char *list, int number);
 
 /* The file, to be freed with mem_free: a GLB, or JSON with its buffer in a data URI. */
 char *maker_glb(struct maker *maker, size_t *size);
+/* A GLB file of one node with this mesh; mem_free. */
+char *maker_glb_of(const struct cad *cad, const char *node, size_t *size);
 char *maker_gltf(struct maker *maker, size_t *size);
 char *maker_data_uri(const char *kind, const void *bytes, size_t count);
 

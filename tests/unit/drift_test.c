@@ -176,21 +176,13 @@ static void stand_sensors(struct prep_case *c, int count, struct row_of_sensors 
 {
     struct cad_random random;
     struct cad cad = { 0 };
-    struct maker maker;
     struct text rows = { 0 };
     size_t size;
     cad_random_start(&random);
     cad_plate(&cad, &random, 24, 3, 2.4, 0.3, 0);
-    maker_init(&maker);
-    int positions = maker_numbers(&maker, cad.positions, cad.vertex_count * sizeof(*cad.positions), FLOAT, cad.vertex_count, "VEC3");
-    int indices =
-        maker_numbers(&maker, cad.triangles, cad.triangle_count * 3 * sizeof(*cad.triangles), UINT, cad.triangle_count * 3, "SCALAR");
-    maker_node(&maker, "strip", maker_mesh(&maker, json_pack("{s:{s:i},s:i}", "attributes", "POSITION", positions, "indices", indices)),
-               NULL);
-    char *glb = maker_glb(&maker, &size);
+    char *glb = maker_glb_of(&cad, "strip", &size);
     mem_free(temp_write(c->folder, "model.glb", glb, size));
     mem_free(glb);
-    maker_finish(&maker);
     cad_finish(&cad);
     prep_case_plant(c, "plant: { name: Strip }\n"
                        "assets:\n"
