@@ -1,7 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* LD_PRELOAD: the program's wall clock is CLOCK_OFF_S seconds ahead of the machine's (behind: negative); its other clocks are right. */
+/* LD_PRELOAD: the program's wall clock is CLOCK_OFF_S seconds ahead of the machine's (behind: negative); its other clocks are right.
+   With CLOCK_OFF_FILE it is ahead by what stands in that file, seconds as an int64_t, and is set whenever somebody writes to it. */
+#include <fcntl.h>
 #include <stddef.h>
+#include <stdint.h>
 #include <stdlib.h>
+#include <sys/mman.h>
 #include <sys/syscall.h>
 #include <sys/time.h>
 #include <time.h>
@@ -9,10 +13,23 @@
 
 #define EXPORTED __attribute__((visibility("default")))
 
+static const volatile int64_t *in_file; /* NULL: the variable's */
+
+__attribute__((constructor)) static void map_file(void)
+{
+    const char *path = getenv("CLOCK_OFF_FILE");
+    int file = path ? open(path, O_RDONLY | O_CLOEXEC) : -1;
+    if (file < 0)
+        return;
+    void *bytes = mmap(NULL, sizeof *in_file, PROT_READ, MAP_SHARED, file, 0);
+    in_file = bytes == MAP_FAILED ? NULL : bytes;
+    close(file);
+}
+
 static time_t off_s(void)
 {
     const char *text = getenv("CLOCK_OFF_S");
-    return text ? (time_t)atoll(text) : 0;
+    return in_file ? (time_t)*in_file : text ? (time_t)atoll(text) : 0;
 }
 
 EXPORTED int clock_gettime(clockid_t id, struct timespec *now)

@@ -1,23 +1,27 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A day of a plant's life in an hour: temperatures that were measured on a rig, 24 times as fast; twenty people who drag the model about;
-// the plant file changed and read again, devices that stop answering, a tag that is refused, a disk that takes nothing. MINUTES: how long.
+// the plant file changed and read again, devices that stop answering, a tag that is refused, a disk that takes nothing, a clock that is set
+// an hour ahead and back, a month that ends. MINUTES: how long.
 // Stated: memory, descriptors, threads and latency, and how they grow. Held to: a field that is that of a fresh computation to the last
 // bit, a history without a hole, descriptors and threads that do not grow.
 import assert from 'node:assert/strict';
 import { spawn, spawnSync } from 'node:child_process';
-import { existsSync, readdirSync, readFileSync, writeFileSync } from 'node:fs';
+import { appendFileSync, existsSync, readdirSync, readFileSync, writeFileSync } from 'node:fs';
 import { join, resolve } from 'node:path';
 import { after, before, test } from 'node:test';
+import { missingClocks, SetClock } from '../e2e/support/clocks.mjs';
 import { get } from '../e2e/support/plain_client.mjs';
 import { BIN, missing, runProgram, TinyPlant } from '../e2e/support/tiny_plant.mjs';
 
 const SERIES = resolve('../shared/data/sensors/hydraulic/hydraulic_ts_1hz.csv'), MINUTES = Number(process.env.MINUTES ?? 60);
 const absent = missing();
-const skip = absent.length > 0 ? `not built: ${absent.join(', ')}` : existsSync(SERIES) ? false : `${SERIES} is not there`;
-const SESSIONS = 20, PROBE_S = 15, GROWTH = 1.1, WAIT_MS = 120000;
+const skip = absent.length > 0 ? `not built: ${absent.join(', ')}`
+    : missingClocks() ?? (existsSync(SERIES) ? false : `${SERIES} is not there`);
+const SESSIONS = 20, PROBE_S = 15, GROWTH = 1.1, WAIT_MS = 120000, BEFORE_END_S = 30, MONTH_DESCRIPTORS = 4;
 const sleep = (ms) => new Promise((done) => setTimeout(done, ms));
 const pid = () => plant.daemon.child.pid;
-let plant;
+let plant, clock, marked = 0;
+const marks = [];
 
 async function until(what, ask) {
     for (const end = Date.now() + WAIT_MS; ; await sleep(200)) {
@@ -32,8 +36,16 @@ const hold = async (tag, value) => {
     await plant.tell(`set ${tag} ${value}`);
     await until(`${tag} is ${value}`, async () => {
         const now = (await tags()).get(tag);
-        return now.value === value && now.quality_name.startsWith('Good');
+        return Math.fround(now.value) === Math.fround(value) && now.quality_name.startsWith('Good');
     });
+};
+
+// A value of PI-1 that it never had before, which history has to have in the end: exact, whatever it
+// passes through, and no neighbour of one before it, nor of a whole number.
+const mark = async () => {
+    const n = marked++, value = (n % 2 ? 2.375 : 5.375) + n / 1024;
+    await hold('PI-1', value);
+    marks.push(value);
 };
 
 function measure() {
@@ -78,6 +90,22 @@ const events = [
         await sleep(5000);
         assert.equal(limit('unlimited:unlimited'), 0);
     },
+    async function clockSet() {
+        for (const by_s of [3600, -3600]) {
+            clock.set(clock.ahead_s + by_s);
+            await mark();
+        }
+    },
+    async function monthEnd() {
+        const now = new Date(clock.now()), end = Date.UTC(now.getUTCFullYear(), now.getUTCMonth() + 1);
+        clock.set(clock.ahead_s + Math.floor((end - now) / 1000) - BEFORE_END_S);
+        await mark();
+        assert.ok(clock.now() < end, 'the month has not ended yet');
+        await sleep(end - clock.now() + 500);
+        await mark();
+        const file = `history-${new Date(clock.now()).toISOString().slice(0, 7)}.sqlite`;
+        await until(file, () => existsSync(join(plant.folder, 'plant.history', file)));
+    },
 ];
 
 // At places of both boxes: the daemon's field, after all that it has been through, and that of a program which begins with these readings.
@@ -112,6 +140,9 @@ before(async () => {
     if (skip)
         return;
     plant = await TinyPlant.create();
+    appendFileSync(plant.file, 'history: { keep_days: 36500 }\n');
+    clock = new SetClock(join(plant.folder, 'clock'));
+    plant.confine(...clock.starter());
     assert.equal(plant.prepare().code, 0);
     await plant.startSim('--values', SERIES, '--map', 'TI-1=TS1', '--map', 'TI-2=TS4', '--speed', '24', '--loop');
     await plant.startDaemon();
@@ -119,15 +150,13 @@ before(async () => {
 after(() => plant?.destroy());
 
 test(`a day's life in ${MINUTES} minutes`, { skip, timeout: (MINUTES + 20) * 60000 }, async () => {
-    const began = Date.now(), rows = [], marks = [];
+    const began = Date.now(), rows = [];
     for (let round = 0; round === 0 || Date.now() - began < MINUTES * 60000; round++) {
         const event = events[round % events.length], looking = crowd();
         await event();
         const { input_to_frame_ms: waited } = await looking;
         const off = await drift(round);
-        const mark = 5 + round / 64; // exact, whatever it passes through
-        await hold('PI-1', mark);
-        marks.push(mark);
+        await mark();
         rows.push({ hours: (Date.now() - began) / 3.6e6, ...measure(), p95_ms: waited.p95, off });
         console.log(`# ${event.name}: ${JSON.stringify(rows.at(-1))}`);
         assert.equal(off, 0, 'the field is that of a fresh computation');
@@ -135,17 +164,17 @@ test(`a day's life in ${MINUTES} minutes`, { skip, timeout: (MINUTES + 20) * 600
     for (const key of ['memory_mb', 'descriptors', 'threads', 'p95_ms'])
         console.log(`# ${key}: ${rows[0][key].toFixed(1)} at first, ${rows.at(-1)[key].toFixed(1)} at last, ` +
             `${slope(rows, key).toFixed(2)} an hour`);
-    // The least of each third: a connection that is closing, or a month that is being written, has a descriptor for a moment.
+    // The least of each third: a connection that is closing has a descriptor for a moment. Another month has its file, read and written.
     const third = Math.ceil(rows.length / 3), least = (part, key) => Math.min(...part.map((row) => row[key]));
-    for (const [key, growth] of [['descriptors', 1], ['threads', 1], ['memory_mb', GROWTH]]) {
+    for (const [key, growth, more] of [['descriptors', 1, MONTH_DESCRIPTORS], ['threads', 1, 0], ['memory_mb', GROWTH, 0]]) {
         const early = least(rows.slice(0, third), key), late = least(rows.slice(-third), key);
-        assert.ok(late <= growth * early, `${key}: ${early} in the first third, ${late} in the last`);
+        assert.ok(late <= growth * early + more, `${key}: ${early} in the first third, ${late} in the last`);
     }
     const kept = await until('history has all marks', () => {
         const { out } = runProgram('plantcast', ['history', 'export', plant.file, '--tags', 'PI-1', '--from',
-            String(Math.floor(began / 1000))], WAIT_MS);
-        const values = new Set(out.split('\n').map((line) => Number(line.split(',')[2])));
-        return marks.every((mark) => values.has(mark)) && values.size;
+            String(Math.floor(began / 1000)), '--to', String(Math.ceil(clock.now() / 1000) + 3600)], WAIT_MS);
+        const values = new Set(out.split('\n').map((line) => Math.fround(line.split(',')[2])));
+        return marks.every((value) => values.has(Math.fround(value))) && values.size;
     });
     console.log(`# history: ${kept} values, ${marks.length} of ${marks.length} marks`);
 });

@@ -1,12 +1,30 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Programs whose wall clock is wrong (tests/faults/clock_off.c).
-import { existsSync } from 'node:fs';
+import { existsSync, writeFileSync } from 'node:fs';
 import { join, resolve } from 'node:path';
 
 const LIBRARY = resolve(process.env.PLANTCAST_OUT ?? 'build/release', 'tests/faults/clock_off.so');
 export const missingClocks = () => (existsSync(LIBRARY) ? null : 'not built: clock_off.so');
 
+const variables = (by) => ({ LD_PRELOAD: LIBRARY, ...by, ASAN_OPTIONS: 'verify_asan_link_order=0' });
+const starter = (by) => ['env', ...Object.entries(variables(by)).map(([name, value]) => `${name}=${value}`)];
 // What sets its clock so many seconds ahead, as variables.
-export const clockOff = (seconds) => ({ LD_PRELOAD: LIBRARY, CLOCK_OFF_S: String(seconds), ASAN_OPTIONS: 'verify_asan_link_order=0' });
+export const clockOff = (seconds) => variables({ CLOCK_OFF_S: String(seconds) });
 // The same, as the program that starts another.
-export const withClockOff = (seconds) => ['env', ...Object.entries(clockOff(seconds)).map(([name, value]) => `${name}=${value}`)];
+export const withClockOff = (seconds) => starter({ CLOCK_OFF_S: String(seconds) });
+
+// A clock that is set while programs run by it.
+export class SetClock {
+    constructor(file) {
+        this.file = file;
+        this.set(0);
+    }
+
+    set(ahead_s) {
+        this.ahead_s = ahead_s;
+        writeFileSync(this.file, new BigInt64Array([BigInt(ahead_s)]), { flag: existsSync(this.file) ? 'r+' : 'w' });
+    }
+
+    now() { return Date.now() + this.ahead_s * 1000; }
+    starter() { return starter({ CLOCK_OFF_FILE: this.file }); }
+}
