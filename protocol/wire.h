@@ -22,6 +22,7 @@ enum wire_flags {
     WIRE_FLAG_MORE = 8,
     WIRE_FLAG_DATA = 16,
     WIRE_FLAG_PAST = 32,
+    WIRE_FLAG_SIGNED = 64,
 };
 
 struct wire_frame { /* in the order of the bytes */

@@ -18,7 +18,8 @@ enum { MAX_SESSIONS = 1000 };
 static void print_usage(FILE *out)
 {
     fputs("usage: plantcast probe URL [--sessions N] [--seconds S] [--motion still|orbit|random] [--hz N] [--size WxH]\n"
-          "                           [--codec jpeg|h264] [--follow] [--spread] [--stall N] [--blind] [--json]\n"
+          "                           [--codec jpeg|h264] [--signed refined|all] [--save-signed FOLDER] [--follow] [--spread]\n"
+          "                           [--stall N] [--blind] [--json]\n"
           "\n"
           "Opens N sessions on a daemon (http://HOST:PORT/), decodes every frame before it acknowledges it, and prints rates and\n"
           "latencies. Input to frame: from sending a camera to the first frame drawn with it, or with a newer one, decoded; each of\n"
@@ -30,6 +31,9 @@ static void print_usage(FILE *out)
           "  --follow          the first session moves, all others follow it; behind leader: from its sending a camera to their frame,\n"
           "                    once 3 s have gone by\n"
           "  --spread          of views that stand still: each from another side\n"
+          "  --signed WHICH    has refined frames, or all, come as PNG with a signature (a server with --signing-key)\n"
+          "  --save-signed FOLDER  writes each of these to FOLDER/SESSION-FRAME.png, for plantcast verify; with --signed refined unless\n"
+          "                    that is said\n"
           "  --stall N         the last N sessions read nothing after their first frame; they are left out of the table\n"
           "  --blind           acknowledges without decoding, to have many sessions on a small machine; but over https:// all of them\n"
           "                    are served by one thread, which reads no more than the headers of frames\n",
@@ -47,6 +51,9 @@ static struct viewer *make_viewer(struct probe *probe, int index)
                                                   .seconds = probe->seconds,
                                                   .hz = probe->hz,
                                                   .blind = probe->blind,
+                                                  .signs = probe->signs,
+                                                  .folder = probe->folder,
+                                                  .number = index + 1,
                                                   .stalls = index >= probe->watching,
                                                   .lead = probe->follow ? &probe->lead : NULL,
                                                   .follows = probe->follow && index > 0,
@@ -102,6 +109,8 @@ static bool take_option(int option, struct probe *probe)
     case 'b': probe->blind = true; return true;
     case 'z': return parse_size(optarg, &probe->width_px, &probe->height_px);
     case 'c': probe->codec = optarg; return !strcmp(optarg, "jpeg") || (!strcmp(optarg, "h264") && decoder_has(WIRE_CODEC_H264));
+    case 'g': probe->signs = optarg; return !strcmp(optarg, "refined") || !strcmp(optarg, "all");
+    case 'o': probe->folder = optarg; return true;
     case 'j': probe->as_json = true; return true;
     default: return false;
     }
@@ -120,6 +129,8 @@ int cmd_probe(int argc, char **argv)
         { "spread", no_argument, NULL, 'p' },
         { "blind", no_argument, NULL, 'b' },
         { "codec", required_argument, NULL, 'c' },
+        { "signed", required_argument, NULL, 'g' },
+        { "save-signed", required_argument, NULL, 'o' },
         { "json", no_argument, NULL, 'j' },
         { "help", no_argument, NULL, 'h' },
         { NULL, 0, NULL, 0 },
@@ -139,7 +150,9 @@ int cmd_probe(int argc, char **argv)
             return 2;
         }
     }
-    if (optind + 1 != argc || probe.stalled >= probe.sessions) {
+    if (probe.folder && !probe.signs)
+        probe.signs = "refined";
+    if (optind + 1 != argc || probe.stalled >= probe.sessions || (probe.folder && probe.blind)) {
         print_usage(stderr);
         return 2;
     }

@@ -6,7 +6,7 @@
 
 struct probe {
     struct daemon_url url;
-    const char *url_text, *codec;
+    const char *url_text, *codec, *signs, *folder;
     int sessions, stalled, width_px, height_px;
     int watching; /* the first of the sessions: those that do not stall */
     double seconds, hz;

@@ -41,7 +41,7 @@ static void sort(struct samples *samples)
 }
 
 struct summary {
-    int frames, still_frames, errors, failed, given_up;
+    int frames, still_frames, signed_frames, errors, failed, given_up;
     double fps, fps_lowest; /* mean and least over the sessions */
     double kb_per_frame, mbit_per_s, steady_kbit_per_s;
     struct samples input, sensor, behind, first, stages[STAGE_COUNT];
@@ -62,6 +62,7 @@ static void summarise(const struct probe *probe, struct summary *sum)
         double fps = fps_of(result);
         sum->frames += result->frames;
         sum->still_frames += result->still_frames;
+        sum->signed_frames += result->signed_frames;
         sum->errors += result->errors;
         sum->failed += result->failure[0] != 0;
         sum->fps += fps / probe->watching;
@@ -121,6 +122,8 @@ static void print_table(const struct probe *probe, const struct summary *sum)
     printf("%s  %d session%s, %s, %s, %dx%d, %.1f s\n", probe->url_text, probe->sessions, probe->sessions == 1 ? "" : "s",
            probe_motions[probe->motion], probe->codec, probe->width_px, probe->height_px, probe->seconds);
     printf("  frames           %8d (%d refined)\n", sum->frames, sum->still_frames);
+    if (probe->signs)
+        printf("  signed           %8d\n", sum->signed_frames);
     printf("  frames/s         %8.1f per session, lowest %.1f\n", sum->fps, sum->fps_lowest);
     printf("  kB/frame         %8.1f\n", sum->kb_per_frame);
     printf("  Mbit/s           %8.2f together\n", sum->mbit_per_s);
@@ -164,10 +167,10 @@ static void print_json(const struct probe *probe, const struct summary *sum)
             json_array_append_new(failures, json_string(viewer_result(probe->viewers[i])->failure));
     json_t *o = json_pack("{s:s,s:i,s:f,s:s,s:i,s:i}", "url", probe->url_text, "sessions", probe->sessions, "seconds", probe->seconds,
                           "motion", probe_motions[probe->motion], "width", probe->width_px, "height", probe->height_px);
-    json_object_update_new(o, json_pack("{s:s,s:i,s:i,s:i,s:f,s:f,s:f,s:f,s:f}", "codec", probe->codec, "frames", sum->frames,
-                                        "still_frames", sum->still_frames, "errors", sum->errors, "fps", sum->fps, "fps_lowest",
-                                        sum->fps_lowest, "kb_per_frame", sum->kb_per_frame, "mbit_per_s", sum->mbit_per_s,
-                                        "steady_kbit_per_s", sum->steady_kbit_per_s));
+    json_object_update_new(o, json_pack("{s:s,s:i,s:i,s:i,s:i,s:f,s:f,s:f,s:f,s:f}", "codec", probe->codec, "frames", sum->frames,
+                                        "still_frames", sum->still_frames, "signed_frames", sum->signed_frames, "errors", sum->errors,
+                                        "fps", sum->fps, "fps_lowest", sum->fps_lowest, "kb_per_frame", sum->kb_per_frame, "mbit_per_s",
+                                        sum->mbit_per_s, "steady_kbit_per_s", sum->steady_kbit_per_s));
     json_object_set_new(o, "given_up", json_integer(sum->given_up));
     json_object_set_new(o, "sessions_fps", fps_json(probe));
     json_object_set_new(o, "input_to_frame_ms", samples_json(&sum->input));

@@ -113,14 +113,17 @@ static bool same_pixels(const struct frame *frame, const json_t *statement, cons
 static struct frame *draw(struct offline_renderer *offline, const json_t *statement, struct frame_record *record, struct view *view)
 {
     view_set_instant(view, json_integer_value(json_object_get(statement, "at_us")), 0);
-    view->tier = TIER_REFINED;
+    const char *tier = json_string_value(json_object_get(statement, "tier"));
+    const char *overlay = json_string_value(json_object_get(statement, "overlay"));
+    view->tier = tier && !strcmp(tier, "preview") ? TIER_PREVIEW : TIER_REFINED;
     struct frame *frame = split_view_draw_now(offline->renderer, view, record->readings);
     if (!frame)
         return NULL;
     frame_read_markers(frame, record->readings, offline->baselines);
     frame->clock_unset = json_is_true(json_object_get(statement, "clock_unset"));
     frame->record = frame_record_ref(record);
-    overlay_draw(frame, offline->scene, record->readings, NULL);
+    if (!overlay || strcmp(overlay, "none") != 0)
+        overlay_draw(frame, offline->scene, record->readings, NULL);
     return frame;
 }
 

@@ -40,6 +40,10 @@ static void print_statement(const char *path, const json_t *statement)
            json_string_value(json_object_get(statement, "configuration")), json_string_value(json_object_get(statement, "server")));
     printf("  readings of %s%s%s\n", at_us ? at : taken, at_us ? " (history)" : "",
            json_is_true(json_object_get(statement, "clock_unset")) ? "; nothing kept the server's clock right" : "");
+    const char *tier = json_string_value(json_object_get(statement, "tier"));
+    const char *overlay = json_string_value(json_object_get(statement, "overlay"));
+    if (overlay && tier && !strcmp(overlay, "none"))
+        printf("  a frame of a session: %s, without legend, markers and clock\n", tier);
     const json_t *args = json_object_get(statement, "query");
     printf("  view:");
     for (size_t i = 0; i < json_array_size(args); i++)

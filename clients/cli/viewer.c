@@ -150,6 +150,18 @@ static void record(struct viewer *viewer, const struct wire_frame *frame, int64_
     record_behind(viewer, frame, now_ns);
 }
 
+/* FOLDER/SESSION-FRAME.png. Only whole messages: a load generator keeps no more than their heads. */
+static void save_signed(struct viewer *viewer, const struct wire_frame *frame, const uint8_t *png)
+{
+    char *path = mem_printf("%s/%03d-%06u.png", viewer->params.folder, viewer->params.number, frame->seq);
+    FILE *file = fopen(path, "wb");
+    bool good = file && fwrite(png, 1, frame->payload_bytes, file) == frame->payload_bytes;
+    good = file && fclose(file) == 0 && good;
+    if (!good)
+        viewer_fail(viewer, "a signed frame cannot be written (--save-signed)");
+    mem_free(path);
+}
+
 static void on_frame(struct viewer *viewer)
 {
     struct wire_frame frame;
@@ -174,6 +186,11 @@ static void on_frame(struct viewer *viewer)
     if (frame.flags & WIRE_FLAG_MORE)
         return;
     record(viewer, &frame, now_ns);
+    if (frame.flags & WIRE_FLAG_SIGNED) {
+        viewer->result.signed_frames++;
+        if (viewer->params.folder)
+            save_signed(viewer, &frame, bytes + WIRE_FRAME_HEADER_BYTES);
+    }
     if (viewer->ack_count < MAX_ACKS && !viewer->params.stalls) {
         viewer->acks[viewer->ack_count].seq = frame.seq;
         viewer->acks[viewer->ack_count++].decode_ms = (double)viewer->decode_ns / 1e6;

@@ -35,6 +35,9 @@ struct viewer_params {
     double start_deg;    /* of the orbit; of the view, where it stands still and that is not 0 */
     unsigned seed;       /* of random motion */
     bool blind;          /* acknowledges without decoding */
+    const char *signs;   /* which frames are to come signed: `refined`, `all`; NULL: none */
+    const char *folder;  /* where signed frames are saved; NULL: nowhere */
+    int number;          /* of the viewer, in their names */
     bool stalls;         /* reads nothing after the first frame */
     struct leader *lead; /* NULL: follows nobody and leads nobody */
     bool follows;        /* else it leads */
@@ -48,7 +51,7 @@ struct samples { /* milliseconds */
 enum viewer_stage { STAGE_WAIT, STAGE_FIELD, STAGE_RENDER, STAGE_ENCODE, STAGE_NETWORK, STAGE_DECODE, STAGE_COUNT };
 
 struct viewer_result {
-    int frames, still_frames, errors;
+    int frames, still_frames, errors, signed_frames;
     int given_up;                     /* frames that the server did not send to their end */
     int64_t text_bytes, steady_bytes; /* steady: of all messages but pongs, once VIEWER_SETTLES_S have gone by since the first frame */
     int64_t bytes, first_ns, last_ns; /* of frames; monotonic */

@@ -86,8 +86,8 @@ static int say_hello(struct viewer *viewer)
 {
     const struct viewer_params *params = &viewer->params;
     viewer->greeted = true;
-    return say(viewer, "{\"type\":\"hello\",\"width\":%d,\"height\":%d,\"codecs\":[\"%s\"]}", params->width_px, params->height_px,
-               params->codec);
+    return say(viewer, "{\"type\":\"hello\",\"width\":%d,\"height\":%d,\"codecs\":[\"%s\"%s],\"signed\":\"%s\"}", params->width_px,
+               params->height_px, params->codec, params->signs ? ",\"png\"" : "", params->signs ? params->signs : "none");
 }
 
 static int say_ack(struct viewer *viewer)

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* JPEG by TurboJPEG, H.264 by libavcodec. */
+/* JPEG by TurboJPEG, PNG by libpng, H.264 by libavcodec. */
 #include "decoder.h"
 
+#include <png.h>
 #include <string.h>
 #include <turbojpeg.h>
 #include <unistd.h>
@@ -34,7 +35,7 @@ bool decoder_has(enum wire_codec codec)
     if (codec == WIRE_CODEC_H264)
         return avcodec_find_decoder(AV_CODEC_ID_H264) != NULL;
 #endif
-    return codec == WIRE_CODEC_JPEG;
+    return codec == WIRE_CODEC_JPEG || codec == WIRE_CODEC_PNG;
 }
 
 static bool reserve(struct decoder *decoder, int width_px, int height_px)
@@ -54,6 +55,17 @@ static bool decode_jpeg(struct decoder *decoder, const struct wire_frame *frame,
     return tjDecompressHeader3(decoder->turbo, payload, frame->payload_bytes, &w, &h, &sampling, &space) == 0 && w == frame->width_px &&
            h == frame->height_px && reserve(decoder, w, h) &&
            tjDecompress2(decoder->turbo, payload, frame->payload_bytes, decoder->pixels, w, w * 4, h, TJPF_BGRX, 0) == 0;
+}
+
+static bool decode_png(struct decoder *decoder, const struct wire_frame *frame, const uint8_t *payload)
+{
+    png_image image = { .version = PNG_IMAGE_VERSION };
+    bool good = png_image_begin_read_from_memory(&image, payload, frame->payload_bytes) && image.width == frame->width_px &&
+                image.height == frame->height_px && reserve(decoder, frame->width_px, frame->height_px);
+    image.format = PNG_FORMAT_BGRA;
+    good = good && png_image_finish_read(&image, NULL, decoder->pixels, 0, NULL);
+    png_image_free(&image);
+    return good;
 }
 
 #ifdef PLANTCAST_H264
@@ -137,7 +149,8 @@ bool decoder_decode(struct decoder *decoder, const struct wire_frame *frame, con
     if (frame->codec == WIRE_CODEC_H264)
         return decode_h264(decoder, frame, payload);
 #endif
-    return frame->codec == WIRE_CODEC_JPEG && decode_jpeg(decoder, frame, payload);
+    return frame->codec == WIRE_CODEC_PNG ? decode_png(decoder, frame, payload)
+                                          : frame->codec == WIRE_CODEC_JPEG && decode_jpeg(decoder, frame, payload);
 }
 
 struct decoder *decoder_create(void)

@@ -19,6 +19,7 @@ struct packet {
     struct frame *frame; /* what it shows, without the pixels (frame->bgrx is NULL) */
     enum wire_codec codec;
     bool key; /* does not depend on the packet before */
+    bool is_signed; /* a PNG file with statement and signature (provenance/signed_picture.h) */
     uint8_t *bytes;
     size_t count;
     uint8_t pixels_sha256[PACKET_SHA256_BYTES]; /* of a frame with a record, as PNG: of its pixels, red, green, blue, rows from the top */

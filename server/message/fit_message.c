@@ -66,6 +66,8 @@ static bool parse_given(const json_t *o, bool lens, struct view *view, struct me
     json_t *projection = json_object_get(o, "projection"), *camera = list ? given_json(list, error) : camera_json(&view->camera);
     if (!camera)
         return false;
+    if (json_object_get(o, "up"))
+        json_object_set(camera, "up", json_object_get(o, "up"));
     if (lens && projection)
         json_object_set(camera, "projection", projection);
     if (lens && height)

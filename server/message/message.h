@@ -44,8 +44,11 @@ enum message_type {
     MESSAGE_POINT,
     MESSAGE_PAIR,
     MESSAGE_UNPAIR,
-    MESSAGE_LOOK
+    MESSAGE_LOOK,
+    MESSAGE_SIGN
 };
+
+enum signed_frames { SIGNED_NONE, SIGNED_REFINED, SIGNED_ALL }; /* which frames of a session come signed */
 
 enum { TOKEN_MAX_CHARS = 128, RESUME_CHARS = 32, RESUME_MOST_CHARS = 8191 /* with a view in it */ };
 
@@ -216,6 +219,7 @@ struct message {
     struct wall_request wall;         /* display, send_to_wall, point */
     struct pair_request pair;         /* pair, unpair */
     struct wall_place tile;           /* hello: a tile of one picture over many displays; display 0: none */
+    enum signed_frames signed_frames; /* hello, sign */
 };
 
 /* Reads an instant (base/timestamp.h) of the argument `name` into *out, in microseconds UTC. Returns false, with *error set, for any other

@@ -101,10 +101,29 @@ static bool parse_time(const struct plant *plant, const json_t *o, struct messag
     return false;
 }
 
+static bool take_signed(const json_t *o, const char *field, struct message *out, bool *given, struct message_error *error)
+{
+    int frames = SIGNED_NONE;
+    bool good = may_name(o, field, names_signed, &frames, given, error);
+    out->signed_frames = (enum signed_frames)frames;
+    return good;
+}
+
+static bool parse_sign(const struct plant *plant, const json_t *o, struct message *out, struct message_error *error)
+{
+    bool given;
+    (void)plant;
+    if (!take_signed(o, "frames", out, &given, error))
+        return false;
+    if (!given)
+        message_fail(error, "bad_field", "frames: 'none', 'refined' or 'all' expected");
+    return given;
+}
+
 static bool parse_hello(const struct plant *plant, const json_t *o, struct message *out, struct message_error *error)
 {
     const json_t *camera = json_object_get(o, "camera"), *params = json_object_get(o, "params");
-    bool resumes;
+    bool resumes, given;
     if (!may_text(o, "token", out->token, sizeof(out->token), NULL, error) ||
         !may_text(o, "resume", out->resume, sizeof(out->resume), &resumes, error) ||
         !may_text(o, "named", out->named, sizeof(out->named), NULL, error))
@@ -117,7 +136,7 @@ static bool parse_hello(const struct plant *plant, const json_t *o, struct messa
     out->idle_ms = -1;
     if (!may_number(o, "idle_ms", 0, 1e12, &out->idle_ms, NULL, error))
         return false;
-    if (!tile_parse(plant, o, out, error))
+    if (!tile_parse(plant, o, out, error) || !take_signed(o, "signed", out, &given, error))
         return false;
     if (out->tile.display && !out->width_px) {
         message_fail(error, "bad_field", "tile: width and height are needed");
@@ -246,6 +265,7 @@ static const struct {
     { "pair", MESSAGE_PAIR, pair_parse },
     { "unpair", MESSAGE_UNPAIR, unpair_parse },
     { "look", MESSAGE_LOOK, parse_look },
+    { "sign", MESSAGE_SIGN, parse_sign },
 };
 
 static bool parse_object(const struct plant *plant, const json_t *o, struct message *out, struct message_error *error)

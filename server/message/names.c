@@ -6,6 +6,7 @@
 #include <stddef.h>
 #include <string.h>
 
+#include "message/message.h"
 #include "render/pick/pick.h"
 #include "render/view.h"
 #include "scene/framing.h"
@@ -37,6 +38,7 @@ const struct name names_codec[] = { { "jpeg", WIRE_CODEC_JPEG }, { "png", WIRE_C
 const struct name names_projection[] = { { "perspective", PROJECTION_PERSPECTIVE },
                                          { "orthographic", PROJECTION_ORTHOGRAPHIC },
                                          { NULL, 0 } };
+const struct name names_signed[] = { { "none", SIGNED_NONE }, { "refined", SIGNED_REFINED }, { "all", SIGNED_ALL }, { NULL, 0 } };
 const struct name names_pick[] = {
     { "context", PICK_CONTEXT }, { "no data", PICK_NO_DATA }, { "between", PICK_BETWEEN }, { "measured", PICK_MEASURED }, { NULL, 0 }
 };

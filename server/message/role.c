@@ -56,6 +56,10 @@ bool role_may_send(enum role role, const struct message *message, struct message
         message_fail(error, "not_allowed", "to be a wall's display takes a token");
         return false;
     }
+    if (message->signed_frames && role < ROLE_VIEWER) {
+        message_fail(error, "not_allowed", "signed frames tell readings: they take a token");
+        return false;
+    }
     bool engineers = message->type == MESSAGE_PLACE || message->type == MESSAGE_COVERAGE || message->type == MESSAGE_SAVE_TAGS ||
                      message->type == MESSAGE_LOOP_CHECK;
     if (engineers && role < ROLE_ENGINEER) {

@@ -11,7 +11,7 @@
 #include "message/json_fields.h"
 #include "message/fit_message.h"
 
-enum kind { NUMBER, STRING, NUMBERS, SENSORS, BREAKS, LINES, SPLIT, STRINGS, PLANES, BOX };
+enum kind { NUMBER, NUMBER_OR_NONE, STRING, NUMBERS, SENSORS, BREAKS, LINES, SPLIT, STRINGS, PLANES, BOX };
 
 static const struct {
     const char *name;
@@ -20,6 +20,7 @@ static const struct {
     { "width", NUMBER },
     { "height", NUMBER },
     { "camera", NUMBERS },
+    { "up", NUMBERS },
     { "group", STRING },
     { "interpolation", STRING },
     { "distance", STRING },
@@ -28,7 +29,7 @@ static const struct {
     { "decay", NUMBER },
     { "power", NUMBER },
     { "radius_m", NUMBER },
-    { "reach_m", NUMBER },
+    { "reach_m", NUMBER_OR_NONE },
     { "colormap", STRING },
     { "ramp_interval", NUMBER },
     { "range", NUMBERS },
@@ -214,6 +215,10 @@ static json_t *value_of(enum kind kind, const char *text, struct message_error *
     case STRINGS: return strings(text);
     case PLANES: return planes(text);
     case BOX: return box(text);
+    case NUMBER_OR_NONE:
+        if (!strcmp(text, "none"))
+            return json_null();
+        /* fall through */
     case NUMBER:
         value = number(text, &end);
         if (value && *end == 0)
@@ -231,6 +236,7 @@ static bool add(json_t *o, const char *arg, struct message_error *error)
         if (strlen(known[i].name) != n || strncmp(known[i].name, arg, n) != 0)
             continue;
         static const char *const expected[] = { "a number",
+                                                "a number, or none",
                                                 "a text",
                                                 "numbers with commas",
                                                 "TAG=STRENGTH[:DECAY] with commas",

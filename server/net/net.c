@@ -197,7 +197,10 @@ static void collect_signed(struct server_context *server)
     struct signing *signing = server->picture_signer ? picture_signer_collect(server->picture_signer) : NULL;
     for (struct signing *next; signing; signing = next) {
         next = signing->next;
-        http_on_signed(server, signing);
+        if (stream_owns(server, signing->encoded->client))
+            stream_on_signed(server, signing);
+        else
+            http_on_signed(server, signing);
         signing_free(&signing);
     }
 }
@@ -466,6 +469,10 @@ struct net *net_create(const struct net_params *params)
         .login_throttle = server->login_throttle,
         .audit = params->audit,
     };
+    if (params->signing_key) {
+        signing_key_id(params->signing_key, server->signing_key_id);
+        server->session_context.signing_key = server->signing_key_id;
+    }
     if (params->is_core)
         renderers_make_key(server);
     add_counters(server);

@@ -11,6 +11,8 @@ struct picture_signer {
     void (*notify)(void *arg);
     void *arg;
     pthread_cond_t settled;
+    struct packet *last, *last_signed; /* of the thread: sessions of one view get one packet */
+    bool last_bare;
     /* --- below: under thread.lock */
     struct signing *waiting, *done;
     bool busy;
@@ -22,7 +24,6 @@ void signing_free(struct signing **signing_ptr)
     for (size_t i = 0; i < signing->origin.arg_count; i++)
         mem_free((char *)signing->origin.args[i]);
     mem_free((void *)signing->origin.args);
-    mem_free(signing->png);
     encoded_frame_destroy(&signing->encoded);
     mem_free(signing);
     *signing_ptr = NULL;
@@ -43,9 +44,40 @@ static void append(struct signing **list, struct signing *signing)
     *list = signing;
 }
 
+static struct packet *make_signed(const struct picture_signer *signer, const struct signing *signing)
+{
+    const struct packet *packet = signing->encoded->packet;
+    size_t count;
+    uint8_t *png = signed_picture_make(signer->key, &signing->origin, packet, &count);
+    struct packet *made = png ? packet_create(packet->frame, WIRE_CODEC_PNG, true, png, count) : NULL;
+    mem_free(png);
+    if (made) {
+        made->is_signed = true;
+        made->encode_ns = packet->encode_ns;
+    }
+    return made;
+}
+
+static void forget_last(struct picture_signer *signer)
+{
+    packet_unref(&signer->last);
+    packet_unref(&signer->last_signed);
+}
+
 static void sign(struct picture_signer *signer, struct signing *signing)
 {
-    signing->png = signed_picture_make(signer->key, &signing->origin, signing->encoded->packet, &signing->count);
+    struct packet **packet = &signing->encoded->packet;
+    if (*packet != signer->last || signing->origin.bare != signer->last_bare) {
+        forget_last(signer);
+        signer->last = packet_ref(*packet);
+        signer->last_bare = signing->origin.bare;
+        signer->last_signed = make_signed(signer, signing);
+    }
+    signing->good = signer->last_signed != NULL;
+    if (!signing->good)
+        return;
+    packet_unref(packet);
+    *packet = packet_ref(signer->last_signed);
 }
 
 static void *run(void *arg)
@@ -94,15 +126,19 @@ void picture_signer_destroy(struct picture_signer **signer_ptr)
     thread_stop(&signer->thread);
     free_all(signer->waiting);
     free_all(signer->done);
+    forget_last(signer);
     pthread_cond_destroy(&signer->settled);
     thread_finish(&signer->thread);
     mem_free(signer);
     *signer_ptr = NULL;
 }
 
-void picture_signer_ask(struct picture_signer *signer, struct encoded_frame *encoded, const struct picture_origin *origin, char **args)
+void picture_signer_ask(struct picture_signer *signer, struct encoded_frame *encoded, const struct picture_origin *origin)
 {
     struct signing *signing = mem_new(sizeof(*signing));
+    char **args = mem_array(origin->arg_count, sizeof(*args));
+    for (size_t i = 0; i < origin->arg_count; i++)
+        args[i] = mem_strdup(origin->args[i]);
     *signing = (struct signing){ .encoded = encoded, .origin = *origin };
     signing->origin.args = (const char *const *)args;
     pthread_mutex_lock(&signer->thread.lock);
@@ -127,6 +163,7 @@ void picture_signer_settle(struct picture_signer *signer)
     signer->waiting = NULL;
     while (signer->busy)
         pthread_cond_wait(&signer->settled, &signer->thread.lock);
+    forget_last(signer); /* it is not busy: nobody else looks at it */
     free_all(signer->done);
     signer->done = NULL;
     pthread_mutex_unlock(&signer->thread.lock);

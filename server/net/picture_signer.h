@@ -7,10 +7,9 @@
 #include "service/encoded_frame.h"
 
 struct signing {
-    struct encoded_frame *encoded;
+    struct encoded_frame *encoded; /* NULL: somebody took it */
     struct picture_origin origin; /* its args are the signing's own */
-    uint8_t *png;                 /* signed; NULL: it cannot be */
-    size_t count;
+    bool good;                    /* signed: the frame's packet is the signed file now; else it cannot be */
     struct signing *next;
 };
 void signing_free(struct signing **signing); /* leaves NULL */
@@ -21,8 +20,8 @@ struct picture_signer;
 struct picture_signer *picture_signer_create(struct log *log, const struct signing_key *key, void (*notify)(void *arg), void *arg);
 /* Ends the thread. &NULL is fine; leaves NULL. */
 void picture_signer_destroy(struct picture_signer **signer);
-/* Takes a frame that has a record, and the args (mem_free, each and the list). origin->scene must stay until picture_signer_settle. */
-void picture_signer_ask(struct picture_signer *signer, struct encoded_frame *encoded, const struct picture_origin *origin, char **args);
+/* Takes a frame that has a record, and copies the args. origin->scene must stay until picture_signer_settle. */
+void picture_signer_ask(struct picture_signer *signer, struct encoded_frame *encoded, const struct picture_origin *origin);
 /* Returns what was signed so far, oldest first; the caller owns it (signing_free). NULL: nothing. */
 struct signing *picture_signer_collect(struct picture_signer *signer);
 /* Drops what waits, and returns once nothing of a plant is read any more. */

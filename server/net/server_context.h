@@ -55,6 +55,7 @@ struct server_context {
     struct history_queries *history_queries; /* NULL: nothing is recorded */
     struct history_loader *history_loader;   /* likewise */
     struct picture_signer *picture_signer;   /* NULL: pictures are not signed */
+    char signing_key_id[SIGNING_KEY_ID_BYTES];
     struct stream *streams, **by_client;     /* all connections to /stream; the same, by session id, ascending */
     size_t by_client_capacity;
     struct view_token_keys token_keys;               /* of a renderer: by which views are signed */
@@ -131,6 +132,8 @@ bool stream_owns(const struct server_context *server, uint64_t client);
 /* Hand an answer to the stream that asked, which must be connected. The encoded frame is taken over. */
 void stream_on_frame(struct server_context *server, struct encoded_frame *encoded);
 void stream_on_pick(struct server_context *server, const struct pick_answer *answer);
+/* Sends a frame that is signed, if it could be; takes the frame, and leaves the rest. */
+void stream_on_signed(struct server_context *server, struct signing *signing);
 void stream_on_historical_snapshot(struct server_context *server, const struct history_loader_answer *answer);
 /* Hand coverage of sensors, or a text, to the stream that asked, and copy it; do nothing if that has gone meanwhile. */
 void stream_on_coverage(struct server_context *server, const struct sensor_coverage_answer *answer);

@@ -9,6 +9,7 @@
 #include "base/clock.h"
 #include "base/mem.h"
 #include "base/utf8.h"
+#include "message/view_query_write.h"
 #include "net/stream.h"
 #include "net/connection.h"
 #include "session/session_tiles.h"
@@ -264,15 +265,57 @@ void streams_close(struct server_context *server)
         close_with(stream, LWS_CLOSE_STATUS_GOINGAWAY, server->goodbye);
 }
 
+static void take_frame(struct server_context *server, struct stream *stream, struct encoded_frame *encoded)
+{
+    admission_on_frame(&server->admission, &stream->usage->share, encoded);
+    session_on_frame(stream->session, encoded);
+    pump(server, stream);
+}
+
+/* Hands a frame that is wanted signed to the signer. Returns false if it cannot be signed: the client gets it as it is. */
+static bool sign(struct server_context *server, struct stream *stream, struct encoded_frame *encoded)
+{
+    const struct packet *packet = encoded->packet;
+    if (!packet || !packet->frame->record || !encoded->request.record)
+        return false;
+    const struct params_context context = { .scene = server->params.plant.scene, .baselines = server->params.plant.baselines };
+    struct message_error error = { 0 };
+    struct view_address args;
+    bool good = view_query_write(&context, &packet->frame->view, &args, &error);
+    if (good)
+        picture_signer_ask(server->picture_signer, encoded,
+                           &(struct picture_origin){ .scene = context.scene,
+                                                     .args = (const char *const *)args.args,
+                                                     .arg_count = args.count,
+                                                     .overlay = "none",
+                                                     .version = server->params.version });
+    else
+        session_not_signed(stream->session, &error);
+    view_address_finish(&args);
+    return good;
+}
+
+void stream_on_signed(struct server_context *server, struct signing *signing)
+{
+    struct stream *stream = stream_find(server, signing->encoded->client);
+    struct message_error error = { 0 };
+    message_fail(&error, "not_signed", "the server could not sign a frame");
+    if (signing->good)
+        stream->session->codec.unsigned_said = false;
+    else
+        session_not_signed(stream->session, &error);
+    take_frame(server, stream, signing->encoded);
+    signing->encoded = NULL;
+}
+
 void stream_on_frame(struct server_context *server, struct encoded_frame *encoded)
 {
     struct stream *stream = stream_find(server, encoded->client);
     const struct frame *frame = encoded->packet ? encoded->packet->frame : NULL;
     if (frame && frame->view.tier == TIER_REFINED && encoded->request.urgency >= URGENCY_REFINE)
         server->still_ns = frame->render_ns + frame->readback_ns;
-    admission_on_frame(&server->admission, &stream->usage->share, encoded);
-    session_on_frame(stream->session, encoded);
-    pump(server, stream);
+    if (!sign(server, stream, encoded))
+        take_frame(server, stream, encoded);
 }
 
 void stream_on_pick(struct server_context *server, const struct pick_answer *answer)

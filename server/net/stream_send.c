@@ -83,9 +83,10 @@ static uint16_t flags_of(const struct stream *stream)
     const struct packet *packet = packet_now(stream);
     bool last = is_last_part(stream), live = packet->frame->oldest_age_ns != INT64_MAX;
     bool still = last && packet->frame->view.tier == TIER_REFINED;
+    int seen = (packet->frame->view.at_us ? WIRE_FLAG_PAST : 0) | (packet->is_signed ? WIRE_FLAG_SIGNED : 0);
     return (uint16_t)((packet->key ? WIRE_FLAG_KEY : 0) | (still ? WIRE_FLAG_STILL : 0) | (live ? 0 : WIRE_FLAG_NO_LIVE_DATA) |
                       (last ? 0 : WIRE_FLAG_MORE) | (stream->sending->request.of_data ? WIRE_FLAG_DATA : 0) |
-                      (packet->frame->view.at_us ? WIRE_FLAG_PAST : 0));
+                      seen);
 }
 
 static struct wire_frame frame_header(const struct stream *stream)

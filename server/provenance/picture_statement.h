@@ -10,7 +10,7 @@
 #define PICTURE_SIGNATURE_KEYWORD "Plantcast signature"
 #define PICTURE_JSON (JSON_COMPACT | JSON_ENSURE_ASCII | JSON_REAL_PRECISION(17))
 enum {
-    PICTURE_STATEMENT_VERSION = 1,
+    PICTURE_STATEMENT_VERSION = 2, /* 1: without `overlay` and `tier`, which are `full` (or `bare`) and `refined` */
     PICTURE_STATEMENT_MAX_BYTES = 64 << 20, /* three sets of readings of 100,000 tags */
     PICTURE_SIGNATURE_BYTES = 128,
     PICTURE_HASH_BYTES = 65

@@ -14,7 +14,8 @@ struct picture_origin { /* what the server knows of a picture besides the pictur
     const struct scene *scene;
     const char *const *args; /* name=value: the query that it answers */
     size_t arg_count;
-    bool bare; /* it was drawn without sensors and alarms, for somebody who may see no reading: they are not told either */
+    bool bare; /* for somebody who may see no reading: they are not told */
+    const char *overlay; /* what is drawn over it: `full`, `bare` (no sensors and alarms) or `none` */
     const char *version;
 };
 

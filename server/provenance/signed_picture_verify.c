@@ -66,9 +66,9 @@ static bool is_known(const json_t *statement, char why[SIGNED_PICTURE_WHY_BYTES]
     const json_t *version = json_object_get(statement, "plantcast_statement");
     if (!json_is_integer(version))
         return FAIL("the statement is none of Plantcast's");
-    return json_integer_value(version) == PICTURE_STATEMENT_VERSION ||
-           FAIL("the statement is of version %d; this program understands version %d", (int)json_integer_value(version),
-                PICTURE_STATEMENT_VERSION);
+    json_int_t number = json_integer_value(version);
+    return (number >= 1 && number <= PICTURE_STATEMENT_VERSION) ||
+           FAIL("the statement is of version %d; this program understands versions 1 to %d", (int)number, PICTURE_STATEMENT_VERSION);
 }
 
 json_t *signed_statement_verify(const struct signing_key *key, const char *text, size_t length, const char *signature,

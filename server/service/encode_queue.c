@@ -26,7 +26,7 @@ struct encode_queue {
     struct idle_encoder *idle;
     struct encode_streams streams;
     int jobs;
-    int heavy; /* jobs on the workers that are of frames over HTTP: of many pixels, maybe, and losslessly */
+    int heavy; /* jobs on the workers that are of frames over HTTP, or signed: of many pixels, maybe, and losslessly */
     struct job *heavy_waiting, **heavy_last;
     struct request_group rest; /* of encode_queue_submit */
     struct encode_plan plan;
@@ -268,7 +268,7 @@ static void job_destroy(struct job *job)
 
 static void run_job(void *arg);
 
-/* Frames over HTTP leave half of the workers to streams. */
+/* Frames over HTTP, and those that are signed, leave half of the workers to others. */
 static void start(struct encode_queue *queue, struct job *job)
 {
     int most = workers_count(queue->params.workers) / 2;
@@ -344,20 +344,22 @@ static bool same_part(const struct frame_part *a, const struct frame_part *b)
 static bool same_coding(const struct request_ticket *ticket, void *arg)
 {
     const struct frame_request *a = &ticket->request, *b = arg;
-    return a->codec == b->codec && a->overlay == b->overlay && same_quality(&a->quality, &b->quality) && same_part(&a->part, &b->part);
+    return a->codec == b->codec && a->overlay == b->overlay && a->record == b->record && same_quality(&a->quality, &b->quality) &&
+           same_part(&a->part, &b->part);
 }
 
 /* Under lock. */
 static struct job *make_job(struct encode_queue *queue, struct frame *frame, struct request_group *tickets)
 {
     struct encode_plan *plan = &queue->plan;
+    const struct frame_request *first = &tickets->tickets[0].request;
     struct job *job = mem_new(sizeof(*job));
     *job = (struct job){ .queue = queue, .stream = plan->stream, .number = plan->number, .group = *tickets, .from = plan->from };
     job->frame = plan->encode ? frame_ref(frame) : NULL;
-    job->quality = tickets->tickets[0].request.quality;
+    job->quality = first->quality;
     job->quality.key = plan->key;
     job->again = plan->again;
-    job->heavy = job->frame && tickets->tickets[0].request.urgency == URGENCY_SNAPSHOT;
+    job->heavy = job->frame && (first->urgency == URGENCY_SNAPSHOT || first->record);
     *tickets = (struct request_group){ 0 };
     plan->from = NULL;
     plan->from_capacity = 0;

@@ -59,9 +59,9 @@ void encode_streams_forget(struct encode_streams *streams, uint64_t client)
 static bool same_coding(const struct encode_stream *stream, const struct frame *frame, const struct frame_request *request)
 {
     const struct frame_request *shown = &stream->shown;
-    return shown->codec == request->codec && shown->overlay == request->overlay && shown->quality.quality == request->quality.quality &&
-           shown->quality.full_chroma == request->quality.full_chroma && shown->view.width_px == frame->width_px &&
-           shown->view.height_px == frame->height_px;
+    return shown->codec == request->codec && shown->overlay == request->overlay && shown->record == request->record &&
+           shown->quality.quality == request->quality.quality && shown->quality.full_chroma == request->quality.full_chroma &&
+           shown->view.width_px == frame->width_px && shown->view.height_px == frame->height_px;
 }
 
 /* The first number that the client needs. */

@@ -20,11 +20,13 @@ struct frame_request {
     bool of_data;     /* made for a reading that changed at view.input_ns */
     bool or_moving;   /* refined only if that is as quick as a preview; else a preview of moving_quality */
     struct encoder_params moving_quality;
+    enum wire_codec moving_codec; /* of that preview, which has no record then; 0: that of the frame, with what it has */
     struct frame_part part; /* what of the picture the client gets; the picture itself is drawn once for all parts */
     uint64_t picture;       /* of tiles (session/session_tiles.h): which of their pictures it is, counted from 1; else 0 */
     bool only_replace; /* good only in place of a request that is not begun: the client may have no more frames under way */
     bool always;       /* draw and send even if the client shows the same already */
     bool alone;        /* must be decodable without anything sent before */
+    bool record;       /* comes with what it was drawn from (render/frame_record.h), for whoever signs it; PNG only */
     enum { OVERLAY_NONE, OVERLAY_FULL, OVERLAY_BARE } overlay; /* draw legend and clock into it, and, when full, sensors and alarms */
 };
 

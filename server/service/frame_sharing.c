@@ -60,6 +60,12 @@ static void answer_same(struct render_thread *thread, struct request_group *grou
     render_service_answer_without_frame(service, &thread->same, false);
 }
 
+/* Of a frame that was drawn for others nobody may have kept what it was drawn from. */
+static bool answers(const struct frame *frame, const struct request_group *group)
+{
+    return frame && (frame->record || !request_group_wants_record(group));
+}
+
 static void answer_with(struct render_service *service, struct frame *frame, struct request_group *group)
 {
     counter_inc(service->shared, (int64_t)group->count);
@@ -84,7 +90,7 @@ void frame_sharing_answer_unchanged(struct render_thread *thread, uint64_t conte
     bool overlay = group->tickets[0].request.overlay;
     answer_same(thread, group, content);
     struct frame *frame = overlay ? NULL : recent_frames_find(&thread->recent, content, clock_mono_ns());
-    if (frame)
+    if (answers(frame, group))
         answer_with(thread->service, frame, group);
     else if (!overlay)
         join_awaited(thread, group, content);
@@ -100,7 +106,7 @@ void frame_sharing_answer_from_recent(struct render_thread *thread, struct reque
     if (request->view.tier != TIER_PREVIEW || request->overlay)
         return;
     struct frame *frame = recent_frames_find_view(&thread->recent, &request->view, read_ns, clock_mono_ns());
-    if (!frame)
+    if (!answers(frame, group))
         return;
     answer_same(thread, group, frame->content);
     answer_with(thread->service, frame, group);

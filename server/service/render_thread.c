@@ -77,7 +77,7 @@ static void deliver(struct render_thread *thread, struct frame *frame, const str
     thread->turn_began_ns = now_ns;
     frame_read_markers(frame, snapshot, service->params.baselines);
     frame->clock_unset = !frame->view.at_us && !clock_utc_is_set();
-    if (group->tickets[0].request.overlay && service->params.keeps_records)
+    if ((group->tickets[0].request.overlay && service->params.keeps_records) || request_group_wants_record(group))
         frame->record = frame_record_create(&frame->view, snapshot, service->params.baselines, loop_checks_now(service));
     if (group->tickets[0].request.overlay)
         (group->tickets[0].request.overlay == OVERLAY_FULL ? overlay_draw : overlay_draw_bare)(frame, service->params.scene, snapshot,
@@ -321,6 +321,10 @@ static void choose_other(struct request_group *group)
         }
         request->view.tier = TIER_PREVIEW;
         request->quality = request->moving_quality;
+        if (request->moving_codec) {
+            request->codec = request->moving_codec;
+            request->record = false;
+        }
     }
 }
 

@@ -24,6 +24,14 @@ void request_group_split(struct request_group *group, bool (*belongs)(const stru
     group->count = kept;
 }
 
+bool request_group_wants_record(const struct request_group *group)
+{
+    for (size_t i = 0; i < group->count; i++)
+        if (group->tickets[i].request.record)
+            return true;
+    return false;
+}
+
 void request_group_finish(struct request_group *group)
 {
     mem_free(group->tickets);

@@ -20,6 +20,8 @@ void request_group_add(struct request_group *group, const struct request_ticket 
 /* Moves the tickets for which belongs(ticket, arg) is true into `into`, which is emptied first. Both keep their order. */
 void request_group_split(struct request_group *group, bool (*belongs)(const struct request_ticket *ticket, void *arg), void *arg,
                          struct request_group *into);
+/* Returns whether one of them wants the frame with what it was drawn from. */
+bool request_group_wants_record(const struct request_group *group);
 /* Frees the memory; the group is empty and can be used again. */
 void request_group_finish(struct request_group *group);
 

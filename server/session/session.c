@@ -350,6 +350,7 @@ static bool act(struct session *session, const struct message *message, int64_t 
     case MESSAGE_PAIR:
     case MESSAGE_UNPAIR: return on_pair(session, message, now_ns, now_utc_ns, error);
     case MESSAGE_LOOK: session_on_input(session, now_ns); return on_look(session, message, error);
+    case MESSAGE_SIGN: return session_choose_signed(session, message->signed_frames, error);
     case MESSAGE_PING: on_ping(session, message, now_ns, now_utc_ns); return true;
     }
     return true;

@@ -74,6 +74,8 @@ bool session_moves(const struct session *session, int64_t now_ns);
 bool session_next_request(const struct session *session, int64_t now_ns, struct frame_request *request);
 /* Notes that the render service took the request; replaced: in place of an earlier one. */
 void session_requested(struct session *session, const struct frame_request *request, bool replaced);
+/* Has the client told, once, why a frame that it wants signed is not. */
+void session_not_signed(struct session *session, const struct message_error *why);
 /* Takes over an encoded frame, or the news that there is none. */
 void session_on_frame(struct session *session, struct encoded_frame *encoded);
 /* Returns whether session_next_frame would return one now. */

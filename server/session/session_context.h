@@ -39,6 +39,7 @@ struct session_context {
     const struct view_token_keys *token_keys; /* NULL: views are not told as tokens */
     const bool *links_up;                  /* by source */
     bool imports;                          /* engineers may bring plants in */
+    const char *signing_key;               /* the id of the key that signs pictures; NULL: none does */
     bool live;                             /* a source is connected */
     struct clock_state clock;              /* how right the wall clock is */
     int64_t moving_until_ns;               /* some camera moves until then; refined frames of others would make it stutter */

@@ -15,6 +15,7 @@ static const int64_t GIVE_UP_NS = 100 * NS_PER_MS;       /* what is left of a re
 static const int64_t AGAIN_NS = 2000 * NS_PER_MS;        /* what there was no memory for is tried again after so long */
 static const double STILL_OVER_MOVING = 3;               /* in bytes, before one was seen */
 static const struct encoder_params STILL = { .quality = 92, .full_chroma = true }, DRAFT = { .quality = 42 };
+static const struct encoder_params LOSSLESS = { .quality = 100, .full_chroma = true };
 static const int64_t SOON_NS = 120 * NS_PER_MS; /* cameras of one movement follow each other so soon */
 enum { SMALL_PX = 128 };                        /* sides that are not made smaller */
 
@@ -153,7 +154,7 @@ static void make_still(const struct session *session, struct frame_request *requ
 {
     request->view.tier = TIER_REFINED;
     request->urgency = URGENCY_REFINE;
-    request->draft = session->demand.refined == REFINED_NOT && is_slow(session);
+    request->draft = session->demand.refined == REFINED_NOT && is_slow(session) && !session->codec.signed_frames;
     request->quality = request->draft ? DRAFT : STILL;
 }
 
@@ -205,6 +206,14 @@ static bool has_codec(const struct session *session, enum wire_codec codec)
     return (all & 1u << codec) != 0;
 }
 
+static bool decodes(const struct session *session, enum wire_codec codec)
+{
+    for (int i = 0; i < session->codec.list.count; i++)
+        if (session->codec.list.at[i] == codec)
+            return has_codec(session, codec);
+    return false;
+}
+
 bool session_choose_codec(struct session *session, const struct codec_list *codecs, struct message_error *error)
 {
     for (int i = 0; i < codecs->count; i++) {
@@ -213,18 +222,35 @@ bool session_choose_codec(struct session *session, const struct codec_list *code
         session->codec.list = *codecs;
         session->codec.current = codecs->at[i];
         session->demand.any = true;
+        if (!decodes(session, WIRE_CODEC_PNG))
+            session->codec.signed_frames = SIGNED_NONE;
         return true;
     }
     message_fail(error, "bad_field", "codecs: this server has jpeg and png%s", has_codec(session, WIRE_CODEC_H264) ? " and h264" : " only");
     return false;
 }
 
-static bool decodes(const struct session *session, enum wire_codec codec)
+bool session_choose_signed(struct session *session, enum signed_frames frames, struct message_error *error)
 {
-    for (int i = 0; i < session->codec.list.count; i++)
-        if (session->codec.list.at[i] == codec)
-            return has_codec(session, codec);
-    return false;
+    if (frames && !session->context->signing_key) {
+        message_fail(error, "bad_field", "signed: this server has no key to sign with (plantcastd --signing-key)");
+        return false;
+    }
+    if (frames && !decodes(session, WIRE_CODEC_PNG)) {
+        message_fail(error, "bad_field", "signed: such frames are PNG, which has to be among codecs");
+        return false;
+    }
+    session->demand.any |= session->codec.signed_frames != frames;
+    session->codec.signed_frames = frames;
+    session->codec.unsigned_said = false;
+    return true;
+}
+
+void session_not_signed(struct session *session, const struct message_error *why)
+{
+    if (!session->codec.unsigned_said)
+        session_reply_error(session, why);
+    session->codec.unsigned_said = true;
 }
 
 void session_choose_again(struct session *session, int64_t now_ns)
@@ -263,6 +289,21 @@ bool session_next_request(const struct session *session, int64_t now_ns, struct 
     return true;
 }
 
+/* Lossless, and with what it is drawn from. */
+static void make_signed(const struct session *session, struct frame_request *request)
+{
+    enum signed_frames frames = session->codec.signed_frames;
+    if (frames == SIGNED_NONE || (frames == SIGNED_REFINED && request->view.tier == TIER_PREVIEW))
+        return;
+    if (request->or_moving && frames == SIGNED_REFINED)
+        request->moving_codec = request->codec;
+    else if (request->or_moving)
+        request->moving_quality = LOSSLESS;
+    request->codec = WIRE_CODEC_PNG;
+    request->quality = LOSSLESS;
+    request->record = true;
+}
+
 bool session_wants(const struct session *session, int64_t now_ns, struct frame_request *request)
 {
     *request = (struct frame_request){ .view = session_shown(session), .codec = session->codec.current, .asked_ns = now_ns };
@@ -270,7 +311,9 @@ bool session_wants(const struct session *session, int64_t now_ns, struct frame_r
     request->read_ns = request->view.at_us ? 0 : session->context->changed_ns; /* what was does not change */
     request->view.camera_seq = session->view.camera_seq;
     request->view.params_seq = session->view.params_seq;
-    return wants(session, now_ns, request);
+    bool wanted = wants(session, now_ns, request);
+    make_signed(session, request);
+    return wanted;
 }
 
 void session_requested(struct session *session, const struct frame_request *request, bool replaced)

@@ -76,6 +76,8 @@ void session_pause(struct session *session);
 void session_on_shown(struct session *session);
 /* Takes the client's list of codecs and uses the first that works here. Returns false with *error if none does. */
 bool session_choose_codec(struct session *session, const struct codec_list *codecs, struct message_error *error);
+/* Has frames come signed from now on. Returns false with *error if they cannot. */
+bool session_choose_signed(struct session *session, enum signed_frames frames, struct message_error *error);
 /* Chooses again by bandwidth and processors, where the client lets the server choose. */
 void session_choose_again(struct session *session, int64_t now_ns);
 

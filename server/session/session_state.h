@@ -61,6 +61,8 @@ struct session_codec {
     struct codec_list list; /* what the client decodes */
     enum wire_codec current;
     struct codec_choice choice; /* where the server may choose */
+    enum signed_frames signed_frames;
+    bool unsigned_said; /* the client was told why its frames are not signed, since one was */
 };
 
 /* Why the next frame is wanted, and how refined the view is shown (session_frames.c). */

@@ -1,13 +1,17 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What streaming the demo plant takes: rates and latencies while cameras move, and what a still view costs."""
 
+import os
 import random
+import subprocess
+import tempfile
 import time
 
 from demo_plant import DemoPlant, probe_result
 from rows import row
 
 SECONDS = 10
+SIGNED_SECONDS = 6
 SETTLED_S = 3  # as the probe has it
 STILL_TAGS = 60
 
@@ -60,6 +64,29 @@ def still_rows(plant, label, codec, goals, work):
     yield row(label + "_cpu_percent", None if why else round(100 * share, 1), "%", cpu, why=why)
 
 
+def signed_rows(bin_folder):
+    """What frames of moving cameras take that come signed, every one, beside the same without."""
+    with tempfile.TemporaryDirectory() as folder:
+        key = os.path.join(folder, "key.pem")
+        subprocess.run(["openssl", "genpkey", "-algorithm", "ed25519", "-out", key], check=True, umask=0o077)
+        with DemoPlant(bin_folder, "--signing-key", key) as plant:
+            if plant.failed:
+                yield row("signed", None, "", why=plant.failed)
+                return
+            for sessions, options, label in ((1, (), "x1"), (10, (), "x10"), (10, ("--follow",), "x10_one_view")):
+                for signed in (False, True):
+                    name = "%s_720p_%s" % ("signed" if signed else "unsigned", label)
+                    used = plant.daemon_cpu_s()
+                    found, why = plant.probe("--sessions", sessions, "--seconds", SIGNED_SECONDS, "--motion", "orbit", *options,
+                                             *(("--signed", "all") if signed else ()))
+                    used = plant.daemon_cpu_s() - used
+                    if signed and found and found["signed_frames"] != found["frames"]:
+                        why = "%d of %d frames are signed" % (found["signed_frames"], found["frames"])
+                    yield row(name + "_fps", None if why else round(found["fps"], 1), "1/s", why=why)
+                    yield row(name + "_cpu_ms", None if why else round(1000 * used / found["frames"], 1), "ms", why=why)
+                    yield row(name + "_kb_per_frame", None if why else round(found["kb_per_frame"], 1), "kB", why=why)
+
+
 def stream_rows(bin_folder):
     random.seed(60)
     with DemoPlant(bin_folder) as plant:
@@ -73,3 +100,4 @@ def stream_rows(bin_folder):
         yield from still_rows(plant, "still_jpeg", "jpeg", (None, None), lambda seconds: change_together(plant, seconds))
         time.sleep(2)
         yield from still_rows(plant, "nothing", "h264", (("<=", 0), ("<=", 1)), time.sleep)
+    yield from signed_rows(bin_folder)

@@ -3,11 +3,12 @@
 import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
 import { createPrivateKey, sign } from 'node:crypto';
-import { appendFileSync, chmodSync, readdirSync, readFileSync, writeFileSync } from 'node:fs';
+import { appendFileSync, chmodSync, mkdirSync, readdirSync, readFileSync, writeFileSync } from 'node:fs';
 import { get } from 'node:http';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
 import { chunksOf, pngOf, textOf, withRows, withText } from './support/png_chunks.mjs';
+import { PlainClient } from './support/plain_client.mjs';
 import { missing, runProgram, TinyPlant } from './support/tiny_plant.mjs';
 
 const noFfmpeg = spawnSync('ffmpeg', ['-version']).status === 0 ? false : 'ffmpeg is not there';
@@ -107,10 +108,10 @@ test('so is a statement of another picture, and a signature of another key', { s
 
 test('a statement of another version is signed well, and not understood', { skip }, () => {
     const key = createPrivateKey(readFileSync(path('server.pem'))), text = textOf(picture, STATEMENT)
-        .replace('"plantcast_statement":1', '"plantcast_statement":2');
+        .replace('"plantcast_statement":2', '"plantcast_statement":3');
     const by = textOf(picture, SIGNATURE).split(' ')[1], signature = sign(null, Buffer.from(text), key).toString('base64');
     const changed = withText(withText(picture, STATEMENT, () => text), SIGNATURE, () => `ed25519 ${by} ${signature}`);
-    refused(changed, /the statement is of version 2; this program understands version 1/);
+    refused(changed, /the statement is of version 3; this program understands versions 1 to 2/);
 });
 
 test('no file that would show something else is good', { skip }, () => {
@@ -121,6 +122,67 @@ test('no file that would show something else is good', { skip }, () => {
     refused(Buffer.from('GIF89a'), /no whole PNG file/);
     refused(pngOf(picture, [...chunks.slice(0, 2), ...chunks.slice(1)]), /no statement in it/);
     refused(pngOf(picture, chunks.filter(({ type }) => type !== 'zTXt')), /no statement in it/);
+});
+
+const url = () => `http://127.0.0.1:${plant.port}/`;
+const probe = (...args) => runProgram('plantcast', ['probe', url(), '--size', '320x200', '--seconds', '1', ...args], 120000);
+const FLAG = { still: 2, signed: 64 };
+let frame; // a refined one of a session
+
+test('refined frames of a session come signed where it asks for that, and are drawn again', { skip }, () => {
+    mkdirSync(path('refined'));
+    const { code, out, err } = probe('--motion', 'still', '--save-signed', path('refined'));
+    assert.equal(code, 0, out + err);
+    const names = readdirSync(path('refined'));
+    assert.ok(names.length >= 1 && names.every((name) => /^001-\d{6}\.png$/.test(name)), names.join());
+    frame = readFileSync(join(path('refined'), names[0]));
+    const again = redraw(frame);
+    assert.equal(again.code, 0, again.out + again.err);
+    assert.match(again.out, /a frame of a session: refined, without legend, markers and clock/);
+    assert.match(again.out, / {2}64000 of 64000 pixels agree within 1\/255/);
+});
+
+test('every frame of a moving session does, if it asks for all', { skip }, () => {
+    mkdirSync(path('all'));
+    const { code, out, err } = probe('--motion', 'orbit', '--codec', 'h264', '--signed', 'all', '--save-signed', path('all'), '--json');
+    assert.equal(code, 0, out + err);
+    const { frames, signed_frames: count } = JSON.parse(out), names = readdirSync(path('all'));
+    assert.ok(frames > 1 && frames === count && frames === names.length, `${count} of ${frames}, ${names.length} files`);
+    const again = redraw(readFileSync(join(path('all'), names[names.length >> 1])));
+    assert.equal(again.code, 0, again.out + again.err);
+    assert.match(again.out, /a frame of a session: (preview|refined)/);
+});
+
+test('a changed pixel, reading, time or camera of a frame is found', { skip }, () => {
+    refused(withRows(frame, (rows) => { rows[2000] ^= 1; }), /the pixels are not those that were signed/);
+    for (const [what, from, to] of [['reading', '"TI-1",80.0', '"TI-1",79.0'], ['time', /"taken_ns":\d/, '"taken_ns":9'],
+        ['camera', /"camera=[^,]*,/, '"camera=9,'], ['tier', '"tier":"refined"', '"tier":"preview"'],
+        ['overlay', '"overlay":"none"', '"overlay":"full"']]) {
+        const changed = withText(frame, STATEMENT, (text) => text.replace(from, to));
+        assert.notDeepEqual(changed, withText(frame, STATEMENT, (text) => text), what);
+        refused(changed, /the signature is wrong/);
+    }
+});
+
+test('a session says what it wants signed, and is told why something is not', { skip }, async () => {
+    const client = await PlainClient.open(plant.port);
+    const hello = { type: 'hello', width: 320, height: 200, codecs: ['jpeg', 'png'] }, still = ({ flags }) => flags & FLAG.still;
+    client.say({ ...hello, codecs: ['jpeg'], signed: 'all' });
+    assert.match((await client.text('error')).text, /signed: such frames are PNG/);
+    client.say(hello);
+    assert.match((await client.text('welcome')).signing_key, /^[0-9a-f]{16}$/);
+    assert.equal((await client.frameWhere('a refined frame', still)).flags & FLAG.signed, 0);
+    client.say({ type: 'params', seq: 1, split: { group: 'pressure', isolines: 2 }, clip: { planes: [[0.3, 0.2, 1, 0.4]] } });
+    client.say({ type: 'camera', seq: 2, eye: [4, -3, 2], target: [1, 0, 0], up: [0.2, 0.1, 1], fov: 40 });
+    client.say({ type: 'sign', frames: 'refined' });
+    const signed = await client.frameWhere('a signed frame', (one) => one.flags & FLAG.signed && one.camera_seq === 2);
+    const { code, out, err } = redraw(signed.payload); // split, cut, tilted
+    assert.equal(code, 0, out + err);
+    client.say({ type: 'params', seq: 3, split: null, show: 'difference', baseline: 'now' });
+    assert.match((await client.text('error')).text, /has no name/);
+    const unsigned = await client.frameWhere('an unsigned frame', (one) => still(one) && one.params_seq === 3);
+    assert.equal(unsigned.flags & FLAG.signed, 0);
+    client.close();
 });
 
 test('a plant that was changed since is said to be another', { skip }, () => {
@@ -201,6 +263,10 @@ test('who may see no readings is told none', { skip }, async () => {
     writeFileSync(path('tokens'), '');
     chmodSync(path('tokens'), 0o600);
     await plant.startDaemon('--signing-key', path('server.pem'), '--tokens', path('tokens'), '--open-viewers');
+    const nobody = await PlainClient.open(plant.port);
+    nobody.say({ type: 'hello', width: 320, height: 200, codecs: ['png'], signed: 'all' });
+    assert.equal((await nobody.text('error')).code, 'not_allowed');
+    nobody.close();
     const bare = await fetchPicture('width=640&height=400');
     const { code, out, err } = verify(bare);
     assert.equal(code, 0, out + err);

@@ -15,6 +15,7 @@
 #include "base/text.h"
 #include "field/colormap.h"
 #include "message/view_query.h"
+#include "message/view_query_write.h"
 #include "session/reply.h"
 #include "message/visibility.h"
 #include "tests/support/small_scene.h"
@@ -437,6 +438,63 @@ static void halves_show_what_the_plants_own_view_does(void **state)
     plant->view = (struct plant_view){ 0 };
 }
 
+/* As signed frames say what they show. */
+static void views_are_written_as_queries(void **state)
+{
+    (void)state;
+    static const char *const views[][4] = {
+        { "width=640" },
+        { "group=pressure", "range=1,2.5", "reach_m=3", "selected=E-101" },
+        { "show=distance", "sensor=TI-1", "sensors=TI-1=2:0.5", "backdrop=dark" },
+        { "sensors=TI-1=:0.1", "isolines=every:7", "light=0.1,0.2,0.3", "strip=legend" },
+        { "breaks=limits", "isolines=none", "look=glossy", "hidden=E-101" },
+        { "clip=1,2,3,0.3;0.1,0,-1,2", "ghost=E-101", "camera=1,2,3,4,5,6,50", "up=0.1,1,0.3" },
+        { "clip_box=-1,-2,-3,1,2,3.3", "camera=1,2,3,4,5,6.1", "projection=orthographic", "height_m=0.7" },
+        { "split=group=pressure;range=1,2;look=flat", "interpolation=paper", "ramp_interval=0.1", "colormap=viridis" },
+    };
+    const struct params_context of_query = { .scene = small_scene(), .baselines = context.baselines };
+    for (size_t i = 0; i < sizeof(views) / sizeof(views[0]); i++) {
+        struct message_error error = { 0 };
+        struct view_address said;
+        struct view view;
+        size_t count = 0;
+        while (count < 4 && views[i][count])
+            count++;
+        if (!query(views[i], count, &view, &error))
+            fail_msg("view %zu: %s", i, error.text);
+        view.tier = i % 2 ? TIER_REFINED : TIER_PREVIEW;
+        view_set_instant(&view, (int64_t)i, (int)i);
+        if (!view_query_write(&of_query, &view, &said, &error))
+            fail_msg("view %zu: %s", i, error.text);
+        view_address_finish(&said);
+    }
+}
+
+static void what_no_query_says_is_refused(void **state)
+{
+    (void)state;
+    const struct params_context of_query = { .scene = small_scene(), .baselines = context.baselines };
+    struct message_error error;
+    struct view_address said;
+    struct view view;
+    assert_true(query(NULL, 0, &view, &error));
+    view_set_trial(&view, 3);
+    assert_false(view_query_write(&of_query, &view, &said, &error));
+    assert_non_null(strstr(error.text, "tried out"));
+    view_address_finish(&said);
+    assert_true(query(NULL, 0, &view, &error));
+    view.field.show = SHOW_DIFFERENCE;
+    view.field.baseline = baselines_keep(context.baselines, context.snapshot);
+    assert_false(view_query_write(&of_query, &view, &said, &error));
+    assert_non_null(strstr(error.text, "has no name"));
+    view_address_finish(&said);
+    assert_true(query(&(const char *){ "split=colormap=viridis" }, 1, &view, &error));
+    view.right.field.strength = -1; /* what no client can ask for */
+    assert_false(view_query_write(&of_query, &view, &said, &error));
+    assert_string_equal(error.code, "not_signed");
+    view_address_finish(&said);
+}
+
 static void bad_queries_are_named(void **state)
 {
     (void)state;
@@ -681,6 +739,8 @@ int main(void)
         cmocka_unit_test(what_is_fitted_lies_beside_the_legend),
         cmocka_unit_test(halves_show_what_the_plants_own_view_does),
         cmocka_unit_test(queries_make_views),
+        cmocka_unit_test(views_are_written_as_queries),
+        cmocka_unit_test(what_no_query_says_is_refused),
         cmocka_unit_test(bad_queries_are_named),
         cmocka_unit_test(a_refused_number_is_told_why),
         cmocka_unit_test(no_number_is_minus_nought),

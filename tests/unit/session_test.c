@@ -158,6 +158,51 @@ static struct frame_request show_data(struct session_case *f, bool quick)
     return request;
 }
 
+#define SIGNED_HELLO "{\"type\":\"hello\",\"width\":640,\"height\":360,\"codecs\":[\"jpeg\",\"png\"],\"signed\":\"refined\"}"
+
+static void refined_frames_are_asked_for_signed(void **state)
+{
+    struct session_case *f = *state;
+    f->context.signing_key = "0123456789abcdef";
+    say(f, SIGNED_HELLO);
+    expect(f, "welcome status tags ");
+    struct frame_request preview = show(f);
+    assert_true(preview.view.tier == TIER_PREVIEW && !preview.record && preview.codec == WIRE_CODEC_JPEG);
+    f->now_ns += NS_PER_S;
+    struct frame_request refined = show(f);
+    assert_true(refined.view.tier == TIER_REFINED && refined.record && refined.codec == WIRE_CODEC_PNG && !refined.draft);
+    struct frame_request data = show_data(f, true); /* colours it again, or is a preview as those before */
+    assert_true(data.record && data.codec == WIRE_CODEC_PNG && (!data.or_moving || data.moving_codec == WIRE_CODEC_JPEG));
+    say(f, "{\"type\":\"sign\",\"frames\":\"all\"}");
+    preview = show(f);
+    assert_true(preview.view.tier == TIER_PREVIEW && preview.record && preview.always);
+    say(f, "{\"type\":\"sign\",\"frames\":\"none\"}");
+    preview = show(f);
+    assert_true(!preview.record && preview.codec == WIRE_CODEC_JPEG);
+    say(f, "{\"type\":\"sign\",\"frames\":\"all\"}");
+    say(f, "{\"type\":\"codecs\",\"codecs\":[\"jpeg\"]}"); /* signed frames are none of these */
+    assert_false(show(f).record);
+}
+
+static void what_cannot_be_signed_is_refused(void **state)
+{
+    struct session_case *f = *state;
+    struct message_error why = { 0 };
+    say(f, SIGNED_HELLO); /* no key */
+    expect_error(f, "bad_field");
+    f->context.signing_key = "0123456789abcdef";
+    say(f, "{\"type\":\"hello\",\"width\":640,\"height\":360,\"codecs\":[\"jpeg\"],\"signed\":\"all\"}");
+    expect_error(f, "bad_field");
+    greet(f);
+    say(f, "{\"type\":\"sign\",\"frames\":\"all\"}");
+    expect_error(f, "bad_field");
+    message_fail(&why, "not_signed", "a reason");
+    session_not_signed(f->session, &why);
+    session_not_signed(f->session, &why); /* once */
+    expect_error(f, "not_signed");
+    expect(f, "");
+}
+
 static void nothing_before_hello(void **state)
 {
     struct session_case *f = *state;
@@ -1008,6 +1053,8 @@ int main(void)
 #define TEST(name) cmocka_unit_test_setup_teardown(name, session_case_set_up, session_case_tear_down)
     const struct CMUnitTest tests[] = {
         TEST(nothing_before_hello),
+        TEST(refined_frames_are_asked_for_signed),
+        TEST(what_cannot_be_signed_is_refused),
         TEST(welcome_tells_the_plant_and_no_addresses),
         TEST(first_picture_comes_at_once_then_refined_then_nothing),
         TEST(rests_once_nothing_waits_for_time),

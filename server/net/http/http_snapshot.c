@@ -181,28 +181,28 @@ static void say_values(const struct frame *frame, char out[96])
         snprintf(out + count, 96 - (size_t)count, "%lld", (long long)(frame->oldest_age_ns / 1000000));
 }
 
-/* The PNG file, NULL: it cannot be made. Takes body. */
-static void answer_picture(struct server_context *server, struct request *request, const struct packet *packet, char *body, size_t count)
+/* packet: NULL: it cannot be made. */
+static void answer_picture(struct server_context *server, struct request *request, const struct packet *packet)
 {
-    char values[96] = "";
+    char values[96] = "", *body = packet ? memcpy(mem_array(packet->count, 1), packet->bytes, packet->count) : NULL;
     if (packet)
         say_values(packet->frame, values);
     request_forget(server, request);
-    int status = body ? request_answer(request, HTTP_STATUS_OK, "image/png", body, count, "plantcast-frame:", values)
+    int status = body ? request_answer(request, HTTP_STATUS_OK, "image/png", body, packet->count, "plantcast-frame:", values)
                       : request_answer_text(request, HTTP_STATUS_INTERNAL_SERVER_ERROR, "the picture could not be made\n");
     request_answered(request, status);
 }
 
-/* Where there is a key and the picture has a legend. Takes the frame, and the words of the query. */
-static void sign(struct server_context *server, struct asked *asked, struct encoded_frame *encoded)
+/* Where there is a key and the picture has a legend. Takes the frame. */
+static void sign(struct server_context *server, const struct asked *asked, struct encoded_frame *encoded)
 {
     const struct picture_origin origin = { .scene = server->params.plant.scene,
+                                           .args = (const char *const *)asked->args,
                                            .arg_count = asked->arg_count,
                                            .bare = asked->frame_request.overlay == OVERLAY_BARE,
+                                           .overlay = asked->frame_request.overlay == OVERLAY_BARE ? "bare" : "full",
                                            .version = server->params.version };
-    picture_signer_ask(server->picture_signer, encoded, &origin, asked->args);
-    asked->args = NULL;
-    asked->arg_count = 0;
+    picture_signer_ask(server->picture_signer, encoded, &origin);
 }
 
 void http_on_frame(struct server_context *server, struct encoded_frame *encoded)
@@ -214,18 +214,15 @@ void http_on_frame(struct server_context *server, struct encoded_frame *encoded)
         return;
     }
     if (request)
-        answer_picture(server, request, packet, packet ? memcpy(mem_array(packet->count, 1), packet->bytes, packet->count) : NULL,
-                       packet ? packet->count : 0);
+        answer_picture(server, request, packet);
     encoded_frame_destroy(&encoded);
 }
 
 void http_on_signed(struct server_context *server, struct signing *signing)
 {
     struct request *request = request_find(server, signing->encoded->client);
-    if (!request)
-        return;
-    answer_picture(server, request, signing->encoded->packet, (char *)signing->png, signing->count);
-    signing->png = NULL;
+    if (request)
+        answer_picture(server, request, signing->good ? signing->encoded->packet : NULL);
 }
 
 int ask_pick(struct server_context *server, struct request *request)
