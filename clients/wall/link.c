@@ -90,7 +90,7 @@ static void on_text(struct link *link)
     json_t *message = json_loadb(link->in.at, link->in.length, 0, NULL);
     const char *type = json_string_value(json_object_get(message, "type"));
     if (type && !strcmp(type, "pong")) {
-        link->events->pong(link, message, json_integer_value(json_object_get(message, "t")));
+        link->events->pong(link, message);
     } else if (type && !strcmp(type, "error")) {
         const char *code = json_string_value(json_object_get(message, "code"));
         if (is_refusal(code))

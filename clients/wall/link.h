@@ -20,7 +20,7 @@ struct link;
 struct link_events {
     json_t *(*hello)(struct link *link);                    /* the first message; the link frees it */
     void (*text)(struct link *link, const json_t *message); /* all but pong */
-    void (*pong)(struct link *link, const json_t *message, int64_t sent_ns);
+    void (*pong)(struct link *link, const json_t *message); /* its `t` is when the ping was sent, monotonic */
     /* A frame, without the lock. Returns whether it could be decoded. */
     bool (*frame)(struct link *link, const struct wire_frame *frame, const uint8_t *payload);
     void (*refused)(struct link *link); /* a token is needed, or another one */

@@ -47,9 +47,10 @@ int64_t model_now_us(const struct model *model)
     return clock_mono_ns() / 1000 + model->offset_us;
 }
 
-void model_pong(struct model *model, const json_t *message, int64_t sent_ns, int64_t now_ns)
+void model_pong(struct model *model, const json_t *message, int64_t now_ns)
 {
     const json_t *oldest = json_object_get(message, "oldest_age_ms");
+    int64_t sent_ns = (int64_t)json_number_value(json_object_get(message, "t")); /* the server says it as a real number */
     int64_t rtt_ns = now_ns - sent_ns, since_ns = now_ns - (int64_t)(fmin(json_number_value(oldest), 1e12) * 1e6);
     for (size_t i = 0; json_is_number(oldest) && i < model->plant.tag_count; i++) /* what did not change was read again */
         if (model->read_ns[i] && model->read_ns[i] < since_ns)

@@ -42,8 +42,8 @@ void model_finish(struct model *model);
    understood:
    a `welcome` that makes no sense is not. */
 bool model_hear(struct model *model, const json_t *message, int64_t now_ns);
-/* Takes in a pong to a ping that was sent at sent_ns. */
-void model_pong(struct model *model, const json_t *message, int64_t sent_ns, int64_t now_ns);
+/* Takes in a pong, whose `t` is when its ping was sent, monotonic, in nanoseconds. */
+void model_pong(struct model *model, const json_t *message, int64_t now_ns);
 /* Returns the server's clock, microseconds UTC. */
 int64_t model_now_us(const struct model *model);
 /* Returns how long ago the oldest reading was taken that is not bad, of those tags, or of a group (tags NULL); -1: none. */

@@ -85,10 +85,10 @@ static void words_text(struct link *link, const json_t *message)
             player->panes[i].view.overlay_due = true;
 }
 
-static void words_pong(struct link *link, const json_t *message, int64_t sent_ns)
+static void words_pong(struct link *link, const json_t *message)
 {
     struct player *player = link->arg;
-    model_pong(&player->model, message, sent_ns, clock_mono_ns());
+    model_pong(&player->model, message, clock_mono_ns());
 }
 
 static bool words_frame(struct link *link, const struct wire_frame *frame, const uint8_t *payload)
@@ -131,11 +131,10 @@ static void view_text(struct link *link, const json_t *message)
         text_finish(&pane->wanted); /* it is to be asked for again */
 }
 
-static void view_pong(struct link *link, const json_t *message, int64_t sent_ns)
+static void view_pong(struct link *link, const json_t *message)
 {
     (void)link;
     (void)message;
-    (void)sent_ns;
 }
 
 static bool view_frame(struct link *link, const struct wire_frame *frame, const uint8_t *payload)

@@ -9,15 +9,20 @@
 #include <cmocka.h>
 
 #include "base/clock.h"
+#include "base/mem.h"
+#include "session/reply.h"
 
 static const int64_t HOUR_US = 3600000000LL;
 
 /* The server answers at at_ns, by a clock that is off_us ahead of ours, after a way of half_ns in each direction. */
 static void hear(struct model *model, int64_t at_ns, int64_t off_us, int64_t half_ns)
 {
-    json_t *pong = json_pack("{s:s,s:I}", "type", "pong", "time_us", (json_int_t)(at_ns / 1000 + off_us));
-    model_pong(model, pong, at_ns - half_ns, at_ns + half_ns);
+    const struct snapshot none = { .count = 0 };
+    char *text = reply_pong_text(&none, (double)(at_ns - half_ns), at_ns + off_us * 1000);
+    json_t *pong = json_loads(text, 0, NULL);
+    model_pong(model, pong, at_ns + half_ns);
     json_decref(pong);
+    mem_free(text);
 }
 
 static void expect(const struct model *model, int64_t off_us, int64_t within_us)
