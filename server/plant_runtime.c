@@ -122,6 +122,12 @@ static bool start_publisher(struct plant_runtime *runtime)
     return !runtime->plant->publish || follows(runtime) || (runtime->publisher = publisher_start(&params));
 }
 
+static bool start_other_plants(struct plant_runtime *runtime)
+{
+    return runtime->plant->other_plant_count == 0 ||
+           (runtime->other_plants = other_plants_start(runtime->context->log, runtime->plant));
+}
+
 /* Made from what is loaded; works only once somebody asks. */
 static void start_placing(struct plant_runtime *runtime)
 {
@@ -159,7 +165,7 @@ bool plant_runtime_start_recording(struct plant_runtime *runtime, struct plant_r
     if (runtime->render_service)
         render_service_set_loop_checks(runtime->render_service, runtime->loop_checks);
     return start_historian(runtime, before) && start_alarm_service(runtime, before ? before->alarm_service : NULL) &&
-           start_notifier(runtime) && start_publisher(runtime);
+           start_notifier(runtime) && start_publisher(runtime) && start_other_plants(runtime);
 }
 
 static bool start_core_link(struct plant_runtime *runtime)
@@ -284,6 +290,7 @@ struct net_plant plant_runtime_net_plant(const struct plant_runtime *runtime)
         .named_views = runtime->named_views,
         .notes = runtime->notes,
         .wall_remote = runtime->wall_remote,
+        .other_plants = runtime->other_plants,
         .pairings = runtime->pairings,
         .loop_checks = runtime->loop_checks,
         .core_link = runtime->core_link,
@@ -304,6 +311,7 @@ void plant_runtime_destroy(struct plant_runtime **pointer)
     named_views_close(&runtime->named_views);
     notes_close(&runtime->notes);
     wall_remote_close(&runtime->wall_remote);
+    other_plants_stop(&runtime->other_plants);
     pairings_close(&runtime->pairings);
     loop_checks_close(&runtime->loop_checks);
     mem_free(runtime->tag_list);

@@ -12,6 +12,7 @@
 #include "server_params.h"
 #include "value/derived.h"
 #include "value/source.h"
+#include "views/other_plants.h"
 
 struct plant_runtime_context { /* what a reload keeps */
     const struct server_params *params;
@@ -46,6 +47,7 @@ struct plant_runtime {
     struct named_views *named_views;
     struct notes *notes;
     struct wall_remote *wall_remote;
+    struct other_plants *other_plants; /* NULL: the plant file names none */
     struct pairings *pairings;
     struct loop_checks *loop_checks; /* NULL: nothing is recorded */
     char *tag_list;                  /* its text; NULL: it could not be read */

@@ -73,6 +73,7 @@ static void read_kind(struct pane *pane)
     static const char *const names[] = {
         [PANE_VIEWS] = "views", [PANE_ALARMS] = "alarms", [PANE_TILES] = "tiles",
         [PANE_CLOCK] = "clock", [PANE_TEXT] = "text",     [PANE_TREND] = "trend",
+        [PANE_SNAPSHOT] = "snapshot",
     };
     pane->known = false;
     for (size_t i = 0; i < sizeof(names) / sizeof(names[0]); i++)
@@ -99,6 +100,7 @@ static void add_pane(struct player *player, const json_t *o, const json_t *grid)
     pane->stops = json_object_get(o, "stops");
     pane->every_s = fmax(1, json_number_value(json_object_get(o, "every_s")));
     trend_finish(&pane->trend);
+    snapshot_finish(&pane->snapshot);
     pane->trend.hours = json_number_value(json_object_get(o, "hours"));
     pane->on_alarm = json_is_true(json_object_get(o, "on_alarm"));
     pane->at = 0;

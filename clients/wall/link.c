@@ -10,7 +10,8 @@
 #include "base/mem.h"
 
 enum { TICK_US = 100000, MOST_TEXT_BYTES = 64 * 1024 * 1024, MOST_TRIES = 4, MOST_FAILURES = 5 };
-static const int64_t PING_NS = NS_PER_S, SILENT_NS = 5 * NS_PER_S, CONNECT_NS = 10 * NS_PER_S, AGAIN_NS = 2 * NS_PER_S;
+static const int64_t PING_NS = NS_PER_S, SILENT_NS = 5 * NS_PER_S, CONNECT_NS = 10 * NS_PER_S;
+static const int64_t AGAIN_NS[GET_COUNT] = { 2 * NS_PER_S, 2 * NS_PER_S, NS_PER_S / 2, NS_PER_S / 5 }; /* by links_get */
 static const double FIRST_S = 0.5, SPREAD_S = 2, DENIED_S = 10; /* wrong tokens are looked at ten times a minute */
 
 /* --- what goes -------------------------------------------------------------------------------------------------------------------- */
@@ -196,9 +197,9 @@ static void end_request(struct links_request *request)
     struct links *links = request->links;
     json_t *answer = request->under_way && request->body.at ? json_loadb(request->body.at, request->body.length, 0, NULL) : NULL;
     request->under_way = false;
-    text_finish(&request->body);
     if (!request->wanted) /* else it was asked for something else meanwhile, and this is of what was before */
-        links->got(links->arg, (enum links_get)(request - links->requests), answer);
+        links->got(links->arg, (enum links_get)(request - links->requests), answer, &request->body);
+    text_finish(&request->body);
     json_decref(answer);
 }
 
@@ -249,7 +250,7 @@ static void tick(struct links *links)
             tick_link(&links->at[i], now_ns);
     for (int i = 0; i < GET_COUNT && !links->ends; i++) {
         struct links_request *request = &links->requests[i];
-        if (request->wanted && !request->under_way && now_ns - request->begun_ns >= AGAIN_NS)
+        if (request->wanted && !request->under_way && now_ns - request->begun_ns >= AGAIN_NS[i])
             begin_request(request);
     }
 }

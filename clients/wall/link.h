@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Connections to a server's /stream, each kept up for ever, and requests for its walls and its history. One thread of their own services
-   all of them and calls back under the player's lock, but for `frame`. */
+/* Connections to a server's /stream, each kept up for ever, and requests for its walls, its history and pictures of other plants. One
+   thread of their own services all of them and calls back under the player's lock, but for `frame`. */
 #ifndef WALL_LINK_H
 #define WALL_LINK_H
 #include <jansson.h>
@@ -49,7 +49,7 @@ struct link {
 };
 
 /* A request that is made when it is asked for, one at a time. */
-enum links_get { GET_WALLS, GET_HISTORY, GET_COUNT };
+enum links_get { GET_WALLS, GET_HISTORY, GET_OTHER_PLANTS, GET_OTHER_PICTURE, GET_COUNT };
 struct links_request {
     /* --- below: of link.c */
     struct links *links;
@@ -63,8 +63,8 @@ struct links {
     pthread_mutex_t *lock;
     const struct daemon_url *url;
     struct link at[LINKS_MOST];
-    /* What was answered; NULL: it failed. Under the lock. */
-    void (*got)(void *arg, enum links_get what, const json_t *answer);
+    /* What was answered, as JSON (NULL: it is none, or failed) and as it came (empty: it failed). Under the lock. */
+    void (*got)(void *arg, enum links_get what, const json_t *answer, const struct text *body);
     void *arg;
     /* --- below: of link.c */
     struct lws_context *context;
@@ -79,7 +79,7 @@ struct links {
 bool links_start(struct links *links);
 /* Closes all, ends the thread. */
 void links_stop(struct links *links);
-/* Asks for a path below the server's base, as soon as may be, by a call of got(): two seconds after the one before of its kind at the
+/* Asks for a path below the server's base, as soon as may be, by a call of got(): some time after the one before of its kind at the
    earliest. Under the lock. */
 void links_ask(struct links *links, enum links_get what, const char *path);
 /* Returns when the thread was last seen at work, monotonic. Any thread. */

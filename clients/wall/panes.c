@@ -419,6 +419,7 @@ void pane_say(struct player *player, struct pane *pane, int64_t now_ns, struct t
     case PANE_ALARMS: say_alarms(player, pane, now_ns, said); break;
     case PANE_TILES: say_tiles(player, pane, now_ns, said); break;
     case PANE_TREND: trend_say(player, pane, now_ns, said); break;
+    case PANE_SNAPSHOT: snapshot_say(player, pane, now_ns, said); break;
     case PANE_CLOCK: say_clock(player, pane, said); break;
     default: text_add(said, "%s\n", pane->title ? pane->title : ""); break;
     }
@@ -426,7 +427,6 @@ void pane_say(struct player *player, struct pane *pane, int64_t now_ns, struct t
 
 void pane_draw(struct player *player, struct pane *pane, cairo_t *cairo, int64_t now_ns)
 {
-    (void)now_ns;
     brush_fill(cairo, &pane->box, SURFACE);
     pane_draw_title(player, pane, cairo, line_of(&pane->said, 0), pane->known && pane->kind == PANE_CLOCK ? "" : line_of(&pane->said, 1), 0,
                     false);
@@ -443,6 +443,11 @@ void pane_draw(struct player *player, struct pane *pane, cairo_t *cairo, int64_t
     case PANE_TREND: {
         struct box body = body_of(pane);
         trend_draw(player, pane, cairo, &body);
+        break;
+    }
+    case PANE_SNAPSHOT: {
+        struct box body = body_of(pane);
+        snapshot_draw(player, pane, cairo, &body, now_ns);
         break;
     }
     case PANE_CLOCK: draw_clock(player, pane, cairo); break;

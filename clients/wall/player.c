@@ -157,13 +157,15 @@ static void on_walls(struct player *player, const json_t *walls)
     want_views(player);
 }
 
-static void on_got(void *arg, enum links_get what, const json_t *answer)
+static void on_got(void *arg, enum links_get what, const json_t *answer, const struct text *body)
 {
     struct player *player = arg;
-    if (what == GET_WALLS)
-        on_walls(player, json_object_get(answer, "walls"));
-    else
-        trend_take(player, answer);
+    switch (what) {
+    case GET_WALLS: on_walls(player, json_object_get(answer, "walls")); break;
+    case GET_HISTORY: trend_take(player, answer); break;
+    case GET_OTHER_PLANTS: snapshots_take(player, answer); break;
+    default: snapshots_take_picture(player, body); break;
+    }
 }
 
 /* --- life ------------------------------------------------------------------------------------------------------------------------- */
@@ -199,6 +201,7 @@ void player_finish(struct player *player)
         text_finish(&player->panes[i].wanted);
         text_finish(&player->panes[i].words);
         trend_finish(&player->panes[i].trend);
+        snapshot_finish(&player->panes[i].snapshot);
     }
     model_finish(&player->model);
     json_decref(player->wall);
@@ -514,6 +517,7 @@ bool player_draw(struct player *player, int64_t now_ns, struct box *dirty)
     } else {
         if (all)
             brush_fill(cairo, &whole, GROUND);
+        snapshots_ask(player, now_ns);
         for (int i = 0; i < player->pane_count; i++) {
             struct pane *pane = &player->panes[i];
             bool is_view = pane->known && pane->kind == PANE_VIEWS;

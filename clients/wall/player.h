@@ -26,6 +26,19 @@ struct trend {
     uint32_t count; /* of answers */
 };
 
+/* What a pane of another plant shows. Pictures have numbers; 0: none. */
+struct snapshot_pane {
+    cairo_surface_t *picture, *fitted; /* as it came, and as large as there is room for; NULL: none */
+    int64_t told;                      /* the picture that the server says is to be shown */
+    int64_t asked, failed, shown;      /* the one that it was asked for last; that could not be shown; that is shown */
+    bool asks;                         /* it waits for `asked` */
+    int64_t heard_ns, changed_ns;      /* when the server was asked what it said last; 0: it said nothing. Since when it says `told` */
+    int64_t age_ns, asked_age_ns, shown_age_ns; /* of the readings in it at heard_ns, asked_ns, shown_ns; -1: there are none */
+    int64_t asked_ns, shown_ns;
+    int64_t since_us; /* since when there is none */
+    char name[260], why[32];
+};
+
 struct pane {
     enum pane_kind kind;
     bool known;                           /* false: of a kind that this player does not know */
@@ -39,6 +52,7 @@ struct pane {
     int64_t changed_ns; /* 0: never */
     double every_s;
     struct trend trend;
+    struct snapshot_pane snapshot;
     bool on_alarm, called;
     struct text wanted; /* what was asked for */
     struct text words;  /* its title now */
@@ -62,6 +76,7 @@ struct player {
     double unit;
     char wrong[600]; /* what is wrong, instead of panes */
     struct rules_call call;
+    int64_t others_asked_ns; /* when the server was last asked about other plants */
     int64_t begun_ns, said_ns; /* said: when the server of the words last spoke */
     bool denied;
     uint32_t ground;  /* what is around the picture: the drawing thread alone */
@@ -109,6 +124,13 @@ void trend_take(struct player *player, const json_t *answer);
 void trend_say(struct player *player, const struct pane *pane, int64_t now_ns, struct text *said);
 void trend_finish(struct trend *trend); /* leaves it empty */
 void trend_draw(struct player *player, const struct pane *pane, cairo_t *cairo, const struct box *body);
+/* Of panes of other plants (snapshot.c): ask for what is due; take in what was answered; say what is shown, and draw it. */
+void snapshots_ask(struct player *player, int64_t now_ns);
+void snapshots_take(struct player *player, const json_t *answer);
+void snapshots_take_picture(struct player *player, const struct text *body);
+void snapshot_say(struct player *player, const struct pane *pane, int64_t now_ns, struct text *said);
+void snapshot_draw(struct player *player, struct pane *pane, cairo_t *cairo, const struct box *body, int64_t now_ns);
+void snapshot_finish(struct snapshot_pane *snapshot); /* leaves it empty */
 /* Makes the panes of the display anew, out of player->walls, or says what is wrong (layout.c). */
 void layout_build(struct player *player);
 /* Returns the list of alarms as the rules have it, which the caller frees with mem_free(). */

@@ -50,15 +50,6 @@ static size_t tag_count(const struct pane *pane)
     return count < LINES ? count : LINES;
 }
 
-static void add_escaped(struct text *out, const char *name)
-{
-    for (; *name; name++)
-        if (strchr("ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789-_.~", *name))
-            text_add(out, "%c", *name);
-        else
-            text_add(out, "%%%02X", (unsigned char)*name);
-}
-
 void trend_ask(struct player *player, struct pane *pane, int64_t now_ns)
 {
     struct text path = { 0 };
@@ -75,7 +66,7 @@ void trend_ask(struct player *player, struct pane *pane, int64_t now_ns)
         if (!name || plant_find_tag(&player->model.plant, name) < 0)
             continue;
         text_add(&path, any ? "," : "%s", "");
-        add_escaped(&path, name);
+        text_add_escaped(&path, name);
         any = true;
     }
     pane->trend.due_ns = now_ns + FRESH_NS;

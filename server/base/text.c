@@ -38,6 +38,15 @@ void text_add(struct text *text, const char *fmt, ...)
     va_end(ap);
 }
 
+void text_add_escaped(struct text *text, const char *part)
+{
+    for (; *part; part++) {
+        bool plain = (*part >= 'a' && *part <= 'z') || (*part >= 'A' && *part <= 'Z') || (*part >= '0' && *part <= '9') ||
+                     strchr("-._~", *part);
+        text_add(text, plain ? "%c" : "%%%02X", (unsigned char)*part);
+    }
+}
+
 void text_add_quoted(struct text *text, const char *cell)
 {
     text_add(text, "\"");

@@ -20,6 +20,7 @@ void text_add_quoted(struct text *text, const char *cell); /* appends it in quot
 void text_add_cell(struct text *text, const char *cell, const char *special);
 bool text_is_formula(const char *cell);
 const char *text_cell_read(const char *cell);
+void text_add_escaped(struct text *text, const char *part); /* as a part of an address: what is not unreserved in RFC 3986, as %XX */
 void text_finish(struct text *text); /* frees; leaves it empty */
 
 /* Reads a whole file of at most max_bytes and returns its content, followed by a 0 byte; free with mem_free(). Returns NULL on failure,

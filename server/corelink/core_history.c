@@ -81,14 +81,7 @@ void core_history_destroy(struct core_history **pointer)
 void core_history_add(struct text *path, const char *name, const char *value)
 {
     text_add(path, "%c%s=", path->at && strchr(path->at, '?') ? '&' : '?', name);
-    for (; *value; value++) {
-        bool plain = (*value >= 'a' && *value <= 'z') || (*value >= 'A' && *value <= 'Z') || (*value >= '0' && *value <= '9') ||
-                     strchr("-._~", *value);
-        if (plain)
-            text_add(path, "%c", *value);
-        else
-            text_add(path, "%%%02X", (unsigned char)*value);
-    }
+    text_add_escaped(path, value);
 }
 
 static bool fail(struct core_history *history, const char *path, const char *why)

@@ -30,6 +30,7 @@ struct net_plant { /* what belongs to one loaded plant; a reload brings another 
     struct placing *placing;         /* NULL: sensors cannot be placed */
     struct notes *notes;
     struct wall_remote *wall_remote;
+    struct other_plants *other_plants; /* NULL: the plant file names none */
     struct pairings *pairings;
     struct named_views *named_views;
     struct core_link *core_link;     /* of a renderer; NULL: this daemon reads its devices itself */

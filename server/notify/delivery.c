@@ -3,15 +3,15 @@
 #include "notify/delivery.h"
 
 #include <curl/curl.h>
-#include <errno.h>
 #include <stdio.h>
 #include <string.h>
 #include <strings.h>
 
 #include "base/mem.h"
-#include "base/text.h"
+#include "base/secret.h"
+#include "plant/url.h"
 
-enum { SECRET_BYTES = 4096, CONNECT_S = 10 };
+enum { CONNECT_S = 10 };
 
 struct transfer {
     CURL *handle; /* NULL: idle */
@@ -75,26 +75,6 @@ bool delivery_is_idle(const struct delivery *delivery, int recipient)
 
 /* --- what is sent ----------------------------------------------------------------------------------------------------------- */
 
-/* The first line of a file. NULL: *why (mem_free). */
-static char *read_secret(const char *path, char **why)
-{
-    size_t bytes;
-    char *text = text_read_file(path, SECRET_BYTES, &bytes);
-    if (!text) {
-        *why = mem_printf("%s cannot be read: %s", path, strerror(errno));
-        return NULL;
-    }
-    text[strcspn(text, "\r\n")] = 0;
-    return text;
-}
-
-static void free_secret(char *secret)
-{
-    if (secret)
-        explicit_bzero(secret, strlen(secret));
-    mem_free(secret);
-}
-
 static size_t give_body(char *buffer, size_t size, size_t count, void *arg)
 {
     struct transfer *transfer = arg;
@@ -144,34 +124,22 @@ static void set_common(struct delivery *delivery, struct transfer *transfer, con
         curl_easy_setopt(handle, CURLOPT_CAINFO, ca_file);
 }
 
-static bool is_this_machine(const char *url)
-{
-    static const char *const names[] = { "localhost", "127.0.0.1", "[::1]" };
-    const char *host = strstr(url, "://");
-    for (size_t i = 0; host && i < sizeof(names) / sizeof(*names); i++) {
-        size_t length = strlen(names[i]);
-        if (!strncmp(host + 3, names[i], length) && (!host[3 + length] || strchr(":/", host[3 + length])))
-            return true;
-    }
-    return false;
-}
-
 static char *set_mail(struct delivery *delivery, struct transfer *transfer, const struct notify_recipient *recipient)
 {
     const struct notify_mail *mail = &delivery->notify->mail;
     CURL *handle = transfer->handle;
-    char *why = NULL, *password = mail->password_file ? read_secret(mail->password_file, &why) : NULL;
+    char *why = NULL, *password = mail->password_file ? secret_read(mail->password_file, &why) : NULL;
     if (why)
         return why;
     if (password) {
         curl_easy_setopt(handle, CURLOPT_USERNAME, mail->user);
         curl_easy_setopt(handle, CURLOPT_PASSWORD, password);
     }
-    free_secret(password);
+    secret_forget(password);
     set_common(delivery, transfer, mail->ca_file);
     curl_easy_setopt(handle, CURLOPT_PROTOCOLS_STR, "smtp,smtps");
     curl_easy_setopt(handle, CURLOPT_URL, mail->server);
-    curl_easy_setopt(handle, CURLOPT_USE_SSL, (long)(is_this_machine(mail->server) ? CURLUSESSL_TRY : CURLUSESSL_ALL));
+    curl_easy_setopt(handle, CURLOPT_USE_SSL, (long)(url_is_here(mail->server) ? CURLUSESSL_TRY : CURLUSESSL_ALL));
     curl_easy_setopt(handle, CURLOPT_MAIL_FROM, mail->from);
     for (size_t i = 0; i < recipient->addresses.count; i++)
         transfer->list = curl_slist_append(transfer->list, recipient->addresses.at[i]);
@@ -189,7 +157,7 @@ static char *set_mail(struct delivery *delivery, struct transfer *transfer, cons
 static char *set_http(struct delivery *delivery, struct transfer *transfer, const struct notify_recipient *recipient)
 {
     CURL *handle = transfer->handle;
-    char *why = NULL, *token = recipient->token_file ? read_secret(recipient->token_file, &why) : NULL;
+    char *why = NULL, *token = recipient->token_file ? secret_read(recipient->token_file, &why) : NULL;
     if (why)
         return why;
     transfer->list = curl_slist_append(transfer->list, "Content-Type: application/json");
@@ -197,9 +165,9 @@ static char *set_http(struct delivery *delivery, struct transfer *transfer, cons
     if (token) {
         char *header = mem_printf("Authorization: Bearer %s", token);
         transfer->list = curl_slist_append(transfer->list, header);
-        free_secret(header);
+        secret_forget(header);
     }
-    free_secret(token);
+    secret_forget(token);
     set_common(delivery, transfer, recipient->ca_file);
     size_t length = strlen(recipient->url);
     bool slash = length > 0 && recipient->url[length - 1] == '/';

@@ -186,6 +186,7 @@ void plant_destroy(struct plant **plant_ptr)
     }
     plant_views_free(plant);
     plant_tours_free(plant);
+    plant_other_plants_free(plant);
     plant_walls_free(plant);
     plant_notify_free(&plant->notify);
     plant_publish_free(&plant->publish);

@@ -318,10 +318,11 @@ struct plant {
     size_t conversion_count;
     struct plant_history history;
     enum alarm_mode alarms;
-    struct named_view *views;    /* plant/wall.h, as the next two */
+    struct named_view *views;    /* plant/wall.h, as the next three */
     struct tour *tours;
+    struct other_plant *other_plants;
     struct wall *walls;
-    size_t view_count, tour_count, wall_count;
+    size_t view_count, tour_count, other_plant_count, wall_count;
     struct plant_publish *publish; /* NULL: nothing is published */
     struct plant_notify *notify; /* who is told of alarms (plant/notification.h); NULL: nobody */
     struct plant_asset *assets;

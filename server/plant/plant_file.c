@@ -491,6 +491,11 @@ static void read_tours(struct yaml_reader *reader, yaml_node_t *node, void *reco
     plant_tours_read(reader, node, ((struct plant_file *)record)->plant);
 }
 
+static void read_other_plants(struct yaml_reader *reader, yaml_node_t *node, void *record)
+{
+    plant_other_plants_read(reader, node, ((struct plant_file *)record)->plant);
+}
+
 static void read_walls(struct yaml_reader *reader, yaml_node_t *node, void *record)
 {
     plant_walls_read(reader, node, ((struct plant_file *)record)->plant);
@@ -519,6 +524,7 @@ void plant_file_read(struct plant *plant, struct diag *diag)
                                        { "publish", KEY_CUSTOM, false, 0, 0, 0, NULL, read_publish },
                                        { "views", KEY_CUSTOM, false, 0, 0, 0, NULL, read_views },
                                        { "tours", KEY_CUSTOM, false, 0, 0, 0, NULL, read_tours },
+                                       { "other_plants", KEY_CUSTOM, false, 0, 0, 0, NULL, read_other_plants },
                                        { "walls", KEY_CUSTOM, false, 0, 0, 0, NULL, read_walls },
                                        { "tags", KEY_NAME, true, offsetof(struct plant_file, tags), 0, 0, NULL, NULL },
                                        { 0 } };

@@ -20,9 +20,10 @@ void plant_notify_read(struct yaml_reader *reader, yaml_node_t *node, struct pla
 void plant_notify_free(struct plant_notify **notify); /* &NULL is fine; leaves NULL */
 /* Reads a span such as 22:00-06:00. Returns false after an error, which is reported as of the key `name`. */
 bool plant_day_span_read(struct yaml_reader *reader, yaml_node_t *node, const char *name, int *from_min, int *to_min);
-/* Read the lists `views`, `tours` and `walls`. */
+/* Read the lists `views`, `tours`, `other_plants` and `walls`. */
 void plant_views_read(struct yaml_reader *reader, yaml_node_t *node, struct plant *plant);
 void plant_tours_read(struct yaml_reader *reader, yaml_node_t *node, struct plant *plant);
+void plant_other_plants_read(struct yaml_reader *reader, yaml_node_t *node, struct plant *plant);
 void plant_walls_read(struct yaml_reader *reader, yaml_node_t *node, struct plant *plant);
 /* Reads a group's list `prepare` (plant/influence.h). */
 void plant_influence_read(struct yaml_reader *reader, yaml_node_t *node, void *record);
@@ -31,11 +32,12 @@ void plant_gp_read(struct yaml_reader *reader, yaml_node_t *node, void *group);
 void plant_gp_check(struct yaml_reader *reader, const struct yaml_map *map, const struct plant *plant, struct plant_group *group);
 /* Reports what is missing for fin: the group's ambient, and the thickness of assets with sensors of the group. */
 void plant_influence_check(const struct plant *plant, struct diag *diag);
-/* Report views, tags and tours that stops and panes name and that are not there; the tag list has been read. */
+/* Report views, tags, tours and plants that stops and panes name and that are not there; the tag list has been read. */
 void plant_tours_check(const struct plant *plant, struct diag *diag);
 void plant_walls_check(const struct plant *plant, struct diag *diag);
 void plant_views_free(struct plant *plant);
 void plant_tours_free(struct plant *plant);
+void plant_other_plants_free(struct plant *plant);
 void plant_walls_free(struct plant *plant);
 /* Reads an asset's `nodes`: a pattern, or a list of them. */
 void plant_nodes_read(struct yaml_reader *reader, yaml_node_t *node, struct plant_asset *asset);

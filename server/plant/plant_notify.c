@@ -7,53 +7,11 @@
 
 #include "base/mem.h"
 #include "plant/plant_impl.h"
+#include "plant/url.h"
 
 enum { MIN_PER_DAY = 24 * 60, DAYS = 7, ALL_DAYS = (1 << DAYS) - 1 };
 
 /* --- addresses -------------------------------------------------------------------------------------------------------------- */
-
-static bool is_loopback(const char *host)
-{
-    static const char *const names[] = { "localhost", "127.0.0.1", "[::1]" };
-    for (size_t i = 0; i < sizeof(names) / sizeof(*names); i++) {
-        size_t length = strlen(names[i]);
-        if (!strncmp(host, names[i], length) && (!host[length] || strchr(":/?", host[length])))
-            return true;
-    }
-    return false;
-}
-
-static const char *host_of(const char *url)
-{
-    const char *colon = strstr(url, "://");
-    return colon ? colon + 3 : url;
-}
-
-/* What is wrong with an address, or NULL. */
-static const char *wrong_with(const char *url, const char *plain, const char *secure)
-{
-    size_t plain_length = strlen(plain), secure_length = strlen(secure);
-    if (strncmp(url, secure, secure_length) != 0 && strncmp(url, plain, plain_length) != 0)
-        return "it begins with another scheme";
-    const char *host = host_of(url);
-    size_t host_length = strcspn(host, "/?#");
-    if (host_length == 0)
-        return "it names no server";
-    if (memchr(host, '@', host_length))
-        return "a password does not stand in the plant file; password_file or token_file names a file that holds it";
-    for (const char *at = url; *at; at++)
-        if ((unsigned char)*at <= ' ' || *at == 127)
-            return "there is white space in it";
-    return NULL;
-}
-
-static void check_url(struct yaml_reader *reader, const struct yaml_map *map, const char *key, const char *url, const char *plain,
-                      const char *secure)
-{
-    const char *wrong = yaml_map_good(map, key) && url ? wrong_with(url, plain, secure) : NULL;
-    if (wrong)
-        yaml_error(reader, yaml_map_place(map, key), "%s: %s (expected %s... or %s...)", key, wrong, secure, plain); /* not what it is */
-}
 
 /* One of those that a header line can hold as they are. */
 static bool is_mail_address(const char *text)
@@ -130,7 +88,7 @@ static void read_mail(struct yaml_reader *reader, yaml_node_t *node, void *recor
     struct yaml_map map;
     if (!yaml_map_read(reader, node, "mail", keys, mail, &map))
         return;
-    check_url(reader, &map, "server", mail->server, "smtp://", "smtps://");
+    url_check(reader, &map, "server", mail->server, "smtp://", "smtps://");
     if (yaml_map_good(&map, "from"))
         check_mail_address(reader, yaml_map_place(&map, "from"), "from", mail->from);
     if (!mail->user != !mail->password_file)
@@ -148,9 +106,8 @@ static void check_token(struct yaml_reader *reader, const struct yaml_map *map, 
 {
     if (recipient->token_file && recipient->kind == NOTIFY_EMAIL)
         yaml_error(reader, yaml_map_place(map, "token_file"), "token_file: an e-mail needs none");
-    else if (recipient->token_file && recipient->url && strncmp(recipient->url, "https://", 8) != 0 &&
-             !is_loopback(host_of(recipient->url)))
-        yaml_error(reader, yaml_map_place(map, "token_file"), "token_file: a token is sent over https:// only, or to this machine");
+    else
+        url_check_token(reader, map, recipient->url);
 }
 
 static void read_recipient(struct yaml_reader *reader, yaml_node_t *node, struct plant *plant, struct notify_recipient *recipient)
@@ -181,7 +138,7 @@ static void read_recipient(struct yaml_reader *reader, yaml_node_t *node, struct
     else if (recipient->kind == NOTIFY_EMAIL && !plant->notify->mail.server)
         yaml_error(reader, yaml_map_place(&map, "email"), "email: the key `mail` must name a server");
     else if (recipient->kind != NOTIFY_EMAIL)
-        check_url(reader, &map, recipient->kind == NOTIFY_WEBHOOK ? "webhook" : "alertmanager", recipient->url, "http://", "https://");
+        url_check(reader, &map, recipient->kind == NOTIFY_WEBHOOK ? "webhook" : "alertmanager", recipient->url, "http://", "https://");
     if (recipient->id && strcspn(recipient->id, "\"\\\n") != strlen(recipient->id))
         yaml_error(reader, yaml_map_place(&map, "id"), "id: a quote or backslash cannot stand in it");
     check_token(reader, &map, recipient);
@@ -406,7 +363,7 @@ static void read_scalars(struct yaml_reader *reader, yaml_node_t *node, struct p
     };
     struct yaml_map map;
     if (yaml_map_read(reader, node, "notify", keys, plant->notify, &map))
-        check_url(reader, &map, "link", plant->notify->link, "http://", "https://");
+        url_check(reader, &map, "link", plant->notify->link, "http://", "https://");
 }
 
 void plant_notify_read(struct yaml_reader *reader, yaml_node_t *node, struct plant *plant)

@@ -10,7 +10,7 @@
 
 const char *const pane_kind_names[] = { [PANE_VIEWS] = "views",   [PANE_TREND] = "trend", [PANE_ALARMS] = "alarms",
                                         [PANE_TILES] = "tiles", [PANE_CLOCK] = "clock", [PANE_TEXT] = "text",
-                                        [PANE_TOUR] = "tour" };
+                                        [PANE_TOUR] = "tour",   [PANE_SNAPSHOT] = "snapshot" };
 
 static const double BEZEL_MOST_MM = 200;
 
@@ -52,6 +52,7 @@ READ_AS(read_text, PANE_TEXT)
 READ_AS(read_alarms, PANE_ALARMS)
 READ_AS(read_clock, PANE_CLOCK)
 READ_AS(read_tour, PANE_TOUR)
+READ_AS(read_snapshot, PANE_SNAPSHOT)
 
 static bool grid_has(const struct wall_display *display, const char *area)
 {
@@ -156,6 +157,7 @@ static void read_pane(struct yaml_reader *reader, yaml_node_t *node, struct wall
         { "clock", KEY_CUSTOM, false, 0, 0, 0, NULL, read_clock },
         { "text", KEY_CUSTOM, false, 0, 0, 0, NULL, read_text },
         { "tour", KEY_CUSTOM, false, 0, 0, 0, NULL, read_tour },
+        { "snapshot", KEY_CUSTOM, false, 0, 0, 0, NULL, read_snapshot },
         { 0 }
     };
     struct yaml_map map;
@@ -166,9 +168,11 @@ static void read_pane(struct yaml_reader *reader, yaml_node_t *node, struct wall
     for (size_t i = 0; i < sizeof(pane_kind_names) / sizeof(*pane_kind_names); i++)
         kinds += yaml_map_has(&map, pane_kind_names[i]);
     if (kinds != 1)
-        yaml_error(reader, map.place, "a pane: expected one of views, trend, alarms, tiles, clock, text and tour, found %d", kinds);
-    else if (pane->kind == PANE_TOUR && pane->item_count > 1)
-        yaml_error(reader, yaml_map_place(&map, "tour"), "tour: expected one, found %zu", pane->item_count);
+        yaml_error(reader, map.place, "a pane: expected one of views, trend, alarms, tiles, clock, text, tour and snapshot, found %d",
+                   kinds);
+    else if ((pane->kind == PANE_TOUR || pane->kind == PANE_SNAPSHOT) && pane->item_count > 1)
+        yaml_error(reader, yaml_map_place(&map, pane_kind_names[pane->kind]), "%s: expected one, found %zu", pane_kind_names[pane->kind],
+                   pane->item_count);
     else if (pane->on_alarm && pane->kind != PANE_VIEWS && pane->kind != PANE_TOUR)
         yaml_error(reader, yaml_map_place(&map, "on_alarm"), "on_alarm: only a pane of views has it");
     else if (pane->kind != PANE_VIEWS && yaml_map_has(&map, "every_s"))
@@ -384,6 +388,10 @@ static void check_items(const struct plant *plant, const struct wall_pane *pane,
             diag_warning(diag, plant->path, pane->item_lines[i], pane->item_columns[i],
                          "views: `views` has no '%.60s', unless it is saved in the page%s%s%s", name, near ? "; did you mean '" : "",
                          near ? near : "", near ? "'?" : "");
+        } else if (pane->kind == PANE_SNAPSHOT && other_plant_find(plant, name) < 0) {
+            near = suggest_nearest(name, plant->other_plants, plant->other_plant_count, sizeof(*plant->other_plants));
+            diag_error(diag, plant->path, pane->item_lines[i], pane->item_columns[i], "snapshot: `other_plants` has no '%.60s'%s%s%s", name,
+                       near ? "; did you mean '" : "", near ? near : "", near ? "'?" : "");
         } else if (pane->kind == PANE_TOUR && !tour_find(plant, name)) {
             near = suggest_nearest(name, plant->tours, plant->tour_count, sizeof(*plant->tours));
             diag_error(diag, plant->path, pane->item_lines[i], pane->item_columns[i], "tour: `tours` has no '%.60s'%s%s%s", name,

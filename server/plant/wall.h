@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What the plant file's `views`, `tours` and `walls` say: views with names, in turn, and on displays of a control room. Immutable once
-   loaded. Thread: any. */
+/* What the plant file's `views`, `tours`, `other_plants` and `walls` say: views with names, in turn, and on displays of a control room.
+   Immutable once loaded. Thread: any. */
 #ifndef PLANT_WALL_H
 #define PLANT_WALL_H
 #include <stdbool.h>
@@ -11,7 +11,7 @@
 enum {
     NAMED_VIEW_ID_BYTES = 49, NAMED_VIEW_TITLE_BYTES = 121, NAMED_VIEW_ADDRESS_BYTES = 2049, /* with their 0 */
     NAMED_VIEWS = 256, WALLS = 16, WALL_DISPLAYS = 16, WALL_PANES = 24, WALL_ROWS = 12, PANE_ITEMS = 16,
-    TOURS = 32, TOUR_STOPS = 64, TOUR_TEXT_BYTES = 241
+    TOURS = 32, TOUR_STOPS = 64, TOUR_TEXT_BYTES = 241, OTHER_PLANTS = 16
 };
 
 struct named_view {
@@ -33,13 +33,23 @@ struct tour {
     int line;
 };
 
-enum pane_kind { PANE_VIEWS, PANE_TREND, PANE_ALARMS, PANE_TILES, PANE_CLOCK, PANE_TEXT, PANE_TOUR };
+/* A plant with a server of its own, whose picture panes show. */
+struct other_plant {
+    char *id, *url;
+    char *token_file, *ca_file; /* NULL: none */
+    char *view;                 /* the id of a view of its plant file; NULL: all of the plant */
+    double every_s;             /* how often its server is asked */
+    int width_px, height_px;
+    int line;
+};
+
+enum pane_kind { PANE_VIEWS, PANE_TREND, PANE_ALARMS, PANE_TILES, PANE_CLOCK, PANE_TEXT, PANE_TOUR, PANE_SNAPSHOT };
 extern const char *const pane_kind_names[]; /* by pane_kind: keys of a pane */
 
 struct wall_pane {
     char *area, *title; /* letters of the grid; title NULL: none */
     enum pane_kind kind;
-    char *items[PANE_ITEMS]; /* names of views, in turn; tags of a trend or of tiles; the text; a tour */
+    char *items[PANE_ITEMS]; /* names of views, in turn; tags of a trend or of tiles; the text; a tour; another plant */
     size_t item_count;
     int item_lines[PANE_ITEMS], item_columns[PANE_ITEMS];
     double every_s; /* of views: how long each is shown */
@@ -84,6 +94,7 @@ struct plant;
 const struct named_view *named_view_find(const struct plant *plant, const char *id);
 const struct tour *tour_find(const struct plant *plant, const char *id);
 const struct wall *wall_find(const struct plant *plant, const char *id);
+int other_plant_find(const struct plant *plant, const char *id); /* an index, or -1 */
 /* Returns a display of a wall of the plant file, NULL if it has none such. number: from 1. */
 const struct wall_display *wall_display_find(const struct plant *plant, const char *wall, int number);
 /* Return whether a display has a pane of views or a tour; whether a trend or a tile of it is of that tag; whether the

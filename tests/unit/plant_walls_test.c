@@ -88,6 +88,51 @@ static void tiles_are_the_first_displays(void **state)
     mem_free(text);
 }
 
+static void other_plants_are_read(void **state)
+{
+    struct plant_case *c = *state;
+    load(c, "other_plants:\n- { id: tanks, url: \"https://tanks.example/\", view: all, every_s: 10, width: 1920, height: 1080 }\n"
+            "- { id: pier, url: \"http://localhost:8080\" }\n"
+            "walls: [{ id: room, displays: [{ grid: [a b], panes: [{ area: a, snapshot: tanks }, { area: b, snapshot: [pier] }] }] }]");
+    plant_case_assert_loaded(c, 0);
+    assert_int_equal(c->plant->other_plant_count, 2);
+    const struct other_plant *tanks = &c->plant->other_plants[0], *pier = &c->plant->other_plants[1];
+    assert_string_equal(tanks->view, "all");
+    assert_true(tanks->every_s == 10 && tanks->width_px == 1920 && tanks->height_px == 1080);
+    assert_true(!pier->view && !pier->token_file && pier->every_s == 5 && pier->width_px == 1280 && pier->height_px == 720);
+    assert_int_equal(other_plant_find(c->plant, "pier"), 1);
+    assert_int_equal(other_plant_find(c->plant, "room"), -1);
+    assert_true(wall_display_has(wall_display_find(c->plant, "room", 1), PANE_SNAPSHOT, "pier"));
+    char *text = walls_text(c->plant, NULL);
+    assert_non_null(strstr(text, "\"kind\":\"snapshot\",\"title\":null,\"items\":[\"tanks\"]"));
+    mem_free(text);
+}
+
+static void wrong_other_plants_are_said_at_their_place(void **state)
+{
+    struct plant_case *c = *state;
+    load(c, "other_plants:\n- { id: a, url: \"ftp://h/\" }\n- { id: b, url: \"http://h/\", token_file: t }\n"
+            "- { id: b, url: \"https://u:p@h/\" }\n- { id: c, url: \"https://h/?x\", every_s: 1, width: 100 }\n"
+            "- { id: c d, url: \"https://h/\", view: a&b }\n- { url: \"https://h/\" }");
+    FOUND(c, { "plant.yaml", 7, 17, "url: it begins with another scheme" }, { "plant.yaml", 8, 42, "cannot be read" },
+          { "plant.yaml", 8, 42, "token_file: a token is sent over https" },
+          { "plant.yaml", 9, 17, "a password does not stand in the plant file" }, { "plant.yaml", 9, 9, "'b'" },
+          { "plant.yaml", 10, 17, "without '?' and '#'" }, { "plant.yaml", 10, 42, "every_s" }, { "plant.yaml", 10, 52, "width" },
+          { "plant.yaml", 11, 9, "id: expected letters" }, { "plant.yaml", 11, 39, "view: expected the id" },
+          { "plant.yaml", 12, 3, "id" });
+}
+
+static void what_a_snapshot_names_is_checked(void **state)
+{
+    struct plant_case *c = *state;
+    load(c, "other_plants: [{ id: tanks, url: \"https://h/\" }]\nwalls:\n- id: r\n  displays:\n  - grid: [a b]\n    panes:\n"
+            "    - { area: a, snapshot: tank }\n    - { area: b, snapshot: [tanks, tanks] }");
+    FOUND(c, { "plant.yaml", 13, 28, "snapshot: expected one, found 2" });
+    load(c, "other_plants: [{ id: tanks, url: \"https://h/\" }]\nwalls:\n- id: r\n  displays:\n  - grid: [a]\n    panes:\n"
+            "    - { area: a, snapshot: tank }");
+    FOUND(c, { "plant.yaml", 12, 28, "snapshot: `other_plants` has no 'tank'; did you mean 'tanks'?" });
+}
+
 static void wrong_tiles_are_said_at_their_place(void **state)
 {
     struct plant_case *c = *state;
@@ -173,6 +218,9 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup_teardown(all_keys_are_read, plant_case_set_up, plant_case_tear_down),
         cmocka_unit_test_setup_teardown(tiles_are_the_first_displays, plant_case_set_up, plant_case_tear_down),
+        cmocka_unit_test_setup_teardown(other_plants_are_read, plant_case_set_up, plant_case_tear_down),
+        cmocka_unit_test_setup_teardown(wrong_other_plants_are_said_at_their_place, plant_case_set_up, plant_case_tear_down),
+        cmocka_unit_test_setup_teardown(what_a_snapshot_names_is_checked, plant_case_set_up, plant_case_tear_down),
         cmocka_unit_test_setup_teardown(wrong_tiles_are_said_at_their_place, plant_case_set_up, plant_case_tear_down),
         cmocka_unit_test_setup_teardown(what_a_tile_names_is_checked_once, plant_case_set_up, plant_case_tear_down),
         cmocka_unit_test_setup_teardown(what_is_wrong_is_said_at_its_place, plant_case_set_up, plant_case_tear_down),

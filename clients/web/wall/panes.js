@@ -7,9 +7,11 @@ import { say } from '../core/words.js';
 import { clock } from '../app/common/clock.js';
 import { make, setText, setVariable } from '../app/common/dom.js';
 import { badge, limitText } from '../app/alarms/alarm_bar.js';
+import { SnapshotPane } from './snapshot_pane.js';
 
 const LEAST_PART = 0.4;
-const KINDS = { views: ViewsPane, trend: TrendPane, alarms: AlarmsPane, tiles: TilesPane, clock: ClockPane, text: TextPane };
+const KINDS = { views: ViewsPane, trend: TrendPane, alarms: AlarmsPane, tiles: TilesPane, clock: ClockPane, text: TextPane,
+    snapshot: SnapshotPane };
 
 // The name of an area as CSS takes it: a number is none, and some words mean something there.
 export const areaOf = (name) => (name === '.' ? name : `area-${name.replace(/\./g, '_')}`);
@@ -18,7 +20,7 @@ export function paneOf(pane, context) {
     const title = make('h2', {}, pane.title ?? ''), body = make('div', { class: 'body' });
     const element = make('section', { class: `pane ${pane.kind}` }, title, body);
     element.style.gridArea = areaOf(pane.area);
-    const { tick = () => {} } = KINDS[pane.kind](pane, { ...context, title, body, element });
+    const { tick = () => {} } = KINDS[pane.kind](pane, { ...context, title, body, element, timeOf });
     return { element, kind: pane.kind, tick };
 }
 

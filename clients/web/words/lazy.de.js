@@ -135,6 +135,19 @@ flood: Alarmschwall: {active} aktiv, {waiting} zu quittieren
 late: Die Verbindung zu dieser Anzeige ist zu langsam; ausgelassen seit {time}
 missing: Fehlt: Anzeige {displays}
 
+[others]
+gone: Kein Bild von {name} seit {time}
+waiting: Warten auf den Server der Anlage
+unreachable: Ihr Server antwortet nicht
+tls: Dem Zertifikat ihres Servers wird nicht vertraut
+token: Die Datei mit dem Token für sie ist nicht lesbar
+refused: Ihr Server nimmt das Token nicht an
+busy: Ihr Server ist überlastet
+slow: Ihr Server antwortet zu langsam
+large: Ihr Server sendet zu viel
+no_picture: Ihr Server sendet kein Bild
+unheard: Der Server dieser Anlage sagt nichts über sie
+
 [notes]
 legend: Notizen
 text: Notiz für die Schicht

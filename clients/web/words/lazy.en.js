@@ -133,6 +133,19 @@ flood: Flood of alarms: {active} active, {waiting} to be acknowledged
 late: The link to this display is too slow; left out since {time}
 missing: Not shown: display {displays}
 
+[others]
+gone: No picture of {name} since {time}
+waiting: Waiting for its server
+unreachable: Its server does not answer
+tls: Its server's certificate is not trusted
+token: The file with the token for it cannot be read
+refused: Its server does not accept the token
+busy: Its server has too much to do
+slow: Its server answers too slowly
+large: What its server sends is too large
+no_picture: Its server sends no picture
+unheard: This plant's server says nothing of it
+
 [notes]
 legend: Notes
 text: Note for the crew

@@ -133,6 +133,19 @@ flood: 경보 폭주: 활성 {active}건, 확인 대기 {waiting}건
 late: 이 화면의 연결이 너무 느려 {time}부터 제외됨
 missing: 표시되지 않음: 화면 {displays}
 
+[others]
+gone: {time}부터 {name} 화면이 없습니다
+waiting: 해당 서버를 기다리는 중
+unreachable: 해당 서버가 응답하지 않습니다
+tls: 해당 서버의 인증서를 신뢰할 수 없습니다
+token: 토큰 파일을 읽을 수 없습니다
+refused: 해당 서버가 토큰을 받아들이지 않습니다
+busy: 해당 서버에 부하가 너무 많습니다
+slow: 해당 서버의 응답이 너무 느립니다
+large: 해당 서버가 보내는 데이터가 너무 큽니다
+no_picture: 해당 서버가 화면을 보내지 않습니다
+unheard: 이 플랜트의 서버가 아무것도 알려 주지 않습니다
+
 [notes]
 legend: 메모
 text: 근무조에 남길 메모

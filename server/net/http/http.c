@@ -68,6 +68,8 @@ static const struct {
     { "/api/v1/proofs", api_loop_checks, ROLE_VIEWER, 0 },
     { "/api/v1/views", api_views, ROLE_VIEWER, 0 },
     { "/api/v1/walls", api_walls, ROLE_VIEWER, VIEWS | DISPLAY },
+    { "/api/v1/other_plants", api_other_plants, ROLE_VIEWER, DISPLAY },
+    { "/api/v1/other_plants/picture", ask_other_picture, ROLE_VIEWER, DISPLAY },
     { "/api/v1/notes", api_notes, ROLE_VIEWER, 0 },
     { "/api/v1/pick", ask_pick, ROLE_VIEWER, 0 },
     { "/api/v1/history", ask_history, ROLE_VIEWER, DISPLAY | NODE },

@@ -114,6 +114,8 @@ int api_plant(struct server_context *server, struct request *request);
 int api_views(struct server_context *server, struct request *request);
 int api_notes(struct server_context *server, struct request *request);
 int api_walls(struct server_context *server, struct request *request);
+int api_other_plants(struct server_context *server, struct request *request);
+int ask_other_picture(struct server_context *server, struct request *request);
 int api_pair(struct server_context *server, struct request *request);
 int api_devices(struct server_context *server, struct request *request);
 int api_loop_checks(struct server_context *server, struct request *request);

@@ -13,6 +13,7 @@
 #include "session/reply.h"
 #include "net/connection.h"
 
+enum { NAME_BYTES = 256 };
 enum { LEGEND_LEAST_PX = 256 }; /* a narrower picture has no room for what would be read from it */
 
 static const struct encoder_params LOSSLESS = { .quality = 100, .full_chroma = true };
@@ -172,25 +173,40 @@ int ask_snapshot(struct server_context *server, struct request *request)
 }
 
 /* What the header says of the values that take part, for programs that show the picture on. */
-static void say_values(const struct frame *frame, char out[96])
+static void say_values(const struct frame *frame, struct text *out)
 {
-    int count = snprintf(out, 96, "data_time_us=%lld, oldest_age_ms=", (long long)(frame->data_utc_ns / 1000));
+    text_add(out, "data_time_us=%lld, oldest_age_ms=", (long long)(frame->data_utc_ns / 1000));
     if (frame->oldest_age_ns == INT64_MAX)
-        strcpy(out + count, "none");
+        text_add(out, "none");
     else
-        snprintf(out + count, 96 - (size_t)count, "%lld", (long long)(frame->oldest_age_ns / 1000000));
+        text_add(out, "%lld", (long long)(frame->oldest_age_ns / 1000000));
+}
+
+/* For who may know it; a name that is longer than this is nobody's title. */
+static void say_plant(const struct server_context *server, const struct request *request, struct text *out)
+{
+    const char *name = server->params.plant.scene->plant->name;
+    if (connection_of(request->wsi)->role == ROLE_OPEN || strlen(name) > NAME_BYTES)
+        return;
+    text_add(out, ", plant=");
+    text_add_escaped(out, name);
 }
 
 /* packet: NULL: it cannot be made. */
 static void answer_picture(struct server_context *server, struct request *request, const struct packet *packet)
 {
-    char values[96] = "", *body = packet ? memcpy(mem_array(packet->count, 1), packet->bytes, packet->count) : NULL;
-    if (packet)
-        say_values(packet->frame, values);
+    char *body = packet ? memcpy(mem_array(packet->count, 1), packet->bytes, packet->count) : NULL;
+    struct text values = { 0 };
+    text_add(&values, "%s", "");
+    if (packet) {
+        say_values(packet->frame, &values);
+        say_plant(server, request, &values);
+    }
     request_forget(server, request);
-    int status = body ? request_answer(request, HTTP_STATUS_OK, "image/png", body, packet->count, "plantcast-frame:", values)
+    int status = body ? request_answer(request, HTTP_STATUS_OK, "image/png", body, packet->count, "plantcast-frame:", values.at)
                       : request_answer_text(request, HTTP_STATUS_INTERNAL_SERVER_ERROR, "the picture could not be made\n");
     request_answered(request, status);
+    text_finish(&values);
 }
 
 /* Where there is a key and the picture has a legend. Takes the frame. */

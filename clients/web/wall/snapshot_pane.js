@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A pane with the picture of another plant, which this plant's server asks that one's for; without one it says so in letters.
+import { ageText } from '../core/format.js';
+import { ask } from '../core/history.js';
+import { say } from '../core/words.js';
+import { clock } from '../app/common/clock.js';
+import { make, setText } from '../app/common/dom.js';
+
+const ASK_MS = 1000, UNHEARD_MS = 5000; // so long without a word from this plant's server, nothing is known of the other
+
+// Returns { tick(now) }. timeOf(us): the plant's time.
+export function SnapshotPane(pane, { session, title, body, timeOf }) {
+    const [id] = pane.items, image = make('img', { alt: '' }), card = make('div', { class: 'gone' });
+    const about = make('span', { class: 'about' }), name = make('span', { class: 'said' });
+    let state = null, asks = false, askedAt = -Infinity;
+    let shown = null, changedAt = 0; // { picture, ageMs, at }; since when there is another one to be shown
+    title.replaceChildren(name, about);
+    body.append(image, card);
+
+    async function load({ picture, age_ms: ageMs, at }) {
+        const response = await ask('api/v1/other_plants/picture', { id, picture }, session.token);
+        const url = URL.createObjectURL(await response.blob()), old = image.src;
+        image.src = url;
+        await image.decode();
+        shown = { picture, ageMs, at };
+        if (old)
+            URL.revokeObjectURL(old);
+    }
+
+    async function look() {
+        const at = askedAt = clock.now(); // what it took to answer counts as age
+        asks = true;
+        try {
+            const { list: [said] } = await (await ask('api/v1/other_plants', { id }, session.token)).json();
+            if (said.picture !== state?.picture)
+                changedAt = at;
+            state = { ...said, at };
+            if (said.picture && said.picture !== shown?.picture)
+                await load(state);
+        } catch {
+            // said as soon as nothing was heard for too long
+        } finally {
+            asks = false;
+        }
+    }
+
+    // Why its picture is not shown; '': it is.
+    function whyNot(now) {
+        if (!state)
+            return 'waiting';
+        if (now - state.at > UNHEARD_MS)
+            return 'unheard';
+        if (!state.picture)
+            return state.why;
+        return !shown ? 'waiting' : shown.picture === state.picture || now - changedAt < UNHEARD_MS ? '' : 'unheard';
+    }
+
+    return { tick(now) {
+        if (!asks && now - askedAt >= ASK_MS)
+            look();
+        const why = whyNot(now), known = state?.name || id, aged = !why && shown.ageMs !== null;
+        setText(name, pane.title ?? known);
+        setText(about, [pane.title && known, !why && say('walls.age', { age: aged ? ageText(shown.ageMs + now - shown.at) : '–' })]
+            .filter(Boolean).join(' · '));
+        image.hidden = why !== '';
+        card.hidden = why === '';
+        const gone = why === 'waiting' ? '' : say('others.gone', { name: known, time: timeOf(session, state?.since_us) });
+        if (why && card.dataset.shows !== gone + why)
+            card.replaceChildren(...(gone ? [make('b', {}, gone)] : []), make('span', {}, say(`others.${why}`)));
+        card.dataset.shows = gone + why;
+    } };
+}

@@ -1,0 +1,65 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What displays ask of other plants: how it is with each, and its picture. */
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/clock.h"
+#include "base/mem.h"
+#include "net/connection.h"
+#include "net/http/http_impl.h"
+#include "views/other_plants.h"
+
+/* An index, or -1. A paired device asks for what its display shows. */
+static int find(const struct server_context *server, const struct request *request, const char *id)
+{
+    const struct plant *plant = server->params.plant.scene->plant;
+    const struct token_holder *holder = &connection_of(request->wsi)->holder;
+    if (holder->display && !wall_display_has(wall_display_find(plant, holder->wall, holder->display), PANE_SNAPSHOT, id))
+        return -1;
+    return other_plant_find(plant, id);
+}
+
+static int refuse_unknown(struct request *request)
+{
+    return request_answer_text(request, HTTP_STATUS_NOT_FOUND,
+                               "the plant file has no such plant in `other_plants`, or this display none\n");
+}
+
+int api_other_plants(struct server_context *server, struct request *request)
+{
+    struct message_error error = { 0 };
+    struct args args;
+    int which[OTHER_PLANTS];
+    size_t count = 0;
+    if (!request_args(request->wsi, &args, &error))
+        return request_answer_error(request, &error);
+    for (size_t i = 0; i < args.count; i++) {
+        if (strncmp(args.list[i], "id=", 3) != 0 || count == OTHER_PLANTS)
+            return request_answer_text(request, HTTP_STATUS_BAD_REQUEST, "expected id=ID, once for each plant\n");
+        which[count] = find(server, request, args.list[i] + 3);
+        if (which[count++] < 0)
+            return refuse_unknown(request);
+    }
+    if (count == 0)
+        return request_answer_text(request, HTTP_STATUS_BAD_REQUEST, "expected id=ID, once for each plant\n");
+    return request_answer_json(request, other_plants_text(server->params.plant.other_plants, which, count, clock_mono_ns()));
+}
+
+int ask_other_picture(struct server_context *server, struct request *request)
+{
+    struct message_error error = { 0 };
+    struct args args;
+    size_t bytes;
+    if (!request_args(request->wsi, &args, &error))
+        return request_answer_error(request, &error);
+    const char *id = arg_of(&args, "id"), *number = arg_of(&args, "picture");
+    if (!id || !number)
+        return request_answer_text(request, HTTP_STATUS_BAD_REQUEST, "expected id=ID and picture=N\n");
+    int which = find(server, request, id);
+    if (which < 0)
+        return refuse_unknown(request);
+    char *png = other_plants_picture(server->params.plant.other_plants, which, strtoll(number, NULL, 10), clock_mono_ns(), &bytes);
+    if (!png)
+        return request_answer_text(request, HTTP_STATUS_NOT_FOUND, "this picture is not shown any more\n");
+    return request_answer(request, HTTP_STATUS_OK, "image/png", png, bytes, NULL, NULL);
+}

@@ -1,0 +1,393 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The thread that asks. A picture counts from when it was asked for: what the server took to make it is part of its age. */
+#include "views/other_plants.h"
+
+#include <curl/curl.h>
+#include <jansson.h>
+#include <pthread.h>
+#include <stdatomic.h>
+#include <stdio.h>
+#include <string.h>
+#include <strings.h>
+
+#include "base/clock.h"
+#include "base/json_text.h"
+#include "base/mem.h"
+#include "base/secret.h"
+#include "base/text.h"
+#include "views/other_picture.h"
+
+enum { CONNECT_S = 5, TIMEOUT_S = 10, PICTURE_BYTES = 8 << 20, HEADER_BYTES = 1024, LEAST_PAUSE_S = 5, MOST_PAUSE_S = 60, REST_MS = 60000 };
+static const int64_t WANTED_NS = 30 * NS_PER_S;
+
+/* Why there is no picture, as clients are told; the log says more. */
+enum why { WHY_NONE, WHY_WAITING, WHY_UNREACHABLE, WHY_TLS, WHY_TOKEN, WHY_REFUSED, WHY_BUSY, WHY_SLOW, WHY_LARGE, WHY_NO_PICTURE };
+static const char *const why_names[] = { [WHY_NONE] = "",     [WHY_WAITING] = "waiting", [WHY_UNREACHABLE] = "unreachable",
+                                         [WHY_TLS] = "tls",   [WHY_TOKEN] = "token",     [WHY_REFUSED] = "refused",
+                                         [WHY_BUSY] = "busy", [WHY_SLOW] = "slow",       [WHY_LARGE] = "large",
+                                         [WHY_NO_PICTURE] = "no_picture" };
+
+struct other {
+    const struct other_plant *plant;
+    CURL *handle; /* with its connection; NULL: not made yet */
+    struct curl_slist *headers;
+    struct text body;
+    char header[HEADER_BYTES]; /* Plantcast-Frame of the answer */
+    char error[CURL_ERROR_SIZE];
+    int64_t due_ns, begun_ns, begun_us; /* begun_us: the plant's time */
+    bool running, failing;
+    /* --- below: under lock */
+    int64_t wanted_ns;     /* when somebody asked for it last; 0: nobody did */
+    struct other_picture about;
+    char *png;             /* NULL: none */
+    size_t bytes;
+    int64_t asked_ns, asked_us; /* of the picture that came last; asked_us is its number too; 0: none came */
+    int64_t since_us;      /* since when there is none */
+    enum why why;          /* WHY_NONE: it came */
+};
+
+struct other_plants {
+    struct log *log;
+    pthread_t thread;
+    bool started;
+    _Atomic bool stopping;
+    CURLM *multi;
+    struct other *at;
+    size_t count;
+    pthread_mutex_t lock;
+};
+
+/* --- one request ------------------------------------------------------------------------------------------------------------ */
+
+static size_t take_body(char *bytes, size_t size, size_t count, void *arg)
+{
+    struct other *other = arg;
+    if (other->body.length + size * count > PICTURE_BYTES)
+        return 0;
+    text_add_bytes(&other->body, bytes, size * count);
+    return size * count;
+}
+
+static size_t take_header(char *bytes, size_t size, size_t count, void *arg)
+{
+    static const char name[] = "plantcast-frame:";
+    struct other *other = arg;
+    if (size * count > sizeof(name) && !strncasecmp(bytes, name, sizeof(name) - 1))
+        snprintf(other->header, sizeof(other->header), "%.*s", (int)(size * count - sizeof(name)), bytes + sizeof(name));
+    return size * count;
+}
+
+static CURL *make_handle(struct other *other)
+{
+    const struct other_plant *plant = other->plant;
+    CURL *handle = curl_easy_init();
+    bool slash = plant->url[strlen(plant->url) - 1] == '/';
+    char *url = mem_printf("%s%ssnapshot.png?width=%d&height=%d%s%s", plant->url, slash ? "" : "/", plant->width_px, plant->height_px,
+                           plant->view ? "&view=" : "", plant->view ? plant->view : "");
+    curl_easy_setopt(handle, CURLOPT_URL, url);
+    mem_free(url);
+    curl_easy_setopt(handle, CURLOPT_NOSIGNAL, 1L);
+    curl_easy_setopt(handle, CURLOPT_QUICK_EXIT, 1L); /* a name server that hangs does not keep the daemon from ending */
+    curl_easy_setopt(handle, CURLOPT_PROTOCOLS_STR, "http,https");
+    curl_easy_setopt(handle, CURLOPT_SSLVERSION, (long)CURL_SSLVERSION_TLSv1_2);
+    curl_easy_setopt(handle, CURLOPT_ERRORBUFFER, other->error);
+    curl_easy_setopt(handle, CURLOPT_CONNECTTIMEOUT, (long)CONNECT_S);
+    curl_easy_setopt(handle, CURLOPT_TIMEOUT, (long)TIMEOUT_S);
+    curl_easy_setopt(handle, CURLOPT_MAXFILESIZE, (long)PICTURE_BYTES);
+    curl_easy_setopt(handle, CURLOPT_USERAGENT, "plantcastd");
+    curl_easy_setopt(handle, CURLOPT_WRITEFUNCTION, take_body);
+    curl_easy_setopt(handle, CURLOPT_WRITEDATA, other);
+    curl_easy_setopt(handle, CURLOPT_HEADERFUNCTION, take_header);
+    curl_easy_setopt(handle, CURLOPT_HEADERDATA, other);
+    curl_easy_setopt(handle, CURLOPT_PRIVATE, (void *)other);
+    if (plant->ca_file)
+        curl_easy_setopt(handle, CURLOPT_CAINFO, plant->ca_file);
+    return handle;
+}
+
+/* Reads the token anew. Returns NULL, or why it cannot (mem_free). */
+static char *set_token(struct other *other)
+{
+    char *why = NULL, *token = other->plant->token_file ? secret_read(other->plant->token_file, &why) : NULL;
+    curl_slist_free_all(other->headers);
+    other->headers = NULL;
+    if (token) {
+        char *header = mem_printf("Authorization: Bearer %s", token);
+        other->headers = curl_slist_append(NULL, header);
+        secret_forget(header);
+    }
+    secret_forget(token);
+    curl_easy_setopt(other->handle, CURLOPT_HTTPHEADER, other->headers);
+    return why;
+}
+
+static enum why why_of(CURLcode code)
+{
+    switch (code) {
+    case CURLE_OK: return WHY_NONE;
+    case CURLE_OPERATION_TIMEDOUT: return WHY_SLOW;
+    case CURLE_WRITE_ERROR: /* take_body() took no more */
+    case CURLE_FILESIZE_EXCEEDED: return WHY_LARGE;
+    case CURLE_PEER_FAILED_VERIFICATION:
+    case CURLE_SSL_CACERT_BADFILE:
+    case CURLE_SSL_CONNECT_ERROR: return WHY_TLS;
+    default: return WHY_UNREACHABLE;
+    }
+}
+
+static enum why why_of_status(long status)
+{
+    return status == 200                    ? WHY_NONE
+           : status == 401 || status == 403 ? WHY_REFUSED
+           : status == 429 || status == 503 ? WHY_BUSY
+                                            : WHY_NO_PICTURE;
+}
+
+/* Of an answer that came whole: what is wrong with it, with a word for the log. */
+static enum why judge(struct other *other, struct other_picture *about, char said[160])
+{
+    const struct other_plant *plant = other->plant;
+    long status = 0;
+    curl_easy_getinfo(other->handle, CURLINFO_RESPONSE_CODE, &status);
+    enum why why = why_of_status(status);
+    if (why != WHY_NONE) {
+        snprintf(said, 160, "it answers %ld: %.*s", status, (int)strcspn(other->body.at ? other->body.at : "", "\r\n"),
+                 other->body.at ? other->body.at : "");
+    } else if (!other_picture_read_header(other->header, about)) {
+        snprintf(said, 160, "it does not say how old its readings are, as servers of Plantcast do");
+        why = WHY_NO_PICTURE;
+    } else if (!other->body.at ||
+               !other_picture_is_png((const uint8_t *)other->body.at, other->body.length, plant->width_px, plant->height_px)) {
+        snprintf(said, 160, "what it sends is no PNG file of %d x %d", plant->width_px, plant->height_px);
+        why = WHY_NO_PICTURE;
+    }
+    return why;
+}
+
+/* A server that is busy, or was slow once, is not gone: its last picture is shown until that is too old. */
+static void note_failure(struct other_plants *others, struct other *other, enum why why, const char *said)
+{
+    pthread_mutex_lock(&others->lock);
+    if (why != WHY_BUSY && why != WHY_SLOW) {
+        mem_free(other->png);
+        other->png = NULL;
+    }
+    other->why = why;
+    pthread_mutex_unlock(&others->lock);
+    if (!other->failing)
+        log_warn(others->log, "plant %s: no picture from %s: %s", other->plant->id, other->plant->url, said);
+    other->failing = true;
+}
+
+static void note_picture(struct other_plants *others, struct other *other, const struct other_picture *about)
+{
+    pthread_mutex_lock(&others->lock);
+    mem_free(other->png);
+    other->png = other->body.at;
+    other->bytes = other->body.length;
+    other->about = *about;
+    other->asked_ns = other->begun_ns;
+    other->asked_us = other->since_us = other->begun_us;
+    other->why = WHY_NONE;
+    pthread_mutex_unlock(&others->lock);
+    other->body = (struct text){ 0 };
+    if (other->failing)
+        log_info(others->log, "plant %s: pictures come again", other->plant->id);
+    other->failing = false;
+}
+
+/* From one beginning to the next, but a server that says when to come again is left alone until then. */
+static void rest(struct other *other, bool good)
+{
+    curl_off_t pause_s = 1;
+    int64_t next_ns = other->begun_ns + (int64_t)(other->plant->every_s * 1e9);
+    if (!good) {
+        curl_easy_getinfo(other->handle, CURLINFO_RETRY_AFTER, &pause_s);
+        pause_s = pause_s < LEAST_PAUSE_S ? LEAST_PAUSE_S : pause_s > MOST_PAUSE_S ? MOST_PAUSE_S : pause_s;
+    }
+    int64_t least_ns = clock_mono_ns() + pause_s * NS_PER_S;
+    other->due_ns = next_ns > least_ns ? next_ns : least_ns;
+}
+
+static void on_end(struct other_plants *others, struct other *other, CURLcode code)
+{
+    struct other_picture about;
+    char said[CURL_ERROR_SIZE + 160];
+    enum why why = why_of(code);
+    snprintf(said, sizeof(said), "%s", other->error[0] ? other->error : curl_easy_strerror(code));
+    if (why == WHY_LARGE)
+        snprintf(said, sizeof(said), "it sends more than %d bytes", PICTURE_BYTES);
+    if (why == WHY_NONE)
+        why = judge(other, &about, said);
+    if (why == WHY_NONE)
+        note_picture(others, other, &about);
+    else
+        note_failure(others, other, why, said);
+    text_finish(&other->body);
+    rest(other, why == WHY_NONE);
+    other->running = false;
+}
+
+static void begin(struct other_plants *others, struct other *other)
+{
+    if (!other->handle)
+        other->handle = make_handle(other);
+    other->begun_ns = clock_mono_ns();
+    other->begun_us = clock_plant_ns() / 1000;
+    other->error[0] = other->header[0] = 0;
+    char *why = set_token(other);
+    if (why) {
+        note_failure(others, other, WHY_TOKEN, why);
+        rest(other, false);
+        mem_free(why);
+        return;
+    }
+    other->running = true;
+    curl_multi_add_handle(others->multi, other->handle);
+}
+
+/* --- the thread ------------------------------------------------------------------------------------------------------------- */
+
+/* Begins what is due. Returns in how many milliseconds something else is. */
+static int begin_due(struct other_plants *others)
+{
+    int64_t now_ns = clock_mono_ns(), next_ns = now_ns + REST_MS * NS_PER_MS;
+    for (size_t i = 0; i < others->count; i++) {
+        struct other *other = &others->at[i];
+        pthread_mutex_lock(&others->lock);
+        bool wanted = other->wanted_ns && now_ns - other->wanted_ns < WANTED_NS;
+        if (!wanted && other->wanted_ns && !other->running) { /* nobody looks: what it was is not kept */
+            mem_free(other->png);
+            other->png = NULL;
+            other->wanted_ns = other->asked_us = 0;
+        }
+        pthread_mutex_unlock(&others->lock);
+        if (!wanted || other->running)
+            continue;
+        if (other->due_ns <= now_ns)
+            begin(others, other);
+        if (!other->running && other->due_ns < next_ns)
+            next_ns = other->due_ns;
+    }
+    return (int)((next_ns - now_ns) / NS_PER_MS) + 1;
+}
+
+static void *run(void *arg)
+{
+    struct other_plants *others = arg;
+    int running, left;
+    while (!atomic_load(&others->stopping)) {
+        int wait_ms = begin_due(others);
+        curl_multi_perform(others->multi, &running);
+        curl_multi_poll(others->multi, NULL, 0, wait_ms, NULL);
+        curl_multi_perform(others->multi, &running);
+        for (CURLMsg *message; (message = curl_multi_info_read(others->multi, &left));) {
+            struct other *other = NULL;
+            if (message->msg != CURLMSG_DONE)
+                continue;
+            CURLcode code = message->data.result;
+            curl_easy_getinfo(message->easy_handle, CURLINFO_PRIVATE, (char **)&other);
+            curl_multi_remove_handle(others->multi, message->easy_handle);
+            on_end(others, other, code);
+        }
+    }
+    return NULL;
+}
+
+/* --- what displays are told ---------------------------------------------------------------------------------------------------- */
+
+static bool is_shown(const struct other *other, int64_t now_ns)
+{
+    return other->png && now_ns - other->asked_ns <= (int64_t)(other->plant->every_s * 1e9) + TIMEOUT_S * NS_PER_S;
+}
+
+static json_t *state_of(const struct other *other, int64_t now_ns)
+{
+    bool shown = is_shown(other, now_ns), aged = shown && other->about.oldest_age_ms >= 0;
+    enum why why = shown ? WHY_NONE : other->why == WHY_NONE ? WHY_SLOW : other->why;
+    json_int_t age_ms = aged ? other->about.oldest_age_ms + (now_ns - other->asked_ns) / NS_PER_MS : 0;
+    return json_pack("{s:s,s:o,s:I,s:o,s:I,s:s}", "id", other->plant->id, "name",
+                     other->about.name[0] ? json_string(other->about.name) : json_null(), "picture",
+                     (json_int_t)(shown ? other->asked_us : 0), "age_ms", aged ? json_integer(age_ms) : json_null(), "since_us",
+                     (json_int_t)other->since_us, "why", why_names[why]);
+}
+
+char *other_plants_text(struct other_plants *others, const int *which, size_t count, int64_t now_ns)
+{
+    json_t *list = json_array();
+    bool wakes = false;
+    pthread_mutex_lock(&others->lock);
+    for (size_t i = 0; i < count; i++) {
+        struct other *other = &others->at[which[i]];
+        if (!other->wanted_ns) { /* begun anew */
+            other->why = WHY_WAITING;
+            other->since_us = clock_plant_ns() / 1000;
+            wakes = true;
+        }
+        other->wanted_ns = now_ns;
+        json_array_append_new(list, state_of(other, now_ns));
+    }
+    pthread_mutex_unlock(&others->lock);
+    if (wakes)
+        curl_multi_wakeup(others->multi);
+    return json_text(json_pack("{s:o}", "list", list), 0);
+}
+
+char *other_plants_picture(struct other_plants *others, int which, int64_t number, int64_t now_ns, size_t *bytes)
+{
+    const struct other *other = &others->at[which];
+    char *copy = NULL;
+    pthread_mutex_lock(&others->lock);
+    if (is_shown(other, now_ns) && other->asked_us == number) {
+        *bytes = other->bytes;
+        copy = memcpy(mem_array(other->bytes, 1), other->png, other->bytes);
+    }
+    pthread_mutex_unlock(&others->lock);
+    return copy;
+}
+
+/* --- life ------------------------------------------------------------------------------------------------------------------- */
+
+struct other_plants *other_plants_start(struct log *log, const struct plant *plant)
+{
+    struct other_plants *others = mem_new(sizeof(*others));
+    others->log = log;
+    others->count = plant->other_plant_count;
+    others->at = mem_array(others->count, sizeof(*others->at));
+    pthread_mutex_init(&others->lock, NULL);
+    for (size_t i = 0; i < others->count; i++)
+        others->at[i].plant = &plant->other_plants[i];
+    bool usable = curl_global_init(CURL_GLOBAL_DEFAULT) == CURLE_OK && (others->multi = curl_multi_init());
+    others->started = usable && pthread_create(&others->thread, NULL, run, others) == 0;
+    if (!others->started) {
+        log_err(log, "pictures of other plants cannot be asked for: %s", usable ? "no thread" : "libcurl cannot be used");
+        other_plants_stop(&others);
+    }
+    return others;
+}
+
+void other_plants_stop(struct other_plants **pointer)
+{
+    struct other_plants *others = *pointer;
+    if (!others)
+        return;
+    atomic_store(&others->stopping, true);
+    if (others->started) {
+        curl_multi_wakeup(others->multi);
+        pthread_join(others->thread, NULL);
+    }
+    for (size_t i = 0; i < others->count; i++) {
+        struct other *other = &others->at[i];
+        if (other->running)
+            curl_multi_remove_handle(others->multi, other->handle);
+        curl_easy_cleanup(other->handle);
+        curl_slist_free_all(other->headers);
+        text_finish(&other->body);
+        mem_free(other->png);
+    }
+    curl_multi_cleanup(others->multi);
+    pthread_mutex_destroy(&others->lock);
+    mem_free(others->at);
+    mem_free(others);
+    *pointer = NULL;
+}

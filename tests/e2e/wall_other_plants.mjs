@@ -1,0 +1,242 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A pane of a wall that shows another plant: by two daemons, in the page and in the player; what is said where there is no picture of it,
+// whatever its server does instead of sending one.
+import assert from 'node:assert/strict';
+import { appendFileSync, chmodSync, existsSync, readFileSync, writeFileSync } from 'node:fs';
+import { once } from 'node:events';
+import { createServer } from 'node:http';
+import { request } from 'node:https';
+import { join } from 'node:path';
+import { spawn } from 'node:child_process';
+import { after, before, test } from 'node:test';
+import { openPage, SCREENSHOTS, shoot } from './support/browser.mjs';
+import { freePort } from './support/ports.mjs';
+import { makeCertificate } from './support/receivers.mjs';
+import { BIN, missing, runProgram, TinyPlant } from './support/tiny_plant.mjs';
+import { missingDisplay, savePng, startDisplay } from './support/x_display.mjs';
+
+const PLAYER = join(BIN, 'plantcast-wall'), none = missing();
+const options = { skip: none.length > 0 ? `not built: ${none}` : false, timeout: 240000 };
+const noPlayer = (existsSync(PLAYER) ? null : 'not built: plantcast-wall') ?? missingDisplay();
+const SIZE = [1280, 720], LARGE_BYTES = 9 << 20, NAME = 'Zwei Kästen, 탱크 2';
+const sleep = (ms) => new Promise((done) => setTimeout(done, ms));
+const tokens = {};
+let plant, other, otherArgs, fake, fakePort, picture, small, display, player;
+
+// What servers do instead of sending a picture; told by the first part of the path.
+const FRAME = { 'plantcast-frame': 'data_time_us=1, oldest_age_ms=1500, plant=Fake%20plant', 'content-type': 'image/png' };
+const MANNERS = {
+    good: (response) => response.writeHead(200, FRAME).end(picture),
+    slow(response) {
+        response.writeHead(200, { ...FRAME, 'content-length': picture.length });
+        const timer = setInterval((at) => response.write(picture.subarray(at.i, ++at.i)), 300, { i: 0 });
+        response.on('close', () => clearInterval(timer));
+    },
+    large: (response) => response.writeHead(200, FRAME).end(Buffer.alloc(LARGE_BYTES)),
+    page: (response) => response.writeHead(200, { 'content-type': 'text/html' }).end('<html>a log-in</html>'),
+    unsaid: (response) => response.writeHead(200, { 'content-type': 'image/png' }).end(picture),
+    cut: (response) => response.writeHead(200, FRAME).end(picture.subarray(0, picture.length - 40)),
+    small: (response) => response.writeHead(200, FRAME).end(small),
+    elsewhere: (response) => response.writeHead(302, { location: `http://127.0.0.1:${fakePort}/good/snapshot.png` }).end(),
+    busy: (response) => response.writeHead(503, { 'retry-after': '5' }).end('too many pictures are being made\n'),
+    shut: (response) => response.writeHead(401).end('a token is needed\n'),
+};
+const EXPECTED = { good: '', slow: 'slow', large: 'large', page: 'no_picture', unsaid: 'no_picture', cut: 'no_picture',
+    small: 'no_picture', elsewhere: 'no_picture', busy: 'busy', shut: 'refused', untrusted: 'tls', away: 'unreachable',
+    tokenless: 'token', wrong: 'no_picture' };
+
+const get = async (path, token = tokens.viewer) => {
+    const response = await fetch(`http://127.0.0.1:${plant.port}/${path}`, { headers: { Authorization: `Bearer ${token}` } });
+    return { status: response.status, body: Buffer.from(await response.arrayBuffer()) };
+};
+const stateOf = async (id) => JSON.parse((await get(`api/v1/other_plants?id=${id}`)).body).list[0];
+async function until(look, what, ms = 90000) {
+    for (const end = performance.now() + ms; ; await sleep(100)) {
+        const found = await look();
+        if (found)
+            return found;
+        assert.ok(performance.now() < end, `${what}\n${plant.daemon.said}\n${player?.said ?? ''}`);
+    }
+}
+
+const ask = (path) => new Promise((done, fail) => {
+    const ca = readFileSync(join(other.folder, 'mail.pem')), headers = { Authorization: `Bearer ${tokens.other}` };
+    request({ host: '127.0.0.1', port: other.port, path, ca, headers }, async (response) => {
+        const parts = [];
+        for await (const part of response)
+            parts.push(part);
+        done(Buffer.concat(parts));
+    }).on('error', fail).end();
+});
+
+function addToken(file, name, ...more) {
+    const { out, err } = runProgram('plantcast', ['token', 'add', file, '--role', 'viewer', '--name', name, ...more]);
+    assert.ok(out, err);
+    chmodSync(file, 0o600);
+    return out.trim();
+}
+
+async function startOther() {
+    other = await TinyPlant.create();
+    makeCertificate(other.folder);
+    tokens.other = addToken(join(other.folder, 'tokens'), 'wall', '--unattended');
+    writeFileSync(other.file, readFileSync(other.file, 'utf8').replace('Two boxes', NAME));
+    appendFileSync(other.file, 'views: [{ id: warm, title: Warm, view: "group=temperature" }]\n');
+    assert.equal(other.prepare().code, 0);
+    await other.startSim();
+    const file = (name) => join(other.folder, name);
+    const tls = ['--tls-cert', file('mail.pem'), '--tls-key', file('mail.key')];
+    otherArgs = [...tls, '--tokens', file('tokens'), '--port', String(await freePort())];
+    await other.startDaemon(...otherArgs);
+    for (const [tag, value] of [['TI-1', 80], ['TI-2', 20], ['PI-1', 5]])
+        await other.tell(`set ${tag} ${value}`);
+}
+
+// Its wall shows the other plant large, and beside it one whose server answers nonsense.
+async function startPlant() {
+    plant = await TinyPlant.create();
+    const at = (id, more = '') => `- { id: ${id}, url: "http://127.0.0.1:${fakePort}/${id}", every_s: 2${more} }\n`;
+    const url = `https://127.0.0.1:${other.port}`, ca = `ca_file: ${join(other.folder, 'mail.pem')}`;
+    const entries = [`- { id: tanks, url: "${url}/", token_file: other.token, ${ca}, view: warm, every_s: 2 }\n`,
+        `- { id: untrusted, url: "${url}", token_file: other.token, every_s: 2 }\n`,
+        `- { id: tokenless, url: "${url}", token_file: none.token, ${ca}, every_s: 2 }\n`,
+        `- { id: wrong, url: "${url}", token_file: other.token, ${ca}, view: nowhere, every_s: 2 }\n`,
+        `- { id: away, url: "http://127.0.0.1:${await freePort()}", every_s: 2 }\n`, ...Object.keys(MANNERS).map((id) => at(id))];
+    appendFileSync(plant.file, `other_plants:\n${entries.join('')}walls:
+- id: room
+  displays:
+  - grid: [tanks tanks page, tanks tanks clock]
+    panes: [{ area: tanks, title: Tank farm, snapshot: tanks }, { area: page, snapshot: page }, { area: clock, clock: yes }]
+  - { grid: [a], panes: [{ area: a, clock: yes }] }
+`);
+    writeFileSync(join(plant.folder, 'other.token'), `${tokens.other}\n`);
+    const file = join(plant.folder, 'tokens');
+    tokens.viewer = addToken(file, 'wall', '--unattended');
+    tokens.display = addToken(file, 'one', '--display', 'room:1');
+    tokens.second = addToken(file, 'two', '--display', 'room:2');
+    assert.equal(plant.prepare().code, 0);
+    await plant.startSim();
+    await plant.startDaemon('--tokens', file);
+}
+
+before(async () => {
+    if (options.skip)
+        return;
+    await startOther();
+    picture = await until(async () => {
+        const png = await ask(`/snapshot.png?width=${SIZE[0]}&height=${SIZE[1]}`);
+        return png.length > 5000 && png;
+    }, 'a picture');
+    small = await ask('/snapshot.png?width=640&height=360');
+    fake = createServer(({ url }, response) => MANNERS[url.split('/')[1]](response));
+    fake.listen(0, '127.0.0.1');
+    await once(fake, 'listening');
+    fakePort = fake.address().port;
+    await startPlant();
+});
+after(async () => {
+    player?.child.kill();
+    await player?.ended;
+    await display?.stop();
+    fake?.closeAllConnections();
+    fake?.close();
+    await plant?.destroy();
+    await other?.destroy();
+});
+
+test('what a server does instead of sending its picture is said', options, async () => {
+    const ids = Object.keys(EXPECTED), query = ids.map((id) => `id=${id}`).join('&');
+    await until(async () => {
+        const { list } = JSON.parse((await get(`api/v1/other_plants?${query}`)).body);
+        const settled = list.every(({ id, why, picture: number }) => why === EXPECTED[id] && (number > 0) === (EXPECTED[id] === ''));
+        return settled || (options.last = JSON.stringify(list), false);
+    }, 'each', 60000).catch((error) => assert.fail(`${error.message}\n${options.last}`));
+    const good = await stateOf('good');
+    assert.equal(good.name, 'Fake plant');
+    assert.ok(good.age_ms >= 1500, `${good.age_ms}`);
+    assert.deepEqual((await get(`api/v1/other_plants/picture?id=good&picture=${good.picture}`)).body, picture);
+    assert.equal((await get(`api/v1/other_plants/picture?id=good&picture=${good.picture + 1}`)).status, 404);
+    assert.equal((await get('api/v1/other_plants/picture?id=page&picture=1')).status, 404);
+    assert.equal((await get('api/v1/other_plants?id=nobody')).status, 404);
+    assert.equal((await get('api/v1/other_plants')).status, 400);
+    assert.ok(!plant.daemon.said.includes(tokens.other), 'no token in the log');
+});
+
+test('a paired display asks for what it shows, and for nothing else', options, async () => {
+    assert.equal((await get('api/v1/other_plants?id=tanks', tokens.display)).status, 200);
+    for (const [path, token] of [['?id=good', tokens.display], ['?id=tanks', tokens.second],
+        ['/picture?id=good&picture=1', tokens.display]])
+        assert.equal((await get(`api/v1/other_plants${path}`, token)).status, 404, path);
+    assert.equal((await get('api/v1/other_plants?id=tanks', 'nonsense')).status, 401);
+});
+
+// --- in the page and in the player at once
+
+const grabbed = ([left, top, right, bottom]) => {
+    const { at } = display.grab(), count = { black: 0, white: 0, coloured: 0 };
+    let all = 0;
+    for (let y = top; y < bottom; y += 3) {
+        for (let x = left; x < right; x += 3, all++) {
+            const [r, g, b] = at(x, y);
+            count.black += Math.max(r, g, b) < 8;
+            count.white += Math.min(r, g, b) > 247;
+            count.coloured += Math.max(r, g, b) - Math.min(r, g, b) > 60;
+        }
+    }
+    return Object.fromEntries(Object.entries(count).map(([name, n]) => [name, n / all]));
+};
+const MAIN = [12, 60, 840, 700];
+const playerShows = (look) => (player ? until(() => look(grabbed(MAIN)), `the player ${look}`) : null);
+const keep = (name) => process.env.PLANTCAST_SHOTS === '1' && player && savePng(display.grab(), join(SCREENSHOTS, `${name}.png`));
+
+async function startPlayer() {
+    const file = join(plant.folder, 'display.token');
+    writeFileSync(file, tokens.display);
+    display = await startDisplay(...SIZE);
+    const child = spawn(PLAYER, [`http://127.0.0.1:${plant.port}/`, '--wall', 'room', '--token-file', file],
+        { env: { ...process.env, DISPLAY: display.name, SDL_VIDEODRIVER: 'x11', LIBGL_ALWAYS_SOFTWARE: '1' } });
+    player = { child, said: '', ended: once(child, 'exit') };
+    for (const pipe of [child.stdout, child.stderr])
+        pipe.on('data', (text) => { player.said += text; });
+}
+
+test('its picture, its name and the age of its readings; a server that is gone and since when; and back', options, async (t) => {
+    if (noPlayer)
+        t.diagnostic(`without the player: ${noPlayer}`);
+    else
+        await startPlayer();
+    const screen = { viewport: { width: SIZE[0], height: SIZE[1] } };
+    const { page, close, errors } = await openPage(`http://127.0.0.1:${plant.port}/wall.html?wall=room`, screen,
+        `sessionStorage.setItem('plantcast.token', '${tokens.display}')`);
+    const image = page.locator('.pane.snapshot img').first(), card = page.locator('.pane.snapshot .gone').first();
+    const title = () => page.locator('.pane.snapshot h2').first().textContent();
+    await image.waitFor();
+    assert.deepEqual(await image.evaluate(({ naturalWidth, naturalHeight }) => [naturalWidth, naturalHeight]), SIZE);
+    assert.match(await title(), new RegExp(`^Tank farm${NAME} · data \\d+(\\.\\d)? s old$`));
+    await page.locator('.pane.snapshot .gone', { hasText: 'Its server sends no picture' }).waitFor();
+    const first = await image.getAttribute('src');
+    await page.waitForFunction((src) => document.querySelector('.pane.snapshot img').getAttribute('src') !== src, first);
+    await playerShows(({ coloured, black }) => coloured > 0.005 && black < 0.05);
+    await shoot(page, 'wall-other-plant');
+    keep('wall-player-other-plant');
+
+    await other.daemon.stop('SIGKILL');
+    const killed = performance.now();
+    await card.filter({ hasText: /No picture of .* since \d\d:\d\d:\d\d.*Its server does not answer/ }).waitFor();
+    assert.ok(await image.isHidden());
+    assert.ok(performance.now() - killed < 20000, `${performance.now() - killed} ms`);
+    assert.doesNotMatch(await title(), /old/);
+    await playerShows(({ coloured, black, white }) => coloured < 0.001 && black > 0.5 && white > 0.01);
+    await shoot(page, 'wall-other-plant-gone');
+    keep('wall-player-other-plant-gone');
+
+    writeFileSync(join(plant.folder, 'other.token'), 'pc_nonsense\n'); // it is read anew for each request
+    await other.startDaemon(...otherArgs);
+    await card.filter({ hasText: 'Its server does not accept the token' }).waitFor();
+    writeFileSync(join(plant.folder, 'other.token'), `${tokens.other}\n`);
+    await image.waitFor();
+    await playerShows(({ coloured, black }) => coloured > 0.005 && black < 0.05);
+    assert.deepEqual(errors, []);
+    assert.ok(!(await page.content()).includes(tokens.other));
+    await close();
+});
