@@ -127,13 +127,26 @@ static bool turn(struct film *film, const json_t *stop)
                                         : snapshot_query(options, &film->query));
     while (options->arg_count > own)
         mem_free(options->args[--options->arg_count]);
-    film->said = tour_text(stop);
+    film->said = options->is_signed ? "" : tour_text(stop); /* what is signed stays as it is */
     return good;
 }
 
 static long pictures_of(const struct film *film, const json_t *stop)
 {
     return lround(fmax(1, tour_dwell_s(stop) * film->options->fps));
+}
+
+/* Beside a signed film. */
+static bool write_texts(const struct film *film, const json_t *stops)
+{
+    double *from_s = mem_array(json_array_size(stops) + 1, sizeof(*from_s));
+    const json_t *stop;
+    size_t i;
+    json_array_foreach(stops, i, stop)
+        from_s[i + 1] = from_s[i] + (double)pictures_of(film, stop) / film->options->fps;
+    bool good = tour_write_subtitles(stops, from_s, film->options->out);
+    mem_free(from_s);
+    return good;
 }
 
 /* stops: of a tour; NULL: from one instant to another. */
@@ -156,7 +169,7 @@ static bool make(struct film *film, picture_fn *picture, const json_t *stops)
         good = turn(film, stop) && shoot(film, picture, pictures_of(film, stop), count);
     }
     if (good && options->is_signed)
-        good = film_statements_put(film->statements, film->video);
+        good = film_statements_put(film->statements, film->video) && (!stops || write_texts(film, stops));
     good = video_finish(&film->video, good);
     if (good)
         printf("%s: %.0f pictures, %.1f s\n", options->out, count, count / options->fps);

@@ -18,10 +18,10 @@ bool film_is_one(const uint8_t *bytes, size_t count)
 }
 
 #ifndef PLANTCAST_H264
-int film_verify(const struct signing_key *key, const char *path, const struct redraw_options *options)
+int film_verify(const struct signing_key *key, const char *path, const struct redraw_options *options, bool tour)
 {
     (void)key;
-    (void)options;
+    (void)options, (void)tour;
     fprintf(stderr, "plantcast: %s: this program was built without H.264 (CODECS=jpeg), and so without films\n", path);
     return 2;
 }
@@ -207,12 +207,38 @@ struct film_check {
     const struct signing_key *key;
     const struct redraw_options *options;
     struct film_reader reader;
+    bool tour;               /* its view may change */
     json_t *first;           /* the first statement */
+    json_t *views;           /* one after the other: query, and since when */
     int64_t at_us, step_us;  /* of the picture before; between pictures, 0: not known yet */
     int64_t pts, pts_step;   /* likewise, as players show them */
     size_t count;            /* of pictures that are good */
     int code;
 };
+
+/* Of a query all but the instant. */
+static bool same_view(const json_t *query, const json_t *other)
+{
+    bool same = json_array_size(query) == json_array_size(other);
+    for (size_t i = 0; i < json_array_size(query) && same; i++)
+        same = !strncmp(json_string_value(json_array_get(query, i)), "at=", 3) ||
+               json_equal(json_array_get(query, i), json_array_get(other, i));
+    return same;
+}
+
+/* Of a film one; of a tour one after the other. */
+static bool takes_view(struct film_check *check, const json_t *statement)
+{
+    struct film_reader *reader = &check->reader;
+    json_t *query = json_object_get(statement, "query");
+    const json_t *last = json_object_get(json_array_get(check->views, json_array_size(check->views) - 1), "query");
+    if (last && same_view(query, last))
+        return true;
+    if (last && !check->tour)
+        return FAIL("its view is another one than that of the first picture; of a tour, say --tour");
+    json_array_append_new(check->views, json_pack("{s:O,s:O}", "query", query, "at_us", json_object_get(statement, "at_us")));
+    return true;
+}
 
 /* The same plant, view and server as the first one, and as long after the one before as that after its own. */
 static bool follows(struct film_check *check, const json_t *statement)
@@ -225,12 +251,8 @@ static bool follows(struct film_check *check, const json_t *statement)
     for (size_t i = 0; i < sizeof(same) / sizeof(*same) && check->first; i++)
         if (!json_equal(json_object_get(statement, same[i]), json_object_get(check->first, same[i])))
             return FAIL("its '%s' is another one than that of the first picture", same[i]);
-    const json_t *query = json_object_get(statement, "query"), *first = json_object_get(check->first, "query");
-    for (size_t i = 0; i < json_array_size(query) && check->first; i++) {
-        const char *arg = json_string_value(json_array_get(query, i));
-        if (strncmp(arg, "at=", 3) != 0 && !json_equal(json_array_get(query, i), json_array_get(first, i)))
-            return FAIL("its view is another one than that of the first picture");
-    }
+    if (!takes_view(check, statement))
+        return false;
     int64_t step_us = at_us - check->at_us, pts_step = pts - check->pts;
     if (check->count > 0 && (step_us <= 0 || (check->step_us && llabs(step_us - check->step_us) > 1)))
         return FAIL("a picture is missing before it, was moved, or put in");
@@ -265,21 +287,39 @@ static bool verify_picture(struct film_check *check)
     return good;
 }
 
+static void print_view(const json_t *view)
+{
+    char since[TIMESTAMP_BYTES];
+    const json_t *query = json_object_get(view, "query"), *arg;
+    size_t i;
+    timestamp_print(json_integer_value(json_object_get(view, "at_us")), since);
+    printf("  view from %s:", since);
+    json_array_foreach(query, i, arg)
+        if (strncmp(json_string_value(arg), "at=", 3) != 0)
+            printf(" %s", json_string_value(arg));
+    puts(json_array_size(query) > 1 ? "" : " the plant's own");
+}
+
 static void print_film(const struct film_check *check, const char *path)
 {
+    const json_t *view;
+    size_t i;
     char from[TIMESTAMP_BYTES], to[TIMESTAMP_BYTES];
     timestamp_print(json_integer_value(json_object_get(check->first, "at_us")), from);
     timestamp_print(check->at_us, to);
     printf("%s: the signatures of all %zu pictures are good, and none is missing between the first and the last\n", path, check->count);
     printf("  plant %s, configuration %s, plantcastd %s\n", json_string_value(json_object_get(check->first, "plant")),
            json_string_value(json_object_get(check->first, "configuration")), json_string_value(json_object_get(check->first, "server")));
+    json_array_foreach(check->views, i, view)
+        print_view(view);
     printf("  from %s to %s (history), a picture each %.6g s\n", from, to, (double)check->step_us / 1e6);
 }
 
-int film_verify(const struct signing_key *key, const char *path, const struct redraw_options *options)
+int film_verify(const struct signing_key *key, const char *path, const struct redraw_options *options, bool tour)
 {
-    struct film_check check = { .key = key, .options = options };
+    struct film_check check = { .key = key, .options = options, .tour = tour };
     struct film_reader *reader = &check.reader;
+    check.views = json_array();
     bool good = open_film(reader, path);
     while (good && next_picture(reader)) {
         good = verify_picture(&check);
@@ -295,6 +335,7 @@ int film_verify(const struct signing_key *key, const char *path, const struct re
     else
         fprintf(stderr, "plantcast: %s: picture %zu: %s\n", path, check.count + 1, reader->why);
     json_decref(check.first);
+    json_decref(check.views);
     close_film(reader);
     return good ? check.code : 1;
 }

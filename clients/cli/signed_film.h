@@ -17,7 +17,8 @@ bool film_statements_put(const struct film_statements *statements, struct video 
 /* Returns whether the bytes begin a film. */
 bool film_is_one(const uint8_t *bytes, size_t count);
 /* Verifies each picture of the film by the server's public key, that none is missing or moved between the first and the last one, and with
-   options->plant draws each again; prints what it is. Returns 0: all of it agrees; 1: something does not; 2: it could not be asked. */
-int film_verify(const struct signing_key *key, const char *path, const struct redraw_options *options);
+   options->plant draws each again; prints what it is. tour: its view may change; each is printed, and since when. Returns 0: all of it
+   agrees; 1: something does not; 2: it could not be asked. */
+int film_verify(const struct signing_key *key, const char *path, const struct redraw_options *options, bool tour);
 
 #endif

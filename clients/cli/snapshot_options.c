@@ -30,7 +30,8 @@ static const char clip_usage[] = "usage: plantcast clip (PLANT.yaml | http://HOS
                                  "  --speed F               seconds of the plant's in one of the film's; 60, of a tour 1\n"
                                  "  --fps F                 pictures in one second of the film; 25\n"
                                  "  --signed                of a daemon with --signing-key: with its signature of each picture, which\n"
-                                 "                          `plantcast verify` checks; without loss: larger, and not for browsers\n";
+                                 "                          `plantcast verify` checks; without loss: larger, and not for browsers.\n"
+                                 "                          A tour's texts go to OUT.vtt, which players show, and are not signed\n";
 static const char instant_usage[] =
     "  INSTANT                 2026-11-20T10:00:00Z, with an offset (+01:00), seconds since 1970, or back from now: -8h\n"
     "  --size WxH              pixels; 1280x720\n";
@@ -288,8 +289,6 @@ static int judge(const struct snapshot_options *options, bool clip, int left)
         return wrong(clip, "--from and --to are missing");
     if (options->tour && (options->to_text || !only_size(options)))
         return wrong(clip, "a tour says itself what is seen and for how long: only --size and --from have a place beside it");
-    if (options->is_signed && options->tour)
-        return wrong(clip, "--signed: a tour's texts are written into the pictures after the server has signed them");
     if (options->is_signed && !strstr(options->out, ".mp4") && !strstr(options->out, ".mov"))
         return wrong(clip, "--signed: signatures are kept in .mp4 and .mov");
     if (clip && !options->tour && options->from_us >= options->to_us)

@@ -62,6 +62,51 @@ bool tour_add_view(const json_t *stop, struct snapshot_options *options)
     return good;
 }
 
+static void write_instant(FILE *file, double s)
+{
+    int64_t ms = llround(s * 1000);
+    fprintf(file, "%02lld:%02lld:%02lld.%03lld", (long long)(ms / 3600000), (long long)(ms / 60000 % 60), (long long)(ms / 1000 % 60),
+            (long long)(ms % 1000));
+}
+
+/* `<` and `&` begin what is not text. */
+static void write_words(FILE *file, const char *text)
+{
+    for (; *text; text++)
+        if (*text == '<' || *text == '&')
+            fputs(*text == '<' ? "&lt;" : "&amp;", file);
+        else
+            fputc(*text, file);
+}
+
+bool tour_write_subtitles(const json_t *stops, const double *from_s, const char *film)
+{
+    const char *end = strrchr(film, '.');
+    char *path = mem_printf("%.*s.vtt", end ? (int)(end - film) : (int)strlen(film), film);
+    FILE *file = fopen(path, "w");
+    const json_t *stop;
+    size_t i;
+    if (file)
+        fputs("WEBVTT\n", file);
+    json_array_foreach(stops, i, stop) {
+        if (!file || !*tour_text(stop))
+            continue;
+        fputc('\n', file);
+        write_instant(file, from_s[i]);
+        fputs(" --> ", file);
+        write_instant(file, from_s[i + 1]);
+        fputc('\n', file);
+        write_words(file, tour_text(stop));
+        fputc('\n', file);
+    }
+    bool good = file && !ferror(file);
+    good = file && fclose(file) == 0 && good;
+    if (!good)
+        fprintf(stderr, "plantcast: %s: %m\n", path);
+    mem_free(path);
+    return good;
+}
+
 /* --- text --------------------------------------------------------------------------------------------------------------------- */
 
 enum { LINES = 6 };

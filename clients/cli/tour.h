@@ -17,6 +17,9 @@ double tour_dwell_s(const json_t *stop);
 const char *tour_text(const json_t *stop);
 /* Adds the view of a stop to the arguments. Returns false with the reason printed. */
 bool tour_add_view(const json_t *stop, struct snapshot_options *options);
+/* Writes the texts of stops as subtitles (WebVTT) to the film's name with .vtt for its ending; from_s: when each begins, stop_count + 1 of
+   them. Returns false with the reason printed. */
+bool tour_write_subtitles(const json_t *stops, const double *from_s, const char *film);
 /* Draws a text over a picture, at its lower edge, in as many lines as it takes. */
 void tour_draw_text(const char *text, uint8_t *bgrx, int width_px, int height_px, int stride_bytes);
 

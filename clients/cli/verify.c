@@ -17,11 +17,13 @@ static const size_t MOST_BYTES = (size_t)256 << 20;
 
 static void print_usage(FILE *out)
 {
-    fputs("usage: plantcast verify (PICTURE.png | CLIP.mp4) --key FILE [--plant PLANT.yaml [--prepared FOLDER] [--history FOLDER]]\n"
+    fputs("usage: plantcast verify (PICTURE.png | CLIP.mp4) --key FILE [--tour]\n"
+          "                        [--plant PLANT.yaml [--prepared FOLDER] [--history FOLDER]]\n"
           "\n"
           "Says whether PICTURE.png, or each picture of CLIP.mp4 (plantcast clip --signed), is what a server with --signing-key drew:\n"
           "pixels, readings, time, view and configuration; of a clip also whether one is missing between the first and the last.\n"
           "  --key FILE          the server's public key: openssl pkey -in signing.key -pubout -out FILE\n"
+          "  --tour              the film is one of a tour: its view changes; each is printed, and since when\n"
           "  --plant PLANT.yaml  draw it again from the readings that it tells, and count the pixels that agree within 1/255\n"
           "  --prepared FOLDER   where plantcast-prep put its files; PLANT.prepared beside the plant file\n"
           "  --history FOLDER    compare these readings with what was recorded there\n"
@@ -62,7 +64,7 @@ static int redraw(const struct redraw_options *options, const json_t *statement,
     return code;
 }
 
-static int verify(const char *path, const char *key_path, const struct redraw_options *options)
+static int verify(const char *path, const char *key_path, const struct redraw_options *options, bool tour)
 {
     char why[SIGNED_PICTURE_WHY_BYTES];
     size_t count;
@@ -73,7 +75,7 @@ static int verify(const char *path, const char *key_path, const struct redraw_op
     else if (!png)
         fprintf(stderr, "plantcast: %s: %m\n", path);
     if (png && film_is_one((const uint8_t *)png, count)) {
-        int film = film_verify(key, path, options);
+        int film = film_verify(key, path, options, tour);
         mem_free(png);
         signing_key_destroy(&key);
         return film;
@@ -97,15 +99,18 @@ int cmd_verify(int argc, char **argv)
 {
     static const struct option options[] = { { "key", required_argument, NULL, 'k' },      { "plant", required_argument, NULL, 'p' },
                                              { "prepared", required_argument, NULL, 'd' }, { "history", required_argument, NULL, 'r' },
+                                             { "tour", no_argument, NULL, 't' },
                                              { "help", no_argument, NULL, 'h' },           { 0 } };
     struct redraw_options redraw = { 0 };
     const char *key = NULL;
+    bool tour = false;
     for (int option; (option = getopt_long(argc, argv, "", options, NULL)) != -1;) {
         switch (option) {
         case 'k': key = optarg; break;
         case 'p': redraw.plant = optarg; break;
         case 'd': redraw.prepared = optarg; break;
         case 'r': redraw.history = optarg; break;
+        case 't': tour = true; break;
         case 'h': print_usage(stdout); return 0;
         default: print_usage(stderr); return 2;
         }
@@ -114,5 +119,5 @@ int cmd_verify(int argc, char **argv)
         print_usage(stderr);
         return 2;
     }
-    return verify(argv[optind], key, &redraw);
+    return verify(argv[optind], key, &redraw, tour);
 }

@@ -50,6 +50,12 @@ before(async () => {
     if (skip)
         return;
     plant = await TinyPlant.create();
+    appendFileSync(plant.file, `views:
+- { id: warm, title: Warm, view: "camera=2,-4,3,0,0,0,0,0,1,45" }
+- { id: pump, title: Pump, view: "camera=5,-4,3,3,0,0,0,0,1,45&group=pressure" }
+tours:
+- { id: round, stops: [{ view: warm, dwell_s: 1, text: "Is it < 90 °C & good?" }, { view: pump, dwell_s: 1 }] }
+`);
     makeKey('server');
     makeKey('other');
     assert.equal(plant.prepare().code, 0);
@@ -256,6 +262,22 @@ test('a film is good picture by picture; one that was changed, cut or made anew 
     const plain = runProgram('plantcast', ['clip', plant.file, '-o', film, '--from', from, '--to', to, '--signed']);
     assert.equal(plain.code, 2);
     assert.match(plain.err, /give its URL/);
+});
+
+test('a tour is filmed signed, with its texts beside it; its views are printed', filmed, () => {
+    const film = path('tour.mp4'), from = new Date(Date.now() - 6000).toISOString();
+    const url = `http://127.0.0.1:${plant.port}/`, view = ['--fps', '2', '--size', '320x200'];
+    const made = runProgram('plantcast', ['clip', url, '-o', film, '--from', from, '--tour', 'round', ...view, '--signed'], 60000);
+    assert.equal(made.code, 0, made.err);
+    assert.equal(readFileSync(path('tour.vtt'), 'utf8'), 'WEBVTT\n\n00:00:00.000 --> 00:00:01.000\nIs it &lt; 90 °C &amp; good?\n');
+    const check = (...args) => runProgram('plantcast', ['verify', film, '--key', path('server.pub'), ...args], 90000);
+    const { code, out, err } = check('--tour', '--plant', plant.file);
+    assert.equal(code, 0, out + err);
+    assert.match(out, /all 4 pictures are good[^]*view from \S+: .*camera=2,-4,3,0,0,0\b.*\n {2}view from \S+: .*group=pressure/);
+    assert.equal(out.match(/64000 of 64000 pixels agree within 1\/255/g).length, 4);
+    const strict = check();
+    assert.equal(strict.code, 1, strict.out);
+    assert.match(strict.err, /picture 3: its view is another one/);
 });
 
 test('who may see no readings is told none', { skip }, async () => {
