@@ -52,7 +52,7 @@ after(() => plant?.destroy());
 const said = (text) => crew.say({ seq: ++seq, ...text });
 const note = (text, place) => said({ type: 'note', text, ...place });
 const point = (position, wall = 'wide') => crew.say({ type: 'point', wall, display: 1, area: 'main', desk: 'Desk 2', position });
-const titleOf = () => pages[0].page.locator('.picture h2').textContent();
+const titleOf = () => pages[0].page.locator('.picture > h2').textContent();
 const mark = (i, text) => pages[i].page.locator('.marks .alarm', { hasText: text });
 const count = (i, what) => pages[i].page.locator(what).count();
 
@@ -67,7 +67,7 @@ test('the first display leads and names what is shown, though another came first
     pages = [await openPage(url(1), SCREEN), second];
     for (const { page } of pages)
         await page.waitForFunction(() => globalThis.wall?.panes[0]?.session?.picture, null, { timeout: 60000 });
-    await pages[0].page.locator('.picture h2', { hasText: /^All of it · Temperature · data .* old$/ }).waitFor({ timeout: 60000 });
+    await pages[0].page.locator('.picture > h2', { hasText: /^All of it · Temperature · data .* old$/ }).waitFor({ timeout: 60000 });
     assert.deepEqual(await Promise.all(pages.map(({ page }) => page.evaluate(() => globalThis.wall.panes[0].session.tiles.leads))),
         [true, false]);
 });
@@ -81,11 +81,22 @@ test('alarms are marked behind something, and of a quantity that is not shown', 
         const [x, y] = await placeOf(i, '.marks .alarm', text);
         assert.ok(x > 0 && x < 1 && y > 0.2 && y < 0.8, `${text} at ${x}, ${y}`);
     }
-    await pages[0].page.locator('.picture h2', { hasText: '2 active, 2 to be acknowledged' }).waitFor({ timeout: 10000 });
+    await pages[0].page.locator('.picture > h2', { hasText: '2 active, 2 to be acknowledged' }).waitFor({ timeout: 10000 });
+    assert.ok(await pages[0].page.locator('.picture > h2').evaluate(({ clientHeight, scrollWidth, parentNode }) => {
+        const { fontSize } = getComputedStyle(parentNode);
+        return clientHeight < 2.2 * parseFloat(fontSize) && scrollWidth <= parentNode.clientWidth;
+    }), 'in one line');
+    assert.deepEqual(await pages[0].page.locator('.legend .end-text, .legend .keys span').allTextContents(),
+        ['> 100', '< 0', 'No data', 'Uncertain']);
+    const cut = await pages[0].page.locator('.legend').evaluate((legend) => {
+        const { top, bottom } = legend.getBoundingClientRect();
+        return [top < 0, bottom > innerHeight + 4, legend.scrollHeight > legend.clientHeight + 1];
+    });
+    assert.deepEqual(cut, [false, false, false]); // all displays are moved by up to 3 pixels
     for (const [i, { page }] of pages.entries())
         await shoot(page, `wall-tile-marks-${i + 1}`);
     said({ type: 'alarm', action: 'acknowledge', alarms: [['TI-2', 'H'], ['PI-1', 'H']], name: 'kim' });
-    await pages[0].page.locator('.picture h2', { hasText: '2 active, 0 to be acknowledged' }).waitFor({ timeout: 10000 });
+    await pages[0].page.locator('.picture > h2', { hasText: '2 active, 0 to be acknowledged' }).waitFor({ timeout: 10000 });
     await plant.tell('set TI-2 20');
     await plant.tell('set PI-1 5');
     for (const i of [0, 1])
@@ -100,6 +111,7 @@ test('notes and where a desk points stand where they are', options, async () => 
     point([0, 0, 0.5]);
     await pages[0].page.locator('.marks .pointer', { hasText: 'Desk 2' }).waitFor({ timeout: 10000 });
     const [x] = await placeOf(0, '.marks .pointer', 'Desk 2');
+    assert.equal(await count(0, '.marks .ring'), 1);
     assert.ok(x > 0.3 && x < 1, `${x}: on E-101`);
     for (const [i, { page }] of pages.entries())
         await shoot(page, `wall-tile-notes-${i + 1}`);

@@ -65,6 +65,7 @@ function fit() {
     const { innerWidth: width, innerHeight: height } = window, { inches, distance_m: metres } = wall;
     const { scale } = wallFit({ inches, metres }, window.screen, { width, height }, LEAST);
     setVariable(document.body, '--unit', `${scale}px`);
+    setVariable(document.body, '--scale', scale);
     setVariable(document.body, '--letters', `${Math.min(LETTERS_MM / millimetresPerPx(inches, window.screen), width / 12)}px`);
 }
 

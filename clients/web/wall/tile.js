@@ -5,8 +5,7 @@ import { isGone } from '../core/alarms.js';
 import { projector } from '../core/camera.js';
 import { Connection } from '../core/connection.js';
 import { browserDecoding } from '../core/decoding.js';
-import { ageText, decimalsFor, numberText, quantityText, shortNumberText, unitText, zoneClock } from '../core/format.js';
-import { colourOf, scaleTicks, valueAt, placeOf } from '../core/legend.js';
+import { ageText, decimalsFor, numberText, quantityText, unitText, zoneClock } from '../core/format.js';
 import { viewOf } from '../core/named_views.js';
 import { inForce, placeOf as placeOfNote } from '../core/notes.js';
 import { SPREAD_MS } from '../core/wall.js';
@@ -14,14 +13,16 @@ import { say } from '../core/words.js';
 import { badge } from '../app/alarms/alarm_bar.js';
 import { clock } from '../app/common/clock.js';
 import { make, setText, setVariable } from '../app/common/dom.js';
+import { Legend } from '../app/viewport/legend.js';
 import { TileSession } from './tile_session.js';
 
-const OLD_MS = 3000, STEPS = 64, POINTS_MS = 4000, REACH = 0.35; // of a tile's width: a label may begin on the tile beside
+const UPRIGHT = { matches: false, addEventListener() {} }, SMALLEST = 0.6; // of a title's letters, where it is too long for one line
+const OLD_MS = 3000, POINTS_MS = 4000, REACH = 0.35; // of a tile's width: a label may begin on the tile beside
 
 // { element, kind, tick(now) }. pane: of /api/v1/walls, with `tile`; context: as of other panes.
 export function tileOf(pane, { session: words, call, wall, display, streamUrl }) {
     const { columns, rows } = pane.tile, canvas = make('canvas', {}), marks = make('div', { class: 'marks' });
-    const title = make('h2', {}), legend = make('div', { class: 'tile-legend' }), said = make('p', { class: 'tile-said', hidden: true });
+    const title = make('h2', {}), legend = make('div', { class: 'legend' }), said = make('p', { class: 'tile-said', hidden: true });
     const element = make('section', { class: 'pane picture' }, canvas, marks, said);
     const connection = new Connection({ url: streamUrl, open: (url, protocol) => new WebSocket(url, protocol), clock });
     const decoding = browserDecoding();
@@ -33,7 +34,9 @@ export function tileOf(pane, { session: words, call, wall, display, streamUrl })
     session.token = words.token;
     if (display === 1)
         element.append(title);
-    if (display === columns * (rows - 1) + 1)
+    const hasLegend = display === columns * (rows - 1) + 1, paramsOf = (params) => params;
+    const colours = hasLegend ? new Legend({ session, element: legend, paramsOf, lying: UPRIGHT }) : null;
+    if (colours)
         element.append(legend);
 
     const fit = () => session.resize({ width: Math.max(16, Math.round(element.clientWidth * ratio)),
@@ -110,6 +113,8 @@ export function tileOf(pane, { session: words, call, wall, display, streamUrl })
         ].filter(Boolean).join(' · ');
         title.replaceChildren(...(alarm ? [badge(alarm.priority, isGone(alarm.state)), ` ${say(`kind.${alarm.kind}`)} ${alarm.tag.name} `]
             : []), parts);
+        setVariable(title, '--part', 1);
+        setVariable(title, '--part', Math.max(SMALLEST, Math.min(1, element.clientWidth / title.scrollWidth)));
     }
 
     // Which displays are not there is said by the one that leads; what is wrong with itself, by each.
@@ -125,29 +130,6 @@ export function tileOf(pane, { session: words, call, wall, display, streamUrl })
         said.classList.toggle('card', Boolean(own || silent || (refused && !session.welcomed)));
         element.classList.toggle('blank', Boolean(own || silent || !picture));
         setText(said, text);
-    }
-
-    let legendOf = '';
-    function drawLegend() {
-        const { model, shown: params } = session, group = model.group(params.group), [min, max] = session.rangeOf(params);
-        const key = JSON.stringify([params.group, params.colormap, params.ramp_interval, params.scale, params.breaks, min, max]);
-        if (!group || key === legendOf)
-            return;
-        legendOf = key;
-        const breaks = params.breaks === 'group' ? group.breaks : Array.isArray(params.breaks) ? params.breaks : [];
-        const map = model.colormap(params.colormap), log = params.scale === 'log';
-        const scale = { map, min, max, log, interval: params.ramp_interval, breaks };
-        const css = (value) => `rgb(${colourOf(scale, value).join(' ')})`, band = 100 / STEPS;
-        const stops = Array.from({ length: STEPS }, (_, i) => `${css(valueAt(scale, (i + 0.5) / STEPS))} ${i * band}% ${(i + 1) * band}%`);
-        const bar = make('div', { class: 'colours' }), ticks = make('div', { class: 'ticks' }), decimals = decimalsFor(max - min);
-        bar.style.background = `linear-gradient(to top, ${stops.join(', ')})`;
-        for (const value of scaleTicks(scale, [], 6)) {
-            const tick = make('span', {}, shortNumberText(value, decimals));
-            setVariable(tick, '--at', `${100 * placeOf(scale, value)}%`);
-            ticks.append(tick);
-        }
-        legend.replaceChildren(make('b', {}, `${quantityText(group)} `, make('span', {}, unitText(group.unit))),
-            make('div', { class: 'scale' }, bar, ticks));
     }
 
     // --- what stands in the picture
@@ -202,8 +184,10 @@ export function tileOf(pane, { session: words, call, wall, display, streamUrl })
         }
         for (const note of inForce(session.notes, words.clockUs()))
             add(make('p', { class: 'note' }, make('span', {}, note.text)), placeOfNote(session.model, note));
-        if (pointer)
+        if (pointer) {
+            add(make('i', { class: 'ring' }), pointer.position);
             add(make('p', { class: 'note pointer' }, make('span', {}, pointer.by)), pointer.position);
+        }
         marks.replaceChildren(...out);
     }
 
@@ -245,8 +229,7 @@ export function tileOf(pane, { session: words, call, wall, display, streamUrl })
             lead(now);
         if (display === 1)
             sayTitle();
-        if (legend.isConnected)
-            drawLegend();
+        colours?.show();
         saySelf(now);
         lookAtMarks();
     } };
