@@ -40,7 +40,13 @@ soak: all tests
 	@PLANTCAST_BIN=$(bin) PLANTCAST_OUT=$(out) SOAK_S=$(or $(SOAK_S),1800) node --test tests/e2e/flow.mjs
 .PHONY: soak
 
-checked: demo style layers headers
+checked: demo plants style layers headers
+# Plants that many tests show, where their models are.
+plants: $(foreach p,$(if $(wildcard ../shared/data/models/plm_plant_equipment.glb),plant_room) \
+    $(if $(wildcard ../shared/data/models/cookie_factory_mixer.glb),cookie_line),$(out)/prepared/$(p))
+$(out)/prepared/%: tests/plants/%.yaml FORCE | $(bin)/plantcast-prep
+	@mkdir -p $@; $(bin)/plantcast-prep $< --output $@ >$@.log 2>&1 || { cat $@.log; exit 1; }
+.PHONY: plants FORCE
 tests: all $(unit_tests) $(gpu_tests) $(out)/tests/scale/facility $(out)/tests/relay/relay $(out)/tests/faults/libEGL.so.1 \
     $(out)/tests/faults/kill_at_rename.so $(out)/tests/faults/clock_off.so $(out)/tests/faults/late_peer.so \
     $(out)/tests/validation/compare $(if $(video),$(out)/tests/faults/slow_answer.so) \

@@ -7,9 +7,9 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 
 #include "base/mem.h"
+#include "tests/support/sweep.h"
 
 #define PI 3.14159265358979323846
 #define PATCHES 14
@@ -17,9 +17,7 @@
 
 void cad_random_start(struct cad_random *random)
 {
-    const char *seed = getenv("PLANTCAST_SEED");
-    random->state = seed ? strtoull(seed, NULL, 10) : (uint64_t)time(NULL);
-    printf("# PLANTCAST_SEED=%llu\n", (unsigned long long)random->state);
+    random->state = sweep_seed();
     fflush(stdout);
 }
 

@@ -193,9 +193,9 @@ int main(void)
         WITH_FOLDER(tanker),
         WITH_FOLDER(platform),
         WITH_FOLDER(plant_in_five_parts),
-        WITH_FOLDER(mixers_and_water_tank),
     };
     const struct CMUnitTest dearest[] = {
+        WITH_FOLDER(mixers_and_water_tank),
         WITH_FOLDER(plant_with_its_tree),
         WITH_FOLDER(equipment),
         WITH_FOLDER(weather_deck),

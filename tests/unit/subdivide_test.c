@@ -472,7 +472,7 @@ static void say_errors(const struct body *body, size_t level, const char *name, 
                   255 * errors[count * 95 / 100], 255 * errors[count * 995 / 1000], 255 * errors[count - 1]);
 }
 
-#define POINTS 20000
+#define POINTS sweep(20000, 5000)
 /* On the finest level; 99.5 % within a step of colour, all within `most`. */
 static void assert_field(const struct body *body, const char *name, void (*snap)(double p[3]), double most)
 {
@@ -617,7 +617,7 @@ static void assert_plate(const struct body *body)
     }
     seen_finish(&finest);
     say_errors(body, 0, "plate with reaches", "with data", errors, count);
-    assert_true(count > POINTS / 3);
+    assert_true(count > (size_t)POINTS / 3);
     assert_in_range(over, 0, count / 2000);
     mem_free(errors);
 }
