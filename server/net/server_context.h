@@ -41,6 +41,7 @@ struct tile_wall {
     char wall[NAMED_VIEW_ID_BYTES]; /* "": free */
     uint64_t leader;                /* id of the session; 0: none */
     uint64_t asked, presented;      /* numbers of pictures */
+    struct quality_ladder made;     /* its size: by how long pictures of it take */
 };
 
 struct server_context {

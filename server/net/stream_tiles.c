@@ -135,7 +135,7 @@ void tiles_pump(struct server_context *server, const struct stream *stream)
     struct tile_wall *wall = find(server, stream->session->tile.place.wall);
     struct stream *streams[MEMBERS];
     struct session *members[MEMBERS];
-    struct session_tiles tiles = { .members = members };
+    struct session_tiles tiles = { .members = members, .made = wall ? &wall->made : NULL };
     int64_t now_ns = clock_mono_ns();
     for (struct stream *other = server->streams; other && wall; other = other->next) {
         struct session *session = other->session;

@@ -11,6 +11,8 @@ static const int64_t LASTED_NS = 5 * NS_PER_S;    /* a step up that held for so 
 static const int64_t SETTLE_NS = 500 * NS_PER_MS; /* a step down shows in the lag only after some frames */
 static const int64_t HARD_NS = 40 * NS_PER_MS;    /* decoding that takes longer cannot follow 25 frames a second */
 static const int64_t EASY_NS = 20 * NS_PER_MS;
+static const int64_t HARD_MADE_NS = 130 * NS_PER_MS; /* two are being made at once: fewer than 15 a second */
+static const int64_t EASY_MADE_NS = 90 * NS_PER_MS;
 static const int64_t HARD_FOR_NS = 500 * NS_PER_MS, EASY_FOR_NS = 3 * NS_PER_S;
 static const double SHARE = 0.25;
 static const double CROWD_BYTES = 30e6;     /* of one frame, to all who see it: what a loop sends in some tens of milliseconds */
@@ -131,17 +133,23 @@ static bool lasts(int64_t *since_ns, bool now, int64_t limit_ns, int64_t now_ns)
     return now && now_ns - *since_ns >= limit_ns;
 }
 
-static void follow_decoder(struct quality_ladder *ladder, const struct channel *channel, int64_t now_ns)
+/* Fewer pixels where a frame costs too much, more again where so many would cost little. */
+static void follow_cost(struct quality_ladder *ladder, int64_t cost_ns, int64_t hard_ns, int64_t easy_ns, int64_t now_ns)
 {
     double ratio = ladder->size > 0 ? sizes[ladder->size - 1] / sizes[ladder->size] : 1;
-    bool hard = lasts(&ladder->bad_since_ns, channel->decode_ns > HARD_NS, HARD_FOR_NS, now_ns);
-    bool easy = lasts(&ladder->easy_since_ns, channel->decode_ns * ratio * ratio < EASY_NS, EASY_FOR_NS, now_ns);
+    bool hard = lasts(&ladder->bad_since_ns, cost_ns > hard_ns, HARD_FOR_NS, now_ns);
+    bool easy = lasts(&ladder->easy_since_ns, (double)cost_ns * ratio * ratio < (double)easy_ns, EASY_FOR_NS, now_ns);
     if (hard && ladder->size < QUALITY_LADDER_SIZES - 1)
         ladder->size++;
     else if (easy && ladder->size > 0)
         ladder->size--;
     if (hard || easy)
         ladder->bad_since_ns = ladder->easy_since_ns = 0;
+}
+
+void quality_ladder_on_made(struct quality_ladder *ladder, int64_t made_ns, int64_t now_ns)
+{
+    follow_cost(ladder, made_ns, HARD_MADE_NS, EASY_MADE_NS, now_ns);
 }
 
 void quality_ladder_on_ack(struct quality_ladder *ladder, const struct channel *channel, int step, size_t bytes, int64_t now_ns)
@@ -152,5 +160,5 @@ void quality_ladder_on_ack(struct quality_ladder *ladder, const struct channel *
         follow_network(ladder, channel, now_ns);
         ladder->known = true;
     }
-    follow_decoder(ladder, channel, now_ns);
+    follow_cost(ladder, channel->decode_ns, HARD_NS, EASY_NS, now_ns);
 }

@@ -15,7 +15,7 @@ struct rung {
 
 struct quality_ladder { /* quality_ladder_init */
     int step;           /* 0: best; set by the bandwidth */
-    int size;           /* 0: full; set by how long the client decodes */
+    int size;           /* 0: full; set by how long the client decodes, or the server takes */
     double unit_bytes;  /* size of a frame at step 0, estimated and smoothed */
     bool known;         /* a frame was acknowledged */
     int64_t good_since_ns, easy_since_ns,
@@ -38,6 +38,9 @@ int quality_ladder_common(const struct quality_ladder *seen, const int counts[QU
 int quality_ladder_step(const struct quality_ladder *ladder, int common);
 /* Notes that a preview of that step and size in bytes was acknowledged, and moves the step. */
 void quality_ladder_on_ack(struct quality_ladder *ladder, const struct channel *channel, int step, size_t bytes, int64_t now_ns);
+/* Notes how long the server took to make previews from when they were asked for, and moves the size. For ladders that no client moves: of
+   a picture over many displays, which has more pixels than that of one. */
+void quality_ladder_on_made(struct quality_ladder *ladder, int64_t made_ns, int64_t now_ns);
 /* Returns the expected size of a preview at the ladder's own step, in bytes; 0: not known. */
 double quality_ladder_bytes(const struct quality_ladder *ladder);
 

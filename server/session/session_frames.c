@@ -70,7 +70,7 @@ void session_on_frame(struct session *session, struct encoded_frame *encoded)
         session->demand.preview_ns = encoded->request.asked_ns;
     note_refined(session, &encoded->request);
     if (session_is_tile(session))
-        session_tile_came(session, &encoded->request);
+        session_tile_came(session, &encoded->request, encoded->made_ns);
     if (encoded_frame_stands_alone(encoded)) /* newer than what the socket has not yet taken */
         session_drop_ready(session);
     struct encoded_frame **last = &session->delivery.ready;

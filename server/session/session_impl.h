@@ -132,7 +132,7 @@ bool session_tile_fit(const struct session *session, const struct wall_place *pl
 void session_tile_unchanged(struct session *session, uint64_t picture);
 void session_tile_sent(struct session *session, uint64_t picture, uint32_t seq);
 /* Notes that a frame came, which is also what an answer without one was the same as. */
-void session_tile_came(struct session *session, struct frame_request *request);
+void session_tile_came(struct session *session, struct frame_request *request, int64_t made_ns);
 
 /* --- session_place.c -------------------------------------------------------------------------------------------------- */
 

@@ -164,6 +164,7 @@ struct session_tile {
     int held_count;
     uint64_t unchanged; /* the picture that is the same as the frame that is awaited; 0: none */
     uint32_t presented_seq;
+    int64_t made_ns;       /* how long the server takes for a preview from when it is asked for, smoothed; 0: not known */
     int64_t late_us;       /* since when it is left out, UTC; 0: it is not */
     int64_t out_ns, in_ns; /* for how long it is left out; when it may come in again, or came */
     char *told;            /* the last `tiles`; NULL: none */

@@ -56,8 +56,11 @@ void session_tile_unchanged(struct session *session, uint64_t picture)
         session_tile_sent(session, picture, session->delivery.pacer.last_seq);
 }
 
-void session_tile_came(struct session *session, struct frame_request *request)
+void session_tile_came(struct session *session, struct frame_request *request, int64_t made_ns)
 {
+    int64_t took_ns = made_ns - request->asked_ns, known_ns = session->tile.made_ns;
+    if (request->view.tier == TIER_PREVIEW)
+        session->tile.made_ns = known_ns ? known_ns + (took_ns - known_ns) / 4 : took_ns;
     if (request->picture < session->tile.unchanged)
         request->picture = session->tile.unchanged;
     session->tile.unchanged = 0;

@@ -35,8 +35,21 @@ static struct rung worst_rung(const struct session_tiles *tiles, int *step)
         worst.step = ladder->step > worst.step ? ladder->step : worst.step;
         worst.size = ladder->size > worst.size ? ladder->size : worst.size;
     }
+    worst.size = tiles->made->size > worst.size ? tiles->made->size : worst.size;
     *step = worst.step;
     return quality_ladder_rung(&worst, worst.step);
+}
+
+/* While nothing moves nothing is learned. */
+static void follow_server(const struct session_tiles *tiles, bool moving, int64_t now_ns)
+{
+    int64_t made_ns = 0;
+    for (size_t i = 0; i < tiles->count; i++)
+        made_ns = tiles->members[i]->tile.made_ns > made_ns ? tiles->members[i]->tile.made_ns : made_ns;
+    if (moving && made_ns)
+        quality_ladder_on_made(tiles->made, made_ns, now_ns);
+    else
+        tiles->made->bad_since_ns = tiles->made->easy_since_ns = 0;
 }
 
 bool session_tiles_next_request(const struct session_tiles *tiles, uint64_t number, int64_t now_ns, struct frame_request requests[])
@@ -60,10 +73,11 @@ bool session_tiles_next_request(const struct session_tiles *tiles, uint64_t numb
     }
     if (!any)
         return false;
+    bool moving = first.view.tier == TIER_PREVIEW;
+    follow_server(tiles, moving, now_ns);
     int step;
     struct rung rung = worst_rung(tiles, &step);
     struct tile_layout layout = tiles->leader->tile.layout;
-    bool moving = first.view.tier == TIER_PREVIEW;
     if (moving) {
         layout = tile_layout_scale(&layout, rung.scale);
         first.quality = (struct encoder_params){ .quality = rung.quality };

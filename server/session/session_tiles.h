@@ -13,10 +13,12 @@ struct session_tiles { /* of one wall: those that take part, and one that leads 
     struct session *const *members;
     size_t count;
     const struct session *leader;
+    struct quality_ladder *made; /* of the wall: its size follows how long the server takes for pictures of it */
 };
 
 /* Returns whether all may be sent another picture, or another in place of one under way, and one of them wants it; then with everyone's
-   request: equal views, in the quality that the slowest can take. number: of that picture, larger than before. Once the service takes
+   request: equal views, in the quality that the slowest can take, the
+   server among them. number: of that picture, larger than before. Once the service takes
    them, session_requested() is to be called. */
 bool session_tiles_next_request(const struct session_tiles *tiles, uint64_t number, int64_t now_ns, struct frame_request requests[]);
 /* Has all show the newest picture that all have, if that is newer than *presented, at one instant. Where nothing is under way and some have

@@ -8,6 +8,7 @@
 
 #include <cmocka.h>
 
+#include "base/clock.h"
 #include "base/mem.h"
 #include "session/session_impl.h"
 
@@ -92,7 +93,7 @@ static void test_an_answer_without_a_frame_overtakes_one(void **state)
     have(&wall, 1, 7, 4);
     session_tiles_present(&wall.tiles, &presented, 0, 0);
     assert_int_equal(presented, 5); /* not 7 by the frame of 5 */
-    session_tile_came(wall.members[0], &request);
+    session_tile_came(wall.members[0], &request, 0);
     assert_int_equal(request.picture, 7);
     wall.members[0]->delivery.pacer.asked = 0;
     have(&wall, 0, request.picture, 4);
@@ -102,12 +103,35 @@ static void test_an_answer_without_a_frame_overtakes_one(void **state)
     tear_down(&wall);
 }
 
+/* Returns the size after pictures that took so long, one in 50 ms. */
+static int size_after(struct quality_ladder *ladder, int64_t made_ms, int64_t from_ms, int64_t to_ms)
+{
+    for (int64_t ms = from_ms; ms <= to_ms; ms += 50)
+        quality_ladder_on_made(ladder, made_ms * NS_PER_MS, ms * NS_PER_MS);
+    return ladder->size;
+}
+
+static void test_a_server_that_takes_long_makes_smaller_pictures(void **state)
+{
+    struct quality_ladder ladder = { 0 };
+    (void)state;
+    assert_int_equal(size_after(&ladder, 120, 1000, 9000), 0); /* fast enough */
+    assert_int_equal(size_after(&ladder, 220, 10000, 10400), 0);
+    assert_int_equal(size_after(&ladder, 220, 10450, 10600), 1); /* half a second too long */
+    assert_int_equal(size_after(&ladder, 125, 11000, 19000), 1); /* what it costs now is right: no larger, no smaller */
+    assert_int_equal(size_after(&ladder, 60, 20000, 29000), 1);  /* a larger one would cost 107 */
+    assert_int_equal(size_after(&ladder, 40, 30000, 32900), 1);
+    assert_int_equal(size_after(&ladder, 40, 32950, 33100), 0);
+    assert_int_equal(size_after(&ladder, 900, 40000, 60000), QUALITY_LADDER_SIZES - 1);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_what_all_have_is_shown),
         cmocka_unit_test(test_of_two_pictures_none_is_waited_for),
         cmocka_unit_test(test_an_answer_without_a_frame_overtakes_one),
+        cmocka_unit_test(test_a_server_that_takes_long_makes_smaller_pictures),
     };
     cmocka_set_message_output(CM_OUTPUT_TAP);
     return cmocka_run_group_tests(tests, NULL, NULL);
