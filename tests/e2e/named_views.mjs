@@ -3,17 +3,17 @@
 import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
 import { openPage, settle, shoot, view, waitForPicture } from './support/browser.mjs';
-import { missing, startPlant } from './support/plant.mjs';
+import { missing, startTiny } from './support/tiny_plant.mjs';
 
-const why = missing();
-const options = { skip: why ?? false, timeout: 200000 };
+const absent = missing(), why = absent.length > 0 && `not built: ${absent.join(', ')}`;
+const options = { skip: why, timeout: 200000 };
 const FROM_ABOVE = 'group=temperature&colormap=turbo&camera=8,2,30,8,6,0,0,0,1,45';
 let plant, browser, page;
 
 before(async () => {
     if (why)
         return;
-    plant = await startPlant(`views:\n- { id: above, title: From above, view: "${FROM_ABOVE}" }\n`);
+    plant = await startTiny(`views:\n- { id: above, title: From above, view: "${FROM_ABOVE}" }\n`);
     browser = await openPage(plant.url, { viewport: { width: 1200, height: 720 } });
     page = browser.page;
     await waitForPicture(page);
@@ -33,7 +33,7 @@ test('those of the plant file are there, each with its picture', options, async 
     await page.locator('#named-list li').waitFor();
     assert.deepEqual(await rows(page), ['From above']);
     await page.waitForFunction(() => document.querySelector('#named-list img').naturalWidth === 160, null, { timeout: 60000 });
-    await page.evaluate(() => globalThis.plantcast.session.setParams({ clip: { planes: [[0, 0, -1, 3]] }, selected: 'TK-101' }));
+    await page.evaluate(() => globalThis.plantcast.session.setParams({ clip: { planes: [[0, 0, -1, 3]] }, selected: 'E-101' }));
     await page.click('#named-list li .named-open');
     await isFrom(page, [8, 2, 30]);
     const { clip, selected, colormap } = await page.evaluate(() => globalThis.plantcast.session.params);
@@ -43,7 +43,7 @@ test('those of the plant file are there, each with its picture', options, async 
 
 test('what is seen is saved under a name, for all', options, async () => {
     const other = await openPage(plant.url, { viewport: { width: 1200, height: 720 } });
-    await page.evaluate(() => globalThis.plantcast.session.setParams({ selected: 'TK-101', look: 'glossy' }));
+    await page.evaluate(() => globalThis.plantcast.session.setParams({ selected: 'E-101', look: 'glossy' }));
     await page.fill('#named-title', 'Tank, von Süden');
     await page.keyboard.press('Enter');
     await page.waitForFunction(() => document.querySelectorAll('#named-list li').length === 2);

@@ -8,13 +8,13 @@ import { join } from 'node:path';
 import { after, before, test } from 'node:test';
 import { openPage, SCREENSHOTS, shoot } from './support/browser.mjs';
 import { residentKb, sanitized } from './support/crowd.mjs';
-import { BIN, missing, startPlant } from './support/plant.mjs';
 import { sweep } from './support/sweep.mjs';
-import { missing as lacks, runProgram, TinyPlant } from './support/tiny_plant.mjs';
+import { BIN, missing, runProgram, startTiny, TinyPlant } from './support/tiny_plant.mjs';
 import { missingDisplay, savePng, startDisplay } from './support/x_display.mjs';
 
-const why = missing(), LOSSES = Number(process.env.LOSSES) || sweep(3, 2);
-const options = { skip: why ?? false, timeout: 120000 + LOSSES * 60000 };
+const lacking = missing(), why = lacking.length > 0 && `not built: ${lacking.join(', ')}`;
+const LOSSES = Number(process.env.LOSSES) || sweep(3, 2);
+const options = { skip: why, timeout: 120000 + LOSSES * 60000 };
 const WALLS = `
 views:
 - { id: whole, title: Whole unit, view: "group=temperature" }
@@ -24,15 +24,15 @@ walls:
   - grid: [main tiles]
     panes:
     - { area: main, views: [whole] }
-    - { area: tiles, tiles: [TE-171, PT-101] }
+    - { area: tiles, tiles: [TI-1, PI-1] }
 `;
 let plant, wall;
 
 before(async () => {
     if (why)
         return;
-    plant = await startPlant(WALLS);
-    wall = await openPage(`${plant.url}?wall=room`, { viewport: { width: 1280, height: 720 } });
+    plant = await startTiny(WALLS);
+    wall = await openPage(`${plant.url}?wall=room`, { viewport: { width: 640, height: 360 } });
 });
 after(async () => {
     await wall?.close();
@@ -111,7 +111,7 @@ class Network {
 }
 
 const PLAYER = join(BIN, 'plantcast-wall'), CUTS = Number(process.env.LOSSES) || sweep(200, 3);
-const absent = [...lacks(), ...(existsSync(PLAYER) ? [] : ['plantcast-wall'])];
+const absent = [...lacking, ...(existsSync(PLAYER) ? [] : ['plantcast-wall'])];
 const none = absent.length > 0 ? `not built: ${absent.join(', ')}` : missingDisplay();
 test(`the player: ${CUTS} losses; and one whose token ends meanwhile shows nothing again`,
     { skip: none ?? false, timeout: 120000 + CUTS * 30000 }, async () => {
