@@ -5,6 +5,7 @@ import { readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
 import { drawnAt, openPage, settle, shoot, view, waitForPicture } from './support/browser.mjs';
+import { sweep } from './support/sweep.mjs';
 import { missing, TinyPlant } from './support/tiny_plant.mjs';
 
 const absent = missing();
@@ -45,7 +46,7 @@ before(async () => {
     assert.equal(code, 0, err + out);
     await plant.startSim();
     await plant.startDaemon();
-    browser = await openPage(`http://127.0.0.1:${plant.port}/`, { viewport: { width: 1440, height: 900 } });
+    browser = await openPage(`http://127.0.0.1:${plant.port}/`, { viewport: { width: 1280, height: 720 } });
     page = browser.page;
     await waitForPicture(page);
 });
@@ -85,7 +86,6 @@ test('a click selects and flies there; what is known of it and its links are sho
     assert.equal(await link.getAttribute('rel'), 'noopener noreferrer');
     await page.locator('#assets-search').fill('');
     await page.waitForFunction(() => /E 137/.test(document.querySelector('#assets-list [aria-selected="true"]')?.textContent));
-    await page.waitForTimeout(1000); // the flight
     await settle(page);
     await shoot(page, 'assets-selected');
 });
@@ -162,8 +162,8 @@ test('20,000 tags scroll smoothly', options, async (t) => {
     await shoot(page, 'assets-20000');
 });
 
-// Forced collections before each measure; ten seconds here, half an hour in `make test-long`.
-const USE_S = Number(process.env.USE_S ?? 10);
+// Forced collections before each measure; three seconds here, half an hour in `make test-long`.
+const USE_S = Number(process.env.USE_S ?? sweep(10, 3));
 test('memory does not grow with use', { ...options, timeout: options.timeout + 2000 * USE_S }, async (t) => {
     const client = await page.context().newCDPSession(page);
     const heap = async () => {
@@ -196,7 +196,7 @@ test('memory does not grow with use', { ...options, timeout: options.timeout + 2
         search.dispatchEvent(new Event('input'));
         await new Promise((done) => setTimeout(done, 500));
     }, ms);
-    await use(3000); // what is made once is made
+    await use(sweep(3000, 1000)); // what is made once is made
     let before = await heap(), after;
     // A busy machine makes part of that later. What grows with use grows each time.
     for (let times = 0; times < 2; times++) {

@@ -4,15 +4,18 @@ import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
 import { openPage, PHONE, settle, shoot, waitForPicture } from './support/browser.mjs';
 import { missing, startPlant } from './support/plant.mjs';
+import { sweep } from './support/sweep.mjs';
 
 const why = missing();
 const options = { skip: why ?? false, timeout: 200000 };
 const SCREENS = {
-    desk: { viewport: { width: 1280, height: 800 } },
     'desk at 200 %': { viewport: { width: 640, height: 400 }, deviceScaleFactor: 2 },
     phone: PHONE,
-    wall: { viewport: { width: 1920, height: 1080 }, query: '?wall=55,4' },
     'far wall': { viewport: { width: 1920, height: 1080 }, query: '?wall=85,8' },
+    ...sweep({
+        desk: { viewport: { width: 1280, height: 800 } },
+        wall: { viewport: { width: 1920, height: 1080 }, query: '?wall=55,4' },
+    }, {}),
 };
 // Beyond their limits: what lies close together on one machine, behind something, and far from all others.
 const ALARMS = ['TE-161', 'TE-162', 'TE-164', 'VT-161', 'VT-162', 'VT-163', 'VT-164', 'TE-151', 'TE-152',
