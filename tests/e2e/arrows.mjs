@@ -5,7 +5,7 @@ import assert from 'node:assert/strict';
 import { writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
-import { openPage, settle, shoot, waitForPicture } from './support/browser.mjs';
+import { DESKTOP, FLYING, openPage, settle, shoot, waitForPicture } from './support/browser.mjs';
 import { missing, TinyPlant } from './support/tiny_plant.mjs';
 
 const absent = missing();
@@ -72,7 +72,7 @@ tags: tags.csv
         await plant.tell(`set ${speedTag(degrees)} ${6 + 2 * i}`);
         await plant.tell(`set ${bearingTag(degrees)} ${(360 - degrees) % 360}`); // counter-clockwise round the tank, seen from above
     }
-    browser = await openPage(`http://127.0.0.1:${plant.port}/`);
+    browser = await openPage(`http://127.0.0.1:${plant.port}/`, { ...DESKTOP, ...FLYING });
     await waitForPicture(browser.page);
 });
 after(async () => {

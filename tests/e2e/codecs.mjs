@@ -12,7 +12,7 @@ import { BIN, BUILD, missing, startPlant } from './support/plant.mjs';
 
 const why = missing();
 const options = { skip: why ?? false, timeout: 200000 };
-const SCREEN = { viewport: { width: 1280, height: 720 } };
+const SCREEN = { viewport: { width: 960, height: 540 } };
 const QUIET_MS = 1500;
 let plant, folder;
 

@@ -4,7 +4,7 @@ import assert from 'node:assert/strict';
 import { chmodSync, existsSync, readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
-import { DESKTOP, drawnAt, land, openPage, settle, shoot, TABLET, waitForPicture, withoutFlights } from './support/browser.mjs';
+import { DESKTOP, drawnAt, land, openPage, settle, shoot, TABLET, waitForPicture } from './support/browser.mjs';
 import { missing, TinyPlant } from './support/tiny_plant.mjs';
 
 const absent = missing();
@@ -12,7 +12,6 @@ const skip = absent.length > 0 ? `not built: ${absent.join(', ')}` : !existsSync
 const options = { skip, timeout: 200000 };
 let plant, browser, page, tagsFile;
 
-withoutFlights();
 before(async () => {
     if (skip)
         return;

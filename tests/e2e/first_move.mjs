@@ -2,7 +2,7 @@
 // The first move on a fresh page, beside much else that the machine does: the picture is as good as any other.
 import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
-import { grab, openPage, settle, shoot, waitForPicture } from './support/browser.mjs';
+import { FLYING, grab, openPage, settle, shoot, waitForPicture } from './support/browser.mjs';
 import { similarity } from './support/pixels.mjs';
 import { missing, startPlant } from './support/plant.mjs';
 
@@ -31,7 +31,7 @@ before(async () => {
     plant = await startPlant();
     const { tags } = await (await fetch(`${plant.url}api/v1/tags`)).json();
     await plant.freeze(tags.map(({ name }) => name));
-    browser = await openPage(plant.url, SCREEN, BUSY);
+    browser = await openPage(plant.url, { ...SCREEN, ...FLYING }, BUSY);
     page = browser.page;
 });
 after(async () => {

@@ -2,12 +2,13 @@
 // The page on a tablet and on a phone, by touch.
 import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
-import { DESKTOP, markers, openPage, PHONE, settle, shoot, TABLET, view, waitForHealth, waitForPicture } from './support/browser.mjs';
+import { markers, openPage, PHONE, settle, SHARP, shoot, TABLET, view, waitForHealth, waitForPicture } from './support/browser.mjs';
 import { contrastRatio } from './support/pixels.mjs';
 import { missing, startPlant } from './support/plant.mjs';
 
 const why = missing();
 const options = { skip: why ?? false, timeout: 200000 };
+const LARGE = { viewport: { width: 1920, height: 1080 } }; // every control has room
 let plant;
 
 before(async () => {
@@ -64,7 +65,7 @@ const sticksOut = (page) => page.evaluate(() => [
     ...[...document.querySelectorAll('.segments span')].filter((e) => e.scrollWidth > e.clientWidth + 1),
 ].map((e) => e.id || e.className || e.textContent));
 
-test('tablet: one finger turns, two pan and zoom; device pixels', options, () => withPage(TABLET, async (page) => {
+test('tablet: one finger turns, two pan and zoom; device pixels', options, () => withPage({ ...TABLET, ...SHARP }, async (page) => {
     const box = await page.locator('#viewport').boundingBox();
     const size = await page.evaluate(() => [document.getElementById('picture').width, document.getElementById('picture').height]);
     assert.deepEqual(size, [box.width * 2, box.height * 2]);
@@ -99,7 +100,7 @@ test('tablet: one finger turns, two pan and zoom; device pixels', options, () =>
     await shoot(page, 'tablet-display');
 }));
 
-test('desktop: two sets of parameters side by side, each with legend and markers', options, () => withPage(DESKTOP, async (page) => {
+test('desktop: two sets of parameters side by side, each with legend and markers', options, () => withPage(LARGE, async (page) => {
     const choose = (id, value) => page.locator(`#${id}`).selectOption(value);
     const whole = await page.evaluate(() => ['plant-name', 'health'].filter((id) => {
         const { scrollWidth, clientWidth } = document.getElementById(id);

@@ -41,7 +41,7 @@ before(async () => {
     for (const [tag, value] of [['TI-1', 50], ['TI-2', 40], ['PI-1', 5]]) // no other alarm than the one that a test raises
         await plant.tell(`set ${tag} ${value}`);
     await plant.startDaemon();
-    browser = await openPage(`http://127.0.0.1:${plant.port}/`, { viewport: { width: 1440, height: 900 } });
+    browser = await openPage(`http://127.0.0.1:${plant.port}/`, { viewport: { width: 1280, height: 720 } });
     page = browser.page;
     await waitForPicture(page);
     await waitForHealth(page, 'live');
@@ -290,7 +290,7 @@ test('while the daemon did not run nothing looks recorded: hatched, without data
         gaps.splice(0, Infinity, ...(await (await fetch(`${url}api/v1/history/gaps?from=-10m`)).json()).gaps);
     const [from, to] = gaps.at(-1);
     assert.ok(Math.abs(from - stopped) < 2e6 && to - from > 3e6, JSON.stringify([stopped, gaps]));
-    const other = await openPage(`${url}#at=${new Date((from + to) / 2000).toISOString()}`, { viewport: { width: 1440, height: 900 } });
+    const other = await openPage(`${url}#at=${new Date((from + to) / 2000).toISOString()}`, { viewport: { width: 1280, height: 720 } });
     await waitForPicture(other.page);
     await other.page.waitForFunction(() => globalThis.plantcast.session.picture.past);
     const seen = await other.page.evaluate(() => globalThis.plantcast.session.model.tags.map(({ index }) =>

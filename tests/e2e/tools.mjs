@@ -5,7 +5,7 @@ import { readFileSync } from 'node:fs';
 import { after, afterEach, before, test } from 'node:test';
 import jsqr from 'jsqr';
 import {
-    drawnAt, grab, openPage, PHONE, readPng, settle, shoot, TABLET, view, waitForHealth, waitForPicture, withoutFlights,
+    drawnAt, grab, openPage, PHONE, readPng, settle, shoot, TABLET, view, waitForHealth, waitForPicture,
 } from './support/browser.mjs';
 import { contrast, deltaE } from './support/pixels.mjs';
 import { missing, TinyPlant } from './support/tiny_plant.mjs';
@@ -15,7 +15,6 @@ const options = { skip: absent.length > 0 ? `not built: ${absent.join(', ')}` : 
 const SCREEN = { viewport: { width: 1280, height: 800 } };
 let plant, url, browser, page;
 
-withoutFlights();
 before(async () => {
     if (options.skip)
         return;

@@ -5,7 +5,7 @@ import assert from 'node:assert/strict';
 import { mkdirSync, readFileSync, writeFileSync } from 'node:fs';
 import { dirname, join } from 'node:path';
 import { after, before, test } from 'node:test';
-import { arrive, openPage, SCREENSHOTS, settle, waitForHealth, waitForPicture } from './support/browser.mjs';
+import { arrive, FLYING, openPage, SCREENSHOTS, settle, waitForHealth, waitForPicture } from './support/browser.mjs';
 import { missing, startPlant } from './support/plant.mjs';
 import { runProgram } from './support/tiny_plant.mjs';
 
@@ -32,7 +32,7 @@ before(async () => {
     if (why)
         return;
     plant = await startPlant('\nalarms: local\n', remember);
-    browser = await openPage(plant.url, { viewport: { width: 1280, height: 800 } });
+    browser = await openPage(plant.url, { viewport: { width: 1280, height: 800 }, ...FLYING });
     page = browser.page;
     await waitForPicture(page);
     await waitForHealth(page, 'live');

@@ -17,14 +17,17 @@ const QUIET = [
 ];
 const PATIENCE_MS = 120000; // of whatever waits for a page: slower than that is no page, how busy the machine ever is
 export const SCREENSHOTS = join(BUILD, 'screenshots');
-export const DESKTOP = { viewport: { width: 1920, height: 1080 } };
-export const TABLET = { viewport: { width: 1024, height: 768 }, deviceScaleFactor: 2, hasTouch: true };
-export const PHONE = { viewport: { width: 390, height: 844 }, deviceScaleFactor: 2, hasTouch: true, isMobile: true };
+// Layout depends on CSS pixels, what a picture costs on those of the device: these are halved but in `make test-long`, or with `...SHARP`.
+export const SHARP = { deviceScaleFactor: 2 };
+const DENSITY = sweep(SHARP, { deviceScaleFactor: 1 });
+export const DESKTOP = { viewport: sweep({ width: 1920, height: 1080 }, { width: 1280, height: 800 }) };
+export const TABLET = { viewport: { width: 1024, height: 768 }, ...DENSITY, hasTouch: true };
+export const PHONE = { viewport: { width: 390, height: 844 }, ...DENSITY, hasTouch: true, isMobile: true };
 
-// Has the camera of this program's pages go where it is sent at once, as for people who want no motion: of a flight each frame costs
-// 15 ms of a processor in the browser alone. `make test-long` has all flights.
-let motion = 'no-preference';
-export const withoutFlights = () => { motion = sweep('no-preference', 'reduce'); };
+// The camera of pages goes where it is sent at once, as for people who want no motion: of a flight each frame costs 15 ms of a processor
+// in the browser alone. `make test-long` has all flights, and who opens a page with `...FLYING` those that it is about.
+export const FLYING = { reducedMotion: 'no-preference' };
+const MOTION = sweep(FLYING, { reducedMotion: 'reduce' });
 
 // One browser for all pages of a test program, for each set of its own arguments.
 const browsers = new Map();
@@ -65,14 +68,22 @@ export async function browserOn(display, url, width, height, clockMs = 0) {
     return { page, close: () => context.close() };
 }
 
+// Asks every 50 ms whether what is waited for has come: at each animation frame, as playwright does, it has the browser draw 60 a second.
+// What is there for less than that is waited for with { polling: 'raf' }.
+function waitingSeldom(page) {
+    const wait = page.waitForFunction.bind(page);
+    page.waitForFunction = (f, arg, options) => wait(f, arg, { polling: 50, ...options });
+    return page;
+}
+
 // { page, errors, close }. The page remembers nothing of others. errors: what went wrong in it and what it tried to fetch from elsewhere.
 // before: a function that runs in the page before its own scripts; arrange(page): what else to do before. screen.args: the browser's;
 // screen.profile: it has a browser of its own, with a profile.
 export async function openPage(url, screen = DESKTOP, before = null, arrange = () => {}) {
-    const { args = [], profile = false, ...own } = screen, shape = { reducedMotion: motion, ...own };
+    const { args = [], profile = false, ...own } = screen, shape = { ...MOTION, ...own };
     const context = await (profile ? profileWith(args, shape) : (await browserWith(args)).newContext(shape));
     context.setDefaultTimeout(PATIENCE_MS);
-    const page = context.pages()[0] ?? await context.newPage();
+    const page = waitingSeldom(context.pages()[0] ?? await context.newPage());
     const errors = [];
     page.on('pageerror', (error) => errors.push(String(error)));
     page.on('console', (message) => {
