@@ -5,6 +5,7 @@
 #include "base/log.h"
 #include "base/workers.h"
 #include "plant/sensors.h"
+#include "preprocess/influence/influence_bend.h"
 #include "surface/surface.h"
 
 /* How distances by the heat method on a point cloud differ from ours, as shares of the largest: of CLOUD_CHECKED sensors at each vertex. */
@@ -29,6 +30,7 @@ struct influence_input {
     const char *folder;
     uint64_t key; /* of the asset file */
     struct cloud_report *cloud; /* filled in where a group asks for distances by heat */
+    struct bend_report *bend;   /* filled in where one asks for harmonic, fin or gp */
 };
 
 /* Returns whether some group of these sensors has anything prepared but distances. */

@@ -372,7 +372,8 @@ static bool make_influence(struct build *build)
                                             .triangle_count = build->levels.at[0].index_count / 3,
                                             .folder = input->folder,
                                             .key = input->key,
-                                            .cloud = &build->output->report.cloud };
+                                            .cloud = &build->output->report.cloud,
+                                            .bend = &build->output->report.bend };
     if (!influence_file_make(build->log, build->workers, &wanted, why))
         return wrong(build->why, "%s", why);
     double seconds = seconds_since(&since_ns);

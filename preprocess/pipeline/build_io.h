@@ -38,6 +38,7 @@ struct build_report {
     struct build_level levels[LEVELS_MAX];
     size_t level_count, levels_given_up;
     size_t split_measured, split_kept; /* findings of the splitting: of this time, and of the last that still hold */
+    struct bend_report bend;   /* of harmonic, fin and gp between corners; zero: no group asks for them */
     struct cloud_report cloud; /* of the heat method on a point cloud; zero: no group asks for it */
     double read_s, surface_s, solve_s, levels_s, split_s;
 };

@@ -80,6 +80,14 @@ static const struct number cloud_numbers[] = {
     OF_BUILD("not_reached", cloud.unreached, COUNT),
     { 0 },
 };
+static const struct number bend_numbers[] = {
+    OF_BUILD("bounded", bend.measured, COUNT),
+    OF_BUILD("unbounded", bend.unmeasured, COUNT),
+    OF_BUILD("steps", bend.steps, METRES),
+    OF_BUILD("over_share", bend.over_share, METRES),
+    OF_BUILD("unknown_share", bend.unknown_share, METRES),
+    { 0 },
+};
 #define OF_LEVEL(name, field, kind)                                                                                                        \
     {                                                                                                                                      \
         name, offsetof(struct build_level, field), kind                                                                                    \
@@ -143,6 +151,8 @@ json_t *build_report_to_json(const struct build_report *report)
     for (size_t i = 0; i < report->level_count; i++)
         json_array_append_new(levels, all_to_json(level_numbers, &report->levels[i]));
     json_object_set_new(out, "levels", levels);
+    if (report->bend.measured + report->bend.unmeasured > 0)
+        json_object_set_new(out, "between_corners", all_to_json(bend_numbers, report));
     if (report->cloud.points > 0)
         json_object_set_new(out, "cloud", all_to_json(cloud_numbers, report));
     json_object_set_new(out, "surface", report->surface.triangles ? all_to_json(surface_numbers, report) : json_null());
@@ -162,6 +172,9 @@ bool build_report_from_json(const json_t *numbers, struct build_report *report)
             return false;
     const json_t *cloud = json_object_get(numbers, "cloud"); /* where no group asks for it there is none */
     if (cloud && !all_from_json(cloud_numbers, cloud, report))
+        return false;
+    const json_t *bend = json_object_get(numbers, "between_corners");
+    if (bend && !all_from_json(bend_numbers, bend, report))
         return false;
     return json_is_null(surface) || all_from_json(surface_numbers, surface, report);
 }

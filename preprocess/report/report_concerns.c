@@ -10,6 +10,7 @@
 
 #define METHODS_DIFFER 0.05 /* root mean square, of the largest distance: more than what the heat method smooths */
 #define FIELD_SLACK 1.05    /* float rounding in what splitting reached */
+#define BENT_SHARE 1e-3     /* of an asset's surface: less is not worth a look */
 #define HIGH_POWER 5        /* from there on the error of a distance alone can be worth more than two steps of colour */
 #define DISTANCE_ERROR 0.0031 /* of a distance along the surface: the worst of accuracy_test's whole shapes */
 
@@ -62,6 +63,20 @@ static void add_numbers(struct concerns *concerns, const struct prepare_asset *a
             mem_printf("close to, its field errs by up to %.1f steps of colour (1/255 of the range) along %s edges: it may not have more "
                        "triangles",
                        (double)left->steps, text_table_number(left->edges).text));
+}
+
+/* Of fields that are solved for, on triangles that were made for another one. */
+static void add_bend(struct concerns *concerns, const struct prepare_asset *asset)
+{
+    const struct bend_report *bend = &asset->report.bend;
+    if (bend->over_share > BENT_SHARE)
+        add(concerns, asset, 1 + bend->steps / 255,
+            mem_printf("between corners, harmonic, fin or gp may err by over a step of colour (1/255 of the range) on %.2g %% of its "
+                       "surface, by up to %.1f steps",
+                       100 * bend->over_share, bend->steps));
+    if (bend->unmeasured > 0 || bend->unknown_share > BENT_SHARE)
+        add(concerns, asset, 1, mem_printf("by how much harmonic, fin or gp may err between corners is not known on %.2g %% of its surface",
+                                           bend->unmeasured > 0 ? 100 : 100 * bend->unknown_share));
 }
 
 /* A weight is a power p of a distance, so the share of one sensor against another errs by up to p/2 of the error of a distance. */
@@ -118,7 +133,7 @@ struct report_concern *report_concerns(const struct prepare *prepare, size_t *co
             add(&concerns, asset, 1e9, mem_strdup("could not be prepared: see the errors"));
         add_sensors(&concerns, prepare, asset);
         if (asset->reported && asset->state != PREPARE_SHARED)
-            add_numbers(&concerns, asset);
+            add_numbers(&concerns, asset), add_bend(&concerns, asset);
         if (asset->wanted && asset->state != PREPARE_SHARED)
             add_powers(&concerns, prepare, asset);
     }
