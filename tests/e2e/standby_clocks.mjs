@@ -2,6 +2,8 @@
 // Two cores whose clocks are an hour apart: the standby says so, takes over as fast, and nothing is lost, told twice or older than it is.
 // What a core whose clock is behind recorded while the other was away, the other does not read afterwards: the database has it.
 import assert from 'node:assert/strict';
+import { readFileSync, writeFileSync } from 'node:fs';
+import { join } from 'node:path';
 import { after, before, test } from 'node:test';
 import { missingClocks, withClockOff } from './support/clocks.mjs';
 import { PostgresServer } from './support/postgres_server.mjs';
@@ -36,10 +38,18 @@ async function move(two) {
     }
 }
 
+// A device that a busy machine keeps from answering is not away: each time that its readings are Bad, the journal has it.
+function allowLateAnswers({ file, plant }) {
+    const tags = join(plant.folder, 'tags.csv');
+    writeFileSync(file, readFileSync(file, 'utf8').replace('timeout_ms: 300', 'timeout_ms: 10000'));
+    writeFileSync(tags, readFileSync(tags, 'utf8').replace(/,1,90$/gm, ',60,90'));
+}
+
 for (const off_s of [HOUR_S, -HOUR_S])
     test(`a standby whose clock is an hour ${off_s > 0 ? 'ahead' : 'behind'} takes over, and the other from it`, options, async (t) => {
         server.makeDatabase(off_s > 0 ? 'ahead' : 'behind');
         const two = await TwoCores.create(server), { one, two: other } = two.cores;
+        allowLateAnswers(two);
         other.before = withClockOff(off_s);
         try {
             for (const [tag, value] of [['TI-1', 95], ['TI-2', 20], ['PI-1', 5]])
@@ -75,7 +85,8 @@ for (const off_s of [HOUR_S, -HOUR_S])
             await two.restart(other);
             await two.followed(one);
             await sleep(7000); // the newest samples are sent
-            const events = (await json(one.node, '/api/v1/alarms/journal?tag=TI-1')).rows.map(({ event }) => event);
+            const { rows } = await json(one.node, '/api/v1/alarms/journal?tag=TI-1');
+            const events = rows.map(({ kind, event }) => `${kind} ${event}`);
             assert.equal(new Set(events).size, events.length, `each once: ${events}`);
             const times = (points) => [0, off_s].map((from_s) =>
                 points.filter(([us]) => Math.abs(us - began_us - from_s * 1e6) < 120e6).length);
