@@ -16,6 +16,7 @@
 #include "render/light/light.h"
 #include "tests/support/planned.h"
 #include "tests/support/rig.h"
+#include "tests/support/sweep.h"
 #include "value/quality.h"
 
 static struct rig rig;
@@ -179,7 +180,7 @@ static void test_many_lights_fit_in_a_bound(void **state)
     struct light_set *held = light_get(&light, &key);
     uint64_t id = held->id;
     light_hold(held);
-    for (int i = 1; i < 40; i++) {
+    for (int i = 1; i < sweep(40, 12); i++) {
         key = sun(i);
         assert_non_null(light_get(&light, &key));
         assert_true(light.bytes <= light.bound_bytes);
@@ -323,6 +324,7 @@ int main(void)
         cmocka_unit_test(test_openness_is_kept),
     };
     cmocka_set_message_output(CM_OUTPUT_TAP);
+    unsetenv("PLANTCAST_SHARED"); /* what others have kept is not looked for */
     if (!rig_init(&rig, "light_test"))
         return 0;
     stand_init(&stand, &rig, toy_unit());

@@ -1,12 +1,18 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Contexts, stands and pixels for GL tests. */
-#include "render/split_view.h"
 #include "tests/support/rig.h"
 
+#include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
+#define XXH_STATIC_LINKING_ONLY /* the hash state on the stack */
+#include <xxhash.h>
+
+#include "base/mem.h"
+#include "render/split_view.h"
 
 bool rig_init(struct rig *rig, const char *test)
 {
@@ -33,8 +39,28 @@ void rig_finish(struct rig *rig)
     log_destroy(&rig->log);
 }
 
+/* Where tests/run lets programs share what costs much and is the same for all: by what the file in it depends on of a toy. NULL: alone. */
+static char *shared_folder(const struct scene *scene)
+{
+    const char *shared = getenv("PLANTCAST_SHARED");
+    XXH3_state_t state;
+    if (!shared)
+        return NULL;
+    XXH3_INITSTATE(&state);
+    XXH3_64bits_reset(&state);
+    for (size_t i = 0; i < scene->asset_count; i++) {
+        XXH3_64bits_update(&state, &scene->assets[i].file->view.header->checksum, sizeof(uint64_t));
+        XXH3_64bits_update(&state, scene->assets[i].placement, sizeof(scene->assets[i].placement));
+    }
+    char *folder = mem_printf("%s/toy-%016" PRIx64, shared, XXH3_64bits_digest(&state));
+    mkdir(folder, 0777);
+    return folder;
+}
+
 void stand_init(struct stand *stand, struct rig *rig, struct toy *toy)
 {
+    if (!toy->scene.folder)
+        toy->scene.folder = shared_folder(&toy->scene);
     *stand = (struct stand){ .rig = rig, .toy = toy };
     stand->field = field_create(rig->workers, &toy->scene);
     stand->renderer = renderer_create(rig->log, rig->gl, &toy->scene, stand->field);
@@ -75,12 +101,34 @@ const uint8_t *frame_pixel(const struct frame *frame, int x, int y)
     return frame->bgrx + (size_t)y * (size_t)frame->stride_bytes + (size_t)x * 4;
 }
 
+static uint32_t color_hash(uint32_t r, uint32_t g, uint32_t b)
+{
+    return (r << 16 | g << 8 | b) * 2654435761u >> 16;
+}
+
 int map_index_exact(const struct colormap *map, const uint8_t *bgrx)
 {
-    for (int i = 0; i < 256; i++)
-        if (map->rgb[i][0] == bgrx[2] && map->rgb[i][1] == bgrx[1] && map->rgb[i][2] == bgrx[0])
-            return i;
-    return -1;
+    enum { SLOTS = 1024 }; /* by a colour's hash, and behind one that is taken; the first of several equal colours */
+    static const struct colormap *known;
+    static int16_t places[SLOTS];
+    if (known != map) {
+        memset(places, -1, sizeof(places));
+        for (int i = 0; i < 256; i++) {
+            uint32_t slot = color_hash(map->rgb[i][0], map->rgb[i][1], map->rgb[i][2]) % SLOTS;
+            while (places[slot] >= 0 && memcmp(map->rgb[places[slot]], map->rgb[i], 3) != 0)
+                slot = (slot + 1) % SLOTS;
+            if (places[slot] < 0)
+                places[slot] = (int16_t)i;
+        }
+        known = map;
+    }
+    uint32_t slot = color_hash(bgrx[2], bgrx[1], bgrx[0]) % SLOTS;
+    for (; places[slot] >= 0; slot = (slot + 1) % SLOTS) {
+        const uint8_t *rgb = map->rgb[places[slot]];
+        if (rgb[0] == bgrx[2] && rgb[1] == bgrx[1] && rgb[2] == bgrx[0])
+            break;
+    }
+    return places[slot];
 }
 
 static bool is_color(const uint8_t *bgrx, const uint8_t rgb[3])

@@ -68,6 +68,7 @@ void toy_destroy(struct toy **toy_ptr)
     mem_free(plant->assets);
     mem_free(plant->tags);
     mem_free(toy->scene.assets);
+    mem_free(toy->scene.folder);
     mem_free(toy);
     *toy_ptr = NULL;
 }

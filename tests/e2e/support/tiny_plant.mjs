@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A plant of two boxes and three tags in a folder of its own, prepared and served on free ports.
 import { spawn, spawnSync } from 'node:child_process';
-import { appendFileSync, chownSync, existsSync, mkdtempSync, readdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
+import { createHash } from 'node:crypto';
+import { appendFileSync, chownSync, copyFileSync, existsSync, mkdtempSync, readdirSync, readFileSync, renameSync, rmSync,
+    writeFileSync } from 'node:fs';
 import { connect } from 'node:net';
 import { tmpdir } from 'node:os';
 import { join, resolve } from 'node:path';
@@ -107,6 +109,12 @@ export class Program {
     }
 }
 
+// A copy that is there whole or not at all.
+function copyWhole(from, to) {
+    copyFileSync(from, `${to}.${process.pid}`);
+    renameSync(`${to}.${process.pid}`, to);
+}
+
 export class TinyPlant {
     static async create() {
         const plant = new TinyPlant();
@@ -132,7 +140,20 @@ export class TinyPlant {
     }
 
     prepare() {
-        return runProgram('plantcast-prep', [this.file], 60000);
+        const ended = runProgram('plantcast-prep', [this.file], 60000), { own, shared } = this.openness();
+        if (shared && existsSync(shared) && !existsSync(own))
+            copyWhole(shared, own);
+        return ended;
+    }
+
+    // How open each place is costs a daemon half of its start, and is the same wherever the same was prepared: it is shared by all programs
+    // of one run of tests/run.
+    openness() {
+        const prepared = join(this.folder, 'plant.prepared'), manifest = join(prepared, 'manifest.json');
+        if (!process.env.PLANTCAST_SHARED || !existsSync(manifest))
+            return {};
+        const name = createHash('sha256').update(readFileSync(manifest)).digest('hex').slice(0, 16);
+        return { own: join(prepared, 'openness'), shared: join(process.env.PLANTCAST_SHARED, `tiny-${name}`) };
     }
 
     // Every tag has a limit of 90, of this server's own alarms.
@@ -182,6 +203,9 @@ export class TinyPlant {
         for (const program of programs)
             if (program.child.exitCode === null)
                 await program.stop('SIGKILL');
+        const { own, shared } = this.openness();
+        if (shared && existsSync(own) && !existsSync(shared))
+            copyWhole(own, shared);
         rmSync(this.folder, { recursive: true, force: true });
         if (fault)
             throw new Error(fault);
