@@ -115,7 +115,7 @@ for (const size of SIZES) {
         const each = [size[0] / COLUMNS, size[1] / ROWS];
         const opened = await Promise.all(Array.from({ length: COLUMNS * ROWS }, (_, i) => open('tiles', i + 1, each)));
         await Promise.all(opened.map(({ page }) => page.waitForFunction(() => {
-            const canvas = document.querySelector('canvas');
+            const canvas = document.querySelector('canvas.front');
             return canvas?.width > 300 && document.getElementById('lost')?.hidden !== false;
         })));
         await opened[0].page.waitForTimeout(8000);

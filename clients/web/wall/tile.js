@@ -21,13 +21,14 @@ const OLD_MS = 3000, POINTS_MS = 4000, REACH = 0.35; // of a tile's width: a lab
 
 // { element, kind, tick(now) }. pane: of /api/v1/walls, with `tile`; context: as of other panes.
 export function tileOf(pane, { session: words, call, wall, display, streamUrl }) {
-    const { columns, rows } = pane.tile, canvas = make('canvas', {}), marks = make('div', { class: 'marks' });
+    const { columns, rows } = pane.tile, canvases = [make('canvas', { class: 'front' }), make('canvas')];
+    const marks = make('div', { class: 'marks' });
     const title = make('h2', {}), legend = make('div', { class: 'legend' }), said = make('p', { class: 'tile-said', hidden: true });
-    const element = make('section', { class: 'pane picture' }, canvas, marks, said);
+    const element = make('section', { class: 'pane picture' }, ...canvases, marks, said);
     const connection = new Connection({ url: streamUrl, open: (url, protocol) => new WebSocket(url, protocol), clock });
     const decoding = browserDecoding();
     const session = new TileSession({ connection, now: clock.now, codecs: decoding.codecs, tile: { wall: wall.id, display, columns, rows },
-        canvas, decoding });
+        canvases, decoding });
     const ratio = window.devicePixelRatio || 1;
     element.style.gridArea = 'area-main';
     connection.spreadMs = SPREAD_MS;

@@ -6,11 +6,11 @@ import { Session } from '../core/session.js';
 const PING_MS = 2000, CLOCK_MS = 60000, EARLY_MS = 4; // the next picture of the screen comes within 17 ms
 
 export class TileSession extends Session {
-    // tile: { wall, display, columns, rows }. Events besides those of a session: tiles (who is there), shown (a frame, when it was, in
-    // microseconds of the server).
-    constructor({ tile, canvas, decoding, ...rest }) {
+    // tile: { wall, display, columns, rows }. canvases: two, of which that with the class `front` is seen. Events besides those of a
+    // session: tiles (who is there), presented ({ frame, number (of the picture), us (when, by the server) }).
+    constructor({ tile, canvases, decoding, ...rest }) {
         super(rest);
-        Object.assign(this, { tile, canvas, decoding, context: canvas.getContext('2d', { alpha: false }) });
+        Object.assign(this, { tile, canvases: [...canvases], decoding }); // the front one first
         this.tiles = { leads: false, part: null, missing: [], late: [] };
         this.pongs = [];    // of the last minute: { at, us (the server's clock less ours), roundTripMs }
         this.places = null; // of the markers of the frame that is shown: [tag, x, y, occluded, ...]
@@ -37,6 +37,7 @@ export class TileSession extends Session {
             picture.close?.();
         this.kept = [];       // { frame, picture, decodeMs }, in order
         this.order = null;    // { seq, picture, at_us } that is to be shown next
+        this.drawnLast = null; // { frame, decodeMs } of what is drawn already and not shown; null: nothing is
         this.markerRows = []; // { seq, rows }
     }
 
@@ -100,6 +101,7 @@ export class TileSession extends Session {
     present(message) {
         const waits = this.order !== null;
         this.order = message;
+        this.prepare(message.seq);
         if (waits)
             return;
         const look = () => {
@@ -111,20 +113,31 @@ export class TileSession extends Session {
         requestAnimationFrame(look);
     }
 
-    show({ seq, picture: number }) {
-        const drawn = this.kept.filter(({ frame }) => frame.seq <= seq);
+    // Draws what is to be shown where it is not seen yet: at the instant itself, canvases only change places.
+    prepare(seq) {
+        const parts = this.kept.filter(({ frame }) => frame.seq <= seq), [front, back] = this.canvases;
         this.kept = this.kept.filter(({ frame }) => frame.seq > seq);
-        this.order = null;
-        for (const { frame, picture } of drawn) {
-            if (this.canvas.width !== frame.fullWidth || this.canvas.height !== frame.fullHeight)
-                Object.assign(this.canvas, { width: frame.fullWidth, height: frame.fullHeight });
-            const { x, y, width, height } = frame;
-            this.context.drawImage(picture, 0, 0, width, height, x, y, width, height);
+        if (parts.length === 0)
+            return;
+        const [{ frame: { fullWidth, fullHeight, width, height } }] = parts, context = back.getContext('2d', { alpha: false });
+        if (back.width !== fullWidth || back.height !== fullHeight)
+            Object.assign(back, { width: fullWidth, height: fullHeight });
+        if (!this.drawnLast && (width < fullWidth || height < fullHeight) && front.width === fullWidth && front.height === fullHeight)
+            context.drawImage(front, 0, 0);
+        for (const { frame, picture } of parts) {
+            context.drawImage(picture, 0, 0, frame.width, frame.height, frame.x, frame.y, frame.width, frame.height);
             picture.close?.();
         }
-        const last = drawn.at(-1);
+        this.drawnLast = parts.at(-1);
+    }
+
+    show({ seq, picture: number }) {
+        const last = this.drawnLast;
+        this.order = this.drawnLast = null;
         if (!last)
             return;
+        this.canvases.reverse();
+        this.canvases.forEach((canvas, i) => canvas.classList.toggle('front', i === 0));
         const known = this.markerRows.findLastIndex((one) => one.seq <= seq);
         this.places = known < 0 ? this.places : this.markerRows[known].rows;
         this.markerRows = this.markerRows.slice(known + 1);
