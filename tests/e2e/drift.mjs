@@ -79,6 +79,13 @@ test('the tool says the same; a week before nothing is known', options, async ()
         assert.equal((await ask(query))[0], 400, query);
 });
 
+// By how many pixels something in the card passes what its padding leaves.
+const overhang = (page) => page.evaluate(() => {
+    const card = document.querySelector('#card'), padding = parseFloat(getComputedStyle(card).paddingRight);
+    const right = card.getBoundingClientRect().right - padding;
+    return Math.max(...[...card.querySelectorAll('dd, .drift-curve')].map((part) => part.getBoundingClientRect().right - right));
+});
+
 test('the page lists it, and its card shows the week', options, async () => {
     for (const [tag, value] of [['TI-1', 60], ['TI-2', 50], ['TI-3', 63], ['TI-4', 45]])
         await plant.tell(`set ${tag} ${value}`);
@@ -91,11 +98,13 @@ test('the page lists it, and its card shows the week', options, async () => {
         await page.evaluate(() => globalThis.plantcast.selectTag(globalThis.plantcast.session.model.tag('TI-3')));
         await page.locator('#card .drifts .drift-curve').waitFor();
         assert.match(await page.locator('#card .drifts').textContent(), found);
+        assert.ok(await overhang(page) <= 1, `${language}: ${await overhang(page)}`);
         await settle(page);
         await shoot(page, `drift-card-${language}`);
         await page.evaluate(() => globalThis.plantcast.selectTag(globalThis.plantcast.session.model.tag('TI-1')));
         await page.waitForFunction(() => document.querySelector('#card .drift-curve') && !document.querySelector('#card .drifts'));
         assert.match(await page.locator('#card').textContent(), none);
+        assert.ok(await overhang(page) <= 1, `${language}: ${await overhang(page)}`);
         await page.locator('#picture-toggle').click();
         await page.locator('#drifting:not([hidden]) .line').first().waitFor();
         assert.equal(await page.locator('#drifting .line').count(), 1);
