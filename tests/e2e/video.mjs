@@ -7,7 +7,7 @@ import { connect, createServer } from 'node:net';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
-import { SCREENSHOTS } from './support/browser.mjs';
+import { openPage, SCREENSHOTS } from './support/browser.mjs';
 import { freePort } from './support/ports.mjs';
 import { BIN, missing, Program, runProgram, TinyPlant } from './support/tiny_plant.mjs';
 
@@ -149,6 +149,46 @@ test('SRT and HLS carry the same pictures, encrypted and by password', options, 
         assert.ok([400, 404].includes((await http(path)).status), path);
     const list = await (await http('/hls/index.m3u8')).text();
     assert.ok([...list.matchAll(/#EXTINF:([\d.]+)/g)].every(([, s]) => Math.abs(s - 2) < 1), list);
+});
+
+test('HLS: a browser that plays it shows a running clock', options, async (t) => {
+    const [username, password] = READER.split(':');
+    const { page, close } = await openPage(`http://127.0.0.1:${ports.http}/metrics`, { httpCredentials: { username, password } });
+    t.after(close);
+    if (!await page.evaluate(() => document.createElement('video').canPlayType('application/vnd.apple.mpegurl')))
+        return t.skip('this browser plays no HLS by itself');
+    for (const end = performance.now() + 60000; ((await (await http('/hls/index.m3u8')).text()).match(/\.ts/g) ?? []).length < 3;) {
+        assert.ok(performance.now() < end, 'no segments');
+        await new Promise((done) => setTimeout(done, 200));
+    }
+    await page.evaluate(() => {
+        const element = Object.assign(document.createElement('video'), { muted: true, src: '/hls/index.m3u8' });
+        document.body.append(element);
+        element.play().catch((error) => { globalThis.failed = String(error); });
+    });
+    // The row of blocks at the bottom, as a text of ones and zeros.
+    const look = () => page.evaluate((blocks) => {
+        const element = document.querySelector('video'), { videoWidth: width, videoHeight: height } = element;
+        if (!width || element.readyState < 2)
+            return { failed: globalThis.failed ?? element.error?.message };
+        const canvas = Object.assign(document.createElement('canvas'), { width, height }), context = canvas.getContext('2d');
+        context.drawImage(element, 0, 0);
+        const row = context.getImageData(0, height - 3, width, 1).data;
+        const bits = Array.from({ length: blocks }, (_, n) => (row[4 * Math.floor((n + 0.5) * width / blocks)] > 127 ? 1 : 0)).join('');
+        return { width, height, bits };
+    }, BLOCKS);
+    const seen = new Set();
+    for (const end = performance.now() + 60000; seen.size < 5; await new Promise((done) => setTimeout(done, 200))) {
+        const { width, height, bits, failed } = await look();
+        assert.ok(performance.now() < end && !failed, `${failed ?? 'no picture'}, ${seen.size} seen`);
+        if (bits) {
+            assert.deepEqual([width, height], [WIDTH, HEIGHT]);
+            seen.add(bits);
+        }
+    }
+    const times = [...seen].map((bits) => parseInt(bits.slice(2, 2 + BITS), 2) * 100), now = Date.now();
+    assert.deepEqual(times, [...times].sort((a, b) => a - b), 'it runs');
+    assert.ok(now - times.at(-1) < 30000 && now >= times.at(-1), `${now - times.at(-1)} ms behind`);
 });
 
 test('ten readers of a stream cost one encoder, and one that reads nothing holds up no other', options, async () => {
