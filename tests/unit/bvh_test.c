@@ -66,6 +66,59 @@ static double distance_of(const struct trimesh *mesh, uint32_t tri, const double
     return sqrt(vec_distance2(point, q));
 }
 
+static double distance_to_edge(const double p[3], const double a[3], const double b[3])
+{
+    double ab[3], ap[3], at[3];
+    vec_sub(b, a, ab);
+    vec_sub(p, a, ap);
+    vec_mix(a, b, fmin(fmax(vec_dot(ab, ap) / vec_dot(ab, ab), 0), 1), at);
+    return vec_distance(p, at);
+}
+
+/* All three edges, and the plane if p is on the inner side of all of them. */
+static double distance_plainly(const double p[3], const double at[3][3])
+{
+    double n[3], found_m = INFINITY, ap[3];
+    bool inside = true;
+    vec_normal(at[0], at[1], at[2], n);
+    for (int i = 0; i < 3; i++) {
+        const double *a = at[i], *b = at[(i + 1) % 3];
+        double ab[3], to_inside[3];
+        found_m = fmin(found_m, distance_to_edge(p, a, b));
+        vec_sub(b, a, ab);
+        vec_cross(n, ab, to_inside);
+        vec_sub(p, a, ap);
+        inside &= vec_dot(ap, to_inside) >= 0;
+    }
+    return inside ? fmin(found_m, fabs(vec_dot(ap, n)) / vec_length(n)) : found_m;
+}
+
+/* Triangles from well shaped to a ten-thousandth as high as long, blunt and sharp; points from beside them to a hundred times as far. */
+static void test_nearest_of_a_triangle(void **state)
+{
+    (void)state;
+    for (int i = 0; i < 200000; i++) {
+        double at[3][3], p[3], w[3], q[3], height = pow(10, between(-4, 0)), far = pow(10, between(-3, 2)), along = between(-1, 2);
+        for (int axis = 0; axis < 3; axis++) {
+            at[0][axis] = between(-1, 1);
+            at[1][axis] = between(-1, 1);
+            at[2][axis] = at[0][axis] + along * (at[1][axis] - at[0][axis]) + height * between(-1, 1);
+        }
+        double u = between(-0.5, 1.5), v = between(-0.5, 1.5);
+        for (int axis = 0; axis < 3; axis++)
+            p[axis] = u * at[0][axis] + v * at[1][axis] + (1 - u - v) * at[2][axis] + far * between(-1, 1);
+        triangle_nearest(p, at[0], at[1], at[2], w);
+        for (int axis = 0; axis < 3; axis++)
+            q[axis] = w[0] * at[0][axis] + w[1] * at[1][axis] + w[2] * at[2][axis];
+        assert_true(w[0] >= 0 && w[1] >= 0 && w[2] >= 0);
+        assert_float_equal(w[0] + w[1] + w[2], 1, 1e-12);
+        double plain_m = distance_plainly(p, at);
+        if (fabs(vec_distance(p, q) - plain_m) > 1e-7 * (1 + far))
+            print_message("# %d: %.12g m, plainly %.12g m\n", i, vec_distance(p, q), plain_m);
+        assert_float_equal(vec_distance(p, q), plain_m, 1e-7 * (1 + far));
+    }
+}
+
 /* Every triangle tried: the first of those that are nearest. */
 static uint32_t find_slowly(const struct trimesh *mesh, const double point[3], const uint32_t *third, double *distance_m)
 {
@@ -286,6 +339,7 @@ static void test_a_parallel_segment_crosses_nothing(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_nearest_of_a_triangle),
         cmocka_unit_test(test_finds_the_nearest),
         cmocka_unit_test(test_what_rays_and_boxes_meet),
         cmocka_unit_test(test_equally_near_ones_go_by_number),

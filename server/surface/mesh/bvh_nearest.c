@@ -13,6 +13,8 @@
 
 #define BOX_MARGIN 2.4e-7 /* of the largest coordinate, four roundings of it: a point in the box is in it in floats too */
 #define MARGIN 1e-5       /* of a square in floats, many times what it is off by */
+#define SURE 1e-8         /* of its sides' squares: where the square of a triangle's area is more, its weights are right to eight digits, */
+#define INSIDE 1e-6       /* and one that is more is sure to be positive */
 
 static void weights_on_edge(const double p[3], const double a[3], const double b[3], double *wa, double *wb)
 {
@@ -24,7 +26,8 @@ static void weights_on_edge(const double p[3], const double a[3], const double b
     *wa = 1 - *wb;
 }
 
-/* Inside the prism over the triangle: barycentric weights; else the best of its three edges. */
+/* Inside the prism over the triangle: barycentric weights; else the best of its edges. The nearest point of a convex shape is on an edge
+   that has p on its outer side, where the weight of the corner opposite is negative; a sliver's weights are not sure enough for that. */
 void triangle_nearest(const double p[3], const double a[3], const double b[3], const double c[3], double weights[3])
 {
     double ab[3], ac[3], ap[3];
@@ -33,6 +36,8 @@ void triangle_nearest(const double p[3], const double a[3], const double b[3], c
     vec_sub(p, a, ap);
     double d00 = vec_dot(ab, ab), d01 = vec_dot(ab, ac), d11 = vec_dot(ac, ac), d20 = vec_dot(ap, ab), d21 = vec_dot(ap, ac);
     double det = d00 * d11 - d01 * d01;
+    bool is_sure = det > SURE * d00 * d11;
+    weights[0] = weights[1] = weights[2] = 0;
     if (det > 0) {
         weights[1] = (d11 * d20 - d01 * d21) / det;
         weights[2] = (d00 * d21 - d01 * d20) / det;
@@ -40,11 +45,13 @@ void triangle_nearest(const double p[3], const double a[3], const double b[3], c
         if (weights[0] >= 0 && weights[1] >= 0 && weights[2] >= 0)
             return;
     }
-    const double *corners[3] = { a, b, c };
+    const double inside[3] = { weights[0], weights[1], weights[2] }, *corners[3] = { a, b, c };
     double best = INFINITY;
     for (int i = 0; i < 3; i++) {
         int j = (i + 1) % 3;
         double w[3] = { 0 }, q[3];
+        if (is_sure && inside[(i + 2) % 3] > INSIDE)
+            continue;
         weights_on_edge(p, corners[i], corners[j], &w[i], &w[j]);
         vec_mix(corners[i], corners[j], w[j], q);
         double d2 = vec_distance2(p, q);
