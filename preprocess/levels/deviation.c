@@ -166,16 +166,18 @@ struct probing {
     bool anywhere;    /* against all of `to`, or each part against itself */
     double expected_m;
     const float *known_m; /* of each part, from before: what is no farther is of no interest */
-    float *found_m;       /* of each point, then of each triangle */
+    float *found_m;       /* of each point, or of each triangle */
 };
 
-struct near { /* a thread's: a triangle of a part of `to` that was near to some point before, or TRIMESH_NONE */
-    uint32_t part, tri;
+#define RECENT 4
+struct near { /* a thread's */
+    uint32_t part, tris[RECENT]; /* triangles of a part of `to` that were near to points before, the last first, or TRIMESH_NONE */
+    double known_m;              /* of the part, from before or since */
 };
 
 struct probe { /* a point, and what it is measured against */
     const struct bvh *bvh; /* NULL: there is nothing of its part */
-    double known_m;
+    const struct trimesh *mesh;
     double point[3];
     struct near *near;
 };
@@ -185,29 +187,77 @@ static uint32_t part_of(const struct deviation *surface, uint32_t tri)
     return surface->part[surface->index[surface->mesh.tris[tri][0]]];
 }
 
+static bool is_within(const double p[3], const struct trimesh *mesh, uint32_t tri, double limit_m)
+{
+    const uint32_t *v = mesh->tris[tri];
+    const double *a = mesh->points[v[0]], *b = mesh->points[v[1]], *c = mesh->points[v[2]];
+    double w[3], at[3];
+    if (triangle_is_farther(p, a, b, c, limit_m))
+        return false;
+    triangle_nearest(p, a, b, c, w);
+    for (int axis = 0; axis < 3; axis++)
+        at[axis] = w[0] * a[axis] + w[1] * b[axis] + w[2] * c[axis];
+    return vec_distance(p, at) <= limit_m;
+}
+
+static void keep_first(struct near *near, int place, uint32_t tri)
+{
+    for (; place > 0; place--)
+        near->tris[place] = near->tris[place - 1];
+    near->tris[0] = tri;
+}
+
+/* What is near to a point is often near to the next one. */
+static bool is_known(const struct probe *probe)
+{
+    struct near *near = probe->near;
+    uint32_t found = TRIMESH_NONE;
+    if (isinf(near->known_m) || near->known_m <= 0)
+        return isinf(near->known_m);
+    for (int i = 0; i < RECENT && near->tris[i] != TRIMESH_NONE; i++)
+        if (is_within(probe->point, probe->mesh, near->tris[i], near->known_m)) {
+            keep_first(near, i, near->tris[i]);
+            return true;
+        }
+    if (!bvh_any_within(probe->bvh, probe->point, near->known_m, NULL, NULL, &found))
+        return false;
+    keep_first(near, RECENT - 1, found);
+    return true;
+}
+
+static void forget(struct near *near)
+{
+    for (int i = 0; i < RECENT; i++)
+        near->tris[i] = TRIMESH_NONE;
+}
+
 /* 0: no more than is known. Looks near by first: most points are where they should be. */
 static double distance_of(const struct probe *probe, double expected_m)
 {
     struct bvh_place place;
     if (!probe->bvh)
         return INFINITY;
-    if (isinf(probe->known_m) ||
-        (probe->known_m > 0 && bvh_any_within(probe->bvh, probe->point, probe->known_m, NULL, NULL, &probe->near->tri)))
+    if (is_known(probe))
         return 0;
     bvh_nearest(probe->bvh, probe->point, 2 * expected_m, NULL, NULL, &place);
     if (place.tri == TRIMESH_NONE)
         bvh_nearest(probe->bvh, probe->point, INFINITY, NULL, NULL, &place);
+    probe->near->known_m = max_of(probe->near->known_m, (double)(float)place.distance_m);
     return place.distance_m;
 }
 
 static struct probe probe_of(const struct probing *probing, uint32_t part, struct near *near)
 {
     const struct deviation *to = probing->to;
-    if (!probing->anywhere && near->part != part)
-        *near = (struct near){ part, TRIMESH_NONE };
-    return (struct probe){
-        .bvh = probing->anywhere ? to->whole : to->parts[part].bvh, .known_m = (double)probing->known_m[part], .near = near
-    };
+    if (near->part != part) {
+        near->part = part;
+        near->known_m = (double)probing->known_m[part];
+        if (!probing->anywhere)
+            forget(near);
+    }
+    return (struct probe){ .bvh = probing->anywhere ? to->whole : to->parts[part].bvh,
+                           .mesh = probing->anywhere ? &to->mesh : &to->parts[part].mesh,
+                           .near = near };
 }
 
 static void probe_point(const struct probing *probing, size_t i, struct near *near)
@@ -223,8 +273,8 @@ static void probe_point(const struct probing *probing, size_t i, struct near *ne
 
 static double longest_edge(const struct trimesh *mesh, const uint32_t v[3])
 {
-    return max_of(vec_distance(mesh->points[v[0]], mesh->points[v[1]]),
-                  max_of(vec_distance(mesh->points[v[1]], mesh->points[v[2]]), vec_distance(mesh->points[v[2]], mesh->points[v[0]])));
+    const double *a = mesh->points[v[0]], *b = mesh->points[v[1]], *c = mesh->points[v[2]];
+    return sqrt(max_of(vec_distance2(a, b), max_of(vec_distance2(b, c), vec_distance2(c, a))));
 }
 
 static double probe_at(const struct probing *probing, size_t t, const double w[3], struct near *near)
@@ -237,9 +287,28 @@ static double probe_at(const struct probing *probing, size_t t, const double w[3
     return distance_of(&probe, probing->expected_m);
 }
 
+/* Whether one triangle there is as near to all of a triangle as is known. The distance to a triangle is a convex function: over another one
+   it is largest at a corner. */
+static bool is_covered(const struct probing *probing, size_t t, struct near *near)
+{
+    const struct trimesh *mesh = &probing->from->mesh;
+    const uint32_t *v = mesh->tris[t];
+    struct probe probe = probe_of(probing, part_of(probing->from, (uint32_t)t), near);
+    for (int axis = 0; axis < 3; axis++)
+        probe.point[axis] = (mesh->points[v[0]][axis] + mesh->points[v[1]][axis] + mesh->points[v[2]][axis]) / 3;
+    if (!probe.bvh || isinf(near->known_m) || !is_known(&probe))
+        return false;
+    for (int i = 0; i < 3; i++)
+        if (!is_within(mesh->points[v[i]], probe.mesh, near->tris[0], near->known_m))
+            return false;
+    return true;
+}
+
 static double probe_inside(const struct probing *probing, size_t t, int cuts, struct near *near)
 {
     double most_m = 0;
+    if (is_covered(probing, t, near))
+        return 0;
     for (int i = 0; i <= cuts; i++)
         for (int j = 0; i + j <= cuts; j++) {
             const double w[3] = { (double)i / cuts, (double)j / cuts, (double)(cuts - i - j) / cuts };
@@ -263,33 +332,53 @@ static void probe_triangle(const struct probing *probing, size_t t, struct near 
         most_m = probe_at(probing, t, (const double[3]){ 1 / 3.0, 1 / 3.0, 1 / 3.0 }, near);
     else
         most_m = probe_inside(probing, t, longest_m > LARGE * probing->expected_m ? 4 : 2, near);
-    probing->found_m[from->mesh.point_count + t] = (float)most_m;
+    probing->found_m[t] = (float)most_m;
 }
 
-static void probe_some(void *arg, size_t begin, size_t end)
+static void probe_points(void *arg, size_t begin, size_t end)
 {
-    const struct probing *probing = arg;
-    struct near near = { 0, TRIMESH_NONE };
+    struct near near = { .part = UINT32_MAX };
+    forget(&near);
     for (size_t i = begin; i < end; i++)
-        if (i < probing->from->mesh.point_count)
-            probe_point(probing, i, &near);
-        else
-            probe_triangle(probing, i - probing->from->mesh.point_count, &near);
+        probe_point(arg, i, &near);
 }
 
+static void probe_triangles(void *arg, size_t begin, size_t end)
+{
+    struct near near = { .part = UINT32_MAX };
+    forget(&near);
+    for (size_t t = begin; t < end; t++)
+        probe_triangle(arg, t, &near);
+}
+
+static void probe_all(const struct probing *probing, size_t count, void (*probe_some)(void *arg, size_t begin, size_t end),
+                      struct workers *workers)
+{
+    if (workers)
+        workers_for(workers, count, 1024, probe_some, (void *)probing);
+    else
+        probe_some((void *)probing, 0, count);
+}
+
+static void raise_to(float *most_m, float found_m)
+{
+    *most_m = *most_m < found_m ? found_m : *most_m;
+}
+
+/* Corners first: what they are apart is known then. */
 static void measure(const struct deviation *from, const struct deviation *to, const char *only, bool anywhere, double expected_m,
                     float *apart_m, struct workers *workers)
 {
-    size_t points = from->mesh.point_count, count = points + from->mesh.tri_count;
-    struct probing probing = { from, to, only, anywhere, expected_m, apart_m, mem_array(count, sizeof(float)) };
-    if (workers)
-        workers_for(workers, count, 1024, probe_some, &probing);
-    else
-        probe_some(&probing, 0, count);
-    for (size_t i = 0; i < count; i++) {
-        float *at = &apart_m[i < points ? from->part[from->index[i]] : part_of(from, (uint32_t)(i - points))];
-        *at = *at < probing.found_m[i] ? probing.found_m[i] : *at;
-    }
+    size_t points = from->mesh.point_count, triangles = from->mesh.tri_count;
+    float *found_m = mem_array(points > triangles ? points : triangles, sizeof(*found_m));
+    struct probing probing = { from, to, only, anywhere, expected_m, apart_m, found_m };
+    probe_all(&probing, points, probe_points, workers);
+    for (size_t i = 0; i < points; i++)
+        raise_to(&apart_m[from->part[from->index[i]]], probing.found_m[i]);
+    memset(probing.found_m, 0, triangles * sizeof(*probing.found_m));
+    probe_all(&probing, triangles, probe_triangles, workers);
+    for (size_t t = 0; t < triangles; t++)
+        raise_to(&apart_m[part_of(from, (uint32_t)t)], probing.found_m[t]);
     mem_free(probing.found_m);
 }
 

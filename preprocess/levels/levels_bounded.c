@@ -18,7 +18,8 @@
 struct face {
     uint32_t point[3], weld[3]; /* NONE, NONE, NONE: it is gone */
     uint32_t first;             /* of its places */
-    double normal[3];           /* of the length of its area */
+    uint32_t near;              /* a triangle of the first surface, to look at first */
+    double normal[3], length;   /* twice its area */
     double longest_m;           /* of its edges */
 };
 
@@ -42,7 +43,6 @@ struct bounded {
     uint32_t *next_place;
     struct turn *heap;
     size_t heap_count, heap_capacity;
-    uint32_t near; /* a triangle of the first surface */
 };
 
 /* --- heap ---------------------------------------------------------------------------------------------------------------------- */
@@ -77,53 +77,71 @@ static struct turn pop(struct bounded *b)
 
 /* --- the triangles around a point ------------------------------------------------------------------------------------------------ */
 
+struct wedge { /* a triangle around a point */
+    uint32_t face, at; /* which of its corners is there */
+    uint32_t weld;     /* of it, */
+    uint32_t points[2], welds[2]; /* of the others, as they follow */
+};
+
 struct ring {
-    uint32_t point, corners[RING];
+    uint32_t point;
+    struct wedge wedges[RING];
     int count; /* RING + 1: too many */
-    uint32_t ends[2 * RING];
+    uint32_t ends[2 * RING], weld_here[2 * RING], weld_there[2 * RING]; /* of an edge to an end: in one of its triangles */
     bool is_feature[2 * RING]; /* the edge to that end is a border or a seam */
     int end_count, feature_count;
+    double longest_m; /* of all edges */
 };
+
+static struct wedge wedge_of(const struct bounded *b, uint32_t corner)
+{
+    const struct face *face = &b->faces[corner / 3];
+    uint32_t at = corner % 3, next = (at + 1) % 3, last = (at + 2) % 3;
+    return (struct wedge){
+        corner / 3, at, face->weld[at], { face->point[next], face->point[last] }, { face->weld[next], face->weld[last] }
+    };
+}
 
 static void list_ring(struct bounded *b, uint32_t point, struct ring *ring)
 {
     uint32_t *link = &b->corner[point];
     ring->point = point;
     ring->count = 0;
+    ring->longest_m = 0;
     while (*link != NONE && ring->count <= RING) {
         uint32_t corner = *link;
-        if (b->faces[corner / 3].point[corner % 3] != point) { /* gone since */
+        const struct face *face = &b->faces[corner / 3];
+        if (face->point[corner % 3] != point) { /* gone since */
             *link = b->next[corner];
             continue;
         }
         if (ring->count < RING)
-            ring->corners[ring->count] = corner;
+            ring->wedges[ring->count] = wedge_of(b, corner);
         ring->count++;
+        ring->longest_m = max_of(ring->longest_m, face->longest_m);
         link = &b->next[corner];
     }
 }
 
-static void list_ends(struct bounded *b, struct ring *ring)
+static void list_ends(struct ring *ring)
 {
-    uint32_t weld_here[2 * RING], weld_there[2 * RING];
     int times[2 * RING];
     ring->end_count = ring->feature_count = 0;
     for (int c = 0; c < ring->count; c++)
-        for (uint32_t i = 1; i < 3; i++) {
-            const struct face *face = &b->faces[ring->corners[c] / 3];
-            uint32_t at = ring->corners[c] % 3, to = (at + i) % 3, end = face->point[to];
+        for (int i = 0; i < 2; i++) {
+            const struct wedge *wedge = &ring->wedges[c];
             int e = 0;
-            while (e < ring->end_count && ring->ends[e] != end)
+            while (e < ring->end_count && ring->ends[e] != wedge->points[i])
                 e++;
             if (e == ring->end_count) {
-                ring->ends[ring->end_count++] = end;
-                weld_here[e] = face->weld[at];
-                weld_there[e] = face->weld[to];
+                ring->ends[ring->end_count++] = wedge->points[i];
+                ring->weld_here[e] = wedge->weld;
+                ring->weld_there[e] = wedge->welds[i];
                 times[e] = 0;
                 ring->is_feature[e] = false;
             }
             times[e]++;
-            ring->is_feature[e] |= weld_here[e] != face->weld[at] || weld_there[e] != face->weld[to];
+            ring->is_feature[e] |= ring->weld_here[e] != wedge->weld || ring->weld_there[e] != wedge->welds[i];
         }
     for (int e = 0; e < ring->end_count; e++) {
         ring->is_feature[e] |= times[e] == 1;
@@ -140,13 +158,6 @@ static double distance_to(const double p[3], const double a[3], const double b[3
     return vec_distance(p, at);
 }
 
-static double distance_to_plane(const double p[3], const double a[3], const double normal[3])
-{
-    double ap[3];
-    vec_sub(p, a, ap);
-    return fabs(vec_dot(ap, normal)) / vec_length(normal);
-}
-
 static double distance_to_line(const double p[3], const double a[3], const double b[3])
 {
     double ab[3], ap[3], at[3];
@@ -157,33 +168,33 @@ static double distance_to_line(const double p[3], const double a[3], const doubl
     return vec_distance(p, at);
 }
 
-static bool has_point(const struct face *face, uint32_t point)
+static bool has_end(const struct wedge *wedge, uint32_t end)
 {
-    return face->point[0] == point || face->point[1] == point || face->point[2] == point;
+    return wedge->points[0] == end || wedge->points[1] == end;
 }
 
 /* What a corner's weld becomes where the point goes to the target: as in the triangles between them. NONE: nothing says. */
-static uint32_t weld_after(const struct bounded *b, const struct ring *ring, uint32_t target, uint32_t weld)
+static uint32_t weld_after(const struct ring *ring, int target, uint32_t weld)
 {
     uint32_t found = NONE;
-    for (int c = 0; c < ring->count; c++) {
-        const struct face *face = &b->faces[ring->corners[c] / 3];
-        for (int i = 0; i < 3; i++)
-            if (face->point[i] == target && face->weld[ring->corners[c] % 3] == weld) {
-                if (found != NONE && found != face->weld[i])
+    if (!ring->is_feature[target] && ring->weld_here[target] == weld)
+        return ring->weld_there[target];
+    for (int c = 0; c < ring->count; c++)
+        for (int i = 0; i < 2; i++)
+            if (ring->wedges[c].points[i] == ring->ends[target] && ring->wedges[c].weld == weld) {
+                if (found != NONE && found != ring->wedges[c].welds[i])
                     return NONE;
-                found = face->weld[i];
+                found = ring->wedges[c].welds[i];
             }
-    }
     return found;
 }
 
-/* The corners of a triangle of the ring once the point is at the target. */
-static void moved_face(const struct bounded *b, uint32_t corner, uint32_t target, const double *at[3])
+/* The corners of a triangle of the ring once the point is at the target, in their order. */
+static void moved_face(const struct bounded *b, const struct wedge *wedge, uint32_t target, const double *at[3])
 {
-    const struct face *face = &b->faces[corner / 3];
-    for (uint32_t i = 0; i < 3; i++)
-        at[i] = b->points[i == corner % 3 ? target : face->point[i]];
+    at[wedge->at] = b->points[target];
+    at[(wedge->at + 1) % 3] = b->points[wedge->points[0]];
+    at[(wedge->at + 2) % 3] = b->points[wedge->points[1]];
 }
 
 /* How far it moves borders and seams; INFINITY: they would not stay. */
@@ -203,68 +214,88 @@ static double border_of(const struct bounded *b, const struct ring *ring, int ta
 
 static double longest_edge(const double *const at[3])
 {
-    return max_of(vec_distance(at[0], at[1]), max_of(vec_distance(at[1], at[2]), vec_distance(at[2], at[0])));
+    return sqrt(max_of(vec_distance2(at[0], at[1]), max_of(vec_distance2(at[1], at[2]), vec_distance2(at[2], at[0]))));
 }
 
-/* At least so far does the collapse move the surface; INFINITY: it may not be. */
-static double bound_of(const struct bounded *b, const struct ring *ring, int target)
+/* At least so far does the collapse move the surface; INFINITY: it may not be, or it is no less than most_m. */
+static double bound_of(const struct bounded *b, const struct ring *ring, int target, double most_m)
 {
     uint32_t to = ring->ends[target];
-    double nearest_m = INFINITY, border_m = border_of(b, ring, target) / BORDER, before_m = 0, longest_m = 0;
-    for (int c = 0; c < ring->count && !isinf(border_m); c++) {
-        const struct face *face = &b->faces[ring->corners[c] / 3];
+    double nearest_m = INFINITY, border_m = border_of(b, ring, target) / BORDER, longer_m = 0;
+    for (int c = 0; c < ring->count; c++) {
+        const struct wedge *wedge = &ring->wedges[c];
+        const struct face *face = &b->faces[wedge->face];
         const double *at[3];
-        double normal[3];
-        before_m = max_of(before_m, face->longest_m);
-        if (has_point(face, to))
-            continue;
-        moved_face(b, ring->corners[c], to, at);
-        vec_normal(at[0], at[1], at[2], normal);
-        double product = vec_length(normal) * vec_length(face->normal);
-        if (!(vec_dot(normal, face->normal) > TURN * product) || weld_after(b, ring, to, face->weld[ring->corners[c] % 3]) == NONE)
+        double normal[3], from[3];
+        if (border_m + STRETCH * longer_m >= most_m)
             return INFINITY;
-        longest_m = max_of(longest_m, longest_edge(at));
-        nearest_m = min_of(nearest_m, distance_to_plane(b->points[ring->point], at[0], normal));
+        if (has_end(wedge, to))
+            continue;
+        moved_face(b, wedge, to, at);
+        vec_normal(at[0], at[1], at[2], normal);
+        double length = vec_length(normal);
+        if (!(vec_dot(normal, face->normal) > TURN * (length * face->length)) || weld_after(ring, target, wedge->weld) == NONE)
+            return INFINITY;
+        longer_m = max_of(longer_m, longest_edge(at) - ring->longest_m);
+        vec_sub(b->points[ring->point], at[0], from);
+        nearest_m = min_of(nearest_m, fabs(vec_dot(from, normal)) / length);
     }
-    return max_of(nearest_m, border_m) + STRETCH * max_of(longest_m - before_m, 0);
+    return max_of(nearest_m, border_m) + STRETCH * longer_m;
 }
 
 /* How far from the first surface a point is, if that is more. */
-static double raise(struct bounded *b, const double point[3], double error_m)
+static double raise(const struct bounded *b, const double point[3], double error_m, uint32_t *near)
 {
     struct bvh_place place;
-    if (error_m > 0 && bvh_any_within(b->first, point, error_m, NULL, NULL, &b->near))
+    if (error_m > 0 && bvh_any_within(b->first, point, error_m, NULL, NULL, near))
         return error_m;
     bvh_nearest(b->first, point, INFINITY, NULL, NULL, &place);
     return max_of(error_m, place.distance_m);
 }
 
+struct moved { /* a triangle as it will be */
+    const double *at[3];
+    const struct wedge *wedge;
+};
+
+/* From a place to the nearest of these; no nearer than is enough. Looks at the one first that was the place's own. */
+static double distance_to_any(const double place[3], const struct moved *moved, int count, int own, double enough_m)
+{
+    double nearest_m = INFINITY;
+    for (int i = 0; i < count && nearest_m > enough_m; i++) {
+        int f = i == 0 ? own : i <= own ? i - 1 : i;
+        const double *const *at = moved[f].at;
+        if (i == 0 || !triangle_is_farther(place, at[0], at[1], at[2], nearest_m))
+            nearest_m = min_of(nearest_m, distance_to(place, at[0], at[1], at[2]));
+    }
+    return nearest_m;
+}
+
 /* How far the places around are from the triangles as they will be, and these from the first surface; no farther than is enough. */
 static double error_of(struct bounded *b, const struct ring *ring, uint32_t to, double error_m, double enough_m)
 {
-    const double *at[RING][3];
-    uint32_t moved[RING];
-    int count = 0;
-    for (int c = 0; c < ring->count; c++)
-        if (!has_point(&b->faces[ring->corners[c] / 3], to)) {
-            moved[count] = ring->corners[c] % 3;
-            moved_face(b, ring->corners[c], to, at[count++]);
+    struct moved moved[RING];
+    int count = 0, own[RING];
+    for (int c = 0; c < ring->count; c++) {
+        own[c] = count;
+        if (!has_end(&ring->wedges[c], to)) {
+            moved[count].wedge = &ring->wedges[c];
+            moved_face(b, &ring->wedges[c], to, moved[count++].at);
         }
+    }
     for (int c = 0; c < ring->count && error_m <= enough_m; c++)
-        for (uint32_t s = b->faces[ring->corners[c] / 3].first; s != NONE && error_m <= enough_m; s = b->next_place[s]) {
-            double nearest_m = INFINITY;
-            for (int f = 0; f < count && nearest_m > error_m; f++)
-                nearest_m = min_of(nearest_m, distance_to(b->places[s], at[f][0], at[f][1], at[f][2]));
-            error_m = max_of(error_m, nearest_m);
-        }
+        for (uint32_t s = b->faces[ring->wedges[c].face].first; s != NONE && error_m <= enough_m; s = b->next_place[s])
+            error_m = max_of(error_m, distance_to_any(b->places[s], moved, count, own[c] < count ? own[c] : 0, error_m));
     for (int f = 0; f < count && error_m <= enough_m; f++) { /* in its middle, and in that of an edge that the next one does not have */
+        const double *const *at = moved[f].at;
+        uint32_t m = moved[f].wedge->at, *near = &b->faces[moved[f].wedge->face].near;
         double middle[2][3];
         for (int i = 0; i < 3; i++) {
-            middle[0][i] = (at[f][0][i] + at[f][1][i] + at[f][2][i]) / 3;
-            middle[1][i] = 0.5 * (at[f][moved[f]][i] + at[f][(moved[f] + 1) % 3][i]);
+            middle[0][i] = (at[0][i] + at[1][i] + at[2][i]) / 3;
+            middle[1][i] = 0.5 * (at[m][i] + at[(m + 1) % 3][i]);
         }
-        error_m = raise(b, middle[0], error_m);
-        error_m = raise(b, middle[1], error_m);
+        error_m = raise(b, middle[0], error_m, near);
+        error_m = raise(b, middle[1], error_m, near);
     }
     return error_m;
 }
@@ -279,9 +310,9 @@ static void offer(struct bounded *b, uint32_t point)
     list_ring(b, point, &ring);
     if (ring.count == 0 || ring.count > RING)
         return;
-    list_ends(b, &ring);
+    list_ends(&ring);
     for (int e = 0; e < ring.end_count; e++) {
-        float error_m = (float)bound_of(b, &ring, e);
+        float error_m = (float)bound_of(b, &ring, e, (double)turn.error_m);
         if (error_m < turn.error_m) {
             turn.error_m = error_m;
             turn.target = ring.ends[e];
@@ -301,57 +332,65 @@ static void measure_face(const struct bounded *b, struct face *face)
 {
     const double *const at[3] = { b->points[face->point[0]], b->points[face->point[1]], b->points[face->point[2]] };
     vec_normal(at[0], at[1], at[2], face->normal);
+    face->length = vec_length(face->normal);
     face->longest_m = longest_edge(at);
 }
 
-static void rehome(struct bounded *b, const uint32_t *faces, int count, uint32_t place)
+/* Gives a place to the nearest of these triangles, the first of them if several are. Returns which; `last` is looked at first. */
+static int rehome(struct bounded *b, const uint32_t *faces, int count, int last, uint32_t place)
 {
     double nearest_m = INFINITY;
-    uint32_t best = faces[0];
-    for (int f = 0; f < count; f++) {
+    int best = last;
+    for (int i = 0; i < count; i++) {
+        int f = i == 0 ? last : i <= last ? i - 1 : i;
         const uint32_t *v = b->faces[faces[f]].point;
-        double away_m = distance_to(b->places[place], b->points[v[0]], b->points[v[1]], b->points[v[2]]);
-        if (away_m < nearest_m) {
+        const double *at[3] = { b->points[v[0]], b->points[v[1]], b->points[v[2]] };
+        if (i > 0 && triangle_is_farther(b->places[place], at[0], at[1], at[2], nearest_m))
+            continue;
+        double away_m = distance_to(b->places[place], at[0], at[1], at[2]);
+        if (away_m < nearest_m || (away_m == nearest_m && f < best)) {
             nearest_m = away_m;
-            best = faces[f];
+            best = f;
         }
     }
-    add_place(b, best, place);
+    add_place(b, faces[best], place);
+    return best;
 }
 
 static void collapse(struct bounded *b, const struct ring *ring, int target)
 {
     uint32_t to = ring->ends[target], places = NONE, kept[RING], after[RING];
-    int count = 0;
+    int count = 0, last = 0;
     float border_m = (float)border_of(b, ring, target);
     for (int c = 0; c < ring->count; c++)
-        after[c] = weld_after(b, ring, to, b->faces[ring->corners[c] / 3].weld[ring->corners[c] % 3]);
+        after[c] = weld_after(ring, target, ring->wedges[c].weld);
     for (int c = 0; c < ring->count; c++) {
-        uint32_t corner = ring->corners[c];
-        struct face *face = &b->faces[corner / 3];
+        const struct wedge *wedge = &ring->wedges[c];
+        struct face *face = &b->faces[wedge->face];
+        uint32_t corner = 3 * wedge->face + wedge->at;
         while (face->first != NONE) {
             uint32_t place = face->first;
             face->first = b->next_place[place];
             b->next_place[place] = places;
             places = place;
         }
-        if (has_point(face, to)) {
+        if (has_end(wedge, to)) {
             face->point[0] = face->point[1] = face->point[2] = NONE;
             b->left--;
             continue;
         }
-        face->point[corner % 3] = to;
-        face->weld[corner % 3] = after[c];
+        face->point[wedge->at] = to;
+        face->weld[wedge->at] = after[c];
         measure_face(b, face);
         b->next[corner] = b->corner[to];
         b->corner[to] = corner;
-        kept[count++] = corner / 3;
+        kept[count++] = wedge->face;
     }
     b->corner[ring->point] = NONE;
     while (places != NONE) {
         uint32_t place = places;
         places = b->next_place[place];
-        rehome(b, kept, count, place);
+        last = rehome(b, kept, count, last, place);
     }
     for (int e = 0; e < ring->end_count && border_m > 0; e++)
         if (ring->is_feature[e])
@@ -368,6 +407,23 @@ static int index_of(const struct ring *ring, uint32_t end)
     return -1;
 }
 
+/* Whether the surface would touch itself along an edge: the ends have a neighbour in common that is in no triangle with both (the link
+   condition; Dey et al., Topology preserving edge contraction, Publ. Inst. Math. 1999). */
+static bool would_touch(struct bounded *b, const struct ring *ring, int target)
+{
+    struct ring there;
+    int common = 0, shared = 0;
+    for (int c = 0; c < ring->count; c++)
+        shared += has_end(&ring->wedges[c], ring->ends[target]);
+    list_ring(b, ring->ends[target], &there);
+    if (there.count > RING)
+        return true;
+    list_ends(&there);
+    for (int e = 0; e < ring->end_count; e++)
+        common += index_of(&there, ring->ends[e]) >= 0;
+    return common > shared;
+}
+
 /* The cheapest in the heap: done if it is known to err no more, else found out about. */
 static void take_turn(struct bounded *b, double error_m)
 {
@@ -376,7 +432,7 @@ static void take_turn(struct bounded *b, double error_m)
     if (turn.stamp != b->stamp[turn.point])
         return;
     list_ring(b, turn.point, &ring);
-    list_ends(b, &ring);
+    list_ends(&ring);
     int target = index_of(&ring, turn.target);
     if (!turn.is_known) {
         turn.error_m = (float)error_of(b, &ring, turn.target, (double)turn.error_m, error_m);
@@ -386,7 +442,8 @@ static void take_turn(struct bounded *b, double error_m)
             return;
         }
     }
-    collapse(b, &ring, target);
+    if (!would_touch(b, &ring, target))
+        collapse(b, &ring, target);
 }
 
 void bounded_simplify(struct bounded *b, double error_m)
@@ -397,28 +454,38 @@ void bounded_simplify(struct bounded *b, double error_m)
 
 /* --- all ------------------------------------------------------------------------------------------------------------------------ */
 
-static void number_points(struct bounded *b, const uint32_t *corners, size_t count)
+static void place_of(const struct welds *welds, uint32_t weld, double place[3])
+{
+    for (int axis = 0; axis < 3; axis++)
+        place[axis] = (double)welds->positions_m[weld][axis];
+}
+
+/* Of each weld at a place of its own, the number of its point + 1, or 0. */
+struct numbers {
+    uint32_t *of, low, high; /* from the lowest weld to the highest */
+};
+
+static struct numbers number_points(struct bounded *b, const uint32_t *corners, size_t count)
 {
     const struct welds *welds = b->welds;
-    uint32_t low = NONE, high = 0;
+    struct numbers numbers = { NULL, NONE, 0 };
     for (size_t i = 0; i < count; i++) {
         uint32_t there = welds->first_there[corners[i]];
-        low = there < low ? there : low;
-        high = there > high ? there : high;
+        numbers.low = there < numbers.low ? there : numbers.low;
+        numbers.high = there > numbers.high ? there : numbers.high;
     }
-    uint32_t *number = mem_array((size_t)high - low + 1, sizeof(*number));
+    numbers.of = mem_array((size_t)numbers.high - numbers.low + 1, sizeof(*numbers.of));
     for (size_t i = 0; i < count; i++) {
-        uint32_t there = welds->first_there[corners[i]], *at = &number[there - low];
+        uint32_t there = welds->first_there[corners[i]], *at = &numbers.of[there - numbers.low];
         if (*at == 0) {
             *at = (uint32_t)++b->point_count;
-            for (int axis = 0; axis < 3; axis++)
-                b->points[b->point_count - 1][axis] = (double)welds->positions_m[there][axis];
+            place_of(welds, there, b->points[b->point_count - 1]);
         }
         b->faces[i / 3].point[i % 3] = *at - 1;
         b->faces[i / 3].weld[i % 3] = corners[i];
     }
-    mem_free(number);
     b->face_count = count / 3;
+    return numbers;
 }
 
 /* Lines and points, which nobody sees. */
@@ -443,45 +510,71 @@ static void link_corners(struct bounded *b)
     }
 }
 
-static void take_places(struct bounded *b, const double (*places)[3], size_t count)
+static void measure_faces(struct bounded *b)
 {
-    struct trimesh mesh = { .points = b->points, .point_count = b->point_count };
-    mesh.tris = mem_array(b->face_count, sizeof(*mesh.tris));
     for (size_t f = 0; f < b->face_count; f++) {
-        memcpy(mesh.tris[f], b->faces[f].point, sizeof(*mesh.tris));
         measure_face(b, &b->faces[f]);
         b->faces[f].first = NONE;
+        b->faces[f].near = TRIMESH_NONE;
     }
-    mesh.tri_count = b->face_count;
+}
+
+/* Those that are no point here go to the nearest triangle. */
+static void take_far_places(struct bounded *b, const uint32_t *places, size_t count)
+{
+    struct trimesh mesh = { .points = b->points, .point_count = b->point_count, .tri_count = b->face_count };
+    mesh.tris = mem_array(b->face_count, sizeof(*mesh.tris));
+    for (size_t f = 0; f < b->face_count; f++)
+        memcpy(mesh.tris[f], b->faces[f].point, sizeof(*mesh.tris));
     struct bvh *bvh = bvh_create(&mesh);
-    b->places = mem_array(count, sizeof(*b->places));
-    b->next_place = mem_array(count, sizeof(*b->next_place));
-    memcpy(b->places, places, count * sizeof(*places));
-    for (size_t s = 0; s < count; s++) {
+    for (size_t i = 0; i < count; i++) {
         struct bvh_place place;
-        bvh_nearest(bvh, places[s], INFINITY, NULL, NULL, &place);
+        bvh_nearest(bvh, b->places[places[i]], INFINITY, NULL, NULL, &place);
         if (place.tri != TRIMESH_NONE)
-            add_place(b, place.tri, (uint32_t)s);
+            add_place(b, place.tri, places[i]);
     }
     bvh_destroy(&bvh);
     mem_free(mesh.tris);
 }
 
-struct bounded *bounded_create(const struct welds *welds, const uint32_t *corners, size_t count, const double (*places)[3],
-                               size_t place_count, const struct bvh *first)
+static void take_places(struct bounded *b, const struct numbers *numbers, const uint32_t *places, size_t count)
+{
+    uint32_t *far = mem_array(count, sizeof(*far));
+    size_t far_count = 0;
+    b->places = mem_array(count, sizeof(*b->places));
+    b->next_place = mem_array(count, sizeof(*b->next_place));
+    for (size_t s = 0; s < count; s++) {
+        uint32_t there = b->welds->first_there[places[s]], corner = NONE;
+        place_of(b->welds, there, b->places[s]);
+        if (there >= numbers->low && there <= numbers->high && numbers->of[there - numbers->low] > 0)
+            corner = b->corner[numbers->of[there - numbers->low] - 1];
+        if (corner != NONE)
+            add_place(b, corner / 3, (uint32_t)s);
+        else
+            far[far_count++] = (uint32_t)s;
+    }
+    if (far_count > 0)
+        take_far_places(b, far, far_count);
+    mem_free(far);
+}
+
+struct bounded *bounded_create(const struct welds *welds, const uint32_t *corners, size_t count, const uint32_t *places, size_t place_count,
+                               const struct bvh *first)
 {
     struct bounded *b = mem_new(sizeof(*b));
-    *b = (struct bounded){ .welds = welds, .first = first, .near = TRIMESH_NONE };
+    *b = (struct bounded){ .welds = welds, .first = first };
     b->points = mem_array(count, sizeof(*b->points));
     b->faces = mem_array(count / 3, sizeof(*b->faces));
     b->next = mem_array(count, sizeof(*b->next));
-    number_points(b, corners, count);
+    struct numbers numbers = number_points(b, corners, count);
     drop_empty(b);
     b->moved_m = mem_array(b->point_count, sizeof(*b->moved_m));
     b->corner = mem_array(b->point_count, sizeof(*b->corner));
     b->stamp = mem_array(b->point_count, sizeof(*b->stamp));
     link_corners(b);
-    take_places(b, places, place_count);
+    measure_faces(b);
+    take_places(b, &numbers, places, place_count);
+    mem_free(numbers.of);
     for (uint32_t p = 0; p < b->point_count; p++)
         offer(b, p);
     return b;

@@ -7,10 +7,10 @@
 
 struct bounded;
 
-/* Takes a part's triangles (welds, three each), and the surface that they stand for: `places`, points of it that are looked at, and its
+/* Takes a part's triangles (welds, three each), and the surface that they stand for: `places`, welds of it that are looked at, and its
    hierarchy, which outlives this. welds too. */
-struct bounded *bounded_create(const struct welds *welds, const uint32_t *corners, size_t count, const double (*places)[3],
-                               size_t place_count, const struct bvh *first);
+struct bounded *bounded_create(const struct welds *welds, const uint32_t *corners, size_t count, const uint32_t *places, size_t place_count,
+                               const struct bvh *first);
 /* Frees it. &NULL is fine; leaves NULL. */
 void bounded_destroy(struct bounded **bounded);
 /* Collapses edges as long as no place is farther than error_m from the triangles, nor they from the surface, as far as is looked: about,

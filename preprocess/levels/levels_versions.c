@@ -12,8 +12,12 @@
 #define STUCK 0.9             /* likewise; one with more is the last that is made so */
 #define HALVED_LEAST 40000    /* triangles: a version with more is halved as a whole, quickly; then edges are collapsed one by one, */
 #define COLLAPSED_MOST 100000 /* also where it could not be halved, but not with more than these */
-#define STEP 1.3              /* times the error that the version before was allowed */
-#define ALIKE 0.92            /* of the triangles of the version before: one with more is not worth being measured */
+#define LEAST 0.00025         /* of the size: the error that the first version made so is allowed; */
+#define STEP 1.3              /* times that, the next one, where many instances are drawn in one picture: */
+#define STEP_LEAST 0.001      /* of the size, as a pixel where the asset fills the picture, */
+#define STEP_MOST 0.012       /* likewise, where it is a twelfth of it; */
+#define STEP_ELSE 1.7         /* likewise elsewhere, since each is measured and costs as much as the others */
+#define ALIKE 0.85            /* of the triangles of the version before: one with more is not worth being measured */
 #define LEAST_TRIANGLES 60    /* fewer are not simplified */
 #define NEAR 0.01             /* of the size: versions that err less keep open borders, or hair gaps between patches would open */
 #define BEYOND 3.0            /* times the simplifier's own error, which is a mean over planes and no bound, is about what comes out */
@@ -101,7 +105,7 @@ struct collapsing {
     size_t *first_corner;   /* of each part, in `corners`: the triangles of `from`, part by part */
     uint32_t *corners;
     size_t *first_place; /* of each part, in `places`: the model's vertices, part by part */
-    double (*places)[3];
+    uint32_t *places;
     double error_m; /* allowed */
 };
 
@@ -131,7 +135,7 @@ static void sort_by_part(struct collapsing *collapsing)
     for (size_t i = 0; i < from->count; i++)
         collapsing->corners[collapsing->first_corner[part[from->welds[i]] + 1]++] = from->welds[i];
     for (size_t i = 0; i < points; i++)
-        memcpy(collapsing->places[collapsing->first_place[part[first->index[i]] + 1]++], first->mesh.points[i], sizeof(double[3]));
+        collapsing->places[collapsing->first_place[part[first->index[i]] + 1]++] = first->index[i];
 }
 
 static void begin_parts(void *arg, size_t begin, size_t end)
@@ -141,7 +145,7 @@ static void begin_parts(void *arg, size_t begin, size_t end)
         size_t corner = collapsing->first_corner[p], place = collapsing->first_place[p];
         if (collapsing->from->tris[p] > 0)
             collapsing->parts[p] = bounded_create(collapsing->welds, collapsing->corners + corner, collapsing->first_corner[p + 1] - corner,
-                                                  (const double(*)[3])collapsing->places + place, collapsing->first_place[p + 1] - place,
+                                                  collapsing->places + place, collapsing->first_place[p + 1] - place,
                                                   deviation_hierarchy(collapsing->first, p));
     }
 }
@@ -171,21 +175,38 @@ static void read_parts(const struct collapsing *collapsing, struct version *vers
         }
 }
 
-/* As many versions as there is room for, the last with the largest error of any use. */
+/* From the largest error of any use down to the least, or as far as there is room. Returns how many, the least first. */
+static size_t list_errors(double whole_m, size_t room, double errors_m[VERSIONS_MAX])
+{
+    size_t count = 0;
+    for (double error = LEVELS_FARTHEST; error >= LEAST && count < room; count++) {
+        errors_m[count] = error * whole_m;
+        error /= error > STEP_LEAST && error <= STEP_MOST ? STEP : STEP_ELSE;
+    }
+    for (size_t i = 0; i < count / 2; i++) {
+        double last = errors_m[count - 1 - i];
+        errors_m[count - 1 - i] = errors_m[i];
+        errors_m[i] = last;
+    }
+    return count;
+}
+
+/* As many versions as are of any use. */
 static void make_collapsed(struct versions *versions, const struct welds *welds, struct workers *workers)
 {
     struct collapsing collapsing = { .welds = welds, .first = &versions->first, .from = &versions->at[versions->count - 1] };
     collapsing.parts = mem_array(welds->part_count, sizeof(*collapsing.parts));
     sort_by_part(&collapsing);
     for_parts(&collapsing, begin_parts, workers);
-    double most_m = LEVELS_FARTHEST * welds->whole_m;
-    collapsing.error_m = most_m * pow(STEP, (double)versions->count + 1 - VERSIONS_MAX);
-    for (; collapsing.error_m < most_m * STEP && versions->count < VERSIONS_MAX; collapsing.error_m *= STEP) {
+    double errors_m[VERSIONS_MAX];
+    size_t count = list_errors(welds->whole_m, VERSIONS_MAX - versions->count, errors_m);
+    for (size_t i = 0; i < count; i++) {
+        collapsing.error_m = errors_m[i];
         const struct version *before = &versions->at[versions->count - 1];
         struct version *version = add_version(versions, welds, before->count);
         for_parts(&collapsing, simplify_parts, workers);
         read_parts(&collapsing, version);
-        if ((double)version->count > ALIKE * (double)before->count && collapsing.error_m < most_m) {
+        if ((double)version->count > ALIKE * (double)before->count && i + 1 < count) {
             drop_last(versions);
             continue;
         }

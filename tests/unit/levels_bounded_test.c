@@ -74,7 +74,11 @@ static void shape_end(struct shape *s)
     for (uint32_t i = 0; i < s->g.index_count; i += 3)
         trimesh_add_tri(&s->mesh, s->corners[i], s->corners[i + 1], s->corners[i + 2], i / 3);
     s->bvh = bvh_create(&s->mesh);
-    s->bounded = bounded_create(&s->welds, s->corners, s->g.index_count, (const double(*)[3])s->mesh.points, s->mesh.point_count, s->bvh);
+    uint32_t *places = mem_array(s->welds.count, sizeof(*places));
+    for (uint32_t k = 0; k < s->welds.count; k++)
+        places[k] = k;
+    s->bounded = bounded_create(&s->welds, s->corners, s->g.index_count, places, s->welds.count, s->bvh);
+    mem_free(places);
 }
 
 static void shape_finish(struct shape *s)
@@ -176,6 +180,57 @@ static void errors_grow_with_what_is_asked(void **state)
     shape_finish(&s);
 }
 
+/* How many edges do not have one triangle on either side. */
+static size_t count_open(const struct shape *s)
+{
+    size_t count = 3 * bounded_count(s->bounded), open = 0;
+    uint32_t *left = mem_array(count, sizeof(*left));
+    bounded_read(s->bounded, left);
+    for (size_t i = 0; i < count; i++) {
+        uint32_t a = left[i], b = left[i % 3 == 2 ? i - 2 : i + 1];
+        int along = 0, against = 0;
+        for (size_t k = 0; k < count; k++) {
+            uint32_t c = left[k], d = left[k % 3 == 2 ? k - 2 : k + 1];
+            along += a == c && b == d;
+            against += a == d && b == c;
+        }
+        open += along != 1 || against != 1;
+    }
+    mem_free(left);
+    return open;
+}
+
+/* Tori of ever more corners stay closed, and touch themselves along no edge, also where the error is larger than they are thick. */
+static void what_is_closed_stays_so(void **state)
+{
+    (void)state;
+    for (uint32_t around = 5; around <= 12; around++) {
+        struct shape s;
+        shape_begin(&s);
+        for (uint32_t r = 0; r < ROUND; r++)
+            for (uint32_t i = 0; i < around; i++) {
+                double turn = 2 * acos(-1) * i / around, out = 2 + 0.5 * cos(turn);
+                add_vertex(&s, out * cos(angle_of(r)), out * sin(angle_of(r)), 0.5 * sin(turn));
+            }
+        for (uint32_t r = 0; r < ROUND; r++)
+            for (uint32_t i = 0; i < around; i++) {
+                uint32_t next = (r + 1) % ROUND, a = around * r + i, b = around * r + (i + 1) % around;
+                uint32_t c = around * next + i, d = around * next + (i + 1) % around;
+                add_triangle(&s, a, c, d);
+                add_triangle(&s, a, d, b);
+            }
+        shape_end(&s);
+        for (double error_m = 0.1; error_m < 1.5; error_m *= 1.3) {
+            bounded_simplify(s.bounded, error_m);
+            size_t open = count_open(&s);
+            if (open)
+                print_message("# %u around, %.3f m: %zu open of %zu triangles\n", around, error_m, open, bounded_count(s.bounded));
+            assert_int_equal(open, 0);
+        }
+        shape_finish(&s);
+    }
+}
+
 /* Two materials on one plate meet along a wave: the border stays within half of the error, and no triangle has both. */
 static void seams_stay(void **state)
 {
@@ -229,6 +284,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_disc_takes_few_triangles),
         cmocka_unit_test(errors_grow_with_what_is_asked),
+        cmocka_unit_test(what_is_closed_stays_so),
         cmocka_unit_test(seams_stay),
     };
     cmocka_set_message_output(CM_OUTPUT_TAP);
