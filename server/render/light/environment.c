@@ -9,7 +9,8 @@
 #include "base/vec.h"
 #include "render/light/ggx.h"
 
-enum { SKY_WIDTH = 512, SKY_HEIGHT = 256, BASE_PX = 256, PYRAMID = 6, SAMPLES = 128 };
+enum { SKY_WIDTH = 8, SKY_HEIGHT = 256 }; /* the same all around: as many columns as sums of harmonics need */
+enum { BASE_PX = 256, PYRAMID = 6, SAMPLES = 128 };
 static const double BRIGHTEST = 24; /* times the mean: brighter spots are the sun or lamps, and the sun is one of its own */
 /* Rough layers are smooth: worked out small and enlarged. */
 static const int layer_px[ENVIRONMENT_LAYERS] = { 128, 128, 128, 64, 64, 32, 32, 32 };
@@ -17,7 +18,7 @@ static const int layer_px[ENVIRONMENT_LAYERS] = { 128, 128, 128, 64, 64, 32, 32,
 struct source { /* equirectangular, as the image; then octahedral, plant axes */
     const float (*pixels)[4];
     int width, height;
-    bool y_up;
+    bool y_up, even; /* even: differs by height alone, as the built-in sky */
     double factor[3], most; /* most: of the brightest channel, before the factor */
     float (*pyramid[PYRAMID])[4];
 };
@@ -190,12 +191,35 @@ struct job {
     const struct lobe *lobe; /* of the layer; the first has none */
 };
 
+/* The texel of the same light that is worked out for all of them: the mapping folds a sky that is the same all around into eight
+   triangles alike, or, where its height is along the mapping's y, into two halves. */
+static size_t twin_of(const struct source *source, int side_px, size_t i)
+{
+    int x = (int)(i % (size_t)side_px), y = (int)(i / (size_t)side_px);
+    if (!source->even)
+        return i;
+    x = x < side_px - 1 - x ? x : side_px - 1 - x;
+    if (!source->y_up) {
+        y = y < side_px - 1 - y ? y : side_px - 1 - y;
+        return (size_t)(x < y ? x * side_px + y : y * side_px + x);
+    }
+    return (size_t)(y * side_px + x);
+}
+
+static void copy_to_twins(const struct source *source, int side_px, float (*texels)[4])
+{
+    for (size_t i = 0; source->even && i < (size_t)side_px * (size_t)side_px; i++)
+        memcpy(texels[i], texels[twin_of(source, side_px, i)], sizeof(*texels));
+}
+
 /* The base of the pyramid: the mean of 4 x 4 places in each texel. */
 static void base_rows(void *arg, size_t begin, size_t end)
 {
     struct job *job = arg;
     for (size_t i = begin * BASE_PX; i < end * BASE_PX; i++) {
         double sum[3] = { 0 };
+        if (twin_of(job->source, BASE_PX, i) != i)
+            continue;
         for (int k = 0; k < 16; k++) {
             double towards[3], color[3];
             texel_direction((int)(i % BASE_PX) * 4 + k % 4, (int)(i / BASE_PX) * 4 + k / 4, BASE_PX * 4, towards);
@@ -217,6 +241,7 @@ static void make_pyramid(struct source *source, struct workers *workers)
         if (level == 0) {
             job.out = to;
             workers_for(workers, BASE_PX, 8, base_rows, &job);
+            copy_to_twins(source, BASE_PX, to);
             continue;
         }
         const float (*from)[4] = (const float(*)[4])source->pyramid[level - 1];
@@ -291,6 +316,8 @@ static void layer_rows(void *arg, size_t begin, size_t end)
     struct job *job = arg;
     for (size_t i = begin * (size_t)job->side_px; i < end * (size_t)job->side_px; i++) {
         double towards[3], color[3], x, y;
+        if (twin_of(job->source, job->side_px, i) != i)
+            continue;
         texel_direction((int)(i % (size_t)job->side_px), (int)(i / (size_t)job->side_px), job->side_px, towards);
         if (job->layer == 0) {
             texel_of(towards, BASE_PX / 2, &x, &y);
@@ -314,6 +341,7 @@ static void make_layer(struct source *source, struct workers *workers, int layer
     struct job job = { .source = source, .side_px = side, .layer = layer, .lobe = &lobe };
     job.out = small ? mem_array((size_t)side * (size_t)side, sizeof(*job.out)) : out;
     workers_for(workers, (size_t)side, 4, layer_rows, &job);
+    copy_to_twins(source, side, job.out);
     for (int i = 0; small && i < ENVIRONMENT_PX * ENVIRONMENT_PX; i++) {
         double scale = (side - 1.0) / (ENVIRONMENT_PX - 1), color[3];
         bilinear((const float(*)[4])job.out, side, side, i % ENVIRONMENT_PX * scale, i / ENVIRONMENT_PX * scale, false, color);
@@ -331,7 +359,8 @@ bool environment_init(struct environment *environment, const struct image_float 
     struct source source = { .pixels = image ? (const float(*)[4])image->rgba : (const float(*)[4])sky,
                              .width = image ? (int)image->width_px : SKY_WIDTH,
                              .height = image ? (int)image->height_px : SKY_HEIGHT,
-                             .y_up = y_up };
+                             .y_up = y_up,
+                             .even = !image };
     *environment = (struct environment){ 0 };
     bool good = expose(&source, environment);
     if (good) {
