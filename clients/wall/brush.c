@@ -45,6 +45,16 @@ struct box brush_measure(cairo_t *cairo, double size_px, bool bold, const char *
     return size;
 }
 
+struct box brush_measure_wrapped(cairo_t *cairo, double width_px, double size_px, bool bold, const char *text)
+{
+    PangoLayout *layout = lay_out(cairo, size_px, bold, text);
+    pango_layout_set_width(layout, (int)(fmax(width_px, 1) * PANGO_SCALE));
+    pango_layout_set_wrap(layout, PANGO_WRAP_WORD_CHAR);
+    struct box size = size_of(layout);
+    g_object_unref(layout);
+    return size;
+}
+
 struct box brush_text(cairo_t *cairo, const struct box *box, double size_px, bool bold, uint32_t rgb, enum brush_align align, bool wraps,
                       const char *text)
 {

@@ -32,6 +32,8 @@ void brush_text_fitting(cairo_t *cairo, const struct box *box, double size_px, b
                         const char *text);
 /* Returns the width and height of a text in one line. */
 struct box brush_measure(cairo_t *cairo, double size_px, bool bold, const char *text);
+/* Returns what brush_text() takes in a box of that width and any height, where it wraps. */
+struct box brush_measure_wrapped(cairo_t *cairo, double width_px, double size_px, bool bold, const char *text);
 /* Draws the badge of a priority, so large, at its upper left corner; hollow: its cause has gone. */
 void brush_badge(cairo_t *cairo, double x, double y, double size_px, int priority, bool hollow);
 /* Returns the colour of a priority. */

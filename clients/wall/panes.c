@@ -384,16 +384,24 @@ static void say_clock(const struct player *player, const struct pane *pane, stru
              player->model.clock_set ? "" : say("status.unset", "clock", say("status.clock", NULL), NULL));
 }
 
+/* The day goes into as many lines as it needs, as in the page; with the time it shrinks where they have no room. */
 static void draw_clock(const struct player *player, const struct pane *pane, cairo_t *cairo)
 {
-    double em = LETTERS * player->unit;
-    struct box body = body_of(pane);
-    struct box size = brush_measure(cairo, 2.6 * em, true, "00:00:00");
-    double large = 2.6 * em * fmin(1, fmin(0.95 * body.width / size.width, 0.65 * body.height / size.height));
-    double y = body.y + fmax(0, 0.5 * (body.height - 1.36 * large - 1.5 * em));
+    double em = LETTERS * player->unit, large = 0, high = 0;
+    struct box body = body_of(pane), below = { body.x + 0.03 * body.width, 0, 0.94 * body.width, body.height };
+    const char *day = line_of(&pane->said, 2);
+    for (double least = 0.5 * em;; em *= 0.94) {
+        struct box size = brush_measure(cairo, 2.6 * em, true, "00:00:00");
+        large = 2.6 * em * fmin(1, 0.95 * body.width / size.width);
+        high = brush_measure_wrapped(cairo, below.width, em, false, day).height;
+        if (em < least || 1.4 * large + high <= body.height)
+            break;
+    }
+    double y = body.y + fmax(0, 0.5 * (body.height - 1.4 * large - high));
     brush_text(cairo, &(struct box){ body.x, y, body.width, large }, large, true, INK, ALIGN_CENTRE, false, line_of(&pane->said, 1));
-    struct box below = { body.x + 0.03 * body.width, y + 1.4 * large, 0.94 * body.width, em };
-    brush_text_fitting(cairo, &below, em, false, INK_2, ALIGN_CENTRE, line_of(&pane->said, 2));
+    below.y = y + 1.4 * large;
+    below.height = fmax(high, body.y + body.height - below.y);
+    brush_text(cairo, &below, em, false, INK_2, ALIGN_CENTRE, true, day);
 }
 
 static void draw_words(const struct player *player, const struct pane *pane, cairo_t *cairo)
