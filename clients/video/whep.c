@@ -21,6 +21,8 @@ struct whep {
     const struct options *options;
     struct outputs *outputs;
     GPtrArray *places;
+    GThreadPool *enders; /* of sessions, which may take a while: whoever else watches does not wait for it */
+    gint ending;         /* atomic: how many have not ended yet */
 };
 
 static void answer(SoupServerMessage *message, guint status, const char *text)
@@ -44,6 +46,15 @@ static void refuse(SoupServerMessage *message, enum whep_fault fault, const char
         answer(message, fault == WHEP_BAD_OFFER ? SOUP_STATUS_BAD_REQUEST : SOUP_STATUS_NOT_IMPLEMENTED, text);
 }
 
+/* A thread of whep->enders. */
+static void end_session(gpointer data, gpointer user)
+{
+    struct whep_session *session = data;
+    struct whep *whep = user;
+    whep_session_destroy(&session);
+    g_atomic_int_add(&whep->ending, -1);
+}
+
 static void place_free(gpointer data)
 {
     struct place *place = data;
@@ -53,7 +64,9 @@ static void place_free(gpointer data)
         soup_server_message_unpause(place->message);
         g_object_unref(place->message);
     }
-    whep_session_destroy(&place->session);
+    whep_session_leave(place->session);
+    g_atomic_int_inc(&place->whep->ending);
+    g_thread_pool_push(place->whep->enders, place->session, NULL);
     g_free(place);
 }
 
@@ -159,7 +172,8 @@ static void post(struct whep *whep, SoupServerMessage *message)
         answer(message, SOUP_STATUS_UNSUPPORTED_MEDIA_TYPE, "an offer is expected, as application/sdp\n");
         return;
     }
-    if (whep->places->len >= (guint)whep->options->most_readers) {
+    if (whep->places->len >= (guint)whep->options->most_readers ||
+        g_atomic_int_get(&whep->ending) >= whep->options->most_readers) {
         put_off(message, "too many are reading\n");
         return;
     }
@@ -242,6 +256,7 @@ struct whep *whep_create(const struct options *options, struct outputs *outputs)
 {
     struct whep *whep = g_new0(struct whep, 1);
     *whep = (struct whep){ .options = options, .outputs = outputs, .places = g_ptr_array_new_with_free_func(place_free) };
+    whep->enders = g_thread_pool_new(end_session, whep, -1, FALSE, NULL);
     return whep;
 }
 
@@ -257,6 +272,7 @@ void whep_destroy(struct whep **pointer)
     if (!whep)
         return;
     g_ptr_array_free(whep->places, TRUE);
+    g_thread_pool_free(whep->enders, FALSE, TRUE);
     g_free(whep);
     *pointer = NULL;
 }

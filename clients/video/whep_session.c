@@ -362,21 +362,27 @@ struct whep_session *whep_session_create(const struct options *options, struct o
     return session;
 }
 
+void whep_session_leave(struct whep_session *session)
+{
+    g_atomic_int_set(&session->ended, 1);
+    if (session->added) {
+        GstElement *in = gst_bin_get_by_name(GST_BIN(session->pipeline), "in");
+        outputs_remove(session->outputs, GST_APP_SRC(in));
+        gst_object_unref(in);
+        session->added = false;
+    }
+}
+
+/* To end, webrtcbin waits for the lock that it holds while it works at a description. */
 void whep_session_destroy(struct whep_session **pointer)
 {
     struct whep_session *session = *pointer;
     if (!session)
         return;
-    g_atomic_int_set(&session->ended, 1);
-    if (session->pipeline) {
-        GstElement *in = gst_bin_get_by_name(GST_BIN(session->pipeline), "in");
-        if (session->added)
-            outputs_remove(session->outputs, GST_APP_SRC(in));
-        gst_object_unref(in);
+    if (session->pipeline)
         gst_element_set_state(session->pipeline, GST_STATE_NULL);
-        gst_clear_object(&session->rtc);
-        gst_clear_object(&session->pipeline);
-    }
+    gst_clear_object(&session->rtc);
+    gst_clear_object(&session->pipeline);
     release(session);
     *pointer = NULL;
 }

@@ -47,6 +47,16 @@ const watcher = () => {
         globalThis.streams.push({ peer, element, place: new URL(reply.headers.get('Location'), url).href, token });
         return { status: 201, answer, type: reply.headers.get('Content-Type') };
     };
+    globalThis.leave = async (url, token) => { // goes away before the answer
+        const peer = new RTCPeerConnection(), away = new AbortController();
+        peer.addTransceiver('video', { direction: 'recvonly' });
+        await peer.setLocalDescription(await peer.createOffer());
+        const reply = fetch(url, { method: 'POST', body: peer.localDescription.sdp, signal: away.signal,
+            headers: { 'Content-Type': 'application/sdp', Authorization: `Bearer ${token}` } });
+        setTimeout(() => away.abort(), 1000);
+        await reply.then(() => { throw new Error('it was answered'); }, () => {});
+        peer.close();
+    };
     globalThis.streams = [];
     globalThis.look = (i) => {
         const { element, peer } = globalThis.streams[i], canvas = document.createElement('canvas');
@@ -189,14 +199,29 @@ test('DELETE ends it, and whoever goes without a word is forgotten', options, as
     await until(1, ({ card }) => !card); // the others go on
 });
 
+// While an answer is held up: frames are encoded, and those who watch get them.
+async function goOn() {
+    const { tenths } = await until(1, ({ card }) => !card), encoded = await metric('plantcast_video_frames_total');
+    await until(1, (seen) => seen.tenths > tenths + 10, 8000);
+    assert.ok(await metric('plantcast_video_frames_total') > encoded);
+}
+
 test('a machine that is too busy to answer says so, and to come again', options, async () => {
+    assert.equal(await page.evaluate(() => globalThis.end(2)), 200); // makes room for two
     const had = await readers();
     writeFileSync(slow, '');
-    const refusal = watch(PASSWORD, [], page, 1);
-    await video.line(/no answer after \d+ s, this machine is busy/);
-    rmSync(slow);
+    // Also to whoever asked, and before the answer is given up; those who watch go on meanwhile.
+    await page.evaluate((all) => globalThis.leave(...all), [url(), PASSWORD]);
+    await goOn();
+    let waits = true;
+    const refusal = watch(PASSWORD, [], page, 1).finally(() => { waits = false; });
+    while (waits)
+        await goOn();
     const { status, answer, retryS } = await refusal;
+    assert.match(video.said, /no answer after \d+ s, this machine is busy/);
     assert.deepEqual([status, answer, retryS], [503, 'busy, offer it again\n', 5]);
+    await goOn();
+    rmSync(slow);
     for (const end = Date.now() + 60000; await readers() !== had;)
         assert.ok(Date.now() < end, 'it still counts');
     writeFileSync(slow, '');
