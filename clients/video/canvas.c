@@ -97,6 +97,21 @@ static void draw_strip(cairo_t *cairo, const struct canvas *canvas, const struct
     g_free(age);
 }
 
+/* In the upper right corner: that a stream stands still is to be seen in each tile. */
+static void draw_clock(cairo_t *cairo, const struct canvas *canvas, const struct shown *look, gint64 utc_us)
+{
+    double px = 0.55 * strip_px(canvas->height_px), pad = 0.5 * px;
+    char *clock = time_text(look, utc_us, "%H:%M:%S");
+    struct box box = { 0, 0, brush_measure(cairo, px, true, clock).width + 2 * pad, HIGH * px + pad };
+    box.x = canvas->width_px - box.width;
+    colour(cairo, STRIP_RGB);
+    cairo_rectangle(cairo, box.x, box.y, box.width, box.height);
+    cairo_fill(cairo);
+    box.y = 0.5 * pad;
+    brush_text(cairo, &box, px, true, WHITE, ALIGN_CENTRE, false, clock);
+    g_free(clock);
+}
+
 /* --- time code --------------------------------------------------------------------------------------------------------------- */
 
 static guint64 code_of(const struct shown *look, gint64 utc_us)
@@ -122,6 +137,8 @@ static void draw_picture(cairo_t *cairo, const struct canvas *canvas, const stru
     if (look->shift_x || look->shift_y)
         brush_fill(cairo, &(struct box){ 0, 0, canvas->width_px, height }, GROUND);
     cairo_set_source_surface(cairo, look->picture, look->shift_x, look->shift_y);
+    if (look->whole) /* else there would be a line where it ends before the next one */
+        cairo_pattern_set_extend(cairo_get_source(cairo), CAIRO_EXTEND_PAD);
     cairo_paint(cairo);
     if (look->dim > 0) {
         cairo_set_source_rgba(cairo, 0, 0, 0, look->dim);
@@ -135,12 +152,16 @@ void canvas_draw(const struct canvas *canvas, guint8 *bgrx, int stride_bytes, co
         cairo_image_surface_create_for_data(bgrx, CAIRO_FORMAT_RGB24, canvas->width_px, canvas->height_px, stride_bytes);
     cairo_t *cairo = cairo_create(surface);
     double height = canvas_picture_px(canvas->height_px);
-    if (look->picture) {
-        draw_picture(cairo, canvas, look, height);
+    if (look->picture && look->whole) {
+        draw_picture(cairo, canvas, look, canvas->height_px);
+        draw_clock(cairo, canvas, look, utc_us);
     } else {
-        draw_card(cairo, canvas, look, height);
+        if (look->picture)
+            draw_picture(cairo, canvas, look, height);
+        else
+            draw_card(cairo, canvas, look, height);
+        draw_strip(cairo, canvas, look, utc_us, height);
     }
-    draw_strip(cairo, canvas, look, utc_us, height);
     if (canvas->time_code)
         draw_code(cairo, canvas, code_of(look, utc_us));
     cairo_destroy(cairo);

@@ -16,6 +16,7 @@ struct shown {                /* what is to be seen now; all belongs to who says
     GTimeZone *zone;      /* of the plant */
     int shift_x, shift_y; /* of the picture */
     double dim;           /* 0: as bright as it is; 1: black */
+    bool whole;           /* the picture is as large as the video: a tile, which has a small clock in place of the strip */
 };
 
 struct canvas {

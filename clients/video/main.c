@@ -102,7 +102,8 @@ static gboolean dispatch(GSource *source, GSourceFunc callback, gpointer data)
 static void begin_ticks(struct program *program)
 {
     static GSourceFuncs funcs = { .dispatch = dispatch };
-    program->begin_us = g_get_monotonic_time();
+    gint64 rest_us = g_get_real_time() % G_USEC_PER_SEC; /* several of one picture draw at the same instants */
+    program->begin_us = g_get_monotonic_time() + G_USEC_PER_SEC - rest_us;
     program->ticks = g_source_new(&funcs, sizeof(GSource));
     g_source_set_callback(program->ticks, on_tick, program, NULL);
     g_source_set_ready_time(program->ticks, program->begin_us);

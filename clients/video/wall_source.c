@@ -84,9 +84,24 @@ static void say_card(struct wall_source *source)
         source->since_us = g_get_real_time();
 }
 
+/* A tile goes on in others: it has all of the video, and no strip. */
+static bool fit(struct wall_source *source)
+{
+    bool tile = player_is_tile(&source->player);
+    int height_px = tile ? source->options->height_px : canvas_picture_px(source->options->height_px);
+    if (height_px != source->player.height_px) {
+        pthread_mutex_lock(&source->player.lock);
+        source->player.display_height_px = height_px;
+        pthread_mutex_unlock(&source->player.lock);
+        player_resize(&source->player, source->options->width_px, height_px);
+    }
+    return tile;
+}
+
 void wall_source_look(struct wall_source *source, struct shown *out)
 {
     struct player *player = &source->player;
+    bool tile = fit(source);
     int64_t now_ns = clock_mono_ns();
     struct box dirty;
     player_draw(player, now_ns, &dirty);
@@ -109,6 +124,7 @@ void wall_source_look(struct wall_source *source, struct shown *out)
         .shift_x = shift.x,
         .shift_y = shift.y,
         .dim = source->card ? 0 : 1 - player_brightness(player),
+        .whole = tile,
     };
 }
 

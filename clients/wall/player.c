@@ -245,12 +245,20 @@ static bool is_tile(const struct player *player)
     return player->pane_count > 0 && player->panes[0].view.tile.display > 0;
 }
 
+bool player_is_tile(struct player *player)
+{
+    pthread_mutex_lock(&player->lock);
+    bool tile = is_tile(player);
+    pthread_mutex_unlock(&player->lock);
+    return tile;
+}
+
 bool player_waits(struct player *player)
 {
     bool waits = false;
     pthread_mutex_lock(&player->lock);
     for (int i = 0; i < player->pane_count; i++)
-        waits |= player->panes[i].view.tile.ordered;
+        waits |= player->panes[i].view.tile.order_count > 0;
     pthread_mutex_unlock(&player->lock);
     return waits;
 }

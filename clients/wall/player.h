@@ -96,6 +96,8 @@ bool player_start(struct player *player);
 void player_finish(struct player *player);
 /* Draws what has changed into player->surface. Returns whether anything has, with the part of it in *dirty. */
 bool player_draw(struct player *player, int64_t now_ns, struct box *dirty);
+/* Returns whether the display is a tile of one picture over many. */
+bool player_is_tile(struct player *player);
 /* Returns whether a tile is to show a picture at an instant that is near. */
 bool player_waits(struct player *player);
 /* Returns by how much the picture is moved now, by the plant's clock: all displays of a wall are moved alike. */

@@ -8,18 +8,26 @@
 
 static const int64_t EARLY_US = 4000; /* the next picture of the screen comes within 17 ms */
 
-static void drop(struct view_tile *tile, int count)
+static void drop(struct view_tile *tile, int first, int count)
 {
-    for (int i = 0; i < count; i++)
+    for (int i = first; i < first + count; i++)
         mem_free(tile->kept[i].pixels);
     tile->kept_count -= count;
-    memmove(tile->kept, tile->kept + count, (size_t)tile->kept_count * sizeof(tile->kept[0]));
+    memmove(tile->kept + first, tile->kept + first + count, (size_t)(tile->kept_count - first) * sizeof(tile->kept[0]));
+}
+
+static void add_order(struct view_tile *tile, struct tile_order order)
+{
+    if (tile->order_count == TILE_ORDERS)
+        tile->order_count--;
+    tile->orders[tile->order_count++] = order;
 }
 
 void view_tile_clear(struct view_tile *tile)
 {
-    drop(tile, tile->kept_count);
-    tile->ordered = tile->leads = false;
+    drop(tile, 0, tile->kept_count);
+    tile->order_count = 0;
+    tile->leads = false;
     tile->late_us = 0;
     tile->missing[0] = 0;
 }
@@ -33,9 +41,8 @@ static void add_missing(struct view_tile *tile, const json_t *display)
 void view_tile_hear(struct view_tile *tile, const char *type, const json_t *message)
 {
     if (!strcmp(type, "present")) {
-        tile->ordered = true;
-        tile->seq = (uint32_t)json_integer_value(json_object_get(message, "seq"));
-        tile->at_us = json_integer_value(json_object_get(message, "at_us"));
+        add_order(tile, (struct tile_order){ (uint32_t)json_integer_value(json_object_get(message, "seq")),
+                                             json_integer_value(json_object_get(message, "at_us")) });
     } else if (!strcmp(type, "tiles")) {
         const json_t *missing = json_object_get(message, "missing"), *late = json_object_get(message, "late");
         for (size_t i = 0; i < 4; i++)
@@ -62,23 +69,27 @@ void view_tile_keep(struct view_tile *tile, const struct wire_frame *frame, cons
     if (!copy)
         return;
     if (tile->kept_count == TILE_KEPT)
-        drop(tile, 1);
+        drop(tile, TILE_KEPT - 1, 1);
     memcpy(copy, pixels, bytes);
     tile->kept[tile->kept_count++] = (struct tile_picture){ *frame, copy };
 }
 
 bool view_tile_take(struct view_tile *tile, int64_t now_us, struct tile_picture *out)
 {
-    int count = 0;
-    if (!tile->ordered || now_us + EARLY_US < tile->at_us)
+    int due = 0, count = 0;
+    while (due < tile->order_count && now_us + EARLY_US >= tile->orders[due].at_us)
+        due++;
+    if (due == 0)
         return false;
-    tile->ordered = false;
-    while (count < tile->kept_count && tile->kept[count].frame.seq <= tile->seq)
+    uint32_t seq = tile->orders[due - 1].seq;
+    tile->order_count -= due;
+    memmove(tile->orders, tile->orders + due, (size_t)tile->order_count * sizeof(tile->orders[0]));
+    while (count < tile->kept_count && tile->kept[count].frame.seq <= seq)
         count++;
     if (count == 0)
         return false;
     *out = tile->kept[count - 1];
     tile->kept[count - 1].pixels = NULL;
-    drop(tile, count);
+    drop(tile, 0, count);
     return true;
 }

@@ -9,10 +9,15 @@
 
 #include "protocol/wire.h"
 
-enum { TILE_KEPT = 4 };
+enum { TILE_KEPT = 4, TILE_ORDERS = 4 };
 struct tile_picture {
     struct wire_frame frame;
     uint8_t *pixels; /* 4 bytes each, rows without gaps */
+};
+
+struct tile_order { /* to show the picture `seq` at that time of the server */
+    uint32_t seq;
+    int64_t at_us;
 };
 
 struct view_tile {
@@ -22,10 +27,11 @@ struct view_tile {
     bool leads;                 /* what it asks for is what all show */
     int64_t late_us;            /* since when it is left out; 0: it is not */
     char missing[100];          /* displays that are not there; "": all are */
-    bool ordered;               /* to show the picture `seq` at that time of the server */
-    uint32_t seq;
-    int64_t at_us;
-    struct tile_picture kept[TILE_KEPT]; /* decoded and not shown yet, oldest first */
+    /* Not done yet, oldest first. Where there are more, those between the oldest and the newest are left out, so that also who looks
+       rarely finds one whose time has come. */
+    struct tile_order orders[TILE_ORDERS];
+    int order_count;
+    struct tile_picture kept[TILE_KEPT]; /* decoded and not shown yet, likewise */
     int kept_count;
 };
 

@@ -74,6 +74,13 @@ class Reader {
 // Waits until one picture has what is expected: of pane 1 (the left two thirds), the share of saturated pixels, and at its left edge that
 // of the red of an alarm's frame.
 const SHOTS = process.env.PLANTCAST_SHOTS === '1' ? SCREENSHOTS : null;
+function save(picture, name) {
+    if (!SHOTS)
+        return;
+    mkdirSync(SHOTS, { recursive: true });
+    spawnSync('ffmpeg', ['-v', 'error', '-y', '-f', 'rawvideo', '-pix_fmt', 'rgb24', '-s', `${WALL_WIDTH}x${WALL_HEIGHT}`,
+        '-i', 'pipe:0', join(SHOTS, `${name}.png`)], { input: picture });
+}
 async function pixelsUntil(url, expected, name) {
     for (const end = Date.now() + 30000; ;) {
         const picture = spawnSync('ffmpeg', ['-v', 'error', '-rtsp_transport', 'tcp', '-i', url, '-frames:v', '1', '-f', 'rawvideo',
@@ -88,11 +95,7 @@ async function pixelsUntil(url, expected, name) {
         count.coloured /= (rows[1] - rows[0]) * (columns[1] - columns[0]);
         count.framed /= rows[1] - rows[0];
         if (expected(count)) {
-            if (SHOTS) {
-                mkdirSync(SHOTS, { recursive: true });
-                spawnSync('ffmpeg', ['-v', 'error', '-y', '-f', 'rawvideo', '-pix_fmt', 'rgb24', '-s', `${WALL_WIDTH}x${WALL_HEIGHT}`,
-                    '-i', 'pipe:0', join(SHOTS, `${name}.png`)], { input: picture });
-            }
+            save(picture, name);
             return;
         }
         assert.ok(Date.now() < end, `${name}: ${JSON.stringify(count)}`);
@@ -412,6 +415,54 @@ test('a display of a wall: its panes as the player draws them, and a card once t
     }
     await plant.daemon.stop();
     await plant.startDaemon('--port', String(at));
+});
+
+// A frame as it is now, RGB.
+const frameOf = (port) => new Promise((done) => {
+    const parts = [], reader = spawn('ffmpeg', ['-v', 'error', '-rtsp_transport', 'tcp', '-i', rtsp(port, ''), '-frames:v', '1',
+        '-f', 'rawvideo', '-pix_fmt', 'rgb24', 'pipe:1'], { stdio: ['ignore', 'pipe', 'inherit'] });
+    reader.stdout.on('data', (chunk) => parts.push(chunk)).on('end', () => done(Buffer.concat(parts)));
+});
+
+test('two displays that are tiles of one picture: it goes on from one video to the other, and changes in both', options, async () => {
+    // Its middle, with the box, is on the seam. `low` has the box in the lower half, `high` in the upper one.
+    const view = (z) => `group=temperature&camera=0,-5,${z},0,0,${z},0,0,1,30`, at = plant.port;
+    const own = [await freePort(), await freePort()];
+    const tiles = `views:\n  - { id: low, title: Low, view: "${view(0.9)}" }\n  - { id: high, title: High, view: "${view(-0.4)}" }\n` +
+        'walls:\n  - { id: wide, tile: { columns: 2, rows: 1, views: [low, high], every_s: 5 } }\n';
+    await plant.daemon.stop();
+    writeFileSync(plant.file, readFileSync(plant.file, 'utf8').split('views:\n')[0] + tiles);
+    await plant.startDaemon('--port', String(at));
+    const programs = [];
+    try {
+        for (const [i, port] of own.entries())
+            programs.push(await startVideo('--size', `${WALL_WIDTH}x${WALL_HEIGHT}`, '--wall', 'wide', '--display', String(i + 1),
+                '--rtsp', String(port)));
+        // Rows in which the column is of the box, and not of the ground: its sides are of the field's colours.
+        const rowsOf = (frame, x) => [...Array(WALL_HEIGHT - 60).keys()].map((y) => y + 40).filter((y) => {
+            const rgb = [...frame.subarray((y * WALL_WIDTH + x) * 3, (y * WALL_WIDTH + x) * 3 + 3)];
+            return Math.max(...rgb) - Math.min(...rgb) > 60;
+        });
+        const seen = { low: false, high: false };
+        for (const end = Date.now() + 60000; !(seen.low && seen.high);) {
+            const [left, right] = await Promise.all(own.map(frameOf));
+            assert.equal(left.length, WALL_WIDTH * WALL_HEIGHT * 3);
+            const [a, b] = [rowsOf(left, WALL_WIDTH - 8), rowsOf(right, 8)];
+            if (a.length > 40 && b.length > 40 && Math.abs(a[0] - b[0]) < 8 && Math.abs(a.at(-1) - b.at(-1)) < 8) {
+                const middle = (a[0] + a.at(-1)) / 2;
+                seen.low ||= middle > 0.55 * WALL_HEIGHT;
+                seen.high ||= middle < 0.45 * WALL_HEIGHT + 20;
+                // Down to the last row that is not of the row of blocks: no strip lies below.
+                const grey = left.subarray(((WALL_HEIGHT - 12) * WALL_WIDTH + 10) * 3, ((WALL_HEIGHT - 12) * WALL_WIDTH + 10) * 3 + 3);
+                assert.ok(Math.min(...grey) > 120, `${[...grey]}`);
+                save(left, 'video-tile-1');
+                save(right, 'video-tile-2');
+            }
+            assert.ok(Date.now() < end, JSON.stringify([seen, a.length, b.length, a[0], b[0]]));
+        }
+    } finally {
+        await Promise.all(programs.map((program) => program.stop()));
+    }
 });
 
 test('a full disk ends HLS alone: no old playlist is left, and it comes back', mounting, async () => {
