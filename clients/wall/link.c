@@ -158,18 +158,23 @@ static int on_receive(struct link *link, struct lws *wsi, const void *bytes, siz
 
 /* --- coming and going ------------------------------------------------------------------------------------------------------------- */
 
+double link_wait_s(int tries, double told_s)
+{
+    double usual_s = told_s > 0 ? told_s : FIRST_S * (1 << tries);
+    double spread_s = tries == 0 ? SPREAD_S * rand() / RAND_MAX : 0; /* displays lose a server all at once */
+    return usual_s * (0.75 + 0.5 * rand() / RAND_MAX) + spread_s;
+}
+
 static void on_gone(struct link *link)
 {
-    double usual_s = FIRST_S * (1 << (link->tries < MOST_TRIES ? link->tries : MOST_TRIES));
-    double wait_s = (link->retry_after_s > 0 ? link->retry_after_s : usual_s) * (0.75 + 0.5 * rand() / RAND_MAX);
-    double spread_s = link->tries == 0 ? SPREAD_S * rand() / RAND_MAX : 0; /* displays come back all at once */
+    double wait_s = link_wait_s(link->tries, link->retry_after_s);
     bool asked = link->asked;
     link->wsi = NULL;
     link->closing = link->asked = false;
     link->state = link->wanted ? LINK_WAITING : LINK_IDLE;
-    link->retry_ns = clock_mono_ns() + (asked ? 0 : (int64_t)((wait_s + spread_s) * 1e9));
+    link->retry_ns = clock_mono_ns() + (asked ? 0 : (int64_t)(wait_s * 1e9));
     link->retry_after_s = 0;
-    link->tries++;
+    link->tries += link->tries < MOST_TRIES;
     drop_queue(link);
     text_finish(&link->in);
 }

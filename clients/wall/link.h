@@ -86,6 +86,9 @@ void links_ask(struct links *links, enum links_get what, const char *path);
 int64_t links_alive_ns(struct links *links);
 /* Sends a message, which it frees, once the server has greeted; else it is dropped. Under the lock. */
 void link_post(struct link *link, json_t *message);
+/* Returns how long to wait for the next try, in seconds: another time at each call (rand()), so that many displays do not come at once.
+   tries: how many have failed since the server last greeted, 4 at most; told_s: how long the server wants it to be, 0: it did not say. */
+double link_wait_s(int tries, double told_s);
 /* Ends the connection; while it is wanted another one follows at once. Under the lock. */
 void link_restart(struct link *link);
 
