@@ -10,6 +10,8 @@
 
 #include "base/embedded.h"
 #include "base/mem.h"
+#include "render/overlay/overlay_words.h"
+#include "render/overlay/text_face.h"
 
 enum { TEXTS = 32, TEXT_BYTES = 512, FILES = 2, MOST_PAIRS = 8 };
 static const char *files[FILES];
@@ -34,6 +36,9 @@ bool words_choose(const char *language)
         mem_free(name);
     }
     has_plurals = strcmp(language, "ko") != 0;
+    overlay_words_choose(language);
+    if (!text_face_has(overlay_word(WORD_NO_DATA)))
+        fprintf(stderr, "no installed font has the letters of --language %s: boxes stand in their place (package fonts-nanum)\n", language);
     return files[0] && files[1];
 }
 

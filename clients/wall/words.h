@@ -5,7 +5,8 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-/* Chooses the language: en, ko or de. Returns false if it is none of them. Before say(). */
+/* Chooses the language, also of legends and labels: en, ko or de. Says if no font has its letters. Returns false if it is none of them.
+   Before say(). */
 bool words_choose(const char *language);
 /* Returns the text of a key, with pairs of name and value put in, ended by NULL: say("walls.since", "time", "10:00", NULL). The plural is
    that

@@ -13,6 +13,7 @@
 
 #include "base/mem.h"
 #include "render/overlay/overlay_pen.h"
+#include "render/overlay/overlay_words.h"
 #include "tests/support/toy.h"
 #include "value/alarm.h"
 #include "value/quality.h"
@@ -310,6 +311,57 @@ static void halves_say_what_they_differ_in(void **state)
     frame_unref(&plain);
 }
 
+/* Returns what tells one legend from another. *right: where what it leaves free ends. */
+static int legend_sum(double *right)
+{
+    struct frame *frame = draw(0, false, false);
+    struct camera_window window;
+    struct view distance; /* whose title is a sentence */
+    int sum = 0;
+    view_default(&stand.toy->scene, WIDTH, HEIGHT, &distance);
+    distance.field.show = SHOW_DISTANCE;
+    distance.field.sensor = 0;
+    overlay_window(&stand.toy->scene, &distance, &window);
+    *right = window.right;
+    for (int y = 0; y < HEIGHT; y++)
+        for (int x = WIDTH / 2; x < WIDTH; x++)
+            sum = (sum * 31 + frame->bgrx[y * frame->stride_bytes + 4 * x]) & 0xffffff;
+    frame_unref(&frame);
+    return sum;
+}
+
+/* And leaves the plant as much room as it then takes. */
+static void the_legend_speaks_the_language(void **state)
+{
+    static const char *const languages[] = { "en", "ko", "de" };
+    double right[3];
+    int sums[3];
+    (void)state;
+    for (int i = 0; i < 3; i++) {
+        assert_true(overlay_words_choose(languages[i]));
+        sums[i] = legend_sum(&right[i]);
+    }
+    assert_false(overlay_words_choose("fr"));
+    assert_true(overlay_words_choose("en"));
+    assert_int_equal(legend_sum(&right[1]), sums[0]);
+    assert_true(sums[1] != sums[0] && sums[2] != sums[0] && sums[1] != sums[2]);
+    assert_true(right[2] < right[0]); /* German is longer */
+}
+
+static void values_are_put_in(void **state)
+{
+    char text[80], small[8];
+    (void)state;
+    overlay_say(WORD_HOT_SPOT_SIZE, "2", "30", text, sizeof(text));
+    assert_string_equal(text, "of 2 m, as 30 % of the range");
+    overlay_say(WORD_ALARMS, "12", NULL, text, sizeof(text));
+    assert_string_equal(text, "12 alarms");
+    overlay_say(WORD_FROM, "%s{}%n", NULL, text, sizeof(text));
+    assert_string_equal(text, "From %s{}%n");
+    overlay_say(WORD_HOT_SPOT, "x", NULL, small, sizeof(small));
+    assert_string_equal(small, "Hot spo");
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -317,6 +369,7 @@ int main(void)
         cmocka_unit_test(alarms_out_of_sight_are_listed),    cmocka_unit_test(any_number_of_alarms_fits),
         cmocka_unit_test(a_bare_one_tells_of_no_sensor),     cmocka_unit_test(the_legend_says_glossy),
         cmocka_unit_test(the_legend_lists_unknown_directions_where_there_are_any),
+        cmocka_unit_test(the_legend_speaks_the_language),    cmocka_unit_test(values_are_put_in),
         cmocka_unit_test(what_rounds_to_nought_has_no_sign), cmocka_unit_test(the_window_is_what_is_left_free),
     };
     cmocka_set_message_output(CM_OUTPUT_TAP);

@@ -59,6 +59,7 @@ static void korean_has_its_letters(void **state)
     for (int bold = 0; bold < 2; bold++) {
         cairo_t *cairo = begin(bold ? CAIRO_FONT_WEIGHT_BOLD : CAIRO_FONT_WEIGHT_NORMAL);
         assert_int_equal(count_known(cairo, text), 8);
+        assert_true(text_face_has(text));
         text_face_choose(cairo, text);
         assert_int_equal(count_known(cairo, text), 12);
         cairo_destroy(cairo);
@@ -78,10 +79,18 @@ static void other_text_stays_as_it_is(void **state)
     }
 }
 
+static void a_missing_letter_is_noticed(void **state)
+{
+    (void)state;
+    assert_true(text_face_has("TE-171"));
+    assert_false(text_face_has("\xf4\x8f\xbf\xbd")); /* U+10FFFD, for private use */
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(korean_has_its_letters),
+        cmocka_unit_test(a_missing_letter_is_noticed),
         cmocka_unit_test(other_text_stays_as_it_is),
     };
     cmocka_set_message_output(CM_OUTPUT_TAP);

@@ -8,6 +8,7 @@
 #include "base/clock.h"
 #include "plant/influence.h"
 #include "render/overlay/overlay_pen.h"
+#include "render/overlay/overlay_words.h"
 #include "render/shaded_colormap.h"
 
 enum { NOTES = 4, ROWS = 7 + ALARM_PRIORITIES };
@@ -44,10 +45,13 @@ static void write_title(const struct pen *pen, struct legend *legend)
     const struct plant *plant = pen->scene->plant;
     const struct view *view = &pen->view;
     const char *unit = view_unit(plant, view), *quantity = plant->groups[view->field.group].quantity;
-    static const char *const forms[] = { "%s", "From %s", "\u0394 %s", "%s", "\u00b1 %s", "Hot spot seen: %s" }; /* by enum field_show */
+    static const char *const forms[] = { "%s", "", "\u0394 %s", "%s", "\u00b1 %s", "" }; /* by enum field_show */
     const char *name = view->field.show == SHOW_DISTANCE ? plant->tags[view->field.sensor].name : quantity;
     char what[128];
-    snprintf(what, sizeof(what), forms[view->field.show], name);
+    if (view->field.show == SHOW_DISTANCE || view->field.show == SHOW_BLIND)
+        overlay_say(view->field.show == SHOW_DISTANCE ? WORD_FROM : WORD_HOT_SPOT, name, NULL, what, sizeof(what));
+    else
+        snprintf(what, sizeof(what), forms[view->field.show], name);
     snprintf(legend->title, sizeof(legend->title), *unit ? "%s [%s]" : "%s", what, unit);
 }
 
@@ -123,10 +127,12 @@ static void write_baseline(const struct pen *pen, struct legend *legend)
     const struct baseline *baseline = &pen->frame->baseline;
     time_t seconds = (time_t)(baseline->taken_utc_ns / NS_PER_S);
     struct tm local;
+    char what[81] = "";
     if (baseline->name[0])
-        snprintf(legend->since, sizeof(legend->since), "since %.80s", baseline->name);
+        snprintf(what, sizeof(what), "%.80s", baseline->name);
     else if (localtime_r(&seconds, &local))
-        strftime(legend->since, sizeof(legend->since), "since %m-%d %H:%M:%S", &local);
+        strftime(what, sizeof(what), "%m-%d %H:%M:%S", &local);
+    overlay_say(WORD_SINCE, what, NULL, legend->since, sizeof(legend->since));
     if (baseline->id && baseline->id == pen->view.field.baseline)
         add_note(legend, legend->since);
 }
@@ -134,7 +140,10 @@ static void write_baseline(const struct pen *pen, struct legend *legend)
 static void write_hot_spot(const struct pen *pen, struct legend *legend)
 {
     const struct plant_group *group = &pen->scene->plant->groups[pen->view.field.group];
-    snprintf(legend->since, sizeof(legend->since), "of %g m, as %g %% of the range", group->hot_spot_m, 100 * PLANT_SEEN_PART);
+    char metres[40], percent[40];
+    snprintf(metres, sizeof(metres), "%g", group->hot_spot_m);
+    snprintf(percent, sizeof(percent), "%g", 100 * PLANT_SEEN_PART);
+    overlay_say(WORD_HOT_SPOT_SIZE, metres, percent, legend->since, sizeof(legend->since));
     add_note(legend, legend->since);
 }
 
@@ -146,14 +155,14 @@ static void write_words(const struct pen *pen, struct legend *legend)
     write_title(pen, legend);
     choose_rows(pen, legend);
     if (view_is_operator(view)) {
-        add_note(legend, "by each tag's limits");
+        add_note(legend, overlay_word(WORD_BY_LIMITS));
     } else {
         pen_number(view->range_max, view->color_scale.log ? view->range_max : range, number);
         snprintf(legend->above, sizeof(legend->above), "> %s", number);
         pen_number(view->range_min, view->color_scale.log ? view->range_min : range, number);
         snprintf(legend->below, sizeof(legend->below), "< %s", number);
         if (view->color_scale.log)
-            add_note(legend, "logarithmic scale");
+            add_note(legend, overlay_word(WORD_LOGARITHMIC));
     }
     if (overlay_has_arrows(pen) && view->directions == DIRECTIONS_ARROWS) {
         pen_number(overlay_arrow_value(pen), overlay_arrow_value(pen), number);
@@ -162,32 +171,25 @@ static void write_words(const struct pen *pen, struct legend *legend)
     if (view->field.show == SHOW_DIFFERENCE)
         write_baseline(pen, legend);
     if (view->field.show == SHOW_UNCERTAINTY)
-        add_note(legend, "standard deviation");
+        add_note(legend, overlay_word(WORD_DEVIATION));
     if (view->field.show == SHOW_BLIND)
         write_hot_spot(pen, legend);
     if (!view_is_operator(view) && !colormap_at((size_t)view->colormap)->safe)
-        add_note(legend, "may be misread");
+        add_note(legend, overlay_word(WORD_MISREAD));
     if (view->look == LOOK_GLOSSY) {
-        add_note(legend, "glossy: light changes");
-        add_note(legend, "the colours");
+        add_note(legend, overlay_word(WORD_GLOSSY));
+        add_note(legend, overlay_word(WORD_GLOSSY_2));
     }
 }
 
 static const char *row_text(const struct legend *legend, enum row row)
 {
-    static const char *const texts[] = { "",
-                                         "no limits",
-                                         "no data",
-                                         "uncertain",
-                                         "unproven",
-                                         "place assumed",
-                                         "",
-                                         "direction unknown",
-                                         "alarm, priority 1",
-                                         "alarm, priority 2",
-                                         "alarm, priority 3",
-                                         "alarm, priority 4" };
-    return row == ROW_BELOW ? legend->below : row == ROW_ARROW ? legend->longest : texts[row];
+    static const enum overlay_word texts[] = { [ROW_NO_LIMITS] = WORD_NO_LIMITS,      [ROW_NO_DATA] = WORD_NO_DATA,
+                                               [ROW_UNCERTAIN] = WORD_UNCERTAIN,      [ROW_UNPROVEN] = WORD_UNPROVEN,
+                                               [ROW_ASSUMED] = WORD_PLACE_ASSUMED,    [ROW_NOWHERE] = WORD_DIRECTION_UNKNOWN,
+                                               [ROW_ALARM] = WORD_PRIORITY_1,         [ROW_ALARM + 1] = WORD_PRIORITY_2,
+                                               [ROW_ALARM + 2] = WORD_PRIORITY_3,     [ROW_ALARM + 3] = WORD_PRIORITY_4 };
+    return row == ROW_BELOW ? legend->below : row == ROW_ARROW ? legend->longest : overlay_word(texts[row]);
 }
 
 /* Below what lies over the picture already, where the card would lie on it. */

@@ -7,6 +7,7 @@
 #include "render/frame_record.h"
 #include "render/overlay/crowd.h"
 #include "render/overlay/overlay_pen.h"
+#include "render/overlay/overlay_words.h"
 #include "value/quality.h"
 
 bool overlay_unproven(const struct pen *pen, int tag)
@@ -112,7 +113,7 @@ static void format_value(const struct pen *pen, const struct frame_marker *marke
     else if (pen->view.field.show == SHOW_DISTANCE)
         snprintf(out, 64, "%.2f m", marker->value);
     else if (quality_is_bad(marker->quality))
-        snprintf(out, 64, lost ? "BAD" : "not known then");
+        snprintf(out, 64, "%s", overlay_word(lost ? WORD_BAD : WORD_UNKNOWN_THEN));
     else
         snprintf(out, 64, "%s%s%.*f %s%s%s%s", difference ? "Δ " : "", difference && value > 0 ? "+" : "", decimals, value,
                  tag->unit ? tag->unit : "", quality_is_uncertain(marker->quality) ? " ?" : "", alarm ? " " : "", alarm ? alarm : "");
@@ -232,9 +233,12 @@ static void write_callout(const struct wanted *wanted, const int *members, size_
             asset = -1;
     }
     const char *where = asset >= 0 ? plant->assets[asset].tag : "";
-    snprintf(text->what, sizeof(text->what), "%.120s%s%zu alarms", where, *where ? ", " : "", count);
-    snprintf(text->worst, sizeof(text->worst), "worst %s %.120s", alarm_kind_name((enum alarm_kind)readings[worst].alarm),
-             plant->tags[worst].name);
+    char number[24], alarms[60], grave[140];
+    snprintf(number, sizeof(number), "%zu", count);
+    overlay_say(WORD_ALARMS, number, NULL, alarms, sizeof(alarms));
+    snprintf(text->what, sizeof(text->what), "%.120s%s%s", where, *where ? ", " : "", alarms);
+    snprintf(grave, sizeof(grave), "%s %.120s", alarm_kind_name((enum alarm_kind)readings[worst].alarm), plant->tags[worst].name);
+    overlay_say(WORD_WORST, grave, NULL, text->worst, sizeof(text->worst));
 }
 
 static const double LINE = 1.25; /* of text_px */

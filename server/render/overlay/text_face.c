@@ -73,3 +73,19 @@ void text_face_choose(cairo_t *cairo, const char *text)
     pthread_mutex_unlock(&lock);
     FcCharSetDestroy(letters);
 }
+
+bool text_face_has(const char *text)
+{
+    FcCharSet *letters = letters_beyond(text);
+    struct found has = { 0 };
+    if (!letters)
+        return true;
+    find(&has, letters, false);
+    bool all = has.letters && FcCharSetIsSubset(letters, has.letters);
+    if (has.letters)
+        FcCharSetDestroy(has.letters);
+    if (has.face)
+        cairo_font_face_destroy(has.face);
+    FcCharSetDestroy(letters);
+    return all;
+}
