@@ -4,8 +4,8 @@ import assert from 'node:assert/strict';
 import { readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { test } from 'node:test';
-import { openPage, settle, shoot, waitForPicture } from './support/browser.mjs';
-import { missing, runProgram, TinyPlant } from './support/tiny_plant.mjs';
+import { openPage, settle, shoot, waitForPicture } from '../support/browser.mjs';
+import { missing, runProgram, TinyPlant } from '../support/tiny_plant.mjs';
 
 const options = { skip: missing().length > 0 && `not built: ${missing().join(', ')}`, timeout: 120000 };
 const NONE = { hidden: [], isolate: [], ghost: [] };

@@ -4,8 +4,8 @@ import assert from 'node:assert/strict';
 import { appendFileSync, chmodSync, existsSync, readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
-import { openPage, PHONE, settle, shoot, TABLET, waitForHealth, waitForPicture } from './support/browser.mjs';
-import { missing, runProgram, TinyPlant } from './support/tiny_plant.mjs';
+import { openPage, PHONE, settle, shoot, TABLET, waitForHealth, waitForPicture } from '../support/browser.mjs';
+import { missing, runProgram, TinyPlant } from '../support/tiny_plant.mjs';
 
 const absent = missing(), chromium = process.env.CHROMIUM ?? '/usr/bin/chromium';
 const skip = absent.length > 0 ? `not built: ${absent.join(', ')}` : !existsSync(chromium) ? 'chromium is not installed' : false;

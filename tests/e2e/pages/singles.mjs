@@ -5,8 +5,8 @@ import assert from 'node:assert/strict';
 import { readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { test } from 'node:test';
-import { openPage, waitForPicture } from './support/browser.mjs';
-import { missing, runProgram, TinyPlant } from './support/tiny_plant.mjs';
+import { openPage, waitForPicture } from '../support/browser.mjs';
+import { missing, runProgram, TinyPlant } from '../support/tiny_plant.mjs';
 
 const options = { skip: missing().length > 0 && `not built: ${missing().join(', ')}`, timeout: 240000 };
 const PAPER = /'paper' is not prepared where 'pressure' has one sensor \(1 of 2 assets, first 'P-101A'\); write 'singles: cut'/;

@@ -3,9 +3,10 @@
 import assert from 'node:assert/strict';
 import { readFileSync, writeFileSync } from 'node:fs';
 import { after, before, test } from 'node:test';
-import { drawnAt, FLYING, openPage, settle, shoot, view, waitForHealth, waitForPicture } from './support/browser.mjs';
-import { missing, startPlant } from './support/plant.mjs';
-import { TinyPlant } from './support/tiny_plant.mjs';
+import { demo } from './demo.mjs';
+import { drawnAt, FLYING, openPage, settle, shoot, view, waitForHealth, waitForPicture } from '../support/browser.mjs';
+import { missing } from '../support/plant.mjs';
+import { TinyPlant } from '../support/tiny_plant.mjs';
 
 const why = missing();
 const options = { skip: why ?? false, timeout: 200000 };
@@ -14,7 +15,7 @@ let plant, browser, page;
 before(async () => {
     if (why)
         return;
-    plant = await startPlant();
+    plant = await demo();
     browser = await openPage(plant.url, { viewport: { width: 1200, height: 720 } });
     page = browser.page;
     await waitForPicture(page);
@@ -23,7 +24,6 @@ before(async () => {
 });
 after(async () => {
     await browser?.close();
-    await plant?.stop();
 });
 
 // Until the camera is what is asked for, and nothing flies any more.

@@ -6,9 +6,10 @@ import { mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
-import { grab, openPage, readPng, settle, shoot, view, waitForPicture } from './support/browser.mjs';
-import { contrast, deltaE } from './support/pixels.mjs';
-import { BIN, BUILD, missing, startPlant } from './support/plant.mjs';
+import { demo } from './demo.mjs';
+import { grab, openPage, readPng, settle, shoot, view, waitForPicture } from '../support/browser.mjs';
+import { contrast, deltaE } from '../support/pixels.mjs';
+import { BIN, BUILD, missing } from '../support/plant.mjs';
 
 const why = missing();
 const options = { skip: why ?? false, timeout: 200000 };
@@ -20,12 +21,11 @@ before(async () => {
     if (why)
         return;
     folder = mkdtempSync(join(tmpdir(), 'plantcast-codecs-'));
-    plant = await startPlant();
+    plant = await demo();
     const { tags } = await (await fetch(`${plant.url}api/v1/tags`)).json();
     await plant.freeze(tags.map(({ name }) => name));
 });
 after(async () => {
-    await plant?.stop();
     if (folder)
         rmSync(folder, { recursive: true, force: true });
 });

@@ -5,9 +5,9 @@ import assert from 'node:assert/strict';
 import { mkdirSync, readFileSync, writeFileSync } from 'node:fs';
 import { dirname, join } from 'node:path';
 import { after, before, test } from 'node:test';
-import { arrive, FLYING, openPage, SCREENSHOTS, settle, waitForHealth, waitForPicture } from './support/browser.mjs';
-import { missing, startPlant } from './support/plant.mjs';
-import { runProgram } from './support/tiny_plant.mjs';
+import { arrive, FLYING, openPage, SCREENSHOTS, settle, waitForHealth, waitForPicture } from '../support/browser.mjs';
+import { missing, startPlant } from '../support/plant.mjs';
+import { runProgram } from '../support/tiny_plant.mjs';
 
 const why = missing();
 const options = { skip: why ?? false, timeout: 280000 };

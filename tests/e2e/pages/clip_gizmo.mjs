@@ -2,8 +2,8 @@
 // What is cut away, by hand: arrows on the plane, on the sides of the box and for all of it, in both halves, for mouse, keys and finger.
 import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
-import { drawnAt, openPage, settle, shoot, TABLET, waitForPicture } from './support/browser.mjs';
-import { missing, TinyPlant } from './support/tiny_plant.mjs';
+import { drawnAt, openPage, settle, shoot, TABLET, waitForPicture } from '../support/browser.mjs';
+import { missing, TinyPlant } from '../support/tiny_plant.mjs';
 
 const absent = missing();
 const options = { skip: absent.length > 0 ? `not built: ${absent.join(', ')}` : false, timeout: 200000 };

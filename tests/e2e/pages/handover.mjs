@@ -2,8 +2,8 @@
 // The handover of a shift: notes, alarms, who acknowledged and shelved them, as a page and as a PDF.
 import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
-import { openPage, shoot, waitForPicture } from './support/browser.mjs';
-import { missing, startPlant } from './support/plant.mjs';
+import { openPage, shoot, waitForPicture } from '../support/browser.mjs';
+import { missing, startPlant } from '../support/plant.mjs';
 
 const why = missing();
 const options = { skip: why ?? false, timeout: 200000 };
