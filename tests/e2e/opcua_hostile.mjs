@@ -6,7 +6,7 @@ import { spawnSync } from 'node:child_process';
 import { readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { test } from 'node:test';
-import { clockOff, missingClocks } from './support/clocks.mjs';
+import { missingClocks } from './support/clocks.mjs';
 import { distort, LIES, tellLies } from './support/lying_server.mjs';
 import { makeCertificate, opcuaOptions, shareOpcua } from './support/opcua.mjs';
 import { freePort } from './support/ports.mjs';
@@ -105,8 +105,8 @@ for (const [off_s, word] of [[3600, 'ahead of'], [-3600, 'behind']])
         for (const name of ['yesterday', 'client2'])
             makeCertificate(server.folder, name, { dates: [day(-1), day(1)] }); // valid by both clocks
         server.trust('yesterday');
-        await server.restart({ env: clockOff(off_s), certificate: 'yesterday' });
-        const stale = ROWS[0].replace('TI-1', 'OLD').replace('s=TI-1', 's=TI-2').replace(/0\.5,0,0,,/, '0.5,0,0,5,');
+        await server.restart({ ahead_s: off_s, certificate: 'yesterday' });
+        const stale = ROWS[0].replace('TI-1', 'OLD').replace('s=TI-1', 's=TI-2').replace(/0\.5,0,0,,/, '0.5,0,0,60,');
         await plant.run(server.security('', 'client2'), [...ROWS, stale], 30);
         await server.set('TI-1', 34);
         const { age_ms } = await plant.until('TI-1', { ...good, value: 34 });
@@ -123,12 +123,12 @@ test('a server whose clock is before its certificate is read, and said; a certif
     for (const [name, from, to] of [['tomorrow', 1, 2], ['today', -1 / 48, 1], ['us', -1 / 48, 1]])
         makeCertificate(server.folder, name, { dates: [day(from), day(to)] });
     server.trust('tomorrow', 'today');
-    await server.restart({ env: clockOff(90000), certificate: 'tomorrow' }); // valid by the server's clock
+    await server.restart({ ahead_s: 90000, certificate: 'tomorrow' }); // valid by the server's clock
     await plant.start(server.security('', 'us'), ROWS);
     await plant.said(/BadCertificateTimeInvalid: the server's certificate: certificate is not yet valid/);
     assert.equal((await server.tell({})).sessions, 0);
     await plant.daemon.stop();
-    await server.restart({ env: clockOff(-3600), certificate: 'today' }); // since half an hour, by ours
+    await server.restart({ ahead_s: -3600, certificate: 'today' }); // since half an hour, by ours
     await plant.run(server.security('', 'us'), ROWS, 30);
     await server.set('TI-1', 35);
     const { age_ms } = await plant.until('TI-1', { ...good, value: 35 });

@@ -8,9 +8,7 @@ export const missingClocks = () => (existsSync(LIBRARY) ? null : 'not built: clo
 
 const variables = (by) => ({ LD_PRELOAD: LIBRARY, ...by, ASAN_OPTIONS: 'verify_asan_link_order=0' });
 const starter = (by) => ['env', ...Object.entries(variables(by)).map(([name, value]) => `${name}=${value}`)];
-// What sets its clock so many seconds ahead, as variables.
-export const clockOff = (seconds) => variables({ CLOCK_OFF_S: String(seconds) });
-// The same, as the program that starts another.
+// The program that starts another with its clock so many seconds ahead.
 export const withClockOff = (seconds) => starter({ CLOCK_OFF_S: String(seconds) });
 
 // A clock that is set while programs run by it.
@@ -26,5 +24,6 @@ export class SetClock {
     }
 
     now() { return Date.now() + this.ahead_s * 1000; }
+    variables() { return variables({ CLOCK_OFF_FILE: this.file }); }
     starter() { return starter({ CLOCK_OFF_FILE: this.file }); }
 }

@@ -8,6 +8,7 @@ import { after, afterEach, before } from 'node:test';
 import { createInterface } from 'node:readline';
 import { fileURLToPath } from 'node:url';
 import { isDeepStrictEqual } from 'node:util';
+import { missingClocks, SetClock } from './clocks.mjs';
 import { freePort } from './ports.mjs';
 import { PublishedPlant } from './published_plant.mjs';
 import { missing, runProgram } from './tiny_plant.mjs';
@@ -89,7 +90,7 @@ export class OpcuaServer {
             spawnSync('openssl', ['x509', '-in', `${name}.crt`, '-out', `trusted/${name}.pem`], { cwd: this.folder });
     }
 
-    // As if it had just been started with these settings. It is, where it runs with others: that takes three seconds of a processor.
+    // As if it had just been started with these settings.
     async anew(settings = this.settings ?? {}) {
         if (this.runs && isDeepStrictEqual(settings, this.settings))
             await this.tell({ anew: true });
@@ -99,32 +100,34 @@ export class OpcuaServer {
 
     get runs() { return this.child?.exitCode === null && this.child.signalCode === null; }
 
-    // Ends it if it runs, and starts it with these settings (opcua_server.mjs). env: variables of its process.
+    // Ends it if it serves, and has it serve with these settings (opcua_server.mjs). ahead_s: of its wall clock. What runs stays the same
+    // process: to load node-opcua takes three seconds of a processor.
     async restart(settings = this.settings ?? {}) {
-        await this.kill();
+        if (!this.runs)
+            this.run();
         this.settings = settings;
-        const told = JSON.stringify({ folder: this.folder, port: this.port, ...settings });
-        this.child = spawn(process.execPath, [join(HERE, 'opcua_server.mjs'), told],
-            { stdio: ['pipe', 'pipe', 'pipe'], env: { ...process.env, ...this.settings.env } });
+        this.clock?.set(settings.ahead_s ?? 0);
+        await this.tell({ serve: { folder: this.folder, port: this.port, ...settings } });
+    }
+
+    run() {
+        this.clock = missingClocks() ? null : new SetClock(join(this.folder, 'clock'));
+        this.child = spawn(process.execPath, [join(HERE, 'opcua_server.mjs')],
+            { stdio: ['pipe', 'pipe', 'pipe'], env: { ...process.env, ...this.clock?.variables() } });
         this.said = '';
         this.answers = [];
         const child = this.child;
         child.stderr.on('data', (chunk) => { this.said = (this.said + chunk).slice(-5000); });
         this.ended = new Promise((done) => child.once('exit', done));
-        const ready = new Promise((done, fail) => {
-            child.once('exit', () => fail(new Error(`the OPC UA server ends:\n${this.said}`)));
-            createInterface({ input: child.stdout }).on('line', (line) => {
-                if (line === 'ready')
-                    done();
-                else if (line.startsWith('{"done"'))
-                    this.answers.shift()?.(JSON.parse(line));
-            });
+        createInterface({ input: child.stdout }).on('line', (line) => {
+            if (line.startsWith('{"done"'))
+                this.answers.shift()?.(JSON.parse(line));
         });
-        await ready;
     }
 
     tell(order) {
-        return new Promise((done) => { this.answers.push(done); this.child.stdin.write(`${JSON.stringify(order)}\n`); });
+        const answer = new Promise((done) => { this.answers.push(done); this.child.stdin.write(`${JSON.stringify(order)}\n`); });
+        return Promise.race([answer, this.ended.then(() => { throw new Error(`the OPC UA server ends:\n${this.said}`); })]);
     }
 
     set(name, value, more = {}) { return this.tell({ set: { name, value, ...more } }); }
