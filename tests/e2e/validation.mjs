@@ -20,7 +20,7 @@ before(() => {
         return;
     folder = mkdtempSync(join(tmpdir(), 'plantcast-validation-'));
     const { status, stderr } = spawnSync('tests/validation/run', [OUT, BIN, '--folder', folder, '--parts', 'bent', '--sensors', '5,20',
-        '--coarser', '2.5', '--no-pictures'], { encoding: 'utf8', timeout: 240000 });
+        '--coarser', '2.5', '--prepare', 'harmonic, fin', '--no-pictures'], { encoding: 'utf8', timeout: 240000 });
     assert.equal(status, 0, stderr);
     [part] = JSON.parse(readFileSync(join(folder, 'validation.json'), 'utf8'));
 });
