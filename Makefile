@@ -277,6 +277,7 @@ $(match_tests): pkg_libs += -lminizip -lexpat
 $(out)/obj/tests/cad/step_samples.o: CXXFLAGS += -isystem $(occt)
 $(out)/tests/cad/step_samples: $(call objects,tests/cad/step_samples)
 	@mkdir -p $(@D); echo "  LINK $@"; $(CXX) $(ldflags) -pie -o $@ $^ $(occt_libs)
+$(out)/tests/bench/codec_bench: $(out)/lib/link.a
 $(out)/tests/bench/field_degree: $(call objects,tests/bench/cut_mesh)
 # Those that read no image do not load what reads images, as programs do not: it is where theirs would be installed.
 images_of_tests := $(out)/tests/lib/plantcast/plantcast-images.so

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Encoding the demo plant at 1920x1080: time and size of a moving picture, and size of what changes under a still camera when 60
-   tags change together once a second. One JSON line per row. */
+   tags change together once a second; and decoding both by what the player of walls decodes with. One JSON line per row. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -9,6 +9,7 @@
 
 #include "base/clock.h"
 #include "base/mem.h"
+#include "clients/link/decoder.h"
 #include "deploy/demo/sim_values.h"
 #include "encode/encoder.h"
 #include "render/renderer.h"
@@ -106,7 +107,8 @@ enum { CODECS = sizeof(codecs) / sizeof(codecs[0]) };
 struct measured {
     struct encoder *encoder; /* NULL: not in this build */
     struct frame *before;
-    double bytes, ms, cpu_ms;
+    struct decoder *decoder;
+    double bytes, ms, cpu_ms, decode_cpu_ms;
     int packets;
 };
 
@@ -115,6 +117,29 @@ static double cpu_ms(void)
     struct timespec now;
     clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
     return (double)now.tv_sec * 1e3 + (double)now.tv_nsec / 1e6;
+}
+
+/* As the player does it: one part after the other. */
+static void decode(struct measured *m, const struct packet *packet, const struct frame *frame)
+{
+    double began_ms = cpu_ms();
+    for (int i = 0; i < packet->part_count; i++) {
+        const struct packet_part *part = &packet->parts[i];
+        struct wire_frame wire = {
+            .codec = (uint8_t)packet->codec,
+            .flags = packet->key ? WIRE_FLAG_KEY : 0,
+            .payload_bytes = (uint32_t)part->count,
+            .x_px = (uint16_t)part->x_px,
+            .y_px = (uint16_t)part->y_px,
+            .width_px = (uint16_t)part->width_px,
+            .height_px = (uint16_t)part->height_px,
+            .full_width_px = (uint16_t)frame->width_px,
+            .full_height_px = (uint16_t)frame->height_px,
+        };
+        if (!decoder_decode(m->decoder, &wire, packet->bytes + part->begin))
+            abort();
+    }
+    m->decode_cpu_ms += cpu_ms() - began_ms;
 }
 
 static void encode(struct measured *m, struct frame *frame, int quality, bool full_chroma)
@@ -129,6 +154,7 @@ static void encode(struct measured *m, struct frame *frame, int quality, bool fu
         m->bytes += (double)packet->count;
         m->ms += (double)packet->encode_ns / 1e6;
         m->packets++;
+        decode(m, packet, frame);
     }
     packet_unref(&packet);
     frame_unref(&m->before);
@@ -138,7 +164,7 @@ static void encode(struct measured *m, struct frame *frame, int quality, bool fu
 static void forget(struct measured measured[CODECS])
 {
     for (int c = 0; c < CODECS; c++) {
-        measured[c].bytes = measured[c].ms = measured[c].cpu_ms = 0;
+        measured[c].bytes = measured[c].ms = measured[c].cpu_ms = measured[c].decode_cpu_ms = 0;
         measured[c].packets = 0;
     }
 }
@@ -200,6 +226,8 @@ static void print_rows(const struct measured measured[CODECS], const char *what,
         print_row(name, measured[c].ms / packets, "ms");
         snprintf(name, sizeof(name), "encode_%s_1080p_%s_cpu_ms", codecs[c], what);
         print_row(name, measured[c].cpu_ms / packets, "ms");
+        snprintf(name, sizeof(name), "decode_%s_1080p_%s_cpu_ms", codecs[c], what);
+        print_row(name, measured[c].decode_cpu_ms / packets, "ms");
     }
 }
 
@@ -207,8 +235,10 @@ static void measure(struct bench *bench)
 {
     struct measured measured[CODECS] = { { 0 } };
     for (int c = 0; c < CODECS; c++)
-        if (encoder_works(bench->log, codecs[c], ENCODER_H264_LIBRARY))
+        if (encoder_works(bench->log, codecs[c], ENCODER_H264_LIBRARY)) {
             measured[c].encoder = encoder_create(bench->log, codecs[c], ENCODER_H264_LIBRARY);
+            measured[c].decoder = decoder_create();
+        }
     for (int i = 0; i < 60; i++)
         sim_values_step(bench->values, 1);
     read_tags(bench, -1, true);
@@ -219,6 +249,7 @@ static void measure(struct bench *bench)
     for (int c = 0; c < CODECS; c++) {
         frame_unref(&measured[c].before);
         encoder_destroy(&measured[c].encoder);
+        decoder_destroy(&measured[c].decoder);
     }
 }
 
