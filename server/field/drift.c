@@ -1,20 +1,24 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Least squares by orthogonal columns; a column that says nothing new is left out. */
+/* Least squares by orthogonal columns; a column that says nothing new is left out. Jumps are looked for in what is left of values without
+   a line in time: a drift changes little within hours. */
 #include "field/drift.h"
 
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "base/mem.h"
 
-enum { COLUMNS = 3, SENSORS_LEAST = 3, ROUNDS = 20 };
+enum { JUMPS = 2, COLUMNS = 3 + JUMPS, SENSORS_LEAST = 3, ROUNDS = 20 };
+enum { BESIDE = 3, WITHIN = 2 };           /* hours: of the means before and after a jump, and between the two */
+static const double JUMP = 6;              /* as many times what residuals usually change by in as many hours */
 static const double LAG_HOURS = 12;        /* heat takes its time from the others' places to this one */
 static const double DEPENDENT_PART = 1. / 6; /* of the time: residuals farther apart count as independent */
 static const double NEW_PART = 1e-3;       /* of a column's length that has to be left beside the other columns */
 
 struct rows { /* where there are both, value and prediction; hour by hour */
     double at[COLUMNS][DRIFT_HOURS], time[DRIFT_HOURS], value[DRIFT_HOURS];
-    int hour[DRIFT_HOURS], count;
+    int hour[DRIFT_HOURS], count, columns;
 };
 
 static double dot(const double *a, const double *b, int count)
@@ -50,13 +54,14 @@ static void collect(const double *values, const double *predicted, int hours, st
         rows->at[1][i] = predicted[h];
         rows->at[2][i] = lagging;
     }
+    rows->columns = COLUMNS - JUMPS;
 }
 
 /* The columns become orthonormal; what they explain goes out of time and value. Returns how many are left. */
 static int reduce(struct rows *rows)
 {
     int kept = 0, n = rows->count;
-    for (int c = 0; c < COLUMNS; c++) {
+    for (int c = 0; c < rows->columns; c++) {
         double *column = rows->at[c];
         for (int k = 0; k < kept; k++)
             take_out(column, rows->at[k], n);
@@ -76,6 +81,57 @@ static int reduce(struct rows *rows)
             take_out(rows->value, rows->at[k], n);
         }
     return kept;
+}
+
+static int by_size(const void *a, const void *b)
+{
+    double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+/* Of n numbers, none negative. */
+static double median(const double *of, int n)
+{
+    double sorted[DRIFT_HOURS];
+    memcpy(sorted, of, (size_t)n * sizeof(*sorted));
+    qsort(sorted, (size_t)n, sizeof(*sorted), by_size);
+    return (sorted[(n - 1) / 2] + sorted[n / 2]) / 2;
+}
+
+/* Finds the row before which reduced values jump most. Returns 0 if they do not. */
+static int find_jump(const struct rows *rows, double noise)
+{
+    double change[DRIFT_HOURS];
+    const int first = BESIDE + WITHIN, count = rows->count - first - BESIDE + 1;
+    int largest = 0;
+    for (int k = 0; k < count; k++) {
+        double sum = 0;
+        for (int i = 0; i < BESIDE; i++)
+            sum += rows->value[first + k + i] - rows->value[k + i];
+        change[k] = fabs(sum) / BESIDE;
+        largest = change[k] > change[largest] ? k : largest;
+    }
+    if (change[largest] < JUMP * fmax(median(change, count) / 0.6745, noise * sqrt(2. / BESIDE))) /* as of a normal distribution */
+        return 0;
+    int at = largest + BESIDE;
+    for (int i = at; i <= largest + first; i++)
+        at = fabs(rows->value[i] - rows->value[i - 1]) > fabs(rows->value[at] - rows->value[at - 1]) ? i : at;
+    return at;
+}
+
+/* Collects and reduces, with a column for each jump: from there on the level is another one. Returns how many columns are left. */
+static int reduce_with_jumps(const double *values, const double *predicted, int hours, double noise, struct rows *rows)
+{
+    int jumps[JUMPS], columns = reduce(rows);
+    for (int count = 0; count < JUMPS && (jumps[count] = find_jump(rows, noise)) > 0;) {
+        count++;
+        collect(values, predicted, hours, rows);
+        for (int k = 0; k < count; k++, rows->columns++)
+            for (int i = 0; i < rows->count; i++)
+                rows->at[rows->columns][i] = i >= jumps[k];
+        columns = reduce(rows);
+    }
+    return columns;
 }
 
 /* Of the slope, by Newey & West's estimate: pulls of the residuals on it, and how they hang together over `reach` hours. */
@@ -100,7 +156,7 @@ void drift_fit(const double *values, const double *predicted, int hours, double 
     if (rows.count < DRIFT_HOURS_LEAST)
         return;
     double span = dot(rows.time, rows.time, rows.count);
-    int columns = reduce(&rows);
+    int columns = reduce_with_jumps(values, predicted, hours, noise, &rows);
     double left = dot(rows.time, rows.time, rows.count);
     if (!(left > NEW_PART * NEW_PART * span))
         return;

@@ -1,16 +1,18 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Sensors that drift: over a week of hourly means, a reading is what the others say of it (neighbours.h), times a gain, after a lag, and a
-   straight line in time. That line is the drift. Each sensor counts less what is its own (own[sensor] + common[hour]), so that one that
-   is lost for a day does not move what is said of the others. By least squares, whose error is that of dependent residuals (Newey & West
-   1987), since what a plant does lasts for hours. A sensor that drifts pulls at what is said of all the others: the clearest one is found
-   first, and left out before the others are judged. Pure. Thread: any. */
+   straight line in time. That line is the drift. Where what is left jumps within hours, as it does when a plant is run otherwise from then
+   on, the level may be another one afterwards, twice at most (level shifts found one after the other: Chen & Liu, Joint estimation of model
+   parameters and outlier effects in time series, 1993). Each sensor counts less what is its own (own[sensor] + common[hour]), so that one
+   that is lost for a day does not move what is said of the others. By least squares, whose error is that of dependent residuals (Newey &
+   West 1987), since what a plant does lasts for hours. A sensor that drifts pulls at what is said of all the others: the clearest one is
+   found first, and left out before the others are judged. Pure. Thread: any. */
 #ifndef FIELD_DRIFT_H
 #define FIELD_DRIFT_H
 #include "field/neighbours.h"
 
 enum { DRIFT_HOURS = 168, DRIFT_HOURS_LEAST = 84 }; /* a week; of fewer nothing is said */
 #define DRIFT_SIGMAS 3.0 /* as many of its scatter count as a drift, */
-#define DRIFT_ERRORS 4.0 /* if they are as many of the drift's own standard errors */
+#define DRIFT_ERRORS 4.5 /* if they are as many of the drift's own standard errors */
 
 enum drift_verdict {
     DRIFT_UNKNOWN, /* too little is recorded, under three sensors, or the plant changed so that a drift could not be told from it */
