@@ -71,11 +71,11 @@ static void add_bend(struct concerns *concerns, const struct prepare_asset *asse
     const struct bend_report *bend = &asset->report.bend;
     if (bend->over_share > BENT_SHARE)
         add(concerns, asset, 1 + bend->steps / 255,
-            mem_printf("between corners, harmonic, fin or gp may err by over a step of colour (1/255 of the range) on %.2g %% of its "
+            mem_printf("between corners, harmonic, fin or gp may err by over a step of colour (1/255 of the range) on %.3g %% of its "
                        "surface, by up to %.1f steps",
                        100 * bend->over_share, bend->steps));
     if (bend->unmeasured > 0 || bend->unknown_share > BENT_SHARE)
-        add(concerns, asset, 1, mem_printf("by how much harmonic, fin or gp may err between corners is not known on %.2g %% of its surface",
+        add(concerns, asset, 1, mem_printf("by how much harmonic, fin or gp may err between corners is not known on %.3g %% of its surface",
                                            bend->unmeasured > 0 ? 100 : 100 * bend->unknown_share));
 }
 
