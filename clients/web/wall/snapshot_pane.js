@@ -10,7 +10,7 @@ const ASK_MS = 1000, UNHEARD_MS = 5000; // so long without a word from this plan
 
 // Returns { tick(now) }. timeOf(us): the plant's time.
 export function SnapshotPane(pane, { session, title, body, timeOf }) {
-    const [id] = pane.items, image = make('img', { alt: '' }), card = make('div', { class: 'gone' });
+    const [id] = pane.items, image = make('img', { alt: '', hidden: '' }), card = make('div', { class: 'gone' });
     const about = make('span', { class: 'about' }), name = make('span', { class: 'said' });
     let state = null, asks = false, askedAt = -Infinity;
     let shown = null, changedAt = 0; // { picture, ageMs, at }; since when there is another one to be shown
