@@ -9,6 +9,7 @@
 
 #include "base/mem.h"
 #include "base/text.h"
+#include "clients/link/png.h"
 #include "commands.h"
 #include "field/params.h"
 #include "provenance/strip_reader.h"
@@ -39,28 +40,11 @@ static bool read_jpeg(const uint8_t *bytes, size_t count, struct strip_picture *
     return good;
 }
 
-struct source {
-    const uint8_t *at;
-    size_t left;
-};
-
-static cairo_status_t take_bytes(void *arg, unsigned char *out, unsigned int count)
-{
-    struct source *source = arg;
-    if (count > source->left)
-        return CAIRO_STATUS_READ_ERROR;
-    memcpy(out, source->at, count);
-    source->at += count;
-    source->left -= count;
-    return CAIRO_STATUS_SUCCESS;
-}
-
 static bool read_png(const uint8_t *at, size_t count, struct strip_picture *picture)
 {
-    struct source source = { at, count };
-    cairo_surface_t *surface = cairo_image_surface_create_from_png_stream(take_bytes, &source);
-    cairo_format_t format = cairo_image_surface_get_format(surface);
-    bool good = cairo_surface_status(surface) == CAIRO_STATUS_SUCCESS && (format == CAIRO_FORMAT_RGB24 || format == CAIRO_FORMAT_ARGB32);
+    cairo_surface_t *surface = png_read(at, count);
+    cairo_format_t format = surface ? cairo_image_surface_get_format(surface) : CAIRO_FORMAT_INVALID;
+    bool good = format == CAIRO_FORMAT_RGB24 || format == CAIRO_FORMAT_ARGB32;
     if (good) {
         *picture = (struct strip_picture){ .width_px = cairo_image_surface_get_width(surface),
                                            .height_px = cairo_image_surface_get_height(surface),

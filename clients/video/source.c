@@ -7,6 +7,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "clients/link/png.h"
 #include "message/view_address.h"
 
 /* A picture is of the instant at which it was asked for. The one that is shown stays until the next is there: asked for EVERY after it, and
@@ -170,22 +171,6 @@ static void take_views(struct source *source, const json_t *o)
     g_string_free(names, TRUE);
 }
 
-struct bytes {
-    const guint8 *at;
-    gsize left;
-};
-
-static cairo_status_t read_bytes(void *closure, unsigned char *data, unsigned int length)
-{
-    struct bytes *bytes = closure;
-    if (bytes->left < length)
-        return CAIRO_STATUS_READ_ERROR;
-    memcpy(data, bytes->at, length);
-    bytes->at += length;
-    bytes->left -= length;
-    return CAIRO_STATUS_SUCCESS;
-}
-
 static guint32 big_endian(const guint8 *at)
 {
     return (guint32)at[0] << 24 | (guint32)at[1] << 16 | (guint32)at[2] << 8 | at[3];
@@ -196,15 +181,10 @@ static cairo_surface_t *decode(const struct options *options, GBytes *body)
 {
     gsize count;
     const guint8 *at = g_bytes_get_data(body, &count);
-    struct bytes bytes = { at, count };
     if (count < 24 || big_endian(at + 16) != (guint32)options->width_px ||
         big_endian(at + 20) != (guint32)canvas_picture_px(options->height_px))
         return NULL;
-    cairo_surface_t *surface = cairo_image_surface_create_from_png_stream(read_bytes, &bytes);
-    if (cairo_surface_status(surface) == CAIRO_STATUS_SUCCESS)
-        return surface;
-    cairo_surface_destroy(surface);
-    return NULL;
+    return png_read(at, count);
 }
 
 static void take_picture(struct source *source, SoupMessage *message, GBytes *body)

@@ -8,6 +8,7 @@
 
 #include "base/clock.h"
 #include "brush.h"
+#include "clients/link/png.h"
 #include "words.h"
 
 static const int64_t ASK_NS = NS_PER_S, UNHEARD_NS = 5 * NS_PER_S;
@@ -110,33 +111,15 @@ void snapshots_take(struct player *player, const json_t *answer)
     }
 }
 
-struct reading_png {
-    const char *at;
-    size_t left;
-};
-
-static cairo_status_t read_png(void *arg, unsigned char *out, unsigned int count)
-{
-    struct reading_png *png = arg;
-    if (count > png->left)
-        return CAIRO_STATUS_READ_ERROR;
-    memcpy(out, png->at, count);
-    png->at += count;
-    png->left -= count;
-    return CAIRO_STATUS_SUCCESS;
-}
-
 void snapshots_take_picture(struct player *player, const struct text *body)
 {
     for (int i = 0; i < player->pane_count; i++) {
         struct snapshot_pane *snapshot = &player->panes[i].snapshot;
-        struct reading_png png = { body->at, body->length };
         if (!snapshot->asks)
             continue;
-        cairo_surface_t *picture = cairo_image_surface_create_from_png_stream(read_png, &png);
+        cairo_surface_t *picture = png_read(body->at, body->length);
         snapshot->asks = false;
-        if (cairo_surface_status(picture) != CAIRO_STATUS_SUCCESS) { /* also where it has been followed by another one */
-            cairo_surface_destroy(picture);
+        if (!picture) { /* also where it has been followed by another one */
             snapshot->failed = snapshot->asked;
             continue;
         }
